@@ -1,0 +1,241 @@
+//! The numbers of the board, each a type of its own.
+//!
+//! A newtype with a checking constructor means that a thread number cannot be used as
+//! an axis number, and that a value once constructed is in range for good.
+
+use std::fmt;
+
+/// An address that a guest program alleges: a number, not an access.
+///
+/// Only `GuestMemory` turns it into bytes, after checking it.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub struct GuestAddr(u32);
+
+impl GuestAddr {
+    /// The null pointer.
+    pub const NULL: Self = Self(0);
+
+    /// Makes an address of a number; every number is a claim that may be made.
+    #[must_use]
+    pub const fn new(address: u32) -> Self {
+        Self(address)
+    }
+
+    /// The number itself.
+    #[must_use]
+    pub const fn get(self) -> u32 {
+        self.0
+    }
+
+    /// The address `bytes` further on, wrapping as guest arithmetic does.
+    #[must_use]
+    pub const fn offset(self, bytes: u32) -> Self {
+        Self(self.0.wrapping_add(bytes))
+    }
+
+    /// Whether this is the null pointer.
+    #[must_use]
+    pub const fn is_null(self) -> bool {
+        self.0 == 0
+    }
+}
+
+impl fmt::Debug for GuestAddr {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:#010x}", self.0)
+    }
+}
+
+impl fmt::Display for GuestAddr {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:#010x}", self.0)
+    }
+}
+
+/// The guest address of a bytecode instruction: a multiple of 8 inside a program's text.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct CodeAddr(u32);
+
+impl CodeAddr {
+    /// Takes a guest address as one of code; `None` if it is not a multiple of 8.
+    #[must_use]
+    pub const fn new(address: u32) -> Option<Self> {
+        if address.is_multiple_of(8) { Some(Self(address)) } else { None }
+    }
+
+    /// The number itself.
+    #[must_use]
+    pub const fn get(self) -> u32 {
+        self.0
+    }
+
+    /// The same address as data would name it.
+    #[must_use]
+    pub const fn as_guest_addr(self) -> GuestAddr {
+        GuestAddr(self.0)
+    }
+}
+
+impl fmt::Debug for CodeAddr {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:#010x}", self.0)
+    }
+}
+
+impl fmt::Display for CodeAddr {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:#010x}", self.0)
+    }
+}
+
+macro_rules! small_id {
+    ($(#[$doc:meta])* $name:ident($repr:ty) = $low:literal..=$high:literal) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub struct $name($repr);
+
+        impl $name {
+            #[doc = concat!("The largest valid number, ", stringify!($high), ".")]
+            pub const MAX: $repr = $high;
+
+            #[doc = concat!("Checks a number; `None` outside ", stringify!($low), "..=", stringify!($high), ".")]
+            #[must_use]
+            pub fn new(number: i32) -> Option<Self> {
+                ($low..=$high).contains(&number).then_some(Self(number as $repr))
+            }
+
+            /// The number itself.
+            #[must_use]
+            pub const fn get(self) -> $repr {
+                self.0
+            }
+
+            /// The number as an index counted from zero.
+            #[must_use]
+            pub const fn index(self) -> usize {
+                (self.0 - $low) as usize
+            }
+
+            /// All valid numbers in ascending order.
+            pub fn all() -> impl DoubleEndedIterator<Item = Self> {
+                ($low..=$high).map(Self)
+            }
+        }
+
+        impl fmt::Display for $name {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                fmt::Display::fmt(&self.0, f)
+            }
+        }
+    };
+}
+
+small_id! {
+    /// One of the seven user threads, 1 to 7; the primary thread is not one.
+    ThreadId(u8) = 1..=7
+}
+
+small_id! {
+    /// One of the eight axes, 0 to 7.
+    AxisId(u8) = 0..=7
+}
+
+small_id! {
+    /// A numbered digital input or output, 0 to 2047.
+    Bit(u16) = 0..=2047
+}
+
+/// A count of servo samples (90 µs each) since power-up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub struct Ticks(u64);
+
+impl Ticks {
+    /// Makes a count of ticks.
+    #[must_use]
+    pub const fn new(count: u64) -> Self {
+        Self(count)
+    }
+
+    /// The count.
+    #[must_use]
+    pub const fn get(self) -> u64 {
+        self.0
+    }
+
+    /// The tick after this one.
+    #[must_use]
+    pub const fn next(self) -> Self {
+        Self(self.0 + 1)
+    }
+}
+
+/// Processor time in cycles of 5 ns (200 MHz): what code costs and what a slice may spend.
+///
+/// Also a point in time, counted from power-up. Signed, because a slice's budget may be
+/// overdrawn by the block that exhausts it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub struct Cycles(i64);
+
+impl Cycles {
+    /// Cycles in one tick of 90 µs.
+    pub const PER_TICK: Self = Self(18_000);
+    /// Cycles in one second.
+    pub const PER_SECOND: Self = Self(200_000_000);
+
+    /// Makes a number of cycles.
+    #[must_use]
+    pub const fn new(count: i64) -> Self {
+        Self(count)
+    }
+
+    /// The count.
+    #[must_use]
+    pub const fn get(self) -> i64 {
+        self.0
+    }
+}
+
+impl std::ops::Add for Cycles {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self(self.0.saturating_add(other.0))
+    }
+}
+
+impl std::ops::Sub for Cycles {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        Self(self.0.saturating_sub(other.0))
+    }
+}
+
+impl std::ops::AddAssign for Cycles {
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl std::ops::SubAssign for Cycles {
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thread_numbers_are_one_to_seven() {
+        assert_eq!(ThreadId::new(0), None);
+        assert_eq!(ThreadId::new(8), None);
+        assert_eq!(ThreadId::new(7).map(ThreadId::index), Some(6));
+        assert_eq!(ThreadId::all().count(), 7);
+    }
+
+    #[test]
+    fn code_addresses_are_multiples_of_eight() {
+        assert!(CodeAddr::new(0x8005_0004).is_none());
+        assert_eq!(CodeAddr::new(0x8005_0008).map(CodeAddr::get), Some(0x8005_0008));
+    }
+}

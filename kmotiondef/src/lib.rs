@@ -1,0 +1,37 @@
+//! The KFLOP board as its programs see it: names, addresses, types, layouts.
+//!
+//! Tables and plain types only. The compiler links against them, the kernel answers
+//! for them, the header test compares them with the C headers in `include/`.
+//!
+//! | table | read by |
+//! |---|---|
+//! | [`firmware`] | the linker for names and signatures, the runtime for its dispatch, the documentation |
+//! | [`variables`], [`structs`] | the linker for names, the kernel for typed places |
+//! | [`bits`] | the runtime, to find what answers a bit number |
+//! | [`map`] | the loader and guest memory |
+//! | [`limits`], [`modes`] | the servo and the devices |
+//! | [`headers`] | the preprocessor |
+//!
+//! Invariant: depends on nothing and holds no behaviour.
+
+#![forbid(unsafe_code)]
+
+pub mod bits;
+pub mod ctype;
+pub mod firmware;
+pub mod headers;
+mod ids;
+pub mod limits;
+pub mod map;
+pub mod modes;
+mod place;
+pub mod start;
+pub mod structs;
+pub mod variables;
+
+#[cfg(test)]
+mod tests;
+
+pub use ctype::{CType, GuestType, Plain, Scalar, ValueClass};
+pub use ids::{AxisId, Bit, CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
+pub use place::{Field, Place};

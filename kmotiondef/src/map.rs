@@ -1,0 +1,103 @@
+//! The board's memory map: regions and the program slots of the threads.
+//!
+//! Source: firmware 4.34, table `api/memory-map.csv` of the specification.
+
+use crate::{GuestAddr, ThreadId};
+
+/// What stands behind an address range.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RegionKind {
+    /// Memory that is read and written.
+    Ram,
+    /// Memory that is read; writes are commands to the flash chip.
+    Flash,
+    /// Registers of a device: a read or write is an action.
+    Device,
+}
+
+/// One range of the guest address space.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Region {
+    /// Name for messages.
+    pub name: &'static str,
+    /// First address.
+    pub base: GuestAddr,
+    /// Size in bytes.
+    pub size: u32,
+    /// What stands there.
+    pub kind: RegionKind,
+}
+
+macro_rules! regions {
+    ($($(#[$doc:meta])* $id:ident = $name:literal at $base:literal, size $size:literal, $kind:ident;)*) => {
+        $($(#[$doc])* pub const $id: Region =
+            Region { name: $name, base: GuestAddr::new($base), size: $size, kind: RegionKind::$kind };)*
+
+        /// Every mapped region in ascending order of address.
+        pub const REGIONS: &[Region] = &[$($id),*];
+    };
+}
+
+regions! {
+    /// On-chip RAM: the firmware's variables, `chan[]` and `persist` among them.
+    IRAM = "on-chip RAM" at 0x1000_0000, size 0x2_0000, Ram;
+    /// The processor's peripheral registers, of which programs read TIMER0.
+    TIMER = "timer registers" at 0x4200_0000, size 0x100, Device;
+    /// The 16 MiB SDRAM: programs, stacks, gather buffer, segment buffer, heap.
+    SDRAM = "SDRAM" at 0x8000_0000, size 0x100_0000, Ram;
+    /// Flash memory, 1 MiB for the system and 1 MiB for users.
+    FLASH = "flash" at 0x9000_0000, size 0x20_0000, Flash;
+    /// Registers of the FPGA.
+    FPGA = "FPGA registers" at 0x9100_0000, size 0x1000, Device;
+}
+
+/// TIMER0, a free-running 50 MHz counter of 32 bits.
+pub const TIMER0: GuestAddr = GuestAddr::new(0x4200_0010);
+
+/// Start of thread 1's program slot.
+pub const PROGRAM_BASE: u32 = 0x8005_0000;
+/// Bytes of one thread's program slot; the next thread's follows.
+pub const PROGRAM_SIZE: u32 = 0x1_0000;
+/// First address behind every program slot: the limit for a program that needs several.
+pub const PROGRAM_LIMIT: u32 = 0x8010_0000;
+
+/// Start of the stack of thread 1; design choice, in SDRAM that nothing else uses.
+pub const STACK_BASE: u32 = 0x800C_0000;
+/// Bytes of one thread's stack. The board itself has 2048, see `BOARD_STACK_SIZE`.
+pub const STACK_SIZE: u32 = 0x8000;
+/// Bytes of one thread's stack on the real board.
+pub const BOARD_STACK_SIZE: u32 = 2048;
+
+/// Where thread `thread`'s program starts.
+#[must_use]
+pub fn program_base(thread: ThreadId) -> GuestAddr {
+    GuestAddr::new(PROGRAM_BASE + u32::from(thread.get() - 1) * PROGRAM_SIZE)
+}
+
+/// The lowest address of `thread`'s stack; it grows down towards it.
+#[must_use]
+pub fn stack_base(thread: ThreadId) -> GuestAddr {
+    GuestAddr::new(STACK_BASE + u32::from(thread.get() - 1) * STACK_SIZE)
+}
+
+/// Stack for the call-back, which belongs to no thread: behind those of the seven threads.
+pub const CALLBACK_STACK_BASE: u32 = STACK_BASE + 7 * STACK_SIZE;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn regions_ascend_without_overlap() {
+        for pair in REGIONS.windows(2) {
+            assert!(pair[0].base.get() + pair[0].size <= pair[1].base.get());
+        }
+    }
+
+    #[test]
+    fn slots_and_stacks_stay_inside_the_program_area() {
+        let last = ThreadId::new(7).expect("7 is a thread");
+        assert_eq!(program_base(last).get() + PROGRAM_SIZE, STACK_BASE);
+        const { assert!(CALLBACK_STACK_BASE + STACK_SIZE <= PROGRAM_LIMIT) };
+    }
+}

@@ -1,0 +1,42 @@
+//! What the board puts into its variables when it starts.
+
+use crate::GuestAddr;
+
+/// What stands in a variable or field at power-up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Start {
+    /// Zeros.
+    Zero,
+    /// An integer.
+    Int(i32),
+    /// The same integer in every element of an array.
+    Each(i32),
+    /// A `float`.
+    Float(f32),
+    /// A `double`.
+    Double(f64),
+    /// A text and its terminator.
+    Text(&'static str),
+    /// A pointer.
+    Address(GuestAddr),
+    /// The words at the beginning, the rest zeros.
+    Words(&'static [u32]),
+    /// In the structure of axis n: `first + n * step`.
+    PerAxis {
+        /// The value for axis 0.
+        first: u32,
+        /// From one axis to the next.
+        step: u32,
+    },
+    /// What the fields of its structure say.
+    Fields,
+}
+
+/// When the start value is stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stored {
+    /// At every power-up.
+    Always,
+    /// Only when no user image has been flashed; otherwise what was flashed comes back.
+    UnlessFlashed,
+}

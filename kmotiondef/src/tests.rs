@@ -1,0 +1,33 @@
+//! Reads the tables of the specification for the tests of this crate.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// One row by the names of its columns.
+pub(crate) type Row = BTreeMap<String, String>;
+
+/// All rows of a table of `tests/data/api`.
+pub(crate) fn table(name: &str) -> Vec<Row> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/data/api").join(name);
+    let text = std::fs::read_to_string(&path).expect("the copies of the tables are in the repository");
+    let mut lines = text.lines().map(cells);
+    let header = lines.next().expect("the first line names the columns");
+    lines.map(|cells| header.iter().cloned().zip(cells).collect()).collect()
+}
+
+/// The cells of one line; a cell with commas or quotes stands in quotes.
+fn cells(line: &str) -> Vec<String> {
+    let mut cells = vec![String::new()];
+    let mut is_quoted = false;
+    let mut characters = line.chars().peekable();
+    while let Some(character) = characters.next() {
+        let cell = cells.last_mut().expect("there is one from the start");
+        match character {
+            '"' if is_quoted && characters.peek() == Some(&'"') => cell.extend(characters.next()),
+            '"' => is_quoted = !is_quoted,
+            ',' if !is_quoted => cells.push(String::new()),
+            _ => cell.push(character),
+        }
+    }
+    cells
+}
