@@ -1,0 +1,105 @@
+//! What can be wrong with an image, and where.
+
+use std::fmt;
+
+/// A fault in an image and the file offset of the bytes that show it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{kind} (at offset {at:#x})")]
+pub struct Error {
+    /// Offset in the file.
+    pub at: u64,
+    /// What is wrong there.
+    pub kind: ErrorKind,
+}
+
+/// What is wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ErrorKind {
+    /// The file begins with something else.
+    #[error("not a COFF2 image: the magic number is {0:#06x}, not 0x00c2")]
+    Magic(u16),
+    /// The file is a COFF2 image of a big-endian processor.
+    #[error("the image is big endian")]
+    BigEndian,
+    /// A part lies outside the file, wholly or at its end.
+    #[error("{part} needs {size} bytes, which the file does not have")]
+    Truncated {
+        /// The part.
+        part: Part,
+        /// Its size in bytes.
+        size: u64,
+    },
+    /// A section has relocations: the image is not linked.
+    #[error("section {section} has relocations, the image is not linked")]
+    Relocations {
+        /// Number of the section, from 1.
+        section: usize,
+    },
+    /// Parts share more bytes than a file of this size can have by itself.
+    #[error("{0} overlaps with others")]
+    Overlap(Part),
+    /// A name lies outside the string table.
+    #[error("name at offset {offset} of a string table of {size} bytes")]
+    Name {
+        /// Offset in the string table.
+        offset: u32,
+        /// Size of the table.
+        size: u64,
+    },
+    /// The auxiliary entries of a symbol go beyond the symbol table.
+    #[error("{count} auxiliary entries where {left} entries are left")]
+    Auxiliary {
+        /// How many the symbol has.
+        count: u8,
+        /// How many entries follow it.
+        left: u32,
+    },
+    /// A name to be written contains a NUL.
+    #[error("a name contains a NUL character")]
+    NulInName,
+    /// There is more of something than the format can count.
+    #[error("{0} exceeds what the format can count")]
+    TooLarge(Part),
+}
+
+/// A part of an image, for messages.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// The first 22 bytes.
+    FileHeader,
+    /// The optional header.
+    OptionalHeader,
+    /// The table of section headers.
+    SectionHeaders,
+    /// The raw data of a section, counted from 1.
+    Data(usize),
+    /// The line numbers of a section, counted from 1.
+    Lines(usize),
+    /// The symbol table.
+    Symbols,
+    /// The auxiliary entries of a symbol.
+    Auxiliaries,
+    /// The string table.
+    Strings,
+    /// The names that the string table holds.
+    Names,
+    /// The file as a whole.
+    File,
+}
+
+impl fmt::Display for Part {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::FileHeader => f.write_str("the file header"),
+            Self::OptionalHeader => f.write_str("the optional header"),
+            Self::SectionHeaders => f.write_str("the table of section headers"),
+            Self::Data(section) => write!(f, "the data of section {section}"),
+            Self::Lines(section) => write!(f, "the line table of section {section}"),
+            Self::Symbols => f.write_str("the symbol table"),
+            Self::Auxiliaries => f.write_str("the number of auxiliary entries"),
+            Self::Strings => f.write_str("the string table"),
+            Self::Names => f.write_str("the text of the names"),
+            Self::File => f.write_str("the file"),
+        }
+    }
+}

@@ -1,0 +1,226 @@
+//! What reader and writer agree on: an image as values.
+//!
+//! Names are bytes, for a file may hold any; counts and file offsets do not appear, the
+//! writer finds them. Auxiliary entries stay as they are in the file, because what they mean
+//! depends on the symbol; [`Layout`](crate::Layout) gives the offsets that some of them hold.
+
+use std::borrow::Cow;
+use std::fmt;
+use std::num::NonZeroU16;
+
+use zerocopy::{Immutable, IntoBytes};
+
+use crate::names::{FileFlags, SectionFlags, SectionNumber, StorageClass, SymbolType, Target};
+use crate::raw;
+
+/// A linked image.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Image {
+    /// The processor it is for.
+    pub target: Target,
+    /// When it was made, in Unix seconds; 0 in images of compilers.
+    pub timestamp: u32,
+    /// What has been stripped, and whether it is complete.
+    pub flags: FileFlags,
+    /// Entry point and sizes; `None` if the file has no optional header of the usual size.
+    pub program: Option<Program>,
+    /// The sections in the order of their headers.
+    pub sections: Vec<Section>,
+    /// The symbols in the order of the table.
+    pub symbols: Vec<Symbol>,
+}
+
+/// What the optional header says about the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct Program {
+    /// Version of the tool that wrote the image.
+    pub version_stamp: i16,
+    /// Size of `.text`.
+    pub text_size: u32,
+    /// Size of initialised data.
+    pub data_size: u32,
+    /// Size of uninitialised data; in an image of the vendor's compiler nothing else tells it.
+    pub bss_size: u32,
+    /// Where execution begins.
+    pub entry: u32,
+    /// Where `.text` begins.
+    pub text_start: u32,
+    /// Where `.data` begins.
+    pub data_start: u32,
+}
+
+/// A section.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Section {
+    /// Its name.
+    pub name: Name,
+    /// Physical address.
+    pub physical: u32,
+    /// Address at run time, where the loader puts it.
+    pub address: u32,
+    /// What it is, and its alignment.
+    pub flags: SectionFlags,
+    /// Memory page.
+    pub page: u16,
+    /// Its bytes.
+    pub contents: Contents,
+    /// Its line numbers.
+    pub lines: Vec<Line>,
+}
+
+impl Section {
+    /// Its size in bytes.
+    #[must_use]
+    pub fn size(&self) -> u64 {
+        match &self.contents {
+            // A usize has at most 64 bits, so that the other value is never taken.
+            Contents::Data(bytes) => u64::try_from(bytes.len()).unwrap_or(u64::MAX),
+            Contents::Uninitialised(size) => u64::from(*size),
+        }
+    }
+
+    /// Its bytes, none if it is uninitialised.
+    #[must_use]
+    pub fn data(&self) -> &[u8] {
+        match &self.contents {
+            Contents::Data(bytes) => bytes,
+            Contents::Uninitialised(_) => &[],
+        }
+    }
+}
+
+/// What a section holds.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Contents {
+    /// Bytes in the file.
+    Data(Vec<u8>),
+    /// So many bytes that are not in the file.
+    Uninitialised(u32),
+}
+
+/// A line number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Line {
+    /// The following entries belong to the function with this symbol index.
+    Function(u32),
+    /// Code at an address belongs to a line.
+    Statement {
+        /// The address.
+        address: u32,
+        /// The line in the source file.
+        line: NonZeroU16,
+    },
+}
+
+/// A symbol.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Symbol {
+    /// Its name, possibly empty.
+    pub name: Name,
+    /// Its value, mostly an address.
+    pub value: u32,
+    /// Where the value lies.
+    pub section: SectionNumber,
+    /// The type of what it names.
+    pub ty: SymbolType,
+    /// What it is.
+    pub class: StorageClass,
+    /// What else there is to say about it.
+    pub aux: Vec<Aux>,
+}
+
+/// An auxiliary entry: 18 bytes whose meaning depends on the symbol.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Aux(pub [u8; 18]);
+
+impl Aux {
+    /// Makes an entry of one of the structures of [`raw`] that describe one.
+    #[must_use]
+    pub fn new<T: IntoBytes + Immutable>(entry: &T) -> Self {
+        let mut bytes = [0; 18];
+        for (to, from) in bytes.iter_mut().zip(entry.as_bytes()) {
+            *to = *from;
+        }
+        Self(bytes)
+    }
+
+    /// The entry of a function.
+    #[must_use]
+    pub fn as_function(&self) -> raw::FunctionAux {
+        zerocopy::transmute!(self.0)
+    }
+
+    /// The entry of `.bf` or `.ef`.
+    #[must_use]
+    pub fn as_boundary(&self) -> raw::BoundaryAux {
+        zerocopy::transmute!(self.0)
+    }
+}
+
+/// A name: bytes without NUL, mostly ASCII.
+#[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub struct Name(Vec<u8>);
+
+impl Name {
+    /// Makes a name of the bytes a file holds.
+    #[must_use]
+    pub fn new(bytes: &[u8]) -> Self {
+        Self(bytes.to_vec())
+    }
+
+    /// The bytes.
+    #[must_use]
+    pub fn as_bytes(&self) -> &[u8] {
+        &self.0
+    }
+
+    /// The name as text; what is not UTF-8 becomes the replacement character.
+    #[must_use]
+    pub fn to_str(&self) -> Cow<'_, str> {
+        String::from_utf8_lossy(&self.0)
+    }
+}
+
+impl From<&str> for Name {
+    fn from(text: &str) -> Self {
+        Self::new(text.as_bytes())
+    }
+}
+
+impl PartialEq<str> for Name {
+    fn eq(&self, other: &str) -> bool {
+        self.0 == other.as_bytes()
+    }
+}
+
+impl fmt::Display for Name {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(&self.to_str())
+    }
+}
+
+impl fmt::Debug for Name {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Debug::fmt(&self.to_str(), f)
+    }
+}
+
+impl Image {
+    /// The section called `name`.
+    #[must_use]
+    pub fn section(&self, name: &str) -> Option<&Section> {
+        self.sections.iter().find(|section| section.name == *name)
+    }
+
+    /// The first symbol called `name`.
+    #[must_use]
+    pub fn symbol(&self, name: &str) -> Option<&Symbol> {
+        self.symbols.iter().find(|symbol| symbol.name == *name)
+    }
+
+    /// The entries that the symbol table has, auxiliary ones included.
+    #[must_use]
+    pub fn symbol_entries(&self) -> usize {
+        self.symbols.iter().map(|symbol| 1 + symbol.aux.len()).sum()
+    }
+}
