@@ -1,0 +1,82 @@
+//! Loads and stores of a program: memory first, then the bus.
+
+use kmotiondef::GuestAddr;
+
+use crate::bus::AccessSize;
+use crate::engine::Slice;
+use crate::firmware::Firmware;
+use crate::memory::{Scalar, is_on_bus};
+use crate::trap::{Access, TrapKind};
+
+impl<F: Firmware + ?Sized> Slice<'_, F> {
+    /// Loads a value from memory or from registers of a device.
+    ///
+    /// # Errors
+    /// [`TrapKind::Unmapped`] or [`TrapKind::Misaligned`].
+    #[inline(always)]
+    pub(crate) fn load<T: Scalar>(&mut self, addr: GuestAddr) -> Result<T, TrapKind> {
+        self.memory.load(addr).or_else(|kind| self.load_from_bus(addr, kind))
+    }
+
+    /// Stores a value to memory or to registers of a device.
+    ///
+    /// # Errors
+    /// [`TrapKind::Unmapped`], [`TrapKind::Misaligned`] or [`TrapKind::WriteProtected`].
+    #[inline(always)]
+    pub(crate) fn store<T: Scalar>(&mut self, addr: GuestAddr, value: T) -> Result<(), TrapKind> {
+        self.memory.store(addr, value).or_else(|kind| self.store_to_bus(addr, value, kind))
+    }
+
+    /// A load that memory has refused as `kind`.
+    #[cold]
+    fn load_from_bus<T: Scalar>(&mut self, addr: GuestAddr, kind: TrapKind) -> Result<T, TrapKind> {
+        if !is_on_bus(addr, Access::Read) {
+            return Err(kind);
+        }
+        if !addr.get().is_multiple_of(T::LOAD_ALIGN) {
+            return Err(TrapKind::Misaligned { addr, size: T::SIZE, access: Access::Read });
+        }
+        let mut bytes = [0; 8];
+        for (offset, part) in (0..).step_by(4).zip(bytes.chunks_exact_mut(4)).take(parts(T::SIZE)) {
+            let addr = addr.offset(offset);
+            self.budget -= self.firmware.access_cycles(addr);
+            let value = self.firmware.read(addr, size_of_part(T::SIZE), self.now());
+            part.copy_from_slice(&value.to_le_bytes());
+        }
+        T::get(&bytes, 0).ok_or(kind)
+    }
+
+    /// A store that memory has refused as `kind`.
+    #[cold]
+    fn store_to_bus<T: Scalar>(&mut self, addr: GuestAddr, value: T, kind: TrapKind) -> Result<(), TrapKind> {
+        if !is_on_bus(addr, Access::Write) {
+            return Err(kind);
+        }
+        if !addr.get().is_multiple_of(T::STORE_ALIGN) {
+            return Err(TrapKind::Misaligned { addr, size: T::SIZE, access: Access::Write });
+        }
+        let mut bytes = [0; 8];
+        value.set(&mut bytes, 0).ok_or(kind)?;
+        for (offset, part) in (0..).step_by(4).zip(bytes.as_chunks::<4>().0).take(parts(T::SIZE)) {
+            let addr = addr.offset(offset);
+            self.budget -= self.firmware.access_cycles(addr);
+            let now = self.now();
+            self.firmware.write(addr, size_of_part(T::SIZE), u32::from_le_bytes(*part), now);
+        }
+        Ok(())
+    }
+}
+
+/// Number of bus accesses that an access of `size` bytes needs.
+const fn parts(size: u32) -> usize {
+    if size == 8 { 2 } else { 1 }
+}
+
+/// Width of each of them.
+const fn size_of_part(size: u32) -> AccessSize {
+    match size {
+        1 => AccessSize::Byte,
+        2 => AccessSize::Half,
+        _ => AccessSize::Word,
+    }
+}

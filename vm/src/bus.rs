@@ -1,0 +1,44 @@
+//! Device registers: addresses where a read or write is an action.
+//!
+//! The machine does not know what stands behind them; the kernel routes an access to its
+//! device. An access of eight bytes reaches the bus as two of four, low half first.
+
+use kmotiondef::{Cycles, GuestAddr};
+
+/// Width of one access on the bus.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AccessSize {
+    /// 8 bits.
+    Byte,
+    /// 16 bits.
+    Half,
+    /// 32 bits.
+    Word,
+}
+
+impl AccessSize {
+    /// Number of bytes.
+    #[must_use]
+    pub const fn bytes(self) -> u32 {
+        match self {
+            Self::Byte => 1,
+            Self::Half => 2,
+            Self::Word => 4,
+        }
+    }
+}
+
+/// What answers the addresses that are not memory.
+pub trait Bus {
+    /// Reads a register; the value is zero-extended from `size`.
+    fn read(&mut self, addr: GuestAddr, size: AccessSize, now: Cycles) -> u32;
+
+    /// Writes a register or sends a command to the flash chip; the upper bits of `value` beyond `size` are zero.
+    fn write(&mut self, addr: GuestAddr, size: AccessSize, value: u32, now: Cycles);
+
+    /// Processor time that an access of this address takes beyond the instruction's own.
+    fn access_cycles(&self, addr: GuestAddr) -> Cycles {
+        let _ = addr;
+        Cycles::new(0)
+    }
+}

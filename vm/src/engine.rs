@@ -1,0 +1,158 @@
+//! What runs a thread: from one stop to the next.
+//!
+//! An engine keeps a context (registers, call frames) for each thread and one for the
+//! call-back. It decides nothing about time: it obeys `charge` and returns.
+
+use kmotiondef::map::{BOARD_STACK_SIZE, CALLBACK_STACK_BASE, STACK_SIZE, stack_base};
+use kmotiondef::{CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
+
+use crate::firmware::{Caller, Firmware, Wake};
+use crate::memory::GuestMemory;
+use crate::operand::FuncRef;
+use crate::program::Program;
+use crate::thread::Threads;
+use crate::trap::Trap;
+
+/// Why an engine returned.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[must_use]
+pub enum Stop {
+    /// The budget is used up.
+    Preempted,
+    /// A firmware call waits; it is repeated when the wake comes true.
+    Waiting(Wake),
+    /// The program has returned from its entry function or called `ThreadDone`.
+    Ended,
+    /// The thread has paused itself.
+    Paused,
+    /// The program did the impossible.
+    Trapped(Trap),
+}
+
+/// Names one of an engine's contexts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct ContextId(Option<ThreadId>);
+
+impl ContextId {
+    /// Number of contexts.
+    pub const COUNT: usize = ThreadId::MAX as usize + 1;
+
+    /// The context of the call-back.
+    pub const CALLBACK: Self = Self(None);
+
+    /// The context of a thread.
+    #[must_use]
+    pub const fn of(thread: ThreadId) -> Self {
+        Self(Some(thread))
+    }
+
+    /// The thread; `None` for the call-back.
+    #[must_use]
+    pub const fn thread(self) -> Option<ThreadId> {
+        self.0
+    }
+
+    /// The context as an index counted from zero.
+    #[must_use]
+    pub const fn index(self) -> usize {
+        match self.0 {
+            Some(thread) => thread.index(),
+            None => Self::COUNT - 1,
+        }
+    }
+
+    /// The stack of the context.
+    #[must_use]
+    pub fn stack(self, strict: bool) -> Stack {
+        let base = self.0.map_or(GuestAddr::new(CALLBACK_STACK_BASE), stack_base);
+        let top = base.get() + STACK_SIZE;
+        Stack { limit: if strict { top - BOARD_STACK_SIZE } else { base.get() }, top }
+    }
+}
+
+/// A stack in guest memory; it grows down from `top`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stack {
+    /// The lowest address that may be used.
+    pub limit: u32,
+    /// One past the highest address.
+    pub top: u32,
+}
+
+impl Stack {
+    /// Bytes of the stack.
+    #[must_use]
+    pub const fn size(self) -> u32 {
+        self.top - self.limit
+    }
+}
+
+/// What an engine works with while it runs one context.
+#[derive(Debug)]
+pub struct Slice<'a, F: ?Sized> {
+    /// The program of the context.
+    pub program: &'a Program,
+    /// Guest memory.
+    pub memory: &'a mut GuestMemory,
+    /// The seven threads.
+    pub threads: &'a mut Threads,
+    /// Where firmware calls go.
+    pub firmware: &'a mut F,
+    /// The current tick.
+    pub tick: Ticks,
+    /// Instant at which the budget was `length`.
+    pub start: Cycles,
+    /// What the slice can spend in all.
+    pub length: Cycles,
+    /// What is left of it; below zero when the last block overdrew it.
+    pub budget: Cycles,
+    /// The wake that came true, if the context stands in a waiting call.
+    pub woken: Option<Wake>,
+}
+
+impl<F: Firmware + ?Sized> Slice<'_, F> {
+    /// The present instant.
+    #[must_use]
+    pub fn now(&self) -> Cycles {
+        self.start + (self.length - self.budget)
+    }
+
+    /// Makes the firmware call of `address` for the context `id`.
+    ///
+    /// # Errors
+    /// The kind of trap that stops the context.
+    pub(crate) fn call_firmware(
+        &mut self,
+        id: ContextId,
+        address: GuestAddr,
+        arguments: &[u64],
+    ) -> Result<crate::firmware::Outcome<crate::firmware::Value>, crate::trap::TrapKind> {
+        let mut caller = Caller {
+            thread: id.thread(),
+            memory: self.memory,
+            threads: self.threads,
+            tick: self.tick,
+            slice_start: self.start,
+            slice: self.length,
+            budget: &mut self.budget,
+            woken: self.woken.take(),
+            arguments,
+        };
+        self.firmware.call(address, &mut caller)
+    }
+}
+
+/// Runs programs. Both engines spend the same cycles and stop at the same instructions.
+pub trait Engine: Default {
+    /// Gives `id` a fresh context that stands at the beginning of `function`.
+    fn start(&mut self, id: ContextId, program: &Program, function: FuncRef, stack: Stack);
+
+    /// Runs `id` until it stops. A context that was never started has ended.
+    fn resume<F: Firmware + ?Sized>(&mut self, id: ContextId, slice: &mut Slice<'_, F>) -> Stop;
+
+    /// The most bytes of its stack that `id` has used since its start.
+    fn stack_used(&self, id: ContextId) -> u32;
+
+    /// Where `id` stands: its instruction, then the calls that led there, innermost first.
+    fn backtrace(&self, id: ContextId, program: &Program) -> Vec<CodeAddr>;
+}

@@ -1,0 +1,217 @@
+//! How a program leaves the machine: firmware calls, their results and waits.
+//!
+//! The machine knows only this trait. The kernel implements it and finds the function by its
+//! guest address, as the linked program names it.
+
+use kmotiondef::{Cycles, GuestAddr, ThreadId, Ticks};
+
+use crate::bus::Bus;
+use crate::memory::GuestMemory;
+use crate::operand::Class;
+use crate::scheduler::Turn;
+use crate::slot::Slot;
+use crate::thread::Threads;
+use crate::trap::{Trap, TrapKind};
+
+/// A value that crosses between a program and the firmware.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Value {
+    /// No value.
+    Unit,
+    /// An integer or address.
+    I32(i32),
+    /// A 64-bit integer.
+    I64(i64),
+    /// A single.
+    F32(f32),
+    /// A double.
+    F64(f64),
+}
+
+impl Value {
+    /// The register class; `None` for no value.
+    #[must_use]
+    pub const fn class(self) -> Option<Class> {
+        match self {
+            Self::Unit => None,
+            Self::I32(_) => Some(Class::I32),
+            Self::I64(_) => Some(Class::I64),
+            Self::F32(_) => Some(Class::F32),
+            Self::F64(_) => Some(Class::F64),
+        }
+    }
+
+    /// The register slot that holds the value; 0 for none.
+    #[must_use]
+    pub fn into_slot(self) -> u64 {
+        match self {
+            Self::Unit => 0,
+            Self::I32(value) => value.into_slot(),
+            Self::I64(value) => value.into_slot(),
+            Self::F32(value) => value.into_slot(),
+            Self::F64(value) => value.into_slot(),
+        }
+    }
+}
+
+/// What a firmware call came to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
+pub enum Outcome<T> {
+    /// It is done; the program goes on behind the call.
+    Done(T),
+    /// The thread waits. When the wake comes true the same call is made again, with
+    /// [`Caller::woken`] saying so.
+    Wait(Wake),
+    /// The calling thread has ended (`ThreadDone`).
+    End,
+    /// The calling thread has paused itself; when it is resumed, the program goes on behind the call.
+    Pause,
+}
+
+/// What a waiting thread waits for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wake {
+    /// A point in time: the thread goes on at that instant if it falls into one of its slices, else at the
+    /// beginning of its next slice.
+    At(Cycles),
+    /// The beginning of its next slice.
+    NextSlice,
+    /// Something that only the firmware can judge; it is asked again at the beginning of each slice.
+    Retry,
+}
+
+/// The signature of a firmware function, as classes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Signature {
+    /// Parameters; a variadic function has one more of class `I32`, the address of the variable part.
+    pub params: Vec<Class>,
+    /// Result; `None` for `void`.
+    pub result: Option<Class>,
+}
+
+impl Signature {
+    /// Whether a function of this signature may be called through a pointer to `called`.
+    ///
+    /// The parameters must be the same. A result may be ignored, and one that is not there reads as 0.
+    #[must_use]
+    pub fn may_be_called_as(&self, called: &Self) -> bool {
+        let results_agree = self.result.is_none() || called.result.is_none() || self.result == called.result;
+        results_agree && self.params == called.params
+    }
+}
+
+/// One firmware call as the kernel sees it.
+#[derive(Debug)]
+pub struct Caller<'a> {
+    /// The calling thread; `None` in the call-back, which must not wait.
+    pub thread: Option<ThreadId>,
+    /// Guest memory.
+    pub memory: &'a mut GuestMemory,
+    /// The seven threads, to start, pause and resume.
+    pub threads: &'a mut Threads,
+    /// The current tick.
+    pub tick: Ticks,
+    /// Instant at which the current slice's budget was full.
+    pub slice_start: Cycles,
+    /// What the slice could spend at its start.
+    pub slice: Cycles,
+    /// What is left of it; the function spends its cost here.
+    pub budget: &'a mut Cycles,
+    /// The wake that made the machine repeat the call; `None` the first time.
+    pub woken: Option<Wake>,
+    /// The register arguments, as raw slots.
+    pub arguments: &'a [u64],
+}
+
+impl Caller<'_> {
+    /// The present instant: power-up is 0.
+    #[must_use]
+    pub fn now(&self) -> Cycles {
+        self.slice_start + (self.slice - *self.budget)
+    }
+
+    /// Spends processor time of the calling thread.
+    pub fn spend(&mut self, cycles: Cycles) {
+        *self.budget -= cycles;
+    }
+}
+
+/// What the kernel works with outside a firmware call.
+#[derive(Debug)]
+pub struct TickContext<'a> {
+    /// Guest memory.
+    pub memory: &'a mut GuestMemory,
+    /// The seven threads, to start, pause and resume.
+    pub threads: &'a mut Threads,
+    /// The current tick.
+    pub tick: Ticks,
+    /// The present instant: power-up is 0.
+    pub now: Cycles,
+}
+
+/// The firmware as the machine sees it.
+///
+/// In each tick the machine calls, in this order: [`callback`](Self::callback) (and runs what it
+/// names), [`tick`](Self::tick), [`switch_to`](Self::switch_to), and then either
+/// [`primary_slice`](Self::primary_slice) or the firmware calls of a user thread.
+pub trait Firmware: Bus {
+    /// The signature of the function at `address`, if a firmware function starts there.
+    fn signature(&self, address: GuestAddr) -> Option<&Signature>;
+
+    /// Makes one call.
+    ///
+    /// # Errors
+    /// The kind of trap that stops the calling thread.
+    fn call(&mut self, address: GuestAddr, caller: &mut Caller<'_>) -> Result<Outcome<Value>, TrapKind>;
+
+    /// The function to call at the beginning of this tick; null for none.
+    fn callback(&self, memory: &GuestMemory) -> GuestAddr {
+        let _ = memory;
+        GuestAddr::NULL
+    }
+
+    /// The call-back has returned after `spent`, which is added to the servo time of the tick.
+    fn callback_returned(&mut self, context: &mut TickContext<'_>, spent: Cycles) {
+        let _ = (context, spent);
+    }
+
+    /// The servo interrupt: all work of the kernel in one tick.
+    fn tick(&mut self, context: &mut TickContext<'_>);
+
+    /// What the servo interrupt takes of the present tick, asked behind [`tick`](Self::tick).
+    fn servo_time(&self, memory: &GuestMemory) -> Cycles {
+        let _ = memory;
+        Cycles::new(8_000)
+    }
+
+    /// The rest of this tick belongs to `turn`.
+    fn switch_to(&mut self, turn: Turn, context: &mut TickContext<'_>) {
+        let _ = (turn, context);
+    }
+
+    /// A slice of the primary thread.
+    fn primary_slice(&mut self, context: &mut TickContext<'_>) {
+        let _ = context;
+    }
+
+    /// A thread was stopped by a trap, or the call-back, which the kernel must then take out.
+    fn trapped(&mut self, trap: &Trap, context: &mut TickContext<'_>);
+
+    /// A thread's stack has first held more than the board's would; at most once for each start.
+    fn stack_exceeded(&mut self, thread: ThreadId, used: u32) {
+        let _ = (thread, used);
+    }
+
+    /// How many of the next ticks would do nothing but what [`skip_ticks`](Self::skip_ticks) does at once.
+    fn quiet_ticks(&self, memory: &GuestMemory) -> u64 {
+        let _ = memory;
+        0
+    }
+
+    /// Stands for `count` calls of `tick`, `switch_to` and `primary_slice`; `context` is that of the
+    /// last of these ticks.
+    fn skip_ticks(&mut self, count: u64, context: &mut TickContext<'_>) {
+        let _ = (count, context);
+    }
+}

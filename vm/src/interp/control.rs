@@ -1,0 +1,106 @@
+//! Instructions that decide what is executed next: time, branches, calls, returns.
+
+use kmotiondef::{Cycles, GuestAddr};
+
+use super::activation::{Activation, Exit, Flow, Register};
+use crate::firmware::Firmware;
+use crate::operand::{Addr, Classes, Count, Count32, FuncRef, Label, RegF32, RegF64, RegI32, RegI64, SigRef};
+use crate::slot::Slot;
+use crate::trap::TrapKind;
+
+/// Words that are never executed in a verified program.
+macro_rules! structure {
+    ($($name:ident($($operand:ty),*);)*) => {
+        impl<F: Firmware + ?Sized> Activation<'_, '_, F> {
+            $(#[inline(always)]
+            pub(super) fn $name(&mut self, $(_: $operand),*) -> Exit {
+                Exit::Trap(TrapKind::Unreachable)
+            })*
+        }
+    };
+}
+structure! {
+    program(Count, Count32);
+    sig(Count, Count);
+    types(Classes);
+    func(SigRef, Count, Count);
+    unreachable();
+}
+
+/// The four classes of the instructions that move a slot into a call or out of it.
+macro_rules! for_each_class {
+    ($($arg:ident, $result:ident, $ret:ident: $register:ident;)*) => {
+        impl<F: Firmware + ?Sized> Activation<'_, '_, F> {$(
+            #[inline(always)]
+            pub(super) fn $arg(&mut self, src: $register, index: Count) {
+                self.window[usize::from(self.arguments_at.wrapping_add(index.0))] = self.get(src).into_slot();
+            }
+
+            #[inline(always)]
+            pub(super) fn $result(&mut self, dst: $register) {
+                let result = <$register as Register>::Value::from_slot(self.result);
+                self.set(dst, result);
+            }
+
+            #[inline(always)]
+            pub(super) fn $ret(&mut self, src: $register) -> Exit {
+                Exit::Return(self.get(src).into_slot())
+            }
+        )*}
+    };
+}
+for_each_class! {
+    arg_i32, result_i32, ret_i32: RegI32;
+    arg_i64, result_i64, ret_i64: RegI64;
+    arg_f32, result_f32, ret_f32: RegF32;
+    arg_f64, result_f64, ret_f64: RegF64;
+}
+
+impl<F: Firmware + ?Sized> Activation<'_, '_, F> {
+    #[inline(always)]
+    pub(super) fn charge(&mut self, cycles: Count32) -> Flow {
+        self.slice.budget -= Cycles::new(i64::from(cycles.0));
+        if self.slice.budget < Cycles::new(0) { Flow::Leave(Exit::Preempted) } else { Flow::Next }
+    }
+
+    #[inline(always)]
+    pub(super) fn br(&mut self, to: Label) -> Flow {
+        Flow::Jump(to)
+    }
+
+    #[inline(always)]
+    pub(super) fn br_if(&mut self, cond: RegI32, to: Label) -> Flow {
+        if self.get(cond) != 0 { Flow::Jump(to) } else { Flow::Next }
+    }
+
+    #[inline(always)]
+    pub(super) fn br_unless(&mut self, cond: RegI32, to: Label) -> Flow {
+        if self.get(cond) == 0 { Flow::Jump(to) } else { Flow::Next }
+    }
+
+    #[inline(always)]
+    pub(super) fn br_table(&mut self, index: RegI32, n: Count) -> Flow {
+        let index = self.get(index).cast_unsigned().min(u32::from(n.0));
+        Flow::Skip(index as usize)
+    }
+
+    #[inline(always)]
+    pub(super) fn call(&mut self, func: FuncRef) -> Exit {
+        Exit::Call(func)
+    }
+
+    #[inline(always)]
+    pub(super) fn call_ptr(&mut self, target: RegI32, sig: SigRef) -> Exit {
+        Exit::CallPointer(GuestAddr::new(self.get(target).cast_unsigned()), sig)
+    }
+
+    #[inline(always)]
+    pub(super) fn call_fw(&mut self, sig: SigRef, addr: Addr) -> Exit {
+        Exit::CallFirmware(GuestAddr::new(addr.0), sig)
+    }
+
+    #[inline(always)]
+    pub(super) fn ret(&mut self) -> Exit {
+        Exit::Return(0)
+    }
+}

@@ -1,0 +1,430 @@
+//! The machine: memory, threads, programs, an engine, the firmware, and the tick that ties them.
+//!
+//! Tick `k` begins `k` times 90 µs after power-up with the servo interrupt: the call-back, the
+//! kernel's work, the choice of the next thread. What is left of the tick is that thread's
+//! slice. Rules: threads-and-time.md of the specification.
+
+use kmotiondef::map::BOARD_STACK_SIZE;
+use kmotiondef::{CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
+
+use crate::engine::{ContextId, Engine, Slice, Stop};
+use crate::firmware::{Firmware, TickContext, Wake};
+use crate::interp::BytecodeEngine;
+use crate::memory::GuestMemory;
+use crate::program::Program;
+use crate::scheduler::{self, ThreadSet, Turn};
+use crate::thread::{NotLoaded, Progress, ThreadState, Threads};
+use crate::trap::{Trap, TrapKind};
+
+/// Bytes of the board's stacks that a program can use: each interrupt takes 128 of the 2048.
+const BOARD_STACK_USABLE: u32 = BOARD_STACK_SIZE - 128;
+
+/// How long a call-back may run before it counts as endless: the board would stand still.
+const CALLBACK_TICKS: i64 = 100;
+const CALLBACK_LIMIT: Cycles = Cycles::new(CALLBACK_TICKS * Cycles::PER_TICK.get());
+
+/// Settings of a machine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Config {
+    /// What the servo interrupt takes of each tick; `None` for what the firmware says.
+    pub servo: Option<Cycles>,
+    /// Skip time in which nothing can happen; never changes a result.
+    pub shortcuts: bool,
+    /// Stacks as small as the board's.
+    pub strict_stack: bool,
+}
+
+impl Default for Config {
+    fn default() -> Self {
+        Self { servo: None, shortcuts: true, strict_stack: false }
+    }
+}
+
+/// A board without its firmware's knowledge: what runs programs in ticks.
+#[derive(Debug)]
+pub struct Machine<F, E = BytecodeEngine> {
+    config: Config,
+    memory: GuestMemory,
+    threads: Threads,
+    programs: [Option<Program>; ThreadId::MAX as usize],
+    engine: E,
+    firmware: F,
+    tick: Ticks,
+    turn: Turn,
+    stack_reported: ThreadSet,
+}
+
+/// The span of one tick that a thread may use.
+#[derive(Clone, Copy, Debug)]
+struct Window {
+    start: Cycles,
+    end: Cycles,
+    /// What the call-back took of it.
+    callback: Cycles,
+}
+
+impl<F: Firmware, E: Engine> Machine<F, E> {
+    /// A machine at power-up.
+    pub fn new(firmware: F, config: Config) -> Self {
+        Self {
+            config,
+            memory: GuestMemory::new(),
+            threads: Threads::new(),
+            programs: Default::default(),
+            engine: E::default(),
+            firmware,
+            tick: Ticks::default(),
+            turn: Turn::Primary,
+            stack_reported: ThreadSet::EMPTY,
+        }
+    }
+
+    /// Makes `thread` ready to run `program` from `entry`, in place of what it held.
+    ///
+    /// The program's bytes are in guest memory already; its text is protected from now on.
+    pub fn load_program(&mut self, thread: ThreadId, program: Program, entry: GuestAddr) {
+        self.memory.protect(thread, program.text());
+        self.programs[thread.index()] = Some(program);
+        self.stack_reported = self.stack_reported.without(thread);
+        self.threads.set_entry(thread, entry);
+    }
+
+    /// Makes `thread` empty.
+    pub fn unload_program(&mut self, thread: ThreadId) {
+        self.memory.unprotect(thread);
+        self.programs[thread.index()] = None;
+        self.threads.clear(thread);
+    }
+
+    /// Starts `thread` at its entry point.
+    ///
+    /// # Errors
+    /// [`NotLoaded`] for an empty thread.
+    pub fn start(&mut self, thread: ThreadId) -> Result<(), NotLoaded> {
+        self.threads.start(thread)
+    }
+
+    /// The program loaded in `thread`.
+    #[must_use]
+    pub fn program(&self, thread: ThreadId) -> Option<&Program> {
+        self.programs[thread.index()].as_ref()
+    }
+
+    /// Where `thread` stands: its instruction, then the calls that led there, innermost first.
+    #[must_use]
+    pub fn backtrace(&self, thread: ThreadId) -> Vec<CodeAddr> {
+        self.program(thread)
+            .map(|program| self.engine.backtrace(ContextId::of(thread), program))
+            .unwrap_or_default()
+    }
+
+    /// Guest memory.
+    #[must_use]
+    pub const fn memory(&self) -> &GuestMemory {
+        &self.memory
+    }
+
+    /// Guest memory, to change it from outside.
+    pub const fn memory_mut(&mut self) -> &mut GuestMemory {
+        &mut self.memory
+    }
+
+    /// The seven threads.
+    #[must_use]
+    pub const fn threads(&self) -> &Threads {
+        &self.threads
+    }
+
+    /// The seven threads, to start, pause and resume them from outside.
+    pub const fn threads_mut(&mut self) -> &mut Threads {
+        &mut self.threads
+    }
+
+    /// The firmware.
+    #[must_use]
+    pub const fn firmware(&self) -> &F {
+        &self.firmware
+    }
+
+    /// The firmware together with what it works on, for requests from outside between two ticks.
+    pub fn firmware_mut(&mut self) -> (&mut F, TickContext<'_>) {
+        let now = end_of(self.tick);
+        (
+            &mut self.firmware,
+            TickContext { memory: &mut self.memory, threads: &mut self.threads, tick: self.tick, now },
+        )
+    }
+
+    /// The settings.
+    #[must_use]
+    pub const fn config(&self) -> Config {
+        self.config
+    }
+
+    /// Changes the settings from the next tick on.
+    pub const fn set_config(&mut self, config: Config) {
+        self.config = config;
+    }
+
+    /// Number of servo interrupts since power-up.
+    #[must_use]
+    pub const fn tick(&self) -> Ticks {
+        self.tick
+    }
+
+    /// Runs to the end of tick `target`.
+    pub fn run_until(&mut self, target: Ticks) {
+        while self.tick < target {
+            self.step(target);
+        }
+    }
+
+    /// Runs to the end of the next tick in which something can happen, or of tick `limit`, whichever
+    /// comes first.
+    pub fn step(&mut self, limit: Ticks) {
+        if self.config.shortcuts {
+            self.skip_quiet_ticks(limit);
+        }
+        if self.tick < limit {
+            self.run_tick();
+        }
+    }
+
+    /// Runs one tick.
+    pub fn run_tick(&mut self) {
+        self.tick = self.tick.next();
+        let begin = start_of(self.tick);
+        let callback = self.run_callback(begin);
+        self.with_context(begin, |firmware, context| firmware.tick(context));
+        self.turn = scheduler::next(self.threads.active(), self.turn);
+        let end = end_of(self.tick);
+        let window = Window { start: (begin + self.servo_time()).min(end), end, callback };
+        let turn = self.turn;
+        self.with_context(window.start + callback, |firmware, context| {
+            firmware.switch_to(turn, context);
+            if turn == Turn::Primary {
+                firmware.primary_slice(context);
+            }
+        });
+        if let Turn::User(thread) = turn {
+            self.user_slice(thread, window);
+        }
+    }
+
+    /// What the servo interrupt takes of the present tick.
+    fn servo_time(&self) -> Cycles {
+        self.config.servo.unwrap_or_else(|| self.firmware.servo_time(&self.memory))
+    }
+
+    /// Runs the call-back, if there is one, and returns what it spent.
+    fn run_callback(&mut self, begin: Cycles) -> Cycles {
+        let address = self.firmware.callback(&self.memory);
+        if address.is_null() {
+            return Cycles::default();
+        }
+        let mut programs = self.programs.iter().flatten();
+        let found = programs.find_map(|program| Some((program, program.function_at(address)?)));
+        let Some((program, function)) = found else {
+            self.report_trap(
+                begin,
+                Trap { kind: TrapKind::BadCallTarget { addr: address }, at: code_at(address), thread: None },
+            );
+            return Cycles::default();
+        };
+        let id = ContextId::CALLBACK;
+        self.engine.start(id, program, function, id.stack(self.config.strict_stack));
+        let mut slice = Slice {
+            program,
+            memory: &mut self.memory,
+            threads: &mut self.threads,
+            firmware: &mut self.firmware,
+            tick: self.tick,
+            start: begin,
+            length: CALLBACK_LIMIT,
+            budget: CALLBACK_LIMIT,
+            woken: None,
+        };
+        let stop = self.engine.resume(id, &mut slice);
+        let spent = slice.length - slice.budget;
+        let kind = match stop {
+            Stop::Ended => {
+                self.with_context(begin, |firmware, context| firmware.callback_returned(context, spent));
+                return spent;
+            }
+            Stop::Trapped(trap) => trap.kind,
+            Stop::Waiting(_) | Stop::Paused => TrapKind::CallbackWaits,
+            Stop::Preempted => TrapKind::CallbackEndless { limit: CALLBACK_TICKS },
+        };
+        let at = self.engine.backtrace(id, program).first().copied().unwrap_or_else(|| code_at(address));
+        self.report_trap(begin, Trap { kind, at, thread: None });
+        spent
+    }
+
+    /// Gives `thread` the rest of the tick.
+    fn user_slice(&mut self, thread: ThreadId, window: Window) {
+        let ThreadState::Active(progress) = *self.threads.state(thread) else {
+            return;
+        };
+        let available = window.end - window.start - window.callback;
+        let debt = self.threads.debt(thread);
+        if available <= debt {
+            // The last slice's block, or the call-back, fills this one too.
+            self.threads.set_debt(thread, debt - available.max(Cycles::default()));
+            return;
+        }
+        self.threads.set_debt(thread, Cycles::default());
+        let budget = available - debt;
+        let (budget, woken) = match progress {
+            Progress::Idle => return,
+            Progress::Fresh => match self.enter(thread) {
+                Ok(()) => (budget, None),
+                Err(trap) => return self.fault(window.start, thread, trap),
+            },
+            Progress::Going => (budget, None),
+            Progress::Waiting(wake @ (Wake::NextSlice | Wake::Retry)) => (budget, Some(wake)),
+            Progress::Waiting(Wake::At(time)) if time >= window.end => return,
+            Progress::Waiting(wake @ Wake::At(time)) => (budget.min(window.end - time), Some(wake)),
+        };
+        self.run_thread(thread, window, budget, woken);
+    }
+
+    /// Gives `thread` a fresh context at its entry point.
+    fn enter(&mut self, thread: ThreadId) -> Result<(), Trap> {
+        let entry = self.threads.entry(thread);
+        let program = self.programs[thread.index()].as_ref();
+        let Some((program, function)) =
+            program.and_then(|program| Some((program, program.function_at(entry)?)))
+        else {
+            let kind = TrapKind::BadCallTarget { addr: entry };
+            return Err(Trap { kind, at: code_at(entry), thread: Some(thread) });
+        };
+        let id = ContextId::of(thread);
+        self.engine.start(id, program, function, id.stack(self.config.strict_stack));
+        Ok(())
+    }
+
+    /// Runs `thread` until it stops for this slice.
+    fn run_thread(&mut self, thread: ThreadId, window: Window, budget: Cycles, woken: Option<Wake>) {
+        let Some(program) = self.programs[thread.index()].as_ref() else {
+            return;
+        };
+        let id = ContextId::of(thread);
+        self.threads.set_running(Some(thread));
+        let mut slice = Slice {
+            program,
+            memory: &mut self.memory,
+            threads: &mut self.threads,
+            firmware: &mut self.firmware,
+            tick: self.tick,
+            start: window.start,
+            length: window.end - window.start,
+            budget,
+            woken,
+        };
+        let stop = loop {
+            let stop = self.engine.resume(id, &mut slice);
+            let Stop::Waiting(wake @ Wake::At(time)) = stop else {
+                break stop;
+            };
+            if time >= window.end || slice.budget <= Cycles::default() {
+                break stop;
+            }
+            // At least one cycle, so that a call which waits for the past ends some time.
+            slice.budget = (slice.budget - Cycles::new(1)).min(window.end - time);
+            slice.woken = Some(wake);
+        };
+        let left = slice.budget;
+        self.threads.set_running(None);
+        self.threads.set_debt(thread, (Cycles::default() - left).max(Cycles::default()));
+        self.report_stack(thread);
+        match stop {
+            Stop::Preempted => self.threads.set_state(thread, ThreadState::Active(Progress::Going)),
+            Stop::Waiting(wake) => {
+                self.threads.set_state(thread, ThreadState::Active(Progress::Waiting(wake)));
+            }
+            Stop::Paused => self.threads.set_state(thread, ThreadState::Paused(Progress::Going)),
+            Stop::Ended => self.threads.set_state(thread, ThreadState::Ready),
+            Stop::Trapped(trap) => self.fault(window.end - left, thread, trap),
+        }
+    }
+
+    /// Tells the firmware when a thread's stack first holds more than the board's could.
+    fn report_stack(&mut self, thread: ThreadId) {
+        let used = self.engine.stack_used(ContextId::of(thread));
+        if used > BOARD_STACK_USABLE && !self.stack_reported.contains(thread) {
+            self.stack_reported = self.stack_reported.with(thread);
+            self.firmware.stack_exceeded(thread, used);
+        }
+    }
+
+    fn fault(&mut self, now: Cycles, thread: ThreadId, trap: Trap) {
+        self.threads.set_state(thread, ThreadState::Faulted(trap.clone()));
+        self.report_trap(now, trap);
+    }
+
+    fn report_trap(&mut self, now: Cycles, trap: Trap) {
+        self.with_context(now, |firmware, context| firmware.trapped(&trap, context));
+    }
+
+    /// Skips ticks in which no thread can run and the firmware has nothing to do.
+    fn skip_quiet_ticks(&mut self, limit: Ticks) {
+        if !self.firmware.callback(&self.memory).is_null() {
+            return;
+        }
+        let count = self
+            .idle_ticks()
+            .min(limit.get().saturating_sub(self.tick.get()))
+            .min(self.firmware.quiet_ticks(&self.memory));
+        if count == 0 {
+            return;
+        }
+        self.tick = Ticks::new(self.tick.get() + count);
+        self.turn = scheduler::after(self.threads.active(), self.turn, count);
+        let begin = start_of(self.tick);
+        let turn = self.turn;
+        self.with_context(begin, |firmware, context| firmware.skip_ticks(count, context));
+        self.with_context(begin + self.servo_time(), |firmware, context| firmware.switch_to(turn, context));
+    }
+
+    /// How many of the next ticks no user thread can run in.
+    fn idle_ticks(&self) -> u64 {
+        let next = self.tick.get() + 1;
+        ThreadId::all()
+            .map(|thread| match *self.threads.state(thread) {
+                ThreadState::Active(_) if self.threads.debt(thread) > Cycles::default() => 0,
+                ThreadState::Active(Progress::Waiting(Wake::At(time))) => {
+                    let tick = time.get() / Cycles::PER_TICK.get();
+                    u64::try_from(tick).unwrap_or(0).saturating_sub(next)
+                }
+                ThreadState::Active(Progress::Fresh | Progress::Going | Progress::Waiting(_)) => 0,
+                _ => u64::MAX,
+            })
+            .min()
+            .unwrap_or(u64::MAX)
+    }
+
+    fn with_context(&mut self, now: Cycles, work: impl FnOnce(&mut F, &mut TickContext<'_>)) {
+        let mut context =
+            TickContext { memory: &mut self.memory, threads: &mut self.threads, tick: self.tick, now };
+        work(&mut self.firmware, &mut context);
+    }
+}
+
+/// The beginning of a tick.
+fn start_of(tick: Ticks) -> Cycles {
+    let tick = i64::try_from(tick.get()).unwrap_or(i64::MAX);
+    Cycles::new(tick.saturating_mul(Cycles::PER_TICK.get()))
+}
+
+/// The end of a tick.
+fn end_of(tick: Ticks) -> Cycles {
+    start_of(tick) + Cycles::PER_TICK
+}
+
+/// An alleged address of code, made a multiple of 8.
+fn code_at(addr: GuestAddr) -> CodeAddr {
+    CodeAddr::new(addr.get() & !7).expect("it is made a multiple of 8")
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,408 @@
+//! Guest memory: the one copy of everything a program can see.
+//!
+//! Two ways in. Accesses on behalf of a program ([`GuestMemory::load`], `store`, `read_bytes`, …)
+//! are checked: mapped, aligned, not into program text. The kernel and the loader use
+//! [`GuestMemory::peek`] and `poke`, which know no alignment and no protection.
+//!
+//! Registers of devices are not memory; the engine sends such accesses to the
+//! [`Bus`](crate::bus::Bus), and here they count as unmapped.
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::unwrap_used,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::indexing_slicing,
+        clippy::as_conversions
+    )
+)]
+
+use std::ops::Range;
+
+use kmotiondef::map::{FLASH, IRAM, REGIONS, RegionKind, SDRAM};
+use kmotiondef::{GuestAddr, ThreadId};
+
+use crate::protection::Protection;
+use crate::trap::{Access, TrapKind};
+
+const SDRAM_SIZE: usize = 0x100_0000;
+const IRAM_SIZE: usize = 0x2_0000;
+const FLASH_SIZE: usize = 0x20_0000;
+
+const SDRAM_BASE: u32 = SDRAM.base.get();
+const IRAM_BASE: u32 = IRAM.base.get();
+const FLASH_BASE: u32 = FLASH.base.get();
+
+/// What erased flash reads as.
+const ERASED: u8 = 0xff;
+
+/// A type that one load or store moves.
+pub trait Scalar: sealed::Sealed + Copy + Default {
+    /// Bytes in memory.
+    const SIZE: u32;
+    /// A load's address is a multiple of this.
+    const LOAD_ALIGN: u32;
+    /// A store's address is a multiple of this.
+    const STORE_ALIGN: u32;
+
+    /// Little-endian bytes at `offset`; `None` beyond the end.
+    #[doc(hidden)]
+    fn get(bytes: &[u8], offset: usize) -> Option<Self>;
+
+    /// Writes little-endian bytes at `offset`; `None` beyond the end.
+    #[doc(hidden)]
+    fn set(self, bytes: &mut [u8], offset: usize) -> Option<()>;
+}
+
+mod sealed {
+    /// Closes [`super::Scalar`] to types outside this file.
+    pub trait Sealed {}
+}
+
+macro_rules! scalars {
+    ($($ty:ty: $size:literal, store at $store:literal;)*) => {$(
+        impl sealed::Sealed for $ty {}
+
+        impl Scalar for $ty {
+            const SIZE: u32 = $size;
+            const LOAD_ALIGN: u32 = $size;
+            const STORE_ALIGN: u32 = $store;
+
+            #[inline]
+            fn get(bytes: &[u8], offset: usize) -> Option<Self> {
+                let chunk = bytes.get(offset..offset.checked_add($size)?)?;
+                Some(Self::from_le_bytes(*chunk.first_chunk()?))
+            }
+
+            #[inline]
+            fn set(self, bytes: &mut [u8], offset: usize) -> Option<()> {
+                let chunk = bytes.get_mut(offset..offset.checked_add($size)?)?;
+                *chunk.first_chunk_mut()? = self.to_le_bytes();
+                Some(())
+            }
+        }
+    )*};
+}
+
+// The DSP stores a double as two words (dialect.md 1.5 of the specification).
+scalars! {
+    u8: 1, store at 1;
+    i8: 1, store at 1;
+    u16: 2, store at 2;
+    i16: 2, store at 2;
+    u32: 4, store at 4;
+    i32: 4, store at 4;
+    u64: 8, store at 8;
+    i64: 8, store at 8;
+    f32: 4, store at 4;
+    f64: 8, store at 4;
+}
+
+/// The guest's 32-bit address space.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct GuestMemory {
+    sdram: Box<[u8; SDRAM_SIZE]>,
+    iram: Box<[u8; IRAM_SIZE]>,
+    flash: Box<[u8; FLASH_SIZE]>,
+    protection: Protection,
+}
+
+impl Default for GuestMemory {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl GuestMemory {
+    /// Memory as at power-up: zero, the flash erased.
+    #[must_use]
+    pub fn new() -> Self {
+        Self { sdram: filled(0), iram: filled(0), flash: filled(ERASED), protection: Protection::default() }
+    }
+
+    /// Loads a value on behalf of a program.
+    ///
+    /// # Errors
+    /// [`TrapKind::Unmapped`] or [`TrapKind::Misaligned`].
+    #[inline]
+    pub fn load<T: Scalar>(&self, addr: GuestAddr) -> Result<T, TrapKind> {
+        let address = addr.get();
+        if address & (T::LOAD_ALIGN - 1) == 0 {
+            if let Some(value) = T::get(&self.sdram[..], index(address.wrapping_sub(SDRAM_BASE))) {
+                return Ok(value);
+            }
+            if let Some(value) = T::get(&self.iram[..], index(address.wrapping_sub(IRAM_BASE))) {
+                return Ok(value);
+            }
+        }
+        self.load_elsewhere(addr)
+    }
+
+    #[cold]
+    fn load_elsewhere<T: Scalar>(&self, addr: GuestAddr) -> Result<T, TrapKind> {
+        let address = addr.get();
+        self.bytes(addr, T::SIZE)?;
+        if address & (T::LOAD_ALIGN - 1) != 0 {
+            return Err(TrapKind::Misaligned { addr, size: T::SIZE, access: Access::Read });
+        }
+        T::get(&self.flash[..], index(address.wrapping_sub(FLASH_BASE)))
+            .ok_or(TrapKind::Unmapped { addr, access: Access::Read })
+    }
+
+    /// Stores a value on behalf of a program.
+    ///
+    /// # Errors
+    /// [`TrapKind::Unmapped`] (flash included), [`TrapKind::Misaligned`] or
+    /// [`TrapKind::WriteProtected`].
+    #[inline]
+    pub fn store<T: Scalar>(&mut self, addr: GuestAddr, value: T) -> Result<(), TrapKind> {
+        let address = addr.get();
+        if address & (T::STORE_ALIGN - 1) == 0 && !self.protection.covers(address, T::SIZE) {
+            if value.set(&mut self.sdram[..], index(address.wrapping_sub(SDRAM_BASE))).is_some() {
+                return Ok(());
+            }
+            if value.set(&mut self.iram[..], index(address.wrapping_sub(IRAM_BASE))).is_some() {
+                return Ok(());
+            }
+        }
+        Err(self.store_refusal(addr, T::SIZE))
+    }
+
+    /// Why a store was refused.
+    #[cold]
+    fn store_refusal(&self, addr: GuestAddr, size: u32) -> TrapKind {
+        if let Err(kind) = self.check_writable(addr, size) {
+            return kind;
+        }
+        TrapKind::Misaligned { addr, size, access: Access::Write }
+    }
+
+    /// Reads a value for the kernel: no alignment; bytes outside the map read as 0.
+    #[must_use]
+    #[inline]
+    pub fn peek<T: Scalar>(&self, addr: GuestAddr) -> T {
+        let address = addr.get();
+        T::get(&self.iram[..], index(address.wrapping_sub(IRAM_BASE)))
+            .or_else(|| T::get(&self.sdram[..], index(address.wrapping_sub(SDRAM_BASE))))
+            .or_else(|| T::get(&self.flash[..], index(address.wrapping_sub(FLASH_BASE))))
+            .unwrap_or_default()
+    }
+
+    /// Writes a value for the kernel: no alignment, no protection, flash included; nothing happens
+    /// outside the map.
+    #[inline]
+    pub fn poke<T: Scalar>(&mut self, addr: GuestAddr, value: T) {
+        let address = addr.get();
+        let _ = value
+            .set(&mut self.iram[..], index(address.wrapping_sub(IRAM_BASE)))
+            .or_else(|| value.set(&mut self.sdram[..], index(address.wrapping_sub(SDRAM_BASE))))
+            .or_else(|| value.set(&mut self.flash[..], index(address.wrapping_sub(FLASH_BASE))));
+    }
+
+    /// The `len` bytes from `addr` on.
+    ///
+    /// # Errors
+    /// [`TrapKind::Unmapped`] with the first byte outside the region.
+    pub fn read_bytes(&self, addr: GuestAddr, len: u32) -> Result<&[u8], TrapKind> {
+        self.bytes(addr, len)
+    }
+
+    /// Writes `bytes` at `addr` on behalf of a program.
+    ///
+    /// # Errors
+    /// [`TrapKind::Unmapped`] or [`TrapKind::WriteProtected`]; nothing is written then.
+    pub fn write_bytes(&mut self, addr: GuestAddr, bytes: &[u8]) -> Result<(), TrapKind> {
+        self.check_writable(addr, length(bytes))?;
+        self.poke_bytes(addr, bytes)
+    }
+
+    /// Writes `bytes` at `addr` for the kernel or the loader: no protection, flash included.
+    ///
+    /// # Errors
+    /// [`TrapKind::Unmapped`]; nothing is written then.
+    pub fn poke_bytes(&mut self, addr: GuestAddr, bytes: &[u8]) -> Result<(), TrapKind> {
+        self.bytes_mut(addr, length(bytes))?.copy_from_slice(bytes);
+        Ok(())
+    }
+
+    /// Reads a string up to its closing 0, which is not part of the result, or `max` bytes.
+    ///
+    /// # Errors
+    /// [`TrapKind::Unmapped`] if the region ends first.
+    pub fn read_c_string(&self, addr: GuestAddr, max: u32) -> Result<Vec<u8>, TrapKind> {
+        let rest = self.rest_of_region(addr).ok_or(TrapKind::Unmapped { addr, access: Access::Read })?;
+        let visible = rest.get(..index(max)).unwrap_or(rest);
+        if let Some(end) = visible.iter().position(|byte| *byte == 0) {
+            return Ok(visible.get(..end).unwrap_or_default().to_vec());
+        }
+        if visible.len() < index(max) {
+            let end = addr.offset(length(visible));
+            return Err(TrapKind::Unmapped { addr: end, access: Access::Read });
+        }
+        Ok(visible.to_vec())
+    }
+
+    /// Copies `len` bytes from `from` to `to` on behalf of a program; they may overlap.
+    ///
+    /// # Errors
+    /// [`TrapKind::Unmapped`] or [`TrapKind::WriteProtected`]; nothing is written then.
+    pub fn copy(&mut self, to: GuestAddr, from: GuestAddr, len: u32) -> Result<(), TrapKind> {
+        self.bytes(from, len)?;
+        self.check_writable(to, len)?;
+        let offset = |addr: GuestAddr| index(addr.get().wrapping_sub(SDRAM_BASE));
+        if let Some(source) = range_within(offset(from), len, SDRAM_SIZE)
+            && range_within(offset(to), len, SDRAM_SIZE).is_some()
+        {
+            self.sdram.copy_within(source, offset(to));
+            return Ok(());
+        }
+        let bytes = self.bytes(from, len)?.to_vec();
+        self.poke_bytes(to, &bytes)
+    }
+
+    /// Writes `len` times `byte` at `addr` on behalf of a program.
+    ///
+    /// # Errors
+    /// [`TrapKind::Unmapped`] or [`TrapKind::WriteProtected`]; nothing is written then.
+    pub fn fill(&mut self, addr: GuestAddr, byte: u8, len: u32) -> Result<(), TrapKind> {
+        self.check_writable(addr, len)?;
+        self.bytes_mut(addr, len)?.fill(byte);
+        Ok(())
+    }
+
+    /// Protects `text` of `thread`'s program from stores; an earlier range of that thread is released.
+    pub fn protect(&mut self, thread: ThreadId, text: Range<GuestAddr>) {
+        self.protection.set(thread, text.start.get()..text.end.get());
+    }
+
+    /// Releases the protection of `thread`'s program text.
+    pub fn unprotect(&mut self, thread: ThreadId) {
+        self.protection.set(thread, 0..0);
+    }
+
+    /// SDRAM and on-chip RAM as they are, for compiled code, which makes the checks itself.
+    #[cfg(feature = "native")]
+    pub(crate) fn ram_mut(&mut self) -> (&mut [u8; SDRAM_SIZE], &mut [u8; IRAM_SIZE]) {
+        (&mut self.sdram, &mut self.iram)
+    }
+
+    /// The ranges of program text, of which only whole words in the program area are protected.
+    #[cfg(feature = "native")]
+    pub(crate) const fn protected_texts(&self) -> &crate::protection::Texts {
+        self.protection.texts()
+    }
+
+    /// Whether all of the `len` bytes from `addr` on can be stored to by a program.
+    fn check_writable(&self, addr: GuestAddr, len: u32) -> Result<(), TrapKind> {
+        let unmapped = |addr| TrapKind::Unmapped { addr, access: Access::Write };
+        match self.bytes(addr, len) {
+            Err(TrapKind::Unmapped { addr, .. }) => return Err(unmapped(addr)),
+            Err(kind) => return Err(kind),
+            Ok(_) => {}
+        }
+        if FLASH.base <= addr && addr < FLASH.base.offset(FLASH.size) {
+            return Err(unmapped(addr));
+        }
+        if self.protection.covers(addr.get(), len) {
+            return Err(TrapKind::WriteProtected { addr });
+        }
+        Ok(())
+    }
+
+    /// The `len` bytes from `addr` on; none of them need be mapped if there are none.
+    fn bytes(&self, addr: GuestAddr, len: u32) -> Result<&[u8], TrapKind> {
+        if len == 0 {
+            return Ok(&[]);
+        }
+        let Some(rest) = self.rest_of_region(addr) else {
+            return Err(TrapKind::Unmapped { addr, access: Access::Read });
+        };
+        let end = addr.offset(length(rest));
+        rest.get(..index(len)).ok_or(TrapKind::Unmapped { addr: end, access: Access::Read })
+    }
+
+    fn bytes_mut(&mut self, addr: GuestAddr, len: u32) -> Result<&mut [u8], TrapKind> {
+        if len == 0 {
+            return Ok(&mut []);
+        }
+        let end = addr.offset(self.rest_of_region(addr).map_or(0, length));
+        let (region, offset) = if let Some(offset) = offset_in(addr, SDRAM_BASE, SDRAM_SIZE) {
+            (&mut self.sdram[..], offset)
+        } else if let Some(offset) = offset_in(addr, IRAM_BASE, IRAM_SIZE) {
+            (&mut self.iram[..], offset)
+        } else if let Some(offset) = offset_in(addr, FLASH_BASE, FLASH_SIZE) {
+            (&mut self.flash[..], offset)
+        } else {
+            return Err(TrapKind::Unmapped { addr, access: Access::Write });
+        };
+        range_within(offset, len, region.len())
+            .and_then(|range| region.get_mut(range))
+            .ok_or(TrapKind::Unmapped { addr: end, access: Access::Write })
+    }
+
+    /// The bytes from `addr` to the end of its region.
+    fn rest_of_region(&self, addr: GuestAddr) -> Option<&[u8]> {
+        if let Some(offset) = offset_in(addr, SDRAM_BASE, SDRAM_SIZE) {
+            self.sdram.get(offset..)
+        } else if let Some(offset) = offset_in(addr, IRAM_BASE, IRAM_SIZE) {
+            self.iram.get(offset..)
+        } else {
+            self.flash.get(offset_in(addr, FLASH_BASE, FLASH_SIZE)?..)
+        }
+    }
+}
+
+/// Whether an access of `addr` goes to the bus: registers always, flash for a store.
+#[must_use]
+pub fn is_on_bus(addr: GuestAddr, access: Access) -> bool {
+    REGIONS
+        .iter()
+        .filter(|region| match region.kind {
+            RegionKind::Device => true,
+            RegionKind::Flash => access == Access::Write,
+            RegionKind::Ram => false,
+        })
+        .any(|region| addr.get().wrapping_sub(region.base.get()) < region.size)
+}
+
+const _: () = assert!(index_const(SDRAM.size) == SDRAM_SIZE);
+const _: () = assert!(index_const(IRAM.size) == IRAM_SIZE);
+const _: () = assert!(index_const(FLASH.size) == FLASH_SIZE);
+
+#[expect(
+    clippy::as_conversions,
+    reason = "there is no other conversion in constants, and the value is a size"
+)]
+const fn index_const(size: u32) -> usize {
+    size as usize
+}
+
+/// A guest number as a host index; on a 64-bit host this does nothing.
+#[inline]
+fn index(number: u32) -> usize {
+    usize::try_from(number).unwrap_or(usize::MAX)
+}
+
+/// The length of something that came from or goes into guest memory.
+fn length(bytes: &[u8]) -> u32 {
+    u32::try_from(bytes.len()).unwrap_or(u32::MAX)
+}
+
+fn offset_in(addr: GuestAddr, base: u32, size: usize) -> Option<usize> {
+    let offset = index(addr.get().wrapping_sub(base));
+    (offset < size).then_some(offset)
+}
+
+fn range_within(offset: usize, len: u32, size: usize) -> Option<Range<usize>> {
+    let end = offset.checked_add(index(len))?;
+    (end <= size).then_some(offset..end)
+}
+
+#[expect(clippy::expect_used, reason = "the vector is made with the length of the array")]
+fn filled<const N: usize>(byte: u8) -> Box<[u8; N]> {
+    // Through a vector, because an array of this size must not pass over the stack.
+    vec![byte; N].into_boxed_slice().try_into().expect("length N")
+}
+
+#[cfg(test)]
+mod tests;

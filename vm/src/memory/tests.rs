@@ -1,0 +1,117 @@
+//! Every way into guest memory at its borders.
+
+use kmotiondef::map::{PROGRAM_BASE, TIMER0};
+use proptest::prelude::*;
+
+use super::*;
+
+fn at(address: u32) -> GuestAddr {
+    GuestAddr::new(address)
+}
+
+fn unmapped<T>(address: u32, access: Access) -> Result<T, TrapKind> {
+    Err(TrapKind::Unmapped { addr: at(address), access })
+}
+
+#[test]
+fn each_region_ends_where_the_map_says() {
+    let memory = GuestMemory::new();
+    for (first, last) in [(IRAM_BASE, 0x1001_fffc), (SDRAM_BASE, 0x80ff_fffc), (FLASH_BASE, 0x901f_fffc)] {
+        assert!(memory.load::<u32>(at(first)).is_ok() && memory.load::<u32>(at(last)).is_ok());
+        assert_eq!(memory.load::<u32>(at(first - 4)), unmapped(first - 4, Access::Read));
+        assert_eq!(memory.load::<u32>(at(last + 4)), unmapped(last + 4, Access::Read));
+        assert_eq!(memory.read_bytes(at(last), 8), unmapped(last + 4, Access::Read));
+    }
+    assert_eq!(memory.load::<u32>(TIMER0), unmapped(TIMER0.get(), Access::Read));
+}
+
+#[test]
+fn flash_is_erased_and_written_by_the_kernel_only() {
+    let mut memory = GuestMemory::new();
+    assert_eq!(memory.load::<u16>(at(FLASH_BASE + 2)), Ok(0xffff));
+    assert_eq!(memory.store(at(FLASH_BASE), 1_u8), unmapped(FLASH_BASE, Access::Write));
+    assert_eq!(memory.write_bytes(at(FLASH_BASE), &[1]), unmapped(FLASH_BASE, Access::Write));
+    memory.poke(at(FLASH_BASE), 7_u8);
+    assert_eq!(memory.load::<u16>(at(FLASH_BASE)), Ok(0xff07));
+}
+
+#[test]
+fn alignment_is_checked_for_programs_and_not_for_the_kernel() {
+    let mut memory = GuestMemory::new();
+    let kind = |address, size, access| Some(TrapKind::Misaligned { addr: at(address), size, access });
+    assert_eq!(memory.load::<u32>(at(SDRAM_BASE + 2)).err(), kind(SDRAM_BASE + 2, 4, Access::Read));
+    assert_eq!(memory.load::<f64>(at(IRAM_BASE + 4)).err(), kind(IRAM_BASE + 4, 8, Access::Read));
+    assert_eq!(memory.store(at(SDRAM_BASE + 1), 0_i16).err(), kind(SDRAM_BASE + 1, 2, Access::Write));
+    assert_eq!(memory.store(at(SDRAM_BASE + 4), 0_i64).err(), kind(SDRAM_BASE + 4, 8, Access::Write));
+    assert_eq!(memory.store(at(SDRAM_BASE + 4), 1.5_f64), Ok(()));
+    assert_eq!(memory.peek::<f64>(at(SDRAM_BASE + 4)).to_bits(), 1.5_f64.to_bits());
+    memory.poke(at(SDRAM_BASE + 1), 0x0102_0304_u32);
+    assert_eq!(memory.peek::<u16>(at(SDRAM_BASE + 3)), 0x0102);
+}
+
+#[test]
+fn program_text_is_protected_from_programs() {
+    let mut memory = GuestMemory::new();
+    let thread = ThreadId::new(1).expect("1 is a thread");
+    memory.protect(thread, at(PROGRAM_BASE)..at(PROGRAM_BASE + 32));
+    let protected = Err(TrapKind::WriteProtected { addr: at(PROGRAM_BASE + 28) });
+    assert_eq!(memory.store(at(PROGRAM_BASE + 28), 0_u32), protected);
+    assert_eq!(memory.store(at(PROGRAM_BASE + 28), 0.0_f64), protected);
+    assert_eq!(memory.write_bytes(at(PROGRAM_BASE + 28), &[0; 8]), protected);
+    assert_eq!(memory.fill(at(PROGRAM_BASE + 28), 0, 8), protected);
+    assert_eq!(memory.copy(at(PROGRAM_BASE + 28), at(SDRAM_BASE), 8), protected);
+    assert_eq!(memory.store(at(PROGRAM_BASE + 32), 0_u32), Ok(()));
+    assert_eq!(memory.poke_bytes(at(PROGRAM_BASE), &[1; 8]), Ok(()));
+    memory.unprotect(thread);
+    assert_eq!(memory.store(at(PROGRAM_BASE + 28), 0_u32), Ok(()));
+}
+
+#[test]
+fn strings_end_at_their_zero_or_at_the_limit() {
+    let mut memory = GuestMemory::new();
+    memory.poke_bytes(at(0x80ff_fff8), b"abc\0wxyz").expect("it is mapped");
+    assert_eq!(memory.read_c_string(at(0x80ff_fff8), 100), Ok(b"abc".to_vec()));
+    assert_eq!(memory.read_c_string(at(0x80ff_fff8), 2), Ok(b"ab".to_vec()));
+    assert_eq!(memory.read_c_string(at(0x80ff_fffc), 4), Ok(b"wxyz".to_vec()));
+    assert_eq!(memory.read_c_string(at(0x80ff_fffc), 5), unmapped(0x8100_0000, Access::Read));
+    assert_eq!(memory.read_c_string(GuestAddr::NULL, 5), unmapped(0, Access::Read));
+}
+
+#[test]
+fn copies_may_overlap_and_cross_regions() {
+    let mut memory = GuestMemory::new();
+    memory.poke_bytes(at(SDRAM_BASE), b"12345678").expect("it is mapped");
+    assert_eq!(memory.copy(at(SDRAM_BASE + 2), at(SDRAM_BASE), 6), Ok(()));
+    assert_eq!(memory.read_bytes(at(SDRAM_BASE), 8), Ok(&b"12123456"[..]));
+    assert_eq!(memory.copy(at(IRAM_BASE), at(SDRAM_BASE + 4), 4), Ok(()));
+    assert_eq!(memory.read_bytes(at(IRAM_BASE), 4), Ok(&b"3456"[..]));
+    assert_eq!(memory.copy(at(IRAM_BASE + 2), at(IRAM_BASE), 4), Ok(()));
+    assert_eq!(memory.read_bytes(at(IRAM_BASE), 6), Ok(&b"343456"[..]));
+    assert_eq!(memory.copy(GuestAddr::NULL, GuestAddr::NULL, 0), Ok(()));
+    assert_eq!(memory.copy(GuestAddr::NULL, at(IRAM_BASE), 1), unmapped(0, Access::Write));
+}
+
+proptest! {
+    #[test]
+    fn accesses_agree_with_a_model_of_bytes(
+        accesses in prop::collection::vec((0_u32..64, 0..4_u32, any::<u64>()), 1..50)
+    ) {
+        let mut memory = GuestMemory::new();
+        let mut model = [0_u8; 64];
+        for (offset, size, value) in accesses {
+            let addr = at(0x8000_1000 + offset);
+            let stored = match size {
+                0 => memory.store(addr, value as u8),
+                1 => memory.store(addr, value as u16),
+                2 => memory.store(addr, value as u32),
+                _ => memory.store(addr, value),
+            };
+            let (offset, size) = (offset as usize, 1 << size);
+            prop_assert_eq!(stored.is_ok(), offset % size == 0);
+            if stored.is_ok() {
+                model[offset..offset + size].copy_from_slice(&value.to_le_bytes()[..size]);
+            }
+            prop_assert_eq!(memory.read_bytes(at(0x8000_1000), 64), Ok(&model[..]));
+        }
+    }
+}

@@ -1,0 +1,276 @@
+//! A context of the native engine: its fiber, where it stands, and what it needs to go on.
+
+use kmotiondef::{Cycles, GuestAddr};
+
+use super::fiber::{Answer, Fiber};
+use super::protected::ProtectedBlocks;
+use super::request::{Reason, Request, Width};
+use super::state::BYTES_PER_CALL;
+use crate::engine::{ContextId, Slice, Stack, Stop};
+use crate::firmware::{Firmware, Outcome, Signature};
+use crate::operand::{FuncRef, SigRef};
+use crate::program::Program;
+use crate::slot::Slot;
+use crate::trap::TrapKind;
+
+/// How a context goes on when it is resumed.
+#[derive(Debug)]
+enum Next {
+    /// With the answer to its last request.
+    Answer(Answer),
+    /// With the firmware call of this address and signature, for which it waits.
+    CallFirmware(GuestAddr, SigRef),
+    /// Not at all; it stopped for good.
+    Nothing(Stop),
+}
+
+/// What a request leads to.
+enum Step {
+    /// The context goes on at once.
+    Go(Answer),
+    /// It stops, to go on later as given.
+    Stop(Stop, Next),
+}
+
+/// One context.
+#[derive(Debug)]
+pub(super) struct Context {
+    fiber: Fiber,
+    stack: Stack,
+    /// The instruction to execute next, or the one that stopped the context.
+    at: usize,
+    /// Address of the current call's frame; the top of the stack outside all calls.
+    stack_pointer: u32,
+    next: Next,
+    /// Arguments of the firmware call being made.
+    arguments: Vec<u64>,
+}
+
+impl Context {
+    /// A context that has not begun; `fiber` will call `function`.
+    pub(super) fn new(fiber: Fiber, function: FuncRef, stack: Stack) -> Self {
+        Self {
+            fiber,
+            stack,
+            at: function.0 as usize,
+            stack_pointer: stack.top,
+            next: Next::Answer(Answer::Slot(0)),
+            arguments: Vec::new(),
+        }
+    }
+
+    /// The fiber, for what can be used of it again.
+    pub(super) fn into_fiber(self) -> Fiber {
+        self.fiber
+    }
+
+    /// The instruction at which the context stands.
+    pub(super) const fn at(&self) -> usize {
+        self.at
+    }
+
+    /// The most bytes of the stack in use since the start.
+    pub(super) fn stack_used(&self) -> u32 {
+        self.fiber.state().stack_used()
+    }
+
+    /// The current instruction and the calls that led there, innermost first.
+    pub(super) fn calls(&self, program: &Program) -> Vec<usize> {
+        let mut words = vec![self.at];
+        let (mut at, mut frame) = (self.at, self.stack_pointer);
+        while frame < self.stack.top
+            && let Some(function) = program.function_around(at)
+        {
+            frame = frame.saturating_add(function.frame + BYTES_PER_CALL);
+            if frame >= self.stack.top {
+                break;
+            }
+            at = self.fiber.state().call_of(frame);
+            words.push(at);
+        }
+        words
+    }
+
+    /// Ends the context: whenever it is resumed, it stops with `stop`.
+    pub(super) fn end(&mut self, stop: Stop) -> Stop {
+        self.next = Next::Nothing(stop.clone());
+        stop
+    }
+
+    /// Runs the context until it stops; when it traps, `at` is the instruction that did it.
+    pub(super) fn run<F: Firmware + ?Sized>(
+        &mut self,
+        id: ContextId,
+        slice: &mut Slice<'_, F>,
+        protected: &mut ProtectedBlocks,
+    ) -> Result<Stop, TrapKind> {
+        let mut step = match &self.next {
+            Next::Answer(answer) => Step::Go(*answer),
+            Next::CallFirmware(address, signature) => {
+                let (address, signature) = (*address, *signature);
+                self.call_firmware(id, slice, address, signature)?
+            }
+            Next::Nothing(stop) => return Ok(stop.clone()),
+        };
+        loop {
+            let answer = match step {
+                Step::Go(answer) => answer,
+                Step::Stop(stop, next) => {
+                    self.next = next;
+                    return Ok(stop);
+                }
+            };
+            let state = self.fiber.state();
+            state.budget.set(slice.budget.get());
+            protected.follow(slice.memory.protected_texts());
+            let request = self.fiber.resume(slice.memory, protected, answer);
+            slice.budget = Cycles::new(self.fiber.state().budget.get());
+            let Some(request) = request else {
+                self.at = self.fiber.state().returned_at.get() as usize;
+                self.stack_pointer = self.stack.top;
+                return Ok(self.end(Stop::Ended));
+            };
+            self.at = request.at as usize;
+            self.stack_pointer = request.stack_pointer;
+            step = self.answer(id, slice, request)?;
+        }
+    }
+
+    /// Does what compiled code asks for.
+    fn answer<F: Firmware + ?Sized>(
+        &mut self,
+        id: ContextId,
+        slice: &mut Slice<'_, F>,
+        request: Request,
+    ) -> Result<Step, TrapKind> {
+        let address = GuestAddr::new(request.a as u32);
+        let slot = match request.reason().unwrap_or(Reason::Unreachable) {
+            Reason::Preempted => return Ok(Step::Stop(Stop::Preempted, Next::Answer(Answer::Slot(0)))),
+            Reason::Load => load_slot(slice, address, request.width())?,
+            Reason::Store => store_slot(slice, address, request.width(), request.b)?,
+            Reason::Copy => {
+                let from = GuestAddr::new((request.a >> 32) as u32);
+                slice.memory.copy(address, from, request.b as u32)?;
+                0
+            }
+            Reason::Clear => {
+                slice.memory.fill(address, 0, request.b as u32)?;
+                0
+            }
+            Reason::CallFirmware => return self.begin_firmware(id, slice, address, SigRef(request.b as u16)),
+            Reason::CallPointer => {
+                return resolve(slice, address, SigRef(request.b as u16)).map(Step::Go);
+            }
+            Reason::StackOverflow => return Err(self.overflow(request)),
+            Reason::DivisionByZero => return Err(TrapKind::DivisionByZero),
+            Reason::Unreachable => return Err(TrapKind::Unreachable),
+        };
+        Ok(Step::Go(Answer::Slot(slot)))
+    }
+
+    /// A call that the stack has no room for: it is its caller that stands there.
+    fn overflow(&mut self, request: Request) -> TrapKind {
+        if request.stack_pointer < self.stack.top {
+            self.at = self.fiber.state().call_of(request.stack_pointer);
+        }
+        let used = self.stack.top - request.stack_pointer + request.a as u32;
+        TrapKind::StackOverflow { used, size: self.stack.size() }
+    }
+
+    /// Makes a firmware call for the first time.
+    fn begin_firmware<F: Firmware + ?Sized>(
+        &mut self,
+        id: ContextId,
+        slice: &mut Slice<'_, F>,
+        address: GuestAddr,
+        signature: SigRef,
+    ) -> Result<Step, TrapKind> {
+        let stated = slice.program.signature(signature);
+        let Some(callee) = slice.firmware.signature(address) else {
+            return Err(TrapKind::UnknownFirmwareFunction { addr: address });
+        };
+        check_signature(address, callee, stated)?;
+        self.call_firmware(id, slice, address, signature)
+    }
+
+    /// Makes a firmware call whose arguments are in the state.
+    fn call_firmware<F: Firmware + ?Sized>(
+        &mut self,
+        id: ContextId,
+        slice: &mut Slice<'_, F>,
+        address: GuestAddr,
+        signature: SigRef,
+    ) -> Result<Step, TrapKind> {
+        let count = slice.program.signature(signature).params.len();
+        let arguments = self.fiber.state().arguments.iter().take(count);
+        self.arguments.clear();
+        self.arguments.extend(arguments.map(std::cell::Cell::get));
+        Ok(match slice.call_firmware(id, address, &self.arguments)? {
+            Outcome::Done(value) => Step::Go(Answer::Slot(value.into_slot())),
+            Outcome::Wait(wake) => Step::Stop(Stop::Waiting(wake), Next::CallFirmware(address, signature)),
+            Outcome::End => Step::Stop(Stop::Ended, Next::Nothing(Stop::Ended)),
+            Outcome::Pause => {
+                self.at += 1;
+                Step::Stop(Stop::Paused, Next::Answer(Answer::Slot(0)))
+            }
+        })
+    }
+}
+
+/// What a call through the pointer `address` with `signature` calls.
+fn resolve<F: Firmware + ?Sized>(
+    slice: &Slice<'_, F>,
+    address: GuestAddr,
+    signature: SigRef,
+) -> Result<Answer, TrapKind> {
+    let stated = slice.program.signature(signature);
+    if let Some(function) = slice.program.function_at(address) {
+        check_signature(address, slice.program.signature_of(function), stated)?;
+        let found = slice.program.functions().binary_search_by_key(&function, |function| function.at);
+        return found.map(Answer::Function).map_err(|_| TrapKind::BadCallTarget { addr: address });
+    }
+    let callee = slice.firmware.signature(address).ok_or(TrapKind::BadCallTarget { addr: address })?;
+    check_signature(address, callee, stated)?;
+    Ok(Answer::Slot(0))
+}
+
+/// Whether `callee` can be called as the instruction says.
+fn check_signature(addr: GuestAddr, callee: &Signature, called: &Signature) -> Result<(), TrapKind> {
+    if callee.may_be_called_as(called) { Ok(()) } else { Err(TrapKind::SignatureMismatch { addr }) }
+}
+
+/// A load that compiled code leaves to the engine, as a register slot.
+fn load_slot<F: Firmware + ?Sized>(
+    slice: &mut Slice<'_, F>,
+    addr: GuestAddr,
+    width: Option<Width>,
+) -> Result<u64, TrapKind> {
+    Ok(match width.ok_or(TrapKind::Unreachable)? {
+        Width::I8S => i32::from(slice.load::<i8>(addr)?).into_slot(),
+        Width::I8U => i32::from(slice.load::<u8>(addr)?).into_slot(),
+        Width::I16S => i32::from(slice.load::<i16>(addr)?).into_slot(),
+        Width::I16U => i32::from(slice.load::<u16>(addr)?).into_slot(),
+        Width::I32 => slice.load::<i32>(addr)?.into_slot(),
+        Width::I64 => slice.load::<i64>(addr)?.into_slot(),
+        Width::F32 => slice.load::<f32>(addr)?.into_slot(),
+        Width::F64 => slice.load::<f64>(addr)?.into_slot(),
+    })
+}
+
+/// A store of a register slot that compiled code leaves to the engine; yields nothing, as 0.
+fn store_slot<F: Firmware + ?Sized>(
+    slice: &mut Slice<'_, F>,
+    addr: GuestAddr,
+    width: Option<Width>,
+    slot: u64,
+) -> Result<u64, TrapKind> {
+    match width.ok_or(TrapKind::Unreachable)? {
+        Width::I8S | Width::I8U => slice.store(addr, slot as u8),
+        Width::I16S | Width::I16U => slice.store(addr, slot as u16),
+        Width::I32 => slice.store(addr, i32::from_slot(slot)),
+        Width::I64 => slice.store(addr, i64::from_slot(slot)),
+        Width::F32 => slice.store(addr, f32::from_slot(slot)),
+        Width::F64 => slice.store(addr, f64::from_slot(slot)),
+    }?;
+    Ok(0)
+}

@@ -1,0 +1,52 @@
+//! The two ways between Rust and compiled code: in by [`enter`], out by [`leave`].
+#![expect(unsafe_code, reason = "calls compiled code, and is called by it with raw pointers")]
+
+use super::request::Request;
+use super::state::State;
+use crate::arith;
+
+/// How compiled code makes a request: state, code, instruction, stack pointer and two operands.
+pub(super) type Leave = unsafe extern "C" fn(*const State, u32, u32, u32, u64, u64) -> u64;
+
+/// A conversion that compiled code leaves to Rust.
+pub(super) type Convert = extern "C" fn(f64) -> i64;
+
+/// What begins the outermost call: a piece of compiled code that calls the function at the second
+/// pointer, all its parameters 0, on the stack that the state describes.
+pub(super) type Thunk = unsafe extern "C" fn(*const State, *const u8);
+
+/// Runs a function of a program to its end.
+///
+/// # Safety
+/// `thunk` and `function` are compiled code of one program, the function has the parameters that
+/// the thunk passes, and the code is kept until this returns. `state` is valid until then, and at
+/// each moment at which the fiber runs its pointers are those of guest memory.
+pub(super) unsafe fn enter(thunk: Thunk, function: *const u8, state: *const State) {
+    // SAFETY: the caller vouches for thunk, function and state.
+    unsafe { thunk(state, function) }
+}
+
+/// Suspends the fiber with a request and yields the answer.
+///
+/// # Safety
+/// Called by compiled code only: `state` is the pointer that it was entered with.
+pub(super) unsafe extern "C" fn leave(
+    state: *const State,
+    code: u32,
+    at: u32,
+    stack_pointer: u32,
+    a: u64,
+    b: u64,
+) -> u64 {
+    // SAFETY: compiled code passes on what `enter` gave it, which is valid while it runs.
+    let state = unsafe { &*state };
+    // SAFETY: the fiber's body sets the yielder, which lives on this fiber, before it enters compiled code.
+    let yielder = unsafe { &*state.yielder.get() };
+    // Nothing here or in compiled code needs `Drop`, so the fiber may be discarded while it is suspended.
+    yielder.suspend(Request { code, at, stack_pointer, a, b })
+}
+
+/// Converts what compiled code cannot convert by one instruction.
+pub(super) extern "C" fn convert(value: f64) -> i64 {
+    arith::i64_from_f64_u(value)
+}

@@ -1,0 +1,142 @@
+//! A fiber: the native stack on which one context's compiled code runs.
+//!
+//! A fiber is never unwound. It runs until it has returned, or it is discarded where it stands;
+//! the only Rust frames on it are the body below and [`leave`](super::entry::leave), and neither
+//! owns anything.
+#![expect(unsafe_code, reason = "runs compiled code and discards fibers without unwinding them")]
+
+use std::fmt;
+use std::rc::Rc;
+use std::sync::Arc;
+
+use corosensei::stack::DefaultStack;
+use corosensei::{Coroutine, CoroutineResult};
+
+use super::code::{Code, Entry};
+use super::entry;
+use super::protected::ProtectedBlocks;
+use super::request::{Reason, Request};
+use super::state::State;
+use crate::engine::Stack;
+use crate::memory::GuestMemory;
+use crate::operand::SigRef;
+
+/// What suspends a fiber.
+pub(super) type Yielder = corosensei::Yielder<u64, Request>;
+
+/// The answer to a request.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Answer {
+    /// A register slot; 0 where nothing is expected.
+    Slot(u64),
+    /// The function to call, as its index in the program; only for a pointer that was to be resolved.
+    Function(usize),
+}
+
+/// A native stack with one call of a program's function on it.
+pub(super) struct Fiber {
+    /// Taken out only to be discarded.
+    coroutine: Option<Coroutine<u64, Request, (), DefaultStack>>,
+    /// Bytes of its stack.
+    native_size: usize,
+    state: Rc<State>,
+    code: Arc<Code>,
+    /// The signature of the call whose target is being asked for.
+    resolving: Option<SigRef>,
+}
+
+impl fmt::Debug for Fiber {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Fiber").field("state", &self.state).finish_non_exhaustive()
+    }
+}
+
+impl Fiber {
+    /// A fiber that will call `function` of `code` on the guest stack `stack`; it has not begun.
+    ///
+    /// `old` is discarded, and what it is made of used again where possible.
+    pub(super) fn new(code: Arc<Code>, function: usize, stack: Stack, old: Option<Self>) -> Self {
+        let size = code.stack_size(stack.size());
+        let (state, kept) = match old {
+            Some(mut old) => (Rc::clone(&old.state), old.take_stack()),
+            None => (Rc::new(State::new(stack)), None),
+        };
+        state.reset(stack);
+        let (native_stack, native_size) =
+            kept.filter(|(_, kept_size)| *kept_size >= size).unwrap_or_else(|| {
+                (DefaultStack::new(size).expect("the host has address space for a stack"), size)
+            });
+        let Entry { thunk, pointer } = code.entry(function);
+        let shared = Rc::as_ptr(&state);
+        let body = move |yielder: &Yielder, _: u64| {
+            // SAFETY: the fiber, of which this is the body, holds the state.
+            let state = unsafe { &*shared };
+            state.yielder.set(yielder);
+            // SAFETY: the entry is of the code that the fiber holds, together with the state;
+            // `resume` sets the state's pointers each time before this runs.
+            unsafe { entry::enter(thunk, pointer, shared) };
+        };
+        let coroutine = Some(Coroutine::with_stack(native_stack, body));
+        Self { coroutine, native_size, state, code, resolving: None }
+    }
+
+    /// Runs the fiber until its next request; `None` when the function has returned.
+    ///
+    /// `answer` is that to the last request. A fiber that has returned does nothing.
+    pub(super) fn resume(
+        &mut self,
+        memory: &mut GuestMemory,
+        protected: &ProtectedBlocks,
+        answer: Answer,
+    ) -> Option<Request> {
+        let answer = self.encode(answer);
+        let coroutine = self.coroutine.as_mut().filter(|coroutine| !coroutine.done())?;
+        // The borrows last until the fiber is suspended again, so the pointers are valid while it runs.
+        let (sdram, iram) = memory.ram_mut();
+        self.state.sdram.set(sdram.as_mut_ptr());
+        self.state.iram.set(iram.as_mut_ptr());
+        self.state.protected.set(protected.marks().as_ptr());
+        match coroutine.resume(answer) {
+            CoroutineResult::Yield(request) => {
+                let resolving = request.reason() == Some(Reason::CallPointer);
+                self.resolving = resolving.then_some(SigRef(request.b as u16));
+                Some(request)
+            }
+            CoroutineResult::Return(()) => None,
+        }
+    }
+
+    /// The answer as compiled code takes it.
+    ///
+    /// A call through a pointer takes the address of a function that can be called so, or 0: this
+    /// is where it is made certain.
+    fn encode(&self, answer: Answer) -> u64 {
+        match (self.resolving, answer) {
+            (None, Answer::Slot(slot)) => slot,
+            (Some(signature), Answer::Function(function)) if self.code.accepts(function, signature) => {
+                self.code.entry(function).pointer.expose_provenance() as u64
+            }
+            (Some(_), _) | (None, Answer::Function(_)) => 0,
+        }
+    }
+
+    /// What the engine and compiled code share.
+    pub(super) fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// Discards what runs and yields the native stack, with its size, to use again.
+    fn take_stack(&mut self) -> Option<(DefaultStack, usize)> {
+        let mut coroutine = self.coroutine.take()?;
+        // SAFETY: nothing on the fiber needs `Drop`: the body, `enter` and `leave` own nothing, and
+        // compiled code knows no such thing.
+        unsafe { coroutine.force_reset() };
+        Some((coroutine.into_stack(), self.native_size))
+    }
+}
+
+impl Drop for Fiber {
+    fn drop(&mut self) {
+        self.take_stack();
+    }
+}

@@ -1,0 +1,142 @@
+//! What compiled code asks of the engine.
+//!
+//! Compiled code does by itself what needs nothing but registers and RAM. For everything else
+//! it suspends its fiber with a [`Request`]: two numbers say what and where, two say with which
+//! operands. The engine answers it on the host's stack, in safe code, and resumes the fiber.
+
+/// A request as it leaves compiled code.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Request {
+    /// What is asked, as [`Reason::with_width`] made it.
+    pub(super) code: u32,
+    /// The instruction at which the context stands while it waits for the answer.
+    pub(super) at: u32,
+    /// Address of the current call's frame.
+    pub(super) stack_pointer: u32,
+    /// First operand.
+    pub(super) a: u64,
+    /// Second operand.
+    pub(super) b: u64,
+}
+
+macro_rules! codes {
+    ($(#[$doc:meta])* $name:ident { $($(#[$row:meta])* $variant:ident,)* }) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[repr(u8)]
+        pub(super) enum $name {
+            $($(#[$row])* $variant,)*
+        }
+
+        impl $name {
+            const ALL: &'static [Self] = &[$(Self::$variant),*];
+
+            fn from_code(code: u32) -> Option<Self> {
+                Self::ALL.get(usize::try_from(code).ok()?).copied()
+            }
+        }
+    };
+}
+
+codes! {
+    /// What is asked.
+    Reason {
+        /// The budget is used up.
+        Preempted,
+        /// Load from the address `a`; the answer is the register slot.
+        Load,
+        /// Store the register slot `b` to the address `a`.
+        Store,
+        /// Copy: `a` is the destination, with the source in its upper half; `b` the length.
+        Copy,
+        /// Clear `b` bytes at `a`.
+        Clear,
+        /// Call the firmware function at `a` with the arguments in the state and signature `b`; the answer is
+        /// the result as a slot.
+        CallFirmware,
+        /// Resolve the function pointer `a` for a call with signature `b`; the answer is the function, none
+        /// for one of the firmware.
+        CallPointer,
+        /// The stack has no room for the `a` bytes of a call; `stack_pointer` is that of the caller.
+        StackOverflow,
+        /// An integer division by zero.
+        DivisionByZero,
+        /// An `unreachable` was reached.
+        Unreachable,
+    }
+}
+
+codes! {
+    /// What a load or store moves.
+    Width {
+        /// 8 bits, sign-extended.
+        I8S,
+        /// 8 bits, zero-extended.
+        I8U,
+        /// 16 bits, sign-extended.
+        I16S,
+        /// 16 bits, zero-extended.
+        I16U,
+        /// 32 bits of an integer.
+        I32,
+        /// 64 bits of an integer.
+        I64,
+        /// A single.
+        F32,
+        /// A double.
+        F64,
+    }
+}
+
+impl Reason {
+    /// The code of the request.
+    pub(super) const fn code(self) -> u32 {
+        self as u32
+    }
+
+    /// The code of the request for an access of `width`.
+    pub(super) const fn with_width(self, width: Width) -> u32 {
+        self as u32 | (width as u32) << 8
+    }
+}
+
+impl Request {
+    /// What is asked; `None` for a code that no compiled code uses.
+    pub(super) fn reason(&self) -> Option<Reason> {
+        Reason::from_code(self.code & 0xff)
+    }
+
+    /// What a load or store is to move.
+    pub(super) fn width(&self) -> Option<Width> {
+        Width::from_code(self.code >> 8)
+    }
+}
+
+impl Width {
+    /// Number of bytes.
+    pub(super) const fn bytes(self) -> u32 {
+        match self {
+            Self::I8S | Self::I8U => 1,
+            Self::I16S | Self::I16U => 2,
+            Self::I32 | Self::F32 => 4,
+            Self::I64 | Self::F64 => 8,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn codes_are_read_as_they_were_written() {
+        for reason in Reason::ALL {
+            for width in Width::ALL {
+                let request =
+                    Request { code: reason.with_width(*width), at: 0, stack_pointer: 0, a: 0, b: 0 };
+                assert_eq!((request.reason(), request.width()), (Some(*reason), Some(*width)));
+            }
+            assert_eq!(Reason::from_code(reason.code()), Some(*reason));
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! What compiled code and the engine share of one context.
+//!
+//! Compiled code reaches every field by its offset from the pointer that is its first
+//! parameter. The engine reads and writes the same fields while the fiber is suspended.
+//! All of them are cells, so both sides may hold a shared reference for as long as they like.
+
+use std::cell::Cell;
+
+use kmotiondef::map::STACK_SIZE;
+
+use super::entry::{self, Convert, Leave};
+use super::fiber::Yielder;
+use crate::engine::Stack;
+use crate::verify::MAX_PARAMETERS;
+
+/// Bytes of a stack that hold at most one call: a call takes at least as many.
+pub(super) const BYTES_PER_CALL: u32 = 16;
+
+/// Entries in the table of calls: one for each call that the largest stack can hold.
+pub(super) const CALLS: usize = (STACK_SIZE / BYTES_PER_CALL) as usize;
+
+const _: () = assert!(CALLS.is_power_of_two());
+
+/// The shared fields. The layout is that of C, because compiled code relies on it.
+#[derive(Debug)]
+#[repr(C)]
+pub(super) struct State {
+    /// What is left of the slice; valid whenever the fiber is suspended.
+    pub(super) budget: Cell<i64>,
+    /// First byte of SDRAM while the fiber runs.
+    pub(super) sdram: Cell<*mut u8>,
+    /// First byte of on-chip RAM while the fiber runs.
+    pub(super) iram: Cell<*mut u8>,
+    /// One byte for each block of SDRAM, not 0 where a store must be checked; while the fiber runs.
+    pub(super) protected: Cell<*const u8>,
+    /// How compiled code makes a request.
+    pub(super) leave: Leave,
+    /// The conversion of a double to 64 bits modulo 2⁶⁴ where it does not simply fit.
+    pub(super) convert: Convert,
+    /// What suspends the fiber, from its first instruction on.
+    pub(super) yielder: Cell<*const Yielder>,
+    /// The lowest address that the stack may reach.
+    pub(super) limit: Cell<u32>,
+    /// The lowest address that it has reached.
+    pub(super) lowest: Cell<u32>,
+    /// One past its highest address.
+    pub(super) top: Cell<u32>,
+    /// The return that was executed last.
+    pub(super) returned_at: Cell<u32>,
+    /// Where each call in progress stands, at the place of its caller's frame; see [`call_entry`].
+    pub(super) calls: [Cell<u32>; CALLS],
+    /// Arguments of a firmware call.
+    pub(super) arguments: [Cell<u64>; MAX_PARAMETERS],
+}
+
+impl State {
+    /// The state of a context that has not begun and will run on `stack`.
+    pub(super) fn new(stack: Stack) -> Self {
+        Self {
+            budget: Cell::new(0),
+            sdram: Cell::new(std::ptr::null_mut()),
+            iram: Cell::new(std::ptr::null_mut()),
+            protected: Cell::new(std::ptr::null()),
+            leave: entry::leave,
+            convert: entry::convert,
+            yielder: Cell::new(std::ptr::null()),
+            limit: Cell::new(stack.limit),
+            lowest: Cell::new(stack.top),
+            top: Cell::new(stack.top),
+            returned_at: Cell::new(0),
+            calls: [const { Cell::new(0) }; CALLS],
+            arguments: [const { Cell::new(0) }; MAX_PARAMETERS],
+        }
+    }
+
+    /// Makes the state that of a context which has not begun and will run on `stack`.
+    pub(super) fn reset(&self, stack: Stack) {
+        self.limit.set(stack.limit);
+        self.lowest.set(stack.top);
+        self.top.set(stack.top);
+    }
+
+    /// The most bytes of the stack in use since the reset.
+    pub(super) fn stack_used(&self) -> u32 {
+        self.top.get() - self.lowest.get()
+    }
+
+    /// The call that the function with its frame at `stack_pointer` is making.
+    pub(super) fn call_of(&self, stack_pointer: u32) -> usize {
+        self.calls[call_entry(stack_pointer)].get() as usize
+    }
+}
+
+/// Which entry of [`State::calls`] belongs to the frame at `stack_pointer`.
+///
+/// No two frames of one stack have the same, since they lie at least [`BYTES_PER_CALL`] apart
+/// and no stack is larger than the table covers.
+const fn call_entry(stack_pointer: u32) -> usize {
+    (stack_pointer / BYTES_PER_CALL) as usize % CALLS
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::ContextId;
+
+    #[test]
+    fn every_frame_of_a_stack_has_its_own_entry() {
+        let Stack { limit, top } = ContextId::CALLBACK.stack(false);
+        let mut entries: Vec<_> = (limit..top).step_by(BYTES_PER_CALL as usize).map(call_entry).collect();
+        entries.sort_unstable();
+        entries.dedup();
+        assert_eq!(entries.len(), CALLS);
+    }
+}

@@ -1,0 +1,440 @@
+//! A function of a program to Cranelift's IR.
+//!
+//! Each register becomes a variable of its class, so the frontend builds SSA form. The function's
+//! machine signature is that of the program's with three parameters before it and a result of its
+//! own: state, the caller's stack pointer and the budget go in, the budget comes back with the
+//! result as a register slot. So the budget stays in a processor register; it is written to the
+//! state for a request and read back behind it.
+//!
+//! The arms of the instructions stand in `arith.rs`, `memory.rs` and `control.rs`, one method an
+//! instruction, named as in the table.
+
+mod arith;
+mod control;
+mod memory;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::mem::offset_of;
+
+use cranelift_codegen::ir::condcodes::IntCC;
+use cranelift_codegen::ir::{
+    AbiParam, AliasRegion, AliasRegionData, Block, Endianness, FuncRef, Function as IrFunction, InstBuilder,
+    MemFlagsData, SigRef as IrSigRef, Signature, TrapCode, Type, Value, types,
+};
+use cranelift_codegen::isa::CallConv;
+use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext, Variable};
+use cranelift_jit::JITModule;
+use cranelift_module::{FuncId, Module};
+
+use super::request::Reason;
+use super::state::{BYTES_PER_CALL, State};
+use crate::for_each_op;
+use crate::meter::branch_target;
+use crate::op::Op;
+use crate::operand::{Class, RegF32, RegF64, RegI32, RegI64};
+use crate::program::{Function, Program};
+
+/// Reached only if the engine resumed a context that a trap has stopped.
+const RESUMED_BEHIND_TRAP: TrapCode = TrapCode::unwrap_user(1);
+
+/// What is to be translated.
+#[derive(Clone, Copy)]
+pub(super) struct Translation<'a> {
+    /// The program.
+    pub(super) program: &'a Program,
+    /// Its function.
+    pub(super) function: &'a Function,
+    /// All its functions, as the module knows them.
+    pub(super) functions: &'a [FuncId],
+}
+
+/// The machine signature of a function with `parameters`.
+pub(super) fn function_signature(parameters: &[Class]) -> Signature {
+    let mut signature = Signature::new(CallConv::Fast);
+    let own = [types::I64, types::I32, types::I64];
+    signature.params =
+        own.into_iter().chain(parameters.iter().map(|class| type_of(*class))).map(AbiParam::new).collect();
+    signature.returns = vec![AbiParam::new(types::I64); 2];
+    signature
+}
+
+/// The machine signature of [`Thunk`](super::entry::Thunk).
+pub(super) fn thunk_signature(module: &JITModule) -> Signature {
+    let mut signature = module.make_signature();
+    signature.params = vec![AbiParam::new(types::I64); 2];
+    signature
+}
+
+/// The machine signature of [`Leave`](super::entry::Leave).
+fn leave_signature(convention: CallConv) -> Signature {
+    let mut signature = Signature::new(convention);
+    let parameters = [types::I64, types::I32, types::I32, types::I32, types::I64, types::I64];
+    signature.params = parameters.map(AbiParam::new).to_vec();
+    signature.returns = vec![AbiParam::new(types::I64)];
+    signature
+}
+
+/// The machine type of a register.
+const fn type_of(class: Class) -> Type {
+    match class {
+        Class::I32 => types::I32,
+        Class::I64 => types::I64,
+        Class::F32 => types::F32,
+        Class::F64 => types::F64,
+    }
+}
+
+/// The zero of a class.
+fn zero(builder: &mut FunctionBuilder<'_>, class: Class) -> Value {
+    match class {
+        Class::I32 | Class::I64 => builder.ins().iconst(type_of(class), 0),
+        Class::F32 => builder.ins().f32const(0.0),
+        Class::F64 => builder.ins().f64const(0.0),
+    }
+}
+
+/// Translates a function into `ir`, which is empty.
+pub(super) fn translate(
+    ir: &mut IrFunction,
+    context: &mut FunctionBuilderContext,
+    module: &mut JITModule,
+    translation: Translation<'_>,
+) {
+    let signature = usize::from(translation.function.signature.0);
+    ir.signature = function_signature(&translation.program.signatures()[signature].params);
+    let builder = FunctionBuilder::new(ir, context);
+    let mut translator = Translator::new(builder, module, translation);
+    translator.prologue();
+    translator.body();
+    translator.builder.seal_all_blocks();
+    translator.builder.finalize(module.target_config());
+}
+
+/// Translates the way into functions with `parameters` into `ir`, whose signature is set.
+pub(super) fn translate_thunk(
+    ir: &mut IrFunction,
+    context: &mut FunctionBuilderContext,
+    module: &JITModule,
+    parameters: &[Class],
+) {
+    let mut builder = FunctionBuilder::new(ir, context);
+    let block = builder.create_block();
+    builder.append_block_params_for_function_params(block);
+    builder.switch_to_block(block);
+    let (state, function) = (builder.block_params(block)[0], builder.block_params(block)[1]);
+    let flags = MemFlagsData::trusted();
+    let top = builder.ins().load(types::I32, flags, state, offset(offset_of!(State, top)));
+    let budget = builder.ins().load(types::I64, flags, state, offset(offset_of!(State, budget)));
+    let mut arguments = vec![state, top, budget];
+    for class in parameters {
+        arguments.push(zero(&mut builder, *class));
+    }
+    let signature = builder.import_signature(function_signature(parameters));
+    let call = builder.ins().call_indirect(signature, function, &arguments);
+    let budget = builder.inst_results(call)[0];
+    builder.ins().store(flags, budget, state, offset(offset_of!(State, budget)));
+    builder.ins().return_(&[]);
+    builder.seal_all_blocks();
+    builder.finalize(module.target_config());
+}
+
+/// The offset of a field of the state.
+fn offset(field: usize) -> i32 {
+    i32::try_from(field).expect("the state is small")
+}
+
+/// A register operand as a variable.
+trait Register: Copy {
+    /// Its class.
+    const CLASS: Class;
+
+    /// Its number in the function.
+    fn index(self) -> usize;
+}
+
+macro_rules! registers {
+    ($($register:ident is $class:ident;)*) => {$(
+        impl Register for $register {
+            const CLASS: Class = Class::$class;
+
+            fn index(self) -> usize {
+                Self::index(self)
+            }
+        }
+    )*};
+}
+registers! {
+    RegI32 is I32;
+    RegI64 is I64;
+    RegF32 is F32;
+    RegF64 is F64;
+}
+
+/// One function while it is translated.
+struct Translator<'a, 'b> {
+    builder: FunctionBuilder<'b>,
+    module: &'a mut JITModule,
+    translation: Translation<'a>,
+    registers: Vec<Variable>,
+    budget: Variable,
+    /// The functions of the program that this one has called so far.
+    callees: BTreeMap<usize, FuncRef>,
+    leave: IrSigRef,
+    /// Blocks at the words that branches go to or that follow a conditional one.
+    blocks: BTreeMap<usize, Block>,
+    /// Flags of accesses to the state and to guest memory, which never overlap.
+    state_flags: MemFlagsData,
+    guest_flags: MemFlagsData,
+    state: Value,
+    /// Address of this call's frame in guest memory.
+    stack_pointer: Value,
+    /// The entry of the table of calls that belongs to the frame.
+    call_entry: Value,
+    /// The word being translated, and whether execution can reach it.
+    at: usize,
+    reachable: bool,
+    /// Arguments of the next call.
+    arguments: Vec<Value>,
+    /// Result of the call directly before, as a slot.
+    result: Option<Value>,
+    /// Results of this block's floating arithmetic before their NaNs were made the same.
+    raw: BTreeMap<usize, Value>,
+}
+
+impl<'a, 'b> Translator<'a, 'b> {
+    fn new(
+        mut builder: FunctionBuilder<'b>,
+        module: &'a mut JITModule,
+        translation: Translation<'a>,
+    ) -> Self {
+        let entry = builder.create_block();
+        builder.append_block_params_for_function_params(entry);
+        builder.switch_to_block(entry);
+        let parameters = builder.block_params(entry).to_vec();
+        let registers: Vec<_> =
+            translation.function.classes.iter().map(|class| builder.declare_var(type_of(*class))).collect();
+        for (register, value) in registers.iter().zip(&parameters[3..]) {
+            builder.def_var(*register, *value);
+        }
+        let budget = builder.declare_var(types::I64);
+        builder.def_var(budget, parameters[2]);
+        let leave = builder.import_signature(leave_signature(module.isa().default_call_conv()));
+        let state_flags = flags(&mut builder, 0, "state");
+        let guest_flags = flags(&mut builder, 1, "guest memory");
+        Self {
+            registers,
+            budget,
+            callees: BTreeMap::new(),
+            leave,
+            blocks: BTreeMap::new(),
+            state_flags,
+            guest_flags,
+            state: parameters[0],
+            stack_pointer: parameters[1],
+            call_entry: parameters[0],
+            at: translation.function.at.0 as usize,
+            reachable: true,
+            arguments: Vec::new(),
+            result: None,
+            raw: BTreeMap::new(),
+            builder,
+            module,
+            translation,
+        }
+    }
+
+    /// Takes the frame from the guest stack and sets the registers to 0.
+    fn prologue(&mut self) {
+        let bytes = i64::from(self.translation.function.frame + BYTES_PER_CALL);
+        let caller = self.stack_pointer;
+        let frame = self.builder.ins().iadd_imm_s(caller, -bytes);
+        let (deeper, lower, body) =
+            (self.builder.create_block(), self.builder.create_block(), self.builder.create_block());
+        // Nothing to do as long as the stack has been deeper already.
+        let lowest = self.load_state(types::I32, offset_of!(State, lowest));
+        self.branch_if_room(caller, lowest, bytes, body, deeper);
+        self.enter_cold(deeper);
+        let overflow = self.builder.create_block();
+        let limit = self.load_state(types::I32, offset_of!(State, limit));
+        self.branch_if_room(caller, limit, bytes, lower, overflow);
+        self.enter_cold(overflow);
+        let bytes = self.builder.ins().iconst(types::I64, bytes);
+        self.trap(Reason::StackOverflow, bytes);
+        self.enter_cold(lower);
+        self.store_state(frame, offset_of!(State, lowest));
+        self.builder.ins().jump(body, &[]);
+        self.enter(body);
+        self.stack_pointer = frame;
+        self.set_call_entry();
+        self.clear_registers();
+    }
+
+    /// Goes to `room` if `bytes` fit between `limit` and `stack_pointer`, else to `none`.
+    fn branch_if_room(&mut self, stack_pointer: Value, limit: Value, bytes: i64, room: Block, none: Block) {
+        let left = self.builder.ins().isub(stack_pointer, limit);
+        let fits = self.builder.ins().icmp_imm_u(IntCC::UnsignedGreaterThanOrEqual, left, bytes);
+        self.builder.ins().brif(fits, room, &[], none, &[]);
+    }
+
+    fn set_call_entry(&mut self) {
+        let size = size_of::<u32>() as u32;
+        let mask = i64::from(super::state::CALLS as u32 * size - size);
+        let shifted =
+            self.builder.ins().ushr_imm_u(self.stack_pointer, i64::from((BYTES_PER_CALL / size).ilog2()));
+        let masked = self.builder.ins().band_imm_u(shifted, mask);
+        let entry = self.builder.ins().uextend(types::I64, masked);
+        self.call_entry = self.builder.ins().iadd(self.state, entry);
+    }
+
+    fn clear_registers(&mut self) {
+        let parameters = self.signature_parameters();
+        let mut zeros = BTreeMap::new();
+        for (register, class) in
+            self.registers.iter().zip(&self.translation.function.classes).skip(parameters)
+        {
+            let zero = *zeros.entry(*class).or_insert_with(|| zero(&mut self.builder, *class));
+            self.builder.def_var(*register, zero);
+        }
+    }
+
+    fn signature_parameters(&self) -> usize {
+        let signature = usize::from(self.translation.function.signature.0);
+        self.translation.program.signatures()[signature].params.len()
+    }
+
+    /// Translates the words.
+    fn body(&mut self) {
+        let body = self.translation.function.body.clone();
+        self.find_blocks();
+        for at in body {
+            self.at = at;
+            if let Some(block) = self.blocks.get(&at).copied() {
+                if self.reachable {
+                    self.builder.ins().jump(block, &[]);
+                }
+                self.builder.switch_to_block(block);
+                self.reachable = true;
+                self.raw.clear();
+            }
+            if self.reachable {
+                self.op(self.translation.program.ops()[at]);
+            }
+        }
+        if self.reachable {
+            self.unreachable();
+        }
+    }
+
+    /// Makes a block for each word at which one begins.
+    fn find_blocks(&mut self) {
+        let mut begins = BTreeSet::new();
+        for at in self.translation.function.body.clone() {
+            let op = self.translation.program.ops()[at];
+            begins.extend(branch_target(&op).map(|to| to.0 as usize));
+            if matches!(op, Op::BrIf { .. } | Op::BrUnless { .. }) {
+                begins.insert(at + 1);
+            }
+        }
+        self.blocks = begins.into_iter().map(|at| (at, self.builder.create_block())).collect();
+    }
+
+    /// Goes on in `block`, all of whose predecessors are known.
+    fn enter(&mut self, block: Block) {
+        self.builder.switch_to_block(block);
+        self.builder.seal_block(block);
+    }
+
+    /// Goes on in `block`, which is rarely executed.
+    fn enter_cold(&mut self, block: Block) {
+        self.builder.set_cold_block(block);
+        self.enter(block);
+    }
+
+    fn get<R: Register>(&mut self, register: R) -> Value {
+        self.builder.use_var(self.registers[register.index()])
+    }
+
+    fn set<R: Register>(&mut self, register: R, value: Value) {
+        self.raw.remove(&register.index());
+        self.builder.def_var(self.registers[register.index()], value);
+    }
+
+    fn load_state(&mut self, ty: Type, field: usize) -> Value {
+        self.builder.ins().load(ty, self.state_flags, self.state, offset(field))
+    }
+
+    fn store_state(&mut self, value: Value, field: usize) {
+        self.builder.ins().store(self.state_flags, value, self.state, offset(field));
+    }
+
+    /// A value of `class` as a register slot.
+    fn slot(&mut self, class: Class, value: Value) -> Value {
+        let bits = MemFlagsData::new();
+        match class {
+            Class::I32 => self.builder.ins().uextend(types::I64, value),
+            Class::I64 => value,
+            Class::F32 => {
+                let value = self.builder.ins().bitcast(types::I32, bits, value);
+                self.builder.ins().uextend(types::I64, value)
+            }
+            Class::F64 => self.builder.ins().bitcast(types::I64, bits, value),
+        }
+    }
+
+    /// The value of `class` in a register slot.
+    fn unslot(&mut self, class: Class, slot: Value) -> Value {
+        let bits = MemFlagsData::new();
+        match class {
+            Class::I32 => self.builder.ins().ireduce(types::I32, slot),
+            Class::I64 => slot,
+            Class::F32 => {
+                let low = self.builder.ins().ireduce(types::I32, slot);
+                self.builder.ins().bitcast(types::F32, bits, low)
+            }
+            Class::F64 => self.builder.ins().bitcast(types::F64, bits, slot),
+        }
+    }
+
+    /// Makes a request as the word `at` and yields the answer.
+    fn request(&mut self, code: u32, at: usize, a: Value, b: Value) -> Value {
+        let budget = self.builder.use_var(self.budget);
+        self.store_state(budget, offset_of!(State, budget));
+        let leave = self.load_state(types::I64, offset_of!(State, leave));
+        let code = self.builder.ins().iconst(types::I32, i64::from(code));
+        let at = self.builder.ins().iconst(types::I32, at as i64);
+        let arguments = [self.state, code, at, self.stack_pointer, a, b];
+        let call = self.builder.ins().call_indirect(self.leave, leave, &arguments);
+        let answer = self.builder.inst_results(call)[0];
+        let budget = self.load_state(types::I64, offset_of!(State, budget));
+        self.builder.def_var(self.budget, budget);
+        answer
+    }
+
+    /// Ends the block with a request from which the context does not come back.
+    fn trap(&mut self, reason: Reason, a: Value) {
+        let none = self.builder.ins().iconst(types::I64, 0);
+        self.request(reason.code(), self.at, a, none);
+        self.builder.ins().trap(RESUMED_BEHIND_TRAP);
+    }
+}
+
+/// The flags of accesses to one kind of memory, all of it mapped.
+fn flags(builder: &mut FunctionBuilder<'_>, id: u32, name: &'static str) -> MemFlagsData {
+    let region: AliasRegion =
+        builder.func.dfg.alias_regions.insert(AliasRegionData { user_id: id, description: name.into() });
+    MemFlagsData::new().with_notrap().with_alias_region(Some(region)).with_endianness(Endianness::Little)
+}
+
+macro_rules! define_translation {
+    ($($(#[$doc:meta])* $name:ident = $variant:ident { $($field:ident: $operand:ident),* }, cost $cost:expr;)*) => {
+        impl Translator<'_, '_> {
+            /// Translates one instruction.
+            fn op(&mut self, op: Op) {
+                match op {
+                    $(Op::$variant { $($field),* } => self.$name($($field),*),)*
+                }
+            }
+        }
+    };
+}
+for_each_op!(define_translation);

@@ -1,0 +1,218 @@
+//! Instructions that decide what is executed next: time, branches, calls, returns.
+
+use std::mem::offset_of;
+
+use cranelift_codegen::ir::condcodes::IntCC;
+use cranelift_codegen::ir::{BlockCall, FuncRef as IrFuncRef, InstBuilder, JumpTableData, Value, types};
+use cranelift_module::Module;
+
+use super::super::request::Reason;
+use super::super::state::State;
+use super::{Translator, function_signature};
+use crate::meter::branch_target;
+use crate::operand::{
+    Addr, Class, Classes, Count, Count32, FuncRef, Label, RegF32, RegF64, RegI32, RegI64, SigRef,
+};
+
+/// Words that are never executed in a verified program.
+macro_rules! structure {
+    ($($name:ident($($operand:ty),*);)*) => {
+        impl Translator<'_, '_> {
+            $(pub(super) fn $name(&mut self, $(_: $operand),*) {
+                self.unreachable();
+            })*
+        }
+    };
+}
+structure! {
+    program(Count, Count32);
+    sig(Count, Count);
+    types(Classes);
+    func(SigRef, Count, Count);
+}
+
+/// The four classes of the instructions that move a value into a call or out of it.
+macro_rules! for_each_class {
+    ($($arg:ident, $result:ident, $ret:ident: $register:ident, $class:ident;)*) => {
+        impl Translator<'_, '_> {$(
+            pub(super) fn $arg(&mut self, src: $register, _: Count) {
+                let value = self.get(src);
+                self.arguments.push(value);
+            }
+
+            pub(super) fn $result(&mut self, dst: $register) {
+                let slot = self.result.unwrap_or_else(|| unreachable!("a result of a verified program"));
+                let value = self.unslot(Class::$class, slot);
+                self.set(dst, value);
+            }
+
+            pub(super) fn $ret(&mut self, src: $register) {
+                let value = self.get(src);
+                let slot = self.slot(Class::$class, value);
+                self.return_slot(slot);
+            }
+        )*}
+    };
+}
+for_each_class! {
+    arg_i32, result_i32, ret_i32: RegI32, I32;
+    arg_i64, result_i64, ret_i64: RegI64, I64;
+    arg_f32, result_f32, ret_f32: RegF32, F32;
+    arg_f64, result_f64, ret_f64: RegF64, F64;
+}
+
+impl Translator<'_, '_> {
+    pub(super) fn charge(&mut self, cycles: Count32) {
+        let budget = self.builder.use_var(self.budget);
+        let left = self.builder.ins().iadd_imm_s(budget, -i64::from(cycles.0));
+        self.builder.def_var(self.budget, left);
+        let overdrawn = self.builder.ins().icmp_imm_s(IntCC::SignedLessThan, left, 0);
+        let (stop, go_on) = (self.builder.create_block(), self.builder.create_block());
+        self.builder.ins().brif(overdrawn, stop, &[], go_on, &[]);
+        self.enter_cold(stop);
+        let none = self.builder.ins().iconst(types::I64, 0);
+        self.request(Reason::Preempted.code(), self.at + 1, none, none);
+        self.builder.ins().jump(go_on, &[]);
+        self.enter(go_on);
+    }
+
+    pub(super) fn br(&mut self, to: Label) {
+        let block = self.blocks[&(to.0 as usize)];
+        self.builder.ins().jump(block, &[]);
+        self.reachable = false;
+    }
+
+    pub(super) fn br_if(&mut self, cond: RegI32, to: Label) {
+        let cond = self.get(cond);
+        let (then, otherwise) = (self.blocks[&(to.0 as usize)], self.blocks[&(self.at + 1)]);
+        self.builder.ins().brif(cond, then, &[], otherwise, &[]);
+        self.reachable = false;
+    }
+
+    pub(super) fn br_unless(&mut self, cond: RegI32, to: Label) {
+        let cond = self.get(cond);
+        let (then, otherwise) = (self.blocks[&(self.at + 1)], self.blocks[&(to.0 as usize)]);
+        self.builder.ins().brif(cond, then, &[], otherwise, &[]);
+        self.reachable = false;
+    }
+
+    pub(super) fn br_table(&mut self, index: RegI32, n: Count) {
+        let index = self.get(index);
+        let branches = &self.translation.program.ops()[self.at + 1..=self.at + 1 + usize::from(n.0)];
+        let targets = branches.iter().filter_map(branch_target).map(|to| self.blocks[&(to.0 as usize)]);
+        let mut calls: Vec<_> =
+            targets.map(|block| BlockCall::new(block, [], &mut self.builder.func.dfg.value_lists)).collect();
+        let Some(last) = calls.pop() else {
+            unreachable!("a table of a verified program has a branch");
+        };
+        let table = self.builder.create_jump_table(JumpTableData::new(last, &calls));
+        self.builder.ins().br_table(index, table);
+        self.reachable = false;
+    }
+
+    pub(super) fn call(&mut self, func: FuncRef) {
+        let callee = self.callee(func);
+        self.note_call();
+        let arguments = self.take_call_arguments();
+        let call = self.builder.ins().call(callee, &arguments);
+        self.take_results(call);
+    }
+
+    pub(super) fn call_ptr(&mut self, target: RegI32, sig: SigRef) {
+        let target = self.get(target);
+        let address = self.builder.ins().uextend(types::I64, target);
+        let signature = self.builder.ins().iconst(types::I64, i64::from(sig.0));
+        let pointer = self.request(Reason::CallPointer.code(), self.at, address, signature);
+        let (own, firmware, behind) =
+            (self.builder.create_block(), self.builder.create_block(), self.builder.create_block());
+        let result = self.builder.append_block_param(behind, types::I64);
+        self.builder.ins().brif(pointer, own, &[], firmware, &[]);
+
+        self.enter_cold(firmware);
+        let slot = self.request_firmware(address, sig);
+        self.builder.ins().jump(behind, &[slot.into()]);
+
+        self.enter(own);
+        self.note_call();
+        let arguments = self.take_call_arguments();
+        let parameters = &self.translation.program.signatures()[usize::from(sig.0)].params;
+        let signature = self.builder.import_signature(function_signature(parameters));
+        let call = self.builder.ins().call_indirect(signature, pointer, &arguments);
+        self.take_results(call);
+        let slot = self.result.unwrap_or(address);
+        self.builder.ins().jump(behind, &[slot.into()]);
+
+        self.enter(behind);
+        self.result = Some(result);
+    }
+
+    pub(super) fn call_fw(&mut self, sig: SigRef, addr: Addr) {
+        let address = self.builder.ins().iconst(types::I64, i64::from(addr.0));
+        let slot = self.request_firmware(address, sig);
+        self.arguments.clear();
+        self.result = Some(slot);
+    }
+
+    pub(super) fn ret(&mut self) {
+        let none = self.builder.ins().iconst(types::I64, 0);
+        self.return_slot(none);
+    }
+
+    pub(super) fn unreachable(&mut self) {
+        let none = self.builder.ins().iconst(types::I64, 0);
+        self.trap(Reason::Unreachable, none);
+        self.reachable = false;
+    }
+
+    /// The function `func` as this function can call it.
+    fn callee(&mut self, func: FuncRef) -> IrFuncRef {
+        let functions = self.translation.program.functions();
+        let index = functions
+            .binary_search_by_key(&func, |function| function.at)
+            .unwrap_or_else(|_| unreachable!("a function reference of a verified program"));
+        let id = self.translation.functions[index];
+        let (module, builder) = (&mut *self.module, &mut self.builder);
+        *self.callees.entry(index).or_insert_with(|| module.declare_func_in_func(id, builder.func))
+    }
+
+    /// Writes down where this function stands while its callee runs.
+    fn note_call(&mut self) {
+        let at = self.builder.ins().iconst(types::I32, self.at as i64);
+        let field = super::offset(offset_of!(State, calls));
+        self.builder.ins().store(self.state_flags, at, self.call_entry, field);
+    }
+
+    /// The arguments of a call within the program.
+    fn take_call_arguments(&mut self) -> Vec<Value> {
+        let budget = self.builder.use_var(self.budget);
+        let mut arguments = vec![self.state, self.stack_pointer, budget];
+        arguments.append(&mut self.arguments);
+        arguments
+    }
+
+    /// Takes over what a function of the program returned.
+    fn take_results(&mut self, call: cranelift_codegen::ir::Inst) {
+        let (budget, slot) = (self.builder.inst_results(call)[0], self.builder.inst_results(call)[1]);
+        self.builder.def_var(self.budget, budget);
+        self.result = Some(slot);
+    }
+
+    /// Calls the firmware function at `address` and yields its result; the arguments stay.
+    fn request_firmware(&mut self, address: Value, sig: SigRef) -> Value {
+        let parameters = &self.translation.program.signatures()[usize::from(sig.0)].params;
+        for (index, (class, value)) in parameters.iter().zip(self.arguments.clone()).enumerate() {
+            let slot = self.slot(*class, value);
+            self.store_state(slot, offset_of!(State, arguments) + index * size_of::<u64>());
+        }
+        let signature = self.builder.ins().iconst(types::I64, i64::from(sig.0));
+        self.request(Reason::CallFirmware.code(), self.at, address, signature)
+    }
+
+    fn return_slot(&mut self, slot: Value) {
+        let at = self.builder.ins().iconst(types::I32, self.at as i64);
+        self.store_state(at, offset_of!(State, returned_at));
+        let budget = self.builder.use_var(self.budget);
+        self.builder.ins().return_(&[budget, slot]);
+        self.reachable = false;
+    }
+}

@@ -1,0 +1,135 @@
+//! A verified program: what the loader hands to the machine.
+
+use std::ops::Range;
+
+use kmotiondef::{CodeAddr, GuestAddr};
+
+use crate::firmware::Signature;
+use crate::op::{Op, WORD};
+use crate::operand::{Class, FuncRef, SigRef};
+
+/// One function of a program.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Function {
+    /// Index of its `func` word.
+    pub at: FuncRef,
+    /// Its executable words: behind the `types` words, up to the next function.
+    pub body: Range<usize>,
+    /// Its signature.
+    pub signature: SigRef,
+    /// Class of each register; the parameters come first.
+    pub classes: Vec<Class>,
+    /// Bytes of its frame in guest memory.
+    pub frame: u32,
+}
+
+/// A program that an engine can run without further checks.
+///
+/// Made by [`verify`](crate::verify::verify) only. Instructions are addressed by the index of
+/// their word in the text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Program {
+    pub(crate) base: u32,
+    /// One for each word of the text; [`Op::Unreachable`] stands for a word of the pool.
+    pub(crate) ops: Vec<Op>,
+    pub(crate) pool: Vec<u64>,
+    pub(crate) signatures: Vec<Signature>,
+    pub(crate) functions: Vec<Function>,
+    /// Its machine code, once it has been started on the native engine.
+    #[cfg(feature = "native")]
+    pub(crate) compiled: crate::native::Compiled,
+}
+
+impl Program {
+    /// Where the text begins.
+    #[must_use]
+    pub const fn base(&self) -> GuestAddr {
+        GuestAddr::new(self.base)
+    }
+
+    /// The guest addresses of the text.
+    #[must_use]
+    pub fn text(&self) -> Range<GuestAddr> {
+        let bytes = (self.ops.len() * WORD) as u32;
+        self.base()..self.base().offset(bytes)
+    }
+
+    /// The instructions, by index of their word.
+    #[must_use]
+    pub fn ops(&self) -> &[Op] {
+        &self.ops
+    }
+
+    /// The constants of eight bytes.
+    #[must_use]
+    pub fn pool(&self) -> &[u64] {
+        &self.pool
+    }
+
+    /// The signatures.
+    #[must_use]
+    pub fn signatures(&self) -> &[Signature] {
+        &self.signatures
+    }
+
+    /// The functions in ascending order.
+    #[must_use]
+    pub fn functions(&self) -> &[Function] {
+        &self.functions
+    }
+
+    /// Address of the word with the given index.
+    #[must_use]
+    pub fn address_of(&self, word: usize) -> CodeAddr {
+        let address = self.base.wrapping_add((word * WORD) as u32);
+        CodeAddr::new(address).expect("verification refuses a base that is not a multiple of 8")
+    }
+
+    /// Index of the word at `address`; `None` outside the text.
+    #[must_use]
+    pub fn word_at(&self, address: CodeAddr) -> Option<usize> {
+        let word = address.get().checked_sub(self.base)? as usize / WORD;
+        (word < self.ops.len()).then_some(word)
+    }
+
+    /// The function that starts at `address`.
+    #[must_use]
+    pub fn function_at(&self, address: GuestAddr) -> Option<FuncRef> {
+        let word = self.word_at(CodeAddr::new(address.get())?)?;
+        matches!(self.ops.get(word), Some(Op::Func { .. })).then_some(FuncRef(word as u32))
+    }
+
+    /// The signature that an instruction names.
+    ///
+    /// # Panics
+    /// For a reference that is not of this program.
+    #[must_use]
+    pub fn signature(&self, signature: SigRef) -> &Signature {
+        &self.signatures[usize::from(signature.0)]
+    }
+
+    /// The signature of a function.
+    ///
+    /// # Panics
+    /// For a reference that is not of this program.
+    #[must_use]
+    pub fn signature_of(&self, function: FuncRef) -> &Signature {
+        self.signature(self.head_of(function).0)
+    }
+
+    /// Signature, number of registers, and units of 8 bytes of the frame of a function.
+    pub(crate) fn head_of(&self, function: FuncRef) -> (SigRef, u16, u16) {
+        match self.ops[function.0 as usize] {
+            Op::Func { sig, regs, frame } => (sig, regs.0, frame.0),
+            _ => unreachable!("a verified program refers to functions only"),
+        }
+    }
+
+    /// The function whose body holds the word with the given index.
+    #[must_use]
+    pub fn function_around(&self, word: usize) -> Option<&Function> {
+        let next = self.functions.partition_point(|function| function.at.0 as usize <= word);
+        let function = self.functions.get(next.checked_sub(1)?)?;
+        (word < function.body.end).then_some(function)
+    }
+}

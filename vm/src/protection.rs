@@ -1,0 +1,110 @@
+//! Which bytes hold program text: one bit for each instruction word of the program area.
+//!
+//! A store asks on its fast path, so the ranges of the seven programs are kept as a map.
+
+use std::ops::Range;
+
+use kmotiondef::ThreadId;
+use kmotiondef::map::{PROGRAM_BASE, PROGRAM_LIMIT};
+
+/// Bytes that one bit stands for.
+const GRANULE: u32 = 8;
+const GRANULES: u32 = (PROGRAM_LIMIT - PROGRAM_BASE) / GRANULE;
+
+/// A range of addresses for each thread.
+pub(crate) type Texts = [Range<u32>; ThreadId::MAX as usize];
+
+/// The protected ranges and their map.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Protection {
+    texts: Texts,
+    map: Box<[u64]>,
+}
+
+impl Default for Protection {
+    fn default() -> Self {
+        Self {
+            texts: Default::default(),
+            map: vec![0; GRANULES.div_ceil(u64::BITS) as usize].into_boxed_slice(),
+        }
+    }
+}
+
+impl Protection {
+    /// Sets `thread`'s range; only whole granules inside the program area are protected.
+    pub(crate) fn set(&mut self, thread: ThreadId, text: Range<u32>) {
+        self.texts[thread.index()] = text;
+        self.map.fill(0);
+        for text in &self.texts {
+            let first = text.start.clamp(PROGRAM_BASE, PROGRAM_LIMIT).div_ceil(GRANULE);
+            let end = text.end.clamp(PROGRAM_BASE, PROGRAM_LIMIT) / GRANULE;
+            for granule in first..end {
+                let bit = granule - PROGRAM_BASE / GRANULE;
+                self.map[(bit / u64::BITS) as usize] |= 1 << (bit % u64::BITS);
+            }
+        }
+    }
+
+    /// The protected ranges, before they are cut to whole granules inside the program area.
+    #[cfg(feature = "native")]
+    pub(crate) const fn texts(&self) -> &Texts {
+        &self.texts
+    }
+
+    /// Whether one of the `len` bytes from `address` on is protected.
+    #[inline]
+    pub(crate) fn covers(&self, address: u32, len: u32) -> bool {
+        let first = address.wrapping_sub(PROGRAM_BASE) / GRANULE;
+        // Within one granule, as all aligned accesses are but a double at an odd word.
+        if address % GRANULE + len <= GRANULE {
+            return self.is_set(first);
+        }
+        self.covers_long(address, len)
+    }
+
+    #[cold]
+    fn covers_long(&self, address: u32, len: u32) -> bool {
+        let end = u64::from(address) + u64::from(len);
+        self.texts.iter().any(|text| {
+            let first = text.start.next_multiple_of(GRANULE);
+            let last = text.end / GRANULE * GRANULE;
+            first < last && u64::from(address) < u64::from(last) && u64::from(first) < end
+        })
+    }
+
+    #[inline]
+    fn is_set(&self, granule: u32) -> bool {
+        match self.map.get((granule / u64::BITS) as usize) {
+            Some(word) => word >> (granule % u64::BITS) & 1 != 0,
+            None => false,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_whole_words_of_text_are_protected() {
+        let mut protection = Protection::default();
+        protection.set(ThreadId::new(1).expect("1 is a thread"), PROGRAM_BASE..PROGRAM_BASE + 20);
+        let covered = |offset: u32, len| protection.covers(PROGRAM_BASE.wrapping_add(offset), len);
+        assert!(covered(0, 1) && covered(15, 1) && covered(12, 8) && covered(8, 8));
+        assert!(!covered(16, 4) && !covered(20, 8) && !covered(0_u32.wrapping_sub(8), 8));
+        assert!(covered(0_u32.wrapping_sub(8), 9) && covered(0_u32.wrapping_sub(100), 1000));
+        assert!(!covered(16, 5000));
+    }
+
+    #[test]
+    fn a_new_range_releases_the_old_one() {
+        let thread = ThreadId::new(2).expect("2 is a thread");
+        let mut protection = Protection::default();
+        protection.set(thread, PROGRAM_BASE..PROGRAM_BASE + 64);
+        protection.set(thread, PROGRAM_BASE + 64..PROGRAM_BASE + 128);
+        assert!(!protection.covers(PROGRAM_BASE, 4));
+        assert!(protection.covers(PROGRAM_BASE + 64, 4));
+        protection.set(thread, 0..0);
+        assert!(!protection.covers(PROGRAM_BASE + 64, 4));
+    }
+}

@@ -1,0 +1,140 @@
+//! Traps: the running program did the impossible.
+//!
+//! A trap stops one thread; the machine goes on. Firmware functions yield a [`TrapKind`],
+//! the engine adds the place and the thread.
+
+use std::fmt;
+
+use kmotiondef::{CodeAddr, GuestAddr, ThreadId};
+
+/// Direction of a memory access.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Access {
+    /// A load.
+    Read,
+    /// A store.
+    Write,
+}
+
+impl fmt::Display for Access {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Read => "read",
+            Self::Write => "write",
+        })
+    }
+}
+
+/// What went wrong.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum TrapKind {
+    /// An access outside the memory map.
+    #[error("{access} of the unmapped address {addr}")]
+    Unmapped {
+        /// First byte that is not mapped.
+        addr: GuestAddr,
+        /// What was tried.
+        access: Access,
+    },
+    /// A store into program text.
+    #[error("write to {addr}, which holds program text")]
+    WriteProtected {
+        /// The address written to.
+        addr: GuestAddr,
+    },
+    /// An address that is not a multiple of the size of the access.
+    #[error("{access} of {size} bytes at {addr}, which is not aligned")]
+    Misaligned {
+        /// The address.
+        addr: GuestAddr,
+        /// Bytes of the access.
+        size: u32,
+        /// What was tried.
+        access: Access,
+    },
+    /// An integer division or remainder by zero.
+    #[error("integer division by zero")]
+    DivisionByZero,
+    /// A call whose frame does not fit the thread's stack.
+    #[error("stack overflow: {used} bytes used, {size} available")]
+    StackOverflow {
+        /// Bytes that the stack would hold with the call.
+        used: u32,
+        /// Bytes of the stack.
+        size: u32,
+    },
+    /// A call of an address where the thread has no function.
+    #[error("call of {addr}, where no function of this program starts")]
+    BadCallTarget {
+        /// The address called.
+        addr: GuestAddr,
+    },
+    /// A call through a pointer whose type differs from the function's.
+    #[error("call of {addr} with parameters of other types than the function has")]
+    SignatureMismatch {
+        /// The address called.
+        addr: GuestAddr,
+    },
+    /// A call of a firmware address where the board has no function.
+    #[error("call of {addr}, where the firmware has no function")]
+    UnknownFirmwareFunction {
+        /// The address called.
+        addr: GuestAddr,
+    },
+    /// A firmware function that exists on the board only.
+    #[error("calls `{name}`, whose behaviour the simulated board does not model yet")]
+    NotModelled {
+        /// Name of the function.
+        name: &'static str,
+    },
+    /// The call-back called a function that waits, pauses or ends a thread.
+    #[error("the call-back called a function that waits")]
+    CallbackWaits,
+    /// The call-back did not return.
+    #[error("the call-back did not return within {limit} ticks")]
+    CallbackEndless {
+        /// The limit.
+        limit: i64,
+    },
+    /// The compiler held this place to be out of reach.
+    #[error("execution reached a place that the compiler held to be unreachable")]
+    Unreachable,
+}
+
+/// A trap with its place.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Trap {
+    /// What went wrong.
+    pub kind: TrapKind,
+    /// The instruction that did it.
+    pub at: CodeAddr,
+    /// The thread it stops; `None` for the call-back.
+    pub thread: Option<ThreadId>,
+}
+
+impl fmt::Display for Trap {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.thread {
+            Some(thread) => write!(f, "thread {thread}")?,
+            None => f.write_str("call-back")?,
+        }
+        write!(f, " at {}: {}", self.at, self.kind)
+    }
+}
+
+impl std::error::Error for Trap {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_trap_names_thread_place_and_cause() {
+        let trap = Trap {
+            kind: TrapKind::Unmapped { addr: GuestAddr::new(0x1234), access: Access::Write },
+            at: CodeAddr::new(0x8005_0010).expect("a multiple of 8"),
+            thread: ThreadId::new(1),
+        };
+        assert_eq!(trap.to_string(), "thread 1 at 0x80050010: write of the unmapped address 0x00001234");
+    }
+}

@@ -1,0 +1,286 @@
+//! Bytes of a text to a [`Program`]: an image is not trusted.
+//!
+//! A program that passes cannot leave its registers, its constants or its code, passes
+//! arguments as its callees expect them, and charges what it costs ([`meter`](crate::meter)).
+//! What depends on values (addresses, pointers to functions, divisors, depth of calls) is
+//! checked where it happens. Reading a register that was never written yields 0.
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::unwrap_used,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::indexing_slicing,
+        clippy::as_conversions
+    )
+)]
+
+mod body;
+
+use std::ops::Range;
+
+use kmotiondef::GuestAddr;
+
+use self::body::check_body;
+use crate::firmware::Signature;
+use crate::op::{Op, VERSION, WORD};
+use crate::operand::{Class, Classes, Count, FuncRef, SigRef};
+use crate::program::{Function, Program};
+
+/// Most parameters of a function.
+pub const MAX_PARAMETERS: usize = 255;
+
+/// Most registers of a function, so that the arguments of its calls fit behind them.
+pub const MAX_REGISTERS: usize = 0xff00;
+
+/// Classes in one `types` word.
+const CLASSES_PER_WORD: usize = 16;
+
+/// Why a text was refused.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("word {at}: {kind}")]
+pub struct VerifyError {
+    /// Index of the word in the text.
+    pub at: usize,
+    /// What is wrong with it.
+    pub kind: VerifyErrorKind,
+}
+
+/// What is wrong with a word of a text.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum VerifyErrorKind {
+    /// The size is not a multiple of the word, or the address is not.
+    #[error("the text does not consist of whole words of {WORD} bytes at a multiple of {WORD}")]
+    NotWords,
+    /// The text does not begin with a `program` word.
+    #[error("the text is not bytecode")]
+    NotAProgram,
+    /// The bytecode is of another version.
+    #[error("the text is bytecode of version {0}, this machine runs version {VERSION}")]
+    Version(u16),
+    /// The text ends too early.
+    #[error("the text is truncated")]
+    Truncated,
+    /// No instruction has this encoding.
+    #[error("not an instruction")]
+    UnknownInstruction,
+    /// A `program`, `sig`, `func` or `types` word stands where it cannot.
+    #[error("`{0}` cannot stand here")]
+    Misplaced(&'static str),
+    /// A signature or function states more than the machine can hold.
+    #[error("{0} is beyond the limit of {1}")]
+    TooMany(&'static str, usize),
+    /// The result class of a signature is none.
+    #[error("a result class of {0} does not exist")]
+    ResultClass(u16),
+    /// The first registers of a function differ from the parameters of its signature.
+    #[error("the function's first registers are not the parameters of its signature")]
+    Parameters,
+    /// A function has no instruction.
+    #[error("the function is empty")]
+    EmptyFunction,
+    /// An operand names a register that the function does not have.
+    #[error("the function has no register {0}")]
+    NoRegister(u16),
+    /// An operand names a register of another class.
+    #[error("register {0} holds {1}, not {2}")]
+    RegisterClass(u16, Class, Class),
+    /// An operand names a constant beyond the pool.
+    #[error("the pool has no constant {0}")]
+    NoConstant(u32),
+    /// An operand names a signature that does not exist.
+    #[error("the program has no signature {0}")]
+    NoSignature(u16),
+    /// An operand names a word that does not open a function.
+    #[error("no function starts at word {0}")]
+    NoFunction(u32),
+    /// A branch leaves its function or enters the middle of a call or table.
+    #[error("word {0} cannot be the target of a branch here")]
+    BadLabel(u32),
+    /// An argument does not follow the one before it, or no call follows.
+    #[error("the arguments of a call must stand in order directly before it")]
+    Arguments,
+    /// The arguments of a call are not those of its signature.
+    #[error("the arguments of the call are not those of its signature")]
+    ArgumentClasses,
+    /// A result is taken where no call with such a result stands directly before.
+    #[error("no call with this class of result stands directly before")]
+    Result,
+    /// A `br_table` is not followed by its branches.
+    #[error("the table must be followed by {0} `br` words")]
+    Table(usize),
+    /// A return is of another class than the signature says.
+    #[error("the return is not that of the function's signature")]
+    ReturnClass,
+    /// The last instruction of a function goes on behind it.
+    #[error("the function goes on behind its end")]
+    FallsOff,
+    /// A segment is charged less than it costs.
+    #[error("the code from here on costs {cost} cycles and is charged {charged}")]
+    Charge {
+        /// What it costs.
+        cost: u32,
+        /// What it is charged.
+        charged: u32,
+    },
+}
+
+/// Verifies the bytes of a text that stands at `base`.
+///
+/// # Errors
+/// The first thing that is wrong.
+pub fn verify(text: &[u8], base: GuestAddr) -> Result<Program, VerifyError> {
+    let (words, rest) = text.as_chunks::<WORD>();
+    if !rest.is_empty() || !base.get().is_multiple_of(8) || text.len() > MAX_TEXT {
+        return Err(VerifyError { at: words.len(), kind: VerifyErrorKind::NotWords });
+    }
+    let pool_size = read_head(words).map_err(|kind| VerifyError { at: 0, kind })?;
+    let pool = words
+        .get(1..=pool_size)
+        .ok_or(VerifyError { at: words.len(), kind: VerifyErrorKind::Truncated })?
+        .iter()
+        .map(|word| u64::from_le_bytes(*word))
+        .collect();
+    let mut program = Program {
+        base: base.get(),
+        ops: decode(words, pool_size)?,
+        pool,
+        signatures: Vec::new(),
+        functions: Vec::new(),
+        #[cfg(feature = "native")]
+        compiled: crate::native::Compiled::default(),
+    };
+    let mut reader = Reader { ops: &program.ops, at: 1 + pool_size };
+    let signatures = reader.signatures()?;
+    let functions = reader.functions(&signatures)?;
+    program.signatures = signatures;
+    program.functions = functions;
+    for function in &program.functions {
+        check_body(&program, function)?;
+    }
+    Ok(program)
+}
+
+/// Most bytes of a text: more than the whole program area.
+const MAX_TEXT: usize = 0x100_0000;
+
+/// Checks the `program` word and yields the size of the pool.
+fn read_head(words: &[[u8; WORD]]) -> Result<usize, VerifyErrorKind> {
+    let Some(Op::Program { version, pool }) = words.first().and_then(|word| Op::decode(*word)) else {
+        return Err(VerifyErrorKind::NotAProgram);
+    };
+    if version.0 != VERSION {
+        return Err(VerifyErrorKind::Version(version.0));
+    }
+    usize::try_from(pool.0).map_err(|_| VerifyErrorKind::Truncated)
+}
+
+/// Decodes every word that is not of the pool.
+fn decode(words: &[[u8; WORD]], pool_size: usize) -> Result<Vec<Op>, VerifyError> {
+    let is_constant = |at| (1..=pool_size).contains(&at);
+    let decode = |(at, word): (usize, &[u8; WORD])| match Op::decode(*word) {
+        _ if is_constant(at) => Ok(Op::Unreachable {}),
+        Some(op) => Ok(op),
+        None => Err(VerifyError { at, kind: VerifyErrorKind::UnknownInstruction }),
+    };
+    words.iter().enumerate().map(decode).collect()
+}
+
+/// Reads the words behind the pool in their order.
+struct Reader<'a> {
+    ops: &'a [Op],
+    at: usize,
+}
+
+impl Reader<'_> {
+    fn signatures(&mut self) -> Result<Vec<Signature>, VerifyError> {
+        let mut signatures = Vec::new();
+        while let Some(Op::Sig { params, ret }) = self.ops.get(self.at) {
+            let at = self.at;
+            let fail = |kind| Err(VerifyError { at, kind });
+            if usize::from(params.0) > MAX_PARAMETERS {
+                return fail(VerifyErrorKind::TooMany("the number of parameters", MAX_PARAMETERS));
+            }
+            let result = match ret.0 {
+                0 => None,
+                code => match Class::ALL.get(usize::from(code) - 1) {
+                    Some(class) => Some(*class),
+                    None => return fail(VerifyErrorKind::ResultClass(code)),
+                },
+            };
+            self.at += 1;
+            signatures.push(Signature { params: self.classes(*params)?, result });
+        }
+        Ok(signatures)
+    }
+
+    fn functions(&mut self, signatures: &[Signature]) -> Result<Vec<Function>, VerifyError> {
+        let mut functions = Vec::new();
+        while let Some(op) = self.ops.get(self.at) {
+            let at = self.at;
+            let fail = |kind| Err(VerifyError { at, kind });
+            let Op::Func { sig, regs, frame } = *op else {
+                return fail(VerifyErrorKind::Misplaced(op.name()));
+            };
+            if usize::from(regs.0) > MAX_REGISTERS {
+                return fail(VerifyErrorKind::TooMany("the number of registers", MAX_REGISTERS));
+            }
+            let Some(signature) = signatures.get(usize::from(sig.0)) else {
+                return fail(VerifyErrorKind::NoSignature(sig.0));
+            };
+            self.at += 1;
+            let classes = self.classes(regs)?;
+            if !classes.starts_with(&signature.params) {
+                return fail(VerifyErrorKind::Parameters);
+            }
+            let body = self.body();
+            if body.is_empty() {
+                return fail(VerifyErrorKind::EmptyFunction);
+            }
+            let at = FuncRef(u32::try_from(at).unwrap_or(u32::MAX));
+            functions.push(Function { at, body, signature: sig, classes, frame: u32::from(frame.0) * 8 });
+        }
+        Ok(functions)
+    }
+
+    /// Reads the `types` words of `count` registers.
+    fn classes(&mut self, count: Count) -> Result<Vec<Class>, VerifyError> {
+        let count = usize::from(count.0);
+        let mut classes = Vec::with_capacity(count);
+        while classes.len() < count {
+            let fail = |kind| Err(VerifyError { at: self.at, kind });
+            let types = match self.ops.get(self.at) {
+                Some(Op::Types { classes }) => *classes,
+                Some(op) => return fail(VerifyErrorKind::Misplaced(op.name())),
+                None => return fail(VerifyErrorKind::Truncated),
+            };
+            classes.extend(unpack(types).take(count - classes.len()));
+            self.at += 1;
+        }
+        Ok(classes)
+    }
+
+    /// Passes over the words up to the next function.
+    fn body(&mut self) -> Range<usize> {
+        let start = self.at;
+        let rest = self.ops.get(start..).unwrap_or_default();
+        self.at += rest.iter().take_while(|op| !matches!(op, Op::Func { .. })).count();
+        start..self.at
+    }
+}
+
+/// The classes of a `types` word.
+fn unpack(types: Classes) -> impl Iterator<Item = Class> {
+    (0..CLASSES_PER_WORD).map(move |index| {
+        let [code, ..] = (types.0 >> (2 * index)).to_le_bytes();
+        Class::from_code(code)
+    })
+}
+
+/// The signature `sig` of `program`.
+fn signature(program: &Program, sig: SigRef) -> Result<&Signature, VerifyErrorKind> {
+    program.signatures.get(usize::from(sig.0)).ok_or(VerifyErrorKind::NoSignature(sig.0))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,259 @@
+//! Checks of one function: operands, calls, branches, charges.
+
+use super::{VerifyError, VerifyErrorKind, signature};
+use crate::firmware::Signature;
+use crate::for_each_op;
+use crate::meter::{self, charge_points};
+use crate::op::Op;
+use crate::operand::{
+    Addr, Bits32, Class, Classes, Count, Count32, FuncRef, Imm, Imm16, Label, Off, Operand, Pool, RegF32,
+    RegF64, RegI32, RegI64, SigRef,
+};
+use crate::program::{Function, Program};
+
+/// Checks the body of `function`.
+pub(super) fn check_body(program: &Program, function: &Function) -> Result<(), VerifyError> {
+    let mut body = Body { program, function, inner: vec![false; function.body.len()] };
+    body.check_groups()?;
+    for at in function.body.clone() {
+        let op = body.op(at);
+        check_operands(op, &body)
+            .and_then(|()| body.check_placement(op))
+            .map_err(|kind| VerifyError { at, kind })?;
+    }
+    body.check_end()?;
+    body.check_charges()
+}
+
+struct Body<'a> {
+    program: &'a Program,
+    function: &'a Function,
+    /// The words that no branch may enter, by offset in the body.
+    inner: Vec<bool>,
+}
+
+impl Body<'_> {
+    /// The word `at`; behind the body nothing, which is as good as `unreachable`.
+    fn op(&self, at: usize) -> Op {
+        let op = if self.function.body.contains(&at) { self.program.ops.get(at) } else { None };
+        op.copied().unwrap_or(Op::Unreachable {})
+    }
+
+    /// Checks that arguments, calls, results and tables stand together.
+    fn check_groups(&mut self) -> Result<(), VerifyError> {
+        let mut at = self.function.body.start;
+        while at < self.function.body.end {
+            let length = match self.op(at) {
+                Op::BrTable { n, .. } => self.table(at, usize::from(n.0) + 1),
+                op if argument(&op).is_some() || meter::is_call(&op) => self.call(at),
+                op if meter::is_result(&op) => Err(VerifyError { at, kind: VerifyErrorKind::Result }),
+                _ => Ok(1),
+            }?;
+            for inner in at + 1..at + length {
+                self.mark_inner(inner);
+            }
+            at += length;
+        }
+        Ok(())
+    }
+
+    fn mark_inner(&mut self, at: usize) {
+        let offset = at.checked_sub(self.function.body.start);
+        if let Some(inner) = offset.and_then(|offset| self.inner.get_mut(offset)) {
+            *inner = true;
+        }
+    }
+
+    /// The length of the table at `at` with its `count` branches.
+    fn table(&self, at: usize, count: usize) -> Result<usize, VerifyError> {
+        let complete = (at + 1..=at + count).all(|at| matches!(self.op(at), Op::Br { .. }));
+        if complete { Ok(1 + count) } else { Err(VerifyError { at, kind: VerifyErrorKind::Table(count) }) }
+    }
+
+    /// The length of the call whose first argument, if it has any, stands at `at`.
+    fn call(&self, at: usize) -> Result<usize, VerifyError> {
+        let mut classes = Vec::new();
+        let mut next = at;
+        while let Some((class, index)) = argument(&self.op(next)) {
+            if usize::from(index.0) != classes.len() {
+                return Err(VerifyError { at: next, kind: VerifyErrorKind::Arguments });
+            }
+            classes.push(class);
+            next += 1;
+        }
+        let fail = |kind| VerifyError { at: next, kind };
+        let callee = self.callee(&self.op(next)).map_err(fail)?;
+        if callee.params != classes {
+            return Err(fail(VerifyErrorKind::ArgumentClasses));
+        }
+        next += 1;
+        if let Some(class) = result(&self.op(next)) {
+            if callee.result != Some(class) {
+                return Err(VerifyError { at: next, kind: VerifyErrorKind::Result });
+            }
+            next += 1;
+        }
+        Ok(next - at)
+    }
+
+    /// The signature that the call `op` states.
+    fn callee(&self, op: &Op) -> Result<&Signature, VerifyErrorKind> {
+        match *op {
+            Op::Call { func } => signature(self.program, self.function_signature(func)?),
+            Op::CallPtr { sig, .. } | Op::CallFw { sig, .. } => signature(self.program, sig),
+            _ => Err(VerifyErrorKind::Arguments),
+        }
+    }
+
+    fn function_signature(&self, func: FuncRef) -> Result<SigRef, VerifyErrorKind> {
+        let found = self.program.functions.binary_search_by_key(&func, |function| function.at);
+        let function = found.ok().and_then(|index| self.program.functions.get(index));
+        function.map(|function| function.signature).ok_or(VerifyErrorKind::NoFunction(func.0))
+    }
+
+    /// Checks what an instruction demands besides its operands.
+    fn check_placement(&self, op: Op) -> Result<(), VerifyErrorKind> {
+        let expected = signature(self.program, self.function.signature)?.result;
+        let check_return = |class: Option<Class>| {
+            if class == expected { Ok(()) } else { Err(VerifyErrorKind::ReturnClass) }
+        };
+        match op {
+            Op::Program { .. } | Op::Sig { .. } | Op::Types { .. } | Op::Func { .. } => {
+                Err(VerifyErrorKind::Misplaced(op.name()))
+            }
+            Op::Ret {} => check_return(None),
+            Op::RetI32 { .. } => check_return(Some(Class::I32)),
+            Op::RetI64 { .. } => check_return(Some(Class::I64)),
+            Op::RetF32 { .. } => check_return(Some(Class::F32)),
+            Op::RetF64 { .. } => check_return(Some(Class::F64)),
+            _ => Ok(()),
+        }
+    }
+
+    /// Checks that the last word does not go on behind the function.
+    fn check_end(&self) -> Result<(), VerifyError> {
+        let at = self.function.body.end.saturating_sub(1);
+        if meter::ends_path(&self.op(at)) {
+            Ok(())
+        } else {
+            Err(VerifyError { at, kind: VerifyErrorKind::FallsOff })
+        }
+    }
+
+    /// Checks that every segment is charged what it costs.
+    fn check_charges(&self) -> Result<(), VerifyError> {
+        for (at, cost) in charge_points(&self.program.ops, self.function.body.clone()) {
+            let charged = match self.op(at) {
+                Op::Charge { cycles } => cycles.0,
+                _ => 0,
+            };
+            if charged < cost {
+                return Err(VerifyError { at, kind: VerifyErrorKind::Charge { cost, charged } });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Class and index of an argument.
+const fn argument(op: &Op) -> Option<(Class, Count)> {
+    match *op {
+        Op::ArgI32 { index, .. } => Some((Class::I32, index)),
+        Op::ArgI64 { index, .. } => Some((Class::I64, index)),
+        Op::ArgF32 { index, .. } => Some((Class::F32, index)),
+        Op::ArgF64 { index, .. } => Some((Class::F64, index)),
+        _ => None,
+    }
+}
+
+/// Class of a result taken.
+const fn result(op: &Op) -> Option<Class> {
+    match op {
+        Op::ResultI32 { .. } => Some(Class::I32),
+        Op::ResultI64 { .. } => Some(Class::I64),
+        Op::ResultF32 { .. } => Some(Class::F32),
+        Op::ResultF64 { .. } => Some(Class::F64),
+        _ => None,
+    }
+}
+
+/// An operand that is checked by its type.
+trait Checked: Operand {
+    /// Whether the operand names something that exists.
+    fn check(self, body: &Body<'_>) -> Result<(), VerifyErrorKind>;
+}
+
+macro_rules! any_value {
+    ($($operand:ident),*) => {$(
+        impl Checked for $operand {
+            fn check(self, _: &Body<'_>) -> Result<(), VerifyErrorKind> {
+                Ok(())
+            }
+        }
+    )*};
+}
+any_value!(Addr, Bits32, Classes, Count, Count32, Imm, Imm16, Off);
+
+macro_rules! registers {
+    ($($register:ident: $class:ident),*) => {$(
+        impl Checked for $register {
+            fn check(self, body: &Body<'_>) -> Result<(), VerifyErrorKind> {
+                match body.function.classes.get(self.index()) {
+                    None => Err(VerifyErrorKind::NoRegister(self.0)),
+                    Some(Class::$class) => Ok(()),
+                    Some(other) => Err(VerifyErrorKind::RegisterClass(self.0, *other, Class::$class)),
+                }
+            }
+        }
+    )*};
+}
+registers!(RegI32: I32, RegI64: I64, RegF32: F32, RegF64: F64);
+
+impl Checked for Pool {
+    fn check(self, body: &Body<'_>) -> Result<(), VerifyErrorKind> {
+        let size = body.program.pool.len();
+        if usize::try_from(self.0).is_ok_and(|index| index < size) {
+            Ok(())
+        } else {
+            Err(VerifyErrorKind::NoConstant(self.0))
+        }
+    }
+}
+
+impl Checked for SigRef {
+    fn check(self, body: &Body<'_>) -> Result<(), VerifyErrorKind> {
+        signature(body.program, self).map(|_| ())
+    }
+}
+
+impl Checked for FuncRef {
+    fn check(self, body: &Body<'_>) -> Result<(), VerifyErrorKind> {
+        body.function_signature(self).map(|_| ())
+    }
+}
+
+impl Checked for Label {
+    fn check(self, body: &Body<'_>) -> Result<(), VerifyErrorKind> {
+        let target = usize::try_from(self.0).unwrap_or(usize::MAX);
+        let offset = target.checked_sub(body.function.body.start);
+        match offset.and_then(|offset| body.inner.get(offset)) {
+            Some(false) => Ok(()),
+            _ => Err(VerifyErrorKind::BadLabel(self.0)),
+        }
+    }
+}
+
+macro_rules! define_check {
+    ($($(#[$doc:meta])* $name:ident = $variant:ident { $($field:ident: $operand:ident),* }, cost $cost:expr;)*) => {
+        /// Checks every operand of `op`.
+        fn check_operands(op: Op, body: &Body<'_>) -> Result<(), VerifyErrorKind> {
+            match op {
+                $(Op::$variant { $($field),* } => {
+                    $($field.check(body)?;)*
+                    Ok(())
+                })*
+            }
+        }
+    };
+}
+for_each_op!(define_check);
