@@ -1,0 +1,337 @@
+//! The board as a program that embeds it sees it.
+
+use std::ops::Range;
+
+use kmotiondef::map::{PROGRAM_SIZE, program_base};
+use kmotiondef::structs::Persist;
+use kmotiondef::variables::{PERSIST, USER_CALL_BACK};
+use kmotiondef::{Bit, CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
+use vm::engine::Engine;
+use vm::interp::BytecodeEngine;
+use vm::machine::{Config as MachineConfig, Machine};
+use vm::memory::GuestMemory;
+use vm::program::Program;
+use vm::thread::{NotLoaded, ThreadState};
+
+use crate::debug::{DebugInfo, SourcePlace};
+use crate::event::{Event, EventKind};
+use crate::files::{HostFiles, NoFiles};
+use crate::kernel::Kernel;
+use crate::loader::{Fill, LoadError, Placed, prepare};
+use crate::power_up;
+use crate::views::Typed;
+
+/// Settings of a board.
+#[derive(Debug)]
+pub struct Config {
+    /// Settings of the machine: servo time, shortcuts, stacks.
+    pub machine: MachineConfig,
+    /// Whether the built-in PC polls and answers.
+    pub host: bool,
+    /// Where the PC keeps its files.
+    pub files: Box<dyn HostFiles>,
+    /// Byte put into uninitialised data at a load.
+    pub bss_fill: u8,
+}
+
+impl Default for Config {
+    fn default() -> Self {
+        Self { machine: MachineConfig::default(), host: true, files: Box::new(NoFiles), bss_fill: 0 }
+    }
+}
+
+/// Why a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RunEnd {
+    /// No thread is active, and nothing moves, records, prints or waits for the PC.
+    AllEnded,
+    /// The limit is reached.
+    Limit,
+}
+
+/// What the board knows of a loaded image.
+#[derive(Debug)]
+struct Loaded {
+    debug: DebugInfo,
+    /// Addresses from its first to behind its last byte.
+    extent: Range<u32>,
+}
+
+/// A simulated board.
+#[derive(Debug)]
+pub struct Board<E = BytecodeEngine> {
+    machine: Machine<Kernel, E>,
+    loaded: [Option<Loaded>; ThreadId::MAX as usize],
+    bss_fill: u8,
+}
+
+impl<E: Engine> Board<E> {
+    /// A board at power-up.
+    #[must_use]
+    pub fn new(config: Config) -> Self {
+        let mut kernel = Kernel::new(config.files);
+        kernel.host.connect(config.host);
+        let mut machine = Machine::new(kernel, config.machine);
+        power_up::fill(machine.memory_mut());
+        Self { machine, loaded: Default::default(), bss_fill: config.bss_fill }
+    }
+
+    /// Loads an image into `thread`, which is stopped first.
+    ///
+    /// # Errors
+    /// Why the image is refused; nothing has changed then.
+    pub fn load(&mut self, thread: ThreadId, image: &[u8]) -> Result<(), LoadError> {
+        let prepared = prepare(image, thread, |other| self.is_taken(other, thread))?;
+        self.machine.unload_program(thread);
+        for section in &prepared.sections {
+            self.place(section);
+        }
+        self.drop_callback(thread);
+        let start = program_base(thread).get();
+        let ends = prepared.sections.iter().map(|section| section.address.get() + section.size());
+        let extent = start..ends.max().unwrap_or(start);
+        self.load_program(thread, prepared.program, prepared.entry);
+        self.loaded[thread.index()] = Some(Loaded { debug: prepared.debug, extent });
+        Ok(())
+    }
+
+    /// Whether a program other than that of `except` lies in the space of `thread`.
+    fn is_taken(&self, thread: ThreadId, except: ThreadId) -> bool {
+        let start = program_base(thread).get();
+        let others = ThreadId::all().filter(|&other| other != except);
+        let mut extents = others.filter_map(|other| self.loaded[other.index()].as_ref());
+        extents.any(|loaded| loaded.extent.start < start + PROGRAM_SIZE && loaded.extent.end > start)
+    }
+
+    /// Puts a section into memory; the loader has checked that it fits.
+    fn place(&mut self, section: &Placed) {
+        let bytes = match &section.contents {
+            Fill::Bytes(bytes) => bytes.clone(),
+            Fill::Uninitialised(size) => vec![self.bss_fill; *size as usize],
+        };
+        let placed = self.machine.memory_mut().poke_bytes(section.address, &bytes);
+        debug_assert!(placed.is_ok(), "the loader checks that sections lie in memory");
+    }
+
+    /// Takes out a call-back whose code a load has replaced; the board would run what is there now.
+    fn drop_callback(&mut self, thread: ThreadId) {
+        let start = program_base(thread).get();
+        let callback = self.memory().get(USER_CALL_BACK);
+        if (start..start + PROGRAM_SIZE).contains(&callback.get()) {
+            let (kernel, context) = self.machine.firmware_mut();
+            context.memory.set(USER_CALL_BACK, GuestAddr::NULL);
+            let text = format!(
+                "the call-back in the space of thread {thread} is taken out: its program is replaced"
+            );
+            kernel.tell(context.now, EventKind::Diagnostic(text));
+        }
+    }
+
+    /// What is known of the image in `thread`.
+    #[must_use]
+    pub fn debug(&self, thread: ThreadId) -> Option<&DebugInfo> {
+        self.loaded[thread.index()].as_ref().map(|loaded| &loaded.debug)
+    }
+
+    /// The source of a code address, in whatever thread's program it lies.
+    #[must_use]
+    pub fn source(&self, address: CodeAddr) -> Option<SourcePlace<'_>> {
+        self.loaded.iter().flatten().find_map(|loaded| loaded.debug.place(address))
+    }
+
+    /// Makes `thread` ready to run a program whose bytes are in guest memory.
+    pub fn load_program(&mut self, thread: ThreadId, program: Program, entry: GuestAddr) {
+        let entry_points = PERSIST.field(Persist::ENTRY_POINTS);
+        self.machine.memory_mut().set(entry_points.element(thread.index()), entry.get());
+        self.machine.load_program(thread, program, entry);
+    }
+
+    /// Starts `thread` at its entry point.
+    ///
+    /// # Errors
+    /// [`NotLoaded`] for an empty thread.
+    pub fn start(&mut self, thread: ThreadId) -> Result<(), NotLoaded> {
+        self.machine.start(thread)
+    }
+
+    /// Runs to the end of tick `limit` or until everything has ended; `sink` receives what happens.
+    ///
+    /// At the end the console text still held is sent.
+    pub fn run(&mut self, limit: Ticks, sink: &mut dyn FnMut(Event)) -> RunEnd {
+        let end = loop {
+            if self.has_ended() {
+                break RunEnd::AllEnded;
+            }
+            if self.machine.tick() >= limit {
+                break RunEnd::Limit;
+            }
+            self.machine.step(limit);
+            self.deliver(sink);
+        };
+        let (kernel, context) = self.machine.firmware_mut();
+        kernel.flush_console(context.now);
+        self.deliver(sink);
+        end
+    }
+
+    /// Whether no thread is active and nothing is under way that a program has begun.
+    #[must_use]
+    pub fn has_ended(&self) -> bool {
+        let is_active = ThreadId::all().any(|thread| self.machine.threads().state(thread).is_active());
+        !is_active && !self.machine.firmware().is_busy(self.machine.memory())
+    }
+
+    /// Hands over the events since the last time, with the program's place where that is known.
+    fn deliver(&mut self, sink: &mut dyn FnMut(Event)) {
+        for mut event in self.machine.firmware_mut().0.take_events() {
+            if let EventKind::UndrivenInput { thread: Some(thread), place, .. } = &mut event.kind {
+                *place = self.machine.backtrace(*thread).first().copied();
+            }
+            sink(event);
+        }
+    }
+
+    /// The present time: the end of the last tick.
+    #[must_use]
+    pub fn now(&self) -> Cycles {
+        let tick = i64::try_from(self.machine.tick().get()).unwrap_or(i64::MAX);
+        Cycles::new(tick.saturating_add(1).saturating_mul(Cycles::PER_TICK.get()))
+    }
+
+    /// Number of servo interrupts since power-up.
+    #[must_use]
+    pub const fn tick(&self) -> Ticks {
+        self.machine.tick()
+    }
+
+    /// Guest memory.
+    #[must_use]
+    pub const fn memory(&self) -> &GuestMemory {
+        self.machine.memory()
+    }
+
+    /// Guest memory, to change it from outside.
+    pub fn memory_mut(&mut self) -> &mut GuestMemory {
+        self.machine.firmware_mut().0.disturb();
+        self.machine.memory_mut()
+    }
+
+    /// The machine.
+    #[must_use]
+    pub const fn machine(&self) -> &Machine<Kernel, E> {
+        &self.machine
+    }
+
+    /// The machine, to load programs and to watch it.
+    pub fn machine_mut(&mut self) -> &mut Machine<Kernel, E> {
+        self.machine.firmware_mut().0.disturb();
+        &mut self.machine
+    }
+
+    /// The state of a thread.
+    #[must_use]
+    pub fn thread(&self, thread: ThreadId) -> &ThreadState {
+        self.machine.threads().state(thread)
+    }
+
+    /// An element of `persist.UserData`; `None` beyond the last.
+    #[must_use]
+    pub fn user_data(&self, index: usize) -> Option<i32> {
+        let data = PERSIST.field(Persist::USER_DATA);
+        (index < kmotiondef::limits::N_USER_DATA_VARS).then(|| self.memory().get(data.element(index)))
+    }
+
+    /// Stores an element of `persist.UserData`; `false` beyond the last.
+    pub fn set_user_data(&mut self, index: usize, value: i32) -> bool {
+        let is_inside = index < kmotiondef::limits::N_USER_DATA_VARS;
+        if is_inside {
+            self.memory_mut().set(PERSIST.field(Persist::USER_DATA).element(index), value);
+        }
+        is_inside
+    }
+
+    /// Drives an input from outside.
+    pub fn drive_input(&mut self, bit: Bit, level: bool) {
+        let (kernel, _) = self.machine.firmware_mut();
+        kernel.pins.drive(bit, level);
+        kernel.disturb();
+    }
+
+    /// The level of a bit.
+    #[must_use]
+    pub fn bit(&self, bit: Bit) -> bool {
+        crate::firmware::io::bit_state(self.machine.firmware(), self.memory(), bit).0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, function_named};
+    use kmotiondef::structs::Chan;
+    use vm::text::assemble;
+    use vm::verify::verify;
+
+    use super::*;
+
+    /// `sig0` is `()`, `sig1` `(i32, f64)`, `sig2` `(f64)`, `sig3` `(i32) -> i32`; the pool holds 0, 100 and 0.5.
+    const HEAD: &str = "program 1, 3\nword 0x0\nword 0x4059000000000000\nword 0x3fe0000000000000
+sig 0, 0\nsig 2, 0\ntypes 0xc\nsig 1, 0\ntypes 3\nsig 1, 1\ntypes 0\n";
+    /// First word behind it.
+    const MAIN: usize = 11;
+    /// Where the text to print stands, in the thread's own space.
+    const TEXT: u32 = 0x8005_F000;
+
+    fn call(name: &str, signature: usize, loads: &str, arguments: &str) -> String {
+        let address = FIRMWARE_FUNCTIONS[function_named(name).expect(name)].address.get();
+        format!("charge 20\n{loads}\n{arguments}\ncall_fw sig{signature}, {address:#x}\n")
+    }
+
+    /// Enables axis 0, moves it by 100, waits half a second, prints a line and ends.
+    fn program() -> String {
+        let axis_and = |pool: usize| format!("const_i32 r0, 0\nconst_f64 d1, pool[{pool}]");
+        let calls = [
+            call("EnableAxisDest", 1, &axis_and(0), "arg_i32 r0, 0\narg_f64 d1, 1"),
+            call("Move", 1, &axis_and(1), "arg_i32 r0, 0\narg_f64 d1, 1"),
+            call("Delay_sec", 2, &axis_and(2), "arg_f64 d1, 0"),
+            call("Print", 3, &format!("const_i32 r0, {}", TEXT.cast_signed()), "arg_i32 r0, 0"),
+        ];
+        format!("{HEAD}@main: func sig0, 2, 0\ntypes 0xc\n{}charge 2\nret", calls.concat())
+    }
+
+    fn run(shortcuts: bool, limit: u64) -> (RunEnd, Vec<Event>, Board) {
+        let machine = MachineConfig { shortcuts, ..MachineConfig::default() };
+        let mut board: Board = Board::new(Config { machine, ..Config::default() });
+        let thread = ThreadId::new(1).expect("1 is a thread");
+        let text = assemble(&program()).unwrap_or_else(|error| panic!("{error}"));
+        let program = verify(&text, program_base(thread)).unwrap_or_else(|error| panic!("{error}"));
+        board.memory_mut().poke_bytes(program_base(thread), &text).expect("mapped");
+        board.memory_mut().poke_bytes(GuestAddr::new(TEXT), b"moved\n\0").expect("mapped");
+        let entry = program.address_of(MAIN).as_guest_addr();
+        board.load_program(thread, program, entry);
+        board.start(thread).expect("loaded");
+        let mut events = Vec::new();
+        let end = board.run(Ticks::new(limit), &mut |event| events.push(event));
+        (end, events, board)
+    }
+
+    #[test]
+    fn a_program_runs_to_its_end() {
+        let (end, events, board) = run(true, 100_000);
+        assert_eq!(end, RunEnd::AllEnded);
+        let lines: Vec<_> = events.iter().map(|event| event.kind.clone()).collect();
+        assert_eq!(lines, [EventKind::ConsoleLine(b"moved".to_vec())]);
+        let seconds = events[0].at.get() as f64 / Cycles::PER_SECOND.get() as f64;
+        assert!((0.5..0.501).contains(&seconds), "{seconds}");
+        let axis = kmotiondef::AxisId::new(0).expect("0 is an axis");
+        assert_eq!(board.memory().axis(axis, Chan::DEST), 100.0);
+    }
+
+    #[test]
+    fn shortcuts_change_nothing() {
+        let limit = 8_000;
+        let (slow, fast) = (run(false, limit), run(true, limit));
+        assert_eq!(slow.0, fast.0);
+        assert_eq!(slow.1, fast.1);
+        assert!(slow.2.memory() == fast.2.memory(), "memory differs");
+    }
+}

@@ -1,0 +1,133 @@
+//! What a loaded image knows about itself: functions, source lines, objects.
+//!
+//! Traps and traces name places with it. An image without symbols has none, and every
+//! answer is then `None`.
+
+use kmotiondef::{CodeAddr, GuestAddr};
+
+/// A function and where it came from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FunctionInfo {
+    /// Its name.
+    pub name: String,
+    /// The source file of its definition.
+    pub file: String,
+    /// Its first address.
+    pub start: u32,
+    /// One past its last.
+    pub end: u32,
+}
+
+/// A named object in data or bss.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ObjectInfo {
+    /// Its name.
+    pub name: String,
+    /// Its first address.
+    pub start: u32,
+    /// Its size in bytes.
+    pub size: u32,
+}
+
+/// A place in the source.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SourcePlace<'a> {
+    /// The function.
+    pub function: &'a str,
+    /// Its file.
+    pub file: &'a str,
+    /// The line, if the image says so.
+    pub line: Option<u32>,
+}
+
+/// The debug data of one image.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct DebugInfo {
+    functions: Vec<FunctionInfo>,
+    lines: Vec<(u32, u32)>,
+    objects: Vec<ObjectInfo>,
+}
+
+impl DebugInfo {
+    /// Takes functions, (address, line) pairs and objects in any order.
+    #[must_use]
+    pub fn new(
+        mut functions: Vec<FunctionInfo>,
+        mut lines: Vec<(u32, u32)>,
+        mut objects: Vec<ObjectInfo>,
+    ) -> Self {
+        functions.sort_by_key(|function| function.start);
+        lines.sort_unstable();
+        objects.sort_by_key(|object| object.start);
+        Self { functions, lines, objects }
+    }
+
+    /// The source of the code at `address`.
+    #[must_use]
+    pub fn place(&self, address: CodeAddr) -> Option<SourcePlace<'_>> {
+        let address = address.get();
+        let after = self.functions.partition_point(|function| function.start <= address);
+        let function = self.functions.get(after.checked_sub(1)?).filter(|found| address < found.end)?;
+        let after = self.lines.partition_point(|(start, _)| *start <= address);
+        let line = after.checked_sub(1).and_then(|index| self.lines.get(index));
+        let line = line.filter(|(start, _)| *start >= function.start).map(|(_, line)| *line);
+        Some(SourcePlace { function: &function.name, file: &function.file, line })
+    }
+
+    /// What lies at or just before a data address, in words: "4 bytes past the end of `table`".
+    #[must_use]
+    pub fn describe(&self, address: GuestAddr) -> Option<String> {
+        /// Farther than this from an object, naming it would mislead.
+        const NEAR: u32 = 256;
+        let address = address.get();
+        let after = self.objects.partition_point(|object| object.start <= address);
+        let object = self.objects.get(after.checked_sub(1)?)?;
+        let offset = address - object.start;
+        let name = &object.name;
+        if offset < object.size {
+            return Some(match offset {
+                0 => format!("`{name}`"),
+                _ => format!("byte {offset} of `{name}`"),
+            });
+        }
+        let past = offset - object.size;
+        let plural = if past == 1 { "" } else { "s" };
+        (past < NEAR).then(|| match past {
+            0 => format!("right behind `{name}`"),
+            _ => format!("{past} byte{plural} past the end of `{name}`"),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn info() -> DebugInfo {
+        let function =
+            |name: &str, start, end| FunctionInfo { name: name.into(), file: "a.c".into(), start, end };
+        DebugInfo::new(
+            vec![function("main", 0x100, 0x140), function("f", 0x40, 0x80)],
+            vec![(0x108, 7), (0x120, 9), (0x48, 2)],
+            vec![ObjectInfo { name: "table".into(), start: 0x200, size: 8 }],
+        )
+    }
+
+    #[test]
+    fn code_belongs_to_the_line_that_begins_before_it() {
+        let info = info();
+        let line = |address| info.place(CodeAddr::new(address)?).map(|place| (place.function, place.line));
+        assert_eq!(line(0x128), Some(("main", Some(9))));
+        assert_eq!(line(0x100), Some(("main", None)));
+        assert_eq!(line(0x90), None);
+    }
+
+    #[test]
+    fn data_addresses_are_described_by_their_neighbour() {
+        let info = info();
+        let describe = |address| info.describe(GuestAddr::new(address)).unwrap_or_default();
+        assert_eq!(describe(0x204), "byte 4 of `table`");
+        assert_eq!(describe(0x20c), "4 bytes past the end of `table`");
+        assert_eq!(describe(0x400), "");
+    }
+}

@@ -1,0 +1,167 @@
+//! Registers of the FPGA.
+//!
+//! Register r of eight bits is the byte at base + 4·r + 2; of 16 bits, the half word there. The registers below act;
+//! the rest is storage that reads back what was written.
+
+use std::collections::BTreeSet;
+
+use kmotiondef::GuestAddr;
+use kmotiondef::map::FPGA;
+use vm::bus::AccessSize;
+
+use super::pins::{PINS, Pins};
+
+/// Bytes between two registers.
+const STRIDE: u32 = 4;
+/// Where a register lies in its four bytes.
+const LANE: u32 = 2;
+/// Groups of eight pins.
+const GROUPS: u32 = PINS as u32 / 8;
+
+/// A range of registers and what is known of it.
+struct Range {
+    first: u32,
+    last: u32,
+    kind: Kind,
+}
+
+/// What a register does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    /// Known to programs; here it only stores.
+    Storage,
+    /// Ones set latches.
+    BitSet,
+    /// Zeros clear latches.
+    BitClear,
+    /// Directions.
+    BitDirection,
+    /// Levels, read only.
+    BitRead,
+    /// The UART's status: nothing received, transmitter ready.
+    UartStatus,
+}
+
+/// The registers that programs know. Source: io.md section 5.
+const REGISTERS: &[Range] = &[
+    Range { first: 0x05, last: 0x06, kind: Kind::Storage },
+    Range { first: 0x08, last: 0x0d, kind: Kind::Storage },
+    Range { first: 0x10, last: 0x10, kind: Kind::Storage },
+    Range { first: 0x28, last: 0x28, kind: Kind::Storage },
+    Range { first: 0x2f, last: 0x2f, kind: Kind::Storage },
+    Range { first: 0x3c, last: 0x4f, kind: Kind::Storage },
+    Range { first: 0x80, last: 0x98, kind: Kind::Storage },
+    Range { first: 0xa0, last: 0xa0, kind: Kind::Storage },
+    Range { first: 0xc0, last: 0xc0, kind: Kind::Storage },
+    Range { first: 0xc1, last: 0xc1, kind: Kind::UartStatus },
+    Range { first: 0xd0, last: 0xdf, kind: Kind::Storage },
+    Range { first: 0x100, last: 0x100 + GROUPS - 1, kind: Kind::BitSet },
+    Range { first: 0x110, last: 0x110 + GROUPS - 1, kind: Kind::BitClear },
+    Range { first: 0x120, last: 0x120 + GROUPS - 1, kind: Kind::BitDirection },
+    Range { first: 0x130, last: 0x130 + GROUPS - 1, kind: Kind::BitRead },
+];
+
+/// Values at power-up: step pulses of 32 clocks, encoder filter 7.
+const START: [(u32, u8); 2] = [(0x06, 32), (0x05, 7)];
+
+/// The registers' memory.
+#[derive(Clone, Debug)]
+pub(crate) struct Fpga {
+    bytes: Box<[u8]>,
+    /// Unknown registers that programs have used.
+    unknown: BTreeSet<u32>,
+}
+
+impl Default for Fpga {
+    fn default() -> Self {
+        let mut bytes = vec![0; FPGA.size as usize].into_boxed_slice();
+        for (register, value) in START {
+            bytes[(register * STRIDE + LANE) as usize] = value;
+        }
+        Self { bytes, unknown: BTreeSet::new() }
+    }
+}
+
+/// The register at an address and what it does; the number within its range comes with it.
+fn register(address: GuestAddr) -> (u32, Option<(Kind, u32)>) {
+    let offset = address.get().wrapping_sub(FPGA.base.get());
+    let number = offset / STRIDE;
+    let range = REGISTERS.iter().find(|range| (range.first..=range.last).contains(&number));
+    (number, range.filter(|_| offset % STRIDE == LANE).map(|range| (range.kind, number - range.first)))
+}
+
+impl Fpga {
+    /// Reads a register.
+    pub(crate) fn read(&mut self, pins: &Pins, address: GuestAddr, size: AccessSize) -> u32 {
+        match register(address).1 {
+            Some((Kind::BitRead, group)) => u32::from(pins.level_group(group)),
+            Some((Kind::BitDirection, group)) => u32::from(pins.direction_group(group)),
+            Some((Kind::UartStatus, _)) => 0,
+            _ => self.stored(address, size),
+        }
+    }
+
+    /// Writes a register; a number that means nothing comes back the first time.
+    pub(crate) fn write(
+        &mut self,
+        pins: &mut Pins,
+        address: GuestAddr,
+        size: AccessSize,
+        value: u32,
+    ) -> Option<u32> {
+        let (number, kind) = register(address);
+        match kind {
+            Some((Kind::BitSet, group)) => pins.set_group(group, value as u8),
+            Some((Kind::BitClear, group)) => pins.clear_group(group, value as u8),
+            Some((Kind::BitDirection, group)) => pins.set_direction_group(group, value as u8),
+            _ => self.store(address, size, value),
+        }
+        (kind.is_none() && self.unknown.insert(number)).then_some(number)
+    }
+
+    fn stored(&self, address: GuestAddr, size: AccessSize) -> u32 {
+        let start = address.get().wrapping_sub(FPGA.base.get()) as usize;
+        let bytes = self.bytes.get(start..start + size.bytes() as usize).unwrap_or_default();
+        bytes.iter().rev().fold(0, |value, &byte| value << 8 | u32::from(byte))
+    }
+
+    fn store(&mut self, address: GuestAddr, size: AccessSize, value: u32) {
+        let start = address.get().wrapping_sub(FPGA.base.get()) as usize;
+        if let Some(bytes) = self.bytes.get_mut(start..start + size.bytes() as usize) {
+            bytes.copy_from_slice(&value.to_le_bytes()[..size.bytes() as usize]);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use kmotiondef::Bit;
+
+    use super::*;
+
+    fn address(register: u32) -> GuestAddr {
+        FPGA.base.offset(register * STRIDE + LANE)
+    }
+
+    #[test]
+    fn bit_registers_reach_the_pins() {
+        let (mut fpga, mut pins) = (Fpga::default(), Pins::default());
+        let bit = Bit::new(46).expect("a bit");
+        assert!(pins.level(bit));
+        fpga.write(&mut pins, address(0x115), AccessSize::Byte, 0x3f);
+        assert!(!pins.level(bit));
+        fpga.write(&mut pins, address(0x105), AccessSize::Byte, 0xc0);
+        assert!(pins.level(bit));
+        assert_eq!(fpga.read(&pins, address(0x135), AccessSize::Byte), 0xc0);
+    }
+
+    #[test]
+    fn other_registers_store_and_an_unknown_one_is_told_once() {
+        let (mut fpga, mut pins) = (Fpga::default(), Pins::default());
+        assert_eq!(fpga.write(&mut pins, address(0xd0), AccessSize::Byte, 0x12), None);
+        assert_eq!(fpga.read(&pins, address(0xd0), AccessSize::Byte), 0x12);
+        assert_eq!(fpga.write(&mut pins, address(0x200), AccessSize::Half, 0x1234), Some(0x200));
+        assert_eq!(fpga.write(&mut pins, address(0x200), AccessSize::Half, 0x5678), None);
+        assert_eq!(fpga.read(&pins, address(0x200), AccessSize::Half), 0x5678);
+    }
+}

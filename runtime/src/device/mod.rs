@@ -1,0 +1,5 @@
+//! The devices of the board.
+
+pub(crate) mod fpga;
+pub(crate) mod pins;
+pub(crate) mod timer;

@@ -1,0 +1,35 @@
+//! What a run tells the outside, with the board time at which it happened.
+
+use kmotiondef::{Bit, CodeAddr, Cycles, ThreadId};
+use vm::trap::Trap;
+
+/// One event and its time.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Event {
+    /// The instant; power-up is 0.
+    pub at: Cycles,
+    /// What happened.
+    pub kind: EventKind,
+}
+
+/// What happened.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum EventKind {
+    /// The PC received a line of console text, without its line end.
+    ConsoleLine(Vec<u8>),
+    /// A program read an input that nothing drives; once for each bit.
+    UndrivenInput {
+        /// The bit.
+        bit: Bit,
+        /// The thread that read it; `None` for the call-back.
+        thread: Option<ThreadId>,
+        /// Where the program stands, as far as known.
+        place: Option<CodeAddr>,
+    },
+    /// A remark of the simulation that the real board would not make.
+    Diagnostic(String),
+    /// A thread was stopped by a trap.
+    Trap(Trap),
+    /// The PC did something that a program asked for.
+    Host(String),
+}

@@ -1,0 +1,357 @@
+//! Text to the console of the PC, and text formatted or converted in memory.
+//!
+//! Source: gather-persist-console.md section 4. Files on the PC are in [`super::files`].
+
+use kmotiondef::GuestAddr;
+use kmotiondef::limits::MAX_STRING;
+use vm::firmware::{Caller, Outcome, Wake};
+use vm::memory::GuestMemory;
+use vm::trap::TrapKind;
+
+pub(crate) use super::files::{fclose, feof, fgets, fopen, fprintf, fscanf};
+use super::string::text;
+use crate::dispatch::Varargs;
+use crate::kernel::{Continuation, Kernel};
+use crate::text::{Arguments, Scanned, Sink, format, scan};
+
+/// Longest string a `%s` reads.
+const LONGEST: u32 = 0x10_0000;
+
+/// The values behind `...`, as they lie in guest memory: each aligned to its own size.
+pub(crate) struct GuestArguments<'a> {
+    memory: &'a mut GuestMemory,
+    at: u32,
+}
+
+impl GuestArguments<'_> {
+    /// The address of the next value of `size` bytes.
+    fn next(&mut self, size: u32) -> GuestAddr {
+        let address = self.at.wrapping_add(size - 1) & !(size - 1);
+        self.at = address.wrapping_add(size);
+        GuestAddr::new(address)
+    }
+
+    /// The next value, an address.
+    fn address(&mut self) -> Result<GuestAddr, TrapKind> {
+        let place = self.next(4);
+        self.memory.load(place).map(GuestAddr::new)
+    }
+}
+
+impl Arguments for GuestArguments<'_> {
+    type Error = TrapKind;
+
+    fn word(&mut self) -> Result<u32, TrapKind> {
+        let place = self.next(4);
+        self.memory.load(place)
+    }
+
+    fn double(&mut self) -> Result<f64, TrapKind> {
+        let place = self.next(8);
+        self.memory.load(place)
+    }
+
+    fn text(&mut self, limit: usize) -> Result<Option<Vec<u8>>, TrapKind> {
+        let address = self.address()?;
+        if address.is_null() {
+            return Ok(None);
+        }
+        let limit = u32::try_from(limit).unwrap_or(LONGEST).min(LONGEST);
+        self.memory.read_c_string(address, limit).map(Some)
+    }
+}
+
+impl Sink for GuestArguments<'_> {
+    type Error = TrapKind;
+
+    fn store(&mut self, value: Scanned<'_>) -> Result<(), TrapKind> {
+        let place = self.address()?;
+        match value {
+            Scanned::Short(value) => self.memory.store(place, value),
+            Scanned::Int(value) => self.memory.store(place, value),
+            Scanned::Long(value) => {
+                self.memory.store(place, value as i32)?;
+                self.memory.store(place.offset(4), (value >> 32) as i32)
+            }
+            Scanned::Float(value) => self.memory.store(place, value),
+            Scanned::Double(value) => self.memory.store(place, value),
+            Scanned::Chars(text) => self.memory.write_bytes(place, text),
+            Scanned::Text(text) => {
+                let mut text = text.to_vec();
+                text.push(0);
+                self.memory.write_bytes(place, &text)
+            }
+        }
+    }
+}
+
+/// Formats the values behind `...`.
+pub(crate) fn formatted(
+    caller: &mut Caller<'_>,
+    pattern: GuestAddr,
+    arguments: Varargs,
+) -> Result<Vec<u8>, TrapKind> {
+    let pattern = text(caller, pattern)?;
+    format(&pattern, &mut GuestArguments { memory: caller.memory, at: arguments.0.get() })
+}
+
+/// Converts `text` under a pattern into the places behind `...`.
+pub(crate) fn converted(
+    caller: &mut Caller<'_>,
+    text: &[u8],
+    pattern: &[u8],
+    places: Varargs,
+) -> Result<i32, TrapKind> {
+    scan(text, pattern, &mut GuestArguments { memory: caller.memory, at: places.0.get() })
+}
+
+/// What one call may print: at most 128 characters, and nothing behind a zero byte.
+pub(crate) fn cut(text: &[u8]) -> &[u8] {
+    let text = &text[..text.len().min(MAX_STRING)];
+    &text[..text.iter().position(|&byte| byte == 0).unwrap_or(text.len())]
+}
+
+/// Puts text on the console; the call waits while the queue is full.
+fn put(kernel: &mut Kernel, caller: &Caller<'_>, text: &[u8], result: i32) -> Outcome<i32> {
+    let rest = kernel.console.put(text).to_vec();
+    if rest.is_empty() {
+        return Outcome::Done(result);
+    }
+    kernel.keep(caller, Continuation::Print { rest, result });
+    Outcome::Wait(Wake::Retry)
+}
+
+/// Goes on with a call that waits for the queue.
+fn resumed(kernel: &mut Kernel, caller: &Caller<'_>) -> Option<Outcome<i32>> {
+    caller.woken?;
+    match kernel.take(caller) {
+        Some(Continuation::Print { rest, result }) => Some(put(kernel, caller, &rest, result)),
+        _ => Some(Outcome::Done(0)),
+    }
+}
+
+pub(crate) fn printf(
+    kernel: &mut Kernel,
+    caller: &mut Caller<'_>,
+    pattern: GuestAddr,
+    arguments: Varargs,
+) -> Result<Outcome<i32>, TrapKind> {
+    if let Some(outcome) = resumed(kernel, caller) {
+        return Ok(outcome);
+    }
+    let text = formatted(caller, pattern, arguments)?;
+    Ok(put(kernel, caller, cut(&text), text.len() as i32))
+}
+
+pub(crate) fn vprintf(
+    kernel: &mut Kernel,
+    caller: &mut Caller<'_>,
+    pattern: GuestAddr,
+    arguments: GuestAddr,
+) -> Result<Outcome<i32>, TrapKind> {
+    printf(kernel, caller, pattern, Varargs(arguments))
+}
+
+/// Prints a string of any length.
+pub(crate) fn print(
+    kernel: &mut Kernel,
+    caller: &mut Caller<'_>,
+    string: GuestAddr,
+) -> Result<Outcome<i32>, TrapKind> {
+    if let Some(outcome) = resumed(kernel, caller) {
+        return Ok(outcome);
+    }
+    let text = text(caller, string)?;
+    Ok(put(kernel, caller, &text, 0))
+}
+
+/// The one value of `PrintFloat` and `PrintInt`.
+struct One {
+    word: u32,
+    double: f64,
+}
+
+impl Arguments for One {
+    type Error = TrapKind;
+
+    fn word(&mut self) -> Result<u32, TrapKind> {
+        Ok(self.word)
+    }
+
+    fn double(&mut self) -> Result<f64, TrapKind> {
+        Ok(self.double)
+    }
+
+    fn text(&mut self, _: usize) -> Result<Option<Vec<u8>>, TrapKind> {
+        Ok(None)
+    }
+}
+
+fn print_one(
+    kernel: &mut Kernel,
+    caller: &mut Caller<'_>,
+    pattern: GuestAddr,
+    mut value: One,
+) -> Result<Outcome<i32>, TrapKind> {
+    if let Some(outcome) = resumed(kernel, caller) {
+        return Ok(outcome);
+    }
+    let pattern = text(caller, pattern)?;
+    let text = format(&pattern, &mut value)?;
+    Ok(put(kernel, caller, cut(&text), 0))
+}
+
+pub(crate) fn print_float(
+    kernel: &mut Kernel,
+    caller: &mut Caller<'_>,
+    pattern: GuestAddr,
+    value: f64,
+) -> Result<Outcome<i32>, TrapKind> {
+    print_one(kernel, caller, pattern, One { word: value as i32 as u32, double: value })
+}
+
+pub(crate) fn print_int(
+    kernel: &mut Kernel,
+    caller: &mut Caller<'_>,
+    pattern: GuestAddr,
+    value: i32,
+) -> Result<Outcome<i32>, TrapKind> {
+    print_one(kernel, caller, pattern, One { word: value as u32, double: f64::from(value) })
+}
+
+pub(crate) fn puts(
+    kernel: &mut Kernel,
+    caller: &mut Caller<'_>,
+    string: GuestAddr,
+) -> Result<Outcome<i32>, TrapKind> {
+    if let Some(outcome) = resumed(kernel, caller) {
+        return Ok(outcome);
+    }
+    let mut text = text(caller, string)?;
+    text.push(b'\n');
+    Ok(put(kernel, caller, &text, text.len() as i32))
+}
+
+pub(crate) fn putchar(kernel: &mut Kernel, caller: &mut Caller<'_>, character: i32) -> Outcome<i32> {
+    if let Some(outcome) = resumed(kernel, caller) {
+        return outcome;
+    }
+    put(kernel, caller, &[character as u8], i32::from(character as u8))
+}
+
+/// Writes a formatted string to memory.
+fn store(caller: &mut Caller<'_>, to: GuestAddr, mut text: Vec<u8>) -> Result<i32, TrapKind> {
+    let length = text.len() as i32;
+    text.push(0);
+    caller.memory.write_bytes(to, &text)?;
+    Ok(length)
+}
+
+pub(crate) fn sprintf(
+    _: &mut Kernel,
+    caller: &mut Caller<'_>,
+    to: GuestAddr,
+    pattern: GuestAddr,
+    arguments: Varargs,
+) -> Result<i32, TrapKind> {
+    let text = formatted(caller, pattern, arguments)?;
+    store(caller, to, text)
+}
+
+pub(crate) fn vsprintf(
+    kernel: &mut Kernel,
+    caller: &mut Caller<'_>,
+    to: GuestAddr,
+    pattern: GuestAddr,
+    arguments: GuestAddr,
+) -> Result<i32, TrapKind> {
+    sprintf(kernel, caller, to, pattern, Varargs(arguments))
+}
+
+/// At most `size` bytes with the terminator; returns the full length.
+pub(crate) fn snprintf(
+    _: &mut Kernel,
+    caller: &mut Caller<'_>,
+    to: GuestAddr,
+    size: u32,
+    pattern: GuestAddr,
+    arguments: Varargs,
+) -> Result<i32, TrapKind> {
+    let mut text = formatted(caller, pattern, arguments)?;
+    let length = text.len() as i32;
+    if let Some(room) = (size as usize).checked_sub(1) {
+        text.truncate(room);
+        store(caller, to, text)?;
+    }
+    Ok(length)
+}
+
+pub(crate) fn vsnprintf(
+    kernel: &mut Kernel,
+    caller: &mut Caller<'_>,
+    to: GuestAddr,
+    size: u32,
+    pattern: GuestAddr,
+    arguments: GuestAddr,
+) -> Result<i32, TrapKind> {
+    snprintf(kernel, caller, to, size, pattern, Varargs(arguments))
+}
+
+pub(crate) fn sscanf(
+    _: &mut Kernel,
+    caller: &mut Caller<'_>,
+    string: GuestAddr,
+    pattern: GuestAddr,
+    places: Varargs,
+) -> Result<i32, TrapKind> {
+    let (string, pattern) = (text(caller, string)?, text(caller, pattern)?);
+    converted(caller, &string, &pattern, places)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::testing::Desk;
+
+    #[test]
+    fn printf_returns_the_full_length_and_prints_128_characters() {
+        let mut desk = Desk::new();
+        let long = vec![b'x'; 200];
+        let (pattern, string) = (desk.put_text(0, b"%s\n"), desk.put_text(64, &long));
+        let values = desk.put_words(400, &[string as u32]);
+        assert_eq!(desk.call_i32("printf", &[pattern, values]), 201);
+        assert_eq!(desk.printed(), ["x".repeat(125), "xxx".to_owned()]);
+    }
+
+    #[test]
+    fn doubles_are_aligned_among_the_values() {
+        let mut desk = Desk::new();
+        let double = 1.5_f64.to_bits();
+        let pattern = desk.put_text(0, b"%d %f %d\n");
+        let values = desk.put_words(64, &[7, 0, double as u32, (double >> 32) as u32, 8]);
+        desk.call_i32("printf", &[pattern, values]);
+        assert_eq!(desk.printed(), ["7 1.500000 8"]);
+    }
+
+    #[test]
+    fn a_full_queue_makes_the_caller_wait() {
+        let mut desk = Desk::new();
+        let pattern = desk.put_text(0, b"x\n");
+        for _ in 0..255 {
+            desk.call_i32("printf", &[pattern, 0]);
+        }
+        assert!(!desk.is_done("printf", &[pattern, 0]));
+        desk.kernel.console.send();
+        assert_eq!(desk.wake_i32("printf", &[pattern, 0]), 2);
+        assert_eq!(desk.printed().len(), 255);
+    }
+
+    #[test]
+    fn sscanf_stores_through_its_pointers() {
+        let mut desk = Desk::new();
+        let (string, pattern) = (desk.put_text(0, b"12 2.5"), desk.put_text(32, b"%d %lf"));
+        let places = desk.put_words(64, &[desk.scratch(128), desk.scratch(136)]);
+        assert_eq!(desk.call_i32("sscanf", &[string, pattern, places]), 2);
+        assert_eq!(desk.memory.peek::<i32>(kmotiondef::GuestAddr::new(desk.scratch(128))), 12);
+        assert_eq!(desk.memory.peek::<f64>(kmotiondef::GuestAddr::new(desk.scratch(136))), 2.5);
+    }
+}

@@ -1,0 +1,240 @@
+//! The coordinate system, feed override and feedhold. Source: coordinated-motion.md sections 1 and 4 to 5.
+
+use kmotiondef::modes::LastMotion;
+use kmotiondef::structs::Chan;
+use kmotiondef::variables::CS0_STOPPING_STATE;
+use kmotiondef::{AxisId, Cycles};
+use vm::firmware::Caller;
+use vm::memory::GuestMemory;
+
+use super::motion::{limits, start_move_to};
+use crate::kernel::Kernel;
+use crate::servo::coordinated::feedhold::State;
+use crate::servo::coordinated::system::{assign, nominal_change_time};
+use crate::servo::coordinated::{buffer, feedhold, path, rate};
+use crate::servo::independent::{has_motion, is_moving, present, run};
+use crate::servo::profile;
+use crate::views::Typed;
+
+pub(crate) use crate::servo::coordinated::system::{is_member, letters, members};
+
+/// Ends a buffer that an axis takes part in.
+pub(crate) fn abort_if_member(memory: &mut GuestMemory, axis: AxisId) {
+    if is_member(memory, axis) {
+        path::abort(memory);
+    }
+}
+
+/// Assigns the letters from X on; the others keep theirs.
+fn define(kernel: &mut Kernel, caller: &mut Caller<'_>, axes: &[i32]) {
+    let valid = |&axis: &i32| axis == -1 || AxisId::new(axis).is_some();
+    if !axes.iter().all(valid) {
+        kernel.diagnose(caller, format!("DefineCoordSystem: {axes:?} must be axes 0 to 7 or -1"));
+        return;
+    }
+    let mut named: Vec<i32> = axes.iter().copied().filter(|&axis| axis >= 0).collect();
+    named.sort_unstable();
+    if named.windows(2).any(|pair| pair[0] == pair[1]) {
+        kernel.diagnose(caller, format!("DefineCoordSystem: {axes:?} names an axis twice"));
+    }
+    assign(caller.memory, axes);
+}
+
+pub(crate) fn define_coord_system(
+    kernel: &mut Kernel,
+    caller: &mut Caller<'_>,
+    x: i32,
+    y: i32,
+    z: i32,
+    a: i32,
+) {
+    define(kernel, caller, &[x, y, z, a]);
+}
+
+#[expect(clippy::too_many_arguments, reason = "the C function has six axes")]
+pub(crate) fn define_coord_system6(
+    kernel: &mut Kernel,
+    caller: &mut Caller<'_>,
+    x: i32,
+    y: i32,
+    z: i32,
+    a: i32,
+    b: i32,
+    c: i32,
+) {
+    define(kernel, caller, &[x, y, z, a, b, c]);
+}
+
+#[expect(clippy::too_many_arguments, reason = "the C function has eight axes")]
+pub(crate) fn define_coord_system8(
+    kernel: &mut Kernel,
+    caller: &mut Caller<'_>,
+    x: i32,
+    y: i32,
+    z: i32,
+    a: i32,
+    b: i32,
+    c: i32,
+    u: i32,
+    v: i32,
+) {
+    define(kernel, caller, &[x, y, z, a, b, c, u, v]);
+}
+
+/// −1 if an axis of the system is disabled, 0 while a buffer is executed, else 1.
+pub(crate) fn check_done_buf(_: &mut Kernel, caller: &mut Caller<'_>) -> i32 {
+    buffer::check_done(caller.memory)
+}
+
+pub(crate) fn stop_coordinated_motion(kernel: &mut Kernel, caller: &mut Caller<'_>) {
+    let now = caller.now();
+    stop(kernel, caller.memory, now);
+}
+
+/// Begins a feedhold if something in the coordinate system moves; whether it does.
+pub(crate) fn stop(kernel: &mut Kernel, memory: &mut GuestMemory, _now: Cycles) -> bool {
+    if State::of(memory) != State::Running {
+        return false;
+    }
+    if feedhold::stop(memory) {
+        return true;
+    }
+    let moving: Vec<AxisId> = members(memory).into_iter().filter(|&axis| is_moving(memory, axis)).collect();
+    for &axis in &moving {
+        if let Some(limits) = limits(memory, axis, Some(1.0)) {
+            let states = profile::stop(present(memory, axis), &limits);
+            run(memory, axis, &states);
+            kernel.servo.axes[axis.index()].is_held = true;
+        }
+    }
+    if !moving.is_empty() {
+        memory.set(CS0_STOPPING_STATE, State::StoppingAxes.number());
+    }
+    !moving.is_empty()
+}
+
+/// Ends the second phase of a feedhold when the axes have stopped.
+pub(crate) fn update_state(memory: &mut GuestMemory) {
+    let stopped = members(memory).iter().all(|&axis| !has_motion(memory, axis));
+    if State::of(memory) == State::StoppingAxes && stopped {
+        memory.set(CS0_STOPPING_STATE, State::AxesStopped.number());
+    }
+}
+
+pub(crate) fn update_stopping_state(_: &mut Kernel, caller: &mut Caller<'_>) {
+    update_state(caller.memory);
+}
+
+pub(crate) fn resume_coordinated_motion(kernel: &mut Kernel, caller: &mut Caller<'_>) {
+    let memory = &mut *caller.memory;
+    update_state(memory);
+    if !feedhold::resume(memory) && State::of(memory) != State::Running {
+        memory.set(CS0_STOPPING_STATE, State::Running.number());
+        resume_axes(kernel, memory);
+    }
+}
+
+/// Restarts what a feedhold interrupted. A jog is not resumed; an exponential approach becomes a move.
+fn resume_axes(kernel: &mut Kernel, memory: &mut GuestMemory) {
+    for axis in members(memory) {
+        let was_held = std::mem::take(&mut kernel.servo.axes[axis.index()].is_held);
+        let kind = LastMotion::new(memory.axis(axis, Chan::LAST_MOTION_TYPE));
+        let Some(kind) = kind.filter(|&kind| was_held && kind != LastMotion::Jog) else { continue };
+        let target = memory.axis(axis, Chan::LAST_MOTION_DEST);
+        if let Some(limits) = limits(memory, axis, None) {
+            start_move_to(memory, axis, target, &limits, kind);
+        }
+    }
+}
+
+pub(crate) fn clear_stop_immediately(kernel: &mut Kernel, caller: &mut Caller<'_>) {
+    let memory = &mut *caller.memory;
+    if !feedhold::clear(memory) {
+        memory.set(CS0_STOPPING_STATE, State::Running.number());
+    }
+    kernel.servo.axes.iter_mut().for_each(|axis| axis.is_held = false);
+}
+
+pub(crate) fn get_nominal_fro_change_time(_: &mut Kernel, caller: &mut Caller<'_>) -> f32 {
+    nominal_change_time(caller.memory)
+}
+
+pub(crate) fn set_fro(_: &mut Kernel, caller: &mut Caller<'_>, value: f32) {
+    let time = nominal_change_time(caller.memory);
+    rate::set_feed(caller.memory, value, time);
+}
+
+pub(crate) fn set_rapid_fro(_: &mut Kernel, caller: &mut Caller<'_>, value: f32) {
+    let time = nominal_change_time(caller.memory);
+    rate::set_rapid(caller.memory, value, time);
+}
+
+pub(crate) fn set_fro_temp(_: &mut Kernel, caller: &mut Caller<'_>, value: f32) {
+    let time = nominal_change_time(caller.memory);
+    rate::aim(caller.memory, value, time);
+}
+
+pub(crate) fn set_fro_w_rate(_: &mut Kernel, caller: &mut Caller<'_>, value: f32, time: f32) {
+    rate::set_feed(caller.memory, value, time);
+}
+
+pub(crate) fn set_rapid_fro_w_rate(_: &mut Kernel, caller: &mut Caller<'_>, value: f32, time: f32) {
+    rate::set_rapid(caller.memory, value, time);
+}
+
+pub(crate) fn set_fro_w_rate_temp(_: &mut Kernel, caller: &mut Caller<'_>, value: f32, time: f32) {
+    rate::aim(caller.memory, value, time);
+}
+
+/// Counts the entry just filled and goes to the next, which ends the buffer.
+pub(crate) fn inc_parametric_index(kernel: &mut Kernel, caller: &mut Caller<'_>) {
+    if let Err(text) = buffer::advance(caller.memory) {
+        kernel.diagnose(caller, text);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::Desk;
+
+    #[test]
+    fn the_nominal_change_time_is_that_of_the_slowest_axis() {
+        let mut desk = Desk::new();
+        desk.call("DefineCoordSystem", &[0, u32::MAX.into(), u32::MAX.into(), u32::MAX.into()]);
+        let axis = AxisId::new(0).expect("0 is an axis");
+        for (v, a, j, expect) in [(40000.0, 200_000.0, 4e6, 0.482_842_7), (100.0, 1e5, 1e9, 0.001_894_427)] {
+            desk.memory.set_axis(axis, Chan::VEL, v);
+            desk.memory.set_axis(axis, Chan::ACCEL, a);
+            desk.memory.set_axis(axis, Chan::JERK, j);
+            let time = desk.call_f32("GetNominalFROChangeTime", &[]);
+            assert!((time - expect).abs() < 1e-6, "{time}");
+        }
+    }
+
+    #[test]
+    fn a_held_move_resumes_and_a_jog_does_not() {
+        for (name, resumes) in [("Move", true), ("Jog", false)] {
+            let mut desk = Desk::new();
+            desk.call("EnableAxisDest", &[0, 0]);
+            desk.call(name, &[0, 1000.0_f64.to_bits()]);
+            desk.run(1000);
+            desk.call("StopCoordinatedMotion", &[]);
+            assert_eq!(desk.memory.get(CS0_STOPPING_STATE), State::StoppingAxes.number());
+            desk.run(5000);
+            desk.call("UpdateStoppingState", &[]);
+            assert_eq!(desk.memory.get(CS0_STOPPING_STATE), State::AxesStopped.number());
+            desk.call("ResumeCoordinatedMotion", &[]);
+            assert_eq!(desk.memory.get(CS0_STOPPING_STATE), State::Running.number());
+            assert_eq!(desk.call_i32("CheckDone", &[0]), i32::from(!resumes), "{name}");
+        }
+    }
+
+    #[test]
+    fn without_motion_there_is_no_feedhold() {
+        let mut desk = Desk::new();
+        desk.call("StopCoordinatedMotion", &[]);
+        assert_eq!(desk.memory.get(CS0_STOPPING_STATE), State::Running.number());
+        assert_eq!(desk.call_i32("CheckDoneBuf", &[]), -1);
+    }
+}

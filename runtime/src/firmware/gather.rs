@@ -1,0 +1,85 @@
+//! The data recorder's functions. Source: gather-persist-console.md section 1.
+
+use kmotiondef::modes::GatherType;
+use kmotiondef::structs::{Chan, Gather, GatherValueDef};
+use kmotiondef::variables::{GATHER, GATHER_BUFFER};
+use kmotiondef::{AxisId, GuestAddr};
+use vm::firmware::Caller;
+
+use crate::kernel::Kernel;
+use crate::views::{Typed, chan};
+
+/// A place beyond any end: recording is idle.
+const IDLE: GuestAddr = GuestAddr::new(0xFFFF_FFF8);
+/// Bytes of a sample of six doubles.
+const SAMPLE: u32 = 48;
+
+/// Records destination, position, output and three amplifier readings of an axis.
+pub(crate) fn setup_gather_all_on_axis(
+    kernel: &mut Kernel,
+    caller: &mut Caller<'_>,
+    axis: i32,
+    samples: i32,
+) {
+    let Some(axis) = AxisId::new(axis) else {
+        kernel.diagnose(caller, format!("SetupGatherAllOnAxis({axis}, …): there are axes 0 to 7"));
+        return;
+    };
+    let chan = chan(axis);
+    let items = [
+        (GatherType::Double, chan.field(Chan::DEST).address()),
+        (GatherType::Double, chan.field(Chan::POSITION).address()),
+        (GatherType::Float, chan.field(Chan::OUTPUT).address()),
+        // The amplifier's analog words: a board without one reads a word of zeros, and nothing.
+        (GatherType::Adc, GuestAddr::NULL),
+        (GatherType::Null, GuestAddr::NULL),
+        (GatherType::Null, GuestAddr::NULL),
+        (GatherType::End, GuestAddr::NULL),
+    ];
+    for (index, (kind, address)) in items.into_iter().enumerate() {
+        let item = GATHER.field(Gather::LIST.element(index));
+        caller.memory.set(item.field(GatherValueDef::TYPE), kind.get());
+        caller.memory.set(item.field(GatherValueDef::ADDR), address);
+    }
+    let length = SAMPLE.wrapping_mul(samples.max(0) as u32);
+    let end = caller.memory.get(GATHER_BUFFER).offset(length);
+    caller.memory.set(GATHER.field(Gather::BUFPTR), IDLE);
+    caller.memory.set(GATHER.field(Gather::ENDPTR), end);
+    caller.memory.set(GATHER.field(Gather::INJECT), 0);
+}
+
+/// Starts recording at the beginning of the buffer.
+pub(crate) fn trigger_gather(_: &mut Kernel, caller: &mut Caller<'_>) {
+    let start = caller.memory.get(GATHER_BUFFER);
+    caller.memory.set(GATHER.field(Gather::BUFPTR), start);
+}
+
+/// 1 when recording has reached its end.
+pub(crate) fn check_done_gather(_: &mut Kernel, caller: &mut Caller<'_>) -> i32 {
+    let memory = &*caller.memory;
+    i32::from(memory.get(GATHER.field(Gather::BUFPTR)) >= memory.get(GATHER.field(Gather::ENDPTR)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::Desk;
+
+    #[test]
+    fn an_axis_is_recorded_in_six_doubles_a_tick() {
+        // `checks.jsonl`, "SetupGatherAllOnAxis(0,100)": 600 doubles.
+        let mut desk = Desk::new();
+        assert_eq!(desk.call_i32("CheckDoneGather", &[]), 1);
+        desk.call("EnableAxisDest", &[0, 2.5_f64.to_bits()]);
+        desk.call("SetupGatherAllOnAxis", &[0, 100]);
+        desk.call("TriggerGather", &[]);
+        assert_eq!(desk.call_i32("CheckDoneGather", &[]), 0);
+        desk.run(100);
+        assert_eq!(desk.call_i32("CheckDoneGather", &[]), 1);
+        let buffer = desk.memory.get(GATHER_BUFFER);
+        let sample: Vec<f64> = (0..6).map(|index| desk.memory.peek(buffer.offset(8 * index))).collect();
+        assert_eq!(sample, [2.5, 0.0, 2.5, -2048.0, 0.0, 0.0]);
+        let end = desk.memory.get(GATHER.field(Gather::BUFPTR)).get();
+        assert_eq!(end - buffer.get(), 4800);
+    }
+}

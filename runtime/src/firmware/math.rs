@@ -1,0 +1,261 @@
+//! Mathematics, from `libm` so that every host computes the same.
+
+use std::f64::consts::TAU;
+
+use kmotiondef::GuestAddr;
+use vm::firmware::Caller;
+use vm::trap::TrapKind;
+
+use crate::kernel::Kernel;
+
+macro_rules! functions {
+    ($($(#[$doc:meta])+ $name:ident($($x:ident),+) -> $ty:ty = $value:expr;)*) => {$(
+        $(#[$doc])+
+        pub(crate) fn $name(_: &mut Kernel, _: &mut Caller<'_>, $($x: $ty),+) -> $ty {
+            $value
+        }
+    )*};
+}
+
+functions! {
+    /// Square root.
+    sqrt(x) -> f64 = libm::sqrt(x);
+    /// Square root.
+    sqrtf(x) -> f32 = libm::sqrtf(x);
+    /// e to the power x.
+    exp(x) -> f64 = libm::exp(x);
+    /// e to the power x.
+    expf(x) -> f32 = libm::expf(x);
+    /// Natural logarithm.
+    log(x) -> f64 = libm::log(x);
+    /// Natural logarithm.
+    logf(x) -> f32 = libm::logf(x);
+    /// Logarithm to base 10.
+    log10(x) -> f64 = libm::log10(x);
+    /// Logarithm to base 10.
+    log10f(x) -> f32 = libm::log10f(x);
+    /// x to the power y.
+    pow(x, y) -> f64 = libm::pow(x, y);
+    /// x to the power y.
+    powf(x, y) -> f32 = libm::powf(x, y);
+    /// Sine.
+    sin(x) -> f64 = libm::sin(x);
+    /// Sine.
+    sinf(x) -> f32 = libm::sinf(x);
+    /// Cosine.
+    cos(x) -> f64 = libm::cos(x);
+    /// Cosine.
+    cosf(x) -> f32 = libm::cosf(x);
+    /// Tangent.
+    tan(x) -> f64 = libm::tan(x);
+    /// Tangent.
+    tanf(x) -> f32 = libm::tanf(x);
+    /// Arc sine.
+    asin(x) -> f64 = libm::asin(x);
+    /// Arc sine.
+    asinf(x) -> f32 = libm::asinf(x);
+    /// Arc cosine.
+    acos(x) -> f64 = libm::acos(x);
+    /// Arc cosine.
+    acosf(x) -> f32 = libm::acosf(x);
+    /// Arc tangent.
+    atan(x) -> f64 = libm::atan(x);
+    /// Arc tangent.
+    atanf(x) -> f32 = libm::atanf(x);
+    /// Arc tangent of y/x in all four quadrants.
+    atan2(y, x) -> f64 = libm::atan2(y, x);
+    /// Arc tangent of y/x in all four quadrants.
+    atan2f(y, x) -> f32 = libm::atan2f(y, x);
+    /// Absolute value.
+    fast_fabs(x) -> f64 = x.abs();
+    /// Absolute value.
+    fast_fabsf(x) -> f32 = x.abs();
+    /// Absolute value.
+    fabs(x) -> f64 = x.abs();
+    /// Absolute value.
+    fabsf(x) -> f32 = x.abs();
+    /// 2 to the power x.
+    exp2(x) -> f64 = libm::exp2(x);
+    /// 2 to the power x.
+    exp2f(x) -> f32 = libm::exp2f(x);
+    /// 10 to the power x.
+    exp10(x) -> f64 = libm::exp10(x);
+    /// 10 to the power x.
+    exp10f(x) -> f32 = libm::exp10f(x);
+    /// Logarithm to base 2.
+    log2(x) -> f64 = libm::log2(x);
+    /// Logarithm to base 2.
+    log2f(x) -> f32 = libm::log2f(x);
+    /// Largest whole number not above x.
+    floor(x) -> f64 = libm::floor(x);
+    /// Largest whole number not above x.
+    floorf(x) -> f32 = libm::floorf(x);
+    /// Smallest whole number not below x.
+    ceil(x) -> f64 = libm::ceil(x);
+    /// Smallest whole number not below x.
+    ceilf(x) -> f32 = libm::ceilf(x);
+    /// Nearest whole number, halves away from zero.
+    round(x) -> f64 = libm::round(x);
+    /// Nearest whole number, halves away from zero.
+    roundf(x) -> f32 = libm::roundf(x);
+    /// Whole part.
+    trunc(x) -> f64 = libm::trunc(x);
+    /// Whole part.
+    truncf(x) -> f32 = libm::truncf(x);
+    /// Hyperbolic sine.
+    sinh(x) -> f64 = libm::sinh(x);
+    /// Hyperbolic sine.
+    sinhf(x) -> f32 = libm::sinhf(x);
+    /// Hyperbolic cosine.
+    cosh(x) -> f64 = libm::cosh(x);
+    /// Hyperbolic cosine.
+    coshf(x) -> f32 = libm::coshf(x);
+    /// Hyperbolic tangent.
+    tanh(x) -> f64 = libm::tanh(x);
+    /// Hyperbolic tangent.
+    tanhf(x) -> f32 = libm::tanhf(x);
+    /// Remainder of x/y with the sign of x.
+    fmod(x, y) -> f64 = libm::fmod(x, y);
+    /// Remainder of x/y with the sign of x.
+    fmodf(x, y) -> f32 = libm::fmodf(x, y);
+    /// Square root of x² + y².
+    hypot(x, y) -> f64 = libm::hypot(x, y);
+    /// Square root of x² + y².
+    hypotf(x, y) -> f32 = libm::hypotf(x, y);
+    /// Reciprocal of the square root.
+    rsqrt(x) -> f64 = 1.0 / libm::sqrt(x);
+    /// Reciprocal of the square root.
+    rsqrtf(x) -> f32 = 1.0 / libm::sqrtf(x);
+}
+
+/// sin 2πx, and sin(2πx + 2π/3) into `*second`, for commutation.
+pub(crate) fn sine_3ph(
+    _: &mut Kernel,
+    caller: &mut Caller<'_>,
+    x: f32,
+    second: GuestAddr,
+) -> Result<f32, TrapKind> {
+    let sine = |cycles: f64| libm::sin(TAU * cycles) as f32;
+    caller.memory.store(second, sine(f64::from(x) + 1.0 / 3.0))?;
+    Ok(sine(f64::from(x)))
+}
+
+/// The fraction of a number, with its sign.
+pub(crate) fn fractionf(_: &mut Kernel, _: &mut Caller<'_>, v: f64) -> f32 {
+    (v - libm::trunc(v)) as f32
+}
+
+/// The fraction of a number; its whole part into `*whole`.
+pub(crate) fn modf(
+    _: &mut Kernel,
+    caller: &mut Caller<'_>,
+    x: f64,
+    whole: GuestAddr,
+) -> Result<f64, TrapKind> {
+    let (fraction, integer) = libm::modf(x);
+    caller.memory.store(whole, integer)?;
+    Ok(fraction)
+}
+
+/// The fraction of a number; its whole part into `*whole`.
+pub(crate) fn modff(
+    _: &mut Kernel,
+    caller: &mut Caller<'_>,
+    x: f32,
+    whole: GuestAddr,
+) -> Result<f32, TrapKind> {
+    let (fraction, integer) = libm::modff(x);
+    caller.memory.store(whole, integer)?;
+    Ok(fraction)
+}
+
+/// Mantissa in [0.5, 1); the exponent into `*exponent`.
+pub(crate) fn frexp(
+    _: &mut Kernel,
+    caller: &mut Caller<'_>,
+    x: f64,
+    exponent: GuestAddr,
+) -> Result<f64, TrapKind> {
+    let (mantissa, power) = libm::frexp(x);
+    caller.memory.store(exponent, power)?;
+    Ok(mantissa)
+}
+
+/// Mantissa in [0.5, 1); the exponent into `*exponent`.
+pub(crate) fn frexpf(
+    _: &mut Kernel,
+    caller: &mut Caller<'_>,
+    x: f32,
+    exponent: GuestAddr,
+) -> Result<f32, TrapKind> {
+    let (mantissa, power) = libm::frexpf(x);
+    caller.memory.store(exponent, power)?;
+    Ok(mantissa)
+}
+
+/// x·2ⁿ.
+pub(crate) fn ldexp(_: &mut Kernel, _: &mut Caller<'_>, x: f64, n: i32) -> f64 {
+    libm::ldexp(x, n)
+}
+
+/// x·2ⁿ.
+pub(crate) fn ldexpf(_: &mut Kernel, _: &mut Caller<'_>, x: f32, n: i32) -> f32 {
+    libm::ldexpf(x, n)
+}
+
+/// Quotient of two ints.
+pub(crate) fn divi(_: &mut Kernel, _: &mut Caller<'_>, a: i32, b: i32) -> Result<i32, TrapKind> {
+    if b == 0 { Err(TrapKind::DivisionByZero) } else { Ok(a.wrapping_div(b)) }
+}
+
+/// Quotient of two unsigned ints.
+pub(crate) fn divu(_: &mut Kernel, _: &mut Caller<'_>, a: u32, b: u32) -> Result<u32, TrapKind> {
+    a.checked_div(b).ok_or(TrapKind::DivisionByZero)
+}
+
+/// Remainder of two ints.
+pub(crate) fn remi(_: &mut Kernel, _: &mut Caller<'_>, a: i32, b: i32) -> Result<i32, TrapKind> {
+    if b == 0 { Err(TrapKind::DivisionByZero) } else { Ok(a.wrapping_rem(b)) }
+}
+
+/// Remainder of two unsigned ints.
+pub(crate) fn remu(_: &mut Kernel, _: &mut Caller<'_>, a: u32, b: u32) -> Result<u32, TrapKind> {
+    a.checked_rem(b).ok_or(TrapKind::DivisionByZero)
+}
+
+/// Quotient of two floats.
+pub(crate) fn divf(_: &mut Kernel, _: &mut Caller<'_>, a: f32, b: f32) -> f32 {
+    a / b
+}
+
+/// Quotient of two doubles.
+pub(crate) fn divd(_: &mut Kernel, _: &mut Caller<'_>, a: f64, b: f64) -> f64 {
+    a / b
+}
+
+#[cfg(test)]
+mod tests {
+    use kmotiondef::variables::PERSIST;
+
+    use crate::testing::Desk;
+
+    #[test]
+    fn the_fraction_keeps_its_sign() {
+        let mut desk = Desk::new();
+        for (v, expect) in [(-1.25, -0.25), (2.75, 0.75), (-0.25, -0.25), (5.0, 0.0)] {
+            assert_eq!(desk.call_f32("fractionf", &[f64::to_bits(v)]), expect);
+        }
+    }
+
+    #[test]
+    fn the_second_phase_is_a_third_of_a_cycle_ahead() {
+        let mut desk = Desk::new();
+        let address = PERSIST.address();
+        let first = desk.call_f32("Sine3PH", &[u64::from(0.1_f32.to_bits()), address.get().into()]);
+        let second: f32 = desk.memory.peek(address);
+        assert!(
+            (first - 0.587_785_2).abs() < 1e-6 && (second - 0.406_736_9).abs() < 1e-6,
+            "{first} {second}"
+        );
+    }
+}

@@ -1,0 +1,26 @@
+//! The firmware functions, one file a group, named as in the table.
+
+pub(crate) mod console;
+pub(crate) mod coord;
+mod files;
+pub(crate) mod gather;
+pub(crate) mod io;
+pub(crate) mod konnect;
+pub(crate) mod math;
+pub(crate) mod motion;
+pub(crate) mod persist;
+pub(crate) mod serial;
+pub(crate) mod snapamp;
+pub(crate) mod spindle;
+pub(crate) mod stdlib;
+pub(crate) mod string;
+pub(crate) mod sync;
+pub(crate) mod thread;
+pub(crate) mod time;
+
+use vm::trap::TrapKind;
+
+/// Marks a function that links but whose behaviour is still to come: calling it is a trap, never silently nothing.
+pub(crate) fn not_modelled<T>(name: &'static str) -> Result<T, TrapKind> {
+    Err(TrapKind::NotModelled { name })
+}

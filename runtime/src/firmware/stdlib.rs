@@ -1,0 +1,257 @@
+//! The rest of the C library: heap, numbers in text, random numbers, ending.
+
+use kmotiondef::GuestAddr;
+use vm::firmware::{Caller, Outcome};
+use vm::trap::TrapKind;
+
+use super::not_modelled;
+use super::string::text;
+use crate::kernel::Kernel;
+use crate::text::{float_prefix, integer_prefix};
+
+/// Alignment of an ordinary block.
+const ALIGNMENT: u32 = 8;
+
+pub(crate) fn malloc(kernel: &mut Kernel, _: &mut Caller<'_>, size: u32) -> GuestAddr {
+    kernel.heap.take(size, ALIGNMENT).unwrap_or_default()
+}
+
+pub(crate) fn calloc(
+    kernel: &mut Kernel,
+    caller: &mut Caller<'_>,
+    count: u32,
+    size: u32,
+) -> Result<GuestAddr, TrapKind> {
+    let Some((bytes, block)) =
+        count.checked_mul(size).and_then(|bytes| Some((bytes, kernel.heap.take(bytes, ALIGNMENT)?)))
+    else {
+        return Ok(GuestAddr::NULL);
+    };
+    caller.memory.fill(block, 0, bytes)?;
+    Ok(block)
+}
+
+pub(crate) fn memalign(kernel: &mut Kernel, _: &mut Caller<'_>, alignment: u32, size: u32) -> GuestAddr {
+    if alignment.is_power_of_two() {
+        kernel.heap.take(size, alignment).unwrap_or_default()
+    } else {
+        GuestAddr::NULL
+    }
+}
+
+pub(crate) fn realloc(
+    kernel: &mut Kernel,
+    caller: &mut Caller<'_>,
+    block: GuestAddr,
+    size: u32,
+) -> Result<GuestAddr, TrapKind> {
+    let Some(new) = kernel.heap.take(size, ALIGNMENT) else {
+        return Ok(GuestAddr::NULL);
+    };
+    if let Some(old_size) = kernel.heap.size(block) {
+        caller.memory.copy(new, block, old_size.min(size))?;
+        kernel.heap.give(block);
+    }
+    Ok(new)
+}
+
+pub(crate) fn free(kernel: &mut Kernel, caller: &mut Caller<'_>, block: GuestAddr) {
+    if !block.is_null() && !kernel.heap.give(block) {
+        kernel.diagnose(caller, format!("free({block}): no block of the heap starts there"));
+    }
+}
+
+/// The generator of the C standard's example; the board's is not known.
+pub(crate) fn rand(kernel: &mut Kernel, _: &mut Caller<'_>) -> i32 {
+    kernel.random = kernel.random.wrapping_mul(1_103_515_245).wrapping_add(12_345);
+    (kernel.random >> 16 & 0x7fff) as i32
+}
+
+pub(crate) fn srand(kernel: &mut Kernel, _: &mut Caller<'_>, seed: u32) {
+    kernel.random = seed;
+}
+
+/// Bytes of white space in front of a number.
+fn blanks(text: &[u8]) -> usize {
+    text.iter().take_while(|byte| byte.is_ascii_whitespace()).count()
+}
+
+/// An integer in text, and where it ends.
+fn integer(caller: &mut Caller<'_>, string: GuestAddr, base: u32) -> Result<(i64, GuestAddr), TrapKind> {
+    let text = text(caller, string)?;
+    let start = blanks(&text);
+    let (value, used) = integer_prefix(&text[start..], base);
+    let end = if used == 0 { 0 } else { start + used };
+    Ok((value, string.offset(end as u32)))
+}
+
+/// A double in text, and where it ends.
+fn float(caller: &mut Caller<'_>, string: GuestAddr) -> Result<(f64, GuestAddr), TrapKind> {
+    let text = text(caller, string)?;
+    let start = blanks(&text);
+    let (value, used) = float_prefix(&text[start..]);
+    let end = if used == 0 { 0 } else { start + used };
+    Ok((value, string.offset(end as u32)))
+}
+
+/// Stores the end of a number where the program wants it.
+fn store_end(caller: &mut Caller<'_>, place: GuestAddr, end: GuestAddr) -> Result<(), TrapKind> {
+    if place.is_null() { Ok(()) } else { caller.memory.store(place, end.get()) }
+}
+
+pub(crate) fn atoi(_: &mut Kernel, caller: &mut Caller<'_>, string: GuestAddr) -> Result<i32, TrapKind> {
+    Ok(integer(caller, string, 10)?.0 as i32)
+}
+
+pub(crate) fn atol(kernel: &mut Kernel, caller: &mut Caller<'_>, string: GuestAddr) -> Result<i32, TrapKind> {
+    atoi(kernel, caller, string)
+}
+
+pub(crate) fn atof(_: &mut Kernel, caller: &mut Caller<'_>, string: GuestAddr) -> Result<f64, TrapKind> {
+    Ok(float(caller, string)?.0)
+}
+
+pub(crate) fn strtol(
+    _: &mut Kernel,
+    caller: &mut Caller<'_>,
+    string: GuestAddr,
+    end: GuestAddr,
+    base: i32,
+) -> Result<i32, TrapKind> {
+    let base = u32::try_from(base).ok().filter(|&base| base == 0 || (2..=36).contains(&base));
+    let (value, stopped) = integer(caller, string, base.unwrap_or(10))?;
+    store_end(caller, end, stopped)?;
+    Ok(value as i32)
+}
+
+pub(crate) fn strtoul(
+    kernel: &mut Kernel,
+    caller: &mut Caller<'_>,
+    string: GuestAddr,
+    end: GuestAddr,
+    base: i32,
+) -> Result<u32, TrapKind> {
+    Ok(strtol(kernel, caller, string, end, base)? as u32)
+}
+
+pub(crate) fn strtod(
+    _: &mut Kernel,
+    caller: &mut Caller<'_>,
+    string: GuestAddr,
+    end: GuestAddr,
+) -> Result<f64, TrapKind> {
+    let (value, stopped) = float(caller, string)?;
+    store_end(caller, end, stopped)?;
+    Ok(value)
+}
+
+pub(crate) fn strtold(
+    kernel: &mut Kernel,
+    caller: &mut Caller<'_>,
+    string: GuestAddr,
+    end: GuestAddr,
+) -> Result<f64, TrapKind> {
+    strtod(kernel, caller, string, end)
+}
+
+/// Decimal text of an integer; returns its length.
+pub(crate) fn ltoa(
+    _: &mut Kernel,
+    caller: &mut Caller<'_>,
+    value: i32,
+    buffer: GuestAddr,
+) -> Result<i32, TrapKind> {
+    let text = format!("{value}\0");
+    caller.memory.write_bytes(buffer, text.as_bytes())?;
+    Ok(text.len() as i32 - 1)
+}
+
+pub(crate) fn ecvt(
+    _: &mut Kernel,
+    _: &mut Caller<'_>,
+    _: f64,
+    _: i32,
+    _: GuestAddr,
+    _: GuestAddr,
+) -> Result<GuestAddr, TrapKind> {
+    not_modelled("ecvt")
+}
+
+pub(crate) fn fcvt(
+    _: &mut Kernel,
+    _: &mut Caller<'_>,
+    _: f64,
+    _: i32,
+    _: GuestAddr,
+    _: GuestAddr,
+) -> Result<GuestAddr, TrapKind> {
+    not_modelled("fcvt")
+}
+
+pub(crate) fn atexit(_: &mut Kernel, _: &mut Caller<'_>, _: GuestAddr) -> Result<i32, TrapKind> {
+    not_modelled("atexit")
+}
+
+/// Ends the calling thread.
+pub(crate) fn exit(_: &mut Kernel, _: &mut Caller<'_>, _: i32) -> Outcome<()> {
+    Outcome::End
+}
+
+/// Ends the calling thread.
+pub(crate) fn abort(_: &mut Kernel, _: &mut Caller<'_>) -> Outcome<()> {
+    Outcome::End
+}
+
+pub(crate) fn abs(_: &mut Kernel, _: &mut Caller<'_>, x: i32) -> i32 {
+    x.wrapping_abs()
+}
+
+pub(crate) fn labs(_: &mut Kernel, _: &mut Caller<'_>, x: i32) -> i32 {
+    x.wrapping_abs()
+}
+
+pub(crate) fn qsort(
+    _: &mut Kernel,
+    _: &mut Caller<'_>,
+    _: GuestAddr,
+    _: u32,
+    _: u32,
+    _: GuestAddr,
+) -> Result<(), TrapKind> {
+    not_modelled("qsort")
+}
+
+pub(crate) fn bsearch(
+    _: &mut Kernel,
+    _: &mut Caller<'_>,
+    _: GuestAddr,
+    _: GuestAddr,
+    _: u32,
+    _: u32,
+    _: GuestAddr,
+) -> Result<GuestAddr, TrapKind> {
+    not_modelled("bsearch")
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::testing::Desk;
+
+    #[test]
+    fn numbers_end_where_they_end() {
+        let mut desk = Desk::new();
+        let (string, end) = (desk.put_text(0, b" 0x1fz"), desk.put_text(64, b"...."));
+        assert_eq!(desk.call_i32("strtol", &[string, end, 16]), 31);
+        assert_eq!(desk.memory.peek::<u32>(kmotiondef::GuestAddr::new(end as u32)), string as u32 + 5);
+        assert_eq!(desk.call_i32("atoi", &[string]), 0);
+    }
+
+    #[test]
+    fn a_block_keeps_its_bytes_when_it_grows() {
+        let mut desk = Desk::new();
+        let block = desk.call_i32("malloc", &[8]) as u32;
+        desk.memory.poke(kmotiondef::GuestAddr::new(block), 0x1234_5678_u32);
+        let grown = desk.call_i32("realloc", &[u64::from(block), 100]) as u32;
+        assert_eq!(desk.memory.peek::<u32>(kmotiondef::GuestAddr::new(grown)), 0x1234_5678);
+    }
+}

@@ -1,0 +1,338 @@
+//! Strings, blocks of memory and characters, as in standard C.
+//!
+//! Each function reads what C would read and traps where it leaves mapped memory. Copies cost a cycle for each byte
+//! beyond the call's own cost.
+
+use kmotiondef::{Cycles, GuestAddr};
+use vm::firmware::Caller;
+use vm::trap::TrapKind;
+
+use crate::kernel::Kernel;
+
+/// Longest string that is read: all of SDRAM.
+const LONGEST: u32 = 0x100_0000;
+
+type Text = Result<Vec<u8>, TrapKind>;
+type Place = Result<GuestAddr, TrapKind>;
+
+/// The string at an address, without its terminator; its length is charged.
+pub(crate) fn text(caller: &mut Caller<'_>, address: GuestAddr) -> Text {
+    let text = caller.memory.read_c_string(address, LONGEST)?;
+    caller.spend(Cycles::new(text.len() as i64));
+    Ok(text)
+}
+
+/// At most `limit` characters of a string.
+fn text_up_to(caller: &mut Caller<'_>, address: GuestAddr, limit: u32) -> Text {
+    let text = caller.memory.read_c_string(address, limit)?;
+    caller.spend(Cycles::new(text.len() as i64));
+    Ok(text)
+}
+
+/// A block of memory.
+fn block(caller: &mut Caller<'_>, address: GuestAddr, length: u32) -> Text {
+    caller.spend(Cycles::new(i64::from(length)));
+    Ok(caller.memory.read_bytes(address, length)?.to_vec())
+}
+
+/// Writes a string and its terminator.
+fn write_text(caller: &mut Caller<'_>, address: GuestAddr, mut text: Vec<u8>) -> Result<(), TrapKind> {
+    text.push(0);
+    caller.memory.write_bytes(address, &text)
+}
+
+/// The address of a found index, or null.
+fn found(start: GuestAddr, index: Option<usize>) -> GuestAddr {
+    index.map_or(GuestAddr::NULL, |index| start.offset(index as u32))
+}
+
+/// −1, 0 or 1.
+fn order<T: Ord>(a: &T, b: &T) -> i32 {
+    a.cmp(b) as i32
+}
+
+pub(crate) fn memcpy(
+    _: &mut Kernel,
+    caller: &mut Caller<'_>,
+    to: GuestAddr,
+    from: GuestAddr,
+    length: u32,
+) -> Place {
+    caller.spend(Cycles::new(i64::from(length)));
+    caller.memory.copy(to, from, length)?;
+    Ok(to)
+}
+
+pub(crate) fn memmove(
+    kernel: &mut Kernel,
+    caller: &mut Caller<'_>,
+    to: GuestAddr,
+    from: GuestAddr,
+    length: u32,
+) -> Place {
+    memcpy(kernel, caller, to, from, length)
+}
+
+pub(crate) fn memset(
+    _: &mut Kernel,
+    caller: &mut Caller<'_>,
+    to: GuestAddr,
+    byte: i32,
+    length: u32,
+) -> Place {
+    caller.spend(Cycles::new(i64::from(length)));
+    caller.memory.fill(to, byte as u8, length)?;
+    Ok(to)
+}
+
+pub(crate) fn memccpy(
+    _: &mut Kernel,
+    caller: &mut Caller<'_>,
+    to: GuestAddr,
+    from: GuestAddr,
+    byte: i32,
+    length: i32,
+) -> Place {
+    for index in 0..u32::try_from(length).unwrap_or(0) {
+        let copied: u8 = caller.memory.load(from.offset(index))?;
+        caller.memory.store(to.offset(index), copied)?;
+        if copied == byte as u8 {
+            return Ok(to.offset(index + 1));
+        }
+    }
+    Ok(GuestAddr::NULL)
+}
+
+pub(crate) fn memcmp(
+    _: &mut Kernel,
+    caller: &mut Caller<'_>,
+    a: GuestAddr,
+    b: GuestAddr,
+    length: u32,
+) -> Result<i32, TrapKind> {
+    Ok(order(&block(caller, a, length)?, &block(caller, b, length)?))
+}
+
+pub(crate) fn memchr(
+    _: &mut Kernel,
+    caller: &mut Caller<'_>,
+    start: GuestAddr,
+    byte: i32,
+    length: u32,
+) -> Place {
+    let block = block(caller, start, length)?;
+    Ok(found(start, block.iter().position(|&found| found == byte as u8)))
+}
+
+pub(crate) fn strlen(_: &mut Kernel, caller: &mut Caller<'_>, string: GuestAddr) -> Result<u32, TrapKind> {
+    Ok(text(caller, string)?.len() as u32)
+}
+
+pub(crate) fn strcpy(_: &mut Kernel, caller: &mut Caller<'_>, to: GuestAddr, from: GuestAddr) -> Place {
+    let text = text(caller, from)?;
+    write_text(caller, to, text)?;
+    Ok(to)
+}
+
+pub(crate) fn strncpy(
+    _: &mut Kernel,
+    caller: &mut Caller<'_>,
+    to: GuestAddr,
+    from: GuestAddr,
+    limit: u32,
+) -> Place {
+    let mut text = text_up_to(caller, from, limit)?;
+    let copied = text.len() as u32;
+    text.truncate(limit as usize);
+    caller.memory.write_bytes(to, &text)?;
+    caller.memory.fill(to.offset(copied), 0, limit - copied)?;
+    Ok(to)
+}
+
+pub(crate) fn strcat(_: &mut Kernel, caller: &mut Caller<'_>, to: GuestAddr, from: GuestAddr) -> Place {
+    let (end, text) = (text(caller, to)?.len() as u32, text(caller, from)?);
+    write_text(caller, to.offset(end), text)?;
+    Ok(to)
+}
+
+pub(crate) fn strncat(
+    _: &mut Kernel,
+    caller: &mut Caller<'_>,
+    to: GuestAddr,
+    from: GuestAddr,
+    limit: u32,
+) -> Place {
+    let end = text(caller, to)?.len() as u32;
+    let text = text_up_to(caller, from, limit)?;
+    write_text(caller, to.offset(end), text)?;
+    Ok(to)
+}
+
+pub(crate) fn strcmp(
+    _: &mut Kernel,
+    caller: &mut Caller<'_>,
+    a: GuestAddr,
+    b: GuestAddr,
+) -> Result<i32, TrapKind> {
+    Ok(order(&text(caller, a)?, &text(caller, b)?))
+}
+
+pub(crate) fn strncmp(
+    _: &mut Kernel,
+    caller: &mut Caller<'_>,
+    a: GuestAddr,
+    b: GuestAddr,
+    limit: u32,
+) -> Result<i32, TrapKind> {
+    Ok(order(&text_up_to(caller, a, limit)?, &text_up_to(caller, b, limit)?))
+}
+
+pub(crate) fn strchr(_: &mut Kernel, caller: &mut Caller<'_>, string: GuestAddr, byte: i32) -> Place {
+    let mut text = text(caller, string)?;
+    text.push(0);
+    Ok(found(string, text.iter().position(|&found| found == byte as u8)))
+}
+
+pub(crate) fn strrchr(_: &mut Kernel, caller: &mut Caller<'_>, string: GuestAddr, byte: i32) -> Place {
+    let mut text = text(caller, string)?;
+    text.push(0);
+    Ok(found(string, text.iter().rposition(|&found| found == byte as u8)))
+}
+
+pub(crate) fn strstr(_: &mut Kernel, caller: &mut Caller<'_>, string: GuestAddr, wanted: GuestAddr) -> Place {
+    let (string_text, wanted) = (text(caller, string)?, text(caller, wanted)?);
+    if wanted.is_empty() {
+        return Ok(string);
+    }
+    Ok(found(string, string_text.windows(wanted.len()).position(|window| window == wanted)))
+}
+
+pub(crate) fn strspn(
+    _: &mut Kernel,
+    caller: &mut Caller<'_>,
+    string: GuestAddr,
+    set: GuestAddr,
+) -> Result<u32, TrapKind> {
+    let (text, set) = (text(caller, string)?, text(caller, set)?);
+    Ok(text.iter().take_while(|byte| set.contains(byte)).count() as u32)
+}
+
+pub(crate) fn strcspn(
+    _: &mut Kernel,
+    caller: &mut Caller<'_>,
+    string: GuestAddr,
+    set: GuestAddr,
+) -> Result<u32, TrapKind> {
+    let (text, set) = (text(caller, string)?, text(caller, set)?);
+    Ok(text.iter().take_while(|byte| !set.contains(byte)).count() as u32)
+}
+
+pub(crate) fn strpbrk(_: &mut Kernel, caller: &mut Caller<'_>, string: GuestAddr, set: GuestAddr) -> Place {
+    let (text, set) = (text(caller, string)?, text(caller, set)?);
+    Ok(found(string, text.iter().position(|byte| set.contains(byte))))
+}
+
+/// The next token; the place to go on is the board's, shared by all threads as the C library has it.
+pub(crate) fn strtok(
+    kernel: &mut Kernel,
+    caller: &mut Caller<'_>,
+    string: GuestAddr,
+    separators: GuestAddr,
+) -> Place {
+    let start = if string.is_null() { kernel.token } else { string };
+    if start.is_null() {
+        return Ok(GuestAddr::NULL);
+    }
+    let (text, separators) = (text(caller, start)?, text(caller, separators)?);
+    let Some(first) = text.iter().position(|byte| !separators.contains(byte)) else {
+        kernel.token = GuestAddr::NULL;
+        return Ok(GuestAddr::NULL);
+    };
+    let length = text[first..].iter().take_while(|byte| !separators.contains(byte)).count();
+    let end = start.offset((first + length) as u32);
+    kernel.token = if first + length == text.len() { GuestAddr::NULL } else { end.offset(1) };
+    caller.memory.store(end, 0_u8)?;
+    Ok(start.offset(first as u32))
+}
+
+macro_rules! characters {
+    ($($(#[$doc:meta])+ $name:ident = $test:expr;)*) => {$(
+        $(#[$doc])+
+        pub(crate) fn $name(_: &mut Kernel, _: &mut Caller<'_>, character: i32) -> i32 {
+            let test: fn(&u8) -> bool = $test;
+            u8::try_from(character).map_or(0, |byte| i32::from(test(&byte)))
+        }
+    )*};
+}
+
+characters! {
+    /// White space, the vertical tab included.
+    isspace = |byte| byte.is_ascii_whitespace() || *byte == 0x0b;
+    /// Digits.
+    isdigit = u8::is_ascii_digit;
+    /// Letters.
+    isalpha = u8::is_ascii_alphabetic;
+    /// Letters and digits.
+    isalnum = u8::is_ascii_alphanumeric;
+    /// Upper-case letters.
+    isupper = u8::is_ascii_uppercase;
+    /// Lower-case letters.
+    islower = u8::is_ascii_lowercase;
+    /// Hexadecimal digits.
+    isxdigit = u8::is_ascii_hexdigit;
+    /// Printing characters that are neither space, letter nor digit.
+    ispunct = u8::is_ascii_punctuation;
+    /// Printing characters, the space among them.
+    isprint = |byte| (0x20..0x7f).contains(byte);
+    /// Control characters.
+    iscntrl = u8::is_ascii_control;
+    /// Printing characters without the space.
+    isgraph = u8::is_ascii_graphic;
+}
+
+pub(crate) fn toupper(_: &mut Kernel, _: &mut Caller<'_>, character: i32) -> i32 {
+    u8::try_from(character).map_or(character, |byte| i32::from(byte.to_ascii_uppercase()))
+}
+
+pub(crate) fn tolower(_: &mut Kernel, _: &mut Caller<'_>, character: i32) -> i32 {
+    u8::try_from(character).map_or(character, |byte| i32::from(byte.to_ascii_lowercase()))
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::testing::Desk;
+
+    #[test]
+    fn tokens_follow_one_another() {
+        let mut desk = Desk::new();
+        let (string, separators) = (desk.put_text(0, b",a,,bc,"), desk.put_text(64, b","));
+        let mut tokens = Vec::new();
+        let mut start = string;
+        loop {
+            let token = desk.call_i32("strtok", &[start, separators]) as u32;
+            if token == 0 {
+                break;
+            }
+            tokens.push(desk.text_at(token));
+            start = 0;
+        }
+        assert_eq!(tokens, ["a", "bc"]);
+    }
+
+    #[test]
+    fn strncpy_fills_up_with_zeros() {
+        let mut desk = Desk::new();
+        let (to, from) = (desk.put_text(0, b"xxxxxx"), desk.put_text(64, b"ab"));
+        desk.call_i32("strncpy", &[to, from, 4]);
+        assert_eq!(desk.bytes_at(to as u32, 6), b"ab\0\0xx");
+    }
+
+    #[test]
+    fn comparisons_have_a_sign() {
+        let mut desk = Desk::new();
+        let (a, b) = (desk.put_text(0, b"abc"), desk.put_text(64, b"abd"));
+        assert_eq!(desk.call_i32("strcmp", &[a, b]), -1);
+        assert_eq!(desk.call_i32("strncmp", &[a, b, 2]), 0);
+        assert_eq!(desk.call_i32("memcmp", &[b, a, 3]), 1);
+    }
+}

@@ -1,0 +1,79 @@
+//! Time and waiting. Source: threads-and-time.md section 3.
+
+use kmotiondef::Cycles;
+use kmotiondef::limits::{CLOCKFREQ, TIMEBASE};
+use kmotiondef::variables::{LAST_TIMER0, SERVO_TICK};
+use vm::firmware::{Caller, Outcome, Wake};
+
+use crate::device::timer;
+use crate::kernel::Kernel;
+use crate::views::Typed;
+
+/// Cycles of one second, as a double.
+const CYCLES_PER_SECOND: f64 = Cycles::PER_SECOND.get() as f64;
+
+/// Seconds since power-up, to 20 ns.
+pub(crate) fn time_sec(_: &mut Kernel, caller: &mut Caller<'_>) -> f64 {
+    seconds(caller)
+}
+
+/// What `Time_sec` computes from the variables that programs see.
+fn seconds(caller: &Caller<'_>) -> f64 {
+    let since = timer::count(caller.now()).wrapping_sub(caller.memory.get(LAST_TIMER0));
+    caller.memory.get(SERVO_TICK) * TIMEBASE + f64::from(since) / CLOCKFREQ
+}
+
+/// Waits until a time.
+pub(crate) fn wait_until(kernel: &mut Kernel, caller: &mut Caller<'_>, time: f64) -> Outcome<()> {
+    let remaining = time - seconds(caller);
+    delay_sec(kernel, caller, remaining)
+}
+
+/// Waits so many seconds. The call-back cannot wait: it spends the time.
+pub(crate) fn delay_sec(_: &mut Kernel, caller: &mut Caller<'_>, seconds: f64) -> Outcome<()> {
+    if caller.woken.is_some() || seconds.is_nan() || seconds <= 0.0 {
+        return Outcome::Done(());
+    }
+    let cycles = Cycles::new(libm::ceil(seconds * CYCLES_PER_SECOND) as i64);
+    if caller.thread.is_none() && cycles < Cycles::PER_TICK {
+        caller.spend(cycles);
+        return Outcome::Done(());
+    }
+    Outcome::Wait(Wake::At(caller.now() + cycles))
+}
+
+/// Waits for the caller's next slice and returns its time.
+pub(crate) fn wait_next_time_slice(_: &mut Kernel, caller: &mut Caller<'_>) -> Outcome<f64> {
+    match caller.woken {
+        Some(_) => Outcome::Done(seconds(caller)),
+        None => Outcome::Wait(Wake::NextSlice),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::Desk;
+
+    #[test]
+    fn time_counts_from_the_tick() {
+        let mut desk = Desk::new();
+        desk.memory.set(SERVO_TICK, 1000.0);
+        desk.set_now(Cycles::new(1000 * 18_000 + 9_000));
+        desk.memory.set(LAST_TIMER0, 1000 * 4_500);
+        let now = desk.call_f64("Time_sec", &[]);
+        // The call itself costs 100 ns.
+        assert!((now - (0.09 + 45e-6 + 1e-7)).abs() < 1e-12, "{now}");
+    }
+
+    #[test]
+    fn no_time_and_time_past_return_at_once() {
+        let mut desk = Desk::new();
+        for seconds in [0.0, -1.0, f64::NAN] {
+            assert!(desk.is_done("Delay_sec", &[seconds.to_bits()]));
+            assert!(desk.is_done("WaitUntil", &[seconds.to_bits()]));
+        }
+        assert!(!desk.is_done("Delay_sec", &[1e-6_f64.to_bits()]));
+        assert!(!desk.is_done("WaitNextTimeSlice", &[]));
+    }
+}

@@ -1,0 +1,323 @@
+//! The minimal PC: polls the board's status and answers what programs ask for.
+//!
+//! Source: gather-persist-console.md sections 7 and 8. A program stores parameters in `UserData[101]` and on, then a
+//! code in `UserData[100]`, and waits until that is no longer positive.
+
+use std::collections::BTreeMap;
+
+use kmotiondef::limits::{N_USER_DATA_VARS, PC_COMM_PERSIST};
+use kmotiondef::structs::Persist;
+use kmotiondef::variables::{COORD_SYSTEM0, GATHER_BUFFER, HOST_STATUS, PERSIST, STATUS_REQUEST_COUNTER};
+use kmotiondef::{GuestAddr, Place, ThreadId};
+use vm::firmware::TickContext;
+use vm::memory::GuestMemory;
+
+use crate::event::EventKind;
+use crate::firmware::coord;
+use crate::kernel::Kernel;
+use crate::views::Typed;
+
+/// Ticks between two polls: 0.1 s.
+const POLL_TICKS: u64 = 1111;
+/// Longest string the PC reads, in words.
+const STRING_WORDS: u32 = 50;
+/// Success.
+const DONE: i32 = 0;
+/// The request cannot be met.
+const INVALID: i32 = -1;
+/// A tool that does not exist.
+const BAD_TOOL: i32 = -2;
+/// Tools of the table.
+const TOOLS: i32 = 100;
+/// Counts per inch of an axis, as the PC is set up.
+const RESOLUTION: f32 = 1000.0;
+
+/// What the PC keeps.
+#[derive(Clone, Debug)]
+pub(crate) struct Host {
+    /// Whether there is a PC at all.
+    is_connected: bool,
+    /// Ticks until it polls.
+    until_poll: u64,
+    variables: BTreeMap<i32, f64>,
+    tools: BTreeMap<(i32, i32), f64>,
+    dros: [f64; 6],
+    jog_overrides: [f32; 6],
+}
+
+impl Default for Host {
+    fn default() -> Self {
+        Self {
+            is_connected: true,
+            until_poll: POLL_TICKS,
+            variables: BTreeMap::new(),
+            tools: BTreeMap::new(),
+            dros: [0.0; 6],
+            jog_overrides: [1.0; 6],
+        }
+    }
+}
+
+impl Host {
+    /// Connects or removes the PC.
+    pub(crate) fn connect(&mut self, is_connected: bool) {
+        self.is_connected = is_connected;
+    }
+
+    /// Whether a program waits for an answer that will come.
+    pub(crate) fn is_asked(&self, memory: &GuestMemory) -> bool {
+        self.is_connected && memory.get(data(0)) > 0
+    }
+
+    /// How many ticks it leaves the board alone.
+    pub(crate) fn quiet_ticks(&self) -> u64 {
+        if self.is_connected { self.until_poll.saturating_sub(2) } else { u64::MAX }
+    }
+
+    /// So many ticks have passed at once.
+    pub(crate) fn skip(&mut self, ticks: u64) {
+        self.until_poll = self.until_poll.saturating_sub(ticks);
+    }
+
+    /// One tick has passed.
+    pub(crate) fn tick(&mut self) {
+        self.until_poll = self.until_poll.saturating_sub(1);
+    }
+}
+
+/// An element of `UserData`, counted from the request's.
+fn data(offset: usize) -> Place<i32> {
+    PERSIST.field(Persist::USER_DATA).element(PC_COMM_PERSIST + offset)
+}
+
+/// An element of `UserData` that a parameter names.
+fn named(index: i32, count: usize) -> Option<GuestAddr> {
+    let index = usize::try_from(index).ok().filter(|index| index + count <= N_USER_DATA_VARS)?;
+    Some(PERSIST.field(Persist::USER_DATA).element(index).address())
+}
+
+/// Doubles in `UserData`, by their index as such.
+fn doubles(index: i32, count: usize) -> Option<GuestAddr> {
+    named(index.checked_mul(2)?, count.checked_mul(2)?)
+}
+
+/// What the PC does while the primary thread has its slice.
+pub(crate) fn slice(kernel: &mut Kernel, context: &mut TickContext<'_>) {
+    if !kernel.host.is_connected || kernel.host.until_poll > 0 {
+        return;
+    }
+    kernel.host.until_poll = POLL_TICKS;
+    let polls = context.memory.get(STATUS_REQUEST_COUNTER).wrapping_add(1);
+    context.memory.set(STATUS_REQUEST_COUNTER, polls);
+    coord::update_state(context.memory);
+    let code = context.memory.get(data(0));
+    if code > 0 {
+        let answer = answer(kernel, context, code);
+        context.memory.set(data(0), answer);
+        kernel.disturb();
+    }
+}
+
+/// Meets a request; what it stores comes before the answer.
+fn answer(kernel: &mut Kernel, context: &mut TickContext<'_>, code: i32) -> i32 {
+    let parameters: [i32; 3] = std::array::from_fn(|index| context.memory.get(data(index + 1)));
+    let number = f32::from_bits(parameters[0] as u32);
+    match code {
+        1 => emergency_stop(context),
+        2 => set_job(context.memory, false),
+        5 if !(0.001..=1000.0).contains(&number) => return INVALID,
+        5 | 6 | 21 | 22 | 54 | 55 => say(kernel, context, format!("override request {code}: {number}")),
+        7..=12 => kernel.host.dros[code as usize - 7] = f64::from(number),
+        13 | 14 => say(kernel, context, format!("request {code}: {}", parameters[0])),
+        15 => message_box(kernel, context, parameters),
+        16 | 17 => return variables(kernel, context.memory, code == 17, parameters),
+        18 => {
+            let line = string(context.memory, parameters[0]);
+            say(kernel, context, format!("MDI: {line}"));
+            context.memory.set(data(2), 0);
+        }
+        19 => return store_floats(context.memory, parameters[0], &[RESOLUTION; 6]),
+        23 | 24 | 30..=35 => return tool(kernel, context.memory, code, parameters),
+        25 => return store_words(context.memory, parameters[0], &[1, 1, 1, 1]),
+        26 | 27 => return store_doubles(context.memory, parameters[0], &kernel.host.dros),
+        29 => {
+            let prompt = string(context.memory, parameters[0]);
+            say(kernel, context, format!("input box: {prompt}"));
+            context.memory.set(data(2), 0);
+            context.memory.set(data(3), 0);
+        }
+        3 | 4 | 20 | 28 | 36..=39 | 52 => {}
+        40..=45 => {
+            let value = kernel.host.jog_overrides[code as usize - 40];
+            context.memory.set(data(1), value.to_bits() as i32);
+        }
+        46..=51 => kernel.host.jog_overrides[code as usize - 46] = number,
+        53 => return edit_cell(context.memory, parameters[0]),
+        _ => {
+            say(kernel, context, format!("request {code} is unknown"));
+            return INVALID;
+        }
+    }
+    DONE
+}
+
+fn say(kernel: &mut Kernel, context: &TickContext<'_>, text: String) {
+    kernel.tell(context.now, EventKind::Host(text));
+}
+
+/// Stops threads 2 to 7 and coordinated motion.
+fn emergency_stop(context: &mut TickContext<'_>) {
+    ThreadId::all().skip(1).for_each(|thread| context.threads.pause(thread));
+    context.memory.set(kmotiondef::variables::CS0_STOPPING_STATE, 0);
+    context.memory.set(COORD_SYSTEM0, GuestAddr::NULL);
+}
+
+/// Tells the board whether a job runs.
+fn set_job(memory: &mut GuestMemory, runs: bool) {
+    let status = memory.get(HOST_STATUS);
+    memory.set(HOST_STATUS, status & !1 | i32::from(runs));
+}
+
+/// A string in the gather buffer at a word offset.
+fn string(memory: &GuestMemory, offset: i32) -> String {
+    let address = memory.get(GATHER_BUFFER).offset((offset as u32).wrapping_mul(4));
+    let bytes = memory.read_c_string(address, 4 * STRING_WORDS).unwrap_or_default();
+    String::from_utf8_lossy(&bytes).into_owned()
+}
+
+/// Buttons of a message box.
+const BUTTONS: i32 = 0xf;
+
+/// Shows a box and presses its first button that goes on.
+fn message_box(kernel: &mut Kernel, context: &mut TickContext<'_>, [offset, flags, _]: [i32; 3]) {
+    let text = string(context.memory, offset);
+    let pressed = match flags & BUTTONS {
+        2 => 5,
+        3 | 4 => 6,
+        5 => 4,
+        _ => 1,
+    };
+    say(kernel, context, format!("message box: {text}"));
+    context.memory.set(data(3), pressed);
+}
+
+/// Copies #variables to or from `UserData`.
+fn variables(
+    kernel: &mut Kernel,
+    memory: &mut GuestMemory,
+    sets: bool,
+    [first, count, index]: [i32; 3],
+) -> i32 {
+    let Some(place) = usize::try_from(count).ok().and_then(|count| doubles(index, count)) else {
+        return INVALID;
+    };
+    for (number, offset) in (first..first.saturating_add(count)).zip((0..).step_by(8)) {
+        let place = place.offset(offset);
+        if sets {
+            kernel.host.variables.insert(number, memory.peek(place));
+        } else {
+            memory.poke(place, kernel.host.variables.get(&number).copied().unwrap_or(0.0));
+        }
+    }
+    DONE
+}
+
+/// Gets or sets one entry of the tool table.
+fn tool(kernel: &mut Kernel, memory: &mut GuestMemory, code: i32, [tool, index, _]: [i32; 3]) -> i32 {
+    if !(0..TOOLS).contains(&tool) {
+        return BAD_TOOL;
+    }
+    let Some(place) = doubles(index, 1) else { return INVALID };
+    // Pairs of get and set: length 23, diameter 30, offsets 32 and 34.
+    let (kind, sets) = match code {
+        23 | 24 => (23, code == 24),
+        _ => (code & !1, code & 1 != 0),
+    };
+    if sets {
+        kernel.host.tools.insert((kind, tool), memory.peek(place));
+    } else {
+        memory.poke(place, kernel.host.tools.get(&(kind, tool)).copied().unwrap_or(0.0));
+    }
+    DONE
+}
+
+fn store_words(memory: &mut GuestMemory, index: i32, words: &[i32]) -> i32 {
+    let Some(place) = named(index, words.len()) else { return INVALID };
+    for (offset, word) in (0..).step_by(4).zip(words) {
+        memory.poke(place.offset(offset), *word);
+    }
+    DONE
+}
+
+fn store_floats(memory: &mut GuestMemory, index: i32, floats: &[f32]) -> i32 {
+    let words: Vec<i32> = floats.iter().map(|float| float.to_bits() as i32).collect();
+    store_words(memory, index, &words)
+}
+
+fn store_doubles(memory: &mut GuestMemory, index: i32, values: &[f64]) -> i32 {
+    let Some(place) = doubles(index, values.len()) else { return INVALID };
+    for (offset, value) in (0..).step_by(8).zip(values) {
+        memory.poke(place.offset(offset), *value);
+    }
+    DONE
+}
+
+/// The text of a screen cell: "0".
+fn edit_cell(memory: &mut GuestMemory, variable: i32) -> i32 {
+    let Some(place) = named(variable, 1) else { return INVALID };
+    let offset: u32 = memory.peek(place);
+    let address = memory.get(GATHER_BUFFER).offset(offset.wrapping_mul(4));
+    memory.poke(address, u16::from(b'0'));
+    DONE
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::Desk;
+
+    /// Makes a request and returns the answer, which takes at most 0.2 s.
+    fn ask(desk: &mut Desk, code: i32, parameters: &[i32]) -> i32 {
+        for (index, parameter) in parameters.iter().enumerate() {
+            desk.memory.set(data(index + 1), *parameter);
+        }
+        desk.memory.set(data(0), code);
+        desk.run(2222);
+        desk.memory.get(data(0))
+    }
+
+    #[test]
+    fn a_message_box_is_answered() {
+        let mut desk = Desk::new();
+        let buffer = desk.memory.get(GATHER_BUFFER);
+        desk.memory.poke_bytes(buffer.offset(400), b"go on?\0").expect("mapped");
+        for (flags, pressed) in [(0, 1), (1, 1), (2, 5), (3, 6), (4, 6), (5, 4)] {
+            assert_eq!(ask(&mut desk, 15, &[100, flags, 0]), DONE);
+            assert_eq!(desk.memory.get(data(3)), pressed);
+        }
+        let told: Vec<_> = desk.kernel.take_events();
+        assert_eq!(told[0].kind, EventKind::Host("message box: go on?".to_owned()));
+    }
+
+    #[test]
+    fn requests_that_cannot_be_met_say_so() {
+        let mut desk = Desk::new();
+        assert_eq!(ask(&mut desk, 99, &[]), INVALID);
+        assert_eq!(ask(&mut desk, 23, &[100, 10]), BAD_TOOL);
+        assert_eq!(ask(&mut desk, 5, &[0]), INVALID);
+        assert_eq!(ask(&mut desk, 19, &[198]), INVALID);
+    }
+
+    #[test]
+    fn variables_and_tools_are_kept() {
+        let mut desk = Desk::new();
+        let place = doubles(5, 1).expect("inside");
+        desk.memory.poke(place, 2.5);
+        for (set, get, parameters) in [(17, 16, [500, 1, 5]), (24, 23, [7, 5, 0]), (31, 30, [7, 5, 0])] {
+            assert_eq!(ask(&mut desk, set, &parameters), DONE);
+            desk.memory.poke(place, 0.0);
+            assert_eq!(ask(&mut desk, get, &parameters), DONE);
+            assert_eq!(desk.memory.peek::<f64>(place), 2.5, "{get}");
+        }
+    }
+}

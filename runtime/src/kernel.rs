@@ -1,0 +1,257 @@
+//! The kernel: the board's firmware and devices behind the machine's traits.
+//!
+//! It keeps what guest memory does not hold: output latches, the console queue, step generators, what waiting calls
+//! have to remember. Everything a program can see in memory is only there.
+
+use std::collections::BTreeSet;
+
+use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, function_at};
+use kmotiondef::map::{FPGA, TIMER0};
+use kmotiondef::variables::{
+    CURRENT_THREAD, LAST_TIMER0, NEXT_AVAIL_IN, NEXT_AVAIL_OUT, SERVO_TICK, USER_CALL_BACK,
+};
+use kmotiondef::{Bit, Cycles, GuestAddr, ThreadId};
+use vm::bus::{AccessSize, Bus};
+use vm::firmware::{Caller, Firmware, Outcome, Signature, TickContext, Value};
+use vm::memory::GuestMemory;
+use vm::scheduler::Turn;
+use vm::trap::{Trap, TrapKind};
+
+use crate::console::Console;
+use crate::device::fpga::Fpga;
+use crate::device::pins::Pins;
+use crate::device::timer;
+use crate::dispatch::{HANDLERS, signatures};
+use crate::event::{Event, EventKind};
+use crate::files::{HostFiles, OpenFiles};
+use crate::heap::Heap;
+use crate::host::Host;
+use crate::servo::Servo;
+use crate::views::Typed;
+
+/// What a register access costs beyond the instruction: 200 ns, a timer 100 ns.
+const FPGA_CYCLES: Cycles = Cycles::new(40);
+const TIMER_CYCLES: Cycles = Cycles::new(20);
+
+/// What a waiting call remembers until it is made again.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Continuation {
+    /// Text that the console queue had no room for, and what the call returns.
+    Print {
+        /// The text.
+        rest: Vec<u8>,
+        /// The result.
+        result: i32,
+    },
+    /// The target of a motion, as it was when the call began.
+    Target(f64),
+}
+
+/// The board's firmware.
+#[derive(Debug)]
+pub struct Kernel {
+    signatures: Vec<Signature>,
+    continuations: [Option<Continuation>; ThreadId::MAX as usize + 1],
+    pub(crate) console: Console,
+    pub(crate) pins: Pins,
+    pub(crate) fpga: Fpga,
+    pub(crate) servo: Servo,
+    pub(crate) heap: Heap,
+    pub(crate) files: OpenFiles,
+    pub(crate) host: Host,
+    /// State of `rand`.
+    pub(crate) random: u32,
+    /// Where `strtok` goes on.
+    pub(crate) token: GuestAddr,
+    /// When the present slice began.
+    slice_start: Cycles,
+    /// Whether the last tick changed nothing and no thread has run since.
+    is_settled: bool,
+    hinted: BTreeSet<Bit>,
+    events: Vec<Event>,
+}
+
+impl Kernel {
+    /// A kernel at power-up whose PC keeps its files in `files`.
+    #[must_use]
+    pub fn new(files: Box<dyn HostFiles>) -> Self {
+        Self {
+            signatures: signatures(),
+            continuations: Default::default(),
+            console: Console::default(),
+            pins: Pins::default(),
+            fpga: Fpga::default(),
+            servo: Servo::default(),
+            heap: Heap::default(),
+            files: OpenFiles::new(files),
+            host: Host::default(),
+            random: 1,
+            token: GuestAddr::NULL,
+            slice_start: Cycles::default(),
+            is_settled: false,
+            hinted: BTreeSet::new(),
+            events: Vec::new(),
+        }
+    }
+
+    /// Remembers something for the call that is made again when its wake comes true.
+    pub(crate) fn keep(&mut self, caller: &Caller<'_>, continuation: Continuation) {
+        self.continuations[slot(caller.thread)] = Some(continuation);
+    }
+
+    /// What the call remembered.
+    pub(crate) fn take(&mut self, caller: &Caller<'_>) -> Option<Continuation> {
+        self.continuations[slot(caller.thread)].take()
+    }
+
+    /// A remark of the simulation about a call.
+    pub(crate) fn diagnose(&mut self, caller: &Caller<'_>, text: String) {
+        let text = match caller.thread {
+            Some(thread) => format!("thread {thread}: {text}"),
+            None => format!("call-back: {text}"),
+        };
+        self.tell(caller.now(), EventKind::Diagnostic(text));
+    }
+
+    /// A program reads an input that nothing drives.
+    pub(crate) fn undriven(&mut self, caller: &Caller<'_>, bit: Bit) {
+        if self.hinted.insert(bit) {
+            let kind = EventKind::UndrivenInput { bit, thread: caller.thread, place: None };
+            self.tell(caller.now(), kind);
+        }
+    }
+
+    /// Records an event.
+    pub(crate) fn tell(&mut self, at: Cycles, kind: EventKind) {
+        self.events.push(Event { at, kind });
+    }
+
+    /// The events since the last time.
+    pub(crate) fn take_events(&mut self) -> Vec<Event> {
+        std::mem::take(&mut self.events)
+    }
+
+    /// Sends all console text that waits, the unfinished line included.
+    pub(crate) fn flush_console(&mut self, now: Cycles) {
+        for line in self.console.drain() {
+            self.tell(now, EventKind::ConsoleLine(line));
+        }
+    }
+
+    /// Something outside has changed what the next tick may depend on.
+    pub(crate) fn disturb(&mut self) {
+        self.is_settled = false;
+    }
+
+    /// Whether text, motion, a recording or a request to the PC is still under way.
+    pub(crate) fn is_busy(&self, memory: &GuestMemory) -> bool {
+        !self.console.is_idle() || Servo::is_busy(memory) || self.host.is_asked(memory)
+    }
+
+    fn store_queue_indices(&self, memory: &mut GuestMemory) {
+        let (write, read) = self.console.indices();
+        memory.set(NEXT_AVAIL_IN, write);
+        memory.set(NEXT_AVAIL_OUT, read);
+    }
+}
+
+fn slot(thread: Option<ThreadId>) -> usize {
+    thread.map_or(0, |thread| usize::from(thread.get()))
+}
+
+/// The time variables of a tick.
+fn store_time(context: &mut TickContext<'_>) {
+    context.memory.set(SERVO_TICK, context.tick.get() as f64);
+    context.memory.set(LAST_TIMER0, timer::count(context.now));
+}
+
+impl Bus for Kernel {
+    fn read(&mut self, addr: GuestAddr, size: AccessSize, now: Cycles) -> u32 {
+        if addr == TIMER0 {
+            return timer::count(now);
+        }
+        if addr >= FPGA.base { self.fpga.read(&self.pins, addr, size) } else { 0 }
+    }
+
+    fn write(&mut self, addr: GuestAddr, size: AccessSize, value: u32, now: Cycles) {
+        if addr < FPGA.base {
+            self.tell(now, EventKind::Diagnostic(format!("write to {addr} has no effect")));
+        } else if let Some(register) = self.fpga.write(&mut self.pins, addr, size, value) {
+            let text = format!("FPGA register {register:#x} is not known: it only stores what is written");
+            self.tell(now, EventKind::Diagnostic(text));
+        }
+    }
+
+    fn access_cycles(&self, addr: GuestAddr) -> Cycles {
+        if addr >= FPGA.base { FPGA_CYCLES } else { TIMER_CYCLES }
+    }
+}
+
+impl Firmware for Kernel {
+    fn signature(&self, address: GuestAddr) -> Option<&Signature> {
+        self.signatures.get(function_at(address)?)
+    }
+
+    fn call(&mut self, address: GuestAddr, caller: &mut Caller<'_>) -> Result<Outcome<Value>, TrapKind> {
+        let number = function_at(address).ok_or(TrapKind::UnknownFirmwareFunction { addr: address })?;
+        if caller.woken.is_none() {
+            caller.spend(FIRMWARE_FUNCTIONS[number].cost);
+        }
+        HANDLERS[number](self, caller)
+    }
+
+    fn callback(&self, memory: &GuestMemory) -> GuestAddr {
+        memory.get(USER_CALL_BACK)
+    }
+
+    fn tick(&mut self, context: &mut TickContext<'_>) {
+        store_time(context);
+        self.host.tick();
+        let changed = crate::servo::tick(self, context);
+        self.is_settled = !changed && context.memory.get(USER_CALL_BACK).is_null();
+    }
+
+    fn servo_time(&self, memory: &GuestMemory) -> Cycles {
+        crate::servo::duration(memory)
+    }
+
+    fn switch_to(&mut self, turn: Turn, context: &mut TickContext<'_>) {
+        self.slice_start = context.now;
+        context.memory.set(CURRENT_THREAD, i32::from(turn.number()));
+        if turn != Turn::Primary {
+            self.is_settled = false;
+        }
+    }
+
+    fn primary_slice(&mut self, context: &mut TickContext<'_>) {
+        if let Some(line) = self.console.send() {
+            self.tell(context.now, EventKind::ConsoleLine(line));
+        }
+        crate::host::slice(self, context);
+        self.store_queue_indices(context.memory);
+    }
+
+    fn trapped(&mut self, trap: &Trap, context: &mut TickContext<'_>) {
+        if trap.thread.is_none() {
+            context.memory.set(USER_CALL_BACK, GuestAddr::NULL);
+        }
+        self.tell(context.now, EventKind::Trap(trap.clone()));
+    }
+
+    fn stack_exceeded(&mut self, thread: ThreadId, used: u32) {
+        let text = format!("thread {thread}: {used} bytes of stack used; the board has about 1900");
+        self.tell(self.slice_start, EventKind::Diagnostic(text));
+    }
+
+    fn quiet_ticks(&self, _: &GuestMemory) -> u64 {
+        if !self.is_settled || !self.console.is_idle() {
+            return 0;
+        }
+        self.host.quiet_ticks()
+    }
+
+    fn skip_ticks(&mut self, count: u64, context: &mut TickContext<'_>) {
+        store_time(context);
+        self.host.skip(count);
+    }
+}

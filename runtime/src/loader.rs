@@ -1,0 +1,244 @@
+//! From the bytes of an image to a program in a thread; refuses before anything changes.
+//!
+//! [`prepare`] checks everything that can be wrong with an image (`coff.md` sections 4 and 9,
+//! design.md D7) and yields a [`Prepared`] that the board can take without failing. The vendor's
+//! own loader checks next to nothing; a mistake there overwrites another thread's program.
+
+use coff::{Contents, Image, Line, Section, SectionNumber, StorageClass, Target};
+use kmotiondef::map::{PROGRAM_BASE, PROGRAM_SIZE, STACK_BASE, program_base};
+use kmotiondef::{GuestAddr, ThreadId};
+use vm::program::Program;
+use vm::verify::{VerifyError, verify};
+
+use crate::debug::{DebugInfo, FunctionInfo, ObjectInfo};
+
+/// The version stamp of images that are linked against firmware 4.34.
+pub const VERSION_STAMP: i16 = 434;
+
+/// An image that can be loaded without failing.
+#[derive(Debug)]
+pub struct Prepared {
+    /// The verified code.
+    pub program: Program,
+    /// Where `main` begins.
+    pub entry: GuestAddr,
+    /// What goes into memory.
+    pub sections: Vec<Placed>,
+    /// Names and lines.
+    pub debug: DebugInfo,
+}
+
+/// A section and its place.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Placed {
+    /// Where it goes.
+    pub address: GuestAddr,
+    /// What goes there.
+    pub contents: Fill,
+}
+
+/// Contents of a section.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Fill {
+    /// These bytes.
+    Bytes(Vec<u8>),
+    /// So many bytes of uninitialised data.
+    Uninitialised(u32),
+}
+
+impl Placed {
+    /// Bytes that it takes.
+    #[must_use]
+    pub fn size(&self) -> u32 {
+        match &self.contents {
+            Fill::Bytes(bytes) => bytes.len() as u32,
+            Fill::Uninitialised(size) => *size,
+        }
+    }
+}
+
+/// Why an image is refused.
+#[derive(Debug, thiserror::Error)]
+pub enum LoadError {
+    /// The bytes are not a TI COFF image.
+    #[error("not a KFLOP image: {0}")]
+    NotAnImage(coff::Error),
+    /// Machine code for the DSP.
+    #[error("machine code for the controller's DSP, which the simulated board does not execute")]
+    MachineCode,
+    /// Code for something else.
+    #[error("code for target {0}, not for the simulated board")]
+    OtherTarget(Target),
+    /// Linked against another firmware.
+    #[error("linked against firmware with version stamp {found}; the board has {VERSION_STAMP}")]
+    OtherFirmware {
+        /// The image's stamp.
+        found: i16,
+    },
+    /// A part that every image has is missing.
+    #[error("the image has no {0}")]
+    Missing(&'static str),
+    /// Linked for another thread.
+    #[error("the image is linked for thread {linked}, not for thread {wanted}")]
+    OtherThread {
+        /// Thread it is linked for.
+        linked: ThreadId,
+        /// Thread it should go into.
+        wanted: ThreadId,
+    },
+    /// A section lies outside the memory for programs.
+    #[error("section {name} at {address}, {size} bytes, lies outside the program area")]
+    OutsideProgramArea {
+        /// The section.
+        name: String,
+        /// Where it is.
+        address: GuestAddr,
+        /// Its size.
+        size: u64,
+    },
+    /// Two sections share memory.
+    #[error("sections {first} and {second} overlap")]
+    Overlap {
+        /// The lower one.
+        first: String,
+        /// The higher one.
+        second: String,
+    },
+    /// The program needs the space of a thread that holds another program.
+    #[error("the program enters the space of thread {0}, which holds another program")]
+    EntersThread(ThreadId),
+    /// The code breaks a rule of the bytecode.
+    #[error("the code is refused: {0}")]
+    Refused(VerifyError),
+    /// The entry point is not a function.
+    #[error("the entry point {0} is not a function of the image")]
+    Entry(GuestAddr),
+}
+
+/// Checks an image for `thread`; `holds` says which threads hold a program.
+///
+/// # Errors
+/// The first reason found to refuse it.
+pub fn prepare(
+    bytes: &[u8],
+    thread: ThreadId,
+    holds: impl Fn(ThreadId) -> bool,
+) -> Result<Prepared, LoadError> {
+    let image = Image::read(bytes).map_err(LoadError::NotAnImage)?;
+    check_origin(&image)?;
+    let header = image.program.ok_or(LoadError::Missing("entry point"))?;
+    let text = image.section(".text").ok_or(LoadError::Missing("section .text"))?;
+    check_thread(text, thread)?;
+    check_sections(&image, thread, holds)?;
+    let program = verify(text.data(), GuestAddr::new(text.address)).map_err(LoadError::Refused)?;
+    let entry = GuestAddr::new(header.entry);
+    program.function_at(entry).ok_or(LoadError::Entry(entry))?;
+    let sections = image.sections.iter().map(place).collect();
+    Ok(Prepared { program, entry, sections, debug: debug(&image) })
+}
+
+fn check_origin(image: &Image) -> Result<(), LoadError> {
+    match image.target {
+        Target::CC67 => {}
+        Target::C6000 => return Err(LoadError::MachineCode),
+        other => return Err(LoadError::OtherTarget(other)),
+    }
+    match image.program {
+        Some(header) if header.version_stamp != VERSION_STAMP => {
+            Err(LoadError::OtherFirmware { found: header.version_stamp })
+        }
+        _ => Ok(()),
+    }
+}
+
+fn check_thread(text: &Section, wanted: ThreadId) -> Result<(), LoadError> {
+    if text.address == program_base(wanted).get() {
+        return Ok(());
+    }
+    match ThreadId::all().find(|thread| program_base(*thread).get() == text.address) {
+        Some(linked) => Err(LoadError::OtherThread { linked, wanted }),
+        None => Err(outside(text)),
+    }
+}
+
+fn outside(section: &Section) -> LoadError {
+    LoadError::OutsideProgramArea {
+        name: section.name.to_string(),
+        address: GuestAddr::new(section.address),
+        size: section.size(),
+    }
+}
+
+/// Every section inside the program area, none over another, none in a space that is taken.
+fn check_sections(
+    image: &Image,
+    thread: ThreadId,
+    holds: impl Fn(ThreadId) -> bool,
+) -> Result<(), LoadError> {
+    let mut ranges = Vec::new();
+    for section in image.sections.iter().filter(|section| section.size() > 0) {
+        let (start, end) = (u64::from(section.address), u64::from(section.address) + section.size());
+        if start < u64::from(program_base(thread).get()) || end > u64::from(STACK_BASE) {
+            return Err(outside(section));
+        }
+        for other in ThreadId::all().filter(|other| *other != thread && holds(*other)) {
+            let base = u64::from(program_base(other).get());
+            if start < base + u64::from(PROGRAM_SIZE) && end > base {
+                return Err(LoadError::EntersThread(other));
+            }
+        }
+        ranges.push((start, end, section));
+    }
+    ranges.sort_by_key(|(start, ..)| *start);
+    for pair in ranges.windows(2) {
+        if let [(_, end, first), (start, _, second)] = pair
+            && start < end
+        {
+            return Err(LoadError::Overlap {
+                first: first.name.to_string(),
+                second: second.name.to_string(),
+            });
+        }
+    }
+    Ok(())
+}
+
+fn place(section: &Section) -> Placed {
+    let contents = match &section.contents {
+        Contents::Data(bytes) => Fill::Bytes(bytes.clone()),
+        Contents::Uninitialised(size) => Fill::Uninitialised(*size),
+    };
+    Placed { address: GuestAddr::new(section.address), contents }
+}
+
+/// Collects functions, lines and objects from the symbol table.
+///
+/// A file symbol names the file of the functions behind it. The size of an object stands in its
+/// auxiliary entry, where that of a function is too.
+fn debug(image: &Image) -> DebugInfo {
+    let mut file = String::new();
+    let (mut functions, mut objects) = (Vec::new(), Vec::new());
+    for symbol in &image.symbols {
+        let name = symbol.name.to_string();
+        let size = symbol.aux.first().map_or(0, |aux| aux.as_function().size.get());
+        match symbol.class {
+            StorageClass::FILE => file = name,
+            StorageClass::EXTERNAL | StorageClass::STATIC if symbol.section == SectionNumber(1) => {
+                let (start, end) = (symbol.value, symbol.value.saturating_add(size));
+                functions.push(FunctionInfo { name, file: file.clone(), start, end });
+            }
+            StorageClass::EXTERNAL | StorageClass::STATIC
+                if symbol.section.0 > 1 && (PROGRAM_BASE..STACK_BASE).contains(&symbol.value) =>
+            {
+                objects.push(ObjectInfo { name, start: symbol.value, size });
+            }
+            _ => {}
+        }
+    }
+    let lines = image.sections.iter().flat_map(|section| &section.lines);
+    let lines = lines.filter_map(|line| match line {
+        Line::Statement { address, line } => Some((*address, u32::from(line.get()))),
+        Line::Function(_) => None,
+    });
+    DebugInfo::new(functions, lines.collect(), objects)
+}

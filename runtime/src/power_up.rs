@@ -1,0 +1,124 @@
+//! What guest memory holds when the board starts.
+
+use kmotiondef::start::Start;
+use kmotiondef::structs::{STRUCTURES, Structure, StructureField};
+use kmotiondef::variables::{FIRMWARE_VARIABLES, FirmwareVariable};
+use kmotiondef::{CType, GuestAddr};
+use vm::memory::GuestMemory;
+
+/// Stores the power-up value of every firmware variable.
+pub(crate) fn fill(memory: &mut GuestMemory) {
+    for variable in FIRMWARE_VARIABLES {
+        start_variable(memory, variable);
+    }
+}
+
+fn start_variable(memory: &mut GuestMemory, variable: &FirmwareVariable) {
+    if variable.start == Start::Fields {
+        return start_structures(memory, variable.address, variable.ty);
+    }
+    store(memory, variable.address, variable.start, variable.ty, 0);
+}
+
+/// Stores the power-up values of a structure, or of each of an array of them.
+fn start_structures(memory: &mut GuestMemory, address: GuestAddr, ty: CType) {
+    match ty.resolved() {
+        CType::Array(element, count) => {
+            let Some(structure) = structure(*element) else { return };
+            for index in 0..count {
+                start_structure(memory, address.offset(index * structure.size), structure, index);
+            }
+        }
+        ty => {
+            if let Some(structure) = structure(ty) {
+                start_structure(memory, address, structure, 0);
+            }
+        }
+    }
+}
+
+fn structure(ty: CType) -> Option<&'static Structure> {
+    match ty.resolved() {
+        CType::Named(name) => STRUCTURES.iter().find(|structure| structure.name == name),
+        _ => None,
+    }
+}
+
+fn start_structure(memory: &mut GuestMemory, address: GuestAddr, structure: &Structure, index: u32) {
+    for StructureField { offset, start, ty, .. } in structure.fields {
+        let address = address.offset(*offset);
+        if *start == Start::Fields {
+            start_structures(memory, address, *ty);
+        } else {
+            store(memory, address, *start, *ty, index);
+        }
+    }
+}
+
+/// Stores one value; memory is zero before.
+fn store(memory: &mut GuestMemory, address: GuestAddr, start: Start, ty: CType, index: u32) {
+    match start {
+        Start::Zero | Start::Fields => {}
+        Start::Int(value) => memory.poke(address, value),
+        Start::Each(value) => {
+            if let CType::Array(element, count) = ty.resolved() {
+                each(memory, address, *element, count, value);
+            }
+        }
+        Start::Float(value) => memory.poke(address, value),
+        Start::Double(value) => memory.poke(address, value),
+        Start::Text(text) => {
+            for (offset, byte) in (0..).zip(text.bytes()) {
+                memory.poke(address.offset(offset), byte);
+            }
+        }
+        Start::Address(value) => memory.poke(address, value.get()),
+        Start::Words(words) => {
+            for (index, word) in (0..).zip(words) {
+                memory.poke(address.offset(4 * index), *word);
+            }
+        }
+        Start::PerAxis { first, step } => memory.poke(address, first + index * step),
+    }
+}
+
+/// Stores the same integer in every element of an array.
+fn each(memory: &mut GuestMemory, address: GuestAddr, element: CType, count: u32, value: i32) {
+    for index in 0..count {
+        match element.resolved() {
+            CType::Short | CType::UnsignedShort => memory.poke(address.offset(2 * index), value as i16),
+            _ => memory.poke(address.offset(4 * index), value),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use kmotiondef::AxisId;
+    use kmotiondef::structs::{Chan, Gather, Iir};
+    use kmotiondef::variables::{
+        ADC_BUFFER_IN, CH3, CHAN, CS0_TIME_BASE, DAC_BUFFER, GATHER, VERSION_AND_BUILD_TIME,
+    };
+
+    use super::*;
+    use crate::views::Typed;
+
+    #[test]
+    fn variables_and_fields_have_their_values() {
+        let mut memory = GuestMemory::new();
+        fill(&mut memory);
+        let axis = AxisId::new(3).expect("3 is an axis");
+        assert_eq!(memory.get(CH3), CHAN.element(3).address());
+        assert_eq!(memory.get(CS0_TIME_BASE), 9e-5);
+        assert_eq!(memory.get(DAC_BUFFER.element(7)), 2048);
+        assert_eq!(memory.get(ADC_BUFFER_IN.element(7)), 2048);
+        assert_eq!(memory.get(GATHER.field(Gather::BUFPTR)).get(), 0xFFFF_FFF8);
+        assert_eq!(memory.axis(axis, Chan::VEL), 4000.0);
+        assert_eq!(memory.axis(axis, Chan::MASTER_AXIS), -1);
+        assert_eq!(memory.axis(axis, Chan::OUTPUT_CHAN1), 7);
+        assert_eq!(memory.axis(axis, Chan::C).get(), 0x80FF_9020 + 3 * 960);
+        assert_eq!(memory.axis(axis, Chan::IIR.element(2).field(Iir::B0)), 1.0);
+        let text = memory.read_c_string(VERSION_AND_BUILD_TIME.address(), 64).expect("mapped");
+        assert_eq!(text, b"KFLOP 4.34 Build 16:07:06 Aug 14 2018\n");
+    }
+}

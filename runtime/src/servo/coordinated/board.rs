@@ -1,0 +1,127 @@
+//! The path on the board: its bits are the kernel's.
+
+use kmotiondef::Bit;
+use vm::memory::GuestMemory;
+
+use super::Bits;
+use crate::firmware::io::{bit_state, write_bit};
+use crate::kernel::Kernel;
+
+impl Bits for Kernel {
+    fn is_high(&mut self, memory: &GuestMemory, bit: Bit) -> bool {
+        bit_state(self, memory, bit).0
+    }
+
+    fn drive(&mut self, memory: &mut GuestMemory, bit: Bit, high: bool) {
+        write_bit(self, memory, bit, high);
+    }
+}
+
+/// One tick of the path. Says whether it has moved or will.
+pub(crate) fn tick(kernel: &mut Kernel, memory: &mut GuestMemory) -> bool {
+    let mut coordinated = std::mem::take(&mut kernel.servo.coordinated);
+    let moves = coordinated.tick(memory, kernel);
+    kernel.servo.coordinated = coordinated;
+    moves
+}
+
+#[cfg(test)]
+mod tests {
+    use kmotiondef::AxisId;
+    use kmotiondef::modes::TrajectoryMode;
+    use kmotiondef::structs::{Chan, ParametricCoeff, TripCircleLinear};
+    use kmotiondef::variables::{
+        COORD_SYSTEM0, CS0_FLUSHED, CS0_STOPPING_STATE, LAST_COORD_SYSTEM0, PARAMETRIC_COEFFS,
+        VIRTUAL_BITS_EX,
+    };
+
+    use super::super::segment::{Command, Entry, SIZE};
+    use super::*;
+    use crate::testing::Desk;
+    use crate::views::Typed;
+
+    /// A desk with axes 0 and 1 enabled and a path as a program builds it: X at 1000 units a second to 100, then a bit
+    /// and 0.1 s more.
+    fn desk() -> Desk {
+        let mut desk = Desk::new();
+        let unused = u32::MAX.into();
+        desk.call("DefineCoordSystem", &[0, 1, unused, unused]);
+        for axis in [0, 1] {
+            desk.call("EnableAxisDest", &[axis, 0]);
+        }
+        let (start, bit) = (desk.memory.get(PARAMETRIC_COEFFS), Bit::new(1040).expect("a bit"));
+        put_line(&mut desk.memory, Entry::at(start), 0.0);
+        put_command(&mut desk.memory, Entry::at(start.offset(SIZE)), Command::Drive(bit, true));
+        put_line(&mut desk.memory, Entry::at(start.offset(2 * SIZE)), 100.0);
+        Entry::at(start.offset(3 * SIZE)).end_path(&mut desk.memory);
+        desk.memory.set(CS0_FLUSHED, 1);
+        desk.memory.set(LAST_COORD_SYSTEM0, start);
+        desk.memory.set(COORD_SYSTEM0, start);
+        desk
+    }
+
+    /// 100 units of X in 0.1 s.
+    fn put_line(memory: &mut GuestMemory, entry: Entry, from: f64) {
+        memory.write_bytes(entry.address(), &[255; 9]).expect("mapped");
+        memory.set(entry.field(ParametricCoeff::TRAJECTORY_MODE), TrajectoryMode::Linear.get() as i8);
+        memory.set(entry.field(ParametricCoeff::X_AXIS), 0);
+        memory.set(entry.field(ParametricCoeff::T), 0.1);
+        memory.set(entry.field(ParametricCoeff::C), 10.0);
+        memory.set(entry.field(ParametricCoeff::COORD_X.field(TripCircleLinear::C)), 100.0);
+        memory.set(entry.field(ParametricCoeff::COORD_X.field(TripCircleLinear::D)), from);
+    }
+
+    fn put_command(memory: &mut GuestMemory, entry: Entry, command: Command) {
+        let (number, bit) = command.encoded();
+        memory.set(entry.field(ParametricCoeff::TRAJECTORY_MODE), TrajectoryMode::Special.get() as i8);
+        memory.set(entry.field(ParametricCoeff::X_AXIS), number);
+        memory.set(entry.field(ParametricCoeff::SPECIAL_PARAM), bit);
+    }
+
+    fn dest(desk: &Desk) -> f64 {
+        desk.memory.axis(AxisId::new(0).expect("0 is an axis"), Chan::DEST)
+    }
+
+    #[test]
+    fn a_path_built_by_a_program_moves_axes_and_bits() {
+        let mut desk = desk();
+        desk.run(1000);
+        assert!((dest(&desk) - 90.0).abs() < 0.01, "{}", dest(&desk));
+        assert_eq!(desk.memory.get(VIRTUAL_BITS_EX.element(0)), 0);
+        assert_eq!(desk.call_i32("CheckDoneBuf", &[]), 0);
+        desk.run(200);
+        assert!((dest(&desk) - 108.0).abs() < 0.01, "{}", dest(&desk));
+        assert_eq!(desk.memory.get(VIRTUAL_BITS_EX.element(0)), 1 << 16);
+        desk.run(2000);
+        assert_eq!(desk.call_i32("CheckDoneBuf", &[]), 1);
+        assert!((dest(&desk) - 200.0).abs() < 0.1, "{}", dest(&desk));
+    }
+
+    #[test]
+    fn a_feedhold_stops_on_the_path_and_resumes() {
+        let mut desk = desk();
+        desk.run(100);
+        desk.call("StopCoordinatedMotion", &[]);
+        assert_eq!(desk.memory.get(CS0_STOPPING_STATE), 1);
+        desk.run(5000);
+        assert_eq!(desk.memory.get(CS0_STOPPING_STATE), 3);
+        let held = dest(&desk);
+        desk.run(100);
+        assert_eq!(dest(&desk), held);
+        assert_eq!(desk.call_i32("CheckDoneBuf", &[]), 0);
+        desk.call("ResumeCoordinatedMotion", &[]);
+        desk.run(20_000);
+        assert_eq!(desk.call_i32("CheckDoneBuf", &[]), 1);
+        assert!((dest(&desk) - 200.0).abs() < 0.1);
+    }
+
+    #[test]
+    fn a_disabled_axis_ends_the_path() {
+        let mut desk = desk();
+        desk.run(100);
+        desk.call("DisableAxis", &[1]);
+        desk.run(1);
+        assert!(desk.memory.get(COORD_SYSTEM0).is_null());
+        assert_eq!(desk.call_i32("CheckDoneBuf", &[]), -1);
+    }
+}

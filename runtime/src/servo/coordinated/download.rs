@@ -1,0 +1,190 @@
+//! Entries as the PC sends them: lines, arcs and commands, each put where the next entry goes.
+//!
+//! The board reads all numbers of a download as singles.
+
+use std::f32::consts::FRAC_PI_2;
+
+use kmotiondef::modes::TrajectoryMode;
+use kmotiondef::structs::{ParametricCoeff, TripCircleLinear, TripLinear};
+use kmotiondef::{AxisId, Field};
+use vm::memory::GuestMemory;
+
+use super::buffer;
+use super::segment::{Command, Entry};
+use super::system::{self, LETTERS};
+use crate::views::Typed;
+
+/// Where the eight letters are.
+pub(crate) type Point = [f32; LETTERS];
+
+const AXES: [Field<u8>; LETTERS] = [
+    ParametricCoeff::X_AXIS,
+    ParametricCoeff::Y_AXIS,
+    ParametricCoeff::Z_AXIS,
+    ParametricCoeff::A_AXIS,
+    ParametricCoeff::B_AXIS,
+    ParametricCoeff::C_AXIS,
+    ParametricCoeff::U_AXIS,
+    ParametricCoeff::V_AXIS,
+];
+
+/// The coefficients of the letters behind X and Y.
+const LINEAR: [Field<TripLinear>; LETTERS - 2] = [
+    ParametricCoeff::COORD_Z,
+    ParametricCoeff::COORD_A,
+    ParametricCoeff::COORD_B,
+    ParametricCoeff::COORD_C,
+    ParametricCoeff::COORD_U,
+    ParametricCoeff::COORD_V,
+];
+
+/// What a slot without an axis holds.
+const UNUSED: u8 = 255;
+
+/// How the parameter goes with time, and for how long.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Timing {
+    /// Coefficients of t³, t², t and 1.
+    pub(crate) polynomial: [f32; 4],
+    /// Seconds.
+    pub(crate) duration: f32,
+}
+
+/// The plane of an arc.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Plane {
+    /// X is the cosine, Y the sine.
+    Xy,
+    /// Z is the cosine, X the sine.
+    Zx,
+    /// Y is the cosine, Z the sine.
+    Yz,
+}
+
+impl Plane {
+    /// The letters of cosine and sine, and the one that is left.
+    fn letters(self) -> [usize; 3] {
+        match self {
+            Self::Xy => [0, 1, 2],
+            Self::Zx => [2, 0, 1],
+            Self::Yz => [1, 2, 0],
+        }
+    }
+}
+
+/// The circle, or ellipse, of an arc.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Circle {
+    /// Its plane.
+    pub(crate) plane: Plane,
+    /// Its centre, cosine letter first.
+    pub(crate) centre: [f32; 2],
+    /// Its radii.
+    pub(crate) radii: [f32; 2],
+    /// Where it begins, radians.
+    pub(crate) angle: f32,
+    /// How far it goes, radians.
+    pub(crate) turn: f32,
+}
+
+/// Adds a line.
+///
+/// # Errors
+/// As [`buffer::advance`].
+pub(crate) fn line(
+    memory: &mut GuestMemory,
+    begin: &Point,
+    end: &Point,
+    timing: &Timing,
+) -> Result<(), String> {
+    let letters = [0, 1, 2, 3, 4, 5, 6, 7];
+    let Some(entry) = stretch(memory, TrajectoryMode::Linear, letters, timing) else { return Ok(()) };
+    for (coefficients, letter) in [ParametricCoeff::COORD_X, ParametricCoeff::COORD_Y].into_iter().zip(0..) {
+        let (from, to) = (f64::from(begin[letter]), f64::from(end[letter]));
+        set_arc(memory, entry, coefficients, [0.0, 0.0, to - from, from]);
+    }
+    set_lines(memory, entry, letters, begin, end);
+    buffer::advance(memory)
+}
+
+/// Adds an arc; `begin` and `end` count for the letters outside its plane.
+///
+/// # Errors
+/// As [`buffer::advance`].
+pub(crate) fn arc(
+    memory: &mut GuestMemory,
+    circle: &Circle,
+    begin: &Point,
+    end: &Point,
+    timing: &Timing,
+) -> Result<(), String> {
+    let [cosine, sine, rest] = circle.plane.letters();
+    let letters = [cosine, sine, rest, 3, 4, 5, 6, 7];
+    let Some(entry) = stretch(memory, TrajectoryMode::Circular, letters, timing) else { return Ok(()) };
+    let turn = f64::from(circle.turn);
+    let [cosine_angle, sine_angle] = [circle.angle + FRAC_PI_2, circle.angle].map(f64::from);
+    let [radius_x, radius_y] = circle.radii.map(f64::from);
+    let [x, y] = circle.centre.map(f64::from);
+    set_arc(memory, entry, ParametricCoeff::COORD_X, [turn, cosine_angle, radius_x, x]);
+    set_arc(memory, entry, ParametricCoeff::COORD_Y, [turn, sine_angle, radius_y, y]);
+    set_lines(memory, entry, letters, begin, end);
+    buffer::advance(memory)
+}
+
+/// Adds a command.
+///
+/// # Errors
+/// As [`buffer::advance`].
+pub(crate) fn command(memory: &mut GuestMemory, command: Command) -> Result<(), String> {
+    let entry = buffer::next_written(memory);
+    let (number, bit) = command.encoded();
+    set_mode(memory, entry, TrajectoryMode::Special);
+    memory.set(entry.field(ParametricCoeff::X_AXIS), number);
+    memory.set(entry.field(ParametricCoeff::SPECIAL_PARAM), bit);
+    memory.set(entry.field(ParametricCoeff::T), 0.0);
+    buffer::advance(memory)
+}
+
+/// Begins the next entry with its timing and the axes of its slots; a stretch without duration is left out.
+fn stretch(
+    memory: &mut GuestMemory,
+    mode: TrajectoryMode,
+    letters: [usize; LETTERS],
+    timing: &Timing,
+) -> Option<Entry> {
+    if timing.duration == 0.0 {
+        return None;
+    }
+    let entry = buffer::next_written(memory);
+    set_mode(memory, entry, mode);
+    let axes = system::letters(memory);
+    for (slot, letter) in AXES.into_iter().zip(letters) {
+        memory.set(entry.field(slot), axes[letter].map_or(UNUSED, AxisId::get));
+    }
+    memory.set(entry.field(ParametricCoeff::T), f64::from(timing.duration));
+    let fields = [ParametricCoeff::A, ParametricCoeff::B, ParametricCoeff::C, ParametricCoeff::D];
+    for (field, coefficient) in fields.into_iter().zip(timing.polynomial) {
+        memory.set(entry.field(field), f64::from(coefficient));
+    }
+    Some(entry)
+}
+
+fn set_mode(memory: &mut GuestMemory, entry: Entry, mode: TrajectoryMode) {
+    memory.set(entry.field(ParametricCoeff::TRAJECTORY_MODE), mode.get() as i8);
+}
+
+fn set_arc(memory: &mut GuestMemory, entry: Entry, coefficients: Field<TripCircleLinear>, values: [f64; 4]) {
+    let fields = [TripCircleLinear::A, TripCircleLinear::B, TripCircleLinear::C, TripCircleLinear::D];
+    for (field, value) in fields.into_iter().zip(values) {
+        memory.set(entry.field(coefficients.field(field)), value);
+    }
+}
+
+/// Fills the slots behind the first two.
+fn set_lines(memory: &mut GuestMemory, entry: Entry, letters: [usize; LETTERS], begin: &Point, end: &Point) {
+    for (coefficients, letter) in LINEAR.into_iter().zip(letters.into_iter().skip(2)) {
+        let (from, to) = (f64::from(begin[letter]), f64::from(end[letter]));
+        memory.set(entry.field(coefficients.field(TripLinear::C)), to - from);
+        memory.set(entry.field(coefficients.field(TripLinear::D)), from);
+    }
+}

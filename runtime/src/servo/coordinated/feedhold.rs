@@ -1,0 +1,95 @@
+//! Feedhold of a path: `CS0_StoppingState` and the transitions that concern coordinated motion.
+//!
+//! Independent motions of the member axes are held too, when no path is executing; that part is the axes' own.
+
+use kmotiondef::GuestAddr;
+use kmotiondef::variables::{
+    COORD_SYSTEM0, CS0_DECEL_TIME, CS0_STOPPING_STATE, CS0_TIME_BASE_DELTA, CS0_TIME_BASE_DESIRED,
+};
+use vm::memory::GuestMemory;
+
+use super::{rate, system};
+use crate::views::Typed;
+
+/// Seconds that stopping a path takes at least.
+const LEAST_STOPPING_TIME: f32 = 1e-6;
+
+/// How far a feedhold has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum State {
+    /// None.
+    Running,
+    /// A path is decelerating.
+    StoppingPath,
+    /// Independent motions are decelerating.
+    StoppingAxes,
+    /// A path has stopped.
+    PathStopped,
+    /// Independent motions have stopped.
+    AxesStopped,
+}
+
+impl State {
+    /// The state in guest memory; a number without a meaning is none.
+    pub(crate) fn of(memory: &GuestMemory) -> Self {
+        match memory.get(CS0_STOPPING_STATE) {
+            1 => Self::StoppingPath,
+            2 => Self::StoppingAxes,
+            3 => Self::PathStopped,
+            4 => Self::AxesStopped,
+            _ => Self::Running,
+        }
+    }
+
+    /// The number that programs see.
+    pub(crate) const fn number(self) -> i32 {
+        match self {
+            Self::Running => 0,
+            Self::StoppingPath => 1,
+            Self::StoppingAxes => 2,
+            Self::PathStopped => 3,
+            Self::AxesStopped => 4,
+        }
+    }
+}
+
+/// Notes how long a stop takes and, if a path is executing, begins to stop it. Says whether there was one.
+///
+/// The caller has seen that no feedhold is on.
+pub(crate) fn stop(memory: &mut GuestMemory) -> bool {
+    let time = system::stopping_time(memory);
+    let executing = !memory.get(COORD_SYSTEM0).is_null();
+    let time = if executing { time.max(LEAST_STOPPING_TIME) } else { time };
+    memory.set(CS0_DECEL_TIME, time);
+    if executing {
+        rate::aim(memory, 0.0, time);
+        memory.set(CS0_STOPPING_STATE, State::StoppingPath.number());
+    }
+    executing
+}
+
+/// Continues a held path. Says whether one was held.
+pub(crate) fn resume(memory: &mut GuestMemory) -> bool {
+    let held = is_path_held(memory);
+    if held {
+        memory.set(CS0_STOPPING_STATE, State::Running.number());
+        rate::aim(memory, rate::current_override(memory), system::nominal_change_time(memory));
+    }
+    held
+}
+
+/// Gives up a held path; its times stay as they are. Says whether one was held.
+pub(crate) fn clear(memory: &mut GuestMemory) -> bool {
+    let held = is_path_held(memory);
+    if held {
+        memory.set(CS0_STOPPING_STATE, State::Running.number());
+        memory.set(COORD_SYSTEM0, GuestAddr::NULL);
+        memory.set(CS0_TIME_BASE_DESIRED, 0.0);
+        memory.set(CS0_TIME_BASE_DELTA, 0.0);
+    }
+    held
+}
+
+fn is_path_held(memory: &GuestMemory) -> bool {
+    matches!(State::of(memory), State::StoppingPath | State::PathStopped)
+}

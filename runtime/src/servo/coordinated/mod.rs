@@ -1,0 +1,41 @@
+//! Coordinated motion: several axes on one path, and the clock that runs along it.
+//!
+//! A path is a list of [`segment`]s in guest memory, put there by the PC or by the program itself. Every tick the path
+//! time advances by the time base, whose ratio to a tick's length is the feed override; the segment at that time says
+//! where each axis is. All of this is in guest memory and live: a program may build the list and start it with nothing
+//! but assignments. Only the last stretch of a smoothed path is kept here.
+//!
+//! Source: `coordinated-motion.md`; where it differs from the recorded runs (`coord.jsonl`), the runs win.
+
+pub(crate) mod board;
+#[cfg_attr(not(test), expect(dead_code, reason = "called by the script commands of the PC"))]
+pub(crate) mod buffer;
+#[cfg_attr(not(test), expect(dead_code, reason = "called by the script commands of the PC"))]
+pub(crate) mod download;
+pub(crate) mod feedhold;
+pub(crate) mod path;
+pub(crate) mod rate;
+#[cfg(test)]
+mod recorded;
+pub(crate) mod segment;
+pub(crate) mod smoothing;
+pub(crate) mod system;
+
+use kmotiondef::Bit;
+use vm::memory::GuestMemory;
+
+/// The inputs and outputs that a path drives and waits for.
+pub(crate) trait Bits {
+    /// Whether a bit is high.
+    fn is_high(&mut self, memory: &GuestMemory, bit: Bit) -> bool;
+
+    /// Drives a bit.
+    fn drive(&mut self, memory: &mut GuestMemory, bit: Bit, high: bool);
+}
+
+/// What coordinated motion remembers from tick to tick besides guest memory.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Coordinated {
+    /// The last stretch of a smoothed path, while it lasts.
+    spline: Option<smoothing::Spline>,
+}

@@ -1,0 +1,164 @@
+//! The time base: how fast the path time advances, and what it is being ramped to.
+//!
+//! An override of 1.0 advances the path by a tick's length every tick. Two overrides are kept, one of them for rapids.
+
+use kmotiondef::limits::TIMEBASE;
+use kmotiondef::variables::{
+    CS0_DOING_RAPID, CS0_FLUSHED, CS0_LAST_FRO, CS0_LAST_RAPID_FRO, CS0_NOM_DECEL_2TB2, CS0_STOPPING_STATE,
+    CS0_T, CS0_TIME_BASE, CS0_TIME_BASE_DELTA, CS0_TIME_BASE_DESIRED, CS0_TIME_DOWNLOADED, CS0_TIME_EXECUTED,
+    CS0_TIME_LOST,
+};
+use vm::memory::GuestMemory;
+
+use super::feedhold::State;
+use crate::views::Typed;
+
+/// The square of a tick's length, s².
+const TIMEBASE_SQUARED: f64 = 8.1e-9;
+/// Seconds of path that are left untouched when data runs out.
+const RESERVE: f64 = 0.001;
+
+/// The override that applies where the path stands.
+pub(crate) fn current_override(memory: &GuestMemory) -> f32 {
+    if memory.get(CS0_DOING_RAPID) != 0 { memory.get(CS0_LAST_RAPID_FRO) } else { memory.get(CS0_LAST_FRO) }
+}
+
+/// Ramps to a feed override, with `time` seconds for a change of 1.0.
+pub(crate) fn set_feed(memory: &mut GuestMemory, fro: f32, time: f32) {
+    memory.set(CS0_LAST_FRO, fro);
+    if memory.get(CS0_DOING_RAPID) == 0 {
+        aim_unless_held(memory, fro, time);
+    }
+}
+
+/// Ramps to a rapid override, with `time` seconds for a change of 1.0.
+pub(crate) fn set_rapid(memory: &mut GuestMemory, fro: f32, time: f32) {
+    memory.set(CS0_LAST_RAPID_FRO, fro);
+    if memory.get(CS0_DOING_RAPID) != 0 {
+        aim_unless_held(memory, fro, time);
+    }
+}
+
+/// Ramps to an override even in feedhold; a resume does not come back to it.
+pub(crate) fn aim(memory: &mut GuestMemory, fro: f32, time: f32) {
+    memory.set(CS0_TIME_BASE_DESIRED, f64::from(fro) * TIMEBASE);
+    memory.set(CS0_TIME_BASE_DELTA, change_per_tick(time));
+}
+
+fn aim_unless_held(memory: &mut GuestMemory, fro: f32, time: f32) {
+    if State::of(memory) == State::Running {
+        aim(memory, fro, time);
+    }
+}
+
+/// The change of the time base in a tick when a change of 1.0 takes `time` seconds; 0 for no limit.
+fn change_per_tick(time: f32) -> f64 {
+    if time > 0.0 { TIMEBASE_SQUARED / f64::from(time) } else { 0.0 }
+}
+
+/// Starts a path at the override that applies, without a ramp.
+pub(crate) fn start(memory: &mut GuestMemory, change_time: f32) {
+    memory.set(CS0_NOM_DECEL_2TB2, (f64::from(change_time) / (2.0 * TIMEBASE_SQUARED)) as f32);
+    memory.set(CS0_TIME_BASE_DELTA, change_per_tick(change_time));
+    jump(memory);
+}
+
+/// Goes to the override that applies at once.
+fn jump(memory: &mut GuestMemory) {
+    let time_base = f64::from(current_override(memory)) * TIMEBASE;
+    memory.set(CS0_TIME_BASE, time_base);
+    memory.set(CS0_TIME_BASE_DESIRED, time_base);
+}
+
+/// Begins or ends a rapid in the path.
+pub(crate) fn set_doing_rapid(memory: &mut GuestMemory, doing: bool) {
+    memory.set(CS0_DOING_RAPID, i32::from(doing));
+    // A hold in progress is stronger: the resume finds the override.
+    if State::of(memory) == State::Running {
+        jump(memory);
+    }
+}
+
+/// One tick of the ramp, behind the advance of the path time.
+pub(crate) fn ramp(memory: &mut GuestMemory) {
+    let (now, delta) = (memory.get(CS0_TIME_BASE), memory.get(CS0_TIME_BASE_DELTA));
+    // The board computes the aim as a single.
+    let aim = f64::from(aim_within_data(memory, now) as f32);
+    let next = if delta <= 0.0 {
+        aim
+    } else if aim > now + delta {
+        now + delta
+    } else if aim < now - delta {
+        now - delta
+    } else {
+        aim
+    };
+    memory.set(CS0_TIME_BASE, next);
+    if State::of(memory) == State::StoppingPath && next == 0.0 {
+        memory.set(CS0_STOPPING_STATE, State::PathStopped.number());
+    }
+}
+
+/// What the ramp may aim at: standstill as soon as the rest of the data is needed for stopping.
+fn aim_within_data(memory: &GuestMemory, now: f64) -> f64 {
+    let desired = memory.get(CS0_TIME_BASE_DESIRED);
+    let position = memory.get(CS0_TIME_EXECUTED) + memory.get(CS0_T);
+    let stopping = f64::from(memory.get(CS0_NOM_DECEL_2TB2)) * now * now;
+    let lost = memory.get(CS0_TIME_LOST);
+    let ahead = memory.get(CS0_TIME_DOWNLOADED) - position;
+    let starves = memory.get(CS0_FLUSHED) == 0 && desired > 0.0 && now >= 0.0 && ahead - RESERVE < stopping;
+    let starves_behind = lost > 0.0 && desired < 0.0 && now <= 0.0 && position - lost - RESERVE < stopping;
+    if starves || starves_behind { 0.0 } else { desired }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::power_up;
+
+    fn board() -> GuestMemory {
+        let mut memory = GuestMemory::new();
+        power_up::fill(&mut memory);
+        memory
+    }
+
+    #[test]
+    fn an_override_is_kept_when_it_does_not_apply() {
+        let mut memory = board();
+        set_rapid(&mut memory, 0.25, 1.0);
+        assert_eq!(memory.get(CS0_LAST_RAPID_FRO), 0.25);
+        assert_eq!(memory.get(CS0_TIME_BASE_DESIRED), TIMEBASE);
+        memory.set(CS0_STOPPING_STATE, State::PathStopped.number());
+        set_feed(&mut memory, 0.5, 1.0);
+        assert_eq!(memory.get(CS0_LAST_FRO), 0.5);
+        assert_eq!(memory.get(CS0_TIME_BASE_DESIRED), TIMEBASE);
+        aim(&mut memory, -0.5, 1.0);
+        assert_eq!(memory.get(CS0_TIME_BASE_DESIRED), -0.5 * TIMEBASE);
+        assert_eq!(memory.get(CS0_LAST_FRO), 0.5);
+    }
+
+    #[test]
+    fn no_time_is_a_jump() {
+        for time in [0.0, -1.0, f32::NAN] {
+            let mut memory = board();
+            memory.set(CS0_FLUSHED, 1);
+            set_feed(&mut memory, 0.5, time);
+            ramp(&mut memory);
+            assert_eq!(memory.get(CS0_TIME_BASE), f64::from((0.5 * TIMEBASE) as f32));
+        }
+    }
+
+    #[test]
+    fn lost_data_stops_the_way_back() {
+        let mut memory = board();
+        set_feed(&mut memory, -1.0, 0.0);
+        memory.set(CS0_TIME_BASE, 0.0);
+        memory.set(CS0_TIME_LOST, 2.0);
+        for (position, moves) in [(2.0005, false), (2.5, true)] {
+            memory.set(CS0_TIME_EXECUTED, position);
+            memory.set(CS0_TIME_BASE, 0.0);
+            ramp(&mut memory);
+            assert_eq!(memory.get(CS0_TIME_BASE) < 0.0, moves, "{position}");
+        }
+    }
+}

@@ -1,0 +1,200 @@
+//! One entry of a path: where it stands in guest memory and what it says.
+
+use kmotiondef::modes::TrajectoryMode;
+use kmotiondef::structs::{ParametricCoeff, TripCircleLinear, TripLinear};
+use kmotiondef::{AxisId, Bit, Field, GuestAddr, GuestType, Place};
+use vm::memory::GuestMemory;
+
+use crate::views::Typed;
+
+/// Bytes of an entry.
+pub(crate) const SIZE: u32 = ParametricCoeff::SIZE;
+
+/// The letters whose position is always linear in the parameter, with their axes.
+const LINEAR_LETTERS: [(Field<u8>, Field<TripLinear>); 6] = [
+    (ParametricCoeff::Z_AXIS, ParametricCoeff::COORD_Z),
+    (ParametricCoeff::A_AXIS, ParametricCoeff::COORD_A),
+    (ParametricCoeff::B_AXIS, ParametricCoeff::COORD_B),
+    (ParametricCoeff::C_AXIS, ParametricCoeff::COORD_C),
+    (ParametricCoeff::U_AXIS, ParametricCoeff::COORD_U),
+    (ParametricCoeff::V_AXIS, ParametricCoeff::COORD_V),
+];
+
+/// The letters that an arc moves.
+const ARC_LETTERS: [(Field<u8>, Field<TripCircleLinear>); 2] = [
+    (ParametricCoeff::X_AXIS, ParametricCoeff::COORD_X),
+    (ParametricCoeff::Y_AXIS, ParametricCoeff::COORD_Y),
+];
+
+/// What an entry is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// The end of the path; so is any mode without a meaning.
+    Off,
+    /// A stretch of the path.
+    Segment(Shape),
+    /// A command that takes no path time.
+    Command(Command),
+}
+
+/// The form of a stretch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Shape {
+    /// Every letter is linear in the parameter.
+    Linear,
+    /// X and Y are sines of it.
+    Circular,
+}
+
+/// A command in the path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Command {
+    /// Drives a bit.
+    Drive(Bit, bool),
+    /// Holds the path until a bit has a state.
+    Wait(Bit, bool),
+    /// From here on the rapid override applies, or no longer.
+    Rapid(bool),
+    /// A number or a bit without a meaning.
+    Nothing,
+}
+
+impl Command {
+    /// The command's number and bit as an entry holds them.
+    pub(crate) fn encoded(self) -> (u8, i16) {
+        match self {
+            Self::Drive(bit, high) => (u8::from(high), bit.get() as i16),
+            Self::Wait(bit, high) => (2 + u8::from(high), bit.get() as i16),
+            Self::Rapid(begins) => (5 - u8::from(begins), 0),
+            Self::Nothing => (u8::MAX, 0),
+        }
+    }
+
+    fn decoded(number: u8, bit: i16) -> Self {
+        let bit = Bit::new(i32::from(bit));
+        match (number, bit) {
+            (0 | 1, Some(bit)) => Self::Drive(bit, number == 1),
+            (2 | 3, Some(bit)) => Self::Wait(bit, number == 3),
+            (4 | 5, _) => Self::Rapid(number == 4),
+            _ => Self::Nothing,
+        }
+    }
+}
+
+/// An entry of a path, by its address.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Entry(Place<ParametricCoeff>);
+
+impl Entry {
+    /// The entry at an address, whatever is there.
+    pub(crate) const fn at(address: GuestAddr) -> Self {
+        Self(Place::new(address))
+    }
+
+    /// Where it is.
+    pub(crate) const fn address(self) -> GuestAddr {
+        self.0.address()
+    }
+
+    /// A field of it.
+    pub(crate) const fn field<T>(self, field: Field<T>) -> Place<T> {
+        self.0.field(field)
+    }
+
+    /// What it is.
+    pub(crate) fn kind(self, memory: &GuestMemory) -> Kind {
+        let mode = i32::from(memory.get(self.field(ParametricCoeff::TRAJECTORY_MODE)));
+        match TrajectoryMode::new(mode) {
+            Some(TrajectoryMode::Linear) => Kind::Segment(Shape::Linear),
+            Some(TrajectoryMode::Circular) => Kind::Segment(Shape::Circular),
+            Some(TrajectoryMode::Special) => Kind::Command(Command::decoded(
+                memory.get(self.field(ParametricCoeff::X_AXIS)),
+                memory.get(self.field(ParametricCoeff::SPECIAL_PARAM)),
+            )),
+            _ => Kind::Off,
+        }
+    }
+
+    /// Makes it the end of the path.
+    pub(crate) fn end_path(self, memory: &mut GuestMemory) {
+        memory.set(self.field(ParametricCoeff::TRAJECTORY_MODE), TrajectoryMode::Off.get() as i8);
+    }
+
+    /// Seconds of path time it takes; none unless it is a stretch.
+    pub(crate) fn duration(self, memory: &GuestMemory) -> f64 {
+        match self.kind(memory) {
+            Kind::Segment(_) => memory.get(self.field(ParametricCoeff::T)),
+            Kind::Off | Kind::Command(_) => 0.0,
+        }
+    }
+
+    /// Where the axes of a stretch are, `t` seconds into it.
+    pub(crate) fn positions(self, memory: &GuestMemory, t: f64) -> Vec<(AxisId, f64)> {
+        let Kind::Segment(shape) = self.kind(memory) else { return Vec::new() };
+        let p = self.parameter(memory, t);
+        let axis = |field: Field<u8>| AxisId::new(i32::from(memory.get(self.field(field))));
+        let arc = ARC_LETTERS.iter().filter_map(|&(letter, coefficients)| {
+            Some((axis(letter)?, self.on_arc(memory, coefficients, shape, p)))
+        });
+        let linear = LINEAR_LETTERS.iter().filter_map(|&(letter, coefficients)| {
+            let value = |field| memory.get(self.field(coefficients.field(field)));
+            Some((axis(letter)?, value(TripLinear::C) * p + value(TripLinear::D)))
+        });
+        arc.chain(linear).collect()
+    }
+
+    /// The parameter at `t`, a cubic of time.
+    fn parameter(self, memory: &GuestMemory, t: f64) -> f64 {
+        let value = |field| memory.get(self.field(field));
+        let [a, b, c, d] =
+            [ParametricCoeff::A, ParametricCoeff::B, ParametricCoeff::C, ParametricCoeff::D].map(value);
+        ((a * t + b) * t + c) * t + d
+    }
+
+    fn on_arc(
+        self,
+        memory: &GuestMemory,
+        coefficients: Field<TripCircleLinear>,
+        shape: Shape,
+        p: f64,
+    ) -> f64 {
+        let value = |field| memory.get(self.field(coefficients.field(field)));
+        let (c, d) = (value(TripCircleLinear::C), value(TripCircleLinear::D));
+        match shape {
+            Shape::Linear => c * p + d,
+            Shape::Circular => c * libm::sin(p * value(TripCircleLinear::A) + value(TripCircleLinear::B)) + d,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn commands_survive_their_entry() {
+        let bit = Bit::new(1040).expect("a bit");
+        for command in [
+            Command::Drive(bit, false),
+            Command::Drive(bit, true),
+            Command::Wait(bit, false),
+            Command::Wait(bit, true),
+            Command::Rapid(true),
+            Command::Rapid(false),
+            Command::Nothing,
+        ] {
+            let (number, bit) = command.encoded();
+            assert_eq!(Command::decoded(number, bit), command);
+        }
+        assert_eq!(Command::decoded(1, -1), Command::Nothing);
+        assert_eq!(Command::decoded(6, 0), Command::Nothing);
+    }
+
+    #[test]
+    fn an_entry_outside_memory_ends_the_path() {
+        let memory = GuestMemory::new();
+        for address in [0, 0x4000_0000, 0xFFFF_FFF0] {
+            assert_eq!(Entry::at(GuestAddr::new(address)).kind(&memory), Kind::Off);
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! The coordinate system: which axes its eight letters drive, and how fast those can change speed.
+
+use kmotiondef::structs::Chan;
+use kmotiondef::variables::{
+    CS0_AXIS_A, CS0_AXIS_B, CS0_AXIS_C, CS0_AXIS_U, CS0_AXIS_V, CS0_AXIS_X, CS0_AXIS_Y, CS0_AXIS_Z,
+};
+use kmotiondef::{AxisId, Place};
+use vm::memory::GuestMemory;
+
+use crate::views::Typed;
+
+/// Letters of the coordinate system: x y z a b c u v.
+pub(crate) const LETTERS: usize = 8;
+
+const LETTER_AXES: [Place<i32>; LETTERS] =
+    [CS0_AXIS_X, CS0_AXIS_Y, CS0_AXIS_Z, CS0_AXIS_A, CS0_AXIS_B, CS0_AXIS_C, CS0_AXIS_U, CS0_AXIS_V];
+
+/// Seconds of an override change when no axis sets a limit.
+const DEFAULT_CHANGE_TIME: f32 = 1.0;
+
+/// The axis of each letter, if it has one.
+pub(crate) fn letters(memory: &GuestMemory) -> [Option<AxisId>; LETTERS] {
+    LETTER_AXES.map(|letter| AxisId::new(memory.get(letter)))
+}
+
+/// The axes of the coordinate system, in the order of their letters.
+pub(crate) fn members(memory: &GuestMemory) -> Vec<AxisId> {
+    letters(memory).into_iter().flatten().collect()
+}
+
+/// Whether an axis belongs to the coordinate system.
+pub(crate) fn is_member(memory: &GuestMemory, axis: AxisId) -> bool {
+    letters(memory).contains(&Some(axis))
+}
+
+/// Assigns axis numbers to the first letters, -1 for none; the other letters keep theirs.
+pub(crate) fn assign(memory: &mut GuestMemory, axes: &[i32]) {
+    for (letter, &axis) in LETTER_AXES.into_iter().zip(axes) {
+        memory.set(letter, axis);
+    }
+}
+
+/// Whether an axis of the system is disabled, so that no path can run.
+pub(crate) fn is_disabled(memory: &GuestMemory) -> bool {
+    members(memory).into_iter().any(|axis| memory.axis(axis, Chan::ENABLE) == 0)
+}
+
+/// Seconds in which every axis of the system can change the override by 1.0 at its full speed.
+pub(crate) fn nominal_change_time(memory: &GuestMemory) -> f32 {
+    let times =
+        members(memory).into_iter().map(|axis| change_time(memory, axis, memory.axis(axis, Chan::VEL)));
+    longest(times).map_or(DEFAULT_CHANGE_TIME, |time| time as f32)
+}
+
+/// Seconds in which every axis of the system can stop from its present speed; 0 at rest.
+pub(crate) fn stopping_time(memory: &GuestMemory) -> f32 {
+    let times =
+        members(memory).into_iter().map(|axis| change_time(memory, axis, memory.axis(axis, Chan::LAST_VEL)));
+    longest(times).map_or(0.0, |time| time as f32)
+}
+
+/// Seconds an axis needs between rest and a velocity; the board's formula counts the jerk phases twice.
+fn change_time(memory: &GuestMemory, axis: AxisId, velocity: f32) -> f64 {
+    let limit = |field| f64::from(memory.axis(axis, field));
+    let velocity = f64::from(velocity.abs());
+    velocity / limit(Chan::ACCEL) + 2.0 * libm::sqrt(2.0 * velocity / limit(Chan::JERK))
+}
+
+/// The longest of some times; limits of 0 give none.
+fn longest(times: impl Iterator<Item = f64>) -> Option<f64> {
+    times.filter(|time| time.is_finite()).reduce(f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::power_up;
+
+    fn board() -> GuestMemory {
+        let mut memory = GuestMemory::new();
+        power_up::fill(&mut memory);
+        memory
+    }
+
+    #[test]
+    fn letters_not_given_keep_their_axes() {
+        let mut memory = board();
+        assign(&mut memory, &[5, 1, -1, -1, 7, -1]);
+        assign(&mut memory, &[0, 1, 2, -1]);
+        assert_eq!(members(&memory).into_iter().map(AxisId::get).collect::<Vec<_>>(), [0, 1, 2, 7]);
+        assert_eq!(letters(&memory)[4], AxisId::new(7));
+    }
+
+    #[test]
+    fn change_time_is_that_of_the_slowest_axis() {
+        let check = |limits: [f32; 3], expect: f32| {
+            let mut memory = board();
+            assign(&mut memory, &[0, 1, -1, -1]);
+            for (axis, speed) in members(&memory).into_iter().zip([1.0, 0.5]) {
+                memory.set_axis(axis, Chan::VEL, speed * limits[0]);
+                memory.set_axis(axis, Chan::ACCEL, limits[1]);
+                memory.set_axis(axis, Chan::JERK, limits[2]);
+            }
+            assert_eq!(nominal_change_time(&memory), expect);
+        };
+        check([40_000.0, 200_000.0, 4e6], 0.482_842_7);
+        check([1_000.0, 10_000.0, 100_000.0], 0.382_842_72);
+        check([1_000.0, 0.0, 0.0], DEFAULT_CHANGE_TIME);
+    }
+}

@@ -1,0 +1,115 @@
+//! Independent motion of an axis: its state list in guest memory, and one tick of it.
+
+use kmotiondef::structs::{Chan, TripCoeff};
+use kmotiondef::{AxisId, GuestAddr, GuestType, Place};
+use vm::memory::GuestMemory;
+
+use super::profile::{MAX_STATES, Mode, Point, State};
+use super::trajectory::{Approach, Cursor, Step, point, step};
+use crate::views::Typed;
+
+/// The state list of an axis.
+fn list(memory: &GuestMemory, axis: AxisId) -> Place<[TripCoeff; MAX_STATES]> {
+    Place::new(memory.axis(axis, Chan::C))
+}
+
+/// Reads one state; beyond the list it has ended.
+fn read(memory: &GuestMemory, base: GuestAddr, index: usize) -> State {
+    let place: Place<TripCoeff> = Place::new(base.offset(TripCoeff::SIZE.wrapping_mul(index as u32)));
+    if index >= MAX_STATES {
+        return State::END;
+    }
+    State {
+        mode: Mode::from_number(memory.get(place.field(TripCoeff::TRAJECTORY_MODE))),
+        t: memory.get(place.field(TripCoeff::T)),
+        a: memory.get(place.field(TripCoeff::A)),
+        b: memory.get(place.field(TripCoeff::B)),
+        c: memory.get(place.field(TripCoeff::C)),
+        d: memory.get(place.field(TripCoeff::D)),
+    }
+}
+
+/// Writes states into an axis' list from `offset` on, as many as fit.
+pub(crate) fn write(memory: &mut GuestMemory, axis: AxisId, offset: usize, states: &[State]) {
+    let list = list(memory, axis);
+    for (index, state) in (offset..MAX_STATES).zip(states) {
+        let place = list.element(index);
+        memory.set(place.field(TripCoeff::TRAJECTORY_MODE), state.mode.number());
+        memory.set(place.field(TripCoeff::T), state.t);
+        memory.set(place.field(TripCoeff::A), state.a);
+        memory.set(place.field(TripCoeff::B), state.b);
+        memory.set(place.field(TripCoeff::C), state.c);
+        memory.set(place.field(TripCoeff::D), state.d);
+    }
+}
+
+/// The state at an index of an axis' list.
+pub(crate) fn state(memory: &GuestMemory, axis: AxisId, index: usize) -> State {
+    read(memory, memory.axis(axis, Chan::C), index)
+}
+
+/// Starts the list of an axis from its first state.
+pub(crate) fn start(memory: &mut GuestMemory, axis: AxisId) {
+    memory.set_axis(axis, Chan::T, 0.0);
+    let first = memory.axis(axis, Chan::C);
+    memory.set_axis(axis, Chan::PCOEFF, first);
+}
+
+/// Replaces the motion of an axis.
+pub(crate) fn run(memory: &mut GuestMemory, axis: AxisId, states: &[State]) {
+    write(memory, axis, 0, states);
+    start(memory, axis);
+}
+
+/// Whether a list is being executed.
+pub(crate) fn has_motion(memory: &GuestMemory, axis: AxisId) -> bool {
+    !memory.axis(axis, Chan::PCOEFF).is_null()
+}
+
+/// Whether an enabled axis executes a list.
+pub(crate) fn is_moving(memory: &GuestMemory, axis: AxisId) -> bool {
+    memory.axis(axis, Chan::ENABLE) != 0 && has_motion(memory, axis)
+}
+
+/// The place in the list, counted from the current state: the states behind it follow in memory.
+fn cursor(memory: &GuestMemory, axis: AxisId) -> Cursor {
+    Cursor { index: 0, t: memory.axis(axis, Chan::T) }
+}
+
+/// Position, velocity and acceleration from which a new motion starts.
+pub(crate) fn present(memory: &GuestMemory, axis: AxisId) -> Point {
+    let dest = memory.axis(axis, Chan::DEST);
+    if !has_motion(memory, axis) {
+        return Point::rest(dest);
+    }
+    let current = memory.axis(axis, Chan::PCOEFF);
+    let velocity = f64::from(memory.axis(axis, Chan::LAST_VEL));
+    point(cursor(memory, axis), dest, velocity, |index| read(memory, current, index))
+}
+
+/// Advances the motion of an axis by one tick.
+pub(crate) fn advance(memory: &mut GuestMemory, axis: AxisId) {
+    if !has_motion(memory, axis) {
+        return;
+    }
+    let approach = Approach {
+        dest: memory.axis(axis, Chan::DEST),
+        velocity: f64::from(memory.axis(axis, Chan::LAST_VEL)),
+        vc: f64::from(memory.axis(axis, Chan::EXP_MOTION_VC)),
+        xc: f64::from(memory.axis(axis, Chan::EXP_MOTION_XC)),
+        v: f64::from(memory.axis(axis, Chan::VEL).max(0.0)),
+        a: f64::from(memory.axis(axis, Chan::ACCEL).max(0.0)),
+    };
+    let current = memory.axis(axis, Chan::PCOEFF);
+    match step(cursor(memory, axis), &approach, |index| read(memory, current, index)) {
+        Step::Moving(dest, next) => {
+            memory.set_axis(axis, Chan::DEST, dest);
+            memory.set_axis(axis, Chan::T, next.t);
+            memory.set_axis(axis, Chan::PCOEFF, current.offset(TripCoeff::SIZE * next.index as u32));
+        }
+        Step::Ended => {
+            memory.set_axis(axis, Chan::PCOEFF, GuestAddr::NULL);
+            memory.set_axis(axis, Chan::T, 0.0);
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! Output stages: what an axis' amplifier, analog output or step generator receives.
+//!
+//! Source: axes-and-motion.md sections 11 and 12.
+
+use std::f64::consts::TAU;
+
+use kmotiondef::limits::MAXV;
+use kmotiondef::modes::OutputMode;
+use kmotiondef::structs::Chan;
+use kmotiondef::variables::DAC_BUFFER;
+use kmotiondef::{AxisId, Field};
+use vm::memory::GuestMemory;
+
+use super::plant::Drive;
+use crate::firmware::io::{antiphase, current, recirculate, store_pwm};
+use crate::kernel::Kernel;
+use crate::views::Typed;
+
+/// The first PWM channel of a SnapAmp: its loops control current.
+const SNAP_AMP: i32 = 8;
+/// Marks a word of a brushless vector; the magnitude is in the low half.
+const VECTOR: u32 = 0x8000_0000;
+
+/// Puts out one tick of an enabled axis.
+pub(crate) fn drive(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId, command: f64, output: f32) {
+    let channel = memory.axis(axis, Chan::OUTPUT_CHAN0);
+    let plant = &mut kernel.servo.plants[axis.index()];
+    let mode = OutputMode::new(memory.axis(axis, Chan::OUTPUT_MODE));
+    plant.drive = match mode {
+        None | Some(OutputMode::None) => Drive::None,
+        Some(OutputMode::StepDir | OutputMode::Microstep) => Drive::Steps(command),
+        // The load is where the axis' command is; the correction is for real mechanics.
+        Some(OutputMode::ClosedLoopStepDir | OutputMode::ClosedLoopMicrostep) => Drive::Steps(command),
+        Some(_) => Drive::Loop(command),
+    };
+    match mode {
+        Some(OutputMode::DcServo) => store_pwm(memory, channel, pwm(channel, output as i32)),
+        Some(OutputMode::DacServo) => write_dac(memory, axis, f64::from(output)),
+        Some(OutputMode::Brushless3Ph) => three_phase(memory, axis, output),
+        Some(OutputMode::Brushless4Ph) => {
+            let angle = (memory.axis(axis, Chan::POSITION)
+                + f64::from(memory.axis(axis, Chan::COMMUTATION_OFFSET)))
+                * memory.axis(axis, Chan::INV_DIST_PER_CYCLE);
+            four_phase(memory, axis, output, angle);
+        }
+        Some(OutputMode::Microstep) => {
+            let gain = f64::from(memory.axis(axis, Chan::OUTPUT_GAIN));
+            microstep(memory, axis, gain * command);
+        }
+        Some(OutputMode::ClosedLoopMicrostep) => microstep(memory, axis, command + f64::from(output)),
+        _ => {}
+    }
+}
+
+/// The word of a value in the mode that its channel has.
+fn pwm(channel: i32, value: i32) -> i32 {
+    if channel >= SNAP_AMP { current(value) } else { antiphase(value) }
+}
+
+/// Writes the analog output of an axis: 12 bits, which wrap.
+fn write_dac(memory: &mut GuestMemory, axis: AxisId, output: f64) {
+    let gain = f64::from(memory.axis(axis, Chan::OUTPUT_GAIN));
+    let value = (output * gain + f64::from(memory.axis(axis, Chan::OUTPUT_OFFSET))) as i32;
+    let channel = usize::try_from(memory.axis(axis, Chan::OUTPUT_CHAN0)).ok();
+    if let Some(channel) = channel.filter(|&channel| channel < 8) {
+        memory.set(DAC_BUFFER.element(channel), (value.wrapping_sub(2048) & 0xfff) as i16);
+    }
+}
+
+/// Sine and cosine currents with lead compensation.
+fn microstep(memory: &mut GuestMemory, axis: AxisId, position: f64) {
+    let angle = TAU * position * memory.axis(axis, Chan::INV_DIST_PER_CYCLE);
+    let amplitude = f64::from(memory.axis(axis, Chan::STEPPER_AMPLITUDE));
+    let lead = f64::from(memory.axis(axis, Chan::LEAD));
+    let phases: [(f64, Field<f32>, Field<i32>); 2] = [
+        (amplitude * libm::sin(angle), Chan::X1_LAST, Chan::OUTPUT_CHAN0),
+        (amplitude * libm::cos(angle), Chan::X2_LAST, Chan::OUTPUT_CHAN1),
+    ];
+    for (value, last, channel) in phases {
+        let led = value + (value - f64::from(memory.axis(axis, last))) * lead;
+        memory.set_axis(axis, last, value as f32);
+        let channel = memory.axis(axis, channel);
+        store_pwm(memory, channel, pwm(channel, libm::round(led) as i32));
+    }
+}
+
+/// Applies a three-phase vector. The word says its magnitude only; the phases are the amplifier's.
+pub(crate) fn three_phase(memory: &mut GuestMemory, axis: AxisId, v: f32) {
+    let value = v.clamp(-MAXV, MAXV) as i16;
+    let word = VECTOR | u32::from(value.cast_unsigned());
+    let channel = memory.axis(axis, Chan::OUTPUT_CHAN0);
+    store_pwm(memory, channel, word.cast_signed());
+}
+
+/// Applies a vector to two coils a quarter of a cycle apart; the angle is in cycles.
+pub(crate) fn four_phase(memory: &mut GuestMemory, axis: AxisId, v: f32, angle: f64) {
+    let magnitude = f64::from(v.clamp(-MAXV, MAXV));
+    let angle = TAU * (angle - libm::floor(angle));
+    for (value, channel) in [(libm::sin(angle), Chan::OUTPUT_CHAN0), (libm::cos(angle), Chan::OUTPUT_CHAN1)] {
+        let channel = memory.axis(axis, channel);
+        store_pwm(memory, channel, pwm(channel, libm::round(magnitude * value) as i32));
+    }
+}
+
+/// Disables an axis: its output goes to zero; profile, destination and filters stay as they are.
+pub(crate) fn switch_off(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId) {
+    memory.set_axis(axis, Chan::ENABLE, 0);
+    kernel.servo.plants[axis.index()].drive = Drive::None;
+    let channels = [memory.axis(axis, Chan::OUTPUT_CHAN0), memory.axis(axis, Chan::OUTPUT_CHAN1)];
+    match OutputMode::new(memory.axis(axis, Chan::OUTPUT_MODE)) {
+        Some(OutputMode::DcServo) => store_pwm(memory, channels[0], recirculate(0)),
+        Some(OutputMode::Microstep | OutputMode::ClosedLoopMicrostep | OutputMode::Brushless4Ph) => {
+            channels.into_iter().for_each(|channel| store_pwm(memory, channel, recirculate(0)));
+        }
+        Some(OutputMode::Brushless3Ph) => {
+            let pair = [channels[0], channels[0].wrapping_add(1)];
+            pair.into_iter().for_each(|channel| store_pwm(memory, channel, recirculate(0)));
+        }
+        Some(OutputMode::DacServo) => write_dac(memory, axis, 0.0),
+        _ => {}
+    }
+}

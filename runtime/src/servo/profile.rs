@@ -1,0 +1,330 @@
+//! Third-order (jerk-limited) profiles: lists of states of constant jerk.
+//!
+//! Source: measurements of the released firmware (`axes-and-motion.md` section 4, `motion.jsonl`). Some of its
+//! intermediate results are singles; they are singles here too, because programs see the states.
+
+/// Seconds of one tick.
+pub(crate) const TIMEBASE: f64 = 0.000_09;
+/// Ticks at constant velocity in front of a profile planned in motion: the board's planning time.
+const LEAD: f64 = 20.0 * TIMEBASE;
+/// A state without end.
+pub(crate) const FOREVER: f64 = 1e99;
+/// Entries of one axis' state list.
+pub(crate) const MAX_STATES: usize = 20;
+
+/// What a state is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Mode {
+    /// Ends the list.
+    Off,
+    /// A polynomial of time.
+    Independent,
+    /// An exponential approach: `a` is the ratio a tick, `b` the target.
+    Exponential,
+}
+
+impl Mode {
+    /// The number that programs see.
+    pub(crate) fn number(self) -> i32 {
+        match self {
+            Self::Off => 0,
+            Self::Independent => 1,
+            Self::Exponential => 5,
+        }
+    }
+
+    /// The mode of a number; anything unknown ends the list.
+    pub(crate) fn from_number(number: i32) -> Self {
+        match number {
+            1 => Self::Independent,
+            5 => Self::Exponential,
+            _ => Self::Off,
+        }
+    }
+}
+
+/// One state: position = a·t³ + b·t² + c·t + d for `t` from 0 to its duration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct State {
+    /// What it is.
+    pub(crate) mode: Mode,
+    /// Duration in seconds.
+    pub(crate) t: f64,
+    /// A sixth of the jerk.
+    pub(crate) a: f64,
+    /// Half the acceleration at its start.
+    pub(crate) b: f64,
+    /// Velocity at its start.
+    pub(crate) c: f64,
+    /// Position at its start.
+    pub(crate) d: f64,
+}
+
+impl State {
+    /// Stands at `position` for `duration`.
+    pub(crate) fn hold(position: f64, duration: f64) -> Self {
+        Self { mode: Mode::Independent, t: duration, a: 0.0, b: 0.0, c: 0.0, d: position }
+    }
+
+    /// The end of a list, remembering where motion stopped.
+    pub(crate) fn off(t: f64, position: f64) -> Self {
+        Self { mode: Mode::Off, t, a: 0.0, b: 0.0, c: 0.0, d: position }
+    }
+
+    /// The end of a profile from rest.
+    pub(crate) const END: Self = Self { mode: Mode::Off, t: 0.0, a: 0.0, b: 0.0, c: 0.0, d: 0.0 };
+
+    /// Position, velocity and acceleration at `t` seconds into the state.
+    pub(crate) fn at(&self, t: f64) -> Point {
+        Point {
+            x: ((self.a * t + self.b) * t + self.c) * t + self.d,
+            v: (3.0 * self.a * t + 2.0 * self.b) * t + self.c,
+            a: 6.0 * self.a * t + 2.0 * self.b,
+        }
+    }
+}
+
+/// A point of a motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Point {
+    /// Position.
+    pub(crate) x: f64,
+    /// Velocity.
+    pub(crate) v: f64,
+    /// Acceleration.
+    pub(crate) a: f64,
+}
+
+impl Point {
+    /// At rest at `x`.
+    pub(crate) fn rest(x: f64) -> Self {
+        Self { x, v: 0.0, a: 0.0 }
+    }
+}
+
+/// Limits of a motion, all positive.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Limits {
+    /// Velocity.
+    pub(crate) v: f64,
+    /// Acceleration.
+    pub(crate) a: f64,
+    /// Jerk.
+    pub(crate) j: f64,
+}
+
+impl Limits {
+    /// Limits from the axis' fields; `None` unless all are positive.
+    pub(crate) fn new(v: f32, a: f32, j: f32) -> Option<Self> {
+        let usable = |limit: f32| limit > 0.0 && limit.is_finite();
+        (usable(v) && usable(a) && usable(j)).then(|| Self {
+            v: f64::from(v),
+            a: f64::from(a),
+            j: f64::from(j),
+        })
+    }
+}
+
+/// A list under construction and the point it has reached.
+#[derive(Clone, Debug)]
+struct Path {
+    states: Vec<State>,
+    end: Point,
+}
+
+impl Path {
+    fn from(start: Point) -> Self {
+        Self { states: Vec::new(), end: start }
+    }
+
+    /// Appends `duration` seconds of constant `jerk`; nothing for a duration of zero.
+    fn push(&mut self, duration: f64, jerk: f64) {
+        if duration > 0.0 {
+            let Point { x, v, a } = self.end;
+            let state = State { mode: Mode::Independent, t: duration, a: jerk / 6.0, b: a / 2.0, c: v, d: x };
+            self.end = state.at(duration);
+            self.states.push(state);
+        }
+    }
+
+    /// Appends a segment that starts with exactly this acceleration.
+    fn push_at(&mut self, duration: f64, jerk: f64, acceleration: f64) {
+        self.end.a = acceleration;
+        self.push(duration, jerk);
+    }
+
+    /// Appends the change to velocity `target`, reached with acceleration 0, in the shortest time.
+    fn change(&mut self, target: f64, limits: &Limits) {
+        let Point { v, a, .. } = self.end;
+        let gain = target - v;
+        let ramp_down = a * a.abs() / (2.0 * limits.j);
+        let sign = if gain >= ramp_down { 1.0 } else { -1.0 };
+        let jerk = sign * limits.j;
+        // The single is the board's.
+        let last = f64::from(libm::sqrt((gain / jerk + a * a / (2.0 * limits.j * limits.j)).max(0.0)) as f32);
+        if last * limits.j <= limits.a {
+            let first = last - a / jerk;
+            self.push(first, jerk);
+            self.push(last, -jerk);
+        } else {
+            let peak = sign * limits.a;
+            let first = (peak - a) / jerk;
+            self.push(first.abs(), if first < 0.0 { -jerk } else { jerk });
+            let last = limits.a / limits.j;
+            let between = (target - self.end.v - peak * last / 2.0) / peak;
+            self.push_at(between, 0.0, peak);
+            self.push_at(last, -jerk, peak);
+        }
+        self.end.v = target;
+        self.end.a = 0.0;
+    }
+
+    /// Appends a move from rest to `target`, with the standing tick the board puts behind it.
+    fn move_from_rest(&mut self, target: f64, limits: &Limits) {
+        let distance = target - self.end.x;
+        let sign = if distance < 0.0 { -1.0 } else { 1.0 };
+        let Phases { ramp, constant, cruise } = Phases::of(distance.abs(), limits);
+        let jerk = sign * limits.j;
+        let turn = jerk * ramp;
+        self.push(ramp, jerk);
+        self.push_at(constant, 0.0, turn);
+        self.push_at(ramp, -jerk, turn);
+        self.push_at(cruise, 0.0, 0.0);
+        self.push_at(ramp, -jerk, 0.0);
+        self.push_at(constant, 0.0, -turn);
+        self.push_at(ramp, jerk, -turn);
+        self.states.push(State::hold(target, TIMEBASE));
+        self.end = Point::rest(target);
+    }
+}
+
+/// Durations of a symmetric move from rest to rest: ramp, constant, ramp, cruise, ramp, constant, ramp.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Phases {
+    ramp: f64,
+    constant: f64,
+    cruise: f64,
+}
+
+impl Phases {
+    /// The fastest move over `length` within the limits.
+    fn of(length: f64, limits: &Limits) -> Self {
+        let Limits { v, a, j } = *limits;
+        let peak = a.min(libm::sqrt(v * j));
+        let ramp = peak / j;
+        let reached = v * (v / peak + ramp) / 2.0;
+        if length < 2.0 * peak * ramp * ramp {
+            return Self { ramp: libm::cbrt(length / (2.0 * j)), constant: 0.0, cruise: 0.0 };
+        }
+        if length >= 2.0 * reached {
+            return Self { ramp, constant: v / peak - ramp, cruise: (length - 2.0 * reached) / v };
+        }
+        // (J·r/2)·c² + (3·J·r²/2)·c + (J·r³ − L/2) = 0 for the constant phase c; its velocity is a single.
+        let (p, q, r) = (peak / 2.0, 1.5 * peak * ramp, peak * ramp * ramp - length / 2.0);
+        let constant = (libm::sqrt((q * q - 4.0 * p * r).max(0.0)) - q) / (2.0 * p);
+        let velocity = f64::from((peak * (constant + ramp)) as f32);
+        let reached = velocity * (velocity / peak + ramp) / 2.0;
+        Self { ramp, constant: velocity / peak - ramp, cruise: (length - 2.0 * reached) / velocity }
+    }
+}
+
+/// A move from rest, as a new axis or one standing still makes it.
+pub(crate) fn move_from_rest(from: f64, to: f64, limits: &Limits) -> Vec<State> {
+    let mut path = Path::from(Point::rest(from));
+    path.move_from_rest(to, limits);
+    path.states.push(State::END);
+    path.states
+}
+
+/// A move planned while the axis moves: 20 ticks go on as they are, then either the target is approached at full
+/// speed or the axis stops and starts again.
+pub(crate) fn move_in_motion(start: Point, to: f64, limits: &Limits) -> Vec<State> {
+    let mut path = lead(start);
+    let mut stopped = path.clone();
+    stopped.change(0.0, limits);
+    let distance = to - path.end.x;
+    let sign = if distance < stopped.end.x - path.end.x { -1.0 } else { 1.0 };
+    let mut direct = path.clone();
+    direct.change(sign * limits.v, limits);
+    let mut shortest = direct.clone();
+    shortest.change(0.0, limits);
+    let remaining = to - shortest.end.x;
+    if sign * remaining < 0.0 {
+        path = stopped;
+        path.move_from_rest(to, limits);
+        path.states.push(State::END);
+        return path.states;
+    }
+    direct.push(remaining / (sign * limits.v), 0.0);
+    direct.change(0.0, limits);
+    direct.states.push(State::off(FOREVER, to));
+    direct.states
+}
+
+/// A jog: 20 ticks as before, then the change to the new velocity, which lasts.
+pub(crate) fn jog(start: Point, velocity: f64, limits: &Limits) -> Vec<State> {
+    if start.v == 0.0 && start.a == 0.0 && velocity == 0.0 {
+        return vec![State::END];
+    }
+    let mut path = lead(start);
+    path.change(velocity, limits);
+    path.states.push(if velocity == 0.0 { State::off(FOREVER, path.end.x) } else { constant(&path.end) });
+    path.states
+}
+
+/// The deceleration of a feedhold: the change to standstill, at once.
+pub(crate) fn stop(start: Point, limits: &Limits) -> Vec<State> {
+    let mut path = Path::from(start);
+    path.change(0.0, limits);
+    path.states.push(State::off(FOREVER, path.end.x));
+    path.states
+}
+
+/// Constant velocity without end.
+fn constant(point: &Point) -> State {
+    State { mode: Mode::Independent, t: FOREVER, a: 0.0, b: 0.0, c: point.v, d: point.x }
+}
+
+/// The 20 ticks at constant velocity; the acceleration pauses meanwhile.
+fn lead(start: Point) -> Path {
+    let mut path = Path::from(Point { a: 0.0, ..start });
+    path.push(LEAD, 0.0);
+    path.end.a = start.a;
+    path
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check(limits: [f32; 3], distance: f64, durations: &[f64]) {
+        let limits = Limits::new(limits[0], limits[1], limits[2]).expect("positive limits");
+        let states = move_from_rest(0.0, distance, &limits);
+        let found: Vec<f64> =
+            states[..states.len() - 2].iter().map(|state| state.t).filter(|&t| t > 1e-6).collect();
+        assert_eq!(found.len(), durations.len(), "{found:?}");
+        for (found, expect) in found.iter().zip(durations) {
+            assert!((found - expect).abs() < 1e-8, "{found} {expect}");
+        }
+    }
+
+    #[test]
+    fn moves_from_rest_have_the_classical_phases() {
+        check([40000.0, 400_000.0, 4e6], 1000.0, &[0.05; 4]);
+        check([40000.0, 400_000.0, 4e6], 10000.0, &[0.1, 0.1, 0.05, 0.1, 0.1]);
+        check([40000.0, 200_000.0, 4e6], 800.0, &[0.046_415_888_336_127_79; 4]);
+        check([40000.0, 200_000.0, 4e6], 100_000.0, &[0.05, 0.15, 0.05, 2.25, 0.05, 0.15, 0.05]);
+    }
+
+    #[test]
+    fn a_jog_changes_speed_in_the_shortest_time() {
+        let limits = Limits::new(1.0, 100_000.0, 4e6).expect("positive limits");
+        let states = jog(Point { x: 0.0, v: 10000.0, a: 50000.0 }, -5000.0, &limits);
+        let durations: Vec<f64> = states.iter().map(|state| state.t).collect();
+        for (found, expect) in durations.iter().zip([0.0018, 0.0375, 0.128_125, 0.025, FOREVER]) {
+            assert!((found - expect).abs() <= expect * 1e-7, "{durations:?}");
+        }
+        let end = states[4].d - states[1].d;
+        assert!((end - 600.7487).abs() < 1e-3, "{end}");
+    }
+}

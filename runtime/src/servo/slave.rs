@@ -1,0 +1,81 @@
+//! Slaved axes: their destination changes with their master's.
+
+use kmotiondef::AxisId;
+use kmotiondef::limits::N_CHANNELS;
+use kmotiondef::modes::OutputMode;
+use kmotiondef::structs::Chan;
+use vm::memory::GuestMemory;
+
+use super::{Servo, independent};
+use crate::views::Typed;
+
+/// Applies the changes of all masters in this tick, whatever caused them.
+pub(crate) fn follow(servo: &Servo, memory: &mut GuestMemory) {
+    let mut moved = [None; N_CHANNELS];
+    for axis in AxisId::all() {
+        change(servo, memory, axis, &mut moved, N_CHANNELS);
+    }
+}
+
+/// The change of an axis' command in this tick, after its own master's; at most `depth` axes in a chain.
+fn change(
+    servo: &Servo,
+    memory: &mut GuestMemory,
+    axis: AxisId,
+    moved: &mut [Option<f64>; N_CHANNELS],
+    depth: usize,
+) -> f64 {
+    if let Some(change) = moved[axis.index()] {
+        return change;
+    }
+    let is_enabled = memory.axis(axis, Chan::ENABLE) != 0;
+    let master = AxisId::new(memory.axis(axis, Chan::MASTER_AXIS)).filter(|_| is_enabled && depth > 0);
+    if let Some(master) = master {
+        let moved = change(servo, memory, master, moved, depth - 1);
+        if moved != 0.0 && !independent::is_moving(memory, axis) {
+            let dest = memory.axis(axis, Chan::DEST) + memory.axis(axis, Chan::SLAVE_GAIN) * moved;
+            memory.set_axis(axis, Chan::DEST, dest);
+        }
+    }
+    let change = if is_enabled { own_change(servo, memory, axis) } else { 0.0 };
+    moved[axis.index()] = Some(change);
+    change
+}
+
+/// The change of the destination since the last tick; of a closed-loop stepper that of its output as well.
+fn own_change(servo: &Servo, memory: &GuestMemory, axis: AxisId) -> f64 {
+    let change = memory.axis(axis, Chan::DEST) - servo.axes[axis.index()].dest;
+    match OutputMode::new(memory.axis(axis, Chan::OUTPUT_MODE)) {
+        Some(OutputMode::ClosedLoopStepDir | OutputMode::ClosedLoopMicrostep) => {
+            change + f64::from(memory.axis(axis, Chan::OUTPUT) - memory.axis(axis, Chan::PREV_OUTPUT))
+        }
+        _ => change,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::Desk;
+
+    #[test]
+    fn a_chain_of_slaves_follows_in_the_same_tick() {
+        // `checks.jsonl`, "chain of slaves 0 -> 1 (0.5) -> 2 (2.0), master Dest written".
+        let mut desk = Desk::new();
+        let [a, b, c] = [0, 1, 2].map(|axis| AxisId::new(axis).expect("an axis"));
+        for axis in [a, b, c] {
+            desk.call("EnableAxisDest", &[axis.index() as u64, 0]);
+        }
+        desk.memory.set_axis(b, Chan::MASTER_AXIS, 0);
+        desk.memory.set_axis(b, Chan::SLAVE_GAIN, 0.5);
+        desk.memory.set_axis(c, Chan::MASTER_AXIS, 1);
+        desk.memory.set_axis(c, Chan::SLAVE_GAIN, 2.0);
+        for (dest, expect) in
+            [(0.0, [0.0; 3]), (1.0, [1.0, 0.5, 1.0]), (3.0, [3.0, 1.5, 3.0]), (3.0, [3.0, 1.5, 3.0])]
+        {
+            desk.memory.set_axis(a, Chan::DEST, dest);
+            desk.run(1);
+            assert_eq!([a, b, c].map(|axis| desk.memory.axis(axis, Chan::DEST)), expect);
+        }
+    }
+}

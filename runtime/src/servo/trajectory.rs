@@ -1,0 +1,83 @@
+//! Independent trajectories: one tick of a state list.
+//!
+//! `t` counts the seconds inside the current state. A tick first enters the states that `t` has passed, then takes
+//! the position at `t`, and advances `t` last; so a motion planned in tick k leaves its start in tick k + 2.
+
+use super::profile::{Mode, Point, State, TIMEBASE};
+
+/// Where a motion stands in its list.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Cursor {
+    /// Index of the current state.
+    pub(crate) index: usize,
+    /// Seconds inside it.
+    pub(crate) t: f64,
+}
+
+/// What an exponential approach needs besides its state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Approach {
+    /// Destination before this tick.
+    pub(crate) dest: f64,
+    /// Velocity of the last tick.
+    pub(crate) velocity: f64,
+    /// Velocity at which the exponential part begins.
+    pub(crate) vc: f64,
+    /// Distance at which it begins.
+    pub(crate) xc: f64,
+    /// Velocity limit.
+    pub(crate) v: f64,
+    /// Acceleration limit.
+    pub(crate) a: f64,
+}
+
+/// What one tick came to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Step {
+    /// The destination of this tick, and the place in the list from which the next one goes on.
+    Moving(f64, Cursor),
+    /// The list has ended; the destination stays.
+    Ended,
+}
+
+/// Advances a motion by one tick; `state` reads the list.
+pub(crate) fn step(cursor: Cursor, approach: &Approach, state: impl Fn(usize) -> State) -> Step {
+    let (mut cursor, mut current) = (cursor, state(cursor.index));
+    while current.mode == Mode::Independent && cursor.t >= current.t {
+        cursor.t -= current.t;
+        cursor.index += 1;
+        current = state(cursor.index);
+    }
+    let dest = match current.mode {
+        Mode::Off => return Step::Ended,
+        Mode::Independent => current.at(cursor.t).x,
+        Mode::Exponential => exponential(&current, approach),
+    };
+    cursor.t += TIMEBASE;
+    Step::Moving(dest, cursor)
+}
+
+/// Position, velocity and acceleration from which a new motion is planned.
+pub(crate) fn point(cursor: Cursor, dest: f64, velocity: f64, state: impl Fn(usize) -> State) -> Point {
+    let current = state(cursor.index);
+    match current.mode {
+        Mode::Independent => current.at(cursor.t),
+        Mode::Off => Point::rest(dest),
+        // The place it would have in the next tick, where the new motion begins.
+        Mode::Exponential => Point { x: dest + velocity * TIMEBASE, v: velocity, a: 0.0 },
+    }
+}
+
+/// The destination after one tick of an exponential approach. Acceleration limits speeding up only.
+fn exponential(state: &State, approach: &Approach) -> f64 {
+    let Approach { dest, velocity, vc, xc, v, a } = *approach;
+    let rest = state.b - dest;
+    let wanted = if rest.abs() <= xc {
+        (1.0 - state.a) * rest / TIMEBASE
+    } else {
+        libm::copysign(libm::sqrt(vc * vc + 2.0 * a * (rest.abs() - xc)), rest)
+    };
+    let limited =
+        if rest >= 0.0 { wanted.min(velocity + a * TIMEBASE) } else { wanted.max(velocity - a * TIMEBASE) };
+    dest + limited.clamp(-v, v) * TIMEBASE
+}

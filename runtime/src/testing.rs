@@ -1,0 +1,171 @@
+//! A desk for tests of firmware functions: a kernel, memory and threads without a machine.
+
+use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, function_named};
+use kmotiondef::map::PROGRAM_BASE;
+use kmotiondef::{Cycles, GuestAddr, ThreadId, Ticks};
+use vm::firmware::{Caller, Firmware, Outcome, TickContext, Value, Wake};
+use vm::memory::GuestMemory;
+use vm::scheduler::Turn;
+use vm::thread::Threads;
+
+use crate::event::EventKind;
+use crate::files::NoFiles;
+use crate::kernel::Kernel;
+use crate::power_up;
+
+/// A board that calls come to by hand, from thread 1.
+pub(crate) struct Desk {
+    pub(crate) kernel: Kernel,
+    pub(crate) memory: GuestMemory,
+    pub(crate) threads: Threads,
+    now: Cycles,
+    tick: Ticks,
+}
+
+impl Desk {
+    pub(crate) fn new() -> Self {
+        let mut memory = GuestMemory::new();
+        power_up::fill(&mut memory);
+        let kernel = Kernel::new(Box::new(NoFiles));
+        Self { kernel, memory, threads: Threads::new(), now: Cycles::default(), tick: Ticks::default() }
+    }
+
+    pub(crate) fn set_now(&mut self, now: Cycles) {
+        self.now = now;
+    }
+
+    fn outcome(&mut self, name: &str, arguments: &[u64], woken: Option<Wake>) -> Outcome<Value> {
+        let number = function_named(name).unwrap_or_else(|| panic!("no function {name}"));
+        let mut budget = Cycles::PER_TICK;
+        let mut caller = Caller {
+            thread: ThreadId::new(1),
+            memory: &mut self.memory,
+            threads: &mut self.threads,
+            tick: self.tick,
+            slice_start: self.now,
+            slice: budget,
+            budget: &mut budget,
+            woken,
+            arguments,
+        };
+        let outcome = self.kernel.call(FIRMWARE_FUNCTIONS[number].address, &mut caller);
+        outcome.unwrap_or_else(|trap| panic!("{name}: {trap}"))
+    }
+
+    fn done(&mut self, name: &str, arguments: &[u64], woken: Option<Wake>) -> Value {
+        match self.outcome(name, arguments, woken) {
+            Outcome::Done(value) => value,
+            other => panic!("{name}: {other:?}"),
+        }
+    }
+
+    /// Whether a call is done at once.
+    pub(crate) fn is_done(&mut self, name: &str, arguments: &[u64]) -> bool {
+        matches!(self.outcome(name, arguments, None), Outcome::Done(_))
+    }
+
+    pub(crate) fn call(&mut self, name: &str, arguments: &[u64]) {
+        self.done(name, arguments, None);
+    }
+
+    /// Makes a call, and again in the next slice of a single thread if it waits for that.
+    pub(crate) fn call_in_slices(&mut self, name: &str, arguments: &[u64]) {
+        if let Outcome::Wait(wake) = self.outcome(name, arguments, None) {
+            self.run(2);
+            self.done(name, arguments, Some(wake));
+        }
+    }
+
+    pub(crate) fn call_i32(&mut self, name: &str, arguments: &[u64]) -> i32 {
+        match self.done(name, arguments, None) {
+            Value::I32(value) => value,
+            other => panic!("{name}: {other:?}"),
+        }
+    }
+
+    pub(crate) fn wake_i32(&mut self, name: &str, arguments: &[u64]) -> i32 {
+        match self.done(name, arguments, Some(Wake::Retry)) {
+            Value::I32(value) => value,
+            other => panic!("{name}: {other:?}"),
+        }
+    }
+
+    pub(crate) fn call_f64(&mut self, name: &str, arguments: &[u64]) -> f64 {
+        match self.done(name, arguments, None) {
+            Value::F64(value) => value,
+            other => panic!("{name}: {other:?}"),
+        }
+    }
+
+    pub(crate) fn call_f32(&mut self, name: &str, arguments: &[u64]) -> f32 {
+        match self.done(name, arguments, None) {
+            Value::F32(value) => value,
+            other => panic!("{name}: {other:?}"),
+        }
+    }
+
+    /// Runs so many ticks, every other one the primary thread's.
+    pub(crate) fn run(&mut self, ticks: u64) {
+        for _ in 0..ticks {
+            self.tick = self.tick.next();
+            self.now = Cycles::new(self.tick.get() as i64 * Cycles::PER_TICK.get());
+            let turn = if self.tick.get().is_multiple_of(2) {
+                Turn::Primary
+            } else {
+                Turn::User(ThreadId::all().next().expect("1"))
+            };
+            let mut context = TickContext {
+                memory: &mut self.memory,
+                threads: &mut self.threads,
+                tick: self.tick,
+                now: self.now,
+            };
+            self.kernel.tick(&mut context);
+            self.kernel.switch_to(turn, &mut context);
+            if turn == Turn::Primary {
+                self.kernel.primary_slice(&mut context);
+            }
+        }
+    }
+
+    /// An address in the program space of thread 1.
+    pub(crate) fn scratch(&self, offset: u32) -> u32 {
+        PROGRAM_BASE + offset
+    }
+
+    /// Puts a string there and returns its address as an argument.
+    pub(crate) fn put_text(&mut self, offset: u32, text: &[u8]) -> u64 {
+        let address = self.scratch(offset);
+        let mut text = text.to_vec();
+        text.push(0);
+        self.memory.write_bytes(GuestAddr::new(address), &text).expect("mapped");
+        address.into()
+    }
+
+    /// Puts words there and returns their address as an argument.
+    pub(crate) fn put_words(&mut self, offset: u32, words: &[u32]) -> u64 {
+        for (index, word) in (0..).zip(words) {
+            self.memory.poke(GuestAddr::new(self.scratch(offset + 4 * index)), *word);
+        }
+        self.scratch(offset).into()
+    }
+
+    pub(crate) fn bytes_at(&self, address: u32, length: u32) -> Vec<u8> {
+        self.memory.read_bytes(GuestAddr::new(address), length).expect("mapped").to_vec()
+    }
+
+    pub(crate) fn text_at(&self, address: u32) -> String {
+        let text = self.memory.read_c_string(GuestAddr::new(address), 1000).expect("mapped");
+        String::from_utf8(text).expect("text")
+    }
+
+    /// All console lines so far, the unfinished one included.
+    pub(crate) fn printed(&mut self) -> Vec<String> {
+        self.kernel.flush_console(self.now);
+        let lines = self.kernel.take_events().into_iter().filter_map(|event| match event.kind {
+            EventKind::ConsoleLine(line) => Some(String::from_utf8(line).expect("text")),
+            _ => None,
+        });
+        lines.collect()
+    }
+}

@@ -1,0 +1,12 @@
+//! Text in and out of numbers: `printf` and `scanf`, free of where the text comes from or goes.
+
+mod decimal;
+mod format;
+mod number;
+mod scan;
+#[cfg(test)]
+pub(crate) mod vectors;
+
+pub(crate) use format::{Arguments, format};
+pub(crate) use number::{float_prefix, integer_prefix};
+pub(crate) use scan::{Scanned, Sink, scan};

@@ -1,0 +1,89 @@
+//! Numbers at the beginning of a text, as `strtol` and `strtod` read them.
+
+/// Reads an integer: optional sign, prefix where `base` allows it, digits.
+///
+/// Returns the value modulo 2^64 and how many bytes it took; 0 bytes when there is no number. `base` 0 takes the
+/// base from the prefix.
+pub(crate) fn integer_prefix(text: &[u8], base: u32) -> (i64, usize) {
+    let (negative, signed) = sign(text);
+    let mut digits = &text[signed..];
+    let mut base = base;
+    let hexadecimal = matches!(digits, [b'0', b'x' | b'X', digit, ..] if digit.is_ascii_hexdigit());
+    if hexadecimal && (base == 0 || base == 16) {
+        digits = &digits[2..];
+        base = 16;
+    } else if base == 0 {
+        base = if digits.first() == Some(&b'0') { 8 } else { 10 };
+    }
+    let count = digits.iter().take_while(|&&byte| char::from(byte).is_digit(base)).count();
+    let value = digits[..count].iter().fold(0_i64, |sum, &byte| {
+        let digit = char::from(byte).to_digit(base).unwrap_or(0);
+        sum.wrapping_mul(i64::from(base)).wrapping_add(i64::from(digit))
+    });
+    let used = if count == 0 { 0 } else { text.len() - digits.len() + count };
+    (if negative { value.wrapping_neg() } else { value }, used)
+}
+
+/// Reads a decimal floating-point number; 0 bytes when there is none.
+///
+/// An exponent without digits makes the value 0 (as the board has it).
+pub(crate) fn float_prefix(text: &[u8]) -> (f64, usize) {
+    let (_, signed) = sign(text);
+    let whole = digit_count(&text[signed..]);
+    let mut used = signed + whole;
+    let mut digits = whole;
+    if text.get(used) == Some(&b'.') {
+        let decimals = digit_count(&text[used + 1..]);
+        digits += decimals;
+        used += if digits > 0 { 1 + decimals } else { 0 };
+    }
+    if digits == 0 {
+        return (0.0, 0);
+    }
+    if matches!(text.get(used), Some(b'e' | b'E')) {
+        let (_, signed) = sign(&text[used + 1..]);
+        let exponent = digit_count(&text[used + 1 + signed..]);
+        used += 1 + signed + exponent;
+        if exponent == 0 {
+            return (0.0, used);
+        }
+    }
+    let value = std::str::from_utf8(&text[..used]).ok().and_then(|text| text.parse().ok());
+    (value.unwrap_or(0.0), used)
+}
+
+/// Whether there is a minus sign, and how many bytes the sign takes.
+fn sign(text: &[u8]) -> (bool, usize) {
+    match text.first() {
+        Some(b'-') => (true, 1),
+        Some(b'+') => (false, 1),
+        _ => (false, 0),
+    }
+}
+
+fn digit_count(text: &[u8]) -> usize {
+    text.iter().take_while(|byte| byte.is_ascii_digit()).count()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn integers_take_their_prefix() {
+        assert_eq!(integer_prefix(b"0x1F;", 0), (31, 4));
+        assert_eq!(integer_prefix(b"010", 0), (8, 3));
+        assert_eq!(integer_prefix(b"-12a", 10), (-12, 3));
+        assert_eq!(integer_prefix(b"0x", 16), (0, 1));
+        assert_eq!(integer_prefix(b"-x", 10), (0, 0));
+    }
+
+    #[test]
+    fn floats_stop_where_they_end() {
+        assert_eq!(float_prefix(b"-2.5e3,"), (-2500.0, 6));
+        assert_eq!(float_prefix(b".5"), (0.5, 2));
+        assert_eq!(float_prefix(b"5."), (5.0, 2));
+        assert_eq!(float_prefix(b"."), (0.0, 0));
+        assert_eq!(float_prefix(b"1e"), (0.0, 2));
+    }
+}
