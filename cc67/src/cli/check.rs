@@ -1,0 +1,37 @@
+//! `cc67 check`: diagnostics only.
+
+use std::path::PathBuf;
+
+use anyhow::{Context, Result};
+use clap::Args;
+use kmotiondef::ThreadId;
+
+use super::options::CompilerOptions;
+use super::{Exit, terminal};
+use crate::pp::Disk;
+
+/// Arguments of `cc67 check`.
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// The programs
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<PathBuf>,
+    #[command(flatten)]
+    compiler: CompilerOptions,
+}
+
+/// Compiles every program and reports what is wrong with it.
+pub(super) fn check(arguments: &Arguments) -> Result<Exit> {
+    let options = arguments.compiler.resolve()?;
+    let levels = arguments.compiler.levels()?;
+    let mut has_errors = false;
+    for path in &arguments.files {
+        let text = super::run::read(path)?;
+        let mut compilation = crate::compile(path, text, &options, &Disk);
+        // Which thread it would run in makes no difference to what can be wrong.
+        let thread = ThreadId::all().next().context("the board has threads")?;
+        compilation.link(thread);
+        has_errors |= terminal::report(&compilation, &levels);
+    }
+    Ok(if has_errors { Exit::SourceErrors } else { Exit::Success })
+}

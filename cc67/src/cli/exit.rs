@@ -1,0 +1,24 @@
+//! Exit codes.
+
+use std::process::ExitCode;
+
+/// What the command's exit code says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Exit {
+    /// The programs ended, or the asked-for time is over.
+    Success = 0,
+    /// The source has errors.
+    SourceErrors = 1,
+    /// Wrong usage or input.
+    WrongInput = 2,
+    /// A thread trapped.
+    Trapped = 3,
+    /// Programs were still running at the default time limit.
+    StillRunning = 4,
+}
+
+impl From<Exit> for ExitCode {
+    fn from(exit: Exit) -> Self {
+        Self::from(exit as u8)
+    }
+}

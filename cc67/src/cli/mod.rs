@@ -1,0 +1,68 @@
+//! The command line: one file a subcommand, one row each in [`Command`].
+//!
+//! What a program prints goes to stdout byte for byte, everything else to stderr. Messages
+//! about the request or its inputs are single lines that begin with `cc67: `.
+
+mod check;
+mod events;
+mod exit;
+mod options;
+mod planned;
+mod program;
+mod run;
+mod setting;
+mod terminal;
+
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+pub use exit::Exit;
+
+/// C compiler, linker and simulated KFLOP board.
+#[derive(Debug, Parser)]
+#[command(name = "cc67", version = VERSION, about, max_term_width = 100)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+/// Our version and that of the firmware which the simulated board models.
+const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (models KFLOP firmware 4.34)");
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Compile programs into threads, execute them on the simulated board, print the console
+    Run(run::Arguments),
+    /// Compile programs and report what is wrong with them
+    Check(check::Arguments),
+    #[command(flatten)]
+    Planned(planned::Command),
+}
+
+/// Runs the command with the arguments of a process, the program's name first.
+pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let arguments = match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            if let Some(option) = planned::option(&error) {
+                terminal::note(&format!("option `--{option}` is not built yet"));
+                return Exit::WrongInput.into();
+            }
+            // Help and version go to stdout with success, wrong usage to stderr with 2.
+            error.exit()
+        }
+    };
+    let result = match &arguments.command {
+        Command::Run(arguments) => run::run(arguments),
+        Command::Check(arguments) => check::check(arguments),
+        Command::Planned(command) => command.refuse(),
+    };
+    result
+        .unwrap_or_else(|error| {
+            terminal::error(&error);
+            Exit::WrongInput
+        })
+        .into()
+}

@@ -1,0 +1,75 @@
+//! Options that all commands which compile have in common.
+
+use std::path::PathBuf;
+
+use anyhow::{Context, Result, bail};
+use clap::Args;
+
+use crate::lints::levels::Levels;
+use crate::passes::Level;
+use crate::{Options, pp};
+
+/// How to compile.
+#[derive(Debug, Args)]
+pub(super) struct CompilerOptions {
+    /// Search DIR for included files
+    #[arg(short = 'I', value_name = "DIR")]
+    include_dirs: Vec<PathBuf>,
+    /// Define a macro, as 1 without a value
+    #[arg(short = 'D', value_name = "NAME[=VALUE]")]
+    defines: Vec<String>,
+    /// Undefine a predefined macro
+    #[arg(short = 'U', value_name = "NAME")]
+    undefines: Vec<String>,
+    /// Optimisation: 0 none, 1 and 2 what makes programs faster
+    #[arg(short = 'O', value_name = "LEVEL", default_value = "1", value_parser = clap::value_parser!(u8).range(0..=2))]
+    optimization: u8,
+    /// Switch a warning on (NAME), off (no-NAME), or make all warnings errors (error)
+    #[arg(short = 'W', value_name = "LINT")]
+    warnings: Vec<String>,
+}
+
+impl CompilerOptions {
+    /// The same for the compiler.
+    pub(super) fn resolve(&self) -> Result<Options> {
+        let defines = self.defines.iter().map(|text| define(text)).collect::<Result<_>>()?;
+        for name in &self.undefines {
+            check_macro_name(name)?;
+        }
+        Ok(Options {
+            preprocessor: pp::Options {
+                include_dirs: self.include_dirs.clone(),
+                defines,
+                undefines: self.undefines.clone(),
+                embedded: kmotiondef::headers::EMBEDDED,
+            },
+            level: if self.optimization == 0 { Level::None } else { Level::Full },
+        })
+    }
+
+    /// Which warnings are shown.
+    pub(super) fn levels(&self) -> Result<Levels> {
+        let mut levels = Levels::default();
+        for switch in &self.warnings {
+            levels.set(switch).with_context(|| format!("option `-W{switch}`"))?;
+        }
+        Ok(levels)
+    }
+}
+
+/// Splits `NAME=VALUE`.
+fn define(text: &str) -> Result<(String, String)> {
+    let (name, value) = text.split_once('=').unwrap_or((text, "1"));
+    check_macro_name(name)?;
+    Ok((name.to_owned(), value.to_owned()))
+}
+
+fn check_macro_name(name: &str) -> Result<()> {
+    let mut characters = name.chars();
+    let is_name = characters.next().is_some_and(|c| c.is_ascii_alphabetic() || c == '_')
+        && characters.all(|c| c.is_ascii_alphanumeric() || c == '_');
+    if !is_name {
+        bail!("`{name}` is not a macro name");
+    }
+    Ok(())
+}

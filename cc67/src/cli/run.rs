@@ -1,0 +1,213 @@
+//! `cc67 run`: compile, load, execute, print the console.
+
+use std::fs;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+use clap::{Args, ValueEnum};
+use kmotiondef::{Cycles, ThreadId, Ticks};
+use runtime::debug::DebugInfo;
+use runtime::{Board, Config, Directory, Event, EventKind, RunEnd};
+use vm::machine::Config as MachineConfig;
+
+use super::options::CompilerOptions;
+use super::program::{Program, assign};
+use super::setting::{self, Setting};
+use super::{Exit, events, terminal};
+use crate::lints::levels::Levels;
+use crate::pp::Disk;
+use crate::{Options, image};
+
+/// Seconds of board time after which a run without `--for` ends.
+const DEFAULT_LIMIT: f64 = 60.0;
+
+/// Seconds in a tick.
+const TIMEBASE: f64 = 90e-6;
+
+/// Arguments of `cc67 run`.
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// The programs, sources or images: FILE for the lowest free thread, N:FILE for thread N
+    #[arg(required = true, value_name = "[N:]FILE")]
+    programs: Vec<String>,
+    /// Load a program without starting it, for another one to start
+    #[arg(long, value_name = "N:FILE")]
+    load: Vec<String>,
+    /// End after so many seconds of board time, with success
+    #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
+    limit: Option<f64>,
+    /// Start value, `persist.N=VALUE`: an integer, 0x… , f:1.5 a float, d:1.5 a double
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Folder of the files that programs open on the PC
+    #[arg(long, value_name = "DIR", default_value = "cc67-files")]
+    files: PathBuf,
+    /// Show the board time in seconds before each console line
+    #[arg(long)]
+    time: bool,
+    /// Simulate every tick and every wait; the results are the same
+    #[arg(long)]
+    no_shortcuts: bool,
+    /// What executes the programs
+    #[arg(long, value_enum, default_value_t = EngineName::Bytecode)]
+    engine: EngineName,
+    #[command(flatten)]
+    compiler: CompilerOptions,
+}
+
+/// Engines by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum EngineName {
+    /// The interpreter
+    Bytecode,
+    /// Machine code of the host
+    Native,
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(seconds) if seconds >= 0.0 && seconds.is_finite() => Ok(seconds),
+        _ => Err("not a number of seconds".to_owned()),
+    }
+}
+
+/// Compiles, loads and runs the programs.
+pub(super) fn run(arguments: &Arguments) -> Result<Exit> {
+    if arguments.engine == EngineName::Native {
+        bail!("`--engine native` is not built yet");
+    }
+    let mut all = arguments.programs.clone();
+    all.extend_from_slice(&arguments.load);
+    let programs = assign(&all)?;
+    let settings: Vec<_> = arguments.set.iter().map(|text| setting::parse(text)).collect::<Result<_>>()?;
+    let Some(images) = images(&programs, arguments)? else { return Ok(Exit::SourceErrors) };
+
+    let files = Box::new(Directory::new(&arguments.files));
+    let machine = MachineConfig { shortcuts: !arguments.no_shortcuts, ..MachineConfig::default() };
+    let mut board: Board = Board::new(Config { machine, files, ..Config::default() });
+    for (program, image) in programs.iter().zip(&images) {
+        board.load(program.thread, image).with_context(|| program.name().to_string())?;
+    }
+    for Setting { address, bytes } in &settings {
+        board.memory_mut().poke_bytes(*address, bytes).with_context(|| format!("`--set` of {address}"))?;
+    }
+    for program in programs.iter().take(arguments.programs.len()) {
+        board.start(program.thread).with_context(|| program.name().to_string())?;
+    }
+    execute(&mut board, arguments)
+}
+
+/// The image of every program; `None` if a source has errors, after all have been compiled.
+fn images(programs: &[Program], arguments: &Arguments) -> Result<Option<Vec<Vec<u8>>>> {
+    let options = arguments.compiler.resolve()?;
+    let levels = arguments.compiler.levels()?;
+    let mut images = Vec::new();
+    let mut has_errors = false;
+    for program in programs {
+        let bytes = read(&program.path)?;
+        if program.is_image() {
+            images.push(bytes);
+            continue;
+        }
+        match build(&program.path, bytes, program.thread, &options, &levels)? {
+            Some(image) => images.push(image),
+            None => has_errors = true,
+        }
+    }
+    Ok((!has_errors).then_some(images))
+}
+
+/// Reads a whole file; a message names it.
+pub(super) fn read(path: &Path) -> Result<Vec<u8>> {
+    fs::read(path).with_context(|| format!("cannot read {}", path.display()))
+}
+
+/// Compiles, links and reports; `None` after errors.
+fn build(
+    path: &Path,
+    text: Vec<u8>,
+    thread: ThreadId,
+    options: &Options,
+    levels: &Levels,
+) -> Result<Option<Vec<u8>>> {
+    let mut compilation = crate::compile(path, text, options, &Disk);
+    let linked = compilation.link(thread);
+    if terminal::report(&compilation, levels) {
+        return Ok(None);
+    }
+    let Some(linked) = linked else { return Ok(None) };
+    Ok(Some(image::write(&linked).with_context(|| path.display().to_string())?))
+}
+
+/// Runs the board and prints what happens.
+fn execute(board: &mut Board, arguments: &Arguments) -> Result<Exit> {
+    let limit = Ticks::new((arguments.limit.unwrap_or(DEFAULT_LIMIT) / TIMEBASE).round() as u64);
+    let mut screen = Screen {
+        out: BufWriter::new(io::stdout().lock()),
+        time: arguments.time,
+        programs: ThreadId::all().filter_map(|thread| board.debug(thread).cloned()).collect(),
+        error: None,
+    };
+    let mut trapped = false;
+    let end = board.run(limit, &mut |event| {
+        trapped |= matches!(event.kind, EventKind::Trap(_));
+        screen.show(&event);
+    });
+    if let Some(error) = screen.finish() {
+        // A reader that has seen enough, as `head` has, is no failure.
+        if error.kind() == io::ErrorKind::BrokenPipe {
+            return Ok(Exit::Success);
+        }
+        return Err(error).context("cannot write to standard output");
+    }
+    Ok(match end {
+        _ if trapped => Exit::Trapped,
+        RunEnd::Limit if arguments.limit.is_none() => {
+            terminal::note(&format!(
+                "still running after {DEFAULT_LIMIT} s of board time; `--for SECONDS` sets the limit"
+            ));
+            Exit::StillRunning
+        }
+        RunEnd::Limit | RunEnd::AllEnded => Exit::Success,
+    })
+}
+
+/// Where events go: console lines to stdout, everything else to stderr.
+struct Screen<W: Write> {
+    out: W,
+    time: bool,
+    programs: Vec<DebugInfo>,
+    error: Option<io::Error>,
+}
+
+impl<W: Write> Screen<W> {
+    fn show(&mut self, event: &Event) {
+        let EventKind::ConsoleLine(line) = &event.kind else {
+            // What was printed before stands before it on a terminal that shows both.
+            let _ = self.out.flush();
+            if let Some(text) = events::describe(event, &self.programs) {
+                terminal::note(&text);
+            }
+            return;
+        };
+        if self.error.is_none() {
+            self.error = self.write_line(line, event.at).err();
+        }
+    }
+
+    fn write_line(&mut self, line: &[u8], at: Cycles) -> io::Result<()> {
+        if self.time {
+            let seconds = at.get() as f64 / Cycles::PER_SECOND.get() as f64;
+            write!(self.out, "{seconds:.6} ")?;
+        }
+        self.out.write_all(line)?;
+        self.out.write_all(b"\n")
+    }
+
+    /// Writes what is left; the first error of all writes.
+    fn finish(mut self) -> Option<io::Error> {
+        let flushed = self.out.flush().err();
+        self.error.or(flushed)
+    }
+}

@@ -1,0 +1,90 @@
+//! `--set KEY=VALUE`: start values of what programs read.
+
+use anyhow::{Context, Result, bail};
+use kmotiondef::GuestAddr;
+use kmotiondef::structs::Persist;
+use kmotiondef::variables::PERSIST;
+
+/// Elements of `persist.UserData`.
+const USER_DATA: u32 = 200;
+
+/// Bytes to store before the programs start.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Setting {
+    /// Where.
+    pub(super) address: GuestAddr,
+    /// What, little endian.
+    pub(super) bytes: Vec<u8>,
+}
+
+/// Reads one setting.
+pub(super) fn parse(text: &str) -> Result<Setting> {
+    let (key, value) = text.split_once('=').with_context(|| format!("`--set {text}` has no `=`"))?;
+    let Some(index) = key.strip_prefix("persist.") else {
+        bail!("`--set {key}` is not built yet; only `persist.N` is");
+    };
+    let index: u32 = index.parse().with_context(|| format!("`{index}` in `--set {text}` is not an index"))?;
+    let bytes = bytes(value).with_context(|| format!("value of `--set {text}`"))?;
+    if index >= USER_DATA || index + (bytes.len() as u32 / 4) > USER_DATA {
+        bail!("`--set {text}` lies outside persist.UserData[0..{}]", USER_DATA - 1);
+    }
+    Ok(Setting { address: user_data().offset(4 * index), bytes })
+}
+
+/// Address of `persist.UserData[0]`.
+fn user_data() -> GuestAddr {
+    PERSIST.field(Persist::USER_DATA).address()
+}
+
+/// A decimal or hexadecimal integer, `f:` a single, `d:` a double.
+fn bytes(value: &str) -> Result<Vec<u8>> {
+    if let Some(single) = value.strip_prefix("f:") {
+        return Ok(single.parse::<f32>()?.to_le_bytes().into());
+    }
+    if let Some(double) = value.strip_prefix("d:") {
+        return Ok(double.parse::<f64>()?.to_le_bytes().into());
+    }
+    let (digits, sign) = value.strip_prefix('-').map_or((value, 1), |digits| (digits, -1));
+    let magnitude = match digits.strip_prefix("0x").or_else(|| digits.strip_prefix("0X")) {
+        Some(hexadecimal) => i64::from_str_radix(hexadecimal, 16)?,
+        None => digits.parse()?,
+    };
+    let number = sign * magnitude;
+    if !(i64::from(i32::MIN)..=i64::from(u32::MAX)).contains(&number) {
+        bail!("{value} does not fit 32 bits");
+    }
+    Ok((number as u32).to_le_bytes().into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_integers_singles_or_doubles() {
+        for (text, expect) in [
+            ("5", vec![5, 0, 0, 0]),
+            ("-1", vec![255; 4]),
+            ("0x3F9D70A4", vec![0xa4, 0x70, 0x9d, 0x3f]),
+            ("f:1.23", vec![0xa4, 0x70, 0x9d, 0x3f]),
+            ("d:1.5", vec![0, 0, 0, 0, 0, 0, 0xf8, 0x3f]),
+        ] {
+            assert_eq!(bytes(text).expect("the value is good"), expect, "{text}");
+        }
+    }
+
+    #[test]
+    fn wrong_settings_say_what_is_wrong() {
+        for (text, expect) in [
+            ("persist.5", "has no `=`"),
+            ("persist.200=1", "outside persist.UserData[0..199]"),
+            ("persist.199=d:1", "outside persist.UserData[0..199]"),
+            ("persist.x=1", "is not an index"),
+            ("persist.1=5000000000", "value of `--set persist.1=5000000000`"),
+            ("cpu.servo_us=30", "is not built yet"),
+        ] {
+            let message = parse(text).expect_err("the setting is wrong").to_string();
+            assert!(message.contains(expect), "{text}: {message}");
+        }
+    }
+}

@@ -1,0 +1,174 @@
+//! Diagnostics: what is wrong with the source, where, and what to do about it.
+//!
+//! Analysis goes on after a diagnostic; the sink collects. Rendering is a matter of the
+//! caller (`render` for people).
+
+use crate::lints::Lint;
+use crate::source::Span;
+
+/// How bad it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// The program cannot be compiled.
+    Error,
+    /// The program is compiled; this looks wrong.
+    Warning,
+    /// Something worth knowing.
+    Note,
+}
+
+/// A further place that explains the diagnostic.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Label {
+    /// Where.
+    pub span: Span,
+    /// What is there.
+    pub message: String,
+}
+
+/// One finding.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[must_use = "a diagnostic does nothing until it is reported to a sink"]
+pub struct Diagnostic {
+    /// How bad it is.
+    pub severity: Severity,
+    /// The lint that found it; `None` for errors that no switch controls.
+    pub lint: Option<Lint>,
+    /// The finding in one lower-case line without a full stop.
+    pub message: String,
+    /// Where it is; `None` for findings about the whole program.
+    pub span: Option<Span>,
+    /// Text at the primary range: what was found or expected there.
+    pub at: String,
+    /// Further places.
+    pub labels: Vec<Label>,
+    /// Explanations, one line each.
+    pub notes: Vec<String>,
+    /// What the user should do.
+    pub help: Option<String>,
+}
+
+impl Diagnostic {
+    /// An error at `span`.
+    pub fn error(span: Span, message: impl Into<String>) -> Self {
+        Self::new(Severity::Error, None, Some(span), message)
+    }
+
+    /// An error that has no place in the source.
+    pub fn global_error(message: impl Into<String>) -> Self {
+        Self::new(Severity::Error, None, None, message)
+    }
+
+    /// A warning that has no place in the source and no switch.
+    pub fn global_warning(message: impl Into<String>) -> Self {
+        Self::new(Severity::Warning, None, None, message)
+    }
+
+    /// A warning of `lint` at `span`.
+    pub fn warning(lint: Lint, span: Span, message: impl Into<String>) -> Self {
+        Self::new(Severity::Warning, Some(lint), Some(span), message)
+    }
+
+    /// A warning that the program itself asks for; no switch controls it.
+    pub fn requested_warning(span: Span, message: impl Into<String>) -> Self {
+        Self::new(Severity::Warning, None, Some(span), message)
+    }
+
+    /// Something worth knowing at `span`.
+    pub fn remark(span: Span, message: impl Into<String>) -> Self {
+        Self::new(Severity::Note, None, Some(span), message)
+    }
+
+    fn new(severity: Severity, lint: Option<Lint>, span: Option<Span>, message: impl Into<String>) -> Self {
+        Self {
+            severity,
+            lint,
+            message: message.into(),
+            span,
+            at: String::new(),
+            labels: Vec::new(),
+            notes: Vec::new(),
+            help: None,
+        }
+    }
+
+    /// Adds the text shown at the primary range.
+    pub fn at(mut self, text: impl Into<String>) -> Self {
+        self.at = text.into();
+        self
+    }
+
+    /// Adds a further place.
+    pub fn label(mut self, span: Span, message: impl Into<String>) -> Self {
+        self.labels.push(Label { span, message: message.into() });
+        self
+    }
+
+    /// Adds an explanation.
+    pub fn note(mut self, text: impl Into<String>) -> Self {
+        self.notes.push(text.into());
+        self
+    }
+
+    /// Says what the user should do.
+    pub fn help(mut self, text: impl Into<String>) -> Self {
+        self.help = Some(text.into());
+        self
+    }
+}
+
+/// Errors after which a stage of the compiler gives up: what follows is seldom worth reading.
+pub const MAX_ERRORS: usize = 20;
+
+/// What a stage says when it gives up.
+pub const TOO_MANY_ERRORS: &str = "too many errors; the rest of the program was not checked";
+
+/// Warnings and notes that are kept; the rest is only counted, so that hostile text cannot fill the memory.
+const MAX_REMARKS: usize = 2000;
+
+/// Collects diagnostics in the order of discovery.
+#[derive(Debug, Default)]
+pub struct Sink {
+    diagnostics: Vec<Diagnostic>,
+    errors: usize,
+}
+
+impl Sink {
+    /// Makes an empty sink.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Takes a diagnostic.
+    pub fn report(&mut self, diagnostic: Diagnostic) {
+        let is_error = diagnostic.severity == Severity::Error;
+        self.errors += usize::from(is_error);
+        if is_error || self.diagnostics.len() < MAX_REMARKS {
+            self.diagnostics.push(diagnostic);
+        }
+    }
+
+    /// Whether so many errors were reported that looking for more is pointless.
+    #[must_use]
+    pub fn is_full(&self) -> bool {
+        self.errors >= MAX_ERRORS
+    }
+
+    /// Whether an error was reported.
+    #[must_use]
+    pub fn has_errors(&self) -> bool {
+        self.errors > 0
+    }
+
+    /// Number of errors so far.
+    #[must_use]
+    pub fn errors(&self) -> usize {
+        self.errors
+    }
+
+    /// Everything reported so far.
+    pub fn diagnostics(&self) -> &[Diagnostic] {
+        &self.diagnostics
+    }
+}

@@ -1,0 +1,229 @@
+//! From a linked program to its image: TI COFF2 as `coff.md` of the specification lays it out.
+//!
+//! Departures from what the vendor's compiler writes, each for a reason:
+//! - the target id is our own, so that no board executes bytecode (design.md D4);
+//! - `.bss` has a section header, so that a load clears it;
+//! - line entries are plain pairs of address and line (`coff.md` section 5);
+//! - the auxiliary entry of an object holds its size where that of a function has it, so that a
+//!   trap can say "4 bytes past the end of `table`";
+//! - static functions are symbols like others, and of the firmware's symbols only those that the
+//!   program refers to are listed.
+
+use std::num::NonZeroU16;
+
+use coff::raw::{BoundaryAux, FunctionAux};
+use coff::{
+    Aux, BaseType, Contents, Derivation, Error, FileFlags, Image, Layout, Line, Name, Program, SectionFlags,
+    SectionNumber, StorageClass, Symbol, SymbolType, Target,
+};
+use kmotiondef::GuestAddr;
+
+use crate::link::{Linked, LinkedFunction, LinkedSymbol, Section};
+use crate::object::SymbolKind;
+use crate::typed::Linkage;
+
+/// The version stamp of images that are linked against firmware 4.34.
+const VERSION_STAMP: i16 = 434;
+
+/// Writes the image of a program.
+///
+/// # Errors
+/// If the program exceeds what the format can count.
+pub fn write(linked: &Linked) -> Result<Vec<u8>, Error> {
+    let mut image = Image {
+        target: Target::CC67,
+        timestamp: 0,
+        flags: FileFlags::LINKED,
+        program: Some(header(linked)),
+        sections: sections(linked),
+        symbols: Vec::new(),
+    };
+    let mut table = Table::default();
+    table.functions(linked);
+    table.objects(linked);
+    table.markers(linked);
+    image.symbols = table.symbols;
+    if let Some(text) = image.sections.first_mut() {
+        text.lines = table.lines;
+    }
+    // Only now is it known where in the file each function's lines will be.
+    let layout = Layout::of(&image)?;
+    for (symbol, first_line) in table.first_lines {
+        let at = layout.line_offset(0, first_line).unwrap_or(0);
+        if let Some(aux) = image.symbols.get_mut(symbol).and_then(|symbol| symbol.aux.first_mut()) {
+            *aux = Aux::new(&FunctionAux { lines_at: at.into(), ..aux.as_function() });
+        }
+    }
+    image.write()
+}
+
+fn header(linked: &Linked) -> Program {
+    Program {
+        version_stamp: VERSION_STAMP,
+        text_size: linked.text.len() as u32,
+        data_size: linked.data.len() as u32,
+        bss_size: linked.bss_size,
+        entry: linked.entry.get(),
+        text_start: linked.text_address.get(),
+        data_start: linked.data_address.get(),
+    }
+}
+
+fn sections(linked: &Linked) -> Vec<coff::Section> {
+    let section = |name: &str, address: GuestAddr, flags, contents| coff::Section {
+        name: Name::from(name),
+        physical: address.get(),
+        address: address.get(),
+        flags,
+        page: 0,
+        contents,
+        lines: Vec::new(),
+    };
+    let text_flags = (SectionFlags::TEXT | SectionFlags::DATA).with_align(32);
+    vec![
+        section(".text", linked.text_address, text_flags, Contents::Data(linked.text.clone())),
+        section(".data", linked.data_address, SectionFlags::DATA, Contents::Data(linked.data.clone())),
+        section(".bss", linked.bss_address, SectionFlags::BSS, Contents::Uninitialised(linked.bss_size)),
+    ]
+}
+
+/// The symbol table and the line table while they grow.
+#[derive(Default)]
+struct Table {
+    symbols: Vec<Symbol>,
+    lines: Vec<Line>,
+    /// Entries so far, auxiliary ones included: the index of the next symbol as the format counts.
+    entries: u32,
+    /// Position in `symbols` of each function, and its first entry in `lines`.
+    first_lines: Vec<(usize, u32)>,
+}
+
+impl Table {
+    fn push(
+        &mut self,
+        name: &str,
+        value: u32,
+        section: SectionNumber,
+        ty: SymbolType,
+        class: StorageClass,
+        aux: &[Aux],
+    ) {
+        self.entries += 1 + aux.len() as u32;
+        self.symbols.push(Symbol { name: Name::from(name), value, section, ty, class, aux: aux.to_vec() });
+    }
+
+    /// A file symbol for each source file, behind it the functions that are defined there.
+    fn functions(&mut self, linked: &Linked) {
+        for (file, path) in (0..).zip(&linked.files) {
+            let name = path.rsplit(['/', '\\']).next().unwrap_or(path);
+            self.push(name, 33, SectionNumber::DEBUG, SymbolType::default(), StorageClass::FILE, &[]);
+            let functions = linked.symbols.iter().zip(&linked.functions);
+            for (symbol, function) in functions.filter(|(symbol, _)| symbol.place.file == file) {
+                self.function(linked, symbol, function);
+            }
+        }
+    }
+
+    /// The six entries of a function, and its lines.
+    fn function(&mut self, linked: &Linked, symbol: &LinkedSymbol, function: &LinkedFunction) {
+        let text = SectionNumber(1);
+        let end = symbol.address.offset(symbol.size).get();
+        let next = self.entries + 6;
+        let first_line = self.lines.len() as u32;
+        self.lines.push(Line::Function(self.entries));
+        self.lines.extend(linked.lines.get(function.lines.clone()).unwrap_or_default().iter().filter_map(
+            |line| {
+                // The format counts lines in 16 bits; later ones cannot be recorded.
+                let number = u16::try_from(line.place.line).ok().and_then(NonZeroU16::new)?;
+                Some(Line::Statement { address: line.address.get(), line: number })
+            },
+        ));
+        let entries = self.lines.len() as u32 - first_line;
+        self.first_lines.push((self.symbols.len(), first_line));
+
+        let ty = SymbolType::new(BaseType::INT).derived(Derivation::Function);
+        let sizes = FunctionAux { size: symbol.size.into(), next: next.into(), ..FunctionAux::default() };
+        self.push(&symbol.name, symbol.address.get(), text, ty, class(symbol.linkage), &[Aux::new(&sizes)]);
+        let begin =
+            BoundaryAux { lines: to_u16(entries - 1).into(), next: next.into(), ..BoundaryAux::default() };
+        let none = SymbolType::default();
+        self.push(".bf", symbol.address.get(), text, none, StorageClass::FUNCTION, &[Aux::new(&begin)]);
+        let finish = BoundaryAux { line: to_u16(function.end.line).into(), ..BoundaryAux::default() };
+        self.push(".ef", end, text, none, StorageClass::FUNCTION, &[Aux::new(&finish)]);
+    }
+
+    /// The program's objects and the firmware symbols that it refers to.
+    fn objects(&mut self, linked: &Linked) {
+        for symbol in linked.symbols.iter().skip(linked.functions.len()) {
+            let section = SectionNumber(if symbol.section == Section::Bss { 3 } else { 2 });
+            let size = FunctionAux { size: symbol.size.into(), ..FunctionAux::default() };
+            let aux = [Aux::new(&size)];
+            self.push(
+                &symbol.name,
+                symbol.address.get(),
+                section,
+                base_type(symbol.kind),
+                class(symbol.linkage),
+                &aux,
+            );
+        }
+        for import in &linked.imports {
+            let int = SymbolType::new(BaseType::INT);
+            let ty = if import.is_function { int.derived(Derivation::Function) } else { int };
+            self.push(
+                &import.name,
+                import.address.get(),
+                SectionNumber::ABSOLUTE,
+                ty,
+                StorageClass::EXTERNAL,
+                &[],
+            );
+        }
+    }
+
+    /// The limits of the sections, from which the vendor's tools compute sizes.
+    fn markers(&mut self, linked: &Linked) {
+        let text = linked.text_address.get();
+        let text_end = text + linked.text.len() as u32;
+        let data = linked.data_address.get();
+        let data_end = data + linked.data.len() as u32;
+        let bss = linked.bss_address.get();
+        let bss_end = bss + linked.bss_size;
+        for (name, value) in [
+            ("_etext", text_end),
+            ("_edata", data_end),
+            ("_end", bss_end),
+            ("__start_.text", text),
+            ("__stop_.text", text_end),
+            ("__start_.data", data),
+            ("__stop_.data", data_end),
+            ("__start_.bss", bss),
+            ("__stop_.bss", bss_end),
+        ] {
+            let ty = SymbolType::new(BaseType::INT);
+            self.push(name, value, SectionNumber::ABSOLUTE, ty, StorageClass::EXTERNAL, &[]);
+        }
+    }
+}
+
+const fn class(linkage: Linkage) -> StorageClass {
+    match linkage {
+        Linkage::External => StorageClass::EXTERNAL,
+        Linkage::Internal => StorageClass::STATIC,
+    }
+}
+
+fn base_type(kind: SymbolKind) -> SymbolType {
+    SymbolType::new(match kind {
+        SymbolKind::Char => BaseType::CHAR,
+        SymbolKind::Short => BaseType::SHORT,
+        SymbolKind::Float => BaseType::FLOAT,
+        SymbolKind::Double => BaseType::DOUBLE,
+        SymbolKind::Function | SymbolKind::Int | SymbolKind::Other => BaseType::INT,
+    })
+}
+
+/// What fits 16 bits, else the largest number that does.
+fn to_u16(number: u32) -> u16 {
+    u16::try_from(number).unwrap_or(u16::MAX)
+}

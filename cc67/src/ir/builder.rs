@@ -1,0 +1,177 @@
+//! Appends instructions to the block that is open.
+//!
+//! No block is open behind a terminator: what is appended there cannot be reached and is
+//! dropped, until the next block is opened. A block enters the layout when it is opened, so
+//! the code stands in the order in which it was built.
+
+use cranelift_entity::packed_option::PackedOption;
+
+use super::function::{Block, Function, Slot};
+use super::inst::{
+    Address, Arguments, BlockId, Callee, Class, Inst, InstKind, Operand, SignatureId, SlotId, Terminator,
+    ValueId,
+};
+use super::operators::{BinaryOp, CompareOp, ConvertOp, UnaryOp, Width};
+use crate::source::Span;
+
+/// A place between two instructions, where one may be put in later.
+#[derive(Clone, Copy, Debug)]
+pub struct Point {
+    block: PackedOption<BlockId>,
+    index: u32,
+}
+
+/// Builds one function.
+#[derive(Debug)]
+pub struct Builder {
+    /// The function so far.
+    pub function: Function,
+    open: Option<BlockId>,
+    span: Span,
+}
+
+impl Builder {
+    /// Starts with the function's entry block open.
+    #[must_use]
+    pub fn new(function: Function) -> Self {
+        let span = function.span;
+        let mut builder = Self { function, open: None, span };
+        let entry = builder.block();
+        builder.open(entry);
+        builder
+    }
+
+    /// The statement that what follows belongs to.
+    pub const fn set_span(&mut self, span: Span) {
+        self.span = span;
+    }
+
+    /// The statement that instructions belong to at present.
+    #[must_use]
+    pub const fn span(&self) -> Span {
+        self.span
+    }
+
+    /// Whether what is appended now can be reached.
+    #[must_use]
+    pub const fn is_open(&self) -> bool {
+        self.open.is_some()
+    }
+
+    /// A new value.
+    pub fn value(&mut self, class: Class) -> ValueId {
+        self.function.values.push(class)
+    }
+
+    /// A new object in the frame.
+    pub fn slot(&mut self, size: u32, align: u32) -> SlotId {
+        self.function.slots.push(Slot { size, align })
+    }
+
+    /// A new block, to be opened later.
+    pub fn block(&mut self) -> BlockId {
+        let span = self.span;
+        self.function.blocks.push(Block { insts: Vec::new(), terminator: Terminator::Unreachable, span })
+    }
+
+    /// Opens a block; the one before, if still open, goes on there.
+    pub fn open(&mut self, block: BlockId) {
+        self.terminate(Terminator::Jump(block));
+        self.function.layout.push(block);
+        self.open = Some(block);
+    }
+
+    /// Ends the open block.
+    pub fn terminate(&mut self, terminator: Terminator) {
+        if let Some(block) = self.open.take() {
+            let span = self.span;
+            let block = &mut self.function.blocks[block];
+            block.terminator = terminator;
+            block.span = span;
+        }
+    }
+
+    /// Goes on at `to`.
+    pub fn jump(&mut self, to: BlockId) {
+        self.terminate(Terminator::Jump(to));
+    }
+
+    /// Goes to `then` if `condition` is not 0.
+    pub fn branch(&mut self, condition: Operand, then: BlockId, otherwise: BlockId) {
+        self.terminate(Terminator::Branch { condition, then, otherwise });
+    }
+
+    /// The place behind what was appended last.
+    #[must_use]
+    pub fn point(&self) -> Point {
+        let index = self.open.map_or(0, |block| self.function.blocks[block].insts.len() as u32);
+        Point { block: self.open.into(), index }
+    }
+
+    /// Puts `dst = src` in at a place that was passed before.
+    pub fn insert_copy(&mut self, point: Point, dst: ValueId, src: Operand) {
+        if let Some(block) = point.block.expand() {
+            let inst = Inst { kind: InstKind::Copy { dst, src }, span: self.span };
+            self.function.blocks[block].insts.insert(point.index as usize, inst);
+        }
+    }
+
+    /// Appends an instruction.
+    pub fn push(&mut self, kind: InstKind) {
+        if let Some(block) = self.open {
+            self.function.blocks[block].insts.push(Inst { kind, span: self.span });
+        }
+    }
+
+    /// `dst = src`
+    pub fn copy(&mut self, dst: ValueId, src: Operand) {
+        if src != Operand::Value(dst) {
+            self.push(InstKind::Copy { dst, src });
+        }
+    }
+
+    /// `dst = op src`
+    pub fn unary(&mut self, op: UnaryOp, dst: ValueId, src: Operand) {
+        self.push(InstKind::Unary { op, dst, src });
+    }
+
+    /// `dst = a op b`
+    pub fn binary(&mut self, op: BinaryOp, dst: ValueId, a: Operand, b: Operand) {
+        self.push(InstKind::Binary { op, dst, a, b });
+    }
+
+    /// `dst = a op b`, 0 or 1
+    pub fn compare(&mut self, op: CompareOp, dst: ValueId, a: Operand, b: Operand) {
+        self.push(InstKind::Compare { op, dst, a, b });
+    }
+
+    /// `dst = op(src)`
+    pub fn convert(&mut self, op: ConvertOp, dst: ValueId, src: Operand) {
+        self.push(InstKind::Convert { op, dst, src });
+    }
+
+    /// `dst = memory[address]`
+    pub fn load(&mut self, dst: ValueId, width: Width, address: Address) {
+        self.push(InstKind::Load { dst, width, address });
+    }
+
+    /// `memory[address] = src`
+    pub fn store(&mut self, src: Operand, width: Width, address: Address) {
+        self.push(InstKind::Store { src, width, address });
+    }
+
+    /// `dst = callee(arguments)`
+    pub fn call(
+        &mut self,
+        callee: Callee,
+        signature: SignatureId,
+        arguments: impl IntoIterator<Item = Operand>,
+        dst: Option<ValueId>,
+    ) {
+        let start = self.function.arguments.len();
+        self.function.arguments.extend(arguments);
+        let count = (self.function.arguments.len() - start) as u32;
+        let arguments = Arguments { start: start as u32, count };
+        self.push(InstKind::Call { callee, arguments, signature, dst: dst.into() });
+    }
+}

@@ -1,0 +1,156 @@
+//! Functions, blocks and signatures.
+
+use std::collections::BTreeMap;
+
+use cranelift_entity::{PrimaryMap, SecondaryMap};
+
+use super::inst::{BlockId, Class, Inst, Operand, SignatureId, SlotId, Terminator, ValueId};
+use crate::source::Span;
+use crate::typed::SymbolId;
+
+/// What goes into a function and what comes out, as classes.
+#[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Signature {
+    /// Parameters, hidden ones included.
+    pub params: Vec<Class>,
+    /// Result; `None` for `void`.
+    pub result: Option<Class>,
+}
+
+/// Every signature of a unit, each once.
+#[derive(Clone, Debug, Default)]
+pub struct Signatures {
+    table: PrimaryMap<SignatureId, Signature>,
+    numbers: BTreeMap<Signature, SignatureId>,
+}
+
+impl Signatures {
+    /// The number of a signature, new if it was not seen before.
+    pub fn intern(&mut self, signature: &Signature) -> SignatureId {
+        if let Some(id) = self.numbers.get(signature) {
+            return *id;
+        }
+        let id = self.table.push(signature.clone());
+        self.numbers.insert(signature.clone(), id);
+        id
+    }
+
+    /// The number of a signature that was seen before.
+    #[must_use]
+    pub fn find(&self, signature: &Signature) -> Option<SignatureId> {
+        self.numbers.get(signature).copied()
+    }
+
+    /// The signature with this number.
+    #[must_use]
+    pub fn get(&self, id: SignatureId) -> &Signature {
+        &self.table[id]
+    }
+
+    /// All signatures in the order of their numbers.
+    #[must_use]
+    pub fn as_slice(&self) -> &[Signature] {
+        self.table.values().as_slice()
+    }
+}
+
+/// An object in the frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Slot {
+    /// Bytes.
+    pub size: u32,
+    /// Alignment, at most 8.
+    pub align: u32,
+}
+
+/// A basic block.
+#[derive(Clone, Debug)]
+pub struct Block {
+    /// Instructions in order.
+    pub insts: Vec<Inst>,
+    /// How it ends.
+    pub terminator: Terminator,
+    /// The statement that the end belongs to.
+    pub span: Span,
+}
+
+/// A function.
+#[derive(Clone, Debug)]
+pub struct Function {
+    /// Its symbol.
+    pub symbol: SymbolId,
+    /// Its signature.
+    pub signature: SignatureId,
+    /// The values that the arguments come in.
+    pub params: Vec<ValueId>,
+    /// The class of every value.
+    pub values: PrimaryMap<ValueId, Class>,
+    /// Objects in the frame.
+    pub slots: PrimaryMap<SlotId, Slot>,
+    /// Every block, also those that `layout` has dropped.
+    pub blocks: PrimaryMap<BlockId, Block>,
+    /// The blocks that exist, in the order of the code; the first is the entry.
+    pub layout: Vec<BlockId>,
+    /// Arguments of the calls, one range a call.
+    pub arguments: Vec<Operand>,
+    /// The function's name in its definition.
+    pub span: Span,
+    /// Its closing brace.
+    pub end: Span,
+}
+
+impl Function {
+    /// Makes a function without blocks.
+    #[must_use]
+    pub fn new(symbol: SymbolId, signature: SignatureId, span: Span, end: Span) -> Self {
+        Self {
+            symbol,
+            signature,
+            params: Vec::new(),
+            values: PrimaryMap::new(),
+            slots: PrimaryMap::new(),
+            blocks: PrimaryMap::new(),
+            layout: Vec::new(),
+            arguments: Vec::new(),
+            span,
+            end,
+        }
+    }
+
+    /// The class of an operand.
+    #[must_use]
+    pub fn class(&self, operand: Operand) -> Class {
+        match operand {
+            Operand::Value(value) => self.values[value],
+            Operand::Constant(constant) => constant.class(),
+        }
+    }
+
+    /// How many edges lead to each block; the entry has one more.
+    #[must_use]
+    pub fn predecessors(&self) -> SecondaryMap<BlockId, u32> {
+        let mut counts = SecondaryMap::with_capacity(self.blocks.len());
+        if let Some(&entry) = self.layout.first() {
+            counts[entry] = 1;
+        }
+        for &id in &self.layout {
+            for target in self.blocks[id].terminator.targets() {
+                counts[target] += 1;
+            }
+        }
+        counts
+    }
+
+    /// Whether `block` is entered from the block `before` alone, so that what holds at its end holds on.
+    #[must_use]
+    pub fn is_only_way(
+        &self,
+        before: Option<BlockId>,
+        block: BlockId,
+        predecessors: &SecondaryMap<BlockId, u32>,
+    ) -> bool {
+        before.is_some_and(|before| {
+            predecessors[block] == 1 && self.blocks[before].terminator.targets().any(|to| to == block)
+        })
+    }
+}

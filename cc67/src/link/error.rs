@@ -1,0 +1,120 @@
+//! What can go wrong when linking.
+
+use crate::diag::Diagnostic;
+use crate::source::Span;
+
+/// Why the program cannot be linked.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{kind}")]
+pub struct LinkError {
+    /// Index of the object that it concerns, if it is one.
+    pub object: Option<usize>,
+    /// Where in that object's source.
+    pub span: Option<Span>,
+    /// What is wrong.
+    pub kind: LinkErrorKind,
+}
+
+/// What is wrong.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum LinkErrorKind {
+    /// There is no entry point.
+    #[error("no `main`")]
+    NoMain,
+    /// A name that nothing defines.
+    #[error("undefined symbol `{name}`")]
+    Undefined {
+        /// The name.
+        name: String,
+        /// A name that may be meant.
+        suggestion: Option<String>,
+    },
+    /// Two units define one name.
+    #[error("`{name}` is defined twice")]
+    DefinedTwice {
+        /// The name.
+        name: String,
+    },
+    /// A call of something that is no function.
+    #[error("`{name}` is called, but is not a function")]
+    NotAFunction {
+        /// The name.
+        name: String,
+    },
+    /// The arguments or the result of a call are not those of the function.
+    #[error("`{name}` is called as `{called}`, but is `{defined}`")]
+    CallMismatch {
+        /// The name.
+        name: String,
+        /// The signature of the call.
+        called: String,
+        /// The signature of the function.
+        defined: String,
+    },
+    /// The program does not fit the program area.
+    #[error("the program is {excess} bytes too large")]
+    TooLarge {
+        /// How many bytes stand beyond the limit.
+        excess: u32,
+        /// The largest symbols, `name (bytes)`.
+        largest: Vec<String>,
+    },
+    /// More signatures than the bytecode can number.
+    #[error("the program uses too many different function types")]
+    TooManySignatures,
+}
+
+impl LinkError {
+    /// An error that concerns the whole program.
+    pub(super) const fn global(kind: LinkErrorKind) -> Self {
+        Self { object: None, span: None, kind }
+    }
+
+    /// The error as a diagnostic; its span belongs to the sources of the object it concerns.
+    pub fn to_diagnostic(&self) -> Diagnostic {
+        let message = self.kind.to_string();
+        let diagnostic = match self.span {
+            Some(span) => Diagnostic::error(span, message),
+            None => Diagnostic::global_error(message),
+        };
+        match &self.kind {
+            LinkErrorKind::Undefined { suggestion: Some(name), .. } => {
+                diagnostic.help(format!("did you mean `{name}`?"))
+            }
+            LinkErrorKind::Undefined { suggestion: None, .. } => {
+                diagnostic.at("neither the program nor the firmware defines it")
+            }
+            LinkErrorKind::TooLarge { largest, .. } => {
+                diagnostic.note(format!("largest: {}", largest.join(", ")))
+            }
+            LinkErrorKind::NoMain => diagnostic
+                .note("a program begins at `main`")
+                .help("compile the program that includes this file, or write a `main`"),
+            LinkErrorKind::DefinedTwice { .. }
+            | LinkErrorKind::NotAFunction { .. }
+            | LinkErrorKind::CallMismatch { .. }
+            | LinkErrorKind::TooManySignatures => diagnostic,
+        }
+    }
+}
+
+/// What the user should know about a program that was linked.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum LinkWarning {
+    /// The program is larger than its thread's space.
+    #[error(
+        "the program is {excess} bytes larger than its space; it enters the space of thread {}",
+        list(entered)
+    )]
+    EntersOtherThreads {
+        /// How many bytes stand beyond the thread's own space.
+        excess: u32,
+        /// The threads whose space is entered.
+        entered: Vec<u8>,
+    },
+}
+
+fn list(threads: &[u8]) -> String {
+    let numbers: Vec<String> = threads.iter().map(u8::to_string).collect();
+    numbers.join(", ")
+}

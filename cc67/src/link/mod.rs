@@ -1,0 +1,162 @@
+//! Objects to a program at a thread's address.
+//!
+//! The program's own definitions win over those of the firmware, whatever the firmware calls
+//! its symbols. All that is missing is reported at once.
+//!
+//! Placement (specification, `coff.md` section 4): text at the start of the thread's space,
+//! data and uninitialised data behind it, each at a multiple of 32, every object aligned to
+//! its type. A pointer to a function is the address of its `func` word.
+
+mod error;
+mod firmware;
+mod names;
+mod place;
+mod reach;
+mod text;
+
+pub use error::{LinkError, LinkErrorKind, LinkWarning};
+pub use firmware::{FirmwareKind, FirmwareSymbol, FirmwareSymbols};
+
+use kmotiondef::map::program_base;
+use kmotiondef::{GuestAddr, ThreadId};
+
+use crate::object::{Object, SourceLine, SymbolKind};
+use crate::typed::Linkage;
+
+/// How to link.
+#[derive(Clone, Copy)]
+pub struct Options<'a> {
+    /// The thread that the program is for.
+    pub thread: ThreadId,
+    /// What the firmware offers.
+    pub firmware: &'a dyn FirmwareSymbols,
+    /// Whether functions and objects that `main` cannot reach are left out.
+    pub gc: bool,
+}
+
+/// A program with final addresses.
+#[derive(Clone, Debug)]
+pub struct Linked {
+    /// The thread it is for.
+    pub thread: ThreadId,
+    /// Where the text stands.
+    pub text_address: GuestAddr,
+    /// The text.
+    pub text: Vec<u8>,
+    /// Where the initialised data stand.
+    pub data_address: GuestAddr,
+    /// The initialised data.
+    pub data: Vec<u8>,
+    /// Where the uninitialised data stand.
+    pub bss_address: GuestAddr,
+    /// How many bytes of them there are.
+    pub bss_size: u32,
+    /// Address of `main`.
+    pub entry: GuestAddr,
+    /// Source files.
+    pub files: Vec<String>,
+    /// The program's symbols: functions, then objects, each in the order of their addresses.
+    pub symbols: Vec<LinkedSymbol>,
+    /// The functions, in the order of their addresses; index for index the first of `symbols`.
+    pub functions: Vec<LinkedFunction>,
+    /// Where source lines begin, ascending.
+    pub lines: Vec<LinkedLine>,
+    /// The firmware's symbols that the program refers to.
+    pub imports: Vec<Import>,
+    /// What deserves a warning.
+    pub warnings: Vec<LinkWarning>,
+}
+
+/// Where a symbol stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Section {
+    /// Code.
+    Text,
+    /// Initialised data.
+    Data,
+    /// Uninitialised data.
+    Bss,
+}
+
+/// A symbol of the program.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LinkedSymbol {
+    /// Its name.
+    pub name: String,
+    /// Where it stands.
+    pub address: GuestAddr,
+    /// Its size in bytes.
+    pub size: u32,
+    /// Its section.
+    pub section: Section,
+    /// What kind of type it has.
+    pub kind: SymbolKind,
+    /// Whether it is `static`.
+    pub linkage: Linkage,
+    /// Where it is defined.
+    pub place: SourceLine,
+}
+
+/// A function of the program.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LinkedFunction {
+    /// Its part of [`Linked::lines`].
+    pub lines: std::ops::Range<usize>,
+    /// Bytes of its frame in guest memory.
+    pub frame: u32,
+    /// The line of its closing brace.
+    pub end: SourceLine,
+}
+
+/// From this address on the code belongs to this line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LinkedLine {
+    /// The address.
+    pub address: GuestAddr,
+    /// The line; the file is an index into [`Linked::files`].
+    pub place: SourceLine,
+}
+
+/// A symbol of the firmware that the program refers to.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Import {
+    /// Its name.
+    pub name: String,
+    /// Where it stands.
+    pub address: GuestAddr,
+    /// Whether it is a function.
+    pub is_function: bool,
+}
+
+/// Links objects to a program.
+///
+/// # Errors
+/// Everything that keeps the program from being linked.
+pub fn link(objects: &[Object], options: &Options<'_>) -> Result<Linked, Vec<LinkError>> {
+    let names = names::Names::collect(objects)?;
+    let reached = reach::reach(objects, &names, options)?;
+    let base = program_base(options.thread);
+    let layout = text::Layout::new(objects, &reached)?;
+    let placed = place::place(objects, &names, &reached, &layout, base);
+    let warnings = place::check_size(&placed, options.thread)?;
+    let addresses = text::Addresses { base, reached: &reached, placed: &placed };
+    Ok(Linked {
+        thread: options.thread,
+        text_address: base,
+        text: text::text(objects, &layout, &addresses)?,
+        data_address: placed.data_address,
+        data: text::data(objects, &addresses),
+        bss_address: placed.bss_address,
+        bss_size: placed.bss_size,
+        entry: placed.function(reached.main),
+        files: layout.files.clone(),
+        functions: text::functions(objects, &layout),
+        lines: text::lines(objects, &layout, base),
+        imports: reached.imports,
+        symbols: placed.symbols,
+        warnings,
+    })
+}
+
+#[cfg(test)]
+mod tests;

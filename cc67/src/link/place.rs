@@ -1,0 +1,147 @@
+//! Gives everything its address.
+
+use kmotiondef::map::{PROGRAM_BASE, PROGRAM_SIZE, STACK_BASE, program_base};
+use kmotiondef::{GuestAddr, ThreadId};
+use vm::op::WORD;
+
+use super::error::{LinkError, LinkErrorKind, LinkWarning};
+use super::names::Names;
+use super::reach::Reached;
+use super::text::Layout;
+use super::{LinkedSymbol, Section};
+use crate::object::{Object, Symbol};
+
+/// Sections start at multiples of so many bytes.
+const SECTION_ALIGN: u32 = 32;
+/// How many symbols are named when the program is too large.
+const NAMED: usize = 5;
+
+/// The addresses.
+#[derive(Debug)]
+pub(super) struct Placed {
+    pub(super) data_address: GuestAddr,
+    pub(super) data_size: u32,
+    pub(super) bss_address: GuestAddr,
+    pub(super) bss_size: u32,
+    /// Addresses of the functions of each object; null for those left out.
+    functions: Vec<Vec<GuestAddr>>,
+    /// Addresses of the initialised objects of each object; null for those left out.
+    pub(super) data: Vec<Vec<GuestAddr>>,
+    /// Addresses of the uninitialised objects; null for those left out.
+    pub(super) bss: Vec<GuestAddr>,
+    pub(super) symbols: Vec<LinkedSymbol>,
+}
+
+impl Placed {
+    /// The address of a function, given by object and index.
+    pub(super) fn function(&self, (object, index): (usize, u32)) -> GuestAddr {
+        self.functions[object][index as usize]
+    }
+}
+
+/// Places text at `base` and everything else behind it.
+pub(super) fn place(
+    objects: &[Object],
+    names: &Names<'_>,
+    reached: &Reached,
+    layout: &Layout,
+    base: GuestAddr,
+) -> Placed {
+    let text_size = layout.words * WORD as u32;
+    let data_address = GuestAddr::new(base.get().saturating_add(text_size).next_multiple_of(SECTION_ALIGN));
+    let mut placed = Placed {
+        data_address,
+        data_size: 0,
+        bss_address: data_address,
+        bss_size: 0,
+        functions: objects.iter().map(|object| vec![GuestAddr::NULL; object.functions.len()]).collect(),
+        data: objects.iter().map(|object| vec![GuestAddr::NULL; object.objects.len()]).collect(),
+        bss: vec![GuestAddr::NULL; names.uninitialized.len()],
+        symbols: Vec::new(),
+    };
+    for (object, index, word) in &layout.functions {
+        let function = &objects[*object].functions[*index as usize];
+        let address = base.offset(word * WORD as u32);
+        placed.functions[*object][*index as usize] = address;
+        let size = (function.words.end - function.words.start) * WORD as u32;
+        let symbol = &objects[*object].symbols[function.symbol];
+        placed.symbols.push(linked(symbol, address, size, Section::Text, layout, *object));
+    }
+    placed.data(objects, reached, layout);
+    placed.bss(objects, names, reached, layout);
+    placed
+}
+
+impl Placed {
+    fn data(&mut self, objects: &[Object], reached: &Reached, layout: &Layout) {
+        let mut at = self.data_address.get();
+        for (index, object) in objects.iter().enumerate() {
+            let needed = object.objects.iter().enumerate().filter(|(item, _)| reached.data[index][*item]);
+            for (item, data) in needed {
+                let symbol = &object.symbols[data.symbol];
+                at = at.next_multiple_of(symbol.align.max(1));
+                self.data[index][item] = GuestAddr::new(at);
+                let size = data.bytes.end - data.bytes.start;
+                let address = GuestAddr::new(at);
+                self.symbols.push(linked(symbol, address, size, Section::Data, layout, index));
+                at = at.saturating_add(size);
+            }
+        }
+        self.data_size = at - self.data_address.get();
+    }
+
+    fn bss(&mut self, objects: &[Object], names: &Names<'_>, reached: &Reached, layout: &Layout) {
+        let start = (self.data_address.get().saturating_add(self.data_size))
+            .checked_next_multiple_of(SECTION_ALIGN)
+            .unwrap_or(u32::MAX);
+        let mut at = start;
+        for (index, item) in names.uninitialized.iter().enumerate().filter(|(index, _)| reached.bss[*index]) {
+            at = at.checked_next_multiple_of(item.align.max(1)).unwrap_or(u32::MAX);
+            let address = GuestAddr::new(at);
+            self.bss[index] = address;
+            let symbol = &objects[item.object].symbols[item.symbol];
+            self.symbols.push(linked(symbol, address, item.size, Section::Bss, layout, item.object));
+            at = at.saturating_add(item.size);
+        }
+        self.bss_address = GuestAddr::new(start);
+        self.bss_size = at - start;
+    }
+}
+
+fn linked(
+    symbol: &Symbol,
+    address: GuestAddr,
+    size: u32,
+    section: Section,
+    layout: &Layout,
+    object: usize,
+) -> LinkedSymbol {
+    LinkedSymbol {
+        name: symbol.name.clone(),
+        address,
+        size,
+        section,
+        kind: symbol.kind,
+        linkage: symbol.linkage,
+        place: layout.place(object, symbol.place),
+    }
+}
+
+/// Compares the program's end with the space there is (specification, `dialect.md` section 7).
+pub(super) fn check_size(placed: &Placed, thread: ThreadId) -> Result<Vec<LinkWarning>, Vec<LinkError>> {
+    let end = placed.bss_address.get().saturating_add(placed.bss_size);
+    if end > STACK_BASE {
+        let mut symbols: Vec<&LinkedSymbol> = placed.symbols.iter().collect();
+        symbols.sort_by_key(|symbol| std::cmp::Reverse(symbol.size));
+        let largest = symbols.iter().take(NAMED).map(|symbol| format!("{} ({})", symbol.name, symbol.size));
+        let kind = LinkErrorKind::TooLarge { excess: end - STACK_BASE, largest: largest.collect() };
+        return Err(vec![LinkError::global(kind)]);
+    }
+    let own = program_base(thread).get() + PROGRAM_SIZE;
+    if end <= own {
+        return Ok(Vec::new());
+    }
+    let last = (end - 1 - PROGRAM_BASE) / PROGRAM_SIZE + 1;
+    let entered = (thread.get() + 1..=last as u8).collect();
+    Ok(vec![LinkWarning::EntersOtherThreads { excess: end - own, entered }])
+}

@@ -1,0 +1,186 @@
+//! Which functions and objects the program consists of, and what it needs of the firmware.
+//!
+//! A walk over the relocations from `main`, or from every definition if nothing is to be left
+//! out. What a relocation refers to is worked out here, once for each symbol of an object.
+
+use std::collections::BTreeMap;
+
+use cranelift_entity::SecondaryMap;
+use kmotiondef::GuestAddr;
+
+use super::error::{LinkError, LinkErrorKind};
+use super::firmware::{FirmwareKind, FirmwareSymbol};
+use super::names::{Defined, Names};
+use super::{Import, Options};
+use crate::ir::function::Signature;
+use crate::object::Object;
+use crate::suggest::suggest;
+use crate::typed::SymbolId;
+
+/// What a symbol of an object turned out to be.
+#[derive(Clone, Debug, Default)]
+pub(super) enum Target {
+    /// Nothing refers to it, or nothing defines it.
+    #[default]
+    Unknown,
+    /// Something of the program.
+    Program(Defined),
+    /// A function of the firmware.
+    Function(GuestAddr, Option<Signature>),
+    /// A variable of the firmware.
+    Variable(GuestAddr),
+}
+
+/// What the program consists of.
+#[derive(Debug)]
+pub(super) struct Reached {
+    /// The targets of each object's symbols.
+    pub(super) targets: Vec<SecondaryMap<SymbolId, Target>>,
+    /// Which functions of each object are needed.
+    pub(super) functions: Vec<Vec<bool>>,
+    /// Which initialised objects of each object are needed.
+    pub(super) data: Vec<Vec<bool>>,
+    /// Which uninitialised objects are needed.
+    pub(super) bss: Vec<bool>,
+    /// `main`: object and index.
+    pub(super) main: (usize, u32),
+    /// What is needed of the firmware, by name.
+    pub(super) imports: Vec<Import>,
+}
+
+/// Finds out.
+pub(super) fn reach(
+    objects: &[Object],
+    names: &Names<'_>,
+    options: &Options<'_>,
+) -> Result<Reached, Vec<LinkError>> {
+    let main = names.main(objects);
+    let mut walk = Walk {
+        objects,
+        names,
+        options,
+        reached: Reached {
+            targets: objects.iter().map(|_| SecondaryMap::new()).collect(),
+            functions: objects.iter().map(|object| vec![false; object.functions.len()]).collect(),
+            data: objects.iter().map(|object| vec![false; object.objects.len()]).collect(),
+            bss: vec![false; names.uninitialized.len()],
+            main: main.unwrap_or_default(),
+            imports: Vec::new(),
+        },
+        imports: BTreeMap::new(),
+        missing: BTreeMap::new(),
+        pending: Vec::new(),
+    };
+    if let Some((object, index)) = main {
+        walk.need(Defined::Function(object, index));
+    }
+    if !options.gc || main.is_none() {
+        walk.need_all();
+    }
+    walk.run();
+    let mut errors: Vec<LinkError> = walk.missing.into_values().collect();
+    errors.sort_by_key(|error| (error.object, error.span.map(|span| span.lo)));
+    if main.is_none() {
+        errors.push(LinkError::global(LinkErrorKind::NoMain));
+    }
+    if !errors.is_empty() {
+        return Err(errors);
+    }
+    walk.reached.imports = walk.imports.into_values().collect();
+    Ok(walk.reached)
+}
+
+struct Walk<'a> {
+    objects: &'a [Object],
+    names: &'a Names<'a>,
+    options: &'a Options<'a>,
+    reached: Reached,
+    imports: BTreeMap<&'a str, Import>,
+    missing: BTreeMap<&'a str, LinkError>,
+    /// Definitions whose relocations have not been looked at.
+    pending: Vec<Defined>,
+}
+
+impl Walk<'_> {
+    fn need_all(&mut self) {
+        for (object, unit) in self.objects.iter().enumerate() {
+            (0..unit.functions.len()).for_each(|index| self.need(Defined::Function(object, index as u32)));
+            (0..unit.objects.len()).for_each(|index| self.need(Defined::Data(object, index as u32)));
+        }
+        self.reached.bss.fill(true);
+    }
+
+    fn need(&mut self, defined: Defined) {
+        let needed = match defined {
+            Defined::Function(object, index) => &mut self.reached.functions[object][index as usize],
+            Defined::Data(object, index) => &mut self.reached.data[object][index as usize],
+            Defined::Bss(index) => &mut self.reached.bss[index],
+        };
+        if !*needed {
+            *needed = true;
+            self.pending.push(defined);
+        }
+    }
+
+    fn run(&mut self) {
+        while let Some(defined) = self.pending.pop() {
+            match defined {
+                Defined::Function(object, index) => {
+                    let unit = &self.objects[object];
+                    let range = unit.functions[index as usize].relocations.clone();
+                    for relocation in &unit.relocations[range.start as usize..range.end as usize] {
+                        self.refer(object, relocation.symbol);
+                    }
+                }
+                Defined::Data(object, index) => {
+                    let unit = &self.objects[object];
+                    let range = unit.objects[index as usize].relocations.clone();
+                    for relocation in &unit.data_relocations[range.start as usize..range.end as usize] {
+                        self.refer(object, relocation.symbol);
+                    }
+                }
+                Defined::Bss(_) => {}
+            }
+        }
+    }
+
+    /// Works out what a symbol means, and needs it.
+    fn refer(&mut self, object: usize, id: SymbolId) {
+        if !matches!(self.reached.targets[object][id], Target::Unknown) {
+            return;
+        }
+        let symbol = &self.objects[object].symbols[id];
+        let target = if let Some(defined) = self.names.find(object, id, symbol) {
+            self.need(defined);
+            Target::Program(defined)
+        } else if let Some(FirmwareSymbol { address, kind }) = self.options.firmware.find(&symbol.name) {
+            let is_function = matches!(kind, FirmwareKind::Function(_));
+            self.imports.entry(&symbol.name).or_insert_with(|| Import {
+                name: symbol.name.clone(),
+                address,
+                is_function,
+            });
+            match kind {
+                FirmwareKind::Variable => Target::Variable(address),
+                FirmwareKind::Function(signature) => Target::Function(address, signature),
+            }
+        } else {
+            self.miss(object, id);
+            Target::Unknown
+        };
+        self.reached.targets[object][id] = target;
+    }
+
+    /// Records an undefined symbol, once for each name.
+    fn miss(&mut self, object: usize, id: SymbolId) {
+        let symbol = &self.objects[object].symbols[id];
+        if self.missing.contains_key(symbol.name.as_str()) {
+            return;
+        }
+        let candidates = self.names.external_names().chain(self.options.firmware.symbol_names());
+        let suggestion = suggest(&symbol.name, candidates).map(str::to_owned);
+        let kind = LinkErrorKind::Undefined { name: symbol.name.clone(), suggestion };
+        let span = symbol.used_at.unwrap_or(symbol.span);
+        self.missing.insert(&symbol.name, LinkError { object: Some(object), span: Some(span), kind });
+    }
+}

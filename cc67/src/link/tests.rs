@@ -1,0 +1,173 @@
+//! Names, placement, sizes and messages.
+
+use kmotiondef::{GuestAddr, ThreadId};
+
+use super::{FirmwareKind, FirmwareSymbol, FirmwareSymbols, LinkError, Linked, Options, Section, link};
+use crate::bytecode::unit;
+use crate::diag::Sink;
+use crate::ir::function::Signature;
+use crate::ir::inst::Class;
+use crate::lower::testing;
+use crate::object::Object;
+use crate::passes::Level;
+
+/// `SetBit` at 0x80001000 and `persist` at 0x10001040.
+struct Fake;
+
+impl FirmwareSymbols for Fake {
+    fn find(&self, name: &str) -> Option<FirmwareSymbol> {
+        let symbol = |address, kind| Some(FirmwareSymbol { address: GuestAddr::new(address), kind });
+        let signature = Signature { params: vec![Class::I32], result: None };
+        match name {
+            "SetBit" => symbol(0x8000_1000, FirmwareKind::Function(Some(signature))),
+            "persist" => symbol(0x1000_1040, FirmwareKind::Variable),
+            _ => None,
+        }
+    }
+
+    fn symbol_names(&self) -> Box<dyn Iterator<Item = &str> + '_> {
+        Box::new(["SetBit", "persist"].into_iter())
+    }
+}
+
+fn object(source: &str) -> Object {
+    let (unit, sources) = testing::unit(source);
+    unit::compile(&unit, &sources, Level::Full, &mut Sink::new())
+}
+
+fn try_link(sources: &[&str], thread: i32, gc: bool) -> Result<Linked, Vec<LinkError>> {
+    let objects: Vec<Object> = sources.iter().map(|source| object(source)).collect();
+    let thread = ThreadId::new(thread).expect("1 to 7");
+    link(&objects, &Options { thread, firmware: &Fake, gc })
+}
+
+fn linked(sources: &[&str]) -> Linked {
+    try_link(sources, 1, true).expect("links")
+}
+
+/// The address of a symbol.
+fn address(linked: &Linked, name: &str) -> u32 {
+    linked.symbols.iter().find(|symbol| symbol.name == name).map_or(0, |symbol| symbol.address.get())
+}
+
+/// The word in the data at the symbol `name`.
+fn word(linked: &Linked, name: &str) -> u32 {
+    let at = (address(linked, name) - linked.data_address.get()) as usize;
+    linked.data[at..].first_chunk().map_or(0, |bytes| u32::from_le_bytes(*bytes))
+}
+
+fn check_errors(sources: &[&str], expected: &[&str]) {
+    let errors = try_link(sources, 1, true).expect_err("does not link");
+    let messages: Vec<String> = errors.iter().map(ToString::to_string).collect();
+    assert_eq!(messages, expected);
+}
+
+#[test]
+fn sections_follow_each_other_at_multiples_of_32() {
+    let linked = linked(&["char c = 1; double d = 2; int b[3]; main() { return c + d + b[0]; }"]);
+    assert_eq!(linked.text_address, GuestAddr::new(0x8005_0000));
+    let text_end = linked.text_address.get() + linked.text.len() as u32;
+    assert_eq!(linked.data_address.get(), text_end.next_multiple_of(32));
+    assert_eq!(address(&linked, "d"), linked.data_address.get() + 8);
+    assert_eq!(linked.data.len(), 16);
+    assert_eq!(linked.bss_address.get(), linked.data_address.get() + 32);
+    assert_eq!(linked.bss_size, 12);
+    let sections: Vec<Section> = linked.symbols.iter().map(|symbol| symbol.section).collect();
+    assert_eq!(sections, [Section::Text, Section::Data, Section::Data, Section::Bss]);
+}
+
+#[test]
+fn statics_are_resolved_in_their_unit_and_externals_across_units() {
+    let linked = linked(&[
+        "static int s = 1; int *a = &s; int shared; int g(void); main() { shared = *a; return g(); }",
+        "static int s = 2; int *b = &s; extern int *a; int shared; int g(void) { return *a + *b + shared; }",
+    ]);
+    assert_ne!(word(&linked, "a"), word(&linked, "b"));
+    assert_eq!(linked.symbols.iter().filter(|symbol| symbol.name == "shared").count(), 1);
+}
+
+#[test]
+fn the_largest_tentative_definition_counts_and_an_initialised_one_wins() {
+    let linked = linked(&["char a[4]; int b; main() { return a[0] + b; }", "char a[9]; int b = 7; "]);
+    let size =
+        |name: &str| linked.symbols.iter().find(|symbol| symbol.name == name).map(|symbol| symbol.size);
+    assert_eq!(size("a"), Some(9));
+    assert_eq!(word(&linked, "b"), 7);
+}
+
+#[test]
+fn data_hold_addresses_of_objects_functions_and_the_firmware() {
+    let linked = linked(&[
+        "extern int persist[]; int f(void) { return 0; } int t[4]; int *p = &t[2]; int (*q)(void) = f;
+         int *r = &persist[3]; main() { return *p + q() + *r; }",
+    ]);
+    assert_eq!(word(&linked, "p"), address(&linked, "t") + 8);
+    assert_eq!(word(&linked, "q"), address(&linked, "f"));
+    assert_eq!(word(&linked, "r"), 0x1000_104c);
+    assert_eq!(linked.imports.len(), 1);
+}
+
+#[test]
+fn a_programs_own_definition_wins_over_the_firmwares() {
+    let linked = linked(&["int persist = 5; void SetBit(int bit) { persist = bit; } main() { SetBit(1); }"]);
+    assert_eq!(linked.imports, []);
+}
+
+#[test]
+fn what_main_cannot_reach_is_left_out_on_request() {
+    let source = "int used = 1, unused = 2; int f(void) { return unused; } main() { return used; }";
+    assert_eq!(linked(&[source]).symbols.len(), 2);
+    assert_eq!(try_link(&[source], 1, false).map(|linked| linked.symbols.len()), Ok(4));
+}
+
+#[test]
+fn main_may_be_static_and_need_not_come_first() {
+    let linked = linked(&["int f(void) { return 1; } static int main() { return f(); }"]);
+    assert_eq!(linked.entry.get(), address(&linked, "main"));
+    assert!(linked.entry > linked.text_address);
+}
+
+#[test]
+fn everything_undefined_is_reported_at_once_with_its_first_use() {
+    let source = "void Setbit(int); extern int x; main() {\n Setbit(1);\n x = 1; Setbit(2); x = 2; }";
+    check_errors(&[source], &["undefined symbol `Setbit`", "undefined symbol `x`"]);
+    let errors = try_link(&[source], 1, true).expect_err("does not link");
+    let at = source.find("Setbit(1)").map(|at| at as u32);
+    assert_eq!(errors[0].span.map(|span| span.lo), at);
+    assert_eq!(errors[0].to_diagnostic().help.as_deref(), Some("did you mean `SetBit`?"));
+}
+
+#[test]
+fn other_errors_are_named() {
+    check_errors(&["int f(void) { return 1; }"], &["no `main`"]);
+    check_errors(&["int a = 1; main() { }", "int a = 2;"], &["`a` is defined twice"]);
+    check_errors(
+        &["int SetBit(double); main() { return SetBit(1.0); }"],
+        &["`SetBit` is called as `i32 (f64)`, but is `void (i32)`"],
+    );
+    check_errors(
+        &["void persist(void); main() { persist(); }"],
+        &["`persist` is called, but is not a function"],
+    );
+}
+
+#[test]
+fn a_program_larger_than_its_space_enters_the_next_ones() {
+    let source = "char a[200000]; main() { a[0] = 1; }";
+    let linked = try_link(&[source], 2, true).expect("links");
+    let warning = linked.warnings.first().map(ToString::to_string).unwrap_or_default();
+    assert!(warning.ends_with("enters the space of thread 3, 4, 5"), "{warning}");
+    let errors = try_link(&[source], 5, true).expect_err("does not fit");
+    let message = errors[0].to_diagnostic();
+    assert!(message.message.ends_with("bytes too large"), "{}", message.message);
+    assert!(message.notes[0].starts_with("largest: a (200000), main ("), "{:?}", message.notes);
+}
+
+#[test]
+fn sizes_up_to_the_limit_pass_without_a_word() {
+    let fits = |size: u32| try_link(&[&format!("char a[{size}]; main() {{ a[0] = 1; }}")], 1, true);
+    let text = fits(1).expect("links");
+    let room = 0x1_0000 - (text.bss_address.get() - text.text_address.get());
+    assert_eq!(fits(room).map(|linked| linked.warnings.len()), Ok(0));
+    assert_eq!(fits(room + 1).map(|linked| linked.warnings.len()), Ok(1));
+}

@@ -1,0 +1,330 @@
+//! Writes text and data with their final addresses.
+
+use std::collections::BTreeMap;
+
+use kmotiondef::GuestAddr;
+use vm::op::{Op, VERSION, WORD};
+use vm::operand::{Addr, Classes, Count, Count32, FuncRef, SigRef};
+
+use super::error::{LinkError, LinkErrorKind};
+use super::names::Defined;
+use super::place::Placed;
+use super::reach::{Reached, Target};
+use super::{LinkedFunction, LinkedLine};
+use crate::ir::function::{Signature, Signatures};
+use crate::ir::inst::SignatureId;
+use crate::object::{Function, Object, Relocation, RelocationKind, SourceLine};
+
+/// The order of the text and the numbers that objects share in it.
+#[derive(Debug, Default)]
+pub(super) struct Layout {
+    /// The functions: object, index, number of the `func` word.
+    pub(super) functions: Vec<(usize, u32, u32)>,
+    /// Words of the text.
+    pub(super) words: u32,
+    /// Source files, each once.
+    pub(super) files: Vec<String>,
+    file_numbers: Vec<Vec<u32>>,
+    pool: Vec<u64>,
+    pool_numbers: Vec<Vec<u32>>,
+    signatures: Signatures,
+    signature_numbers: Vec<Vec<u16>>,
+}
+
+impl Layout {
+    pub(super) fn new(objects: &[Object], reached: &Reached) -> Result<Self, Vec<LinkError>> {
+        let mut layout = Self::default();
+        layout.share_files(objects);
+        layout.share_pool(objects);
+        layout.share_signatures(objects, reached)?;
+        let head: u32 = layout.signatures.as_slice().iter().map(|s| 1 + type_words(s.params.len())).sum();
+        let mut word = 1 + layout.pool.len() as u32 + head;
+        for (object, unit) in objects.iter().enumerate() {
+            let needed =
+                unit.functions.iter().enumerate().filter(|(index, _)| reached.functions[object][*index]);
+            for (index, function) in needed {
+                layout.functions.push((object, index as u32, word));
+                word += function.words.end - function.words.start;
+            }
+        }
+        layout.words = word;
+        Ok(layout)
+    }
+
+    /// A line of an object as a line of the program.
+    pub(super) fn place(&self, object: usize, place: SourceLine) -> SourceLine {
+        let file = self.file_numbers[object].get(place.file as usize).copied().unwrap_or(0);
+        SourceLine { file, ..place }
+    }
+
+    fn share_files(&mut self, objects: &[Object]) {
+        let mut numbers: BTreeMap<&str, u32> = BTreeMap::new();
+        for object in objects {
+            let mut own = Vec::with_capacity(object.files.len());
+            for file in &object.files {
+                let next = self.files.len() as u32;
+                let number = *numbers.entry(file).or_insert(next);
+                if number == next {
+                    self.files.push(file.clone());
+                }
+                own.push(number);
+            }
+            self.file_numbers.push(own);
+        }
+    }
+
+    fn share_pool(&mut self, objects: &[Object]) {
+        let mut numbers: BTreeMap<u64, u32> = BTreeMap::new();
+        for object in objects {
+            let mut own = Vec::with_capacity(object.pool.len());
+            for value in &object.pool {
+                let next = self.pool.len() as u32;
+                let number = *numbers.entry(*value).or_insert(next);
+                if number == next {
+                    self.pool.push(*value);
+                }
+                own.push(number);
+            }
+            self.pool_numbers.push(own);
+        }
+    }
+
+    /// Numbers the signatures of the objects and of the firmware functions they call.
+    fn share_signatures(&mut self, objects: &[Object], reached: &Reached) -> Result<(), Vec<LinkError>> {
+        for object in objects {
+            let own = object.signatures.as_slice().iter();
+            let numbers = own.map(|signature| self.signatures.intern(signature).as_u32() as u16).collect();
+            self.signature_numbers.push(numbers);
+        }
+        for target in reached.targets.iter().flat_map(|targets| targets.values()) {
+            if let Target::Function(_, Some(signature)) = target {
+                self.signatures.intern(signature);
+            }
+        }
+        if self.signatures.as_slice().len() > usize::from(u16::MAX) {
+            return Err(vec![LinkError::global(LinkErrorKind::TooManySignatures)]);
+        }
+        Ok(())
+    }
+
+    /// The number of a signature that has one.
+    fn number(&self, signature: &Signature) -> SigRef {
+        SigRef(self.signatures.find(signature).map_or(0, |id| id.as_u32() as u16))
+    }
+
+    /// The words in front of the functions.
+    fn head(&self, text: &mut Vec<u8>) {
+        let pool = Count32(self.pool.len() as u32);
+        text.extend_from_slice(&Op::Program { version: Count(VERSION), pool }.encode());
+        for value in &self.pool {
+            text.extend_from_slice(&value.to_le_bytes());
+        }
+        for signature in self.signatures.as_slice() {
+            let ret = Count(signature.result.map_or(0, |class| class as u16 + 1));
+            let params = Count(signature.params.len() as u16);
+            text.extend_from_slice(&Op::Sig { params, ret }.encode());
+            for classes in signature.params.chunks(16) {
+                let bits = classes.iter().rev().fold(0, |bits, class| bits << 2 | *class as u32);
+                text.extend_from_slice(&Op::Types { classes: Classes(bits) }.encode());
+            }
+        }
+    }
+}
+
+/// Words that hold the classes of `count` registers.
+const fn type_words(count: usize) -> u32 {
+    count.div_ceil(16) as u32
+}
+
+/// Everything that knows an address.
+pub(super) struct Addresses<'a> {
+    pub(super) base: GuestAddr,
+    pub(super) reached: &'a Reached,
+    pub(super) placed: &'a Placed,
+}
+
+impl Addresses<'_> {
+    fn of(&self, target: &Target) -> GuestAddr {
+        match *target {
+            Target::Unknown => GuestAddr::NULL,
+            Target::Function(address, _) | Target::Variable(address) => address,
+            Target::Program(Defined::Function(object, index)) => self.placed.function((object, index)),
+            Target::Program(Defined::Data(object, index)) => self.placed.data[object][index as usize],
+            Target::Program(Defined::Bss(index)) => self.placed.bss[index],
+        }
+    }
+}
+
+/// The bytes of the text.
+pub(super) fn text(
+    objects: &[Object],
+    layout: &Layout,
+    addresses: &Addresses<'_>,
+) -> Result<Vec<u8>, Vec<LinkError>> {
+    let mut writer = Writer { objects, layout, addresses, text: Vec::new(), errors: Vec::new() };
+    writer.text.reserve_exact(layout.words as usize * WORD);
+    layout.head(&mut writer.text);
+    for (object, index, word) in &layout.functions {
+        writer.function(*object, &objects[*object].functions[*index as usize], *word);
+    }
+    if writer.errors.is_empty() { Ok(writer.text) } else { Err(writer.errors) }
+}
+
+struct Writer<'a> {
+    objects: &'a [Object],
+    layout: &'a Layout,
+    addresses: &'a Addresses<'a>,
+    text: Vec<u8>,
+    errors: Vec<LinkError>,
+}
+
+impl Writer<'_> {
+    /// Appends a function whose `func` word has number `word` in the program.
+    fn function(&mut self, object: usize, function: &Function, word: u32) {
+        let unit = &self.objects[object];
+        let relocations = function.relocations.start as usize..function.relocations.end as usize;
+        let mut relocations = unit.relocations[relocations].iter().peekable();
+        let pool = &self.layout.pool_numbers[object];
+        let signatures = &self.layout.signature_numbers[object];
+        // Labels count from the beginning of the object's text.
+        let moved = word.wrapping_sub(function.words.start);
+        let start = self.text.len();
+        for (at, op) in (function.words.start..).zip(&unit.text[words(function)]) {
+            let mut op = *op;
+            match &mut op {
+                Op::Br { to } | Op::BrIf { to, .. } | Op::BrUnless { to, .. } => {
+                    to.0 = to.0.wrapping_add(moved);
+                }
+                Op::ConstI64 { pool: number, .. } | Op::ConstF64 { pool: number, .. } => {
+                    number.0 = pool[number.0 as usize];
+                }
+                Op::Func { sig, .. } | Op::CallPtr { sig, .. } | Op::CallFw { sig, .. } => {
+                    sig.0 = signatures[usize::from(sig.0)];
+                }
+                _ => {}
+            }
+            let mut bytes = op.encode();
+            if let Some(relocation) = relocations.next_if(|relocation| relocation.word == at) {
+                match relocation.kind {
+                    RelocationKind::Address => {
+                        let target = &self.addresses.reached.targets[object][relocation.symbol];
+                        add_address(&mut bytes[4..], self.addresses.of(target));
+                    }
+                    RelocationKind::Call(signature) => match self.call(object, relocation, signature) {
+                        Ok(op) => bytes = op.encode(),
+                        Err(error) => self.errors.push(error),
+                    },
+                }
+            }
+            self.text.extend_from_slice(&bytes);
+        }
+        debug_assert_eq!(start, word as usize * WORD, "functions stand where they were placed");
+    }
+
+    /// The call of a symbol.
+    fn call(&self, object: usize, relocation: &Relocation, signature: SignatureId) -> Result<Op, LinkError> {
+        let unit = &self.objects[object];
+        let symbol = &unit.symbols[relocation.symbol];
+        let called = unit.signatures.get(signature);
+        let fail = |kind| LinkError {
+            object: Some(object),
+            span: Some(symbol.used_at.unwrap_or(symbol.span)),
+            kind,
+        };
+        let check = |defined: &Signature| {
+            let fits = called.params == defined.params
+                && (called.result.is_none() || called.result == defined.result);
+            if fits {
+                return Ok(());
+            }
+            let (name, called, defined) = (symbol.name.clone(), show(called), show(defined));
+            Err(fail(LinkErrorKind::CallMismatch { name, called, defined }))
+        };
+        match &self.addresses.reached.targets[object][relocation.symbol] {
+            Target::Program(Defined::Function(unit, index)) => {
+                let function = &self.objects[*unit].functions[*index as usize];
+                check(self.objects[*unit].signatures.get(function.signature))?;
+                let address = self.addresses.placed.function((*unit, *index));
+                let offset = address.get() - self.addresses.base.get();
+                Ok(Op::Call { func: FuncRef(offset / WORD as u32) })
+            }
+            Target::Function(address, defined) => {
+                let defined = defined.as_ref().unwrap_or(called);
+                check(defined)?;
+                let addr = Addr(address.get());
+                Ok(Op::CallFw { sig: self.layout.number(defined), addr })
+            }
+            _ => Err(fail(LinkErrorKind::NotAFunction { name: symbol.name.clone() })),
+        }
+    }
+}
+
+fn words(function: &Function) -> std::ops::Range<usize> {
+    function.words.start as usize..function.words.end as usize
+}
+
+/// A signature for messages.
+fn show(signature: &Signature) -> String {
+    let params: Vec<String> = signature.params.iter().map(ToString::to_string).collect();
+    let result = signature.result.map_or_else(|| "void".to_owned(), |class| class.to_string());
+    format!("{result} ({})", params.join(", "))
+}
+
+/// Adds an address to the little-endian word at the start of `bytes`.
+fn add_address(bytes: &mut [u8], address: GuestAddr) {
+    if let Some(word) = bytes.first_chunk_mut::<4>() {
+        *word = u32::from_le_bytes(*word).wrapping_add(address.get()).to_le_bytes();
+    }
+}
+
+/// The bytes of the initialised data.
+pub(super) fn data(objects: &[Object], addresses: &Addresses<'_>) -> Vec<u8> {
+    let placed = addresses.placed;
+    let mut data = vec![0; placed.data_size as usize];
+    for (index, object) in objects.iter().enumerate() {
+        for (item, initialized) in object.objects.iter().enumerate() {
+            let address = placed.data[index][item];
+            if address.is_null() {
+                continue;
+            }
+            let start = (address.get() - placed.data_address.get()) as usize;
+            let bytes = &object.data[initialized.bytes.start as usize..initialized.bytes.end as usize];
+            data[start..start + bytes.len()].copy_from_slice(bytes);
+            let relocations = initialized.relocations.start as usize..initialized.relocations.end as usize;
+            for relocation in &object.data_relocations[relocations] {
+                let target = &addresses.reached.targets[index][relocation.symbol];
+                let at = start + (relocation.offset - initialized.bytes.start) as usize;
+                add_address(&mut data[at..], addresses.of(target));
+            }
+        }
+    }
+    data
+}
+
+/// What is known of each function besides its symbol.
+pub(super) fn functions(objects: &[Object], layout: &Layout) -> Vec<LinkedFunction> {
+    let mut first_line = 0;
+    let describe = |(object, index, _): &(usize, u32, u32)| {
+        let function = &objects[*object].functions[*index as usize];
+        let count = (function.lines.end - function.lines.start) as usize;
+        let lines = first_line..first_line + count;
+        first_line += count;
+        LinkedFunction { lines, frame: function.frame, end: layout.place(*object, function.end) }
+    };
+    layout.functions.iter().map(describe).collect()
+}
+
+/// The line table.
+pub(super) fn lines(objects: &[Object], layout: &Layout, base: GuestAddr) -> Vec<LinkedLine> {
+    let mut lines = Vec::new();
+    for (object, index, word) in &layout.functions {
+        let unit = &objects[*object];
+        let function = &unit.functions[*index as usize];
+        let own = &unit.lines[function.lines.start as usize..function.lines.end as usize];
+        lines.extend(own.iter().map(|line| LinkedLine {
+            address: base.offset((word + line.word - function.words.start) * WORD as u32),
+            place: layout.place(*object, line.place),
+        }));
+    }
+    lines
+}

@@ -1,0 +1,228 @@
+//! Typed tree to IR.
+//!
+//! C's rules are already explicit in the typed tree; what is decided here is shape: where a
+//! local lives, how a condition becomes branches, what a loop looks like, how a call passes
+//! its arguments.
+//!
+//! Everything is evaluated from left to right. A local in a register is read by naming its
+//! value, not by copying it; where a later operand of the same expression writes that local,
+//! a copy is put in behind the fact ([`Lowering::hold`]).
+
+mod calls;
+mod conditions;
+mod conversions;
+mod expressions;
+mod places;
+mod statements;
+mod switches;
+mod types;
+
+use cranelift_entity::packed_option::PackedOption;
+use cranelift_entity::{PrimaryMap, SecondaryMap};
+
+use crate::ir::builder::{Builder, Point};
+use crate::ir::function::{Function, Signature, Signatures};
+use crate::ir::inst::{Address, Base, BlockId, Class, Operand, SignatureId, SlotId, ValueId};
+use crate::typed::{self, ExprId, LabelId, LocalId, SymbolId, Unit};
+
+/// The signatures of the functions that a unit defines.
+#[derive(Debug, Default)]
+pub struct Definitions {
+    signatures: SecondaryMap<SymbolId, PackedOption<SignatureId>>,
+}
+
+impl Definitions {
+    /// Collects them.
+    #[must_use]
+    pub fn new(unit: &Unit, signatures: &mut Signatures) -> Self {
+        let mut definitions = Self::default();
+        for function in &unit.functions {
+            let signature = signatures.intern(&signature_of(unit, function));
+            definitions.signatures[function.symbol] = signature.into();
+        }
+        definitions
+    }
+
+    /// The signature of a function that the unit defines.
+    #[must_use]
+    pub fn get(&self, symbol: SymbolId) -> Option<SignatureId> {
+        self.signatures[symbol].expand()
+    }
+}
+
+/// Lowers one function of a unit.
+#[must_use]
+pub fn lower(
+    unit: &Unit,
+    function: &typed::Function,
+    definitions: &Definitions,
+    signatures: &mut Signatures,
+) -> Function {
+    let signature = signatures.intern(&signature_of(unit, function));
+    let builder = Builder::new(Function::new(function.symbol, signature, function.span, function.end));
+    let mut lowering = Lowering {
+        unit,
+        function,
+        definitions,
+        signatures,
+        builder,
+        homes: PrimaryMap::with_capacity(function.locals.len()),
+        writes: SecondaryMap::new(),
+        labels: SecondaryMap::new(),
+        breaks: Vec::new(),
+        continues: Vec::new(),
+        switches: Vec::new(),
+        outgoing: None,
+        spine: Vec::new(),
+        held: Vec::new(),
+    };
+    lowering.enter();
+    lowering.statements(&function.body);
+    lowering.builder.set_span(function.end);
+    lowering.return_zero();
+    lowering.builder.function
+}
+
+/// The classes of a function's parameters, hidden ones included, and of its result.
+fn signature_of(unit: &Unit, function: &typed::Function) -> Signature {
+    let class = |local: &LocalId| types::class(&unit.types, function.locals[*local].ty).unwrap_or(Class::I32);
+    let params = (function.result_pointer.iter())
+        .chain(&function.parameters)
+        .chain(&function.variable_arguments)
+        .map(class)
+        .collect();
+    Signature { params, result: types::class(&unit.types, function.ty.result) }
+}
+
+/// Where a local lives.
+#[derive(Clone, Copy, Debug)]
+enum Home {
+    /// In a value.
+    Value(ValueId),
+    /// In the frame.
+    Slot(SlotId),
+    /// Where the value points to.
+    Pointer(ValueId),
+}
+
+/// An operand that must still mean the same after other operands have been evaluated.
+#[derive(Clone, Copy, Debug)]
+struct Held {
+    operand: Operand,
+    writes: u32,
+    point: Point,
+}
+
+/// A switch whose body is being lowered.
+#[derive(Debug)]
+struct Switch {
+    cases: Vec<BlockId>,
+    default: BlockId,
+}
+
+/// The state of lowering one function.
+struct Lowering<'a> {
+    unit: &'a Unit,
+    function: &'a typed::Function,
+    definitions: &'a Definitions,
+    signatures: &'a mut Signatures,
+    builder: Builder,
+    homes: PrimaryMap<LocalId, Home>,
+    /// How often the value of a local has been written so far.
+    writes: SecondaryMap<ValueId, u32>,
+    labels: SecondaryMap<LabelId, PackedOption<BlockId>>,
+    breaks: Vec<BlockId>,
+    continues: Vec<BlockId>,
+    switches: Vec<Switch>,
+    /// Where the variable arguments of calls are put.
+    outgoing: Option<SlotId>,
+    /// Stack of operator nodes whose left operand is being descended into.
+    spine: Vec<ExprId>,
+    /// Stack of arguments that wait for their call.
+    held: Vec<Held>,
+}
+
+impl Lowering<'_> {
+    /// Gives every local its home and takes the arguments in.
+    fn enter(&mut self) {
+        let function = self.function;
+        for local in function.locals.values() {
+            let home = if local.by_pointer {
+                Home::Pointer(self.builder.value(Class::I32))
+            } else if local.in_memory {
+                let (size, align) = types::layout(&self.unit.types, local.ty);
+                Home::Slot(self.builder.slot(size, align))
+            } else {
+                Home::Value(self.builder.value(self.class_or_int(local.ty)))
+            };
+            self.homes.push(home);
+        }
+        let hidden = function.result_pointer;
+        for local in hidden.into_iter().chain(function.parameters.iter().copied()) {
+            self.parameter(local);
+        }
+        if let Some(local) = function.variable_arguments {
+            self.parameter(local);
+        }
+    }
+
+    /// Takes one argument in; one that needs memory is stored there.
+    fn parameter(&mut self, local: LocalId) {
+        let param = match self.homes[local] {
+            Home::Value(value) | Home::Pointer(value) => value,
+            Home::Slot(slot) => {
+                let ty = self.function.locals[local].ty;
+                let param = self.builder.value(self.class_or_int(ty));
+                if let Some(width) = types::width(&self.unit.types, ty) {
+                    self.builder.store(param.into(), width, Address::new(Base::Slot(slot)));
+                }
+                param
+            }
+        };
+        self.builder.function.params.push(param);
+    }
+
+    /// The class of a type; `void` and structures have none and never matter where this is asked.
+    fn class_or_int(&self, ty: crate::ty::TypeId) -> Class {
+        types::class(&self.unit.types, ty).unwrap_or(Class::I32)
+    }
+
+    /// Records that a local's value is written.
+    fn written(&mut self, value: ValueId) {
+        self.writes[value] += 1;
+    }
+
+    /// Remembers an operand while others are evaluated.
+    fn hold(&self, operand: Operand) -> Held {
+        let writes = operand.as_value().map_or(0, |value| self.writes[value]);
+        Held { operand, writes, point: self.builder.point() }
+    }
+
+    /// The operand as it was when it was held. Operands that were held later must be released before.
+    fn release(&mut self, held: Held) -> Operand {
+        match held.operand {
+            Operand::Value(value) if self.writes[value] != held.writes => {
+                let class = self.builder.function.values[value];
+                let saved = self.builder.value(class);
+                self.builder.insert_copy(held.point, saved, held.operand);
+                saved.into()
+            }
+            operand => operand,
+        }
+    }
+
+    /// The block of a label.
+    fn label(&mut self, label: LabelId) -> BlockId {
+        if let Some(block) = self.labels[label].expand() {
+            return block;
+        }
+        let block = self.builder.block();
+        self.labels[label] = block.into();
+        block
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod testing;
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,146 @@
+//! Statements to blocks.
+
+use super::{Lowering, Switch};
+use crate::ir::inst::Terminator;
+use crate::typed::{ExprId, LoopTest, Stmt, StmtKind};
+
+impl Lowering<'_> {
+    /// Lowers statements one after the other.
+    pub(super) fn statements(&mut self, statements: &[Stmt]) {
+        for statement in statements {
+            self.statement(statement);
+        }
+    }
+
+    fn statement(&mut self, statement: &Stmt) {
+        self.builder.set_span(statement.span);
+        match &statement.kind {
+            StmtKind::Expr(expr) => self.effect(*expr),
+            StmtKind::Block(statements) => self.statements(statements),
+            StmtKind::If { condition, then, otherwise } => self.if_statement(*condition, then, otherwise),
+            StmtKind::Loop { condition, test, body, step } => {
+                self.loop_statement(*condition, *test, body, *step);
+            }
+            StmtKind::Switch { value, cases, has_default, body } => {
+                self.switch_statement(*value, cases, *has_default, body);
+            }
+            StmtKind::Case(number) => {
+                let cases = self.switches.last().map(|switch| &switch.cases);
+                if let Some(block) = cases.and_then(|cases| cases.get(*number as usize)) {
+                    self.builder.open(*block);
+                }
+            }
+            StmtKind::DefaultCase => {
+                if let Some(Switch { default, .. }) = self.switches.last() {
+                    self.builder.open(*default);
+                }
+            }
+            StmtKind::Break => {
+                if let Some(block) = self.breaks.last() {
+                    self.builder.jump(*block);
+                }
+            }
+            StmtKind::Continue => {
+                if let Some(block) = self.continues.last() {
+                    self.builder.jump(*block);
+                }
+            }
+            StmtKind::Return(value) => self.return_statement(*value),
+            StmtKind::Label(label) => {
+                let block = self.label(*label);
+                self.builder.open(block);
+            }
+            StmtKind::Goto(label) => {
+                let block = self.label(*label);
+                self.builder.jump(block);
+            }
+        }
+    }
+
+    fn if_statement(&mut self, condition: ExprId, then: &[Stmt], otherwise: &[Stmt]) {
+        let (yes, end) = (self.builder.block(), self.builder.block());
+        let no = if otherwise.is_empty() { end } else { self.builder.block() };
+        self.branch(condition, yes, no);
+        self.builder.open(yes);
+        self.statements(then);
+        if no != end {
+            self.builder.jump(end);
+            self.builder.open(no);
+            self.statements(otherwise);
+        }
+        self.builder.open(end);
+    }
+
+    /// Loops test at the bottom, so that a turn costs one branch. A small condition is tested once more in front of
+    /// the loop; a large one is jumped to.
+    fn loop_statement(
+        &mut self,
+        condition: Option<ExprId>,
+        test: LoopTest,
+        body: &[Stmt],
+        step: Option<ExprId>,
+    ) {
+        let span = self.builder.span();
+        let (top, next, end) = (self.builder.block(), self.builder.block(), self.builder.block());
+        let mut bottom = None;
+        if let (Some(condition), LoopTest::Before) = (condition, test) {
+            if self.is_small(condition) {
+                self.branch(condition, top, end);
+            } else {
+                let block = self.builder.block();
+                bottom = Some(block);
+                self.builder.jump(block);
+            }
+        }
+        self.builder.open(top);
+        self.breaks.push(end);
+        self.continues.push(next);
+        self.statements(body);
+        self.continues.pop();
+        self.breaks.pop();
+        self.builder.open(next);
+        if let Some(step) = step {
+            self.builder.set_span(self.function.exprs[step].span);
+            self.effect(step);
+        }
+        if let Some(bottom) = bottom {
+            self.builder.open(bottom);
+        }
+        self.builder.set_span(span);
+        match condition {
+            Some(condition) => {
+                self.builder.set_span(self.function.exprs[condition].span);
+                self.branch(condition, top, end);
+            }
+            None => self.builder.jump(top),
+        }
+        self.builder.open(end);
+    }
+
+    fn return_statement(&mut self, value: Option<ExprId>) {
+        let class = self.signatures.get(self.builder.function.signature).result;
+        match (value, class) {
+            (Some(value), Some(class)) => {
+                let value = self.value(value);
+                let value = if self.builder.function.class(value) == class {
+                    value
+                } else {
+                    self.adapt(value, class)
+                };
+                self.builder.terminate(Terminator::Return(Some(value)));
+            }
+            (Some(value), None) => {
+                self.effect(value);
+                self.builder.terminate(Terminator::Return(None));
+            }
+            (None, _) => self.return_zero(),
+        }
+    }
+
+    /// Returns without a value, or 0 where one is expected (specification, dialect.md 1.3).
+    pub(super) fn return_zero(&mut self) {
+        let class = self.signatures.get(self.builder.function.signature).result;
+        let value = class.map(|class| class.zero().into());
+        self.builder.terminate(Terminator::Return(value));
+    }
+}

@@ -1,0 +1,148 @@
+//! Switches: tables where the cases are dense, else a search by halves.
+
+use super::{Lowering, Switch, types};
+use crate::ir::inst::{BlockId, Class, Constant, Operand, Terminator};
+use crate::ir::operators::{BinaryOp, CompareOp};
+use crate::typed::{Case, ExprId, Stmt};
+
+/// A table has at most so many entries.
+const MAX_TABLE: i128 = 4096;
+/// So few cases are compared one by one.
+const FEW: usize = 3;
+
+/// One range of values and where it goes.
+#[derive(Clone, Copy, Debug)]
+struct Entry {
+    first: i64,
+    last: i64,
+    block: BlockId,
+    /// Values covered by this entry and those before it.
+    covered: i128,
+}
+
+/// What all parts of one switch's search share.
+#[derive(Clone, Copy)]
+struct Search {
+    value: Operand,
+    class: Class,
+    is_unsigned: bool,
+    default: BlockId,
+}
+
+impl Lowering<'_> {
+    pub(super) fn switch_statement(
+        &mut self,
+        value: ExprId,
+        cases: &[Case],
+        has_default: bool,
+        body: &[Stmt],
+    ) {
+        let ty = self.function.exprs[value].ty;
+        let value = self.value(value);
+        let end = self.builder.block();
+        let default = if has_default { self.builder.block() } else { end };
+        let blocks: Vec<BlockId> = cases.iter().map(|_| self.builder.block()).collect();
+        let search = Search {
+            value,
+            class: self.builder.function.class(value),
+            is_unsigned: types::is_unsigned(&self.unit.types, ty),
+            default,
+        };
+        let entries = entries(cases, &blocks);
+        self.search(search, &entries);
+        self.switches.push(Switch { cases: blocks, default });
+        self.breaks.push(end);
+        self.statements(body);
+        self.breaks.pop();
+        self.switches.pop();
+        self.builder.open(end);
+    }
+
+    /// Finds the entry of the value among `entries`, which ascend.
+    fn search(&mut self, search: Search, entries: &[Entry]) {
+        let (Some(low), Some(high)) = (entries.first(), entries.last()) else {
+            self.builder.jump(search.default);
+            return;
+        };
+        let span = i128::from(high.last) - i128::from(low.first) + 1;
+        let covered = high.covered - low.covered + (i128::from(low.last) - i128::from(low.first) + 1);
+        let is_dense = span <= MAX_TABLE && span <= covered * 3 && search.class == Class::I32;
+        if entries.len() <= FEW {
+            self.compare_each(search, entries);
+        } else if is_dense {
+            self.table(search, entries, low.first, span as usize);
+        } else {
+            let (left, right) = entries.split_at(entries.len() / 2);
+            let middle = right.first().map_or(0, |entry| entry.first);
+            // Cases are sorted as `i64`: 32-bit unsigned ones in their own order, 64-bit ones by sign.
+            let is_unsigned = search.is_unsigned && search.class == Class::I32;
+            let op = if is_unsigned { CompareOp::LessUnsigned } else { CompareOp::Less };
+            let (below, above) = (self.builder.block(), self.builder.block());
+            let is_below = self.builder.value(Class::I32);
+            self.builder.compare(op, is_below, search.value, constant(search.class, middle));
+            self.builder.branch(is_below.into(), below, above);
+            self.builder.open(below);
+            self.search(search, left);
+            self.builder.open(above);
+            self.search(search, right);
+        }
+    }
+
+    fn compare_each(&mut self, search: Search, entries: &[Entry]) {
+        for (index, entry) in entries.iter().enumerate() {
+            let is_last = index + 1 == entries.len();
+            let next = if is_last { search.default } else { self.builder.block() };
+            let hit = self.builder.value(Class::I32);
+            let first = constant(search.class, entry.first);
+            if entry.first == entry.last {
+                self.builder.compare(CompareOp::Equal, hit, search.value, first);
+            } else {
+                let offset = self.binary_value(BinaryOp::Subtract, search.class, search.value, first);
+                let length = constant(search.class, entry.last.wrapping_sub(entry.first));
+                self.builder.compare(CompareOp::LessEqualUnsigned, hit, offset, length);
+            }
+            self.builder.branch(hit.into(), entry.block, next);
+            if !is_last {
+                self.builder.open(next);
+            }
+        }
+    }
+
+    fn table(&mut self, search: Search, entries: &[Entry], low: i64, span: usize) {
+        let mut targets = vec![search.default; span];
+        for entry in entries {
+            let (from, to) = ((entry.first - low) as usize, (entry.last - low) as usize);
+            if let Some(part) = targets.get_mut(from..=to) {
+                part.fill(entry.block);
+            }
+        }
+        let index = match low {
+            0 => search.value,
+            _ => self.binary_value(BinaryOp::Subtract, Class::I32, search.value, constant(Class::I32, low)),
+        };
+        let targets = targets.into_boxed_slice();
+        self.builder.terminate(Terminator::Table { index, targets, default: search.default });
+    }
+}
+
+/// The cases in ascending order; empty ranges match nothing, overlapping ones have been refused.
+fn entries(cases: &[Case], blocks: &[BlockId]) -> Vec<Entry> {
+    let mut entries: Vec<Entry> = (cases.iter().zip(blocks))
+        .filter(|(case, _)| case.first <= case.last)
+        .map(|(case, block)| Entry { first: case.first, last: case.last, block: *block, covered: 0 })
+        .collect();
+    entries.sort_by_key(|entry| entry.first);
+    let mut covered = 0;
+    for entry in &mut entries {
+        covered += i128::from(entry.last) - i128::from(entry.first) + 1;
+        entry.covered = covered;
+    }
+    entries
+}
+
+fn constant(class: Class, value: i64) -> Operand {
+    match class {
+        Class::I64 => Operand::from(Constant::I64(value)),
+        _ => Operand::int(value as i32),
+    }
+}

@@ -1,0 +1,197 @@
+//! Identifiers as small numbers.
+//!
+//! Keywords and the other words that the compiler asks for by name have numbers that are
+//! known beforehand ([`word`]), so that a `match` on a [`Name`] needs no strings. The table is
+//! an open-addressed hash table of its own: it is asked once for every identifier token.
+
+use cranelift_entity::{EntityRef, entity_impl};
+
+/// An identifier; equal numbers are equal spellings.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Name(u32);
+entity_impl!(Name, "name");
+
+macro_rules! words {
+    ($($id:ident = $text:literal,)*) => {
+        #[expect(non_camel_case_types, clippy::upper_case_acronyms, reason = "only numbers the words")]
+        enum Number { $($id),* }
+
+        /// The words whose numbers are known beforehand.
+        pub mod word {
+            use super::{Name, Number};
+
+            $(
+                #[doc = concat!("`", $text, "`")]
+                pub const $id: Name = Name(Number::$id as u32);
+            )*
+        }
+
+        const WORDS: &[&str] = &[$($text),*];
+    };
+}
+
+words! {
+    // Keywords of C11; `ASM` is the first word that is none.
+    AUTO = "auto", BREAK = "break", CASE = "case", CHAR = "char", CONST = "const", CONTINUE = "continue",
+    DEFAULT = "default", DO = "do", DOUBLE = "double", ELSE = "else", ENUM = "enum", EXTERN = "extern",
+    FLOAT = "float", FOR = "for", GOTO = "goto", IF = "if", INLINE = "inline", INT = "int", LONG = "long",
+    REGISTER = "register", RESTRICT = "restrict", RETURN = "return", SHORT = "short", SIGNED = "signed",
+    SIZEOF = "sizeof", STATIC = "static", STRUCT = "struct", SWITCH = "switch", TYPEDEF = "typedef",
+    UNION = "union", UNSIGNED = "unsigned", VOID = "void", VOLATILE = "volatile", WHILE = "while",
+    ALIGNAS = "_Alignas", ALIGNOF = "_Alignof", ATOMIC = "_Atomic", BOOL = "_Bool", COMPLEX = "_Complex",
+    GENERIC = "_Generic", IMAGINARY = "_Imaginary", NORETURN = "_Noreturn",
+    STATIC_ASSERT = "_Static_assert", THREAD_LOCAL = "_Thread_local",
+    // Keywords of GNU C.
+    ASM = "asm", ASM_ = "__asm", ASM__ = "__asm__", ATTRIBUTE = "__attribute", ATTRIBUTE__ = "__attribute__",
+    ALIGNOF_ = "__alignof", ALIGNOF__ = "__alignof__", CONST_ = "__const", CONST__ = "__const__",
+    EXTENSION = "__extension__", INLINE_ = "__inline", INLINE__ = "__inline__", RESTRICT_ = "__restrict",
+    RESTRICT__ = "__restrict__", SIGNED_ = "__signed", SIGNED__ = "__signed__", TYPEOF = "typeof",
+    TYPEOF_ = "__typeof", TYPEOF__ = "__typeof__", VOLATILE_ = "__volatile", VOLATILE__ = "__volatile__",
+    BUILTIN_OFFSETOF = "__builtin_offsetof", BUILTIN_VA_START = "__builtin_va_start",
+    BUILTIN_VA_ARG = "__builtin_va_arg", BUILTIN_VA_END = "__builtin_va_end",
+    BUILTIN_VA_COPY = "__builtin_va_copy", BUILTIN_VA_LIST = "__builtin_va_list",
+    FUNC = "__func__", FUNCTION = "__FUNCTION__",
+    // Names with a meaning that a program may take away by declaring them.
+    OFFSETOF = "offsetof", VA_START = "va_start", VA_ARG = "va_arg", VA_END = "va_end", VA_COPY = "va_copy",
+    VA_LIST = "va_list", STATIC_ASSERT_MACRO = "static_assert",
+    // Directives and names of the preprocessor.
+    DEFINE = "define", UNDEF = "undef", INCLUDE = "include", IFDEF = "ifdef", IFNDEF = "ifndef",
+    ELIF = "elif", ENDIF = "endif", ERROR = "error", WARNING = "warning", PRAGMA = "pragma", LINE = "line",
+    DEFINED = "defined", VA_ARGS = "__VA_ARGS__", ONCE = "once", TI_COMPILER = "TI_COMPILER",
+    MACRO_FILE = "__FILE__", MACRO_LINE = "__LINE__", MACRO_COUNTER = "__COUNTER__",
+    MAIN = "main",
+}
+
+impl Name {
+    /// Whether the word is a keyword of C11 or GNU C, which a program cannot declare.
+    #[must_use]
+    pub const fn is_keyword(self) -> bool {
+        self.0 <= word::FUNCTION.0
+    }
+}
+
+/// Every identifier of a compilation, each once.
+#[derive(Debug)]
+pub struct Names {
+    /// All spellings, one behind the other.
+    text: String,
+    /// Where each spelling ends in `text`.
+    ends: Vec<usize>,
+    /// Number + 1 of the name in each slot, 0 for an empty one; the size is a power of two.
+    slots: Vec<u32>,
+}
+
+impl Default for Names {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Names {
+    /// Makes a table that holds only the words known beforehand.
+    #[must_use]
+    pub fn new() -> Self {
+        let mut names = Self { text: String::new(), ends: Vec::new(), slots: vec![0; 2048] };
+        for spelling in WORDS {
+            names.intern(spelling);
+        }
+        names
+    }
+
+    /// The number of a spelling, new if it was not seen before.
+    pub fn intern(&mut self, spelling: &str) -> Name {
+        let slot = self.slot_of(spelling);
+        if let Some(number) = self.slots[slot].checked_sub(1) {
+            return Name(number);
+        }
+        let name = Name::new(self.ends.len());
+        self.text.push_str(spelling);
+        self.ends.push(self.text.len());
+        self.slots[slot] = name.0 + 1;
+        if self.ends.len() * 2 > self.slots.len() {
+            self.grow();
+        }
+        name
+    }
+
+    /// The number of a spelling that was seen before.
+    #[must_use]
+    pub fn find(&self, spelling: &str) -> Option<Name> {
+        self.slots[self.slot_of(spelling)].checked_sub(1).map(Name)
+    }
+
+    /// The spelling of a name.
+    #[must_use]
+    pub fn get(&self, name: Name) -> &str {
+        let index = name.index();
+        let start = index.checked_sub(1).map_or(0, |before| self.ends[before]);
+        &self.text[start..self.ends[index]]
+    }
+
+    /// How many names there are; the numbers are those below.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.ends.len()
+    }
+
+    /// Never: the words known beforehand are always there.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.ends.is_empty()
+    }
+
+    /// The slot that holds `spelling`, or the empty one where it belongs.
+    fn slot_of(&self, spelling: &str) -> usize {
+        let mask = self.slots.len() - 1;
+        let mut slot = hash(spelling) as usize & mask;
+        while let Some(number) = self.slots[slot].checked_sub(1) {
+            if self.get(Name(number)) == spelling {
+                break;
+            }
+            slot = (slot + 1) & mask;
+        }
+        slot
+    }
+
+    fn grow(&mut self) {
+        self.slots = vec![0; self.slots.len() * 2];
+        for index in 0..self.ends.len() {
+            let name = Name::new(index);
+            let slot = self.slot_of(self.get(name));
+            self.slots[slot] = name.0 + 1;
+        }
+    }
+}
+
+/// FNV-1a, with the high bits folded into the low ones that choose the slot.
+fn hash(spelling: &str) -> u64 {
+    let hash = spelling
+        .bytes()
+        .fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3));
+    hash ^ (hash >> 32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_have_their_numbers_beforehand() {
+        let mut names = Names::new();
+        assert_eq!(names.intern("auto"), word::AUTO);
+        assert_eq!(names.find("main"), Some(word::MAIN));
+        assert_eq!(names.get(word::STATIC_ASSERT), "_Static_assert");
+        assert!(word::FUNCTION.is_keyword() && !word::OFFSETOF.is_keyword());
+    }
+
+    #[test]
+    fn names_survive_the_growth_of_the_table() {
+        let mut names = Names::new();
+        let many: Vec<_> = (0..5000).map(|number| names.intern(&format!("n{number}"))).collect();
+        for (number, name) in many.iter().enumerate() {
+            assert_eq!(names.get(*name), format!("n{number}"));
+            assert_eq!(names.find(&format!("n{number}")), Some(*name));
+        }
+        assert_eq!(names.find("unseen"), None);
+    }
+}

@@ -1,0 +1,174 @@
+//! What the compiler makes of one translation unit, ready to be linked with others.
+//!
+//! Code and data are cut into pieces, one for each function and object, so that the linker
+//! can place each by itself and leave out what nobody needs. Words that depend on a symbol's
+//! address are listed as relocations; labels count from the beginning of the unit's text.
+
+use std::ops::Range;
+
+use cranelift_entity::PrimaryMap;
+use vm::op::Op;
+
+use crate::ir::function::Signatures;
+use crate::ir::inst::SignatureId;
+use crate::source::Span;
+use crate::typed::{Linkage, SymbolId};
+
+/// The result of compiling one unit.
+#[derive(Clone, Debug, Default)]
+pub struct Object {
+    /// Source files in the order of first inclusion, the unit's own first.
+    pub files: Vec<String>,
+    /// Every symbol that the unit defines or names.
+    pub symbols: PrimaryMap<SymbolId, Symbol>,
+    /// Signatures of functions and calls.
+    pub signatures: Signatures,
+    /// Constants of eight bytes, each once.
+    pub pool: Vec<u64>,
+    /// The words of all functions.
+    pub text: Vec<Op>,
+    /// Words of the text that hold an address, ascending.
+    pub relocations: Vec<Relocation>,
+    /// Where source lines begin, ascending by word.
+    pub lines: Vec<Line>,
+    /// The functions in the order of the text.
+    pub functions: Vec<Function>,
+    /// The bytes of all initialised objects.
+    pub data: Vec<u8>,
+    /// Words of the data that hold an address, ascending.
+    pub data_relocations: Vec<DataRelocation>,
+    /// The initialised objects in the order of definition.
+    pub objects: Vec<Initialized>,
+}
+
+/// A symbol of a unit.
+#[derive(Clone, Debug)]
+pub struct Symbol {
+    /// The name; anonymous objects have one that no program can spell.
+    pub name: String,
+    /// Whether other units see it.
+    pub linkage: Linkage,
+    /// What the unit says about it.
+    pub definition: Definition,
+    /// What kind of type it has, as the image's symbol table records it.
+    pub kind: SymbolKind,
+    /// Bytes of an object; 0 for a function.
+    pub size: u32,
+    /// Alignment of an object.
+    pub align: u32,
+    /// The defining declaration, else the first one.
+    pub span: Span,
+    /// The same as file and line.
+    pub place: SourceLine,
+    /// The first use, for messages.
+    pub used_at: Option<Span>,
+}
+
+/// What a unit says about a symbol.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Definition {
+    /// Defined elsewhere.
+    None,
+    /// A function; index into [`Object::functions`].
+    Function(u32),
+    /// An initialised object; index into [`Object::objects`].
+    Data(u32),
+    /// An object without initialiser.
+    Tentative,
+}
+
+/// The kinds of type that the image's symbol table tells apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SymbolKind {
+    /// A function.
+    Function,
+    /// `char`, `unsigned char`
+    Char,
+    /// `short`, `unsigned short`
+    Short,
+    /// `int`, `unsigned` and everything else that is a number.
+    Int,
+    /// `float`
+    Float,
+    /// `double`
+    Double,
+    /// Arrays, pointers, structures.
+    Other,
+}
+
+/// A line of a source file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SourceLine {
+    /// Index into [`Object::files`].
+    pub file: u32,
+    /// Line, counted from 1; 0 if unknown.
+    pub line: u32,
+}
+
+/// A word of the text that the linker completes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Relocation {
+    /// Index of the word.
+    pub word: u32,
+    /// What is put there.
+    pub kind: RelocationKind,
+    /// Whose address.
+    pub symbol: SymbolId,
+}
+
+/// How a word is completed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RelocationKind {
+    /// The symbol's address is added to the last four bytes of the word.
+    Address,
+    /// The word is a `call_fw`; it becomes a `call` if the symbol is a function of the program.
+    Call(SignatureId),
+}
+
+/// From this word on the code belongs to this line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Line {
+    /// Index of the word.
+    pub word: u32,
+    /// The line.
+    pub place: SourceLine,
+}
+
+/// One function.
+#[derive(Clone, Debug)]
+pub struct Function {
+    /// Its symbol.
+    pub symbol: SymbolId,
+    /// Its signature.
+    pub signature: SignatureId,
+    /// Its words, the `func` word first.
+    pub words: Range<u32>,
+    /// Its part of [`Object::relocations`].
+    pub relocations: Range<u32>,
+    /// Its part of [`Object::lines`].
+    pub lines: Range<u32>,
+    /// Bytes of its frame in guest memory.
+    pub frame: u32,
+    /// The line of its closing brace.
+    pub end: SourceLine,
+}
+
+/// One initialised object.
+#[derive(Clone, Debug)]
+pub struct Initialized {
+    /// Its symbol.
+    pub symbol: SymbolId,
+    /// Its part of [`Object::data`].
+    pub bytes: Range<u32>,
+    /// Its part of [`Object::data_relocations`].
+    pub relocations: Range<u32>,
+}
+
+/// A word of the data that the linker adds an address to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DataRelocation {
+    /// Offset in [`Object::data`].
+    pub offset: u32,
+    /// Whose address.
+    pub symbol: SymbolId,
+}

@@ -1,0 +1,189 @@
+//! Declarators: a name, and what is derived around it.
+
+use crate::ast::{Declarator, Derived, Parameter, Parameters, Qualifiers, TypeName};
+use crate::names::{Name, word};
+use crate::pp::TokenKind;
+use crate::source::Span;
+
+use super::{NESTING, Parsed, Parser};
+
+/// The name of a declarator and what is derived inside its parentheses.
+type Direct = (Option<(Name, Span)>, Vec<Derived>);
+
+/// Whether a declarator has a name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Naming {
+    /// In a declaration.
+    Required,
+    /// In a parameter.
+    Optional,
+    /// In a cast or `sizeof`.
+    Forbidden,
+}
+
+impl Parser<'_> {
+    /// Reads a declarator.
+    pub(super) fn declarator(&mut self, naming: Naming) -> Parsed<Declarator> {
+        let start = self.peek().span;
+        let pointers = self.pointers()?;
+        let (name, mut derived) = self.direct(naming)?;
+        loop {
+            match self.kind() {
+                TokenKind::LeftBracket => derived.push(self.array()?),
+                TokenKind::LeftParen => {
+                    let parameters = self.nested(Self::parameters)?;
+                    derived.push(Derived::Function(parameters));
+                }
+                _ => break,
+            }
+        }
+        if derived.len() + pointers.len() > NESTING {
+            return Err(self.too_deep());
+        }
+        derived.extend(pointers.into_iter().rev().map(Derived::Pointer));
+        let span = if name.is_none() && derived.is_empty() {
+            Span { hi: start.lo, ..start }
+        } else {
+            self.since(start)
+        };
+        self.labels_and_attributes()?;
+        Ok(Declarator { name, derived, span })
+    }
+
+    /// `type declarator` without a name.
+    pub(super) fn type_name(&mut self) -> Parsed<TypeName> {
+        let start = self.peek().span;
+        let mut specifiers = self.specifiers()?;
+        if specifiers.ty.is_none() && self.is_identifier_at(0) {
+            self.unknown_type(&mut specifiers);
+        }
+        let declarator = self.declarator(Naming::Forbidden)?;
+        Ok(TypeName { specifiers, declarator, span: self.since(start) })
+    }
+
+    #[inline(never)]
+    fn pointers(&mut self) -> Parsed<Vec<Qualifiers>> {
+        let mut pointers = Vec::new();
+        while self.take(TokenKind::Star).is_some() {
+            let mut qualifiers = Qualifiers::default();
+            while self.qualifier(&mut qualifiers)? {}
+            pointers.push(qualifiers);
+        }
+        Ok(pointers)
+    }
+
+    /// The name, or a declarator in parentheses.
+    fn direct(&mut self, naming: Naming) -> Parsed<Direct> {
+        if naming != Naming::Forbidden && self.is_identifier_at(0) {
+            let token = self.next();
+            return Ok((Some((token.name, token.span)), Vec::new()));
+        }
+        if self.kind() == TokenKind::LeftParen && (naming == Naming::Required || !self.opens_parameters()) {
+            self.open();
+            self.attributes()?;
+            let inner = self.nested(|parser| parser.declarator(naming))?;
+            self.close(TokenKind::RightParen)?;
+            return Ok((inner.name, inner.derived));
+        }
+        if naming == Naming::Required {
+            return self.fail_expected("a name");
+        }
+        Ok((None, Vec::new()))
+    }
+
+    /// Whether the next parenthesis holds the parameters of a function without a name.
+    fn opens_parameters(&self) -> bool {
+        self.kind_at(1) == TokenKind::RightParen
+            || self.kind_at(1) == TokenKind::Ellipsis
+            || self.name_at(1).is_some_and(|name| self.is_declaration_word(name))
+    }
+
+    /// `[length]`
+    #[inline(never)]
+    fn array(&mut self) -> Parsed<Derived> {
+        self.open();
+        let mut qualifiers = Qualifiers::default();
+        while self.take_word(word::STATIC).is_some() || self.qualifier(&mut qualifiers)? {}
+        let length = match self.kind() {
+            TokenKind::RightBracket => None,
+            _ => Some(Box::new(self.nested(Self::assignment)?)),
+        };
+        self.close(TokenKind::RightBracket)?;
+        Ok(Derived::Array(length))
+    }
+
+    /// `(parameters)`
+    #[inline(never)]
+    fn parameters(&mut self) -> Parsed<Parameters> {
+        self.open();
+        let parameters = if self.kind() == TokenKind::RightParen {
+            Parameters::Unspecified
+        } else if self.name() == Some(word::VOID) && self.kind_at(1) == TokenKind::RightParen {
+            self.at += 1;
+            Parameters::Prototype { parameters: Vec::new(), is_variadic: false }
+        } else if self.opens_names() {
+            self.parameter_names()?
+        } else {
+            self.prototype()?
+        };
+        self.close(TokenKind::RightParen)?;
+        Ok(parameters)
+    }
+
+    /// Whether an old-style list of names is next.
+    fn opens_names(&self) -> bool {
+        self.is_identifier_at(0)
+            && !self.name().is_some_and(|name| self.is_type_word(name))
+            && matches!(self.kind_at(1), TokenKind::Comma | TokenKind::RightParen)
+    }
+
+    fn parameter_names(&mut self) -> Parsed<Parameters> {
+        let mut names = Vec::new();
+        loop {
+            if !self.is_identifier_at(0) {
+                return self.fail_expected("the name of a parameter");
+            }
+            let token = self.next();
+            names.push((token.name, token.span));
+            if self.take(TokenKind::Comma).is_none() {
+                return Ok(Parameters::Names(names));
+            }
+        }
+    }
+
+    fn prototype(&mut self) -> Parsed<Parameters> {
+        let mut parameters = Vec::new();
+        loop {
+            if self.take(TokenKind::Ellipsis).is_some() {
+                return Ok(Parameters::Prototype { parameters, is_variadic: true });
+            }
+            parameters.push(self.parameter()?);
+            if self.take(TokenKind::Comma).is_none() {
+                return Ok(Parameters::Prototype { parameters, is_variadic: false });
+            }
+        }
+    }
+
+    #[inline(never)]
+    fn parameter(&mut self) -> Parsed<Parameter> {
+        let start = self.peek();
+        let mut specifiers = self.specifiers()?;
+        let is_bare = specifiers.span.lo == specifiers.span.hi;
+        if specifiers.ty.is_none() && (self.is_unknown_type() || is_bare && self.is_identifier_at(0)) {
+            // `const x` is an `int`; a mere name among typed parameters, or two names, lack a type.
+            self.unknown_type(&mut specifiers);
+        } else if is_bare {
+            return self.fail_expected("a parameter");
+        }
+        let declarator = self.declarator(Naming::Optional)?;
+        Ok(Parameter { specifiers, declarator, span: self.since(start.span) })
+    }
+
+    /// `asm("name")` and attributes behind a declarator.
+    fn labels_and_attributes(&mut self) -> Parsed<()> {
+        if matches!(self.name(), Some(word::ASM | word::ASM_ | word::ASM__)) {
+            return self.assembler();
+        }
+        self.attributes()
+    }
+}

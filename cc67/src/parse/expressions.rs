@@ -1,0 +1,100 @@
+//! Expressions: operands with operators between them, by precedence climbing.
+//!
+//! Parentheses nest through [`Parser::infix`] and [`Parser::unary`] alone. What they do not
+//! need in every turn is kept out of line, which keeps their frames on the stack small.
+
+use crate::ast::{Expression, ExpressionKind};
+use crate::pp::TokenKind;
+
+use super::operators::{ASSIGNMENT, COMMA, CONDITIONAL, Infix, infix};
+use super::{CHAIN, OPERATORS, Parsed, Parser};
+
+impl Parser<'_> {
+    /// `a, b` and everything that binds tighter.
+    pub(super) fn expression(&mut self) -> Parsed<Expression> {
+        self.infix(COMMA)
+    }
+
+    /// `a = b` and everything that binds tighter.
+    pub(super) fn assignment(&mut self) -> Parsed<Expression> {
+        self.infix(ASSIGNMENT)
+    }
+
+    /// `a ? b : c` and everything that binds tighter: what the grammar calls a constant expression.
+    pub(super) fn conditional(&mut self) -> Parsed<Expression> {
+        self.infix(CONDITIONAL)
+    }
+
+    /// Operands with operators that bind at least as tight as `least`.
+    fn infix(&mut self, least: u8) -> Parsed<Expression> {
+        let mut left = self.unary()?;
+        let mut count = 0;
+        while let Some((operator, binding)) = infix(self.kind())
+            && binding >= least
+        {
+            self.at += 1;
+            count += 1;
+            if count > CHAIN {
+                return Err(self.too_long());
+            }
+            left = match operator {
+                Infix::Conditional => self.branches(left)?,
+                Infix::Assign | Infix::AssignWith(_) => self.assigned(operator, left)?,
+                Infix::Comma | Infix::Binary(_) => {
+                    let right = self.right_operand(binding)?;
+                    combine(operator, left, right)
+                }
+            };
+        }
+        Ok(left)
+    }
+
+    /// The operand behind a left-associative operator.
+    fn right_operand(&mut self, binding: u8) -> Parsed<Expression> {
+        if self.operators >= OPERATORS {
+            return Err(self.too_deep());
+        }
+        self.operators += 1;
+        let right = self.infix(binding + 1);
+        self.operators -= 1;
+        right
+    }
+
+    /// The right side of an assignment, which is right-associative.
+    #[inline(never)]
+    fn assigned(&mut self, operator: Infix, left: Expression) -> Parsed<Expression> {
+        let right = self.nested(Self::assignment)?;
+        Ok(combine(operator, left, right))
+    }
+
+    /// What stands behind `condition ?`; the middle operand may be missing.
+    #[inline(never)]
+    fn branches(&mut self, condition: Expression) -> Parsed<Expression> {
+        let then = match self.kind() {
+            TokenKind::Colon => None,
+            _ => Some(Box::new(self.nested(Self::expression)?)),
+        };
+        self.expect(TokenKind::Colon, "of the conditional expression")?;
+        let otherwise = Box::new(self.nested(Self::conditional)?);
+        let span = condition.span.to(otherwise.span);
+        Ok(Expression {
+            kind: ExpressionKind::Conditional { condition: Box::new(condition), then, otherwise },
+            span,
+        })
+    }
+}
+
+#[inline(never)]
+fn combine(operator: Infix, left: Expression, right: Expression) -> Expression {
+    let span = left.span.to(right.span);
+    let (left, right) = (Box::new(left), Box::new(right));
+    let kind = match operator {
+        Infix::Comma => ExpressionKind::Comma(left, right),
+        Infix::Assign => ExpressionKind::Assign(left, right),
+        Infix::AssignWith(operator) => ExpressionKind::AssignWith(operator, left, right),
+        Infix::Binary(operator) => ExpressionKind::Binary(operator, left, right),
+        // `branches` has three operands.
+        Infix::Conditional => ExpressionKind::Error,
+    };
+    Expression { kind, span }
+}

@@ -1,0 +1,213 @@
+//! The parser: tokens in, syntax tree out.
+//!
+//! Recursive descent with precedence climbing, after the grammar of C11 with the GNU
+//! extensions that the vendor's compiler has. It accepts implicit `int` wherever that compiler
+//! does. The only thing it must know about names is whether they are types ([`scopes`]).
+//!
+//! An error is reported where it is found and travels up as [`Reported`] to the next
+//! statement or declaration, which goes on behind it ([`recover`]): one run shows all
+//! independent errors, and few others.
+
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::unwrap_used,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::indexing_slicing,
+        clippy::as_conversions
+    )
+)]
+
+mod builtins;
+mod declarations;
+mod declarators;
+mod expressions;
+mod initializers;
+mod literals;
+mod operators;
+pub mod print;
+mod records;
+mod recover;
+mod scopes;
+mod specifiers;
+mod statements;
+#[cfg(test)]
+mod tests;
+mod unary;
+mod unknown;
+
+use crate::ast::TranslationUnit;
+use crate::diag::{Diagnostic, Sink};
+use crate::names::{Name, Names};
+use crate::pp::{Flags, Token, TokenKind};
+use crate::source::{SourceMap, Span};
+
+use scopes::Scopes;
+
+/// Parentheses, blocks, declarators and prefix operators within each other.
+pub const NESTING: usize = 640;
+
+/// Binary operators in a row; each nests the tree one level deeper to the left.
+pub const CHAIN: usize = 30_000;
+
+/// Binary operators that wait for their right operand; up to ten for each parenthesis.
+const OPERATORS: usize = 3 * NESTING;
+
+/// Parses preprocessed tokens; what is wrong goes to `sink`, and is left out of the tree.
+#[must_use]
+pub fn parse(tokens: &[Token], sources: &SourceMap, names: &Names, sink: &mut Sink) -> TranslationUnit {
+    let end = match tokens.last() {
+        Some(last) if last.kind == TokenKind::End => *last,
+        _ => Token::new(TokenKind::End, Flags::LINE_START, Span::new(0, 0)),
+    };
+    let mut parser = Parser {
+        tokens,
+        at: 0,
+        end,
+        sources,
+        names,
+        sink,
+        scopes: Scopes::default(),
+        depth: 0,
+        operators: 0,
+        open: Vec::new(),
+        is_stopped: false,
+        is_unwinding: false,
+        has_loose_statement: false,
+    };
+    // The preprocessor may have found enough already.
+    if parser.sink.is_full() { TranslationUnit::default() } else { parser.translation_unit() }
+}
+
+/// Says that an error was reported and the construct could not be parsed.
+#[derive(Debug)]
+struct Reported;
+
+/// What a parsing function gives.
+type Parsed<T> = Result<T, Reported>;
+
+/// A parser at work.
+struct Parser<'a> {
+    tokens: &'a [Token],
+    /// Index of the next token.
+    at: usize,
+    /// What stands behind the last token.
+    end: Token,
+    sources: &'a SourceMap,
+    names: &'a Names,
+    sink: &'a mut Sink,
+    scopes: Scopes,
+    /// Constructs within each other.
+    depth: usize,
+    /// Binary operators whose right operand is being parsed.
+    operators: usize,
+    /// Brackets and braces that are open.
+    open: Vec<Token>,
+    /// The rest of the tokens is not looked at, and errors about that are not reported.
+    is_stopped: bool,
+    /// A function begins where the `}` of the one before is missing: its blocks end here.
+    is_unwinding: bool,
+    /// A statement outside of all functions was reported.
+    has_loose_statement: bool,
+}
+
+impl Parser<'_> {
+    /// The next token; `End` for ever behind the last one.
+    fn peek(&self) -> Token {
+        self.tokens.get(self.at).copied().unwrap_or(self.end)
+    }
+
+    /// The kind of the next token.
+    fn kind(&self) -> TokenKind {
+        self.kind_at(0)
+    }
+
+    /// The kind of the token `ahead` of the next one.
+    fn kind_at(&self, ahead: usize) -> TokenKind {
+        self.tokens.get(self.at + ahead).map_or(TokenKind::End, |token| token.kind)
+    }
+
+    /// The name of the token `ahead` of the next one, keyword or not.
+    fn name_at(&self, ahead: usize) -> Option<Name> {
+        self.tokens
+            .get(self.at + ahead)
+            .filter(|token| token.kind == TokenKind::Identifier)
+            .map(|token| token.name)
+    }
+
+    /// The name of the next token, keyword or not.
+    fn name(&self) -> Option<Name> {
+        self.name_at(0)
+    }
+
+    /// Whether the token `ahead` is an identifier and no keyword.
+    fn is_identifier_at(&self, ahead: usize) -> bool {
+        self.name_at(ahead).is_some_and(|name| !name.is_keyword())
+    }
+
+    /// Reads the next token.
+    fn next(&mut self) -> Token {
+        let token = self.peek();
+        self.at += usize::from(token.kind != TokenKind::End);
+        token
+    }
+
+    /// Reads the next token if it is of this kind.
+    fn take(&mut self, kind: TokenKind) -> Option<Token> {
+        (self.kind() == kind).then(|| self.next())
+    }
+
+    /// Reads the next token if it is this word.
+    fn take_word(&mut self, word: Name) -> Option<Token> {
+        (self.name() == Some(word)).then(|| self.next())
+    }
+
+    /// The span of the token read last.
+    fn last_span(&self) -> Span {
+        self.at.checked_sub(1).and_then(|at| self.tokens.get(at)).map_or(self.end.span, |token| token.span)
+    }
+
+    /// From `start` to the token read last.
+    fn since(&self, start: Span) -> Span {
+        start.to(self.last_span())
+    }
+
+    /// Reads an opening bracket that its partner must close.
+    fn open(&mut self) -> Token {
+        let token = self.next();
+        self.open.push(token);
+        token
+    }
+
+    /// Parses something one level further in.
+    fn nested<T>(&mut self, parse: impl FnOnce(&mut Self) -> Parsed<T>) -> Parsed<T> {
+        if self.depth >= NESTING {
+            return Err(self.too_deep());
+        }
+        self.depth += 1;
+        let result = parse(self);
+        self.depth -= 1;
+        result
+    }
+
+    #[inline(never)]
+    fn too_deep(&mut self) -> Reported {
+        self.exceed(format!("nested deeper than {NESTING} levels"))
+    }
+
+    #[inline(never)]
+    fn too_long(&mut self) -> Reported {
+        self.exceed(format!("more than {CHAIN} operators in a row"))
+    }
+
+    fn exceed(&mut self, message: String) -> Reported {
+        let span = self.peek().span;
+        self.report(Diagnostic::error(span, message).note("the rest of the program was not read"));
+        self.stop()
+    }
+
+    fn spelling(&self, name: Name) -> &str {
+        self.names.get(name)
+    }
+}

@@ -1,0 +1,135 @@
+//! `struct`, `union` and `enum`.
+
+use crate::ast::{
+    EnumSpecifier, Enumerator, MemberDeclaration, MemberDeclarator, RecordKind, RecordSpecifier,
+    TypeSpecifier,
+};
+use crate::names::{Name, word};
+use crate::pp::TokenKind;
+use crate::source::Span;
+
+use super::declarators::Naming;
+use super::scopes::Meaning;
+use super::{Parsed, Parser};
+
+impl Parser<'_> {
+    /// `struct tag { … }`, at the keyword.
+    pub(super) fn record(&mut self) -> Parsed<RecordSpecifier> {
+        let keyword = self.next();
+        let kind = if keyword.name == word::STRUCT { RecordKind::Struct } else { RecordKind::Union };
+        self.attributes()?;
+        let tag = self.tag();
+        let members = if self.kind() == TokenKind::LeftBrace {
+            Some(self.nested(Self::members)?)
+        } else if tag.is_some() {
+            None
+        } else {
+            return self.fail_expected("a tag or `{`");
+        };
+        self.attributes()?;
+        Ok(RecordSpecifier { kind, tag, members, span: self.since(keyword.span) })
+    }
+
+    /// `enum tag { … }`, at the keyword.
+    pub(super) fn enumeration(&mut self) -> Parsed<EnumSpecifier> {
+        let keyword = self.next();
+        self.attributes()?;
+        let tag = self.tag();
+        let enumerators = if self.kind() == TokenKind::LeftBrace {
+            Some(self.enumerators()?)
+        } else if tag.is_some() {
+            None
+        } else {
+            return self.fail_expected("a tag or `{`");
+        };
+        self.attributes()?;
+        Ok(EnumSpecifier { tag, enumerators, span: self.since(keyword.span) })
+    }
+
+    fn tag(&mut self) -> Option<(Name, Span)> {
+        self.is_identifier_at(0).then(|| self.next()).map(|token| (token.name, token.span))
+    }
+
+    fn members(&mut self) -> Parsed<Vec<MemberDeclaration>> {
+        self.open();
+        let mut members = Vec::new();
+        while !matches!(self.kind(), TokenKind::RightBrace | TokenKind::End) {
+            if self.take(TokenKind::Semicolon).is_some() {
+                continue;
+            }
+            let (start, open) = (self.at, self.open.len());
+            match self.member_line() {
+                Ok(Some(line)) => members.push(line),
+                Ok(None) => {}
+                Err(_) => {
+                    self.skip_statement(open);
+                    if self.at == start {
+                        self.at += 1;
+                    }
+                }
+            }
+        }
+        self.close(TokenKind::RightBrace)?;
+        Ok(members)
+    }
+
+    /// `int a, b : 3;`; nothing for an assertion.
+    fn member_line(&mut self) -> Parsed<Option<MemberDeclaration>> {
+        if self.name() == Some(word::STATIC_ASSERT) {
+            self.static_assert()?;
+            return Ok(None);
+        }
+        let start = self.peek().span;
+        let mut specifiers = self.specifiers()?;
+        if specifiers.ty.is_none() && self.is_unknown_type() {
+            self.unknown_type(&mut specifiers);
+        }
+        let mut members = Vec::new();
+        let is_alone = matches!(specifiers.ty, Some(TypeSpecifier::Record(_) | TypeSpecifier::Enum(_)));
+        if !(is_alone && self.kind() == TokenKind::Semicolon) {
+            loop {
+                members.push(self.member()?);
+                if self.take(TokenKind::Comma).is_none() {
+                    break;
+                }
+            }
+        }
+        let span = self.since(start);
+        self.semicolon(span)?;
+        Ok(Some(MemberDeclaration { specifiers, members, span }))
+    }
+
+    fn member(&mut self) -> Parsed<MemberDeclarator> {
+        let declarator =
+            if self.kind() == TokenKind::Colon { None } else { Some(self.declarator(Naming::Required)?) };
+        let width = match self.take(TokenKind::Colon) {
+            Some(_) => Some(self.conditional()?),
+            None => None,
+        };
+        self.attributes()?;
+        Ok(MemberDeclarator { declarator, width })
+    }
+
+    fn enumerators(&mut self) -> Parsed<Vec<Enumerator>> {
+        self.open();
+        let mut enumerators = Vec::new();
+        while self.kind() != TokenKind::RightBrace {
+            if !self.is_identifier_at(0) {
+                return self.fail_expected("the name of an enumerator");
+            }
+            let token = self.next();
+            self.attributes()?;
+            let value = match self.take(TokenKind::Assign) {
+                Some(_) => Some(self.conditional()?),
+                None => None,
+            };
+            self.scopes.declare(token.name, Meaning::Ordinary);
+            enumerators.push(Enumerator { name: token.name, span: token.span, value });
+            if self.take(TokenKind::Comma).is_none() {
+                break;
+            }
+        }
+        self.close(TokenKind::RightBrace)?;
+        Ok(enumerators)
+    }
+}

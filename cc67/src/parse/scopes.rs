@@ -1,0 +1,73 @@
+//! Which names are types at the moment.
+//!
+//! C cannot be parsed without that: `a * b;` declares `b` if `a` is a type. A name is looked
+//! up for every identifier token, so each has one entry that says what it is now, and blocks
+//! keep a list of what to restore at their end.
+
+use cranelift_entity::SecondaryMap;
+
+use crate::names::Name;
+
+/// What a name is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Meaning {
+    /// Nothing declared it.
+    #[default]
+    Unknown,
+    /// A variable, function or enumerator.
+    Ordinary,
+    /// A `typedef` name.
+    Type,
+    /// Used as a type without being one, which was reported.
+    MissingType,
+}
+
+/// The scopes that are open.
+#[derive(Debug, Default)]
+pub(super) struct Scopes {
+    meanings: SecondaryMap<Name, Meaning>,
+    /// What names meant before the declarations of the open scopes.
+    hidden: Vec<(Name, Meaning)>,
+    /// Where each open scope begins in `hidden`.
+    starts: Vec<usize>,
+}
+
+impl Scopes {
+    /// What a name is here.
+    pub(super) fn meaning(&self, name: Name) -> Meaning {
+        self.meanings.get(name).copied().unwrap_or_default()
+    }
+
+    /// Declares a name in the innermost scope.
+    pub(super) fn declare(&mut self, name: Name, meaning: Meaning) {
+        let before = std::mem::replace(self.entry(name), meaning);
+        if !self.starts.is_empty() {
+            self.hidden.push((name, before));
+        }
+    }
+
+    /// Makes a name a missing type everywhere, so that it is reported once.
+    pub(super) fn set_missing_type(&mut self, name: Name) {
+        *self.entry(name) = Meaning::MissingType;
+    }
+
+    /// Opens a scope.
+    pub(super) fn enter(&mut self) {
+        self.starts.push(self.hidden.len());
+    }
+
+    /// Closes the innermost scope.
+    pub(super) fn leave(&mut self) {
+        let start = self.starts.pop().unwrap_or(0);
+        while self.hidden.len() > start {
+            if let Some((name, before)) = self.hidden.pop() {
+                *self.entry(name) = before;
+            }
+        }
+    }
+
+    #[expect(clippy::indexing_slicing, reason = "the map grows to hold every key")]
+    fn entry(&mut self, name: Name) -> &mut Meaning {
+        &mut self.meanings[name]
+    }
+}

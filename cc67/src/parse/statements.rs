@@ -1,0 +1,318 @@
+//! Statements.
+
+use crate::ast::{Expression, ExpressionKind, Statement, StatementKind};
+use crate::diag::Diagnostic;
+use crate::names::word;
+use crate::pp::{Flags, TokenKind};
+use crate::source::Span;
+
+use super::{Parsed, Parser, Reported};
+
+impl Parser<'_> {
+    /// `{ … }`: its statements.
+    pub(super) fn block(&mut self) -> Parsed<Vec<Statement>> {
+        let depth = self.open.len();
+        self.open();
+        self.scopes.enter();
+        let mut statements = Vec::new();
+        while !matches!(self.kind(), TokenKind::RightBrace | TokenKind::End) && !self.is_unwinding {
+            statements.push(self.statement());
+        }
+        self.scopes.leave();
+        if self.is_unwinding {
+            self.open.truncate(depth);
+            return Ok(statements);
+        }
+        self.close(TokenKind::RightBrace)?;
+        Ok(statements)
+    }
+
+    /// A statement or declaration; an error is reported and gone over.
+    fn statement(&mut self) -> Statement {
+        let (start, index, open) = (self.peek().span, self.at, self.open.len());
+        match self.nested(Self::any_statement) {
+            Ok(statement) => statement,
+            Err(Reported) => {
+                self.skip_statement(open);
+                if self.at == index
+                    && !self.is_stopped
+                    && !self.is_unwinding
+                    && self.kind() != TokenKind::RightBrace
+                {
+                    self.at += 1;
+                }
+                let span = if self.is_unwinding { start } else { self.since(start) };
+                let error = Expression { kind: ExpressionKind::Error, span };
+                Statement { kind: StatementKind::Expression(error), span }
+            }
+        }
+    }
+
+    /// The statement that a condition, a loop or a label governs.
+    fn body(&mut self) -> Parsed<Box<Statement>> {
+        if self.kind() == TokenKind::RightBrace || self.kind() == TokenKind::End {
+            return self.fail_expected("a statement");
+        }
+        Ok(Box::new(self.statement()))
+    }
+
+    fn any_statement(&mut self) -> Parsed<Statement> {
+        let start = self.peek().span;
+        match self.kind() {
+            TokenKind::LeftBrace => {
+                let statements = self.block()?;
+                Ok(self.finish(StatementKind::Block(statements), start))
+            }
+            TokenKind::Semicolon => {
+                self.at += 1;
+                Ok(Statement { kind: StatementKind::Empty, span: start })
+            }
+            TokenKind::Identifier => self.word_statement(start),
+            _ => self.expression_statement(start),
+        }
+    }
+
+    /// A statement that begins with a word.
+    fn word_statement(&mut self, start: Span) -> Parsed<Statement> {
+        let Some(name) = self.name() else { return self.expression_statement(start) };
+        if !name.is_keyword() && self.kind_at(1) == TokenKind::Colon {
+            return self.label(start);
+        }
+        let kind = match name {
+            word::IF => self.if_()?,
+            word::WHILE => self.while_()?,
+            word::DO => return self.do_while(start),
+            word::FOR => self.for_()?,
+            word::SWITCH => self.switch()?,
+            word::CASE => self.case()?,
+            word::DEFAULT => {
+                self.at += 1;
+                self.colon("behind `default`")?;
+                StatementKind::Default(self.labelled()?)
+            }
+            word::GOTO | word::BREAK | word::CONTINUE | word::RETURN => return self.jump(start),
+            word::ELSE => {
+                let token = self.next();
+                return self.fail(
+                    Diagnostic::error(token.span, "`else` without `if`")
+                        .help("is there a `;` too many, or are braces missing, before it?"),
+                );
+            }
+            word::ASM | word::ASM_ | word::ASM__ => {
+                self.assembler()?;
+                StatementKind::Empty
+            }
+            word::STATIC_ASSERT => StatementKind::StaticAssert(self.static_assert()?),
+            word::STATIC_ASSERT_MACRO if self.is_static_assert() => {
+                StatementKind::StaticAssert(self.static_assert()?)
+            }
+            word::EXTENSION if self.is_extended_declaration() => return self.local_declaration(),
+            _ if self.is_declaration_word(name) || self.is_unknown_type() => return self.local_declaration(),
+            _ => return self.expression_statement(start),
+        };
+        Ok(self.finish(kind, start))
+    }
+
+    fn is_extended_declaration(&self) -> bool {
+        let ahead = (0..).take_while(|ahead| self.name_at(*ahead) == Some(word::EXTENSION)).count();
+        self.name_at(ahead).is_some_and(|name| self.is_declaration_word(name))
+    }
+
+    fn finish(&self, kind: StatementKind, start: Span) -> Statement {
+        Statement { kind, span: self.since(start) }
+    }
+
+    fn expression_statement(&mut self, start: Span) -> Parsed<Statement> {
+        let index = self.at;
+        let expression = self.expression()?;
+        if self.kind() == TokenKind::LeftBrace
+            && let ExpressionKind::Call(function, _) = &expression.kind
+            && let ExpressionKind::Identifier(name) = function.kind
+        {
+            let declarator = crate::ast::Declarator {
+                name: Some((name, function.span)),
+                derived: Vec::new(),
+                span: function.span,
+            };
+            return self.nested_function(&declarator, index);
+        }
+        let span = expression.span;
+        self.semicolon(span)?;
+        Ok(self.finish(StatementKind::Expression(expression), start))
+    }
+
+    /// `( … )` behind `if` and its kin. If it cannot be parsed the statement is parsed all the same.
+    fn condition(&mut self, keyword: &str) -> Parsed<Expression> {
+        let start = self.peek();
+        if start.kind != TokenKind::LeftParen {
+            return self.fail_expected(&format!("`(` behind `{keyword}`"));
+        }
+        let open = self.open.len();
+        self.open();
+        let condition =
+            self.expression().and_then(|condition| self.close(TokenKind::RightParen).map(|_| condition));
+        match condition {
+            Ok(condition) => Ok(condition),
+            Err(Reported) if self.is_stopped || self.is_unwinding => Err(Reported),
+            Err(Reported) => {
+                self.skip_to_close(open);
+                Ok(Expression { kind: ExpressionKind::Error, span: self.since(start.span) })
+            }
+        }
+    }
+
+    fn if_(&mut self) -> Parsed<StatementKind> {
+        self.at += 1;
+        let condition = self.condition("if")?;
+        let then = self.body()?;
+        let otherwise = match self.take_word(word::ELSE) {
+            Some(_) => Some(self.body()?),
+            None => None,
+        };
+        Ok(StatementKind::If { condition, then, otherwise })
+    }
+
+    fn while_(&mut self) -> Parsed<StatementKind> {
+        self.at += 1;
+        let condition = self.condition("while")?;
+        Ok(StatementKind::While { condition, body: self.body()? })
+    }
+
+    fn do_while(&mut self, start: Span) -> Parsed<Statement> {
+        self.at += 1;
+        let body = self.body()?;
+        if self.take_word(word::WHILE).is_none() {
+            return self.fail_expected("`while` behind the body of `do`");
+        }
+        let condition = self.condition("while")?;
+        let span = self.since(start);
+        self.semicolon(span)?;
+        Ok(Statement { kind: StatementKind::DoWhile { body, condition }, span })
+    }
+
+    fn for_(&mut self) -> Parsed<StatementKind> {
+        self.at += 1;
+        if self.kind() != TokenKind::LeftParen {
+            return self.fail_expected("`(` behind `for`");
+        }
+        let open = self.open.len();
+        let start = self.open().span;
+        self.scopes.enter();
+        let head = self.for_head();
+        let head = match head {
+            Ok(head) => Ok(head),
+            Err(Reported) if self.is_stopped || self.is_unwinding => Err(Reported),
+            Err(Reported) => {
+                self.skip_to_close(open);
+                let span = self.since(start);
+                let init = Box::new(Statement { kind: StatementKind::Empty, span });
+                Ok((init, Some(Expression { kind: ExpressionKind::Error, span }), None))
+            }
+        };
+        let result = head.and_then(|(init, condition, step)| {
+            Ok(StatementKind::For { init, condition, step, body: self.body()? })
+        });
+        self.scopes.leave();
+        result
+    }
+
+    /// `init; condition; step)`
+    fn for_head(&mut self) -> Parsed<(Box<Statement>, Option<Expression>, Option<Expression>)> {
+        let start = self.peek().span;
+        let init = match self.name() {
+            _ if self.kind() == TokenKind::Semicolon => {
+                self.at += 1;
+                Statement { kind: StatementKind::Empty, span: start }
+            }
+            Some(name) if self.is_declaration_word(name) || self.is_unknown_type() => {
+                self.local_declaration()?
+            }
+            _ => {
+                let init = self.expression()?;
+                self.expect(TokenKind::Semicolon, "behind the first part of `for`")?;
+                self.finish(StatementKind::Expression(init), start)
+            }
+        };
+        let condition = if self.kind() == TokenKind::Semicolon { None } else { Some(self.expression()?) };
+        self.expect(TokenKind::Semicolon, "behind the condition of `for`")?;
+        let step = if self.kind() == TokenKind::RightParen { None } else { Some(self.expression()?) };
+        self.close(TokenKind::RightParen)?;
+        Ok((Box::new(init), condition, step))
+    }
+
+    fn switch(&mut self) -> Parsed<StatementKind> {
+        self.at += 1;
+        let value = self.condition("switch")?;
+        Ok(StatementKind::Switch { value, body: self.body()? })
+    }
+
+    fn case(&mut self) -> Parsed<StatementKind> {
+        self.at += 1;
+        let first = self.conditional()?;
+        let last = match self.take(TokenKind::Ellipsis) {
+            Some(_) => Some(self.conditional()?),
+            None => None,
+        };
+        self.colon("behind the value of `case`")?;
+        Ok(StatementKind::Case { first, last, body: self.labelled()? })
+    }
+
+    /// Reads `:`; a `;` in its place is taken for it.
+    fn colon(&mut self, what: &str) -> Parsed<()> {
+        if self.take(TokenKind::Colon).is_some() {
+            return Ok(());
+        }
+        let found = self.peek();
+        if found.kind == TokenKind::Semicolon
+            || found.flags.has(Flags::LINE_START) && found.kind != TokenKind::End
+        {
+            let diagnostic = Diagnostic::error(self.end_of_last(), format!("expected `:` {what}"));
+            self.report(diagnostic);
+            self.take(TokenKind::Semicolon);
+            return Ok(());
+        }
+        self.fail_expected(&format!("`:` {what}"))
+    }
+
+    fn label(&mut self, start: Span) -> Parsed<Statement> {
+        let token = self.next();
+        self.at += 1;
+        self.attributes()?;
+        let (name, name_span) = (token.name, token.span);
+        let body = self.labelled()?;
+        Ok(self.finish(StatementKind::Label { name, name_span, body }, start))
+    }
+
+    /// What stands behind a label: perhaps nothing, at the end of a block.
+    fn labelled(&mut self) -> Parsed<Box<Statement>> {
+        if self.kind() == TokenKind::RightBrace {
+            return Ok(Box::new(Statement { kind: StatementKind::Empty, span: self.end_of_last() }));
+        }
+        self.body()
+    }
+
+    /// `goto`, `break`, `continue`, `return`
+    fn jump(&mut self, start: Span) -> Parsed<Statement> {
+        let keyword = self.next();
+        let kind = match keyword.name {
+            word::BREAK => StatementKind::Break,
+            word::CONTINUE => StatementKind::Continue,
+            word::GOTO if self.is_identifier_at(0) => {
+                let label = self.next();
+                StatementKind::Goto(label.name, label.span)
+            }
+            word::GOTO if self.kind() == TokenKind::Star => {
+                let span = self.peek().span;
+                return self.fail(Diagnostic::error(span, "computed `goto` is not supported"));
+            }
+            word::GOTO => return self.fail_expected("a label"),
+            _ if matches!(self.kind(), TokenKind::Semicolon | TokenKind::RightBrace) => {
+                StatementKind::Return(None)
+            }
+            _ => StatementKind::Return(Some(self.expression()?)),
+        };
+        let span = self.since(start);
+        self.semicolon(span)?;
+        Ok(self.finish(kind, start))
+    }
+}

@@ -1,0 +1,237 @@
+//! Folds constants and carries copies and sums forward, within a block and into the block
+//! behind it if that has no other predecessor.
+//!
+//! A fact about a value holds until the value, or the value the fact refers to, is written
+//! again; a counter of writes for each value tells. Nothing is ever cleared, so the pass is
+//! linear.
+
+use cranelift_entity::SecondaryMap;
+
+use super::strength::{self, Simplified};
+use crate::ir::function::Function;
+use crate::ir::inst::{Address, Base, Constant, Inst, InstKind, Operand, Terminator, ValueId};
+use crate::ir::operators::{BinaryOp, CompareOp};
+
+/// What is known of a value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Known {
+    /// Nothing.
+    Nothing,
+    /// It equals an operand.
+    Operand(Operand),
+    /// It is this address.
+    Address(Address),
+    /// It is 1 if the operand is 0, else 0.
+    IsZero(Operand),
+}
+
+/// A fact and the state of affairs it was found in.
+#[derive(Clone, Copy, Debug)]
+struct Fact {
+    known: Known,
+    /// The region of code it holds in.
+    region: u32,
+    /// Writes of the value that the fact refers to.
+    writes: u32,
+}
+
+impl Default for Fact {
+    fn default() -> Self {
+        Self { known: Known::Nothing, region: u32::MAX, writes: 0 }
+    }
+}
+
+/// Folds what can be folded; returns whether a branch was decided.
+pub fn run(function: &mut Function) -> bool {
+    let mut folder = Folder { facts: SecondaryMap::new(), writes: SecondaryMap::new(), region: 0 };
+    let predecessors = function.predecessors();
+    let mut is_decided = false;
+    let mut previous = None;
+    for index in 0..function.layout.len() {
+        let id = function.layout[index];
+        // A block that only the one before it leads to knows what that one knew at its end.
+        if !function.is_only_way(previous, id, &predecessors) {
+            folder.region += 1;
+        }
+        let mut insts = std::mem::take(&mut function.blocks[id].insts);
+        for inst in &mut insts {
+            folder.inst(function, inst);
+        }
+        let block = &mut function.blocks[id];
+        block.insts = insts;
+        is_decided |= folder.terminator(&mut block.terminator);
+        previous = Some(id);
+    }
+    is_decided
+}
+
+struct Folder {
+    facts: SecondaryMap<ValueId, Fact>,
+    writes: SecondaryMap<ValueId, u32>,
+    region: u32,
+}
+
+impl Folder {
+    fn inst(&mut self, function: &mut Function, inst: &mut Inst) {
+        inst.kind.visit_operands(|operand| *operand = self.resolve(*operand));
+        if let Some(arguments) = inst.kind.arguments() {
+            for argument in &mut function.arguments[arguments.range()] {
+                *argument = self.resolve(*argument);
+            }
+        }
+        self.simplify(function, inst);
+        self.addresses(&mut inst.kind);
+        if let Some(dst) = inst.kind.dst() {
+            self.writes[dst] += 1;
+            self.learn(dst, &inst.kind);
+        }
+    }
+
+    /// What replaces an operand: the constant or the older value that it is known to equal.
+    fn resolve(&self, operand: Operand) -> Operand {
+        match operand.as_value().map(|value| self.known(value)) {
+            Some(Known::Operand(known)) => known,
+            _ => operand,
+        }
+    }
+
+    /// What is known of a value now.
+    fn known(&self, value: ValueId) -> Known {
+        let fact = self.facts[value];
+        let is_current = fact.region == self.region
+            && refers_to(fact.known).is_none_or(|of| self.writes[of] == fact.writes);
+        if is_current { fact.known } else { Known::Nothing }
+    }
+
+    /// Records what an instruction says about the value it writes.
+    fn learn(&mut self, dst: ValueId, kind: &InstKind) {
+        let known = match *kind {
+            InstKind::Copy { src, .. } => Known::Operand(src),
+            InstKind::FrameAddress { slot, offset, .. } => {
+                Known::Address(Address { base: Base::Slot(slot), offset })
+            }
+            InstKind::Binary { op: BinaryOp::Add, a: Operand::Value(base), b, .. } => match b.as_int() {
+                Some(offset) => Known::Address(Address { base: Base::Value(base), offset }),
+                None => Known::Nothing,
+            },
+            InstKind::Compare { op: CompareOp::Equal, a, b, .. } if b.as_int() == Some(0) => Known::IsZero(a),
+            _ => Known::Nothing,
+        };
+        let of = refers_to(known);
+        // `i = i + 1` says nothing about the new `i`.
+        let known = if of == Some(dst) { Known::Nothing } else { known };
+        self.facts[dst] = Fact { known, region: self.region, writes: of.map_or(0, |of| self.writes[of]) };
+    }
+
+    /// Shortens addresses: what is known to be a sum becomes base and offset.
+    fn addresses(&self, kind: &mut InstKind) {
+        match kind {
+            InstKind::Load { address, .. }
+            | InstKind::Store { address, .. }
+            | InstKind::ClearMemory { to: address, .. } => *address = self.shortened(*address),
+            InstKind::CopyMemory { to, from, .. } => {
+                *to = self.shortened(*to);
+                *from = self.shortened(*from);
+            }
+            InstKind::Binary { op: BinaryOp::Add, dst, a: Operand::Value(base), b } => {
+                let Some(offset) = b.as_int() else { return };
+                let (dst, short) = (*dst, self.shortened(Address { base: Base::Value(*base), offset }));
+                match short.base {
+                    Base::Value(base) if short.offset == 0 => {
+                        *kind = InstKind::Copy { dst, src: base.into() };
+                    }
+                    Base::Value(base) => {
+                        *kind = InstKind::Binary {
+                            op: BinaryOp::Add,
+                            dst,
+                            a: base.into(),
+                            b: Operand::int(short.offset),
+                        };
+                    }
+                    Base::Slot(slot) => *kind = InstKind::FrameAddress { dst, slot, offset: short.offset },
+                    Base::Absolute | Base::Symbol(_) => {}
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn shortened(&self, address: Address) -> Address {
+        match address.base {
+            Base::Value(value) => match self.known(value) {
+                Known::Address(known) => known.plus(address.offset),
+                _ => address,
+            },
+            _ => address,
+        }
+    }
+
+    /// Replaces an instruction by a cheaper one with the same result.
+    fn simplify(&self, function: &Function, inst: &mut Inst) {
+        let Some(dst) = inst.kind.dst() else { return };
+        let simplified = match inst.kind {
+            InstKind::Unary { op, src, .. } => strength::unary(op, src),
+            InstKind::Binary { op, a, b, .. } => strength::binary(op, a, b, function.values[dst]),
+            InstKind::Compare { op, a, b, .. } => self.compare(op, a, b),
+            InstKind::Convert { op, src, .. } => strength::convert(op, src),
+            _ => return,
+        };
+        match simplified {
+            Simplified::No => {}
+            Simplified::Operand(src) => inst.kind = InstKind::Copy { dst, src },
+            Simplified::Binary(op, a, b) => inst.kind = InstKind::Binary { op, dst, a, b },
+            Simplified::Compare(op, a, b) => inst.kind = InstKind::Compare { op, dst, a, b },
+        }
+    }
+
+    /// A comparison; `(x == 0) == 0` and `(x == 0) != 0` look through to `x`.
+    fn compare(&self, op: CompareOp, a: Operand, b: Operand) -> Simplified {
+        if let (Operand::Value(value), Some(0)) = (a, b.as_int())
+            && let Known::IsZero(inner) = self.known(value)
+        {
+            match op {
+                CompareOp::Equal => return Simplified::Compare(CompareOp::NotEqual, inner, Operand::int(0)),
+                CompareOp::NotEqual => return Simplified::Operand(a),
+                _ => {}
+            }
+        }
+        strength::compare(op, a, b)
+    }
+
+    /// Resolves the operand of a terminator; returns whether that decided where it goes.
+    fn terminator(&self, terminator: &mut Terminator) -> bool {
+        if let Some(operand) = terminator.operand_mut() {
+            *operand = self.resolve(*operand);
+        }
+        match terminator {
+            Terminator::Branch { condition, then, otherwise } => {
+                if let Operand::Constant(Constant::I32(value)) = *condition {
+                    *terminator = Terminator::Jump(if value == 0 { *otherwise } else { *then });
+                    return true;
+                }
+                if let Some(value) = condition.as_value()
+                    && let Known::IsZero(inner) = self.known(value)
+                {
+                    *terminator = Terminator::Branch { condition: inner, then: *otherwise, otherwise: *then };
+                }
+                false
+            }
+            Terminator::Table { index, targets, default } => {
+                let Some(index) = index.as_int() else { return false };
+                let target = targets.get(index.cast_unsigned() as usize).copied();
+                *terminator = Terminator::Jump(target.unwrap_or(*default));
+                true
+            }
+            Terminator::Jump(_) | Terminator::Return(_) | Terminator::Unreachable => false,
+        }
+    }
+}
+
+/// The value that a fact is about besides the one it is known of.
+const fn refers_to(known: Known) -> Option<ValueId> {
+    match known {
+        Known::Operand(operand) | Known::IsZero(operand) => operand.as_value(),
+        Known::Address(Address { base: Base::Value(value), .. }) => Some(value),
+        Known::Nothing | Known::Address(_) => None,
+    }
+}

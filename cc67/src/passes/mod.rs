@@ -1,0 +1,39 @@
+//! Optimisations of the IR, one a file.
+//!
+//! All are local to a block or to the graph of blocks and take linear time. They work on
+//! values only: loads, stores and calls stay where they are, in number and order
+//! (specification, `dialect.md` 1.5).
+
+pub mod dead;
+pub mod divide;
+pub mod fold;
+pub mod jumps;
+mod strength;
+
+use crate::ir::function::Function;
+
+/// How much is optimised.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Level {
+    /// Nothing: the code follows the source (`-O0`).
+    None,
+    /// Everything that takes linear time (`-O1`, `-O2`).
+    #[default]
+    Full,
+}
+
+/// Runs the optimisations of a level.
+pub fn run(function: &mut Function, level: Level) {
+    if level == Level::None {
+        return;
+    }
+    jumps::run(function);
+    if fold::run(function) {
+        jumps::run(function);
+    }
+    dead::run(function);
+    divide::run(function);
+}
+
+#[cfg(test)]
+mod tests;

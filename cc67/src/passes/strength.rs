@@ -1,0 +1,326 @@
+//! What an operator on constants gives, and what cheaper operator gives the same.
+//!
+//! Constants are computed by [`vm::arith`], as the machine does; what would trap is left
+//! alone.
+
+use vm::arith;
+
+use crate::ir::inst::{Class, Constant, Operand};
+use crate::ir::operators::{BinaryOp, CompareOp, ConvertOp, UnaryOp};
+
+/// What an instruction can be replaced by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Simplified {
+    /// Nothing better.
+    No,
+    /// A copy.
+    Operand(Operand),
+    /// Another operator.
+    Binary(BinaryOp, Operand, Operand),
+    /// Another comparison.
+    Compare(CompareOp, Operand, Operand),
+}
+
+impl From<Option<Constant>> for Simplified {
+    fn from(constant: Option<Constant>) -> Self {
+        constant.map_or(Self::No, |constant| Self::Operand(constant.into()))
+    }
+}
+
+pub(super) fn unary(op: UnaryOp, src: Operand) -> Simplified {
+    let Operand::Constant(constant) = src else { return Simplified::No };
+    Simplified::from(match (op, constant) {
+        (UnaryOp::Negate, Constant::I32(value)) => Some(Constant::I32(value.wrapping_neg())),
+        (UnaryOp::Negate, Constant::I64(value)) => Some(Constant::I64(value.wrapping_neg())),
+        (UnaryOp::Negate, Constant::F32(bits)) => Some(Constant::F32(bits ^ (1 << 31))),
+        (UnaryOp::Negate, Constant::F64(bits)) => Some(Constant::F64(bits ^ (1 << 63))),
+        (UnaryOp::Complement, Constant::I32(value)) => Some(Constant::I32(!value)),
+        (UnaryOp::Complement, Constant::I64(value)) => Some(Constant::I64(!value)),
+        (UnaryOp::Complement, Constant::F32(_) | Constant::F64(_)) | (_, Constant::Symbol(..)) => None,
+    })
+}
+
+pub(super) fn binary(op: BinaryOp, a: Operand, b: Operand, class: Class) -> Simplified {
+    match (a, b) {
+        (Operand::Constant(x), Operand::Constant(y)) => Simplified::from(binary_constant(op, x, y)),
+        (Operand::Constant(_), Operand::Value(_)) if op.is_commutative() => match right_constant(op, b, a) {
+            Simplified::No => Simplified::Binary(op, b, a),
+            better => better,
+        },
+        (Operand::Value(_), Operand::Constant(_)) => right_constant(op, a, b),
+        (Operand::Value(x), Operand::Value(y)) if x == y && class.is_integer() => same(op, a, class),
+        _ => Simplified::No,
+    }
+}
+
+/// `a op a`
+fn same(op: BinaryOp, a: Operand, class: Class) -> Simplified {
+    match op {
+        BinaryOp::Subtract | BinaryOp::Xor => Simplified::Operand(class.zero().into()),
+        BinaryOp::And | BinaryOp::Or => Simplified::Operand(a),
+        _ => Simplified::No,
+    }
+}
+
+/// `a op constant`
+fn right_constant(op: BinaryOp, a: Operand, b: Operand) -> Simplified {
+    let Operand::Constant(constant) = b else { return Simplified::No };
+    let number = match constant {
+        Constant::I32(value) => i64::from(value),
+        Constant::I64(value) => value,
+        Constant::F32(_) | Constant::F64(_) => return floating(op, a, constant),
+        Constant::Symbol(..) => return Simplified::No,
+    };
+    let is_long = matches!(constant, Constant::I64(_));
+    let zero = if op.is_shift() { None } else { Some(constant.class().zero()) };
+    match (op, number) {
+        _ if is_identity(op, number) => Simplified::Operand(a),
+        (BinaryOp::Multiply | BinaryOp::And, 0) | (BinaryOp::Remainder | BinaryOp::RemainderUnsigned, 1) => {
+            Simplified::from(zero)
+        }
+        (BinaryOp::Or, -1) => Simplified::Operand(b),
+        (BinaryOp::Subtract, _) if !is_long => {
+            Simplified::Binary(BinaryOp::Add, a, Operand::int((number as i32).wrapping_neg()))
+        }
+        _ => power_of_two(op, a, constant),
+    }
+}
+
+/// Whether `a op number` is `a`.
+const fn is_identity(op: BinaryOp, number: i64) -> bool {
+    match op {
+        BinaryOp::Add | BinaryOp::Subtract | BinaryOp::Or | BinaryOp::Xor => number == 0,
+        BinaryOp::Multiply | BinaryOp::Divide | BinaryOp::DivideUnsigned => number == 1,
+        BinaryOp::And => number == -1,
+        BinaryOp::ShiftLeft | BinaryOp::ShiftRight | BinaryOp::ShiftRightUnsigned => number == 0,
+        BinaryOp::Remainder | BinaryOp::RemainderUnsigned => false,
+    }
+}
+
+/// Multiplication and unsigned division by a power of two.
+fn power_of_two(op: BinaryOp, a: Operand, constant: Constant) -> Simplified {
+    let (bits, is_long) = match constant {
+        Constant::I32(value) => (u64::from(value.cast_unsigned()), false),
+        Constant::I64(value) => (value.cast_unsigned(), true),
+        Constant::F32(_) | Constant::F64(_) | Constant::Symbol(..) => return Simplified::No,
+    };
+    if !bits.is_power_of_two() {
+        return Simplified::No;
+    }
+    let shift = Operand::int(bits.trailing_zeros().cast_signed());
+    let mask = bits - 1;
+    let mask = if is_long { Constant::I64(mask.cast_signed()) } else { Constant::I32(mask as u32 as i32) };
+    match op {
+        BinaryOp::Multiply => Simplified::Binary(BinaryOp::ShiftLeft, a, shift),
+        BinaryOp::DivideUnsigned => Simplified::Binary(BinaryOp::ShiftRightUnsigned, a, shift),
+        BinaryOp::RemainderUnsigned => Simplified::Binary(BinaryOp::And, a, mask.into()),
+        _ => Simplified::No,
+    }
+}
+
+/// Division by a floating power of two is a multiplication by its inverse, which is exact.
+fn floating(op: BinaryOp, a: Operand, b: Constant) -> Simplified {
+    let inverse = match b {
+        Constant::F32(bits) => {
+            let inverse = 1.0 / f32::from_bits(bits);
+            let is_exact = bits & 0x007f_ffff == 0 && f32::from_bits(bits).is_normal() && inverse.is_normal();
+            is_exact.then(|| Constant::F32(inverse.to_bits()))
+        }
+        Constant::F64(bits) => {
+            let inverse = 1.0 / f64::from_bits(bits);
+            let is_exact =
+                bits & 0x000f_ffff_ffff_ffff == 0 && f64::from_bits(bits).is_normal() && inverse.is_normal();
+            is_exact.then(|| Constant::F64(inverse.to_bits()))
+        }
+        Constant::I32(_) | Constant::I64(_) | Constant::Symbol(..) => None,
+    };
+    match (op, inverse) {
+        (BinaryOp::Divide, Some(inverse)) => Simplified::Binary(BinaryOp::Multiply, a, inverse.into()),
+        _ => Simplified::No,
+    }
+}
+
+fn binary_constant(op: BinaryOp, a: Constant, b: Constant) -> Option<Constant> {
+    match (a, b) {
+        (Constant::I32(a), Constant::I32(b)) => binary_i32(op, a, b).map(Constant::I32),
+        (Constant::Symbol(symbol, offset), Constant::I32(bytes))
+        | (Constant::I32(bytes), Constant::Symbol(symbol, offset))
+            if op == BinaryOp::Add =>
+        {
+            Some(Constant::Symbol(symbol, offset.wrapping_add(bytes)))
+        }
+        (Constant::Symbol(symbol, offset), Constant::I32(bytes)) if op == BinaryOp::Subtract => {
+            Some(Constant::Symbol(symbol, offset.wrapping_sub(bytes)))
+        }
+        (Constant::I64(a), Constant::I64(b)) => binary_i64(op, a, b).map(Constant::I64),
+        (Constant::I64(a), Constant::I32(count)) => match op {
+            BinaryOp::ShiftLeft => Some(arith::shl_i64(a, count)),
+            BinaryOp::ShiftRight => Some(arith::shr_i64_s(a, count)),
+            BinaryOp::ShiftRightUnsigned => Some(arith::shr_i64_u(a, count)),
+            _ => None,
+        }
+        .map(Constant::I64),
+        (Constant::F32(a), Constant::F32(b)) => {
+            let (a, b) = (f32::from_bits(a), f32::from_bits(b));
+            let value = match op {
+                BinaryOp::Add => a + b,
+                BinaryOp::Subtract => a - b,
+                BinaryOp::Multiply => a * b,
+                BinaryOp::Divide => a / b,
+                _ => return None,
+            };
+            // The bits of a NaN are the machine's business.
+            (!value.is_nan()).then(|| Constant::F32(value.to_bits()))
+        }
+        (Constant::F64(a), Constant::F64(b)) => {
+            let (a, b) = (f64::from_bits(a), f64::from_bits(b));
+            let value = match op {
+                BinaryOp::Add => a + b,
+                BinaryOp::Subtract => a - b,
+                BinaryOp::Multiply => a * b,
+                BinaryOp::Divide => a / b,
+                _ => return None,
+            };
+            (!value.is_nan()).then(|| Constant::F64(value.to_bits()))
+        }
+        _ => None,
+    }
+}
+
+fn binary_i32(op: BinaryOp, a: i32, b: i32) -> Option<i32> {
+    match op {
+        BinaryOp::Add => Some(a.wrapping_add(b)),
+        BinaryOp::Subtract => Some(a.wrapping_sub(b)),
+        BinaryOp::Multiply => Some(a.wrapping_mul(b)),
+        BinaryOp::Divide => arith::div_i32_s(a, b),
+        BinaryOp::DivideUnsigned => arith::div_i32_u(a, b),
+        BinaryOp::Remainder => arith::rem_i32_s(a, b),
+        BinaryOp::RemainderUnsigned => arith::rem_i32_u(a, b),
+        BinaryOp::And => Some(a & b),
+        BinaryOp::Or => Some(a | b),
+        BinaryOp::Xor => Some(a ^ b),
+        BinaryOp::ShiftLeft => Some(arith::shl_i32(a, b)),
+        BinaryOp::ShiftRight => Some(arith::shr_i32_s(a, b)),
+        BinaryOp::ShiftRightUnsigned => Some(arith::shr_i32_u(a, b)),
+    }
+}
+
+fn binary_i64(op: BinaryOp, a: i64, b: i64) -> Option<i64> {
+    match op {
+        BinaryOp::Add => Some(a.wrapping_add(b)),
+        BinaryOp::Subtract => Some(a.wrapping_sub(b)),
+        BinaryOp::Multiply => Some(a.wrapping_mul(b)),
+        BinaryOp::Divide => arith::div_i64_s(a, b),
+        BinaryOp::DivideUnsigned => arith::div_i64_u(a, b),
+        BinaryOp::Remainder => arith::rem_i64_s(a, b),
+        BinaryOp::RemainderUnsigned => arith::rem_i64_u(a, b),
+        BinaryOp::And => Some(a & b),
+        BinaryOp::Or => Some(a | b),
+        BinaryOp::Xor => Some(a ^ b),
+        BinaryOp::ShiftLeft | BinaryOp::ShiftRight | BinaryOp::ShiftRightUnsigned => None,
+    }
+}
+
+pub(super) fn compare(op: CompareOp, a: Operand, b: Operand) -> Simplified {
+    let (Operand::Constant(a), Operand::Constant(b)) = (a, b) else {
+        let is_symmetric = matches!(op, CompareOp::Equal | CompareOp::NotEqual);
+        return match (a, b) {
+            (Operand::Constant(_), Operand::Value(_)) if is_symmetric => Simplified::Compare(op, b, a),
+            _ => Simplified::No,
+        };
+    };
+    let truth = match (a, b) {
+        (Constant::I32(a), Constant::I32(b)) => {
+            compare_integers(op, a.cmp(&b), a.cast_unsigned().cmp(&b.cast_unsigned()))
+        }
+        (Constant::I64(a), Constant::I64(b)) => {
+            compare_integers(op, a.cmp(&b), a.cast_unsigned().cmp(&b.cast_unsigned()))
+        }
+        (Constant::F32(a), Constant::F32(b)) => {
+            compare_floats(op, f64::from(f32::from_bits(a)), f64::from(f32::from_bits(b)))
+        }
+        (Constant::F64(a), Constant::F64(b)) => compare_floats(op, f64::from_bits(a), f64::from_bits(b)),
+        _ => return Simplified::No,
+    };
+    Simplified::Operand(Operand::int(i32::from(truth)))
+}
+
+fn compare_integers(op: CompareOp, signed: std::cmp::Ordering, unsigned: std::cmp::Ordering) -> bool {
+    match op {
+        CompareOp::Equal => signed.is_eq(),
+        CompareOp::NotEqual => signed.is_ne(),
+        CompareOp::Less => signed.is_lt(),
+        CompareOp::LessEqual => signed.is_le(),
+        CompareOp::LessUnsigned => unsigned.is_lt(),
+        CompareOp::LessEqualUnsigned => unsigned.is_le(),
+    }
+}
+
+fn compare_floats(op: CompareOp, a: f64, b: f64) -> bool {
+    match op {
+        CompareOp::Equal => a == b,
+        CompareOp::NotEqual => a != b,
+        CompareOp::Less | CompareOp::LessUnsigned => a < b,
+        CompareOp::LessEqual | CompareOp::LessEqualUnsigned => a <= b,
+    }
+}
+
+pub(super) fn convert(op: ConvertOp, src: Operand) -> Simplified {
+    let Operand::Constant(constant) = src else { return Simplified::No };
+    Simplified::from(match constant {
+        Constant::I32(value) => convert_i32(op, value),
+        Constant::I64(value) => convert_i64(op, value),
+        Constant::F32(bits) => convert_f32(op, f32::from_bits(bits)),
+        Constant::F64(bits) => convert_f64(op, f64::from_bits(bits)),
+        Constant::Symbol(..) => None,
+    })
+}
+
+fn convert_i32(op: ConvertOp, value: i32) -> Option<Constant> {
+    let unsigned = value.cast_unsigned();
+    Some(match op {
+        ConvertOp::SignExtend8 => Constant::I32(i32::from(value as i8)),
+        ConvertOp::ZeroExtend8 => Constant::I32(i32::from(value as u8)),
+        ConvertOp::SignExtend16 => Constant::I32(i32::from(value as i16)),
+        ConvertOp::ZeroExtend16 => Constant::I32(i32::from(value as u16)),
+        ConvertOp::I64FromI32 => Constant::I64(i64::from(value)),
+        ConvertOp::I64FromU32 => Constant::I64(i64::from(unsigned)),
+        ConvertOp::F32FromI32 => Constant::F32((value as f32).to_bits()),
+        ConvertOp::F32FromU32 => Constant::F32((unsigned as f32).to_bits()),
+        ConvertOp::F64FromI32 => Constant::F64(f64::from(value).to_bits()),
+        ConvertOp::F64FromU32 => Constant::F64(f64::from(unsigned).to_bits()),
+        _ => return None,
+    })
+}
+
+fn convert_i64(op: ConvertOp, value: i64) -> Option<Constant> {
+    let unsigned = value.cast_unsigned();
+    Some(match op {
+        ConvertOp::I32FromI64 => Constant::I32(value as i32),
+        ConvertOp::F32FromI64 => Constant::F32((value as f32).to_bits()),
+        ConvertOp::F32FromU64 => Constant::F32((unsigned as f32).to_bits()),
+        ConvertOp::F64FromI64 => Constant::F64((value as f64).to_bits()),
+        ConvertOp::F64FromU64 => Constant::F64((unsigned as f64).to_bits()),
+        _ => return None,
+    })
+}
+
+fn convert_f32(op: ConvertOp, value: f32) -> Option<Constant> {
+    match op {
+        ConvertOp::F64FromF32 if !value.is_nan() => Some(Constant::F64(f64::from(value).to_bits())),
+        ConvertOp::I32FromF32 => Some(Constant::I32(arith::i32_from_f64_s(f64::from(value)))),
+        ConvertOp::U32FromF32 => Some(Constant::I32(arith::i32_from_f64_u(f64::from(value)))),
+        _ => None,
+    }
+}
+
+fn convert_f64(op: ConvertOp, value: f64) -> Option<Constant> {
+    match op {
+        ConvertOp::F32FromF64 if !value.is_nan() => Some(Constant::F32((value as f32).to_bits())),
+        ConvertOp::I32FromF64 => Some(Constant::I32(arith::i32_from_f64_s(value))),
+        ConvertOp::U32FromF64 => Some(Constant::I32(arith::i32_from_f64_u(value))),
+        ConvertOp::I64FromF64 => Some(Constant::I64(arith::i64_from_f64_s(value))),
+        ConvertOp::U64FromF64 => Some(Constant::I64(arith::i64_from_f64_u(value))),
+        _ => None,
+    }
+}

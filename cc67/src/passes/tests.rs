@@ -1,0 +1,142 @@
+//! What the passes make of small functions, all together.
+
+use super::Level;
+use crate::lower::testing::{check_ir, ir};
+
+fn check(source: &str, expected: &str) {
+    check_ir(source, Level::Full, expected);
+}
+
+#[test]
+fn constants_fold_as_the_machine_computes() {
+    check(
+        "int f(void) { int a = 2147483647, s = 33; return a + 1 + (1 << s) + -7 / 2; }",
+        "function f() -> i32\nblock0:\nreturn 2147483645",
+    );
+    check("int f(void) { float x = 1.5f; return x * 3.0 > 4.0; }", "function f() -> i32\nblock0:\nreturn 1");
+}
+
+#[test]
+fn what_would_trap_stays() {
+    check(
+        "int f(int a) { a / 0; return a % (a - a); }",
+        "
+        function f(v0: i32) -> i32
+        block0:
+          v1 = div.i32 v0, 0
+          v3 = rem.i32 v0, 0
+          return v3
+        ",
+    );
+}
+
+#[test]
+fn loads_and_stores_stay_in_number_and_order() {
+    check(
+        "int g; void f(void) { g = 1; g = 1; g; g; while (g == 0) ; }",
+        "
+        function f()
+        block0:
+          store.i32 1, [g]
+          store.i32 1, [g]
+          v0 = load.i32 [g]
+          v1 = load.i32 [g]
+          v2 = load.i32 [g]
+          branch v2, block3, block2
+        block2:
+          v3 = load.i32 [g]
+          branch v3, block3, block2
+        block3:
+          return
+        ",
+    );
+}
+
+#[test]
+fn decided_branches_and_what_they_skip_disappear() {
+    check(
+        "int f(int a) { if (0) a = 1; for (;;) { if (a) break; return 3; } return 2; }",
+        "
+        function f(v0: i32) -> i32
+        block0:
+          branch v0, block5, block7
+        block7:
+          return 3
+        block5:
+          return 2
+        ",
+    );
+}
+
+#[test]
+fn addresses_shorten_to_base_and_offset() {
+    check(
+        "struct { int a, b[4]; } s[3]; int f(int *p) { int *q = p + 2; return q[1] + s[1].b[2] + *(q - 1); }",
+        "
+        function f(v0: i32) -> i32
+        block0:
+          v2 = load.i32 [v0 + 12]
+          v3 = load.i32 [s + 32]
+          v4 = add.i32 v2, v3
+          v5 = load.i32 [v0 + 4]
+          v6 = add.i32 v4, v5
+          return v6
+        ",
+    );
+}
+
+#[test]
+fn powers_of_two_need_no_division() {
+    check(
+        "int f(int a) { return a / 8; }",
+        "
+        function f(v0: i32) -> i32
+        block0:
+          v2 = shr.i32 v0, 31
+          v3 = shr_u.i32 v2, 29
+          v4 = add.i32 v0, v3
+          v1 = shr.i32 v4, 3
+          return v1
+        ",
+    );
+    let text = ir("unsigned f(unsigned a) { return a / 4 + a % 4 + a * 16; }", Level::Full);
+    assert!(!text.contains("div") && !text.contains("rem") && !text.contains("mul"), "{text}");
+    let text = ir("double f(double a) { return a / 4.0; }", Level::Full);
+    assert!(text.contains("mul.f64 v0, 0.25"), "{text}");
+}
+
+#[test]
+fn values_that_nobody_reads_are_not_computed() {
+    check(
+        "int g(int); int f(int a) { int b = a * 3; b = a + 1; b = b + 1; g(a); return a; }",
+        "
+        function f(v0: i32) -> i32
+        block0:
+          call g(v0)
+          return v0
+        ",
+    );
+}
+
+#[test]
+fn facts_end_where_a_value_is_written_again() {
+    check(
+        "int f(int a, int b) { int c = a; a = b; if (c) return c; return a; }",
+        "
+        function f(v0: i32, v1: i32) -> i32
+        block0:
+          v2 = v0
+          v0 = v1
+          branch v2, block1, block2
+        block1:
+          return v2
+        block2:
+          return v0
+        ",
+    );
+}
+
+#[test]
+fn an_endless_empty_loop_stays() {
+    check("void f(void) { for (;;) ; }", "function f()\nblock0:\njump block1\nblock1:\njump block1");
+}

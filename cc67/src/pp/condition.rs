@@ -1,0 +1,345 @@
+//! The expressions of `#if`.
+//!
+//! They are computed in 64 bits, signed unless an operand is unsigned, as C99 says. Operands
+//! that `&&`, `||` and `?:` do not need are parsed but cannot divide by zero.
+
+use crate::diag::Diagnostic;
+use crate::names::word;
+use crate::source::Span;
+
+use super::engine::Preprocessor;
+use super::number::Number;
+use super::token::{Flags, Token, TokenKind};
+use super::{limits, number, quoted};
+
+/// A value in 64 bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Value {
+    bits: i64,
+    is_unsigned: bool,
+}
+
+impl Value {
+    const fn signed(bits: i64) -> Self {
+        Self { bits, is_unsigned: false }
+    }
+
+    const fn truth(truth: bool) -> Self {
+        Self::signed(if truth { 1 } else { 0 })
+    }
+
+    const fn is_true(self) -> bool {
+        self.bits != 0
+    }
+}
+
+/// Says that the expression was reported to be wrong.
+struct Reported;
+
+type Evaluated = Result<Value, Reported>;
+
+impl Preprocessor<'_> {
+    /// The truth of the expression on the rest of the line; false, with an error, if it is none.
+    pub(super) fn condition(&mut self, directive: Span) -> bool {
+        let tokens = self.condition_tokens();
+        if tokens.is_empty() {
+            self.sink.report(Diagnostic::error(directive, "expression missing behind the directive"));
+            return false;
+        }
+        let mut parser = Parser { pp: self, tokens: &tokens, at: 0, depth: 0, is_evaluated: true };
+        match parser.whole() {
+            Ok(value) => value.is_true(),
+            Err(Reported) => false,
+        }
+    }
+
+    /// The rest of the line, expanded except for the operands of `defined`.
+    fn condition_tokens(&mut self) -> Vec<Token> {
+        let mut tokens: Vec<Token> = Vec::new();
+        loop {
+            let mut token = self.directive_token();
+            if token.kind == TokenKind::End {
+                return self.expand_list(tokens);
+            }
+            let is_defined = |token: Option<&Token>| token.is_some_and(|token| token.name == word::DEFINED);
+            let is_paren = tokens.last().is_some_and(|token| token.kind == TokenKind::LeftParen);
+            let before_paren = tokens.len().checked_sub(2).and_then(|at| tokens.get(at));
+            if is_defined(tokens.last()) || is_paren && is_defined(before_paren) {
+                token.flags = token.flags.with(Flags::NO_EXPAND);
+            }
+            tokens.push(token);
+        }
+    }
+}
+
+struct Parser<'a, 'b> {
+    pp: &'a mut Preprocessor<'b>,
+    tokens: &'a [Token],
+    at: usize,
+    depth: usize,
+    /// The value is needed.
+    is_evaluated: bool,
+}
+
+impl Parser<'_, '_> {
+    fn whole(&mut self) -> Evaluated {
+        let value = self.conditional()?;
+        match self.peek() {
+            None => Ok(value),
+            Some(token) => {
+                let found = self.text(token);
+                let diagnostic =
+                    Diagnostic::error(token.span, format!("unexpected `{found}` in `#if` expression"));
+                let before = self.at.checked_sub(1).and_then(|at| self.tokens.get(at));
+                let is_call = token.kind == TokenKind::LeftParen;
+                let diagnostic = match before.filter(|before| is_call && before.kind == TokenKind::Identifier)
+                {
+                    Some(before) if before.name == word::SIZEOF => {
+                        diagnostic.note("the preprocessor knows no types, so `sizeof` means nothing to it")
+                    }
+                    Some(before) => diagnostic.note(format!("no macro `{}` is defined", self.text(*before))),
+                    None => diagnostic,
+                };
+                self.fail(diagnostic)
+            }
+        }
+    }
+
+    /// `a ? b : c` and everything that binds tighter.
+    fn conditional(&mut self) -> Evaluated {
+        self.depth += 1;
+        if self.depth > limits::NESTING {
+            let span = self.peek().map_or(Span::new(0, 0), |token| token.span);
+            let message = format!("`#if` expression nested deeper than {}", limits::NESTING);
+            return self.fail(Diagnostic::error(span, message));
+        }
+        let condition = self.binary(0)?;
+        let value = if self.take(TokenKind::Question) {
+            let then = self.when(condition.is_true(), Self::conditional)?;
+            self.expect(TokenKind::Colon)?;
+            let otherwise = self.when(!condition.is_true(), Self::conditional)?;
+            let chosen = if condition.is_true() { then } else { otherwise };
+            Value { is_unsigned: then.is_unsigned || otherwise.is_unsigned, ..chosen }
+        } else {
+            condition
+        };
+        self.depth -= 1;
+        Ok(value)
+    }
+
+    /// Operators that bind at least as tight as `least`.
+    fn binary(&mut self, least: u8) -> Evaluated {
+        let mut left = self.unary()?;
+        while let Some(token) = self.peek() {
+            let Some(binding) = binding(token.kind).filter(|binding| *binding >= least) else { break };
+            self.at += 1;
+            let is_needed = match token.kind {
+                TokenKind::AndAnd => left.is_true(),
+                TokenKind::OrOr => !left.is_true(),
+                _ => true,
+            };
+            let right = self.when(is_needed, |parser| parser.binary(binding + 1))?;
+            left = self.apply(token, left, right)?;
+        }
+        Ok(left)
+    }
+
+    fn unary(&mut self) -> Evaluated {
+        let mut operators = Vec::new();
+        while let Some(token) = self.peek() {
+            if !matches!(token.kind, TokenKind::Not | TokenKind::Tilde | TokenKind::Minus | TokenKind::Plus) {
+                break;
+            }
+            operators.push(token.kind);
+            self.at += 1;
+        }
+        let mut value = self.primary()?;
+        while let Some(operator) = operators.pop() {
+            value = match operator {
+                TokenKind::Not => Value::truth(!value.is_true()),
+                TokenKind::Tilde => Value { bits: !value.bits, ..value },
+                TokenKind::Minus => Value { bits: value.bits.wrapping_neg(), ..value },
+                _ => value,
+            };
+        }
+        Ok(value)
+    }
+
+    fn primary(&mut self) -> Evaluated {
+        let Some(token) = self.peek() else {
+            let span = self.tokens.last().map_or(Span::new(0, 0), |token| token.span);
+            return self.fail(
+                Diagnostic::error(span, "`#if` expression ends too early")
+                    .at("expected an operand behind this"),
+            );
+        };
+        self.at += 1;
+        match token.kind {
+            TokenKind::Identifier if token.name == word::DEFINED => self.defined(token),
+            TokenKind::Identifier => Ok(Value::signed(0)),
+            TokenKind::Number => self.number(token),
+            TokenKind::Character => {
+                let text = self.pp.spelling(token);
+                let (value, problems) = quoted::character(&text);
+                let broken = token.flags.has(Flags::BROKEN);
+                match problems.into_iter().next().filter(|_| !broken) {
+                    Some(problem) => self.fail(Diagnostic::error(token.span, problem.message)),
+                    None => Ok(Value::signed(i64::from(value))),
+                }
+            }
+            TokenKind::LeftParen => {
+                let value = self.conditional()?;
+                self.expect(TokenKind::RightParen)?;
+                Ok(value)
+            }
+            _ => {
+                let found = self.text(token);
+                let message = format!("`{found}` cannot stand in an `#if` expression");
+                self.fail(Diagnostic::error(token.span, message).at("expected an operand"))
+            }
+        }
+    }
+
+    /// `defined name` or `defined(name)`
+    fn defined(&mut self, operator: Token) -> Evaluated {
+        let has_paren = self.take(TokenKind::LeftParen);
+        let Some(name) = self.peek().filter(|token| token.kind == TokenKind::Identifier) else {
+            return self.fail(Diagnostic::error(operator.span, "expected a name behind `defined`"));
+        };
+        self.at += 1;
+        if has_paren {
+            self.expect(TokenKind::RightParen)?;
+        }
+        Ok(Value::truth(self.pp.is_defined(name.name)))
+    }
+
+    fn number(&mut self, token: Token) -> Evaluated {
+        if token.flags.has(Flags::BROKEN) {
+            return Err(Reported);
+        }
+        let text = self.pp.spelling(token);
+        match number::parse(&text) {
+            Ok(Number::Integer { literal, .. }) => {
+                let bits = literal.value.cast_signed();
+                let is_unsigned = literal.is_unsigned || bits < 0;
+                Ok(Value { bits, is_unsigned })
+            }
+            Ok(Number::Floating(_)) => {
+                let message = "floating constant in an `#if` expression";
+                self.fail(Diagnostic::error(token.span, message).note("only integers are allowed"))
+            }
+            Err(problem) => self.fail(Diagnostic::error(token.span, problem.message)),
+        }
+    }
+
+    fn apply(&mut self, operator: Token, left: Value, right: Value) -> Evaluated {
+        use TokenKind::{
+            And, AndAnd, Comma, Equal, Greater, GreaterEqual, Less, LessEqual, Minus, NotEqual, Or, OrOr,
+            Percent, Plus, ShiftLeft, ShiftRight, Slash, Star, Xor,
+        };
+        let is_unsigned = left.is_unsigned || right.is_unsigned;
+        let (a, b) = (left.bits, right.bits);
+        let is_less = if is_unsigned { a.cast_unsigned() < b.cast_unsigned() } else { a < b };
+        let bits = match operator.kind {
+            AndAnd => return Ok(Value::truth(left.is_true() && right.is_true())),
+            OrOr => return Ok(Value::truth(left.is_true() || right.is_true())),
+            Equal => return Ok(Value::truth(a == b)),
+            NotEqual => return Ok(Value::truth(a != b)),
+            Less => return Ok(Value::truth(is_less)),
+            GreaterEqual => return Ok(Value::truth(!is_less)),
+            Greater => return Ok(Value::truth(!is_less && a != b)),
+            LessEqual => return Ok(Value::truth(is_less || a == b)),
+            Comma => return Ok(right),
+            Slash | Percent if b == 0 => {
+                if self.is_evaluated {
+                    return self
+                        .fail(Diagnostic::error(operator.span, "division by zero in `#if` expression"));
+                }
+                0
+            }
+            Slash if is_unsigned => (a.cast_unsigned() / b.cast_unsigned()).cast_signed(),
+            Percent if is_unsigned => (a.cast_unsigned() % b.cast_unsigned()).cast_signed(),
+            Slash => a.wrapping_div(b),
+            Percent => a.wrapping_rem(b),
+            Star => a.wrapping_mul(b),
+            Plus => a.wrapping_add(b),
+            Minus => a.wrapping_sub(b),
+            And => a & b,
+            Or => a | b,
+            Xor => a ^ b,
+            ShiftLeft => return Ok(Value { bits: shift(left, b), ..left }),
+            ShiftRight => return Ok(Value { bits: shift(left, b.wrapping_neg()), ..left }),
+            _ => 0,
+        };
+        Ok(Value { bits, is_unsigned })
+    }
+
+    /// Parses something whose value counts only under a condition.
+    fn when(&mut self, is_needed: bool, parse: impl Fn(&mut Self) -> Evaluated) -> Evaluated {
+        let outer = self.is_evaluated;
+        self.is_evaluated &= is_needed;
+        let value = parse(self);
+        self.is_evaluated = outer;
+        value
+    }
+
+    fn peek(&self) -> Option<Token> {
+        self.tokens.get(self.at).copied()
+    }
+
+    fn take(&mut self, kind: TokenKind) -> bool {
+        let is_next = self.peek().is_some_and(|token| token.kind == kind);
+        self.at += usize::from(is_next);
+        is_next
+    }
+
+    fn expect(&mut self, kind: TokenKind) -> Result<(), Reported> {
+        if self.take(kind) {
+            return Ok(());
+        }
+        let wanted = kind.punctuator().unwrap_or("an operand");
+        let (span, found) = match self.peek() {
+            Some(token) => (token.span, format!(", found `{}`", self.text(token))),
+            None => (self.tokens.last().map_or(Span::new(0, 0), |token| token.span), String::new()),
+        };
+        let message = format!("expected `{wanted}` in `#if` expression{found}");
+        self.fail(Diagnostic::error(span, message)).map(|_| ())
+    }
+
+    fn text(&self, token: Token) -> String {
+        String::from_utf8_lossy(&self.pp.spelling(token)).into_owned()
+    }
+
+    fn fail(&mut self, diagnostic: Diagnostic) -> Evaluated {
+        self.pp.sink.report(diagnostic);
+        Err(Reported)
+    }
+}
+
+/// `value << count`; to the right for a negative count.
+fn shift(value: Value, count: i64) -> i64 {
+    let distance = u32::try_from(count.unsigned_abs()).unwrap_or(u32::MAX);
+    match (count >= 0, value.is_unsigned) {
+        (true, _) => value.bits.checked_shl(distance).unwrap_or(0),
+        (false, true) => value.bits.cast_unsigned().checked_shr(distance).unwrap_or(0).cast_signed(),
+        (false, false) => value.bits >> distance.min(63),
+    }
+}
+
+/// How tight a binary operator binds.
+fn binding(kind: TokenKind) -> Option<u8> {
+    Some(match kind {
+        TokenKind::Comma => 0,
+        TokenKind::OrOr => 1,
+        TokenKind::AndAnd => 2,
+        TokenKind::Or => 3,
+        TokenKind::Xor => 4,
+        TokenKind::And => 5,
+        TokenKind::Equal | TokenKind::NotEqual => 6,
+        TokenKind::Less | TokenKind::LessEqual | TokenKind::Greater | TokenKind::GreaterEqual => 7,
+        TokenKind::ShiftLeft | TokenKind::ShiftRight => 8,
+        TokenKind::Plus | TokenKind::Minus => 9,
+        TokenKind::Star | TokenKind::Slash | TokenKind::Percent => 10,
+        _ => return None,
+    })
+}

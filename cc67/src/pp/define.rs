@@ -1,0 +1,171 @@
+//! `#define`.
+
+use cranelift_entity::EntityRef;
+
+use crate::diag::Diagnostic;
+use crate::lints::Lint;
+use crate::names::{Name, word};
+
+use super::engine::Preprocessor;
+use super::limits;
+use super::macros::{Macro, MacroId, Parameters};
+use super::token::{Flags, Token, TokenKind};
+
+impl Preprocessor<'_> {
+    /// Defines a macro from the rest of the line.
+    pub(super) fn define(&mut self) {
+        let Some(name) = self.macro_name("define") else { return };
+        let is_function_like = self.lexer().is_some_and(|(lexer, _)| lexer.is_at_paren());
+        let parameters = if is_function_like {
+            let Some(parameters) = self.parameters() else { return };
+            Some(parameters)
+        } else {
+            None
+        };
+        let Some(body) = self.body(parameters.as_ref()) else { return };
+        let is_operator = |token: &Token| {
+            matches!(token.kind, TokenKind::Parameter | TokenKind::Stringize | TokenKind::Paste)
+        };
+        let is_plain = !body.iter().any(is_operator);
+        if let Some(old) = self.macros.find(name.name) {
+            self.check_redefinition(old, name, parameters.as_ref(), &body);
+        }
+        let body = self.macros.add_body(&body);
+        let definition =
+            Macro { definition: name.span, parameters, body, is_plain, builtin: None, is_active: false };
+        self.macros.define(name.name, definition);
+    }
+
+    /// Reads `(a, b, ...)`.
+    fn parameters(&mut self) -> Option<Parameters> {
+        let open = self.directive_token();
+        let mut parameters = Parameters::default();
+        let mut token = self.directive_token();
+        if token.kind == TokenKind::RightParen {
+            return Some(parameters);
+        }
+        loop {
+            match token.kind {
+                TokenKind::Identifier => {
+                    if parameters.names.contains(&token.name) {
+                        let message = format!("parameter `{}` appears twice", self.names.get(token.name));
+                        self.sink.report(Diagnostic::error(token.span, message));
+                    }
+                    parameters.names.push(token.name);
+                }
+                TokenKind::Ellipsis => {
+                    parameters.names.push(word::VA_ARGS);
+                    parameters.is_variadic = true;
+                }
+                _ => return self.bad_parameters(token, "expected the name of a parameter"),
+            }
+            if parameters.names.len() > limits::PARAMETERS {
+                return self.bad_parameters(token, &format!("more than {} parameters", limits::PARAMETERS));
+            }
+            let mut next = self.directive_token();
+            if next.kind == TokenKind::Ellipsis && token.kind == TokenKind::Identifier {
+                // GNU: `args...` names the rest.
+                parameters.is_variadic = true;
+                next = self.directive_token();
+            }
+            match next.kind {
+                TokenKind::RightParen => return Some(parameters),
+                TokenKind::Comma if !parameters.is_variadic => token = self.directive_token(),
+                TokenKind::Comma => return self.bad_parameters(next, "`...` must be the last parameter"),
+                TokenKind::End => return self.bad_parameters(open, "parameter list is never closed"),
+                _ => return self.bad_parameters(next, "expected `,` or `)`"),
+            }
+        }
+    }
+
+    fn bad_parameters(&mut self, token: Token, message: &str) -> Option<Parameters> {
+        self.sink.report(
+            Diagnostic::error(token.span, message)
+                .at("in the parameters of a macro")
+                .note("`(` directly behind its name gives a macro parameters; for a body in parentheses put a blank between"),
+        );
+        None
+    }
+
+    /// Reads the body; names of parameters become operands, `#` and `##` operators.
+    fn body(&mut self, parameters: Option<&Parameters>) -> Option<Vec<Token>> {
+        let mut body: Vec<Token> = Vec::new();
+        let mut is_first = true;
+        loop {
+            let mut token = self.directive_token();
+            match token.kind {
+                TokenKind::End => break,
+                TokenKind::Identifier => make_operand(&mut token, TokenKind::Parameter, parameters),
+                TokenKind::HashHash => token.kind = TokenKind::Paste,
+                TokenKind::Hash if parameters.is_some() => {
+                    let mut operand = self.directive_token();
+                    let flags = token.flags;
+                    make_operand(&mut operand, TokenKind::Stringize, parameters);
+                    if operand.kind != TokenKind::Stringize {
+                        self.sink.report(
+                            Diagnostic::error(token.span, "`#` is not followed by a parameter")
+                                .note("in a macro with parameters `#` makes a string of the one behind it"),
+                        );
+                        return None;
+                    }
+                    token = Token { flags, span: token.span.to(operand.span), ..operand };
+                }
+                _ => {}
+            }
+            // Blanks before the body do not count.
+            if is_first {
+                token.flags = token.flags.without(Flags::SPACE);
+                is_first = false;
+            }
+            body.push(token);
+        }
+        let is_paste = |token: &&Token| token.kind == TokenKind::Paste;
+        if let Some(paste) = body.first().filter(is_paste).or(body.last().filter(is_paste)) {
+            let message = "`##` at the start or end of a macro has nothing to join";
+            self.sink.report(Diagnostic::error(paste.span, message));
+            return None;
+        }
+        Some(body)
+    }
+
+    /// Warns if the new definition is another one.
+    fn check_redefinition(
+        &mut self,
+        old: MacroId,
+        name: Token,
+        parameters: Option<&Parameters>,
+        body: &[Token],
+    ) {
+        let Some(definition) = self.macros.get(old) else { return };
+        let old_body = self.macros.body(definition.body.clone());
+        let is_same = definition.builtin.is_none()
+            && definition.parameters.as_ref() == parameters
+            && old_body.len() == body.len()
+            && old_body.iter().zip(body).all(|(old, new)| {
+                old.kind == new.kind
+                    && old.flags.is_separated() == new.flags.is_separated()
+                    && self.sources.text(old.span) == self.sources.text(new.span)
+            });
+        if is_same {
+            return;
+        }
+        let before = definition.definition;
+        let message = format!("macro `{}` is defined again with another body", self.names.get(name.name));
+        self.sink.report(
+            Diagnostic::warning(Lint::MacroRedefined, name.span, message)
+                .at("this one counts from here on")
+                .label(before, "first defined here"),
+        );
+    }
+}
+
+/// Makes the name of a parameter an operand.
+fn make_operand(token: &mut Token, kind: TokenKind, parameters: Option<&Parameters>) {
+    if token.kind == TokenKind::Identifier
+        && let Some(number) =
+            parameters.and_then(|list| list.names.iter().position(|name| *name == token.name))
+    {
+        token.kind = kind;
+        token.name = Name::new(number);
+    }
+}

@@ -1,0 +1,157 @@
+//! The preprocessor's state and its main loop.
+//!
+//! Tokens come from two stacks: the expansions being read ([`super::expand`]) and, when there
+//! are none, the files being read. A line that begins with `#` is acted on as soon as its
+//! first token is met, and never seen by anyone else.
+
+use std::path::PathBuf;
+
+use crate::diag::{Diagnostic, Sink, TOO_MANY_ERRORS};
+use crate::names::Names;
+use crate::source::{FileId, SourceMap, Span};
+
+use super::conditional::Conditional;
+use super::expand::Frame;
+use super::guard::Guard;
+use super::lexer::{Context, Lexer};
+use super::macros::Macros;
+use super::search::Reader;
+use super::token::{Flags, Token, TokenKind};
+use super::{Files, Options, limits};
+
+/// A file being read.
+pub(super) struct OpenFile {
+    pub(super) lexer: Lexer,
+    /// Its path, to recognise it when it is included again; none for text without a file.
+    pub(super) path: Option<PathBuf>,
+    /// Where includes in it look first.
+    pub(super) directory: PathBuf,
+    /// The open `#if`s.
+    pub(super) conditionals: Vec<Conditional>,
+    /// Whether a second inclusion would be empty.
+    pub(super) guard: Guard,
+    /// What `#line` adds to line numbers.
+    pub(super) line_shift: i64,
+    /// The file name that `#line` gave.
+    pub(super) presumed_name: Option<String>,
+}
+
+/// A preprocessor at work.
+pub(super) struct Preprocessor<'a> {
+    pub(super) options: &'a Options,
+    pub(super) sources: &'a mut SourceMap,
+    pub(super) names: &'a mut Names,
+    pub(super) sink: &'a mut Sink,
+    pub(super) reader: Reader<'a>,
+    pub(super) macros: Macros,
+    /// Expansions being read, the innermost last.
+    pub(super) frames: Vec<Frame>,
+    /// Files being read, the innermost last.
+    pub(super) open: Vec<OpenFile>,
+    /// The directory of the main file.
+    pub(super) main_directory: PathBuf,
+    /// Tokens that macros made so far.
+    pub(super) expanded: usize,
+    /// Macro calls within arguments being expanded.
+    pub(super) nesting: usize,
+    /// The macro call whose arguments are being collected.
+    pub(super) collecting: Option<Span>,
+    /// The next value of `__COUNTER__`.
+    pub(super) counter: u32,
+    /// A limit was exceeded: every source of tokens is at its end.
+    pub(super) is_stopped: bool,
+}
+
+impl<'a> Preprocessor<'a> {
+    pub(super) fn new(
+        options: &'a Options,
+        files: &'a dyn Files,
+        sources: &'a mut SourceMap,
+        names: &'a mut Names,
+        sink: &'a mut Sink,
+    ) -> Self {
+        Self {
+            options,
+            sources,
+            names,
+            sink,
+            reader: Reader::new(files),
+            macros: Macros::default(),
+            frames: Vec::new(),
+            open: Vec::new(),
+            main_directory: PathBuf::new(),
+            expanded: 0,
+            nesting: 0,
+            collecting: None,
+            counter: 0,
+            is_stopped: false,
+        }
+    }
+
+    /// All tokens of the main file and what it includes.
+    pub(super) fn run(mut self, main: FileId) -> Vec<Token> {
+        self.define_predefined();
+        let mut output = Vec::new();
+        self.open_main(main);
+        let mut end = Span::new(0, 0);
+        while let Some(file) = self.open.last() {
+            end = file.lexer.end_span();
+            self.expand_all(&mut output);
+            if output.len() > limits::TOKENS && !self.is_stopped {
+                self.stop(end, format!("more than {} tokens after preprocessing", limits::TOKENS));
+            }
+            self.close_file();
+        }
+        let broken = if self.is_stopped { Flags::BROKEN } else { Flags::NONE };
+        output.push(Token::new(TokenKind::End, Flags::LINE_START.with(broken), end));
+        output
+    }
+
+    /// The next token of the innermost file; directives on the way are obeyed.
+    pub(super) fn next_of_file(&mut self) -> Token {
+        loop {
+            let Some(file) = self.open.last_mut() else {
+                return Token::new(TokenKind::End, Flags::LINE_START, Span::new(0, 0));
+            };
+            if self.sink.is_full() && !self.is_stopped {
+                self.sink.report(Diagnostic::global_error(TOO_MANY_ERRORS));
+                self.is_stopped = true;
+            }
+            if self.is_stopped {
+                return Token::new(TokenKind::End, Flags::LINE_START, file.lexer.end_span());
+            }
+            let token = file.lexer.next(&mut Context { names: self.names, sink: self.sink });
+            if token.kind == TokenKind::Hash && token.flags.has(Flags::LINE_START) && !file.lexer.in_directive
+            {
+                self.directive(token);
+                continue;
+            }
+            if token.kind != TokenKind::End {
+                file.guard.meet_text();
+            }
+            return token;
+        }
+    }
+
+    /// The innermost file with what its lexer needs.
+    pub(super) fn lexer(&mut self) -> Option<(&mut Lexer, Context<'_>)> {
+        let file = self.open.last_mut()?;
+        Some((&mut file.lexer, Context { names: self.names, sink: self.sink }))
+    }
+
+    /// Reports an exceeded limit and ends all sources of tokens.
+    pub(super) fn stop(&mut self, span: Span, message: String) {
+        if !self.is_stopped {
+            self.sink.report(Diagnostic::error(span, message).note("the rest of the program was not read"));
+        }
+        self.is_stopped = true;
+    }
+
+    fn close_file(&mut self) {
+        let Some(file) = self.open.pop() else { return };
+        self.report_open_conditionals(&file);
+        if let (Some(path), Some(guard)) = (file.path, file.guard.finish()) {
+            self.reader.set_guard(path, guard);
+        }
+    }
+}

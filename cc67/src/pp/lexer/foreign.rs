@@ -1,0 +1,211 @@
+//! Bytes that C has no use for outside comments and strings.
+//!
+//! They come from word processors, web pages and other keyboards. Each gets one message with
+//! the character's name and what to write instead, and is then taken for what was meant.
+
+use crate::diag::Diagnostic;
+
+use super::super::LAX;
+use super::super::token::{Flags, Token, TokenKind};
+use super::{Context, Lexer, is_name_byte};
+
+/// What was already said about this file.
+#[derive(Debug, Default)]
+pub(super) struct Complained {
+    space: bool,
+    control: bool,
+}
+
+/// What a character stands for.
+enum Meaning {
+    Space,
+    Quote(u8),
+    Punctuator(TokenKind, &'static str),
+    Letter,
+}
+
+impl Lexer {
+    /// Skips a space that is none in C.
+    pub(super) fn skip_foreign_space(&mut self, cx: &mut Context<'_>) -> bool {
+        let (character, length) = self.character();
+        if !matches!(meaning(character), Meaning::Space) {
+            return false;
+        }
+        if !self.complained.space {
+            let span = self.span_to(self.at, self.at + length);
+            let message = format!("{} is taken for a blank", name_of(character));
+            cx.sink.report(Diagnostic::warning(LAX, span, message).help("replace it with a blank"));
+            self.complained.space = true;
+        }
+        self.at += length;
+        true
+    }
+
+    /// Whether the next bytes are a character that someone may take for a letter.
+    pub(super) fn is_foreign_letter(&self) -> bool {
+        matches!(meaning(self.character().0), Meaning::Letter)
+    }
+
+    /// Reads a name that goes on in other letters.
+    pub(super) fn foreign_name(&mut self, lo: usize, flags: Flags, cx: &mut Context<'_>) -> Token {
+        let mut first = None;
+        loop {
+            let (character, length) = self.character();
+            if character.is_ascii() && is_name_byte(self.byte(self.at)) {
+                self.at += 1;
+            } else if !character.is_ascii() && matches!(meaning(character), Meaning::Letter) {
+                first = first.or(Some((self.at, self.at + length, character)));
+                self.at += length;
+            } else {
+                break;
+            }
+        }
+        if let Some((from, to, character)) = first {
+            let message = format!("{} outside a comment or string", name_of(character));
+            cx.sink.report(
+                Diagnostic::error(self.span_to(from, to), message)
+                    .note("names consist of the letters A to Z, digits and underscores"),
+            );
+        }
+        let spelling = String::from_utf8_lossy(self.bytes(lo, self.at)).into_owned();
+        let name = cx.names.intern(&spelling);
+        Token { kind: TokenKind::Identifier, flags, name, span: self.span_from(lo) }
+    }
+
+    /// Reads a token that starts with a byte no token of C starts with; `None` if nothing is left of it.
+    pub(super) fn foreign(&mut self, flags: Flags, cx: &mut Context<'_>) -> Option<Token> {
+        let lo = self.at;
+        let (character, length) = self.character();
+        if character.is_ascii_control() {
+            self.control(character, cx);
+            return None;
+        }
+        if character.is_ascii() {
+            self.at += 1;
+            return Some(Token::new(TokenKind::Stray, flags, self.span_from(lo)));
+        }
+        match meaning(character) {
+            Meaning::Quote(quote) => Some(self.curly(quote, character, length, flags, cx)),
+            Meaning::Punctuator(kind, text) => {
+                self.at += length;
+                let span = self.span_from(lo);
+                let message = format!("{} outside a comment or string", name_of(character));
+                cx.sink.report(Diagnostic::error(span, message).help(format!("write `{text}`")));
+                Some(Token::new(kind, flags, span))
+            }
+            Meaning::Letter | Meaning::Space => Some(self.foreign_name(lo, flags, cx)),
+        }
+    }
+
+    /// NUL, Ctrl-Z and their kin.
+    fn control(&mut self, character: char, cx: &mut Context<'_>) {
+        let span = self.span_to(self.at, self.at + 1);
+        self.at += 1;
+        if self.complained.control {
+            return;
+        }
+        self.complained.control = true;
+        let message = match character {
+            '\0' => "NUL byte in the source text".to_owned(),
+            '\x1A' => "Ctrl-Z before the end of the source text".to_owned(),
+            _ => format!("control character 0x{:02X} in the source text", u32::from(character)),
+        };
+        let diagnostic = Diagnostic::error(span, message);
+        cx.sink.report(if character == '\0' {
+            diagnostic.note("the file may be damaged, or saved as UTF-16")
+        } else {
+            diagnostic
+        });
+    }
+
+    /// A typographic quote: the text up to its partner on the same line is a broken string or constant.
+    fn curly(
+        &mut self,
+        quote: u8,
+        character: char,
+        length: usize,
+        flags: Flags,
+        cx: &mut Context<'_>,
+    ) -> Token {
+        let lo = self.at;
+        let opening = self.span_to(lo, lo + length);
+        let line_end = self.end_of_line(lo);
+        let mut closing = None;
+        self.at += length;
+        let behind = self.at;
+        while self.at < line_end && closing.is_none() {
+            let (next, length) = self.character();
+            let is_partner = matches!(meaning(next), Meaning::Quote(other) if other == quote);
+            self.at += length;
+            closing = (is_partner || next == char::from(quote)).then_some(self.at);
+        }
+        self.at = closing.unwrap_or(behind);
+        let message = format!("{} is no quote in C", name_of(character));
+        let help = format!("write `{}`", char::from(quote));
+        cx.sink.report(Diagnostic::error(opening, message).help(help));
+        let kind = if quote == b'"' { TokenKind::String } else { TokenKind::Character };
+        Token::new(kind, flags.with(Flags::BROKEN), self.span_from(lo))
+    }
+
+    /// The next character and its length in bytes: UTF-8, or the Windows code page if it is not.
+    fn character(&self) -> (char, usize) {
+        let bytes = self.bytes(self.at, self.at + 4);
+        let first = self.byte(self.at);
+        let length = match first {
+            0xC2..=0xDF => 2,
+            0xE0..=0xEF => 3,
+            0xF0..=0xF4 => 4,
+            _ => 1,
+        };
+        let decoded = bytes.get(..length).and_then(|bytes| std::str::from_utf8(bytes).ok());
+        match decoded.and_then(|text| text.chars().next()) {
+            Some(character) => (character, length),
+            None => (from_windows(first), 1),
+        }
+    }
+}
+
+/// Code page 1252, as far as it differs from Latin-1 in a way that matters here.
+fn from_windows(byte: u8) -> char {
+    match byte {
+        0x82 | 0x91 => '\u{2018}',
+        0x92 => '\u{2019}',
+        0x84 | 0x93 => '\u{201C}',
+        0x94 => '\u{201D}',
+        0x85 => '\u{2026}',
+        0x96 => '\u{2013}',
+        0x97 => '\u{2014}',
+        _ => char::from(byte),
+    }
+}
+
+fn meaning(character: char) -> Meaning {
+    match character {
+        '\u{A0}' | '\u{2000}'..='\u{200B}' | '\u{202F}' | '\u{205F}' | '\u{3000}' | '\u{FEFF}' => {
+            Meaning::Space
+        }
+        '\u{201C}'..='\u{201F}' | '\u{AB}' | '\u{BB}' => Meaning::Quote(b'"'),
+        '\u{2018}'..='\u{201B}' | '\u{B4}' => Meaning::Quote(b'\''),
+        '\u{2010}'..='\u{2015}' | '\u{2212}' => Meaning::Punctuator(TokenKind::Minus, "-"),
+        '\u{D7}' => Meaning::Punctuator(TokenKind::Star, "*"),
+        '\u{F7}' => Meaning::Punctuator(TokenKind::Slash, "/"),
+        '\u{2026}' => Meaning::Punctuator(TokenKind::Ellipsis, "..."),
+        '\u{2264}' => Meaning::Punctuator(TokenKind::LessEqual, "<="),
+        '\u{2265}' => Meaning::Punctuator(TokenKind::GreaterEqual, ">="),
+        '\u{2260}' => Meaning::Punctuator(TokenKind::NotEqual, "!="),
+        '\u{37E}' | '\u{FF1B}' => Meaning::Punctuator(TokenKind::Semicolon, ";"),
+        _ => Meaning::Letter,
+    }
+}
+
+/// The character as a message names it.
+fn name_of(character: char) -> String {
+    let name = match character {
+        '\u{A0}' => "no-break space",
+        '\u{FEFF}' => "byte order mark",
+        '\u{200B}' => "zero-width space",
+        _ if matches!(meaning(character), Meaning::Space) => "typographic space",
+        _ => return format!("character `{character}` (U+{:04X})", u32::from(character)),
+    };
+    format!("{name} (U+{:04X})", u32::from(character))
+}

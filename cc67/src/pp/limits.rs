@@ -1,0 +1,34 @@
+//! What the preprocessor refuses to go beyond.
+//!
+//! Every limit is far above what a program for the board needs, and stands as a number in the
+//! message about it. They keep hostile text from exhausting memory, time or the stack.
+
+/// Files within files.
+pub const INCLUDE_DEPTH: usize = 64;
+
+/// Files included by one compilation, each time counted.
+pub const INCLUDES: usize = 20_000;
+
+/// Bytes of one file.
+pub const FILE_BYTES: u32 = 64 << 20;
+
+/// Bytes of all files together, each inclusion counted.
+pub const TOTAL_BYTES: u32 = 1 << 30;
+
+/// Tokens of a translation unit after preprocessing.
+pub const TOKENS: usize = 32_000_000;
+
+/// Tokens that macros put in the place of their names, in one translation unit.
+pub const EXPANDED_TOKENS: usize = 4_000_000;
+
+/// Bytes of a token made by `#` or `##`.
+pub const MADE_BYTES: usize = 1 << 20;
+
+/// Macro calls within arguments of macro calls, and parentheses within `#if` expressions.
+pub const NESTING: usize = 640;
+
+/// `#if` within `#if`.
+pub const CONDITIONALS: usize = 10_000;
+
+/// Parameters of a macro, arguments of a call.
+pub const PARAMETERS: usize = 10_000;

@@ -1,0 +1,118 @@
+//! What is defined: macros by name, and the tokens of their bodies.
+
+use std::ops::Range;
+
+use cranelift_entity::{PrimaryMap, SecondaryMap, entity_impl, packed_option::PackedOption};
+
+use crate::names::Name;
+use crate::source::Span;
+
+use super::token::Token;
+
+/// A definition; redefining a name makes a new one.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub(super) struct MacroId(u32);
+entity_impl!(MacroId, "macro");
+
+/// One definition.
+#[derive(Debug)]
+pub(super) struct Macro {
+    /// The name where it is defined.
+    pub(super) definition: Span,
+    /// The parameters of a function-like macro.
+    pub(super) parameters: Option<Parameters>,
+    /// The body, in [`Macros::body_token`].
+    pub(super) body: Range<usize>,
+    /// The body has no parameters and no `##`, so that it can be read where it lies.
+    pub(super) is_plain: bool,
+    /// What computes the value in place of a body.
+    pub(super) builtin: Option<Builtin>,
+    /// Its expansion is being read, so that its name means nothing.
+    pub(super) is_active: bool,
+}
+
+/// The parameters of a function-like macro.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(super) struct Parameters {
+    /// Their names; the last one of a variadic macro is `__VA_ARGS__` or the user's name for it.
+    pub(super) names: Vec<Name>,
+    /// The last parameter takes all remaining arguments.
+    pub(super) is_variadic: bool,
+}
+
+/// Macros without a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Builtin {
+    /// `__FILE__`
+    File,
+    /// `__LINE__`
+    Line,
+    /// `__COUNTER__`
+    Counter,
+}
+
+/// All definitions.
+#[derive(Debug, Default)]
+pub(super) struct Macros {
+    macros: PrimaryMap<MacroId, Macro>,
+    current: SecondaryMap<Name, PackedOption<MacroId>>,
+    bodies: Vec<Token>,
+}
+
+impl Macros {
+    /// The definition in force for a name.
+    pub(super) fn find(&self, name: Name) -> Option<MacroId> {
+        self.current.get(name)?.expand()
+    }
+
+    /// A definition; `None` never happens for an id from [`Self::find`].
+    pub(super) fn get(&self, id: MacroId) -> Option<&Macro> {
+        self.macros.get(id)
+    }
+
+    /// Marks whether the expansion of a macro is being read.
+    pub(super) fn set_active(&mut self, id: MacroId, is_active: bool) {
+        if let Some(definition) = self.macros.get_mut(id) {
+            definition.is_active = is_active;
+        }
+    }
+
+    /// Makes the macro of a name compute its value.
+    pub(super) fn set_builtin(&mut self, name: Name, builtin: Builtin) {
+        if let Some(definition) = self.find(name).and_then(|id| self.macros.get_mut(id)) {
+            definition.builtin = Some(builtin);
+        }
+    }
+
+    /// Puts a definition in force.
+    pub(super) fn define(&mut self, name: Name, definition: Macro) {
+        *self.slot(name) = self.macros.push(definition).into();
+    }
+
+    /// Ends the force of any definition.
+    pub(super) fn undefine(&mut self, name: Name) {
+        *self.slot(name) = None.into();
+    }
+
+    /// Adds a body.
+    pub(super) fn add_body(&mut self, tokens: &[Token]) -> Range<usize> {
+        let start = self.bodies.len();
+        self.bodies.extend_from_slice(tokens);
+        start..self.bodies.len()
+    }
+
+    /// A token of a body.
+    pub(super) fn body_token(&self, at: usize) -> Option<Token> {
+        self.bodies.get(at).copied()
+    }
+
+    /// The tokens of a body.
+    pub(super) fn body(&self, range: Range<usize>) -> &[Token] {
+        self.bodies.get(range).unwrap_or(&[])
+    }
+
+    #[expect(clippy::indexing_slicing, reason = "the map grows to hold every key")]
+    fn slot(&mut self, name: Name) -> &mut PackedOption<MacroId> {
+        &mut self.current[name]
+    }
+}

@@ -1,0 +1,196 @@
+//! What strings and character constants mean.
+
+use std::ops::Range;
+
+use super::lexer::is_blank;
+
+/// Something wrong within the quotes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Problem {
+    /// How bad it is.
+    pub kind: ProblemKind,
+    /// The finding.
+    pub message: String,
+    /// Which bytes of the text it is about.
+    pub range: Range<usize>,
+    /// What to write instead.
+    pub help: Option<String>,
+}
+
+/// Whether a problem leaves the value in doubt.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ProblemKind {
+    /// The program is wrong.
+    Error,
+    /// The value is the one that the vendor's compiler takes.
+    Warning,
+}
+
+/// The elements of a string in its quotes, and what is wrong with them. `L"…"` has elements of four bytes.
+#[must_use]
+pub fn string(text: &[u8]) -> (Vec<i32>, Vec<Problem>) {
+    let mut problems = Vec::new();
+    let elements = decode(text, &mut problems);
+    (elements, problems)
+}
+
+/// The value of a character constant in its quotes, and what is wrong with it.
+#[must_use]
+pub fn character(text: &[u8]) -> (i32, Vec<Problem>) {
+    let mut problems = Vec::new();
+    let elements = decode(text, &mut problems);
+    let first = elements.first().copied().unwrap_or(0);
+    let value = match u8::try_from(first) {
+        Ok(byte) if !is_wide(text) => i32::from(byte.cast_signed()),
+        _ => first,
+    };
+    let message = match elements.len() {
+        0 => "character constant is empty",
+        1 => return (value, problems),
+        _ => "character constant has more than one character",
+    };
+    let help = (elements.len() > 1).then(|| "a string has double quotes: `\"`".to_owned());
+    problems.push(Problem {
+        kind: ProblemKind::Error,
+        message: message.to_owned(),
+        range: 0..text.len(),
+        help,
+    });
+    (value, problems)
+}
+
+/// Whether the text is that of a wide string or character.
+#[must_use]
+pub fn is_wide(text: &[u8]) -> bool {
+    text.first() == Some(&b'L')
+}
+
+fn decode(text: &[u8], problems: &mut Vec<Problem>) -> Vec<i32> {
+    let is_wide = is_wide(text);
+    let end = text.len().saturating_sub(1);
+    let mut at = 1 + usize::from(is_wide);
+    let mut elements = Vec::with_capacity(end.saturating_sub(at));
+    while at < end {
+        let Some(byte) = text.get(at) else { break };
+        if *byte != b'\\' {
+            // A string over several lines of a Windows file has the line feeds only.
+            if !(*byte == b'\r' && text.get(at + 1) == Some(&b'\n')) {
+                elements.push(i32::from(*byte));
+            }
+            at += 1;
+            continue;
+        }
+        let blanks = text.iter().skip(at + 1).take_while(|byte| is_blank(**byte)).count();
+        if text.get(at + 1 + blanks) == Some(&b'\n') {
+            at += blanks + 2;
+            continue;
+        }
+        let (value, length) = escape(text, at, is_wide, problems);
+        elements.push(value);
+        at += length;
+    }
+    elements
+}
+
+/// The value of the escape at `at`, and its length in bytes.
+fn escape(text: &[u8], at: usize, is_wide: bool, problems: &mut Vec<Problem>) -> (i32, usize) {
+    let letter = text.get(at + 1).copied().unwrap_or(0);
+    let value = match letter {
+        b'a' => 7,
+        b'b' => 8,
+        b'f' => 12,
+        b'n' => 10,
+        b'r' => 13,
+        b't' => 9,
+        b'v' => 11,
+        b'e' => 27,
+        b'\'' | b'"' | b'\\' | b'?' => i32::from(letter),
+        b'0'..=b'7' => return numeric(text, at, at + 1, 8, 3, is_wide, problems),
+        b'x' => return numeric(text, at, at + 2, 16, usize::MAX, is_wide, problems),
+        _ => {
+            let shown = if letter.is_ascii_graphic() { char::from(letter) } else { '?' };
+            problems.push(Problem {
+                kind: ProblemKind::Error,
+                message: format!("unknown escape `\\{shown}`"),
+                range: at..at + 2,
+                help: Some("write `\\\\` for a backslash".to_owned()),
+            });
+            i32::from(letter)
+        }
+    };
+    (value, 2)
+}
+
+/// An octal or hexadecimal escape whose digits begin at `start`.
+fn numeric(
+    text: &[u8],
+    at: usize,
+    start: usize,
+    base: u32,
+    most: usize,
+    is_wide: bool,
+    problems: &mut Vec<Problem>,
+) -> (i32, usize) {
+    let mut problem = |kind, range, message: &str| {
+        problems.push(Problem { kind, message: message.to_owned(), range, help: None });
+    };
+    let digits = text.iter().skip(start).take(most).map_while(|byte| char::from(*byte).to_digit(base));
+    let (mut value, mut length, mut overflows) = (0_u32, 0, false);
+    for digit in digits {
+        overflows |= value.leading_zeros() < base.ilog2();
+        value = value.wrapping_mul(base) | digit;
+        length += 1;
+    }
+    let end = start + length;
+    if length == 0 {
+        problem(ProblemKind::Error, at..end, "digits missing behind `\\x`");
+    } else if overflows || (!is_wide && value > 0xFF) {
+        problem(ProblemKind::Warning, at..end, "escape does not fit a character; its low byte is taken");
+    }
+    let value = if is_wide { value } else { value & 0xFF };
+    (value.cast_signed(), end - at)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strings() {
+        let check =
+            |text: &str, expect: &[i32]| assert_eq!(string(text.as_bytes()), (expect.to_vec(), vec![]));
+        check(r#""ab""#, &[97, 98]);
+        check(r#""""#, &[]);
+        check(r#""\a\b\f\n\r\t\v\e\'\"\\\?""#, &[7, 8, 12, 10, 13, 9, 11, 27, 39, 34, 92, 63]);
+        check(r#""\0\12\1234""#, &[0, 10, 83, 52]);
+        check(r#""\x41\xff""#, &[65, 255]);
+        check(r#"L"a\x1234""#, &[97, 0x1234]);
+        check("\"a\\\nb\\\r\nc\r\nd\"", &[97, 98, 99, 10, 100]);
+        assert_eq!(string(b"\"\xE9\"").0, [0xE9]);
+    }
+
+    #[test]
+    fn characters_are_signed() {
+        let check = |text: &str, expect: i32| assert_eq!(character(text.as_bytes()), (expect, vec![]));
+        check("'a'", 97);
+        check(r"'\377'", -1);
+        check(r"'\0'", 0);
+        check(r"L'\377'", 255);
+    }
+
+    #[test]
+    fn problems_say_where() {
+        let check = |text: &str, message: &str, range: Range<usize>| {
+            let problems =
+                if text.starts_with('"') { string(text.as_bytes()).1 } else { character(text.as_bytes()).1 };
+            let found: Vec<_> =
+                problems.into_iter().map(|problem| (problem.message, problem.range)).collect();
+            assert_eq!(found, [(message.to_owned(), range)], "{text}");
+        };
+        check(r#""C:\Program""#, r"unknown escape `\P`", 3..5);
+        check(r#""\xg""#, r"digits missing behind `\x`", 1..3);
+        check(r#""\x123""#, "escape does not fit a character; its low byte is taken", 1..6);
+        check("''", "character constant is empty", 0..2);
+        check("'ab'", "character constant has more than one character", 0..4);
+    }
+}

@@ -1,0 +1,170 @@
+//! Preprocessing tokens.
+//!
+//! A token is twenty bytes and `Copy`: its kind, the name of an identifier, and the span where
+//! its text stands. Text made by the preprocessor (joined and quoted tokens) stands in the
+//! source map's scratch space, so that a span is enough for every token.
+
+use std::borrow::Cow;
+
+use cranelift_entity::EntityRef;
+use cranelift_entity::packed_option::ReservedValue;
+
+use crate::names::Name;
+use crate::source::{SourceMap, Span};
+
+use super::lexer::without_splices;
+
+/// A preprocessing token.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Token {
+    /// What it is.
+    pub kind: TokenKind,
+    /// What else is known about it.
+    pub flags: Flags,
+    /// The name of an identifier; for operands of a macro body the number of the parameter.
+    pub name: Name,
+    /// Where its text stands, and through which macro it came.
+    pub span: Span,
+}
+
+impl Token {
+    /// A token that is no identifier.
+    #[must_use]
+    pub fn new(kind: TokenKind, flags: Flags, span: Span) -> Self {
+        Self { kind, flags, name: Name::reserved_value(), span }
+    }
+
+    /// The parameter that an operand in a macro body stands for.
+    #[must_use]
+    pub(super) fn parameter(&self) -> usize {
+        self.name.index()
+    }
+}
+
+/// The text of a token, as the program means it.
+#[must_use]
+pub fn token_text(token: Token, sources: &SourceMap) -> Cow<'_, [u8]> {
+    let text = sources.text(token.span);
+    if token.flags.has(Flags::SPLICED) { without_splices(text).into() } else { text.into() }
+}
+
+/// A set of facts about a token.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Flags(u8);
+
+impl Flags {
+    /// Nothing.
+    pub const NONE: Self = Self(0);
+    /// White space or a comment stands before it.
+    pub const SPACE: Self = Self(1);
+    /// It is the first of its line.
+    pub const LINE_START: Self = Self(1 << 1);
+    /// A macro name met inside its own expansion; it is never expanded again.
+    pub const NO_EXPAND: Self = Self(1 << 2);
+    /// Its text contains a backslash and newline that do not belong to it.
+    pub const SPLICED: Self = Self(1 << 3);
+    /// It was diagnosed already; its value means nothing.
+    pub const BROKEN: Self = Self(1 << 4);
+
+    /// The facts of both.
+    #[must_use]
+    pub const fn with(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// The facts of `self` that are not in `other`.
+    #[must_use]
+    pub const fn without(self, other: Self) -> Self {
+        Self(self.0 & !other.0)
+    }
+
+    /// The facts that are in both.
+    #[must_use]
+    pub const fn only(self, other: Self) -> Self {
+        Self(self.0 & other.0)
+    }
+
+    /// Whether any fact of `other` is in `self`.
+    #[must_use]
+    pub const fn has(self, other: Self) -> bool {
+        self.0 & other.0 != 0
+    }
+
+    /// Whether anything separates the token from the one before.
+    #[must_use]
+    pub const fn is_separated(self) -> bool {
+        self.has(Self(Self::SPACE.0 | Self::LINE_START.0))
+    }
+}
+
+macro_rules! token_kinds {
+    (
+        $($(#[$doc:meta])* $class:ident,)*
+        ;
+        $($punctuator:ident = $text:literal,)*
+    ) => {
+        /// The kinds of token.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum TokenKind {
+            $($(#[$doc])* $class,)*
+            $(
+                #[doc = concat!("`", $text, "`")]
+                $punctuator,
+            )*
+        }
+
+        impl TokenKind {
+            /// The text of a punctuator.
+            #[must_use]
+            pub const fn punctuator(self) -> Option<&'static str> {
+                match self {
+                    $(Self::$punctuator => Some($text),)*
+                    _ => None,
+                }
+            }
+        }
+    };
+}
+
+token_kinds! {
+    /// An identifier or keyword.
+    Identifier,
+    /// A preprocessing number: anything that looks like one.
+    Number,
+    /// A character constant.
+    Character,
+    /// A string literal.
+    String,
+    /// A character that starts no token of C.
+    Stray,
+    /// In a macro body: a parameter.
+    Parameter,
+    /// In a macro body: `#parameter`.
+    Stringize,
+    /// In a macro body: `##`.
+    Paste,
+    /// The end of the file, of the directive, or of the macro argument.
+    End,
+    ;
+    LeftParen = "(", RightParen = ")", LeftBracket = "[", RightBracket = "]", LeftBrace = "{", RightBrace = "}",
+    Semicolon = ";", Comma = ",", Question = "?", Colon = ":", Tilde = "~",
+    Dot = ".", Ellipsis = "...", Arrow = "->",
+    Plus = "+", PlusPlus = "++", PlusAssign = "+=",
+    Minus = "-", MinusMinus = "--", MinusAssign = "-=",
+    Star = "*", StarAssign = "*=", Slash = "/", SlashAssign = "/=", Percent = "%", PercentAssign = "%=",
+    Less = "<", LessEqual = "<=", ShiftLeft = "<<", ShiftLeftAssign = "<<=",
+    Greater = ">", GreaterEqual = ">=", ShiftRight = ">>", ShiftRightAssign = ">>=",
+    Assign = "=", Equal = "==", Not = "!", NotEqual = "!=",
+    And = "&", AndAnd = "&&", AndAssign = "&=", Or = "|", OrOr = "||", OrAssign = "|=",
+    Xor = "^", XorAssign = "^=", Hash = "#", HashHash = "##",
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_token_is_small() {
+        assert_eq!(size_of::<Token>(), 20);
+    }
+}

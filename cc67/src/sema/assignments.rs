@@ -1,0 +1,198 @@
+//! Assignments: `=`, `op=`, `++`, `--`.
+
+use super::Sema;
+use super::constants::Constant;
+use super::conversions::Target;
+use super::operands::Operand;
+use super::operators::spelling;
+use super::places::Located;
+use crate::ast::{BinaryOperator, Expression};
+use crate::diag::Diagnostic;
+use crate::lints::Lint;
+use crate::source::Span;
+use crate::ty::{TypeId, Types, convert};
+use crate::typed::{BinaryOp, ExprId, ExprKind, PlaceKind, Update, UpdateResult};
+
+impl Sema<'_> {
+    /// `to = from`
+    pub(super) fn assignment(&mut self, to: &Expression, from: &Expression, span: Span) -> Option<Operand> {
+        let target = self.operand(to);
+        let source = self.operand(from);
+        let target = self.modifiable(target?, to.span);
+        let (target, source) = (target?, source?);
+        if self.types.record_of(target.ty.ty).is_some() {
+            return self.assign_record(target, source, from.span, span);
+        }
+        let value = self.read(source, from.span)?;
+        let value = self.assigned(value, target.ty.ty, Target::Assignment, from.span)?;
+        Some(Operand::Value(self.body.expr(ExprKind::Assign(target.place, value), target.ty.ty, span)))
+    }
+
+    /// The place that an assignment changes.
+    fn modifiable(&mut self, operand: Operand, span: Span) -> Option<Located> {
+        let Operand::Place(located) = operand else {
+            let what = match operand {
+                Operand::Function(..) => "a function",
+                _ => "a value",
+            };
+            self.report(
+                Diagnostic::error(span, format!("{what} cannot be assigned to"))
+                    .at("a variable is needed here"),
+            );
+            return None;
+        };
+        if !located.is_lvalue || self.types.array(located.ty.ty).is_some() {
+            let spelled = self.spell(located.ty.ty);
+            let mut diagnostic = Diagnostic::error(span, format!("`{spelled}` cannot be assigned to here"));
+            if located.is_lvalue {
+                diagnostic = diagnostic.help("assign the elements one by one");
+            }
+            self.report(diagnostic);
+            return None;
+        }
+        if located.ty.is_const {
+            self.report(
+                Diagnostic::warning(Lint::ConstWrite, span, "a `const` object is changed")
+                    .at("declared `const`")
+                    .note("the vendor's compiler ignores `const`, and so does this one"),
+            );
+        }
+        Some(located)
+    }
+
+    fn assign_record(
+        &mut self,
+        target: Located,
+        source: Operand,
+        source_span: Span,
+        span: Span,
+    ) -> Option<Operand> {
+        let ty = target.ty.ty;
+        let from = self.record_source(source, ty, Target::Assignment, source_span)?;
+        if matches!(self.body.places[target.place].kind, PlaceKind::Local(..) | PlaceKind::Symbol(..)) {
+            let copy = self.body.expr(ExprKind::Copy { to: target.place, from }, Types::VOID, span);
+            return Some(self.made(copy, target.place, span));
+        }
+        // The address of the target is computed once, also if the value is used.
+        let pointer_type = self.types.pointer_to(ty);
+        let address = self.address(target.place, pointer_type, span);
+        let kept = self.body.temporary(pointer_type, false, span);
+        let store = self.body.store_local(kept, address, span);
+        let pointer = self.body.load_local(kept, span);
+        let to = self.body.place(PlaceKind::Pointer(pointer, 0), ty, span);
+        let copy = self.body.expr(ExprKind::Copy { to, from }, Types::VOID, span);
+        let effect = self.body.comma(store, copy, span);
+        let pointer = self.body.load_local(kept, span);
+        let value = self.body.place(PlaceKind::Pointer(pointer, 0), ty, span);
+        Some(self.made(effect, value, span))
+    }
+
+    /// `to op= from`
+    pub(super) fn compound_assignment(
+        &mut self,
+        operator: BinaryOperator,
+        to: &Expression,
+        from: &Expression,
+        span: Span,
+    ) -> Option<ExprId> {
+        let target = self.operand(to);
+        let value = self.value(from);
+        let target = self.modifiable(target?, to.span)?;
+        self.update(operator, target, value?, UpdateResult::New, span)
+    }
+
+    /// `++a`, `a--`
+    pub(super) fn increment(
+        &mut self,
+        operand: &Expression,
+        is_increment: bool,
+        is_prefix: bool,
+        span: Span,
+    ) -> Option<ExprId> {
+        let target = self.operand(operand)?;
+        let target = self.modifiable(target, operand.span)?;
+        let operator = if is_increment { BinaryOperator::Add } else { BinaryOperator::Subtract };
+        let one = self.body.int(1, Types::INT, span);
+        let result = if is_prefix { UpdateResult::New } else { UpdateResult::Old };
+        self.update(operator, target, one, result, span)
+    }
+
+    fn update(
+        &mut self,
+        operator: BinaryOperator,
+        target: Located,
+        value: ExprId,
+        result: UpdateResult,
+        span: Span,
+    ) -> Option<ExprId> {
+        let (op, ty) = (update_op(operator)?, target.ty.ty);
+        let from = self.body.ty(value);
+        let (computed, operand) = if let Some(element) = self.types.pointee(ty) {
+            if !from.is_integer() || !matches!(op, BinaryOp::Add | BinaryOp::Subtract) {
+                return self.refuse_update(operator, ty, from, span);
+            }
+            (ty, self.scaled(value, element, span)?)
+        } else {
+            let is_integers = ty.is_integer() && from.is_integer();
+            let is_arithmetic = ty.is_arithmetic() && from.is_arithmetic();
+            match op {
+                BinaryOp::ShiftLeft | BinaryOp::ShiftRight if is_integers => {
+                    (convert::promoted(ty), self.shift_count(value, ty, span))
+                }
+                BinaryOp::Add | BinaryOp::Subtract | BinaryOp::Multiply | BinaryOp::Divide
+                    if is_arithmetic =>
+                {
+                    self.in_common_type(ty, value, span)
+                }
+                BinaryOp::And | BinaryOp::Or | BinaryOp::Xor | BinaryOp::Remainder if is_integers => {
+                    self.in_common_type(ty, value, span)
+                }
+                _ => return self.refuse_update(operator, ty, from, span),
+            }
+        };
+        let update = Update { place: target.place, op, operand, computed, result };
+        Some(self.body.expr(ExprKind::Update(update), ty, span))
+    }
+
+    fn in_common_type(&mut self, ty: TypeId, value: ExprId, span: Span) -> (TypeId, ExprId) {
+        let value = self.promote(value, span);
+        let computed = convert::common(ty, self.body.ty(value));
+        (computed, self.body.convert(value, computed, span))
+    }
+
+    fn refuse_update(
+        &mut self,
+        operator: BinaryOperator,
+        to: TypeId,
+        from: TypeId,
+        span: Span,
+    ) -> Option<ExprId> {
+        let (to, from) = (self.spell(to), self.spell(from));
+        let message = format!("`{}=` cannot be used on `{to}` and `{from}`", spelling(operator));
+        self.report(Diagnostic::error(span, message));
+        None
+    }
+
+    /// The zero of a scalar type.
+    pub(super) fn zero(&mut self, ty: TypeId, span: Span) -> ExprId {
+        let zero = if ty.is_floating() { Constant::Float(0.0) } else { Constant::Int(0) };
+        self.body.constant(zero, ty, span)
+    }
+}
+
+/// The operator of a compound assignment; `None` for those that cannot be one.
+const fn update_op(operator: BinaryOperator) -> Option<BinaryOp> {
+    Some(match operator {
+        BinaryOperator::Multiply => BinaryOp::Multiply,
+        BinaryOperator::Divide => BinaryOp::Divide,
+        BinaryOperator::Remainder => BinaryOp::Remainder,
+        BinaryOperator::Add => BinaryOp::Add,
+        BinaryOperator::Subtract => BinaryOp::Subtract,
+        BinaryOperator::ShiftLeft => BinaryOp::ShiftLeft,
+        BinaryOperator::ShiftRight => BinaryOp::ShiftRight,
+        BinaryOperator::And => BinaryOp::And,
+        BinaryOperator::Xor => BinaryOp::Xor,
+        BinaryOperator::Or => BinaryOp::Or,
+        _ => return None,
+    })
+}

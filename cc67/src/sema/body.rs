@@ -1,0 +1,217 @@
+//! The function under construction: its expressions, places, locals and labels.
+//!
+//! The constructors here fold what is constant; they know nothing of diagnostics.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use cranelift_entity::PrimaryMap;
+
+use super::constants::{self, Constant};
+use crate::names::Name;
+use crate::source::Span;
+use crate::ty::{TypeId, Types};
+use crate::typed::{
+    BinaryOp, CompareOp, Expr, ExprId, ExprKind, Label, LabelId, Local, LocalId, Place, PlaceId, PlaceKind,
+    UnaryOp,
+};
+
+/// The parts of a function that are being built, and what its statements must know.
+#[derive(Debug)]
+pub(super) struct Body {
+    /// Name of the function; empty at file scope.
+    pub(super) name: String,
+    /// The type of its result.
+    pub(super) result: TypeId,
+    /// It is declared `void`, even if it returns a value.
+    pub(super) is_void: bool,
+    /// Hidden parameter of a variadic function.
+    pub(super) variable_arguments: Option<LocalId>,
+    /// Hidden parameter of a function with a structure result.
+    pub(super) result_pointer: Option<LocalId>,
+    /// Parameters, variables and temporaries.
+    pub(super) locals: PrimaryMap<LocalId, Local>,
+    /// Expressions.
+    pub(super) exprs: PrimaryMap<ExprId, Expr>,
+    /// Places.
+    pub(super) places: PrimaryMap<PlaceId, Place>,
+    /// Labels.
+    pub(super) labels: PrimaryMap<LabelId, Label>,
+    /// The labels by name.
+    pub(super) label_names: BTreeMap<Name, LabelState>,
+    /// How many loops are open.
+    pub(super) loops: u32,
+    /// The switches that are open, the innermost last.
+    pub(super) switches: Vec<super::switches::Switch>,
+    /// Undeclared names that were reported in this function.
+    pub(super) undeclared: BTreeSet<Name>,
+}
+
+/// What is known of a label.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LabelState {
+    /// The label.
+    pub(super) label: LabelId,
+    /// Where it stands, once it was found.
+    pub(super) defined: Option<Span>,
+    /// The first `goto`.
+    pub(super) used: Option<Span>,
+}
+
+impl Body {
+    pub(super) fn new(name: String, result: TypeId) -> Self {
+        Self {
+            name,
+            result,
+            is_void: result.is_void(),
+            variable_arguments: None,
+            result_pointer: None,
+            locals: PrimaryMap::new(),
+            exprs: PrimaryMap::new(),
+            places: PrimaryMap::new(),
+            labels: PrimaryMap::new(),
+            label_names: BTreeMap::new(),
+            loops: 0,
+            switches: Vec::new(),
+            undeclared: BTreeSet::new(),
+        }
+    }
+
+    /// The type of an expression.
+    pub(super) fn ty(&self, expr: ExprId) -> TypeId {
+        self.exprs[expr].ty
+    }
+
+    /// Where an expression stands.
+    pub(super) fn span(&self, expr: ExprId) -> Span {
+        self.exprs[expr].span
+    }
+
+    /// Adds an expression as it is.
+    pub(super) fn expr(&mut self, kind: ExprKind, ty: TypeId, span: Span) -> ExprId {
+        self.exprs.push(Expr { kind, ty, span })
+    }
+
+    /// Adds a place as it is.
+    pub(super) fn place(&mut self, kind: PlaceKind, ty: TypeId, span: Span) -> PlaceId {
+        self.places.push(Place { kind, ty, span })
+    }
+
+    /// Adds an integer or pointer constant.
+    pub(super) fn int(&mut self, value: i64, ty: TypeId, span: Span) -> ExprId {
+        self.expr(ExprKind::Int(constants::wrap(value, ty)), ty, span)
+    }
+
+    /// Adds a constant.
+    pub(super) fn constant(&mut self, constant: Constant, ty: TypeId, span: Span) -> ExprId {
+        let kind = match constant {
+            Constant::Int(value) => ExprKind::Int(value),
+            Constant::Float(value) => ExprKind::Float(value),
+        };
+        self.expr(kind, ty, span)
+    }
+
+    /// The value of an expression, if it is constant.
+    pub(super) fn as_constant(&self, expr: ExprId) -> Option<Constant> {
+        match self.exprs[expr].kind {
+            ExprKind::Int(value) => Some(Constant::Int(value)),
+            ExprKind::Float(value) => Some(Constant::Float(value)),
+            _ => None,
+        }
+    }
+
+    /// The value of an expression, if it is an integer constant.
+    pub(super) fn as_int(&self, expr: ExprId) -> Option<i64> {
+        match self.exprs[expr].kind {
+            ExprKind::Int(value) => Some(value),
+            _ => None,
+        }
+    }
+
+    /// Adds a temporary.
+    pub(super) fn temporary(&mut self, ty: TypeId, in_memory: bool, span: Span) -> LocalId {
+        self.locals.push(Local { name: String::new(), ty, in_memory, by_pointer: false, span })
+    }
+
+    /// The value of a local of scalar type.
+    pub(super) fn load_local(&mut self, local: LocalId, span: Span) -> ExprId {
+        let ty = self.locals[local].ty;
+        let place = self.place(PlaceKind::Local(local, 0), ty, span);
+        self.expr(ExprKind::Load(place), ty, span)
+    }
+
+    /// Stores into a local of scalar type.
+    pub(super) fn store_local(&mut self, local: LocalId, value: ExprId, span: Span) -> ExprId {
+        let ty = self.locals[local].ty;
+        let place = self.place(PlaceKind::Local(local, 0), ty, span);
+        self.expr(ExprKind::Assign(place, value), ty, span)
+    }
+
+    /// `value` as one of type `to`; the value itself if it has the type.
+    pub(super) fn convert(&mut self, value: ExprId, to: TypeId, span: Span) -> ExprId {
+        let from = self.ty(value);
+        if from == to {
+            return value;
+        }
+        if let (Some(constant), false) = (self.as_constant(value), to.is_void()) {
+            return self.constant(constants::convert(constant, from, to), to, span);
+        }
+        if to == Types::BOOL {
+            let truth = self.truth(value, span);
+            return self.expr(ExprKind::Convert(truth), to, span);
+        }
+        self.expr(ExprKind::Convert(value), to, span)
+    }
+
+    /// `value != 0` as `int`.
+    pub(super) fn truth(&mut self, value: ExprId, span: Span) -> ExprId {
+        if let Some(constant) = self.as_constant(value) {
+            return self.int(i64::from(constant.is_true()), Types::INT, span);
+        }
+        if matches!(self.exprs[value].kind, ExprKind::Compare(..) | ExprKind::And(..) | ExprKind::Or(..)) {
+            return value;
+        }
+        let ty = self.ty(value);
+        let zero = if ty.is_floating() { Constant::Float(0.0) } else { Constant::Int(0) };
+        let zero = self.constant(zero, ty, span);
+        self.expr(ExprKind::Compare(CompareOp::NotEqual, value, zero), Types::INT, span)
+    }
+
+    /// A unary operator; `!` has type `int`, the others that of the operand.
+    pub(super) fn unary(&mut self, op: UnaryOp, value: ExprId, span: Span) -> ExprId {
+        let operand = self.ty(value);
+        let ty = if op == UnaryOp::Not { Types::INT } else { operand };
+        let folded = self.as_constant(value).and_then(|constant| constants::unary(op, constant, operand));
+        match folded {
+            Some(constant) => self.constant(constant, ty, span),
+            None => self.expr(ExprKind::Unary(op, value), ty, span),
+        }
+    }
+
+    /// A binary operator on operands of one type, which is the result's.
+    pub(super) fn binary(&mut self, op: BinaryOp, a: ExprId, b: ExprId, span: Span) -> ExprId {
+        let ty = self.ty(a);
+        let folded =
+            self.as_constant(a).zip(self.as_constant(b)).and_then(|(a, b)| constants::binary(op, a, b, ty));
+        match folded {
+            Some(constant) => self.constant(constant, ty, span),
+            None => self.expr(ExprKind::Binary(op, a, b), ty, span),
+        }
+    }
+
+    /// A comparison of operands of one type.
+    pub(super) fn compare(&mut self, op: CompareOp, a: ExprId, b: ExprId, span: Span) -> ExprId {
+        let ty = self.ty(a);
+        let folded =
+            self.as_constant(a).zip(self.as_constant(b)).and_then(|(a, b)| constants::compare(op, a, b, ty));
+        match folded {
+            Some(truth) => self.int(i64::from(truth), Types::INT, span),
+            None => self.expr(ExprKind::Compare(op, a, b), Types::INT, span),
+        }
+    }
+
+    /// Evaluates the first, then the second, whose value it has.
+    pub(super) fn comma(&mut self, first: ExprId, second: ExprId, span: Span) -> ExprId {
+        let ty = self.ty(second);
+        self.expr(ExprKind::Comma(first, second), ty, span)
+    }
+}

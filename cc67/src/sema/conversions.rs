@@ -1,0 +1,240 @@
+//! Conversions that C makes by itself, and what is said about the doubtful ones.
+//!
+//! Which pairs are silent, warned about or refused: `dialect.md` 2.4.
+
+use super::Sema;
+use crate::diag::Diagnostic;
+use crate::lints::Lint;
+use crate::source::Span;
+use crate::ty::{FunctionType, ParameterTypes, QualifiedType, TypeId, Types, convert};
+use crate::typed::{ExprId, ExprKind, PlaceKind, SymbolId};
+
+/// Where a value goes, for messages.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Target {
+    /// `a = b`
+    Assignment,
+    /// `int a = b;`
+    Initializer,
+    /// `return b;`
+    Return,
+    /// `f(b)`: the number of the argument, counted from 1, and the function.
+    Argument(usize, Option<SymbolId>),
+}
+
+/// What is thought of two pointer types that meet without a cast.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Agreement {
+    Silent,
+    Warn,
+    Refuse,
+}
+
+impl Sema<'_> {
+    /// An integer operand in the type it is computed in; a bit-field narrower than `int` becomes `int`.
+    pub(super) fn promote(&mut self, value: ExprId, span: Span) -> ExprId {
+        let ty = self.body.ty(value);
+        let to = if ty == Types::UNSIGNED && self.is_narrow_field(value) {
+            Types::INT
+        } else {
+            convert::promoted(ty)
+        };
+        self.body.convert(value, to, span)
+    }
+
+    fn is_narrow_field(&self, value: ExprId) -> bool {
+        let ExprKind::Load(place) = self.body.exprs[value].kind else { return false };
+        matches!(self.body.places[place].kind, PlaceKind::Bits(_, bits) if bits.width < 32)
+    }
+
+    /// Two arithmetic operands in their common type.
+    pub(super) fn usual(&mut self, a: ExprId, b: ExprId, span: Span) -> (ExprId, ExprId) {
+        let (a, b) = (self.promote(a, span), self.promote(b, span));
+        let common = convert::common(self.body.ty(a), self.body.ty(b));
+        (self.body.convert(a, common, span), self.body.convert(b, common, span))
+    }
+
+    /// Whether a value is the null pointer constant.
+    pub(super) fn is_null(&self, value: ExprId) -> bool {
+        let ty = self.body.ty(value);
+        let is_void_pointer = self.types.pointee(ty).is_some_and(|to| to.ty.is_void());
+        (ty.is_integer() || is_void_pointer) && self.body.as_int(value) == Some(0)
+    }
+
+    /// A value in the type of what it is stored in, with the conversions of an assignment.
+    pub(super) fn assigned(
+        &mut self,
+        value: ExprId,
+        to: TypeId,
+        target: Target,
+        span: Span,
+    ) -> Option<ExprId> {
+        let from = self.body.ty(value);
+        if from == to || (from.is_arithmetic() && to.is_arithmetic()) {
+            return Some(self.body.convert(value, to, span));
+        }
+        match (self.types.is_pointer(from), self.types.is_pointer(to)) {
+            (true, true) => self.assigned_pointer(value, to, target, span)?,
+            (false, true) if from.is_integer() => {
+                if !self.is_null(value) {
+                    let message = "a pointer from an integer without a cast";
+                    self.warn_conversion(Lint::IntPointer, message, value, to, target, span);
+                }
+            }
+            (true, false) if to == Types::BOOL => {}
+            (true, false) if to.is_integer() => {
+                let message = "an integer from a pointer without a cast";
+                self.warn_conversion(Lint::IntPointer, message, value, to, target, span);
+            }
+            _ => {
+                self.refuse_conversion(from, to, target, span);
+                return None;
+            }
+        }
+        Some(self.converted(value, to, span))
+    }
+
+    /// A value in another type, pointers and integers alike; whoever calls has checked that it makes sense.
+    pub(super) fn converted(&mut self, value: ExprId, to: TypeId, span: Span) -> ExprId {
+        self.lint_misaligned(value, to, span);
+        if self.types.is_pointer(to) && self.types.is_pointer(self.body.ty(value)) {
+            return self.retyped(value, to, span);
+        }
+        self.body.convert(value, to, span)
+    }
+
+    fn assigned_pointer(&mut self, value: ExprId, to: TypeId, target: Target, span: Span) -> Option<()> {
+        let from = self.body.ty(value);
+        let (Some(source), Some(aim)) = (self.types.pointee(from), self.types.pointee(to)) else {
+            return Some(());
+        };
+        match self.agreement(source, aim) {
+            Agreement::Silent => {}
+            Agreement::Warn if self.is_persist_address(value) || self.is_null(value) => {}
+            Agreement::Warn => {
+                let message = "a pointer to another type without a cast";
+                self.warn_conversion(Lint::PointerMismatch, message, value, to, target, span);
+            }
+            Agreement::Refuse => {
+                self.refuse_conversion(from, to, target, span);
+                return None;
+            }
+        }
+        Some(())
+    }
+
+    /// How two pointer types get on with each other; the table is `dialect.md` 2.4.
+    fn agreement(&self, a: QualifiedType, b: QualifiedType) -> Agreement {
+        let (a, b) = (a.ty, b.ty);
+        if a.is_void() || b.is_void() || self.types.compatible(a, b) {
+            return Agreement::Silent;
+        }
+        if let (Some(a), Some(b)) = (self.types.function(a), self.types.function(b)) {
+            return self.function_agreement(a, b);
+        }
+        if self.types.record_of(a).is_some() || self.types.record_of(b).is_some() {
+            return Agreement::Refuse;
+        }
+        let is_one_size = self.types.size_of(a) == self.types.size_of(b);
+        let is_integers = a.is_integer() && b.is_integer();
+        let is_bytes = (a.is_character() && b.is_arithmetic()) || (b.is_character() && a.is_arithmetic());
+        if is_bytes || (is_integers && is_one_size) { Agreement::Silent } else { Agreement::Warn }
+    }
+
+    /// Functions with other parameters are refused: nobody would pass them. Results may differ as far as `int`
+    /// and `void` go.
+    fn function_agreement(&self, a: &FunctionType, b: &FunctionType) -> Agreement {
+        let is_empty = |parameters: &ParameterTypes| match parameters {
+            ParameterTypes::Unspecified => true,
+            ParameterTypes::Prototype { types, is_variadic } => types.is_empty() && !is_variadic,
+        };
+        let is_alike = match (is_empty(&a.parameters), is_empty(&b.parameters)) {
+            (true, true) => true,
+            (false, false) => self.types.compatible_parameters(a, b),
+            _ => false,
+        };
+        let is_plain = |result: TypeId| result.is_void() || result.is_integer();
+        match (is_alike, self.types.compatible(a.result, b.result)) {
+            (false, _) => Agreement::Refuse,
+            (true, true) => Agreement::Silent,
+            (true, false) if is_plain(a.result) && is_plain(b.result) => Agreement::Silent,
+            (true, false) => Agreement::Warn,
+        }
+    }
+
+    /// Warns if two pointers that are compared, subtracted or chosen between do not agree.
+    pub(super) fn check_pointer_pair(&mut self, a: ExprId, b: ExprId, span: Span) {
+        let (from, to) = (self.body.ty(a), self.body.ty(b));
+        let (Some(x), Some(y)) = (self.types.pointee(from), self.types.pointee(to)) else { return };
+        if self.is_null(a) || self.is_null(b) || self.agreement(x, y) == Agreement::Silent {
+            return;
+        }
+        let message =
+            format!("pointers to different types meet: `{}` and `{}`", self.spell(from), self.spell(to));
+        self.report(Diagnostic::warning(Lint::PointerMismatch, span, message));
+    }
+
+    /// `&persist.UserData[k]` may be taken for a pointer to any number: that is how programs use it.
+    fn is_persist_address(&self, value: ExprId) -> bool {
+        self.persist_offset(value).is_some()
+    }
+
+    /// The byte offset of an address inside the firmware's `persist`.
+    fn persist_offset(&self, value: ExprId) -> Option<i32> {
+        let ExprKind::Address(place) = self.body.exprs[value].kind else { return None };
+        let PlaceKind::Symbol(symbol, offset) = self.body.places[place].kind else { return None };
+        (Some(symbol) == self.symbols.linked(self.known.persist)).then_some(offset)
+    }
+
+    /// Warns about `(double *)&persist.UserData[1]`: the board loads a double without the low address bits.
+    fn lint_misaligned(&mut self, value: ExprId, to: TypeId, span: Span) {
+        if self.types.pointee(to).is_none_or(|to| to.ty != Types::DOUBLE) {
+            return;
+        }
+        let Some(offset) = self.persist_offset(value).filter(|offset| offset % 8 != 0) else { return };
+        let message = "a `double` at an odd index of `persist.UserData` is not aligned";
+        let index = (offset - super::lints::USER_DATA_OFFSET) / 4;
+        self.report(
+            Diagnostic::warning(Lint::UserDataAlignment, span, message)
+                .at(format!("index {index}: the board would load a wrong value"))
+                .help(format!("use index {} or {}", index - 1, index + 1)),
+        );
+    }
+
+    fn describe(&self, target: Target) -> String {
+        match target {
+            Target::Assignment => "assignment".to_owned(),
+            Target::Initializer => "initialiser".to_owned(),
+            Target::Return => "`return`".to_owned(),
+            Target::Argument(number, Some(function)) => {
+                format!("argument {number} of `{}`", self.symbols.get(function).name)
+            }
+            Target::Argument(number, None) => format!("argument {number}"),
+        }
+    }
+
+    fn warn_conversion(
+        &mut self,
+        lint: Lint,
+        message: &str,
+        value: ExprId,
+        to: TypeId,
+        target: Target,
+        span: Span,
+    ) {
+        let (from, to) = (self.spell(self.body.ty(value)), self.spell(to));
+        self.report(
+            Diagnostic::warning(lint, span, format!("{} makes {message}", self.describe(target)))
+                .at(format!("this is `{from}`, wanted is `{to}`"))
+                .help(format!("write `({to})` if this is meant")),
+        );
+    }
+
+    pub(super) fn refuse_conversion(&mut self, from: TypeId, to: TypeId, target: Target, span: Span) {
+        let (from, to) = (self.spell(from), self.spell(to));
+        self.report(
+            Diagnostic::error(span, format!("{}: cannot convert `{from}` to `{to}`", self.describe(target)))
+                .at(format!("this is `{from}`, wanted is `{to}`")),
+        );
+    }
+}

@@ -1,0 +1,38 @@
+//! What the firmware offers under names that a program did not declare.
+//!
+//! A program that forgot the header, or a declaration, still gets the firmware's own
+//! prototype (`dialect.md` 2.3), and a misspelt name gets a suggestion.
+
+use kmotiondef::CType;
+use kmotiondef::firmware::Origin;
+
+/// The prototype of a firmware or library function.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Prototype {
+    /// What it returns.
+    pub result: CType,
+    /// What it takes.
+    pub parameters: Vec<CType>,
+    /// `...` ends the list.
+    pub is_variadic: bool,
+}
+
+/// The names of the firmware, its header and the library.
+pub trait FirmwareNames {
+    /// The prototype of a function that a program may call without declaring it.
+    fn prototype(&self, name: &str) -> Option<Prototype>;
+
+    /// Where a function of this name comes from; `None` if there is none.
+    fn origin(&self, name: &str) -> Option<Origin> {
+        self.prototype(name).map(|_| Origin::Header)
+    }
+
+    /// Whether the vendor's header declares a variable or constant of this name.
+    fn is_variable(&self, name: &str) -> bool;
+
+    /// Whether the vendor's header defines a type of this name.
+    fn is_type(&self, name: &str) -> bool;
+
+    /// Every function and variable, for suggestions.
+    fn names(&self) -> Box<dyn Iterator<Item = &str> + '_>;
+}

@@ -1,0 +1,268 @@
+//! `printf` and `scanf` formats against their arguments.
+//!
+//! Only a mismatch that prints or stores something wrong is reported: `%d` for an
+//! `unsigned` is fine, `%d` for a `double` is not (`dialect.md` 5).
+
+use crate::source::Span;
+use crate::ty::{TypeId, Types};
+
+/// A function that takes a format.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Function {
+    /// Which argument is the format, counted from 0.
+    pub(super) format: usize,
+    /// It stores through its arguments instead of printing them.
+    is_scan: bool,
+}
+
+impl Function {
+    /// The function of this name, if it takes a format and variable arguments.
+    #[must_use]
+    pub(super) fn by_name(name: &str) -> Option<Self> {
+        let (format, is_scan) = match name {
+            "printf" => (0, false),
+            "fprintf" | "sprintf" => (1, false),
+            "snprintf" => (2, false),
+            "sscanf" | "fscanf" => (1, true),
+            _ => return None,
+        };
+        Some(Self { format, is_scan })
+    }
+}
+
+/// An argument behind the format: its type after array and function names became pointers, and its place.
+pub(super) type Argument = (TypeId, Span);
+
+/// A mismatch.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Finding {
+    /// The argument that does not fit; `None` if the format itself is wrong.
+    pub(super) argument: Option<Argument>,
+    /// What is wrong.
+    pub(super) message: String,
+    /// What would fit.
+    pub(super) help: Option<String>,
+}
+
+/// Compares a format with the arguments behind it.
+#[must_use]
+pub(super) fn check(
+    types: &Types,
+    function: Function,
+    format: &[i32],
+    arguments: &[Argument],
+) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    let mut left = arguments.iter();
+    let bytes: Vec<u8> = format.iter().map(|element| *element as u8).collect();
+    let mut rest = bytes.as_slice();
+    while let Some(start) = rest.iter().position(|byte| *byte == b'%') {
+        let (conversion, behind) = Conversion::parse(&rest[start + 1..], function.is_scan);
+        let spelled = String::from_utf8_lossy(&rest[start..rest.len() - behind.len()]).into_owned();
+        rest = behind;
+        if conversion.letter == b'%' || conversion.is_suppressed {
+            continue;
+        }
+        if conversion.letter == 0 {
+            findings.push(finding(
+                None,
+                format!("`{spelled}` is not a conversion"),
+                Some("write `%%` for a percent sign".to_owned()),
+            ));
+            return findings;
+        }
+        for _ in 0..conversion.stars {
+            if let Some(&argument) = left.next().filter(|argument| !is_int(argument.0)) {
+                findings.push(finding(
+                    Some(argument),
+                    format!("the `*` of `{spelled}` needs an `int`"),
+                    None,
+                ));
+            }
+        }
+        let Some(&argument) = left.next() else {
+            findings.push(finding(None, format!("there is no argument for `{spelled}`"), None));
+            return findings;
+        };
+        let wanted = if function.is_scan {
+            conversion.scanned(types, argument.0)
+        } else {
+            conversion.printed(types, argument.0)
+        };
+        if let Err(wanted) = wanted {
+            let help =
+                if function.is_scan { scan_help(types, argument.0) } else { print_help(types, argument.0) };
+            findings.push(finding(Some(argument), format!("`{spelled}` needs {wanted}"), help));
+        }
+    }
+    let further = left.len();
+    if let Some(&argument) = left.next() {
+        let are = if further == 1 { "argument is" } else { "arguments are" };
+        findings.push(finding(Some(argument), format!("{further} {are} not in the format"), None));
+    }
+    findings
+}
+
+fn finding(argument: Option<Argument>, message: String, help: Option<String>) -> Finding {
+    Finding { argument, message, help }
+}
+
+/// One `%` sequence.
+#[derive(Clone, Copy, Debug)]
+struct Conversion {
+    /// The letter; 0 if there is none that is known.
+    letter: u8,
+    /// Number of `*` that take an argument.
+    stars: u32,
+    /// `*` of a `scanf`: reads and stores nothing.
+    is_suppressed: bool,
+    /// Number of `l`; `L` counts one.
+    longs: u32,
+    /// Number of `h`.
+    halves: u32,
+}
+
+impl Conversion {
+    /// Reads what stands behind a `%`; also what is left of the format.
+    fn parse(text: &[u8], is_scan: bool) -> (Self, &[u8]) {
+        let mut conversion = Self { letter: 0, stars: 0, is_suppressed: false, longs: 0, halves: 0 };
+        let mut rest = text;
+        while let Some((&byte, behind)) = rest.split_first() {
+            rest = behind;
+            match byte {
+                b'-' | b'+' | b' ' | b'#' | b'0'..=b'9' | b'.' => {}
+                b'*' if is_scan => conversion.is_suppressed = true,
+                b'*' => conversion.stars += 1,
+                b'l' | b'L' => conversion.longs += 1,
+                b'h' => conversion.halves += 1,
+                b'[' if is_scan => {
+                    conversion.letter = byte;
+                    // A `]` directly behind `[` or `[^` belongs to the set.
+                    let skip = 1 + usize::from(rest.first() == Some(&b'^'));
+                    let end = rest.iter().skip(skip).position(|byte| *byte == b']').map(|end| end + skip + 1);
+                    return (conversion, end.and_then(|end| rest.get(end..)).unwrap_or_default());
+                }
+                b'%' | b'd' | b'i' | b'u' | b'x' | b'X' | b'o' | b'c' | b's' | b'p' | b'n' | b'e' | b'E'
+                | b'f' | b'F' | b'g' | b'G' => {
+                    conversion.letter = byte;
+                    return (conversion, rest);
+                }
+                _ => return (conversion, rest),
+            }
+        }
+        (conversion, rest)
+    }
+
+    /// Whether `printf` prints this type; else what it wants.
+    fn printed(self, types: &Types, ty: TypeId) -> Result<(), &'static str> {
+        let (fits, wanted) = match self.letter {
+            b'd' | b'i' | b'u' | b'x' | b'X' | b'o' | b'c' if self.longs >= 2 => {
+                (ty.is_long_long(), "a `long long`")
+            }
+            b'd' | b'i' | b'u' | b'x' | b'X' | b'o' | b'c' => (is_int(ty), "an `int`"),
+            b's' => (points_to(types, ty, |to| to.is_character() || to.is_void()), "a string"),
+            b'p' => (types.is_pointer(ty), "a pointer"),
+            b'n' => (points_to(types, ty, is_int), "a pointer to `int`"),
+            _ => (ty.is_floating(), "a `double`"),
+        };
+        if fits { Ok(()) } else { Err(wanted) }
+    }
+
+    /// Whether `scanf` can store through this type; else what it wants.
+    fn scanned(self, types: &Types, ty: TypeId) -> Result<(), &'static str> {
+        let sized = |size| points_to(types, ty, |to| to.is_integer() && types.size_of(to) == Some(size));
+        let (fits, wanted) = match self.letter {
+            b's' | b'c' | b'[' => {
+                (points_to(types, ty, |to| to.is_character() || to.is_void()), "a `char *`")
+            }
+            b'p' => (points_to(types, ty, |to| types.is_pointer(to)), "a pointer to a pointer"),
+            b'e' | b'E' | b'f' | b'F' | b'g' | b'G' if self.longs > 0 => {
+                (points_to(types, ty, |to| to == Types::DOUBLE), "a `double *`")
+            }
+            b'e' | b'E' | b'f' | b'F' | b'g' | b'G' => {
+                (points_to(types, ty, |to| to == Types::FLOAT), "a `float *`")
+            }
+            _ if self.longs >= 2 => (sized(8), "a `long long *`"),
+            _ if self.halves == 1 => (sized(2), "a `short *`"),
+            _ if self.halves >= 2 => (sized(1), "a `char *`"),
+            _ => (sized(4), "an `int *`"),
+        };
+        if fits { Ok(()) } else { Err(wanted) }
+    }
+}
+
+/// Whether a value of the type is passed as a word and is an integer.
+fn is_int(ty: TypeId) -> bool {
+    ty.is_integer() && !ty.is_long_long()
+}
+
+fn points_to(types: &Types, ty: TypeId, is_wanted: impl Fn(TypeId) -> bool) -> bool {
+    types.pointee(ty).is_some_and(|to| is_wanted(to.ty))
+}
+
+fn print_help(types: &Types, ty: TypeId) -> Option<String> {
+    let conversion = match () {
+        () if ty.is_floating() => "%f",
+        () if ty.is_long_long() => "%lld",
+        () if ty.is_integer() => "%d",
+        () if points_to(types, ty, TypeId::is_character) => "%s",
+        () if types.is_pointer(ty) => "%p",
+        () => return None,
+    };
+    Some(format!("use `{conversion}`"))
+}
+
+fn scan_help(types: &Types, ty: TypeId) -> Option<String> {
+    let Some(to) = types.pointee(ty) else { return Some("pass the address with `&`".to_owned()) };
+    let conversion = match to.ty {
+        Types::DOUBLE => "%lf",
+        Types::FLOAT => "%f",
+        ty if ty.is_character() => "%s",
+        Types::SHORT | Types::UNSIGNED_SHORT => "%hd",
+        ty if is_int(ty) => "%d",
+        _ => return None,
+    };
+    Some(format!("use `{conversion}`"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn messages(function: &str, format: &str, arguments: &[TypeId], types: &Types) -> Vec<String> {
+        let function = Function::by_name(function).expect("known");
+        let elements: Vec<_> = format.bytes().map(i32::from).collect();
+        let arguments: Vec<_> = arguments.iter().map(|ty| (*ty, Span::new(0, 0))).collect();
+        check(types, function, &elements, &arguments).into_iter().map(|finding| finding.message).collect()
+    }
+
+    #[test]
+    fn formats_that_fit_are_silent() {
+        let mut types = Types::new();
+        let text = types.pointer_to(Types::CHAR);
+        let arguments =
+            [Types::INT, Types::UNSIGNED, Types::FLOAT, text, Types::DOUBLE, Types::CHAR, Types::INT];
+        let format = "%d %08X %0.lf %s %.17g %c %%%5d\n";
+        assert_eq!(messages("printf", format, &arguments, &types), [""; 0]);
+        let (int, double) = (types.pointer_to(Types::INT), types.pointer_to(Types::DOUBLE));
+        assert_eq!(messages("sscanf", "%d,%lf %*d %[^]]x%n", &[int, double, text, int], &types), [""; 0]);
+    }
+
+    #[test]
+    fn formats_that_do_not_fit_say_what_they_need() {
+        let mut types = Types::new();
+        let int = types.pointer_to(Types::INT);
+        let check = |function, format, arguments: &[TypeId], expect: &str| {
+            assert_eq!(messages(function, format, arguments, &types), [expect], "{format}");
+        };
+        check("printf", "%d", &[Types::DOUBLE], "`%d` needs an `int`");
+        check("printf", "%5.2f", &[Types::INT], "`%5.2f` needs a `double`");
+        check("printf", "%d", &[int], "`%d` needs an `int`");
+        check("printf", "%d %d", &[Types::INT], "there is no argument for `%d`");
+        check("printf", "%d", &[Types::INT, Types::INT], "1 argument is not in the format");
+        check("printf", "50% of", &[], "there is no argument for `% o`");
+        check("printf", "%k", &[Types::INT], "`%k` is not a conversion");
+        check("sscanf", "%d", &[Types::INT], "`%d` needs an `int *`");
+        check("fscanf", "%lf", &[int], "`%lf` needs a `double *`");
+    }
+}

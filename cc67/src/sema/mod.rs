@@ -1,0 +1,192 @@
+//! Semantic analysis: from the syntax tree to the typed tree.
+//!
+//! Two passes. The first enters every file-scope declaration and the type of every function
+//! definition, in order; the second looks at the bodies. So a call knows the function that
+//! the unit defines later, which is what programs for this board rely on
+//! (`dialect.md` 2.3), while names still become visible only where they are declared.
+//!
+//! Analysis goes on after an error. Whatever was diagnosed yields `None`, and what is made of
+//! it is silent; so each mistake is reported once.
+//!
+//! Nothing here knows the target beyond the sizes in [`crate::ty::layout`] and the arithmetic
+//! of `vm::arith`.
+
+mod assignments;
+mod body;
+mod builtins;
+mod call_back;
+mod calls;
+mod constants;
+mod conversions;
+mod declarations;
+mod declarators;
+mod designators;
+mod endings;
+mod enums;
+mod expressions;
+mod firmware_names;
+mod formats;
+mod functions;
+mod indentation;
+mod initializers;
+mod lints;
+mod literals;
+mod locals;
+mod operands;
+mod operators;
+mod places;
+pub mod print;
+mod records;
+mod scope;
+mod specifiers;
+mod statements;
+mod statics;
+mod switches;
+mod symbols;
+#[cfg(test)]
+mod tests;
+mod undeclared;
+mod uninitialized;
+
+pub use firmware_names::{FirmwareNames, Prototype};
+
+use std::collections::BTreeSet;
+
+use crate::ast;
+use crate::diag::{Diagnostic, Sink};
+use crate::names::{Name, Names};
+use crate::source::SourceMap;
+use crate::ty::{RecordId, TypeId, Types};
+use crate::typed::{Definition, Linkage, Unit};
+
+use body::Body;
+use functions::Pending;
+use scope::Scopes;
+use symbols::Symbols;
+
+/// Checks a translation unit and gives it types.
+///
+/// The result is complete even after errors, but fit for lowering only if `sink` has none.
+pub fn analyze(
+    unit: &ast::TranslationUnit,
+    names: &mut Names,
+    sources: &SourceMap,
+    firmware: &dyn FirmwareNames,
+    sink: &mut Sink,
+) -> Unit {
+    let known = Known {
+        persist: names.intern("persist"),
+        user_data: names.intern("UserData"),
+        call_back: names.intern("UserCallBack"),
+    };
+    let mut sema = Sema {
+        names,
+        sources,
+        firmware,
+        sink,
+        types: Types::new(),
+        symbols: Symbols::default(),
+        scopes: Scopes::new(),
+        body: Body::new(String::new(), Types::VOID),
+        known,
+        broken: BTreeSet::new(),
+        unevaluated: 0,
+    };
+    let pending = sema.declare_items(unit);
+    let functions: Vec<_> = pending.into_iter().filter_map(|pending| sema.define_function(pending)).collect();
+    sema.lint_call_backs(&functions);
+    sema.finish_symbols();
+    Unit { types: sema.types, symbols: sema.symbols.finish(), functions }
+}
+
+/// Names of the board that mean something by themselves.
+#[derive(Clone, Copy, Debug)]
+struct Known {
+    persist: Name,
+    user_data: Name,
+    call_back: Name,
+}
+
+/// The state of an analysis.
+struct Sema<'a> {
+    names: &'a Names,
+    sources: &'a SourceMap,
+    firmware: &'a dyn FirmwareNames,
+    sink: &'a mut Sink,
+    types: Types,
+    symbols: Symbols,
+    scopes: Scopes,
+    /// The function being built; between functions, a scratch body for constant expressions.
+    body: Body,
+    known: Known,
+    /// Structures with a wrong definition: what is said of their members would be wrong too.
+    broken: BTreeSet<RecordId>,
+    /// Depth of operands that are only looked at for their type.
+    unevaluated: u32,
+}
+
+impl Sema<'_> {
+    /// The first pass.
+    fn declare_items<'t>(&mut self, unit: &'t ast::TranslationUnit) -> Vec<Pending<'t>> {
+        let mut pending = Vec::new();
+        for (index, item) in unit.items.iter().enumerate() {
+            self.scopes.at_item(index);
+            match item {
+                ast::Item::Function(definition) => pending.extend(self.declare_definition(definition, index)),
+                ast::Item::Declaration(declaration) => self.file_declaration(declaration),
+                ast::Item::StaticAssert(assertion) => self.static_assert(assertion),
+            }
+        }
+        pending
+    }
+
+    /// Says what is left open at the end of the unit.
+    fn finish_symbols(&mut self) {
+        let mut open = Vec::new();
+        for (id, symbol) in self.symbols.iter() {
+            match symbol.definition {
+                Definition::None if symbol.linkage == Linkage::Internal && symbol.used_at.is_some() => {
+                    let message = format!("`{}` is declared `static` and used, but not defined", symbol.name);
+                    open.push(Err(Diagnostic::error(symbol.span, message).at("declared here")));
+                }
+                Definition::Tentative if self.types.size_of(symbol.ty).is_none() => {
+                    match self.types.array(symbol.ty).filter(|(element, _)| self.types.is_object(element.ty))
+                    {
+                        // `int a[];` at file scope is one element (C90 6.7.2).
+                        Some((element, _)) => open.push(Ok((id, element))),
+                        None => {
+                            let spelled = self.types.spell(self.names, symbol.ty);
+                            let message = format!("`{}` has the incomplete type `{spelled}`", symbol.name);
+                            open.push(Err(Diagnostic::error(symbol.span, message)));
+                        }
+                    }
+                }
+                _ => {}
+            }
+        }
+        self.lint_taken_names();
+        for finding in open {
+            match finding {
+                Ok((id, element)) => {
+                    let ty = self.types.intern(crate::ty::Type::Array(element, Some(1)));
+                    self.symbols.get_mut(id).ty = ty;
+                }
+                Err(diagnostic) => self.report(diagnostic),
+            }
+        }
+    }
+
+    fn report(&mut self, diagnostic: Diagnostic) {
+        self.sink.report(diagnostic);
+    }
+
+    /// A type as C spells it.
+    fn spell(&self, ty: TypeId) -> String {
+        self.types.spell(self.names, ty)
+    }
+
+    /// The spelling of a name.
+    fn spelling(&self, name: Name) -> &str {
+        self.names.get(name)
+    }
+}

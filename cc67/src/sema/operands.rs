@@ -1,0 +1,159 @@
+//! Operands: what an expression is before it is known how it will be used.
+//!
+//! `a` is a place when it is assigned to, a value when it is read, and an address when it is
+//! an array that is passed on. `None` instead of an operand means that something was
+//! diagnosed: nothing more is said about what is made of it.
+
+use super::Sema;
+use super::places::Located;
+use crate::diag::Diagnostic;
+use crate::lints::Lint;
+use crate::source::Span;
+use crate::ty::{QualifiedType, Type, TypeId, Types};
+use crate::typed::{Callee, ExprId, ExprKind, PlaceId, PlaceKind};
+
+/// The meaning of an expression.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Operand {
+    /// A value of scalar type, or an effect of type `void`.
+    Value(ExprId),
+    /// Storage: an lvalue, or a structure that an expression made.
+    Place(Located),
+    /// A function and its type.
+    Function(Callee, TypeId),
+}
+
+impl Sema<'_> {
+    /// The type of an operand, before arrays and functions become pointers.
+    pub(super) fn operand_type(&self, operand: Operand) -> QualifiedType {
+        match operand {
+            Operand::Value(value) => QualifiedType::plain(self.body.ty(value)),
+            Operand::Place(located) => located.ty,
+            Operand::Function(_, ty) => QualifiedType::plain(ty),
+        }
+    }
+
+    /// Reads an operand: a scalar value; arrays and functions become pointers.
+    pub(super) fn read(&mut self, operand: Operand, span: Span) -> Option<ExprId> {
+        match operand {
+            Operand::Value(value) if self.body.ty(value).is_void() => self.read_void(value, span),
+            Operand::Value(value) => {
+                self.lint_void_value(value, span);
+                Some(value)
+            }
+            Operand::Place(located) => self.read_place(located, span),
+            Operand::Function(callee, ty) => {
+                let pointer = self.types.pointer_to(ty);
+                Some(match callee {
+                    Callee::Symbol(symbol) => self.symbol_address(symbol, pointer, span),
+                    Callee::Pointer(value) => self.retyped(value, pointer, span),
+                })
+            }
+        }
+    }
+
+    fn read_place(&mut self, located: Located, span: Span) -> Option<ExprId> {
+        match self.types.get(located.ty.ty) {
+            Type::Array(element, _) => {
+                let element = *element;
+                let pointer = self.types.pointer_to_qualified(element);
+                Some(self.address(located.place, pointer, span))
+            }
+            Type::Record(_) => {
+                let spelled = self.spell(located.ty.ty);
+                self.report(
+                    Diagnostic::error(
+                        span,
+                        format!("`{spelled}` is used where a number or pointer is needed"),
+                    )
+                    .at("this is a whole structure"),
+                );
+                None
+            }
+            Type::Void => {
+                self.report(
+                    Diagnostic::error(span, "a `void` object has no value").help("cast the pointer first"),
+                );
+                None
+            }
+            _ => Some(self.body.expr(ExprKind::Load(located.place), located.ty.ty, span)),
+        }
+    }
+
+    /// A `void` call where a value is needed gives 0 (`dialect.md` 2.4).
+    fn read_void(&mut self, value: ExprId, span: Span) -> Option<ExprId> {
+        let mut last = value;
+        while let ExprKind::Comma(_, second) = self.body.exprs[last].kind {
+            last = second;
+        }
+        if !matches!(self.body.exprs[last].kind, ExprKind::Call(_)) {
+            self.report(Diagnostic::error(span, "an expression of type `void` has no value"));
+            return None;
+        }
+        self.report(
+            Diagnostic::warning(Lint::VoidValue, span, "the value of a `void` function is used")
+                .at("this call returns nothing; the value is 0"),
+        );
+        let zero = self.body.int(0, Types::INT, span);
+        Some(self.body.comma(value, zero, span))
+    }
+
+    /// Warns if the value comes from a function that is declared `void` and returns one all the same.
+    fn lint_void_value(&mut self, value: ExprId, span: Span) {
+        let ExprKind::Call(call) = &self.body.exprs[value].kind else { return };
+        let Callee::Symbol(symbol) = call.callee else { return };
+        let definer = self.symbols.facts(symbol).definer.as_ref();
+        let Some(definition) =
+            definer.filter(|definer| definer.is_void_with_value).map(|definer| definer.span)
+        else {
+            return;
+        };
+        let name = self.symbols.get(symbol).name.clone();
+        self.report(
+            Diagnostic::warning(
+                Lint::VoidValue,
+                span,
+                format!("the value of the `void` function `{name}` is used"),
+            )
+            .at("the value is what its `return` gives, as `int`")
+            .label(definition, "declared `void` here")
+            .help(format!("declare `{name}` as `int`")),
+        );
+    }
+
+    /// Evaluates an operand for its effect only: an expression that lowering may drop if it has none.
+    pub(super) fn effect(&mut self, operand: Operand, span: Span) -> ExprId {
+        match operand {
+            Operand::Value(value) => value,
+            Operand::Place(located) => self.place_effect(located, span),
+            Operand::Function(Callee::Pointer(value), _) => value,
+            Operand::Function(Callee::Symbol(_), _) => self.body.int(0, Types::INT, span),
+        }
+    }
+
+    /// The effect of naming a place: a read of a scalar, the pointer expression of anything larger.
+    fn place_effect(&mut self, located: Located, span: Span) -> ExprId {
+        if self.types.is_scalar(located.ty.ty) {
+            return self.body.expr(ExprKind::Load(located.place), located.ty.ty, span);
+        }
+        match self.body.places[located.place].kind {
+            PlaceKind::Pointer(pointer, _) => pointer,
+            _ => self.body.int(0, Types::INT, span),
+        }
+    }
+
+    /// A structure that an expression makes: `effect` is evaluated, then the place holds the value.
+    pub(super) fn made(&mut self, effect: ExprId, place: PlaceId, span: Span) -> Operand {
+        let ty = self.body.places[place].ty;
+        let pointer_type = self.types.pointer_to(ty);
+        let address = self.address(place, pointer_type, span);
+        let pointer = self.body.comma(effect, address, span);
+        let place = self.body.place(PlaceKind::Pointer(pointer, 0), ty, span);
+        Operand::Place(Located { place, ty: QualifiedType::plain(ty), is_lvalue: false })
+    }
+
+    /// Whether an operand is a whole structure or union.
+    pub(super) fn is_record(&self, operand: Operand) -> bool {
+        matches!(operand, Operand::Place(located) if self.types.record_of(located.ty.ty).is_some())
+    }
+}

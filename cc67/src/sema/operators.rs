@@ -1,0 +1,415 @@
+//! Binary operators, comparisons, `&&`, `||` and `?:`.
+
+use super::Sema;
+use super::constants::Constant;
+use super::operands::Operand;
+use crate::ast::{BinaryOperator, Expression, ExpressionKind};
+use crate::diag::Diagnostic;
+use crate::lints::Lint;
+use crate::source::Span;
+use crate::ty::{QualifiedType, TypeId, Types};
+use crate::typed::{BinaryOp, CompareOp, ExprId, ExprKind, PlaceKind};
+
+/// What a binary operator of C is in the typed tree.
+enum Class {
+    /// Arithmetic, and pointer steps with `+` and `-`.
+    Arithmetic(BinaryOp),
+    /// Integers only.
+    Bitwise(BinaryOp),
+    /// Integers, each promoted by itself.
+    Shift(BinaryOp),
+    /// A comparison.
+    Compare(CompareOp),
+    /// `&&` or `||`: the value of the left side that decides alone.
+    Logical(bool),
+}
+
+const fn classify(operator: BinaryOperator) -> Class {
+    match operator {
+        BinaryOperator::Multiply => Class::Arithmetic(BinaryOp::Multiply),
+        BinaryOperator::Divide => Class::Arithmetic(BinaryOp::Divide),
+        BinaryOperator::Add => Class::Arithmetic(BinaryOp::Add),
+        BinaryOperator::Subtract => Class::Arithmetic(BinaryOp::Subtract),
+        BinaryOperator::Remainder => Class::Bitwise(BinaryOp::Remainder),
+        BinaryOperator::And => Class::Bitwise(BinaryOp::And),
+        BinaryOperator::Xor => Class::Bitwise(BinaryOp::Xor),
+        BinaryOperator::Or => Class::Bitwise(BinaryOp::Or),
+        BinaryOperator::ShiftLeft => Class::Shift(BinaryOp::ShiftLeft),
+        BinaryOperator::ShiftRight => Class::Shift(BinaryOp::ShiftRight),
+        BinaryOperator::Less => Class::Compare(CompareOp::Less),
+        BinaryOperator::Greater => Class::Compare(CompareOp::Greater),
+        BinaryOperator::LessEqual => Class::Compare(CompareOp::LessEqual),
+        BinaryOperator::GreaterEqual => Class::Compare(CompareOp::GreaterEqual),
+        BinaryOperator::Equal => Class::Compare(CompareOp::Equal),
+        BinaryOperator::NotEqual => Class::Compare(CompareOp::NotEqual),
+        BinaryOperator::LogicalAnd => Class::Logical(false),
+        BinaryOperator::LogicalOr => Class::Logical(true),
+    }
+}
+
+/// An operator as it is written.
+pub(super) const fn spelling(operator: BinaryOperator) -> &'static str {
+    match operator {
+        BinaryOperator::Multiply => "*",
+        BinaryOperator::Divide => "/",
+        BinaryOperator::Remainder => "%",
+        BinaryOperator::Add => "+",
+        BinaryOperator::Subtract => "-",
+        BinaryOperator::ShiftLeft => "<<",
+        BinaryOperator::ShiftRight => ">>",
+        BinaryOperator::Less => "<",
+        BinaryOperator::Greater => ">",
+        BinaryOperator::LessEqual => "<=",
+        BinaryOperator::GreaterEqual => ">=",
+        BinaryOperator::Equal => "==",
+        BinaryOperator::NotEqual => "!=",
+        BinaryOperator::And => "&",
+        BinaryOperator::Xor => "^",
+        BinaryOperator::Or => "|",
+        BinaryOperator::LogicalAnd => "&&",
+        BinaryOperator::LogicalOr => "||",
+    }
+}
+
+impl Sema<'_> {
+    /// A tree of binary operators. A long sum leans to the left; its spine is walked without recursion.
+    pub(super) fn binary_expression(&mut self, expression: &Expression) -> Option<ExprId> {
+        let mut spine = Vec::new();
+        let mut leftmost = expression;
+        while let ExpressionKind::Binary(operator, left, right) = &leftmost.kind {
+            spine.push((*operator, &**right, leftmost.span));
+            leftmost = left;
+        }
+        let mut left = self.value(leftmost);
+        for (operator, right, span) in spine.into_iter().rev() {
+            let right = self.value(right);
+            left = left.zip(right).and_then(|(left, right)| self.binary(operator, left, right, span));
+        }
+        left
+    }
+
+    /// One binary operator on two scalar values.
+    pub(super) fn binary(
+        &mut self,
+        operator: BinaryOperator,
+        a: ExprId,
+        b: ExprId,
+        span: Span,
+    ) -> Option<ExprId> {
+        let is_numbers = self.body.ty(a).is_arithmetic() && self.body.ty(b).is_arithmetic();
+        match classify(operator) {
+            Class::Arithmetic(op) if is_numbers => {
+                let (a, b) = self.usual(a, b, span);
+                Some(self.body.binary(op, a, b, span))
+            }
+            Class::Arithmetic(BinaryOp::Add) => self.pointer_add(a, b, span),
+            Class::Arithmetic(BinaryOp::Subtract) => self.pointer_subtract(a, b, span),
+            Class::Arithmetic(_) => self.refuse_operands(operator, a, b, span),
+            Class::Bitwise(op) if self.are_integers(a, b) => {
+                let (a, b) = self.usual(a, b, span);
+                Some(self.body.binary(op, a, b, span))
+            }
+            Class::Shift(op) if self.are_integers(a, b) => {
+                let (a, b) = (self.promote(a, span), self.shift_count(b, self.body.ty(a), span));
+                Some(self.body.binary(op, a, b, span))
+            }
+            Class::Bitwise(_) | Class::Shift(_) => self.refuse_operands(operator, a, b, span),
+            Class::Compare(op) => {
+                self.lint_self_comparison(op, a, b, span);
+                let (a, b) = self.comparable(operator, a, b, span)?;
+                Some(self.body.compare(op, a, b, span))
+            }
+            Class::Logical(decides) => Some(self.logical(decides, a, b, span)),
+        }
+    }
+
+    fn are_integers(&self, a: ExprId, b: ExprId) -> bool {
+        self.body.ty(a).is_integer() && self.body.ty(b).is_integer()
+    }
+
+    /// A shift count as `int`; a constant one outside the width is worth a word.
+    pub(super) fn shift_count(&mut self, count: ExprId, shifted: TypeId, span: Span) -> ExprId {
+        let width = if shifted.is_long_long() { 64 } else { 32 };
+        if let Some(value) = self.body.as_int(count).filter(|value| !(0..width).contains(value)) {
+            self.report(
+                Diagnostic::warning(Lint::ShiftCount, self.body.span(count), format!("a shift by {value}"))
+                    .at(format!("meaningful are 0 to {}", width - 1))
+                    .note("the processor takes the count modulo 64; from 32 on the result is 0 or the sign"),
+            );
+        }
+        self.body.convert(count, Types::INT, span)
+    }
+
+    /// `pointer + integer`, in either order.
+    fn pointer_add(&mut self, a: ExprId, b: ExprId, span: Span) -> Option<ExprId> {
+        let (pointer, count) = if self.types.is_pointer(self.body.ty(a)) { (a, b) } else { (b, a) };
+        let Some(element) =
+            self.types.pointee(self.body.ty(pointer)).filter(|_| self.body.ty(count).is_integer())
+        else {
+            return self.refuse_operands(BinaryOperator::Add, a, b, span);
+        };
+        let bytes = self.scaled(count, element, span)?;
+        Some(self.step(pointer, bytes, span))
+    }
+
+    /// `pointer - integer`, `pointer - pointer`
+    fn pointer_subtract(&mut self, a: ExprId, b: ExprId, span: Span) -> Option<ExprId> {
+        let Some(element) = self.types.pointee(self.body.ty(a)) else {
+            return self.refuse_operands(BinaryOperator::Subtract, a, b, span);
+        };
+        if self.body.ty(b).is_integer() {
+            let bytes = self.scaled(b, element, span)?;
+            if self.body.as_int(bytes).is_some() {
+                let bytes = self.body.unary(crate::typed::UnaryOp::Negate, bytes, span);
+                return Some(self.step(a, bytes, span));
+            }
+            let ty = self.body.ty(a);
+            return Some(self.body.expr(ExprKind::Binary(BinaryOp::Subtract, a, bytes), ty, span));
+        }
+        if !self.types.is_pointer(self.body.ty(b)) {
+            return self.refuse_operands(BinaryOperator::Subtract, a, b, span);
+        }
+        self.check_pointer_pair(a, b, span);
+        let size = self.step_size(element, span)?;
+        let (a, b) = (self.body.convert(a, Types::INT, span), self.body.convert(b, Types::INT, span));
+        let bytes = self.body.binary(BinaryOp::Subtract, a, b, span);
+        if size <= 1 {
+            return Some(bytes);
+        }
+        let size = self.body.int(i64::from(size), Types::INT, span);
+        Some(self.body.binary(BinaryOp::Divide, bytes, size, span))
+    }
+
+    /// How far a pointer to `element` moves with `+ 1`.
+    pub(super) fn step_size(&mut self, element: QualifiedType, span: Span) -> Option<u32> {
+        let size = self.types.size_of(element.ty);
+        if size.is_none() {
+            let message =
+                format!("the size of `{}` is not known, so its pointer cannot move", self.spell(element.ty));
+            self.report(Diagnostic::error(span, message));
+        }
+        size
+    }
+
+    /// A number of elements as an `int` number of bytes.
+    pub(super) fn scaled(&mut self, count: ExprId, element: QualifiedType, span: Span) -> Option<ExprId> {
+        let size = self.step_size(element, span)?;
+        let count = self.body.convert(count, Types::INT, span);
+        if size == 1 {
+            return Some(count);
+        }
+        let size = self.body.int(i64::from(size), Types::INT, span);
+        Some(self.body.binary(BinaryOp::Multiply, count, size, span))
+    }
+
+    /// Two operands of a comparison in one type; pointers and integers mix freely, with a warning.
+    fn comparable(
+        &mut self,
+        operator: BinaryOperator,
+        a: ExprId,
+        b: ExprId,
+        span: Span,
+    ) -> Option<(ExprId, ExprId)> {
+        let (x, y) = (self.body.ty(a), self.body.ty(b));
+        if x.is_arithmetic() && y.is_arithmetic() {
+            return Some(self.usual(a, b, span));
+        }
+        if x.is_floating() || y.is_floating() {
+            self.refuse_operands(operator, a, b, span);
+            return None;
+        }
+        match (self.types.is_pointer(x), self.types.is_pointer(y)) {
+            (true, true) => {
+                self.check_pointer_pair(a, b, span);
+                Some((a, self.retyped(b, x, span)))
+            }
+            (true, false) => {
+                self.lint_int_pointer_pair(b, span);
+                Some((a, self.body.convert(b, x, span)))
+            }
+            (false, _) => {
+                self.lint_int_pointer_pair(a, span);
+                Some((self.body.convert(a, y, span), b))
+            }
+        }
+    }
+
+    fn lint_int_pointer_pair(&mut self, integer: ExprId, span: Span) {
+        if !self.is_null(integer) {
+            let message = "a pointer meets an integer without a cast";
+            let at = format!("this is `{}`", self.spell(self.body.ty(integer)));
+            let place = self.body.span(integer);
+            self.report(Diagnostic::warning(Lint::IntPointer, span, message).label(place, at));
+        }
+    }
+
+    /// Warns about `x == x` on floating-point values.
+    fn lint_self_comparison(&mut self, op: CompareOp, a: ExprId, b: ExprId, span: Span) {
+        let (ExprKind::Load(x), ExprKind::Load(y)) = (&self.body.exprs[a].kind, &self.body.exprs[b].kind)
+        else {
+            return;
+        };
+        let (x, y) = (self.body.places[*x].kind, self.body.places[*y].kind);
+        let is_named = matches!(x, PlaceKind::Local(..) | PlaceKind::Symbol(..));
+        if x != y || !is_named || !self.body.ty(a).is_floating() {
+            return;
+        }
+        let result = match op {
+            CompareOp::Equal | CompareOp::LessEqual | CompareOp::GreaterEqual => {
+                "true unless it is not a number"
+            }
+            CompareOp::NotEqual => "true only if it is not a number",
+            CompareOp::Less | CompareOp::Greater => "never true",
+        };
+        self.report(
+            Diagnostic::warning(Lint::SelfComparison, span, "a floating-point value is compared with itself")
+                .at(result),
+        );
+    }
+
+    /// `a && b` (`decides` is false) or `a || b` (true); a constant side is folded where that drops no effect.
+    fn logical(&mut self, decides: bool, a: ExprId, b: ExprId, span: Span) -> ExprId {
+        match (
+            self.body.as_constant(a).map(Constant::is_true),
+            self.body.as_constant(b).map(Constant::is_true),
+        ) {
+            (Some(left), _) if left == decides => self.body.int(i64::from(decides), Types::INT, span),
+            (Some(_), _) => self.body.truth(b, span),
+            (None, Some(right)) if right != decides => self.body.truth(a, span),
+            _ => {
+                let kind = if decides { ExprKind::Or(a, b) } else { ExprKind::And(a, b) };
+                self.body.expr(kind, Types::INT, span)
+            }
+        }
+    }
+
+    fn refuse_operands(
+        &mut self,
+        operator: BinaryOperator,
+        a: ExprId,
+        b: ExprId,
+        span: Span,
+    ) -> Option<ExprId> {
+        let (left, right) = (self.spell(self.body.ty(a)), self.spell(self.body.ty(b)));
+        let operator = spelling(operator);
+        let message = format!("`{operator}` cannot be used on `{left}` and `{right}`");
+        let mut diagnostic = Diagnostic::error(span, message)
+            .label(self.body.span(a), format!("`{left}`"))
+            .label(self.body.span(b), format!("`{right}`"));
+        if self.body.ty(a).is_floating() || self.body.ty(b).is_floating() {
+            diagnostic = diagnostic.note("floating-point values know only `+ - * /` and comparisons");
+        }
+        self.report(diagnostic);
+        None
+    }
+
+    /// `condition ? then : otherwise`, `condition ?: otherwise`
+    pub(super) fn conditional(
+        &mut self,
+        condition: &Expression,
+        then: Option<&Expression>,
+        otherwise: &Expression,
+        span: Span,
+    ) -> Option<Operand> {
+        let Some(then) = then else { return self.elvis(condition, otherwise, span) };
+        self.lint_assignment_condition(condition);
+        let test = self.value(condition);
+        let (then_operand, otherwise_operand) = (self.operand(then), self.operand(otherwise));
+        let (test, a, b) = (test?, then_operand?, otherwise_operand?);
+        if self.is_record(a) || self.is_record(b) {
+            return self.choose_record(test, (a, then.span), (b, otherwise.span), span);
+        }
+        if self.operand_type(a).ty.is_void() || self.operand_type(b).ty.is_void() {
+            let (a, b) = (self.effect(a, then.span), self.effect(b, otherwise.span));
+            let (a, b) = (self.dropped(a, span), self.dropped(b, span));
+            return Some(Operand::Value(self.body.expr(
+                ExprKind::Conditional(test, a, b),
+                Types::VOID,
+                span,
+            )));
+        }
+        let (a, b) = (self.read(a, then.span)?, self.read(b, otherwise.span)?);
+        let (a, b) = self.common_branches(a, b, span)?;
+        Some(Operand::Value(self.choose(test, a, b, span)))
+    }
+
+    /// `a ?: b`: the value of `a` is kept in a temporary.
+    fn elvis(&mut self, condition: &Expression, otherwise: &Expression, span: Span) -> Option<Operand> {
+        let (value, otherwise) = (self.value(condition), self.value(otherwise));
+        let (value, otherwise) = (value?, otherwise?);
+        let ty = self.body.ty(value);
+        let kept = self.body.temporary(ty, false, span);
+        let store = self.body.store_local(kept, value, span);
+        let (test, then) = (self.body.load_local(kept, span), self.body.load_local(kept, span));
+        let (then, otherwise) = self.common_branches(then, otherwise, span)?;
+        let choice = self.choose(test, then, otherwise, span);
+        Some(Operand::Value(self.body.comma(store, choice, span)))
+    }
+
+    fn choose(&mut self, test: ExprId, a: ExprId, b: ExprId, span: Span) -> ExprId {
+        if let Some(test) = self.body.as_constant(test) {
+            return if test.is_true() { a } else { b };
+        }
+        let ty = self.body.ty(a);
+        self.body.expr(ExprKind::Conditional(test, a, b), ty, span)
+    }
+
+    /// Both branches in one type.
+    fn common_branches(&mut self, a: ExprId, b: ExprId, span: Span) -> Option<(ExprId, ExprId)> {
+        let (x, y) = (self.body.ty(a), self.body.ty(b));
+        if x.is_arithmetic() && y.is_arithmetic() {
+            return Some(self.usual(a, b, span));
+        }
+        match (self.types.pointee(x), self.types.pointee(y)) {
+            (Some(_), Some(to)) => {
+                self.check_pointer_pair(a, b, span);
+                // `void *` gives way to a null pointer's partner, and takes in every other pointer.
+                let ty = if self.is_null(a) || (to.ty.is_void() && !self.is_null(b)) { y } else { x };
+                Some((self.retyped(a, ty, span), self.retyped(b, ty, span)))
+            }
+            (Some(_), None) if y.is_integer() => {
+                self.lint_int_pointer_pair(b, span);
+                Some((a, self.body.convert(b, x, span)))
+            }
+            (None, Some(_)) if x.is_integer() => {
+                self.lint_int_pointer_pair(a, span);
+                Some((self.body.convert(a, y, span), b))
+            }
+            _ => {
+                let (left, right) = (self.spell(x), self.spell(y));
+                let message = format!("the branches of `?:` do not fit together: `{left}` and `{right}`");
+                self.report(Diagnostic::error(span, message));
+                None
+            }
+        }
+    }
+
+    /// A choice between two structures is one between their addresses.
+    fn choose_record(
+        &mut self,
+        test: ExprId,
+        (a, a_span): (Operand, Span),
+        (b, b_span): (Operand, Span),
+        span: Span,
+    ) -> Option<Operand> {
+        let (Operand::Place(x), Operand::Place(y)) = (a, b) else {
+            return self.refuse_branches(a, b, span);
+        };
+        if x.ty.ty != y.ty.ty {
+            return self.refuse_branches(a, b, span);
+        }
+        let pointer = self.types.pointer_to(x.ty.ty);
+        let (a, b) = (self.address(x.place, pointer, a_span), self.address(y.place, pointer, b_span));
+        let chosen = self.choose(test, a, b, span);
+        let mut located = self.pointed(chosen, QualifiedType::plain(x.ty.ty), span);
+        located.is_lvalue = false;
+        Some(Operand::Place(located))
+    }
+
+    fn refuse_branches(&mut self, a: Operand, b: Operand, span: Span) -> Option<Operand> {
+        let (left, right) = (self.spell(self.operand_type(a).ty), self.spell(self.operand_type(b).ty));
+        let message = format!("the branches of `?:` do not fit together: `{left}` and `{right}`");
+        self.report(Diagnostic::error(span, message));
+        None
+    }
+}

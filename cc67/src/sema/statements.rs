@@ -1,0 +1,271 @@
+//! Statements.
+
+use super::Sema;
+use super::body::LabelState;
+use super::constants::Constant;
+use super::conversions::Target;
+use crate::ast::{Expression, Statement, StatementKind};
+use crate::diag::Diagnostic;
+use crate::lints::Lint;
+use crate::names::Name;
+use crate::source::Span;
+use crate::ty::Types;
+use crate::typed::{ExprId, ExprKind, Label, LabelId, LoopTest, PlaceKind, Stmt, StmtKind};
+
+impl Sema<'_> {
+    /// The statements of a block, whose scope is open.
+    pub(super) fn statements(&mut self, statements: &[Statement], out: &mut Vec<Stmt>) {
+        for (index, statement) in statements.iter().enumerate() {
+            self.statement(statement, out);
+            if let Some(next) = statements.get(index + 1) {
+                self.lint_indentation(statement, next);
+            }
+        }
+    }
+
+    /// One statement; it may become several or none.
+    pub(super) fn statement(&mut self, statement: &Statement, out: &mut Vec<Stmt>) {
+        let span = statement.span;
+        match &statement.kind {
+            StatementKind::Empty => {}
+            StatementKind::Expression(expression) => self.expression_statement(expression, out),
+            StatementKind::Block(inner) => {
+                let inner = self.block(inner);
+                out.push(Stmt { kind: StmtKind::Block(inner), span });
+            }
+            StatementKind::Declaration(declaration) => self.block_declaration(declaration, out),
+            StatementKind::StaticAssert(assertion) => self.static_assert(assertion),
+            StatementKind::If { condition, then, otherwise } => {
+                self.if_statement(condition, then, otherwise.as_deref(), span, out);
+            }
+            StatementKind::While { condition, body } => {
+                let condition = self.condition(condition);
+                let body = self.loop_body(body);
+                self.push_loop(Some(condition), LoopTest::Before, body, None, span, out);
+            }
+            StatementKind::DoWhile { body, condition } => {
+                let body = self.loop_body(body);
+                let condition = self.condition(condition);
+                self.push_loop(Some(condition), LoopTest::Behind, body, None, span, out);
+            }
+            StatementKind::For { init, condition, step, body } => {
+                let inner = self.for_statement(init, condition.as_ref(), step.as_ref(), body, span);
+                out.push(Stmt { kind: StmtKind::Block(inner), span });
+            }
+            StatementKind::Switch { value, body } => self.switch_statement(value, body, span, out),
+            StatementKind::Case { first, last, body } => {
+                self.case_label(first, last.as_ref(), span, out);
+                self.statement(body, out);
+            }
+            StatementKind::Default(body) => {
+                self.default_label(span, out);
+                self.statement(body, out);
+            }
+            StatementKind::Label { name, name_span, body } => {
+                let label = self.define_label(*name, *name_span);
+                out.push(Stmt { kind: StmtKind::Label(label), span: *name_span });
+                self.statement(body, out);
+            }
+            StatementKind::Goto(name, name_span) => {
+                let label = self.label(*name, *name_span, |state| &mut state.used);
+                out.push(Stmt { kind: StmtKind::Goto(label), span });
+            }
+            StatementKind::Break => self.leave_statement(StmtKind::Break, span, out),
+            StatementKind::Continue => self.leave_statement(StmtKind::Continue, span, out),
+            StatementKind::Return(value) => self.return_statement(value.as_ref(), span, out),
+        }
+    }
+
+    /// The statements of a block with a scope of its own.
+    pub(super) fn block(&mut self, statements: &[Statement]) -> Vec<Stmt> {
+        let mut out = Vec::with_capacity(statements.len());
+        self.scopes.enter();
+        self.statements(statements, &mut out);
+        self.scopes.leave();
+        out
+    }
+
+    /// A statement that may be a declaration, in a scope of its own.
+    fn scoped(&mut self, statement: &Statement) -> Vec<Stmt> {
+        match &statement.kind {
+            StatementKind::Block(inner) => self.block(inner),
+            _ => self.block(std::slice::from_ref(statement)),
+        }
+    }
+
+    fn expression_statement(&mut self, expression: &Expression, out: &mut Vec<Stmt>) {
+        let span = expression.span;
+        let Some(operand) = self.operand(expression) else { return };
+        self.lint_unused(expression, operand);
+        let effect = self.effect(operand, span);
+        out.push(Stmt { kind: StmtKind::Expr(effect), span });
+    }
+
+    /// A condition: a scalar value; 0 in its place if it is wrong.
+    pub(super) fn condition(&mut self, expression: &Expression) -> ExprId {
+        self.lint_assignment_condition(expression);
+        self.value(expression).unwrap_or_else(|| self.placeholder(expression.span))
+    }
+
+    /// A value in the place of one that was diagnosed.
+    pub(super) fn placeholder(&mut self, span: Span) -> ExprId {
+        self.body.int(0, Types::INT, span)
+    }
+
+    fn if_statement(
+        &mut self,
+        condition: &Expression,
+        then: &Statement,
+        otherwise: Option<&Statement>,
+        span: Span,
+        out: &mut Vec<Stmt>,
+    ) {
+        let value = self.condition(condition);
+        self.lint_empty_body(condition, then, otherwise);
+        let then = self.scoped(then);
+        let otherwise = otherwise.map_or_else(Vec::new, |otherwise| self.scoped(otherwise));
+        out.push(Stmt { kind: StmtKind::If { condition: value, then, otherwise }, span });
+    }
+
+    fn loop_body(&mut self, body: &Statement) -> Vec<Stmt> {
+        // `break` means this loop: an outer switch is not reached from here, its cases are.
+        self.body.loops += 1;
+        let body = self.scoped(body);
+        self.body.loops -= 1;
+        body
+    }
+
+    fn for_statement(
+        &mut self,
+        init: &Statement,
+        condition: Option<&Expression>,
+        step: Option<&Expression>,
+        body: &Statement,
+        span: Span,
+    ) -> Vec<Stmt> {
+        let mut out = Vec::new();
+        self.scopes.enter();
+        self.statement(init, &mut out);
+        let condition = condition.map(|condition| self.condition(condition));
+        let step = step.and_then(|step| {
+            let operand = self.operand(step)?;
+            self.lint_unused(step, operand);
+            Some(self.effect(operand, step.span))
+        });
+        let body = self.loop_body(body);
+        self.push_loop(condition, LoopTest::Before, body, step, span, &mut out);
+        self.scopes.leave();
+        out
+    }
+
+    fn push_loop(
+        &mut self,
+        condition: Option<ExprId>,
+        test: LoopTest,
+        body: Vec<Stmt>,
+        step: Option<ExprId>,
+        span: Span,
+        out: &mut Vec<Stmt>,
+    ) {
+        // A condition that is always true is none.
+        let is_true = |value: ExprId| self.body.as_constant(value).is_some_and(Constant::is_true);
+        let condition = condition.filter(|value| !is_true(*value));
+        self.lint_idle_loop(condition, &body, step, span);
+        out.push(Stmt { kind: StmtKind::Loop { condition, test, body, step }, span });
+    }
+
+    fn leave_statement(&mut self, kind: StmtKind, span: Span, out: &mut Vec<Stmt>) {
+        let is_break = matches!(kind, StmtKind::Break);
+        if self.body.loops > 0 || (is_break && !self.body.switches.is_empty()) {
+            out.push(Stmt { kind, span });
+            return;
+        }
+        let message = match is_break {
+            true => "`break` outside of a loop or `switch`",
+            false => "`continue` outside of a loop",
+        };
+        self.report(Diagnostic::error(span, message));
+    }
+
+    fn label(&mut self, name: Name, span: Span, place: fn(&mut LabelState) -> &mut Option<Span>) -> LabelId {
+        let body = &mut self.body;
+        let names = self.names;
+        let state = body.label_names.entry(name).or_insert_with(|| LabelState {
+            label: body.labels.push(Label { name: names.get(name).to_owned(), span }),
+            defined: None,
+            used: None,
+        });
+        place(state).get_or_insert(span);
+        state.label
+    }
+
+    fn define_label(&mut self, name: Name, span: Span) -> LabelId {
+        if let Some(first) = self.body.label_names.get(&name).and_then(|state| state.defined) {
+            let message = format!("label `{}` is defined twice", self.spelling(name));
+            self.report(Diagnostic::error(span, message).label(first, "first defined here"));
+        }
+        let label = self.label(name, span, |state| &mut state.defined);
+        self.body.labels[label].span = span;
+        label
+    }
+
+    fn return_statement(&mut self, value: Option<&Expression>, span: Span, out: &mut Vec<Stmt>) {
+        let result = self.body.result;
+        let value = match value {
+            None => self.zero_of_result(span),
+            Some(value) if self.types.record_of(result).is_some() => {
+                out.extend(self.return_record(value).map(|copy| Stmt { kind: StmtKind::Expr(copy), span }));
+                None
+            }
+            Some(value) => self.return_value(value).or_else(|| self.zero_of_result(span)),
+        };
+        out.push(Stmt { kind: StmtKind::Return(value), span });
+    }
+
+    /// What `return;` gives in a function that has a result.
+    fn zero_of_result(&mut self, span: Span) -> Option<ExprId> {
+        let result = self.body.result;
+        if result.is_void() || self.types.record_of(result).is_some() {
+            return None;
+        }
+        Some(self.zero(result, span))
+    }
+
+    fn return_value(&mut self, expression: &Expression) -> Option<ExprId> {
+        let (result, span) = (self.body.result, expression.span);
+        let operand = self.operand(expression)?;
+        // `return f();` between `void` functions passes nothing on.
+        if self.body.is_void && self.operand_type(operand).ty.is_void() {
+            let effect = self.effect(operand, span);
+            let zero = self.body.int(0, result, span);
+            return Some(self.body.comma(effect, zero, span));
+        }
+        let value = self.read(operand, span)?;
+        self.assigned(value, result, Target::Return, span)
+    }
+
+    /// Copies a structure to where the caller wants it.
+    fn return_record(&mut self, expression: &Expression) -> Option<ExprId> {
+        let (result, span) = (self.body.result, expression.span);
+        let operand = self.operand(expression)?;
+        let from = self.record_source(operand, result, Target::Return, span)?;
+        let pointer = self.body.load_local(self.body.result_pointer?, span);
+        let to = self.body.place(PlaceKind::Pointer(pointer, 0), result, span);
+        Some(self.body.expr(ExprKind::Copy { to, from }, Types::VOID, span))
+    }
+
+    /// Warns about `if (x) ;` written on one line.
+    fn lint_empty_body(&mut self, condition: &Expression, then: &Statement, otherwise: Option<&Statement>) {
+        if !matches!(then.kind, StatementKind::Empty) || otherwise.is_some() {
+            return;
+        }
+        let line = |span| self.sources.place(span).map(|place| (place.file, place.line));
+        if line(condition.span) == line(then.span) {
+            self.report(
+                Diagnostic::warning(Lint::EmptyBody, then.span, "`if` with an empty body")
+                    .at("this `;` ends the `if`")
+                    .help("remove the `;`, or write `{}` if nothing shall be done"),
+            );
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! `switch`, `case` and `default`.
+
+use super::Sema;
+use super::constants;
+use crate::ast::{Expression, Statement};
+use crate::diag::Diagnostic;
+use crate::lints::Lint;
+use crate::source::Span;
+use crate::ty::{TypeId, Types};
+use crate::typed::{Case, Stmt, StmtKind};
+
+/// A switch whose body is being looked at.
+#[derive(Debug)]
+pub(super) struct Switch {
+    /// The type that its value and its cases have.
+    ty: TypeId,
+    cases: Vec<(Case, Span)>,
+    default: Option<Span>,
+}
+
+impl Sema<'_> {
+    pub(super) fn switch_statement(
+        &mut self,
+        value: &Expression,
+        body: &Statement,
+        span: Span,
+        out: &mut Vec<Stmt>,
+    ) {
+        let chosen = self.value(value).unwrap_or_else(|| self.placeholder(value.span));
+        let mut ty = self.body.ty(chosen);
+        let chosen = if ty.is_integer() {
+            self.promote(chosen, value.span)
+        } else if ty.is_floating() {
+            self.report(
+                Diagnostic::warning(Lint::Extension, value.span, "`switch` on a floating-point value")
+                    .at("converted to `int`")
+                    .help("write `(int)` if this is meant"),
+            );
+            self.body.convert(chosen, Types::INT, value.span)
+        } else {
+            let spelled = self.spell(ty);
+            self.report(Diagnostic::error(value.span, format!("`switch` needs an integer, not `{spelled}`")));
+            self.placeholder(value.span)
+        };
+        ty = self.body.ty(chosen);
+        self.body.switches.push(Switch { ty, cases: Vec::new(), default: None });
+        let mut inner = Vec::new();
+        self.scopes.enter();
+        self.statement(body, &mut inner);
+        self.scopes.leave();
+        let Some(Switch { cases, default, .. }) = self.body.switches.pop() else { return };
+        self.check_cases(&cases);
+        let cases = cases.into_iter().map(|(case, _)| case).collect();
+        let kind = StmtKind::Switch { value: chosen, cases, has_default: default.is_some(), body: inner };
+        out.push(Stmt { kind, span });
+    }
+
+    /// `case first ... last:`
+    pub(super) fn case_label(
+        &mut self,
+        first: &Expression,
+        last: Option<&Expression>,
+        span: Span,
+        out: &mut Vec<Stmt>,
+    ) {
+        let Some(ty) = self.body.switches.last().map(|switch| switch.ty) else {
+            self.report(Diagnostic::error(span, "`case` outside of a `switch`"));
+            return;
+        };
+        let low = self.constant_integer(first, "the value of a `case`");
+        let high = match last {
+            Some(last) => self.constant_integer(last, "the value of a `case`"),
+            None => low,
+        };
+        let (Some(low), Some(high)) = (low, high) else { return };
+        let case = Case { first: constants::wrap(low, ty), last: constants::wrap(high, ty) };
+        let label = last.map_or(first.span, |last| first.span.to(last.span));
+        if case.first > case.last {
+            self.report(Diagnostic::error(label, "this range of cases is empty"));
+            return;
+        }
+        let Some(switch) = self.body.switches.last_mut() else { return };
+        let number = switch.cases.len() as u32;
+        switch.cases.push((case, label));
+        out.push(Stmt { kind: StmtKind::Case(number), span });
+    }
+
+    /// `default:`
+    pub(super) fn default_label(&mut self, span: Span, out: &mut Vec<Stmt>) {
+        let Some(switch) = self.body.switches.last_mut() else {
+            self.report(Diagnostic::error(span, "`default` outside of a `switch`"));
+            return;
+        };
+        match switch.default {
+            None => {
+                switch.default = Some(span);
+                out.push(Stmt { kind: StmtKind::DefaultCase, span });
+            }
+            Some(first) => {
+                self.report(
+                    Diagnostic::error(span, "a second `default` in one `switch`").label(first, "first"),
+                );
+            }
+        }
+    }
+
+    /// No value may have two cases.
+    fn check_cases(&mut self, cases: &[(Case, Span)]) {
+        let mut sorted: Vec<_> = cases.iter().collect();
+        sorted.sort_by_key(|(case, _)| case.first);
+        let mut reach: Option<&(Case, Span)> = None;
+        for entry in sorted {
+            let (case, span) = entry;
+            match reach {
+                Some((before, first)) if case.first <= before.last => {
+                    // The one that stands later in the text is the mistake.
+                    let (first, span) = if span.lo >= first.lo { (*first, *span) } else { (*span, *first) };
+                    let message = format!("`case {}` stands twice in one `switch`", case.first);
+                    self.report(Diagnostic::error(span, message).label(first, "first"));
+                    reach = reach.filter(|(before, _)| before.last >= case.last).or(Some(entry));
+                }
+                _ => reach = Some(entry),
+            }
+        }
+    }
+}

@@ -1,0 +1,240 @@
+//! Names that nothing visible declares.
+//!
+//! A call finds the unit's own later definition, then the firmware's prototype
+//! (`dialect.md` 2.3). Everything else is an error with the nearest name.
+
+use kmotiondef::CType;
+
+use super::Sema;
+use super::scope::Entity;
+use crate::diag::Diagnostic;
+use crate::lints::Lint;
+use crate::names::Name;
+use crate::source::Span;
+use crate::suggest::suggest;
+use crate::ty::{FunctionType, ParameterTypes, QualifiedType, Type, TypeId, Types};
+use crate::typed::{Callee, Linkage, SymbolId};
+
+/// What to do when the vendor's header seems to be missing.
+const HEADER_HELP: &str = "is `KMotionDef.h` included?";
+
+impl Sema<'_> {
+    /// A call of a name without declaration.
+    pub(super) fn undeclared_function(&mut self, name: Name, span: Span) -> Option<(Callee, TypeId)> {
+        match self.symbols.linked(name) {
+            Some(symbol) if self.types.is_function(self.symbols.get(symbol).ty) => {
+                self.late_function(symbol, span);
+                Some((Callee::Symbol(symbol), self.symbols.get(symbol).ty))
+            }
+            Some(_) => {
+                self.undeclared(name, span);
+                None
+            }
+            None => self.implicit_firmware(name, span),
+        }
+    }
+
+    /// A function that is declared or defined further down.
+    fn late_function(&mut self, symbol: SymbolId, span: Span) {
+        if std::mem::replace(&mut self.symbols.facts_mut(symbol).is_reported, true) {
+            return;
+        }
+        let entry = self.symbols.get(symbol);
+        let (name, place, ty) = (entry.name.clone(), entry.span, entry.ty);
+        let is_defined = self.symbols.facts(symbol).definer.is_some();
+        let prototype = self.types.spell_declaration(self.names, ty, &name);
+        let (lint, at) = match (is_defined, self.is_plain(ty)) {
+            (true, true) => (Lint::LateDefinition, "the definition further down is used"),
+            (true, false) => {
+                (Lint::ImplicitDeclaration, "the definition further down is used; the board would not")
+            }
+            (false, _) => (Lint::ImplicitDeclaration, "the declaration further down is used"),
+        };
+        self.report(
+            Diagnostic::warning(lint, span, format!("`{name}` is called before it is declared"))
+                .at(at)
+                .label(place, "here")
+                .help(format!("write `{prototype};` at the top")),
+        );
+    }
+
+    /// Whether a call without prototype works on the board as well: integers and pointers only.
+    fn is_plain(&self, ty: TypeId) -> bool {
+        let is_word = |ty: TypeId| self.types.is_pointer(ty) || (ty.is_integer() && !ty.is_long_long());
+        self.types.function(ty).is_some_and(|function| {
+            (function.result.is_void() || is_word(function.result))
+                && match &function.parameters {
+                    ParameterTypes::Unspecified => true,
+                    ParameterTypes::Prototype { types, is_variadic } => {
+                        !is_variadic && types.iter().all(|ty| is_word(ty.ty))
+                    }
+                }
+        })
+    }
+
+    /// A function that only the firmware knows.
+    fn implicit_firmware(&mut self, name: Name, span: Span) -> Option<(Callee, TypeId)> {
+        let later = self.scopes.lookup_later(name).map(|binding| binding.entity);
+        if later == Some(Entity::Poisoned) {
+            return None;
+        }
+        let spelling = self.names.get(name);
+        let Some(function) = self.firmware_function(spelling) else {
+            self.undefined_function(name, span);
+            return None;
+        };
+        let ty = self.types.intern(Type::Function(function));
+        let prototype = self.types.spell_declaration(self.names, ty, spelling);
+        let symbol = self.symbols.declare(name, spelling, Linkage::External, ty, span);
+        self.symbols.facts_mut(symbol).is_reported = true;
+        self.report(
+            Diagnostic::warning(Lint::ImplicitDeclaration, span, format!("`{spelling}` is not declared"))
+                .at(format!("the firmware's `{prototype}` is used"))
+                .help("include `KMotionDef.h`, or declare the function"),
+        );
+        Some((Callee::Symbol(symbol), ty))
+    }
+
+    /// The firmware's type of a function that this unit does not define.
+    pub(super) fn firmware_type(&mut self, symbol: SymbolId) -> Option<FunctionType> {
+        let entry = self.symbols.get(symbol);
+        if entry.linkage == Linkage::Internal {
+            return None;
+        }
+        let name = entry.name.clone();
+        self.firmware_function(&name)
+    }
+
+    fn firmware_function(&mut self, name: &str) -> Option<FunctionType> {
+        let prototype = self.firmware.prototype(name)?;
+        let result = self.interface_type(&prototype.result).ty;
+        let types = prototype.parameters.iter().map(|ty| {
+            let ty = self.interface_type(ty);
+            QualifiedType::plain(self.types.decayed(ty).ty)
+        });
+        let types = types.collect();
+        let parameters = ParameterTypes::Prototype { types, is_variadic: prototype.is_variadic };
+        Some(FunctionType { result, parameters })
+    }
+
+    /// A type of the board's interface. One that the program does not define is `void` behind its pointer.
+    fn interface_type(&mut self, ty: &CType) -> QualifiedType {
+        QualifiedType::plain(match *ty {
+            CType::Void => Types::VOID,
+            CType::Char => Types::CHAR,
+            CType::SignedChar => Types::SIGNED_CHAR,
+            CType::UnsignedChar => Types::UNSIGNED_CHAR,
+            CType::Short => Types::SHORT,
+            CType::UnsignedShort => Types::UNSIGNED_SHORT,
+            CType::Int | CType::Long => Types::INT,
+            CType::UnsignedInt | CType::UnsignedLong => Types::UNSIGNED,
+            CType::Float => Types::FLOAT,
+            CType::Double => Types::DOUBLE,
+            CType::Named(name) => return self.interface_name(name),
+            CType::Const(inner) => return QualifiedType { is_const: true, ..self.interface_type(inner) },
+            CType::Volatile(inner) => {
+                return QualifiedType { is_volatile: true, ..self.interface_type(inner) };
+            }
+            CType::Pointer(to) => {
+                let to = self.interface_type(to);
+                self.types.pointer_to_qualified(to)
+            }
+            CType::Array(element, length) => {
+                let element = self.interface_type(element);
+                self.types.intern(Type::Array(element, Some(length)))
+            }
+            CType::Function { result, params } => {
+                let result = self.interface_type(result).ty;
+                let types = params.iter().map(|ty| self.interface_type(ty)).collect();
+                let parameters = ParameterTypes::Prototype { types, is_variadic: false };
+                self.types.intern(Type::Function(FunctionType { result, parameters }))
+            }
+        })
+    }
+
+    fn interface_name(&mut self, name: &'static str) -> QualifiedType {
+        let entity =
+            self.names.find(name).and_then(|name| self.scopes.lookup(name)).map(|binding| binding.entity);
+        match entity {
+            Some(Entity::Typedef(ty)) => ty,
+            _ => match CType::Named(name).resolved() {
+                CType::Named(_) => QualifiedType::plain(Types::VOID),
+                known => self.interface_type(&known),
+            },
+        }
+    }
+
+    fn undefined_function(&mut self, name: Name, span: Span) {
+        if !self.body.undeclared.insert(name) {
+            return;
+        }
+        let spelling = self.names.get(name);
+        let mut diagnostic = Diagnostic::error(span, format!("undefined function `{spelling}`"))
+            .at("neither this program nor the firmware has it");
+        if let Some(near) = self.near_name(spelling) {
+            diagnostic = diagnostic.help(format!("did you mean `{near}`?"));
+        }
+        self.report(diagnostic);
+    }
+
+    /// A variable without declaration; said once in a function.
+    pub(super) fn undeclared(&mut self, name: Name, span: Span) {
+        if !self.body.undeclared.insert(name) {
+            return;
+        }
+        let spelling = self.names.get(name);
+        let mut diagnostic = Diagnostic::error(span, format!("`{spelling}` is not declared"));
+        let later = self.scopes.lookup_later(name).map(|binding| (binding.entity, binding.span));
+        if let Some((entity, place)) = later {
+            if entity == Entity::Poisoned {
+                return;
+            }
+            diagnostic =
+                diagnostic.label(place, "declared here, behind its use").help("move the declaration up");
+        } else if self.firmware.is_variable(spelling) || self.firmware.prototype(spelling).is_some() {
+            diagnostic = diagnostic.note("the firmware has this name").help(HEADER_HELP);
+        } else if let Some(advice) = newer_word(spelling) {
+            diagnostic = diagnostic.help(advice);
+        } else if let Some(near) = self.near_name(spelling) {
+            diagnostic = diagnostic.help(format!("did you mean `{near}`?"));
+        }
+        self.report(diagnostic);
+    }
+
+    /// A type name that no typedef defines.
+    pub(super) fn unknown_type(&mut self, name: Name, span: Span) {
+        let spelling = self.names.get(name);
+        let mut diagnostic = Diagnostic::error(span, format!("unknown type `{spelling}`"));
+        if self.firmware.is_type(spelling) {
+            diagnostic = diagnostic.help(HEADER_HELP);
+        } else if let Some(near) = self.near_type(spelling) {
+            diagnostic = diagnostic.help(format!("did you mean `{near}`?"));
+        }
+        self.report(diagnostic);
+    }
+
+    fn near_name(&self, spelling: &str) -> Option<&str> {
+        let own = self.scopes.visible().filter(|binding| !matches!(binding.entity, Entity::Typedef(_)));
+        let own = own.map(|binding| self.names.get(binding.name));
+        suggest(spelling, own.chain(self.firmware.names()).filter(|name| is_sensible(spelling, name)))
+    }
+
+    fn near_type(&self, spelling: &str) -> Option<&str> {
+        let own = self.scopes.visible().filter(|binding| matches!(binding.entity, Entity::Typedef(_)));
+        suggest(spelling, own.map(|binding| self.names.get(binding.name)))
+    }
+}
+
+/// Whether a name may be suggested for another: one letter is near to every other, only its case can be meant.
+pub(super) fn is_sensible(spelling: &str, name: &str) -> bool {
+    spelling.len() > 1 || name.eq_ignore_ascii_case(spelling)
+}
+
+/// Advice for values that newer C has and the board's headers do not.
+fn newer_word(name: &str) -> Option<&'static str> {
+    Some(match name {
+        "true" => "use `TRUE` of `KMotionDef.h`, or 1",
+        "false" => "use `FALSE` of `KMotionDef.h`, or 0",
+        _ => return None,
+    })
+}

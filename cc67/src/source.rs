@@ -1,0 +1,276 @@
+//! Source files, positions and the macro expansions that tokens came through.
+//!
+//! Every byte of every file that a compilation reads has a number of its own: files lie one
+//! behind the other in a single position space. A [`Span`] is a range in it, together with
+//! the macro expansion that put the text in its place, if one did. Spans are small and
+//! `Copy`; the [`SourceMap`] turns them back into file, line and column.
+
+use std::borrow::Cow;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, OnceLock};
+
+use cranelift_entity::{PrimaryMap, entity_impl};
+
+/// One file that was read, or the text of a command-line macro.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct FileId(u32);
+entity_impl!(FileId, "file");
+
+/// One expansion of a macro; `Option<ExpansionId>` would double the size of a span.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ExpansionId(u32);
+entity_impl!(ExpansionId, "expansion");
+
+impl ExpansionId {
+    /// Text that stands in a file as it is.
+    pub const NONE: Self = Self(u32::MAX);
+}
+
+/// A range of source text and how it got there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Span {
+    /// Position of the first byte.
+    pub lo: u32,
+    /// Position behind the last byte.
+    pub hi: u32,
+    /// The innermost macro expansion the text came through; its call site says where to look.
+    pub expansion: ExpansionId,
+}
+
+impl Span {
+    /// A span of text that stands in a file as it is.
+    #[must_use]
+    pub const fn new(lo: u32, hi: u32) -> Self {
+        Self { lo, hi, expansion: ExpansionId::NONE }
+    }
+
+    /// The span from the start of `self` to the end of `end`, if one expansion holds both; else `self`.
+    #[must_use]
+    pub fn to(self, end: Self) -> Self {
+        if self.expansion == end.expansion && end.hi >= self.lo { Self { hi: end.hi, ..self } } else { self }
+    }
+}
+
+/// A file's text and where it lies in the position space.
+#[derive(Debug)]
+pub struct SourceFile {
+    /// Name as the user wrote it or as the include search found it.
+    pub name: String,
+    /// Where it was read; `None` for the embedded headers and command-line text.
+    pub path: Option<PathBuf>,
+    /// The bytes; not necessarily UTF-8. Shared with other inclusions of the same file.
+    pub text: Arc<Vec<u8>>,
+    /// Position of the first byte.
+    pub start: u32,
+    /// The `#include` that brought it in; `None` for the main file.
+    pub included_at: Option<Span>,
+    /// It holds text made by the preprocessor.
+    is_scratch: bool,
+    /// Offsets of the line starts, found when first asked for.
+    lines: OnceLock<Vec<u32>>,
+}
+
+impl SourceFile {
+    /// Offsets of the line starts; a line ends behind its line feed.
+    #[must_use]
+    pub fn lines(&self) -> &[u32] {
+        self.lines.get_or_init(|| {
+            std::iter::once(0)
+                .chain(
+                    self.text
+                        .iter()
+                        .enumerate()
+                        .filter(|(_, byte)| **byte == b'\n')
+                        .map(|(at, _)| at as u32 + 1),
+                )
+                .collect()
+        })
+    }
+
+    /// The position behind the last byte.
+    #[must_use]
+    pub fn end(&self) -> u32 {
+        self.start + self.text.len() as u32
+    }
+}
+
+/// One macro expansion.
+#[derive(Clone, Copy, Debug)]
+pub struct Expansion {
+    /// The macro's name where it is defined; its text is the name.
+    pub definition: Span,
+    /// Where it was used.
+    pub call: Span,
+}
+
+/// A place as people name it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// The file.
+    pub file: FileId,
+    /// Line, counted from 1.
+    pub line: u32,
+    /// Column in bytes, counted from 1.
+    pub column: u32,
+}
+
+/// All files and expansions of one compilation.
+#[derive(Debug, Default)]
+pub struct SourceMap {
+    files: PrimaryMap<FileId, SourceFile>,
+    expansions: PrimaryMap<ExpansionId, Expansion>,
+    /// The file at the end of the position space that holds text made by the preprocessor.
+    scratch: Option<FileId>,
+}
+
+impl SourceMap {
+    /// Makes an empty map.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds a file behind those already there.
+    pub fn add_file(
+        &mut self,
+        name: impl Into<String>,
+        path: Option<&Path>,
+        text: impl Into<Arc<Vec<u8>>>,
+        included_at: Option<Span>,
+    ) -> FileId {
+        // One position between two files belongs to the end of the first.
+        let start = self.files.values().next_back().map_or(0, |file| file.end() + 1);
+        self.scratch = None;
+        self.files.push(SourceFile {
+            name: name.into(),
+            path: path.map(Path::to_owned),
+            text: text.into(),
+            start,
+            included_at,
+            is_scratch: false,
+            lines: OnceLock::new(),
+        })
+    }
+
+    /// Adds text that stands in no file: a joined or quoted token. The caller gives its span an expansion.
+    pub fn add_scratch(&mut self, text: &[u8]) -> Span {
+        let scratch = match self.scratch {
+            Some(file) => file,
+            None => self.add_file("<scratch space>", None, Vec::new(), None),
+        };
+        self.scratch = Some(scratch);
+        let file = &mut self.files[scratch];
+        file.is_scratch = true;
+        let lo = file.end();
+        Arc::make_mut(&mut file.text).extend_from_slice(text);
+        Span::new(lo, file.end())
+    }
+
+    /// Whether a span lies in text made by the preprocessor.
+    #[must_use]
+    pub fn is_scratch(&self, span: Span) -> bool {
+        self.file_at(span.lo).is_some_and(|file| self.files[file].is_scratch)
+    }
+
+    /// The position behind everything added so far.
+    #[must_use]
+    pub fn end(&self) -> u32 {
+        self.files.values().next_back().map_or(0, SourceFile::end)
+    }
+
+    /// Records an expansion.
+    pub fn add_expansion(&mut self, expansion: Expansion) -> ExpansionId {
+        self.expansions.push(expansion)
+    }
+
+    /// The file with this number.
+    #[must_use]
+    pub fn file(&self, file: FileId) -> &SourceFile {
+        &self.files[file]
+    }
+
+    /// Every file in the order of reading.
+    pub fn files(&self) -> impl Iterator<Item = (FileId, &SourceFile)> {
+        self.files.iter()
+    }
+
+    /// The name of the macro that was expanded.
+    #[must_use]
+    pub fn macro_name(&self, expansion: &Expansion) -> Cow<'_, str> {
+        String::from_utf8_lossy(self.text(expansion.definition))
+    }
+
+    /// The expansion with this number; `None` for [`ExpansionId::NONE`].
+    #[must_use]
+    pub fn expansion(&self, id: ExpansionId) -> Option<&Expansion> {
+        self.expansions.get(id)
+    }
+
+    /// The span in a file that a reader should look at first: the outermost macro call, or the text itself.
+    #[must_use]
+    pub fn call_site(&self, mut span: Span) -> Span {
+        while let Some(expansion) = self.expansion(span.expansion) {
+            span = expansion.call;
+        }
+        span
+    }
+
+    /// The file that holds position `at`.
+    #[must_use]
+    pub fn file_at(&self, at: u32) -> Option<FileId> {
+        let after = self.files.values().as_slice().partition_point(|file| file.start <= at);
+        after.checked_sub(1).map(|index| FileId::from_u32(index as u32))
+    }
+
+    /// File, line and column of the start of `span`, seen from the outermost macro call.
+    #[must_use]
+    pub fn place(&self, span: Span) -> Option<Place> {
+        let at = self.call_site(span).lo;
+        let file = self.file_at(at)?;
+        let source = &self.files[file];
+        let offset = at - source.start;
+        let line = source.lines().partition_point(|start| *start <= offset);
+        let line_start = source.lines().get(line.checked_sub(1)?)?;
+        Some(Place { file, line: line as u32, column: offset - line_start + 1 })
+    }
+
+    /// The bytes of a span.
+    #[must_use]
+    pub fn text(&self, span: Span) -> &[u8] {
+        let Some(file) = self.file_at(span.lo) else { return &[] };
+        let source = &self.files[file];
+        let (lo, hi) = ((span.lo - source.start) as usize, (span.hi.max(span.lo) - source.start) as usize);
+        source.text.get(lo..hi.min(source.text.len())).unwrap_or(&[])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_count_lines_and_columns_from_one() {
+        let mut map = SourceMap::new();
+        map.add_file("a.c", None, b"int a;\nint b;\n".to_vec(), None);
+        let second = map.add_file("b.h", None, b"x\ny".to_vec(), None);
+        let start = map.file(second).start;
+        assert_eq!(
+            map.place(Span::new(start + 2, start + 3)),
+            Some(Place { file: second, line: 2, column: 1 })
+        );
+        assert_eq!(map.text(Span::new(7, 10)), b"int");
+    }
+
+    #[test]
+    fn scratch_text_lies_behind_the_files_and_moves_none() {
+        let mut map = SourceMap::new();
+        map.add_file("a.c", None, b"int".to_vec(), None);
+        let joined = map.add_scratch(b"ab");
+        let quoted = map.add_scratch(b"\"c\"");
+        let later = map.add_file("b.h", None, b"x".to_vec(), None);
+        let more = map.add_scratch(b"d");
+        let start = map.file(later).start;
+        let texts = [joined, quoted, Span::new(start, start + 1), more].map(|span| map.text(span));
+        assert_eq!(texts, [b"ab".as_slice(), b"\"c\"", b"x", b"d"]);
+    }
+}

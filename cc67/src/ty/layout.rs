@@ -1,0 +1,206 @@
+//! Sizes, alignments and the layout of structures.
+//!
+//! Natural alignment, members in order, `double` on 8 (`dialect.md` 1.2). Bit-fields fill
+//! units of their declared type from bit 0 upwards; one that does not fit, or has a type of
+//! another size, opens a new unit, and width 0 closes the unit.
+
+use super::{BitRange, Layout, Member, QualifiedType, RecordId, Type, TypeId, Types};
+use crate::ast::RecordKind;
+use crate::names::Name;
+
+/// The largest object that a declaration may ask for: all of the board's SDRAM.
+pub const MAX_OBJECT_SIZE: u32 = 0x100_0000;
+
+impl Types {
+    /// Size in bytes; `None` for incomplete types. `void` and functions count 1, as in pointer steps.
+    #[must_use]
+    pub fn size_of(&self, ty: TypeId) -> Option<u32> {
+        Some(match self.get(ty) {
+            Type::Void
+            | Type::Function(_)
+            | Type::Bool
+            | Type::Char
+            | Type::SignedChar
+            | Type::UnsignedChar => 1,
+            Type::Short | Type::UnsignedShort => 2,
+            Type::Int | Type::Unsigned | Type::Float | Type::Pointer(_) => 4,
+            Type::LongLong | Type::UnsignedLongLong | Type::Double => 8,
+            Type::Array(element, length) => self.size_of(element.ty)?.checked_mul((*length)?)?,
+            Type::Record(record) => self.record(*record).layout.as_ref()?.size,
+        })
+    }
+
+    /// Alignment in bytes; 1 for incomplete types.
+    #[must_use]
+    pub fn align_of(&self, ty: TypeId) -> u32 {
+        match self.get(ty) {
+            Type::Array(element, _) => self.align_of(element.ty),
+            Type::Record(record) => self.record(*record).layout.as_ref().map_or(1, |layout| layout.align),
+            _ => self.size_of(ty).unwrap_or(1),
+        }
+    }
+
+    /// Whether objects of the type can be made.
+    #[must_use]
+    pub fn is_object(&self, ty: TypeId) -> bool {
+        !ty.is_void() && !self.is_function(ty) && self.size_of(ty).is_some()
+    }
+
+    /// Finds a member by name, through anonymous structures and unions; its offset is from the start of `record`.
+    #[must_use]
+    pub fn find_member(&self, record: RecordId, name: Name) -> Option<Member> {
+        let layout = self.record(record).layout.as_ref()?;
+        layout.members.iter().find_map(|member| match member.name {
+            Some(own) => (own == name).then_some(*member),
+            None => {
+                let inner = self.find_member(self.record_of(member.ty.ty)?, name)?;
+                Some(Member { offset: member.offset + inner.offset, ..inner })
+            }
+        })
+    }
+}
+
+/// Places members one behind the other.
+#[derive(Debug)]
+pub struct LayoutBuilder {
+    kind: RecordKind,
+    members: Vec<Member>,
+    /// First byte behind the members so far; for a union, the size of the largest.
+    end: u32,
+    align: u32,
+    /// The open unit of bit-fields.
+    unit: Option<Unit>,
+}
+
+/// A storage unit that bit-fields are put into.
+#[derive(Clone, Copy, Debug)]
+struct Unit {
+    offset: u32,
+    size: u32,
+    used: u32,
+}
+
+impl LayoutBuilder {
+    /// Begins a structure or union.
+    #[must_use]
+    pub fn new(kind: RecordKind) -> Self {
+        Self { kind, members: Vec::new(), end: 0, align: 1, unit: None }
+    }
+
+    /// The members so far.
+    #[must_use]
+    pub fn members(&self) -> &[Member] {
+        &self.members
+    }
+
+    /// Adds a member; an incomplete array takes no room. `None` if the structure grows beyond all bounds.
+    pub fn member(&mut self, types: &Types, name: Option<Name>, ty: QualifiedType) -> Option<()> {
+        self.unit = None;
+        let offset = self.reserve(types.size_of(ty.ty).unwrap_or(0), types.align_of(ty.ty))?;
+        self.members.push(Member { name, ty, offset, bits: None });
+        Some(())
+    }
+
+    /// Adds a bit-field; without a name it is only room, and of width 0 it closes the unit.
+    pub fn bit_field(
+        &mut self,
+        types: &Types,
+        name: Option<Name>,
+        ty: QualifiedType,
+        width: u32,
+    ) -> Option<()> {
+        if width == 0 {
+            self.unit = None;
+            return Some(());
+        }
+        let size = types.size_of(ty.ty)?;
+        let unit = match self.unit {
+            Some(unit)
+                if unit.size == size && unit.used + width <= size * 8 && self.kind == RecordKind::Struct =>
+            {
+                unit
+            }
+            _ => Unit { offset: self.reserve(size, types.align_of(ty.ty))?, size, used: 0 },
+        };
+        if name.is_some() {
+            let bits = BitRange { shift: unit.used as u8, width: width as u8 };
+            self.members.push(Member { name, ty, offset: unit.offset, bits: Some(bits) });
+        }
+        self.unit = Some(Unit { used: unit.used + width, ..unit });
+        Some(())
+    }
+
+    /// The finished layout.
+    #[must_use]
+    pub fn finish(self) -> Layout {
+        let size = self.end.next_multiple_of(self.align);
+        Layout { members: self.members, size, align: self.align }
+    }
+
+    /// Makes room and says where it starts.
+    fn reserve(&mut self, size: u32, align: u32) -> Option<u32> {
+        self.align = self.align.max(align);
+        if self.kind == RecordKind::Union {
+            self.end = self.end.max(size);
+            return Some(0);
+        }
+        let offset = self.end.next_multiple_of(align);
+        let end = offset.checked_add(size)?;
+        if end > i32::MAX as u32 - 8 {
+            return None;
+        }
+        self.end = end;
+        Some(offset)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn offsets(kind: RecordKind, members: &[TypeId]) -> (Vec<u32>, u32, u32) {
+        let types = Types::new();
+        let mut builder = LayoutBuilder::new(kind);
+        for ty in members {
+            builder.member(&types, None, QualifiedType::plain(*ty)).expect("small");
+        }
+        let layout = builder.finish();
+        (layout.members.iter().map(|member| member.offset).collect(), layout.size, layout.align)
+    }
+
+    #[test]
+    fn members_are_aligned_naturally_and_double_on_8() {
+        let (ch, short, double) = (Types::CHAR, Types::SHORT, Types::DOUBLE);
+        assert_eq!(offsets(RecordKind::Struct, &[ch, double, ch]), (vec![0, 8, 16], 24, 8));
+        assert_eq!(offsets(RecordKind::Struct, &[ch, ch, ch, short, ch]), (vec![0, 1, 2, 4, 6], 8, 2));
+        assert_eq!(offsets(RecordKind::Union, &[ch, double]), (vec![0, 0], 8, 8));
+        assert_eq!(offsets(RecordKind::Struct, &[]), (vec![], 0, 1));
+    }
+
+    #[test]
+    fn bit_fields_fill_units_of_their_type_and_never_straddle() {
+        let types = Types::new();
+        let mut names = crate::names::Names::new();
+        let name = Some(names.intern("x"));
+        let mut builder = LayoutBuilder::new(RecordKind::Struct);
+        for (ty, width) in [
+            (Types::INT, 3),
+            (Types::INT, 5),
+            (Types::INT, 25),
+            (Types::CHAR, 4),
+            (Types::CHAR, 0),
+            (Types::CHAR, 1),
+        ] {
+            builder.bit_field(&types, name, QualifiedType::plain(ty), width).expect("small");
+        }
+        let layout = builder.finish();
+        let found: Vec<_> =
+            layout.members.iter().map(|m| (m.offset, m.bits.map(|b| (b.shift, b.width)))).collect();
+        let bits = |shift, width| Some((shift, width));
+        assert_eq!(
+            found,
+            [(0, bits(0, 3)), (0, bits(3, 5)), (4, bits(0, 25)), (8, bits(0, 4)), (9, bits(0, 1))]
+        );
+        assert_eq!(layout.size, 12);
+    }
+}

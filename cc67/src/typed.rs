@@ -1,0 +1,430 @@
+//! The typed tree: every expression has a type, every conversion is written.
+//!
+//! What C leaves implicit is explicit here: arrays have become pointers, operands have their
+//! common type, compound assignments name the type they compute in, pointer steps are in
+//! bytes, initialisers are bytes or stores. Lowering needs no knowledge of C's rules.
+//!
+//! Values and places are different things: an expression computes a value, a [`Place`] names
+//! storage. A value of structure type exists only as the source of a copy, see
+//! [`ExprKind::Copy`].
+//!
+//! Left to right is the order of evaluation everywhere.
+
+use cranelift_entity::{PrimaryMap, entity_impl};
+
+use crate::source::Span;
+use crate::ty::{BitRange, FunctionType, TypeId, Types};
+
+macro_rules! index {
+    ($($(#[$doc:meta])* $name:ident, $prefix:literal;)*) => {$(
+        $(#[$doc])*
+        #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub struct $name(u32);
+        entity_impl!($name, $prefix);
+    )*};
+}
+
+index! {
+    /// A name with linkage, or an anonymous static object.
+    SymbolId, "symbol";
+    /// An expression of a function.
+    ExprId, "expr";
+    /// A place of a function.
+    PlaceId, "place";
+    /// A local variable, parameter or temporary of a function.
+    LocalId, "local";
+    /// A label of a function that `goto` can reach.
+    LabelId, "label";
+}
+
+/// A translation unit.
+#[derive(Debug)]
+pub struct Unit {
+    /// The types that the tree refers to.
+    pub types: Types,
+    /// Everything that has an address at link time.
+    pub symbols: PrimaryMap<SymbolId, Symbol>,
+    /// The functions defined here, in the order of their definitions.
+    pub functions: Vec<Function>,
+}
+
+/// Something with an address at link time.
+#[derive(Debug)]
+pub struct Symbol {
+    /// The name; for anonymous objects one that no program can spell (`L.3`).
+    pub name: String,
+    /// Whether other units see it.
+    pub linkage: Linkage,
+    /// The type.
+    pub ty: TypeId,
+    /// What stands at the address.
+    pub definition: Definition,
+    /// The defining declaration, else the first one.
+    pub span: Span,
+    /// The first use that needs the address, for link errors.
+    pub used_at: Option<Span>,
+}
+
+/// Linkage of a symbol.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Linkage {
+    /// Seen by other units.
+    External,
+    /// `static`, or anonymous.
+    Internal,
+}
+
+/// What this unit says about a symbol.
+#[derive(Debug)]
+pub enum Definition {
+    /// Declared only: another unit, the firmware or the library defines it.
+    None,
+    /// A function of this unit; its body is in [`Unit::functions`].
+    Function,
+    /// An object without initialiser: `.bss`, merged with tentative definitions elsewhere.
+    Tentative,
+    /// An object with an initialiser: `.data`.
+    Data(StaticData),
+}
+
+/// The bytes of an initialised object.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct StaticData {
+    /// As many bytes as the object has; more than its type's size if a flexible array is initialised.
+    pub bytes: Vec<u8>,
+    /// Addresses that the linker adds into 32-bit words, ascending by offset.
+    pub addresses: Vec<AddressWord>,
+}
+
+/// A word that holds the address of a symbol.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct AddressWord {
+    /// Offset in the object.
+    pub offset: u32,
+    /// Whose address.
+    pub symbol: SymbolId,
+    /// Bytes to add to it.
+    pub addend: i32,
+}
+
+/// A function with a body.
+#[derive(Debug)]
+pub struct Function {
+    /// Its symbol.
+    pub symbol: SymbolId,
+    /// Its type. A function of `void` type that returns a value somewhere has result `int` here.
+    pub ty: FunctionType,
+    /// Parameters in order. A structure parameter's local holds the caller's copy; see [`Local::by_pointer`].
+    pub parameters: Vec<LocalId>,
+    /// For a variadic function, the hidden last parameter: address of the variable arguments.
+    pub variable_arguments: Option<LocalId>,
+    /// For a structure result, the hidden first parameter: where to store it.
+    pub result_pointer: Option<LocalId>,
+    /// Parameters, variables and temporaries.
+    pub locals: PrimaryMap<LocalId, Local>,
+    /// Expressions.
+    pub exprs: PrimaryMap<ExprId, Expr>,
+    /// Places.
+    pub places: PrimaryMap<PlaceId, Place>,
+    /// Labels, by their number.
+    pub labels: PrimaryMap<LabelId, Label>,
+    /// The body.
+    pub body: Vec<Stmt>,
+    /// The function's name in its definition.
+    pub span: Span,
+    /// The closing brace, where a function that falls off its end returns 0.
+    pub end: Span,
+}
+
+/// A local object.
+#[derive(Debug)]
+pub struct Local {
+    /// Its name; empty for a temporary.
+    pub name: String,
+    /// Its type.
+    pub ty: TypeId,
+    /// It needs memory: its address is taken, it is an array or a structure, or it is volatile.
+    pub in_memory: bool,
+    /// A structure parameter: the register that comes in holds the address of the caller's copy.
+    pub by_pointer: bool,
+    /// Where it is declared.
+    pub span: Span,
+}
+
+/// A label.
+#[derive(Debug)]
+pub struct Label {
+    /// Its name.
+    pub name: String,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// A statement.
+#[derive(Debug)]
+pub struct Stmt {
+    /// What it does.
+    pub kind: StmtKind,
+    /// The source line that a trap inside it names.
+    pub span: Span,
+}
+
+/// The kinds of statement.
+#[derive(Debug)]
+pub enum StmtKind {
+    /// Evaluates and drops a value.
+    Expr(ExprId),
+    /// Statements one after the other.
+    Block(Vec<Stmt>),
+    /// Branches on a value that is zero or not; integers, pointers and floats alike.
+    If {
+        /// The condition.
+        condition: ExprId,
+        /// Taken when it is not zero.
+        then: Vec<Stmt>,
+        /// Taken otherwise.
+        otherwise: Vec<Stmt>,
+    },
+    /// Any loop: `while (condition) { body; step; }`, the first test left out for `do`.
+    Loop {
+        /// Tested before each turn, or behind it; `None` is true.
+        condition: Option<ExprId>,
+        /// When it is tested.
+        test: LoopTest,
+        /// The body; `continue` goes behind it.
+        body: Vec<Stmt>,
+        /// Evaluated behind the body.
+        step: Option<ExprId>,
+    },
+    /// Chooses among the cases of the body.
+    Switch {
+        /// The value, of integer type.
+        value: ExprId,
+        /// The cases in the order of the body, each with the number its [`StmtKind::Case`] has.
+        cases: Vec<Case>,
+        /// Whether the body has [`StmtKind::DefaultCase`].
+        has_default: bool,
+        /// The body.
+        body: Vec<Stmt>,
+    },
+    /// The place that case number `n` of the innermost switch goes to.
+    Case(u32),
+    /// The place that no case goes to.
+    DefaultCase,
+    /// Leaves the innermost loop or switch.
+    Break,
+    /// Goes to the end of the innermost loop's body.
+    Continue,
+    /// Returns. The value has the type of the function's result; a structure has been copied to the
+    /// result pointer by a statement before.
+    Return(Option<ExprId>),
+    /// The place a `goto` goes to.
+    Label(LabelId),
+    /// Goes to a label.
+    Goto(LabelId),
+}
+
+/// When a loop tests its condition.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LoopTest {
+    /// `while`, `for`
+    Before,
+    /// `do … while`
+    Behind,
+}
+
+/// A case of a switch: a range of values, equal ends for a single one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Case {
+    /// The first value, converted to the type of the switch.
+    pub first: i64,
+    /// The last value.
+    pub last: i64,
+}
+
+/// An expression: a value of a scalar type, or an effect of type `void`.
+#[derive(Debug)]
+pub struct Expr {
+    /// What it computes.
+    pub kind: ExprKind,
+    /// The type of the value.
+    pub ty: TypeId,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// The kinds of expression.
+#[derive(Debug)]
+pub enum ExprKind {
+    /// An integer or pointer constant, sign- or zero-extended from its type.
+    Int(i64),
+    /// A floating constant, exact in its type.
+    Float(f64),
+    /// The value stored in a place.
+    Load(PlaceId),
+    /// The address of a place.
+    Address(PlaceId),
+    /// Stores a value of the place's type; the value is that of the place behind the store.
+    Assign(PlaceId, ExprId),
+    /// `place = place op operand`, the place evaluated once, before the operand.
+    Update(Update),
+    /// Copies a structure, or a character array from its initialiser, `memmove`; of type `void`.
+    Copy {
+        /// Where to.
+        to: PlaceId,
+        /// Where from.
+        from: PlaceId,
+    },
+    /// Fills a local with zeros, before its partial initialiser; of type `void`.
+    Clear(PlaceId),
+    /// A unary operator on a value of the same type.
+    Unary(UnaryOp, ExprId),
+    /// A binary operator; operands and result have one type (shift counts are `int`).
+    Binary(BinaryOp, ExprId, ExprId),
+    /// A comparison of two values of one type; the result is `int` 0 or 1.
+    Compare(CompareOp, ExprId, ExprId),
+    /// `a && b` of values that are zero or not; `int` 0 or 1.
+    And(ExprId, ExprId),
+    /// `a || b` likewise.
+    Or(ExprId, ExprId),
+    /// `condition ? a : b`, both of the result's type or both `void`.
+    Conditional(ExprId, ExprId, ExprId),
+    /// Evaluates the first, then the second, whose value it has.
+    Comma(ExprId, ExprId),
+    /// Converts to the expression's type; to `void` drops the value.
+    Convert(ExprId),
+    /// Calls a function. Scalar arguments have the types of the parameters; a structure argument is the
+    /// address of a temporary copy. For a structure result, argument 0 is the address of the temporary that
+    /// receives it, and the call is of type `void`.
+    Call(Call),
+    /// `va_arg`: loads a value from the place that the `char *` in the list place points to, aligned to its
+    /// size (4 or 8), and steps over it.
+    VaArg(PlaceId),
+    /// The value of a local initialised by the statements: a GNU statement expression. The value, if
+    /// any, is that of the last expression.
+    Statements(Vec<Stmt>, Option<ExprId>),
+}
+
+/// `place = (type of place)((computed)place op operand)`
+#[derive(Debug)]
+pub struct Update {
+    /// What is changed.
+    pub place: PlaceId,
+    /// The operator.
+    pub op: BinaryOp,
+    /// The other operand, of type `computed` (`int` for a shift). For pointers a byte count, as `int`.
+    pub operand: ExprId,
+    /// The type that is computed in; the place's own for pointers.
+    pub computed: TypeId,
+    /// Which value the expression has.
+    pub result: UpdateResult,
+}
+
+/// The value of an update.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum UpdateResult {
+    /// `++a`, `a += b`
+    New,
+    /// `a++`
+    Old,
+}
+
+/// A call.
+#[derive(Debug)]
+pub struct Call {
+    /// What is called.
+    pub callee: Callee,
+    /// The type that the arguments were converted to; never `Unspecified` parameters.
+    pub ty: FunctionType,
+    /// All arguments that go into registers, hidden ones included; variable ones excluded.
+    pub arguments: Vec<ExprId>,
+    /// The variable part, promoted. Lowering stores it in the frame and passes its address last.
+    pub variable: Option<Vec<ExprId>>,
+}
+
+/// What a call calls.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Callee {
+    /// A function by name.
+    Symbol(SymbolId),
+    /// A function by address.
+    Pointer(ExprId),
+}
+
+/// Unary operators on numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum UnaryOp {
+    /// `-a`
+    Negate,
+    /// `~a`
+    Complement,
+    /// `a == 0`, of type `int` whatever the operand's type
+    Not,
+}
+
+/// Binary operators; signedness follows from the type. On pointers only `Add` and `Subtract` of an `int` byte
+/// count occur.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BinaryOp {
+    /// `a + b`
+    Add,
+    /// `a - b`
+    Subtract,
+    /// `a * b`
+    Multiply,
+    /// `a / b`
+    Divide,
+    /// `a % b`
+    Remainder,
+    /// `a & b`
+    And,
+    /// `a | b`
+    Or,
+    /// `a ^ b`
+    Xor,
+    /// `a << b`
+    ShiftLeft,
+    /// `a >> b`
+    ShiftRight,
+}
+
+/// Comparisons; signedness follows from the operands' type.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CompareOp {
+    /// `a == b`
+    Equal,
+    /// `a != b`
+    NotEqual,
+    /// `a < b`
+    Less,
+    /// `a <= b`
+    LessEqual,
+    /// `a > b`
+    Greater,
+    /// `a >= b`
+    GreaterEqual,
+}
+
+/// Storage.
+#[derive(Debug)]
+pub struct Place {
+    /// Which storage.
+    pub kind: PlaceKind,
+    /// The type of what is stored.
+    pub ty: TypeId,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// The kinds of place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PlaceKind {
+    /// A local, or a part of one at a byte offset: always inside it, of any type if the local is in memory.
+    Local(LocalId, u32),
+    /// A symbol plus a byte offset.
+    Symbol(SymbolId, i32),
+    /// What a pointer points to, plus a byte offset.
+    Pointer(ExprId, i32),
+    /// A bit-field: the storage unit's place has the declared type.
+    Bits(PlaceId, BitRange),
+}
