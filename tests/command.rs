@@ -1,0 +1,187 @@
+//! The command as users meet it: exit codes, bad input, several threads, determinism.
+
+use std::fmt::Write as _;
+
+use harness::{Output, Scratch, run_in};
+
+fn cc67(scratch: &Scratch, arguments: &[&str]) -> Output {
+    run_in(env!("CARGO_BIN_EXE_cc67-under-test"), scratch.path(), arguments)
+}
+
+/// Runs with one file `a.c` of the given text.
+fn run_source(name: &str, source: impl AsRef<[u8]>, arguments: &[&str]) -> Output {
+    let scratch = Scratch::new(name);
+    scratch.write("a.c", source);
+    let mut all = vec!["run"];
+    all.extend_from_slice(arguments);
+    all.push("a.c");
+    cc67(&scratch, &all)
+}
+
+/// A message for people: one finding, no trace of the implementation.
+fn assert_plain(output: &Output, code: i32, expect: &str) {
+    assert_eq!(output.code, code, "{output:?}");
+    assert!(output.stderr.contains(expect), "expected {expect:?} in:\n{}", output.stderr);
+    for trace in ["panicked", "RUST_BACKTRACE", ".rs:", "overflowed its stack", "unwrap"] {
+        assert!(!output.stderr.contains(trace), "{}", output.stderr);
+    }
+    assert!(output.stderr.lines().count() <= 16, "more than one message:\n{}", output.stderr);
+}
+
+const HELLO: &str = "#include \"KMotionDef.h\"\nmain()\n{\n  printf(\"hello\\n\");\n}\n";
+
+#[test]
+fn hello_prints_and_succeeds() {
+    let output = run_source("hello", HELLO, &[]);
+    assert_eq!(output, Output { code: 0, stdout: "hello\n".into(), stderr: String::new() });
+}
+
+#[test]
+fn a_missing_file_is_named() {
+    let scratch = Scratch::new("missing");
+    assert_plain(&cc67(&scratch, &["run", "nosuch.c"]), 2, "nosuch.c");
+}
+
+#[test]
+fn a_folder_is_not_a_program() {
+    let scratch = Scratch::new("folder");
+    scratch.write("sub/x.c", "");
+    assert_plain(&cc67(&scratch, &["run", "sub"]), 2, "sub");
+}
+
+#[test]
+fn an_empty_file_has_no_main() {
+    assert_plain(&run_source("empty", "", &[]), 1, "main");
+}
+
+#[test]
+fn binary_junk_is_refused_once() {
+    let junk: Vec<u8> = (0..4096u32).map(|n| (n.wrapping_mul(2_654_435_761) >> 24) as u8).collect();
+    let output = run_source("junk", junk, &[]);
+    assert_plain(&output, 1, "a.c is not C source text");
+    assert_eq!(output.stderr.lines().count(), 2, "{}", output.stderr);
+}
+
+#[test]
+fn an_unclosed_comment_points_at_its_start() {
+    assert_plain(&run_source("comment", "main() { }\n/* never closed\n", &[]), 1, "a.c:2:1");
+}
+
+#[test]
+fn an_include_of_itself_has_a_limit() {
+    assert_plain(&run_source("itself", "#include \"a.c\"\nmain() { }\n", &[]), 1, "64");
+}
+
+#[test]
+fn deep_parentheses_have_a_limit() {
+    let source = format!("main() {{ int x = {}1{}; }}\n", "(".repeat(10_000), ")".repeat(10_000));
+    assert_plain(&run_source("parentheses", source, &[]), 1, "640");
+}
+
+#[test]
+fn threads_are_one_to_seven_and_hold_one_program_each() {
+    let scratch = Scratch::new("threads");
+    scratch.write("a.c", HELLO);
+    assert_plain(&cc67(&scratch, &["run", "0:a.c"]), 2, "invalid thread number 0");
+    assert_plain(&cc67(&scratch, &["run", "8:a.c"]), 2, "invalid thread number 8");
+    assert_plain(&cc67(&scratch, &["run", "2:a.c", "2:a.c"]), 2, "two programs for thread 2");
+}
+
+#[test]
+fn options_that_do_not_exist_or_are_to_come_are_named() {
+    let scratch = Scratch::new("options");
+    scratch.write("a.c", HELLO);
+    assert_plain(&cc67(&scratch, &["run", "--nosuch", "a.c"]), 2, "--nosuch");
+    assert_plain(&cc67(&scratch, &["run", "--plot", "x.svg", "a.c"]), 2, "option `--plot` is not built yet");
+    assert_plain(&cc67(&scratch, &["inspect", "a.out"]), 2, "`cc67 inspect` is not built yet");
+    assert_plain(&cc67(&scratch, &["run", "--set", "persist.200=1", "a.c"]), 2, "persist.UserData");
+}
+
+#[test]
+fn several_errors_are_reported_in_one_run() {
+    let source = "#include \"KMotionDef.h\"\nmain()\n{\n  int x = 1\n  x = Readbit(46);\n  y = 2;\n}\n";
+    let output = run_source("several", source, &[]);
+    assert_eq!(output.code, 1);
+    assert_eq!(output.stdout, "");
+    insta::assert_snapshot!(output.stderr);
+}
+
+#[test]
+fn an_error_inside_a_macro_shows_the_macro() {
+    let source = "#include \"KMotionDef.h\"\n#define LAMP(n) SetBitt(46 + n)\nmain()\n{\n  LAMP(1);\n}\n";
+    insta::assert_snapshot!(run_source("macro", source, &[]).stderr);
+}
+
+#[test]
+fn an_endless_loop_in_one_thread_does_not_stop_another() {
+    let scratch = Scratch::new("endless");
+    scratch.write("spin.c", "main() { for (;;) ; }\n").write("a.c", HELLO);
+    let output = cc67(&scratch, &["run", "--for", "0.1", "spin.c", "a.c"]);
+    assert_eq!((output.code, output.stdout.as_str()), (0, "hello\n"), "{output:?}");
+}
+
+#[test]
+fn the_default_limit_is_a_code_of_its_own() {
+    let output =
+        run_source("limit", "#include \"KMotionDef.h\"\nmain() { for (;;) WaitNextTimeSlice(); }\n", &[]);
+    assert_eq!(output.code, 4, "{output:?}");
+    assert!(output.stderr.contains("60 s"), "{}", output.stderr);
+}
+
+#[test]
+fn a_wild_pointer_stops_its_thread_only() {
+    let scratch = Scratch::new("wild");
+    scratch.write("wild.c", "main()\n{\n  int *p = 0;\n  *p = 5;\n}\n").write(
+        "a.c",
+        "#include \"KMotionDef.h\"\nmain()\n{\n  Delay_sec(0.01);\n  printf(\"alive\\n\");\n}\n",
+    );
+    let output = cc67(&scratch, &["run", "wild.c", "a.c"]);
+    assert_eq!((output.code, output.stdout.as_str()), (3, "alive\n"), "{output:?}");
+    assert!(output.stderr.contains("thread 1") && output.stderr.contains("wild.c:4"), "{}", output.stderr);
+}
+
+#[test]
+fn a_function_whose_behaviour_is_to_come_names_itself() {
+    let source = "#include \"KMotionDef.h\"\nmain()\n{\n  TrigThreading(1.0f);\n}\n";
+    let output = run_source("tocome", source, &[]);
+    assert_eq!(output.code, 3, "{output:?}");
+    assert!(output.stderr.contains("TrigThreading"), "{}", output.stderr);
+}
+
+#[test]
+fn settings_reach_the_program() {
+    let source = "#include \"KMotionDef.h\"\nmain()\n{\n  printf(\"%d %.2f %.1f\\n\", persist.UserData[5],\n    *(float *)&persist.UserData[6], *(double *)&persist.UserData[8]);\n}\n";
+    let settings = ["--set", "persist.5=0x10", "--set", "persist.6=f:1.25", "--set", "persist.8=d:2.5"];
+    assert_eq!(run_source("settings", source, &settings).stdout, "16 1.25 2.5\n");
+}
+
+#[test]
+fn board_time_stands_before_each_line_on_request() {
+    let source = "#include \"KMotionDef.h\"\nmain()\n{\n  Delay_sec(0.5);\n  printf(\"half\\n\");\n}\n";
+    let output = run_source("time", source, &["--time"]);
+    assert!(output.stdout.starts_with("0.500"), "{}", output.stdout);
+    assert!(output.stdout.ends_with(" half\n"), "{}", output.stdout);
+}
+
+#[test]
+fn runs_are_equal_to_the_byte_with_shortcuts_and_without() {
+    let mut source = String::from("#include \"KMotionDef.h\"\nmain()\n{\n  int i;\n  double t;\n");
+    for n in 0..5 {
+        let _ = writeln!(
+            source,
+            "  for (i = 0; i < 20; i++) {{ t = WaitNextTimeSlice(); persist.UserData[{n}] += i; }}\n  \
+             Delay_sec(0.00{n}3); printf(\"%d %.9f %.9f\\n\", persist.UserData[{n}], t, Time_sec());"
+        );
+    }
+    source.push_str("}\n");
+    let scratch = Scratch::new("equal");
+    scratch.write("a.c", &source).write("b.c", &source);
+    let arguments = ["run", "--time", "a.c", "b.c"];
+    let first = cc67(&scratch, &arguments);
+    assert_eq!(first.code, 0, "{first:?}");
+    assert_eq!(first.stdout.lines().count(), 10);
+    for _ in 0..9 {
+        assert_eq!(cc67(&scratch, &arguments), first);
+    }
+    assert_eq!(cc67(&scratch, &["run", "--no-shortcuts", "--time", "a.c", "b.c"]), first);
+}

@@ -1,0 +1,9 @@
+//@ exit: 3
+//@ says: misaligned
+#include "KMotionDef.h"
+main()
+{
+    double *d = (double *)&persist.UserData[1];
+    *d = 1.5;
+    return *d;
+}

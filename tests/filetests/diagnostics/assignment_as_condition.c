@@ -1,0 +1,9 @@
+//@ snapshot
+#include "KMotionDef.h"
+
+main()
+{
+    int x = 0;
+    if (x = 1) printf("%d\n", x);
+}
+//@ prints: 1

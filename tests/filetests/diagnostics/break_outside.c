@@ -1,0 +1,8 @@
+//@ exit: 1
+//@ snapshot
+main()
+{
+    break;
+    goto nowhere;
+    case 3: ;
+}

@@ -1,0 +1,5 @@
+//@ exit: 1
+//@ snapshot
+#include "KMotionDeff.h"
+
+main() { }

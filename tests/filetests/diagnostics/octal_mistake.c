@@ -1,0 +1,4 @@
+//@ exit: 1
+//@ snapshot
+int delay = 08;
+main() { }

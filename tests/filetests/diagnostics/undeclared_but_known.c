@@ -1,0 +1,8 @@
+//@ exit: 0
+//@ prints: 5
+//@ snapshot
+
+main()
+{
+    printf("%d\n", strlen("hello"));
+}

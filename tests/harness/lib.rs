@@ -1,0 +1,115 @@
+//! What the whole-system tests share: running the command, scratch folders, program files.
+
+pub mod csv;
+
+use std::ffi::OsStr;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// The root of the workspace.
+#[must_use]
+pub fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the package lies in the workspace")
+}
+
+/// What a run of the command left behind.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Output {
+    /// Exit code; -1 when a signal ended it.
+    pub code: i32,
+    /// What programs printed.
+    pub stdout: String,
+    /// Everything else.
+    pub stderr: String,
+}
+
+impl Output {
+    /// The three parts as one text for snapshots.
+    #[must_use]
+    pub fn render(&self) -> String {
+        let mut text = self.stdout.clone();
+        if !self.stderr.is_empty() {
+            text.push_str("---- stderr\n");
+            text.push_str(&self.stderr);
+        }
+        text.push_str(&format!("---- exit {}\n", self.code));
+        text
+    }
+}
+
+/// Runs the command at `binary` in folder `folder`.
+#[must_use]
+pub fn run_in<A: AsRef<OsStr>>(
+    binary: &str,
+    folder: &Path,
+    arguments: impl IntoIterator<Item = A>,
+) -> Output {
+    let output = Command::new(binary)
+        .args(arguments)
+        .current_dir(folder)
+        .env("NO_COLOR", "1")
+        .stdin(Stdio::null())
+        .output()
+        .expect("the command under test starts");
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).replace("\r\n", "\n");
+    Output {
+        code: output.status.code().unwrap_or(-1),
+        stdout: text(&output.stdout),
+        stderr: text(&output.stderr),
+    }
+}
+
+/// A folder of its own for one test, removed when it goes out of scope.
+#[derive(Debug)]
+pub struct Scratch(PathBuf);
+
+impl Scratch {
+    /// Makes the folder; `name` must be unique among the tests.
+    #[must_use]
+    pub fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("cc67-{}-{name}", std::process::id()));
+        fs::create_dir_all(&path).expect("the temporary folder is writable");
+        Self(path)
+    }
+
+    /// Where it is.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.0
+    }
+
+    /// Writes a file into it.
+    pub fn write(&self, name: &str, content: impl AsRef<[u8]>) -> &Self {
+        let path = self.0.join(name);
+        fs::create_dir_all(path.parent().expect("a file has a folder")).expect("the folder is writable");
+        fs::write(path, content).expect("the file is writable");
+        self
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        // A leftover folder is untidy, not wrong.
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// Every file below `folder` with the extension, sorted by path.
+#[must_use]
+pub fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(&folder).expect("the folder is readable") {
+            let path = entry.expect("the entry is readable").path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|found| found == extension) {
+                found.push(path);
+            }
+        }
+    }
+    found.sort();
+    found
+}

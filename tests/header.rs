@@ -1,0 +1,179 @@
+//! The headers in `kmotiondef/include` say what the interface tables say.
+//!
+//! A C program of static assertions is made of the tables and compiled by cc67, so that names,
+//! types, values, layouts and macros are compared as a program would see them.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use cc67::diag::Severity;
+
+use cc67::pp::Disk;
+use harness::csv::{self, Row};
+
+fn table(name: &str) -> Vec<Row> {
+    csv::read(&harness::root().join("tests/data/api").join(name))
+}
+
+/// Compiles and links the header, `checks` and a `main` of the given body; returns the errors.
+///
+/// The linker looks only at what `main` reaches.
+fn errors(checks: &str, body: &str) -> String {
+    let text = format!("#include \"KMotionDef.h\"\n{checks}\nint main(void) {{ {body} }}\n");
+    let options = cc67::Options::default();
+    let mut compilation = cc67::compile(Path::new("checks.c"), text.into_bytes(), &options, &Disk);
+    compilation.link(kmotiondef::ThreadId::new(1).expect("1 is a thread"));
+    let wrong = compilation.sink.diagnostics().iter().filter(|d| d.severity == Severity::Error);
+    wrong.map(|diagnostic| format!("{}\n", cc67::render::short(diagnostic, &compilation.sources))).collect()
+}
+
+#[track_caller]
+fn assert_compiles(checks: &str) {
+    let errors = errors(checks, "return 0;");
+    assert!(errors.is_empty(), "{errors}");
+}
+
+/// The C declaration of `name` as a pointer, for a type such as `int[8]` or `char * volatile`.
+fn pointer_to(c_type: &str, dims: &str) -> String {
+    let (element, own_dims) =
+        c_type.split_once('[').map_or((c_type, String::new()), |(e, d)| (e, format!("[{d}")));
+    let dims = format!("{own_dims}{dims}");
+    if dims.is_empty() { format!("{element} *") } else { format!("{element} (*){dims}") }
+}
+
+#[test]
+fn the_comparison_can_fail() {
+    assert!(errors("_Static_assert(sizeof(CHAN) == 433, \"size\");", "").contains("size"));
+    assert!(
+        errors("_Static_assert(_Generic(&ReadBit, void (*)(int): 1, default: 0), \"ReadBit\");", "")
+            .contains("ReadBit")
+    );
+}
+
+#[test]
+fn structures_have_the_sizes_and_offsets_of_the_board() {
+    let mut checks = String::new();
+    let rows = table("structs.csv");
+    assert_eq!(rows.len(), 180);
+    for row in rows {
+        let (record, field, size) = (&row["struct"], &row["field"], &row["size"]);
+        if field == "(struct)" {
+            let align = &row["alignment"];
+            let _ = writeln!(checks, "_Static_assert(sizeof({record}) == {size}, \"size of {record}\");");
+            let _ =
+                writeln!(checks, "_Static_assert(_Alignof({record}) == {align}, \"alignment of {record}\");");
+            continue;
+        }
+        let offset = &row["offset"];
+        let member = format!("((({record} *)0)->{field})");
+        let _ = writeln!(
+            checks,
+            "_Static_assert(__builtin_offsetof({record}, {field}) == {offset}, \"offset of {record}.{field}\");"
+        );
+        let _ = writeln!(checks, "_Static_assert(sizeof{member} == {size}, \"size of {record}.{field}\");");
+        if row["c_type"] != "struct" && row["c_type"] != "union" {
+            let pointer = pointer_to(&row["c_type"], &row["array_dims"]);
+            let _ = writeln!(
+                checks,
+                "_Static_assert(_Generic(&{member}, {pointer}: 1, default: 0), \"type of {record}.{field}\");"
+            );
+        }
+    }
+    assert_compiles(&checks);
+}
+
+#[test]
+fn functions_have_the_signatures_of_the_board() {
+    let mut checks = String::new();
+    let rows: Vec<_> =
+        table("functions.csv").into_iter().filter(|row| row["header_declares"] == "yes").collect();
+    assert_eq!(rows.len(), 117);
+    for row in rows {
+        let (name, signature) = (&row["name"], &row["signature"]);
+        // `int ReadBit(int bit)` becomes the type `int (*)(int bit)`.
+        let pointer = signature.replacen(&format!("{name}("), "(*)(", 1);
+        let _ =
+            writeln!(checks, "_Static_assert(_Generic(&{name}, {pointer}: 1, default: 0), \"{signature}\");");
+    }
+    assert_compiles(&checks);
+}
+
+#[test]
+fn variables_have_the_types_of_the_board() {
+    let mut checks = String::new();
+    let rows = table("variables.csv");
+    assert_eq!(rows.len(), 83);
+    for row in rows {
+        let (name, size) = (&row["name"], &row["size_bytes"]);
+        let pointer = pointer_to(&row["c_type"], "");
+        let _ = writeln!(checks, "_Static_assert(sizeof {name} == {size}, \"size of {name}\");");
+        let _ = writeln!(
+            checks,
+            "_Static_assert(_Generic(&{name}, {pointer}: 1, default: 0), \"type of {name}\");"
+        );
+    }
+    assert_compiles(&checks);
+}
+
+#[test]
+fn constants_have_the_values_of_the_board() {
+    let mut checks = String::new();
+    let mut compared = 0;
+    for row in table("constants.csv") {
+        let (name, value) = (&row["name"], &row["value"]);
+        if row["release"] != "4.34" {
+            continue;
+        }
+        compared += 1;
+        let _ = writeln!(checks, "#ifndef {name}\n#error {name} is not defined\n#endif");
+        match row["type"].as_str() {
+            "none" => {}
+            "char[]" => {
+                let _ = writeln!(checks, "_Static_assert(sizeof {name} == {}, \"{name}\");", value.len() + 1);
+                let _ = writeln!(checks, "char text_{name}[] = {name};");
+            }
+            "float" => {
+                let _ = writeln!(
+                    checks,
+                    "_Static_assert({name} == {value}f || {name} == (float){value}, \"{name}\");"
+                );
+                let _ = writeln!(checks, "_Static_assert(sizeof({name}) == 4, \"{name} is a float\");");
+            }
+            "double" => {
+                let _ =
+                    writeln!(checks, "_Static_assert({name} == {value} && sizeof({name}) == 8, \"{name}\");");
+            }
+            _ => {
+                let _ = writeln!(checks, "_Static_assert((int)({name}) == (int)({value}), \"{name}\");");
+            }
+        }
+    }
+    assert_eq!(compared, 292);
+    assert_compiles(&checks.replace("(float)-", "(float) -"));
+}
+
+#[test]
+fn macros_are_all_defined() {
+    let rows = table("macros.csv");
+    assert_eq!(rows.len(), 22);
+    let checks: String = rows
+        .iter()
+        .map(|row| format!("#ifndef {0}\n#error {0} is not defined\n#endif\n", row["name"]))
+        .collect();
+    assert_compiles(&checks);
+}
+
+#[test]
+fn every_function_of_the_tables_links_but_the_one_the_board_lacks() {
+    let mut program = String::from("void *all[] = {\n");
+    for row in table("functions.csv") {
+        if !row["address"].is_empty() && row["header_declares"] == "yes" {
+            let _ = writeln!(program, "  (void *){},", row["name"]);
+        }
+    }
+    program.push_str("};\n");
+    let missing = errors(&program, "return (int)all[0];");
+    assert!(missing.is_empty(), "{missing}");
+    let absent = errors("", "WriteDAC(0, 1);");
+    assert!(absent.contains("WriteDAC"), "{absent}");
+}
