@@ -242,6 +242,18 @@ pub struct Case {
     pub last: i64,
 }
 
+impl Case {
+    /// The first and the last value as numbers, in a switch whose type is unsigned or not.
+    #[must_use]
+    pub fn values(self, is_unsigned: bool) -> (i128, i128) {
+        let number = |value: i64| match is_unsigned {
+            true => i128::from(value.cast_unsigned()),
+            false => i128::from(value),
+        };
+        (number(self.first), number(self.last))
+    }
+}
+
 /// An expression: a value of a scalar type, or an effect of type `void`.
 #[derive(Debug)]
 pub struct Expr {

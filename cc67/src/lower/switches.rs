@@ -13,8 +13,8 @@ const FEW: usize = 3;
 /// One range of values and where it goes.
 #[derive(Clone, Copy, Debug)]
 struct Entry {
-    first: i64,
-    last: i64,
+    first: i128,
+    last: i128,
     block: BlockId,
     /// Values covered by this entry and those before it.
     covered: i128,
@@ -48,7 +48,7 @@ impl Lowering<'_> {
             is_unsigned: types::is_unsigned(&self.unit.types, ty),
             default,
         };
-        let entries = entries(cases, &blocks);
+        let entries = entries(cases, &blocks, search.is_unsigned);
         self.search(search, &entries);
         self.switches.push(Switch { cases: blocks, default });
         self.breaks.push(end);
@@ -64,8 +64,8 @@ impl Lowering<'_> {
             self.builder.jump(search.default);
             return;
         };
-        let span = i128::from(high.last) - i128::from(low.first) + 1;
-        let covered = high.covered - low.covered + (i128::from(low.last) - i128::from(low.first) + 1);
+        let span = high.last - low.first + 1;
+        let covered = high.covered - low.covered + (low.last - low.first + 1);
         let is_dense = span <= MAX_TABLE && span <= covered * 3 && search.class == Class::I32;
         if entries.len() <= FEW {
             self.compare_each(search, entries);
@@ -74,9 +74,7 @@ impl Lowering<'_> {
         } else {
             let (left, right) = entries.split_at(entries.len() / 2);
             let middle = right.first().map_or(0, |entry| entry.first);
-            // Cases are sorted as `i64`: 32-bit unsigned ones in their own order, 64-bit ones by sign.
-            let is_unsigned = search.is_unsigned && search.class == Class::I32;
-            let op = if is_unsigned { CompareOp::LessUnsigned } else { CompareOp::Less };
+            let op = if search.is_unsigned { CompareOp::LessUnsigned } else { CompareOp::Less };
             let (below, above) = (self.builder.block(), self.builder.block());
             let is_below = self.builder.value(Class::I32);
             self.builder.compare(op, is_below, search.value, constant(search.class, middle));
@@ -98,7 +96,7 @@ impl Lowering<'_> {
                 self.builder.compare(CompareOp::Equal, hit, search.value, first);
             } else {
                 let offset = self.binary_value(BinaryOp::Subtract, search.class, search.value, first);
-                let length = constant(search.class, entry.last.wrapping_sub(entry.first));
+                let length = constant(search.class, entry.last - entry.first);
                 self.builder.compare(CompareOp::LessEqualUnsigned, hit, offset, length);
             }
             self.builder.branch(hit.into(), entry.block, next);
@@ -108,7 +106,7 @@ impl Lowering<'_> {
         }
     }
 
-    fn table(&mut self, search: Search, entries: &[Entry], low: i64, span: usize) {
+    fn table(&mut self, search: Search, entries: &[Entry], low: i128, span: usize) {
         let mut targets = vec![search.default; span];
         for entry in entries {
             let (from, to) = ((entry.first - low) as usize, (entry.last - low) as usize);
@@ -126,23 +124,24 @@ impl Lowering<'_> {
 }
 
 /// The cases in ascending order; empty ranges match nothing, overlapping ones have been refused.
-fn entries(cases: &[Case], blocks: &[BlockId]) -> Vec<Entry> {
+fn entries(cases: &[Case], blocks: &[BlockId], is_unsigned: bool) -> Vec<Entry> {
     let mut entries: Vec<Entry> = (cases.iter().zip(blocks))
-        .filter(|(case, _)| case.first <= case.last)
-        .map(|(case, block)| Entry { first: case.first, last: case.last, block: *block, covered: 0 })
+        .map(|(case, block)| (case.values(is_unsigned), *block))
+        .filter(|((first, last), _)| first <= last)
+        .map(|((first, last), block)| Entry { first, last, block, covered: 0 })
         .collect();
     entries.sort_by_key(|entry| entry.first);
     let mut covered = 0;
     for entry in &mut entries {
-        covered += i128::from(entry.last) - i128::from(entry.first) + 1;
+        covered += entry.last - entry.first + 1;
         entry.covered = covered;
     }
     entries
 }
 
-fn constant(class: Class, value: i64) -> Operand {
+fn constant(class: Class, value: i128) -> Operand {
     match class {
-        Class::I64 => Operand::from(Constant::I64(value)),
+        Class::I64 => Operand::from(Constant::I64(value as i64)),
         _ => Operand::int(value as i32),
     }
 }

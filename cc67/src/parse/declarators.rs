@@ -98,7 +98,7 @@ impl Parser<'_> {
             || self.name_at(1).is_some_and(|name| self.is_declaration_word(name))
     }
 
-    /// `[length]`
+    /// `[length]`, `[]` or `[*]`
     #[inline(never)]
     fn array(&mut self) -> Parsed<Derived> {
         self.open();
@@ -106,6 +106,11 @@ impl Parser<'_> {
         while self.take_word(word::STATIC).is_some() || self.qualifier(&mut qualifiers)? {}
         let length = match self.kind() {
             TokenKind::RightBracket => None,
+            // `[*]` in a prototype: a length that the definition gives.
+            TokenKind::Star if self.kind_at(1) == TokenKind::RightBracket => {
+                self.at += 1;
+                None
+            }
             _ => Some(Box::new(self.nested(Self::assignment)?)),
         };
         self.close(TokenKind::RightBracket)?;

@@ -33,6 +33,7 @@ enum Base {
 impl Parser<'_> {
     /// Reads all words before a declarator; perhaps none.
     pub(super) fn specifiers(&mut self) -> Parsed<Specifiers> {
+        let first = self.at;
         let start = self.peek().span;
         let mut specifiers = Specifiers {
             storage: None,
@@ -72,7 +73,7 @@ impl Parser<'_> {
         if words != Words::default() {
             specifiers.ty = Some(TypeSpecifier::Basic(self.basic_type(words, self.since(start))?));
         }
-        if self.last_span().lo >= start.lo && self.last_span().hi > start.lo {
+        if self.at > first {
             specifiers.span = self.since(start);
         }
         Ok(specifiers)

@@ -31,6 +31,9 @@ impl Sema<'_> {
         let place = self.va_list(list);
         let ty = self.type_name(name)?.ty;
         let place = place?;
+        if self.types.record_of(ty).is_some() && self.types.is_object(ty) {
+            return Some(self.record_argument(place, ty, span));
+        }
         if !self.types.is_scalar(ty) {
             let message = format!("`va_arg` cannot fetch a `{}`", self.spell(ty));
             self.report(Diagnostic::error(span, message).help("pass a pointer to it"));
@@ -40,6 +43,14 @@ impl Sema<'_> {
         let passed = convert::argument_promoted(ty);
         let value = self.body.expr(ExprKind::VaArg(place), passed, span);
         Some(Operand::Value(self.body.convert(value, ty, span)))
+    }
+
+    /// A structure among the variable arguments: its address was passed.
+    fn record_argument(&mut self, list: PlaceId, ty: TypeId, span: Span) -> Operand {
+        let pointer = self.types.pointer_to(ty);
+        let address = self.body.expr(ExprKind::VaArg(list), pointer, span);
+        let place = self.body.place(PlaceKind::Pointer(address, 0), ty, span);
+        Operand::Place(Located { place, ty: QualifiedType::plain(ty), is_lvalue: false })
     }
 
     /// `va_end(list)`: nothing to do.

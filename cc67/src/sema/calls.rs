@@ -12,7 +12,7 @@ use crate::diag::Diagnostic;
 use crate::lints::Lint;
 use crate::source::Span;
 use crate::ty::{FunctionType, ParameterTypes, QualifiedType, Type, TypeId, Types, convert};
-use crate::typed::{Call, Callee, ExprId, ExprKind, SymbolId};
+use crate::typed::{Call, Callee, ExprId, ExprKind, PlaceId, SymbolId};
 
 /// An argument that was looked at.
 type Argument = (Operand, Span);
@@ -275,7 +275,7 @@ impl Sema<'_> {
                     let target = Target::Argument(index + 1, symbol);
                     arguments.push(self.argument(operand, ty.ty, target, span));
                 }
-                None => variable.push(self.variable_argument(operand, span)),
+                None => variable.push(self.variable_argument(operand, symbol, span)),
             }
         }
         debug_assert!(variable.is_empty() || is_variadic, "the number of arguments was checked");
@@ -323,16 +323,33 @@ impl Sema<'_> {
             return self.assigned(value, ty, target, span);
         }
         let from = self.record_source(operand, ty, target, span)?;
+        Some(self.copied(from, ty, span))
+    }
+
+    /// The address of a temporary copy of a structure.
+    fn copied(&mut self, from: PlaceId, ty: TypeId, span: Span) -> ExprId {
         let copy = self.add_local(String::new(), QualifiedType::plain(ty), span);
         let to = self.local_place(copy, QualifiedType::plain(ty), span).place;
         let effect = self.body.expr(ExprKind::Copy { to, from }, Types::VOID, span);
         let pointer = self.types.pointer_to(ty);
         let address = self.address(to, pointer, span);
-        Some(self.body.comma(effect, address, span))
+        self.body.comma(effect, address, span)
     }
 
-    /// An argument of the variable part: `float` becomes `double`, small integers `int`.
-    fn variable_argument(&mut self, operand: Operand, span: Span) -> Option<ExprId> {
+    /// An argument of the variable part: `float` becomes `double`, small integers `int`, a structure the address
+    /// of its copy, which `va_arg` follows. No firmware function takes one.
+    fn variable_argument(
+        &mut self,
+        operand: Operand,
+        function: Option<SymbolId>,
+        span: Span,
+    ) -> Option<ExprId> {
+        if let Operand::Place(located) = operand
+            && self.is_record(operand)
+            && function.is_none_or(|function| self.firmware_type(function).is_none())
+        {
+            return Some(self.copied(located.place, located.ty.ty, span));
+        }
         let value = self.read(operand, span)?;
         let value = self.promote(value, span);
         let ty = convert::argument_promoted(self.body.ty(value));

@@ -42,7 +42,8 @@ impl Sema<'_> {
         self.body.convert(value, to, span)
     }
 
-    fn is_narrow_field(&self, value: ExprId) -> bool {
+    /// Whether a value is read from a bit-field narrower than `int`.
+    pub(super) fn is_narrow_field(&self, value: ExprId) -> bool {
         let ExprKind::Load(place) = self.body.exprs[value].kind else { return false };
         matches!(self.body.places[place].kind, PlaceKind::Bits(_, bits) if bits.width < 32)
     }

@@ -356,6 +356,10 @@ impl Sema<'_> {
             self.report(Diagnostic::error(span, format!("cannot cast `{from}` to `{to}`")));
             return None;
         }
+        if to == from && self.is_narrow_field(value) {
+            // The cast stays: its value is no longer that of a bit-field, which would become an `int`.
+            return Some(Operand::Value(self.body.expr(ExprKind::Convert(value), to, span)));
+        }
         Some(Operand::Value(self.converted(value, to, span)))
     }
 

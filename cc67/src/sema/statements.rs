@@ -35,24 +35,18 @@ impl Sema<'_> {
             }
             StatementKind::Declaration(declaration) => self.block_declaration(declaration, out),
             StatementKind::StaticAssert(assertion) => self.static_assert(assertion),
-            StatementKind::If { condition, then, otherwise } => {
-                self.if_statement(condition, then, otherwise.as_deref(), span, out);
-            }
-            StatementKind::While { condition, body } => {
-                let condition = self.condition(condition);
-                let body = self.loop_body(body);
-                self.push_loop(Some(condition), LoopTest::Before, body, None, span, out);
-            }
-            StatementKind::DoWhile { body, condition } => {
-                let body = self.loop_body(body);
-                let condition = self.condition(condition);
-                self.push_loop(Some(condition), LoopTest::Behind, body, None, span, out);
+            StatementKind::If { .. }
+            | StatementKind::While { .. }
+            | StatementKind::DoWhile { .. }
+            | StatementKind::Switch { .. } => {
+                self.scopes.enter();
+                self.controlled_statement(statement, out);
+                self.scopes.leave();
             }
             StatementKind::For { init, condition, step, body } => {
                 let inner = self.for_statement(init, condition.as_ref(), step.as_ref(), body, span);
                 out.push(Stmt { kind: StmtKind::Block(inner), span });
             }
-            StatementKind::Switch { value, body } => self.switch_statement(value, body, span, out),
             StatementKind::Case { first, last, body } => {
                 self.case_label(first, last.as_ref(), span, out);
                 self.statement(body, out);
@@ -73,6 +67,29 @@ impl Sema<'_> {
             StatementKind::Break => self.leave_statement(StmtKind::Break, span, out),
             StatementKind::Continue => self.leave_statement(StmtKind::Continue, span, out),
             StatementKind::Return(value) => self.return_statement(value.as_ref(), span, out),
+        }
+    }
+
+    /// A statement with a controlling expression, whose scope is open: what the expression declares ends with the
+    /// statement (C99 6.8.4, 6.8.5).
+    fn controlled_statement(&mut self, statement: &Statement, out: &mut Vec<Stmt>) {
+        let span = statement.span;
+        match &statement.kind {
+            StatementKind::If { condition, then, otherwise } => {
+                self.if_statement(condition, then, otherwise.as_deref(), span, out);
+            }
+            StatementKind::While { condition, body } => {
+                let condition = self.condition(condition);
+                let body = self.loop_body(body);
+                self.push_loop(Some(condition), LoopTest::Before, body, None, span, out);
+            }
+            StatementKind::DoWhile { body, condition } => {
+                let body = self.loop_body(body);
+                let condition = self.condition(condition);
+                self.push_loop(Some(condition), LoopTest::Behind, body, None, span, out);
+            }
+            StatementKind::Switch { value, body } => self.switch_statement(value, body, span, out),
+            _ => {}
         }
     }
 

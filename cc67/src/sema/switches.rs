@@ -49,7 +49,7 @@ impl Sema<'_> {
         self.statement(body, &mut inner);
         self.scopes.leave();
         let Some(Switch { cases, default, .. }) = self.body.switches.pop() else { return };
-        self.check_cases(&cases);
+        self.check_cases(&cases, ty.is_unsigned());
         let cases = cases.into_iter().map(|(case, _)| case).collect();
         let kind = StmtKind::Switch { value: chosen, cases, has_default: default.is_some(), body: inner };
         out.push(Stmt { kind, span });
@@ -75,7 +75,8 @@ impl Sema<'_> {
         let (Some(low), Some(high)) = (low, high) else { return };
         let case = Case { first: constants::wrap(low, ty), last: constants::wrap(high, ty) };
         let label = last.map_or(first.span, |last| first.span.to(last.span));
-        if case.first > case.last {
+        let (low, high) = case.values(ty.is_unsigned());
+        if low > high {
             self.report(Diagnostic::error(label, "this range of cases is empty"));
             return;
         }
@@ -105,21 +106,20 @@ impl Sema<'_> {
     }
 
     /// No value may have two cases.
-    fn check_cases(&mut self, cases: &[(Case, Span)]) {
-        let mut sorted: Vec<_> = cases.iter().collect();
-        sorted.sort_by_key(|(case, _)| case.first);
-        let mut reach: Option<&(Case, Span)> = None;
-        for entry in sorted {
-            let (case, span) = entry;
+    fn check_cases(&mut self, cases: &[(Case, Span)], is_unsigned: bool) {
+        let mut sorted: Vec<_> = cases.iter().map(|(case, span)| (case.values(is_unsigned), *span)).collect();
+        sorted.sort_by_key(|((low, _), _)| *low);
+        let mut reach: Option<(i128, Span)> = None;
+        for ((low, high), span) in sorted {
             match reach {
-                Some((before, first)) if case.first <= before.last => {
+                Some((end, first)) if low <= end => {
                     // The one that stands later in the text is the mistake.
-                    let (first, span) = if span.lo >= first.lo { (*first, *span) } else { (*span, *first) };
-                    let message = format!("`case {}` stands twice in one `switch`", case.first);
-                    self.report(Diagnostic::error(span, message).label(first, "first"));
-                    reach = reach.filter(|(before, _)| before.last >= case.last).or(Some(entry));
+                    let (early, late) = if span.lo >= first.lo { (first, span) } else { (span, first) };
+                    let message = format!("`case {low}` stands twice in one `switch`");
+                    self.report(Diagnostic::error(late, message).label(early, "first"));
+                    reach = reach.filter(|(end, _)| *end >= high).or(Some((high, span)));
                 }
-                _ => reach = Some(entry),
+                _ => reach = Some((high, span)),
             }
         }
     }
