@@ -7,7 +7,8 @@
 // sscanf returns how many values it found; a program that does not look at that
 // number works on with old ones. The board has no strcmp, so the program brings its own.
 //
-// Expect three lines understood and three refused with a reason.
+// Expect three lines understood and three refused with a reason, then a hexadecimal
+// number and the parts of a date.
 
 #include "KMotionDef.h"
 

@@ -87,6 +87,7 @@ impl<E: Engine> Board<E> {
             self.place(section);
         }
         self.drop_callback(thread);
+        self.drop_konnects(thread);
         let start = program_base(thread).get();
         let ends = prepared.sections.iter().map(|section| section.address.get() + section.size());
         let extent = start..ends.max().unwrap_or(start);
@@ -123,6 +124,16 @@ impl<E: Engine> Board<E> {
             let text = format!(
                 "the call-back in the space of thread {thread} is taken out: its program is replaced"
             );
+            kernel.tell(context.now, EventKind::Diagnostic(text));
+        }
+    }
+
+    /// Ends the service of Konnect boards whose words a load has replaced.
+    fn drop_konnects(&mut self, thread: ThreadId) {
+        let start = program_base(thread).get();
+        let (kernel, context) = self.machine.firmware_mut();
+        if kernel.konnects.drop_within(&(start..start + PROGRAM_SIZE)) {
+            let text = format!("Konnect service with words of thread {thread} ends: its program is replaced");
             kernel.tell(context.now, EventKind::Diagnostic(text));
         }
     }
@@ -254,6 +265,13 @@ impl<E: Engine> Board<E> {
     pub fn drive_input(&mut self, bit: Bit, level: bool) {
         let (kernel, _) = self.machine.firmware_mut();
         kernel.pins.drive(bit, level);
+        kernel.disturb();
+    }
+
+    /// Puts characters on the UART's line; they arrive one after the other at its rate.
+    pub fn send_to_uart(&mut self, bytes: &[u8]) {
+        let (kernel, context) = self.machine.firmware_mut();
+        kernel.uart.arrive(bytes, context.now);
         kernel.disturb();
     }
 

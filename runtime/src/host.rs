@@ -7,7 +7,10 @@ use std::collections::BTreeMap;
 
 use kmotiondef::limits::{N_USER_DATA_VARS, PC_COMM_PERSIST};
 use kmotiondef::structs::Persist;
-use kmotiondef::variables::{COORD_SYSTEM0, GATHER_BUFFER, HOST_STATUS, PERSIST, STATUS_REQUEST_COUNTER};
+use kmotiondef::variables::{
+    COORD_SYSTEM0, CS0_LAST_FRO, CS0_LAST_RAPID_FRO, GATHER_BUFFER, HOST_STATUS, PERSIST,
+    STATUS_REQUEST_COUNTER,
+};
 use kmotiondef::{GuestAddr, Place, ThreadId};
 use vm::firmware::TickContext;
 use vm::memory::GuestMemory;
@@ -15,6 +18,8 @@ use vm::memory::GuestMemory;
 use crate::event::EventKind;
 use crate::firmware::coord;
 use crate::kernel::Kernel;
+use crate::servo::coordinated::rate;
+use crate::servo::coordinated::system::nominal_change_time;
 use crate::views::Typed;
 
 /// Ticks between two polls: 0.1 s.
@@ -126,7 +131,8 @@ fn answer(kernel: &mut Kernel, context: &mut TickContext<'_>, code: i32) -> i32 
         1 => emergency_stop(context),
         2 => set_job(context.memory, false),
         5 if !(0.001..=1000.0).contains(&number) => return INVALID,
-        5 | 6 | 21 | 22 | 54 | 55 => say(kernel, context, format!("override request {code}: {number}")),
+        5 | 6 | 54 | 55 => set_override(kernel, context, code, number),
+        21 | 22 => say(kernel, context, format!("spindle override request {code}: {number}")),
         7..=12 => kernel.host.dros[code as usize - 7] = f64::from(number),
         13 | 14 => say(kernel, context, format!("request {code}: {}", parameters[0])),
         15 => message_box(kernel, context, parameters),
@@ -170,6 +176,24 @@ fn emergency_stop(context: &mut TickContext<'_>) {
     ThreadId::all().skip(1).for_each(|thread| context.threads.pause(thread));
     context.memory.set(kmotiondef::variables::CS0_STOPPING_STATE, 0);
     context.memory.set(COORD_SYSTEM0, GuestAddr::NULL);
+}
+
+/// Sets the feed (5) or rapid (54) override, or changes it by a factor (6, 55).
+fn set_override(kernel: &mut Kernel, context: &mut TickContext<'_>, code: i32, number: f32) {
+    let memory = &mut *context.memory;
+    let time = nominal_change_time(memory);
+    let (name, value) = match code {
+        5 => ("feed", number),
+        6 => ("feed", memory.get(CS0_LAST_FRO) * number),
+        54 => ("rapid", number),
+        _ => ("rapid", memory.get(CS0_LAST_RAPID_FRO) * number),
+    };
+    if name == "feed" {
+        rate::set_feed(memory, value, time);
+    } else {
+        rate::set_rapid(memory, value, time);
+    }
+    say(kernel, context, format!("{name} override {value}"));
 }
 
 /// Tells the board whether a job runs.
@@ -306,6 +330,17 @@ mod tests {
         assert_eq!(ask(&mut desk, 23, &[100, 10]), BAD_TOOL);
         assert_eq!(ask(&mut desk, 5, &[0]), INVALID);
         assert_eq!(ask(&mut desk, 19, &[198]), INVALID);
+    }
+
+    #[test]
+    fn overrides_reach_the_board() {
+        let mut desk = Desk::new();
+        for (code, number, expect) in [(5, 0.5, (0.5, 1.0)), (6, 1.5, (0.75, 1.0)), (54, 0.25, (0.75, 0.25))]
+        {
+            assert_eq!(ask(&mut desk, code, &[f32::to_bits(number) as i32]), DONE);
+            let overrides = (desk.memory.get(CS0_LAST_FRO), desk.memory.get(CS0_LAST_RAPID_FRO));
+            assert_eq!(overrides, expect, "{code}");
+        }
     }
 
     #[test]

@@ -18,12 +18,16 @@ use vm::scheduler::Turn;
 use vm::trap::{Trap, TrapKind};
 
 use crate::console::Console;
-use crate::device::fpga::Fpga;
+use crate::device::fpga::{Behind, Fpga};
+use crate::device::konnect::Konnects;
 use crate::device::pins::Pins;
+use crate::device::snapamp::SnapAmps;
 use crate::device::timer;
+use crate::device::uart::Uart;
 use crate::dispatch::{HANDLERS, signatures};
 use crate::event::{Event, EventKind};
 use crate::files::{HostFiles, OpenFiles};
+use crate::firmware::serial::{self, SerialService};
 use crate::heap::Heap;
 use crate::host::Host;
 use crate::servo::Servo;
@@ -55,6 +59,10 @@ pub struct Kernel {
     pub(crate) console: Console,
     pub(crate) pins: Pins,
     pub(crate) fpga: Fpga,
+    pub(crate) uart: Uart,
+    pub(crate) serial: SerialService,
+    pub(crate) snapamps: SnapAmps,
+    pub(crate) konnects: Konnects,
     pub(crate) servo: Servo,
     pub(crate) heap: Heap,
     pub(crate) files: OpenFiles,
@@ -81,6 +89,10 @@ impl Kernel {
             console: Console::default(),
             pins: Pins::default(),
             fpga: Fpga::default(),
+            uart: Uart::default(),
+            serial: SerialService::default(),
+            snapamps: SnapAmps::default(),
+            konnects: Konnects::default(),
             servo: Servo::default(),
             heap: Heap::default(),
             files: OpenFiles::new(files),
@@ -145,7 +157,10 @@ impl Kernel {
 
     /// Whether text, motion, a recording or a request to the PC is still under way.
     pub(crate) fn is_busy(&self, memory: &GuestMemory) -> bool {
-        !self.console.is_idle() || Servo::is_busy(memory) || self.host.is_asked(memory)
+        !self.console.is_idle()
+            || Servo::is_busy(memory)
+            || self.host.is_asked(memory)
+            || self.serial.is_busy(memory, &self.uart)
     }
 
     fn store_queue_indices(&self, memory: &mut GuestMemory) {
@@ -170,14 +185,20 @@ impl Bus for Kernel {
         if addr == TIMER0 {
             return timer::count(now);
         }
-        if addr >= FPGA.base { self.fpga.read(&self.pins, addr, size) } else { 0 }
+        if addr < FPGA.base {
+            return 0;
+        }
+        let behind = Behind { pins: &mut self.pins, uart: &mut self.uart, now };
+        self.fpga.read(behind, addr, size)
     }
 
     fn write(&mut self, addr: GuestAddr, size: AccessSize, value: u32, now: Cycles) {
         if addr < FPGA.base {
             self.tell(now, EventKind::Diagnostic(format!("write to {addr} has no effect")));
-        } else if let Some(register) = self.fpga.write(&mut self.pins, addr, size, value) {
-            let text = format!("FPGA register {register:#x} is not known: it only stores what is written");
+            return;
+        }
+        let behind = Behind { pins: &mut self.pins, uart: &mut self.uart, now };
+        if let Some(text) = self.fpga.write(behind, addr, size, value) {
             self.tell(now, EventKind::Diagnostic(text));
         }
     }
@@ -207,6 +228,8 @@ impl Firmware for Kernel {
     fn tick(&mut self, context: &mut TickContext<'_>) {
         store_time(context);
         self.host.tick();
+        serial::tick(self, context);
+        self.konnects.tick(context.memory, context.tick);
         let changed = crate::servo::tick(self, context);
         self.is_settled = !changed && context.memory.get(USER_CALL_BACK).is_null();
     }
@@ -228,6 +251,7 @@ impl Firmware for Kernel {
             self.tell(context.now, EventKind::ConsoleLine(line));
         }
         crate::host::slice(self, context);
+        serial::slice(self, context);
         self.store_queue_indices(context.memory);
     }
 
@@ -243,11 +267,12 @@ impl Firmware for Kernel {
         self.tell(self.slice_start, EventKind::Diagnostic(text));
     }
 
-    fn quiet_ticks(&self, _: &GuestMemory) -> u64 {
-        if !self.is_settled || !self.console.is_idle() {
-            return 0;
-        }
-        self.host.quiet_ticks()
+    fn quiet_ticks(&self, memory: &GuestMemory) -> u64 {
+        let is_quiet = self.is_settled
+            && self.console.is_idle()
+            && self.konnects.is_settled(memory)
+            && !self.serial.is_busy(memory, &self.uart);
+        if is_quiet { self.host.quiet_ticks() } else { 0 }
     }
 
     fn skip_ticks(&mut self, count: u64, context: &mut TickContext<'_>) {

@@ -83,6 +83,11 @@ impl Desk {
         }
     }
 
+    /// Makes a call again whose wake has come true.
+    pub(crate) fn wake(&mut self, name: &str, arguments: &[u64]) {
+        self.done(name, arguments, Some(Wake::Retry));
+    }
+
     pub(crate) fn wake_i32(&mut self, name: &str, arguments: &[u64]) -> i32 {
         match self.done(name, arguments, Some(Wake::Retry)) {
             Value::I32(value) => value,

@@ -5,11 +5,12 @@
 
 use std::collections::BTreeSet;
 
-use kmotiondef::GuestAddr;
 use kmotiondef::map::FPGA;
+use kmotiondef::{Cycles, GuestAddr};
 use vm::bus::AccessSize;
 
 use super::pins::{PINS, Pins};
+use super::uart::Uart;
 
 /// Bytes between two registers.
 const STRIDE: u32 = 4;
@@ -38,7 +39,9 @@ enum Kind {
     BitDirection,
     /// Levels, read only.
     BitRead,
-    /// The UART's status: nothing received, transmitter ready.
+    /// Characters of the UART.
+    UartData,
+    /// The UART's status when read, its divisor when written.
     UartStatus,
 }
 
@@ -52,7 +55,7 @@ const REGISTERS: &[Range] = &[
     Range { first: 0x3c, last: 0x4f, kind: Kind::Storage },
     Range { first: 0x80, last: 0x98, kind: Kind::Storage },
     Range { first: 0xa0, last: 0xa0, kind: Kind::Storage },
-    Range { first: 0xc0, last: 0xc0, kind: Kind::Storage },
+    Range { first: 0xc0, last: 0xc0, kind: Kind::UartData },
     Range { first: 0xc1, last: 0xc1, kind: Kind::UartStatus },
     Range { first: 0xd0, last: 0xdf, kind: Kind::Storage },
     Range { first: 0x100, last: 0x100 + GROUPS - 1, kind: Kind::BitSet },
@@ -64,12 +67,28 @@ const REGISTERS: &[Range] = &[
 /// Values at power-up: step pulses of 32 clocks, encoder filter 7.
 const START: [(u32, u8); 2] = [(0x06, 32), (0x05, 7)];
 
+/// What connects the port of the Kanalog and the UART to their pins, and its bits.
+const PORT_SELECT: u32 = 0xa0;
+const PORT_BYTE: usize = (PORT_SELECT * STRIDE + LANE) as usize;
+const KANALOG_ON: u8 = 1;
+const UART_ON: u8 = 2;
+
+/// What stands behind the registers that act, and the instant of an access.
+#[derive(Debug)]
+pub(crate) struct Behind<'a> {
+    pub(crate) pins: &'a mut Pins,
+    pub(crate) uart: &'a mut Uart,
+    pub(crate) now: Cycles,
+}
+
 /// The registers' memory.
 #[derive(Clone, Debug)]
 pub(crate) struct Fpga {
     bytes: Box<[u8]>,
     /// Unknown registers that programs have used.
     unknown: BTreeSet<u32>,
+    /// Whether a character was sent while the UART had no pins.
+    sent_nowhere: bool,
 }
 
 impl Default for Fpga {
@@ -78,7 +97,7 @@ impl Default for Fpga {
         for (register, value) in START {
             bytes[(register * STRIDE + LANE) as usize] = value;
         }
-        Self { bytes, unknown: BTreeSet::new() }
+        Self { bytes, unknown: BTreeSet::new(), sent_nowhere: false }
     }
 }
 
@@ -92,31 +111,53 @@ fn register(address: GuestAddr) -> (u32, Option<(Kind, u32)>) {
 
 impl Fpga {
     /// Reads a register.
-    pub(crate) fn read(&mut self, pins: &Pins, address: GuestAddr, size: AccessSize) -> u32 {
+    pub(crate) fn read(&mut self, behind: Behind<'_>, address: GuestAddr, size: AccessSize) -> u32 {
+        let Behind { pins, uart, now } = behind;
         match register(address).1 {
             Some((Kind::BitRead, group)) => u32::from(pins.level_group(group)),
             Some((Kind::BitDirection, group)) => u32::from(pins.direction_group(group)),
-            Some((Kind::UartStatus, _)) => 0,
+            Some((Kind::UartData, _)) => uart.read(now).into(),
+            Some((Kind::UartStatus, _)) => uart.status(now).into(),
             _ => self.stored(address, size),
         }
     }
 
-    /// Writes a register; a number that means nothing comes back the first time.
+    /// Writes a register; a remark comes back when that is in vain, the first time.
     pub(crate) fn write(
         &mut self,
-        pins: &mut Pins,
+        behind: Behind<'_>,
         address: GuestAddr,
         size: AccessSize,
         value: u32,
-    ) -> Option<u32> {
+    ) -> Option<String> {
+        let Behind { pins, uart, now } = behind;
         let (number, kind) = register(address);
         match kind {
             Some((Kind::BitSet, group)) => pins.set_group(group, value as u8),
             Some((Kind::BitClear, group)) => pins.clear_group(group, value as u8),
             Some((Kind::BitDirection, group)) => pins.set_direction_group(group, value as u8),
+            Some((Kind::UartData, _)) => {
+                uart.send(now);
+                return self.note_lost_character();
+            }
+            Some((Kind::UartStatus, _)) => uart.set_divisor(value as u8),
             _ => self.store(address, size, value),
         }
-        (kind.is_none() && self.unknown.insert(number)).then_some(number)
+        (kind.is_none() && self.unknown.insert(number))
+            .then(|| format!("FPGA register {number:#x} is not known: it only stores what is written"))
+    }
+
+    /// Connects the UART to its pins.
+    pub(crate) fn enable_uart_pins(&mut self) {
+        self.bytes[PORT_BYTE] |= UART_ON;
+    }
+
+    /// A remark on the first character sent without pins.
+    fn note_lost_character(&mut self) -> Option<String> {
+        let is_lost = self.bytes[PORT_BYTE] & (UART_ON | KANALOG_ON) == 0;
+        (is_lost && !std::mem::replace(&mut self.sent_nowhere, true)).then(|| {
+            "the UART is not connected to its pins: call InitRS232, or write 2 to KAN_TRIG_REG".to_owned()
+        })
     }
 
     fn stored(&self, address: GuestAddr, size: AccessSize) -> u32 {
@@ -139,29 +180,61 @@ mod tests {
 
     use super::*;
 
+    /// Registers and what stands behind them.
+    #[derive(Default)]
+    struct Bench {
+        fpga: Fpga,
+        pins: Pins,
+        uart: Uart,
+    }
+
+    impl Bench {
+        fn read(&mut self, register: u32, size: AccessSize) -> u32 {
+            let behind = Behind { pins: &mut self.pins, uart: &mut self.uart, now: Cycles::default() };
+            self.fpga.read(behind, address(register), size)
+        }
+
+        fn write(&mut self, register: u32, size: AccessSize, value: u32) -> Option<String> {
+            let behind = Behind { pins: &mut self.pins, uart: &mut self.uart, now: Cycles::default() };
+            self.fpga.write(behind, address(register), size, value)
+        }
+    }
+
     fn address(register: u32) -> GuestAddr {
         FPGA.base.offset(register * STRIDE + LANE)
     }
 
     #[test]
     fn bit_registers_reach_the_pins() {
-        let (mut fpga, mut pins) = (Fpga::default(), Pins::default());
+        let mut bench = Bench::default();
         let bit = Bit::new(46).expect("a bit");
-        assert!(pins.level(bit));
-        fpga.write(&mut pins, address(0x115), AccessSize::Byte, 0x3f);
-        assert!(!pins.level(bit));
-        fpga.write(&mut pins, address(0x105), AccessSize::Byte, 0xc0);
-        assert!(pins.level(bit));
-        assert_eq!(fpga.read(&pins, address(0x135), AccessSize::Byte), 0xc0);
+        assert!(bench.pins.level(bit));
+        bench.write(0x115, AccessSize::Byte, 0x3f);
+        assert!(!bench.pins.level(bit));
+        bench.write(0x105, AccessSize::Byte, 0xc0);
+        assert!(bench.pins.level(bit));
+        assert_eq!(bench.read(0x135, AccessSize::Byte), 0xc0);
     }
 
     #[test]
     fn other_registers_store_and_an_unknown_one_is_told_once() {
-        let (mut fpga, mut pins) = (Fpga::default(), Pins::default());
-        assert_eq!(fpga.write(&mut pins, address(0xd0), AccessSize::Byte, 0x12), None);
-        assert_eq!(fpga.read(&pins, address(0xd0), AccessSize::Byte), 0x12);
-        assert_eq!(fpga.write(&mut pins, address(0x200), AccessSize::Half, 0x1234), Some(0x200));
-        assert_eq!(fpga.write(&mut pins, address(0x200), AccessSize::Half, 0x5678), None);
-        assert_eq!(fpga.read(&pins, address(0x200), AccessSize::Half), 0x5678);
+        let mut bench = Bench::default();
+        assert_eq!(bench.write(0xd0, AccessSize::Byte, 0x12), None);
+        assert_eq!(bench.read(0xd0, AccessSize::Byte), 0x12);
+        assert!(bench.write(0x200, AccessSize::Half, 0x1234).is_some());
+        assert_eq!(bench.write(0x200, AccessSize::Half, 0x5678), None);
+        assert_eq!(bench.read(0x200, AccessSize::Half), 0x5678);
+    }
+
+    #[test]
+    fn the_uart_answers_and_says_when_it_has_no_pins() {
+        let mut bench = Bench::default();
+        assert!(bench.write(0xc0, AccessSize::Byte, 65).is_some());
+        assert_eq!(bench.read(0xc1, AccessSize::Byte), 0);
+        assert_eq!(bench.write(0xc0, AccessSize::Byte, 65), None);
+        assert_eq!(bench.read(0xc1, AccessSize::Byte), 2);
+        let mut bench = Bench::default();
+        bench.fpga.enable_uart_pins();
+        assert_eq!(bench.write(0xc0, AccessSize::Byte, 65), None);
     }
 }

@@ -1,32 +1,77 @@
-//! Konnect option boards: not modelled yet.
+//! Konnect option boards. Source: devices.md section 4.
 
 use kmotiondef::GuestAddr;
 use vm::firmware::Caller;
 use vm::trap::TrapKind;
 
-use super::not_modelled;
+use crate::device::konnect::Service;
 use crate::kernel::Kernel;
 
-pub(crate) fn init_aux(_: &mut Kernel, _: &mut Caller<'_>) -> Result<(), TrapKind> {
-    not_modelled("InitAux")
+pub(crate) fn init_aux(kernel: &mut Kernel, _: &mut Caller<'_>) {
+    kernel.konnects.clear();
 }
 
 pub(crate) fn add_konnect(
-    _: &mut Kernel,
-    _: &mut Caller<'_>,
-    _: i32,
-    _: GuestAddr,
-    _: GuestAddr,
+    kernel: &mut Kernel,
+    caller: &mut Caller<'_>,
+    _board: i32,
+    outputs: GuestAddr,
+    inputs: GuestAddr,
 ) -> Result<(), TrapKind> {
-    not_modelled("AddKonnect")
+    add(kernel, caller, Service { outputs, inputs })
 }
 
 pub(crate) fn add_konnect_aux0(
-    _: &mut Kernel,
-    _: &mut Caller<'_>,
-    _: i32,
-    _: GuestAddr,
-    _: GuestAddr,
+    kernel: &mut Kernel,
+    caller: &mut Caller<'_>,
+    _board: i32,
+    outputs: GuestAddr,
+    inputs: GuestAddr,
 ) -> Result<(), TrapKind> {
-    not_modelled("AddKonnect_Aux0")
+    add(kernel, caller, Service { outputs, inputs })
+}
+
+/// Serves a board from now on; words that are not there are the caller's mistake, not that of a later tick.
+fn add(kernel: &mut Kernel, caller: &mut Caller<'_>, service: Service) -> Result<(), TrapKind> {
+    caller.memory.load::<i32>(service.outputs)?;
+    caller.memory.load::<i32>(service.inputs)?;
+    if !kernel.konnects.add(service) {
+        kernel.console.message("Too many AddKonnects");
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use kmotiondef::variables::{VIRTUAL_BITS, VIRTUAL_BITS_EX};
+
+    use crate::testing::Desk;
+    use crate::views::Typed;
+
+    #[test]
+    fn inputs_of_served_boards_read_0_in_turn() {
+        let mut desk = Desk::new();
+        let outputs = VIRTUAL_BITS.address().get();
+        desk.call("InitAux", &[]);
+        for board in 0..2 {
+            let inputs = VIRTUAL_BITS_EX.element(board).address().get();
+            desk.call("AddKonnect", &[board as u64, outputs.into(), inputs.into()]);
+            desk.memory.set(VIRTUAL_BITS_EX.element(board), -1);
+        }
+        desk.memory.set(VIRTUAL_BITS, 0x1234);
+        desk.run(2);
+        assert_eq!(desk.memory.get(VIRTUAL_BITS_EX.element(0)), 0);
+        assert_eq!(desk.memory.get(VIRTUAL_BITS_EX.element(1)), 0);
+        assert_eq!(desk.memory.get(VIRTUAL_BITS), 0x1234);
+    }
+
+    #[test]
+    fn the_seventeenth_board_is_refused() {
+        let mut desk = Desk::new();
+        let word: u64 = VIRTUAL_BITS.address().get().into();
+        for board in 0..17 {
+            desk.call("AddKonnect_Aux0", &[board, word, word]);
+        }
+        assert_eq!(desk.printed(), ["Too many AddKonnects"]);
+    }
 }

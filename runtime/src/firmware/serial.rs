@@ -1,23 +1,200 @@
-//! The UART: not modelled yet.
+//! The UART and its two rings in guest memory. Source: devices.md section 1.
 
-use vm::firmware::Caller;
+use kmotiondef::limits::RS232BUFSZ;
+use kmotiondef::variables::{
+    DO_RS232_CMDS, P_RS232_REC_IN, P_RS232_REC_OUT, P_RS232_TX_IN, P_RS232_TX_OUT, RS232_REC_BUF,
+    RS232_TX_BUF,
+};
+use kmotiondef::{Cycles, GuestAddr};
+use vm::firmware::{Caller, Outcome, TickContext, Wake};
+use vm::memory::GuestMemory;
 use vm::trap::TrapKind;
 
-use super::not_modelled;
+use super::io::set_bit_direction;
+use crate::device::uart::Uart;
+use crate::event::EventKind;
 use crate::kernel::Kernel;
+use crate::views::Typed;
 
-pub(crate) fn init_rs232(_: &mut Kernel, _: &mut Caller<'_>, _: i32) -> Result<(), TrapKind> {
-    not_modelled("InitRS232")
+/// How long setting up takes: 2 ms.
+const SETUP: Cycles = Cycles::new(400_000);
+/// The transmitter's pin.
+const TRANSMIT_BIT: i32 = 45;
+
+/// The background service.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SerialService {
+    is_on: bool,
+    /// Whether it was said that an overrun lost characters, and that commands are not obeyed.
+    told_overrun: bool,
+    told_commands: bool,
 }
 
-pub(crate) fn enable_rs232_cmds(_: &mut Kernel, _: &mut Caller<'_>, _: i32) -> Result<(), TrapKind> {
-    not_modelled("EnableRS232Cmds")
+pub(crate) fn init_rs232(kernel: &mut Kernel, caller: &mut Caller<'_>, divisor: i32) -> Outcome<()> {
+    if caller.woken.is_some() {
+        return Outcome::Done(());
+    }
+    set_bit_direction(kernel, caller, TRANSMIT_BIT, 1);
+    kernel.fpga.enable_uart_pins();
+    kernel.uart.set_divisor(divisor as u8);
+    Outcome::Wait(Wake::At(caller.now() + SETUP))
 }
 
-pub(crate) fn rs232_get_char(_: &mut Kernel, _: &mut Caller<'_>) -> Result<i32, TrapKind> {
-    not_modelled("RS232_GetChar")
+pub(crate) fn enable_rs232_cmds(kernel: &mut Kernel, caller: &mut Caller<'_>, divisor: i32) -> Outcome<()> {
+    let outcome = init_rs232(kernel, caller, divisor);
+    if matches!(outcome, Outcome::Done(())) {
+        let memory = &mut *caller.memory;
+        memory.set(P_RS232_REC_IN, RS232_REC_BUF.address());
+        memory.set(P_RS232_REC_OUT, RS232_REC_BUF.address());
+        memory.set(P_RS232_TX_IN, RS232_TX_BUF.address());
+        memory.set(P_RS232_TX_OUT, RS232_TX_BUF.address());
+        memory.set(DO_RS232_CMDS, 1);
+        kernel.serial.is_on = true;
+    }
+    outcome
 }
 
-pub(crate) fn rs232_put_char(_: &mut Kernel, _: &mut Caller<'_>, _: u8) -> Result<(), TrapKind> {
-    not_modelled("RS232_PutChar")
+pub(crate) fn rs232_get_char(_: &mut Kernel, caller: &mut Caller<'_>) -> Result<Outcome<i32>, TrapKind> {
+    let out = caller.memory.get(P_RS232_REC_OUT);
+    if out == caller.memory.get(P_RS232_REC_IN) {
+        return Ok(Outcome::Wait(Wake::Retry));
+    }
+    let byte: i8 = caller.memory.load(out)?;
+    caller.memory.set(P_RS232_REC_OUT, next(out, RS232_REC_BUF.address()));
+    Ok(Outcome::Done(byte.into()))
+}
+
+pub(crate) fn rs232_put_char(
+    _: &mut Kernel,
+    caller: &mut Caller<'_>,
+    byte: u8,
+) -> Result<Outcome<()>, TrapKind> {
+    let place = caller.memory.get(P_RS232_TX_IN);
+    let after = next(place, RS232_TX_BUF.address());
+    if after == caller.memory.get(P_RS232_TX_OUT) {
+        return Ok(Outcome::Wait(Wake::Retry));
+    }
+    caller.memory.store(place, byte)?;
+    caller.memory.set(P_RS232_TX_IN, after);
+    Ok(Outcome::Done(()))
+}
+
+/// The place behind one of a ring; a pointer that a program has led astray goes to the ring's beginning.
+fn next(place: GuestAddr, ring: GuestAddr) -> GuestAddr {
+    let index = place.get().wrapping_sub(ring.get()).wrapping_add(1);
+    if (index as usize) < RS232BUFSZ { ring.offset(index) } else { ring }
+}
+
+impl SerialService {
+    /// Whether characters are still to be sent or received.
+    pub(crate) fn is_busy(&self, memory: &GuestMemory, uart: &Uart) -> bool {
+        self.is_on && (uart.is_receiving() || memory.get(P_RS232_TX_OUT) != memory.get(P_RS232_TX_IN))
+    }
+}
+
+/// The service of one tick: a character each way.
+pub(crate) fn tick(kernel: &mut Kernel, context: &mut TickContext<'_>) {
+    if !kernel.serial.is_busy(context.memory, &kernel.uart) {
+        return;
+    }
+    receive(kernel, context);
+    let memory = &mut *context.memory;
+    let out = memory.get(P_RS232_TX_OUT);
+    if out != memory.get(P_RS232_TX_IN) && kernel.uart.is_free(context.now) {
+        kernel.uart.send(context.now);
+        memory.set(P_RS232_TX_OUT, next(out, RS232_TX_BUF.address()));
+    }
+}
+
+/// Puts a received character into its ring; a full ring begins anew, as its two pointers are equal then.
+fn receive(kernel: &mut Kernel, context: &mut TickContext<'_>) {
+    let Some(byte) = kernel.uart.receive(context.now) else { return };
+    let place = context.memory.get(P_RS232_REC_IN);
+    let after = next(place, RS232_REC_BUF.address());
+    context.memory.poke(place, byte);
+    context.memory.set(P_RS232_REC_IN, after);
+    if after == context.memory.get(P_RS232_REC_OUT) && !kernel.serial.told_overrun {
+        kernel.serial.told_overrun = true;
+        let text = format!("{RS232BUFSZ} characters received on the UART and not read: they are lost");
+        kernel.tell(context.now, EventKind::Diagnostic(text));
+    }
+}
+
+/// What the primary thread does in its slice: it takes what was received as script commands.
+pub(crate) fn slice(kernel: &mut Kernel, context: &mut TickContext<'_>) {
+    if !kernel.serial.is_on || context.memory.get(DO_RS232_CMDS) == 0 {
+        return;
+    }
+    let received = context.memory.get(P_RS232_REC_IN);
+    if received != context.memory.get(P_RS232_REC_OUT) {
+        context.memory.set(P_RS232_REC_OUT, received);
+        if !kernel.serial.told_commands {
+            kernel.serial.told_commands = true;
+            let text = "script commands received on the UART are not obeyed; clear DoRS232Cmds to read them";
+            kernel.tell(context.now, EventKind::Diagnostic(text.to_owned()));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::Desk;
+
+    /// A board whose service runs at 38400 baud for the program alone.
+    fn desk() -> Desk {
+        let mut desk = Desk::new();
+        assert!(!desk.is_done("EnableRS232Cmds", &[26]));
+        desk.wake("EnableRS232Cmds", &[26]);
+        assert_eq!(desk.memory.get(DO_RS232_CMDS), 1);
+        desk.memory.set(DO_RS232_CMDS, 0);
+        desk
+    }
+
+    #[test]
+    fn the_ring_takes_999_characters_and_is_sent_at_the_rate_of_the_line() {
+        let mut desk = desk();
+        for _ in 0..999 {
+            assert!(desk.is_done("RS232_PutChar", &[65]));
+        }
+        assert!(!desk.is_done("RS232_PutChar", &[65]));
+        // 100 characters of 259.2 µs are 288 ticks; the shift register and the buffer hold two more.
+        desk.run(288);
+        let sent = desk.memory.get(P_RS232_TX_OUT).get() - RS232_TX_BUF.address().get();
+        assert!((100..=102).contains(&sent), "{sent}");
+        assert!(desk.is_done("RS232_PutChar", &[65]));
+    }
+
+    #[test]
+    fn received_characters_wait_in_their_ring() {
+        let mut desk = desk();
+        assert!(!desk.is_done("RS232_GetChar", &[]));
+        desk.kernel.uart.arrive(b"A\xff", Cycles::default());
+        desk.run(10);
+        assert_eq!(desk.call_i32("RS232_GetChar", &[]), 65);
+        assert_eq!(desk.call_i32("RS232_GetChar", &[]), -1);
+        assert!(!desk.is_done("RS232_GetChar", &[]));
+        assert!(!desk.kernel.serial.is_busy(&desk.memory, &desk.kernel.uart));
+    }
+
+    #[test]
+    fn an_overrun_and_unread_commands_are_told_once() {
+        for (commands, word) in [(0, "lost"), (1, "DoRS232Cmds")] {
+            let mut desk = desk();
+            desk.memory.set(DO_RS232_CMDS, commands);
+            desk.kernel.uart.arrive(&[b'x'; 2100], Cycles::default());
+            desk.run(6100);
+            let told: Vec<_> = desk.kernel.take_events();
+            let [event] = &told[..] else { panic!("{told:?}") };
+            assert!(matches!(&event.kind, EventKind::Diagnostic(text) if text.contains(word)), "{event:?}");
+        }
+    }
+
+    #[test]
+    fn pointers_stay_in_their_ring() {
+        let ring = RS232_TX_BUF.address();
+        for (offset, expect) in [(0, 1), (998, 999), (999, 0), (5000, 0), (u32::MAX, 0)] {
+            assert_eq!(next(ring.offset(offset), ring), ring.offset(expect), "{offset}");
+        }
+    }
 }

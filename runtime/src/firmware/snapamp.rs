@@ -1,15 +1,84 @@
-//! Registers of the SnapAmp option board: not modelled yet.
+//! Registers of the SnapAmp option board. Source: devices.md section 5.
 
+use kmotiondef::Bit;
+use kmotiondef::variables::{BIT_DIR_SHADOW_SNAP0, BIT_DIR_SHADOW_SNAP1};
 use vm::firmware::Caller;
-use vm::trap::TrapKind;
 
-use super::not_modelled;
+use super::io::{bit_state, write_bit};
+use crate::device::snapamp::{CLEAR, DIRECTION, PINS, Register};
 use crate::kernel::Kernel;
+use crate::views::Typed;
 
-pub(crate) fn write_snap_amp(_: &mut Kernel, _: &mut Caller<'_>, _: i32, _: i32) -> Result<(), TrapKind> {
-    not_modelled("WriteSnapAmp")
+/// General pins of a board, and the first of each board.
+const COUNT: i32 = 14;
+const FIRST: [i32; 2] = [80, 112];
+/// Where their directions lie in the board's word.
+const SHADOW_SHIFT: i32 = 16;
+
+/// The general pins of a board, lowest first.
+fn pins(board: usize) -> impl Iterator<Item = Bit> {
+    (0..COUNT).filter_map(move |pin| Bit::new(FIRST[board] + pin))
 }
 
-pub(crate) fn read_snap_amp(_: &mut Kernel, _: &mut Caller<'_>, _: i32) -> Result<i32, TrapKind> {
-    not_modelled("ReadSnapAmp")
+/// The register that a program names.
+fn checked(kernel: &mut Kernel, caller: &Caller<'_>, function: &str, address: i32) -> Option<Register> {
+    let register = Register::new(address);
+    if register.is_none() {
+        kernel.diagnose(caller, format!("{function}({address:#x}): there are registers 0x40 to 0x7f"));
+    }
+    register
+}
+
+pub(crate) fn write_snap_amp(kernel: &mut Kernel, caller: &mut Caller<'_>, address: i32, data: i32) {
+    let Some(register) = checked(kernel, caller, "WriteSnapAmp", address) else { return };
+    kernel.snapamps.write(register, data as u16);
+    match register.number {
+        PINS | CLEAR => {
+            for (index, bit) in pins(register.board).enumerate() {
+                if data >> index & 1 != 0 {
+                    write_bit(kernel, caller.memory, bit, register.number == PINS);
+                }
+            }
+        }
+        DIRECTION => {
+            let shadow = [BIT_DIR_SHADOW_SNAP0, BIT_DIR_SHADOW_SNAP1][register.board];
+            caller.memory.set(shadow, (data & ((1 << COUNT) - 1)) << SHADOW_SHIFT);
+        }
+        _ => {}
+    }
+}
+
+pub(crate) fn read_snap_amp(kernel: &mut Kernel, caller: &mut Caller<'_>, address: i32) -> i32 {
+    let Some(register) = checked(kernel, caller, "ReadSnapAmp", address) else { return 0 };
+    if register.number == PINS {
+        let levels = pins(register.board).enumerate();
+        return levels.fold(0, |word, (index, bit)| {
+            word | i32::from(bit_state(kernel, caller.memory, bit).0) << index
+        });
+    }
+    kernel.snapamps.read(register).into()
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::testing::Desk;
+
+    #[test]
+    fn pins_are_the_numbered_bits() {
+        let mut desk = Desk::new();
+        desk.call("WriteSnapAmp", &[0x60 + 19, 0b11]);
+        desk.call("WriteSnapAmp", &[0x60 + 17, 0b11]);
+        desk.call("WriteSnapAmp", &[0x60 + 18, 0b10]);
+        assert_eq!(desk.call_i32("ReadSnapAmp", &[0x60 + 17]), 0b01);
+        assert_eq!(desk.call_i32("ReadBit", &[112]), 1);
+        assert_eq!(desk.call_i32("ReadBit", &[113]), 0);
+    }
+
+    #[test]
+    fn a_board_that_is_not_there_reads_48_volts_and_no_current() {
+        let mut desk = Desk::new();
+        for (register, expect) in [(12, 8192), (22, 30_916), (24, 616), (30, 0)] {
+            assert_eq!(desk.call_i32("ReadSnapAmp", &[0x40 + register]), expect, "{register}");
+        }
+    }
 }

@@ -1,0 +1,151 @@
+//! The UART: 8 data bits, no parity, 1 stop bit, a shift register and one buffered character each way.
+//!
+//! Nothing runs while it works: each access brings the state up to its own instant. Characters that are sent go
+//! nowhere; those that come are put on the line by the program that embeds the board. Source: devices.md section 1.
+
+use std::collections::VecDeque;
+
+use kmotiondef::Cycles;
+
+/// Processor cycles of a bit for each step of the divisor: 16 clocks of 16.67 MHz.
+const BIT_CYCLES: i64 = 16 * 12;
+/// Bits of a character on the line.
+const FRAME_BITS: i64 = 10;
+/// Characters that wait for the program: the buffered one and the one in the shift register.
+const RECEIVED_LIMIT: usize = 2;
+
+/// Status: a received character waits.
+const DATA_READY: u8 = 0x01;
+/// Status: the buffered character is still to be sent.
+const TRANSMIT_FULL: u8 = 0x02;
+
+/// The UART's state.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Uart {
+    divisor: u8,
+    /// When the transmitter's shift register is through.
+    sent: Cycles,
+    /// Whether a character waits behind it.
+    is_full: bool,
+    /// Characters on the line, the first one complete at `arrival`.
+    line: VecDeque<u8>,
+    arrival: Cycles,
+    received: VecDeque<u8>,
+}
+
+impl Uart {
+    /// Sets the divisor; a character already under way keeps its speed.
+    pub(crate) fn set_divisor(&mut self, divisor: u8) {
+        self.divisor = divisor;
+    }
+
+    /// The time of a character.
+    fn frame(&self) -> Cycles {
+        Cycles::new(FRAME_BITS * BIT_CYCLES * (i64::from(self.divisor) + 1))
+    }
+
+    /// Puts characters on the line, the first one from `now` on.
+    pub(crate) fn arrive(&mut self, bytes: &[u8], now: Cycles) {
+        self.advance(now);
+        if self.line.is_empty() {
+            self.arrival = now + self.frame();
+        }
+        self.line.extend(bytes);
+    }
+
+    /// Whether characters are still to come or to be read.
+    pub(crate) fn is_receiving(&self) -> bool {
+        !self.line.is_empty() || !self.received.is_empty()
+    }
+
+    /// Brings the state up to `now`.
+    fn advance(&mut self, now: Cycles) {
+        if self.is_full && self.sent <= now {
+            self.is_full = false;
+            self.sent += self.frame();
+        }
+        while self.arrival <= now {
+            let Some(byte) = self.line.pop_front() else { break };
+            if self.received.len() == RECEIVED_LIMIT {
+                self.received.pop_back();
+            }
+            self.received.push_back(byte);
+            self.arrival += self.frame();
+        }
+    }
+
+    /// The status register.
+    pub(crate) fn status(&mut self, now: Cycles) -> u8 {
+        self.advance(now);
+        let ready = if self.received.is_empty() { 0 } else { DATA_READY };
+        ready | if self.is_full { TRANSMIT_FULL } else { 0 }
+    }
+
+    /// Reads the data register; 0 when nothing was received.
+    pub(crate) fn read(&mut self, now: Cycles) -> u8 {
+        self.receive(now).unwrap_or_default()
+    }
+
+    /// The next received character.
+    pub(crate) fn receive(&mut self, now: Cycles) -> Option<u8> {
+        self.advance(now);
+        self.received.pop_front()
+    }
+
+    /// Sends a character; one that still waits is lost.
+    pub(crate) fn send(&mut self, now: Cycles) {
+        self.advance(now);
+        if self.sent <= now {
+            self.sent = now + self.frame();
+        } else {
+            self.is_full = true;
+        }
+    }
+
+    /// Whether a character can be sent without losing one.
+    pub(crate) fn is_free(&mut self, now: Cycles) -> bool {
+        self.status(now) & TRANSMIT_FULL == 0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The divisor of 38400 baud, and the cycles of a character.
+    const DIVISOR: u8 = 26;
+    const FRAME: i64 = 51_840;
+
+    fn at(frames: i64) -> Cycles {
+        Cycles::new(1000 + frames * FRAME)
+    }
+
+    fn uart() -> Uart {
+        let mut uart = Uart::default();
+        uart.set_divisor(DIVISOR);
+        uart
+    }
+
+    #[test]
+    fn a_character_is_sent_in_ten_bits_and_one_waits() {
+        let mut uart = uart();
+        uart.send(at(0));
+        assert!(uart.is_free(at(0)));
+        uart.send(at(0));
+        assert!(!uart.is_free(at(1) - Cycles::new(1)));
+        assert!(uart.is_free(at(1)));
+        uart.send(at(1));
+        assert!(!uart.is_free(at(2) - Cycles::new(1)));
+        assert!(uart.is_free(at(2)));
+    }
+
+    #[test]
+    fn characters_arrive_one_after_the_other_and_the_third_overwrites() {
+        let mut uart = uart();
+        uart.arrive(b"abc", at(0));
+        assert_eq!(uart.status(at(1) - Cycles::new(1)), 0);
+        assert_eq!(uart.status(at(1)), DATA_READY);
+        assert_eq!((uart.read(at(3)), uart.read(at(3)), uart.read(at(3))), (b'a', b'c', 0));
+        assert!(!uart.is_receiving());
+    }
+}
