@@ -4,11 +4,15 @@
 ///
 /// Closeness counts the letters that are changed, added, left out or swapped with their
 /// neighbour (optimal string alignment); another letter case counts a quarter. A third of the
-/// letters may differ.
+/// letters may differ. Failing that, the longest candidate that abbreviates the name.
 pub fn suggest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let limit = (name.chars().count() * CHANGE / 3).max(CHANGE);
     let mut best: Option<(usize, &str)> = None;
+    let mut abbreviation: Option<&str> = None;
     for candidate in candidates {
+        if abbreviates(candidate, name) && abbreviation.is_none_or(|known| known.len() < candidate.len()) {
+            abbreviation = Some(candidate);
+        }
         let bound = best.map_or(limit, |(distance, _)| distance);
         if candidate.len().abs_diff(name.len()) * CHANGE > bound || candidate == name {
             continue;
@@ -18,7 +22,16 @@ pub fn suggest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
             best = Some((distance, candidate));
         }
     }
-    best.map(|(_, candidate)| candidate)
+    best.map(|(_, candidate)| candidate).or(abbreviation)
+}
+
+/// Whether `short` is the beginning of `name`, in any letter case: `Vel` of `velocity`.
+fn abbreviates(short: &str, name: &str) -> bool {
+    const LEAST: usize = 3;
+    let beginning = name.get(..short.len());
+    short.len() >= LEAST
+        && short.len() < name.len()
+        && beginning.is_some_and(|b| b.eq_ignore_ascii_case(short))
 }
 
 /// Weight of a changed letter; a changed letter case weighs 1.
@@ -66,5 +79,7 @@ mod tests {
         check("inlcude", &["include", "undef"], Some("include"));
         check("xxx", &["persist", "abc"], None);
         check("printf", &["printf"], None);
+        check("Velocity", &["Accel", "Vel", "Vex"], Some("Vel"));
+        check("velocity", &["Ve", "loc"], None);
     }
 }
