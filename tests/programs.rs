@@ -9,6 +9,13 @@ use std::path::{Path, PathBuf};
 
 use harness::{Scratch, files, run_in};
 
+/// Options that must not change a byte of what a program prints.
+const VARIANTS: &[&[&str]] = &[
+    &["--no-shortcuts"],
+    #[cfg(feature = "native")]
+    &["--engine", "native"],
+];
+
 fn folder() -> PathBuf {
     harness::root().join("c-programs")
 }
@@ -50,6 +57,16 @@ fn every_program_prints_its_golden_console() {
         let scratch = Scratch::new(&format!("program-{run}"));
         let files = ["--files".to_owned(), scratch.path().to_string_lossy().into_owned()];
         let output = run_in(env!("CARGO_BIN_EXE_cc67-under-test"), directory, arguments.iter().chain(&files));
+        for variant in VARIANTS {
+            let varied: Vec<_> = arguments
+                .iter()
+                .chain(&files)
+                .cloned()
+                .chain(variant.iter().map(ToString::to_string))
+                .collect();
+            let other = run_in(env!("CARGO_BIN_EXE_cc67-under-test"), directory, &varied);
+            assert_eq!(other, output, "{} differs with {variant:?}", path.display());
+        }
         let relative = path.strip_prefix(folder()).expect("it lies there").with_extension("");
         let name = relative.to_string_lossy().replace(['/', '\\'], "__");
         insta::assert_snapshot!(name, format!("$ cc67 {}\n{}", arguments.join(" "), output.render()));

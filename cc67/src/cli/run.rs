@@ -4,11 +4,13 @@ use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use clap::{Args, ValueEnum};
 use kmotiondef::{Cycles, ThreadId, Ticks};
 use runtime::debug::DebugInfo;
 use runtime::{Board, Config, Directory, Event, EventKind, RunEnd};
+use vm::engine::Engine;
+use vm::interp::BytecodeEngine;
 use vm::machine::Config as MachineConfig;
 
 use super::options::CompilerOptions;
@@ -74,9 +76,6 @@ fn seconds(text: &str) -> Result<f64, String> {
 
 /// Compiles, loads and runs the programs.
 pub(super) fn run(arguments: &Arguments) -> Result<Exit> {
-    if arguments.engine == EngineName::Native {
-        bail!("`--engine native` is not built yet");
-    }
     let mut all = arguments.programs.clone();
     all.extend_from_slice(&arguments.load);
     let programs = assign(&all)?;
@@ -85,17 +84,43 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit> {
 
     let files = Box::new(Directory::new(&arguments.files));
     let machine = MachineConfig { shortcuts: !arguments.no_shortcuts, ..MachineConfig::default() };
-    let mut board: Board = Board::new(Config { machine, files, ..Config::default() });
-    for (program, image) in programs.iter().zip(&images) {
-        board.load(program.thread, image).with_context(|| program.name().to_string())?;
+    let session = Session { arguments, programs, images, settings };
+    let config = Config { machine, files, ..Config::default() };
+    match arguments.engine {
+        EngineName::Bytecode => session.run::<BytecodeEngine>(config),
+        #[cfg(feature = "native")]
+        EngineName::Native => session.run::<vm::native::NativeEngine>(config),
+        #[cfg(not(feature = "native"))]
+        EngineName::Native => anyhow::bail!("this cc67 is built without the native engine"),
     }
-    for Setting { address, bytes } in &settings {
-        board.memory_mut().poke_bytes(*address, bytes).with_context(|| format!("`--set` of {address}"))?;
+}
+
+/// Everything a run needs, whatever engine executes it.
+struct Session<'a> {
+    arguments: &'a Arguments,
+    programs: Vec<Program>,
+    images: Vec<Vec<u8>>,
+    settings: Vec<Setting>,
+}
+
+impl Session<'_> {
+    /// Loads, starts and executes.
+    fn run<E: Engine>(&self, config: Config) -> Result<Exit> {
+        let mut board: Board<E> = Board::new(config);
+        for (program, image) in self.programs.iter().zip(&self.images) {
+            board.load(program.thread, image).with_context(|| program.name().to_string())?;
+        }
+        for Setting { address, bytes } in &self.settings {
+            board
+                .memory_mut()
+                .poke_bytes(*address, bytes)
+                .with_context(|| format!("`--set` of {address}"))?;
+        }
+        for program in self.programs.iter().take(self.arguments.programs.len()) {
+            board.start(program.thread).with_context(|| program.name().to_string())?;
+        }
+        execute(&mut board, self.arguments)
     }
-    for program in programs.iter().take(arguments.programs.len()) {
-        board.start(program.thread).with_context(|| program.name().to_string())?;
-    }
-    execute(&mut board, arguments)
 }
 
 /// The image of every program; `None` if a source has errors, after all have been compiled.
@@ -141,7 +166,7 @@ fn build(
 }
 
 /// Runs the board and prints what happens.
-fn execute(board: &mut Board, arguments: &Arguments) -> Result<Exit> {
+fn execute<E: Engine>(board: &mut Board<E>, arguments: &Arguments) -> Result<Exit> {
     let limit = Ticks::new((arguments.limit.unwrap_or(DEFAULT_LIMIT) / TIMEBASE).round() as u64);
     let mut screen = Screen {
         out: BufWriter::new(io::stdout().lock()),
