@@ -122,6 +122,22 @@ fn compile_here(path: &Path, text: Vec<u8>, options: &Options, files: &dyn pp::F
 }
 
 impl Compilation {
+    /// Everything that was found, in the order of the program; what has no place comes last.
+    #[must_use]
+    pub fn diagnostics(&self) -> Vec<&Diagnostic> {
+        let mut diagnostics: Vec<_> = self.sink.diagnostics().iter().collect();
+        diagnostics.sort_by_key(|diagnostic| {
+            let order = diagnostic.span.map(|span| self.sources.reading_order(span));
+            (order.is_none(), order)
+        });
+        diagnostics
+    }
+
+    /// The name of the file that was compiled.
+    fn main_file(&self) -> &str {
+        self.sources.files().next().map_or("", |(_, file)| &file.name)
+    }
+
     /// Links the object by itself for `thread`; what is missing joins the other diagnostics.
     pub fn link(&mut self, thread: ThreadId) -> Option<Linked> {
         let object = self.object.as_ref()?;
@@ -135,7 +151,11 @@ impl Compilation {
             }
             Err(errors) => {
                 for error in &errors {
-                    self.sink.report(error.to_diagnostic());
+                    let mut diagnostic = error.to_diagnostic();
+                    if diagnostic.span.is_none() {
+                        diagnostic.message = format!("{}: {}", self.main_file(), diagnostic.message);
+                    }
+                    self.sink.report(diagnostic);
                 }
                 None
             }

@@ -215,6 +215,20 @@ impl SourceMap {
         span
     }
 
+    /// Where a reader of the main file meets `span`: the position there, then the span's own.
+    ///
+    /// Text of an included file is met at its `#include`, so diagnostics in this order are in the
+    /// order of the program.
+    #[must_use]
+    pub fn reading_order(&self, span: Span) -> (u32, u32) {
+        let own = self.call_site(span).lo;
+        let mut at = own;
+        while let Some(include) = self.file_at(at).and_then(|file| self.files[file].included_at) {
+            at = self.call_site(include).lo;
+        }
+        (at, own)
+    }
+
     /// The file that holds position `at`.
     #[must_use]
     pub fn file_at(&self, at: u32) -> Option<FileId> {

@@ -28,7 +28,7 @@ fn color() -> Color {
 pub(super) fn report(compilation: &Compilation, levels: &Levels) -> bool {
     let mut has_errors = false;
     let mut renderer = Renderer::new(&compilation.sources, color());
-    for diagnostic in compilation.sink.diagnostics() {
+    for diagnostic in compilation.diagnostics() {
         let Some(diagnostic) = levels.apply(diagnostic) else { continue };
         has_errors |= diagnostic.severity == Severity::Error;
         let _ = io::stderr().write_all(renderer.render(&diagnostic).as_bytes());
