@@ -22,7 +22,7 @@ fn run_source(name: &str, source: impl AsRef<[u8]>, arguments: &[&str]) -> Outpu
 fn assert_plain(output: &Output, code: i32, expect: &str) {
     assert_eq!(output.code, code, "{output:?}");
     assert!(output.stderr.contains(expect), "expected {expect:?} in:\n{}", output.stderr);
-    for trace in ["panicked", "RUST_BACKTRACE", ".rs:", "overflowed its stack", "unwrap"] {
+    for trace in ["panicked", "RUST_BACKTRACE", ".rs:", "overflowed its stack", "unwrap", "os error"] {
         assert!(!output.stderr.contains(trace), "{}", output.stderr);
     }
     assert!(output.stderr.lines().count() <= 16, "more than one message:\n{}", output.stderr);

@@ -145,7 +145,12 @@ fn images(programs: &[Program], arguments: &Arguments) -> Result<Option<Vec<Vec<
 
 /// Reads a whole file; a message names it.
 pub(super) fn read(path: &Path) -> Result<Vec<u8>> {
-    fs::read(path).with_context(|| format!("cannot read {}", path.display()))
+    fs::read(path).map_err(|error| {
+        // The number that the library adds says nothing to the user.
+        let reason = error.to_string();
+        let reason = reason.split(" (os error").next().unwrap_or_default();
+        anyhow::anyhow!("cannot read {}: {reason}", path.display())
+    })
 }
 
 /// Compiles, links and reports; `None` after errors.
