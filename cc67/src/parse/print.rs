@@ -4,10 +4,10 @@
 //! the name outwards. Implicit `int` is `?`.
 
 use crate::ast::{
-    BasicType, BinaryOperator, Declaration, Declarator, Derived, Designator, EnumSpecifier, Expression,
-    ExpressionKind, FloatingLiteral, FunctionDefinition, Initializer, InitializerItem, IntegerLiteral, Item,
-    Parameters, Qualifiers, RecordKind, RecordSpecifier, Specifiers, Statement, StatementKind, StaticAssert,
-    Storage, StringLiteral, TranslationUnit, TypeName, TypeSpecifier, UnaryOperator,
+    BasicType, Declaration, Declarator, Derived, Designator, EnumSpecifier, Expression, ExpressionKind,
+    FloatingLiteral, FunctionDefinition, Initializer, InitializerItem, IntegerLiteral, Item, Parameters,
+    Qualifiers, RecordKind, RecordSpecifier, Specifiers, Statement, StatementKind, StaticAssert, Storage,
+    StringLiteral, TranslationUnit, TypeName, TypeSpecifier, UnaryOperator,
 };
 use crate::names::{Name, Names};
 
@@ -381,10 +381,10 @@ impl Printer<'_> {
                 };
                 self.list(head, [&**operand]);
             }
-            ExpressionKind::Binary(operator, a, b) => self.list(binary_text(*operator), [&**a, b]),
+            ExpressionKind::Binary(operator, a, b) => self.list(operator.spelling(), [&**a, b]),
             ExpressionKind::Assign(a, b) => self.list("=", [&**a, b]),
             ExpressionKind::AssignWith(operator, a, b) => {
-                self.list(&format!("{}=", binary_text(*operator)), [&**a, b]);
+                self.list(&format!("{}=", operator.spelling()), [&**a, b]);
             }
             ExpressionKind::Conditional { condition, then: Some(then), otherwise } => {
                 self.list("?", [&**condition, then, otherwise]);
@@ -481,29 +481,6 @@ fn unary_text(operator: UnaryOperator) -> &'static str {
         UnaryOperator::Minus => "-",
         UnaryOperator::Complement => "~",
         UnaryOperator::Not => "!",
-    }
-}
-
-fn binary_text(operator: BinaryOperator) -> &'static str {
-    match operator {
-        BinaryOperator::Multiply => "*",
-        BinaryOperator::Divide => "/",
-        BinaryOperator::Remainder => "%",
-        BinaryOperator::Add => "+",
-        BinaryOperator::Subtract => "-",
-        BinaryOperator::ShiftLeft => "<<",
-        BinaryOperator::ShiftRight => ">>",
-        BinaryOperator::Less => "<",
-        BinaryOperator::Greater => ">",
-        BinaryOperator::LessEqual => "<=",
-        BinaryOperator::GreaterEqual => ">=",
-        BinaryOperator::Equal => "==",
-        BinaryOperator::NotEqual => "!=",
-        BinaryOperator::And => "&",
-        BinaryOperator::Xor => "^",
-        BinaryOperator::Or => "|",
-        BinaryOperator::LogicalAnd => "&&",
-        BinaryOperator::LogicalOr => "||",
     }
 }
 

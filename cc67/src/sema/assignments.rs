@@ -4,7 +4,6 @@ use super::Sema;
 use super::constants::Constant;
 use super::conversions::Target;
 use super::operands::Operand;
-use super::operators::spelling;
 use super::places::Located;
 use crate::ast::{BinaryOperator, Expression};
 use crate::diag::Diagnostic;
@@ -168,7 +167,7 @@ impl Sema<'_> {
         span: Span,
     ) -> Option<ExprId> {
         let (to, from) = (self.spell(to), self.spell(from));
-        let message = format!("`{}=` cannot be used on `{to}` and `{from}`", spelling(operator));
+        let message = format!("`{}=` cannot be used on `{to}` and `{from}`", operator.spelling());
         self.report(Diagnostic::error(span, message));
         None
     }

@@ -51,7 +51,7 @@ impl Sema<'_> {
         if let ExpressionKind::Binary(operator, ..) = &from.kind
             && is_comparison(*operator)
         {
-            let operator = super::operators::spelling(*operator);
+            let operator = operator.spelling();
             diagnostic = diagnostic.note(format!("`{operator}` is computed first: its result is assigned"));
         }
         self.report(diagnostic);

@@ -47,30 +47,6 @@ const fn classify(operator: BinaryOperator) -> Class {
     }
 }
 
-/// An operator as it is written.
-pub(super) const fn spelling(operator: BinaryOperator) -> &'static str {
-    match operator {
-        BinaryOperator::Multiply => "*",
-        BinaryOperator::Divide => "/",
-        BinaryOperator::Remainder => "%",
-        BinaryOperator::Add => "+",
-        BinaryOperator::Subtract => "-",
-        BinaryOperator::ShiftLeft => "<<",
-        BinaryOperator::ShiftRight => ">>",
-        BinaryOperator::Less => "<",
-        BinaryOperator::Greater => ">",
-        BinaryOperator::LessEqual => "<=",
-        BinaryOperator::GreaterEqual => ">=",
-        BinaryOperator::Equal => "==",
-        BinaryOperator::NotEqual => "!=",
-        BinaryOperator::And => "&",
-        BinaryOperator::Xor => "^",
-        BinaryOperator::Or => "|",
-        BinaryOperator::LogicalAnd => "&&",
-        BinaryOperator::LogicalOr => "||",
-    }
-}
-
 impl Sema<'_> {
     /// A tree of binary operators. A long sum leans to the left; its spine is walked without recursion.
     pub(super) fn binary_expression(&mut self, expression: &Expression) -> Option<ExprId> {
@@ -291,7 +267,7 @@ impl Sema<'_> {
         span: Span,
     ) -> Option<ExprId> {
         let (left, right) = (self.spell(self.body.ty(a)), self.spell(self.body.ty(b)));
-        let operator = spelling(operator);
+        let operator = operator.spelling();
         let message = format!("`{operator}` cannot be used on `{left}` and `{right}`");
         let mut diagnostic = Diagnostic::error(span, message)
             .label(self.body.span(a), format!("`{left}`"))
