@@ -17,13 +17,11 @@ use coff::{
     SectionNumber, StorageClass, Symbol, SymbolType, Target,
 };
 use kmotiondef::GuestAddr;
+use kmotiondef::limits::VERSION_STAMP;
 
 use crate::link::{Linked, LinkedFunction, LinkedSymbol, Section};
 use crate::object::SymbolKind;
 use crate::typed::Linkage;
-
-/// The version stamp of images that are linked against firmware 4.34.
-const VERSION_STAMP: i16 = 434;
 
 /// Writes the image of a program.
 ///

@@ -4,7 +4,10 @@ macro_rules! limits {
     ($($(#[$doc:meta])+ $name:ident: $ty:ty = $value:literal;)*) => {
         $($(#[$doc])+ pub const $name: $ty = $value;)*
 
-        #[cfg(test)]
+/// The version stamp of images that are linked against firmware 4.34: the linker writes it, the loader compares it.
+pub const VERSION_STAMP: i16 = 434;
+
+#[cfg(test)]
         const ALL: &[(&str, f64)] = &[$((stringify!($name), $value as f64)),*];
     };
 }

@@ -5,15 +5,13 @@
 //! own loader checks next to nothing; a mistake there overwrites another thread's program.
 
 use coff::{Contents, Image, Line, Section, SectionNumber, StorageClass, Target};
+use kmotiondef::limits::VERSION_STAMP;
 use kmotiondef::map::{PROGRAM_BASE, PROGRAM_SIZE, STACK_BASE, program_base};
 use kmotiondef::{GuestAddr, ThreadId};
 use vm::program::Program;
 use vm::verify::{VerifyError, verify};
 
 use crate::debug::{DebugInfo, FunctionInfo, ObjectInfo};
-
-/// The version stamp of images that are linked against firmware 4.34.
-pub const VERSION_STAMP: i16 = 434;
 
 /// An image that can be loaded without failing.
 #[derive(Debug)]
