@@ -5,10 +5,9 @@
 
 use std::fmt::{self, Write};
 
+use crate::auxiliary::Auxiliary;
 use crate::image::{Contents, Image, Line, Section, Symbol};
 use crate::names::SectionNumber;
-use crate::raw::FunctionAux;
-use crate::{Derivation, StorageClass};
 
 /// The headers of the file and of its sections.
 #[must_use]
@@ -49,11 +48,24 @@ pub fn symbols(image: &Image) -> String {
                 "{index:5} {:08x} {section:8} {:6} {}: {}",
                 symbol.value, symbol.class, symbol.name, symbol.ty
             )?;
-            if let Some(function) = function_aux(symbol) {
-                write!(out, ", {:#x} bytes", function.size.get())?;
-            }
+            describe_aux(out, symbol)?;
             writeln!(out)?;
             index += 1 + symbol.aux.len();
+        }
+        Ok(())
+    })
+}
+
+/// The relocations.
+#[must_use]
+pub fn relocations(image: &Image) -> String {
+    listing(|out| {
+        for section in image.sections.iter().filter(|section| !section.relocations.is_empty()) {
+            writeln!(out, "relocations of {}", section.name)?;
+            for relocation in &section.relocations {
+                write!(out, "  {:08x} symbol {}", relocation.address, relocation.symbol)?;
+                writeln!(out, " kind {} with {:#x}", relocation.kind, relocation.displacement)?;
+            }
         }
         Ok(())
     })
@@ -109,8 +121,23 @@ fn section_name(image: &Image, number: SectionNumber) -> String {
     }
 }
 
-fn function_aux(symbol: &Symbol) -> Option<FunctionAux> {
-    let is_function =
-        symbol.class == StorageClass::EXTERNAL && symbol.ty.outermost() == Some(Derivation::Function);
-    is_function.then(|| symbol.aux.first())?.map(|aux| aux.as_function())
+/// What the first auxiliary entry adds; the vendor's compiler writes one without content.
+fn describe_aux(out: &mut String, symbol: &Symbol) -> fmt::Result {
+    match symbol.auxiliary() {
+        Some(Auxiliary::Function(aux)) => write!(out, ", {:#x} bytes", aux.size.get()),
+        Some(Auxiliary::Boundary(aux)) if aux.line.get() > 0 => write!(out, ", line {}", aux.line),
+        Some(Auxiliary::Section(aux)) => {
+            write!(out, ", {:#x} bytes, {} relocations, {} lines", aux.size.get(), aux.relocations, aux.lines)
+        }
+        Some(Auxiliary::Tag(aux)) => write!(out, ", {:#x} bytes", aux.size.get()),
+        Some(Auxiliary::Array(aux)) => {
+            write!(out, ", {:#x} bytes, dimensions", aux.size.get())?;
+            aux.dimensions
+                .iter()
+                .filter(|dimension| dimension.get() > 0)
+                .try_for_each(|size| write!(out, " {size}"))
+        }
+        Some(Auxiliary::Object(aux)) if aux.size.get() > 0 => write!(out, ", {:#x} bytes", aux.size.get()),
+        Some(Auxiliary::Boundary(_) | Auxiliary::Object(_)) | None => Ok(()),
+    }
 }

@@ -29,12 +29,6 @@ pub enum ErrorKind {
         /// Its size in bytes.
         size: u64,
     },
-    /// A section has relocations: the image is not linked.
-    #[error("section {section} has relocations, the image is not linked")]
-    Relocations {
-        /// Number of the section, from 1.
-        section: usize,
-    },
     /// Parts share more bytes than a file of this size can have by itself.
     #[error("{0} overlaps with others")]
     Overlap(Part),
@@ -73,6 +67,8 @@ pub enum Part {
     SectionHeaders,
     /// The raw data of a section, counted from 1.
     Data(usize),
+    /// The relocations of a section, counted from 1.
+    Relocations(usize),
     /// The line numbers of a section, counted from 1.
     Lines(usize),
     /// The symbol table.
@@ -94,6 +90,7 @@ impl fmt::Display for Part {
             Self::OptionalHeader => f.write_str("the optional header"),
             Self::SectionHeaders => f.write_str("the table of section headers"),
             Self::Data(section) => write!(f, "the data of section {section}"),
+            Self::Relocations(section) => write!(f, "the relocations of section {section}"),
             Self::Lines(section) => write!(f, "the line table of section {section}"),
             Self::Symbols => f.write_str("the symbol table"),
             Self::Auxiliaries => f.write_str("the number of auxiliary entries"),

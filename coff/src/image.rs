@@ -2,18 +2,19 @@
 //!
 //! Names are bytes, for a file may hold any; counts and file offsets do not appear, the
 //! writer finds them. Auxiliary entries stay as they are in the file, because what they mean
-//! depends on the symbol; [`Layout`](crate::Layout) gives the offsets that some of them hold.
+//! depends on the symbol ([`Auxiliary`](crate::Auxiliary)); [`Layout`](crate::Layout) gives the
+//! offsets that some of them hold.
 
 use std::borrow::Cow;
 use std::fmt;
 use std::num::NonZeroU16;
 
-use zerocopy::{Immutable, IntoBytes};
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, Unaligned};
 
 use crate::names::{FileFlags, SectionFlags, SectionNumber, StorageClass, SymbolType, Target};
 use crate::raw;
 
-/// A linked image.
+/// An image: a linked program, or an object that a linker completes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Image {
     /// The processor it is for.
@@ -64,6 +65,8 @@ pub struct Section {
     pub page: u16,
     /// Its bytes.
     pub contents: Contents,
+    /// What a linker has to complete in its bytes; none in a linked image.
+    pub relocations: Vec<Relocation>,
     /// Its line numbers.
     pub lines: Vec<Line>,
 }
@@ -98,6 +101,19 @@ pub enum Contents {
     Uninitialised(u32),
 }
 
+/// Bytes that depend on the address of a symbol.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Relocation {
+    /// Address of the bytes.
+    pub address: u32,
+    /// Index of the symbol as the format counts, auxiliary entries included.
+    pub symbol: u32,
+    /// Further information that the kind needs.
+    pub displacement: u16,
+    /// How the bytes are completed; the target decides.
+    pub kind: u16,
+}
+
 /// A line number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Line {
@@ -130,7 +146,8 @@ pub struct Symbol {
 }
 
 /// An auxiliary entry: 18 bytes whose meaning depends on the symbol.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, FromBytes, IntoBytes, KnownLayout, Immutable, Unaligned)]
+#[repr(transparent)]
 pub struct Aux(pub [u8; 18]);
 
 impl Aux {
@@ -153,6 +170,30 @@ impl Aux {
     /// The entry of `.bf` or `.ef`.
     #[must_use]
     pub fn as_boundary(&self) -> raw::BoundaryAux {
+        zerocopy::transmute!(self.0)
+    }
+
+    /// The entry of an object.
+    #[must_use]
+    pub fn as_object(&self) -> raw::ObjectAux {
+        zerocopy::transmute!(self.0)
+    }
+
+    /// The entry of a symbol that names a section.
+    #[must_use]
+    pub fn as_section(&self) -> raw::SectionAux {
+        zerocopy::transmute!(self.0)
+    }
+
+    /// The entry of a tag.
+    #[must_use]
+    pub fn as_tag(&self) -> raw::TagAux {
+        zerocopy::transmute!(self.0)
+    }
+
+    /// The entry of an array.
+    #[must_use]
+    pub fn as_array(&self) -> raw::ArrayAux {
         zerocopy::transmute!(self.0)
     }
 }

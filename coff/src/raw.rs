@@ -1,4 +1,4 @@
-//! Headers, symbols and line numbers as the document lays them out.
+//! Headers, symbols, relocations and line numbers as the document lays them out.
 //!
 //! Plain bytes in little-endian order without alignment or padding, so that a structure can
 //! be read from, and written to, any place of a file. Section numbers are those of `coff.md`.
@@ -97,6 +97,18 @@ structures! {
         page: U16,
     }
 
+    /// Relocation (section 7).
+    Relocation, 12 {
+        /// Address of the bytes to complete.
+        address: U32,
+        /// Index of the symbol whose address is put there.
+        symbol: U32,
+        /// Further information that the kind needs.
+        displacement: U16,
+        /// How the bytes are completed; the target decides.
+        kind: U16,
+    }
+
     /// Line number (section 5).
     Line, 6 {
         /// Address, or the index of the function's symbol if `line` is 0.
@@ -149,5 +161,57 @@ structures! {
         next: U32,
         /// Zero.
         reserved: U16,
+    }
+
+    /// Auxiliary entry of a symbol that names a section.
+    SectionAux, 18 {
+        /// Size of the section in bytes.
+        size: U32,
+        /// Number of relocations.
+        relocations: U16,
+        /// Number of line numbers.
+        lines: U16,
+        /// Zero.
+        reserved: [u8; 10],
+    }
+
+    /// Auxiliary entry of a structure, union or enumeration tag.
+    TagAux, 18 {
+        /// Zero.
+        tag: U32,
+        /// Size of the type in bytes.
+        size: U32,
+        /// Zero.
+        reserved: U32,
+        /// Index of the symbol behind the members.
+        next: U32,
+        /// Zero.
+        reserved_end: U16,
+    }
+
+    /// Auxiliary entry of an array.
+    ArrayAux, 18 {
+        /// Index of the tag of its elements, 0 for none.
+        tag: U32,
+        /// Size of the array in bytes.
+        size: U32,
+        /// The first four dimensions.
+        dimensions: [U16; 4],
+        /// Zero.
+        reserved: U16,
+    }
+
+    /// Auxiliary entry of a structure, of its end, of a member or of any other object.
+    ObjectAux, 18 {
+        /// Index of the tag of its type, 0 for none.
+        tag: U32,
+        /// Size in bytes.
+        size: U32,
+        /// Zero; alignment of the object in objects of cc67.
+        align: U32,
+        /// Zero; index of the source file that defines it in objects of cc67, counted from 0.
+        file: U32,
+        /// Zero; line of the definition in objects of cc67.
+        line: U16,
     }
 }

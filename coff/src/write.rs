@@ -1,7 +1,7 @@
 //! An image to bytes: reserve, then write.
 //!
 //! [`Layout::of`] decides where everything goes, in the order of the vendor's tools: headers,
-//! raw data, line numbers, symbols, strings. Writing then only appends, and each part finds
+//! raw data, relocations, line numbers, symbols, strings. Writing then only appends, and each part finds
 //! itself where it was reserved.
 
 use std::collections::BTreeMap;
@@ -10,7 +10,7 @@ use zerocopy::IntoBytes;
 use zerocopy::little_endian::{I16, U16, U32};
 
 use crate::error::{Error, ErrorKind, Part};
-use crate::image::{Contents, Image, Line, Name, Program, Section, Symbol};
+use crate::image::{Contents, Image, Line, Name, Program, Relocation, Section, Symbol};
 use crate::raw;
 
 impl Image {
@@ -24,6 +24,9 @@ impl Image {
         self.write_headers(&layout, &mut bytes)?;
         for section in &self.sections {
             bytes.extend_from_slice(section.data());
+        }
+        for relocation in self.sections.iter().flat_map(|section| &section.relocations) {
+            bytes.extend_from_slice(relocation_entry(relocation).as_bytes());
         }
         for line in self.sections.iter().flat_map(|section| &section.lines) {
             bytes.extend_from_slice(line_entry(line).as_bytes());
@@ -80,6 +83,7 @@ pub struct Layout {
 #[derive(Clone, Copy, Debug)]
 struct SectionPlace {
     data_at: u32,
+    relocations_at: u32,
     lines_at: u32,
 }
 
@@ -98,8 +102,14 @@ impl Layout {
                 Contents::Data(_) => offset(end, Part::Data(number))?,
                 Contents::Uninitialised(_) => 0,
             };
-            sections.push(SectionPlace { data_at, lines_at: 0 });
+            sections.push(SectionPlace { data_at, relocations_at: 0, lines_at: 0 });
             end += section.data().len();
+        }
+        for ((section, place), number) in image.sections.iter().zip(&mut sections).zip(1..) {
+            if !section.relocations.is_empty() {
+                place.relocations_at = offset(end, Part::Relocations(number))?;
+            }
+            end += section.relocations.len() * size_of::<raw::Relocation>();
         }
         for ((section, place), number) in image.sections.iter().zip(&mut sections).zip(1..) {
             if !section.lines.is_empty() {
@@ -213,14 +223,23 @@ fn section_header(
         address: U32::new(section.address),
         size: U32::new(size),
         data_at: U32::new(place.data_at),
-        relocations_at: U32::ZERO,
+        relocations_at: U32::new(place.relocations_at),
         lines_at: U32::new(place.lines_at),
-        relocations: U32::ZERO,
+        relocations: U32::new(offset(section.relocations.len(), Part::SectionHeaders)?),
         lines: U32::new(offset(section.lines.len(), Part::SectionHeaders)?),
         flags: U32::new(section.flags.0),
         reserved: U16::ZERO,
         page: U16::new(section.page),
     })
+}
+
+fn relocation_entry(relocation: &Relocation) -> raw::Relocation {
+    raw::Relocation {
+        address: U32::new(relocation.address),
+        symbol: U32::new(relocation.symbol),
+        displacement: U16::new(relocation.displacement),
+        kind: U16::new(relocation.kind),
+    }
 }
 
 fn line_entry(line: &Line) -> raw::Line {

@@ -47,6 +47,7 @@ fn tiny() -> Image {
                 flags: (SectionFlags::TEXT | SectionFlags::DATA).with_align(32),
                 page: 0,
                 contents: Contents::Data(vec![0x58; 0x7c]),
+                relocations: Vec::new(),
                 lines: vec![Line::Function(1), statement(0x8005_0000, 4), statement(0x8005_0014, 5)],
             },
             Section {
@@ -56,6 +57,7 @@ fn tiny() -> Image {
                 flags: SectionFlags::DATA,
                 page: 0,
                 contents: Contents::Data(vec![7, 0, 0, 0]),
+                relocations: Vec::new(),
                 lines: Vec::new(),
             },
         ],
@@ -174,7 +176,7 @@ fn faults_name_the_place() {
     check(|bytes| bytes[..2].reverse(), 0, ErrorKind::BigEndian);
     check(|bytes| bytes.truncate(10), 0, ErrorKind::Truncated { part: Part::FileHeader, size: 22 });
     check(|bytes| bytes[0x49] = 1, 0x100_0092, ErrorKind::Truncated { part: Part::Data(1), size: 0x7c });
-    check(|bytes| bytes[0x52] = 1, 50, ErrorKind::Relocations { section: 1 });
+    check(|bytes| bytes[0x55] = 1, 0, ErrorKind::Truncated { part: Part::Relocations(1), size: 0xc00_0000 });
     check(|bytes| bytes[0x59] = 1, 0x112, ErrorKind::Truncated { part: Part::Lines(1), size: 0x600_0012 });
     check(|bytes| bytes[0x147] = 4, 0x136, ErrorKind::Auxiliary { count: 4, left: 3 });
     check(|bytes| bytes[0x170] = 99, 0x16c, ErrorKind::Name { offset: 99, size: 21 });

@@ -3,8 +3,8 @@
 use std::num::NonZeroU16;
 
 use coff::{
-    Aux, Contents, FileFlags, Image, Line, Name, Program, Section, SectionFlags, SectionNumber, StorageClass,
-    Symbol, SymbolType, Target, dump,
+    Aux, Contents, FileFlags, Image, Line, Name, Program, Relocation, Section, SectionFlags, SectionNumber,
+    StorageClass, Symbol, SymbolType, Target, dump,
 };
 use proptest::collection::vec;
 use proptest::option;
@@ -21,6 +21,15 @@ fn line() -> impl Strategy<Value = Line> {
     ]
 }
 
+fn relocation() -> impl Strategy<Value = Relocation> {
+    any::<(u32, u32, u16, u16)>().prop_map(|(address, symbol, displacement, kind)| Relocation {
+        address,
+        symbol,
+        displacement,
+        kind,
+    })
+}
+
 fn contents() -> impl Strategy<Value = Contents> {
     prop_oneof![
         vec(any::<u8>(), 0..100).prop_map(Contents::Data),
@@ -29,14 +38,16 @@ fn contents() -> impl Strategy<Value = Contents> {
 }
 
 fn section() -> impl Strategy<Value = Section> {
-    (name(), any::<(u32, u32, u32, u16)>(), contents(), vec(line(), 0..5)).prop_map(
-        |(name, (physical, address, flags, page), contents, lines)| Section {
+    let tables = (vec(relocation(), 0..3), vec(line(), 0..5));
+    (name(), any::<(u32, u32, u32, u16)>(), contents(), tables).prop_map(
+        |(name, (physical, address, flags, page), contents, (relocations, lines))| Section {
             name,
             physical,
             address,
             flags: SectionFlags(flags),
             page,
             contents,
+            relocations,
             lines,
         },
     )

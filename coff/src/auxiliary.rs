@@ -1,0 +1,56 @@
+//! What the first auxiliary entry of a symbol means.
+//!
+//! The format does not say; it follows from the storage class, the type and the name of the
+//! symbol it belongs to.
+
+use crate::image::Symbol;
+use crate::names::{Derivation, StorageClass};
+use crate::raw;
+
+/// An auxiliary entry with its meaning.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Auxiliary {
+    /// Of a function: its size and its lines.
+    Function(raw::FunctionAux),
+    /// Of `.bf`, `.ef`, `.bb` or `.eb`: the line where a function or block begins or ends.
+    Boundary(raw::BoundaryAux),
+    /// Of a symbol that names a section.
+    Section(raw::SectionAux),
+    /// Of a structure, union or enumeration tag.
+    Tag(raw::TagAux),
+    /// Of an array.
+    Array(raw::ArrayAux),
+    /// Of anything else that has a size.
+    Object(raw::ObjectAux),
+}
+
+impl Symbol {
+    /// Its first auxiliary entry; `None` if it has none.
+    #[must_use]
+    pub fn auxiliary(&self) -> Option<Auxiliary> {
+        let aux = self.aux.first()?;
+        Some(match (self.class, self.ty.outermost()) {
+            (StorageClass::FUNCTION | StorageClass::BLOCK, _) => Auxiliary::Boundary(aux.as_boundary()),
+            (StorageClass::STRUCT_TAG | StorageClass::UNION_TAG | StorageClass::ENUM_TAG, _) => {
+                Auxiliary::Tag(aux.as_tag())
+            }
+            (StorageClass::STATIC, None) if self.ty.0 == 0 => Auxiliary::Section(aux.as_section()),
+            (_, Some(Derivation::Function)) => Auxiliary::Function(aux.as_function()),
+            (_, Some(Derivation::Array)) => Auxiliary::Array(aux.as_array()),
+            _ => Auxiliary::Object(aux.as_object()),
+        })
+    }
+
+    /// The size in bytes that the entry states of what the symbol names, if it states one.
+    #[must_use]
+    pub fn size(&self) -> Option<u32> {
+        match self.auxiliary()? {
+            Auxiliary::Function(aux) => Some(aux.size.get()),
+            Auxiliary::Section(aux) => Some(aux.size.get()),
+            Auxiliary::Tag(aux) => Some(aux.size.get()),
+            Auxiliary::Array(aux) => Some(aux.size.get()),
+            Auxiliary::Object(aux) => Some(aux.size.get()),
+            Auxiliary::Boundary(_) => None,
+        }
+    }
+}
