@@ -17,7 +17,6 @@ use coff::{
     SectionNumber, StorageClass, Symbol, SymbolType, Target,
 };
 use kmotiondef::GuestAddr;
-use kmotiondef::limits::VERSION_STAMP;
 
 use crate::link::{Linked, LinkedFunction, LinkedSymbol, Section};
 use crate::object::SymbolKind;
@@ -57,7 +56,7 @@ pub fn write(linked: &Linked) -> Result<Vec<u8>, Error> {
 
 fn header(linked: &Linked) -> Program {
     Program {
-        version_stamp: VERSION_STAMP,
+        version_stamp: linked.version_stamp,
         text_size: linked.text.len() as u32,
         data_size: linked.data.len() as u32,
         bss_size: linked.bss_size,
@@ -75,6 +74,7 @@ fn sections(linked: &Linked) -> Vec<coff::Section> {
         flags,
         page: 0,
         contents,
+        relocations: Vec::new(),
         lines: Vec::new(),
     };
     let text_flags = (SectionFlags::TEXT | SectionFlags::DATA).with_align(32);

@@ -51,7 +51,7 @@ use std::thread;
 use kmotiondef::ThreadId;
 
 use diag::{Diagnostic, Sink};
-use firmware::BuiltIn;
+use firmware::Firmware;
 use link::Linked;
 use names::Names;
 use object::Object;
@@ -65,13 +65,22 @@ pub struct Options {
     pub preprocessor: pp::Options,
     /// What to optimise.
     pub level: Level,
+    /// The firmware that programs are for.
+    pub firmware: Firmware,
+    /// Whether the linker leaves out what `main` cannot reach.
+    pub gc_sections: bool,
 }
 
 impl Default for Options {
     /// The headers of the board, nothing defined, the standard optimisations.
     fn default() -> Self {
         let embedded = kmotiondef::headers::EMBEDDED;
-        Self { preprocessor: pp::Options { embedded, ..pp::Options::default() }, level: Level::default() }
+        Self {
+            preprocessor: pp::Options { embedded, ..pp::Options::default() },
+            level: Level::default(),
+            firmware: Firmware::default(),
+            gc_sections: true,
+        }
     }
 }
 
@@ -114,7 +123,7 @@ fn compile_here(path: &Path, text: Vec<u8>, options: &Options, files: &dyn pp::F
     let main = sources.add_file(path.to_string_lossy(), Some(path), text, None);
     let tokens = pp::preprocess(main, &options.preprocessor, files, &mut sources, &mut names, &mut sink);
     let tree = parse::parse(&tokens, &sources, &names, &mut sink);
-    let unit = sema::analyze(&tree, &mut names, &sources, &BuiltIn, &mut sink);
+    let unit = sema::analyze(&tree, &mut names, &sources, &options.firmware, &mut sink);
     let object =
         (!sink.has_errors()).then(|| bytecode::unit::compile(&unit, &sources, options.level, &mut sink));
     let object = object.filter(|_| !sink.has_errors());
@@ -139,9 +148,9 @@ impl Compilation {
     }
 
     /// Links the object by itself for `thread`; what is missing joins the other diagnostics.
-    pub fn link(&mut self, thread: ThreadId) -> Option<Linked> {
+    pub fn link(&mut self, thread: ThreadId, options: &Options) -> Option<Linked> {
         let object = self.object.as_ref()?;
-        let options = link::Options { thread, firmware: &BuiltIn, gc: true };
+        let options = link::Options { thread, firmware: &options.firmware, gc: options.gc_sections };
         match link::link(std::slice::from_ref(object), &options) {
             Ok(linked) => {
                 for warning in &linked.warnings {

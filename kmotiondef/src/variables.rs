@@ -10,6 +10,7 @@ use std::sync::LazyLock;
 
 use crate::GuestAddr;
 use crate::ctype::{Bool, CType, Char, Const, GuestType, UserCallback, Volatile};
+use crate::limits::VERSION;
 use crate::place::Place;
 use crate::start::Start::{self, Address, Double, Each, Fields, Float, Int, Text, Words, Zero};
 use crate::start::Stored;
@@ -139,7 +140,7 @@ macro_rules! for_each_firmware_var {
             STATUS_REQUEST_COUNTER = StatusRequestCounter: i32, at 0x1001_71C4, starts Zero;
             /// Board name, firmware version and build time.
             VERSION_AND_BUILD_TIME = VersionAndBuildTime: [Const<Char>; 39], at 0x1001_B958,
-                starts Text("KFLOP 4.34 Build 16:07:06 Aug 14 2018\n");
+                starts Text(VERSION);
             /// Write index of the console queue.
             NEXT_AVAIL_IN = NextAvailIn: Volatile<i32>, at 0x1001_A008, starts Zero;
             /// Read index of the console queue; equal: empty.

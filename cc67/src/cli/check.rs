@@ -30,7 +30,7 @@ pub(super) fn check(arguments: &Arguments) -> Result<Exit> {
         let mut compilation = crate::compile(path, text, &options, &Disk);
         // Which thread it would run in makes no difference to what can be wrong.
         let thread = ThreadId::all().next().context("the board has threads")?;
-        compilation.link(thread);
+        compilation.link(thread, &options);
         has_errors |= terminal::report(&compilation, &levels);
     }
     Ok(if has_errors { Exit::SourceErrors } else { Exit::Success })

@@ -1,10 +1,12 @@
 //! Options that all commands which compile have in common.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use anyhow::{Context, Result, bail};
 use clap::Args;
 
+use crate::firmware::{Firmware, FirmwareFile};
 use crate::lints::levels::Levels;
 use crate::passes::Level;
 use crate::{Options, pp};
@@ -27,6 +29,15 @@ pub(super) struct CompilerOptions {
     /// Switch a warning on (NAME), off (no-NAME), or make all warnings errors (error)
     #[arg(short = 'W', value_name = "LINT")]
     warnings: Vec<String>,
+    /// Link against the symbols of a firmware file in place of firmware 4.34's
+    #[arg(long, value_name = "FILE")]
+    firmware: Option<PathBuf>,
+    /// Leave out functions and objects that `main` cannot reach, at -O0 too
+    #[arg(long, overrides_with = "no_gc_sections")]
+    gc_sections: bool,
+    /// Keep them
+    #[arg(long, overrides_with = "gc_sections")]
+    no_gc_sections: bool,
 }
 
 impl CompilerOptions {
@@ -44,7 +55,17 @@ impl CompilerOptions {
                 embedded: kmotiondef::headers::EMBEDDED,
             },
             level: if self.optimization == 0 { Level::None } else { Level::Full },
+            firmware: self.firmware()?,
+            gc_sections: self.gc_sections || (self.optimization > 0 && !self.no_gc_sections),
         })
+    }
+
+    /// The firmware to link against.
+    fn firmware(&self) -> Result<Firmware> {
+        let Some(path) = &self.firmware else { return Ok(Firmware::BuiltIn) };
+        let file = FirmwareFile::read(&super::run::read(path)?);
+        let file = file.with_context(|| format!("`--firmware {}`", path.display()))?;
+        Ok(Firmware::File(Arc::new(file)))
     }
 
     /// Which warnings are shown.

@@ -46,7 +46,6 @@ pub(super) struct Anything {
 /// Options of `run` to come, without `--`.
 const OPTIONS: &[&str] = &[
     "assist",
-    "firmware",
     "flash",
     "json",
     "machine",

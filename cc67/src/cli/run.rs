@@ -126,6 +126,7 @@ impl Session<'_> {
 /// The image of every program; `None` if a source has errors, after all have been compiled.
 fn images(programs: &[Program], arguments: &Arguments) -> Result<Option<Vec<Vec<u8>>>> {
     let options = arguments.compiler.resolve()?;
+    options.firmware.check_version().context("`--firmware`")?;
     let levels = arguments.compiler.levels()?;
     let mut images = Vec::new();
     let mut has_errors = false;
@@ -162,7 +163,7 @@ fn build(
     levels: &Levels,
 ) -> Result<Option<Vec<u8>>> {
     let mut compilation = crate::compile(path, text, options, &Disk);
-    let linked = compilation.link(thread);
+    let linked = compilation.link(thread, options);
     if terminal::report(&compilation, levels) {
         return Ok(None);
     }

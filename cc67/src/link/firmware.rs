@@ -3,6 +3,7 @@
 use kmotiondef::GuestAddr;
 use kmotiondef::ValueClass;
 use kmotiondef::firmware::{ABSENT, FIRMWARE_FUNCTIONS, function_named};
+use kmotiondef::limits::VERSION_STAMP;
 use kmotiondef::variables::variable_named;
 
 use crate::firmware::BuiltIn;
@@ -34,6 +35,11 @@ pub trait FirmwareSymbols {
 
     /// Every name, for suggestions.
     fn symbol_names(&self) -> Box<dyn Iterator<Item = &str> + '_>;
+
+    /// The version of the firmware, as images state it.
+    fn version_stamp(&self) -> i16 {
+        VERSION_STAMP
+    }
 }
 
 impl FirmwareSymbols for BuiltIn {

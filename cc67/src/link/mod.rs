@@ -53,6 +53,8 @@ pub struct Linked {
     pub bss_size: u32,
     /// Address of `main`.
     pub entry: GuestAddr,
+    /// Version of the firmware that it is linked against.
+    pub version_stamp: i16,
     /// Source files.
     pub files: Vec<String>,
     /// The program's symbols: functions, then objects, each in the order of their addresses.
@@ -149,6 +151,7 @@ pub fn link(objects: &[Object], options: &Options<'_>) -> Result<Linked, Vec<Lin
         bss_address: placed.bss_address,
         bss_size: placed.bss_size,
         entry: placed.function(reached.main),
+        version_stamp: options.firmware.version_stamp(),
         files: layout.files.clone(),
         functions: text::functions(objects, &layout),
         lines: text::lines(objects, &layout, base),

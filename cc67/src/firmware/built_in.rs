@@ -1,6 +1,4 @@
-//! The simulated board's firmware, as the compiler and the linker see it.
-//!
-//! Everything here is read from the tables of `kmotiondef`.
+//! The simulated board's own firmware: everything is read from the tables of `kmotiondef`.
 
 use kmotiondef::ctype::TYPEDEFS;
 use kmotiondef::firmware::{ABSENT, FIRMWARE_FUNCTIONS, Origin, function_named};

@@ -1,0 +1,177 @@
+//! A firmware file: what programs are linked against with `--firmware`.
+//!
+//! The file is an image of the whole firmware. The linker wants its external symbols, the version
+//! check the text that the firmware answers to `Version` (`coff.md` sections 8 and 9.3).
+
+use std::collections::BTreeMap;
+
+use coff::{BaseType, Derivation, File, StorageClass, SymbolType};
+use kmotiondef::GuestAddr;
+
+use super::BuiltIn;
+use crate::link::{FirmwareKind, FirmwareSymbol, FirmwareSymbols};
+
+/// Longest version text that is looked at.
+const MAX_VERSION: usize = 80;
+
+/// Why a file cannot serve as firmware.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum FirmwareError {
+    /// The bytes are not a TI COFF image.
+    #[error("not a firmware file: {0}")]
+    NotAnImage(#[from] coff::Error),
+    /// It exports nothing.
+    #[error("not a firmware file: the image has no external symbols")]
+    NoSymbols,
+}
+
+/// The symbols and the version of a firmware file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FirmwareFile {
+    /// Address and type of each name, as programs spell it.
+    symbols: BTreeMap<String, (GuestAddr, SymbolType)>,
+    version: Option<String>,
+}
+
+impl FirmwareFile {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// If it is no image or exports no symbols.
+    pub fn read(bytes: &[u8]) -> Result<Self, FirmwareError> {
+        let file = File::parse(bytes)?;
+        let mut symbols = BTreeMap::new();
+        let mut version = None;
+        for symbol in file.symbols() {
+            let symbol = symbol?;
+            if symbol.class() != StorageClass::EXTERNAL {
+                continue;
+            }
+            if symbol.name == b"_VersionAndBuildTime" {
+                version = version_text(&file, symbol.value());
+            }
+            if is_exported(symbol.ty()) {
+                let name = String::from_utf8_lossy(program_name(symbol.name)).into_owned();
+                symbols.entry(name).or_insert((GuestAddr::new(symbol.value()), symbol.ty()));
+            }
+        }
+        if symbols.is_empty() {
+            return Err(FirmwareError::NoSymbols);
+        }
+        Ok(Self { symbols, version })
+    }
+
+    /// What the firmware answers to `Version`; `None` if the file does not say.
+    #[must_use]
+    pub fn version(&self) -> Option<&str> {
+        self.version.as_deref()
+    }
+
+    /// The stamp of images that are linked against it: 434 for version 4.34, 0 if it is unknown.
+    #[must_use]
+    pub fn version_stamp(&self) -> i16 {
+        self.version.as_deref().and_then(stamp).unwrap_or(0)
+    }
+
+    /// Every name that programs can use.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.symbols.keys().map(String::as_str)
+    }
+
+    /// Whether programs can use `name`.
+    #[must_use]
+    pub fn has(&self, name: &str) -> bool {
+        self.symbols.contains_key(name)
+    }
+
+    /// The symbol of this name.
+    ///
+    /// The vendor's file says `int` of everything, functions included, so that what the tables know
+    /// comes first. What neither knows may be called as the program declares it.
+    pub(super) fn find(&self, name: &str) -> Option<FirmwareSymbol> {
+        let (address, ty) = *self.symbols.get(name)?;
+        let kind = match BuiltIn.find(name) {
+            Some(known) => known.kind,
+            None if ty == INT || ty.outermost() == Some(Derivation::Function) => FirmwareKind::Function(None),
+            None => FirmwareKind::Variable,
+        };
+        Some(FirmwareSymbol { address, kind })
+    }
+}
+
+/// The type of everything in the vendor's file.
+const INT: SymbolType = SymbolType::new(BaseType::INT);
+
+/// Whether the vendor's linker takes over symbols of this type.
+fn is_exported(ty: SymbolType) -> bool {
+    match ty.outermost() {
+        Some(Derivation::Function | Derivation::Array) => true,
+        Some(Derivation::Pointer) => ty == SymbolType::new(BaseType::STRUCT).derived(Derivation::Pointer),
+        None => matches!(ty.base(), BaseType::INT | BaseType::FLOAT | BaseType::DOUBLE | BaseType::STRUCT),
+    }
+}
+
+/// The firmware's tools put an underscore in front of each name. Its own `main` keeps it, so that
+/// it is not taken for the program's.
+fn program_name(name: &[u8]) -> &[u8] {
+    match name {
+        b"_main" => name,
+        [b'_', rest @ ..] => rest,
+        _ => name,
+    }
+}
+
+/// The text at `address` in the section `.const`, without the newline at its end.
+fn version_text(file: &File<'_>, address: u32) -> Option<String> {
+    let section = file.section(".const")?;
+    let offset = address.checked_sub(section.header().physical.get())?;
+    let bytes = section.data()?.get(offset as usize..)?;
+    let bytes = &bytes[..bytes.len().min(MAX_VERSION)];
+    let text = &bytes[..bytes.iter().position(|byte| *byte == 0)?];
+    let (_, text) = text.split_last()?;
+    Some(String::from_utf8_lossy(text).into_owned())
+}
+
+/// The number of the version in "KFLOP 4.34 Build …".
+fn stamp(version: &str) -> Option<i16> {
+    let (major, minor) = version.split_whitespace().find_map(|word| word.split_once('.'))?;
+    let minor: String = minor.chars().take_while(char::is_ascii_digit).take(2).collect();
+    let major: i16 = major.parse().ok()?;
+    major.checked_mul(100)?.checked_add(minor.parse().ok()?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn versions_become_stamps() {
+        assert_eq!(stamp("KFLOP 4.34 Build 16:07:06 Aug 14 2018"), Some(434));
+        assert_eq!(stamp("KFLOP 4.35h Build 1"), Some(435));
+        assert_eq!(stamp("KFLOP 5.10 Build"), Some(510));
+        assert_eq!(stamp("KFLOP 900000.10"), None);
+        assert_eq!(stamp("KFLOP"), None);
+    }
+
+    #[test]
+    fn names_lose_one_underscore() {
+        let check = |name: &str, expect: &str| assert_eq!(program_name(name.as_bytes()), expect.as_bytes());
+        check("_SetBit", "SetBit");
+        check("__divi", "_divi");
+        check("_main", "_main");
+        check("c_int00", "c_int00");
+        check("_", "");
+    }
+
+    #[test]
+    fn types_that_the_vendors_linker_leaves_out_are_left_out() {
+        for (code, expect) in
+            [(0, false), (4, true), (6, true), (7, true), (8, true), (0x18, true), (0x24, true)]
+        {
+            assert_eq!(is_exported(SymbolType(code)), expect, "{code:#x}");
+        }
+        for (code, expect) in [(0x14, false), (0x34, true), (0x20, true), (2, false), (14, false)] {
+            assert_eq!(is_exported(SymbolType(code)), expect, "{code:#x}");
+        }
+    }
+}
