@@ -113,6 +113,27 @@ fn an_error_inside_a_macro_shows_the_macro() {
 }
 
 #[test]
+fn editors_programs_and_the_vendors_software_get_their_own_form() {
+    let source = "#include \"KMotionDef.h\"\nmain()\n{\n  int x;\n  if (x = 1) ;\n  y = 2;\n}\n";
+    let stderr = |format| {
+        let output = run_source(format, source, &["--message-format", format]);
+        assert_eq!((output.code, output.stdout.as_str()), (1, ""), "{output:?}");
+        output.stderr
+    };
+    let short = "a.c:5:7: warning: an assignment is used as a condition [assignment-condition]\n\
+        a.c:5:14: warning: `if` with an empty body [empty-body]\n\
+        a.c:6:3: error: `y` is not declared\n";
+    assert_eq!(stderr("short"), short);
+    assert!(stderr("vendor").starts_with("a.c:6: `y` is not declared\na.c:5: warning: an assignment"));
+    let json = stderr("json");
+    assert_eq!(json.lines().count(), 3);
+    for line in json.lines() {
+        let message: serde_json::Value = serde_json::from_str(line).expect("each line is JSON");
+        assert_eq!(message["spans"][0]["file"], "a.c");
+    }
+}
+
+#[test]
 fn an_endless_loop_in_one_thread_does_not_stop_another() {
     let scratch = Scratch::new("endless");
     scratch.write("spin.c", "main() { for (;;) ; }\n").write("a.c", HELLO);

@@ -22,9 +22,11 @@ fn errors(checks: &str, body: &str) -> String {
     let text = format!("#include \"KMotionDef.h\"\n{checks}\nint main(void) {{ {body} }}\n");
     let options = cc67::Options::default();
     let mut compilation = cc67::compile(Path::new("checks.c"), text.into_bytes(), &options, &Disk);
-    compilation.link(kmotiondef::ThreadId::new(1).expect("1 is a thread"));
+    compilation.link(kmotiondef::ThreadId::new(1).expect("1 is a thread"), &options);
     let wrong = compilation.sink.diagnostics().iter().filter(|d| d.severity == Severity::Error);
-    wrong.map(|diagnostic| format!("{}\n", cc67::render::short(diagnostic, &compilation.sources))).collect()
+    wrong
+        .map(|diagnostic| format!("{}\n", cc67::render::short::render(diagnostic, &compilation.sources)))
+        .collect()
 }
 
 #[track_caller]

@@ -46,6 +46,9 @@ pub struct Diagnostic {
     pub notes: Vec<String>,
     /// What the user should do.
     pub help: Option<String>,
+    /// The symbol that neither the program nor the firmware defines, if that is the finding; the vendor's
+    /// tools have words of their own for it.
+    pub undefined: Option<String>,
 }
 
 impl Diagnostic {
@@ -89,6 +92,7 @@ impl Diagnostic {
             labels: Vec::new(),
             notes: Vec::new(),
             help: None,
+            undefined: None,
         }
     }
 
@@ -113,6 +117,12 @@ impl Diagnostic {
     /// Says what the user should do.
     pub fn help(mut self, text: impl Into<String>) -> Self {
         self.help = Some(text.into());
+        self
+    }
+
+    /// Says that the finding is a symbol which nothing defines.
+    pub fn undefined(mut self, symbol: impl Into<String>) -> Self {
+        self.undefined = Some(symbol.into());
         self
     }
 }

@@ -31,7 +31,7 @@ pub(super) fn check(arguments: &Arguments) -> Result<Exit> {
         // Which thread it would run in makes no difference to what can be wrong.
         let thread = ThreadId::all().next().context("the board has threads")?;
         compilation.link(thread, &options);
-        has_errors |= terminal::report(&compilation, &levels);
+        has_errors |= terminal::report(&compilation, &levels, arguments.compiler.format());
     }
     Ok(if has_errors { Exit::SourceErrors } else { Exit::Success })
 }

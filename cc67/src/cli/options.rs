@@ -4,11 +4,12 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use anyhow::{Context, Result, bail};
-use clap::Args;
+use clap::{Args, ValueEnum};
 
 use crate::firmware::{Firmware, FirmwareFile};
 use crate::lints::levels::Levels;
 use crate::passes::Level;
+use crate::render::Format;
 use crate::{Options, pp};
 
 /// How to compile.
@@ -38,6 +39,22 @@ pub(super) struct CompilerOptions {
     /// Keep them
     #[arg(long, overrides_with = "gc_sections")]
     no_gc_sections: bool,
+    /// Form of the diagnostics
+    #[arg(long, value_name = "FORMAT", value_enum, default_value_t = FormatName::Human)]
+    message_format: FormatName,
+}
+
+/// Forms of diagnostics by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum FormatName {
+    /// Source lines, ranges, suggestions
+    Human,
+    /// One line each, as editors read it
+    Short,
+    /// One JSON object a line
+    Json,
+    /// As the controller's own compiler writes them; nothing without an error
+    Vendor,
 }
 
 impl CompilerOptions {
@@ -66,6 +83,16 @@ impl CompilerOptions {
         let file = FirmwareFile::read(&super::run::read(path)?);
         let file = file.with_context(|| format!("`--firmware {}`", path.display()))?;
         Ok(Firmware::File(Arc::new(file)))
+    }
+
+    /// The form of the diagnostics.
+    pub(super) fn format(&self) -> Format {
+        match self.message_format {
+            FormatName::Human => Format::Human,
+            FormatName::Short => Format::Short,
+            FormatName::Json => Format::Json,
+            FormatName::Vendor => Format::Vendor,
+        }
     }
 
     /// Which warnings are shown.

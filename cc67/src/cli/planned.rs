@@ -49,7 +49,6 @@ const OPTIONS: &[&str] = &[
     "flash",
     "json",
     "machine",
-    "message-format",
     "plot",
     "profile",
     "realtime",

@@ -19,6 +19,7 @@ use super::setting::{self, Setting};
 use super::{Exit, events, terminal};
 use crate::lints::levels::Levels;
 use crate::pp::Disk;
+use crate::render::Format;
 use crate::{Options, image};
 
 /// Seconds of board time after which a run without `--for` ends.
@@ -128,6 +129,7 @@ fn images(programs: &[Program], arguments: &Arguments) -> Result<Option<Vec<Vec<
     let options = arguments.compiler.resolve()?;
     options.firmware.check_version().context("`--firmware`")?;
     let levels = arguments.compiler.levels()?;
+    let format = arguments.compiler.format();
     let mut images = Vec::new();
     let mut has_errors = false;
     for program in programs {
@@ -136,7 +138,7 @@ fn images(programs: &[Program], arguments: &Arguments) -> Result<Option<Vec<Vec<
             images.push(bytes);
             continue;
         }
-        match build(&program.path, bytes, program.thread, &options, &levels)? {
+        match build(program, bytes, &options, &levels, format)? {
             Some(image) => images.push(image),
             None => has_errors = true,
         }
@@ -156,19 +158,19 @@ pub(super) fn read(path: &Path) -> Result<Vec<u8>> {
 
 /// Compiles, links and reports; `None` after errors.
 fn build(
-    path: &Path,
+    program: &Program,
     text: Vec<u8>,
-    thread: ThreadId,
     options: &Options,
     levels: &Levels,
+    format: Format,
 ) -> Result<Option<Vec<u8>>> {
-    let mut compilation = crate::compile(path, text, options, &Disk);
-    let linked = compilation.link(thread, options);
-    if terminal::report(&compilation, levels) {
+    let mut compilation = crate::compile(&program.path, text, options, &Disk);
+    let linked = compilation.link(program.thread, options);
+    if terminal::report(&compilation, levels, format) {
         return Ok(None);
     }
     let Some(linked) = linked else { return Ok(None) };
-    Ok(Some(image::write(&linked).with_context(|| path.display().to_string())?))
+    Ok(Some(image::write(&linked).with_context(|| program.name().to_string())?))
 }
 
 /// Runs the board and prints what happens.

@@ -5,7 +5,8 @@ use std::io::{self, IsTerminal, Write};
 use crate::Compilation;
 use crate::diag::Severity;
 use crate::lints::levels::Levels;
-use crate::render::{Color, Renderer};
+use crate::render::human::Color;
+use crate::render::{self, Format};
 
 /// Prints a message about the request or its inputs as one line.
 pub(super) fn error(error: &anyhow::Error) {
@@ -25,13 +26,11 @@ fn color() -> Color {
 }
 
 /// Prints the diagnostics of a compilation; returns whether it has errors.
-pub(super) fn report(compilation: &Compilation, levels: &Levels) -> bool {
-    let mut has_errors = false;
-    let mut renderer = Renderer::new(&compilation.sources, color());
-    for diagnostic in compilation.diagnostics() {
-        let Some(diagnostic) = levels.apply(diagnostic) else { continue };
-        has_errors |= diagnostic.severity == Severity::Error;
-        let _ = io::stderr().write_all(renderer.render(&diagnostic).as_bytes());
-    }
-    has_errors
+pub(super) fn report(compilation: &Compilation, levels: &Levels, format: Format) -> bool {
+    let shown: Vec<_> =
+        compilation.diagnostics().into_iter().filter_map(|diagnostic| levels.apply(diagnostic)).collect();
+    let text = render::render(&shown, &compilation.sources, format, color());
+    // Nobody is left to be told when stderr is gone.
+    let _ = io::stderr().write_all(text.as_bytes());
+    shown.iter().any(|diagnostic| diagnostic.severity == Severity::Error)
 }

@@ -78,11 +78,11 @@ impl LinkError {
             None => Diagnostic::global_error(message),
         };
         match &self.kind {
-            LinkErrorKind::Undefined { suggestion: Some(name), .. } => {
-                diagnostic.help(format!("did you mean `{name}`?"))
+            LinkErrorKind::Undefined { name, suggestion: Some(near) } => {
+                diagnostic.undefined(name).help(format!("did you mean `{near}`?"))
             }
-            LinkErrorKind::Undefined { suggestion: None, .. } => {
-                diagnostic.at("neither the program nor the firmware defines it")
+            LinkErrorKind::Undefined { name, suggestion: None } => {
+                diagnostic.undefined(name).at("neither the program nor the firmware defines it")
             }
             LinkErrorKind::TooLarge { largest, .. } => {
                 diagnostic.note(format!("largest: {}", largest.join(", ")))

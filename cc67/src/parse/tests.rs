@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::*;
 use crate::pp::{self, MemoryFiles};
-use crate::render::{Color, Renderer};
+use crate::render::human::{Color, Renderer};
 
 /// Words that C programs, good and bad, are made of.
 const FRAGMENTS: &[&str] = &[

@@ -170,7 +170,8 @@ impl Sema<'_> {
         }
         let spelling = self.names.get(name);
         let mut diagnostic = Diagnostic::error(span, format!("undefined function `{spelling}`"))
-            .at("neither this program nor the firmware has it");
+            .at("neither this program nor the firmware has it")
+            .undefined(spelling);
         if let Some(near) = self.near_name(spelling) {
             diagnostic = diagnostic.help(format!("did you mean `{near}`?"));
         }

@@ -1,4 +1,4 @@
-//! Diagnostics as text for people.
+//! Diagnostics with their source lines, for people at a terminal.
 //!
 //! The reader is shown the place in the program: for text that came through a macro that is
 //! the call, with the macro's own text beside it; for a header the `#include`s that led to it
@@ -14,7 +14,9 @@ use codespan_reporting::term::termcolor::{Ansi, NoColor, WriteColor};
 use codespan_reporting::term::{self, Config, Styles, StylesWriter};
 
 use crate::diag::{Diagnostic, Severity};
-use crate::source::{FileId, SourceMap, Span};
+use crate::source::{FileId, SourceMap};
+
+use super::marks::{Mark, marks, notes};
 
 /// Whether the text is coloured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,27 +27,8 @@ pub enum Color {
     Always,
 }
 
-/// Macros within macros that are shown.
-const SHOWN_MACROS: usize = 4;
-
 /// Lines longer than this are not shown: they were not written by people.
 const SHOWN_LINE: usize = 2000;
-
-/// More includes than these are counted, not listed: a file that includes itself has many.
-const SHOWN_INCLUDES: usize = 4;
-
-/// The diagnostic in one line: `file:line:column: severity: message`.
-#[must_use]
-pub fn short(diagnostic: &Diagnostic, sources: &SourceMap) -> String {
-    let severity = severity_name(diagnostic.severity);
-    match diagnostic.span.and_then(|span| sources.place(span)) {
-        Some(place) => {
-            let file = &sources.file(place.file).name;
-            format!("{file}:{}:{}: {severity}: {}", place.line, place.column, diagnostic.message)
-        }
-        None => format!("{severity}: {}", diagnostic.message),
-    }
-}
 
 /// Renders the diagnostics of one compilation.
 #[derive(Debug)]
@@ -77,7 +60,7 @@ impl<'a> Renderer<'a> {
             .iter()
             .all(|label| self.line_length(label.file_id, label.range.start) <= SHOWN_LINE);
         let text = if is_shown { self.emit(&report) } else { None };
-        text.unwrap_or_else(|| short(diagnostic, self.sources) + "\n\n")
+        text.unwrap_or_else(|| super::short::render(diagnostic, self.sources) + "\n\n")
     }
 
     fn emit(&self, report: &report::Diagnostic<FileId>) -> Option<String> {
@@ -102,83 +85,16 @@ impl<'a> Renderer<'a> {
         if let Some(lint) = diagnostic.lint {
             report = report.with_code(lint.name());
         }
-        let mut trail = Vec::new();
-        if let Some(span) = diagnostic.span {
-            report.labels.extend(self.label(
-                LabelStyle::Primary,
-                self.sources.call_site(span),
-                &diagnostic.at,
-            ));
-            report.labels.extend(self.macro_labels(span));
-            trail = self.included_from(span);
-        }
-        for label in &diagnostic.labels {
-            let site = self.sources.call_site(label.span);
-            report.labels.extend(self.label(LabelStyle::Secondary, site, &label.message));
-        }
-        report.notes.extend(trail);
-        report.notes.extend(diagnostic.notes.iter().cloned());
+        report.labels.extend(marks(diagnostic, self.sources).iter().map(|mark| self.label(mark)));
+        report.notes.extend(notes(diagnostic, self.sources));
         report.notes.extend(diagnostic.help.iter().map(|help| format!("help: {help}")));
         report
     }
 
-    fn label(&self, style: LabelStyle, span: Span, message: &str) -> Option<report::Label<FileId>> {
-        let file = self.sources.file_at(span.lo)?;
-        let source = self.sources.file(file);
-        let offset = |position: u32| (position.max(source.start) - source.start) as usize;
-        let end = source.text.len();
-        let range = offset(span.lo).min(end)..offset(span.hi.max(span.lo)).min(end);
-        Some(report::Label {
-            style,
-            file_id: file,
-            range: whole_characters(&source.text, range),
-            message: message.to_owned(),
-        })
-    }
-
-    /// The places in macro bodies that the text came from, the innermost first.
-    fn macro_labels(&self, span: Span) -> Vec<report::Label<FileId>> {
-        let mut labels = Vec::new();
-        let mut span = span;
-        while let Some(expansion) = self.sources.expansion(span.expansion) {
-            let name = self.sources.macro_name(expansion);
-            let message = format!("in expansion of macro `{name}`");
-            let spelled = if self.sources.is_scratch(span) { expansion.definition } else { span };
-            let label = self.label(LabelStyle::Secondary, spelled, &message);
-            labels.extend(
-                label.filter(|label| self.sources.file(label.file_id).path.is_some() || labels.is_empty()),
-            );
-            span = expansion.call;
-            if labels.len() == SHOWN_MACROS {
-                break;
-            }
-        }
-        labels
-    }
-
-    /// The `#include`s that led to the file of a span, the innermost first.
-    fn included_from(&self, span: Span) -> Vec<String> {
-        let file_of = |span: Span| self.sources.file_at(self.sources.call_site(span).lo);
-        let mut notes = Vec::new();
-        let mut more = 0;
-        let mut file = file_of(span);
-        while let Some(at) = file.and_then(|file| self.sources.file(file).included_at) {
-            match self.sources.place(at) {
-                Some(place) if notes.len() < SHOWN_INCLUDES => {
-                    notes.push(format!(
-                        "included from {}:{}",
-                        self.sources.file(place.file).name,
-                        place.line
-                    ));
-                }
-                _ => more += 1,
-            }
-            file = file_of(at);
-        }
-        if more > 0 {
-            notes.push(format!("… and {more} more"));
-        }
-        notes
+    fn label(&self, mark: &Mark) -> report::Label<FileId> {
+        let style = if mark.is_primary { LabelStyle::Primary } else { LabelStyle::Secondary };
+        let range = whole_characters(&self.sources.file(mark.file).text, mark.range.clone());
+        report::Label { style, file_id: mark.file, range, message: mark.message.clone() }
     }
 
     fn line_length(&self, file: FileId, offset: usize) -> usize {
@@ -252,21 +168,13 @@ fn severity(severity: Severity) -> report::Severity {
     }
 }
 
-fn severity_name(severity: Severity) -> &'static str {
-    match severity {
-        Severity::Error => "error",
-        Severity::Warning => "warning",
-        Severity::Note => "note",
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use std::path::Path;
 
     use super::*;
     use crate::lints::Lint;
-    use crate::source::{Expansion, ExpansionId};
+    use crate::source::{Expansion, ExpansionId, Span};
 
     fn check(diagnostic: &Diagnostic, sources: &SourceMap, expect: &str) {
         let text = Renderer::new(sources, Color::Never).render(diagnostic);
@@ -300,7 +208,6 @@ warning[implicit-int]: no
   = why
   = help: what";
         check(&diagnostic, &sources, expect);
-        assert_eq!(short(&diagnostic, &sources), "a.c:2:11: warning: no");
         let colored = Renderer::new(&sources, Color::Always).render(&diagnostic);
         assert!(colored.contains("\u{1B}["));
     }
