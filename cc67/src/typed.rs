@@ -65,6 +65,14 @@ pub struct Symbol {
     pub used_at: Option<Span>,
 }
 
+impl Symbol {
+    /// Whether it is an object without a name, such as a string literal.
+    #[must_use]
+    pub fn is_anonymous(&self) -> bool {
+        self.name.starts_with("L.")
+    }
+}
+
 /// Linkage of a symbol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Linkage {
@@ -134,6 +142,38 @@ pub struct Function {
     pub span: Span,
     /// The closing brace, where a function that falls off its end returns 0.
     pub end: Span,
+    /// Something in it was diagnosed as an error: parts of the body are missing.
+    pub has_errors: bool,
+}
+
+impl Function {
+    /// Every call, those in operands that are not evaluated included.
+    pub fn calls(&self) -> impl Iterator<Item = (&Expr, &Call)> {
+        self.exprs.values().filter_map(|expr| match &expr.kind {
+            ExprKind::Call(call) => Some((expr, call)),
+            _ => None,
+        })
+    }
+
+    /// Hands over every statement of the body, outer ones first; those in statement expressions are left out.
+    pub fn each_stmt<'f>(&'f self, visit: &mut dyn FnMut(&'f Stmt)) {
+        fn each<'f>(stmts: &'f [Stmt], visit: &mut dyn FnMut(&'f Stmt)) {
+            for stmt in stmts {
+                visit(stmt);
+                match &stmt.kind {
+                    StmtKind::Block(body) | StmtKind::Loop { body, .. } | StmtKind::Switch { body, .. } => {
+                        each(body, visit);
+                    }
+                    StmtKind::If { then, otherwise, .. } => {
+                        each(then, visit);
+                        each(otherwise, visit);
+                    }
+                    _ => {}
+                }
+            }
+        }
+        each(&self.body, visit);
+    }
 }
 
 /// A local object.

@@ -31,10 +31,7 @@ impl Sema<'_> {
         let values: Option<Vec<Argument>> = values.into_iter().collect();
         let (function, values) = (function?, values?);
         match function {
-            (Callee::Symbol(symbol), visible) => {
-                self.lint_format(symbol, arguments, &values);
-                self.call_symbol(symbol, visible, values, span)
-            }
+            (Callee::Symbol(symbol), visible) => self.call_symbol(symbol, visible, values, span),
             (Callee::Pointer(_), ty) => {
                 let declared = self.types.function(ty)?.clone();
                 let ty = self.open_type(&declared, &values);
@@ -100,7 +97,6 @@ impl Sema<'_> {
         values: Vec<Argument>,
         span: Span,
     ) -> Option<Operand> {
-        self.lint_portability(symbol, span);
         let visible = self.types.function(visible)?.clone();
         let ty = match visible.parameters {
             ParameterTypes::Prototype { .. } => visible,

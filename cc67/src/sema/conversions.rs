@@ -4,7 +4,7 @@
 
 use super::Sema;
 use crate::diag::Diagnostic;
-use crate::lints::Lint;
+use crate::lints::{Lint, user_data_alignment};
 use crate::source::Span;
 use crate::ty::{FunctionType, ParameterTypes, QualifiedType, TypeId, Types, convert};
 use crate::typed::{ExprId, ExprKind, PlaceKind, SymbolId};
@@ -192,14 +192,8 @@ impl Sema<'_> {
         if self.types.pointee(to).is_none_or(|to| to.ty != Types::DOUBLE) {
             return;
         }
-        let Some(offset) = self.persist_offset(value).filter(|offset| offset % 8 != 0) else { return };
-        let message = "a `double` at an odd index of `persist.UserData` is not aligned";
-        let index = (offset - super::lints::USER_DATA_OFFSET) / 4;
-        self.report(
-            Diagnostic::warning(Lint::UserDataAlignment, span, message)
-                .at(format!("index {index}: the board would load a wrong value"))
-                .help(format!("use index {} or {}", index - 1, index + 1)),
-        );
+        let offset = self.persist_offset(value);
+        self.report_finding(offset.and_then(|offset| user_data_alignment::finding(offset, span)));
     }
 
     fn describe(&self, target: Target) -> String {

@@ -8,7 +8,7 @@ use super::scope::Entity;
 use super::undeclared::is_sensible;
 use crate::ast::{Expression, ExpressionKind, TypeName, UnaryOperator};
 use crate::diag::Diagnostic;
-use crate::lints::Lint;
+use crate::lints::{Lint, user_data_index};
 use crate::names::Name;
 use crate::source::Span;
 use crate::suggest::suggest;
@@ -96,6 +96,15 @@ impl Sema<'_> {
                 None
             }
             Entity::Poisoned => None,
+        }
+    }
+
+    /// Warns about a constant index that `persist.UserData` does not have.
+    fn lint_index(&mut self, base: &Expression, length: Option<u32>, index: ExprId, span: Span) {
+        let is_user_data =
+            matches!(base.kind, ExpressionKind::Member { member, .. } if member == self.known.user_data);
+        if let (true, Some(length), Some(index)) = (is_user_data, length, self.body.as_int(index)) {
+            self.report_finding(user_data_index::finding(length, index, span));
         }
     }
 

@@ -10,7 +10,6 @@ use super::declarators::{DeclaredParameter, parameter_types};
 use super::scope::{Closed, Entity};
 use super::specifiers::ImplicitInt;
 use super::symbols::Definer;
-use super::uninitialized;
 use crate::ast::{Derived, FunctionDefinition, Parameters, Statement, StatementKind, Storage};
 use crate::diag::Diagnostic;
 use crate::lints::Lint;
@@ -177,6 +176,7 @@ impl Sema<'_> {
         let definer = self.symbols.facts(symbol).definer.as_ref().filter(|definer| definer.span == span)?;
         let (ty, is_void) =
             (definer.call.clone(), definer.is_void_with_value || definer.call.result.is_void());
+        let errors = self.sink.errors();
         self.scopes.at_item(item);
         self.scopes.reopen(closed);
         self.body = Body::new(self.names.get(name).to_owned(), ty.result);
@@ -192,7 +192,7 @@ impl Sema<'_> {
         self.check_labels();
         let body = std::mem::replace(&mut self.body, Body::new(String::new(), Types::VOID));
         let end = Span { lo: definition.span.hi.saturating_sub(1), ..definition.span };
-        let function = Function {
+        Some(Function {
             symbol,
             ty,
             parameters: incoming,
@@ -205,10 +205,8 @@ impl Sema<'_> {
             body: statements,
             span,
             end,
-        };
-        uninitialized::check(&function, self.sink);
-        self.lint_missing_return(&function);
-        Some(function)
+            has_errors: self.sink.errors() > errors,
+        })
     }
 
     /// Makes the locals that arguments arrive in and binds the names of the parameters.

@@ -14,22 +14,17 @@
 mod assignments;
 mod body;
 mod builtins;
-mod call_back;
 mod calls;
 mod constants;
 mod conversions;
 mod declarations;
 mod declarators;
 mod designators;
-mod endings;
 mod enums;
 mod expressions;
 mod firmware_names;
-mod formats;
 mod functions;
-mod indentation;
 mod initializers;
-mod lints;
 mod literals;
 mod locals;
 mod operands;
@@ -46,7 +41,6 @@ mod symbols;
 #[cfg(test)]
 mod tests;
 mod undeclared;
-mod uninitialized;
 
 pub use firmware_names::{FirmwareNames, Prototype};
 
@@ -74,11 +68,7 @@ pub fn analyze(
     firmware: &dyn FirmwareNames,
     sink: &mut Sink,
 ) -> Unit {
-    let known = Known {
-        persist: names.intern("persist"),
-        user_data: names.intern("UserData"),
-        call_back: names.intern("UserCallBack"),
-    };
+    let known = Known { persist: names.intern("persist"), user_data: names.intern("UserData") };
     let mut sema = Sema {
         names,
         sources,
@@ -94,7 +84,6 @@ pub fn analyze(
     };
     let pending = sema.declare_items(unit);
     let functions: Vec<_> = pending.into_iter().filter_map(|pending| sema.define_function(pending)).collect();
-    sema.lint_call_backs(&functions);
     sema.finish_symbols();
     Unit { types: sema.types, symbols: sema.symbols.finish(), functions }
 }
@@ -104,7 +93,6 @@ pub fn analyze(
 struct Known {
     persist: Name,
     user_data: Name,
-    call_back: Name,
 }
 
 /// The state of an analysis.
@@ -164,7 +152,6 @@ impl Sema<'_> {
                 _ => {}
             }
         }
-        self.lint_taken_names();
         for finding in open {
             match finding {
                 Ok((id, element)) => {
@@ -178,6 +165,11 @@ impl Sema<'_> {
 
     fn report(&mut self, diagnostic: Diagnostic) {
         self.sink.report(diagnostic);
+    }
+
+    /// Reports what a lint found, if it found something.
+    fn report_finding(&mut self, finding: Option<Diagnostic>) {
+        finding.into_iter().for_each(|diagnostic| self.report(diagnostic));
     }
 
     /// A type as C spells it.

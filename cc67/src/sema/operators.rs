@@ -5,10 +5,10 @@ use super::constants::Constant;
 use super::operands::Operand;
 use crate::ast::{BinaryOperator, Expression, ExpressionKind};
 use crate::diag::Diagnostic;
-use crate::lints::Lint;
+use crate::lints::{Lint, assignment_condition};
 use crate::source::Span;
 use crate::ty::{QualifiedType, TypeId, Types};
-use crate::typed::{BinaryOp, CompareOp, ExprId, ExprKind, PlaceKind};
+use crate::typed::{BinaryOp, CompareOp, ExprId, ExprKind};
 
 /// What a binary operator of C is in the typed tree.
 enum Class {
@@ -91,7 +91,6 @@ impl Sema<'_> {
             }
             Class::Bitwise(_) | Class::Shift(_) => self.refuse_operands(operator, a, b, span),
             Class::Compare(op) => {
-                self.lint_self_comparison(op, a, b, span);
                 let (a, b) = self.comparable(operator, a, b, span)?;
                 Some(self.body.compare(op, a, b, span))
             }
@@ -219,30 +218,6 @@ impl Sema<'_> {
         }
     }
 
-    /// Warns about `x == x` on floating-point values.
-    fn lint_self_comparison(&mut self, op: CompareOp, a: ExprId, b: ExprId, span: Span) {
-        let (ExprKind::Load(x), ExprKind::Load(y)) = (&self.body.exprs[a].kind, &self.body.exprs[b].kind)
-        else {
-            return;
-        };
-        let (x, y) = (self.body.places[*x].kind, self.body.places[*y].kind);
-        let is_named = matches!(x, PlaceKind::Local(..) | PlaceKind::Symbol(..));
-        if x != y || !is_named || !self.body.ty(a).is_floating() {
-            return;
-        }
-        let result = match op {
-            CompareOp::Equal | CompareOp::LessEqual | CompareOp::GreaterEqual => {
-                "true unless it is not a number"
-            }
-            CompareOp::NotEqual => "true only if it is not a number",
-            CompareOp::Less | CompareOp::Greater => "never true",
-        };
-        self.report(
-            Diagnostic::warning(Lint::SelfComparison, span, "a floating-point value is compared with itself")
-                .at(result),
-        );
-    }
-
     /// `a && b` (`decides` is false) or `a || b` (true); a constant side is folded where that drops no effect.
     fn logical(&mut self, decides: bool, a: ExprId, b: ExprId, span: Span) -> ExprId {
         match (
@@ -288,7 +263,7 @@ impl Sema<'_> {
         span: Span,
     ) -> Option<Operand> {
         let Some(then) = then else { return self.elvis(condition, otherwise, span) };
-        self.lint_assignment_condition(condition);
+        self.report_finding(assignment_condition::finding(condition));
         let test = self.value(condition);
         let (then_operand, otherwise_operand) = (self.operand(then), self.operand(otherwise));
         let (test, a, b) = (test?, then_operand?, otherwise_operand?);

@@ -4,9 +4,10 @@ use super::Sema;
 use super::body::LabelState;
 use super::constants::Constant;
 use super::conversions::Target;
+use super::operands::Operand;
 use crate::ast::{Expression, Statement, StatementKind};
 use crate::diag::Diagnostic;
-use crate::lints::Lint;
+use crate::lints::{assignment_condition, empty_body, misleading_indentation, unused_value};
 use crate::names::Name;
 use crate::source::Span;
 use crate::ty::Types;
@@ -18,7 +19,7 @@ impl Sema<'_> {
         for (index, statement) in statements.iter().enumerate() {
             self.statement(statement, out);
             if let Some(next) = statements.get(index + 1) {
-                self.lint_indentation(statement, next);
+                self.report_finding(misleading_indentation::finding(self.sources, statement, next));
             }
         }
     }
@@ -118,9 +119,18 @@ impl Sema<'_> {
         out.push(Stmt { kind: StmtKind::Expr(effect), span });
     }
 
+    /// Warns about a value that is computed and dropped; reading a volatile object is an effect.
+    pub(super) fn lint_unused(&mut self, expression: &Expression, operand: Operand) {
+        let ty = self.operand_type(operand);
+        if !ty.ty.is_void() && !ty.is_volatile {
+            let is_function = matches!(operand, Operand::Function(..));
+            self.report_finding(unused_value::finding(expression, is_function));
+        }
+    }
+
     /// A condition: a scalar value; 0 in its place if it is wrong.
     pub(super) fn condition(&mut self, expression: &Expression) -> ExprId {
-        self.lint_assignment_condition(expression);
+        self.report_finding(assignment_condition::finding(expression));
         self.value(expression).unwrap_or_else(|| self.placeholder(expression.span))
     }
 
@@ -138,7 +148,7 @@ impl Sema<'_> {
         out: &mut Vec<Stmt>,
     ) {
         let value = self.condition(condition);
-        self.lint_empty_body(condition, then, otherwise);
+        self.report_finding(empty_body::finding(self.sources, condition, then, otherwise));
         let then = self.scoped(then);
         let otherwise = otherwise.map_or_else(Vec::new, |otherwise| self.scoped(otherwise));
         out.push(Stmt { kind: StmtKind::If { condition: value, then, otherwise }, span });
@@ -187,7 +197,6 @@ impl Sema<'_> {
         // A condition that is always true is none.
         let is_true = |value: ExprId| self.body.as_constant(value).is_some_and(Constant::is_true);
         let condition = condition.filter(|value| !is_true(*value));
-        self.lint_idle_loop(condition, &body, step, span);
         out.push(Stmt { kind: StmtKind::Loop { condition, test, body, step }, span });
     }
 
@@ -269,20 +278,5 @@ impl Sema<'_> {
         let pointer = self.body.load_local(self.body.result_pointer?, span);
         let to = self.body.place(PlaceKind::Pointer(pointer, 0), result, span);
         Some(self.body.expr(ExprKind::Copy { to, from }, Types::VOID, span))
-    }
-
-    /// Warns about `if (x) ;` written on one line.
-    fn lint_empty_body(&mut self, condition: &Expression, then: &Statement, otherwise: Option<&Statement>) {
-        if !matches!(then.kind, StatementKind::Empty) || otherwise.is_some() {
-            return;
-        }
-        let line = |span| self.sources.place(span).map(|place| (place.file, place.line));
-        if line(condition.span) == line(then.span) {
-            self.report(
-                Diagnostic::warning(Lint::EmptyBody, then.span, "`if` with an empty body")
-                    .at("this `;` ends the `if`")
-                    .help("remove the `;`, or write `{}` if nothing shall be done"),
-            );
-        }
     }
 }

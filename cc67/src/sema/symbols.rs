@@ -28,8 +28,6 @@ pub(super) struct Facts {
     pub(super) definer: Option<Definer>,
     /// The undeclared use was reported.
     pub(super) is_reported: bool,
-    /// A call was seen.
-    pub(super) is_called: bool,
 }
 
 /// All symbols, by number and by name.

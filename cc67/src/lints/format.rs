@@ -1,24 +1,67 @@
 //! `printf` and `scanf` formats against their arguments.
 //!
 //! Only a mismatch that prints or stores something wrong is reported: `%d` for an
-//! `unsigned` is fine, `%d` for a `double` is not (`dialect.md` 5).
+//! `unsigned` is fine, `%d` for a `double` is not (`dialect.md` 5). A format that is not
+//! written in the call is not looked at.
 
+use super::Lint;
+use super::program::Program;
+use crate::diag::{Diagnostic, Sink};
 use crate::source::Span;
 use crate::ty::{TypeId, Types};
+use crate::typed::{Call, Callee, Definition, ExprId, ExprKind, PlaceKind, Unit};
+
+/// Compares every format with the arguments behind it.
+pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
+    for function in program.functions() {
+        for (_, call) in function.calls() {
+            let Some((taker, format)) = literal_format(program.unit, function, call) else { continue };
+            let values: Vec<_> =
+                call.variable.iter().flatten().map(|value| &function.exprs[*value]).collect();
+            let arguments: Vec<_> = values.iter().map(|value| (value.ty, value.span)).collect();
+            let span = function.exprs[call.arguments[taker.format]].span;
+            for finding in compare(&program.unit.types, taker, format, &arguments) {
+                sink.report(finding.into_diagnostic(program, span));
+            }
+        }
+    }
+}
+
+/// The function that a call calls and the text of its format, if that is a string literal.
+fn literal_format<'p>(
+    unit: &'p Unit,
+    function: &crate::typed::Function,
+    call: &Call,
+) -> Option<(Function, &'p [u8])> {
+    let Callee::Symbol(callee) = call.callee else { return None };
+    let callee = &unit.symbols[callee];
+    let taker = Function::by_name(&callee.name)?;
+    if !matches!(callee.definition, Definition::None) {
+        return None;
+    }
+    let mut format: ExprId = *call.arguments.get(taker.format)?;
+    while let ExprKind::Convert(inner) = function.exprs[format].kind {
+        format = inner;
+    }
+    let ExprKind::Address(place) = function.exprs[format].kind else { return None };
+    let PlaceKind::Symbol(symbol, 0) = function.places[place].kind else { return None };
+    let literal = unit.symbols.get(symbol).filter(|symbol| symbol.is_anonymous())?;
+    let Definition::Data(data) = &literal.definition else { return None };
+    Some((taker, data.bytes.strip_suffix(&[0])?))
+}
 
 /// A function that takes a format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Function {
+struct Function {
     /// Which argument is the format, counted from 0.
-    pub(super) format: usize,
+    format: usize,
     /// It stores through its arguments instead of printing them.
     is_scan: bool,
 }
 
 impl Function {
     /// The function of this name, if it takes a format and variable arguments.
-    #[must_use]
-    pub(super) fn by_name(name: &str) -> Option<Self> {
+    fn by_name(name: &str) -> Option<Self> {
         let (format, is_scan) = match name {
             "printf" => (0, false),
             "fprintf" | "sprintf" => (1, false),
@@ -31,31 +74,38 @@ impl Function {
 }
 
 /// An argument behind the format: its type after array and function names became pointers, and its place.
-pub(super) type Argument = (TypeId, Span);
+type Argument = (TypeId, Span);
 
 /// A mismatch.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Finding {
+struct Finding {
     /// The argument that does not fit; `None` if the format itself is wrong.
-    pub(super) argument: Option<Argument>,
+    argument: Option<Argument>,
     /// What is wrong.
-    pub(super) message: String,
+    message: String,
     /// What would fit.
-    pub(super) help: Option<String>,
+    help: Option<String>,
+}
+
+impl Finding {
+    fn into_diagnostic(self, program: &Program<'_>, format: Span) -> Diagnostic {
+        let diagnostic = match self.argument {
+            Some((ty, span)) => Diagnostic::warning(Lint::Format, span, self.message)
+                .at(format!("this is `{}`", program.spell(ty))),
+            None => Diagnostic::warning(Lint::Format, format, self.message),
+        };
+        match self.help {
+            Some(help) => diagnostic.help(help),
+            None => diagnostic,
+        }
+    }
 }
 
 /// Compares a format with the arguments behind it.
-#[must_use]
-pub(super) fn check(
-    types: &Types,
-    function: Function,
-    format: &[i32],
-    arguments: &[Argument],
-) -> Vec<Finding> {
+fn compare(types: &Types, function: Function, format: &[u8], arguments: &[Argument]) -> Vec<Finding> {
     let mut findings = Vec::new();
     let mut left = arguments.iter();
-    let bytes: Vec<u8> = format.iter().map(|element| *element as u8).collect();
-    let mut rest = bytes.as_slice();
+    let mut rest = format;
     while let Some(start) = rest.iter().position(|byte| *byte == b'%') {
         let (conversion, behind) = Conversion::parse(&rest[start + 1..], function.is_scan);
         let spelled = String::from_utf8_lossy(&rest[start..rest.len() - behind.len()]).into_owned();
@@ -231,9 +281,11 @@ mod tests {
 
     fn messages(function: &str, format: &str, arguments: &[TypeId], types: &Types) -> Vec<String> {
         let function = Function::by_name(function).expect("known");
-        let elements: Vec<_> = format.bytes().map(i32::from).collect();
         let arguments: Vec<_> = arguments.iter().map(|ty| (*ty, Span::new(0, 0))).collect();
-        check(types, function, &elements, &arguments).into_iter().map(|finding| finding.message).collect()
+        compare(types, function, format.as_bytes(), &arguments)
+            .into_iter()
+            .map(|finding| finding.message)
+            .collect()
     }
 
     #[test]

@@ -2,10 +2,13 @@
 
 use std::collections::BTreeSet;
 
-use super::Sema;
-use crate::diag::Diagnostic;
-use crate::lints::Lint;
-use crate::typed::{Callee, Expr, ExprId, ExprKind, Function, PlaceId, PlaceKind, SymbolId};
+use super::Lint;
+use super::program::Program;
+use crate::diag::{Diagnostic, Sink};
+use crate::typed::{Callee, ExprId, ExprKind, Function, PlaceId, PlaceKind, SymbolId};
+
+/// The firmware's pointer to the function that every servo interrupt calls.
+const VARIABLE: &str = "UserCallBack";
 
 /// Firmware functions that may wait: for time, for the PC, for another thread.
 const WAITING: &[&str] = &[
@@ -22,19 +25,17 @@ const WAITING: &[&str] = &[
     "printf",
 ];
 
-impl Sema<'_> {
-    /// Warns about calls that may wait in the functions that the unit installs as call-back.
-    pub(super) fn lint_call_backs(&mut self, functions: &[Function]) {
-        let Some(variable) = self.symbols.linked(self.known.call_back) else { return };
-        let installed: BTreeSet<_> =
-            functions.iter().flat_map(|function| installed_functions(function, variable)).collect();
-        for function in functions.iter().filter(|function| installed.contains(&function.symbol)) {
-            for (callee, expr) in function.exprs.values().filter_map(called) {
-                if !WAITING.contains(&self.symbols.get(callee).name.as_str()) {
-                    continue;
-                }
-                let name = &self.symbols.get(callee).name;
-                self.report(
+/// Reports calls that may wait in the functions that the unit installs as call-back.
+pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
+    let Some(variable) = program.symbol(VARIABLE) else { return };
+    let installed: BTreeSet<_> =
+        program.functions().flat_map(|function| installed_functions(function, variable)).collect();
+    for function in program.functions().filter(|function| installed.contains(&function.symbol)) {
+        for (expr, call) in function.calls() {
+            let Callee::Symbol(callee) = call.callee else { continue };
+            let name = &program.unit.symbols[callee].name;
+            if WAITING.contains(&name.as_str()) {
+                sink.report(
                     Diagnostic::warning(
                         Lint::CallBackWait,
                         expr.span,
@@ -63,15 +64,4 @@ fn installed_functions(function: &Function, variable: SymbolId) -> impl Iterator
         ExprKind::Assign(place, value) if symbol_at(place) == Some(variable) => address(value),
         _ => None,
     })
-}
-
-/// The function that an expression calls by name.
-fn called(expr: &Expr) -> Option<(SymbolId, &Expr)> {
-    match &expr.kind {
-        ExprKind::Call(call) => match call.callee {
-            Callee::Symbol(symbol) => Some((symbol, expr)),
-            Callee::Pointer(_) => None,
-        },
-        _ => None,
-    }
 }

@@ -6,16 +6,23 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::Lint;
+use super::program::Program;
 use crate::diag::{Diagnostic, Sink};
-use crate::lints::Lint;
 use crate::source::Span;
-use crate::typed::{ExprId, ExprKind, Function, LocalId, LoopTest, PlaceId, PlaceKind, Stmt, StmtKind};
+use crate::typed::{
+    Callee, ExprId, ExprKind, Function, LocalId, LoopTest, PlaceId, PlaceKind, Stmt, StmtKind,
+};
 
 /// Reports every local that is read before anything is stored in it, once.
-pub(super) fn check(function: &Function, sink: &mut Sink) {
-    if !function.labels.is_empty() {
-        return;
-    }
+pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
+    program
+        .functions()
+        .filter(|function| function.labels.is_empty())
+        .for_each(|function| search(function, sink));
+}
+
+fn search(function: &Function, sink: &mut Sink) {
     let mut search = Search { function, stored: BTreeSet::new(), suspects: BTreeMap::new() };
     search.stored.extend(&function.parameters);
     search.stored.extend(function.variable_arguments);
@@ -131,7 +138,7 @@ impl Search<'_> {
             ExprKind::Unary(_, value) | ExprKind::Convert(value) => self.expr(*value),
             ExprKind::Conditional(test, a, b) => [test, a, b].into_iter().for_each(|expr| self.expr(*expr)),
             ExprKind::Call(call) => {
-                if let crate::typed::Callee::Pointer(pointer) = call.callee {
+                if let Callee::Pointer(pointer) = call.callee {
                     self.expr(pointer);
                 }
                 call.arguments.iter().chain(call.variable.iter().flatten()).for_each(|expr| self.expr(*expr));

@@ -1,0 +1,38 @@
+//! `if (a = b)`, where `if ((a = b))` says that it is meant.
+
+use super::Lint;
+use crate::ast::{BinaryOperator, Expression, ExpressionKind};
+use crate::diag::Diagnostic;
+
+/// What is said of a condition that is an assignment.
+pub(crate) fn finding(condition: &Expression) -> Option<Diagnostic> {
+    let ExpressionKind::Assign(to, from) = &condition.kind else { return None };
+    // The span of a parenthesised expression holds its parentheses.
+    if condition.span.lo != to.span.lo {
+        return None;
+    }
+    let diagnostic = Diagnostic::warning(
+        Lint::AssignmentCondition,
+        condition.span,
+        "an assignment is used as a condition",
+    )
+    .help("write `==` to compare, or a second pair of parentheses if this is meant");
+    Some(match &from.kind {
+        ExpressionKind::Binary(operator, ..) if is_comparison(*operator) => {
+            diagnostic.note(format!("`{}` is computed first: its result is assigned", operator.spelling()))
+        }
+        _ => diagnostic,
+    })
+}
+
+const fn is_comparison(operator: BinaryOperator) -> bool {
+    matches!(
+        operator,
+        BinaryOperator::Less
+            | BinaryOperator::Greater
+            | BinaryOperator::LessEqual
+            | BinaryOperator::GreaterEqual
+            | BinaryOperator::Equal
+            | BinaryOperator::NotEqual
+    )
+}

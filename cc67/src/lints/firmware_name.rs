@@ -1,0 +1,36 @@
+//! Functions and variables of the program that have a name of the firmware: the program's own are used.
+
+use kmotiondef::firmware::Origin;
+
+use super::Lint;
+use super::program::Program;
+use crate::diag::{Diagnostic, Sink};
+use crate::typed::{Definition, Linkage, Symbol};
+
+/// Reports every definition that other units see and the firmware has as well.
+pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
+    for symbol in program.unit.symbols.values() {
+        if let Some(lint) = lint_for(program, symbol) {
+            let message = format!("the firmware has a `{}` of its own", symbol.name);
+            sink.report(
+                Diagnostic::warning(lint, symbol.span, message)
+                    .at("this one is used in the program")
+                    .note("the vendor's linker refuses it: `defined twice`")
+                    .help("choose another name, or make it `static`"),
+            );
+        }
+    }
+}
+
+/// What the header declares is a likely mistake; hidden names are a matter of portability.
+fn lint_for(program: &Program<'_>, symbol: &Symbol) -> Option<Lint> {
+    if matches!(symbol.definition, Definition::None) || symbol.linkage == Linkage::Internal {
+        return None;
+    }
+    match program.firmware.origin(&symbol.name) {
+        Some(Origin::Header) => Some(Lint::Redeclared),
+        None if program.firmware.is_variable(&symbol.name) => Some(Lint::Redeclared),
+        Some(Origin::Firmware) => Some(Lint::Portability),
+        Some(Origin::Library) | None => None,
+    }
+}

@@ -1,0 +1,51 @@
+//! Functions that may end without the value they promise.
+
+use super::Lint;
+use super::program::Program;
+use crate::diag::{Diagnostic, Sink};
+use crate::typed::{Stmt, StmtKind};
+
+/// Reports every function but `main` whose end can be reached.
+pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
+    for function in program.functions() {
+        let name = &program.unit.symbols[function.symbol].name;
+        if function.ty.result.is_void() || name == "main" || !may_complete(&function.body) {
+            continue;
+        }
+        let message = format!("`{name}` may end without returning a value");
+        sink.report(
+            Diagnostic::warning(Lint::MissingReturn, function.end, message)
+                .at("the value is 0 here")
+                .label(function.span, "this function")
+                .note("on the board it is whatever the last call left behind"),
+        );
+    }
+}
+
+/// Whether what follows the statements can be reached.
+fn may_complete(stmts: &[Stmt]) -> bool {
+    stmts.iter().all(completes)
+}
+
+fn completes(stmt: &Stmt) -> bool {
+    match &stmt.kind {
+        StmtKind::Return(_) | StmtKind::Goto(_) | StmtKind::Break | StmtKind::Continue => false,
+        StmtKind::Block(inner) => may_complete(inner),
+        StmtKind::If { then, otherwise, .. } => may_complete(then) || may_complete(otherwise),
+        StmtKind::Loop { condition: None, body, .. } => body.iter().any(breaks),
+        StmtKind::Switch { has_default, body, .. } => {
+            !has_default || body.iter().any(breaks) || body.last().is_none_or(completes)
+        }
+        _ => true,
+    }
+}
+
+/// Whether a statement leaves the loop or switch around it with `break`.
+fn breaks(stmt: &Stmt) -> bool {
+    match &stmt.kind {
+        StmtKind::Break => true,
+        StmtKind::Block(inner) => inner.iter().any(breaks),
+        StmtKind::If { then, otherwise, .. } => then.iter().chain(otherwise).any(breaks),
+        _ => false,
+    }
+}

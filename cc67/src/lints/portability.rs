@@ -1,0 +1,29 @@
+//! Functions that the simulation supplies and firmware 4.34 lacks.
+
+use std::collections::BTreeSet;
+
+use kmotiondef::firmware::Origin;
+
+use super::Lint;
+use super::program::Program;
+use crate::diag::{Diagnostic, Sink};
+use crate::typed::{Callee, Definition};
+
+/// Reports the first call of each such function.
+pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
+    let mut seen = BTreeSet::new();
+    for (expr, call) in program.functions().flat_map(|function| function.calls()) {
+        let Callee::Symbol(callee) = call.callee else { continue };
+        let symbol = &program.unit.symbols[callee];
+        let is_lacking = matches!(symbol.definition, Definition::None)
+            && program.firmware.origin(&symbol.name) == Some(Origin::Library);
+        if is_lacking && seen.insert(callee) {
+            let message = format!("`{}` is not in firmware 4.34", symbol.name);
+            sink.report(
+                Diagnostic::warning(Lint::Portability, expr.span, message)
+                    .at("supplied by the simulation only")
+                    .help("define it in the program"),
+            );
+        }
+    }
+}

@@ -1,0 +1,34 @@
+//! What a lint looks at: the finished typed tree and the names of the board.
+
+use crate::names::Names;
+use crate::sema::FirmwareNames;
+use crate::ty::TypeId;
+use crate::typed::{Function, SymbolId, Unit};
+
+/// A program after analysis.
+#[derive(Clone, Copy)]
+pub(super) struct Program<'a> {
+    /// The typed tree.
+    pub(super) unit: &'a Unit,
+    /// The names in it.
+    pub(super) names: &'a Names,
+    /// The board it is for.
+    pub(super) firmware: &'a dyn FirmwareNames,
+}
+
+impl<'a> Program<'a> {
+    /// The functions without errors: what stands in the others is not what was written.
+    pub(super) fn functions(&self) -> impl Iterator<Item = &'a Function> + use<'a> {
+        self.unit.functions.iter().filter(|function| !function.has_errors)
+    }
+
+    /// The symbol with linkage that has this name.
+    pub(super) fn symbol(&self, name: &str) -> Option<SymbolId> {
+        self.unit.symbols.iter().find(|(_, symbol)| symbol.name == name).map(|(id, _)| id)
+    }
+
+    /// A type as C spells it.
+    pub(super) fn spell(&self, ty: TypeId) -> String {
+        self.unit.types.spell(self.names, ty)
+    }
+}
