@@ -71,7 +71,7 @@ impl Name {
 }
 
 /// Every identifier of a compilation, each once.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Names {
     /// All spellings, one behind the other.
     text: String,
