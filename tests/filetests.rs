@@ -1,109 +1,53 @@
-//! Runs every program of `filetests/` and holds it to the directives it states.
+//! Runs every program of `filetests/`, each as a test of its own name, and holds it to what it states.
 //!
-//! A directive is a line `//@ name: value`:
-//!
-//! | directive | meaning |
-//! |---|---|
-//! | `args: …` | arguments before the file's name (`check` instead of `run` as the first word is possible) |
-//! | `prints: …` | the next line of stdout; together these lines are all of stdout |
-//! | `exit: n` | exit code, 0 if not stated |
-//! | `says: …` | stderr contains this |
-//! | `snapshot` | stderr as a whole is the snapshot of the file's name |
-//!
-//! Without `says` or `snapshot`, stderr must be empty.
+//! The directives are described in `harness/filetest.rs`. Files in a folder `parts` are not tests:
+//! programs include them. With the feature `native` every program runs on both engines, which must agree.
 
-use std::fs;
 use std::path::Path;
+use std::process::ExitCode;
 
-use harness::{Output, files, run_in};
+use harness::filetest::FileTest;
+use libtest_mimic::{Arguments, Failed, Trial};
 
-/// What a file demands.
-#[derive(Default)]
-struct Expectation {
-    arguments: Vec<String>,
-    stdout: String,
-    exit: i32,
-    says: Vec<String>,
-    snapshot: bool,
+const COMMAND: &str = env!("CARGO_BIN_EXE_cc67-under-test");
+
+/// Options that must not change a byte of what a program prints.
+const VARIANTS: &[&[&str]] = &[
+    #[cfg(feature = "native")]
+    &["--engine", "native"],
+];
+
+fn main() -> ExitCode {
+    let folder = harness::root().join("tests/filetests");
+    let trials = harness::files(&folder, "c")
+        .into_iter()
+        .filter(|path| !path.components().any(|part| part.as_os_str() == "parts"))
+        .map(|path| {
+            let name = path.strip_prefix(&folder).expect("it lies there").with_extension("");
+            Trial::test(name.to_string_lossy().replace('\\', "/"), move || check(&path))
+        })
+        .collect();
+    libtest_mimic::run(&Arguments::from_args(), trials).exit_code()
 }
 
-fn expectation(path: &Path) -> Expectation {
-    let text = String::from_utf8_lossy(&fs::read(path).expect("the file is readable")).into_owned();
-    let mut expectation = Expectation::default();
-    for line in text.lines() {
-        let Some(directive) = line.trim_start().strip_prefix("//@ ") else { continue };
-        let (name, value) = directive.split_once(':').unwrap_or((directive, ""));
-        let value = value.strip_prefix(' ').unwrap_or(value);
-        match name.trim() {
-            "args" => expectation.arguments = value.split_whitespace().map(str::to_owned).collect(),
-            "prints" => expectation.stdout.push_str(&format!("{value}\n")),
-            "exit" => expectation.exit = value.trim().parse().expect("`exit` takes a number"),
-            "says" => expectation.says.push(value.to_owned()),
-            "snapshot" => expectation.snapshot = true,
-            other => panic!("{}: no directive `{other}`", path.display()),
-        }
+fn check(path: &Path) -> Result<(), Failed> {
+    let test = FileTest::read(path);
+    let output = test.run(COMMAND, &[]);
+    if let Some(complaint) = test.complaint(&output) {
+        return Err(complaint.into());
     }
-    expectation
-}
-
-/// Runs one file in its folder, so that messages name it without a path.
-fn run(path: &Path, expectation: &Expectation) -> Output {
-    let mut arguments = expectation.arguments.clone();
-    if !matches!(arguments.first().map(String::as_str), Some("run" | "check")) {
-        arguments.insert(0, "run".to_owned());
-    }
-    arguments.push(path.file_name().expect("a file has a name").to_string_lossy().into_owned());
-    run_in(env!("CARGO_BIN_EXE_cc67-under-test"), path.parent().expect("a file has a folder"), arguments)
-}
-
-/// What is wrong with a run; `None` if nothing is.
-fn complaint(path: &Path) -> Option<String> {
-    let expectation = expectation(path);
-    let output = run(path, &expectation);
-    let complain = |what: &str| Some(format!("{}: {what}\n{}", path.display(), output.render()));
-    if output.stdout != expectation.stdout {
-        return complain(&format!("expected to print\n{}", expectation.stdout));
-    }
-    if output.code != expectation.exit {
-        return complain(&format!("expected exit code {}", expectation.exit));
-    }
-    if let Some(missing) = expectation.says.iter().find(|text| !output.stderr.contains(*text)) {
-        return complain(&format!("expected to say {missing:?}"));
-    }
-    if expectation.says.is_empty() && !expectation.snapshot && !output.stderr.is_empty() {
-        return complain("expected to say nothing");
-    }
-    if expectation.snapshot {
+    if test.is_snapshot() {
         let name = path.file_stem().expect("a file has a name").to_string_lossy().into_owned();
         insta::assert_snapshot!(name, output.stderr);
     }
-    None
-}
-
-fn check_folder(folder: &str) {
-    let files = files(&harness::root().join("tests/filetests").join(folder), "c");
-    assert!(!files.is_empty(), "no tests in {folder}");
-    let complaints: Vec<_> = files.iter().filter_map(|file| complaint(file)).collect();
-    assert!(
-        complaints.is_empty(),
-        "{} of {} files fail\n\n{}",
-        complaints.len(),
-        files.len(),
-        complaints.join("\n")
-    );
-}
-
-#[test]
-fn the_language_means_what_it_says() {
-    check_folder("language");
-}
-
-#[test]
-fn mistakes_get_messages() {
-    check_folder("diagnostics");
-}
-
-#[test]
-fn the_board_answers() {
-    check_folder("board");
+    for variant in VARIANTS {
+        let other = test.run(COMMAND, variant);
+        if other != output {
+            let (path, variant) = (path.display(), variant.join(" "));
+            return Err(
+                format!("{path} differs with {variant}\n{}{}", output.render(), other.render()).into()
+            );
+        }
+    }
+    Ok(())
 }

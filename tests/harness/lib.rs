@@ -1,6 +1,7 @@
 //! What the whole-system tests share: running the command, scratch folders, program files.
 
 pub mod csv;
+pub mod filetest;
 pub mod vendor;
 
 use std::ffi::OsStr;

@@ -1,5 +1,5 @@
 //@ exit: 3
-//@ says: misaligned
+//@ says: which is not aligned
 #include "KMotionDef.h"
 main()
 {

@@ -1,0 +1,12 @@
+//@ prints: 2 -32768 32768
+#include "KMotionDef.h"
+
+_Static_assert(sizeof(short) == 2 && _Alignof(short) == 2 && _Alignof(unsigned short) == 2, "short");
+
+short s = 32768;
+unsigned short u = 32768;
+
+main()
+{
+    printf("%d %d %d\n", sizeof s, s, u);
+}

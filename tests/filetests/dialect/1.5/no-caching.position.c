@@ -1,0 +1,15 @@
+//@ prints: moving
+#include "KMotionDef.h"
+
+main()
+{
+    double X0 = ch2->Dest;
+    ch2->InputMode = NO_INPUT_MODE;
+    ch2->OutputMode = NO_OUTPUT_MODE;
+    EnableAxisDest(2, 0.0);
+    X0 = ch2->Dest;
+    Jog(2, 100);
+    while (X0 == ch2->Dest) ;
+    printf("moving\n");
+    Jog(2, 0);
+}

@@ -1,0 +1,7 @@
+//@ prints: one two 8
+#include "KMotionDef.h"
+
+char text[] = "one" " "
+    "two";
+
+main() { printf("%s %d\n", text, sizeof text); }

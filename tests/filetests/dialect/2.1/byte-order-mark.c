@@ -1,0 +1,4 @@
+␂#include "KMotionDef.h"
+main() { printf("5\n"); }
+//@ byte: ␂ ef bb bf
+//@ prints: 5

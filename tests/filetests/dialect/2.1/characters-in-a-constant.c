@@ -1,0 +1,5 @@
+//@ exit: 1
+int a = 'ab'; //~ error
+int b = ''; //~ error
+
+main() { }

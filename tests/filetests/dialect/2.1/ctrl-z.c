@@ -1,0 +1,5 @@
+//@ byte: ␚ 1a
+//@ prints: 5
+#include "KMotionDef.h"
+main() { printf("5\n"); }
+␚

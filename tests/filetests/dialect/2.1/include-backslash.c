@@ -1,0 +1,5 @@
+//@ prints: beside
+#include "KMotionDef.h"
+#include "parts\where.h"
+
+main() { printf("%s\n", WHERE); }

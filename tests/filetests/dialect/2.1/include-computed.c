@@ -1,0 +1,8 @@
+//@ prints: beside
+#define HEADER "KMotionDef.h"
+#define PART <parts/where.h>
+#include HEADER
+#define QUOTED "parts/where.h"
+#include QUOTED
+
+main() { printf("%s\n", WHERE); }

@@ -1,0 +1,5 @@
+//@ prints: found
+#include "KMotionDef.h"
+#include "parts/looks_up.h"
+
+main() { printf("%s\n", FOUND); }

@@ -1,0 +1,6 @@
+//@ byte: ␠ 20
+//@ prints: 5
+#include "KMotionDef.h␠␠
+//~^ lax-text: missing `"`
+
+main() { printf("5\n"); }

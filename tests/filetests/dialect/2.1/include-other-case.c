@@ -1,0 +1,6 @@
+//@ prints: beside
+#include "kmotiondef.H"
+#include "Parts\WHERE.h"
+//~^ note: parts/where.h
+
+main() { printf("%s\n", WHERE); }

@@ -1,0 +1,5 @@
+//@ prints: beside nested
+#include "KMotionDef.h"
+#include "parts/where.h"
+
+main() { printf("%s %s\n", WHERE, NESTED); }

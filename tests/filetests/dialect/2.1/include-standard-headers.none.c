@@ -1,0 +1,5 @@
+//@ exit: 1
+#include <nosuch.h>
+//~^ error: nosuch.h
+
+main() { }

@@ -1,0 +1,5 @@
+//@ prints: 9
+#include "KMotionDef.h" // the board
+#include "parts/square.c";
+
+main() { printf("%d\n", square(3)); }

@@ -1,0 +1,8 @@
+//@ prints: 5 //text
+#include "KMotionDef.h" // behind a directive
+
+//
+main() // here
+{ // and here
+    printf("5 //text\n"); /* a // in it */ // ///
+}

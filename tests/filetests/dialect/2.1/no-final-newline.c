@@ -1,0 +1,5 @@
+//@ no-final-newline
+//@ prints: end
+#include "KMotionDef.h"
+
+main() { printf("end\n"); } // the end

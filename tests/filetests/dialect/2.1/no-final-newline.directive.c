@@ -1,0 +1,6 @@
+//@ no-final-newline
+//@ prints: end
+#include "KMotionDef.h"
+
+main() { printf("end\n"); }
+#define LAST 5

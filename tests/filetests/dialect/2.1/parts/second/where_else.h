@@ -1,0 +1,1 @@
+#define WHERE_ELSE "second"

@@ -1,0 +1,2 @@
+#define WHERE "beside"
+#include "nested.h"

@@ -1,0 +1,5 @@
+//@ exit: 1
+#error it doesn't work
+//~^ error: it doesn't work
+
+main() { }

@@ -1,0 +1,10 @@
+//@ prints: first
+//@ prints: second
+#include "KMotionDef.h"
+
+main()
+{
+    printf("first
+second\n");
+//~^^ lax-text: string
+}

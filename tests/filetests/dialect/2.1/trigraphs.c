@@ -1,0 +1,8 @@
+//@ prints: ??/ ??( 2
+#include "KMotionDef.h"
+
+main()
+{
+    char *text = "??=";
+    printf("??/ ??( %d\n", text[2] == '=' && text[0] == '?' ? 2 : 0);
+}

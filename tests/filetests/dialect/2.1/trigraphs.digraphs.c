@@ -1,0 +1,4 @@
+//@ exit: 1
+int a<:3:>; //~ error
+
+main() { }

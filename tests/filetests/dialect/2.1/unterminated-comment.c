@@ -1,0 +1,6 @@
+//@ exit: 1
+#include "KMotionDef.h"
+
+main() { }
+
+/* never closed //~ error: comment
