@@ -206,3 +206,49 @@ fn runs_are_equal_to_the_byte_with_shortcuts_and_without() {
     }
     assert_eq!(cc67(&scratch, &["run", "--no-shortcuts", "--time", "a.c", "b.c"]), first);
 }
+
+#[test]
+fn every_warning_explains_itself() {
+    let scratch = Scratch::new("explain");
+    for arguments in [
+        &["--explain", "stack-size"][..],
+        &["check", "--explain", "Stack-Size"],
+        &["run", "--explain", "-Wno-stack-size"],
+    ] {
+        let output = cc67(&scratch, arguments);
+        assert_eq!((output.code, output.stderr.as_str()), (0, ""), "{arguments:?}");
+        assert!(output.stdout.starts_with("# stack-size\n"), "{}", output.stdout);
+        assert!(output.stdout.ends_with("Default: on.\n"), "{}", output.stdout);
+    }
+    let unknown = cc67(&scratch, &["--explain", "stack-siez"]);
+    assert_plain(&unknown, 2, "no warning is named `stack-siez`; did you mean `stack-size`?");
+    assert_plain(&cc67(&scratch, &["check", "-Wno-formt", "a.c"]), 2, "did you mean `format`?");
+}
+
+#[test]
+fn all_warnings_are_listed() {
+    let scratch = Scratch::new("warnings");
+    insta::assert_snapshot!(cc67(&scratch, &["--explain", "warnings"]).stdout);
+}
+
+#[test]
+fn switches_silence_and_harden_warnings() {
+    let scratch = Scratch::new("switches");
+    scratch.write("a.c", "#include \"KMotionDef.h\"\nmain()\n{\n  int x = 0;\n  if (x = 1) SetBit(46);\n}\n");
+    for (switch, code, said) in [
+        ("-Wall", 0, "warning[assignment-condition]"),
+        ("-Werror", 1, "error[assignment-condition]"),
+        ("-Werror=assignment-condition", 1, "error[assignment-condition]"),
+        ("-Wno-assignment-condition", 0, ""),
+        ("-Wno-all", 0, ""),
+        ("-w", 0, ""),
+    ] {
+        let output = cc67(&scratch, &["check", switch, "a.c"]);
+        assert_eq!(output.code, code, "{switch}: {}", output.stderr);
+        assert!(
+            output.stderr.contains(said) && said.is_empty() == output.stderr.is_empty(),
+            "{switch}: {}",
+            output.stderr
+        );
+    }
+}

@@ -159,6 +159,11 @@ impl Sink {
         }
     }
 
+    /// Takes a diagnostic, if there is one.
+    pub fn report_if(&mut self, diagnostic: Option<Diagnostic>) {
+        diagnostic.into_iter().for_each(|diagnostic| self.report(diagnostic));
+    }
+
     /// Whether so many errors were reported that looking for more is pointless.
     #[must_use]
     pub fn is_full(&self) -> bool {

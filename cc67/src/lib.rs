@@ -124,7 +124,7 @@ fn compile_here(path: &Path, text: Vec<u8>, options: &Options, files: &dyn pp::F
     let tokens = pp::preprocess(main, &options.preprocessor, files, &mut sources, &mut names, &mut sink);
     let tree = parse::parse(&tokens, &sources, &names, &mut sink);
     let unit = sema::analyze(&tree, &mut names, &sources, &options.firmware, &mut sink);
-    lints::check(&unit, &names, &options.firmware, &mut sink);
+    lints::check(&unit, &names, &sources, &options.firmware, &mut sink);
     let object =
         (!sink.has_errors()).then(|| bytecode::unit::compile(&unit, &sources, options.level, &mut sink));
     let object = object.filter(|_| !sink.has_errors());

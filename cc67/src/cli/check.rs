@@ -14,7 +14,7 @@ use crate::pp::Disk;
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The programs
-    #[arg(required = true, value_name = "FILE")]
+    #[arg(required_unless_present = "explain", value_name = "FILE")]
     files: Vec<PathBuf>,
     #[command(flatten)]
     compiler: CompilerOptions,

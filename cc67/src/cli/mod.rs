@@ -6,6 +6,7 @@
 mod check;
 mod events;
 mod exit;
+mod explain;
 mod options;
 mod planned;
 mod program;
@@ -16,16 +17,20 @@ mod terminal;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
+use anyhow::Result;
 use clap::{Parser, Subcommand};
 
 pub use exit::Exit;
 
 /// C compiler, linker and simulated KFLOP board.
 #[derive(Debug, Parser)]
-#[command(name = "cc67", version = VERSION, about, max_term_width = 100)]
+#[command(name = "cc67", version = VERSION, about, max_term_width = 100, arg_required_else_help = true)]
 struct Arguments {
+    /// Explain a warning by the name in its brackets; `warnings` lists them all
+    #[arg(long, value_name = "WARNING", global = true, allow_hyphen_values = true)]
+    explain: Option<String>,
     #[command(subcommand)]
-    command: Command,
+    command: Option<Command>,
 }
 
 /// Our version and that of the firmware which the simulated board models.
@@ -41,6 +46,16 @@ enum Command {
     Planned(planned::Command),
 }
 
+impl Command {
+    fn run(&self) -> Result<Exit> {
+        match self {
+            Self::Run(arguments) => run::run(arguments),
+            Self::Check(arguments) => check::check(arguments),
+            Self::Planned(command) => command.refuse(),
+        }
+    }
+}
+
 /// Runs the command with the arguments of a process, the program's name first.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let arguments = match Arguments::try_parse_from(arguments) {
@@ -54,10 +69,10 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             error.exit()
         }
     };
-    let result = match &arguments.command {
-        Command::Run(arguments) => run::run(arguments),
-        Command::Check(arguments) => check::check(arguments),
-        Command::Planned(command) => command.refuse(),
+    let result = match (&arguments.explain, &arguments.command) {
+        (Some(name), _) => explain::explain(name),
+        (None, Some(command)) => command.run(),
+        (None, None) => return Exit::WrongInput.into(),
     };
     result
         .unwrap_or_else(|error| {

@@ -27,9 +27,12 @@ pub(super) struct CompilerOptions {
     /// Optimisation: 0 none, 1 and 2 what makes programs faster
     #[arg(short = 'O', value_name = "LEVEL", default_value = "1", value_parser = clap::value_parser!(u8).range(0..=2))]
     optimization: u8,
-    /// Switch a warning on (NAME), off (no-NAME), or make all warnings errors (error)
-    #[arg(short = 'W', value_name = "LINT")]
+    /// Switch a warning on (NAME), off (no-NAME), make it an error (error=NAME), or all of them (all, extra, error)
+    #[arg(short = 'W', value_name = "WARNING")]
     warnings: Vec<String>,
+    /// Show no warnings
+    #[arg(short = 'w')]
+    silent: bool,
     /// Link against the symbols of a firmware file in place of firmware 4.34's
     #[arg(long, value_name = "FILE")]
     firmware: Option<PathBuf>,
@@ -98,6 +101,9 @@ impl CompilerOptions {
     /// Which warnings are shown.
     pub(super) fn levels(&self) -> Result<Levels> {
         let mut levels = Levels::default();
+        if self.silent {
+            levels.silence();
+        }
         for switch in &self.warnings {
             levels.set(switch).with_context(|| format!("option `-W{switch}`"))?;
         }

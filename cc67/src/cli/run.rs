@@ -32,7 +32,7 @@ const TIMEBASE: f64 = 90e-6;
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The programs, sources or images: FILE for the lowest free thread, N:FILE for thread N
-    #[arg(required = true, value_name = "[N:]FILE")]
+    #[arg(required_unless_present = "explain", value_name = "[N:]FILE")]
     programs: Vec<String>,
     /// Load a program without starting it, for another one to start
     #[arg(long, value_name = "N:FILE")]

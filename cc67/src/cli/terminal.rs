@@ -19,6 +19,15 @@ pub(super) fn note(message: &str) {
     let _ = writeln!(io::stderr(), "cc67: {message}");
 }
 
+/// Prints a page that was asked for to stdout.
+pub(super) fn page(text: &str) -> io::Result<()> {
+    match io::stdout().write_all(text.as_bytes()) {
+        // A reader that has seen enough, as `head` has, is no failure.
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        result => result,
+    }
+}
+
 /// Whether stderr shows colours.
 fn color() -> Color {
     let shown = io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none();

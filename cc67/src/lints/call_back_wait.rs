@@ -1,8 +1,9 @@
 //! The call-back of the servo interrupt, which must not wait.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::Lint;
+use super::call_graph::CallGraph;
 use super::program::Program;
 use crate::diag::{Diagnostic, Sink};
 use crate::typed::{Callee, ExprId, ExprKind, Function, PlaceId, PlaceKind, SymbolId};
@@ -30,24 +31,45 @@ pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
     let Some(variable) = program.symbol(VARIABLE) else { return };
     let installed: BTreeSet<_> =
         program.functions().flat_map(|function| installed_functions(function, variable)).collect();
-    for function in program.functions().filter(|function| installed.contains(&function.symbol)) {
-        for (expr, call) in function.calls() {
-            let Callee::Symbol(callee) = call.callee else { continue };
-            let name = &program.unit.symbols[callee].name;
-            if WAITING.contains(&name.as_str()) {
-                sink.report(
-                    Diagnostic::warning(
-                        Lint::CallBackWait,
-                        expr.span,
-                        format!("`{name}` in the call-back may wait"),
-                    )
-                    .at("the board hangs if it does")
-                    .label(function.span, "runs in every servo interrupt")
-                    .help("set a variable here, and call it in a thread that sees the variable"),
-                );
+    let graph = CallGraph::new(program);
+    let mut seen = BTreeSet::new();
+    for root in installed {
+        let reached = graph.reached_from(root);
+        let Some(call_back) = graph.function(root) else { continue };
+        for function in reached.keys().filter_map(|symbol| graph.function(*symbol)) {
+            for (expr, call) in function.calls() {
+                let Callee::Symbol(callee) = call.callee else { continue };
+                let name = program.name(callee);
+                if !WAITING.contains(&name) || !seen.insert((function.symbol, callee)) {
+                    continue;
+                }
+                let diagnostic = Diagnostic::warning(
+                    Lint::CallBackWait,
+                    expr.span,
+                    format!("`{name}` in the call-back may wait"),
+                )
+                .at("the board hangs if it does")
+                .label(call_back.span, "runs in every servo interrupt")
+                .help("set a variable here, and call it in a thread that sees the variable");
+                sink.report(match function.symbol == root {
+                    true => diagnostic,
+                    false => diagnostic.note(path(program, &reached, function.symbol)),
+                });
             }
         }
     }
+}
+
+/// The calls that lead from the call-back to a function, for people.
+fn path(program: &Program<'_>, reached: &BTreeMap<SymbolId, Option<SymbolId>>, to: SymbolId) -> String {
+    let mut names = vec![program.name(to)];
+    let mut symbol = to;
+    while let Some(Some(caller)) = reached.get(&symbol) {
+        names.push(program.name(*caller));
+        symbol = *caller;
+    }
+    names.reverse();
+    format!("called through {}", names.join(" → "))
 }
 
 /// The functions that are stored in `variable`.

@@ -85,13 +85,17 @@ struct Finding {
     message: String,
     /// What would fit.
     help: Option<String>,
+    /// It is the lack of an `&`.
+    lacks_address: bool,
 }
 
 impl Finding {
     fn into_diagnostic(self, program: &Program<'_>, format: Span) -> Diagnostic {
+        let lint = if self.lacks_address { Lint::MissingAddress } else { Lint::Format };
         let diagnostic = match self.argument {
-            Some((ty, span)) => Diagnostic::warning(Lint::Format, span, self.message)
-                .at(format!("this is `{}`", program.spell(ty))),
+            Some((ty, span)) => {
+                Diagnostic::warning(lint, span, self.message).at(format!("this is `{}`", program.spell(ty)))
+            }
             None => Diagnostic::warning(Lint::Format, format, self.message),
         };
         match self.help {
@@ -142,7 +146,9 @@ fn compare(types: &Types, function: Function, format: &[u8], arguments: &[Argume
         if let Err(wanted) = wanted {
             let help =
                 if function.is_scan { scan_help(types, argument.0) } else { print_help(types, argument.0) };
-            findings.push(finding(Some(argument), format!("`{spelled}` needs {wanted}"), help));
+            let lacks_address = function.is_scan && types.pointee(argument.0).is_none();
+            let message = format!("`{spelled}` needs {wanted}");
+            findings.push(Finding { lacks_address, ..finding(Some(argument), message, help) });
         }
     }
     let further = left.len();
@@ -154,7 +160,7 @@ fn compare(types: &Types, function: Function, format: &[u8], arguments: &[Argume
 }
 
 fn finding(argument: Option<Argument>, message: String, help: Option<String>) -> Finding {
-    Finding { argument, message, help }
+    Finding { argument, message, help, lacks_address: false }
 }
 
 /// One `%` sequence.

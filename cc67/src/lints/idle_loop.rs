@@ -1,56 +1,100 @@
 //! Loops that never end and do nothing: the thread spends its slices on them for ever.
 
+use std::collections::BTreeSet;
+
 use super::Lint;
 use super::program::Program;
 use crate::diag::{Diagnostic, Sink};
-use crate::typed::{ExprId, ExprKind, Function, PlaceKind, Stmt, StmtKind};
+use crate::typed::{ExprId, ExprKind, Function, LocalId, PlaceId, PlaceKind, Stmt, StmtKind};
 
-/// Reports `for (;;) ;` and whatever comes to the same.
+/// Reports `for (;;) ;` and `while (n) ;`, where nothing changes `n`.
 pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
     for function in program.functions() {
-        function.each_stmt(&mut |stmt| {
-            if is_idle_loop(function, stmt) {
-                sink.report(
-                    Diagnostic::warning(Lint::IdleLoop, stmt.span, "this loop does nothing and never ends").help(
-                        "end the program by returning from `main`, or call `WaitNextTimeSlice()` in the loop",
-                    ),
-                );
+        function.each_stmt(&mut |stmt| sink.report_if(finding(function, stmt)));
+    }
+}
+
+fn finding(function: &Function, stmt: &Stmt) -> Option<Diagnostic> {
+    let StmtKind::Loop { condition, body, step, .. } = &stmt.kind else { return None };
+    let mut effects = Effects { function, read: BTreeSet::new(), written: BTreeSet::new() };
+    let is_idle = condition.is_none_or(|condition| effects.is_pure(condition))
+        && body.iter().all(|stmt| effects.is_idle(stmt))
+        && step.is_none_or(|step| effects.is_pure(step));
+    if !is_idle {
+        return None;
+    }
+    let help = "end the program by returning from `main`, or call `WaitNextTimeSlice()` in the loop";
+    let Some(condition) = condition else {
+        let message = "this loop does nothing and never ends";
+        return Some(Diagnostic::warning(Lint::IdleLoop, stmt.span, message).help(help));
+    };
+    let mut tested = Effects { function, read: BTreeSet::new(), written: BTreeSet::new() };
+    tested.is_pure(*condition);
+    if !tested.read.is_disjoint(&effects.written) {
+        return None;
+    }
+    let name = &function.locals[*tested.read.first()?].name;
+    let message = format!("this loop only tests `{name}`, which nothing in it changes");
+    Some(
+        Diagnostic::warning(Lint::IdleLoop, function.exprs[*condition].span, message)
+            .at("the same in every turn")
+            .help("no other thread sees a local variable; wait for a global or an element of `persist.UserData`"),
+    )
+}
+
+/// What a piece of a function does to the locals that live in no memory.
+struct Effects<'a> {
+    function: &'a Function,
+    read: BTreeSet<LocalId>,
+    written: BTreeSet<LocalId>,
+}
+
+impl Effects<'_> {
+    /// Whether a statement changes nothing else and does not leave its loop.
+    fn is_idle(&mut self, stmt: &Stmt) -> bool {
+        match &stmt.kind {
+            StmtKind::Expr(expr) => self.is_pure(*expr),
+            StmtKind::Block(inner) => inner.iter().all(|stmt| self.is_idle(stmt)),
+            StmtKind::If { condition, then, otherwise } => {
+                self.is_pure(*condition) && then.iter().chain(otherwise).all(|stmt| self.is_idle(stmt))
             }
-        });
-    }
-}
-
-fn is_idle_loop(function: &Function, stmt: &Stmt) -> bool {
-    let StmtKind::Loop { condition: None, body, step, .. } = &stmt.kind else { return false };
-    body.iter().all(|stmt| is_idle(function, stmt)) && step.is_none_or(|step| is_pure(function, step))
-}
-
-/// Whether a statement has no effect and does not leave its loop.
-fn is_idle(function: &Function, stmt: &Stmt) -> bool {
-    match &stmt.kind {
-        StmtKind::Expr(expr) => is_pure(function, *expr),
-        StmtKind::Block(inner) => inner.iter().all(|stmt| is_idle(function, stmt)),
-        StmtKind::If { condition, then, otherwise } => {
-            is_pure(function, *condition) && then.iter().chain(otherwise).all(|stmt| is_idle(function, stmt))
+            StmtKind::Continue => true,
+            _ => false,
         }
-        StmtKind::Continue => true,
-        _ => false,
     }
-}
 
-/// Whether an expression changes nothing but locals that live in no memory.
-fn is_pure(function: &Function, expr: ExprId) -> bool {
-    match &function.exprs[expr].kind {
-        ExprKind::Int(_) | ExprKind::Float(_) => true,
-        ExprKind::Load(place) => matches!(function.places[*place].kind, PlaceKind::Local(..)),
-        ExprKind::Update(update) => {
-            let is_register = match function.places[update.place].kind {
-                PlaceKind::Local(local, _) => !function.locals[local].in_memory,
-                _ => false,
-            };
-            is_register && is_pure(function, update.operand)
+    /// Whether an expression reads and changes nothing else.
+    fn is_pure(&mut self, expr: ExprId) -> bool {
+        match &self.function.exprs[expr].kind {
+            ExprKind::Int(_) | ExprKind::Float(_) => true,
+            ExprKind::Load(place) => self.register(*place).is_some_and(|local| {
+                self.read.insert(local);
+                true
+            }),
+            ExprKind::Update(update) => self.is_pure(update.operand) && self.writes(update.place),
+            ExprKind::Assign(place, value) => self.is_pure(*value) && self.writes(*place),
+            ExprKind::Unary(_, value) | ExprKind::Convert(value) => self.is_pure(*value),
+            ExprKind::Binary(_, a, b)
+            | ExprKind::Compare(_, a, b)
+            | ExprKind::And(a, b)
+            | ExprKind::Or(a, b)
+            | ExprKind::Comma(a, b) => self.is_pure(*b) && self.is_pure(*a),
+            _ => false,
         }
-        ExprKind::Unary(_, value) | ExprKind::Convert(value) => is_pure(function, *value),
-        _ => false,
+    }
+
+    fn writes(&mut self, place: PlaceId) -> bool {
+        self.register(place).is_some_and(|local| {
+            self.written.insert(local);
+            true
+        })
+    }
+
+    /// The local of a place that nothing else can reach.
+    fn register(&self, place: PlaceId) -> Option<LocalId> {
+        match self.function.places[place].kind {
+            PlaceKind::Local(local, _) => (!self.function.locals[local].in_memory).then_some(local),
+            _ => None,
+        }
     }
 }

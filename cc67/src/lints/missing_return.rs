@@ -1,20 +1,30 @@
 //! Functions that may end without the value they promise.
+//!
+//! Hardly any program for this board cares about the value of `main` or of a helper that is
+//! called as a statement; one that a caller uses is another matter (`dialect.md` section 8).
+
+use std::collections::BTreeSet;
 
 use super::Lint;
 use super::program::Program;
+use super::used_values;
 use crate::diag::{Diagnostic, Sink};
 use crate::typed::{Stmt, StmtKind};
 
 /// Reports every function but `main` whose end can be reached.
 pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
+    let used: BTreeSet<_> = program.functions().flat_map(used_values::used_in).collect();
     for function in program.functions() {
-        let name = &program.unit.symbols[function.symbol].name;
+        let name = program.name(function.symbol);
         if function.ty.result.is_void() || name == "main" || !may_complete(&function.body) {
             continue;
         }
-        let message = format!("`{name}` may end without returning a value");
+        let (lint, message) = match used.contains(&function.symbol) {
+            true => (Lint::MissingReturn, format!("`{name}` may end without the value that its callers use")),
+            false => (Lint::FallsOffEnd, format!("`{name}` may end without returning a value")),
+        };
         sink.report(
-            Diagnostic::warning(Lint::MissingReturn, function.end, message)
+            Diagnostic::warning(lint, function.end, message)
                 .at("the value is 0 here")
                 .label(function.span, "this function")
                 .note("on the board it is whatever the last call left behind"),

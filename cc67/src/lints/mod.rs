@@ -7,20 +7,30 @@
 
 pub mod levels;
 
+mod call_graph;
 mod program;
+mod used_values;
 
 mod call_back_wait;
 mod firmware_name;
 mod format;
+mod header_mismatch;
 mod idle_loop;
 mod missing_return;
 mod portability;
+mod recursion;
 mod self_comparison;
+mod stack_size;
 mod uninitialized;
+mod unused_variable;
+mod void_main;
 
 pub(crate) mod assignment_condition;
+pub(crate) mod conversion;
 pub(crate) mod empty_body;
 pub(crate) mod misleading_indentation;
+pub(crate) mod missing_address;
+pub(crate) mod sign_compare;
 pub(crate) mod unused_value;
 pub(crate) mod user_data_alignment;
 pub(crate) mod user_data_index;
@@ -30,69 +40,76 @@ use program::Program;
 use crate::diag::Sink;
 use crate::names::Names;
 use crate::sema::FirmwareNames;
+use crate::source::SourceMap;
 use crate::typed::Unit;
 
 /// A search through a program.
 type Pass = fn(&Program<'_>, &mut Sink);
 
 /// Runs every pass over a program that was analysed.
-pub fn check(unit: &Unit, names: &Names, firmware: &dyn FirmwareNames, sink: &mut Sink) {
-    let program = Program { unit, names, firmware };
+pub fn check(unit: &Unit, names: &Names, sources: &SourceMap, firmware: &dyn FirmwareNames, sink: &mut Sink) {
+    let program = Program { unit, names, sources, firmware };
     PASSES.iter().for_each(|pass| pass(&program, sink));
 }
 
-/// Whether a lint speaks without being asked.
+/// Which switch makes a lint speak.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Default {
-    /// Reported unless `-Wno-…`.
+pub enum Preset {
+    /// None: it names a defect, and seldom anything else.
     On,
-    /// Reported only with `-W…`.
-    Off,
+    /// `-Wall`: it names what is often a mistake.
+    All,
+    /// `-Wextra`: it asks for more care than most programs need.
+    Extra,
 }
 
 /// Hands every row of the lint table to the macro `$m`.
 macro_rules! for_each_lint {
     ($m:ident) => {
         $m! {
-            /// A function is used before anything declares it.
+            /// A function is called that nothing declares, or that needs its declaration.
             ImplicitDeclaration = "implicit-declaration", On;
-            /// An undeclared call is resolved by a later definition with integer types only.
-            LateDefinition = "late-definition", Off;
-            /// A name of the C library that firmware 4.34 lacks.
-            Portability = "portability", Off, pass portability;
-            /// Implicit `int` where programs seldom mean it.
+            /// A function is called above its definition, all of it integers and pointers.
+            LateDefinition = "late-definition", Extra;
+            /// Firmware 4.34 lacks a function, or keeps a name for itself.
+            Portability = "portability", Extra, pass portability;
+            /// A declaration names no type, where programs seldom mean `int`.
             ImplicitInt = "implicit-int", On;
-            /// An old-style parameter list.
+            /// The types of the parameters stand behind the parentheses, as before 1989.
             OldStyleDefinition = "old-style-definition", On;
             /// `main` has parameters, which the board does not pass.
             MainParameters = "main-parameters", On;
             /// A macro is defined again with another body.
             MacroRedefined = "macro-redefined", On;
-            /// Text that the preprocessor accepts only because the vendor's does.
+            /// The text is not quite C, but the vendor's compiler takes it.
             LaxText = "lax-text", On;
-            /// A function, local or enumerator is declared twice.
+            /// A function, local, enumerator or firmware name is declared twice.
             Redeclared = "redeclared", On, pass firmware_name;
             /// A prototype differs from the definition.
             PrototypeMismatch = "prototype-mismatch", On;
-            /// More arguments than the definition takes.
+            /// A call has more arguments than the definition takes.
             ExtraArguments = "extra-arguments", On;
             /// An integer and a pointer are mixed without a cast.
             IntPointer = "int-pointer", On;
             /// Pointers to types of different size or kind are mixed without a cast.
             PointerMismatch = "pointer-mismatch", On;
+            /// A variable is passed where its address is needed: the `&` is missing.
+            MissingAddress = "missing-address", On;
             /// An assignment is used as a condition.
             AssignmentCondition = "assignment-condition", On;
             /// A statement computes a value and drops it.
             UnusedValue = "unused-value", On;
-            /// `if (x) ;`
+            /// An `if` ends in a `;` on its own line.
             EmptyBody = "empty-body", On;
             /// The value of a void function is used.
             VoidValue = "void-value", On;
-            /// A function that returns a value may end without one.
-            MissingReturn = "missing-return", Off, pass missing_return;
-            /// An integer constant with a suffix `f`.
+            /// A function whose value is used may end without one.
+            MissingReturn = "missing-return", On, pass missing_return;
+            /// A function that returns a value may end without one, and no caller uses it.
+            FallsOffEnd = "falls-off-end", All;
+            /// An integer constant has the suffix `f`.
             IntegerFloatSuffix = "integer-float-suffix", On;
-            /// A constant shift count outside 0..31.
+            /// A constant shift count lies outside of the value's width.
             ShiftCount = "shift-count", On;
             /// A format conversion does not fit its argument.
             Format = "format", On, pass format;
@@ -100,34 +117,46 @@ macro_rules! for_each_lint {
             Uninitialized = "uninitialized", On, pass uninitialized;
             /// A string is longer than the array it initialises.
             LongString = "long-string", On;
-            /// A write to a `const` object.
+            /// A `const` object is changed.
             ConstWrite = "const-write", On;
             /// `persist.UserData` is indexed outside 0..199.
             UserDataIndex = "user-data-index", On;
-            /// A `double` at an odd index of `persist.UserData`.
+            /// A `double` lies at an odd index of `persist.UserData`.
             UserDataAlignment = "user-data-alignment", On;
-            /// A frame or call chain larger than the board's small stack.
-            StackSize = "stack-size", On;
-            /// A floating-point value compared with itself.
+            /// A frame or a chain of calls is larger than the board's small stack.
+            StackSize = "stack-size", On, pass stack_size;
+            /// A function calls itself, so that the stack it needs is unknown.
+            Recursion = "recursion", Extra, pass recursion;
+            /// A floating-point value is compared with itself.
             SelfComparison = "self-comparison", On, pass self_comparison;
-            /// An endless loop that neither waits nor has an effect.
+            /// An endless loop neither waits nor has an effect.
             IdleLoop = "idle-loop", On, pass idle_loop;
             /// A statement is indented as if the condition above it governed it.
             MisleadingIndentation = "misleading-indentation", On;
             /// A function that may wait is called in the call-back of the servo interrupt.
             CallBackWait = "call-back-wait", On, pass call_back_wait;
-            /// Something portable C does not allow and the vendor's compiler accepts.
+            /// A local copy of `KMotionDef.h` belongs to another firmware.
+            HeaderMismatch = "header-mismatch", On, pass header_mismatch;
+            /// A variable of a function is never used.
+            UnusedVariable = "unused-variable", All, pass unused_variable;
+            /// `main` is declared `void`.
+            VoidMain = "void-main", Extra, pass void_main;
+            /// A number is stored in a type that cannot hold all of it.
+            Conversion = "conversion", Extra;
+            /// A signed and an unsigned value are compared.
+            SignCompare = "sign-compare", Extra;
+            /// Standard C does not allow it, and the vendor's compiler accepts it.
             Extension = "extension", On;
         }
     };
 }
 
 macro_rules! define_lints {
-    ($($(#[$doc:meta])* $variant:ident = $name:literal, $default:ident $(, pass $pass:ident)?;)*) => {
+    ($($(#[doc = $doc:literal])+ $variant:ident = $name:literal, $preset:ident $(, pass $pass:ident)?;)*) => {
         /// A warning that a switch controls.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
         pub enum Lint {
-            $($(#[$doc])* $variant,)*
+            $($(#[doc = $doc])+ $variant,)*
         }
 
         /// The searches, in the order of the table.
@@ -137,7 +166,7 @@ macro_rules! define_lints {
             /// Every lint in the order of the table.
             pub const ALL: &'static [Self] = &[$(Self::$variant),*];
 
-            /// The name of its switch, without `-W`.
+            /// The name of its switch, without `-W`: what messages show and `--explain` takes.
             #[must_use]
             pub const fn name(self) -> &'static str {
                 match self {
@@ -145,14 +174,46 @@ macro_rules! define_lints {
                 }
             }
 
-            /// Whether it speaks without being asked.
+            /// What it reports, in one sentence.
             #[must_use]
-            pub const fn default(self) -> Default {
+            pub const fn summary(self) -> &'static str {
                 match self {
-                    $(Self::$variant => Default::$default,)*
+                    $(Self::$variant => concat!($($doc),+).trim_ascii_start(),)*
+                }
+            }
+
+            /// The switch that it waits for.
+            #[must_use]
+            pub const fn preset(self) -> Preset {
+                match self {
+                    $(Self::$variant => Preset::$preset,)*
+                }
+            }
+
+            /// Its page in Markdown: why it matters, programs that fire it, their repair.
+            #[must_use]
+            pub const fn page(self) -> &'static str {
+                match self {
+                    $(Self::$variant => include_str!(concat!("pages/", $name, ".md")),)*
                 }
             }
         }
     };
 }
 for_each_lint!(define_lints);
+
+impl Lint {
+    /// How to switch it on and off, as the end of its page.
+    #[must_use]
+    pub fn switches(self) -> String {
+        let name = self.name();
+        let default = match self.preset() {
+            Preset::On => "on",
+            Preset::All => "off; also switched on by `-Wall`",
+            Preset::Extra => "off; also switched on by `-Wextra`",
+        };
+        format!(
+            "## Switches\n\n`-W{name}` on, `-Wno-{name}` off, `-Werror={name}` on and an error. Default: {default}.\n"
+        )
+    }
+}

@@ -2,6 +2,7 @@
 
 use crate::names::Names;
 use crate::sema::FirmwareNames;
+use crate::source::SourceMap;
 use crate::ty::TypeId;
 use crate::typed::{Function, SymbolId, Unit};
 
@@ -12,6 +13,8 @@ pub(super) struct Program<'a> {
     pub(super) unit: &'a Unit,
     /// The names in it.
     pub(super) names: &'a Names,
+    /// Where its text came from.
+    pub(super) sources: &'a SourceMap,
     /// The board it is for.
     pub(super) firmware: &'a dyn FirmwareNames,
 }
@@ -25,6 +28,11 @@ impl<'a> Program<'a> {
     /// The symbol with linkage that has this name.
     pub(super) fn symbol(&self, name: &str) -> Option<SymbolId> {
         self.unit.symbols.iter().find(|(_, symbol)| symbol.name == name).map(|(id, _)| id)
+    }
+
+    /// The name of a symbol.
+    pub(super) fn name(&self, symbol: SymbolId) -> &'a str {
+        &self.unit.symbols[symbol].name
     }
 
     /// A type as C spells it.

@@ -1,13 +1,30 @@
 //! Elements that `persist.UserData` does not have.
 
+use kmotiondef::structs::Persist;
+
 use super::Lint;
 use crate::diag::Diagnostic;
 use crate::source::Span;
 
-/// What is said of a constant index into `length` elements.
-pub(crate) fn finding(length: u32, index: i64, span: Span) -> Option<Diagnostic> {
-    (!(0..i64::from(length)).contains(&index)).then(|| {
-        Diagnostic::warning(Lint::UserDataIndex, span, format!("`persist.UserData` has no element {index}"))
-            .at(format!("it has 0 to {}", length.saturating_sub(1)))
-    })
+/// Where `UserData` lies in `persist`: its first byte and the one behind its last.
+pub(crate) fn range() -> (i32, i32) {
+    let field = Persist::STRUCTURE.fields.iter().find(|field| field.name == "UserData");
+    field.map_or((0, 0), |field| (field.offset.cast_signed(), (field.offset + field.size).cast_signed()))
+}
+
+/// What is said of an object of `size` bytes, reached from an address in `UserData` at byte `from` of `persist` and
+/// lying at byte `to`.
+pub(crate) fn finding(from: i32, to: i32, size: u32, span: Span) -> Option<Diagnostic> {
+    const ELEMENT: i32 = 4;
+    let (first, end) = range();
+    let is_inside = |at: i32| (first..end).contains(&at);
+    let last = to.saturating_add(i32::try_from(size.max(1)).ok()? - 1);
+    if !is_inside(from) || (is_inside(to) && is_inside(last)) {
+        return None;
+    }
+    let wrong = if is_inside(to) { last } else { to };
+    let index = (wrong - first).div_euclid(ELEMENT);
+    let at = format!("it has 0 to {}", (end - first) / ELEMENT - 1);
+    let message = format!("`persist.UserData` has no element {index}");
+    Some(Diagnostic::warning(Lint::UserDataIndex, span, message).at(at))
 }

@@ -4,7 +4,7 @@
 
 use super::Sema;
 use crate::diag::Diagnostic;
-use crate::lints::{Lint, user_data_alignment};
+use crate::lints::{Lint, conversion, missing_address, user_data_alignment, user_data_index};
 use crate::source::Span;
 use crate::ty::{FunctionType, ParameterTypes, QualifiedType, TypeId, Types, convert};
 use crate::typed::{ExprId, ExprKind, PlaceKind, SymbolId};
@@ -72,12 +72,15 @@ impl Sema<'_> {
     ) -> Option<ExprId> {
         let from = self.body.ty(value);
         if from == to || (from.is_arithmetic() && to.is_arithmetic()) {
+            self.lint_narrowing(value, to, span);
             return Some(self.body.convert(value, to, span));
         }
         match (self.types.is_pointer(from), self.types.is_pointer(to)) {
             (true, true) => self.assigned_pointer(value, to, target, span)?,
             (false, true) if from.is_integer() => {
-                if !self.is_null(value) {
+                if self.is_pointee(value, to, target) {
+                    self.report(missing_address::finding(self.sources, &self.describe(target), span));
+                } else if !self.is_null(value) {
                     let message = "a pointer from an integer without a cast";
                     self.warn_conversion(Lint::IntPointer, message, value, to, target, span);
                 }
@@ -93,6 +96,23 @@ impl Sema<'_> {
             }
         }
         Some(self.converted(value, to, span))
+    }
+
+    /// Whether a variable is passed for a parameter that points to its type.
+    fn is_pointee(&self, value: ExprId, to: TypeId, target: Target) -> bool {
+        matches!(target, Target::Argument(..))
+            && matches!(self.body.exprs[value].kind, ExprKind::Load(_))
+            && self.types.pointee(to).is_some_and(|to| to.ty == self.body.ty(value))
+    }
+
+    /// Warns about a number that may not fit where it is stored; constants are known.
+    fn lint_narrowing(&mut self, value: ExprId, to: TypeId, span: Span) {
+        let from = self.body.ty(value);
+        if let Some(loss) = conversion::loss(&self.types, from, to)
+            && self.body.as_constant(value).is_none()
+        {
+            self.report(conversion::finding(&self.spell(from), &self.spell(to), loss, span));
+        }
     }
 
     /// A value in another type, pointers and integers alike; whoever calls has checked that it makes sense.
@@ -184,7 +204,7 @@ impl Sema<'_> {
     fn persist_offset(&self, value: ExprId) -> Option<i32> {
         let ExprKind::Address(place) = self.body.exprs[value].kind else { return None };
         let PlaceKind::Symbol(symbol, offset) = self.body.places[place].kind else { return None };
-        (Some(symbol) == self.symbols.linked(self.known.persist)).then_some(offset)
+        (Some(symbol) == self.symbols.linked(self.persist)).then_some(offset)
     }
 
     /// Warns about `(double *)&persist.UserData[1]`: the board loads a double without the low address bits.
@@ -194,6 +214,16 @@ impl Sema<'_> {
         }
         let offset = self.persist_offset(value);
         self.report_finding(offset.and_then(|offset| user_data_alignment::finding(offset, span)));
+    }
+
+    /// Warns about a step from inside `persist.UserData` to an object that is not: `size` bytes, or only an address.
+    pub(super) fn lint_user_data(&mut self, from: ExprId, to: ExprId, size: Option<u32>, span: Span) {
+        let (Some(from), Some(to)) = (self.persist_offset(from), self.persist_offset(to)) else { return };
+        let finding = match size {
+            Some(size) => user_data_index::finding(from, to, size, span),
+            None => user_data_index::finding(from, to - i32::from(to == user_data_index::range().1), 1, span),
+        };
+        self.report_finding(finding);
     }
 
     fn describe(&self, target: Target) -> String {

@@ -8,7 +8,7 @@ use super::scope::Entity;
 use super::undeclared::is_sensible;
 use crate::ast::{Expression, ExpressionKind, TypeName, UnaryOperator};
 use crate::diag::Diagnostic;
-use crate::lints::{Lint, user_data_index};
+use crate::lints::Lint;
 use crate::names::Name;
 use crate::source::Span;
 use crate::suggest::suggest;
@@ -99,21 +99,11 @@ impl Sema<'_> {
         }
     }
 
-    /// Warns about a constant index that `persist.UserData` does not have.
-    fn lint_index(&mut self, base: &Expression, length: Option<u32>, index: ExprId, span: Span) {
-        let is_user_data =
-            matches!(base.kind, ExpressionKind::Member { member, .. } if member == self.known.user_data);
-        if let (true, Some(length), Some(index)) = (is_user_data, length, self.body.as_int(index)) {
-            self.report_finding(user_data_index::finding(length, index, span));
-        }
-    }
-
     /// `a[b]`, also with the index first.
     fn index(&mut self, base: &Expression, index: &Expression, span: Span) -> Option<Operand> {
         let left = self.operand(base);
         let right = self.value(index);
         let (left, mut position) = (left?, right?);
-        let length = self.types.array(self.operand_type(left).ty).and_then(|(_, length)| length);
         let mut pointer = self.read(left, base.span)?;
         if !self.types.is_pointer(self.body.ty(pointer)) {
             std::mem::swap(&mut pointer, &mut position);
@@ -122,9 +112,9 @@ impl Sema<'_> {
             return self.not_indexable(base, self.body.ty(position), span);
         };
         let position = self.index_value(position, index.span)?;
-        self.lint_index(base, length, position, index.span);
         let bytes = self.scaled(position, element, span)?;
         let moved = self.step(pointer, bytes, span);
+        self.lint_user_data(pointer, moved, self.types.size_of(element.ty), index.span);
         Some(self.dereferenced(moved, element, span))
     }
 

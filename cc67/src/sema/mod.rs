@@ -68,7 +68,7 @@ pub fn analyze(
     firmware: &dyn FirmwareNames,
     sink: &mut Sink,
 ) -> Unit {
-    let known = Known { persist: names.intern("persist"), user_data: names.intern("UserData") };
+    let persist = names.intern("persist");
     let mut sema = Sema {
         names,
         sources,
@@ -78,7 +78,7 @@ pub fn analyze(
         symbols: Symbols::default(),
         scopes: Scopes::new(),
         body: Body::new(String::new(), Types::VOID),
-        known,
+        persist,
         broken: BTreeSet::new(),
         unevaluated: 0,
     };
@@ -86,13 +86,6 @@ pub fn analyze(
     let functions: Vec<_> = pending.into_iter().filter_map(|pending| sema.define_function(pending)).collect();
     sema.finish_symbols();
     Unit { types: sema.types, symbols: sema.symbols.finish(), functions }
-}
-
-/// Names of the board that mean something by themselves.
-#[derive(Clone, Copy, Debug)]
-struct Known {
-    persist: Name,
-    user_data: Name,
 }
 
 /// The state of an analysis.
@@ -106,7 +99,8 @@ struct Sema<'a> {
     scopes: Scopes,
     /// The function being built; between functions, a scratch body for constant expressions.
     body: Body,
-    known: Known,
+    /// The name of the memory that threads and the PC share.
+    persist: Name,
     /// Structures with a wrong definition: what is said of their members would be wrong too.
     broken: BTreeSet<RecordId>,
     /// Depth of operands that are only looked at for their type.
@@ -169,7 +163,7 @@ impl Sema<'_> {
 
     /// Reports what a lint found, if it found something.
     fn report_finding(&mut self, finding: Option<Diagnostic>) {
-        finding.into_iter().for_each(|diagnostic| self.report(diagnostic));
+        self.sink.report_if(finding);
     }
 
     /// A type as C spells it.

@@ -5,9 +5,9 @@ use super::constants::Constant;
 use super::operands::Operand;
 use crate::ast::{BinaryOperator, Expression, ExpressionKind};
 use crate::diag::Diagnostic;
-use crate::lints::{Lint, assignment_condition};
+use crate::lints::{Lint, assignment_condition, sign_compare};
 use crate::source::Span;
-use crate::ty::{QualifiedType, TypeId, Types};
+use crate::ty::{QualifiedType, TypeId, Types, convert};
 use crate::typed::{BinaryOp, CompareOp, ExprId, ExprKind};
 
 /// What a binary operator of C is in the typed tree.
@@ -124,7 +124,10 @@ impl Sema<'_> {
             return self.refuse_operands(BinaryOperator::Add, a, b, span);
         };
         let bytes = self.scaled(count, element, span)?;
-        Some(self.step(pointer, bytes, span))
+        let moved = self.step(pointer, bytes, span);
+        // The address behind the last element may be computed.
+        self.lint_user_data(pointer, moved, None, span);
+        Some(moved)
     }
 
     /// `pointer - integer`, `pointer - pointer`
@@ -187,6 +190,7 @@ impl Sema<'_> {
     ) -> Option<(ExprId, ExprId)> {
         let (x, y) = (self.body.ty(a), self.body.ty(b));
         if x.is_arithmetic() && y.is_arithmetic() {
+            self.lint_signs(a, b, span);
             return Some(self.usual(a, b, span));
         }
         if x.is_floating() || y.is_floating() {
@@ -206,6 +210,18 @@ impl Sema<'_> {
                 self.lint_int_pointer_pair(a, span);
                 Some((self.body.convert(a, y, span), b))
             }
+        }
+    }
+
+    /// Warns about a comparison of a signed and an unsigned value, unless the signed one is a constant that is not
+    /// negative.
+    fn lint_signs(&mut self, a: ExprId, b: ExprId, span: Span) {
+        let promoted = |value| convert::promoted(self.body.ty(value));
+        let (x, y) = (promoted(a), promoted(b));
+        let is_mixed = x.is_integer() && y.is_integer() && x.is_unsigned() != y.is_unsigned();
+        let signed = if x.is_unsigned() { b } else { a };
+        if is_mixed && self.body.as_int(signed).is_none_or(|value| value < 0) {
+            self.report(sign_compare::finding(span));
         }
     }
 

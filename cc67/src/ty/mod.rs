@@ -260,6 +260,11 @@ impl Types {
         (record, self.intern(Type::Record(record)))
     }
 
+    /// Every structure and union.
+    pub fn records(&self) -> impl Iterator<Item = (RecordId, &Record)> {
+        self.records.iter()
+    }
+
     /// A structure or union.
     #[must_use]
     pub fn record(&self, id: RecordId) -> &Record {

@@ -51,7 +51,7 @@ fn persist_user_data() {
 #[test]
 fn conditions_and_statements() {
     said(
-        "int f(int a, int b) {\nif (a = b) a++;\nwhile ((a = b)) b--;\ndo a++; while (a = b > 0);\na == b;\nf;\na + 1;\nif (a) ;\nif (b)\n;\nwhile (a--) ;\nreturn a;\n}",
+        "int f(int a, int b) {\nif (a = b) a++;\nwhile ((a = b)) b--;\ndo a++; while (a = b-- > 0);\na == b;\nf;\na + 1;\nif (a) ;\nif (b)\n;\nwhile (a--) ;\nreturn a;\n}",
         &[
             "2: assignment-condition: an assignment is used as a condition (write `==` to compare, or a second pair of parentheses if this is meant)",
             "4: assignment-condition: an assignment is used as a condition (write `==` to compare, or a second pair of parentheses if this is meant)",

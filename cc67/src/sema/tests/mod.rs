@@ -13,7 +13,7 @@ use kmotiondef::CType;
 
 use super::{FirmwareNames, Prototype, analyze, print};
 use crate::diag::{Severity, Sink};
-use crate::lints::{Default as Preset, Lint, check as run_lints};
+use crate::lints::{Lint, Preset, check as run_lints};
 use crate::names::Names;
 use crate::parse::parse;
 use crate::pp::{MemoryFiles, Options, preprocess};
@@ -61,8 +61,8 @@ fn analyzed(source: &str) -> (Unit, Names, Vec<String>) {
     let tokens = preprocess(main, &Options::default(), &files, &mut sources, &mut names, &mut sink);
     let tree = parse(&tokens, &sources, &names, &mut sink);
     let unit = analyze(&tree, &mut names, &sources, &Board, &mut sink);
-    run_lints(&unit, &names, &Board, &mut sink);
-    let is_shown = |lint: Lint| lint.default() == Preset::On;
+    run_lints(&unit, &names, &sources, &Board, &mut sink);
+    let is_shown = |lint: Lint| lint.preset() == Preset::On;
     let shown = sink.diagnostics().iter().filter(|diagnostic| diagnostic.lint.is_none_or(is_shown));
     let said = shown.map(|diagnostic| {
         let line = diagnostic.span.and_then(|span| sources.place(span)).map_or(0, |place| place.line);

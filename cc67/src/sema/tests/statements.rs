@@ -5,10 +5,10 @@ use super::{check, said};
 #[test]
 fn control_flow() {
     check(
-        "int f(int i, double d) { while (d) i++; do i--; while (i > 3); for (int k = 0; k < i; k++) { if (k == 5) break; else continue; } for (;;) goto out; out: return i; }",
+        "int f(int i, double d) { while (d) f(i, d); do i--; while (i > 3); for (int k = 0; k < i; k++) { if (k == 5) break; else continue; } for (;;) goto out; out: return i; }",
         "int f(int i, double d) {
           while d {
-            old i += 1 in int;
+            f(i, d);
           }
           do {
             old i -= 1 in int;

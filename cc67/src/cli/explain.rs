@@ -1,0 +1,41 @@
+//! `--explain NAME`: the page of a warning; `--explain warnings` lists them all.
+
+use std::fmt::Write as _;
+
+use anyhow::Result;
+
+use super::{Exit, terminal};
+use crate::lints::{Lint, Preset};
+
+/// What lists all warnings; no lint has this name.
+const LIST: &str = "warnings";
+
+/// Prints the page of the warning that a message, a switch or the user's memory names.
+pub(super) fn explain(name: &str) -> Result<Exit> {
+    if name == LIST {
+        terminal::page(&list())?;
+    } else {
+        let lint = Lint::named(name)?;
+        terminal::page(&format!("{}\n{}", lint.page(), lint.switches()))?;
+    }
+    Ok(Exit::Success)
+}
+
+/// Every warning with what it reports.
+fn list() -> String {
+    let mut text = String::new();
+    for (preset, title) in [
+        (Preset::On, "On by default, also named by -Wall:"),
+        (Preset::All, "Switched on by -Wall:"),
+        (Preset::Extra, "Switched on by -Wextra:"),
+    ] {
+        let lints = Lint::ALL.iter().filter(|lint| lint.preset() == preset);
+        let rows = lints.fold(String::new(), |mut rows, lint| {
+            let _ = writeln!(rows, "  {:<24}{}", lint.name(), lint.summary());
+            rows
+        });
+        let separator = if text.is_empty() { "" } else { "\n" };
+        let _ = write!(text, "{separator}{title}\n{rows}");
+    }
+    text
+}

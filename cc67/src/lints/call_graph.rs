@@ -1,0 +1,53 @@
+//! Which function of the unit calls which: what lints about call chains share.
+//!
+//! Calls through pointers are not followed, nor are functions that the unit does not define.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::program::Program;
+use crate::source::Span;
+use crate::typed::{Callee, Function, SymbolId};
+
+/// The functions of a unit and their calls.
+pub(super) struct CallGraph<'a> {
+    functions: BTreeMap<SymbolId, &'a Function>,
+}
+
+impl<'a> CallGraph<'a> {
+    pub(super) fn new(program: &Program<'a>) -> Self {
+        Self { functions: program.functions().map(|function| (function.symbol, function)).collect() }
+    }
+
+    /// A function that the unit defines.
+    pub(super) fn function(&self, symbol: SymbolId) -> Option<&'a Function> {
+        self.functions.get(&symbol).copied()
+    }
+
+    /// The functions of the unit that a function calls, each with the place of its first call.
+    pub(super) fn callees(&self, symbol: SymbolId) -> Vec<(SymbolId, Span)> {
+        let mut seen = BTreeSet::new();
+        let calls = self.function(symbol).into_iter().flat_map(Function::calls);
+        calls
+            .filter_map(|(expr, call)| match call.callee {
+                Callee::Symbol(callee) => Some((callee, expr.span)),
+                Callee::Pointer(_) => None,
+            })
+            .filter(|(callee, _)| self.functions.contains_key(callee) && seen.insert(*callee))
+            .collect()
+    }
+
+    /// Every function that `root` reaches, each with the one that calls it first; `root` has none.
+    pub(super) fn reached_from(&self, root: SymbolId) -> BTreeMap<SymbolId, Option<SymbolId>> {
+        let mut reached = BTreeMap::from([(root, None)]);
+        let mut open = vec![root];
+        while let Some(caller) = open.pop() {
+            for (callee, _) in self.callees(caller) {
+                reached.entry(callee).or_insert_with(|| {
+                    open.push(callee);
+                    Some(caller)
+                });
+            }
+        }
+        reached
+    }
+}

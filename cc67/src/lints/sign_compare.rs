@@ -1,0 +1,13 @@
+//! A signed and an unsigned value compared: a negative one counts as a very large one.
+
+use super::Lint;
+use crate::diag::Diagnostic;
+use crate::source::Span;
+
+/// What is said of such a comparison.
+pub(crate) fn finding(span: Span) -> Diagnostic {
+    Diagnostic::warning(Lint::SignCompare, span, "a signed and an unsigned value are compared")
+        .at("as unsigned: a negative value counts as a very large one")
+        .note("programs that the vendor's compiler made compare them as signed")
+        .help("cast one of them")
+}
