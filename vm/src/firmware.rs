@@ -93,11 +93,13 @@ pub struct Signature {
 impl Signature {
     /// Whether a function of this signature may be called through a pointer to `called`.
     ///
-    /// The parameters must be the same. A result may be ignored, and one that is not there reads as 0.
+    /// The call passes what the function takes, in this order; what it passes behind that is ignored. A result may be
+    /// ignored, and one that is not there reads as 0. Machine code relies on the order: in every calling convention
+    /// the place of a parameter depends only on those before it, and the caller clears the stack.
     #[must_use]
     pub fn may_be_called_as(&self, called: &Self) -> bool {
         let results_agree = self.result.is_none() || called.result.is_none() || self.result == called.result;
-        results_agree && self.params == called.params
+        results_agree && called.params.starts_with(&self.params)
     }
 }
 

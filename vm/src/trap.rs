@@ -70,7 +70,7 @@ pub enum TrapKind {
         addr: GuestAddr,
     },
     /// A call through a pointer whose type differs from the function's.
-    #[error("call of {addr} with parameters of other types than the function has")]
+    #[error("call of {addr} with other parameters than the function has")]
     SignatureMismatch {
         /// The address called.
         addr: GuestAddr,
@@ -96,8 +96,8 @@ pub enum TrapKind {
         /// The limit.
         limit: i64,
     },
-    /// The compiler held this place to be out of reach.
-    #[error("execution reached a place that the compiler held to be unreachable")]
+    /// The compiler held this place to be out of reach; a `goto *` to no label leads to such a one.
+    #[error("execution reached a place where no code is, as by `goto *` to what is no label")]
     Unreachable,
 }
 
