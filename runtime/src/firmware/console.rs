@@ -46,6 +46,11 @@ impl Arguments for GuestArguments<'_> {
         self.memory.load(place)
     }
 
+    fn long_long(&mut self) -> Result<u64, TrapKind> {
+        let place = self.next(8);
+        self.memory.load(place)
+    }
+
     fn double(&mut self) -> Result<f64, TrapKind> {
         let place = self.next(8);
         self.memory.load(place)
@@ -176,6 +181,10 @@ impl Arguments for One {
 
     fn word(&mut self) -> Result<u32, TrapKind> {
         Ok(self.word)
+    }
+
+    fn long_long(&mut self) -> Result<u64, TrapKind> {
+        Ok(self.word.into())
     }
 
     fn double(&mut self) -> Result<f64, TrapKind> {

@@ -77,6 +77,10 @@ impl Arguments for Nothing {
         Ok(0)
     }
 
+    fn long_long(&mut self) -> Result<u64, TrapKind> {
+        Ok(0)
+    }
+
     fn double(&mut self) -> Result<f64, TrapKind> {
         Ok(0.0)
     }

@@ -1,7 +1,7 @@
 //! The formatter behind `printf` and its kin.
 //!
 //! The board's results, odd ones included, are what programs see: halves round up, `%#x` of 0 keeps its prefix,
-//! `%ld` prints a negative number as an unsigned one, an unknown conversion prints nothing but its width. They are
+//! `%ld` prints a negative number as an unsigned one (`%lld` takes a `long long`, which the board has not), an unknown conversion prints nothing but its width. They are
 //! recorded in the vectors `printf.jsonl` and `printf-scanf.jsonl`, which the tests below replay.
 
 use super::decimal::{Keep, digits};
@@ -12,6 +12,8 @@ pub(crate) trait Arguments {
     type Error;
     /// The next 32-bit value.
     fn word(&mut self) -> Result<u32, Self::Error>;
+    /// The next 64-bit value.
+    fn long_long(&mut self) -> Result<u64, Self::Error>;
     /// The next double.
     fn double(&mut self) -> Result<f64, Self::Error>;
     /// The next string, at most `limit` bytes of it; `None` for a null pointer.
@@ -33,6 +35,7 @@ struct Spec {
     precision: Option<usize>,
     short: bool,
     long: bool,
+    long_long: bool,
 }
 
 /// Formats `arguments` under `format`.
@@ -114,6 +117,7 @@ fn length<'f>(mut format: &'f [u8], spec: &mut Spec) -> &'f [u8] {
         return tail;
     }
     while let Some(tail) = format.strip_prefix(b"l").or_else(|| format.strip_prefix(b"L")) {
+        spec.long_long = spec.long;
         spec.long = true;
         format = tail;
     }
@@ -128,9 +132,12 @@ fn convert<A: Arguments>(
     out: &mut Vec<u8>,
 ) -> Result<(), A::Error> {
     match letter {
-        b'd' | b'i' => signed(spec, arguments.word()? as i32, out),
-        b'u' => unsigned(spec, arguments.word()?, letter, out),
-        b'x' | b'X' | b'o' => unsigned(spec, arguments.word()?, letter, out),
+        b'd' | b'i' if spec.long_long => signed(spec, arguments.long_long()?.cast_signed(), out),
+        b'u' | b'x' | b'X' | b'o' if spec.long_long => unsigned(spec, arguments.long_long()?, letter, out),
+        // With one `l` the board reads a wider register whose upper part is zero: never negative.
+        b'd' | b'i' if spec.long => signed(spec, arguments.word()?.into(), out),
+        b'd' | b'i' => signed(spec, (arguments.word()? as i32).into(), out),
+        b'u' | b'x' | b'X' | b'o' => unsigned(spec, arguments.word()?.into(), letter, out),
         b'p' => pad(spec, b"", format!("{:x}", arguments.word()?).as_bytes(), out),
         b'c' => pad(&unzeroed(spec), b"", &[arguments.word()? as u8], out),
         b's' => {
@@ -161,14 +168,13 @@ fn sign(spec: &Spec, negative: bool) -> &'static [u8] {
     }
 }
 
-/// `%d` and `%i`. With `l` the board reads a wider register whose upper part is zero: never negative.
-fn signed(spec: &Spec, value: i32, out: &mut Vec<u8>) {
-    let value = if spec.long { i64::from(value as u32) } else { i64::from(value) };
+/// `%d` and `%i`.
+fn signed(spec: &Spec, value: i64, out: &mut Vec<u8>) {
     integer(spec, sign(spec, value < 0), &value.unsigned_abs().to_string(), out);
 }
 
 /// `%u`, `%x`, `%X` and `%o`; `h` keeps 16 bits.
-fn unsigned(spec: &Spec, value: u32, letter: u8, out: &mut Vec<u8>) {
+fn unsigned(spec: &Spec, value: u64, letter: u8, out: &mut Vec<u8>) {
     let value = if spec.short { value & 0xffff } else { value };
     let (prefix, text) = match letter {
         b'x' => ("0x", format!("{value:x}")),
@@ -273,6 +279,10 @@ mod tests {
                 Some(Argument::Word(word)) => word,
                 _ => 0,
             })
+        }
+
+        fn long_long(&mut self) -> Result<u64, Infallible> {
+            self.word().map(u64::from)
         }
 
         fn double(&mut self) -> Result<f64, Infallible> {
