@@ -29,6 +29,7 @@ pub mod diag;
 pub mod firmware;
 pub mod image;
 pub mod ir;
+mod library;
 pub mod link;
 pub mod lints;
 pub mod lower;
@@ -148,11 +149,13 @@ impl Compilation {
         self.sources.files().next().map_or("", |(_, file)| &file.name)
     }
 
-    /// Links the object by itself for `thread`; what is missing joins the other diagnostics.
+    /// Links the object, with what it needs of the C library, for `thread`; what is missing joins the other diagnostics.
     pub fn link(&mut self, thread: ThreadId, options: &Options) -> Option<Linked> {
         let object = self.object.as_ref()?;
+        let mut objects = vec![object.clone()];
+        objects.extend(library::members_for(object));
         let options = link::Options { thread, firmware: &options.firmware, gc: options.gc_sections };
-        match link::link(std::slice::from_ref(object), &options) {
+        match link::link(&objects, &options) {
             Ok(linked) => {
                 for warning in &linked.warnings {
                     self.sink.report(Diagnostic::global_warning(warning.to_string()));
