@@ -96,10 +96,23 @@ pub struct Specifiers {
     pub qualifiers: Qualifiers,
     /// `inline` was written.
     pub is_inline: bool,
+    /// Alignments asked for.
+    pub alignments: Vec<Alignment>,
     /// The type; `None` if no word names one (implicit `int`).
     pub ty: Option<TypeSpecifier>,
     /// All words; for an empty list, the place where they would stand.
     pub span: Span,
+}
+
+/// An alignment that an object, member or record shall have at least.
+#[derive(Debug)]
+pub enum Alignment {
+    /// `_Alignas(16)`, `__attribute__((aligned(16)))`
+    Value(Expression),
+    /// `_Alignas(double)`
+    Type(TypeName),
+    /// `__attribute__((aligned))`: as much as any type needs.
+    Largest,
 }
 
 /// A type named by specifiers.
@@ -174,6 +187,8 @@ pub struct RecordSpecifier {
     pub tag: Option<(Name, Span)>,
     /// The members; `None` for a mere reference.
     pub members: Option<Vec<MemberDeclaration>>,
+    /// Alignments asked for in front of the tag or behind the brace.
+    pub alignments: Vec<Alignment>,
     /// From the keyword to the closing brace or tag.
     pub span: Span,
 }
@@ -227,6 +242,8 @@ pub struct Declarator {
     pub name: Option<(Name, Span)>,
     /// Derivations from the name outwards: `int *a[3]` is `[Array, Pointer]`.
     pub derived: Vec<Derived>,
+    /// Alignments asked for behind the declarator.
+    pub alignments: Vec<Alignment>,
     /// The whole declarator.
     pub span: Span,
 }
@@ -410,6 +427,8 @@ pub enum StatementKind {
     },
     /// `goto name;`
     Goto(Name, Span),
+    /// `goto *address;`
+    GotoAddress(Expression),
     /// `break;`
     Break,
     /// `continue;`
@@ -478,6 +497,8 @@ pub enum ExpressionKind {
     SizeofType(Box<TypeName>),
     /// `_Alignof (type)`
     AlignofType(Box<TypeName>),
+    /// `__alignof__ a`
+    AlignofExpression(Box<Expression>),
     /// `a + b` and the other operators without side effects of their own, `&&` and `||` included.
     Binary(BinaryOperator, Box<Expression>, Box<Expression>),
     /// `a = b`
@@ -514,6 +535,8 @@ pub enum ExpressionKind {
     },
     /// `({ … })`
     StatementExpression(Vec<Statement>),
+    /// `&&label`
+    LabelAddress(Name, Span),
     /// Something that was diagnosed and skipped; it has no further diagnostics.
     Error,
 }

@@ -54,6 +54,8 @@ words! {
     // Names with a meaning that a program may take away by declaring them.
     OFFSETOF = "offsetof", VA_START = "va_start", VA_ARG = "va_arg", VA_END = "va_end", VA_COPY = "va_copy",
     VA_LIST = "va_list", STATIC_ASSERT_MACRO = "static_assert",
+    // Attributes with a meaning here.
+    ALIGNED = "aligned", ALIGNED__ = "__aligned__",
     // Directives and names of the preprocessor.
     DEFINE = "define", UNDEF = "undef", INCLUDE = "include", IFDEF = "ifdef", IFNDEF = "ifndef",
     ELIF = "elif", ENDIF = "endif", ERROR = "error", WARNING = "warning", PRAGMA = "pragma", LINE = "line",

@@ -27,7 +27,7 @@ impl ExpansionId {
 }
 
 /// A range of source text and how it got there.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Span {
     /// Position of the first byte.
     pub lo: u32,

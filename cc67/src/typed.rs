@@ -57,6 +57,8 @@ pub struct Symbol {
     pub linkage: Linkage,
     /// The type.
     pub ty: TypeId,
+    /// Alignment that a declaration asks for; the type may want more.
+    pub align: u32,
     /// What stands at the address.
     pub definition: Definition,
     /// The defining declaration, else the first one.
@@ -183,6 +185,8 @@ pub struct Local {
     pub name: String,
     /// Its type.
     pub ty: TypeId,
+    /// Alignment that its declaration asks for; the type may want more.
+    pub align: u32,
     /// It needs memory: its address is taken, it is an array or a structure, or it is volatile.
     pub in_memory: bool,
     /// A structure parameter: the register that comes in holds the address of the caller's copy.
@@ -198,6 +202,8 @@ pub struct Label {
     pub name: String,
     /// Where it stands.
     pub span: Span,
+    /// The number that `&&label` gives and [`StmtKind::GotoAddress`] finds it by; counted from 1.
+    pub address: Option<u32>,
 }
 
 /// A statement.
@@ -262,6 +268,8 @@ pub enum StmtKind {
     Label(LabelId),
     /// Goes to a label.
     Goto(LabelId),
+    /// Goes to the label with this [`Label::address`].
+    GotoAddress(ExprId),
 }
 
 /// When a loop tests its condition.

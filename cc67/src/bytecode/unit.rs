@@ -75,7 +75,7 @@ impl Compiler<'_> {
                 definition,
                 kind,
                 size,
-                align: types.align_of(symbol.ty).max(1),
+                align: types.align_of(symbol.ty).max(symbol.align).max(1),
                 span: symbol.span,
                 place,
                 used_at: symbol.used_at,

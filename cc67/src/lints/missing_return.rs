@@ -39,7 +39,11 @@ fn may_complete(stmts: &[Stmt]) -> bool {
 
 fn completes(stmt: &Stmt) -> bool {
     match &stmt.kind {
-        StmtKind::Return(_) | StmtKind::Goto(_) | StmtKind::Break | StmtKind::Continue => false,
+        StmtKind::Return(_)
+        | StmtKind::Goto(_)
+        | StmtKind::GotoAddress(_)
+        | StmtKind::Break
+        | StmtKind::Continue => false,
         StmtKind::Block(inner) => may_complete(inner),
         StmtKind::If { then, otherwise, .. } => may_complete(then) || may_complete(otherwise),
         StmtKind::Loop { condition: None, body, .. } => body.iter().any(breaks),

@@ -58,7 +58,9 @@ impl Search<'_> {
 
     fn stmt(&mut self, stmt: &Stmt) {
         match &stmt.kind {
-            StmtKind::Expr(expr) | StmtKind::Return(Some(expr)) => self.expr(*expr),
+            StmtKind::Expr(expr) | StmtKind::Return(Some(expr)) | StmtKind::GotoAddress(expr) => {
+                self.expr(*expr);
+            }
             StmtKind::Block(inner) => self.stmts(inner),
             StmtKind::If { condition, then, otherwise } => {
                 self.expr(*condition);

@@ -22,7 +22,8 @@ use cranelift_entity::{PrimaryMap, SecondaryMap};
 
 use crate::ir::builder::{Builder, Point};
 use crate::ir::function::{Function, Signature, Signatures};
-use crate::ir::inst::{Address, Base, BlockId, Class, Operand, SignatureId, SlotId, ValueId};
+use crate::ir::inst::{Address, Base, BlockId, Class, InstKind, Operand, SignatureId, SlotId, ValueId};
+use crate::ir::operators::BinaryOp;
 use crate::typed::{self, ExprId, LabelId, LocalId, SymbolId, Unit};
 
 /// The signatures of the functions that a unit defines.
@@ -94,6 +95,9 @@ fn signature_of(unit: &Unit, function: &typed::Function) -> Signature {
     Signature { params, result: types::class(&unit.types, function.ty.result) }
 }
 
+/// What every frame is aligned to.
+const STACK_ALIGNMENT: u32 = 8;
+
 /// Where a local lives.
 #[derive(Clone, Copy, Debug)]
 enum Home {
@@ -149,9 +153,8 @@ impl Lowering<'_> {
         for local in function.locals.values() {
             let home = if local.by_pointer {
                 Home::Pointer(self.builder.value(Class::I32))
-            } else if local.in_memory {
-                let (size, align) = types::layout(&self.unit.types, local.ty);
-                Home::Slot(self.builder.slot(size, align))
+            } else if local.in_memory || local.align > STACK_ALIGNMENT {
+                self.in_frame(local)
             } else {
                 Home::Value(self.builder.value(self.class_or_int(local.ty)))
             };
@@ -164,6 +167,24 @@ impl Lowering<'_> {
         if let Some(local) = function.variable_arguments {
             self.parameter(local);
         }
+    }
+
+    /// A home in the frame. One that wants more alignment than the stack has lies somewhere in a larger slot.
+    fn in_frame(&mut self, local: &typed::Local) -> Home {
+        let (size, align) = types::layout(&self.unit.types, local.ty);
+        let align = align.max(local.align);
+        if align <= STACK_ALIGNMENT {
+            return Home::Slot(self.builder.slot(size, align));
+        }
+        let room = size.saturating_add(align - STACK_ALIGNMENT);
+        let slot = self.builder.slot(room, STACK_ALIGNMENT);
+        let start = self.builder.value(Class::I32);
+        let offset = (align - STACK_ALIGNMENT).cast_signed();
+        self.builder.push(InstKind::FrameAddress { dst: start, slot, offset });
+        let aligned = self.builder.value(Class::I32);
+        let mask = Operand::int(align.wrapping_neg().cast_signed());
+        self.builder.binary(BinaryOp::And, aligned, start.into(), mask);
+        Home::Pointer(aligned)
     }
 
     /// Takes one argument in; one that needs memory is stored there.

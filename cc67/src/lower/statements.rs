@@ -54,7 +54,24 @@ impl Lowering<'_> {
                 let block = self.label(*label);
                 self.builder.jump(block);
             }
+            StmtKind::GotoAddress(address) => self.goto_address(*address),
         }
+    }
+
+    /// A table of the labels that have an address; anything else stops the thread.
+    fn goto_address(&mut self, address: ExprId) {
+        let index = self.value(address);
+        let nowhere = self.builder.block();
+        let function = self.function;
+        let mut targets = vec![nowhere];
+        let mut taken: Vec<_> =
+            function.labels.iter().filter_map(|(id, label)| Some((label.address?, id))).collect();
+        taken.sort_unstable();
+        targets.extend(taken.into_iter().map(|(_, label)| self.label(label)));
+        let targets = targets.into_boxed_slice();
+        self.builder.terminate(Terminator::Table { index, targets, default: nowhere });
+        self.builder.open(nowhere);
+        self.builder.terminate(Terminator::Unreachable);
     }
 
     fn if_statement(&mut self, condition: ExprId, then: &[Stmt], otherwise: &[Stmt]) {

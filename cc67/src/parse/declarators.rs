@@ -1,6 +1,6 @@
 //! Declarators: a name, and what is derived around it.
 
-use crate::ast::{Declarator, Derived, Parameter, Parameters, Qualifiers, TypeName};
+use crate::ast::{Alignment, Declarator, Derived, Parameter, Parameters, Qualifiers, TypeName};
 use crate::names::{Name, word};
 use crate::pp::TokenKind;
 use crate::source::Span;
@@ -46,8 +46,8 @@ impl Parser<'_> {
         } else {
             self.since(start)
         };
-        self.labels_and_attributes()?;
-        Ok(Declarator { name, derived, span })
+        let alignments = self.labels_and_attributes()?;
+        Ok(Declarator { name, derived, alignments, span })
     }
 
     /// `type declarator` without a name.
@@ -185,9 +185,9 @@ impl Parser<'_> {
     }
 
     /// `asm("name")` and attributes behind a declarator.
-    fn labels_and_attributes(&mut self) -> Parsed<()> {
+    fn labels_and_attributes(&mut self) -> Parsed<Vec<Alignment>> {
         if matches!(self.name(), Some(word::ASM | word::ASM_ | word::ASM__)) {
-            return self.assembler();
+            self.assembler()?;
         }
         self.attributes()
     }

@@ -323,6 +323,11 @@ impl Printer<'_> {
                 self.name(*name);
                 self.close();
             }
+            StatementKind::GotoAddress(address) => {
+                self.open("goto*");
+                self.expression(address);
+                self.close();
+            }
             StatementKind::Break => self.word("break"),
             StatementKind::Continue => self.word("continue"),
             StatementKind::Return(value) => self.list("return", value),
@@ -398,6 +403,11 @@ impl Printer<'_> {
             ExpressionKind::VaEnd(a) => self.list("va_end", [&**a]),
             ExpressionKind::SizeofExpression(a) => self.list("sizeof", [&**a]),
             ExpressionKind::StatementExpression(statements) => self.statements("statements", statements),
+            ExpressionKind::LabelAddress(name, _) => {
+                self.open("&&");
+                self.name(*name);
+                self.close();
+            }
             ExpressionKind::Error => self.word("error"),
             typed => self.typed(typed),
         }
@@ -416,6 +426,11 @@ impl Printer<'_> {
             }
             ExpressionKind::SizeofType(ty) => self.with_type("sizeof-type", ty),
             ExpressionKind::AlignofType(ty) => self.with_type("alignof", ty),
+            ExpressionKind::AlignofExpression(operand) => {
+                self.open("alignof");
+                self.expression(operand);
+                self.close();
+            }
             ExpressionKind::VaArg(list, ty) => {
                 self.with_type("va_arg", ty);
                 self.expression(list);

@@ -17,7 +17,7 @@ impl Parser<'_> {
     pub(super) fn record(&mut self) -> Parsed<RecordSpecifier> {
         let keyword = self.next();
         let kind = if keyword.name == word::STRUCT { RecordKind::Struct } else { RecordKind::Union };
-        self.attributes()?;
+        let mut alignments = self.attributes()?;
         let tag = self.tag();
         let members = if self.kind() == TokenKind::LeftBrace {
             Some(self.nested(Self::members)?)
@@ -26,8 +26,8 @@ impl Parser<'_> {
         } else {
             return self.fail_expected("a tag or `{`");
         };
-        self.attributes()?;
-        Ok(RecordSpecifier { kind, tag, members, span: self.since(keyword.span) })
+        alignments.extend(self.attributes()?);
+        Ok(RecordSpecifier { kind, tag, members, alignments, span: self.since(keyword.span) })
     }
 
     /// `enum tag { … }`, at the keyword.

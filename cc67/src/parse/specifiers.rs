@@ -1,6 +1,8 @@
 //! The words that open a declaration.
 
-use crate::ast::{BasicType, Declarator, Derived, Qualifiers, Specifiers, Storage, TypeName, TypeSpecifier};
+use crate::ast::{
+    Alignment, BasicType, Declarator, Derived, Qualifiers, Specifiers, Storage, TypeName, TypeSpecifier,
+};
 use crate::diag::Diagnostic;
 use crate::names::{Name, word};
 use crate::pp::{Flags, TokenKind};
@@ -39,12 +41,16 @@ impl Parser<'_> {
             storage: None,
             qualifiers: Qualifiers::default(),
             is_inline: false,
+            alignments: Vec::new(),
             ty: None,
             span: Span { hi: start.lo, ..start },
         };
         let mut words = Words::default();
         while let Some(name) = self.name() {
-            if self.qualifier(&mut specifiers.qualifiers)? || self.storage(&mut specifiers)? {
+            if self.attribute(&mut specifiers.alignments)?
+                || self.qualifier(&mut specifiers.qualifiers)?
+                || self.storage(&mut specifiers)?
+            {
                 continue;
             }
             let is_open = specifiers.ty.is_none() && words == Words::default();
@@ -86,24 +92,52 @@ impl Parser<'_> {
             Some(word::VOLATILE | word::VOLATILE_ | word::VOLATILE__) => qualifiers.is_volatile = true,
             Some(word::RESTRICT | word::RESTRICT_ | word::RESTRICT__ | word::EXTENSION) => {}
             Some(word::ATOMIC) if self.kind_at(1) != TokenKind::LeftParen => {}
-            Some(word::ATTRIBUTE | word::ATTRIBUTE__ | word::ALIGNAS) => {
-                self.at += 1;
-                self.skip_parens()?;
-                return Ok(true);
-            }
-            _ => return Ok(false),
+            // Behind a `*` an attribute is about the pointer, and none of those means anything here.
+            _ => return self.attribute(&mut Vec::new()),
         }
         self.at += 1;
         Ok(true)
     }
 
-    /// Reads attributes, which mean nothing here.
-    pub(super) fn attributes(&mut self) -> Parsed<()> {
+    /// Reads attributes; what remains of them are alignments.
+    pub(super) fn attributes(&mut self) -> Parsed<Vec<Alignment>> {
+        let mut alignments = Vec::new();
         while matches!(self.name(), Some(word::ATTRIBUTE | word::ATTRIBUTE__)) {
-            self.at += 1;
-            self.skip_parens()?;
+            self.attribute(&mut alignments)?;
         }
-        Ok(())
+        Ok(alignments)
+    }
+
+    /// Reads one `__attribute__((…))` or `_Alignas(…)`; true if there was one.
+    fn attribute(&mut self, alignments: &mut Vec<Alignment>) -> Parsed<bool> {
+        match self.name() {
+            Some(word::ATTRIBUTE | word::ATTRIBUTE__) => {
+                self.at += 1;
+                self.attribute_lists(alignments)?;
+            }
+            Some(word::ALIGNAS) => {
+                self.at += 1;
+                if self.kind() != TokenKind::LeftParen {
+                    return self.fail_expected("`(`");
+                }
+                let alignment = self.alignment()?;
+                alignments.push(alignment);
+            }
+            _ => return Ok(false),
+        }
+        Ok(true)
+    }
+
+    /// `(16)` or `(type)`
+    fn alignment(&mut self) -> Parsed<Alignment> {
+        self.open();
+        let alignment = if self.is_type_at(0) {
+            Alignment::Type(self.type_name()?)
+        } else {
+            Alignment::Value(self.nested(Self::conditional)?)
+        };
+        self.close(TokenKind::RightParen)?;
+        Ok(alignment)
     }
 
     /// Whether a word begins a type, wherever one may stand.
@@ -367,8 +401,8 @@ impl Parser<'_> {
             && self.name().is_some_and(|name| self.is_declaration_word(name))
     }
 
-    /// Reads a balanced `( … )`.
-    fn skip_parens(&mut self) -> Parsed<()> {
+    /// Reads the balanced `((aligned(8), …))` of an attribute.
+    fn attribute_lists(&mut self, alignments: &mut Vec<Alignment>) -> Parsed<()> {
         if self.kind() != TokenKind::LeftParen {
             return self.fail_expected("`(`");
         }
@@ -385,6 +419,13 @@ impl Parser<'_> {
                     }
                 }
                 TokenKind::End => return self.fail_expected("`)`"),
+                _ if self.open.len() == base + 2
+                    && matches!(self.name(), Some(word::ALIGNED | word::ALIGNED__)) =>
+                {
+                    self.at += 1;
+                    let has_value = self.kind() == TokenKind::LeftParen;
+                    alignments.push(if has_value { self.alignment()? } else { Alignment::Largest });
+                }
                 _ => self.at += 1,
             }
         }
@@ -397,9 +438,11 @@ fn va_list(span: Span) -> TypeSpecifier {
         storage: None,
         qualifiers: Qualifiers::default(),
         is_inline: false,
+        alignments: Vec::new(),
         ty: Some(TypeSpecifier::Basic(BasicType::Char)),
         span,
     };
-    let declarator = Declarator { name: None, derived: vec![Derived::Pointer(Qualifiers::default())], span };
+    let derived = vec![Derived::Pointer(Qualifiers::default())];
+    let declarator = Declarator { name: None, derived, alignments: Vec::new(), span };
     TypeSpecifier::TypeofType(Box::new(TypeName { specifiers, declarator, span }))
 }

@@ -132,6 +132,7 @@ impl Parser<'_> {
             let declarator = crate::ast::Declarator {
                 name: Some((name, function.span)),
                 derived: Vec::new(),
+                alignments: Vec::new(),
                 span: function.span,
             };
             return self.nested_function(&declarator, index);
@@ -301,9 +302,8 @@ impl Parser<'_> {
                 let label = self.next();
                 StatementKind::Goto(label.name, label.span)
             }
-            word::GOTO if self.kind() == TokenKind::Star => {
-                let span = self.peek().span;
-                return self.fail(Diagnostic::error(span, "computed `goto` is not supported"));
+            word::GOTO if self.take(TokenKind::Star).is_some() => {
+                StatementKind::GotoAddress(self.expression()?)
             }
             word::GOTO => return self.fail_expected("a label"),
             _ if matches!(self.kind(), TokenKind::Semicolon | TokenKind::RightBrace) => {

@@ -78,13 +78,15 @@ impl Parser<'_> {
     #[inline(never)]
     fn label_address(&mut self) -> Parsed<Expression> {
         let token = self.next();
-        let operand = self.nested(Self::unary)?;
-        let span = token.span.to(operand.span);
-        let diagnostic = Diagnostic::error(span, "addresses of labels are not supported");
-        self.report(
-            diagnostic.note("`&&` before an operand takes the address of a label; `&` that of an object"),
-        );
-        Ok(Expression { kind: ExpressionKind::Error, span })
+        if self.is_identifier_at(0) {
+            let label = self.next();
+            let kind = ExpressionKind::LabelAddress(label.name, label.span);
+            return Ok(Expression { kind, span: token.span.to(label.span) });
+        }
+        self.fail(
+            Diagnostic::error(token.span, "`&&` before an operand needs a label")
+                .note("`&&` takes the address of a label, `&` that of an object"),
+        )
     }
 
     /// `(type) operand` or `(type) { … }`
@@ -127,12 +129,14 @@ impl Parser<'_> {
         Ok(Expression { kind: ExpressionKind::SizeofExpression(operand), span })
     }
 
-    /// `_Alignof (type)`
+    /// `_Alignof (type)`; the GNU form also takes an expression.
     #[inline(never)]
     fn alignof(&mut self) -> Parsed<Expression> {
         let token = self.next();
         if self.kind() != TokenKind::LeftParen || !self.is_type_at(1) {
-            return self.fail_expected("a type in parentheses");
+            let operand = Box::new(self.nested(Self::unary)?);
+            let span = self.since(token.span);
+            return Ok(Expression { kind: ExpressionKind::AlignofExpression(operand), span });
         }
         self.open();
         let ty = Box::new(self.type_name()?);

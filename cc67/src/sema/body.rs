@@ -129,7 +129,7 @@ impl Body {
 
     /// Adds a temporary.
     pub(super) fn temporary(&mut self, ty: TypeId, in_memory: bool, span: Span) -> LocalId {
-        self.locals.push(Local { name: String::new(), ty, in_memory, by_pointer: false, span })
+        self.locals.push(Local { name: String::new(), ty, align: 1, in_memory, by_pointer: false, span })
     }
 
     /// The value of a local of scalar type.
@@ -209,8 +209,20 @@ impl Body {
         }
     }
 
+    /// Whether evaluating does nothing at all.
+    fn is_idle(&self, expr: ExprId) -> bool {
+        match self.exprs[expr].kind {
+            ExprKind::Int(_) | ExprKind::Float(_) => true,
+            ExprKind::Convert(inner) => self.is_idle(inner),
+            _ => false,
+        }
+    }
+
     /// Evaluates the first, then the second, whose value it has.
     pub(super) fn comma(&mut self, first: ExprId, second: ExprId, span: Span) -> ExprId {
+        if self.is_idle(first) {
+            return second;
+        }
         let ty = self.ty(second);
         self.expr(ExprKind::Comma(first, second), ty, span)
     }

@@ -31,21 +31,31 @@ enum Agreement {
 }
 
 impl Sema<'_> {
-    /// An integer operand in the type it is computed in; a bit-field narrower than `int` becomes `int`.
+    /// An integer operand in the type it is computed in. A bit-field becomes `int` or `unsigned`, the first
+    /// that holds all its values; one too wide for both keeps its declared type.
     pub(super) fn promote(&mut self, value: ExprId, span: Span) -> ExprId {
         let ty = self.body.ty(value);
-        let to = if ty == Types::UNSIGNED && self.is_narrow_field(value) {
-            Types::INT
-        } else {
-            convert::promoted(ty)
+        let to = match self.field_width(value) {
+            Some(32) if ty.is_unsigned() => Types::UNSIGNED,
+            Some(..=32) => Types::INT,
+            _ => convert::promoted(ty),
         };
         self.body.convert(value, to, span)
     }
 
-    /// Whether a value is read from a bit-field narrower than `int`.
+    /// Whether a value is read from a bit-field that promotion takes to another type than the declared one.
     pub(super) fn is_narrow_field(&self, value: ExprId) -> bool {
-        let ExprKind::Load(place) = self.body.exprs[value].kind else { return false };
-        matches!(self.body.places[place].kind, PlaceKind::Bits(_, bits) if bits.width < 32)
+        let bits = if self.body.ty(value).is_long_long() { 64 } else { 32 };
+        self.field_width(value).is_some_and(|width| width < bits)
+    }
+
+    /// The width of the bit-field that a value is read from.
+    fn field_width(&self, value: ExprId) -> Option<u8> {
+        let ExprKind::Load(place) = self.body.exprs[value].kind else { return None };
+        match self.body.places[place].kind {
+            PlaceKind::Bits(_, bits) => Some(bits.width),
+            _ => None,
+        }
     }
 
     /// Two arithmetic operands in their common type.

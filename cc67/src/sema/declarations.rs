@@ -3,13 +3,13 @@
 use super::Sema;
 use super::scope::Entity;
 use super::specifiers::ImplicitInt;
-use crate::ast::{Declaration, InitDeclarator, Initializer, StaticAssert, Storage};
+use crate::ast::{Declaration, InitDeclarator, Initializer, Specifiers, StaticAssert, Storage};
 use crate::diag::Diagnostic;
 use crate::lints::Lint;
 use crate::names::Name;
 use crate::source::Span;
 use crate::ty::layout::MAX_OBJECT_SIZE;
-use crate::ty::{QualifiedType, Type, TypeId};
+use crate::ty::{QualifiedType, Type, TypeId, Types};
 use crate::typed::{Definition, Linkage, SymbolId};
 
 /// A declared name with its type, before it is entered anywhere.
@@ -21,6 +21,8 @@ pub(super) struct Declared<'t> {
     pub(super) span: Span,
     /// The type.
     pub(super) ty: QualifiedType,
+    /// The alignment asked for, else 1.
+    pub(super) align: u32,
     /// The initialiser.
     pub(super) initializer: Option<&'t Initializer>,
 }
@@ -32,9 +34,9 @@ impl Sema<'_> {
         self.check_file_storage(declaration);
         let base = self.specified(&declaration.specifiers, ImplicitInt::Warn);
         for init in &declaration.declarators {
-            let Some(declared) = self.declared_name(base, init) else { continue };
+            let Some(declared) = self.declared_name(base, &declaration.specifiers, init) else { continue };
             match storage {
-                Some(Storage::Typedef) => self.declare_typedef(declared),
+                Some(Storage::Typedef) => self.declare_typedef(declared, declaration),
                 _ if self.types.is_function(declared.ty.ty) => self.declare_function(declared, storage),
                 _ => self.declare_object(declared, storage),
             }
@@ -58,6 +60,7 @@ impl Sema<'_> {
     pub(super) fn declared_name<'t>(
         &mut self,
         base: Option<QualifiedType>,
+        specifiers: &Specifiers,
         init: &'t InitDeclarator,
     ) -> Option<Declared<'t>> {
         let (name, span) = init.declarator.name?;
@@ -66,12 +69,13 @@ impl Sema<'_> {
             self.scopes.bind(name, Entity::Poisoned, span);
             return None;
         };
-        Some(Declared { name, span, ty, initializer: init.initializer.as_ref() })
+        let align = self.alignment(&specifiers.alignments).max(self.alignment(&init.declarator.alignments));
+        Some(Declared { name, span, ty, align, initializer: init.initializer.as_ref() })
     }
 
     /// A typedef; the same again is accepted.
-    pub(super) fn declare_typedef(&mut self, declared: Declared<'_>) {
-        let Declared { name, span, ty, initializer } = declared;
+    pub(super) fn declare_typedef(&mut self, declared: Declared<'_>, declaration: &Declaration) {
+        let Declared { name, span, ty, initializer, .. } = declared;
         if let Some(Initializer::Expression(_) | Initializer::List { .. }) = initializer {
             self.report(Diagnostic::error(span, "a typedef cannot have an initialiser"));
         }
@@ -89,6 +93,9 @@ impl Sema<'_> {
             Some((Entity::Typedef(_) | Entity::Poisoned, _)) | None => {}
             Some((_, first)) => return self.already_declared(name, span, first),
         }
+        if ty.ty == Types::INT {
+            self.note_enum_typedef(declaration.specifiers.ty.as_ref(), span);
+        }
         if let Some(record) = self.types.record_of(ty.ty) {
             self.types.record_mut(record).name.get_or_insert(name);
         }
@@ -102,7 +109,7 @@ impl Sema<'_> {
 
     /// A function prototype, at file scope or in a block.
     pub(super) fn declare_function(&mut self, declared: Declared<'_>, storage: Option<Storage>) {
-        let Declared { name, span, ty, initializer } = declared;
+        let Declared { name, span, ty, initializer, .. } = declared;
         if initializer.is_some() {
             self.report(Diagnostic::error(span, "a function cannot have an initialiser"));
         }
@@ -175,12 +182,14 @@ impl Sema<'_> {
 
     /// A variable with linkage: at file scope, or `extern` in a block.
     pub(super) fn declare_object(&mut self, declared: Declared<'_>, storage: Option<Storage>) {
-        let Declared { name, span, ty, initializer } = declared;
+        let Declared { name, span, ty, align, initializer } = declared;
         let Some(symbol) = self.object_symbol(name, ty.ty, storage, span) else {
             self.scopes.bind(name, Entity::Poisoned, span);
             return;
         };
-        let ty = QualifiedType { ty: self.symbols.get(symbol).ty, ..ty };
+        let entry = self.symbols.get_mut(symbol);
+        entry.align = entry.align.max(align);
+        let ty = QualifiedType { ty: entry.ty, ..ty };
         self.scopes.bind(name, Entity::Object(symbol, ty), span);
         match initializer {
             Some(initializer) => {

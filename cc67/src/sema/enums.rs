@@ -1,10 +1,14 @@
 //! Enumerations: constants of type `int`.
+//!
+//! An object of enumeration type is an `int` too. Only a bit-field sees a difference: without negative constants it is
+//! unsigned, so that `enum { OFF, ON } state : 1` holds `ON`.
 
 use super::Sema;
 use super::scope::{Entity, Tag};
-use crate::ast::{EnumSpecifier, Enumerator};
+use crate::ast::{EnumSpecifier, Enumerator, TypeSpecifier};
 use crate::diag::Diagnostic;
 use crate::lints::Lint;
+use crate::source::Span;
 
 impl Sema<'_> {
     /// Declares an enumeration and its constants; the type is always `int`.
@@ -21,11 +25,42 @@ impl Sema<'_> {
             }
         }
         let mut next = 0_i32;
+        let mut is_unsigned = specifier.enumerators.is_some();
         for enumerator in specifier.enumerators.iter().flatten() {
             let value = self.enumerator_value(enumerator, next);
+            is_unsigned &= value.is_none_or(|value| value >= 0);
             next = value.unwrap_or(next).wrapping_add(1);
             self.declare_enumerator(enumerator, value);
         }
+        if is_unsigned {
+            self.unsigned_enums.insert(self.enum_place(specifier));
+        }
+    }
+
+    /// Whether specifiers name an enumeration without negative constants.
+    pub(super) fn is_unsigned_enum(&self, specifier: &TypeSpecifier) -> bool {
+        let place = match specifier {
+            TypeSpecifier::Enum(specifier) => self.enum_place(specifier),
+            TypeSpecifier::Typedef(name) => match self.scopes.lookup(*name) {
+                Some(binding) => binding.span,
+                None => return false,
+            },
+            _ => return false,
+        };
+        self.unsigned_enums.contains(&place)
+    }
+
+    /// A `typedef` of an enumeration is one too.
+    pub(super) fn note_enum_typedef(&mut self, specifier: Option<&TypeSpecifier>, name: Span) {
+        if specifier.is_some_and(|specifier| self.is_unsigned_enum(specifier)) {
+            self.unsigned_enums.insert(name);
+        }
+    }
+
+    /// What an enumeration is known by: the first declaration of its tag, else itself.
+    fn enum_place(&self, specifier: &EnumSpecifier) -> Span {
+        let tag = specifier.tag.and_then(|(tag, _)| self.scopes.lookup_tag(tag));
+        tag.map_or(specifier.span, |binding| binding.span)
     }
 
     fn enumerator_value(&mut self, enumerator: &Enumerator, next: i32) -> Option<i32> {

@@ -51,6 +51,9 @@ impl Sema<'_> {
                 let align = self.types.align_of(ty.ty);
                 Some(Operand::Value(self.body.int(i64::from(align), Types::INT, span)))
             }
+            ExpressionKind::AlignofExpression(operand) => {
+                self.alignof_expression(operand, span).map(Operand::Value)
+            }
             ExpressionKind::Binary(..) => self.binary_expression(expression).map(Operand::Value),
             ExpressionKind::Assign(to, from) => self.assignment(to, from, span),
             ExpressionKind::AssignWith(operator, to, from) => {
@@ -67,6 +70,9 @@ impl Sema<'_> {
             ExpressionKind::Offsetof(name, path) => self.offset_of(name, path, span),
             ExpressionKind::Generic { value, choices } => self.generic(value, choices, span),
             ExpressionKind::StatementExpression(statements) => self.statement_expression(statements, span),
+            ExpressionKind::LabelAddress(name, name_span) => {
+                self.label_address(*name, *name_span, span).map(Operand::Value)
+            }
             ExpressionKind::Error => None,
         }
     }
@@ -346,6 +352,9 @@ impl Sema<'_> {
             return Some(value);
         }
         let value = self.read(value, operand.span)?;
+        if let Some(whole) = self.union_of(value, to, span) {
+            return Some(whole);
+        }
         let from = self.body.ty(value);
         let is_possible = self.types.is_scalar(to)
             && !(from.is_floating() && self.types.is_pointer(to))

@@ -109,7 +109,7 @@ impl Sema<'_> {
         for declaration in &definition.old_style {
             let base = self.specified(&declaration.specifiers, ImplicitInt::Warn)?;
             for init in &declaration.declarators {
-                let declared = self.declared_name(Some(base), init)?;
+                let declared = self.declared_name(Some(base), &declaration.specifiers, init)?;
                 let ty = self.types.decayed(declared.ty);
                 match parameters.iter_mut().find(|parameter| parameter.name == Some(declared.name)) {
                     Some(parameter) => parameter.ty = ty,

@@ -139,15 +139,32 @@ impl Sema<'_> {
             let symbol = self.symbols.anonymous(complete, data, span);
             return Some(Operand::Place(self.symbol_place(symbol, qualified, span)));
         }
+        Some(self.anonymous_local(qualified, &leaves, span))
+    }
+
+    /// A value for `to` in a union that has such a member: the GNU cast to a union.
+    pub(super) fn union_of(&mut self, value: ExprId, to: TypeId, span: Span) -> Option<Operand> {
+        let record = self.types.record_of(to)?;
+        let ty = self.body.ty(value);
+        let is_union = self.types.record(record).kind == RecordKind::Union;
+        let members = &self.types.record(record).layout.as_ref().filter(|_| is_union)?.members;
+        let member = members.iter().find(|member| member.ty.ty == ty && member.bits.is_none())?;
+        let leaf = Leaf { offset: member.offset, ty, bits: None, value: LeafValue::Scalar(value), span };
+        (!self.body.name.is_empty()).then(|| self.anonymous_local(QualifiedType::plain(to), &[leaf], span))
+    }
+
+    /// A local without a name that is initialised where it is used.
+    fn anonymous_local(&mut self, qualified: QualifiedType, leaves: &[Leaf], span: Span) -> Operand {
+        let complete = qualified.ty;
         let local = self.add_local(String::new(), qualified, span);
         let whole = self.local_place(local, qualified, span);
-        let stores = self.stores(whole, &leaves, span);
+        let stores = self.stores(whole, leaves, span);
         let pointer_type = self.types.pointer_to(complete);
         let address = self.address(whole.place, pointer_type, span);
         let pointer =
             stores.into_iter().rev().fold(address, |pointer, store| self.body.comma(store, pointer, span));
         let place = self.body.place(PlaceKind::Pointer(pointer, 0), complete, span);
-        Some(Operand::Place(Located { place, ty: qualified, is_lvalue: true }))
+        Operand::Place(Located { place, ty: qualified, is_lvalue: true })
     }
 
     /// The stores that initialise a local.
@@ -201,6 +218,12 @@ impl Sema<'_> {
             Initializer::List { items, span } => self.flatten_list(&mut leaves, ty, items, *span)?,
             Initializer::Expression(value) => {
                 let slot = Slot { ty, offset: 0, bits: None };
+                if let Some((ty, items)) = self.literal_for(ty, value)? {
+                    return Some((
+                        self.fill_list(&mut leaves, Slot { ty, ..slot }, items, value.span)?,
+                        leaves,
+                    ));
+                }
                 match text_of(value).filter(|text| self.takes_text(ty.ty, text)) {
                     Some(text) => self.fill_text(&mut leaves, slot, text, value.span),
                     None if self.types.array(ty.ty).is_some() => {
@@ -382,6 +405,9 @@ impl Sema<'_> {
                 };
                 return self.fill_whole(leaves, slot, operand, value.span);
             };
+            if let Some((ty, items)) = self.literal_for(slot.ty, value)? {
+                return self.fill_list(leaves, Slot { ty, ..slot }, items, value.span).map(|_| ());
+            }
             if text.is_none() && matches!(level.shape, Shape::Record { .. }) {
                 let known = match operand {
                     Some(operand) => operand,
@@ -394,6 +420,30 @@ impl Sema<'_> {
             }
             stack.push(level);
         }
+    }
+
+    /// The list of a compound literal that has the type of the aggregate it initialises: the object is filled from
+    /// the list itself, so that a static one may have such an initialiser. `None` outside if that was diagnosed.
+    fn literal_for<'e>(
+        &mut self,
+        ty: QualifiedType,
+        value: &'e Expression,
+    ) -> Option<Option<(QualifiedType, &'e [InitializerItem])>> {
+        let ExpressionKind::CompoundLiteral(name, items) = &value.kind else { return Some(None) };
+        if !self.types.is_aggregate(ty.ty) {
+            return Some(None);
+        }
+        let named = self.type_name(name)?.ty;
+        let of = match (self.types.array(ty.ty), self.types.array(named)) {
+            (Some((own, None)), Some((element, _))) if own.ty == element.ty => Some(named),
+            (Some((own, Some(length))), Some((element, count)))
+                if own.ty == element.ty && count.is_none_or(|count| count <= length) =>
+            {
+                Some(ty.ty)
+            }
+            _ => (named == ty.ty).then_some(named),
+        };
+        Some(of.map(|of| (QualifiedType { ty: of, ..ty }, items.as_slice())))
     }
 
     /// A scalar or a whole structure.

@@ -19,9 +19,9 @@ impl Sema<'_> {
         // One at a time: an initialiser sees the names before it.
         let base = self.specified(&declaration.specifiers, ImplicitInt::Silent);
         for init in &declaration.declarators {
-            let Some(declared) = self.declared_name(base, init) else { continue };
+            let Some(declared) = self.declared_name(base, &declaration.specifiers, init) else { continue };
             match storage {
-                Some(Storage::Typedef) => self.declare_typedef(declared),
+                Some(Storage::Typedef) => self.declare_typedef(declared, declaration),
                 _ if self.types.is_function(declared.ty.ty) => self.declare_function(declared, storage),
                 Some(Storage::Extern) => self.declare_object(declared, storage),
                 Some(Storage::Static) => self.declare_static(declared),
@@ -32,9 +32,10 @@ impl Sema<'_> {
 
     /// A static variable of a function: a symbol of its own.
     fn declare_static(&mut self, declared: Declared<'_>) {
-        let Declared { name, span, ty, initializer } = declared;
+        let Declared { name, span, ty, align, initializer } = declared;
         self.lint_declared_twice(name, span);
         let symbol = self.symbols.internal(self.names.get(name), ty.ty, span);
+        self.symbols.get_mut(symbol).align = align;
         self.scopes.bind(name, Entity::Object(symbol, ty), span);
         let complete = match initializer {
             None => ty.ty,
@@ -55,7 +56,7 @@ impl Sema<'_> {
     }
 
     fn declare_local(&mut self, declared: Declared<'_>, out: &mut Vec<Stmt>) {
-        let Declared { name, span, ty, initializer } = declared;
+        let Declared { name, span, ty, align, initializer } = declared;
         self.lint_declared_twice(name, span);
         let is_open_array = initializer.is_some() && self.types.array(ty.ty).is_some();
         if !is_open_array && self.check_complete(name, ty.ty, span).is_none() {
@@ -63,6 +64,7 @@ impl Sema<'_> {
             return;
         }
         let local = self.add_local(self.names.get(name).to_owned(), ty, span);
+        self.body.locals[local].align = align;
         self.scopes.bind(name, Entity::Local(local, ty), span);
         let Some(initializer) = initializer else { return };
         let Some((complete, effects)) = self.local_initializer(local, ty, initializer, span) else {
@@ -78,7 +80,7 @@ impl Sema<'_> {
     /// A variable of the function; aggregates and volatile ones live in memory.
     pub(super) fn add_local(&mut self, name: String, ty: QualifiedType, span: Span) -> LocalId {
         let in_memory = ty.is_volatile || self.types.is_aggregate(ty.ty);
-        self.body.locals.push(Local { name, ty: ty.ty, in_memory, by_pointer: false, span })
+        self.body.locals.push(Local { name, ty: ty.ty, align: 1, in_memory, by_pointer: false, span })
     }
 
     /// A local whose array length its initialiser has told.

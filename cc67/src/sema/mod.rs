@@ -11,6 +11,7 @@
 //! Nothing here knows the target beyond the sizes in [`crate::ty::layout`] and the arithmetic
 //! of `vm::arith`.
 
+mod alignment;
 mod assignments;
 mod body;
 mod builtins;
@@ -49,7 +50,7 @@ use std::collections::BTreeSet;
 use crate::ast;
 use crate::diag::{Diagnostic, Sink};
 use crate::names::{Name, Names};
-use crate::source::SourceMap;
+use crate::source::{SourceMap, Span};
 use crate::ty::{RecordId, TypeId, Types};
 use crate::typed::{Definition, Linkage, Unit};
 
@@ -80,6 +81,7 @@ pub fn analyze(
         body: Body::new(String::new(), Types::VOID),
         persist,
         broken: BTreeSet::new(),
+        unsigned_enums: BTreeSet::new(),
         unevaluated: 0,
     };
     let pending = sema.declare_items(unit);
@@ -103,6 +105,8 @@ struct Sema<'a> {
     persist: Name,
     /// Structures with a wrong definition: what is said of their members would be wrong too.
     broken: BTreeSet<RecordId>,
+    /// Where enumerations without negative constants, and their typedefs, are declared.
+    unsigned_enums: BTreeSet<Span>,
     /// Depth of operands that are only looked at for their type.
     unevaluated: u32,
 }

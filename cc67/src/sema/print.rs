@@ -139,6 +139,7 @@ impl Printer<'_> {
             StmtKind::Return(Some(value)) => self.line(&format!("return {};", self.expr(*value))),
             StmtKind::Label(label) => self.line(&format!("{}:", self.function.labels[*label].name)),
             StmtKind::Goto(label) => self.line(&format!("goto {};", self.function.labels[*label].name)),
+            StmtKind::GotoAddress(address) => self.line(&format!("goto *{};", self.expr(*address))),
         }
     }
 

@@ -86,7 +86,7 @@ impl Sema<'_> {
                 (ty, record)
             }
         };
-        let layout = self.layout(specifier.kind, members, record);
+        let layout = self.layout(specifier, members, record);
         self.complete_record(specifier, record, layout, first);
         Some(ty)
     }
@@ -113,8 +113,14 @@ impl Sema<'_> {
     }
 
     /// The layout of the members that are right.
-    fn layout(&mut self, kind: RecordKind, members: &[MemberDeclaration], record: RecordId) -> Layout {
-        let mut builder = LayoutBuilder::new(kind);
+    fn layout(
+        &mut self,
+        specifier: &RecordSpecifier,
+        members: &[MemberDeclaration],
+        record: RecordId,
+    ) -> Layout {
+        let mut builder = LayoutBuilder::new(specifier.kind);
+        builder.align(self.alignment(&specifier.alignments));
         for line in members {
             if self.member_line(&mut builder, line).is_none() {
                 self.broken.insert(record);
@@ -125,6 +131,7 @@ impl Sema<'_> {
 
     fn member_line(&mut self, builder: &mut LayoutBuilder, line: &MemberDeclaration) -> Option<()> {
         let base = self.specified(&line.specifiers, ImplicitInt::Warn)?;
+        let align = self.alignment(&line.specifiers.alignments);
         if line.members.is_empty() {
             let Some(record) = self.types.record_of(base.ty) else {
                 self.report(Diagnostic::error(line.span, "a member needs a name"));
@@ -135,11 +142,14 @@ impl Sema<'_> {
                 return Some(());
             }
             self.check_inner_names(builder, record, line.span)?;
-            return self.place_member(builder, None, base, line.span);
+            return self.place_member(builder, None, base, align, line.span);
         }
         let mut is_sound = true;
+        let is_enum = line.specifiers.ty.as_ref().is_some_and(|ty| self.is_unsigned_enum(ty));
+        let field = QualifiedType { ty: if is_enum { Types::UNSIGNED } else { base.ty }, ..base };
         for member in &line.members {
-            is_sound &= self.member(builder, base, member, line.span).is_some();
+            let base = if member.width.is_some() { field } else { base };
+            is_sound &= self.member(builder, base, align, member, line.span).is_some();
         }
         is_sound.then_some(())
     }
@@ -148,6 +158,7 @@ impl Sema<'_> {
         &mut self,
         builder: &mut LayoutBuilder,
         base: QualifiedType,
+        align: u32,
         member: &MemberDeclarator,
         line: Span,
     ) -> Option<()> {
@@ -162,7 +173,10 @@ impl Sema<'_> {
         self.check_new(builder, name, span)?;
         match &member.width {
             Some(width) => self.bit_field(builder, name, ty, width, span),
-            None => self.place_member(builder, name, ty, span),
+            None => {
+                let own = member.declarator.as_ref().map_or(1, |own| self.alignment(&own.alignments));
+                self.place_member(builder, name, ty, align.max(own), span)
+            }
         }
     }
 
@@ -171,6 +185,7 @@ impl Sema<'_> {
         builder: &mut LayoutBuilder,
         name: Option<Name>,
         ty: QualifiedType,
+        align: u32,
         span: Span,
     ) -> Option<()> {
         // An array without length is flexible and takes no room.
@@ -183,7 +198,7 @@ impl Sema<'_> {
             self.report(Diagnostic::error(span, format!("a member cannot have the type `{spelled}`")));
             return None;
         }
-        let placed = builder.member(&self.types, name, ty);
+        let placed = builder.member(&self.types, name, ty, align);
         if placed.is_none() {
             self.report(Diagnostic::error(span, "the structure is too large"));
         }
@@ -198,11 +213,11 @@ impl Sema<'_> {
         width: &Expression,
         span: Span,
     ) -> Option<()> {
-        if !ty.ty.is_integer() || ty.ty.is_long_long() {
+        if !ty.ty.is_integer() {
             let spelled = self.spell(ty.ty);
             self.report(
                 Diagnostic::error(span, format!("a bit-field cannot have the type `{spelled}`"))
-                    .help("use `int`, `unsigned`, `short` or `char`"),
+                    .help("use an integer type, such as `int` or `unsigned`"),
             );
             return None;
         }

@@ -65,6 +65,11 @@ impl Sema<'_> {
                 let label = self.label(*name, *name_span, |state| &mut state.used);
                 out.push(Stmt { kind: StmtKind::Goto(label), span });
             }
+            StatementKind::GotoAddress(address) => {
+                if let Some(address) = self.label_pointer(address) {
+                    out.push(Stmt { kind: StmtKind::GotoAddress(address), span });
+                }
+            }
             StatementKind::Break => self.leave_statement(StmtKind::Break, span, out),
             StatementKind::Continue => self.leave_statement(StmtKind::Continue, span, out),
             StatementKind::Return(value) => self.return_statement(value.as_ref(), span, out),
@@ -217,7 +222,7 @@ impl Sema<'_> {
         let body = &mut self.body;
         let names = self.names;
         let state = body.label_names.entry(name).or_insert_with(|| LabelState {
-            label: body.labels.push(Label { name: names.get(name).to_owned(), span }),
+            label: body.labels.push(Label { name: names.get(name).to_owned(), span, address: None }),
             defined: None,
             used: None,
         });
@@ -233,6 +238,31 @@ impl Sema<'_> {
         let label = self.label(name, span, |state| &mut state.defined);
         self.body.labels[label].span = span;
         label
+    }
+
+    /// `&&name`: a number of its own, of type `void *`, which only `goto *` understands.
+    pub(super) fn label_address(&mut self, name: Name, name_span: Span, span: Span) -> Option<ExprId> {
+        if self.body.name.is_empty() {
+            self.report(Diagnostic::error(span, "the address of a label outside of a function"));
+            return None;
+        }
+        let label = self.label(name, name_span, |state| &mut state.used);
+        let next = 1 + self.body.labels.values().filter(|label| label.address.is_some()).count() as u32;
+        let number = *self.body.labels[label].address.get_or_insert(next);
+        let pointer = self.types.pointer_to(Types::VOID);
+        Some(self.body.int(i64::from(number), pointer, span))
+    }
+
+    /// The operand of `goto *`.
+    fn label_pointer(&mut self, address: &Expression) -> Option<ExprId> {
+        let value = self.value(address)?;
+        if self.types.is_pointer(self.body.ty(value)) {
+            return Some(value);
+        }
+        let spelled = self.spell(self.body.ty(value));
+        let message = format!("`goto *` needs the address of a label, not `{spelled}`");
+        self.report(Diagnostic::error(address.span, message).help("`&&name` is the address of a label"));
+        None
     }
 
     fn return_statement(&mut self, value: Option<&Expression>, span: Span, out: &mut Vec<Stmt>) {

@@ -161,7 +161,7 @@ impl Image {
         let Constant::Int(value) = constant else { return };
         let Some(unit) = self.bytes.get_mut(offset as usize..(offset + size) as usize) else { return };
         let mut word = unit.iter().rev().fold(0_u64, |word, byte| word << 8 | u64::from(*byte));
-        let mask = ((1_u64 << bits.width) - 1) << bits.shift;
+        let mask = u64::MAX.checked_shr(64 - u32::from(bits.width)).unwrap_or(0) << bits.shift;
         word = word & !mask | (value.cast_unsigned() << bits.shift) & mask;
         unit.copy_from_slice(&word.to_le_bytes()[..size as usize]);
     }

@@ -83,7 +83,7 @@ impl Symbols {
         definition: Definition,
         span: Span,
     ) -> SymbolId {
-        self.table.push(Symbol { name, linkage, ty, definition, span, used_at: None })
+        self.table.push(Symbol { name, linkage, ty, align: 1, definition, span, used_at: None })
     }
 
     /// A symbol.

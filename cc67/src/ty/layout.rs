@@ -93,10 +93,11 @@ impl LayoutBuilder {
         &self.members
     }
 
-    /// Adds a member; an incomplete array takes no room. `None` if the structure grows beyond all bounds.
-    pub fn member(&mut self, types: &Types, name: Option<Name>, ty: QualifiedType) -> Option<()> {
+    /// Adds a member, aligned to `align` at least; an incomplete array takes no room. `None` if the structure grows
+    /// beyond all bounds.
+    pub fn member(&mut self, types: &Types, name: Option<Name>, ty: QualifiedType, align: u32) -> Option<()> {
         self.unit = None;
-        let offset = self.reserve(types.size_of(ty.ty).unwrap_or(0), types.align_of(ty.ty))?;
+        let offset = self.reserve(types.size_of(ty.ty).unwrap_or(0), types.align_of(ty.ty).max(align))?;
         self.members.push(Member { name, ty, offset, bits: None });
         Some(())
     }
@@ -128,6 +129,11 @@ impl LayoutBuilder {
         }
         self.unit = Some(Unit { used: unit.used + width, ..unit });
         Some(())
+    }
+
+    /// Demands an alignment of the whole.
+    pub fn align(&mut self, align: u32) {
+        self.align = self.align.max(align);
     }
 
     /// The finished layout.
@@ -162,7 +168,7 @@ mod tests {
         let types = Types::new();
         let mut builder = LayoutBuilder::new(kind);
         for ty in members {
-            builder.member(&types, None, QualifiedType::plain(*ty)).expect("small");
+            builder.member(&types, None, QualifiedType::plain(*ty), 1).expect("small");
         }
         let layout = builder.finish();
         (layout.members.iter().map(|member| member.offset).collect(), layout.size, layout.align)

@@ -74,7 +74,7 @@ fn bit_fields_lie_in_units_of_their_type() {
         "struct A { int a : 33; };\nstruct B { double d : 3; };\nstruct C { int x : 0; };\nint f(struct A *p) { return p->a; }",
         &[
             "1: error: a bit-field of type `int` cannot be 33 bits wide",
-            "2: error: a bit-field cannot have the type `double` (use `int`, `unsigned`, `short` or `char`)",
+            "2: error: a bit-field cannot have the type `double` (use an integer type, such as `int` or `unsigned`)",
             "3: error: a bit-field of type `int` cannot be 0 bits wide",
         ],
     );

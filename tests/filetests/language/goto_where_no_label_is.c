@@ -1,0 +1,13 @@
+// `goto *` with anything but the address of a label of the function stops the thread.
+//@ exit: 3
+//@ says: goto_where_no_label_is.c:12
+//@ says: `goto *` to what is no label
+#include "KMotionDef.h"
+
+main()
+{
+    void *to = &&here;
+    to = (char *)to + 77;
+here:
+    goto *to;
+}
