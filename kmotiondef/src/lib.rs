@@ -11,6 +11,7 @@
 //! | [`map`] | the loader and guest memory |
 //! | [`limits`], [`modes`] | the servo and the devices |
 //! | [`headers`] | the preprocessor |
+//! | [`hidden`] | the warning about names that the vendor's linker refuses |
 //!
 //! Invariant: depends on nothing and holds no behaviour.
 
@@ -20,6 +21,7 @@ pub mod bits;
 pub mod ctype;
 pub mod firmware;
 pub mod headers;
+pub mod hidden;
 mod ids;
 pub mod limits;
 pub mod map;

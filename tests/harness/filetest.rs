@@ -224,6 +224,10 @@ fn diagnostics(stderr: &str) -> Vec<Remark> {
     let mut lines = stderr.lines().peekable();
     let mut found = Vec::new();
     while let Some(head) = lines.next() {
+        // Further places of the same diagnostic follow its text.
+        if head.starts_with(' ') {
+            continue;
+        }
         let Some(place) = lines.peek().and_then(|line| line.trim_start().strip_prefix("┌─ ")) else {
             continue;
         };

@@ -2,6 +2,7 @@
 
 use kmotiondef::ctype::TYPEDEFS;
 use kmotiondef::firmware::{ABSENT, FIRMWARE_FUNCTIONS, Origin, function_named};
+use kmotiondef::hidden::is_hidden;
 use kmotiondef::structs::STRUCTURES;
 use kmotiondef::variables::{FIRMWARE_VARIABLES, variable_named};
 
@@ -27,6 +28,10 @@ impl FirmwareNames for BuiltIn {
 
     fn is_variable(&self, name: &str) -> bool {
         variable_named(name).is_some()
+    }
+
+    fn is_hidden(&self, name: &str) -> bool {
+        is_hidden(name)
     }
 
     fn is_type(&self, name: &str) -> bool {

@@ -76,6 +76,10 @@ impl FirmwareNames for Firmware {
         BuiltIn.is_variable(name) && self.has(name)
     }
 
+    fn is_hidden(&self, name: &str) -> bool {
+        BuiltIn.is_hidden(name) && self.has(name)
+    }
+
     fn is_type(&self, name: &str) -> bool {
         BuiltIn.is_type(name)
     }

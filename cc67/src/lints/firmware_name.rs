@@ -31,6 +31,7 @@ fn lint_for(program: &Program<'_>, symbol: &Symbol) -> Option<Lint> {
         Some(Origin::Header) => Some(Lint::Redeclared),
         None if program.firmware.is_variable(&symbol.name) => Some(Lint::Redeclared),
         Some(Origin::Firmware) => Some(Lint::Portability),
+        None if program.firmware.is_hidden(&symbol.name) => Some(Lint::Portability),
         Some(Origin::Library) | None => None,
     }
 }

@@ -30,6 +30,11 @@ pub trait FirmwareNames {
     /// Whether the vendor's header declares a variable or constant of this name.
     fn is_variable(&self, name: &str) -> bool;
 
+    /// Whether the firmware has the name for itself: neither function nor variable for programs.
+    fn is_hidden(&self, _name: &str) -> bool {
+        false
+    }
+
     /// Whether the vendor's header defines a type of this name.
     fn is_type(&self, name: &str) -> bool;
 

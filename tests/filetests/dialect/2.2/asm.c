@@ -1,0 +1,7 @@
+//@ exit: 1
+#include "KMotionDef.h"
+
+main()
+{
+    asm("nop"); //~ error: asm
+}

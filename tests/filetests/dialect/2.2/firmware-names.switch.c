@@ -1,0 +1,8 @@
+//@ args: run -Wportability
+//@ prints: 7 8
+#include "KMotionDef.h"
+
+int s = 7; //~ portability: `s`
+static int bb = 8;
+
+main() { printf("%d %d\n", s, bb); }

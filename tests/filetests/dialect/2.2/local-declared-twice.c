@@ -1,0 +1,10 @@
+//@ prints: 1 2
+#include "KMotionDef.h"
+
+main()
+{
+    int a = 1;
+    printf("%d ", a);
+    int a = 2; //~ redeclared: a
+    printf("%d\n", a);
+}

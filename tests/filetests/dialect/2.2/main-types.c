@@ -1,0 +1,3 @@
+//@ prints: 5
+#include "KMotionDef.h"
+void main(void) { printf("5\n"); }

@@ -1,0 +1,3 @@
+//@ prints: 5
+#include "KMotionDef.h"
+double main() { printf("5\n"); return 2.5; }

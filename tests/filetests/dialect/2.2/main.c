@@ -1,0 +1,3 @@
+//@ prints: 5
+#include "KMotionDef.h"
+main() { printf("5\n"); }

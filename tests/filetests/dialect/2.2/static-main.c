@@ -1,0 +1,3 @@
+//@ prints: 5
+#include "KMotionDef.h"
+static main() { printf("5\n"); } //~ extension: main

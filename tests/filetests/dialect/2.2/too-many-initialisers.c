@@ -1,0 +1,7 @@
+//@ exit: 1
+#include "KMotionDef.h"
+
+int list[2] = { 1, 2, 3 }; //~ error
+struct { int a; } s = { 1, 2 }; //~ error
+
+main() { }

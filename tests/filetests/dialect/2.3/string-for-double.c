@@ -1,0 +1,7 @@
+//@ exit: 1
+#include "KMotionDef.h"
+
+main()
+{
+    Delay_sec("1.5"); //~ error
+}

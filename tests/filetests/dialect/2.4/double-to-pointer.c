@@ -1,0 +1,8 @@
+//@ exit: 1
+#include "KMotionDef.h"
+
+main()
+{
+    int *p;
+    p = 1.5f; //~ error
+}

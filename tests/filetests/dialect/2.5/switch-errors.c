@@ -1,0 +1,15 @@
+//@ exit: 1
+#include "KMotionDef.h"
+
+main()
+{
+    int n = 3;
+    switch (n) {
+    case 1: break;
+    case 1: break; //~ error: case 1
+    case 2.5: break; //~ error
+    case n: break; //~ error: constant
+    default: break;
+    default: break; //~ error: default
+    }
+}
