@@ -73,6 +73,77 @@ fn an_include_of_itself_has_a_limit() {
 }
 
 #[test]
+fn a_program_with_an_upper_case_suffix_runs() {
+    let scratch = Scratch::new("upper-case");
+    scratch.write("A.C", HELLO);
+    let output = cc67(&scratch, &["run", "A.C"]);
+    assert_eq!((output.code, output.stdout.as_str()), (0, "hello\n"), "{output:?}");
+}
+
+#[test]
+fn files_by_windows_paths_are_written_appended_and_read() {
+    let source = r#"#include "KMotionDef.h"
+main()
+{
+    double x, y, z;
+    int n;
+    FILE *f = fopen("C:\\temp\\Points.txt", "wt");
+    fprintf(f, "%f,%f,%f\n", 1.5, -2.0, 3.25);
+    fclose(f);
+    f = fopen("c:\\Temp\\points.txt", "at");
+    fprintf(f, "42\n");
+    fclose(f);
+    f = fopen("c:\\temp\\points.txt", "rt");
+    n = fscanf(f, "%lf,%lf,%lf", &x, &y, &z);
+    printf("%d %.2f %.2f %.2f\n", n, x, y, z);
+    fscanf(f, "%d", &n);
+    printf("%d\n", n);
+    fclose(f);
+}
+"#;
+    let scratch = Scratch::new("windows-files");
+    scratch.write("a.c", source).write("pc/Temp/other.txt", "the folder exists\n");
+    let output = cc67(&scratch, &["run", "--files", "pc", "a.c"]);
+    assert_eq!((output.code, output.stdout.as_str()), (0, "3 1.50 -2.00 3.25\n42\n"), "{output:?}");
+}
+
+#[test]
+fn a_header_in_the_current_folder_is_found() {
+    let scratch = Scratch::new("current-folder");
+    scratch.write("here.h", "#define HERE 5\n");
+    scratch.write(
+        "sub/a.c",
+        "#include \"KMotionDef.h\"\n#include \"here.h\"\nmain() { printf(\"%d\\n\", HERE); }\n",
+    );
+    let output = cc67(&scratch, &["run", "sub/a.c"]);
+    assert_eq!(output, Output { code: 0, stdout: "5\n".into(), stderr: String::new() });
+}
+
+#[cfg(target_os = "linux")] // Elsewhere two such files cannot exist.
+#[test]
+fn files_that_only_letter_case_tells_apart_are_not_guessed() {
+    let scratch = Scratch::new("letter-case");
+    scratch.write("tool.h", "#define TOOL 1\n").write("TOOL.h", "#define TOOL 2\n");
+    scratch.write("a.c", "#include \"Tool.h\"\nmain() { }\n");
+    let output = cc67(&scratch, &["check", "a.c"]);
+    assert_plain(&output, 1, "Tool.h");
+    assert!(output.stderr.contains("`tool.h`") && output.stderr.contains("`TOOL.h`"), "{}", output.stderr);
+    scratch.write("a.c", "#include \"TOOL.h\"\nmain() { return TOOL == 2 ? 0 : 1 / 0; }\n");
+    assert_eq!(cc67(&scratch, &["check", "a.c"]).code, 0);
+}
+
+#[test]
+fn a_header_beside_the_program_wins_and_another_version_is_reported() {
+    let scratch = Scratch::new("local-header");
+    scratch.write("KMotionDef.h", "#include \"PC-DSP.h\"\nint printf(const char *format, ...);\n");
+    scratch.write("PC-DSP.h", "#define KMOTION_VER \"4.32\"\n#define LOCAL 7\n");
+    scratch.write("a.c", "#include \"KMotionDef.h\"\nmain() { printf(\"%d\\n\", LOCAL); }\n");
+    let output = cc67(&scratch, &["run", "a.c"]);
+    assert_eq!((output.code, output.stdout.as_str()), (0, "7\n"), "{output:?}");
+    assert!(output.stderr.contains("PC-DSP.h:1") && output.stderr.contains("4.32"), "{}", output.stderr);
+}
+
+#[test]
 fn deep_parentheses_have_a_limit() {
     let source = format!("main() {{ int x = {}1{}; }}\n", "(".repeat(10_000), ")".repeat(10_000));
     assert_plain(&run_source("parentheses", source, &[]), 1, "640");

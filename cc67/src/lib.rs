@@ -28,6 +28,7 @@ pub mod cli;
 pub mod diag;
 pub mod firmware;
 pub mod image;
+mod includers;
 pub mod ir;
 mod library;
 pub mod link;
@@ -53,7 +54,8 @@ use kmotiondef::ThreadId;
 
 use diag::{Diagnostic, Sink};
 use firmware::Firmware;
-use link::Linked;
+use includers::includers;
+use link::{LinkErrorKind, Linked};
 use names::Names;
 use object::Object;
 use passes::Level;
@@ -94,6 +96,8 @@ pub struct Compilation {
     pub sink: Sink,
     /// The object, if there were no errors.
     pub object: Option<Object>,
+    /// For a file without `main`: the programs beside it that include it.
+    included_by: Vec<String>,
 }
 
 /// Stack of the thread that compiles: a sum of 30,000 terms is a tree of that depth.
@@ -119,7 +123,7 @@ fn compile_here(path: &Path, text: Vec<u8>, options: &Options, files: &dyn pp::F
     let (mut sources, mut names, mut sink) = (SourceMap::new(), Names::new(), Sink::new());
     if let Some(what) = binary::not_source(&text) {
         sink.report(Diagnostic::global_error(format!("{} is not C source text but {what}", path.display())));
-        return Compilation { sources, sink, object: None };
+        return Compilation { sources, sink, object: None, included_by: Vec::new() };
     }
     let main = sources.add_file(path.to_string_lossy(), Some(path), text, None);
     let tokens = pp::preprocess(main, &options.preprocessor, files, &mut sources, &mut names, &mut sink);
@@ -129,7 +133,8 @@ fn compile_here(path: &Path, text: Vec<u8>, options: &Options, files: &dyn pp::F
     let object =
         (!sink.has_errors()).then(|| bytecode::unit::compile(&unit, &sources, options.level, &mut sink));
     let object = object.filter(|_| !sink.has_errors());
-    Compilation { sources, sink, object }
+    let included_by = if unit.defines("main") { Vec::new() } else { includers(path, files) };
+    Compilation { sources, sink, object, included_by }
 }
 
 impl Compilation {
@@ -167,6 +172,10 @@ impl Compilation {
                     let mut diagnostic = error.to_diagnostic();
                     if diagnostic.span.is_none() {
                         diagnostic.message = format!("{}: {}", self.main_file(), diagnostic.message);
+                    }
+                    if error.kind == LinkErrorKind::NoMain && !self.included_by.is_empty() {
+                        diagnostic = diagnostic
+                            .note(format!("this file is included by {}", self.included_by.join(", ")));
                     }
                     self.sink.report(diagnostic);
                 }

@@ -48,6 +48,14 @@ pub struct Unit {
     pub functions: Vec<Function>,
 }
 
+impl Unit {
+    /// Whether a function of this name is defined here.
+    #[must_use]
+    pub fn defines(&self, name: &str) -> bool {
+        self.functions.iter().any(|function| self.symbols[function.symbol].name == name)
+    }
+}
+
 /// Something with an address at link time.
 #[derive(Debug)]
 pub struct Symbol {

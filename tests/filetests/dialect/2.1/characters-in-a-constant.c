@@ -1,5 +1,5 @@
 //@ exit: 1
-int a = 'ab'; //~ error
-int b = ''; //~ error
+int a = 'ab'; //~ error: more than one
+int b = ''; //~ error: empty
 
 main() { }

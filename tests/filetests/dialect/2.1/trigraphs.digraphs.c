@@ -1,4 +1,4 @@
 //@ exit: 1
-int a<:3:>; //~ error
+int a<:3:>; //~ error: expected `;`
 
 main() { }

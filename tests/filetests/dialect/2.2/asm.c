@@ -3,5 +3,5 @@
 
 main()
 {
-    asm("nop"); //~ error: asm
+    asm("nop"); //~ error: assembler
 }

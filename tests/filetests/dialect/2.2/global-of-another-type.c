@@ -2,6 +2,6 @@
 #include "KMotionDef.h"
 
 int a;
-double a; //~ error: a
+double a; //~ error: `a`
 
 main() { }

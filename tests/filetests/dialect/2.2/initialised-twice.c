@@ -2,6 +2,6 @@
 #include "KMotionDef.h"
 
 int a = 5;
-int a = 6; //~ error: a
+int a = 6; //~ error: `a`
 
 main() { }

@@ -3,6 +3,6 @@
 
 main()
 {
-    int a[]; //~ error: a
+    int a[]; //~ error: `a`
     a[0] = 5;
 }

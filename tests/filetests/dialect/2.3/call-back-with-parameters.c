@@ -7,5 +7,5 @@ int without() { return 0; }
 main()
 {
     UserCallBack = without;
-    UserCallBack = with; //~ error
+    UserCallBack = with; //~ error: cannot convert
 }

@@ -3,5 +3,5 @@
 
 main()
 {
-    Delay_sec("1.5"); //~ error
+    Delay_sec("1.5"); //~ error: cannot convert
 }

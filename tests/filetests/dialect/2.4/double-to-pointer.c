@@ -4,5 +4,5 @@
 main()
 {
     int *p;
-    p = 1.5f; //~ error
+    p = 1.5f; //~ error: cannot convert
 }

@@ -6,10 +6,10 @@ double d = 5;
 main()
 {
     int a;
-    a = d % 2; //~ error
-    a = d & 2; //~ error
-    a = d | 2; //~ error
-    a = d ^ 2; //~ error
-    a = ~d; //~ error
-    a = d << 2; //~ error
+    a = d % 2; //~ error: `%`
+    a = d & 2; //~ error: `&`
+    a = d | 2; //~ error: `|`
+    a = d ^ 2; //~ error: `^`
+    a = ~d; //~ error: `~`
+    a = d << 2; //~ error: `<<`
 }

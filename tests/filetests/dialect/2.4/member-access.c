@@ -5,7 +5,7 @@
 
 main()
 {
-    ch0.Vel = 5; //~ error
-    chan[0]->Vel = 5; //~ error
+    ch0.Vel = 5; //~ error: `.Vel`
+    chan[0]->Vel = 5; //~ error: `->`
     ch0->Velo = 5; //~ error: Velo
 }

@@ -5,8 +5,8 @@ int a, list[3];
 
 main()
 {
-    a + 1 = 5; //~ error
-    list = 0; //~ error
-    (char)a = 5; //~ error
-    5++; //~ error
+    a + 1 = 5; //~ error: cannot be assigned to
+    list = 0; //~ error: cannot be assigned to
+    (char)a = 5; //~ error: cannot be assigned to
+    5++; //~ error: cannot be assigned to
 }

@@ -6,6 +6,6 @@ int a, *p = &a, *q = &a;
 main()
 {
     int n;
-    n = p + q; //~ error
-    n = p * 2; //~ error
+    n = p + q; //~ error: `+`
+    n = p * 2; //~ error: `*`
 }

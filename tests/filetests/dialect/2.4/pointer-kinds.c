@@ -9,6 +9,6 @@ main()
     int *p = 0, **q;
     struct A *r;
     q = p; //~ pointer-mismatch
-    r = &b; //~ error
+    r = &b; //~ error: cannot convert
     r = &a;
 }

@@ -4,5 +4,5 @@
 main()
 {
     double d;
-    d = &persist.UserData[0]; //~ error
+    d = &persist.UserData[0]; //~ error: cannot convert
 }

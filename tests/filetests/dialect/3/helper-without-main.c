@@ -1,0 +1,6 @@
+//@ exit: 1
+//@ says: main
+//@ says: helper-without-main.user.c
+#include "KMotionDef.h"
+
+helper() { return 7; }

@@ -1,0 +1,4 @@
+//@ prints: 7
+#include "helper-without-main.c"
+
+main() { printf("%d\n", helper()); }

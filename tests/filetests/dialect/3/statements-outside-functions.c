@@ -1,0 +1,5 @@
+//@ exit: 1
+#include "KMotionDef.h"
+
+ch0->Vel = 1000; //~ error
+main() { }

@@ -1,0 +1,7 @@
+//@ prints: 9 beside
+#include "KMotionDef.h"
+#include "..\2.1\parts\square.c"
+#include "..\2.1\Parts\Where.h"
+//~^ note: where.h
+
+main() { printf("%d %s\n", square(3), WHERE); }

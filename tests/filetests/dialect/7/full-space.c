@@ -1,0 +1,6 @@
+//@ prints: 60000
+#include "KMotionDef.h"
+
+char table[60000];
+
+main() { printf("%d\n", sizeof table); }

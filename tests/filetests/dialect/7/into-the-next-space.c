@@ -1,0 +1,7 @@
+//@ prints: 80000
+//@ says: thread 2
+#include "KMotionDef.h"
+
+char table[80000];
+
+main() { table[79999] = 1; printf("%d\n", sizeof table); }

@@ -1,0 +1,15 @@
+//@ prints: 3 44 1
+#include "KMotionDef.h"
+
+int unused;
+
+helper(int a, int b) { a = b; }
+
+void main()
+{
+    int n = 3.7, never;
+    char c = 300;
+    unsigned u = 1;
+    helper(n, c);
+    printf("%d %d %d\n", n, c, n > u);
+}

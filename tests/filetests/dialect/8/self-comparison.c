@@ -1,0 +1,6 @@
+//@ prints: 0
+#include "KMotionDef.h"
+
+double speed = 1.5;
+
+main() { printf("%d\n", speed != speed); } //~ self-comparison

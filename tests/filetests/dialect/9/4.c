@@ -1,0 +1,6 @@
+//@ prints: 41
+#include "KMotionDef.h"
+
+void f() { return 65; }
+
+main() { printf("%X\n", f()); } //~ void-value

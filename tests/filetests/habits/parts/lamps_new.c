@@ -1,0 +1,4 @@
+Lamp(int n) //~ redeclared: defined twice
+{
+    printf("lamp %d new\n", n);
+}

@@ -1,0 +1,76 @@
+//! What a load writes and what a second execution finds, section 1.6 of the dialect.
+
+use std::path::Path;
+
+use cc67::pp::MemoryFiles;
+use cc67::{Options, compile};
+use coff::{Contents, Image, Name};
+use kmotiondef::{ThreadId, Ticks};
+use runtime::{Board, Config, Event, EventKind};
+
+/// Counts its runs in an initialised and in an uninitialised global.
+const COUNTER: &str =
+    "#include \"KMotionDef.h\"\nint set = 5, unset;\nmain() { printf(\"%d %d\\n\", set++, unset++); }\n";
+
+/// Shows a byte of each of its uninitialised objects.
+const UNSET: &str = "#include \"KMotionDef.h\"\nint unset;\nchar text[3];\nmain() { static char local; printf(\"%x %x %x\\n\", unset, text[2] & 0xff, local & 0xff); unset = 7; }\n";
+
+fn first_thread() -> ThreadId {
+    ThreadId::new(1).expect("there is a thread 1")
+}
+
+fn image_of(source: &str) -> Vec<u8> {
+    let options = Options::default();
+    let mut compilation = compile(Path::new("a.c"), source.into(), &options, &MemoryFiles::new());
+    let linked = compilation.link(first_thread(), &options);
+    let linked = linked.unwrap_or_else(|| panic!("{:?}", compilation.diagnostics()));
+    cc67::image::write(&linked).expect("the image can be written")
+}
+
+fn load(board: &mut Board, image: &[u8]) {
+    board.load(first_thread(), image).expect("the image is loaded");
+}
+
+/// Executes the loaded program and returns the line that it prints.
+fn execute(board: &mut Board) -> String {
+    let mut lines = Vec::new();
+    board.start(first_thread()).expect("a program is loaded");
+    let limit = Ticks::new(board.tick().get() + 10_000);
+    board.run(limit, &mut |event: Event| {
+        if let EventKind::ConsoleLine(line) = event.kind {
+            lines.push(String::from_utf8_lossy(&line).into_owned());
+        }
+    });
+    assert_eq!(lines.len(), 1, "{lines:?}");
+    lines.remove(0)
+}
+
+#[test]
+fn a_load_zeroes_bss_and_rewrites_data() {
+    let (mut board, image) = (Board::new(Config::default()), image_of(COUNTER));
+    load(&mut board, &image);
+    assert_eq!([execute(&mut board), execute(&mut board)], ["5 0", "6 1"]);
+    load(&mut board, &image);
+    assert_eq!([execute(&mut board), execute(&mut board)], ["5 0", "6 1"]);
+}
+
+#[test]
+fn another_byte_can_fill_bss() {
+    let mut board: Board = Board::new(Config { bss_fill: 0xa5, ..Config::default() });
+    load(&mut board, &image_of(UNSET));
+    assert_eq!(execute(&mut board), "a5a5a5a5 a5 a5");
+}
+
+#[test]
+fn an_image_without_bss_leaves_that_memory_alone() {
+    let mut image = Image::read(&image_of(UNSET)).expect("our own image is readable");
+    image.sections.retain(|section| section.name != Name::new(b".bss"));
+    image.symbols.clear();
+    assert!(image.sections.iter().all(|section| matches!(section.contents, Contents::Data(_))));
+    let image = image.write().expect("it can be written");
+    let mut board = Board::new(Config::default());
+    load(&mut board, &image);
+    assert_eq!(execute(&mut board), "0 0 0");
+    load(&mut board, &image);
+    assert_eq!(execute(&mut board), "7 0 0");
+}
