@@ -1,5 +1,6 @@
 //! Files on the PC: where they live and what the board knows of them.
 
+use std::ffi::OsStr;
 use std::fmt;
 use std::io::Write as _;
 use std::path::{Component, Path, PathBuf};
@@ -44,7 +45,8 @@ impl Directory {
         Self { root: root.into() }
     }
 
-    /// The place of a PC path: drive letters go, backslashes become slashes; `None` outside the root.
+    /// The place of a PC path: drive letters go, backslashes become slashes, and a name that exists in
+    /// other letter case is that file; `None` outside the root.
     fn place(&self, name: &str) -> Option<PathBuf> {
         let name = name.replace('\\', "/");
         let name = match name.split_once(':') {
@@ -53,8 +55,21 @@ impl Directory {
         };
         let name = Path::new(name.trim_start_matches('/'));
         let inside = name.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
-        (inside && name.file_name().is_some()).then(|| self.root.join(name))
+        (inside && name.file_name().is_some()).then(|| {
+            name.components().fold(self.root.clone(), |folder, part| entry(&folder, part.as_os_str()))
+        })
     }
+}
+
+/// The entry of `folder` called `name`: with exactly this spelling, else the first in another letter case.
+fn entry(folder: &Path, name: &OsStr) -> PathBuf {
+    let exact = folder.join(name);
+    if exact.exists() {
+        return exact;
+    }
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.file_name());
+    let same = entries.filter(|found| found.eq_ignore_ascii_case(name)).min();
+    same.map_or(exact, |found| folder.join(found))
 }
 
 impl HostFiles for Directory {

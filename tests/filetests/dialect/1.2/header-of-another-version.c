@@ -1,7 +1,6 @@
 //@ args: check -I parts/old-header
-//@ says: this header is of version "4.32", the board of "4.34"
-//@ says: `chan` is declared unlike firmware 4.34 has it
-//@ says: its member `InputMode` is at
-#include "KMotionDef.h"
+//@ says: its version is 4.32
+//@ says: `CHAN.ChanNumber` is at byte 4 there and at 0 in the firmware
+#include "KMotionDef.h" //~ header-mismatch: is not the header of firmware 4.34
 
 main() { SetBit(46); }

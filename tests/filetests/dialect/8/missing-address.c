@@ -5,6 +5,6 @@ main()
 {
     int n;
     double d = 0;
-    sscanf("5", "%d", n); //~ format //~ uninitialized
-    sscanf("5", "%lf", d); //~ format
+    sscanf("5", "%d", n); //~ missing-address: `%d` //~ uninitialized
+    sscanf("5", "%lf", d); //~ missing-address: `%lf`
 }
