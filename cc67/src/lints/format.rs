@@ -9,16 +9,15 @@ use super::program::Program;
 use crate::diag::{Diagnostic, Sink};
 use crate::source::Span;
 use crate::ty::{TypeId, Types};
-use crate::typed::{Call, Callee, Definition, ExprId, ExprKind, PlaceKind, Unit};
+use crate::typed::{self, Call, Callee, Definition, ExprId, ExprKind, PlaceKind, Unit};
 
 /// Compares every format with the arguments behind it.
 pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
     for function in program.functions() {
         for (_, call) in function.calls() {
             let Some((taker, format)) = literal_format(program.unit, function, call) else { continue };
-            let values: Vec<_> =
-                call.variable.iter().flatten().map(|value| &function.exprs[*value]).collect();
-            let arguments: Vec<_> = values.iter().map(|value| (value.ty, value.span)).collect();
+            let values = call.variable.iter().flatten();
+            let arguments: Vec<_> = values.map(|value| written(function, *value)).collect();
             let span = function.exprs[call.arguments[taker.format]].span;
             for finding in compare(&program.unit.types, taker, format, &arguments) {
                 sink.report(finding.into_diagnostic(program, span));
@@ -27,10 +26,21 @@ pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
     }
 }
 
+/// An argument as the program has it: a `float` is passed as a `double`, but the message speaks of the `float`.
+fn written(function: &typed::Function, value: ExprId) -> Argument {
+    let expr = &function.exprs[value];
+    match expr.kind {
+        ExprKind::Convert(inner) if expr.ty == Types::DOUBLE && function.exprs[inner].ty == Types::FLOAT => {
+            (Types::FLOAT, expr.span)
+        }
+        _ => (expr.ty, expr.span),
+    }
+}
+
 /// The function that a call calls and the text of its format, if that is a string literal.
 fn literal_format<'p>(
     unit: &'p Unit,
-    function: &crate::typed::Function,
+    function: &typed::Function,
     call: &Call,
 ) -> Option<(Function, &'p [u8])> {
     let Callee::Symbol(callee) = call.callee else { return None };

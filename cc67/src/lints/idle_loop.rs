@@ -9,7 +9,7 @@ use crate::typed::{ExprId, ExprKind, Function, LocalId, PlaceId, PlaceKind, Stmt
 
 /// Reports `for (;;) ;` and `while (n) ;`, where nothing changes `n`.
 pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
-    for function in program.functions() {
+    for function in program.whole_functions() {
         function.each_stmt(&mut |stmt| sink.report_if(finding(function, stmt)));
     }
 }

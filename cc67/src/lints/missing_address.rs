@@ -6,8 +6,12 @@ use crate::source::{SourceMap, Span};
 
 /// What is said of an argument that is a variable of the type that the parameter points to.
 pub(crate) fn finding(sources: &SourceMap, subject: &str, span: Span) -> Diagnostic {
-    let text = String::from_utf8_lossy(sources.text(span));
     Diagnostic::warning(Lint::MissingAddress, span, format!("{subject} must be the address of a variable"))
         .at("its value is passed, and used as an address")
-        .help(format!("write `&{text}`"))
+        .help(help(sources, span))
+}
+
+/// What to do about the variable at `span`.
+pub(crate) fn help(sources: &SourceMap, span: Span) -> String {
+    format!("write `&{}`", String::from_utf8_lossy(sources.text(span)))
 }

@@ -14,7 +14,7 @@ use crate::typed::{Stmt, StmtKind};
 /// Reports every function but `main` whose end can be reached.
 pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
     let used: BTreeSet<_> = program.functions().flat_map(used_values::used_in).collect();
-    for function in program.functions() {
+    for function in program.whole_functions() {
         let name = program.name(function.symbol);
         if function.ty.result.is_void() || name == "main" || !may_complete(&function.body) {
             continue;

@@ -8,6 +8,7 @@
 pub mod levels;
 
 mod call_graph;
+mod flow;
 mod program;
 mod used_values;
 
@@ -115,6 +116,8 @@ macro_rules! for_each_lint {
             Format = "format", On, pass format;
             /// A local is read before anything is stored in it.
             Uninitialized = "uninitialized", On, pass uninitialized;
+            /// A local may be read before anything is stored in it.
+            MaybeUninitialized = "maybe-uninitialized", All;
             /// A string is longer than the array it initialises.
             LongString = "long-string", On;
             /// A `const` object is changed.

@@ -20,9 +20,14 @@ pub(super) struct Program<'a> {
 }
 
 impl<'a> Program<'a> {
-    /// The functions without errors: what stands in the others is not what was written.
+    /// Every function; where something was wrong, what could not be understood is left out of it.
     pub(super) fn functions(&self) -> impl Iterator<Item = &'a Function> + use<'a> {
-        self.unit.functions.iter().filter(|function| !function.has_errors)
+        self.unit.functions.iter()
+    }
+
+    /// The functions that say all that was written: for lints that report what is not there.
+    pub(super) fn whole_functions(&self) -> impl Iterator<Item = &'a Function> + use<'a> {
+        self.functions().filter(|function| !function.has_errors)
     }
 
     /// The symbol with linkage that has this name.

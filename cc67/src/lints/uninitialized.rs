@@ -1,33 +1,53 @@
 //! Reads of locals in which nothing was stored.
 //!
-//! Only what is certain is reported: no store stands before the read in the text, and none
-//! behind it in a loop around both. Functions with labels are left out. Locals in memory are,
-//! too: their address may have been passed on.
+//! Certain is a read if no store stands before it in the text, and none behind it in a loop
+//! around both. Possible is one that some path reaches without a store; which paths are taken
+//! is not known, so that many of these are false alarms. Functions with labels are left out.
+//! Locals in memory are, too: their address may have been passed on.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::Lint;
+use super::flow::Flow;
 use super::program::Program;
 use crate::diag::{Diagnostic, Sink};
 use crate::source::Span;
 use crate::typed::{
-    Callee, ExprId, ExprKind, Function, LocalId, LoopTest, PlaceId, PlaceKind, Stmt, StmtKind,
+    Callee, ExprId, ExprKind, Function, LocalId, LoopTest, PlaceId, PlaceKind, Stmt, StmtKind, UnaryOp,
 };
 
 /// Reports every local that is read before anything is stored in it, once.
 pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
     program
-        .functions()
+        .whole_functions()
         .filter(|function| function.labels.is_empty())
         .for_each(|function| search(function, sink));
 }
 
 fn search(function: &Function, sink: &mut Sink) {
-    let mut search = Search { function, stored: BTreeSet::new(), suspects: BTreeMap::new() };
-    search.stored.extend(&function.parameters);
-    search.stored.extend(function.variable_arguments);
-    search.stored.extend(function.result_pointer);
+    let mut search = Search {
+        function,
+        stored: BTreeSet::new(),
+        suspects: BTreeMap::new(),
+        flow: Flow::start(),
+        doubtful: BTreeMap::new(),
+        exits: Vec::new(),
+    };
+    let hidden = function.variable_arguments.iter().chain(&function.result_pointer);
+    function.parameters.iter().chain(hidden).for_each(|local| search.stored_in(*local));
     search.stmts(&function.body);
+    for (local, span) in &search.doubtful {
+        if search.suspects.contains_key(local) {
+            continue;
+        }
+        let local = &function.locals[*local];
+        let message = format!("`{}` may be read before it has a value", local.name);
+        sink.report(
+            Diagnostic::warning(Lint::MaybeUninitialized, *span, message)
+                .at("a way leads here on which nothing is stored in it")
+                .label(local.span, "declared without a value"),
+        );
+    }
     for (local, span) in search.suspects {
         let local = &function.locals[local];
         sink.report(
@@ -47,6 +67,26 @@ struct Search<'a> {
     stored: BTreeSet<LocalId>,
     /// Locals that were read first, and where.
     suspects: BTreeMap<LocalId, Span>,
+    /// What every way to the current place has stored in.
+    flow: Flow,
+    /// Locals that were read where not every way stores in them, and where.
+    doubtful: BTreeMap<LocalId, Span>,
+    /// The loops and switches around the current place, the innermost last.
+    exits: Vec<Exits>,
+}
+
+/// Where the ways out of a loop or switch meet.
+struct Exits {
+    /// In front of the cases of a switch; `None` for a loop.
+    cases: Option<Flow>,
+    breaks: Flow,
+    continues: Flow,
+}
+
+impl Exits {
+    fn new(cases: Option<Flow>) -> Self {
+        Self { cases, breaks: Flow::Unreachable, continues: Flow::Unreachable }
+    }
 }
 
 impl Search<'_> {
@@ -58,35 +98,109 @@ impl Search<'_> {
 
     fn stmt(&mut self, stmt: &Stmt) {
         match &stmt.kind {
-            StmtKind::Expr(expr) | StmtKind::Return(Some(expr)) | StmtKind::GotoAddress(expr) => {
-                self.expr(*expr);
-            }
+            StmtKind::Expr(expr) => self.expr(*expr),
             StmtKind::Block(inner) => self.stmts(inner),
             StmtKind::If { condition, then, otherwise } => {
-                self.expr(*condition);
+                let (holds, fails) = self.condition(Some(*condition));
+                self.flow = holds;
                 self.stmts(then);
+                let behind = std::mem::replace(&mut self.flow, fails);
                 self.stmts(otherwise);
+                self.flow.join(&behind);
             }
-            StmtKind::Loop { condition, test, body, step } => self.in_loop(|search| {
-                let (first, last) = match test {
-                    LoopTest::Before => (*condition, None),
-                    LoopTest::Behind => (None, *condition),
-                };
-                first.into_iter().for_each(|expr| search.expr(expr));
-                search.stmts(body);
-                step.iter().chain(&last).for_each(|expr| search.expr(*expr));
-            }),
-            StmtKind::Switch { value, body, .. } => {
+            StmtKind::Loop { condition, test, body, step } => {
+                self.in_loop(|search| search.turn(*condition, *test, body, *step));
+            }
+            StmtKind::Switch { value, has_default, body, .. } => {
                 self.expr(*value);
+                let cases = std::mem::replace(&mut self.flow, Flow::Unreachable);
+                self.exits.push(Exits::new(Some(cases)));
                 self.stmts(body);
+                let Some(Exits { cases: Some(cases), breaks, .. }) = self.exits.pop() else { return };
+                self.flow.join(&breaks);
+                if !has_default {
+                    self.flow.join(&cases);
+                }
             }
-            StmtKind::Case(_)
-            | StmtKind::DefaultCase
-            | StmtKind::Break
-            | StmtKind::Continue
-            | StmtKind::Return(None)
-            | StmtKind::Label(_)
-            | StmtKind::Goto(_) => {}
+            StmtKind::Case(_) | StmtKind::DefaultCase => {
+                if let Some(cases) = self.exits.iter().rev().find_map(|exits| exits.cases.as_ref()) {
+                    self.flow.join(cases);
+                }
+            }
+            StmtKind::Break | StmtKind::Continue | StmtKind::Return(_) | StmtKind::GotoAddress(_) => {
+                self.leave(&stmt.kind);
+            }
+            StmtKind::Label(_) | StmtKind::Goto(_) => {}
+        }
+    }
+
+    /// A statement that nothing follows directly.
+    fn leave(&mut self, kind: &StmtKind) {
+        if let StmtKind::Return(Some(value)) | StmtKind::GotoAddress(value) = kind {
+            self.expr(*value);
+        }
+        let flow = std::mem::replace(&mut self.flow, Flow::Unreachable);
+        let meeting = match kind {
+            StmtKind::Break => self.exits.last_mut().map(|exits| &mut exits.breaks),
+            StmtKind::Continue => {
+                let inner_loop = self.exits.iter_mut().rev().find(|exits| exits.cases.is_none());
+                inner_loop.map(|exits| &mut exits.continues)
+            }
+            _ => None,
+        };
+        if let Some(meeting) = meeting {
+            meeting.join(&flow);
+        }
+    }
+
+    /// A loop: no turn begins with less than the first one.
+    fn turn(&mut self, condition: Option<ExprId>, test: LoopTest, body: &[Stmt], step: Option<ExprId>) {
+        self.exits.push(Exits::new(None));
+        let before = (test == LoopTest::Before).then(|| self.condition(condition));
+        let mut behind = Flow::Unreachable;
+        if let Some((holds, fails)) = before {
+            (self.flow, behind) = (holds, fails);
+        }
+        self.stmts(body);
+        if let Some(exits) = self.exits.last() {
+            self.flow.join(&exits.continues);
+        }
+        step.into_iter().for_each(|step| self.expr(step));
+        if test == LoopTest::Behind {
+            behind = self.condition(condition).1;
+        }
+        if let Some(exits) = self.exits.pop() {
+            behind.join(&exits.breaks);
+        }
+        self.flow = behind;
+    }
+
+    /// A condition, or none that is always true: what is stored in if it holds, and if it does not.
+    fn condition(&mut self, condition: Option<ExprId>) -> (Flow, Flow) {
+        let Some(condition) = condition else { return (self.flow.clone(), Flow::Unreachable) };
+        match self.function.exprs[condition].kind {
+            ExprKind::And(a, b) => {
+                let (holds, mut fails) = self.condition(Some(a));
+                self.flow = holds;
+                let (holds, other) = self.condition(Some(b));
+                fails.join(&other);
+                (holds, fails)
+            }
+            ExprKind::Or(a, b) => {
+                let (mut holds, fails) = self.condition(Some(a));
+                self.flow = fails;
+                let (other, fails) = self.condition(Some(b));
+                holds.join(&other);
+                (holds, fails)
+            }
+            ExprKind::Unary(UnaryOp::Not, value) => {
+                let (holds, fails) = self.condition(Some(value));
+                (fails, holds)
+            }
+            _ => {
+                self.expr(condition);
+                (self.flow.clone(), self.flow.clone())
+            }
         }
     }
 
@@ -102,11 +216,8 @@ impl Search<'_> {
         // A long sum leans to the left: its spine is walked, not recursed into.
         let mut spine = Vec::new();
         let mut first = expr;
-        while let ExprKind::Binary(_, a, b)
-        | ExprKind::Compare(_, a, b)
-        | ExprKind::And(a, b)
-        | ExprKind::Or(a, b)
-        | ExprKind::Comma(a, b) = self.function.exprs[first].kind
+        while let ExprKind::Binary(_, a, b) | ExprKind::Compare(_, a, b) | ExprKind::Comma(a, b) =
+            self.function.exprs[first].kind
         {
             spine.push(b);
             first = a;
@@ -138,7 +249,19 @@ impl Search<'_> {
                 self.place(*from);
             }
             ExprKind::Unary(_, value) | ExprKind::Convert(value) => self.expr(*value),
-            ExprKind::Conditional(test, a, b) => [test, a, b].into_iter().for_each(|expr| self.expr(*expr)),
+            ExprKind::And(..) | ExprKind::Or(..) => {
+                let (holds, fails) = self.condition(Some(expr));
+                self.flow = holds;
+                self.flow.join(&fails);
+            }
+            ExprKind::Conditional(test, a, b) => {
+                let (holds, fails) = self.condition(Some(*test));
+                self.flow = holds;
+                self.expr(*a);
+                let behind = std::mem::replace(&mut self.flow, fails);
+                self.expr(*b);
+                self.flow.join(&behind);
+            }
             ExprKind::Call(call) => {
                 if let Callee::Pointer(pointer) = call.callee {
                     self.expr(pointer);
@@ -150,11 +273,7 @@ impl Search<'_> {
                 value.iter().for_each(|expr| self.expr(*expr));
             }
             // The spine of `expr` never ends in these.
-            ExprKind::Binary(_, a, b)
-            | ExprKind::Compare(_, a, b)
-            | ExprKind::And(a, b)
-            | ExprKind::Or(a, b)
-            | ExprKind::Comma(a, b) => {
+            ExprKind::Binary(_, a, b) | ExprKind::Compare(_, a, b) | ExprKind::Comma(a, b) => {
                 self.expr(*a);
                 self.expr(*b);
             }
@@ -173,14 +292,26 @@ impl Search<'_> {
     fn read(&mut self, place: PlaceId) {
         let PlaceKind::Local(local, _) = self.function.places[place].kind else { return self.place(place) };
         let Some(entry) = self.function.locals.get(local) else { return };
-        if !entry.in_memory && !entry.name.is_empty() && !self.stored.contains(&local) {
-            self.suspects.entry(local).or_insert(self.function.places[place].span);
+        if entry.in_memory || entry.name.is_empty() {
+            return;
+        }
+        let span = self.function.places[place].span;
+        if !self.stored.contains(&local) {
+            self.suspects.entry(local).or_insert(span);
+        }
+        if !self.flow.contains(local) {
+            self.doubtful.entry(local).or_insert(span);
         }
     }
 
     fn store(&mut self, place: PlaceId) {
         if let PlaceKind::Local(local, _) = self.function.places[place].kind {
-            self.stored.insert(local);
+            self.stored_in(local);
         }
+    }
+
+    fn stored_in(&mut self, local: LocalId) {
+        self.stored.insert(local);
+        self.flow.insert(local);
     }
 }

@@ -9,7 +9,7 @@ use crate::typed::PlaceKind;
 
 /// Reports every such variable; parameters are often there for the caller's sake.
 pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
-    for function in program.functions() {
+    for function in program.whole_functions() {
         let mentioned: BTreeSet<_> = function
             .places
             .values()

@@ -100,6 +100,11 @@ impl Sema<'_> {
                 let message = "an integer from a pointer without a cast";
                 self.warn_conversion(Lint::IntPointer, message, value, to, target, span);
             }
+            _ if self.is_pointee(value, to, target) => {
+                let refusal = self.refusal(from, to, target, span);
+                self.report(refusal.help(missing_address::help(self.sources, span)));
+                return None;
+            }
             _ => {
                 self.refuse_conversion(from, to, target, span);
                 return None;
@@ -266,10 +271,13 @@ impl Sema<'_> {
     }
 
     pub(super) fn refuse_conversion(&mut self, from: TypeId, to: TypeId, target: Target, span: Span) {
+        let refusal = self.refusal(from, to, target, span);
+        self.report(refusal);
+    }
+
+    fn refusal(&self, from: TypeId, to: TypeId, target: Target, span: Span) -> Diagnostic {
         let (from, to) = (self.spell(from), self.spell(to));
-        self.report(
-            Diagnostic::error(span, format!("{}: cannot convert `{from}` to `{to}`", self.describe(target)))
-                .at(format!("this is `{from}`, wanted is `{to}`")),
-        );
+        Diagnostic::error(span, format!("{}: cannot convert `{from}` to `{to}`", self.describe(target)))
+            .at(format!("this is `{from}`, wanted is `{to}`"))
     }
 }
