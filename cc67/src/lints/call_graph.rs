@@ -11,11 +11,16 @@ use crate::typed::{Callee, Function, SymbolId};
 /// The functions of a unit and their calls.
 pub(super) struct CallGraph<'a> {
     functions: BTreeMap<SymbolId, &'a Function>,
+    calls: BTreeMap<SymbolId, Vec<(SymbolId, Span)>>,
 }
 
 impl<'a> CallGraph<'a> {
     pub(super) fn new(program: &Program<'a>) -> Self {
-        Self { functions: program.functions().map(|function| (function.symbol, function)).collect() }
+        let functions: BTreeMap<_, _> =
+            program.functions().map(|function| (function.symbol, function)).collect();
+        let calls =
+            functions.iter().map(|(symbol, function)| (*symbol, calls(&functions, function))).collect();
+        Self { functions, calls }
     }
 
     /// A function that the unit defines.
@@ -24,16 +29,8 @@ impl<'a> CallGraph<'a> {
     }
 
     /// The functions of the unit that a function calls, each with the place of its first call.
-    pub(super) fn callees(&self, symbol: SymbolId) -> Vec<(SymbolId, Span)> {
-        let mut seen = BTreeSet::new();
-        let calls = self.function(symbol).into_iter().flat_map(Function::calls);
-        calls
-            .filter_map(|(expr, call)| match call.callee {
-                Callee::Symbol(callee) => Some((callee, expr.span)),
-                Callee::Pointer(_) => None,
-            })
-            .filter(|(callee, _)| self.functions.contains_key(callee) && seen.insert(*callee))
-            .collect()
+    pub(super) fn callees(&self, symbol: SymbolId) -> &[(SymbolId, Span)] {
+        self.calls.get(&symbol).map_or(&[], Vec::as_slice)
     }
 
     /// Every function that `root` reaches, each with the one that calls it first; `root` has none.
@@ -42,12 +39,21 @@ impl<'a> CallGraph<'a> {
         let mut open = vec![root];
         while let Some(caller) = open.pop() {
             for (callee, _) in self.callees(caller) {
-                reached.entry(callee).or_insert_with(|| {
-                    open.push(callee);
+                reached.entry(*callee).or_insert_with(|| {
+                    open.push(*callee);
                     Some(caller)
                 });
             }
         }
         reached
     }
+}
+
+fn calls(functions: &BTreeMap<SymbolId, &Function>, function: &Function) -> Vec<(SymbolId, Span)> {
+    let mut seen = BTreeSet::new();
+    let called = function.calls().filter_map(|(expr, call)| match call.callee {
+        Callee::Symbol(callee) => Some((callee, expr.span)),
+        Callee::Pointer(_) => None,
+    });
+    called.filter(|(callee, _)| functions.contains_key(callee) && seen.insert(*callee)).collect()
 }

@@ -1,35 +1,60 @@
 //! Functions that call themselves: nobody can tell how much of the small stack they need.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
 use super::Lint;
 use super::call_graph::CallGraph;
 use super::program::Program;
 use crate::diag::{Diagnostic, Sink};
+use crate::source::Span;
 use crate::typed::SymbolId;
 
-/// Reports every function that its own calls lead back to, if `main` reaches it.
+/// Reports every function that is called while it runs, if `main` reaches it.
 pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
-    let graph = CallGraph::new(program);
     let Some(main) = program.symbol("main") else { return };
-    let mut reported: BTreeSet<SymbolId> = BTreeSet::new();
-    for (symbol, _) in graph.reached_from(main) {
-        for (callee, span) in graph.callees(symbol) {
-            let reached = graph.reached_from(callee);
-            if !reached.contains_key(&symbol) || reached.keys().any(|other| reported.contains(other)) {
-                continue;
+    for (callee, (caller, span)) in calls_back(&CallGraph::new(program), main) {
+        let name = program.name(callee);
+        let message = match callee == caller {
+            true => format!("`{name}` calls itself"),
+            false => format!("`{}` calls `{name}`, which led to it", program.name(caller)),
+        };
+        sink.report(
+            Diagnostic::warning(Lint::Recursion, span, message)
+                .at("how deep, the compiler cannot tell")
+                .note("a thread has 2048 bytes of stack"),
+        );
+    }
+}
+
+/// The functions that are called again on the way down from `root`, each with the call that does it first.
+fn calls_back(graph: &CallGraph<'_>, root: SymbolId) -> BTreeMap<SymbolId, (SymbolId, Span)> {
+    /// A function whose calls are being followed, and how many of them were.
+    struct Open {
+        symbol: SymbolId,
+        followed: usize,
+    }
+    let mut found = BTreeMap::new();
+    // Whether a function that was met is still open.
+    let mut is_open = BTreeMap::from([(root, true)]);
+    let mut path = vec![Open { symbol: root, followed: 0 }];
+    while let Some(Open { symbol, followed }) = path.last_mut() {
+        let symbol = *symbol;
+        let Some((callee, span)) = graph.callees(symbol).get(*followed).copied() else {
+            is_open.insert(symbol, false);
+            path.pop();
+            continue;
+        };
+        *followed += 1;
+        match is_open.get(&callee) {
+            Some(true) => {
+                found.entry(callee).or_insert((symbol, span));
             }
-            reported.insert(symbol);
-            let name = program.name(symbol);
-            let message = match callee == symbol {
-                true => format!("`{name}` calls itself"),
-                false => format!("`{name}` calls `{}`, which leads back to it", program.name(callee)),
-            };
-            sink.report(
-                Diagnostic::warning(Lint::Recursion, span, message)
-                    .at("how deep, the compiler cannot tell")
-                    .note("a thread has 2048 bytes of stack"),
-            );
+            Some(false) => {}
+            None => {
+                is_open.insert(callee, true);
+                path.push(Open { symbol: callee, followed: 0 });
+            }
         }
     }
+    found
 }

@@ -94,7 +94,7 @@ impl Depths<'_> {
         }
         self.known.insert(symbol, None);
         let (mut deepest, mut next) = (0, None);
-        for (callee, span) in self.graph.callees(symbol) {
+        for (callee, span) in self.graph.callees(symbol).iter().copied() {
             let bytes = self.below(callee);
             if bytes > deepest {
                 (deepest, next) = (bytes, Some((callee, span)));
