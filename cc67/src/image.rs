@@ -129,17 +129,18 @@ impl Table {
         let next = self.entries + 6;
         let first_line = self.lines.len() as u32;
         self.lines.push(Line::Function(self.entries));
-        self.lines.extend(linked.lines.get(function.lines.clone()).unwrap_or_default().iter().filter_map(
-            |line| {
-                // The format counts lines in 16 bits; later ones cannot be recorded.
-                let number = u16::try_from(line.place.line).ok().and_then(NonZeroU16::new)?;
-                Some(Line::Statement { address: line.address.get(), line: number })
-            },
-        ));
+        self.lines.extend(
+            linked
+                .lines
+                .get(function.lines.clone())
+                .unwrap_or_default()
+                .iter()
+                .filter_map(|line| statement(line.address.get(), line.place.line)),
+        );
         let entries = self.lines.len() as u32 - first_line;
         self.first_lines.push((self.symbols.len(), first_line));
 
-        let ty = SymbolType::new(BaseType::INT).derived(Derivation::Function);
+        let ty = function_type();
         let sizes = FunctionAux { size: symbol.size.into(), next: next.into(), ..FunctionAux::default() };
         self.push(&symbol.name, symbol.address.get(), text, ty, class(symbol.linkage), &[Aux::new(&sizes)]);
         let begin =
@@ -204,24 +205,49 @@ impl Table {
     }
 }
 
-const fn class(linkage: Linkage) -> StorageClass {
+/// A line entry. The format counts lines in 16 bits; later ones cannot be recorded.
+pub(crate) fn statement(address: u32, line: u32) -> Option<Line> {
+    let line = u16::try_from(line).ok().and_then(NonZeroU16::new)?;
+    Some(Line::Statement { address, line })
+}
+
+/// The type that the format records for every function.
+pub(crate) const fn function_type() -> SymbolType {
+    SymbolType::new(BaseType::INT).derived(Derivation::Function)
+}
+
+pub(crate) const fn class(linkage: Linkage) -> StorageClass {
     match linkage {
         Linkage::External => StorageClass::EXTERNAL,
         Linkage::Internal => StorageClass::STATIC,
     }
 }
 
-fn base_type(kind: SymbolKind) -> SymbolType {
+/// The type that the format records for a kind of symbol.
+pub(crate) const fn base_type(kind: SymbolKind) -> SymbolType {
     SymbolType::new(match kind {
+        SymbolKind::Function => return function_type(),
         SymbolKind::Char => BaseType::CHAR,
         SymbolKind::Short => BaseType::SHORT,
         SymbolKind::Float => BaseType::FLOAT,
         SymbolKind::Double => BaseType::DOUBLE,
-        SymbolKind::Function | SymbolKind::Int | SymbolKind::Other => BaseType::INT,
+        SymbolKind::Int | SymbolKind::Other => BaseType::INT,
     })
 }
 
+/// The kind of symbol that a type stands for: the reverse, as far as the format tells.
+pub(crate) fn kind_of(ty: SymbolType) -> SymbolKind {
+    match ty.base() {
+        _ if ty == function_type() => SymbolKind::Function,
+        BaseType::CHAR => SymbolKind::Char,
+        BaseType::SHORT => SymbolKind::Short,
+        BaseType::FLOAT => SymbolKind::Float,
+        BaseType::DOUBLE => SymbolKind::Double,
+        _ => SymbolKind::Int,
+    }
+}
+
 /// What fits 16 bits, else the largest number that does.
-fn to_u16(number: u32) -> u16 {
+pub(crate) fn to_u16(number: u32) -> u16 {
     u16::try_from(number).unwrap_or(u16::MAX)
 }

@@ -25,15 +25,20 @@ pub mod ast;
 mod binary;
 pub mod bytecode;
 pub mod cli;
+pub mod compare;
 pub mod diag;
+pub mod download;
 pub mod firmware;
+pub mod foreign;
 pub mod image;
 mod includers;
+pub mod inspect;
 pub mod ir;
 mod library;
 pub mod link;
 pub mod lints;
 pub mod lower;
+pub mod map;
 pub mod names;
 pub mod object;
 pub mod parse;
@@ -87,9 +92,11 @@ impl Default for Options {
     }
 }
 
-/// A compiled source file, its errors included.
+/// A compiled source file, its errors included; or an object that was compiled earlier.
 #[derive(Debug)]
 pub struct Compilation {
+    /// The name of the file, for messages.
+    pub name: String,
     /// The files that were read.
     pub sources: SourceMap,
     /// What was found.
@@ -121,9 +128,10 @@ pub fn compile(path: &Path, text: Vec<u8>, options: &Options, files: &(dyn pp::F
 
 fn compile_here(path: &Path, text: Vec<u8>, options: &Options, files: &dyn pp::Files) -> Compilation {
     let (mut sources, mut names, mut sink) = (SourceMap::new(), Names::new(), Sink::new());
+    let name = path.to_string_lossy().into_owned();
     if let Some(what) = binary::not_source(&text) {
         sink.report(Diagnostic::global_error(format!("{} is not C source text but {what}", path.display())));
-        return Compilation { sources, sink, object: None, included_by: Vec::new() };
+        return Compilation { name, sources, sink, object: None, included_by: Vec::new() };
     }
     let main = sources.add_file(path.to_string_lossy(), Some(path), text, None);
     let tokens = pp::preprocess(main, &options.preprocessor, files, &mut sources, &mut names, &mut sink);
@@ -134,7 +142,7 @@ fn compile_here(path: &Path, text: Vec<u8>, options: &Options, files: &dyn pp::F
         (!sink.has_errors()).then(|| bytecode::unit::compile(&unit, &sources, options.level, &mut sink));
     let object = object.filter(|_| !sink.has_errors());
     let included_by = if unit.defines("main") { Vec::new() } else { includers(path, files) };
-    Compilation { sources, sink, object, included_by }
+    Compilation { name, sources, sink, object, included_by }
 }
 
 impl Compilation {
@@ -149,38 +157,59 @@ impl Compilation {
         diagnostics
     }
 
-    /// The name of the file that was compiled.
-    fn main_file(&self) -> &str {
-        self.sources.files().next().map_or("", |(_, file)| &file.name)
+    /// A unit that was compiled earlier, read from the bytes of an object file.
+    ///
+    /// # Errors
+    /// Why the bytes are no object.
+    pub fn from_object(path: &Path, bytes: &[u8]) -> Result<Self, object::ReadError> {
+        let object = Some(Object::read(bytes)?);
+        let name = path.to_string_lossy().into_owned();
+        Ok(Self { name, sources: SourceMap::new(), sink: Sink::new(), object, included_by: Vec::new() })
     }
 
     /// Links the object, with what it needs of the C library, for `thread`; what is missing joins the other diagnostics.
     pub fn link(&mut self, thread: ThreadId, options: &Options) -> Option<Linked> {
-        let object = self.object.as_ref()?;
-        let mut objects = vec![object.clone()];
-        objects.extend(library::members_for(object));
-        let options = link::Options { thread, firmware: &options.firmware, gc: options.gc_sections };
-        match link::link(&objects, &options) {
-            Ok(linked) => {
-                for warning in &linked.warnings {
-                    self.sink.report(Diagnostic::global_warning(warning.to_string()));
-                }
-                Some(linked)
+        link_units(std::slice::from_mut(self), thread, options)
+    }
+}
+
+/// Links units, with what they need of the C library, to one program for `thread`; `None` if one of
+/// them has errors.
+///
+/// What is missing joins the diagnostics of the unit that needs it, what concerns the whole
+/// program those of the first. The units' objects are used up.
+pub fn link_units(units: &mut [Compilation], thread: ThreadId, options: &Options) -> Option<Linked> {
+    if units.iter().any(|unit| unit.object.is_none()) {
+        return None;
+    }
+    let mut objects: Vec<Object> = units.iter_mut().filter_map(|unit| unit.object.take()).collect();
+    objects.extend(library::members_for(&objects));
+    let options = link::Options { thread, firmware: &options.firmware, gc: options.gc_sections };
+    match link::link(&objects, &options) {
+        Ok(linked) => {
+            let unit = units.first_mut()?;
+            for warning in &linked.warnings {
+                unit.sink.report(Diagnostic::global_warning(warning.to_string()));
             }
-            Err(errors) => {
-                for error in &errors {
-                    let mut diagnostic = error.to_diagnostic();
-                    if diagnostic.span.is_none() {
-                        diagnostic.message = format!("{}: {}", self.main_file(), diagnostic.message);
-                    }
-                    if error.kind == LinkErrorKind::NoMain && !self.included_by.is_empty() {
-                        diagnostic = diagnostic
-                            .note(format!("this file is included by {}", self.included_by.join(", ")));
-                    }
-                    self.sink.report(diagnostic);
+            Some(linked)
+        }
+        Err(errors) => {
+            for error in &errors {
+                let index = error.object.filter(|index| *index < units.len());
+                let unit = units.get_mut(index.unwrap_or(0))?;
+                let mut diagnostic = error.to_diagnostic();
+                // The places of library members are in no source that the user has.
+                diagnostic.span = diagnostic.span.filter(|_| index.is_some());
+                if diagnostic.span.is_none() {
+                    diagnostic.message = format!("{}: {}", unit.name, diagnostic.message);
                 }
-                None
+                if error.kind == LinkErrorKind::NoMain && !unit.included_by.is_empty() {
+                    let programs = unit.included_by.join(", ");
+                    diagnostic = diagnostic.note(format!("this file is included by {programs}"));
+                }
+                unit.sink.report(diagnostic);
             }
+            None
         }
     }
 }

@@ -38,22 +38,24 @@ impl Files for NoFiles {
     }
 }
 
-/// The members that `object` uses and does not define, compiled. The first name of a member asks for it.
-pub(crate) fn members_for(object: &Object) -> Vec<Object> {
-    MEMBERS.iter().filter(|member| is_wanted(object, member)).filter_map(compiled).collect()
+/// The members that `objects` use and do not define, compiled. The first name of a member asks for it.
+pub(crate) fn members_for(objects: &[Object]) -> Vec<Object> {
+    MEMBERS.iter().filter(|member| is_wanted(objects, member)).filter_map(compiled).collect()
 }
 
-fn is_wanted(object: &Object, member: &Member) -> bool {
+fn is_wanted(objects: &[Object], member: &Member) -> bool {
     let defines = |name: &&str| {
-        object.symbols.values().any(|symbol| {
+        objects.iter().flat_map(|object| object.symbols.values()).any(|symbol| {
             symbol.name == **name
                 && symbol.linkage == Linkage::External
                 && symbol.definition != Definition::None
         })
     };
     let uses = |name: &str| {
-        object.symbols.values().any(|symbol| {
-            symbol.name == name && symbol.used_at.is_some() && symbol.definition == Definition::None
+        objects.iter().any(|object| {
+            let text = object.relocations.iter().map(|relocation| relocation.symbol);
+            let data = object.data_relocations.iter().map(|relocation| relocation.symbol);
+            text.chain(data).any(|id| object.symbols.get(id).is_some_and(|symbol| symbol.name == name))
         })
     };
     member.names.first().is_some_and(|name| uses(name)) && !member.names.iter().any(defines)

@@ -99,6 +99,8 @@ fn digest(bytes: &[u8]) -> Option<String> {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig::with_cases(10_000))]
+
     #[test]
     fn an_image_is_read_as_it_was_written(image in image()) {
         let bytes = image.write().expect("small images fit");

@@ -4,8 +4,8 @@
 //! design.md D7) and yields a [`Prepared`] that the board can take without failing. The vendor's
 //! own loader checks next to nothing; a mistake there overwrites another thread's program.
 
-use coff::{Contents, Image, Line, Section, SectionNumber, StorageClass, Target};
-use kmotiondef::limits::VERSION_STAMP;
+use coff::{Contents, FileFlags, Image, Line, Section, SectionFlags, SectionNumber, StorageClass, Target};
+use kmotiondef::limits::{VERSION, VERSION_STAMP};
 use kmotiondef::map::{PROGRAM_BASE, PROGRAM_SIZE, STACK_BASE, program_base};
 use kmotiondef::{GuestAddr, ThreadId};
 use vm::program::Program;
@@ -68,16 +68,22 @@ pub enum LoadError {
     #[error("code for target {0}, not for the simulated board")]
     OtherTarget(Target),
     /// Linked against another firmware.
-    #[error("linked against firmware with version stamp {found}; the board has {VERSION_STAMP}")]
+    #[error("linked against firmware of {}; the board runs {}", version(*found), VERSION.trim_end())]
     OtherFirmware {
         /// The image's stamp.
         found: i16,
     },
+    /// An object, or an image with something left to link.
+    #[error("an object that is not linked yet; `cc67 build` links it")]
+    NotLinked,
     /// A part that every image has is missing.
     #[error("the image has no {0}")]
     Missing(&'static str),
     /// Linked for another thread.
-    #[error("the image is linked for thread {linked}, not for thread {wanted}")]
+    #[error(
+        "the image is linked for thread {linked}, not for thread {wanted}: its code and data stand at the \
+         addresses of thread {linked}; load it there, or build it for thread {wanted}"
+    )]
     OtherThread {
         /// Thread it is linked for.
         linked: ThreadId,
@@ -131,7 +137,7 @@ pub fn prepare(
     let program = verify(text.data(), GuestAddr::new(text.address)).map_err(LoadError::Refused)?;
     let entry = GuestAddr::new(header.entry);
     program.function_at(entry).ok_or(LoadError::Entry(entry))?;
-    let sections = image.sections.iter().map(place).collect();
+    let sections = image.sections.iter().filter(|section| is_loaded(section)).map(place).collect();
     Ok(Prepared { program, entry, sections, debug: debug(&image) })
 }
 
@@ -141,12 +147,35 @@ fn check_origin(image: &Image) -> Result<(), LoadError> {
         Target::C6000 => return Err(LoadError::MachineCode),
         other => return Err(LoadError::OtherTarget(other)),
     }
+    let has_relocations = image.sections.iter().any(|section| !section.relocations.is_empty());
+    if has_relocations || !image.flags.contains(FileFlags::EXECUTABLE) {
+        return Err(LoadError::NotLinked);
+    }
     match image.program {
         Some(header) if header.version_stamp != VERSION_STAMP => {
             Err(LoadError::OtherFirmware { found: header.version_stamp })
         }
         _ => Ok(()),
     }
+}
+
+/// A version stamp in words.
+fn version(stamp: i16) -> String {
+    match stamp {
+        1.. => format!("version {}.{:02}", stamp / 100, stamp % 100),
+        _ => "an unknown version".to_owned(),
+    }
+}
+
+/// Whether a load puts the section into memory (`coff.md` section 9.2).
+fn is_loaded(section: &Section) -> bool {
+    let is = |flag| section.flags.contains(flag);
+    let is_kept_back = is(SectionFlags::DSECT) || is(SectionFlags::NOLOAD) || is(SectionFlags::COPY);
+    let has_bytes = match section.contents {
+        Contents::Data(_) => true,
+        Contents::Uninitialised(_) => section.name == *".bss" && is(SectionFlags::BSS),
+    };
+    section.size() > 0 && !is_kept_back && has_bytes
 }
 
 fn check_thread(text: &Section, wanted: ThreadId) -> Result<(), LoadError> {
@@ -174,7 +203,7 @@ fn check_sections(
     holds: impl Fn(ThreadId) -> bool,
 ) -> Result<(), LoadError> {
     let mut ranges = Vec::new();
-    for section in image.sections.iter().filter(|section| section.size() > 0) {
+    for section in image.sections.iter().filter(|section| is_loaded(section)) {
         let (start, end) = (u64::from(section.address), u64::from(section.address) + section.size());
         if start < u64::from(program_base(thread).get()) || end > u64::from(STACK_BASE) {
             return Err(outside(section));

@@ -254,3 +254,71 @@ fn firmware_symbols() -> Vec<Symbol> {
 pub fn board_firmware() -> Vec<u8> {
     firmware_file(VERSION)
 }
+
+/// The image that the vendor's compiler makes of
+///
+/// ```c
+/// int count = 7;
+/// int total;
+/// static int helper() { return 1; }
+/// int main()
+/// {
+///     total = total + count;
+///     return total;
+/// }
+/// ```
+///
+/// for thread 1, the code replaced by zeros. `helper` is a label whose opening line entry names
+/// the symbol behind the last one.
+#[must_use]
+pub fn image() -> Vec<u8> {
+    let (text, data, bss) = (0x8005_0000, 0x8005_0080, 0x8005_00A0);
+    let file = Symbol::new("tiny.c", 33, -2, 0, 103);
+    let lines_at = 50 + 2 * 48 + 0x7C + 4;
+    let mut main = Symbol::new("main", text + 0x20, 1, 0x24, 2);
+    main.aux.push(bytes(&[(0, 4), (0x5C, 4), (lines_at + 4 * 6, 4), (7, 4), (0, 2)]));
+    let mut begin = Symbol::new(".bf", text + 0x20, 1, 0, 101);
+    begin.aux.push(bytes(&[(0, 4), (0, 2), (4, 2), (0, 4), (7, 4), (0, 2)]));
+    let mut end = Symbol::new(".ef", text + 0x7C, 1, 0, 101);
+    end.aux.push(bytes(&[(0, 4), (8, 2), (0, 12)]));
+    let mut symbols = vec![file, main, begin, end];
+    let int = |name: &str, value: u32| Symbol::new(name, value, 2, 4, 2).plain_aux();
+    symbols.extend([int("", 0), int("", text), int("count", data), int("total", bss)]);
+    symbols.push(Symbol::new("helper", text, 2, 4, 6).plain_aux());
+    symbols.push(Symbol::new("L.0", text + 0x64, 2, 4, 6).plain_aux());
+    let firmware = FIRMWARE_FUNCTIONS.iter().filter(|function| function.origin != Origin::Library);
+    symbols.extend(firmware.map(|function| int(function.name, function.address.get())));
+    symbols.extend(FIRMWARE_VARIABLES.iter().map(|variable| int(variable.name, variable.address.get())));
+    for (name, value) in [
+        ("_etext", text + 0x7C),
+        ("_edata", data + 4),
+        ("_end", bss),
+        ("__start_.text", text),
+        ("__stop_.text", text + 0x7C),
+        ("__start_.data", data),
+        ("__stop_.data", data + 4),
+        ("__start_.bss", bss),
+        ("__stop_.bss", bss + 4),
+        ("_GLOBAL_OFFSET_TABLE_", data),
+    ] {
+        symbols.push(int(name, value));
+    }
+    let entries: usize = symbols.iter().map(|symbol| 1 + symbol.aux.len()).sum();
+    let lines = vec![
+        (entries as u32, 0),
+        (text, 3),
+        (text + 0x08, 4),
+        (text + 0x14, 4),
+        (1, 0),
+        (text + 0x20, 5),
+        (text + 0x34, 6),
+        (text + 0x34, 7),
+        (text + 0x64, 8),
+    ];
+    let sections = vec![
+        Section { name: ".text", address: text, flags: 0x560, data: Ok(vec![0; 0x7C]), lines },
+        Section { name: ".data", address: data, flags: 0x40, data: Ok(vec![7, 0, 0, 0]), lines: Vec::new() },
+    ];
+    let optional = [0x190, 0x7C, 4, 4, text + 0x20, text, data];
+    File { tool: Tool::Compiler, timestamp: 0, optional, sections, symbols }.write()
+}

@@ -4,6 +4,7 @@
 //! [`registers`] gives every value a register, [`select`] writes the words, [`meter`] inserts
 //! the charges. [`mod@unit`] puts functions, data and symbols together.
 
+pub(crate) mod head;
 mod legalize;
 mod meter;
 mod operators;

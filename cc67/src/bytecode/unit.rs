@@ -76,7 +76,7 @@ impl Compiler<'_> {
                 kind,
                 size,
                 align: types.align_of(symbol.ty).max(symbol.align).max(1),
-                span: symbol.span,
+                span: Some(symbol.span),
                 place,
                 used_at: symbol.used_at,
             });
@@ -156,7 +156,8 @@ impl Compiler<'_> {
             self.object.text.push(Op::Types { classes: Classes(bits) });
         }
         let start = self.object.text.len() as u32;
-        self.lines(first, start, &code.spans);
+        let file = self.object.symbols[ir.symbol].place.file;
+        self.lines(file, first, start, &code.spans);
         let object = &mut self.object;
         object.text.extend(code.ops.into_iter().map(|mut op| {
             if let Op::Br { to } | Op::BrIf { to, .. } | Op::BrUnless { to, .. } = &mut op {
@@ -180,16 +181,31 @@ impl Compiler<'_> {
         });
     }
 
-    /// Records the lines of a function that begins at word `first` and whose code begins at `start`.
-    fn lines(&mut self, first: u32, start: u32, spans: &[(u32, Span)]) {
+    /// Records the lines of a function of `file` that begins at word `first` and whose code begins at `start`.
+    fn lines(&mut self, file: u32, first: u32, start: u32, spans: &[(u32, Span)]) {
         let mut last = None;
         for (index, (word, span)) in spans.iter().enumerate() {
-            let place = self.place(*span);
+            let place = self.place_in(file, *span);
             if last != Some(place) {
                 let word = if index == 0 { first } else { start + word };
                 self.object.lines.push(Line { word, place });
                 last = Some(place);
             }
+        }
+    }
+
+    /// The line of `file` that `span` belongs to: what a function's body includes counts as the
+    /// line of the `#include`, because an image knows one file a function.
+    fn place_in(&self, file: u32, span: Span) -> SourceLine {
+        let mut at = span;
+        loop {
+            let place = self.place(at);
+            if place.file == file {
+                return place;
+            }
+            let included = self.sources.place(at).and_then(|at| self.sources.file(at.file).included_at);
+            let Some(include) = included else { return self.place(span) };
+            at = include;
         }
     }
 

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 pub enum Exit {
     /// The programs ended, or the asked-for time is over.
     Success = 0,
-    /// The source has errors.
+    /// The source has errors; or the images that are compared differ.
     SourceErrors = 1,
     /// Wrong usage or input.
     WrongInput = 2,

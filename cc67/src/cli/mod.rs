@@ -3,16 +3,22 @@
 //! What a program prints goes to stdout byte for byte, everything else to stderr. Messages
 //! about the request or its inputs are single lines that begin with `cc67: `.
 
+mod build;
 mod check;
+mod diff;
 mod events;
 mod exit;
 mod explain;
+mod firmware;
+mod inspect;
 mod options;
+mod output;
 mod planned;
 mod program;
 mod run;
 mod setting;
 mod terminal;
+mod units;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -40,8 +46,16 @@ const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (models KFLOP firmwar
 enum Command {
     /// Compile programs into threads, execute them on the simulated board, print the console
     Run(run::Arguments),
+    /// Compile and link a program for a thread into an image, FILE(N).out
+    Build(build::Arguments),
     /// Compile programs and report what is wrong with them
     Check(check::Arguments),
+    /// Show what is in an image: headers, symbols, lines, instructions, calls, stack
+    Inspect(inspect::Arguments),
+    /// Show how two images differ
+    Diff(diff::Arguments),
+    /// The simulated firmware as a file to link against, and as a list
+    Firmware(firmware::Arguments),
     #[command(flatten)]
     Planned(planned::Command),
 }
@@ -50,7 +64,11 @@ impl Command {
     fn run(&self) -> Result<Exit> {
         match self {
             Self::Run(arguments) => run::run(arguments),
+            Self::Build(arguments) => build::build(arguments),
             Self::Check(arguments) => check::check(arguments),
+            Self::Inspect(arguments) => inspect::inspect(arguments),
+            Self::Diff(arguments) => diff::diff(arguments),
+            Self::Firmware(arguments) => firmware::firmware(arguments),
             Self::Planned(command) => command.refuse(),
         }
     }

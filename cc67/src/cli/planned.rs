@@ -26,12 +26,8 @@ macro_rules! planned_commands {
 }
 
 planned_commands! {
-    Build = "build";
     Console = "console";
-    Diff = "diff";
-    Firmware = "firmware";
     Init = "init";
-    Inspect = "inspect";
     Plot = "plot";
     Test = "test";
 }

@@ -8,6 +8,7 @@ use anyhow::{Context, Result};
 use clap::{Args, ValueEnum};
 use kmotiondef::{Cycles, ThreadId, Ticks};
 use runtime::debug::DebugInfo;
+use runtime::loader::LoadError;
 use runtime::{Board, Config, Directory, Event, EventKind, RunEnd};
 use vm::engine::Engine;
 use vm::interp::BytecodeEngine;
@@ -16,11 +17,10 @@ use vm::machine::Config as MachineConfig;
 use super::options::CompilerOptions;
 use super::program::{Program, assign};
 use super::setting::{self, Setting};
-use super::{Exit, events, terminal};
+use super::{Exit, events, terminal, units};
 use crate::lints::levels::Levels;
-use crate::pp::Disk;
 use crate::render::Format;
-use crate::{Options, image};
+use crate::{Options, foreign, image};
 
 /// Seconds of board time after which a run without `--for` ends.
 const DEFAULT_LIMIT: f64 = 60.0;
@@ -109,7 +109,7 @@ impl Session<'_> {
     fn run<E: Engine>(&self, config: Config) -> Result<Exit> {
         let mut board: Board<E> = Board::new(config);
         for (program, image) in self.programs.iter().zip(&self.images) {
-            board.load(program.thread, image).with_context(|| program.name().to_string())?;
+            board.load(program.thread, image).map_err(|error| explain(program, image, error))?;
         }
         for Setting { address, bytes } in &self.settings {
             board
@@ -164,13 +164,23 @@ fn build(
     levels: &Levels,
     format: Format,
 ) -> Result<Option<Vec<u8>>> {
-    let mut compilation = crate::compile(&program.path, text, options, &Disk);
+    let mut compilation = units::unit(&program.path, text, options)?;
     let linked = compilation.link(program.thread, options);
     if terminal::report(&compilation, levels, format) {
         return Ok(None);
     }
     let Some(linked) = linked else { return Ok(None) };
     Ok(Some(image::write(&linked).with_context(|| program.name().to_string())?))
+}
+
+/// Why an image is not loaded; of another tool's file, what it is.
+fn explain(program: &Program, image: &[u8], error: LoadError) -> anyhow::Error {
+    match (&error, foreign::describe(image)) {
+        (LoadError::NotAnImage(_), Some(what)) => {
+            anyhow::anyhow!("{} is {what}, not an image of `cc67 build`", program.name())
+        }
+        _ => anyhow::Error::new(error).context(program.name().to_string()),
+    }
 }
 
 /// Runs the board and prints what happens.

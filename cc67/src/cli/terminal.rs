@@ -34,6 +34,17 @@ fn color() -> Color {
     if shown { Color::Always } else { Color::Never }
 }
 
+/// Prints the diagnostics of several units; returns whether one of them has errors.
+pub(super) fn report_all(units: &[Compilation], levels: &Levels, format: Format) -> bool {
+    units.iter().filter(|unit| report(unit, levels, format)).count() > 0
+}
+
+/// How many warnings of a unit are shown.
+pub(super) fn warnings(unit: &Compilation, levels: &Levels) -> usize {
+    let shown = unit.diagnostics().into_iter().filter_map(|diagnostic| levels.apply(diagnostic));
+    shown.filter(|diagnostic| diagnostic.severity == Severity::Warning).count()
+}
+
 /// Prints the diagnostics of a compilation; returns whether it has errors.
 pub(super) fn report(compilation: &Compilation, levels: &Levels, format: Format) -> bool {
     let shown: Vec<_> =

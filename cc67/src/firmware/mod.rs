@@ -6,9 +6,11 @@
 //! saying what their types are, because the file does not.
 
 mod built_in;
+mod export;
 mod file;
 
 pub use built_in::BuiltIn;
+pub use export::export;
 pub use file::{FirmwareError, FirmwareFile};
 
 use std::sync::Arc;

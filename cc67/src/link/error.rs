@@ -13,6 +13,8 @@ pub struct LinkError {
     pub span: Option<Span>,
     /// What is wrong.
     pub kind: LinkErrorKind,
+    /// Who needs the symbol that it is about: "`main` (a.c:5)".
+    pub users: Vec<String>,
 }
 
 /// What is wrong.
@@ -30,10 +32,14 @@ pub enum LinkErrorKind {
         suggestion: Option<String>,
     },
     /// Two units define one name.
-    #[error("`{name}` is defined twice")]
+    #[error("`{name}` is defined twice, in {first} and in {second}")]
     DefinedTwice {
         /// The name.
         name: String,
+        /// File and line of the first definition.
+        first: String,
+        /// File and line of the second.
+        second: String,
     },
     /// A call of something that is no function.
     #[error("`{name}` is called, but is not a function")]
@@ -67,7 +73,7 @@ pub enum LinkErrorKind {
 impl LinkError {
     /// An error that concerns the whole program.
     pub(super) const fn global(kind: LinkErrorKind) -> Self {
-        Self { object: None, span: None, kind }
+        Self { object: None, span: None, kind, users: Vec::new() }
     }
 
     /// The error as a diagnostic; its span belongs to the sources of the object it concerns.
@@ -76,6 +82,12 @@ impl LinkError {
         let diagnostic = match self.span {
             Some(span) => Diagnostic::error(span, message),
             None => Diagnostic::global_error(message),
+        };
+        // What the diagnostic shows as source text needs no words.
+        let shown = usize::from(self.span.is_some());
+        let diagnostic = match self.users.get(shown..) {
+            None | Some([]) => diagnostic,
+            Some(users) => diagnostic.note(format!("used by {}", enumerate(users))),
         };
         match &self.kind {
             LinkErrorKind::Undefined { name, suggestion: Some(near) } => {
@@ -90,11 +102,26 @@ impl LinkError {
             LinkErrorKind::NoMain => diagnostic
                 .note("a program begins at `main`")
                 .help("compile the program that includes this file, or write a `main`"),
-            LinkErrorKind::DefinedTwice { .. }
-            | LinkErrorKind::NotAFunction { .. }
+            LinkErrorKind::DefinedTwice { .. } => {
+                diagnostic.help("make one of them `static`, rename it, or leave its file out")
+            }
+            LinkErrorKind::NotAFunction { .. }
             | LinkErrorKind::CallMismatch { .. }
             | LinkErrorKind::TooManySignatures => diagnostic,
         }
+    }
+}
+
+/// How many users are named.
+const NAMED_USERS: usize = 6;
+
+/// "a, b and 3 others".
+fn enumerate(users: &[String]) -> String {
+    let named = users[..users.len().min(NAMED_USERS)].join(", ");
+    match users.len().saturating_sub(NAMED_USERS) {
+        0 => named,
+        1 => format!("{named} and one other"),
+        others => format!("{named} and {others} others"),
     }
 }
 

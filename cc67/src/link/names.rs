@@ -57,14 +57,20 @@ impl<'a> Names<'a> {
             for (id, symbol) in
                 object.symbols.iter().filter(|(_, symbol)| symbol.linkage == Linkage::External)
             {
-                errors.extend(names.define(index, id, symbol));
+                errors.extend(names.define(objects, index, id, symbol));
             }
         }
         if errors.is_empty() { Ok(names) } else { Err(errors) }
     }
 
     /// Enters an external definition; an error if there is another that is not tentative.
-    fn define(&mut self, object: usize, id: SymbolId, symbol: &'a Symbol) -> Option<LinkError> {
+    fn define(
+        &mut self,
+        objects: &[Object],
+        object: usize,
+        id: SymbolId,
+        symbol: &'a Symbol,
+    ) -> Option<LinkError> {
         let known = self.external.get(symbol.name.as_str()).copied();
         let new = match (symbol.definition, known) {
             (Definition::None, _)
@@ -81,15 +87,33 @@ impl<'a> Names<'a> {
                 self.uninitialized.push(uninitialized(object, id, symbol));
                 Defined::Bss(self.uninitialized.len() - 1)
             }
-            (_, Some(Defined::Function(..) | Defined::Data(..))) => {
-                let kind = LinkErrorKind::DefinedTwice { name: symbol.name.clone() };
-                return Some(LinkError { object: Some(object), span: Some(symbol.span), kind });
+            (_, Some(first @ (Defined::Function(..) | Defined::Data(..)))) => {
+                let (unit, place) = (&objects[object], symbol.place);
+                let kind = LinkErrorKind::DefinedTwice {
+                    name: symbol.name.clone(),
+                    first: self.place_of(objects, first),
+                    second: unit.describe(place),
+                };
+                return Some(LinkError { object: Some(object), span: symbol.span, kind, users: Vec::new() });
             }
             (Definition::Function(index), _) => Defined::Function(object, index),
             (Definition::Data(index), _) => Defined::Data(object, index),
         };
         self.external.insert(&symbol.name, new);
         None
+    }
+
+    /// File and line of a definition.
+    fn place_of(&self, objects: &[Object], defined: Defined) -> String {
+        let (object, symbol) = match defined {
+            Defined::Function(object, index) => (object, objects[object].functions[index as usize].symbol),
+            Defined::Data(object, index) => (object, objects[object].objects[index as usize].symbol),
+            Defined::Bss(index) => {
+                let found = &self.uninitialized[index];
+                (found.object, found.symbol)
+            }
+        };
+        objects[object].describe(objects[object].symbols[symbol].place)
     }
 
     /// What a symbol of an object means inside the program; `None` if no object defines it.

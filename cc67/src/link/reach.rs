@@ -3,7 +3,7 @@
 //! A walk over the relocations from `main`, or from every definition if nothing is to be left
 //! out. What a relocation refers to is worked out here, once for each symbol of an object.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 
 use cranelift_entity::SecondaryMap;
 use kmotiondef::GuestAddr;
@@ -69,7 +69,7 @@ pub(super) fn reach(
         },
         imports: BTreeMap::new(),
         missing: BTreeMap::new(),
-        pending: Vec::new(),
+        pending: VecDeque::new(),
     };
     if let Some((object, index)) = main {
         walk.need(Defined::Function(object, index));
@@ -98,7 +98,7 @@ struct Walk<'a> {
     imports: BTreeMap<&'a str, Import>,
     missing: BTreeMap<&'a str, LinkError>,
     /// Definitions whose relocations have not been looked at.
-    pending: Vec<Defined>,
+    pending: VecDeque<Defined>,
 }
 
 impl Walk<'_> {
@@ -118,25 +118,25 @@ impl Walk<'_> {
         };
         if !*needed {
             *needed = true;
-            self.pending.push(defined);
+            self.pending.push_back(defined);
         }
     }
 
     fn run(&mut self) {
-        while let Some(defined) = self.pending.pop() {
+        while let Some(defined) = self.pending.pop_front() {
             match defined {
                 Defined::Function(object, index) => {
                     let unit = &self.objects[object];
                     let range = unit.functions[index as usize].relocations.clone();
                     for relocation in &unit.relocations[range.start as usize..range.end as usize] {
-                        self.refer(object, relocation.symbol);
+                        self.refer(object, relocation.symbol, User::Word(index, relocation.word));
                     }
                 }
                 Defined::Data(object, index) => {
                     let unit = &self.objects[object];
                     let range = unit.objects[index as usize].relocations.clone();
                     for relocation in &unit.data_relocations[range.start as usize..range.end as usize] {
-                        self.refer(object, relocation.symbol);
+                        self.refer(object, relocation.symbol, User::Data(index));
                     }
                 }
                 Defined::Bss(_) => {}
@@ -145,7 +145,7 @@ impl Walk<'_> {
     }
 
     /// Works out what a symbol means, and needs it.
-    fn refer(&mut self, object: usize, id: SymbolId) {
+    fn refer(&mut self, object: usize, id: SymbolId, user: User) {
         if !matches!(self.reached.targets[object][id], Target::Unknown) {
             return;
         }
@@ -165,22 +165,53 @@ impl Walk<'_> {
                 FirmwareKind::Function(signature) => Target::Function(address, signature),
             }
         } else {
-            self.miss(object, id);
+            self.miss(object, id, user);
             Target::Unknown
         };
         self.reached.targets[object][id] = target;
     }
 
-    /// Records an undefined symbol, once for each name.
-    fn miss(&mut self, object: usize, id: SymbolId) {
-        let symbol = &self.objects[object].symbols[id];
-        if self.missing.contains_key(symbol.name.as_str()) {
+    /// Records an undefined symbol, once for each name, with everyone who needs it.
+    fn miss(&mut self, object: usize, id: SymbolId, user: User) {
+        let unit = &self.objects[object];
+        let symbol = &unit.symbols[id];
+        let user = user.describe(unit);
+        if let Some(known) = self.missing.get_mut(symbol.name.as_str()) {
+            if !known.users.contains(&user) {
+                known.users.push(user);
+            }
             return;
         }
         let candidates = self.names.external_names().chain(self.options.firmware.symbol_names());
         let suggestion = suggest(&symbol.name, candidates).map(str::to_owned);
         let kind = LinkErrorKind::Undefined { name: symbol.name.clone(), suggestion };
-        let span = symbol.used_at.unwrap_or(symbol.span);
-        self.missing.insert(&symbol.name, LinkError { object: Some(object), span: Some(span), kind });
+        let span = symbol.used_at.or(symbol.span);
+        let error = LinkError { object: Some(object), span, kind, users: vec![user] };
+        self.missing.insert(&symbol.name, error);
+    }
+}
+
+/// Who refers to a symbol.
+#[derive(Clone, Copy)]
+enum User {
+    /// A word of a function.
+    Word(u32, u32),
+    /// An initialised object.
+    Data(u32),
+}
+
+impl User {
+    fn describe(self, unit: &Object) -> String {
+        let (symbol, place) = match self {
+            Self::Word(function, word) => {
+                let function = &unit.functions[function as usize];
+                (function.symbol, unit.describe_word(function, word))
+            }
+            Self::Data(object) => {
+                let symbol = unit.objects[object as usize].symbol;
+                (symbol, unit.describe(unit.symbols[symbol].place))
+            }
+        };
+        format!("`{}` ({place})", unit.symbols[symbol].name)
     }
 }

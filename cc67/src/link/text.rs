@@ -3,14 +3,15 @@
 use std::collections::BTreeMap;
 
 use kmotiondef::GuestAddr;
-use vm::op::{Op, VERSION, WORD};
-use vm::operand::{Addr, Classes, Count, Count32, FuncRef, SigRef};
+use vm::op::{Op, WORD};
+use vm::operand::{Addr, FuncRef, SigRef};
 
 use super::error::{LinkError, LinkErrorKind};
 use super::names::Defined;
 use super::place::Placed;
 use super::reach::{Reached, Target};
 use super::{LinkedFunction, LinkedLine};
+use crate::bytecode::head;
 use crate::ir::function::{Signature, Signatures};
 use crate::ir::inst::SignatureId;
 use crate::object::{Function, Object, Relocation, RelocationKind, SourceLine};
@@ -37,8 +38,7 @@ impl Layout {
         layout.share_files(objects);
         layout.share_pool(objects);
         layout.share_signatures(objects, reached)?;
-        let head: u32 = layout.signatures.as_slice().iter().map(|s| 1 + type_words(s.params.len())).sum();
-        let mut word = 1 + layout.pool.len() as u32 + head;
+        let mut word = head::words(&layout.pool, layout.signatures.as_slice());
         for (object, unit) in objects.iter().enumerate() {
             let needed =
                 unit.functions.iter().enumerate().filter(|(index, _)| reached.functions[object][*index]);
@@ -111,29 +111,6 @@ impl Layout {
     fn number(&self, signature: &Signature) -> SigRef {
         SigRef(self.signatures.find(signature).map_or(0, |id| id.as_u32() as u16))
     }
-
-    /// The words in front of the functions.
-    fn head(&self, text: &mut Vec<u8>) {
-        let pool = Count32(self.pool.len() as u32);
-        text.extend_from_slice(&Op::Program { version: Count(VERSION), pool }.encode());
-        for value in &self.pool {
-            text.extend_from_slice(&value.to_le_bytes());
-        }
-        for signature in self.signatures.as_slice() {
-            let ret = Count(signature.result.map_or(0, |class| class as u16 + 1));
-            let params = Count(signature.params.len() as u16);
-            text.extend_from_slice(&Op::Sig { params, ret }.encode());
-            for classes in signature.params.chunks(16) {
-                let bits = classes.iter().rev().fold(0, |bits, class| bits << 2 | *class as u32);
-                text.extend_from_slice(&Op::Types { classes: Classes(bits) }.encode());
-            }
-        }
-    }
-}
-
-/// Words that hold the classes of `count` registers.
-const fn type_words(count: usize) -> u32 {
-    count.div_ceil(16) as u32
 }
 
 /// Everything that knows an address.
@@ -163,7 +140,7 @@ pub(super) fn text(
 ) -> Result<Vec<u8>, Vec<LinkError>> {
     let mut writer = Writer { objects, layout, addresses, text: Vec::new(), errors: Vec::new() };
     writer.text.reserve_exact(layout.words as usize * WORD);
-    layout.head(&mut writer.text);
+    head::write(&layout.pool, layout.signatures.as_slice(), &mut writer.text);
     for (object, index, word) in &layout.functions {
         writer.function(*object, &objects[*object].functions[*index as usize], *word);
     }
@@ -212,7 +189,7 @@ impl Writer<'_> {
                     }
                     RelocationKind::Call(signature) => match self.call(object, relocation, signature) {
                         Ok(op) => bytes = op.encode(),
-                        Err(error) => self.errors.push(error),
+                        Err(kind) => self.errors.push(fail(object, unit, function, relocation, kind)),
                     },
                 }
             }
@@ -222,15 +199,15 @@ impl Writer<'_> {
     }
 
     /// The call of a symbol.
-    fn call(&self, object: usize, relocation: &Relocation, signature: SignatureId) -> Result<Op, LinkError> {
+    fn call(
+        &self,
+        object: usize,
+        relocation: &Relocation,
+        signature: SignatureId,
+    ) -> Result<Op, LinkErrorKind> {
         let unit = &self.objects[object];
         let symbol = &unit.symbols[relocation.symbol];
         let called = unit.signatures.get(signature);
-        let fail = |kind| LinkError {
-            object: Some(object),
-            span: Some(symbol.used_at.unwrap_or(symbol.span)),
-            kind,
-        };
         let check = |defined: &Signature| {
             let fits = called.params == defined.params
                 && (called.result.is_none() || called.result == defined.result);
@@ -238,7 +215,7 @@ impl Writer<'_> {
                 return Ok(());
             }
             let (name, called, defined) = (symbol.name.clone(), show(called), show(defined));
-            Err(fail(LinkErrorKind::CallMismatch { name, called, defined }))
+            Err(LinkErrorKind::CallMismatch { name, called, defined })
         };
         match &self.addresses.reached.targets[object][relocation.symbol] {
             Target::Program(Defined::Function(unit, index)) => {
@@ -254,8 +231,27 @@ impl Writer<'_> {
                 let addr = Addr(address.get());
                 Ok(Op::CallFw { sig: self.layout.number(defined), addr })
             }
-            _ => Err(fail(LinkErrorKind::NotAFunction { name: symbol.name.clone() })),
+            _ => Err(LinkErrorKind::NotAFunction { name: symbol.name.clone() }),
         }
+    }
+}
+
+/// An error about the call that `relocation` completes.
+fn fail(
+    object: usize,
+    unit: &Object,
+    function: &Function,
+    relocation: &Relocation,
+    kind: LinkErrorKind,
+) -> LinkError {
+    let symbol = &unit.symbols[relocation.symbol];
+    let (caller, place) =
+        (&unit.symbols[function.symbol].name, unit.describe_word(function, relocation.word));
+    LinkError {
+        object: Some(object),
+        span: symbol.used_at.or(symbol.span),
+        kind,
+        users: vec![format!("`{caller}` ({place})")],
     }
 }
 

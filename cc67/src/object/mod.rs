@@ -3,6 +3,14 @@
 //! Code and data are cut into pieces, one for each function and object, so that the linker
 //! can place each by itself and leave out what nobody needs. Words that depend on a symbol's
 //! address are listed as relocations; labels count from the beginning of the unit's text.
+//!
+//! `cc67 build -c` keeps an object in a file: COFF with our target and relocations, `write` and
+//! `read` say how. What it loses are the positions in the source text, files and lines remain.
+
+mod read;
+mod write;
+
+pub use read::{ReadError, is_object};
 
 use std::ops::Range;
 
@@ -41,6 +49,24 @@ pub struct Object {
     pub objects: Vec<Initialized>,
 }
 
+impl Object {
+    /// File and line in words; the file alone if the line is unknown.
+    #[must_use]
+    pub fn describe(&self, place: SourceLine) -> String {
+        let file = self.files.get(place.file as usize).map_or("?", String::as_str);
+        if place.line == 0 { file.to_owned() } else { format!("{file}:{}", place.line) }
+    }
+
+    /// The line of the unit's word `word` in `function`, in words.
+    #[must_use]
+    pub fn describe_word(&self, function: &Function, word: u32) -> String {
+        let lines = &self.lines[function.lines.start as usize..function.lines.end as usize];
+        let after = lines.partition_point(|line| line.word <= word);
+        let line = after.checked_sub(1).and_then(|index| lines.get(index));
+        self.describe(line.map_or(self.symbols[function.symbol].place, |line| line.place))
+    }
+}
+
 /// A symbol of a unit.
 #[derive(Clone, Debug)]
 pub struct Symbol {
@@ -56,8 +82,8 @@ pub struct Symbol {
     pub size: u32,
     /// Alignment of an object.
     pub align: u32,
-    /// The defining declaration, else the first one.
-    pub span: Span,
+    /// The defining declaration, else the first one; `None` in an object that comes from a file.
+    pub span: Option<Span>,
     /// The same as file and line.
     pub place: SourceLine,
     /// The first use, for messages.

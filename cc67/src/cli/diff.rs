@@ -1,0 +1,33 @@
+//! `cc67 diff`: how two images differ.
+
+use std::path::PathBuf;
+
+use anyhow::Result;
+use clap::Args;
+
+use super::{Exit, inspect, output};
+use crate::compare::compare;
+use crate::inspect::Inspection;
+
+/// Arguments of `cc67 diff`.
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// An image
+    #[arg(value_name = "A")]
+    first: PathBuf,
+    /// Another one
+    #[arg(value_name = "B")]
+    second: PathBuf,
+}
+
+/// Prints the differences; exit code 1 if there are any.
+pub(super) fn diff(arguments: &Arguments) -> Result<Exit> {
+    let first = Inspection::new(inspect::read_image(&arguments.first)?);
+    let second = Inspection::new(inspect::read_image(&arguments.second)?);
+    let differences = compare(&first, &second);
+    if differences.is_empty() {
+        return Ok(Exit::Success);
+    }
+    output::print(&(differences.join("\n") + "\n"))?;
+    Ok(Exit::SourceErrors)
+}

@@ -1,0 +1,46 @@
+//! Files that commands write: under a temporary name first, so that nobody meets half a file.
+
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Result, anyhow};
+
+/// Writes a file and replaces what was there.
+pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<()> {
+    let temporary = temporary(path);
+    let written = fs::File::create(&temporary)
+        .and_then(|mut file| file.write_all(bytes).and_then(|()| file.sync_all()))
+        .and_then(|()| fs::rename(&temporary, path));
+    written.map_err(|error| {
+        // What is left of it helps nobody.
+        let _ = fs::remove_file(&temporary);
+        // The number that the library adds says nothing to the user.
+        let reason = error.to_string();
+        let reason = reason.split(" (os error").next().unwrap_or_default();
+        anyhow!("cannot write {}: {reason}", path.display())
+    })
+}
+
+/// Writes several files.
+pub(super) fn write_all(files: &[(PathBuf, Vec<u8>)]) -> Result<()> {
+    files.iter().try_for_each(|(path, bytes)| write(path, bytes))
+}
+
+/// A name in the same folder, so that the file can be renamed.
+fn temporary(path: &Path) -> PathBuf {
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(format!(".{}.tmp", std::process::id()));
+    path.with_file_name(name)
+}
+
+/// Prints what a command answers.
+pub(super) fn print(text: &str) -> Result<()> {
+    match std::io::stdout().write_all(text.as_bytes()) {
+        // A reader that has seen enough, as `head` has, is no failure.
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(anyhow!("cannot write to standard output: {error}"))
+        }
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,118 @@
+//! The code with the source lines that it was made of.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+use kmotiondef::variables::FIRMWARE_VARIABLES;
+use vm::op::{Op, WORD};
+use vm::program::Program;
+
+use super::Inspection;
+use super::calls::firmware_name;
+
+/// Where the text of source files comes from; images know their names without folders.
+pub trait Sources {
+    /// The text of the file with this name, if it is found.
+    fn text(&self, name: &str) -> Option<String>;
+}
+
+impl Inspection {
+    /// The instructions of every function, or of the one called `only`.
+    #[must_use]
+    pub fn disassembly(&self, sources: &dyn Sources, only: Option<&str>) -> String {
+        let program = match &self.program {
+            Ok(program) => program,
+            Err(reason) => return format!("no disassembly: {reason}\n"),
+        };
+        let mut printer =
+            Printer { inspection: self, program, sources, files: BTreeMap::new(), out: String::new() };
+        for function in program.functions() {
+            let start = function.at.0 as usize;
+            let name = self.function_name(program.address_of(start).get()).unwrap_or("?");
+            if only.is_none_or(|only| only == name) {
+                printer.function(name, start..function.body.end);
+            }
+        }
+        printer.out
+    }
+}
+
+struct Printer<'a> {
+    inspection: &'a Inspection,
+    program: &'a Program,
+    sources: &'a dyn Sources,
+    /// The lines of each file met so far; none if the file is not found.
+    files: BTreeMap<String, Vec<String>>,
+    out: String,
+}
+
+impl Printer<'_> {
+    fn function(&mut self, name: &str, words: std::ops::Range<usize>) {
+        // Writing to a string cannot fail.
+        let _ = writeln!(self.out, "{name}:");
+        let mut last = None;
+        for word in words {
+            let Some(op) = self.program.ops().get(word) else { break };
+            let address = self.program.address_of(word).get();
+            let line = self.inspection.line_at(address).map(|line| (line.file.clone(), line.line));
+            if line != last {
+                self.source(line.as_ref());
+                last = line;
+            }
+            let note = self.note(op);
+            let separator = if note.is_empty() { "" } else { "  ; " };
+            let _ = writeln!(self.out, "  {address:08x} @{word}: {op}{separator}{note}");
+        }
+        self.out.push('\n');
+    }
+
+    /// A line of the source, or its place where the file is not found.
+    fn source(&mut self, line: Option<&(Option<String>, u32)>) {
+        let Some((file, line)) = line else { return };
+        let file = file.as_deref().unwrap_or("?");
+        if !self.files.contains_key(file) {
+            let text = self.sources.text(file).unwrap_or_default();
+            self.files.insert(file.to_owned(), text.lines().map(str::to_owned).collect());
+        }
+        let lines = self.files.get(file).map_or(&[][..], Vec::as_slice);
+        let text = (*line as usize).checked_sub(1).and_then(|index| lines.get(index));
+        let _ = writeln!(self.out, "{file}:{line}: {}", text.map_or("", |text| text.trim_end()));
+    }
+
+    /// Names for the numbers of an instruction.
+    fn note(&self, op: &Op) -> String {
+        match *op {
+            Op::Call { func } => {
+                let address = self.program.base().get() + func.0 * WORD as u32;
+                self.inspection.function_name(address).unwrap_or_default().to_owned()
+            }
+            Op::CallFw { addr, .. } => firmware_name(self.inspection, addr.0),
+            Op::ConstI32 { imm, .. } => self.object(imm.0.cast_unsigned()),
+            Op::ConstF64 { pool, .. } => {
+                let bits = self.program.pool().get(pool.0 as usize).copied();
+                bits.map_or_else(String::new, |bits| f64::from_bits(bits).to_string())
+            }
+            Op::ConstF32 { bits, .. } => f32::from_bits(bits.0).to_string(),
+            // Loads and stores print the address that they use.
+            _ => op.to_string().rsplit_once(", 0x").map_or_else(String::new, |(_, address)| {
+                u32::from_str_radix(address, 16)
+                    .map_or_else(|_| String::new(), |address| self.object(address))
+            }),
+        }
+    }
+
+    /// "table+4" for an address of the program or of a firmware variable.
+    fn object(&self, address: u32) -> String {
+        let variable = || {
+            let mut all = FIRMWARE_VARIABLES.iter();
+            let found = all.find(|variable| address.wrapping_sub(variable.address.get()) < variable.size)?;
+            Some((found.name, found.address.get()))
+        };
+        let entry = self.inspection.at(address).map(|entry| (entry.name.as_str(), entry.address));
+        match entry.or_else(variable) {
+            Some((name, start)) if start == address => name.to_owned(),
+            Some((name, start)) => format!("{name}+{}", address - start),
+            None => String::new(),
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! What an image tells about itself.
+//!
+//! [`Inspection`] takes an image apart once: functions, objects, lines, and for images of our own
+//! the verified program, from which disassembly, calls and stack depth follow. Machine code for
+//! the DSP has everything but these three. The modules beside this one put parts of it into words.
+
+mod calls;
+mod disassembly;
+mod json;
+mod lines;
+mod stack;
+mod symbols;
+
+pub use disassembly::Sources;
+pub use lines::SourceLine;
+pub use symbols::{Entry, Kind, Order};
+
+use std::fmt::Write as _;
+
+use coff::{Image, Target, dump};
+use kmotiondef::GuestAddr;
+use vm::program::Program;
+use vm::verify::verify;
+
+use self::calls::Calls;
+
+/// An image, taken apart.
+#[derive(Debug)]
+pub struct Inspection {
+    /// The image.
+    pub image: Image,
+    /// Functions and objects with addresses, in ascending order.
+    pub symbols: Vec<Entry>,
+    /// The source line of each address where one begins, ascending.
+    pub lines: Vec<SourceLine>,
+    /// The code, if the machine can run it; else why not.
+    pub program: Result<Program, String>,
+}
+
+impl Inspection {
+    /// Takes an image apart.
+    #[must_use]
+    pub fn new(image: Image) -> Self {
+        let symbols = symbols::collect(&image);
+        let lines = lines::collect(&image, &symbols);
+        let program = program(&image);
+        Self { image, symbols, lines, program }
+    }
+
+    /// Headers and sections.
+    #[must_use]
+    pub fn headers(&self) -> String {
+        let mut text = dump::headers(&self.image);
+        if let Some(program) = &self.image.program
+            && let Some(entry) = self.at(program.entry)
+        {
+            // Writing to a string cannot fail.
+            let _ = writeln!(text, "entry is `{}`", entry.name);
+        }
+        text + &dump::relocations(&self.image)
+    }
+
+    /// The function or object that `address` lies in.
+    #[must_use]
+    pub fn at(&self, address: u32) -> Option<&Entry> {
+        let after = self.symbols.partition_point(|entry| entry.address <= address);
+        let entry = self.symbols.get(after.checked_sub(1)?)?;
+        let is_inside = address - entry.address < entry.size.unwrap_or(0).max(1);
+        is_inside.then_some(entry)
+    }
+
+    /// The name of a function at exactly this address.
+    fn function_name(&self, address: u32) -> Option<&str> {
+        let entry = self.at(address).filter(|entry| entry.address == address)?;
+        Some(&entry.name)
+    }
+
+    /// Who calls whom.
+    #[must_use]
+    pub fn calls(&self) -> String {
+        match &self.program {
+            Ok(program) => Calls::of(self, program).render(),
+            Err(reason) => format!("no call graph: {reason}\n"),
+        }
+    }
+
+    /// The guest stack that each function needs, and the worst chain of calls.
+    #[must_use]
+    pub fn stack(&self) -> String {
+        match &self.program {
+            Ok(program) => stack::render(self, &Calls::of(self, program)),
+            Err(reason) => format!("no stack depth: {reason}\n"),
+        }
+    }
+}
+
+/// The verified code of an image.
+fn program(image: &Image) -> Result<Program, String> {
+    match image.target {
+        Target::CC67 if image.program.is_none() => return Err("the object is not linked".to_owned()),
+        Target::CC67 => {}
+        Target::C6000 => return Err("machine code of the DSP is not disassembled".to_owned()),
+        other => return Err(format!("code for target {other}")),
+    }
+    let text = image.section(".text").ok_or("there is no section .text")?;
+    verify(text.data(), GuestAddr::new(text.address)).map_err(|error| error.to_string())
+}

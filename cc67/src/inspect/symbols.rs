@@ -1,0 +1,182 @@
+//! The functions and objects of an image.
+
+use std::cmp::Reverse;
+use std::fmt::Write as _;
+
+use coff::{Image, SectionNumber, StorageClass, Symbol, Target};
+
+use super::Inspection;
+
+/// What a symbol names.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A function.
+    Function,
+    /// An object.
+    Object,
+    /// A jump target or a constant without a name of its own.
+    Label,
+    /// A function or variable of the firmware, or a limit of a section.
+    Absolute,
+    /// Something that another object defines.
+    Undefined,
+}
+
+impl Kind {
+    /// In one word.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Function => "function",
+            Self::Object => "object",
+            Self::Label => "label",
+            Self::Absolute => "absolute",
+            Self::Undefined => "undefined",
+        }
+    }
+}
+
+/// A function or object.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Entry {
+    /// Its name.
+    pub name: String,
+    /// Its address.
+    pub address: u32,
+    /// Its size in bytes, if the image says so.
+    pub size: Option<u32>,
+    /// Its section, or where else it is.
+    pub section: String,
+    /// What it is.
+    pub kind: Kind,
+    /// Whether other units see it.
+    pub is_external: bool,
+    /// The file of a function.
+    pub file: Option<String>,
+}
+
+/// How a list of symbols is sorted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Order {
+    /// By address.
+    Address,
+    /// The largest first.
+    Size,
+    /// By name.
+    Name,
+}
+
+/// Everything of the symbol table that has a name and an address, by address.
+pub(super) fn collect(image: &Image) -> Vec<Entry> {
+    let mut entries = Vec::new();
+    let mut file = None;
+    for symbol in &image.symbols {
+        if symbol.class == StorageClass::FILE {
+            file = Some(symbol.name.to_string());
+        }
+        let is_listed =
+            matches!(symbol.class, StorageClass::EXTERNAL | StorageClass::STATIC | StorageClass::LABEL);
+        if !is_listed || symbol.name.as_bytes().is_empty() {
+            continue;
+        }
+        let kind = kind(image, symbol);
+        entries.push(Entry {
+            name: symbol.name.to_string(),
+            address: symbol.value,
+            size: size(image, symbol, kind),
+            section: section(image, symbol),
+            kind,
+            is_external: symbol.class == StorageClass::EXTERNAL,
+            file: file.clone().filter(|_| kind == Kind::Function),
+        });
+    }
+    // Of several names for one address the one that says most comes last, where it is found.
+    entries.sort_by_key(|entry| (entry.address, entry.kind != Kind::Absolute, entry.size));
+    entries
+}
+
+fn kind(image: &Image, symbol: &Symbol) -> Kind {
+    if symbol.class == StorageClass::LABEL {
+        return Kind::Label;
+    }
+    match symbol.section {
+        SectionNumber::UNDEFINED => Kind::Undefined,
+        SectionNumber::ABSOLUTE => Kind::Absolute,
+        SectionNumber(1) => Kind::Function,
+        _ if image.target == Target::CC67 => Kind::Object,
+        // The vendor's compiler writes section 2 for everything; the address tells.
+        _ if inside(image, symbol.value) => Kind::Object,
+        _ => Kind::Absolute,
+    }
+}
+
+/// Whether an address lies between the first and the last byte of the program.
+fn inside(image: &Image, address: u32) -> bool {
+    let sections = image.sections.iter().filter(|section| section.size() > 0);
+    let start = sections.clone().map(|section| section.address).min().unwrap_or(0);
+    let end = sections.map(|section| u64::from(section.address) + section.size()).max().unwrap_or(0);
+    let bss = image.program.map_or(0, |program| u64::from(program.bss_size) + 32);
+    (u64::from(start)..end + bss).contains(&u64::from(address))
+}
+
+/// The vendor's compiler writes an entry without a size behind everything but functions.
+fn size(image: &Image, symbol: &Symbol, kind: Kind) -> Option<u32> {
+    let has_size = image.target == Target::CC67 || kind == Kind::Function;
+    symbol.size().filter(|_| has_size)
+}
+
+fn section(image: &Image, symbol: &Symbol) -> String {
+    let index = usize::try_from(symbol.section.0).ok().and_then(|number| number.checked_sub(1));
+    match index.and_then(|index| image.sections.get(index)) {
+        Some(section) if image.target == Target::CC67 || section.flags.0 & 0x20 != 0 => {
+            section.name.to_string()
+        }
+        Some(_) => {
+            let found = image.sections.iter().find(|section| {
+                let start = u64::from(section.address);
+                (start..start + section.size()).contains(&u64::from(symbol.value))
+            });
+            found.map_or_else(|| "-".to_owned(), |section| section.name.to_string())
+        }
+        None if symbol.section == SectionNumber(3) => ".bss".to_owned(),
+        None => symbol.section.to_string(),
+    }
+}
+
+impl Inspection {
+    /// The symbols in the given order.
+    #[must_use]
+    pub fn sorted(&self, order: Order) -> Vec<&Entry> {
+        let mut entries: Vec<_> = self.symbols.iter().collect();
+        match order {
+            Order::Address => {}
+            Order::Size => entries.sort_by_key(|entry| Reverse(entry.size)),
+            Order::Name => entries.sort_by(|a, b| a.name.cmp(&b.name)),
+        }
+        entries
+    }
+
+    /// The symbols as a table.
+    #[must_use]
+    pub fn symbol_table(&self, order: Order) -> String {
+        if self.symbols.is_empty() {
+            return "no symbols\n".to_owned();
+        }
+        let mut out = String::from("address      size section  kind      name\n");
+        for entry in self.sorted(order) {
+            let size = entry.size.map_or_else(|| "-".to_owned(), |size| size.to_string());
+            let local = if entry.is_external { "" } else { " (static)" };
+            let file = entry.file.as_ref().map_or_else(String::new, |file| format!(" in {file}"));
+            // Writing to a string cannot fail.
+            let _ = writeln!(
+                out,
+                "{:08x} {size:>8} {:8} {:9} {}{local}{file}",
+                entry.address,
+                entry.section,
+                entry.kind.name(),
+                entry.name
+            );
+        }
+        out
+    }
+}

@@ -1,0 +1,346 @@
+//! The bytes of a file to an object: the reverse of `write`.
+//!
+//! A file is not trusted. What the linker relies on is checked here: every number of a symbol,
+//! signature, constant or word exists. Whether the code makes sense is for the machine's verifier.
+
+use std::ops::Range;
+
+use coff::{Contents, FileFlags, Image, Line as CoffLine, SectionNumber, StorageClass, Target};
+use cranelift_entity::EntityRef;
+use vm::op::{Op, WORD};
+
+use super::write::{ADDRESS, BSS, CALL, DATA, TEXT};
+use super::{
+    DataRelocation, Definition, Function, Initialized, Line, Object, Relocation, RelocationKind, SourceLine,
+    Symbol,
+};
+use crate::bytecode::head;
+use crate::image::kind_of;
+use crate::ir::inst::SignatureId;
+use crate::typed::{Linkage, SymbolId};
+
+/// Largest alignment of an object.
+const MAX_ALIGN: u32 = 64;
+
+/// Why a file is no object.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ReadError {
+    /// The bytes are not COFF.
+    #[error("not an object file: {0}")]
+    NotCoff(#[from] coff::Error),
+    /// It is made for another machine.
+    #[error("not an object file of cc67: it is for target {0}")]
+    OtherTarget(Target),
+    /// It is linked already.
+    #[error("the file is a linked image; a program is linked from sources and objects")]
+    Linked,
+    /// A section is missing.
+    #[error("the object has no section {0}")]
+    Missing(&'static str),
+    /// It is made by another version of cc67, or damaged.
+    #[error("the code of the object is not of this version of cc67; compile it again")]
+    Code,
+    /// A symbol does not fit the sections.
+    #[error("symbol `{0}` lies outside its section")]
+    Symbol(String),
+    /// A relocation does not fit the code or the data.
+    #[error("the relocation at {address:#x} of {section} is wrong")]
+    Relocation {
+        /// Its section.
+        section: &'static str,
+        /// Its address there.
+        address: u32,
+    },
+}
+
+/// Whether bytes are an object of ours rather than an image or something else.
+#[must_use]
+pub fn is_object(bytes: &[u8]) -> bool {
+    coff::File::parse(bytes)
+        .is_ok_and(|file| file.target() == Target::CC67 && !file.flags().contains(FileFlags::EXECUTABLE))
+}
+
+impl Object {
+    /// Reads an object file.
+    ///
+    /// # Errors
+    /// Why the bytes are none.
+    pub fn read(bytes: &[u8]) -> Result<Self, ReadError> {
+        let image = Image::read(bytes)?;
+        if image.target != Target::CC67 {
+            return Err(ReadError::OtherTarget(image.target));
+        }
+        if image.flags.contains(FileFlags::EXECUTABLE) {
+            return Err(ReadError::Linked);
+        }
+        let mut reader = Reader::new(&image)?;
+        reader.symbols()?;
+        reader.functions()?;
+        reader.data()?;
+        Ok(reader.object)
+    }
+}
+
+struct Reader<'a> {
+    text: &'a coff::Section,
+    data: &'a coff::Section,
+    symbols: &'a [coff::Symbol],
+    object: Object,
+    /// Words in front of the first function.
+    head: u32,
+    /// The unit's symbol at each index of the format.
+    ids: Vec<Option<SymbolId>>,
+    functions: Vec<Placed>,
+    objects: Vec<(Range<u32>, SymbolId)>,
+}
+
+/// A function as its symbols describe it.
+struct Placed {
+    words: Range<u32>,
+    symbol: SymbolId,
+    /// Its index as the format counts.
+    index: u32,
+    end: SourceLine,
+}
+
+impl<'a> Reader<'a> {
+    fn new(image: &'a Image) -> Result<Self, ReadError> {
+        let section = |number: SectionNumber, name: &'static str| {
+            let section = image.sections.get(usize::from(number.0.unsigned_abs()) - 1);
+            section.filter(|section| section.name == *name).ok_or(ReadError::Missing(name))
+        };
+        let (text, data, bss) = (section(TEXT, ".text")?, section(DATA, ".data")?, section(BSS, ".bss")?);
+        if !matches!(bss.contents, Contents::Uninitialised(_)) {
+            return Err(ReadError::Missing(".bss"));
+        }
+        let (words, rest) = text.data().as_chunks::<WORD>();
+        let (pool, signatures, head) =
+            head::read(words).filter(|_| rest.is_empty()).ok_or(ReadError::Code)?;
+        let mut object = Object { pool, data: data.data().to_vec(), ..Object::default() };
+        for signature in &signatures {
+            object.signatures.intern(signature);
+        }
+        if object.signatures.as_slice().len() != signatures.len() {
+            return Err(ReadError::Code);
+        }
+        let head = head as u32;
+        for word in words.iter().skip(head as usize) {
+            object.text.push(decode(*word, head, &object).ok_or(ReadError::Code)?);
+        }
+        let (ids, functions, objects) = (Vec::new(), Vec::new(), Vec::new());
+        Ok(Self { text, data, symbols: &image.symbols, object, head, ids, functions, objects })
+    }
+
+    fn symbols(&mut self) -> Result<(), ReadError> {
+        let mut symbols = self.symbols.iter();
+        while let Some(symbol) = symbols.next() {
+            let index = self.ids.len() as u32;
+            self.ids.resize(self.ids.len() + 1 + symbol.aux.len(), None);
+            match symbol.class {
+                StorageClass::FILE => self.object.files.push(symbol.name.to_string()),
+                StorageClass::EXTERNAL | StorageClass::STATIC => {
+                    let id = self.symbol(symbol, index)?;
+                    self.ids[index as usize] = Some(id);
+                    if symbol.section == TEXT {
+                        let (Some(begin), Some(end)) = (symbols.next(), symbols.next()) else {
+                            return Err(wrong(symbol));
+                        };
+                        self.ids.resize(self.ids.len() + 2 + begin.aux.len() + end.aux.len(), None);
+                        self.boundaries(id, begin, end);
+                    }
+                }
+                _ => return Err(wrong(symbol)),
+            }
+        }
+        Ok(())
+    }
+
+    fn symbol(&mut self, symbol: &coff::Symbol, index: u32) -> Result<SymbolId, ReadError> {
+        let aux = symbol.aux.first().map(coff::Aux::as_object).unwrap_or_default();
+        let (size, align) = (aux.size.get(), aux.align.get().max(1));
+        let is_function = symbol.section == TEXT;
+        if !is_function && (align > MAX_ALIGN || !align.is_power_of_two()) {
+            return Err(wrong(symbol));
+        }
+        let id = SymbolId::new(self.object.symbols.len());
+        let end = symbol.value.checked_add(size).ok_or_else(|| wrong(symbol))?;
+        let definition = match (symbol.section, symbol.aux.is_empty()) {
+            (TEXT, _) => {
+                let words = self.words(symbol.value..end).ok_or_else(|| wrong(symbol))?;
+                self.functions.push(Placed { words, symbol: id, index, end: SourceLine::default() });
+                Definition::None
+            }
+            (DATA, _) if u64::from(end) <= self.data.size() => {
+                self.objects.push((symbol.value..end, id));
+                Definition::None
+            }
+            (BSS, _) | (SectionNumber::UNDEFINED, false) => Definition::Tentative,
+            (SectionNumber::UNDEFINED, true) => Definition::None,
+            _ => return Err(wrong(symbol)),
+        };
+        self.object.symbols.push(Symbol {
+            name: symbol.name.to_string(),
+            linkage: if symbol.class == StorageClass::EXTERNAL {
+                Linkage::External
+            } else {
+                Linkage::Internal
+            },
+            definition,
+            kind: kind_of(symbol.ty),
+            size: if is_function { 0 } else { size },
+            align: if is_function { 1 } else { align },
+            span: None,
+            place: SourceLine { file: aux.file.get(), line: u32::from(aux.line.get()) },
+            used_at: None,
+        });
+        Ok(id)
+    }
+
+    /// What `.bf` and `.ef` say of a function.
+    fn boundaries(&mut self, id: SymbolId, begin: &coff::Symbol, end: &coff::Symbol) {
+        let place = |symbol: &coff::Symbol| {
+            let aux = symbol.aux.first().map(coff::Aux::as_boundary).unwrap_or_default();
+            SourceLine { file: aux.tag.get(), line: u32::from(aux.line.get()) }
+        };
+        self.object.symbols[id].place = place(begin);
+        if let Some(function) = self.functions.last_mut() {
+            function.end = place(end);
+        }
+    }
+
+    /// The words of the unit's text at addresses of the section.
+    fn words(&self, bytes: Range<u32>) -> Option<Range<u32>> {
+        let word = |at: u32| {
+            let word = at.is_multiple_of(WORD as u32).then_some(at / WORD as u32)?.checked_sub(self.head)?;
+            (word as usize <= self.object.text.len()).then_some(word)
+        };
+        let words = word(bytes.start)?..word(bytes.end)?;
+        matches!(self.object.text.get(words.start as usize), Some(Op::Func { .. })).then_some(words)
+    }
+
+    /// Functions in the order of the text, with the relocations and lines of each.
+    fn functions(&mut self) -> Result<(), ReadError> {
+        self.functions.sort_by_key(|function| function.words.start);
+        let mut relocations = self.text.relocations.clone();
+        relocations.sort_by_key(|relocation| relocation.address);
+        let mut relocations = relocations.into_iter().peekable();
+        for Placed { words, symbol, index, end } in std::mem::take(&mut self.functions) {
+            let first = self.object.relocations.len() as u32;
+            let limit = (self.head + words.end) * WORD as u32;
+            while let Some(relocation) = relocations.next_if(|next| next.address < limit) {
+                let relocation = self.relocation(&relocation, &words)?;
+                self.object.relocations.push(relocation);
+            }
+            let lines = self.lines(index, &words, self.object.symbols[symbol].place.file);
+            let Some(Op::Func { sig, frame, .. }) = self.object.text.get(words.start as usize).copied()
+            else {
+                return Err(ReadError::Code);
+            };
+            if self.object.text[words.start as usize + 1..words.end as usize]
+                .iter()
+                .any(|op| matches!(op, Op::Func { .. }))
+            {
+                return Err(ReadError::Code);
+            }
+            self.object.symbols[symbol].definition = Definition::Function(self.object.functions.len() as u32);
+            self.object.functions.push(Function {
+                symbol,
+                signature: SignatureId::from_u32(u32::from(sig.0)),
+                words,
+                relocations: first..self.object.relocations.len() as u32,
+                lines,
+                frame: u32::from(frame.0) * WORD as u32,
+                end,
+            });
+        }
+        relocations.next().map_or(Ok(()), |left| Err(misplaced(".text", left.address)))
+    }
+
+    fn relocation(&self, relocation: &coff::Relocation, words: &Range<u32>) -> Result<Relocation, ReadError> {
+        let fail = || misplaced(".text", relocation.address);
+        let symbol = self.referred(relocation.symbol).ok_or_else(fail)?;
+        let (at, kind) = match relocation.kind {
+            ADDRESS => (relocation.address.checked_sub(4).ok_or_else(fail)?, RelocationKind::Address),
+            CALL => {
+                let number = usize::from(relocation.displacement);
+                if number >= self.object.signatures.as_slice().len() {
+                    return Err(fail());
+                }
+                (relocation.address, RelocationKind::Call(SignatureId::new(number)))
+            }
+            _ => return Err(fail()),
+        };
+        let word = (at / WORD as u32).checked_sub(self.head).filter(|word| words.contains(word));
+        let word = word.filter(|_| at.is_multiple_of(WORD as u32)).ok_or_else(fail)?;
+        Ok(Relocation { word, kind, symbol })
+    }
+
+    fn referred(&self, index: u32) -> Option<SymbolId> {
+        self.ids.get(index as usize).copied().flatten()
+    }
+
+    /// The lines behind the entry of the function with symbol `index`.
+    fn lines(&mut self, index: u32, words: &Range<u32>, file: u32) -> Range<u32> {
+        let first = self.object.lines.len() as u32;
+        let own = self.text.lines.iter().skip_while(|line| **line != CoffLine::Function(index)).skip(1);
+        for line in own {
+            let CoffLine::Statement { address, line } = line else { break };
+            let word = (address / WORD as u32).wrapping_sub(self.head);
+            if words.contains(&word) {
+                let place = SourceLine { file, line: u32::from(line.get()) };
+                self.object.lines.push(Line { word, place });
+            }
+        }
+        first..self.object.lines.len() as u32
+    }
+
+    /// Initialised objects in the order of the data, with the relocations of each.
+    fn data(&mut self) -> Result<(), ReadError> {
+        self.objects.sort_by_key(|(bytes, _)| (bytes.start, bytes.end));
+        let mut relocations = self.data.relocations.clone();
+        relocations.sort_by_key(|relocation| relocation.address);
+        let mut relocations = relocations.into_iter().peekable();
+        for (bytes, symbol) in std::mem::take(&mut self.objects) {
+            let first = self.object.data_relocations.len() as u32;
+            while let Some(relocation) = relocations.next_if(|next| next.address < bytes.end) {
+                let target = self.referred(relocation.symbol).filter(|_| {
+                    let end = relocation.address.checked_add(4);
+                    relocation.address >= bytes.start && end.is_some_and(|end| end <= bytes.end)
+                });
+                let target = target.ok_or_else(|| misplaced(".data", relocation.address))?;
+                self.object
+                    .data_relocations
+                    .push(DataRelocation { offset: relocation.address, symbol: target });
+            }
+            self.object.symbols[symbol].definition = Definition::Data(self.object.objects.len() as u32);
+            let relocations = first..self.object.data_relocations.len() as u32;
+            self.object.objects.push(Initialized { symbol, bytes, relocations });
+        }
+        relocations.next().map_or(Ok(()), |left| Err(misplaced(".data", left.address)))
+    }
+}
+
+/// A word of a function; `None` if it refers to what the object does not have.
+fn decode(word: [u8; WORD], head: u32, object: &Object) -> Option<Op> {
+    let mut op = Op::decode(word)?;
+    match &mut op {
+        Op::Br { to } | Op::BrIf { to, .. } | Op::BrUnless { to, .. } => to.0 = to.0.checked_sub(head)?,
+        Op::ConstI64 { pool, .. } | Op::ConstF64 { pool, .. } => {
+            object.pool.get(pool.0 as usize)?;
+        }
+        Op::Func { sig, .. } | Op::CallPtr { sig, .. } | Op::CallFw { sig, .. } => {
+            object.signatures.as_slice().get(usize::from(sig.0))?;
+        }
+        Op::Program { .. } | Op::Sig { .. } | Op::Call { .. } => return None,
+        _ => {}
+    }
+    Some(op)
+}
+
+fn wrong(symbol: &coff::Symbol) -> ReadError {
+    ReadError::Symbol(symbol.name.to_string())
+}
+
+fn misplaced(section: &'static str, address: u32) -> ReadError {
+    ReadError::Relocation { section, address }
+}

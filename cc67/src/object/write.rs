@@ -1,0 +1,249 @@
+//! An object to the bytes of a file.
+//!
+//! The layout is that of images (`coff.md` of the specification), with these additions:
+//! - `.text` begins with the unit's constants and signatures; addresses and labels count from
+//!   the beginning of the section;
+//! - relocations of kind [`ADDRESS`] add the symbol's address to the 32 bits at their address,
+//!   those of kind [`CALL`] complete the call instruction there, whose signature is their
+//!   displacement;
+//! - the symbols behind the file symbols stand in the order of the unit's. A tentative external
+//!   object is undefined with its size as value, as common objects always are in COFF; a
+//!   `static` one lies in `.bss`;
+//! - the auxiliary entry of an object has its alignment, file and line; `.bf` and `.ef` have the
+//!   index of the file in front of the line.
+
+use coff::raw::{BoundaryAux, FunctionAux, ObjectAux};
+use coff::{
+    Aux, Contents, Error, FileFlags, Image, Layout, Line, Name, Section, SectionFlags, SectionNumber,
+    StorageClass, Symbol, SymbolType, Target,
+};
+use vm::op::{Op, WORD};
+
+use super::{Definition, Function, Object, RelocationKind, SourceLine};
+use crate::bytecode::head;
+use crate::image::{base_type, class, function_type, statement, to_u16};
+use crate::typed::{Linkage, SymbolId};
+
+/// The symbol's address is added to the 32 bits.
+pub(super) const ADDRESS: u16 = 1;
+/// A call instruction.
+pub(super) const CALL: u16 = 2;
+
+/// The section of code, counted from 1.
+pub(super) const TEXT: SectionNumber = SectionNumber(1);
+/// The section of initialised data.
+pub(super) const DATA: SectionNumber = SectionNumber(2);
+/// The section of uninitialised data.
+pub(super) const BSS: SectionNumber = SectionNumber(3);
+
+impl Object {
+    /// The bytes of an object file.
+    ///
+    /// # Errors
+    /// If the object exceeds what the format can count.
+    pub fn write(&self) -> Result<Vec<u8>, Error> {
+        let mut writer = Writer::new(self);
+        for file in &self.files {
+            writer.push(
+                Name::from(file.as_str()),
+                0,
+                SectionNumber::DEBUG,
+                SymbolType::default(),
+                StorageClass::FILE,
+                &[],
+            );
+        }
+        for id in self.symbols.keys() {
+            writer.symbol(id);
+        }
+        writer.image()?.write()
+    }
+}
+
+/// An object while its symbol table grows.
+struct Writer<'a> {
+    object: &'a Object,
+    /// Words in front of the first function.
+    head: u32,
+    symbols: Vec<Symbol>,
+    /// Entries so far, auxiliary ones included.
+    entries: u32,
+    /// Where each of the unit's symbols stands.
+    indexes: Vec<u32>,
+    bss: u32,
+    lines: Vec<Line>,
+    /// Position in `symbols` of each function, and its first entry in `lines`.
+    first_lines: Vec<(usize, u32)>,
+}
+
+impl<'a> Writer<'a> {
+    fn new(object: &'a Object) -> Self {
+        Self {
+            object,
+            head: head::words(&object.pool, object.signatures.as_slice()),
+            symbols: Vec::new(),
+            entries: 0,
+            indexes: Vec::new(),
+            bss: 0,
+            lines: Vec::new(),
+            first_lines: Vec::new(),
+        }
+    }
+
+    fn push(
+        &mut self,
+        name: Name,
+        value: u32,
+        section: SectionNumber,
+        ty: SymbolType,
+        class: StorageClass,
+        aux: &[Aux],
+    ) {
+        self.entries += 1 + aux.len() as u32;
+        self.symbols.push(Symbol { name, value, section, ty, class, aux: aux.to_vec() });
+    }
+
+    fn symbol(&mut self, id: SymbolId) {
+        let symbol = &self.object.symbols[id];
+        self.indexes.push(self.entries);
+        let SourceLine { file, line } = symbol.place;
+        let object = ObjectAux {
+            size: symbol.size.into(),
+            align: symbol.align.into(),
+            file: file.into(),
+            line: to_u16(line).into(),
+            ..ObjectAux::default()
+        };
+        let (name, ty, class) =
+            (Name::from(symbol.name.as_str()), base_type(symbol.kind), class(symbol.linkage));
+        let aux = [Aux::new(&object)];
+        match (symbol.definition, symbol.linkage) {
+            (Definition::Function(index), _) => {
+                let function = &self.object.functions[index as usize];
+                self.function(name, symbol.place, class, function);
+            }
+            (Definition::Data(index), _) => {
+                let start = self.object.objects[index as usize].bytes.start;
+                self.push(name, start, DATA, ty, class, &aux);
+            }
+            (Definition::Tentative, Linkage::Internal) => {
+                let start = self.bss.next_multiple_of(symbol.align.max(1));
+                self.bss = start.saturating_add(symbol.size);
+                self.push(name, start, BSS, ty, class, &aux);
+            }
+            (Definition::Tentative, Linkage::External) => {
+                self.push(name, symbol.size, SectionNumber::UNDEFINED, ty, class, &aux);
+            }
+            (Definition::None, _) => self.push(name, 0, SectionNumber::UNDEFINED, ty, class, &[]),
+        }
+    }
+
+    /// The six entries of a function, and its lines.
+    fn function(&mut self, name: Name, place: SourceLine, class: StorageClass, function: &Function) {
+        let next = self.entries + 6;
+        let first_line = self.lines.len() as u32;
+        self.lines.push(Line::Function(self.entries));
+        let lines = &self.object.lines[function.lines.start as usize..function.lines.end as usize];
+        let statements = lines.iter().filter_map(|line| statement(self.byte(line.word), line.place.line));
+        let statements: Vec<_> = statements.collect();
+        self.lines.extend(statements);
+        let entries = self.lines.len() as u32 - first_line;
+        self.first_lines.push((self.symbols.len(), first_line));
+
+        let (start, end) = (self.byte(function.words.start), self.byte(function.words.end));
+        let whole = FunctionAux { size: (end - start).into(), next: next.into(), ..FunctionAux::default() };
+        self.push(name, start, TEXT, function_type(), class, &[Aux::new(&whole)]);
+        let begin = BoundaryAux {
+            tag: place.file.into(),
+            line: to_u16(place.line).into(),
+            lines: to_u16(entries - 1).into(),
+            next: next.into(),
+            ..BoundaryAux::default()
+        };
+        let finish = BoundaryAux {
+            tag: function.end.file.into(),
+            line: to_u16(function.end.line).into(),
+            ..BoundaryAux::default()
+        };
+        for (name, value, aux) in [(".bf", start, begin), (".ef", end, finish)] {
+            let aux = [Aux::new(&aux)];
+            self.push(Name::from(name), value, TEXT, SymbolType::default(), StorageClass::FUNCTION, &aux);
+        }
+    }
+
+    /// Where a word of the unit's text stands in the section.
+    fn byte(&self, word: u32) -> u32 {
+        (self.head + word) * WORD as u32
+    }
+
+    fn image(self) -> Result<Image, Error> {
+        let index = |symbol: SymbolId| self.indexes.get(symbol.as_u32() as usize).copied().unwrap_or(0);
+        let text_relocations = self.object.relocations.iter().map(|relocation| {
+            let at = self.byte(relocation.word);
+            let (address, kind, displacement) = match relocation.kind {
+                RelocationKind::Address => (at + 4, ADDRESS, 0),
+                RelocationKind::Call(signature) => (at, CALL, to_u16(signature.as_u32())),
+            };
+            coff::Relocation { address, symbol: index(relocation.symbol), displacement, kind }
+        });
+        let data_relocations = self.object.data_relocations.iter().map(|relocation| coff::Relocation {
+            address: relocation.offset,
+            symbol: index(relocation.symbol),
+            displacement: 0,
+            kind: ADDRESS,
+        });
+        let text =
+            section(".text", SectionFlags::TEXT, Contents::Data(self.text()), text_relocations.collect());
+        let data = Contents::Data(self.object.data.clone());
+        let data = section(".data", SectionFlags::DATA, data, data_relocations.collect());
+        let bss = section(".bss", SectionFlags::BSS, Contents::Uninitialised(self.bss), Vec::new());
+        let mut image = Image {
+            target: Target::CC67,
+            timestamp: 0,
+            flags: FileFlags::LITTLE_ENDIAN,
+            program: None,
+            sections: vec![Section { lines: self.lines, ..text }, data, bss],
+            symbols: self.symbols,
+        };
+        let layout = Layout::of(&image)?;
+        for (symbol, first_line) in self.first_lines {
+            let at = layout.line_offset(0, first_line).unwrap_or(0);
+            if let Some(aux) = image.symbols.get_mut(symbol).and_then(|symbol| symbol.aux.first_mut()) {
+                *aux = Aux::new(&FunctionAux { lines_at: at.into(), ..aux.as_function() });
+            }
+        }
+        Ok(image)
+    }
+
+    fn text(&self) -> Vec<u8> {
+        let mut text = Vec::with_capacity(self.byte(self.object.text.len() as u32) as usize);
+        head::write(&self.object.pool, self.object.signatures.as_slice(), &mut text);
+        for op in &self.object.text {
+            let mut op = *op;
+            if let Op::Br { to } | Op::BrIf { to, .. } | Op::BrUnless { to, .. } = &mut op {
+                to.0 += self.head;
+            }
+            text.extend_from_slice(&op.encode());
+        }
+        text
+    }
+}
+
+fn section(
+    name: &str,
+    flags: SectionFlags,
+    contents: Contents,
+    relocations: Vec<coff::Relocation>,
+) -> Section {
+    let flags = flags.with_align(WORD as u32);
+    Section {
+        name: name.into(),
+        physical: 0,
+        address: 0,
+        flags,
+        page: 0,
+        contents,
+        relocations,
+        lines: Vec::new(),
+    }
+}

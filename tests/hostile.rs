@@ -1,0 +1,135 @@
+//! Mutated and random bytes through everything that reads them: no panic, little memory, and
+//! every refusal says why.
+//!
+//! `cargo test` tries 50,000 of each kind; with `CC67_LONG=1` in the environment it is a million,
+//! for which a release build is advisable. One test only, so that what it allocates can be measured.
+
+use cc67::firmware::FirmwareFile;
+use cc67::inspect::Inspection;
+use cc67::object::Object;
+use cc67::pp::Disk;
+use cc67::{Options, image};
+use coff::Image;
+use harness::vendor;
+use kmotiondef::ThreadId;
+use peak_alloc::PeakAlloc;
+use runtime::loader::{LoadError, prepare};
+
+#[global_allocator]
+static ALLOCATED: PeakAlloc = PeakAlloc;
+
+/// Most bytes that reading one file may take.
+const LIMIT: usize = 64 << 20;
+
+/// A sequence of numbers that looks random and is the same on every host.
+struct Numbers(u64);
+
+impl Numbers {
+    fn next(&mut self) -> u64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        self.0
+    }
+
+    fn below(&mut self, limit: usize) -> usize {
+        (self.next() % limit.max(1) as u64) as usize
+    }
+}
+
+/// An image and an object of a small program, an image of the vendor's, a piece of firmware.
+fn seeds() -> Vec<Vec<u8>> {
+    let source = b"#include \"KMotionDef.h\"\nint table[3] = { 1, 2, 3 };\nstatic int n;\nint f(int x) { return x + table[1]; }\n\
+                   main() { n = f(2); printf(\"%d %f\\n\", n, 1.5); }\n";
+    let options = Options::default();
+    let mut compilation = cc67::compile("a.c".as_ref(), source.to_vec(), &options, &Disk);
+    let object = compilation.object.as_ref().expect("it compiles").write().expect("it fits");
+    let linked = compilation.link(thread(), &options).expect("it links");
+    let firmware = cc67::firmware::export().expect("it fits");
+    vec![image::write(&linked).expect("it fits"), object, vendor::image(), firmware]
+}
+
+fn thread() -> ThreadId {
+    ThreadId::new(1).expect("1 is a thread")
+}
+
+/// Changes a few bytes, mostly of the headers, to values that are often awkward; may cut the end off.
+fn mutate(bytes: &mut Vec<u8>, numbers: &mut Numbers) {
+    const AWKWARD: [u8; 8] = [0, 1, 2, 0x7f, 0x80, 0xfe, 0xff, 0x10];
+    for _ in 0..=numbers.below(6) {
+        let range = if numbers.below(3) == 0 { bytes.len() } else { bytes.len().min(200) };
+        let at = numbers.below(range);
+        let value = if numbers.below(2) == 0 { AWKWARD[numbers.below(8)] } else { numbers.next() as u8 };
+        if let Some(byte) = bytes.get_mut(at) {
+            *byte = value;
+        }
+    }
+    if numbers.below(4) == 0 {
+        bytes.truncate(numbers.below(bytes.len() + 1));
+    }
+}
+
+fn random(numbers: &mut Numbers) -> Vec<u8> {
+    let mut bytes: Vec<u8> = (0..numbers.below(400)).map(|_| numbers.next() as u8).collect();
+    // Most of what does not begin like an image is refused at once.
+    if numbers.below(2) == 0 {
+        bytes.splice(..bytes.len().min(2), [0xC2, 0]);
+    }
+    if numbers.below(4) == 0 && bytes.len() > 22 {
+        bytes[2..4].copy_from_slice(&[2, 0]);
+        bytes[16..22].copy_from_slice(&[28, 0, 0x43, 0x11, 1, 0x67]);
+    }
+    bytes
+}
+
+/// Puts bytes through every reader; whether they load, and what they took.
+fn read_all(bytes: &[u8]) -> bool {
+    let read = Image::read(bytes);
+    match &read {
+        Ok(image) => {
+            if image.symbols.len() < 100 {
+                let inspection = Inspection::new(image.clone());
+                let _ =
+                    (inspection.headers(), inspection.line_table(), inspection.calls(), inspection.stack());
+            }
+        }
+        Err(error) => assert!(error.to_string().contains("(at offset 0x"), "{error}"),
+    }
+    let _ = FirmwareFile::read(bytes);
+    if let Ok(object) = Object::read(bytes) {
+        let options = cc67::link::Options { thread: thread(), firmware: &cc67::firmware::BuiltIn, gc: false };
+        // What links need not be a program that the machine accepts.
+        let _ = cc67::link::link(std::slice::from_ref(&object), &options);
+    }
+    let prepared = prepare(bytes, thread(), |_| false);
+    match &prepared {
+        Ok(_) => assert!(read.is_ok()),
+        Err(LoadError::NotAnImage(error)) => assert_eq!(Err(error), read.as_ref()),
+        Err(error) => assert!(!error.to_string().is_empty()),
+    }
+    prepared.is_ok()
+}
+
+#[test]
+fn hostile_files_do_no_harm() {
+    let rounds = if std::env::var_os("CC67_LONG").is_some() { 1_000_000 } else { 50_000 };
+    let seeds = seeds();
+    let mut numbers = Numbers(0x6701_C0FF);
+    let (mut accepted, mut most) = (0, 0);
+    for round in 0..rounds {
+        let bytes = if round % 4 == 3 {
+            random(&mut numbers)
+        } else {
+            let mut bytes = seeds[numbers.below(seeds.len())].clone();
+            mutate(&mut bytes, &mut numbers);
+            bytes
+        };
+        let before = ALLOCATED.current_usage();
+        ALLOCATED.reset_peak_usage();
+        accepted += usize::from(read_all(&bytes));
+        most = most.max(ALLOCATED.peak_usage().saturating_sub(before));
+        assert!(most <= LIMIT, "round {round} takes {most} bytes");
+    }
+    println!("{rounds} files, {accepted} of them loadable, at most {most} bytes for one");
+    assert!(accepted > 0, "the mutations spare some images");
+}
