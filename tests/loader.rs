@@ -112,7 +112,10 @@ fn code_that_the_machine_cannot_run_is_refused() {
     };
     refused(text(|bytes| bytes[0] = 0xff), "the code is refused: ");
     refused(text(|bytes| bytes.truncate(20)), "the code is refused: ");
-    refused(text(|bytes| bytes.extend_from_slice(&[0xff; 8])), "the code is refused: ");
+    refused(
+        text(|bytes| bytes.iter_mut().rev().take(8).for_each(|byte| *byte = 0xff)),
+        "the code is refused: ",
+    );
     refused(text(Vec::clear), "the code is refused: ");
 }
 
@@ -127,7 +130,9 @@ fn a_program_does_not_enter_the_space_of_another() {
     board.load(thread(1), &large).expect("thread 2 is free");
     assert_eq!(execute(&mut board), "0");
     let error = board.load(thread(2), &build(COUNTER, 2)).expect_err("thread 1 reaches there").to_string();
-    assert_eq!(error, "the program enters the space of thread 2, which holds another program");
+    assert_eq!(error, "the space of thread 2 is taken: the program of a lower thread reaches into it");
+    board.load(thread(1), &build(COUNTER, 1)).expect("a program can replace its own");
+    board.load(thread(2), &build(COUNTER, 2)).expect("the space is free again");
 }
 
 #[test]

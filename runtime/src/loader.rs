@@ -111,6 +111,9 @@ pub enum LoadError {
     /// The program needs the space of a thread that holds another program.
     #[error("the program enters the space of thread {0}, which holds another program")]
     EntersThread(ThreadId),
+    /// A large program of another thread takes the space.
+    #[error("the space of thread {0} is taken: the program of a lower thread reaches into it")]
+    SpaceTaken(ThreadId),
     /// The code breaks a rule of the bytecode.
     #[error("the code is refused: {0}")]
     Refused(VerifyError),
@@ -119,7 +122,8 @@ pub enum LoadError {
     Entry(GuestAddr),
 }
 
-/// Checks an image for `thread`; `holds` says which threads hold a program.
+/// Checks an image for `thread`; `holds` says in which threads' spaces a program lies, apart from
+/// the one that the image replaces.
 ///
 /// # Errors
 /// The first reason found to refuse it.
@@ -208,10 +212,14 @@ fn check_sections(
         if start < u64::from(program_base(thread).get()) || end > u64::from(STACK_BASE) {
             return Err(outside(section));
         }
-        for other in ThreadId::all().filter(|other| *other != thread && holds(*other)) {
+        for other in ThreadId::all().filter(|other| holds(*other)) {
             let base = u64::from(program_base(other).get());
             if start < base + u64::from(PROGRAM_SIZE) && end > base {
-                return Err(LoadError::EntersThread(other));
+                return Err(if other == thread {
+                    LoadError::SpaceTaken(thread)
+                } else {
+                    LoadError::EntersThread(other)
+                });
             }
         }
         ranges.push((start, end, section));
