@@ -455,8 +455,8 @@ pub enum ExpressionKind {
     Integer(IntegerLiteral),
     /// A floating constant.
     Floating(FloatingLiteral),
-    /// A character constant, as `int`.
-    Character(i32),
+    /// A character constant; its type follows from the prefix.
+    Character(i32, Encoding),
     /// A string, adjacent ones joined, without the closing NUL.
     String(StringLiteral),
     /// `__func__`, `__FUNCTION__`
@@ -566,10 +566,50 @@ pub struct FloatingLiteral {
 /// A string.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StringLiteral {
-    /// Its elements: bytes, or `int`s of a wide string.
+    /// Its elements: bytes, or units of the encoding.
     pub elements: Vec<i32>,
-    /// `L"…"`.
-    pub is_wide: bool,
+    /// What the prefix says.
+    pub encoding: Encoding,
+}
+
+/// The prefix of a string or character constant.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Encoding {
+    /// None: bytes as they stand in the source.
+    #[default]
+    Plain,
+    /// `u8`: the same.
+    Utf8,
+    /// `u`: units of 16 bits.
+    Utf16,
+    /// `U`: code points.
+    Utf32,
+    /// `L`: code points as `int`.
+    Wide,
+}
+
+impl Encoding {
+    /// The prefix as it is written.
+    #[must_use]
+    pub const fn prefix(self) -> &'static str {
+        match self {
+            Self::Plain => "",
+            Self::Utf8 => "u8",
+            Self::Utf16 => "u",
+            Self::Utf32 => "U",
+            Self::Wide => "L",
+        }
+    }
+
+    /// Bytes of an element.
+    #[must_use]
+    pub const fn size(self) -> usize {
+        match self {
+            Self::Plain | Self::Utf8 => 1,
+            Self::Utf16 => 2,
+            Self::Utf32 | Self::Wide => 4,
+        }
+    }
 }
 
 /// Prefix operators.

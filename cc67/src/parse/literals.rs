@@ -56,9 +56,10 @@ impl Parser<'_> {
         if token.flags.has(Flags::BROKEN) {
             return Expression { kind: ExpressionKind::Error, span };
         }
-        let (value, problems) = quoted::character(&self.token_text(token));
+        let text = self.token_text(token);
+        let (value, problems) = quoted::character(&text);
         self.report_quoted(token, problems);
-        Expression { kind: ExpressionKind::Character(value), span }
+        Expression { kind: ExpressionKind::Character(value, quoted::encoding(&text)), span }
     }
 
     /// Reads adjacent strings as one.
@@ -71,18 +72,22 @@ impl Parser<'_> {
 
     /// Reads adjacent strings as one.
     pub(super) fn string_literal(&mut self) -> StringLiteral {
-        let mut literal = StringLiteral { elements: Vec::new(), is_wide: false };
+        let mut parts = Vec::new();
         while let Some(token) = self.take(TokenKind::String) {
-            if token.flags.has(Flags::BROKEN) {
-                continue;
+            if !token.flags.has(Flags::BROKEN) {
+                parts.push((token, self.token_text(token)));
             }
-            let text = self.token_text(token);
-            let (elements, problems) = quoted::string(&text);
-            self.report_quoted(token, problems);
-            literal.elements.extend(elements);
-            literal.is_wide |= quoted::is_wide(&text);
         }
-        literal
+        // One prefix is that of all: `L"a" "b"` is `L"ab"`.
+        let encodings = parts.iter().map(|(_, text)| quoted::encoding(text));
+        let encoding = encodings.max_by_key(|encoding| encoding.size()).unwrap_or_default();
+        let mut elements = Vec::new();
+        for (token, text) in parts {
+            let (part, problems) = quoted::string(&text, encoding);
+            self.report_quoted(token, problems);
+            elements.extend(part);
+        }
+        StringLiteral { elements, encoding }
     }
 
     fn report_quoted(&mut self, token: Token, problems: Vec<quoted::Problem>) {

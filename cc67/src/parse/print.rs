@@ -363,7 +363,9 @@ impl Printer<'_> {
             ExpressionKind::Identifier(name) => self.name(*name),
             ExpressionKind::Integer(literal) => self.word(integer_text(*literal)),
             ExpressionKind::Floating(literal) => self.word(floating_text(*literal)),
-            ExpressionKind::Character(value) => self.word(format!("'{value}'")),
+            ExpressionKind::Character(value, encoding) => {
+                self.word(format!("{}'{value}'", encoding.prefix()));
+            }
             ExpressionKind::String(literal) => self.word(string_text(literal)),
             ExpressionKind::FunctionName => self.word("__func__"),
             ExpressionKind::Index(a, b) => self.list("index", [&**a, b]),
@@ -485,7 +487,7 @@ fn string_text(literal: &StringLiteral) -> String {
         Err(_) => format!("\\{{{element:x}}}"),
     };
     let text: String = literal.elements.iter().map(shown).collect();
-    format!("{}\"{text}\"", if literal.is_wide { "L" } else { "" })
+    format!("{}\"{text}\"", literal.encoding.prefix())
 }
 
 fn unary_text(operator: UnaryOperator) -> &'static str {

@@ -193,7 +193,7 @@ fn casts_and_types_in_expressions() {
 fn constants() {
     expression("1 + 2u + 3LL + 0x10", "(+ (+ (+ 1 2u) 3ll) 16)");
     expression("1.5 + 1e-6f + 08.5", "(+ (+ 1.5 9.999999974752427e-7f) 8.5)");
-    expression("'a' + '\\377' + L'b'", "(+ (+ '97' '-1') '98')");
+    expression("'a' + '\\377' + L'b'", "(+ (+ '97' '-1') L'98')");
     expression(r#""a" "b\n" L"c""#, r#"L"ab\nc""#);
     expression("__func__, __FUNCTION__", "(, __func__ __func__)");
     errors("int a = 2000f;", &["1:9: `2000f` is an integer"]);

@@ -15,7 +15,7 @@ const DIRECTIVES: &[&str] = &[
 ];
 
 /// Pragmas of compilers that programs are also written for.
-const KNOWN_PRAGMAS: &[&str] = &["TI_COMPILER", "once"];
+const KNOWN_PRAGMAS: &[&str] = &["TI_COMPILER", "once", "push_macro", "pop_macro"];
 
 impl Preprocessor<'_> {
     /// Obeys the directive behind `hash`, and goes to the end of its line.
@@ -128,6 +128,13 @@ impl Preprocessor<'_> {
             && let Some(path) = self.open.last().and_then(|file| file.path.clone())
         {
             self.reader.set_once(path);
+        }
+        if let ("push_macro" | "pop_macro", Some(name)) = (first, text.split('"').nth(1)) {
+            let name = self.names.intern(name);
+            match first {
+                "push_macro" => self.macros.save(name),
+                _ => self.macros.restore(name),
+            }
         }
         if !KNOWN_PRAGMAS.contains(&first) {
             self.sink.report(Diagnostic::remark(span, format!("`#pragma {text}` is ignored")));

@@ -167,7 +167,9 @@ impl Lexer {
                 self.skip_spliced(is_name_byte, cx);
                 flags = flags.with(Flags::SPLICED);
             }
-            b'"' | b'\'' if self.bytes(lo, self.at) == b"L" => return self.quoted(lo, flags, cx),
+            b'"' | b'\'' if matches!(self.bytes(lo, self.at), b"L" | b"u" | b"U" | b"u8") => {
+                return self.quoted(lo, flags, cx);
+            }
             byte if byte >= 0x80 && self.is_foreign_letter() => return self.foreign_name(lo, flags, cx),
             _ => {}
         }

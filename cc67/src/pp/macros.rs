@@ -56,6 +56,8 @@ pub(super) enum Builtin {
 pub(super) struct Macros {
     macros: PrimaryMap<MacroId, Macro>,
     current: SecondaryMap<Name, PackedOption<MacroId>>,
+    /// What `#pragma push_macro` put aside, the last one at the end.
+    saved: Vec<(Name, PackedOption<MacroId>)>,
     bodies: Vec<Token>,
 }
 
@@ -92,6 +94,19 @@ impl Macros {
     /// Ends the force of any definition.
     pub(super) fn undefine(&mut self, name: Name) {
         *self.slot(name) = None.into();
+    }
+
+    /// Puts the definition of a name aside, or that there is none.
+    pub(super) fn save(&mut self, name: Name) {
+        let definition = *self.slot(name);
+        self.saved.push((name, definition));
+    }
+
+    /// Puts the definition in force that was put aside last; nothing if there is none.
+    pub(super) fn restore(&mut self, name: Name) {
+        if let Some(at) = self.saved.iter().rposition(|(saved, _)| *saved == name) {
+            *self.slot(name) = self.saved.remove(at).1;
+        }
     }
 
     /// Adds a body.

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::lexer::is_blank;
+use crate::ast::Encoding;
 
 /// Something wrong within the quotes.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -26,11 +27,11 @@ pub enum ProblemKind {
     Warning,
 }
 
-/// The elements of a string in its quotes, and what is wrong with them. `L"…"` has elements of four bytes.
+/// The elements that a string in its quotes has in an encoding, and what is wrong with them.
 #[must_use]
-pub fn string(text: &[u8]) -> (Vec<i32>, Vec<Problem>) {
+pub fn string(text: &[u8], encoding: Encoding) -> (Vec<i32>, Vec<Problem>) {
     let mut problems = Vec::new();
-    let elements = decode(text, &mut problems);
+    let elements = decode(text, encoding, &mut problems);
     (elements, problems)
 }
 
@@ -38,10 +39,11 @@ pub fn string(text: &[u8]) -> (Vec<i32>, Vec<Problem>) {
 #[must_use]
 pub fn character(text: &[u8]) -> (i32, Vec<Problem>) {
     let mut problems = Vec::new();
-    let elements = decode(text, &mut problems);
+    let encoding = encoding(text);
+    let elements = decode(text, encoding, &mut problems);
     let first = elements.first().copied().unwrap_or(0);
     let value = match u8::try_from(first) {
-        Ok(byte) if !is_wide(text) => i32::from(byte.cast_signed()),
+        Ok(byte) if encoding.size() == 1 => i32::from(byte.cast_signed()),
         _ => first,
     };
     let message = match elements.len() {
@@ -59,25 +61,26 @@ pub fn character(text: &[u8]) -> (i32, Vec<Problem>) {
     (value, problems)
 }
 
-/// Whether the text is that of a wide string or character.
+/// What the prefix of a string or character constant says.
 #[must_use]
-pub fn is_wide(text: &[u8]) -> bool {
-    text.first() == Some(&b'L')
+pub fn encoding(text: &[u8]) -> Encoding {
+    let all = [Encoding::Utf8, Encoding::Utf16, Encoding::Utf32, Encoding::Wide];
+    all.into_iter().find(|encoding| text.starts_with(encoding.prefix().as_bytes())).unwrap_or_default()
 }
 
-fn decode(text: &[u8], problems: &mut Vec<Problem>) -> Vec<i32> {
-    let is_wide = is_wide(text);
+fn decode(text: &[u8], encoding: Encoding, problems: &mut Vec<Problem>) -> Vec<i32> {
     let end = text.len().saturating_sub(1);
-    let mut at = 1 + usize::from(is_wide);
+    let mut at = 1 + self::encoding(text).prefix().len();
     let mut elements = Vec::with_capacity(end.saturating_sub(at));
     while at < end {
         let Some(byte) = text.get(at) else { break };
         if *byte != b'\\' {
             // A string over several lines of a Windows file has the line feeds only.
-            if !(*byte == b'\r' && text.get(at + 1) == Some(&b'\n')) {
-                elements.push(i32::from(*byte));
+            if *byte == b'\r' && text.get(at + 1) == Some(&b'\n') {
+                at += 1;
+            } else {
+                at += plain(text.get(at..end).unwrap_or_default(), encoding, &mut elements);
             }
-            at += 1;
             continue;
         }
         let blanks = text.iter().skip(at + 1).take_while(|byte| is_blank(**byte)).count();
@@ -85,15 +88,65 @@ fn decode(text: &[u8], problems: &mut Vec<Problem>) -> Vec<i32> {
             at += blanks + 2;
             continue;
         }
-        let (value, length) = escape(text, at, is_wide, problems);
+        if let Some((point, length)) = universal(text, at) {
+            encode(point, encoding, &mut elements);
+            at += length;
+            continue;
+        }
+        let (value, length) = escape(text, at, encoding, problems);
         elements.push(value);
         at += length;
     }
     elements
 }
 
+/// Takes one character as it stands; returns its length. Bytes that are no UTF-8 stand for themselves, as in latin-1.
+fn plain(text: &[u8], encoding: Encoding, elements: &mut Vec<i32>) -> usize {
+    let byte = text.first().copied().unwrap_or(0);
+    let length = match byte {
+        0xC2..=0xDF => 2,
+        0xE0..=0xEF => 3,
+        0xF0..=0xF4 => 4,
+        _ => 1,
+    };
+    let sequence = text.get(..length).and_then(|bytes| std::str::from_utf8(bytes).ok());
+    match sequence.and_then(|text| text.chars().next()) {
+        Some(character) if encoding.size() > 1 => {
+            encode(character, encoding, elements);
+            length
+        }
+        _ => {
+            elements.push(i32::from(byte));
+            1
+        }
+    }
+}
+
+/// `\u00e9`, `\U0001F600`: the character and the length of the escape, if it is one.
+fn universal(text: &[u8], at: usize) -> Option<(char, usize)> {
+    let digits = match text.get(at + 1)? {
+        b'u' => 4,
+        b'U' => 8,
+        _ => return None,
+    };
+    let written = text.get(at + 2..at + 2 + digits)?;
+    let value = written
+        .iter()
+        .try_fold(0_u32, |value, byte| value.checked_mul(16)?.checked_add(char::from(*byte).to_digit(16)?))?;
+    Some((char::from_u32(value)?, 2 + digits))
+}
+
+/// Adds a character in the units of an encoding.
+fn encode(character: char, encoding: Encoding, elements: &mut Vec<i32>) {
+    match encoding.size() {
+        1 => elements.extend(character.encode_utf8(&mut [0; 4]).bytes().map(i32::from)),
+        2 => elements.extend(character.encode_utf16(&mut [0; 2]).iter().map(|unit| i32::from(*unit))),
+        _ => elements.push(u32::from(character).cast_signed()),
+    }
+}
+
 /// The value of the escape at `at`, and its length in bytes.
-fn escape(text: &[u8], at: usize, is_wide: bool, problems: &mut Vec<Problem>) -> (i32, usize) {
+fn escape(text: &[u8], at: usize, encoding: Encoding, problems: &mut Vec<Problem>) -> (i32, usize) {
     let letter = text.get(at + 1).copied().unwrap_or(0);
     let value = match letter {
         b'a' => 7,
@@ -105,8 +158,8 @@ fn escape(text: &[u8], at: usize, is_wide: bool, problems: &mut Vec<Problem>) ->
         b'v' => 11,
         b'e' => 27,
         b'\'' | b'"' | b'\\' | b'?' => i32::from(letter),
-        b'0'..=b'7' => return numeric(text, at, at + 1, 8, 3, is_wide, problems),
-        b'x' => return numeric(text, at, at + 2, 16, usize::MAX, is_wide, problems),
+        b'0'..=b'7' => return numeric(text, at, at + 1, 8, 3, encoding, problems),
+        b'x' => return numeric(text, at, at + 2, 16, usize::MAX, encoding, problems),
         _ => {
             let shown = if letter.is_ascii_graphic() { char::from(letter) } else { '?' };
             problems.push(Problem {
@@ -128,7 +181,7 @@ fn numeric(
     start: usize,
     base: u32,
     most: usize,
-    is_wide: bool,
+    encoding: Encoding,
     problems: &mut Vec<Problem>,
 ) -> (i32, usize) {
     let mut problem = |kind, range, message: &str| {
@@ -142,13 +195,18 @@ fn numeric(
         length += 1;
     }
     let end = start + length;
+    let most_of = match encoding.size() {
+        1 => 0xFF,
+        2 => 0xFFFF,
+        _ => u32::MAX,
+    };
     if length == 0 {
         problem(ProblemKind::Error, at..end, "digits missing behind `\\x`");
-    } else if overflows || (!is_wide && value > 0xFF) {
-        problem(ProblemKind::Warning, at..end, "escape does not fit a character; its low byte is taken");
+    } else if overflows || value > most_of {
+        let what = if most_of == 0xFF { "its low byte is taken" } else { "its low digits are taken" };
+        problem(ProblemKind::Warning, at..end, &format!("escape does not fit a character; {what}"));
     }
-    let value = if is_wide { value } else { value & 0xFF };
-    (value.cast_signed(), end - at)
+    ((value & most_of).cast_signed(), end - at)
 }
 
 #[cfg(test)]
@@ -157,8 +215,7 @@ mod tests {
 
     #[test]
     fn strings() {
-        let check =
-            |text: &str, expect: &[i32]| assert_eq!(string(text.as_bytes()), (expect.to_vec(), vec![]));
+        let check = |text: &str, expect: &[i32]| assert_eq!(read(text.as_bytes()), (expect.to_vec(), vec![]));
         check(r#""ab""#, &[97, 98]);
         check(r#""""#, &[]);
         check(r#""\a\b\f\n\r\t\v\e\'\"\\\?""#, &[7, 8, 12, 10, 13, 9, 11, 27, 39, 34, 92, 63]);
@@ -166,7 +223,24 @@ mod tests {
         check(r#""\x41\xff""#, &[65, 255]);
         check(r#"L"a\x1234""#, &[97, 0x1234]);
         check("\"a\\\nb\\\r\nc\r\nd\"", &[97, 98, 99, 10, 100]);
-        assert_eq!(string(b"\"\xE9\"").0, [0xE9]);
+        assert_eq!(read(b"\"\xE9\"").0, [0xE9]);
+    }
+
+    #[test]
+    fn encodings_split_characters_into_their_units() {
+        let check = |text: &str, expect: &[i32]| assert_eq!(read(text.as_bytes()), (expect.to_vec(), vec![]));
+        check("\"é\"", &[0xC3, 0xA9]);
+        check(r#""\u00e9""#, &[0xC3, 0xA9]);
+        check("u8\"é\"", &[0xC3, 0xA9]);
+        check("u\"é😀\"", &[0xE9, 0xD83D, 0xDE00]);
+        check("U\"é😀\"", &[0xE9, 0x1F600]);
+        check(r#"L"\U0001F600\xffffffff""#, &[0x1F600, -1]);
+        assert_eq!(read(b"L\"\xE9\"").0, [0xE9]);
+        assert_eq!(character("u'é'".as_bytes()), (0xE9, vec![]));
+    }
+
+    fn read(text: &[u8]) -> (Vec<i32>, Vec<Problem>) {
+        string(text, encoding(text))
     }
 
     #[test]
@@ -182,7 +256,7 @@ mod tests {
     fn problems_say_where() {
         let check = |text: &str, message: &str, range: Range<usize>| {
             let problems =
-                if text.starts_with('"') { string(text.as_bytes()).1 } else { character(text.as_bytes()).1 };
+                if text.starts_with('"') { read(text.as_bytes()).1 } else { character(text.as_bytes()).1 };
             let found: Vec<_> =
                 problems.into_iter().map(|problem| (problem.message, problem.range)).collect();
             assert_eq!(found, [(message.to_owned(), range)], "{text}");

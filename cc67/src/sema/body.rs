@@ -209,6 +209,16 @@ impl Body {
         }
     }
 
+    /// Whether evaluating twice is the same as once.
+    pub(super) fn is_repeatable(&self, expr: ExprId) -> bool {
+        match self.exprs[expr].kind {
+            ExprKind::Int(_) | ExprKind::Float(_) | ExprKind::Address(_) | ExprKind::Load(_) => true,
+            ExprKind::Unary(_, inner) | ExprKind::Convert(inner) => self.is_repeatable(inner),
+            ExprKind::Binary(_, a, b) => self.is_repeatable(a) && self.is_repeatable(b),
+            _ => false,
+        }
+    }
+
     /// Whether evaluating does nothing at all.
     fn is_idle(&self, expr: ExprId) -> bool {
         match self.exprs[expr].kind {

@@ -2,6 +2,7 @@
 
 use super::Sema;
 use super::conversions::Target;
+use super::literals::character_type;
 use super::operands::Operand;
 use super::places::Located;
 use super::scope::Entity;
@@ -23,8 +24,9 @@ impl Sema<'_> {
             ExpressionKind::Identifier(name) => self.identifier(*name, span),
             ExpressionKind::Integer(literal) => Some(self.integer_literal(*literal, span)),
             ExpressionKind::Floating(literal) => Some(self.floating_literal(*literal, span)),
-            ExpressionKind::Character(value) => {
-                Some(Operand::Value(self.body.int(i64::from(*value), Types::INT, span)))
+            ExpressionKind::Character(value, encoding) => {
+                let ty = character_type(*encoding);
+                Some(Operand::Value(self.body.int(i64::from(*value), ty, span)))
             }
             ExpressionKind::String(literal) => Some(self.string_literal(literal, span)),
             ExpressionKind::FunctionName => Some(self.function_name(span)),

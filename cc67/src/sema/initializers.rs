@@ -346,7 +346,8 @@ impl Sema<'_> {
             times = self.designate(stack, &item.designators)?;
         }
         let depth = stack.len();
-        for _ in 0..times {
+        let mut kept = None;
+        for turn in 0..times {
             self.check_leaves(leaves, stack)?;
             match &item.initializer {
                 Initializer::List { items, span } => {
@@ -360,9 +361,29 @@ impl Sema<'_> {
             }
             if times > 1 {
                 stack.truncate(depth);
+                kept = self.evaluate_once(leaves.last_mut(), kept, turn == 0);
             }
         }
         Some(())
+    }
+
+    /// The value of a range is computed for its first part only and kept for the others.
+    fn evaluate_once(
+        &mut self,
+        leaf: Option<&mut Leaf>,
+        kept: Option<LocalId>,
+        is_first: bool,
+    ) -> Option<LocalId> {
+        let Some(Leaf { value: LeafValue::Scalar(value), span, .. }) = leaf else { return kept };
+        if is_first && !self.body.name.is_empty() && !self.body.is_repeatable(*value) {
+            let local = self.body.temporary(self.body.ty(*value), false, *span);
+            *value = self.body.store_local(local, *value, *span);
+            return Some(local);
+        }
+        if let Some(local) = kept {
+            *value = self.body.load_local(local, *span);
+        }
+        kept
     }
 
     /// A range can ask for any number of values; there is an end.
@@ -470,7 +491,7 @@ impl Sema<'_> {
             }
             _ => (slot.ty.ty, bytes.len()),
         };
-        let element_size = if text.is_wide { 4 } else { 1 };
+        let element_size = text.encoding.size();
         if bytes.len() > size + element_size {
             let excess = (bytes.len() - element_size - size) / element_size;
             self.report(
@@ -485,9 +506,10 @@ impl Sema<'_> {
 
     /// Whether a string fills an object of this type by itself.
     fn takes_text(&self, ty: TypeId, text: &StringLiteral) -> bool {
-        self.types.array(ty).is_some_and(|(element, _)| match text.is_wide {
-            true => element.ty == Types::INT || element.ty == Types::UNSIGNED,
-            false => element.ty.is_character(),
+        self.types.array(ty).is_some_and(|(element, _)| match text.encoding.size() {
+            1 => element.ty.is_character(),
+            2 => element.ty == Types::SHORT || element.ty == Types::UNSIGNED_SHORT,
+            _ => element.ty == Types::INT || element.ty == Types::UNSIGNED,
         })
     }
 

@@ -4,7 +4,7 @@ use super::Sema;
 use super::constants::Constant;
 use super::operands::Operand;
 use super::places::Located;
-use crate::ast::{FloatingLiteral, IntegerLiteral, StringLiteral};
+use crate::ast::{Encoding, FloatingLiteral, IntegerLiteral, StringLiteral};
 use crate::source::Span;
 use crate::ty::{QualifiedType, Type, TypeId, Types};
 use crate::typed::{PlaceKind, StaticData};
@@ -49,7 +49,10 @@ impl Sema<'_> {
 
     /// The array type of a string with its NUL.
     pub(super) fn string_type(&mut self, literal: &StringLiteral) -> TypeId {
-        let element = if literal.is_wide { Types::INT } else { Types::CHAR };
+        let element = match literal.encoding {
+            Encoding::Plain | Encoding::Utf8 => Types::CHAR,
+            other => character_type(other),
+        };
         let length = literal.elements.len() as u32 + 1;
         self.types.intern(Type::Array(QualifiedType::plain(element), Some(length)))
     }
@@ -58,10 +61,15 @@ impl Sema<'_> {
 /// The bytes of a string with its NUL.
 pub(super) fn string_bytes(literal: &StringLiteral) -> Vec<u8> {
     let elements = literal.elements.iter().copied().chain([0]);
-    if literal.is_wide {
-        elements.flat_map(i32::to_le_bytes).collect()
-    } else {
-        elements.map(|element| element as u8).collect()
+    elements.flat_map(|element| element.to_le_bytes().into_iter().take(literal.encoding.size())).collect()
+}
+
+/// The type of a character constant.
+pub(super) const fn character_type(encoding: Encoding) -> TypeId {
+    match encoding {
+        Encoding::Plain | Encoding::Utf8 | Encoding::Wide => Types::INT,
+        Encoding::Utf16 => Types::UNSIGNED_SHORT,
+        Encoding::Utf32 => Types::UNSIGNED,
     }
 }
 
