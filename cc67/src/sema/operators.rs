@@ -328,10 +328,16 @@ impl Sema<'_> {
             return Some(self.usual(a, b, span));
         }
         match (self.types.pointee(x), self.types.pointee(y)) {
-            (Some(_), Some(to)) => {
+            (Some(from), Some(to)) => {
                 self.check_pointer_pair(a, b, span);
-                // `void *` gives way to a null pointer's partner, and takes in every other pointer.
-                let ty = if self.is_null(a) || (to.ty.is_void() && !self.is_null(b)) { y } else { x };
+                let void = QualifiedType::plain(Types::VOID);
+                let ty = if from == void && self.is_null(a) {
+                    y
+                } else if to == void && self.is_null(b) {
+                    x
+                } else {
+                    self.common_pointer(from, to)
+                };
                 Some((self.retyped(a, ty, span), self.retyped(b, ty, span)))
             }
             (Some(_), None) if y.is_integer() => {
@@ -349,6 +355,20 @@ impl Sema<'_> {
                 None
             }
         }
+    }
+
+    /// What a pointer to one or the other points to (C11 6.5.15): with the qualifiers of both; `void` takes in all.
+    fn common_pointer(&mut self, a: QualifiedType, b: QualifiedType) -> TypeId {
+        let ty = if a.ty.is_void() || b.ty.is_void() {
+            Types::VOID
+        } else if self.types.compatible(a.ty, b.ty) {
+            self.types.composite(a.ty, b.ty)
+        } else {
+            a.ty
+        };
+        let is_const = a.is_const || b.is_const;
+        let is_volatile = a.is_volatile || b.is_volatile;
+        self.types.pointer_to_qualified(QualifiedType { ty, is_const, is_volatile })
     }
 
     /// A choice between two structures is one between their addresses.
