@@ -241,6 +241,14 @@ impl Sema<'_> {
         self.report_finding(finding);
     }
 
+    /// Warns about a use of what lies directly behind `persist.UserData`; its address alone is fine.
+    pub(super) fn lint_user_data_end(&mut self, pointer: ExprId, span: Span) {
+        let end = user_data_index::range().1;
+        if self.persist_offset(pointer) == Some(end) {
+            self.report_finding(user_data_index::finding(end - 1, end, 1, span));
+        }
+    }
+
     fn describe(&self, target: Target) -> String {
         match target {
             Target::Assignment => "assignment".to_owned(),

@@ -268,6 +268,9 @@ impl Sema<'_> {
             }
             UnaryOperator::Dereference => {
                 let pointer = self.value(operand)?;
+                if is_sum(operand) {
+                    self.lint_user_data_end(pointer, span);
+                }
                 self.dereference(pointer, span)
             }
             UnaryOperator::Plus => self.arithmetic_operand(operand, "+").map(Operand::Value),
@@ -485,5 +488,14 @@ impl Sema<'_> {
             return None;
         };
         self.operand(choice)
+    }
+}
+
+/// Whether a pointer is written as a sum, as in `*(p + 1)`.
+fn is_sum(expression: &Expression) -> bool {
+    match &expression.kind {
+        ExpressionKind::Cast(_, inner) => is_sum(inner),
+        ExpressionKind::Binary(..) => true,
+        _ => false,
     }
 }
