@@ -102,6 +102,12 @@ impl FileTest {
         self.is_snapshot
     }
 
+    /// Whether the program is executed, not only checked.
+    #[must_use]
+    pub fn is_executed(&self) -> bool {
+        self.arguments.first().is_none_or(|word| word != "check")
+    }
+
     /// Runs the program in its folder, so that messages name it without a path; `more` follows its own arguments.
     #[must_use]
     pub fn run(&self, binary: &str, more: &[&str]) -> Output {
