@@ -1,6 +1,6 @@
 //@ exit: 1
-//@ says: main
-//@ says: helper-without-main.user.c
+//@ says: no `main`
+//@ says: included by helper-without-main.user.c
 #include "KMotionDef.h"
 
 helper() { return 7; }

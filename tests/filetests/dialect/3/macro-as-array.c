@@ -1,8 +1,7 @@
 //@ exit: 1
-//@ says: FPGA
 #include "KMotionDef.h"
 
 main()
 {
-    FPGA[5] = 3; //~ error: FPGA
+    FPGA[5] = 3; //~ error: `FPGA` is not declared
 }
