@@ -73,7 +73,7 @@ mod tests {
         check(b"int main() { }\n", Some("a text file"));
         check(&[0; 100], None);
         check(b"\x7fELF\x02\x01\x01\0\0\0\0\0\0\0\0\0", Some("a damaged ELF file"));
-        check(b"!<arch>\n", Some("a library of object files"));
+        check(b"!<arch>\nand no member header", Some("a damaged library of object files"));
         let mut elf = vec![0; 64];
         elf[..7].copy_from_slice(b"\x7fELF\x02\x01\x01");
         elf[16..21].copy_from_slice(&[1, 0, 62, 0, 1]);
