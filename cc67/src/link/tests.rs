@@ -140,7 +140,10 @@ fn everything_undefined_is_reported_at_once_with_its_first_use() {
 #[test]
 fn other_errors_are_named() {
     check_errors(&["int f(void) { return 1; }"], &["no `main`"]);
-    check_errors(&["int a = 1; main() { }", "int a = 2;"], &["`a` is defined twice, in test.c:1 and in test.c:1"]);
+    check_errors(
+        &["int a = 1; main() { }", "int a = 2;"],
+        &["`a` is defined twice, in test.c:1 and in test.c:1"],
+    );
     check_errors(
         &["int SetBit(double); main() { return SetBit(1.0); }"],
         &["`SetBit` is called as `i32 (f64)`, but is `void (i32)`"],
