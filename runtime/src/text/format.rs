@@ -282,7 +282,11 @@ mod tests {
         }
 
         fn long_long(&mut self) -> Result<u64, Infallible> {
-            self.word().map(u64::from)
+            Ok(match self.0.next() {
+                Some(Argument::Word(word)) => word.into(),
+                Some(Argument::LongLong(value)) => value,
+                _ => 0,
+            })
         }
 
         fn double(&mut self) -> Result<f64, Infallible> {
@@ -322,6 +326,37 @@ mod tests {
     fn the_board_prints_the_same() {
         for row in rows("printf.jsonl").iter().chain(&rows("printf-scanf.jsonl")) {
             check(row);
+        }
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn integers_print_as_other_formatters_print_them(value: u64, width in 0_usize..30, zero: bool) {
+            let zero_flag = if zero { "0" } else { "" };
+            let list = || vec![Argument::LongLong(value)];
+            let check = |letter: &str, plain: String| {
+                let pattern = format!("%{zero_flag}{width}ll{letter}");
+                let sign = if plain.starts_with('-') && zero { "-" } else { "" };
+                let digits = plain.trim_start_matches(if zero { "-" } else { "" });
+                let fill = if zero { "0" } else { " " };
+                let expect = format!("{sign}{}{digits}", fill.repeat(width.saturating_sub(plain.len())));
+                assert_eq!(String::from_utf8_lossy(&printf(pattern.as_bytes(), list())), expect, "{pattern}");
+            };
+            check("d", value.cast_signed().to_string());
+            check("u", value.to_string());
+            check("x", format!("{value:x}"));
+            check("X", format!("{value:X}"));
+            check("o", format!("{value:o}"));
+        }
+
+        #[test]
+        fn decimals_are_right_to_a_unit_of_the_last_one(value in -1e6..1e6_f64, precision in 0_usize..9) {
+            let text = printf(format!("%.{precision}f").as_bytes(), vec![Argument::Double(value)]);
+            let text = String::from_utf8_lossy(&text).into_owned();
+            let read: f64 = text.parse().expect("a number");
+            let unit = format!("1e-{precision}").parse::<f64>().expect("a number");
+            assert!((read - value).abs() <= unit * 0.500_001 + 1e-9, "{text} {value}");
+            assert_eq!(text.split('.').nth(1).map_or(0, str::len), precision);
         }
     }
 

@@ -9,6 +9,8 @@ use serde_json::Value as Json;
 pub(crate) enum Argument {
     /// An integer or address.
     Word(u32),
+    /// A `long long`.
+    LongLong(u64),
     /// A double.
     Double(f64),
     /// A string.
