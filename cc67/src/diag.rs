@@ -46,9 +46,8 @@ pub struct Diagnostic {
     pub notes: Vec<String>,
     /// What the user should do.
     pub help: Option<String>,
-    /// The symbol that neither the program nor the firmware defines, if that is the finding; the vendor's
-    /// tools have words of their own for it.
-    pub undefined: Option<String>,
+    /// What the vendor's linker says, if the finding is one of a linker; other programs look for its words.
+    pub linker_words: Option<String>,
 }
 
 impl Diagnostic {
@@ -92,7 +91,7 @@ impl Diagnostic {
             labels: Vec::new(),
             notes: Vec::new(),
             help: None,
-            undefined: None,
+            linker_words: None,
         }
     }
 
@@ -120,9 +119,14 @@ impl Diagnostic {
         self
     }
 
-    /// Says that the finding is a symbol which nothing defines.
-    pub fn undefined(mut self, symbol: impl Into<String>) -> Self {
-        self.undefined = Some(symbol.into());
+    /// Says that the finding is a symbol which neither the program nor the firmware defines.
+    pub fn undefined(self, symbol: &str) -> Self {
+        self.linker_words(format!("undefined symbol '{symbol}'"))
+    }
+
+    /// Says what the vendor's linker would.
+    pub fn linker_words(mut self, words: impl Into<String>) -> Self {
+        self.linker_words = Some(words.into());
         self
     }
 }
@@ -141,6 +145,7 @@ const MAX_REMARKS: usize = 2000;
 pub struct Sink {
     diagnostics: Vec<Diagnostic>,
     errors: usize,
+    lacks_names: bool,
 }
 
 impl Sink {
@@ -162,6 +167,19 @@ impl Sink {
     /// Takes a diagnostic, if there is one.
     pub fn report_if(&mut self, diagnostic: Option<Diagnostic>) {
         diagnostic.into_iter().for_each(|diagnostic| self.report(diagnostic));
+    }
+
+    /// Takes an error after which names of the program are unknown: a file was not included. That
+    /// they are is then not worth an error of its own.
+    pub fn report_lost_names(&mut self, error: Diagnostic) {
+        self.lacks_names |= error.severity == Severity::Error;
+        self.report(error);
+    }
+
+    /// Whether names are unknown because of an error that was reported.
+    #[must_use]
+    pub fn lacks_names(&self) -> bool {
+        self.lacks_names
     }
 
     /// Whether so many errors were reported that looking for more is pointless.

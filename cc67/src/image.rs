@@ -27,14 +27,7 @@ use crate::typed::Linkage;
 /// # Errors
 /// If the program exceeds what the format can count.
 pub fn write(linked: &Linked) -> Result<Vec<u8>, Error> {
-    let mut image = Image {
-        target: Target::CC67,
-        timestamp: 0,
-        flags: FileFlags::LINKED,
-        program: Some(header(linked)),
-        sections: sections(linked),
-        symbols: Vec::new(),
-    };
+    let mut image = bare(linked);
     let mut table = Table::default();
     table.functions(linked);
     table.objects(linked);
@@ -52,6 +45,27 @@ pub fn write(linked: &Linked) -> Result<Vec<u8>, Error> {
         }
     }
     image.write()
+}
+
+/// Writes the image of a program without symbols and line numbers, as the vendor's compiler does
+/// unless it is asked for them.
+///
+/// # Errors
+/// If the program exceeds what the format can count.
+pub fn write_stripped(linked: &Linked) -> Result<Vec<u8>, Error> {
+    bare(linked).write()
+}
+
+/// The image without symbols and line numbers.
+fn bare(linked: &Linked) -> Image {
+    Image {
+        target: Target::CC67,
+        timestamp: 0,
+        flags: FileFlags::LINKED,
+        program: Some(header(linked)),
+        sections: sections(linked),
+        symbols: Vec::new(),
+    }
 }
 
 fn header(linked: &Linked) -> Program {

@@ -28,8 +28,10 @@ pub mod cli;
 pub mod compare;
 pub mod diag;
 pub mod download;
+mod entry;
 pub mod firmware;
 pub mod foreign;
+pub mod foreign_words;
 pub mod image;
 mod includers;
 pub mod inspect;
@@ -60,7 +62,7 @@ use kmotiondef::ThreadId;
 use diag::{Diagnostic, Sink};
 use firmware::Firmware;
 use includers::includers;
-use link::{LinkErrorKind, Linked};
+use link::{LinkErrorKind, Linked, SectionAddresses};
 use names::Names;
 use object::Object;
 use passes::Level;
@@ -77,6 +79,8 @@ pub struct Options {
     pub firmware: Firmware,
     /// Whether the linker leaves out what `main` cannot reach.
     pub gc_sections: bool,
+    /// Where sections go that do not go to the space of the thread.
+    pub addresses: SectionAddresses,
 }
 
 impl Default for Options {
@@ -88,6 +92,7 @@ impl Default for Options {
             level: Level::default(),
             firmware: Firmware::default(),
             gc_sections: true,
+            addresses: SectionAddresses::default(),
         }
     }
 }
@@ -142,6 +147,9 @@ fn compile_here(path: &Path, text: Vec<u8>, options: &Options, files: &dyn pp::F
         (!sink.has_errors()).then(|| bytecode::unit::compile(&unit, &sources, options.level, &mut sink));
     let object = object.filter(|_| !sink.has_errors());
     let included_by = if unit.defines("main") { Vec::new() } else { includers(path, files) };
+    if sink.has_errors() && !included_by.is_empty() {
+        sink.report(entry::remark(&included_by));
+    }
     Compilation { name, sources, sink, object, included_by }
 }
 
@@ -184,7 +192,12 @@ pub fn link_units(units: &mut [Compilation], thread: ThreadId, options: &Options
     }
     let mut objects: Vec<Object> = units.iter_mut().filter_map(|unit| unit.object.take()).collect();
     objects.extend(library::members_for(&objects));
-    let options = link::Options { thread, firmware: &options.firmware, gc: options.gc_sections };
+    let options = link::Options {
+        thread,
+        firmware: &options.firmware,
+        gc: options.gc_sections,
+        addresses: options.addresses,
+    };
     match link::link(&objects, &options) {
         Ok(linked) => {
             let unit = units.first_mut()?;
@@ -200,12 +213,11 @@ pub fn link_units(units: &mut [Compilation], thread: ThreadId, options: &Options
                 let mut diagnostic = error.to_diagnostic();
                 // The places of library members are in no source that the user has.
                 diagnostic.span = diagnostic.span.filter(|_| index.is_some());
+                if let (LinkErrorKind::NoMain, Some(object)) = (&error.kind, objects.first()) {
+                    diagnostic = entry::advise(diagnostic, object, &unit.included_by);
+                }
                 if diagnostic.span.is_none() {
                     diagnostic.message = format!("{}: {}", unit.name, diagnostic.message);
-                }
-                if error.kind == LinkErrorKind::NoMain && !unit.included_by.is_empty() {
-                    let programs = unit.included_by.join(", ");
-                    diagnostic = diagnostic.note(format!("this file is included by {programs}"));
                 }
                 unit.sink.report(diagnostic);
             }

@@ -70,7 +70,12 @@ fn build(source: &str, level: Level) -> Linked {
     let object = unit::compile(&unit, &sources, level, &mut sink);
     assert!(!sink.has_errors(), "{:?}", sink.diagnostics());
     let thread = ThreadId::new(1).expect("a thread");
-    let options = link::Options { thread, firmware: &Nothing::default(), gc: true };
+    let options = link::Options {
+        thread,
+        firmware: &Nothing::default(),
+        gc: true,
+        addresses: link::SectionAddresses::default(),
+    };
     link::link(&[object], &options).expect("links")
 }
 

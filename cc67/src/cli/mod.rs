@@ -1,11 +1,13 @@
 //! The command line: one file a subcommand, one row each in [`Command`].
 //!
 //! What a program prints goes to stdout byte for byte, everything else to stderr. Messages
-//! about the request or its inputs are single lines that begin with `cc67: `.
+//! about the request or its inputs are single lines that begin with `cc67: `. Where `cc67` stands
+//! in for the vendor's compiler ([`drop_in`]), arguments and messages are that one's.
 
 mod build;
 mod check;
 mod diff;
+mod drop_in;
 mod events;
 mod exit;
 mod explain;
@@ -76,6 +78,10 @@ impl Command {
 
 /// Runs the command with the arguments of a process, the program's name first.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    if drop_in::is_meant(&arguments) {
+        return drop_in::main(&arguments);
+    }
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
         Err(error) => {

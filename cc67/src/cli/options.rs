@@ -7,6 +7,7 @@ use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
 
 use crate::firmware::{Firmware, FirmwareFile};
+use crate::link::SectionAddresses;
 use crate::lints::levels::Levels;
 use crate::passes::Level;
 use crate::render::Format;
@@ -77,6 +78,7 @@ impl CompilerOptions {
             level: if self.optimization == 0 { Level::None } else { Level::Full },
             firmware: self.firmware()?,
             gc_sections: self.gc_sections || (self.optimization > 0 && !self.no_gc_sections),
+            addresses: SectionAddresses::default(),
         })
     }
 

@@ -9,9 +9,15 @@ use anyhow::{Result, anyhow};
 /// Writes a file and replaces what was there.
 pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     let temporary = temporary(path);
-    let written = fs::File::create(&temporary)
-        .and_then(|mut file| file.write_all(bytes).and_then(|()| file.sync_all()))
-        .and_then(|()| fs::rename(&temporary, path));
+    // Devices such as /dev/null take what is written to them; a file must not take their place.
+    let is_device = fs::metadata(path).is_ok_and(|known| !known.is_file() && !known.is_dir());
+    let written = if is_device {
+        fs::write(path, bytes)
+    } else {
+        fs::File::create(&temporary)
+            .and_then(|mut file| file.write_all(bytes).and_then(|()| file.sync_all()))
+            .and_then(|()| fs::rename(&temporary, path))
+    };
     written.map_err(|error| {
         // What is left of it helps nobody.
         let _ = fs::remove_file(&temporary);

@@ -96,12 +96,12 @@ impl LinkError {
             LinkErrorKind::Undefined { name, suggestion: None } => {
                 diagnostic.undefined(name).at("neither the program nor the firmware defines it")
             }
-            LinkErrorKind::TooLarge { largest, .. } => {
-                diagnostic.note(format!("largest: {}", largest.join(", ")))
+            LinkErrorKind::TooLarge { largest, .. } => diagnostic
+                .note(format!("the largest parts in bytes: {}", largest.join(", ")))
+                .help("make tables smaller, or keep large ones in `gather_buffer`"),
+            LinkErrorKind::NoMain => {
+                diagnostic.linker_words("main not defined").note("a program begins at `main`")
             }
-            LinkErrorKind::NoMain => diagnostic
-                .note("a program begins at `main`")
-                .help("compile the program that includes this file, or write a `main`"),
             LinkErrorKind::DefinedTwice { .. } => {
                 diagnostic.help("make one of them `static`, rename it, or leave its file out")
             }

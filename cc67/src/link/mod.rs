@@ -32,6 +32,19 @@ pub struct Options<'a> {
     pub firmware: &'a dyn FirmwareSymbols,
     /// Whether functions and objects that `main` cannot reach are left out.
     pub gc: bool,
+    /// Where sections go that do not go where they usually do.
+    pub addresses: SectionAddresses,
+}
+
+/// Addresses of sections; those that are not given follow from the thread and the sections before.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SectionAddresses {
+    /// Of the text.
+    pub text: Option<GuestAddr>,
+    /// Of the initialised data.
+    pub data: Option<GuestAddr>,
+    /// Of the uninitialised data.
+    pub bss: Option<GuestAddr>,
 }
 
 /// A program with final addresses.
@@ -137,10 +150,10 @@ pub struct Import {
 pub fn link(objects: &[Object], options: &Options<'_>) -> Result<Linked, Vec<LinkError>> {
     let names = names::Names::collect(objects)?;
     let reached = reach::reach(objects, &names, options)?;
-    let base = program_base(options.thread);
+    let base = options.addresses.text.unwrap_or_else(|| program_base(options.thread));
     let layout = text::Layout::new(objects, &reached)?;
-    let placed = place::place(objects, &names, &reached, &layout, base);
-    let warnings = place::check_size(&placed, options.thread)?;
+    let placed = place::place(objects, &names, &reached, &layout, base, &options.addresses);
+    let warnings = place::check_size(&placed, base)?;
     let addresses = text::Addresses { base, reached: &reached, placed: &placed };
     Ok(Linked {
         thread: options.thread,

@@ -1,14 +1,14 @@
 //! Gives everything its address.
 
-use kmotiondef::map::{PROGRAM_BASE, PROGRAM_SIZE, STACK_BASE, program_base};
-use kmotiondef::{GuestAddr, ThreadId};
+use kmotiondef::GuestAddr;
+use kmotiondef::map::{PROGRAM_BASE, PROGRAM_SIZE, STACK_BASE};
 use vm::op::WORD;
 
 use super::error::{LinkError, LinkErrorKind, LinkWarning};
 use super::names::Names;
 use super::reach::Reached;
 use super::text::Layout;
-use super::{LinkedSymbol, Section};
+use super::{LinkedSymbol, Section, SectionAddresses};
 use crate::object::{Object, Symbol};
 
 /// Sections start at multiples of so many bytes.
@@ -46,9 +46,10 @@ pub(super) fn place(
     reached: &Reached,
     layout: &Layout,
     base: GuestAddr,
+    addresses: &SectionAddresses,
 ) -> Placed {
-    let text_size = layout.words * WORD as u32;
-    let data_address = GuestAddr::new(base.get().saturating_add(text_size).next_multiple_of(SECTION_ALIGN));
+    let text_end = base.get().saturating_add(layout.words * WORD as u32);
+    let data_address = addresses.data.unwrap_or_else(|| behind(text_end));
     let mut placed = Placed {
         data_address,
         data_size: 0,
@@ -68,8 +69,15 @@ pub(super) fn place(
         placed.symbols.push(linked(symbol, address, size, Section::Text, layout, *object));
     }
     placed.data(objects, reached, layout);
-    placed.bss(objects, names, reached, layout);
+    let bss_address =
+        addresses.bss.unwrap_or_else(|| behind(data_address.get().saturating_add(placed.data_size)));
+    placed.bss(objects, names, reached, layout, bss_address);
     placed
+}
+
+/// Where the section behind one that ends at `end` begins.
+fn behind(end: u32) -> GuestAddr {
+    GuestAddr::new(end.checked_next_multiple_of(SECTION_ALIGN).unwrap_or(u32::MAX))
 }
 
 impl Placed {
@@ -90,11 +98,15 @@ impl Placed {
         self.data_size = at - self.data_address.get();
     }
 
-    fn bss(&mut self, objects: &[Object], names: &Names<'_>, reached: &Reached, layout: &Layout) {
-        let start = (self.data_address.get().saturating_add(self.data_size))
-            .checked_next_multiple_of(SECTION_ALIGN)
-            .unwrap_or(u32::MAX);
-        let mut at = start;
+    fn bss(
+        &mut self,
+        objects: &[Object],
+        names: &Names<'_>,
+        reached: &Reached,
+        layout: &Layout,
+        start: GuestAddr,
+    ) {
+        let mut at = start.get();
         for (index, item) in names.uninitialized.iter().enumerate().filter(|(index, _)| reached.bss[*index]) {
             at = at.checked_next_multiple_of(item.align.max(1)).unwrap_or(u32::MAX);
             let address = GuestAddr::new(at);
@@ -103,8 +115,8 @@ impl Placed {
             self.symbols.push(linked(symbol, address, item.size, Section::Bss, layout, item.object));
             at = at.saturating_add(item.size);
         }
-        self.bss_address = GuestAddr::new(start);
-        self.bss_size = at - start;
+        self.bss_address = start;
+        self.bss_size = at - start.get();
     }
 }
 
@@ -127,8 +139,12 @@ fn linked(
     }
 }
 
-/// Compares the program's end with the space there is (specification, `dialect.md` section 7).
-pub(super) fn check_size(placed: &Placed, thread: ThreadId) -> Result<Vec<LinkWarning>, Vec<LinkError>> {
+/// Compares the program's end with the space there is (specification, `dialect.md` section 7). A program
+/// whose text does not stand in the space of the board's user programs is for another board.
+pub(super) fn check_size(placed: &Placed, text: GuestAddr) -> Result<Vec<LinkWarning>, Vec<LinkError>> {
+    if !(PROGRAM_BASE..STACK_BASE).contains(&text.get()) {
+        return Ok(Vec::new());
+    }
     let end = placed.bss_address.get().saturating_add(placed.bss_size);
     if end > STACK_BASE {
         let mut symbols: Vec<&LinkedSymbol> = placed.symbols.iter().collect();
@@ -137,11 +153,13 @@ pub(super) fn check_size(placed: &Placed, thread: ThreadId) -> Result<Vec<LinkWa
         let kind = LinkErrorKind::TooLarge { excess: end - STACK_BASE, largest: largest.collect() };
         return Err(vec![LinkError::global(kind)]);
     }
-    let own = program_base(thread).get() + PROGRAM_SIZE;
-    if end <= own {
+    // The thread in whose space the text begins.
+    let own = (text.get() - PROGRAM_BASE) / PROGRAM_SIZE + 1;
+    let own_end = PROGRAM_BASE + own * PROGRAM_SIZE;
+    if end <= own_end {
         return Ok(Vec::new());
     }
     let last = (end - 1 - PROGRAM_BASE) / PROGRAM_SIZE + 1;
-    let entered = (thread.get() + 1..=last as u8).collect();
-    Ok(vec![LinkWarning::EntersOtherThreads { excess: end - own, entered }])
+    let entered = (own as u8 + 1..=last as u8).collect();
+    Ok(vec![LinkWarning::EntersOtherThreads { excess: end - own_end, entered }])
 }

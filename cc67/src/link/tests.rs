@@ -2,7 +2,10 @@
 
 use kmotiondef::{GuestAddr, ThreadId};
 
-use super::{FirmwareKind, FirmwareSymbol, FirmwareSymbols, LinkError, Linked, Options, Section, link};
+use super::{
+    FirmwareKind, FirmwareSymbol, FirmwareSymbols, LinkError, Linked, Options, Section, SectionAddresses,
+    link,
+};
 use crate::bytecode::unit;
 use crate::diag::Sink;
 use crate::ir::function::Signature;
@@ -38,7 +41,7 @@ fn object(source: &str) -> Object {
 fn try_link(sources: &[&str], thread: i32, gc: bool) -> Result<Linked, Vec<LinkError>> {
     let objects: Vec<Object> = sources.iter().map(|source| object(source)).collect();
     let thread = ThreadId::new(thread).expect("1 to 7");
-    link(&objects, &Options { thread, firmware: &Fake, gc })
+    link(&objects, &Options { thread, firmware: &Fake, gc, addresses: SectionAddresses::default() })
 }
 
 fn linked(sources: &[&str]) -> Linked {
@@ -163,7 +166,11 @@ fn a_program_larger_than_its_space_enters_the_next_ones() {
     let errors = try_link(&[source], 5, true).expect_err("does not fit");
     let message = errors[0].to_diagnostic();
     assert!(message.message.ends_with("bytes too large"), "{}", message.message);
-    assert!(message.notes[0].starts_with("largest: a (200000), main ("), "{:?}", message.notes);
+    assert!(
+        message.notes[0].starts_with("the largest parts in bytes: a (200000), main ("),
+        "{:?}",
+        message.notes
+    );
 }
 
 #[test]

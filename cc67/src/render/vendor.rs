@@ -25,11 +25,11 @@ pub fn render(diagnostics: &[Diagnostic], sources: &SourceMap) -> String {
     }
     let of = |severity| diagnostics.iter().filter(move |diagnostic| diagnostic.severity == severity);
     // The vendor's compiler links what it could compile: undefined symbols are found last.
-    let is_linked = |diagnostic: &&Diagnostic| diagnostic.undefined.is_some();
-    let errors = of(Severity::Error).filter(|error| !is_linked(error));
-    let undefined = of(Severity::Error).filter(is_linked);
+    let is_linked = |diagnostic: &&Diagnostic| diagnostic.linker_words.is_some();
+    let compiled = of(Severity::Error).filter(|error| !is_linked(error));
+    let linked = of(Severity::Error).filter(is_linked);
     let mut text = String::new();
-    for diagnostic in errors.chain(undefined).chain(of(Severity::Warning)) {
+    for diagnostic in compiled.chain(linked).chain(of(Severity::Warning)) {
         let entry = entry(diagnostic, sources);
         if text.len() + entry.len() >= LIMIT {
             // A first message of that length is cut, not lost.
@@ -48,8 +48,8 @@ pub fn render(diagnostics: &[Diagnostic], sources: &SourceMap) -> String {
 fn entry(diagnostic: &Diagnostic, sources: &SourceMap) -> String {
     let mut text = String::new();
     // Its own words first: other programs look for them.
-    if let Some(name) = &diagnostic.undefined {
-        text.push_str(&format!("tcc: undefined symbol '{name}'\n"));
+    if let Some(words) = &diagnostic.linker_words {
+        text.push_str(&format!("tcc: {words}\n"));
     }
     match diagnostic.span.and_then(|span| Some((span, sources.place(span)?))) {
         Some((span, place)) => {
@@ -61,6 +61,7 @@ fn entry(diagnostic: &Diagnostic, sources: &SourceMap) -> String {
             }
             text.push_str(&format!("{}:{}: ", sources.file(place.file).name, place.line));
         }
+        None if diagnostic.linker_words.is_some() => {}
         None => text.push_str("tcc: "),
     }
     if diagnostic.severity == Severity::Warning {
@@ -101,17 +102,17 @@ mod tests {
 
     #[test]
     fn errors_stand_before_warnings_and_undefined_symbols_last() {
-        let mut undefined = Diagnostic::error(Span::new(17, 18), "undefined function `f`").help("write it");
-        undefined.undefined = Some("f".to_owned());
+        let undefined = Diagnostic::error(Span::new(17, 18), "undefined function `f`").help("write it");
         let diagnostics = [
             Diagnostic::warning(Lint::ImplicitInt, Span::new(0, 1), "hm"),
-            undefined,
+            undefined.undefined("f"),
+            Diagnostic::global_error("a.c: no `main`").linker_words("main not defined"),
             Diagnostic::error(Span::new(28, 29), "no"),
             Diagnostic::global_error("nothing fits"),
         ];
         let expect = "In file included from a.c:2:\nb.h:1: no\ntcc: nothing fits\n\
             tcc: undefined symbol 'f'\na.c:3: undefined function `f` (write it)\n\
-            a.c:1: warning: hm\n";
+            tcc: main not defined\na.c: no `main`\na.c:1: warning: hm\n";
         check(&diagnostics, expect);
     }
 

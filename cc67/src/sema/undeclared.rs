@@ -6,6 +6,7 @@
 use kmotiondef::CType;
 
 use super::Sema;
+use super::advice::{Advice, HEADER_HELP};
 use super::scope::Entity;
 use crate::diag::Diagnostic;
 use crate::lints::Lint;
@@ -14,9 +15,6 @@ use crate::source::Span;
 use crate::suggest::suggest;
 use crate::ty::{FunctionType, ParameterTypes, QualifiedType, Type, TypeId, Types};
 use crate::typed::{Callee, Linkage, SymbolId};
-
-/// What to do when the vendor's header seems to be missing.
-const HEADER_HELP: &str = "is `KMotionDef.h` included?";
 
 impl Sema<'_> {
     /// A call of a name without declaration.
@@ -87,11 +85,14 @@ impl Sema<'_> {
         let prototype = self.types.spell_declaration(self.names, ty, spelling);
         let symbol = self.symbols.declare(name, spelling, Linkage::External, ty, span);
         self.symbols.facts_mut(symbol).is_reported = true;
-        self.report(
-            Diagnostic::warning(Lint::ImplicitDeclaration, span, format!("`{spelling}` is not declared"))
-                .at(format!("the firmware's `{prototype}` is used"))
-                .help("include `KMotionDef.h`, or declare the function"),
-        );
+        // The header that declares it may be the file that was not found.
+        if !self.sink.lacks_names() {
+            self.report(
+                Diagnostic::warning(Lint::ImplicitDeclaration, span, format!("`{spelling}` is not declared"))
+                    .at(format!("the firmware's `{prototype}` is used"))
+                    .help("include `KMotionDef.h`, or declare the function"),
+            );
+        }
         Some((Callee::Symbol(symbol), ty))
     }
 
@@ -168,14 +169,12 @@ impl Sema<'_> {
         if !self.body.undeclared.insert(name) {
             return;
         }
+        let Advice::Say(advice) = self.advice(name) else { return };
         let spelling = self.names.get(name);
-        let mut diagnostic = Diagnostic::error(span, format!("undefined function `{spelling}`"))
+        let diagnostic = Diagnostic::error(span, format!("undefined function `{spelling}`"))
             .at("neither this program nor the firmware has it")
             .undefined(spelling);
-        if let Some(near) = self.near_name(spelling) {
-            diagnostic = diagnostic.help(format!("did you mean `{near}`?"));
-        }
-        self.report(diagnostic);
+        self.report(advice(diagnostic));
     }
 
     /// A variable without declaration; said once in a function.
@@ -183,27 +182,25 @@ impl Sema<'_> {
         if !self.body.undeclared.insert(name) {
             return;
         }
-        let spelling = self.names.get(name);
-        let mut diagnostic = Diagnostic::error(span, format!("`{spelling}` is not declared"));
+        let diagnostic = Diagnostic::error(span, format!("`{}` is not declared", self.spelling(name)));
         let later = self.scopes.lookup_later(name).map(|binding| (binding.entity, binding.span));
         if let Some((entity, place)) = later {
-            if entity == Entity::Poisoned {
-                return;
+            if entity != Entity::Poisoned {
+                let diagnostic = diagnostic.label(place, "declared here, behind its use");
+                self.report(diagnostic.help("move the declaration up"));
             }
-            diagnostic =
-                diagnostic.label(place, "declared here, behind its use").help("move the declaration up");
-        } else if self.firmware.is_variable(spelling) || self.firmware.prototype(spelling).is_some() {
-            diagnostic = diagnostic.note("the firmware has this name").help(HEADER_HELP);
-        } else if let Some(advice) = newer_word(spelling) {
-            diagnostic = diagnostic.help(advice);
-        } else if let Some(near) = self.near_name(spelling) {
-            diagnostic = diagnostic.help(format!("did you mean `{near}`?"));
+            return;
         }
-        self.report(diagnostic);
+        if let Advice::Say(advice) = self.advice(name) {
+            self.report(advice(diagnostic));
+        }
     }
 
     /// A type name that no typedef defines.
     pub(super) fn unknown_type(&mut self, name: Name, span: Span) {
+        if self.sink.lacks_names() {
+            return;
+        }
         let spelling = self.names.get(name);
         let mut diagnostic = Diagnostic::error(span, format!("unknown type `{spelling}`"));
         if self.firmware.is_type(spelling) {
@@ -214,7 +211,8 @@ impl Sema<'_> {
         self.report(diagnostic);
     }
 
-    fn near_name(&self, spelling: &str) -> Option<&str> {
+    /// The nearest visible name.
+    pub(super) fn near_name(&self, spelling: &str) -> Option<&str> {
         let own = self.scopes.visible().filter(|binding| !matches!(binding.entity, Entity::Typedef(_)));
         let own = own.map(|binding| self.names.get(binding.name));
         suggest(spelling, own.chain(self.firmware.names()).filter(|name| is_sensible(spelling, name)))
@@ -229,13 +227,4 @@ impl Sema<'_> {
 /// Whether a name may be suggested for another: one letter is near to every other, only its case can be meant.
 pub(super) fn is_sensible(spelling: &str, name: &str) -> bool {
     spelling.len() > 1 || name.eq_ignore_ascii_case(spelling)
-}
-
-/// Advice for values that newer C has and the board's headers do not.
-fn newer_word(name: &str) -> Option<&'static str> {
-    Some(match name {
-        "true" => "use `TRUE` of `KMotionDef.h`, or 1",
-        "false" => "use `FALSE` of `KMotionDef.h`, or 0",
-        _ => return None,
-    })
 }

@@ -1,0 +1,155 @@
+//! Words of other languages and boards, and what a program for KFLOP has in their place.
+//!
+//! People come to KFLOP from Arduino, C++, Python, Basic and G-code, and write what they know. A
+//! row of [`WORDS`] is such a word with advice that tells what to write instead.
+
+/// Where a word comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Origin {
+    /// Arduino sketches.
+    Arduino,
+    /// C++.
+    Cpp,
+    /// Python, Basic and languages like them.
+    Script,
+    /// C on computers.
+    Computer,
+}
+
+/// A word that the board's C does not have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Word {
+    /// The word.
+    pub spelling: &'static str,
+    /// Where it comes from.
+    pub origin: Origin,
+    /// It accompanies other words of its origin, so that after one of them nothing more need be said.
+    pub is_companion: bool,
+    /// What to write instead.
+    pub advice: &'static str,
+}
+
+/// The row of a word, if it has one.
+#[must_use]
+pub fn word(spelling: &str) -> Option<&'static Word> {
+    WORDS.iter().find(|word| word.spelling == spelling)
+}
+
+const fn lead(spelling: &'static str, origin: Origin, advice: &'static str) -> Word {
+    Word { spelling, origin, is_companion: false, advice }
+}
+
+const fn companion(spelling: &'static str, origin: Origin, advice: &'static str) -> Word {
+    Word { spelling, origin, is_companion: true, advice }
+}
+
+use Origin::{Arduino, Computer, Cpp, Script};
+
+/// Every word, by origin.
+const WORDS: &[Word] = &[
+    lead("delay", Arduino, "`Delay_sec(0.1)` waits a tenth of a second"),
+    lead(
+        "delayMicroseconds",
+        Arduino,
+        "`Delay_sec(0.001)` waits a millisecond; a thread runs every 180 µs or later",
+    ),
+    lead("millis", Arduino, "`Time_sec()` is the time in seconds"),
+    lead("micros", Arduino, "`Time_sec()` is the time in seconds"),
+    lead("digitalWrite", Arduino, "write `SetBit(46)`, `ClearBit(46)` or `SetStateBit(46, value)`"),
+    lead("digitalRead", Arduino, "`ReadBit(46)` reads an input"),
+    lead("pinMode", Arduino, "`SetBitDirection(46, 1)` makes bit 46 an output, 0 an input"),
+    lead("analogRead", Arduino, "`ADC(channel)` is the last conversion of a channel"),
+    lead("analogWrite", Arduino, "`DAC(channel, counts)` sets an analog output"),
+    lead("Serial", Arduino, "`printf` writes to the console"),
+    companion("HIGH", Arduino, "an output is 1 or 0"),
+    companion("LOW", Arduino, "an output is 1 or 0"),
+    companion("OUTPUT", Arduino, "`SetBitDirection(46, 1)` makes bit 46 an output"),
+    companion("INPUT", Arduino, "`SetBitDirection(46, 0)` makes bit 46 an input"),
+    lead("cout", Cpp, "`printf(\"%f\\n\", value)` writes to the console"),
+    lead("cin", Cpp, "a program has no keyboard; `persist.UserData` holds what the PC sends"),
+    companion("endl", Cpp, "a line ends in `\\n`"),
+    companion("std", Cpp, "C has no namespaces"),
+    lead("new", Cpp, "give an array a fixed size, such as `double samples[100];`"),
+    companion("delete", Cpp, "nothing need be given back"),
+    lead("nullptr", Cpp, "write `NULL`"),
+    lead("this", Cpp, "C has no classes; pass a pointer to a `struct`"),
+    lead("print", Script, "`printf(\"%f\\n\", value)` writes to the console"),
+    lead("sleep", Computer, "`Delay_sec(1.0)` waits a second"),
+    lead("Sleep", Computer, "`Delay_sec(1.0)` waits a second"),
+    lead("usleep", Computer, "`Delay_sec(0.001)` waits a millisecond"),
+    lead("None", Script, "write `NULL`, or 0 for a number"),
+    lead("True", Script, "use `TRUE` of `KMotionDef.h`, or 1"),
+    lead("False", Script, "use `FALSE` of `KMotionDef.h`, or 0"),
+    lead("and", Script, "write `&&`"),
+    lead("or", Script, "write `||`"),
+    lead("not", Script, "write `!`"),
+    lead("true", Computer, "use `TRUE` of `KMotionDef.h`, or 1"),
+    lead("false", Computer, "use `FALSE` of `KMotionDef.h`, or 0"),
+    lead("PI", Computer, "write `#define PI 3.14159265358979`"),
+    lead("M_PI", Computer, "write `#define M_PI 3.14159265358979`"),
+];
+
+/// Words that are used like types, and what to write instead.
+pub const TYPES: &[(&str, &str)] = &[
+    ("bool", "use `BOOL` of `KMotionDef.h` with `TRUE` and `FALSE`, or include <stdbool.h>"),
+    ("boolean", "use `BOOL` of `KMotionDef.h` with `TRUE` and `FALSE`"),
+    ("string", "C has no strings but arrays of `char`, such as `char text[80];`"),
+    ("String", "C has no strings but arrays of `char`, such as `char text[80];`"),
+    ("byte", "write `unsigned char`"),
+    ("word", "write `unsigned short`"),
+    ("real", "write `double`"),
+    ("integer", "write `int`"),
+    ("var", "write the type, such as `int` or `double`"),
+    ("let", "write the type, such as `int` or `double`"),
+    ("Dim", "write the type, such as `int` or `double`"),
+    ("dim", "write the type, such as `int` or `double`"),
+    ("function", "a function begins with the type of its result, or `void`"),
+    ("def", "a function begins with the type of its result, or `void`"),
+    ("sub", "a function begins with the type of its result, or `void`"),
+    ("Sub", "a function begins with the type of its result, or `void`"),
+    ("uint8_t", "include <stdint.h>"),
+    ("int8_t", "include <stdint.h>"),
+    ("uint16_t", "include <stdint.h>"),
+    ("int16_t", "include <stdint.h>"),
+    ("uint32_t", "include <stdint.h>"),
+    ("int32_t", "include <stdint.h>"),
+    ("uint64_t", "include <stdint.h>"),
+    ("int64_t", "include <stdint.h>"),
+];
+
+/// Whether a word looks like one of G-code: a letter and a number.
+#[must_use]
+pub fn is_g_code(word: &str) -> bool {
+    const LETTERS: &str = "ABCDFGHIJKLMNPQRSTXYZ";
+    let mut characters = word.chars();
+    let is_letter = characters.next().is_some_and(|first| LETTERS.contains(first.to_ascii_uppercase()));
+    is_letter && word.len() > 1 && characters.all(|character| character.is_ascii_digit())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_word_stands_once() {
+        let mut words: Vec<_> = WORDS.iter().map(|word| word.spelling).collect();
+        words.extend(TYPES.iter().map(|(word, _)| word));
+        let count = words.len();
+        words.sort_unstable();
+        words.dedup();
+        assert_eq!(words.len(), count);
+    }
+
+    #[test]
+    fn the_advice_names_what_the_firmware_has() {
+        for name in ["Delay_sec", "Time_sec", "SetStateBit", "SetBitDirection", "printf"] {
+            assert!(kmotiondef::firmware::function_named(name).is_some(), "{name}");
+        }
+    }
+
+    #[test]
+    fn g_code_is_letters_with_numbers() {
+        assert!(["G0", "x10", "M3", "S1000"].iter().all(|word| is_g_code(word)));
+        assert!(["G", "ch0", "i2", "E", "G0X"].iter().filter(|word| is_g_code(word)).eq(["i2"].iter()));
+    }
+}
