@@ -22,8 +22,11 @@ use inputs::Input;
 
 const BINARY: &str = env!("CARGO_BIN_EXE_cc67-under-test");
 
-/// The longest that one input may take, on a slow computer without optimisation.
-const PATIENCE: Duration = Duration::from_secs(10);
+/// The longest that one input may take, on a computer that does much else at the same time.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// The same for the command's own time on the processor, in seconds.
+const PROCESSOR_TIME: u32 = 10;
 
 /// More diagnostics than this are no help to anybody.
 const MOST_ERRORS: usize = 25;
@@ -94,7 +97,8 @@ fn the_heaviest_stay_below_a_gigabyte() {
     let scratch = Scratch::new("hostile-heavy");
     for input in inputs::heavy() {
         scratch.write("hostile.c", &input.text);
-        let limits = format!("ulimit -v {ADDRESS_SPACE}; ulimit -t 30; exec \"$0\" check hostile.c");
+        let limits =
+            format!("ulimit -v {ADDRESS_SPACE}; ulimit -t {PROCESSOR_TIME}; exec \"$0\" check hostile.c");
         let output = Command::new("sh")
             .args(["-c", &limits, BINARY])
             .current_dir(scratch.path())
@@ -118,7 +122,7 @@ fn includes_of_what_is_no_file_are_refused() {
         scratch.write("again.c", format!("#include \"{name}\"\nmain() {{ }}\n"));
         let output = run_in(BINARY, scratch.path(), ["check", "again.c"]);
         assert_eq!(output.code, 1, "{name}: {output:?}");
-        assert!(output.stderr.contains("again.c:1:"), "{name}: {}", output.stderr);
+        assert!(output.stderr.contains(":1:10"), "{name}: {}", output.stderr);
         assert!(!output.stderr.contains("os error"), "{name}: {}", output.stderr);
     }
     let files = Disk;

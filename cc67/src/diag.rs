@@ -131,6 +131,23 @@ impl Diagnostic {
     }
 }
 
+/// Bytes of a text after which the rest is not shown: no name that people write is that long.
+const LONGEST_TEXT: usize = 500;
+
+impl Diagnostic {
+    /// Cuts off what is too long to read.
+    fn shorten(&mut self) {
+        let labels = self.labels.iter_mut().map(|label| &mut label.message);
+        let texts =
+            [&mut self.message, &mut self.at].into_iter().chain(&mut self.notes).chain(&mut self.help);
+        for text in texts.chain(labels).filter(|text| text.len() > LONGEST_TEXT) {
+            let end = (0..=LONGEST_TEXT).rev().find(|end| text.is_char_boundary(*end));
+            text.truncate(end.unwrap_or(0));
+            text.push('…');
+        }
+    }
+}
+
 /// Errors after which a stage of the compiler gives up: what follows is seldom worth reading.
 pub const MAX_ERRORS: usize = 20;
 
@@ -155,11 +172,17 @@ impl Sink {
         Self::default()
     }
 
-    /// Takes a diagnostic.
-    pub fn report(&mut self, diagnostic: Diagnostic) {
-        let is_error = diagnostic.severity == Severity::Error;
-        self.errors += usize::from(is_error);
-        if is_error || self.diagnostics.len() < MAX_REMARKS {
+    /// Takes a diagnostic. Errors in places beyond [`MAX_ERRORS`] are only counted.
+    pub fn report(&mut self, mut diagnostic: Diagnostic) {
+        let is_kept = match diagnostic.severity {
+            Severity::Error => {
+                self.errors += 1;
+                self.errors <= MAX_ERRORS || diagnostic.span.is_none()
+            }
+            Severity::Warning | Severity::Note => self.diagnostics.len() < MAX_REMARKS,
+        };
+        if is_kept {
+            diagnostic.shorten();
             self.diagnostics.push(diagnostic);
         }
     }

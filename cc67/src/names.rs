@@ -4,6 +4,8 @@
 //! known beforehand ([`word`]), so that a `match` on a [`Name`] needs no strings. The table is
 //! an open-addressed hash table of its own: it is asked once for every identifier token.
 
+use std::collections::BTreeSet;
+
 use cranelift_entity::{EntityRef, entity_impl};
 
 /// An identifier; equal numbers are equal spellings.
@@ -81,6 +83,8 @@ pub struct Names {
     ends: Vec<usize>,
     /// Number + 1 of the name in each slot, 0 for an empty one; the size is a power of two.
     slots: Vec<u32>,
+    /// Names of macros with parameters, past and present.
+    function_macros: BTreeSet<Name>,
 }
 
 impl Default for Names {
@@ -93,7 +97,12 @@ impl Names {
     /// Makes a table that holds only the words known beforehand.
     #[must_use]
     pub fn new() -> Self {
-        let mut names = Self { text: String::new(), ends: Vec::new(), slots: vec![0; 2048] };
+        let mut names = Self {
+            text: String::new(),
+            ends: Vec::new(),
+            slots: vec![0; 2048],
+            function_macros: BTreeSet::new(),
+        };
         for spelling in WORDS {
             names.intern(spelling);
         }
@@ -128,6 +137,17 @@ impl Names {
         let index = name.index();
         let start = index.checked_sub(1).map_or(0, |before| self.ends[before]);
         &self.text[start..self.ends[index]]
+    }
+
+    /// Remembers that a macro with parameters has this name: it stands for something before `(` only.
+    pub fn mark_function_macro(&mut self, name: Name) {
+        self.function_macros.insert(name);
+    }
+
+    /// Whether a macro with parameters has this name.
+    #[must_use]
+    pub fn is_function_macro(&self, name: Name) -> bool {
+        self.function_macros.contains(&name)
     }
 
     /// How many names there are; the numbers are those below.

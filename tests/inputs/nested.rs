@@ -3,7 +3,7 @@
 use super::{Input, in_main};
 
 /// How deep.
-const DEPTH: usize = 20_000;
+const DEPTH: usize = 10_000;
 
 /// Repeats of `open`, then `middle`, then as many of `close`.
 fn nest(open: &str, middle: &str, close: &str) -> String {

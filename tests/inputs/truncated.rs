@@ -46,7 +46,7 @@ fn ends() -> Vec<usize> {
     (1..bytes.len())
         .filter(|at| {
             let (before, behind) = (bytes[at - 1], bytes[*at]);
-            !before.is_ascii_whitespace() && !(is_word(before) && is_word(behind))
+            !(before.is_ascii_whitespace() || is_word(before) && is_word(behind))
         })
         .collect()
 }

@@ -18,6 +18,10 @@ use crate::typed::{
 
 /// Reports every local that is read before anything is stored in it, once.
 pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
+    // What could not be read may have been the store.
+    if sink.has_errors() {
+        return;
+    }
     program
         .whole_functions()
         .filter(|function| function.labels.is_empty())

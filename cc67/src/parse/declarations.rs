@@ -52,6 +52,10 @@ impl Parser<'_> {
             }
             (TokenKind::RightBrace, _) => {
                 self.at += 1;
+                // Behind statements outside of a function it ends what should be one.
+                if self.has_loose_statement {
+                    return Ok(None);
+                }
                 return self.fail(Diagnostic::error(start.span, "`}` without `{`").at("closes nothing"));
             }
             (_, Some(word::STATIC_ASSERT)) => return Ok(Some(Item::StaticAssert(self.static_assert()?))),
@@ -62,6 +66,9 @@ impl Parser<'_> {
                 self.assembler()?;
             }
             _ => {}
+        }
+        if self.skip_foreign_declaration() {
+            return Ok(None);
         }
         if self.is_loose_statement() {
             return self.loose_statement();
@@ -95,7 +102,11 @@ impl Parser<'_> {
         let first = self.tokens.get(start).copied().unwrap_or(self.end);
         let column = self.sources.place(first.span).map_or(1, |place| place.column);
         let is_outer = first.flags.has(Flags::LINE_START) && column == 1;
-        if let Some(open) = self.open.last() {
+        if let Some(open) = self.open.iter().find(|token| token.kind == TokenKind::LeftBrace) {
+            // The function's own tokens say nothing about what is open before it.
+            let end = std::mem::replace(&mut self.at, start);
+            let open = if is_outer { self.unclosed(*open) } else { *open };
+            self.at = end;
             diagnostic = diagnostic.label(open.span, "this `{` is open");
         }
         if is_outer {
@@ -150,13 +161,23 @@ impl Parser<'_> {
                 if declarators.is_empty() && self.begins_body(&declarator) {
                     return Ok(Declared::Function(specifiers, declarator));
                 }
+                if self.has_surplus_semicolon(&declarator) {
+                    return Ok(Declared::Function(specifiers, declarator));
+                }
                 self.declare(&specifiers, &declarator);
-                let initializer = match self.take(TokenKind::Assign) {
-                    Some(_) => Some(self.initializer()?),
-                    None => None,
-                };
+                let initializer =
+                    if self.take(TokenKind::Assign).is_some() || self.takes_equality(&declarator) {
+                        Some(self.initializer()?)
+                    } else {
+                        None
+                    };
                 declarators.push(InitDeclarator { declarator, initializer });
-                if self.take(TokenKind::Comma).is_none() {
+                if self.take(TokenKind::Comma).is_some() {
+                    self.skip_decimals();
+                } else if !self.continues_name() {
+                    break;
+                }
+                if self.kind() == TokenKind::Semicolon {
                     break;
                 }
             }
@@ -177,7 +198,64 @@ impl Parser<'_> {
             && behind_brace.is_some_and(|token| token.kind == TokenKind::RightBrace)
             && self.peek().flags.has(Flags::LINE_START)
             && (self.kind() == TokenKind::End
-                || self.name().is_some_and(|name| self.is_declaration_word(name)))
+                || self.name().is_some_and(|name| self.is_declaration_word(name))
+                || self.is_identifier_at(0) && self.kind_at(1) == TokenKind::LeftParen)
+    }
+
+    /// Whether a `;` stands between the head of a function and its body; reports it.
+    fn has_surplus_semicolon(&mut self, declarator: &Declarator) -> bool {
+        let is_head = matches!(declarator.derived.first(), Some(Derived::Function(_)))
+            && self.scopes.is_outermost()
+            && self.kind() == TokenKind::Semicolon
+            && self.kind_at(1) == TokenKind::LeftBrace;
+        if is_head {
+            let span = self.next().span;
+            let message = "`;` between the head of a function and its body";
+            self.report(Diagnostic::error(span, message).help("remove the `;`"));
+        }
+        is_head
+    }
+
+    /// Reads an `==` in the place of the `=` before an initialiser, and reports it.
+    fn takes_equality(&mut self, declarator: &Declarator) -> bool {
+        let Some(token) = self.take(TokenKind::Equal) else { return false };
+        let name = declarator.name.map_or("it", |(name, _)| self.spelling(name));
+        let help = format!("write `=` to give `{name}` its value");
+        self.report(Diagnostic::error(token.span, "`==` compares").help(help));
+        true
+    }
+
+    /// Goes over the decimals of a number that was written with a comma, as in `double x = 2,54;`.
+    fn skip_decimals(&mut self) {
+        let whole = self.at.checked_sub(2).and_then(|at| self.tokens.get(at)).copied();
+        let token = self.peek();
+        let Some(whole) = whole.filter(|whole| whole.kind == TokenKind::Number) else { return };
+        if token.kind == TokenKind::Number && !token.flags.has(Flags::SPACE) {
+            self.at += 1;
+            let number = format!("{}.{}", self.text(whole.span), self.text(token.span));
+            let span = whole.span.to(token.span);
+            let diagnostic = Diagnostic::error(span, "the decimal point of a number is `.`, not `,`");
+            self.report(diagnostic.help(format!("write `{number}`")));
+        }
+    }
+
+    /// Whether the name of a variable goes on behind a `-`, as in `int home-speed = 5;`; reports it.
+    fn continues_name(&mut self) -> bool {
+        let Some(first) = self.at.checked_sub(1).and_then(|at| self.tokens.get(at)).copied() else {
+            return false;
+        };
+        let is_name = first.kind == TokenKind::Identifier
+            && self.kind() == TokenKind::Minus
+            && self.is_identifier_at(1);
+        if !is_name {
+            return false;
+        }
+        self.at += 1;
+        let span = first.span.to(self.peek().span);
+        let name = format!("{}_{}", self.text(first.span), self.text(self.peek().span));
+        let diagnostic = Diagnostic::error(span, "a name holds letters, digits and `_` only");
+        self.report(diagnostic.help(format!("write `{name}`")));
+        true
     }
 
     fn declare(&mut self, specifiers: &Specifiers, declarator: &Declarator) {
@@ -220,6 +298,7 @@ impl Parser<'_> {
         declarator: Declarator,
         start: Span,
     ) -> Parsed<FunctionDefinition> {
+        self.has_function = true;
         self.declare(&specifiers, &declarator);
         self.scopes.enter();
         self.declare_parameters(&declarator);
@@ -306,12 +385,17 @@ impl Parser<'_> {
         if self.kind() != TokenKind::Identifier {
             return self.fail_expected("a declaration");
         }
+        // The `}` that ended a function before this statement is the one too many.
+        let before = self.at.checked_sub(1).and_then(|at| self.tokens.get(at)).copied();
         let token = self.next();
         let text = self.text(token.span);
-        self.fail(
-            Diagnostic::error(token.span, format!("statement outside of a function, at `{text}`"))
-                .note("statements stand between the braces of a function such as `main() { … }`")
-                .help("is there a `}` too many before it?"),
-        )
+        let diagnostic =
+            Diagnostic::error(token.span, format!("statement outside of a function, at `{text}`"));
+        self.fail(match before {
+            Some(brace) if brace.kind == TokenKind::RightBrace && self.has_function => diagnostic
+                .label(brace.span, "this `}` ends the function before")
+                .help("remove the `}` that is too many"),
+            _ => diagnostic.help("put it between the braces of a function such as `main() { … }`"),
+        })
     }
 }

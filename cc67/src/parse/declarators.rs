@@ -1,6 +1,7 @@
 //! Declarators: a name, and what is derived around it.
 
-use crate::ast::{Alignment, Declarator, Derived, Parameter, Parameters, Qualifiers, TypeName};
+use crate::ast::{Alignment, Declarator, Derived, Parameter, Parameters, Qualifiers, Specifiers, TypeName};
+use crate::diag::Diagnostic;
 use crate::names::{Name, word};
 use crate::pp::TokenKind;
 use crate::source::Span;
@@ -180,8 +181,23 @@ impl Parser<'_> {
         } else if is_bare {
             return self.fail_expected("a parameter");
         }
+        self.reference(&mut specifiers);
         let declarator = self.declarator(Naming::Optional)?;
         Ok(Parameter { specifiers, declarator, span: self.since(start.span) })
+    }
+
+    /// Goes over the `&` of a C++ reference; what it declares has a type that was reported.
+    fn reference(&mut self, specifiers: &mut Specifiers) {
+        if self.kind() != TokenKind::And || !self.is_identifier_at(1) {
+            return;
+        }
+        let token = self.next();
+        let (ty, name) = (self.text(specifiers.span), self.text(self.peek().span));
+        let diagnostic = Diagnostic::error(token.span, "references belong to C++");
+        self.report(
+            diagnostic.help(format!("write a pointer, `{ty} *{name}`, and `{name}->` for its members")),
+        );
+        specifiers.ty = Some(Self::missing_type(token.span));
     }
 
     /// `asm("name")` and attributes behind a declarator.

@@ -58,8 +58,14 @@ impl Parser<'_> {
         }
         let text = self.token_text(token);
         let (value, problems) = quoted::character(&text);
+        let is_wrong = problems.iter().any(|problem| problem.kind == ProblemKind::Error);
         self.report_quoted(token, problems);
-        Expression { kind: ExpressionKind::Character(value, quoted::encoding(&text)), span }
+        let kind = if is_wrong {
+            ExpressionKind::Error
+        } else {
+            ExpressionKind::Character(value, quoted::encoding(&text))
+        };
+        Expression { kind, span }
     }
 
     /// Reads adjacent strings as one.

@@ -23,6 +23,8 @@ mod builtins;
 mod declarations;
 mod declarators;
 mod expressions;
+mod foreign;
+mod indentation;
 mod initializers;
 mod literals;
 mod operators;
@@ -36,6 +38,8 @@ mod statements;
 mod tests;
 mod unary;
 mod unknown;
+
+use std::collections::BTreeSet;
 
 use crate::ast::TranslationUnit;
 use crate::diag::{Diagnostic, Sink};
@@ -75,6 +79,10 @@ pub fn parse(tokens: &[Token], sources: &SourceMap, names: &Names, sink: &mut Si
         is_stopped: false,
         is_unwinding: false,
         has_loose_statement: false,
+        is_branch: false,
+        has_function: false,
+        foreign: foreign::Reported::new(),
+        tags: BTreeSet::new(),
     };
     // The preprocessor may have found enough already.
     if parser.sink.is_full() { TranslationUnit::default() } else { parser.translation_unit() }
@@ -110,6 +118,14 @@ struct Parser<'a> {
     is_unwinding: bool,
     /// A statement outside of all functions was reported.
     has_loose_statement: bool,
+    /// The block that is read next, or is being read, stands behind `if (…)`.
+    is_branch: bool,
+    /// A function was defined.
+    has_function: bool,
+    /// Other languages whose words were reported.
+    foreign: foreign::Reported,
+    /// The tags of structures, unions and enumerations.
+    tags: BTreeSet<(Name, &'static str)>,
 }
 
 impl Parser<'_> {

@@ -18,7 +18,8 @@ impl Parser<'_> {
         let keyword = self.next();
         let kind = if keyword.name == word::STRUCT { RecordKind::Struct } else { RecordKind::Union };
         let mut alignments = self.attributes()?;
-        let tag = self.tag();
+        let keyword_text = if kind == RecordKind::Struct { "struct" } else { "union" };
+        let tag = self.tag(keyword_text);
         let members = if self.kind() == TokenKind::LeftBrace {
             Some(self.nested(Self::members)?)
         } else if tag.is_some() {
@@ -34,7 +35,7 @@ impl Parser<'_> {
     pub(super) fn enumeration(&mut self) -> Parsed<EnumSpecifier> {
         let keyword = self.next();
         self.attributes()?;
-        let tag = self.tag();
+        let tag = self.tag("enum");
         let enumerators = if self.kind() == TokenKind::LeftBrace {
             Some(self.enumerators()?)
         } else if tag.is_some() {
@@ -46,8 +47,10 @@ impl Parser<'_> {
         Ok(EnumSpecifier { tag, enumerators, span: self.since(keyword.span) })
     }
 
-    fn tag(&mut self) -> Option<(Name, Span)> {
-        self.is_identifier_at(0).then(|| self.next()).map(|token| (token.name, token.span))
+    fn tag(&mut self, keyword: &'static str) -> Option<(Name, Span)> {
+        let token = self.is_identifier_at(0).then(|| self.next())?;
+        self.tags.insert((token.name, keyword));
+        Some((token.name, token.span))
     }
 
     fn members(&mut self) -> Parsed<Vec<MemberDeclaration>> {

@@ -43,7 +43,44 @@ impl Parser<'_> {
             return Err(Reported);
         }
         let found = self.describe(token);
-        self.fail(Diagnostic::error(token.span, format!("expected {what}, found {found}")))
+        let diagnostic = Diagnostic::error(token.span, format!("expected {what}, found {found}"));
+        self.fail(match self.hint(token) {
+            Some(help) => diagnostic.help(help),
+            None => diagnostic,
+        })
+    }
+
+    /// What was probably meant where `token` was not expected.
+    fn hint(&self, token: Token) -> Option<String> {
+        if let Some(advice) = self.macro_advice(token) {
+            return Some(advice);
+        }
+        let before = self.at.checked_sub(1).and_then(|at| self.tokens.get(at))?;
+        let is_adjacent = !token.flags.has(Flags::SPACE) && !token.flags.has(Flags::LINE_START);
+        let advice = match (before.kind, token.kind) {
+            (TokenKind::Assign, TokenKind::Greater) if is_adjacent => "did you mean `>=`?",
+            (TokenKind::Assign, TokenKind::Less) if is_adjacent => "did you mean `<=`?",
+            (TokenKind::Less, TokenKind::Greater) if is_adjacent => "did you mean `!=`?",
+            (TokenKind::Not | TokenKind::Equal | TokenKind::NotEqual, TokenKind::Assign) if is_adjacent => {
+                "`==` and `!=` have two characters"
+            }
+            (_, TokenKind::Number) if !self.text(token.span).bytes().all(|byte| byte.is_ascii_digit()) => {
+                "a name begins with a letter or `_`"
+            }
+            _ => return None,
+        };
+        Some(advice.to_owned())
+    }
+
+    /// What to change in the `#define` that put `=` or `;` where it cannot stand.
+    fn macro_advice(&self, token: Token) -> Option<String> {
+        let expansion = self.sources.expansion(token.span.expansion)?;
+        let text = match token.kind {
+            TokenKind::Assign => "=",
+            TokenKind::Semicolon => ";",
+            _ => return None,
+        };
+        Some(format!("remove the `{text}` from `#define {}`", self.sources.macro_name(expansion)))
     }
 
     /// Reads a token of this kind; `what` says where it is expected.
@@ -69,15 +106,80 @@ impl Parser<'_> {
             return Err(self.report_end(&format!("`{text}`")));
         }
         let opener = self.open.pop().unwrap_or(found);
-        let message = format!("expected `{text}`, found {}", self.describe(found));
-        self.report(Diagnostic::error(found.span, message).label(opener.span, "to close this"));
+        let advice = self.macro_advice(found);
+        if found.kind == TokenKind::Semicolon
+            && self.kind_at(1) == kind
+            && let Some(help) = advice
+        {
+            let message = "a `;` from a macro ends the statement here";
+            self.report(Diagnostic::error(found.span, message).help(help));
+            self.at += 1;
+            return Ok(self.next());
+        }
+        self.report(self.unclosed_bracket(opener, found, text));
         // Before these the bracket was just forgotten.
-        if matches!(found.kind, TokenKind::Semicolon | TokenKind::LeftBrace | TokenKind::RightBrace) {
+        if matches!(found.kind, TokenKind::Semicolon | TokenKind::LeftBrace | TokenKind::RightBrace)
+            || found.flags.has(Flags::LINE_START) && self.is_condition(opener)
+        {
             Ok(found)
         } else {
             self.open.push(opener);
             Err(Reported)
         }
+    }
+
+    /// Whether a parenthesis is that of `if`, `while` or `switch`.
+    fn is_condition(&self, opener: Token) -> bool {
+        let tokens = self.tokens.get(..self.at).unwrap_or_default();
+        let at = tokens.iter().rposition(|token| token.span == opener.span);
+        let before = at.and_then(|at| at.checked_sub(1)).and_then(|at| tokens.get(at));
+        before.is_some_and(|word| matches!(word.name, word::IF | word::WHILE | word::SWITCH))
+    }
+
+    /// A bracket whose partner was expected where `found` stands.
+    fn unclosed_bracket(&self, opener: Token, found: Token, text: &str) -> Diagnostic {
+        let is_forgotten = found.flags.has(Flags::LINE_START) || found.kind == TokenKind::Semicolon;
+        let mut diagnostic = if is_forgotten {
+            Diagnostic::error(self.end_of_last(), format!("expected `{text}`"))
+                .at(format!("before {}", self.describe(found)))
+        } else {
+            let message = format!("expected `{text}`, found {}", self.describe(found));
+            Diagnostic::error(found.span, message)
+        };
+        diagnostic = diagnostic.label(opener.span, "to close this");
+        if let Some((name, span)) = self.open_macro() {
+            diagnostic = diagnostic.label(span, format!("macro `{name}` leaves this open"));
+        }
+        match self.operator_word() {
+            Some(advice) => diagnostic.help(advice),
+            None => diagnostic,
+        }
+    }
+
+    /// A macro between whose parentheses one has no partner: its name, and where that stands.
+    fn open_macro(&self) -> Option<(String, Span)> {
+        let tokens = self.tokens.get(..self.at)?.iter().rev();
+        let statement = tokens.take_while(|token| {
+            !matches!(token.kind, TokenKind::Semicolon | TokenKind::LeftBrace | TokenKind::RightBrace)
+        });
+        let mut closed: Vec<Token> = Vec::new();
+        for token in statement {
+            match token.kind {
+                TokenKind::RightParen => closed.push(*token),
+                TokenKind::LeftParen => {
+                    let partner = closed.pop();
+                    let expansion = self.sources.expansion(token.span.expansion);
+                    if let Some(expansion) = expansion
+                        && partner.is_none_or(|partner| partner.span.expansion != token.span.expansion)
+                    {
+                        let span = Span::new(token.span.lo, token.span.hi);
+                        return Some((self.sources.macro_name(expansion).into_owned(), span));
+                    }
+                }
+                _ => {}
+            }
+        }
+        None
     }
 
     /// Reads the `;` behind `what`, whose missing is reported where it should stand.
@@ -97,8 +199,13 @@ impl Parser<'_> {
         let mut diagnostic = Diagnostic::error(place, message);
         let is_forgotten = found.flags.has(Flags::LINE_START) || found.kind == TokenKind::RightBrace;
         if !is_forgotten {
-            let found = self.describe(found);
-            diagnostic = diagnostic.at(format!("found {found}"));
+            diagnostic = diagnostic.at(format!("found {}", self.describe(found)));
+            let is_operand = found.kind == TokenKind::Number || self.is_identifier_at(0);
+            if let Some(advice) = self.operator_word() {
+                diagnostic = diagnostic.help(advice);
+            } else if is_operand {
+                diagnostic = diagnostic.help("or is an operator missing, such as `*`?");
+            }
         }
         self.report(diagnostic);
         if is_forgotten || found.kind == TokenKind::End { Ok(()) } else { Err(Reported) }
@@ -139,8 +246,11 @@ impl Parser<'_> {
         if self.end.flags.has(Flags::BROKEN) {
             return self.stop();
         }
-        let diagnostic = match self.open.pop() {
+        let brace = self.open.iter().find(|token| token.kind == TokenKind::LeftBrace).copied();
+        let innermost = self.open.pop().filter(|token| token.kind != TokenKind::LeftBrace);
+        let diagnostic = match innermost.or(brace) {
             Some(opener) => {
+                let opener = self.unclosed(opener);
                 let text = opener.kind.punctuator().unwrap_or_default();
                 Diagnostic::error(opener.span, format!("`{text}` is never closed"))
                     .at("opened here")

@@ -51,6 +51,11 @@ impl Scopes {
         *self.entry(name) = Meaning::MissingType;
     }
 
+    /// Whether no scope but that of the file is open.
+    pub(super) fn is_outermost(&self) -> bool {
+        self.starts.is_empty()
+    }
+
     /// Opens a scope.
     pub(super) fn enter(&mut self) {
         self.starts.push(self.hidden.len());

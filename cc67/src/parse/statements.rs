@@ -16,7 +16,13 @@ impl Parser<'_> {
         self.scopes.enter();
         let mut statements = Vec::new();
         while !matches!(self.kind(), TokenKind::RightBrace | TokenKind::End) && !self.is_unwinding {
+            if self.is_branch && self.ends_before_else() {
+                self.scopes.leave();
+                return Ok(statements);
+            }
+            let is_branch = std::mem::take(&mut self.is_branch);
             statements.push(self.statement());
+            self.is_branch = is_branch;
         }
         self.scopes.leave();
         if self.is_unwinding {
@@ -68,7 +74,22 @@ impl Parser<'_> {
                 Ok(Statement { kind: StatementKind::Empty, span: start })
             }
             TokenKind::Identifier => self.word_statement(start),
+            TokenKind::RightParen | TokenKind::RightBracket => self.surplus_bracket(),
             _ => self.expression_statement(start),
+        }
+    }
+
+    /// A bracket that closes nothing, and the statement behind it.
+    fn surplus_bracket(&mut self) -> Parsed<Statement> {
+        let token = self.next();
+        let text = token.kind.punctuator().unwrap_or_default();
+        self.report(Diagnostic::error(token.span, format!("one `{text}` too many")).at("closes nothing"));
+        while matches!(self.kind(), TokenKind::RightParen | TokenKind::RightBracket) {
+            self.at += 1;
+        }
+        match self.kind() {
+            TokenKind::RightBrace | TokenKind::End => Err(Reported),
+            _ => self.any_statement(),
         }
     }
 
@@ -78,6 +99,10 @@ impl Parser<'_> {
         if !name.is_keyword() && self.kind_at(1) == TokenKind::Colon {
             return self.label(start);
         }
+        if let Some(statement) = self.foreign_statement() {
+            return statement;
+        }
+        let name = self.miswritten_keyword().unwrap_or(name);
         let kind = match name {
             word::IF => self.if_()?,
             word::WHILE => self.while_()?,
@@ -95,7 +120,8 @@ impl Parser<'_> {
                 let token = self.next();
                 return self.fail(
                     Diagnostic::error(token.span, "`else` without `if`")
-                        .help("is there a `;` too many, or are braces missing, before it?"),
+                        .note("one statement, or several in `{ }`, may stand between `if (…)` and `else`")
+                        .help("are braces missing, or is there a `;` directly behind `if (…)`?"),
                 );
             }
             word::ASM | word::ASM_ | word::ASM__ => {
@@ -146,7 +172,7 @@ impl Parser<'_> {
     fn condition(&mut self, keyword: &str) -> Parsed<Expression> {
         let start = self.peek();
         if start.kind != TokenKind::LeftParen {
-            return self.fail_expected(&format!("`(` behind `{keyword}`"));
+            return self.bare_condition(keyword);
         }
         let open = self.open.len();
         self.open();
@@ -162,15 +188,63 @@ impl Parser<'_> {
         }
     }
 
+    /// A condition whose parentheses were forgotten, as in `if x > 3:`.
+    fn bare_condition(&mut self, keyword: &str) -> Parsed<Expression> {
+        let start = self.peek();
+        let expected = format!("`(` behind `{keyword}`");
+        let begins_operand = matches!(
+            start.kind,
+            TokenKind::Identifier | TokenKind::Number | TokenKind::Not | TokenKind::Minus
+        );
+        if !begins_operand || start.flags.has(Flags::BROKEN) {
+            return self.fail_expected(&expected);
+        }
+        let message = format!("expected {expected}, found {}", self.describe(start));
+        let help = format!("the condition stands in parentheses: `{keyword} (…)`");
+        self.report(Diagnostic::error(start.span, message).help(help));
+        self.expression()?;
+        self.take(TokenKind::Colon);
+        Ok(Expression { kind: ExpressionKind::Error, span: self.since(start.span) })
+    }
+
     fn if_(&mut self) -> Parsed<StatementKind> {
         self.at += 1;
         let condition = self.condition("if")?;
-        let then = self.body()?;
-        let otherwise = match self.take_word(word::ELSE) {
-            Some(_) => Some(self.body()?),
-            None => None,
+        self.skip_then();
+        self.is_branch = true;
+        let then = self.body();
+        self.is_branch = false;
+        let then = then?;
+        let otherwise = if self.take_word(word::ELSE).is_some() || self.is_miswritten_else() {
+            Some(self.body()?)
+        } else if self.is_else_if() {
+            let start = self.peek().span;
+            let kind = self.nested(Self::if_)?;
+            Some(Box::new(self.finish(kind, start)))
+        } else {
+            None
         };
         Ok(StatementKind::If { condition, then, otherwise })
+    }
+
+    /// Reads an `else` with a capital letter.
+    fn is_miswritten_else(&mut self) -> bool {
+        let is_else = self.name().is_some_and(|name| self.spelling(name).eq_ignore_ascii_case("else"))
+            && self.miswritten_keyword() == Some(word::ELSE);
+        self.at += usize::from(is_else);
+        is_else
+    }
+
+    /// Whether the block behind `if` ends before an `else`, its `}` forgotten; reports that.
+    fn ends_before_else(&mut self) -> bool {
+        let Some(opener) = self.open.last().copied() else { return false };
+        if self.name() != Some(word::ELSE) || !self.stands_left_of_block(opener) {
+            return false;
+        }
+        let diagnostic = Diagnostic::error(self.peek().span, "expected `}` before `else`");
+        self.report(diagnostic.label(opener.span, "this `{` is open"));
+        self.open.pop();
+        true
     }
 
     fn while_(&mut self) -> Parsed<StatementKind> {
@@ -230,15 +304,28 @@ impl Parser<'_> {
             }
             _ => {
                 let init = self.expression()?;
-                self.expect(TokenKind::Semicolon, "behind the first part of `for`")?;
+                self.for_semicolon("behind the first part of `for`")?;
                 self.finish(StatementKind::Expression(init), start)
             }
         };
         let condition = if self.kind() == TokenKind::Semicolon { None } else { Some(self.expression()?) };
-        self.expect(TokenKind::Semicolon, "behind the condition of `for`")?;
+        self.for_semicolon("behind the condition of `for`")?;
         let step = if self.kind() == TokenKind::RightParen { None } else { Some(self.expression()?) };
         self.close(TokenKind::RightParen)?;
         Ok((Box::new(init), condition, step))
+    }
+
+    fn for_semicolon(&mut self, what: &str) -> Parsed<()> {
+        if self.take(TokenKind::Semicolon).is_some() {
+            return Ok(());
+        }
+        let found = self.peek();
+        if found.kind == TokenKind::End || found.flags.has(Flags::BROKEN) {
+            return self.fail_expected(&format!("`;` {what}"));
+        }
+        let message = format!("expected `;` {what}, found {}", self.describe(found));
+        let help = "the three parts are separated by `;`, as in `for (i = 0; i < 8; i++)`";
+        self.fail(Diagnostic::error(found.span, message).help(help))
     }
 
     fn switch(&mut self) -> Parsed<StatementKind> {

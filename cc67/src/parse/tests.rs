@@ -382,14 +382,14 @@ fn missing_semicolons_are_shown_where_they_belong() {
 #[test]
 fn unclosed_brackets_point_to_the_opener() {
     errors("main() { if (a) { b; }", &["1:8: `{` is never closed"]);
-    errors("main() { f(a; b; }", &["1:13: expected `)`, found `;`"]);
+    errors("main() { f(a; b; }", &["1:13: expected `)`"]);
     errors("main() { if (a { b; } c; }", &["1:16: expected `)`, found `{`"]);
-    errors("main() { a[1; }", &["1:13: expected `]`, found `;`"]);
-    errors("int a[] = {1, 2;", &["1:16: expected `}`, found `;`"]);
+    errors("main() { a[1; }", &["1:13: expected `]`"]);
+    errors("int a[] = {1, 2;", &["1:16: expected `}`"]);
     errors("main() { } }", &["1:12: `}` without `{`"]);
     errors(
         "main() { f(a b); g(; h(1); }",
-        &["1:14: expected `)`, found `b`", "1:20: expected an expression, found `;`"],
+        &["1:13: expected `,` between two arguments", "1:20: expected an expression, found `;`"],
     );
 }
 

@@ -3,7 +3,7 @@
 use crate::ast::{Expression, ExpressionKind, UnaryOperator};
 use crate::diag::Diagnostic;
 use crate::names::word;
-use crate::pp::{Token, TokenKind};
+use crate::pp::{Flags, Token, TokenKind};
 
 use super::{NESTING, Parsed, Parser};
 
@@ -191,13 +191,29 @@ impl Parser<'_> {
         if self.kind() != TokenKind::RightParen {
             loop {
                 arguments.push(self.assignment()?);
-                if self.take(TokenKind::Comma).is_none() {
+                if self.take(TokenKind::Comma).is_none() && !self.lacks_comma() {
                     break;
                 }
             }
         }
         self.close(TokenKind::RightParen)?;
         Ok(arguments)
+    }
+
+    /// Whether another argument follows in the same line, the `,` before it forgotten; reports that.
+    fn lacks_comma(&mut self) -> bool {
+        let token = self.peek();
+        let begins_operand =
+            matches!(token.kind, TokenKind::Number | TokenKind::String | TokenKind::Character)
+                || self.is_identifier_at(0) && self.operator_word().is_none();
+        if !begins_operand || token.flags.has(Flags::LINE_START) || token.flags.has(Flags::BROKEN) {
+            return false;
+        }
+        let found = self.describe(token);
+        let place = self.end_of_last();
+        let diagnostic = Diagnostic::error(place, "expected `,` between two arguments");
+        self.report(diagnostic.at(format!("before {found}")));
+        true
     }
 
     /// A constant, a name, or a statement expression.
@@ -223,6 +239,9 @@ impl Parser<'_> {
         let token = self.peek();
         if let Some(builtin) = self.builtin(token) {
             return builtin;
+        }
+        if let Some(operand) = self.foreign_operand() {
+            return Ok(operand);
         }
         let kind = match token.name {
             word::FUNC | word::FUNCTION => ExpressionKind::FunctionName,

@@ -6,6 +6,7 @@
 
 use crate::ast::{Expression, ExpressionKind, Specifiers, TypeSpecifier};
 use crate::diag::Diagnostic;
+use crate::foreign_words;
 use crate::names::Name;
 use crate::pp::TokenKind;
 use crate::source::Span;
@@ -29,21 +30,6 @@ const HEADER_TYPES: &[&str] = &[
     "BOOL",
     "FILE",
     "size_t",
-];
-
-/// Words of C++ and of C headers.
-const OTHER_TYPES: &[(&str, &str)] = &[
-    ("bool", "include <stdbool.h>, or use `BOOL` of `KMotionDef.h`"),
-    ("string", "C has no strings but arrays of `char`"),
-    ("byte", "write `unsigned char`"),
-    ("uint8_t", "include <stdint.h>"),
-    ("int8_t", "include <stdint.h>"),
-    ("uint16_t", "include <stdint.h>"),
-    ("int16_t", "include <stdint.h>"),
-    ("uint32_t", "include <stdint.h>"),
-    ("int32_t", "include <stdint.h>"),
-    ("uint64_t", "include <stdint.h>"),
-    ("int64_t", "include <stdint.h>"),
 ];
 
 /// Words that may stand before a name.
@@ -95,6 +81,10 @@ impl Parser<'_> {
 
     fn report_unknown_type(&mut self, name: Name, span: Span) {
         self.scopes.set_missing_type(name);
+        // The file that was not found may define it.
+        if self.sink.lacks_names() {
+            return;
+        }
         let spelling = self.spelling(name);
         let diagnostic = Diagnostic::error(span, format!("unknown type `{spelling}`"));
         let diagnostic = diagnostic.help(self.type_help(spelling));
@@ -103,7 +93,10 @@ impl Parser<'_> {
 
     /// What to do about a missing type.
     fn type_help(&self, spelling: &str) -> String {
-        if let Some((_, help)) = OTHER_TYPES.iter().find(|(other, _)| *other == spelling) {
+        if let Some(keyword) = self.tag_keyword(spelling) {
+            return format!("write `{keyword} {spelling}`");
+        }
+        if let Some((_, help)) = foreign_words::TYPES.iter().find(|(other, _)| *other == spelling) {
             return (*help).to_owned();
         }
         if HEADER_TYPES.contains(&spelling) {
@@ -118,6 +111,12 @@ impl Parser<'_> {
             (None, true) => "declare it with `typedef` or `struct`".to_owned(),
             (None, false) => "is the header that declares it included, such as `KMotionDef.h`?".to_owned(),
         }
+    }
+
+    /// The keyword that makes a name a type, if it is a tag.
+    fn tag_keyword(&self, spelling: &str) -> Option<&'static str> {
+        let name = self.names.find(spelling)?;
+        self.tags.iter().find(|(tag, _)| *tag == name).map(|(_, keyword)| *keyword)
     }
 
     /// Whether the board's header was read: it declares the persistent memory.

@@ -30,6 +30,9 @@ impl Preprocessor<'_> {
         if let Some(old) = self.macros.find(name.name) {
             self.check_redefinition(old, name, parameters.as_ref(), &body);
         }
+        if parameters.is_some() {
+            self.names.mark_function_macro(name.name);
+        }
         let body = self.macros.add_body(&body);
         let definition =
             Macro { definition: name.span, parameters, body, is_plain, builtin: None, is_active: false };

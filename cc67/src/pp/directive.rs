@@ -182,7 +182,7 @@ impl Preprocessor<'_> {
         let spelling = String::from_utf8_lossy(&self.spelling(token)).into_owned();
         let diagnostic =
             Diagnostic::error(token.span, format!("unknown preprocessing directive `#{spelling}`"));
-        self.sink.report(match suggest(&spelling, DIRECTIVES.iter().copied()) {
+        self.sink.report_lost_names(match suggest(&spelling, DIRECTIVES.iter().copied()) {
             _ if spelling == "import" => diagnostic.help("use `#include`"),
             Some(near) => diagnostic.help(format!("did you mean `#{near}`?")),
             None => diagnostic,

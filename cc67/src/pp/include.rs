@@ -72,7 +72,8 @@ impl Preprocessor<'_> {
         match first.kind {
             TokenKind::String => {
                 let text = self.spelling(*first);
-                let name = String::from_utf8_lossy(&text).trim_matches('"').replace("\\\\", "\\");
+                let quotes = ['"', '\u{201C}', '\u{201D}', '\u{201E}'];
+                let name = String::from_utf8_lossy(&text).trim_matches(quotes).replace("\\\\", "\\");
                 Some(HeaderName { name, is_angled: false, is_closed: true, span })
             }
             TokenKind::Less => {
@@ -89,7 +90,8 @@ impl Preprocessor<'_> {
             }
             _ => {
                 let message = "expected the name of a file behind `#include`";
-                self.sink.report(Diagnostic::error(span, message).help("write `#include \"name\"`"));
+                self.sink
+                    .report_lost_names(Diagnostic::error(span, message).help("write `#include \"name\"`"));
                 None
             }
         }
@@ -117,13 +119,16 @@ impl Preprocessor<'_> {
                 let message = format!("`{}` can be several files", header.name);
                 let diagnostic =
                     Diagnostic::error(header.span, message).help("write the name in its letter case");
-                self.sink.report(
+                self.sink.report_lost_names(
                     paths.iter().fold(diagnostic, |it, path| it.note(format!("`{}`", path.display()))),
                 );
             }
             Some(Found::Unreadable(path, error)) => {
-                let message = format!("cannot read `{}`: {error}", path.display());
-                self.sink.report(Diagnostic::error(header.span, message));
+                // The number that the library adds says nothing to the user.
+                let reason = error.to_string();
+                let reason = reason.split(" (os error").next().unwrap_or_default();
+                let message = format!("cannot read `{}`: {reason}", path.display());
+                self.sink.report_lost_names(Diagnostic::error(header.span, message));
             }
             None => self.open_embedded(header, &name, &directories),
         }
@@ -236,7 +241,12 @@ impl Preprocessor<'_> {
         if header.is_angled && directories.is_empty() {
             diagnostic = diagnostic.note("names in `<>` are looked for in the directories of `-I` only");
         }
-        self.sink.report(match suggest(file_name, near.iter().map(String::as_str)) {
+        // What headers of C++ declare gets messages of its own.
+        if header.is_angled && !file_name.contains('.') {
+            self.sink.report(diagnostic.help("headers of C++ do not exist here; leave it out"));
+            return;
+        }
+        self.sink.report_lost_names(match suggest(file_name, near.iter().map(String::as_str)) {
             Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
             None => diagnostic,
         });

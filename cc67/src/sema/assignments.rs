@@ -42,10 +42,19 @@ impl Sema<'_> {
         };
         if !located.is_lvalue || self.types.array(located.ty.ty).is_some() {
             let spelled = self.spell(located.ty.ty);
-            let mut diagnostic = Diagnostic::error(span, format!("`{spelled}` cannot be assigned to here"));
-            if located.is_lvalue {
-                diagnostic = diagnostic.help("assign the elements one by one");
-            }
+            let diagnostic = match self.types.array(located.ty.ty).filter(|_| located.is_lvalue) {
+                Some((element, _)) => {
+                    let is_text = element.ty.is_character();
+                    Diagnostic::error(span, "a whole array cannot be assigned to")
+                        .at(format!("this is `{spelled}`"))
+                        .help(if is_text {
+                            "`sprintf(array, \"%s\", text)` copies text"
+                        } else {
+                            "assign its elements one by one"
+                        })
+                }
+                None => Diagnostic::error(span, format!("`{spelled}` cannot be assigned to here")),
+            };
             self.report(diagnostic);
             return None;
         }

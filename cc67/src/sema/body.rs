@@ -44,6 +44,8 @@ pub(super) struct Body {
     pub(super) switches: Vec<super::switches::Switch>,
     /// Undeclared names that were reported in this function.
     pub(super) undeclared: BTreeSet<Name>,
+    /// A `case` outside of a `switch` was reported.
+    pub(super) has_lost_case: bool,
 }
 
 /// What is known of a label.
@@ -73,6 +75,7 @@ impl Body {
             loops: 0,
             switches: Vec::new(),
             undeclared: BTreeSet::new(),
+            has_lost_case: false,
         }
     }
 

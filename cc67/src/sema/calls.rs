@@ -55,10 +55,14 @@ impl Sema<'_> {
         let pointer = self.read(operand, callee.span)?;
         let ty = self.body.ty(pointer);
         let Some(to) = self.types.pointee(ty).filter(|to| self.types.is_function(to.ty)) else {
-            let message = format!("`{}` cannot be called", self.spell(ty));
-            self.report(
-                Diagnostic::error(callee.span, message).at("neither a function nor a pointer to one"),
-            );
+            let spelled = self.spell(self.operand_type(operand).ty);
+            let diagnostic = Diagnostic::error(callee.span, format!("`{spelled}` cannot be called"))
+                .at("neither a function nor a pointer to one");
+            self.report(if self.types.is_pointer(ty) {
+                diagnostic.help("an index stands in square brackets: `[ ]`")
+            } else {
+                diagnostic
+            });
             return None;
         };
         Some((self.callee_of(pointer), to.ty))

@@ -284,8 +284,36 @@ impl Sema<'_> {
     }
 
     fn refusal(&self, from: TypeId, to: TypeId, target: Target, span: Span) -> Diagnostic {
+        let help = self.conversion_help(from, to, target, span);
         let (from, to) = (self.spell(from), self.spell(to));
-        Diagnostic::error(span, format!("{}: cannot convert `{from}` to `{to}`", self.describe(target)))
-            .at(format!("this is `{from}`, wanted is `{to}`"))
+        let diagnostic =
+            Diagnostic::error(span, format!("{}: cannot convert `{from}` to `{to}`", self.describe(target)))
+                .at(format!("this is `{from}`, wanted is `{to}`"));
+        match help {
+            Some(help) => diagnostic.help(help),
+            None => diagnostic,
+        }
+    }
+
+    /// What was probably forgotten, or is too much, when a pointer and a number meet.
+    fn conversion_help(&self, from: TypeId, to: TypeId, target: Target, span: Span) -> Option<&'static str> {
+        let text = self.sources.text(span);
+        if to.is_arithmetic() && text.starts_with(b"\"") {
+            return Some("a number stands without quotes");
+        }
+        if to.is_arithmetic() && text.starts_with(b"&") {
+            return Some("remove the `&`: it gives the address, not the value");
+        }
+        let is_number = |ty: Option<QualifiedType>| ty.is_some_and(|ty| ty.ty.is_arithmetic());
+        if to.is_arithmetic() && is_number(self.types.pointee(from)) {
+            return Some("write `*` before it for the value it points to");
+        }
+        if from.is_arithmetic() && is_number(self.types.pointee(to)) {
+            return Some(match target {
+                Target::Argument(..) => "write `&` before the name of a variable to pass its address",
+                _ => "write `*` before the pointer to store in what it points to",
+            });
+        }
+        None
     }
 }

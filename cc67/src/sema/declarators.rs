@@ -99,7 +99,13 @@ impl Sema<'_> {
             Some(true) => diagnostic
                 .note("a `const` variable is not a constant expression in C")
                 .help("use `#define` or `enum { … }`"),
-            Some(false) => diagnostic.note("the value of a variable is known only at run time"),
+            Some(false) => diagnostic.note("the value of a variable is known only at run time").help(
+                if what == "an array length" {
+                    "write the largest length that is needed, as a number"
+                } else {
+                    "name the number by `#define`, or use `if`"
+                },
+            ),
             None => diagnostic,
         });
         None

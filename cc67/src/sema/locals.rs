@@ -65,6 +65,7 @@ impl Sema<'_> {
         }
         let local = self.add_local(self.names.get(name).to_owned(), ty, span);
         self.body.locals[local].align = align;
+        self.locals_elsewhere.entry(name).or_insert_with(|| (self.body.name.clone(), span));
         self.scopes.bind(name, Entity::Local(local, ty), span);
         let Some(initializer) = initializer else { return };
         let Some((complete, effects)) = self.local_initializer(local, ty, initializer, span) else {

@@ -11,6 +11,7 @@
 //! Nothing here knows the target beyond the sizes in [`crate::ty::layout`] and the arithmetic
 //! of `vm::arith`.
 
+mod advice;
 mod alignment;
 mod assignments;
 mod body;
@@ -45,10 +46,11 @@ mod undeclared;
 
 pub use firmware_names::{FirmwareNames, Prototype};
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::ast;
-use crate::diag::{Diagnostic, Sink};
+use crate::diag::{Diagnostic, Sink, TOO_MANY_ERRORS};
+use crate::foreign_words::Origin;
 use crate::names::{Name, Names};
 use crate::source::{SourceMap, Span};
 use crate::ty::{RecordId, TypeId, Types};
@@ -83,6 +85,8 @@ pub fn analyze(
         broken: BTreeSet::new(),
         unsigned_enums: BTreeSet::new(),
         unevaluated: 0,
+        origins: BTreeSet::new(),
+        locals_elsewhere: BTreeMap::new(),
     };
     let pending = sema.declare_items(unit);
     let functions: Vec<_> = pending.into_iter().filter_map(|pending| sema.define_function(pending)).collect();
@@ -109,6 +113,10 @@ struct Sema<'a> {
     unsigned_enums: BTreeSet<Span>,
     /// Depth of operands that are only looked at for their type.
     unevaluated: u32,
+    /// Where words come from that other languages have and C does not.
+    origins: BTreeSet<Origin>,
+    /// Variables of functions: the function, and where it declares them.
+    locals_elsewhere: BTreeMap<Name, (String, Span)>,
 }
 
 impl Sema<'_> {
@@ -161,8 +169,15 @@ impl Sema<'_> {
         }
     }
 
+    /// Reports something, unless enough was said.
     fn report(&mut self, diagnostic: Diagnostic) {
+        if self.sink.is_full() {
+            return;
+        }
         self.sink.report(diagnostic);
+        if self.sink.is_full() {
+            self.sink.report(Diagnostic::global_error(TOO_MANY_ERRORS));
+        }
     }
 
     /// Reports what a lint found, if it found something.

@@ -61,13 +61,13 @@ impl Sema<'_> {
             }
             Type::Record(_) => {
                 let spelled = self.spell(located.ty.ty);
-                self.report(
-                    Diagnostic::error(
-                        span,
-                        format!("`{spelled}` is used where a number or pointer is needed"),
-                    )
-                    .at("this is a whole structure"),
-                );
+                let message = format!("`{spelled}` is used where a number or pointer is needed");
+                let diagnostic = Diagnostic::error(span, message).at("this is a whole structure");
+                self.report(if spelled == "PERSIST" {
+                    diagnostic.help("write `persist.UserData[…]`")
+                } else {
+                    diagnostic.help("write a member of it, behind a `.`")
+                });
                 None
             }
             Type::Void => {

@@ -263,8 +263,19 @@ impl Sema<'_> {
         let mut diagnostic = Diagnostic::error(span, message)
             .label(self.body.span(a), format!("`{left}`"))
             .label(self.body.span(b), format!("`{right}`"));
-        if self.body.ty(a).is_floating() || self.body.ty(b).is_floating() {
+        let (a, b) = (self.body.ty(a), self.body.ty(b));
+        if self.types.is_pointer(a) || self.types.is_pointer(b) {
+            let is_text =
+                [a, b].iter().any(|ty| self.types.pointee(*ty).is_some_and(|to| to.ty.is_character()));
+            if is_text && operator == "+" {
+                diagnostic =
+                    diagnostic.help("texts are not added; `printf(\"%f\\n\", value)` puts numbers in text");
+            }
+        } else if a.is_floating() || b.is_floating() {
             diagnostic = diagnostic.note("floating-point values know only `+ - * /` and comparisons");
+            if operator == "^" {
+                diagnostic = diagnostic.help("`^` is no power: write `x * x`, or `pow(x, y)`");
+            }
         }
         self.report(diagnostic);
         None

@@ -10,6 +10,9 @@ use crate::source::Span;
 use crate::ty::layout::LayoutBuilder;
 use crate::ty::{Layout, QualifiedType, RecordId, TypeId, Types};
 
+/// Members of a structure; each is compared with those before it.
+const MEMBERS: usize = 10_000;
+
 impl Sema<'_> {
     /// The type of `struct tag`, `struct tag { … }` or `struct { … }`.
     pub(super) fn record(&mut self, specifier: &RecordSpecifier) -> Option<TypeId> {
@@ -122,6 +125,12 @@ impl Sema<'_> {
         let mut builder = LayoutBuilder::new(specifier.kind);
         builder.align(self.alignment(&specifier.alignments));
         for line in members {
+            if builder.members().len() > MEMBERS {
+                let message = format!("more than {MEMBERS} members");
+                self.report(Diagnostic::error(line.span, message).at("the rest is left out"));
+                self.broken.insert(record);
+                break;
+            }
             if self.member_line(&mut builder, line).is_none() {
                 self.broken.insert(record);
             }

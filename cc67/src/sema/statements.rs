@@ -211,6 +211,10 @@ impl Sema<'_> {
             out.push(Stmt { kind, span });
             return;
         }
+        // A `case` outside of its `switch` has said all that there is to say.
+        if is_break && self.body.has_lost_case {
+            return;
+        }
         let message = match is_break {
             true => "`break` outside of a loop or `switch`",
             false => "`continue` outside of a loop",

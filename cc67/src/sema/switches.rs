@@ -14,6 +14,8 @@ use crate::typed::{Case, Stmt, StmtKind};
 pub(super) struct Switch {
     /// The type that its value and its cases have.
     ty: TypeId,
+    /// The value was refused: its cases are what they should not be, too.
+    is_broken: bool,
     cases: Vec<(Case, Span)>,
     default: Option<Span>,
 }
@@ -27,6 +29,7 @@ impl Sema<'_> {
         out: &mut Vec<Stmt>,
     ) {
         let chosen = self.value(value).unwrap_or_else(|| self.placeholder(value.span));
+        let mut is_broken = false;
         let mut ty = self.body.ty(chosen);
         let chosen = if ty.is_integer() {
             self.promote(chosen, value.span)
@@ -39,11 +42,19 @@ impl Sema<'_> {
             self.body.convert(chosen, Types::INT, value.span)
         } else {
             let spelled = self.spell(ty);
-            self.report(Diagnostic::error(value.span, format!("`switch` needs an integer, not `{spelled}`")));
+            let message = format!("`switch` needs an integer, not `{spelled}`");
+            let diagnostic = Diagnostic::error(value.span, message);
+            let is_text = self.types.pointee(ty).is_some_and(|to| to.ty.is_character());
+            self.report(if is_text {
+                diagnostic.help("compare texts with `if (strcmp(a, b) == 0)`")
+            } else {
+                diagnostic
+            });
+            is_broken = true;
             self.placeholder(value.span)
         };
         ty = self.body.ty(chosen);
-        self.body.switches.push(Switch { ty, cases: Vec::new(), default: None });
+        self.body.switches.push(Switch { ty, is_broken, cases: Vec::new(), default: None });
         let mut inner = Vec::new();
         self.scopes.enter();
         self.statement(body, &mut inner);
@@ -64,9 +75,16 @@ impl Sema<'_> {
         out: &mut Vec<Stmt>,
     ) {
         let Some(ty) = self.body.switches.last().map(|switch| switch.ty) else {
-            self.report(Diagnostic::error(span, "`case` outside of a `switch`"));
+            self.body.has_lost_case = true;
+            self.report(
+                Diagnostic::error(span, "`case` outside of a `switch`")
+                    .help("is there a `}` too many before it?"),
+            );
             return;
         };
+        if self.body.switches.last().is_some_and(|switch| switch.is_broken) {
+            return;
+        }
         let low = self.constant_integer(first, "the value of a `case`");
         let high = match last {
             Some(last) => self.constant_integer(last, "the value of a `case`"),

@@ -21,6 +21,10 @@ impl Lexer {
                 b'\n' if self.in_directive || kind == TokenKind::Character => {
                     return self.unterminated(kind, lo, quote, flags, cx);
                 }
+                // A line that ends as a statement does is one; the quote was forgotten.
+                b'\n' if !runs_over_lines && self.bytes(quote, self.at).trim_ascii_end().ends_with(b";") => {
+                    return self.unterminated(kind, lo, quote, flags, cx);
+                }
                 b'\\' if self.splice(cx) => {}
                 b'\\' => self.at += 2,
                 byte => {

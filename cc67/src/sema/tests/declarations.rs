@@ -79,7 +79,7 @@ fn sizes_must_be_known_and_constant() {
             "1: error: an array length must be an integer constant (use `#define` or `enum { … }`)",
             "1: error: an array cannot have -1 elements",
             "1: error: an array of 8589934588 bytes is too large",
-            "2: error: an array length must be an integer constant",
+            "2: error: an array length must be an integer constant (write the largest length that is needed, as a number)",
             "2: error: `e` has the incomplete type `int[]` (give the number of elements)",
             "2: error: `x` has the incomplete type `struct X`",
             "2: error: `v` has the incomplete type `void`",

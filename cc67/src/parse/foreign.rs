@@ -1,0 +1,186 @@
+//! Statements of other languages: reported once with what C has instead, and gone over.
+
+use std::collections::BTreeSet;
+
+use crate::ast::{Expression, ExpressionKind, Statement, StatementKind};
+use crate::diag::Diagnostic;
+use crate::foreign_words;
+use crate::names::{Name, word};
+use crate::pp::{Flags, TokenKind};
+
+use super::scopes::Meaning;
+use super::{Parsed, Parser};
+
+/// A language that a program turned out to be written in, in part.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Language {
+    Basic,
+    Cpp,
+    GCode,
+}
+
+/// The languages that were reported.
+pub(super) type Reported = BTreeSet<Language>;
+
+impl Parser<'_> {
+    /// Reports a word of a language, once for each language.
+    fn report_foreign(&mut self, language: Language, diagnostic: Diagnostic) {
+        if self.foreign.insert(language) {
+            self.report(diagnostic);
+        }
+    }
+
+    /// The spelling of the next token, if that is a name which means nothing here.
+    fn unknown_word(&self) -> Option<&str> {
+        let name = self.name().filter(|name| !name.is_keyword())?;
+        (self.scopes.meaning(name) == Meaning::Unknown).then(|| self.spelling(name))
+    }
+
+    /// The keyword that the next name would be with small letters, as in `If (x)`; reports it.
+    pub(super) fn miswritten_keyword(&mut self) -> Option<Name> {
+        let written =
+            self.unknown_word().filter(|word| word.starts_with(|first: char| first.is_uppercase()))?;
+        let small = written.to_ascii_lowercase();
+        let keyword = self.names.find(&small)?;
+        let fits = match keyword {
+            word::IF | word::WHILE | word::FOR | word::SWITCH => self.kind_at(1) == TokenKind::LeftParen,
+            word::DO => self.kind_at(1) == TokenKind::LeftBrace,
+            word::RETURN => matches!(self.kind_at(1), TokenKind::Number | TokenKind::Semicolon),
+            word::ELSE => true,
+            _ => false,
+        };
+        if !fits {
+            return None;
+        }
+        let message = format!("`{written}` is no word of C; letter case matters");
+        let diagnostic = Diagnostic::error(self.peek().span, message).help(format!("write `{small}`"));
+        self.report(diagnostic);
+        Some(keyword)
+    }
+
+    /// Whether an `else if` in one word stands next; reports it, and leaves the word to be read as `if`.
+    pub(super) fn is_else_if(&mut self) -> bool {
+        let Some(written) = self.unknown_word() else { return false };
+        let is_known = ["elseif", "elsif", "elif"].contains(&written.to_ascii_lowercase().as_str());
+        if !is_known || self.kind_at(1) != TokenKind::LeftParen {
+            return false;
+        }
+        let message = format!("`{written}` is no word of C");
+        let diagnostic = Diagnostic::error(self.peek().span, message).help("write `else if`");
+        self.report(diagnostic);
+        true
+    }
+
+    /// Goes over the `then` behind a condition.
+    pub(super) fn skip_then(&mut self) {
+        if self.unknown_word().is_some_and(|word| word.eq_ignore_ascii_case("then")) {
+            let span = self.next().span;
+            let diagnostic = Diagnostic::error(span, "C has no `then`");
+            self.report_foreign(
+                Language::Basic,
+                diagnostic.help("put the statements in `{ … }`; C has no `end if` either"),
+            );
+        }
+    }
+
+    /// A statement of another language, gone over; `None` if the next one is none.
+    pub(super) fn foreign_statement(&mut self) -> Option<Parsed<Statement>> {
+        let start = self.peek().span;
+        let written = self.unknown_word()?;
+        let (language, message, help) = if is_block_end(written) && self.kind_at(1) != TokenKind::LeftParen {
+            let message = format!("`{written}` is no word of C");
+            (Language::Basic, message, "`}` ends what `{` began".to_owned())
+        } else if written == "delete" && self.kind_at(1) != TokenKind::LeftParen {
+            let message = "`delete` belongs to C++".to_owned();
+            (Language::Cpp, message, "nothing need be given back".to_owned())
+        } else if foreign_words::is_g_code(written) && self.is_g_code_at(1) {
+            let help = "`Move(0, 10);` moves axis 0; G-code is run by the PC, not by C programs";
+            (Language::GCode, "this is G-code, not C".to_owned(), help.to_owned())
+        } else {
+            return None;
+        };
+        self.at += 1;
+        while !self.peek().flags.has(Flags::LINE_START) && self.kind() != TokenKind::End {
+            self.at += 1;
+        }
+        let span = self.since(start);
+        self.report_foreign(language, Diagnostic::error(span, message).help(help));
+        let error = Expression { kind: ExpressionKind::Error, span };
+        Some(Ok(Statement { kind: StatementKind::Expression(error), span }))
+    }
+
+    /// Whether a word of G-code stands at the token `ahead`, which means nothing else.
+    fn is_g_code_at(&self, ahead: usize) -> bool {
+        self.name_at(ahead).is_some_and(|name| {
+            self.scopes.meaning(name) == Meaning::Unknown && foreign_words::is_g_code(self.spelling(name))
+        })
+    }
+
+    /// Goes over a declaration of C++; `false` if the next one is none.
+    pub(super) fn skip_foreign_declaration(&mut self) -> bool {
+        let Some(written) = self.unknown_word() else { return false };
+        let help = match written {
+            "class" => "C has `struct` for data, and functions outside of it",
+            "using" | "namespace" => "leave it out: C has no namespaces",
+            "template" => "C has no templates",
+            _ => return false,
+        };
+        if !self.is_identifier_at(1) && self.kind_at(1) != TokenKind::Less {
+            return false;
+        }
+        let diagnostic =
+            Diagnostic::error(self.peek().span, format!("`{written}` belongs to C++")).help(help);
+        self.report_foreign(Language::Cpp, diagnostic);
+        if let Some(name) = self.name_at(1).filter(|name| !name.is_keyword()) {
+            self.scopes.set_missing_type(name);
+        }
+        while !matches!(self.kind(), TokenKind::Semicolon | TokenKind::LeftBrace | TokenKind::End) {
+            self.at += 1;
+        }
+        if self.kind() == TokenKind::LeftBrace {
+            self.skip_braces();
+        }
+        self.take(TokenKind::Semicolon);
+        true
+    }
+
+    /// `new type[count]`, gone over.
+    pub(super) fn foreign_operand(&mut self) -> Option<Expression> {
+        if self.unknown_word() != Some("new") || self.kind_at(1) != TokenKind::Identifier {
+            return None;
+        }
+        let start = self.next().span;
+        let mut depth = 0_usize;
+        loop {
+            match self.kind() {
+                TokenKind::LeftParen | TokenKind::LeftBracket => depth += 1,
+                TokenKind::RightParen | TokenKind::RightBracket if depth > 0 => depth -= 1,
+                TokenKind::RightParen | TokenKind::RightBracket | TokenKind::Comma if depth == 0 => break,
+                TokenKind::Semicolon | TokenKind::LeftBrace | TokenKind::RightBrace | TokenKind::End => break,
+                _ => {}
+            }
+            self.at += 1;
+        }
+        let span = self.since(start);
+        let advice = foreign_words::word("new").map_or("", |word| word.advice);
+        self.report_foreign(Language::Cpp, Diagnostic::error(span, "`new` belongs to C++").help(advice));
+        Some(Expression { kind: ExpressionKind::Error, span })
+    }
+
+    /// What to say about a word that stands where an operator or a `)` was expected.
+    pub(super) fn operator_word(&self) -> Option<&'static str> {
+        match self.unknown_word()? {
+            written @ ("and" | "or" | "not") => foreign_words::word(written).map(|word| word.advice),
+            "AND" => Some("write `&&`"),
+            "OR" => Some("write `||`"),
+            "mod" | "MOD" | "Mod" => Some("write `%`"),
+            _ => None,
+        }
+    }
+}
+
+/// Whether a word ends a block in Basic and its relatives.
+fn is_block_end(word: &str) -> bool {
+    const ENDS: &[&str] = &["end", "endif", "endwhile", "endfor", "wend", "fi", "done"];
+    ENDS.iter().any(|end| word.eq_ignore_ascii_case(end))
+}

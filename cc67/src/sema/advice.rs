@@ -1,0 +1,94 @@
+//! What to do about a name that nothing declares: the most likely of many reasons.
+
+use kmotiondef::structs::STRUCTURES;
+
+use super::Sema;
+use crate::diag::Diagnostic;
+use crate::foreign_words::{self, Word};
+use crate::names::Name;
+
+/// What to do when the vendor's header seems to be missing.
+pub(super) const HEADER_HELP: &str = "is `KMotionDef.h` included?";
+
+/// What is known of a name that nothing declares.
+pub(super) enum Advice {
+    /// It follows from another error, and needs no words.
+    Silence,
+    /// Something to add to the error.
+    Say(Box<dyn FnOnce(Diagnostic) -> Diagnostic>),
+}
+
+/// The axes that have pointers, and structures with a variable through which programs reach the members.
+const OWNERS: &[(&str, &str)] = &[("CHAN", "ch0->"), ("PERSIST", "persist.")];
+
+impl Sema<'_> {
+    /// What to say of a name that nothing declares.
+    pub(super) fn advice(&mut self, name: Name) -> Advice {
+        if self.sink.lacks_names() || self.sink.is_full() {
+            return Advice::Silence;
+        }
+        let spelling = self.names.get(name).to_owned();
+        if let Some(word) = foreign_words::word(&spelling) {
+            return self.foreign_advice(word);
+        }
+        if self.firmware.is_variable(&spelling) || self.firmware.prototype(&spelling).is_some() {
+            return say(|it| it.note("the firmware has this name").help(HEADER_HELP));
+        }
+        if self.names.is_function_macro(name) {
+            return say(move |it| {
+                it.note(format!("`{spelling}` is a macro with parameters"))
+                    .help(format!("write them in parentheses: `{spelling}(…)`"))
+            });
+        }
+        if is_axis(&spelling) {
+            return say(|it| it.help("the axes are `ch0` to `ch7`"));
+        }
+        let near = self.near_name(&spelling).map(str::to_owned);
+        let owner = owner(&spelling)
+            .filter(|_| near.as_deref().is_none_or(|near| !near.eq_ignore_ascii_case(&spelling)));
+        if let Some(owner) = owner {
+            return say(move |it| it.help(format!("it is a member: write `{owner}{spelling}`")));
+        }
+        if let Some((function, span)) = self.locals_elsewhere.get(&name).cloned() {
+            return say(move |it| {
+                it.label(span, format!("this one exists in `{function}` only"))
+                    .help("declare the variable before the functions that use it, outside of them")
+            });
+        }
+        match near {
+            Some(near) => say(move |it| it.help(format!("did you mean `{near}`?"))),
+            None => say(|it| it),
+        }
+    }
+
+    fn foreign_advice(&mut self, word: &'static Word) -> Advice {
+        let is_first = self.origins.insert(word.origin);
+        // `true` of a program whose `bool` was reported needs no second error.
+        let is_answered = matches!(word.spelling, "true" | "false")
+            && self.sink.has_errors()
+            && self.names.find("bool").is_some();
+        if is_answered || word.is_companion && !is_first {
+            return Advice::Silence;
+        }
+        say(|it| it.help(word.advice))
+    }
+}
+
+fn say(change: impl FnOnce(Diagnostic) -> Diagnostic + 'static) -> Advice {
+    Advice::Say(Box::new(change))
+}
+
+/// Whether a name is that of an axis pointer, but for the number.
+fn is_axis(spelling: &str) -> bool {
+    spelling
+        .strip_prefix("ch")
+        .is_some_and(|number| !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit()))
+}
+
+/// How programs reach a member of this name.
+fn owner(spelling: &str) -> Option<&'static str> {
+    OWNERS.iter().find_map(|(structure, prefix)| {
+        let structure = STRUCTURES.iter().find(|known| known.name == *structure)?;
+        structure.fields.iter().any(|field| field.name == spelling).then_some(*prefix)
+    })
+}

@@ -1,0 +1,15 @@
+//@ exit: 1
+//@ snapshot
+#include "KMotionDef.h"
+
+main()
+{
+    if (ReadBit(1))
+    {
+        SetBit(46);
+    }
+    elseif (ReadBit(2))
+    {
+        SetBit(47);
+    }
+}

@@ -1,0 +1,8 @@
+//@ exit: 1
+//@ snapshot
+#include "KMotionDef.h"
+
+main()
+{
+    Jog(0, –1000);
+}

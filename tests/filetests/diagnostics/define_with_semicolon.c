@@ -1,0 +1,10 @@
+//@ exit: 1
+//@ snapshot
+#include "KMotionDef.h"
+
+#define LAMP 46;
+
+main()
+{
+    SetBit(LAMP);
+}

@@ -1,0 +1,8 @@
+//@ exit: 1
+//@ snapshot
+#inlcude "KMotionDef.h"
+
+main()
+{
+    SetBit(46);
+}

@@ -1,0 +1,8 @@
+//@ exit: 1
+//@ snapshot
+#include "KMotionDefs.h"
+
+main()
+{
+    SetBit(46);
+}

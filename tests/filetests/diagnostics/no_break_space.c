@@ -1,0 +1,8 @@
+//@ args: check
+//@ snapshot
+#include "KMotionDef.h"
+
+main()
+{
+    SetBit(46);
+}

@@ -1,0 +1,10 @@
+//@ exit: 1
+//@ snapshot
+#include "KMotionDef.h"
+
+main()
+{
+    while (!CheckDone(0)
+        WaitNextTimeSlice();
+    SetBit(46);
+}

@@ -1,0 +1,9 @@
+//@ exit: 1
+//@ snapshot
+#include "KMotionDef.h"
+
+main()
+{
+    while (!CheckDone(0))) ;
+    SetBit(46);
+}

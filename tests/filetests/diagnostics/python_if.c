@@ -1,0 +1,9 @@
+//@ exit: 1
+//@ snapshot
+#include "KMotionDef.h"
+
+main()
+{
+    if ReadBit(1):
+        SetBit(46);
+}

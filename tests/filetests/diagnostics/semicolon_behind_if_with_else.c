@@ -1,0 +1,11 @@
+//@ exit: 1
+//@ snapshot
+#include "KMotionDef.h"
+
+main()
+{
+    if (ReadBit(1));
+        SetBit(46);
+    else
+        ClearBit(46);
+}

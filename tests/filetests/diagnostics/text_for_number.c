@@ -1,0 +1,8 @@
+//@ exit: 1
+//@ snapshot
+#include "KMotionDef.h"
+
+main()
+{
+    Delay_sec("0.5");
+}
