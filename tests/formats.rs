@@ -194,7 +194,12 @@ fn a_firmware_file_is_read_and_resolved_against_in_two_milliseconds() {
     for _ in 0..20 {
         let start = Instant::now();
         let firmware = Firmware::File(FirmwareFile::read(&bytes).expect("it is a firmware file").into());
-        let options = cc67::link::Options { thread: thread(), firmware: &firmware, gc: true };
+        let options = cc67::link::Options {
+            thread: thread(),
+            firmware: &firmware,
+            gc: true,
+            addresses: cc67::link::SectionAddresses::default(),
+        };
         let linked = cc67::link::link(std::slice::from_ref(&object), &options).expect("it links");
         best = best.min(start.elapsed().as_secs_f64());
         assert_eq!(linked.imports.len(), 3);

@@ -97,7 +97,12 @@ fn read_all(bytes: &[u8]) -> bool {
     }
     let _ = FirmwareFile::read(bytes);
     if let Ok(object) = Object::read(bytes) {
-        let options = cc67::link::Options { thread: thread(), firmware: &cc67::firmware::BuiltIn, gc: false };
+        let options = cc67::link::Options {
+            thread: thread(),
+            firmware: &cc67::firmware::BuiltIn,
+            gc: false,
+            addresses: cc67::link::SectionAddresses::default(),
+        };
         // What links need not be a program that the machine accepts.
         let _ = cc67::link::link(std::slice::from_ref(&object), &options);
     }
