@@ -15,7 +15,10 @@ use cranelift_module::{FuncId, Module, ModuleError, default_libcall_names};
 
 use super::entry::Thunk;
 use super::state::BYTES_PER_CALL;
-use super::translate::{Translation, function_signature, thunk_signature, translate, translate_thunk};
+use super::translate::{
+    Translation, function_signature, request_signature, thunk_signature, translate, translate_request,
+    translate_thunk,
+};
 use crate::operand::{Class, SigRef};
 use crate::program::Program;
 
@@ -132,13 +135,14 @@ impl Code {
     pub(super) fn compile(program: &Program) -> Result<Self, CompileError> {
         let mut compiler = Compiler::new(program)?;
         let functions = compiler.declare_functions(program)?;
+        let request = compiler.request()?;
         let mut native_per_guest = 0;
         let mut largest_frame = 0;
         for (index, function) in program.functions().iter().enumerate() {
             if function.classes.len() > MAX_REGISTERS {
                 return Err(CompileError::TooManyRegisters(function.classes.len()));
             }
-            let translation = Translation { program, function, functions: &functions };
+            let translation = Translation { program, function, functions: &functions, request };
             let frame = compiler.function(functions[index], translation)?;
             let guest = function.frame + BYTES_PER_CALL;
             native_per_guest = native_per_guest.max(frame.div_ceil(guest));
@@ -224,6 +228,16 @@ impl Compiler {
     fn function(&mut self, id: FuncId, translation: Translation<'_>) -> Result<u32, CompileError> {
         translate(&mut self.context.func, &mut self.builder, &mut self.module.0, translation);
         self.define(id)
+    }
+
+    /// Compiles what makes the rare requests of all functions.
+    fn request(&mut self) -> Result<FuncId, CompileError> {
+        let signature = request_signature();
+        let id = self.module.0.declare_anonymous_function(&signature)?;
+        self.context.func.signature = signature;
+        translate_request(&mut self.context.func, &mut self.builder, &self.module.0);
+        self.define(id)?;
+        Ok(id)
     }
 
     /// Compiles a thunk for each list of parameters that a function of `program` has.

@@ -41,6 +41,8 @@ pub(super) struct Fiber {
     native_size: usize,
     state: Rc<State>,
     code: Arc<Code>,
+    /// Where guest memory and the map of protected blocks are, as soon as it has begun.
+    ram: Option<(*mut u8, *mut u8, *const u8)>,
     /// The signature of the call whose target is being asked for.
     resolving: Option<SigRef>,
 }
@@ -77,7 +79,7 @@ impl Fiber {
             unsafe { entry::enter(thunk, pointer, shared) };
         };
         let coroutine = Some(Coroutine::with_stack(native_stack, body));
-        Self { coroutine, native_size, state, code, resolving: None }
+        Self { coroutine, native_size, state, code, ram: None, resolving: None }
     }
 
     /// Runs the fiber until its next request; `None` when the function has returned.
@@ -93,9 +95,12 @@ impl Fiber {
         let coroutine = self.coroutine.as_mut().filter(|coroutine| !coroutine.done())?;
         // The borrows last until the fiber is suspended again, so the pointers are valid while it runs.
         let (sdram, iram) = memory.ram_mut();
-        self.state.sdram.set(sdram.as_mut_ptr());
-        self.state.iram.set(iram.as_mut_ptr());
-        self.state.protected.set(protected.marks().as_ptr());
+        let ram = (sdram.as_mut_ptr(), iram.as_mut_ptr(), protected.marks().as_ptr());
+        // Compiled code may keep the pointers over a request.
+        assert!(*self.ram.get_or_insert(ram) == ram, "a context stays in the memory that it began in");
+        self.state.sdram.set(ram.0);
+        self.state.iram.set(ram.1);
+        self.state.protected.set(ram.2);
         match coroutine.resume(answer) {
             CoroutineResult::Yield(request) => {
                 let resolving = request.reason() == Some(Reason::CallPointer);

@@ -27,11 +27,11 @@ const _: () = assert!(CALLS.is_power_of_two());
 pub(super) struct State {
     /// What is left of the slice; valid whenever the fiber is suspended.
     pub(super) budget: Cell<i64>,
-    /// First byte of SDRAM while the fiber runs.
+    /// First byte of SDRAM; the same each time the fiber runs, like the two that follow.
     pub(super) sdram: Cell<*mut u8>,
-    /// First byte of on-chip RAM while the fiber runs.
+    /// First byte of on-chip RAM.
     pub(super) iram: Cell<*mut u8>,
-    /// One byte for each block of SDRAM, not 0 where a store must be checked; while the fiber runs.
+    /// One byte for each block of SDRAM, not 0 where a store must be checked.
     pub(super) protected: Cell<*const u8>,
     /// How compiled code makes a request.
     pub(super) leave: Leave,
@@ -49,6 +49,8 @@ pub(super) struct State {
     pub(super) returned_at: Cell<u32>,
     /// Where each call in progress stands, at the place of its caller's frame; see [`call_entry`].
     pub(super) calls: [Cell<u32>; CALLS],
+    /// The answer to the last of the requests that are rare.
+    pub(super) answer: Cell<u64>,
     /// Arguments of a firmware call.
     pub(super) arguments: [Cell<u64>; MAX_PARAMETERS],
 }
@@ -69,6 +71,7 @@ impl State {
             top: Cell::new(stack.top),
             returned_at: Cell::new(0),
             calls: [const { Cell::new(0) }; CALLS],
+            answer: Cell::new(0),
             arguments: [const { Cell::new(0) }; MAX_PARAMETERS],
         }
     }

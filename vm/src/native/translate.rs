@@ -12,6 +12,7 @@
 mod arith;
 mod control;
 mod memory;
+mod nan;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::mem::offset_of;
@@ -37,6 +38,9 @@ use crate::program::{Function, Program};
 /// Reached only if the engine resumed a context that a trap has stopped.
 const RESUMED_BEHIND_TRAP: TrapCode = TrapCode::unwrap_user(1);
 
+/// Parameters of a machine function before those of the program: state, stack pointer, budget.
+const OWN_PARAMETERS: usize = 3;
+
 /// What is to be translated.
 #[derive(Clone, Copy)]
 pub(super) struct Translation<'a> {
@@ -46,12 +50,14 @@ pub(super) struct Translation<'a> {
     pub(super) function: &'a Function,
     /// All its functions, as the module knows them.
     pub(super) functions: &'a [FuncId],
+    /// What [`translate_request`] has made.
+    pub(super) request: FuncId,
 }
 
 /// The machine signature of a function with `parameters`.
 pub(super) fn function_signature(parameters: &[Class]) -> Signature {
     let mut signature = Signature::new(CallConv::Fast);
-    let own = [types::I64, types::I32, types::I64];
+    let own: [Type; OWN_PARAMETERS] = [types::I64, types::I32, types::I64];
     signature.params =
         own.into_iter().chain(parameters.iter().map(|class| type_of(*class))).map(AbiParam::new).collect();
     signature.returns = vec![AbiParam::new(types::I64); 2];
@@ -72,6 +78,38 @@ fn leave_signature(convention: CallConv) -> Signature {
     signature.params = parameters.map(AbiParam::new).to_vec();
     signature.returns = vec![AbiParam::new(types::I64)];
     signature
+}
+
+/// The signature of the function through which compiled code makes its rare requests.
+///
+/// It leaves every register as it was, so that the code around a request that is hardly ever
+/// made keeps its values where they are. It can have no result; the state holds the answer.
+pub(super) fn request_signature() -> Signature {
+    let mut signature = leave_signature(CallConv::PreserveAll);
+    signature.returns.clear();
+    signature
+}
+
+/// Translates the function of [`request_signature`] into `ir`, whose signature is set.
+pub(super) fn translate_request(
+    ir: &mut IrFunction,
+    context: &mut FunctionBuilderContext,
+    module: &JITModule,
+) {
+    let mut builder = FunctionBuilder::new(ir, context);
+    let block = builder.create_block();
+    builder.append_block_params_for_function_params(block);
+    builder.switch_to_block(block);
+    let arguments = builder.block_params(block).to_vec();
+    let (state, flags) = (arguments[0], MemFlagsData::trusted());
+    let leave = builder.ins().load(types::I64, flags, state, offset(offset_of!(State, leave)));
+    let signature = builder.import_signature(leave_signature(module.isa().default_call_conv()));
+    let call = builder.ins().call_indirect(signature, leave, &arguments);
+    let answer = builder.inst_results(call)[0];
+    builder.ins().store(flags, answer, state, offset(offset_of!(State, answer)));
+    builder.ins().return_(&[]);
+    builder.seal_all_blocks();
+    builder.finalize(module.target_config());
 }
 
 /// The machine type of a register.
@@ -179,6 +217,7 @@ struct Translator<'a, 'b> {
     budget: Variable,
     /// The functions of the program that this one has called so far.
     callees: BTreeMap<usize, FuncRef>,
+    request: FuncRef,
     leave: IrSigRef,
     /// Blocks at the words that branches go to or that follow a conditional one.
     blocks: BTreeMap<usize, Block>,
@@ -197,7 +236,9 @@ struct Translator<'a, 'b> {
     arguments: Vec<Value>,
     /// Result of the call directly before, as a slot.
     result: Option<Value>,
-    /// Results of this block's floating arithmetic before their NaNs were made the same.
+    /// The floating registers in which any NaN stands for the one that arithmetic makes.
+    lax: Vec<bool>,
+    /// Results of this block's floating arithmetic in other registers, before their NaNs were made the same.
     raw: BTreeMap<usize, Value>,
 }
 
@@ -213,11 +254,12 @@ impl<'a, 'b> Translator<'a, 'b> {
         let parameters = builder.block_params(entry).to_vec();
         let registers: Vec<_> =
             translation.function.classes.iter().map(|class| builder.declare_var(type_of(*class))).collect();
-        for (register, value) in registers.iter().zip(&parameters[3..]) {
+        for (register, value) in registers.iter().zip(&parameters[OWN_PARAMETERS..]) {
             builder.def_var(*register, *value);
         }
         let budget = builder.declare_var(types::I64);
         builder.def_var(budget, parameters[2]);
+        let request = module.declare_func_in_func(translation.request, builder.func);
         let leave = builder.import_signature(leave_signature(module.isa().default_call_conv()));
         let state_flags = flags(&mut builder, 0, "state");
         let guest_flags = flags(&mut builder, 1, "guest memory");
@@ -225,6 +267,7 @@ impl<'a, 'b> Translator<'a, 'b> {
             registers,
             budget,
             callees: BTreeMap::new(),
+            request,
             leave,
             blocks: BTreeMap::new(),
             state_flags,
@@ -236,6 +279,11 @@ impl<'a, 'b> Translator<'a, 'b> {
             reachable: true,
             arguments: Vec::new(),
             result: None,
+            lax: nan::lax_registers(
+                translation.program,
+                translation.function,
+                parameters.len() - OWN_PARAMETERS,
+            ),
             raw: BTreeMap::new(),
             builder,
             module,
@@ -350,8 +398,10 @@ impl<'a, 'b> Translator<'a, 'b> {
         self.enter(block);
     }
 
+    /// The value of a register; a NaN that arithmetic made is the one that it makes everywhere.
     fn get<R: Register>(&mut self, register: R) -> Value {
-        self.builder.use_var(self.registers[register.index()])
+        let value = self.builder.use_var(self.registers[register.index()]);
+        if self.lax[register.index()] { self.canonical(R::CLASS, value) } else { value }
     }
 
     fn set<R: Register>(&mut self, register: R, value: Value) {
@@ -361,6 +411,12 @@ impl<'a, 'b> Translator<'a, 'b> {
 
     fn load_state(&mut self, ty: Type, field: usize) -> Value {
         self.builder.ins().load(ty, self.state_flags, self.state, offset(field))
+    }
+
+    /// Loads a pointer of the state that stays the same as long as the context lives.
+    fn load_pointer(&mut self, field: usize) -> Value {
+        let flags = self.state_flags.with_readonly().with_can_move();
+        self.builder.ins().load(types::I64, flags, self.state, offset(field))
     }
 
     fn store_state(&mut self, value: Value, field: usize) {
@@ -395,19 +451,36 @@ impl<'a, 'b> Translator<'a, 'b> {
         }
     }
 
-    /// Makes a request as the word `at` and yields the answer.
+    /// Makes a request as the word `at` and yields the answer; for requests that are rare.
     fn request(&mut self, code: u32, at: usize, a: Value, b: Value) -> Value {
+        let arguments = self.request_arguments(code, at, a, b);
+        self.builder.ins().call(self.request, &arguments);
+        let answer = self.load_state(types::I64, offset_of!(State, answer));
+        self.reload_budget();
+        answer
+    }
+
+    /// The same for a request that the program makes each time it comes here.
+    fn usual_request(&mut self, code: u32, at: usize, a: Value, b: Value) -> Value {
+        let arguments = self.request_arguments(code, at, a, b);
+        let leave = self.load_pointer(offset_of!(State, leave));
+        let call = self.builder.ins().call_indirect(self.leave, leave, &arguments);
+        self.reload_budget();
+        self.builder.inst_results(call)[0]
+    }
+
+    /// What a request is made with; the budget goes to the state.
+    fn request_arguments(&mut self, code: u32, at: usize, a: Value, b: Value) -> [Value; 6] {
         let budget = self.builder.use_var(self.budget);
         self.store_state(budget, offset_of!(State, budget));
-        let leave = self.load_state(types::I64, offset_of!(State, leave));
         let code = self.builder.ins().iconst(types::I32, i64::from(code));
         let at = self.builder.ins().iconst(types::I32, at as i64);
-        let arguments = [self.state, code, at, self.stack_pointer, a, b];
-        let call = self.builder.ins().call_indirect(self.leave, leave, &arguments);
-        let answer = self.builder.inst_results(call)[0];
+        [self.state, code, at, self.stack_pointer, a, b]
+    }
+
+    fn reload_budget(&mut self) {
         let budget = self.load_state(types::I64, offset_of!(State, budget));
         self.builder.def_var(self.budget, budget);
-        answer
     }
 
     /// Ends the block with a request from which the context does not come back.

@@ -2,8 +2,9 @@
 //! [`crate::arith`].
 //!
 //! An operation that makes a NaN makes the same one everywhere, which takes a comparison and a
-//! selection behind it. As long as only arithmetic of the same block reads the result, it reads
-//! it as it was before (`raw`), and Cranelift removes the selection if nobody else needs it.
+//! selection. Registers that may put that off until somebody sees the bits do so (`nan.rs`). For
+//! the others arithmetic of the same block reads the result as it was before (`raw`), and
+//! Cranelift removes the selection if nobody else needs it.
 
 use std::mem::offset_of;
 
@@ -81,8 +82,6 @@ operations! {
     unary {
         mov_i32: RegI32 -> RegI32 = |_, v| v;
         mov_i64: RegI64 -> RegI64 = |_, v| v;
-        mov_f32: RegF32 -> RegF32 = |_, v| v;
-        mov_f64: RegF64 -> RegF64 = |_, v| v;
         ext8_s: RegI32 -> RegI32 = |t, v| {
             let v = t.builder.ins().ireduce(types::I8, v);
             t.builder.ins().sextend(types::I32, v)
@@ -218,6 +217,14 @@ impl Translator<'_, '_> {
         self.set(dst, value);
     }
 
+    pub(super) fn mov_f32(&mut self, dst: RegF32, src: RegF32) {
+        self.copy_float(dst, src);
+    }
+
+    pub(super) fn mov_f64(&mut self, dst: RegF64, src: RegF64) {
+        self.copy_float(dst, src);
+    }
+
     pub(super) fn f64_from_f32(&mut self, dst: RegF64, src: RegF32) {
         let src = self.get_raw(src);
         let value = self.builder.ins().fpromote(types::F64, src);
@@ -232,19 +239,34 @@ impl Translator<'_, '_> {
 
     /// The value of a floating register, any NaN standing for that NaN of the register.
     fn get_raw<R: Register>(&mut self, register: R) -> Value {
-        self.raw.get(&register.index()).copied().unwrap_or_else(|| self.get(register))
+        let held = || self.builder.use_var(self.registers[register.index()]);
+        self.raw.get(&register.index()).copied().unwrap_or_else(held)
     }
 
-    /// Sets a floating register to what an operation has made, with the one NaN that operations make.
+    /// Sets a floating register to what an operation has made.
     fn set_arithmetic<R: Register>(&mut self, dst: R, raw: Value) {
-        let nan = match R::CLASS {
+        if self.lax[dst.index()] {
+            return self.set(dst, raw);
+        }
+        let value = self.canonical(R::CLASS, raw);
+        self.set(dst, value);
+        self.raw.insert(dst.index(), raw);
+    }
+
+    /// Copies a floating register, the processor's NaN with it where both may hold that.
+    fn copy_float<R: Register>(&mut self, dst: R, src: R) {
+        let value = if self.lax[dst.index()] { self.get_raw(src) } else { self.get(src) };
+        self.set(dst, value);
+    }
+
+    /// The value with the one NaN that operations make in place of any NaN.
+    pub(super) fn canonical(&mut self, class: Class, value: Value) -> Value {
+        let nan = match class {
             Class::F32 => self.builder.ins().f32const(Ieee32::with_bits(canonical_f32(f32::NAN).to_bits())),
             _ => self.builder.ins().f64const(Ieee64::with_bits(canonical_f64(f64::NAN).to_bits())),
         };
-        let is_nan = self.builder.ins().fcmp(FloatCC::Unordered, raw, raw);
-        let value = self.builder.ins().select(is_nan, nan, raw);
-        self.set(dst, value);
-        self.raw.insert(dst.index(), raw);
+        let is_nan = self.builder.ins().fcmp(FloatCC::Unordered, value, value);
+        self.builder.ins().select(is_nan, nan, value)
     }
 
     fn set_truth(&mut self, dst: RegI32, truth: Value) {

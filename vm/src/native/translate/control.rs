@@ -122,7 +122,7 @@ impl Translator<'_, '_> {
         let target = self.get(target);
         let address = self.builder.ins().uextend(types::I64, target);
         let signature = self.builder.ins().iconst(types::I64, i64::from(sig.0));
-        let pointer = self.request(Reason::CallPointer.code(), self.at, address, signature);
+        let pointer = self.usual_request(Reason::CallPointer.code(), self.at, address, signature);
         let (own, firmware, behind) =
             (self.builder.create_block(), self.builder.create_block(), self.builder.create_block());
         let result = self.builder.append_block_param(behind, types::I64);
@@ -205,7 +205,7 @@ impl Translator<'_, '_> {
             self.store_state(slot, offset_of!(State, arguments) + index * size_of::<u64>());
         }
         let signature = self.builder.ins().iconst(types::I64, i64::from(sig.0));
-        self.request(Reason::CallFirmware.code(), self.at, address, signature)
+        self.usual_request(Reason::CallFirmware.code(), self.at, address, signature)
     }
 
     fn return_slot(&mut self, slot: Value) {

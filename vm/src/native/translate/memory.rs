@@ -84,14 +84,14 @@ impl Translator<'_, '_> {
         let upper = self.builder.ins().ishl_imm_u(src, 32);
         let addresses = self.builder.ins().bor(to, upper);
         let len = self.builder.ins().iconst(types::I64, i64::from(len.0));
-        self.request(Reason::Copy.code(), self.at, addresses, len);
+        self.usual_request(Reason::Copy.code(), self.at, addresses, len);
     }
 
     pub(super) fn clear(&mut self, to: RegI32, len: Count) {
         let to = self.get(to);
         let to = self.builder.ins().uextend(types::I64, to);
         let len = self.builder.ins().iconst(types::I64, i64::from(len.0));
-        self.request(Reason::Clear.code(), self.at, to, len);
+        self.usual_request(Reason::Clear.code(), self.at, to, len);
     }
 
     fn address(&mut self, base: RegI32, off: Off) -> Value {
@@ -129,7 +129,7 @@ impl Translator<'_, '_> {
     fn load_at<R: Register>(&mut self, dst: R, addr: Addr, width: Width) {
         let value = match ram_field(addr, width) {
             Some((field, place)) => {
-                let base = self.load_state(types::I64, field);
+                let base = self.load_pointer(field);
                 self.load_guest(base, place, width)
             }
             None => {
@@ -178,16 +178,16 @@ impl Translator<'_, '_> {
             return self.request_store(R::CLASS, value, address, width);
         };
         if !(PROGRAM_BASE..PROGRAM_LIMIT).contains(&addr.0) {
-            let base = self.load_state(types::I64, field);
+            let base = self.load_pointer(field);
             return self.store_guest(value, base, place, width);
         }
         let (fast, slow, behind) =
             (self.builder.create_block(), self.builder.create_block(), self.builder.create_block());
-        let marks = self.load_state(types::I64, offset_of!(State, protected));
+        let marks = self.load_pointer(offset_of!(State, protected));
         self.branch_if_protected(marks, place >> BLOCK_BITS, slow, fast);
 
         self.enter(fast);
-        let base = self.load_state(types::I64, field);
+        let base = self.load_pointer(field);
         self.store_guest(value, base, place, width);
         self.builder.ins().jump(behind, &[]);
 
@@ -238,7 +238,7 @@ impl Translator<'_, '_> {
 
     /// `place` behind the pointer in a field of the state.
     fn pointer(&mut self, place: Value, field: usize) -> Value {
-        let base = self.load_state(types::I64, field);
+        let base = self.load_pointer(field);
         let place = self.builder.ins().uextend(types::I64, place);
         self.builder.ins().iadd(base, place)
     }
