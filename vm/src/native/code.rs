@@ -173,10 +173,14 @@ impl Code {
         self.entries[function]
     }
 
-    /// Whether the function with the given index can be called with `signature`.
+    /// Whether the function with the given index can be called with `signature`: it takes the first of the
+    /// arguments, all of them or fewer.
+    ///
+    /// What it does not take is in registers that it may use as it likes, or on the stack where the caller put
+    /// it and takes it away again; where an argument is depends on those before it only.
     pub(super) fn accepts(&self, function: usize, signature: SigRef) -> bool {
-        let parameters = self.parameters.get(function);
-        parameters.is_some() && parameters == self.signatures.get(usize::from(signature.0))
+        let (taken, passed) = (self.parameters.get(function), self.signatures.get(usize::from(signature.0)));
+        matches!((taken, passed), (Some(taken), Some(passed)) if passed.starts_with(taken))
     }
 
     /// Bytes of native stack that the program cannot exceed on a guest stack of `guest` bytes.
