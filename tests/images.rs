@@ -145,7 +145,7 @@ fn a_program_that_enters_other_threads_is_built_with_a_warning_and_one_too_large
     let output = cc67(&scratch, &["build", "b.c"]);
     assert_eq!(output.code, 1);
     assert!(output.stderr.contains("bytes too large"), "{}", output.stderr);
-    assert!(output.stderr.contains("largest: huge (700000), main ("), "{}", output.stderr);
+    assert!(output.stderr.contains("the largest parts in bytes: huge (700000), main ("), "{}", output.stderr);
 }
 
 #[test]

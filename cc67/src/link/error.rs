@@ -58,10 +58,12 @@ pub enum LinkErrorKind {
         defined: String,
     },
     /// The program does not fit the program area.
-    #[error("the program is {excess} bytes too large")]
+    #[error("the program is {excess} bytes too large for the {space} bytes behind its address")]
     TooLarge {
         /// How many bytes stand beyond the limit.
         excess: u32,
+        /// How many bytes there are from the program's address to the limit.
+        space: u32,
         /// The largest symbols, `name (bytes)`.
         largest: Vec<String>,
     },

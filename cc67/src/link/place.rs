@@ -150,7 +150,8 @@ pub(super) fn check_size(placed: &Placed, text: GuestAddr) -> Result<Vec<LinkWar
         let mut symbols: Vec<&LinkedSymbol> = placed.symbols.iter().collect();
         symbols.sort_by_key(|symbol| std::cmp::Reverse(symbol.size));
         let largest = symbols.iter().take(NAMED).map(|symbol| format!("{} ({})", symbol.name, symbol.size));
-        let kind = LinkErrorKind::TooLarge { excess: end - STACK_BASE, largest: largest.collect() };
+        let (excess, space) = (end - STACK_BASE, STACK_BASE - text.get());
+        let kind = LinkErrorKind::TooLarge { excess, space, largest: largest.collect() };
         return Err(vec![LinkError::global(kind)]);
     }
     // The thread in whose space the text begins.

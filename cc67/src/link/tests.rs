@@ -165,7 +165,11 @@ fn a_program_larger_than_its_space_enters_the_next_ones() {
     assert!(warning.ends_with("enters the space of thread 3, 4, 5"), "{warning}");
     let errors = try_link(&[source], 5, true).expect_err("does not fit");
     let message = errors[0].to_diagnostic();
-    assert!(message.message.ends_with("bytes too large"), "{}", message.message);
+    assert!(
+        message.message.ends_with("bytes too large for the 196608 bytes behind its address"),
+        "{}",
+        message.message
+    );
     assert!(
         message.notes[0].starts_with("the largest parts in bytes: a (200000), main ("),
         "{:?}",
