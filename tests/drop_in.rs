@@ -1,7 +1,7 @@
 //! `cc67` in the place of the vendor's compiler: its command lines, messages and images.
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use coff::{
     BaseType, Contents, FileFlags, Image, Name, Section, SectionFlags, SectionNumber, StorageClass, Symbol,
@@ -86,11 +86,25 @@ fn call(scratch: &Scratch, arguments: &[&str]) -> Output {
     run_in(BINARY, scratch.path(), arguments)
 }
 
-/// Calls a copy of the command by another name.
+/// Calls the command by another name.
 fn call_as(name: &str, scratch: &Scratch, arguments: &[&str]) -> Output {
-    let copy: PathBuf = scratch.path().join(name);
-    fs::copy(BINARY, &copy).expect("the command can be copied");
-    run_in(&copy.to_string_lossy(), scratch.path(), arguments)
+    let other: PathBuf = scratch.path().join(name);
+    if !other.exists() {
+        give_other_name(Path::new(BINARY), &other);
+    }
+    run_in(&other.to_string_lossy(), scratch.path(), arguments)
+}
+
+/// A link, not a copy: a file that was just written cannot be executed as long as a process that
+/// another test starts at this moment still holds the writer's descriptor ("text file busy").
+#[cfg(unix)]
+fn give_other_name(command: &Path, other: &Path) {
+    std::os::unix::fs::symlink(command, other).expect("links can be made");
+}
+
+#[cfg(not(unix))]
+fn give_other_name(command: &Path, other: &Path) {
+    fs::copy(command, other).expect("the command can be copied");
 }
 
 fn read(scratch: &Scratch, name: &str) -> Image {
