@@ -93,10 +93,34 @@ impl Parser<'_> {
     }
 
     /// Whether the next parenthesis holds the parameters of a function without a name.
+    ///
+    /// Attributes may begin either: `int (__attribute__((noinline)) *)(void)` is a pointer.
     fn opens_parameters(&self) -> bool {
-        self.kind_at(1) == TokenKind::RightParen
-            || self.kind_at(1) == TokenKind::Ellipsis
-            || self.name_at(1).is_some_and(|name| self.is_declaration_word(name))
+        let first = self.after_attributes(1);
+        self.kind_at(first) == TokenKind::RightParen
+            || self.kind_at(first) == TokenKind::Ellipsis
+            || self.name_at(first).is_some_and(|name| self.is_declaration_word(name))
+    }
+
+    /// How far ahead the first token is that belongs to no attribute, counted from `ahead` on.
+    fn after_attributes(&self, mut ahead: usize) -> usize {
+        while matches!(self.name_at(ahead), Some(word::ATTRIBUTE | word::ATTRIBUTE__)) {
+            let mut depth = 0;
+            loop {
+                ahead += 1;
+                match self.kind_at(ahead) {
+                    TokenKind::LeftParen => depth += 1,
+                    TokenKind::RightParen => depth -= 1,
+                    TokenKind::End => return ahead,
+                    _ => {}
+                }
+                if depth <= 0 {
+                    break;
+                }
+            }
+            ahead += 1;
+        }
+        ahead
     }
 
     /// `[length]`, `[]` or `[*]`
