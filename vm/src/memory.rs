@@ -225,6 +225,17 @@ impl GuestMemory {
         Ok(())
     }
 
+    /// A block of RAM for the kernel, found once for many accesses; `None` unless all of it is one region's.
+    #[must_use]
+    #[inline]
+    pub fn block_mut<const N: usize>(&mut self, addr: GuestAddr) -> Option<&mut [u8; N]> {
+        let address = addr.get();
+        if let Some(block) = self.iram.get_mut(index(address.wrapping_sub(IRAM_BASE))..) {
+            return block.first_chunk_mut();
+        }
+        self.sdram.get_mut(index(address.wrapping_sub(SDRAM_BASE))..)?.first_chunk_mut()
+    }
+
     /// Reads a string up to its closing 0, which is not part of the result, or `max` bytes.
     ///
     /// # Errors

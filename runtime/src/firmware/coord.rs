@@ -99,7 +99,7 @@ pub(crate) fn stop(kernel: &mut Kernel, memory: &mut GuestMemory, _now: Cycles) 
     if feedhold::stop(memory) {
         return true;
     }
-    let moving: Vec<AxisId> = members(memory).into_iter().filter(|&axis| is_moving(memory, axis)).collect();
+    let moving: Vec<AxisId> = members(memory).filter(|&axis| is_moving(memory, axis)).collect();
     for &axis in &moving {
         if let Some(limits) = limits(memory, axis, Some(1.0)) {
             let states = profile::stop(present(memory, axis), &limits);
@@ -115,7 +115,7 @@ pub(crate) fn stop(kernel: &mut Kernel, memory: &mut GuestMemory, _now: Cycles) 
 
 /// Ends the second phase of a feedhold when the axes have stopped.
 pub(crate) fn update_state(memory: &mut GuestMemory) {
-    let stopped = members(memory).iter().all(|&axis| !has_motion(memory, axis));
+    let stopped = members(memory).all(|axis| !has_motion(memory, axis));
     if State::of(memory) == State::StoppingAxes && stopped {
         memory.set(CS0_STOPPING_STATE, State::AxesStopped.number());
     }

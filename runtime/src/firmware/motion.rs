@@ -318,8 +318,7 @@ pub(crate) fn check_done(kernel: &mut Kernel, caller: &mut Caller<'_>, axis: i32
 }
 
 pub(crate) fn check_done_xyzabc(_: &mut Kernel, caller: &mut Caller<'_>) -> i32 {
-    let members = coord::members(caller.memory);
-    members.iter().map(|&axis| done(caller.memory, axis)).min().unwrap_or(1)
+    coord::members(caller.memory).map(|axis| done(caller.memory, axis)).min().unwrap_or(1)
 }
 
 pub(crate) fn start_move(kernel: &mut Kernel, caller: &mut Caller<'_>, axis: i32) {

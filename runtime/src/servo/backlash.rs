@@ -1,39 +1,39 @@
 //! Backlash compensation: an offset that ramps with the direction of motion.
 
-use kmotiondef::AxisId;
 use kmotiondef::modes::BacklashMode;
 use kmotiondef::structs::Chan;
-use vm::memory::GuestMemory;
 
 use super::TIMEBASE;
-use crate::views::Typed;
+use crate::views::AxisView;
 
 /// Advances the offset by one tick.
-pub(crate) fn advance(memory: &mut GuestMemory, axis: AxisId) {
-    if BacklashMode::new(memory.axis(axis, Chan::BACKLASH_MODE)) != Some(BacklashMode::Linear) {
-        memory.set_axis(axis, Chan::BACKLASH, 0.0);
-        return;
+pub(crate) fn advance(chan: &mut AxisView<'_>) {
+    if BacklashMode::new(chan.get(Chan::BACKLASH_MODE)) != Some(BacklashMode::Linear) {
+        return chan.set(Chan::BACKLASH, 0.0);
     }
-    let (dest, judged) = (memory.axis(axis, Chan::DEST) as f32, memory.axis(axis, Chan::PREV_BACKLASH_DEST));
+    let (dest, judged) = (chan.get(Chan::DEST) as f32, chan.get(Chan::PREV_BACKLASH_DEST));
     if dest != judged {
-        memory.set_axis(axis, Chan::BACKLASH_DIRECTION, if dest > judged { 1 } else { -1 });
-        memory.set_axis(axis, Chan::PREV_BACKLASH_DEST, dest);
+        chan.set(Chan::BACKLASH_DIRECTION, if dest > judged { 1 } else { -1 });
+        chan.set(Chan::PREV_BACKLASH_DEST, dest);
     }
-    let goal = match memory.axis(axis, Chan::BACKLASH_DIRECTION) {
-        1 => memory.axis(axis, Chan::BACKLASH_AMOUNT),
+    let goal = match chan.get(Chan::BACKLASH_DIRECTION) {
+        1 => chan.get(Chan::BACKLASH_AMOUNT),
         -1 => 0.0,
         _ => return,
     };
-    let step = (f64::from(memory.axis(axis, Chan::BACKLASH_RATE)) * TIMEBASE) as f32;
-    let offset = memory.axis(axis, Chan::BACKLASH);
+    let step = (f64::from(chan.get(Chan::BACKLASH_RATE)) * TIMEBASE) as f32;
+    let offset = chan.get(Chan::BACKLASH);
     let offset = if goal > offset { (offset + step).min(goal) } else { (offset - step).max(goal) };
-    memory.set_axis(axis, Chan::BACKLASH, offset);
+    chan.set(Chan::BACKLASH, offset);
 }
 
 #[cfg(test)]
 mod tests {
+    use kmotiondef::AxisId;
+
     use super::*;
     use crate::testing::Desk;
+    use crate::views::Typed;
 
     #[test]
     fn the_offset_ramps_as_recorded() {
@@ -48,7 +48,7 @@ mod tests {
         desk.memory.set_axis(axis, Chan::BACKLASH_RATE, 10000.0);
         for (dest, offset) in rows.into_iter().chain(falling) {
             desk.memory.set_axis(axis, Chan::DEST, dest);
-            advance(&mut desk.memory, axis);
+            advance(&mut AxisView::of(&mut desk.memory, axis));
             let found = memory_offset(&desk);
             assert!((found - offset).abs() < 1e-5, "{dest}: {found} {offset}");
         }

@@ -2,13 +2,11 @@
 //!
 //! Source: axes-and-motion.md section 10. Memories are singles, as their fields are.
 
-use kmotiondef::limits::N_IIR_FILTERS;
+use kmotiondef::Field;
 use kmotiondef::structs::{Chan, Iir};
-use kmotiondef::{AxisId, Field};
-use vm::memory::GuestMemory;
 
 use super::{AxisMemory, TIMEBASE};
-use crate::views::Typed;
+use crate::views::AxisView;
 
 /// Limits `value` to ±`limit`; no limit below 0.
 fn clamp(value: f64, limit: f32) -> f64 {
@@ -26,41 +24,39 @@ fn dead_band(error: f64, range: f64, gain: f64) -> f64 {
 }
 
 /// One tick: returns the output and stores it.
-pub(crate) fn advance(own: &AxisMemory, memory: &mut GuestMemory, axis: AxisId, command: f64) -> f32 {
-    let gain = |memory: &GuestMemory, field: Field<f32>| f64::from(memory.axis(axis, field));
-    let position = memory.axis(axis, Chan::POSITION);
-    let range = gain(memory, Chan::DEAD_BAND_RANGE);
-    let error = dead_band(command - position, range, gain(memory, Chan::DEAD_BAND_GAIN));
-    let error = clamp(error, memory.axis(axis, Chan::MAX_ERR));
-    let sum = gain(memory, Chan::INTEGRATOR) + gain(memory, Chan::I) * error;
-    let integrator = clamp(sum, memory.axis(axis, Chan::MAX_I)) as f32;
-    memory.set_axis(axis, Chan::INTEGRATOR, integrator);
-    let moved = position - memory.axis(axis, Chan::LAST_POSITION);
-    memory.set_axis(axis, Chan::LAST_POSITION, position);
-    let pid = gain(memory, Chan::P) * error + f64::from(integrator) - gain(memory, Chan::D) * moved;
-    let filtered = filter(memory, axis, 0, pid);
-    let filtered = filter(memory, axis, 1, filtered);
+pub(crate) fn advance(own: &AxisMemory, chan: &mut AxisView<'_>, command: f64) -> f32 {
+    let gain = |chan: &AxisView<'_>, field: Field<f32>| f64::from(chan.get(field));
+    let position = chan.get(Chan::POSITION);
+    let error =
+        dead_band(command - position, gain(chan, Chan::DEAD_BAND_RANGE), gain(chan, Chan::DEAD_BAND_GAIN));
+    let error = clamp(error, chan.get(Chan::MAX_ERR));
+    let sum = gain(chan, Chan::INTEGRATOR) + gain(chan, Chan::I) * error;
+    let integrator = clamp(sum, chan.get(Chan::MAX_I)) as f32;
+    chan.set(Chan::INTEGRATOR, integrator);
+    let moved = position - chan.get(Chan::LAST_POSITION);
+    chan.set(Chan::LAST_POSITION, position);
+    let pid = gain(chan, Chan::P) * error + f64::from(integrator) - gain(chan, Chan::D) * moved;
+    let filtered = filter(chan, Chan::IIR.element(0), pid);
+    let filtered = filter(chan, Chan::IIR.element(1), filtered);
     // The feed forward sees the destination alone, without backlash and offset.
     let acceleration = (own.velocity - own.last_velocity) / TIMEBASE;
-    let forward = gain(memory, Chan::FF_VEL) * own.velocity + gain(memory, Chan::FF_ACCEL) * acceleration;
-    let filtered = filter(memory, axis, 2, filtered + forward);
-    let output = clamp(filtered, memory.axis(axis, Chan::MAX_OUTPUT)) as f32;
-    let last = memory.axis(axis, Chan::OUTPUT);
-    memory.set_axis(axis, Chan::PREV_OUTPUT, last);
-    memory.set_axis(axis, Chan::OUTPUT, output);
+    let forward = gain(chan, Chan::FF_VEL) * own.velocity + gain(chan, Chan::FF_ACCEL) * acceleration;
+    let filtered = filter(chan, Chan::IIR.element(2), filtered + forward);
+    let output = clamp(filtered, chan.get(Chan::MAX_OUTPUT)) as f32;
+    let last = chan.get(Chan::OUTPUT);
+    chan.set(Chan::PREV_OUTPUT, last);
+    chan.set(Chan::OUTPUT, output);
     output
 }
 
 /// One tick of a second-order filter, direct form II.
-fn filter(memory: &mut GuestMemory, axis: AxisId, number: usize, input: f64) -> f64 {
-    debug_assert!(number < N_IIR_FILTERS);
-    let iir = Chan::IIR.element(number);
-    let get = |memory: &GuestMemory, field: Field<f32>| f64::from(memory.axis(axis, iir.field(field)));
-    let (d0, d1) = (get(memory, Iir::D0), get(memory, Iir::D1));
-    let inner = input + get(memory, Iir::A1) * d0 + get(memory, Iir::A2) * d1;
-    let output = get(memory, Iir::B0) * inner + get(memory, Iir::B1) * d0 + get(memory, Iir::B2) * d1;
-    memory.set_axis(axis, iir.field(Iir::D1), d0 as f32);
-    memory.set_axis(axis, iir.field(Iir::D0), inner as f32);
+fn filter(chan: &mut AxisView<'_>, iir: Field<Iir>, input: f64) -> f64 {
+    let get = |chan: &AxisView<'_>, field: Field<f32>| f64::from(chan.get(iir.field(field)));
+    let (d0, d1) = (get(chan, Iir::D0), get(chan, Iir::D1));
+    let inner = input + get(chan, Iir::A1) * d0 + get(chan, Iir::A2) * d1;
+    let output = get(chan, Iir::B0) * inner + get(chan, Iir::B1) * d0 + get(chan, Iir::B2) * d1;
+    chan.set(iir.field(Iir::D1), d0 as f32);
+    chan.set(iir.field(Iir::D0), inner as f32);
     output
 }
 

@@ -6,7 +6,7 @@ use vm::memory::GuestMemory;
 
 use super::profile::{MAX_STATES, Mode, Point, State};
 use super::trajectory::{Approach, Cursor, Step, point, step};
-use crate::views::Typed;
+use crate::views::{AxisView, Typed};
 
 /// The state list of an axis.
 fn list(memory: &GuestMemory, axis: AxisId) -> Place<[TripCoeff; MAX_STATES]> {
@@ -89,27 +89,33 @@ pub(crate) fn present(memory: &GuestMemory, axis: AxisId) -> Point {
 
 /// Advances the motion of an axis by one tick.
 pub(crate) fn advance(memory: &mut GuestMemory, axis: AxisId) {
-    if !has_motion(memory, axis) {
-        return;
+    let current = memory.axis(axis, Chan::PCOEFF);
+    let stepped = {
+        let read = |index| read(memory, current, index);
+        step(cursor(memory, axis), || approach(memory, axis), read)
+    };
+    let mut chan = AxisView::of(memory, axis);
+    match stepped {
+        Step::Moving(dest, next) => {
+            chan.set(Chan::DEST, dest);
+            chan.set(Chan::T, next.t);
+            chan.set(Chan::PCOEFF, current.offset(TripCoeff::SIZE * next.index as u32));
+        }
+        Step::Ended => {
+            chan.set(Chan::PCOEFF, GuestAddr::NULL);
+            chan.set(Chan::T, 0.0);
+        }
     }
-    let approach = Approach {
+}
+
+/// What an exponential approach depends on.
+fn approach(memory: &GuestMemory, axis: AxisId) -> Approach {
+    Approach {
         dest: memory.axis(axis, Chan::DEST),
         velocity: f64::from(memory.axis(axis, Chan::LAST_VEL)),
         vc: f64::from(memory.axis(axis, Chan::EXP_MOTION_VC)),
         xc: f64::from(memory.axis(axis, Chan::EXP_MOTION_XC)),
         v: f64::from(memory.axis(axis, Chan::VEL).max(0.0)),
         a: f64::from(memory.axis(axis, Chan::ACCEL).max(0.0)),
-    };
-    let current = memory.axis(axis, Chan::PCOEFF);
-    match step(cursor(memory, axis), &approach, |index| read(memory, current, index)) {
-        Step::Moving(dest, next) => {
-            memory.set_axis(axis, Chan::DEST, dest);
-            memory.set_axis(axis, Chan::T, next.t);
-            memory.set_axis(axis, Chan::PCOEFF, current.offset(TripCoeff::SIZE * next.index as u32));
-        }
-        Step::Ended => {
-            memory.set_axis(axis, Chan::PCOEFF, GuestAddr::NULL);
-            memory.set_axis(axis, Chan::T, 0.0);
-        }
     }
 }

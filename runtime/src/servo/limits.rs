@@ -9,7 +9,7 @@ use super::switch_off;
 use crate::firmware::coord;
 use crate::firmware::io::bit_state;
 use crate::kernel::Kernel;
-use crate::views::Typed;
+use crate::views::{AxisView, Typed};
 
 /// `LimitSwitchOptions`: take the bit numbers from their own fields.
 const EXTENDED: i32 = 1 << 8;
@@ -55,12 +55,41 @@ const ENDS: [End; 2] = [
     },
 ];
 
-/// Checks both ends of an enabled axis.
-pub(crate) fn check(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId, now: Cycles) {
+/// Whether a limit switch is watched or a soft limit is passed: only then [`check`] can do anything.
+pub(crate) fn may_act(chan: &AxisView<'_>) -> bool {
+    const WATCHED: i32 = 3;
+    let dest = chan.get(Chan::DEST);
+    chan.get(Chan::LIMIT_SWITCH_OPTIONS) & WATCHED != 0
+        || dest > f64::from(chan.get(Chan::SOFT_LIMIT_POS))
+        || dest < f64::from(chan.get(Chan::SOFT_LIMIT_NEG))
+}
+
+/// Notes the following error of an axis in a closed loop; whether it is too large.
+pub(crate) fn follows_badly(chan: &mut AxisView<'_>, command: f64) -> bool {
+    let error = f64::from((command - chan.get(Chan::POSITION)) as f32);
+    chan.set(Chan::LAST_FOLLOWING_ERROR, error);
+    error.abs() > chan.get(Chan::MAX_FOLLOWING_ERROR)
+}
+
+/// Checks both ends of an enabled axis and, in a closed loop, whether it follows its command; whether it is enabled
+/// still.
+pub(crate) fn check(
+    kernel: &mut Kernel,
+    memory: &mut GuestMemory,
+    axis: AxisId,
+    now: Cycles,
+    command: Option<f64>,
+) -> bool {
     for end in &ENDS {
         check_switch(kernel, memory, axis, end, now);
         check_soft(kernel, memory, axis, end, now);
     }
+    if command.is_some_and(|command| follows_badly(&mut AxisView::of(memory, axis), command)) {
+        kernel.console.message(&format!("Following Error Disabled Axis:{axis}"));
+        switch_off(kernel, memory, axis);
+        coord::abort_if_member(memory, axis);
+    }
+    memory.axis(axis, Chan::ENABLE) != 0
 }
 
 /// Whether the switch of an end is watched and active.
@@ -108,22 +137,6 @@ fn check_soft(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId, end: 
     // Nothing stops an axis outside the coordinate system: the message then comes again and again.
     coord::stop(kernel, memory, now);
     kernel.console.message(&format!("{} Soft Limit FeedHold Axis:{axis}", end.name));
-}
-
-/// Disables an axis that is too far from its command.
-pub(crate) fn check_following_error(
-    kernel: &mut Kernel,
-    memory: &mut GuestMemory,
-    axis: AxisId,
-    command: f64,
-) {
-    let error = f64::from((command - memory.axis(axis, Chan::POSITION)) as f32);
-    memory.set_axis(axis, Chan::LAST_FOLLOWING_ERROR, error);
-    if error.abs() > memory.axis(axis, Chan::MAX_FOLLOWING_ERROR) {
-        kernel.console.message(&format!("Following Error Disabled Axis:{axis}"));
-        switch_off(kernel, memory, axis);
-        coord::abort_if_member(memory, axis);
-    }
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@ mod compensation;
 pub(crate) mod coordinated;
 mod duration;
 pub(crate) mod independent;
+mod input;
 mod limits;
 mod output;
 pub(crate) mod plant;
@@ -22,16 +23,15 @@ mod slave;
 pub(crate) mod trajectory;
 
 use kmotiondef::limits::N_CHANNELS;
-use kmotiondef::modes::{InputMode, OutputMode};
+use kmotiondef::modes::OutputMode;
 use kmotiondef::structs::Chan;
-use kmotiondef::variables::{ADC_BUFFER_IN, CHAN};
-use kmotiondef::{AxisId, Cycles, GuestType};
+use kmotiondef::{AxisId, Cycles};
 use vm::firmware::TickContext;
 use vm::memory::GuestMemory;
 
 use crate::kernel::Kernel;
 use crate::servo::plant::Plant;
-use crate::views::Typed;
+use crate::views::AxisView;
 
 pub(crate) use duration::duration;
 pub(crate) use output::{four_phase, switch_off, three_phase};
@@ -74,129 +74,83 @@ impl Servo {
     }
 }
 
-/// One tick of the servo; whether anything changed.
+/// One tick of the servo; whether anything changed, so that the next tick may change something too.
 pub(crate) fn tick(kernel: &mut Kernel, context: &mut TickContext<'_>) -> bool {
-    let before = (snapshot(context.memory), kernel.servo.clone());
+    let memory = &mut *context.memory;
+    let mut changed = false;
+    let mut has_slaves = false;
     for axis in AxisId::all() {
-        plant::advance(&mut kernel.servo.plants[axis.index()], context.memory, axis);
-    }
-    for axis in AxisId::all() {
-        if context.memory.axis(axis, Chan::ENABLE) != 0 {
-            independent::advance(context.memory, axis);
+        let chan = AxisView::of(memory, axis);
+        changed |= kernel.servo.plants[axis.index()].advance(&chan);
+        if chan.get(Chan::ENABLE) != 0 {
+            has_slaves |= chan.get(Chan::MASTER_AXIS) >= 0;
+            if !chan.get(Chan::PCOEFF).is_null() {
+                changed = true;
+                independent::advance(memory, axis);
+            }
         }
     }
-    let path_moves = coordinated::board::tick(kernel, context.memory);
-    slave::follow(&kernel.servo, context.memory);
+    changed |= coordinated::board::tick(kernel, memory);
+    if has_slaves {
+        slave::follow(&kernel.servo, memory);
+    }
     for axis in AxisId::all() {
-        run_axis(kernel, context.memory, axis, context.now);
+        changed |= run_axis(kernel, memory, axis, context.now);
     }
-    let recorded = recorder::sample(context.memory);
-    recorded || path_moves || before.0 != snapshot(context.memory) || before.1 != kernel.servo
+    changed | recorder::sample(memory)
 }
 
-/// The bytes of all axis structures.
-fn snapshot(memory: &GuestMemory) -> Vec<u8> {
-    let size = Chan::SIZE * N_CHANNELS as u32;
-    memory.read_bytes(CHAN.address(), size).map(<[u8]>::to_vec).unwrap_or_default()
-}
-
-/// Position, protection, compensation and output of one axis.
-fn run_axis(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId, now: Cycles) {
-    measure(kernel, memory, axis);
-    direction(&mut kernel.servo.axes[axis.index()], memory, axis);
-    if memory.axis(axis, Chan::ENABLE) == 0 {
-        return;
+/// Position, protection, compensation and output of one axis; whether anything changed.
+fn run_axis(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId, now: Cycles) -> bool {
+    let moved = input::measure(&mut kernel.servo.plants[axis.index()], memory, axis);
+    let mut chan = AxisView::of(memory, axis);
+    let turned = direction(&mut kernel.servo.axes[axis.index()], &mut chan);
+    if chan.get(Chan::ENABLE) == 0 {
+        return moved | turned | chan.changed;
     }
-    backlash::advance(memory, axis);
-    let command = command(memory, axis);
-    let mode = OutputMode::new(memory.axis(axis, Chan::OUTPUT_MODE));
-    limits::check(kernel, memory, axis, now);
+    backlash::advance(&mut chan);
+    let command = command(&chan);
+    let mode = OutputMode::new(chan.get(Chan::OUTPUT_MODE));
     let is_open_loop = matches!(mode, None | Some(OutputMode::Microstep | OutputMode::StepDir));
-    if !is_open_loop {
-        limits::check_following_error(kernel, memory, axis, command);
+    let is_protected = limits::may_act(&chan) || !is_open_loop && limits::follows_badly(&mut chan, command);
+    let mut changed = moved | turned | chan.changed | is_protected;
+    if is_protected && !limits::check(kernel, memory, axis, now, (!is_open_loop).then_some(command)) {
+        return true;
     }
-    if memory.axis(axis, Chan::ENABLE) == 0 {
-        return;
-    }
+    let mut chan = AxisView::of(memory, axis);
     let output = if is_open_loop {
-        memory.set_axis(axis, Chan::OUTPUT, 0.0);
+        chan.set(Chan::OUTPUT, 0.0);
         0.0
     } else {
-        compensation::advance(&kernel.servo.axes[axis.index()], memory, axis, command)
+        compensation::advance(&kernel.servo.axes[axis.index()], &mut chan, command)
     };
+    changed |= chan.changed;
     output::drive(kernel, memory, axis, command, output);
-    let dest = memory.axis(axis, Chan::DEST);
-    memory.set_axis(axis, Chan::PREV_DEST, dest);
+    let mut chan = AxisView::of(memory, axis);
+    chan.set(Chan::PREV_DEST, chan.get(Chan::DEST));
+    changed | chan.changed
 }
 
 /// What the servo is to follow.
-pub(crate) fn command(memory: &GuestMemory, axis: AxisId) -> f64 {
-    memory.axis(axis, Chan::DEST)
-        + f64::from(memory.axis(axis, Chan::BACKLASH))
-        + memory.axis(axis, Chan::DEST_OFFSET)
+fn command(chan: &AxisView<'_>) -> f64 {
+    chan.get(Chan::DEST) + f64::from(chan.get(Chan::BACKLASH)) + chan.get(Chan::DEST_OFFSET)
 }
 
-/// Takes the position from the axis' input.
-fn measure(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId) {
-    let gain = f64::from(memory.axis(axis, Chan::INPUT_GAIN0));
-    let position = match InputMode::new(memory.axis(axis, Chan::INPUT_MODE)) {
-        Some(InputMode::Encoder) => {
-            let count = kernel.servo.plants[axis.index()].encoder(gain);
-            let moved = count.wrapping_sub(memory.axis(axis, Chan::LAST_ENC));
-            memory.set_axis(axis, Chan::LAST_ENC, count);
-            memory.axis(axis, Chan::POSITION) + gain * f64::from(moved)
-        }
-        Some(InputMode::Adc) => {
-            let channel = memory.axis(axis, Chan::INPUT_CHAN0);
-            let offset = f64::from(memory.axis(axis, Chan::INPUT_OFFSET0));
-            gain * f64::from(converted(memory, channel)) + offset
-        }
-        Some(InputMode::Resolver) => {
-            let angle = resolver_angle(memory, axis);
-            return crate::firmware::motion::turn_resolver(memory, axis, angle);
-        }
-        Some(InputMode::None | InputMode::User) | None => return,
-    };
-    memory.set_axis(axis, Chan::POSITION, position);
-    kernel.servo.plants[axis.index()].note_position(position);
-}
-
-/// An analog input, −2048 to 2047; 0 for a channel that does not exist.
-fn converted(memory: &GuestMemory, channel: i32) -> i32 {
-    let channel = usize::try_from(channel).ok().filter(|&channel| channel < 8);
-    channel.map_or(0, |channel| memory.get(ADC_BUFFER_IN.element(channel)) - 2048)
-}
-
-/// The angle of a resolver from its two analog inputs.
-fn resolver_angle(memory: &GuestMemory, axis: AxisId) -> (f32, f32) {
-    let input = |channel, gain: f32, offset| gain * converted(memory, channel) as f32 + offset;
-    let x = input(
-        memory.axis(axis, Chan::INPUT_CHAN0),
-        memory.axis(axis, Chan::INPUT_GAIN0),
-        memory.axis(axis, Chan::INPUT_OFFSET0),
-    );
-    let y = input(
-        memory.axis(axis, Chan::INPUT_CHAN1),
-        memory.axis(axis, Chan::INPUT_GAIN1),
-        memory.axis(axis, Chan::INPUT_OFFSET1),
-    );
-    (x, y)
-}
-
-/// Velocity and direction of the destination in this tick.
-fn direction(axis_memory: &mut AxisMemory, memory: &mut GuestMemory, axis: AxisId) {
-    let dest = memory.axis(axis, Chan::DEST);
-    let last = axis_memory.dest;
-    memory.set_axis(axis, Chan::LAST_DEST, last);
-    axis_memory.last_velocity = axis_memory.velocity;
-    axis_memory.velocity = (dest - last) / TIMEBASE;
-    axis_memory.dest = dest;
-    memory.set_axis(axis, Chan::LAST_VEL, axis_memory.velocity as f32);
+/// Velocity and direction of the destination in this tick; whether its velocity changes.
+fn direction(own: &mut AxisMemory, chan: &mut AxisView<'_>) -> bool {
+    let dest = chan.get(Chan::DEST);
+    let last = own.dest;
+    chan.set(Chan::LAST_DEST, last);
+    own.last_velocity = own.velocity;
+    own.velocity = (dest - last) / TIMEBASE;
+    own.dest = dest;
+    chan.set(Chan::LAST_VEL, own.velocity as f32);
     let sign = i32::from(dest > last) - i32::from(dest < last);
     // The first tick of a direction counts as standing still.
-    let goes_on = sign != 0 && memory.axis(axis, Chan::LAST_NON_ZERO_DIR) == sign;
-    memory.set_axis(axis, Chan::DIRECTION_OF_MOTION, if goes_on { sign } else { 0 });
+    let goes_on = sign != 0 && chan.get(Chan::LAST_NON_ZERO_DIR) == sign;
+    chan.set(Chan::DIRECTION_OF_MOTION, if goes_on { sign } else { 0 });
     if sign != 0 {
-        memory.set_axis(axis, Chan::LAST_NON_ZERO_DIR, sign);
+        chan.set(Chan::LAST_NON_ZERO_DIR, sign);
     }
+    own.velocity != 0.0 || own.last_velocity != 0.0
 }

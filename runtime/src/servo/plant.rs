@@ -3,15 +3,13 @@
 //! Source: plant.md sections 1 and 2, model `follow`. Step generators move the load by their steps, one tick late;
 //! closed loops follow with a first-order lag. An axis in NO_OUTPUT mode has no motor.
 
-use kmotiondef::AxisId;
 use kmotiondef::structs::Chan;
-use vm::memory::GuestMemory;
 
 use super::TIMEBASE;
-use crate::views::Typed;
+use crate::views::AxisView;
 
-/// Time constant of a closed loop in seconds.
-const LAG: f64 = 0.000_5;
+/// What a closed loop with a time constant of 0.5 ms follows of the rest in one tick: 1 − exp(−0.09 / 0.5).
+const FOLLOWED: f64 = 0.164_729_788_588_728;
 /// Counts in one tick that an 8-bit encoder register can tell from going backwards, with some room.
 const COUNTS_PER_TICK: f64 = 120.0;
 /// A remaining distance that counts as none.
@@ -42,18 +40,35 @@ pub(crate) struct Plant {
     reached: f64,
     /// Where the load is when that command is 0.
     origin: f64,
+    /// Position units of one count, and what the encoder has counted at the load `counted`.
+    gain: f64,
+    register: f64,
+    counted: f64,
+    /// Where the gain last changed, and the count there.
+    base: f64,
+    base_count: f64,
     pub(crate) drive: Drive,
 }
 
 impl Plant {
     /// The register of the encoder that the load turns; `gain` position units are one count.
-    pub(crate) fn encoder(&self, gain: f64) -> i8 {
-        if gain == 0.0 || !gain.is_finite() {
-            return 0;
+    pub(crate) fn encoder(&mut self, gain: f64) -> i8 {
+        if self.load != self.counted || gain != self.gain {
+            self.count(gain);
         }
-        let counts = libm::floor(self.load / gain + 0.5);
         // The register is the low byte.
-        (counts as i64) as i8
+        (self.register as i64) as i8
+    }
+
+    /// Counts to where the load is. Another gain counts from here on: the register does not jump.
+    fn count(&mut self, gain: f64) {
+        if gain != self.gain {
+            (self.base, self.base_count, self.gain) = (self.counted, self.register, gain);
+        }
+        self.counted = self.load;
+        if gain != 0.0 && gain.is_finite() {
+            self.register = self.base_count + libm::floor((self.load - self.base) / gain + 0.5);
+        }
     }
 
     /// The board has stored this position.
@@ -67,40 +82,54 @@ impl Plant {
         self.origin = self.load - command;
     }
 
-    /// Moves the load for one tick.
-    fn advance(&mut self, gain: f64, step_limit: f64) {
-        match self.drive {
-            Drive::None => {}
-            Drive::Steps(command) => {
-                let step = command - self.reached;
-                let limited = step.clamp(-step_limit, step_limit);
-                self.reached = if step == limited { command } else { self.reached + limited };
-                self.load = self.origin + self.reached;
-            }
-            Drive::Loop(command) => {
-                let rest = command - (self.load + self.shift);
-                let reach = COUNTS_PER_TICK * gain.abs();
-                let step =
-                    if rest.abs() < NEGLIGIBLE { rest } else { rest * (1.0 - libm::exp(-TIMEBASE / LAG)) };
-                self.load += if reach > 0.0 { step.clamp(-reach, reach) } else { step };
-                self.origin = self.load - self.reached;
-            }
+    /// Moves the load by what the last tick put out, and takes up a position that a program has written; whether
+    /// anything changed.
+    pub(crate) fn advance(&mut self, chan: &AxisView<'_>) -> bool {
+        let position = chan.get(Chan::POSITION);
+        let was_written = position != self.position;
+        if was_written {
+            self.shift += position - self.position;
+            self.position = position;
         }
+        let moved = match self.drive {
+            Drive::None => false,
+            Drive::Steps(command) if command == self.reached => false,
+            Drive::Steps(command) => {
+                let steps_per_unit = f64::from(chan.get(Chan::OUTPUT_GAIN)).abs();
+                self.step(command, if steps_per_unit > 0.0 { STEPS_PER_TICK / steps_per_unit } else { 0.0 })
+            }
+            Drive::Loop(command) => self.follow(command, f64::from(chan.get(Chan::INPUT_GAIN0))),
+        };
+        was_written | moved
+    }
+
+    /// Steps towards a command; whether the load moves.
+    fn step(&mut self, command: f64, limit: f64) -> bool {
+        let before = self.load;
+        let step = command - self.reached;
+        let limited = step.clamp(-limit, limit);
+        self.reached = if step == limited { command } else { self.reached + limited };
+        self.load = self.origin + self.reached;
+        self.load != before
+    }
+
+    /// Follows a command with a lag; whether the load moves.
+    fn follow(&mut self, command: f64, gain: f64) -> bool {
+        let before = self.load;
+        let rest = command - (self.load + self.shift);
+        if rest == 0.0 {
+            return false;
+        }
+        let reach = COUNTS_PER_TICK * gain.abs();
+        let step = if rest.abs() < NEGLIGIBLE { rest } else { rest * FOLLOWED };
+        self.load += if reach > 0.0 { step.clamp(-reach, reach) } else { step };
+        self.origin = self.load - self.reached;
+        self.load != before
     }
 }
 
 /// Fastest stepping: 1 / (2 · 32 clocks of 16.67 MHz), the pulse length at power-up.
 const STEPS_PER_TICK: f64 = 16.666_7e6 / 64.0 * TIMEBASE;
-
-/// Moves the load of an axis by what the last tick put out, and takes up positions that a program has written.
-pub(crate) fn advance(plant: &mut Plant, memory: &GuestMemory, axis: AxisId) {
-    let position = memory.axis(axis, Chan::POSITION);
-    plant.shift += position - plant.position;
-    plant.position = position;
-    let steps_per_unit = f64::from(memory.axis(axis, Chan::OUTPUT_GAIN)).abs();
-    let limit = if steps_per_unit > 0.0 { STEPS_PER_TICK / steps_per_unit } else { 0.0 };
-    plant.advance(f64::from(memory.axis(axis, Chan::INPUT_GAIN0)), limit);
-}
 
 #[cfg(test)]
 mod tests {
@@ -108,17 +137,17 @@ mod tests {
 
     #[test]
     fn a_loop_settles_on_its_command() {
-        let mut plant = Plant { drive: Drive::Loop(50.25), ..Plant::default() };
+        let mut plant = Plant::default();
         for _ in 0..1000 {
-            plant.advance(1.0, 1.0);
+            plant.follow(50.25, 1.0);
         }
-        assert_eq!((plant.load, plant.encoder(1.0), plant.encoder(-1.0)), (50.25, 50, -50));
+        assert_eq!((plant.load, plant.encoder(1.0)), (50.25, 50));
     }
 
     #[test]
     fn steps_are_limited_in_rate() {
-        let mut plant = Plant { drive: Drive::Steps(100.0), ..Plant::default() };
-        plant.advance(1.0, 30.0);
+        let mut plant = Plant::default();
+        plant.step(100.0, 30.0);
         assert_eq!(plant.load, 30.0);
     }
 }

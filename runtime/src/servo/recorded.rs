@@ -29,7 +29,7 @@ impl Axis {
                 v: self.limits.v,
                 a: self.limits.a,
             };
-            match step(cursor, &approach, |index| self.list[index]) {
+            match step(cursor, || approach, |index| self.list[index]) {
                 Step::Moving(dest, next) => {
                     self.dest = dest;
                     self.cursor = Some(next);

@@ -40,8 +40,12 @@ pub(crate) enum Step {
     Ended,
 }
 
-/// Advances a motion by one tick; `state` reads the list.
-pub(crate) fn step(cursor: Cursor, approach: &Approach, state: impl Fn(usize) -> State) -> Step {
+/// Advances a motion by one tick; `state` reads the list, `approach` what only an exponential state needs.
+pub(crate) fn step(
+    cursor: Cursor,
+    approach: impl FnOnce() -> Approach,
+    state: impl Fn(usize) -> State,
+) -> Step {
     let (mut cursor, mut current) = (cursor, state(cursor.index));
     while current.mode == Mode::Independent && cursor.t >= current.t {
         cursor.t -= current.t;
@@ -51,7 +55,7 @@ pub(crate) fn step(cursor: Cursor, approach: &Approach, state: impl Fn(usize) ->
     let dest = match current.mode {
         Mode::Off => return Step::Ended,
         Mode::Independent => current.at(cursor.t).x,
-        Mode::Exponential => exponential(&current, approach),
+        Mode::Exponential => exponential(&current, &approach()),
     };
     cursor.t += TIMEBASE;
     Step::Moving(dest, cursor)

@@ -31,6 +31,9 @@ enum Halt {
 impl Coordinated {
     /// Moves the axes of the path by one tick. Says whether the path has moved or will.
     pub(crate) fn tick(&mut self, memory: &mut GuestMemory, bits: &mut impl Bits) -> bool {
+        if self.spline.is_none() && memory.get(COORD_SYSTEM0).is_null() {
+            return false;
+        }
         let before = clock(memory);
         self.step(memory, bits);
         self.spline.is_some() || before != clock(memory)
@@ -211,7 +214,7 @@ fn stretch_before(memory: &mut GuestMemory, mut entry: Entry) -> Option<Entry> {
 /// Puts the axes of a stretch where they are at the path time; any other entry moves none.
 fn evaluate(memory: &mut GuestMemory, entry: Entry) {
     memory.set(COORD_SYSTEM0, entry.address());
-    for (axis, position) in entry.positions(memory, memory.get(CS0_T)) {
+    for (axis, position) in entry.positions(memory, memory.get(CS0_T)).into_iter().flatten() {
         smoothing::move_to(memory, axis, position);
     }
 }

@@ -5,6 +5,7 @@ use kmotiondef::structs::{ParametricCoeff, TripCircleLinear, TripLinear};
 use kmotiondef::{AxisId, Bit, Field, GuestAddr, GuestType, Place};
 use vm::memory::GuestMemory;
 
+use super::system::LETTERS;
 use crate::views::Typed;
 
 /// Bytes of an entry.
@@ -129,18 +130,20 @@ impl Entry {
     }
 
     /// Where the axes of a stretch are, `t` seconds into it.
-    pub(crate) fn positions(self, memory: &GuestMemory, t: f64) -> Vec<(AxisId, f64)> {
-        let Kind::Segment(shape) = self.kind(memory) else { return Vec::new() };
+    pub(crate) fn positions(self, memory: &GuestMemory, t: f64) -> [Option<(AxisId, f64)>; LETTERS] {
+        let Kind::Segment(shape) = self.kind(memory) else { return [None; LETTERS] };
         let p = self.parameter(memory, t);
         let axis = |field: Field<u8>| AxisId::new(i32::from(memory.get(self.field(field))));
-        let arc = ARC_LETTERS.iter().filter_map(|&(letter, coefficients)| {
-            Some((axis(letter)?, self.on_arc(memory, coefficients, shape, p)))
-        });
-        let linear = LINEAR_LETTERS.iter().filter_map(|&(letter, coefficients)| {
-            let value = |field| memory.get(self.field(coefficients.field(field)));
-            Some((axis(letter)?, value(TripLinear::C) * p + value(TripLinear::D)))
-        });
-        arc.chain(linear).collect()
+        std::array::from_fn(|index| match ARC_LETTERS.get(index) {
+            Some(&(letter, coefficients)) => {
+                axis(letter).map(|axis| (axis, self.on_arc(memory, coefficients, shape, p)))
+            }
+            None => {
+                let (letter, coefficients) = LINEAR_LETTERS[index - ARC_LETTERS.len()];
+                let value = |field| memory.get(self.field(coefficients.field(field)));
+                axis(letter).map(|axis| (axis, value(TripLinear::C) * p + value(TripLinear::D)))
+            }
+        })
     }
 
     /// The parameter at `t`, a cubic of time.

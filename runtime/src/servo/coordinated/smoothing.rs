@@ -6,7 +6,7 @@ use kmotiondef::variables::{KLP, SPLINE_TAU_FACTOR, TAU_KLP};
 use kmotiondef::{AxisId, GuestAddr};
 use vm::memory::GuestMemory;
 
-use super::system;
+use super::system::{self, LETTERS};
 use crate::views::Typed;
 
 /// Stores where the path wants an axis to be, and its destination behind the filter.
@@ -26,7 +26,7 @@ pub(crate) struct Spline {
     /// Seconds done.
     t: f64,
     duration: f64,
-    cubics: Vec<Cubic>,
+    cubics: [Option<Cubic>; LETTERS],
 }
 
 /// The motion of one axis: x0 + v0·t + b·t² + a·t³.
@@ -48,8 +48,7 @@ impl Spline {
         if duration < TIMEBASE {
             return None;
         }
-        let members = system::members(memory).into_iter();
-        let cubics = members.map(|axis| Cubic::plan(memory, axis, exact, duration)).collect();
+        let cubics = system::letters(memory).map(|axis| Some(Cubic::plan(memory, axis?, exact, duration)));
         Some(Self { end, t: 0.0, duration, cubics })
     }
 
@@ -61,7 +60,7 @@ impl Spline {
     /// One tick. Says whether another one follows: the last is the one before the duration has passed.
     pub(crate) fn step(&mut self, memory: &mut GuestMemory) -> bool {
         self.t += TIMEBASE;
-        for cubic in &self.cubics {
+        for cubic in self.cubics.iter().flatten() {
             memory.set_axis(cubic.axis, Chan::DEST, cubic.at(self.t));
         }
         self.t + TIMEBASE <= self.duration

@@ -24,8 +24,8 @@ pub(crate) fn letters(memory: &GuestMemory) -> [Option<AxisId>; LETTERS] {
 }
 
 /// The axes of the coordinate system, in the order of their letters.
-pub(crate) fn members(memory: &GuestMemory) -> Vec<AxisId> {
-    letters(memory).into_iter().flatten().collect()
+pub(crate) fn members(memory: &GuestMemory) -> impl Iterator<Item = AxisId> + use<> {
+    letters(memory).into_iter().flatten()
 }
 
 /// Whether an axis belongs to the coordinate system.
@@ -42,20 +42,18 @@ pub(crate) fn assign(memory: &mut GuestMemory, axes: &[i32]) {
 
 /// Whether an axis of the system is disabled, so that no path can run.
 pub(crate) fn is_disabled(memory: &GuestMemory) -> bool {
-    members(memory).into_iter().any(|axis| memory.axis(axis, Chan::ENABLE) == 0)
+    members(memory).any(|axis| memory.axis(axis, Chan::ENABLE) == 0)
 }
 
 /// Seconds in which every axis of the system can change the override by 1.0 at its full speed.
 pub(crate) fn nominal_change_time(memory: &GuestMemory) -> f32 {
-    let times =
-        members(memory).into_iter().map(|axis| change_time(memory, axis, memory.axis(axis, Chan::VEL)));
+    let times = members(memory).map(|axis| change_time(memory, axis, memory.axis(axis, Chan::VEL)));
     longest(times).map_or(DEFAULT_CHANGE_TIME, |time| time as f32)
 }
 
 /// Seconds in which every axis of the system can stop from its present speed; 0 at rest.
 pub(crate) fn stopping_time(memory: &GuestMemory) -> f32 {
-    let times =
-        members(memory).into_iter().map(|axis| change_time(memory, axis, memory.axis(axis, Chan::LAST_VEL)));
+    let times = members(memory).map(|axis| change_time(memory, axis, memory.axis(axis, Chan::LAST_VEL)));
     longest(times).map_or(0.0, |time| time as f32)
 }
 
@@ -87,7 +85,7 @@ mod tests {
         let mut memory = board();
         assign(&mut memory, &[5, 1, -1, -1, 7, -1]);
         assign(&mut memory, &[0, 1, 2, -1]);
-        assert_eq!(members(&memory).into_iter().map(AxisId::get).collect::<Vec<_>>(), [0, 1, 2, 7]);
+        assert_eq!(members(&memory).map(AxisId::get).collect::<Vec<_>>(), [0, 1, 2, 7]);
         assert_eq!(letters(&memory)[4], AxisId::new(7));
     }
 
@@ -96,7 +94,7 @@ mod tests {
         let check = |limits: [f32; 3], expect: f32| {
             let mut memory = board();
             assign(&mut memory, &[0, 1, -1, -1]);
-            for (axis, speed) in members(&memory).into_iter().zip([1.0, 0.5]) {
+            for (axis, speed) in members(&memory).zip([1.0, 0.5]) {
                 memory.set_axis(axis, Chan::VEL, speed * limits[0]);
                 memory.set_axis(axis, Chan::ACCEL, limits[1]);
                 memory.set_axis(axis, Chan::JERK, limits[2]);

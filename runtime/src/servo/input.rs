@@ -1,0 +1,70 @@
+//! The position of an axis from its input. Source: axes-and-motion.md section 9.
+
+use kmotiondef::AxisId;
+use kmotiondef::modes::InputMode;
+use kmotiondef::structs::Chan;
+use kmotiondef::variables::ADC_BUFFER_IN;
+use vm::memory::GuestMemory;
+
+use super::plant::Plant;
+use crate::views::{AxisView, Typed};
+
+/// Takes the position from the axis' input; whether it has changed.
+pub(crate) fn measure(plant: &mut Plant, memory: &mut GuestMemory, axis: AxisId) -> bool {
+    match InputMode::new(memory.axis(axis, Chan::INPUT_MODE)) {
+        Some(InputMode::Encoder) => count(plant, memory, axis),
+        Some(InputMode::Adc) => {
+            let input = f64::from(converted(memory, memory.axis(axis, Chan::INPUT_CHAN0)));
+            let mut chan = AxisView::of(memory, axis);
+            let offset = f64::from(chan.get(Chan::INPUT_OFFSET0));
+            let position = f64::from(chan.get(Chan::INPUT_GAIN0)) * input + offset;
+            chan.set(Chan::POSITION, position);
+            plant.note_position(position);
+            chan.changed
+        }
+        Some(InputMode::Resolver) => {
+            let angle = resolver_angle(memory, axis);
+            let before = memory.axis(axis, Chan::POSITION);
+            crate::firmware::motion::turn_resolver(memory, axis, angle);
+            memory.axis(axis, Chan::POSITION) != before
+        }
+        Some(InputMode::None | InputMode::User) | None => false,
+    }
+}
+
+/// Adds what the encoder's register has counted since the last tick.
+fn count(plant: &mut Plant, memory: &mut GuestMemory, axis: AxisId) -> bool {
+    let mut chan = AxisView::of(memory, axis);
+    let gain = f64::from(chan.get(Chan::INPUT_GAIN0));
+    let count = plant.encoder(gain);
+    let moved = count.wrapping_sub(chan.get(Chan::LAST_ENC));
+    if moved != 0 {
+        chan.set(Chan::LAST_ENC, count);
+        let position = chan.get(Chan::POSITION) + gain * f64::from(moved);
+        chan.set(Chan::POSITION, position);
+        plant.note_position(position);
+    }
+    chan.changed
+}
+
+/// An analog input, −2048 to 2047; 0 for a channel that does not exist.
+fn converted(memory: &GuestMemory, channel: i32) -> i32 {
+    let channel = usize::try_from(channel).ok().filter(|&channel| channel < 8);
+    channel.map_or(0, |channel| memory.get(ADC_BUFFER_IN.element(channel)) - 2048)
+}
+
+/// The angle of a resolver from its two analog inputs.
+fn resolver_angle(memory: &GuestMemory, axis: AxisId) -> (f32, f32) {
+    let input = |channel, gain: f32, offset| gain * converted(memory, channel) as f32 + offset;
+    let x = input(
+        memory.axis(axis, Chan::INPUT_CHAN0),
+        memory.axis(axis, Chan::INPUT_GAIN0),
+        memory.axis(axis, Chan::INPUT_OFFSET0),
+    );
+    let y = input(
+        memory.axis(axis, Chan::INPUT_CHAN1),
+        memory.axis(axis, Chan::INPUT_GAIN1),
+        memory.axis(axis, Chan::INPUT_OFFSET1),
+    );
+    (x, y)
+}
