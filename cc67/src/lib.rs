@@ -141,7 +141,9 @@ fn compile_here(path: &Path, text: Vec<u8>, options: &Options, files: &dyn pp::F
     let main = sources.add_file(path.to_string_lossy(), Some(path), text, None);
     let tokens = pp::preprocess(main, &options.preprocessor, files, &mut sources, &mut names, &mut sink);
     let tree = parse::parse(&tokens, &sources, &names, &mut sink);
+    drop(tokens);
     let unit = sema::analyze(&tree, &mut names, &sources, &options.firmware, &mut sink);
+    drop(tree);
     lints::check(&unit, &names, &sources, &options.firmware, &mut sink);
     let object =
         (!sink.has_errors()).then(|| bytecode::unit::compile(&unit, &sources, options.level, &mut sink));

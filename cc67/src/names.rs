@@ -74,6 +74,9 @@ impl Name {
     }
 }
 
+/// Room for the names of a usual program with the header of the board; a power of two.
+const USUAL_NAMES: usize = 4096;
+
 /// Every identifier of a compilation, each once.
 #[derive(Clone, Debug)]
 pub struct Names {
@@ -98,9 +101,9 @@ impl Names {
     #[must_use]
     pub fn new() -> Self {
         let mut names = Self {
-            text: String::new(),
-            ends: Vec::new(),
-            slots: vec![0; 2048],
+            text: String::with_capacity(USUAL_NAMES * 16),
+            ends: Vec::with_capacity(USUAL_NAMES),
+            slots: vec![0; 2 * USUAL_NAMES],
             function_macros: BTreeSet::new(),
         };
         for spelling in WORDS {

@@ -75,15 +75,7 @@ impl SourceFile {
     #[must_use]
     pub fn lines(&self) -> &[u32] {
         self.lines.get_or_init(|| {
-            std::iter::once(0)
-                .chain(
-                    self.text
-                        .iter()
-                        .enumerate()
-                        .filter(|(_, byte)| **byte == b'\n')
-                        .map(|(at, _)| at as u32 + 1),
-                )
-                .collect()
+            std::iter::once(0).chain(memchr::memchr_iter(b'\n', &self.text).map(|at| at as u32 + 1)).collect()
         })
     }
 

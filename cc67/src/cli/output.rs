@@ -1,4 +1,7 @@
 //! Files that commands write: under a temporary name first, so that nobody meets half a file.
+//!
+//! A process that is killed leaves the old file or the new one. The disk is not waited for, as by
+//! any compiler: it would take longer than the compilation.
 
 use std::fs;
 use std::io::Write;
@@ -15,7 +18,7 @@ pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<()> {
         fs::write(path, bytes)
     } else {
         fs::File::create(&temporary)
-            .and_then(|mut file| file.write_all(bytes).and_then(|()| file.sync_all()))
+            .and_then(|mut file| file.write_all(bytes))
             .and_then(|()| fs::rename(&temporary, path))
     };
     written.map_err(|error| {

@@ -24,7 +24,8 @@ enum Declared {
 impl Parser<'_> {
     /// Reads everything.
     pub(super) fn translation_unit(&mut self) -> TranslationUnit {
-        let mut unit = TranslationUnit::default();
+        // About ten tokens make a declaration of a header.
+        let mut unit = TranslationUnit { items: Vec::with_capacity(self.tokens.len() / 10) };
         while self.kind() != TokenKind::End {
             let start = self.at;
             match self.external() {
@@ -154,7 +155,8 @@ impl Parser<'_> {
         if specifiers.ty.is_none() && self.is_unknown_type() {
             self.unknown_type(&mut specifiers);
         }
-        let mut declarators = Vec::new();
+        // Most declarations have one declarator; a push into an empty vector makes room for four.
+        let mut declarators = Vec::with_capacity(1);
         if self.kind() != TokenKind::Semicolon && !self.ends_type_alone(&specifiers) {
             loop {
                 let declarator = self.declarator(Naming::Required)?;

@@ -182,7 +182,7 @@ impl Parser<'_> {
     }
 
     fn prototype(&mut self) -> Parsed<Parameters> {
-        let mut parameters = Vec::new();
+        let mut parameters = Vec::with_capacity(1);
         loop {
             if self.take(TokenKind::Ellipsis).is_some() {
                 return Ok(Parameters::Prototype { parameters, is_variadic: true });

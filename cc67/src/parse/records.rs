@@ -87,7 +87,7 @@ impl Parser<'_> {
         if specifiers.ty.is_none() && self.is_unknown_type() {
             self.unknown_type(&mut specifiers);
         }
-        let mut members = Vec::new();
+        let mut members = Vec::with_capacity(1);
         let is_alone = matches!(specifiers.ty, Some(TypeSpecifier::Record(_) | TypeSpecifier::Enum(_)));
         if !(is_alone && self.kind() == TokenKind::Semicolon) {
             loop {

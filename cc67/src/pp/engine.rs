@@ -19,6 +19,9 @@ use super::search::Reader;
 use super::token::{Flags, Token, TokenKind};
 use super::{Files, Options, limits};
 
+/// Room for the tokens of a usual program and its headers; what is not filled is never touched.
+const USUAL_TOKENS: usize = 1 << 16;
+
 /// A file being read.
 pub(super) struct OpenFile {
     pub(super) lexer: Lexer,
@@ -91,7 +94,7 @@ impl<'a> Preprocessor<'a> {
     /// All tokens of the main file and what it includes.
     pub(super) fn run(mut self, main: FileId) -> Vec<Token> {
         self.define_predefined();
-        let mut output = Vec::new();
+        let mut output = Vec::with_capacity(USUAL_TOKENS);
         self.open_main(main);
         let mut end = Span::new(0, 0);
         while let Some(file) = self.open.last() {
