@@ -12,11 +12,12 @@ use vm::machine::{Config as MachineConfig, Machine};
 use vm::memory::GuestMemory;
 use vm::program::Program;
 use vm::thread::{NotLoaded, ThreadState};
+use vm::verify::{VerifyError, verify};
 
 use crate::debug::{DebugInfo, SourcePlace};
 use crate::event::{Event, EventKind};
 use crate::files::{HostFiles, NoFiles};
-use crate::kernel::Kernel;
+use crate::kernel::{Kernel, Request};
 use crate::loader::{Fill, LoadError, Placed, prepare};
 use crate::power_up;
 use crate::views::Typed;
@@ -83,6 +84,7 @@ impl<E: Engine> Board<E> {
     pub fn load(&mut self, thread: ThreadId, image: &[u8]) -> Result<(), LoadError> {
         let prepared = prepare(image, thread, |other| self.is_taken(other, thread))?;
         self.machine.unload_program(thread);
+        self.machine.firmware_mut().0.downloads.forget(thread);
         for section in &prepared.sections {
             self.place(section);
         }
@@ -176,13 +178,93 @@ impl<E: Engine> Board<E> {
             if self.machine.tick() >= limit {
                 break RunEnd::Limit;
             }
-            self.machine.step(limit);
+            self.step(limit);
             self.deliver(sink);
         };
         let (kernel, context) = self.machine.firmware_mut();
         kernel.flush_console(context.now);
         self.deliver(sink);
         end
+    }
+
+    /// Runs to the end of the next tick in which something can happen, and does what was asked for there.
+    fn step(&mut self, limit: Ticks) {
+        self.machine.step(limit);
+        for request in self.machine.firmware_mut().0.take_requests() {
+            match request {
+                Request::Load(thread) => self.adopt(thread),
+                Request::Flash | Request::Reboot => {}
+            }
+        }
+    }
+
+    /// Makes a program of what was downloaded into a thread that was started.
+    fn adopt(&mut self, thread: ThreadId) {
+        let entry = self.machine.threads().entry(thread);
+        let (kernel, _) = self.machine.firmware_mut();
+        let ends = kernel.downloads.ends(thread);
+        kernel.downloads.forget(thread);
+        let error = match self.downloaded(thread, &ends) {
+            Ok(Some(program)) => {
+                self.loaded[thread.index()] = None;
+                self.machine.load_program(thread, program, entry);
+                let started = self.machine.start(thread);
+                debug_assert!(started.is_ok(), "a program was loaded");
+                return;
+            }
+            // Only the entry point is new.
+            Ok(None) if self.machine.program(thread).is_some() => return,
+            Ok(None) => "nothing was downloaded to the beginning of its space".to_owned(),
+            Err(error) => error.to_string(),
+        };
+        self.machine.unload_program(thread);
+        let (kernel, context) = self.machine.firmware_mut();
+        let text = format!("thread {thread} is not started: {error}");
+        kernel.tell(context.now, EventKind::Diagnostic(text));
+    }
+
+    /// The program whose text ends at one of some places; `None` if nothing was downloaded.
+    fn downloaded(&self, thread: ThreadId, ends: &[GuestAddr]) -> Result<Option<Program>, VerifyError> {
+        let base = program_base(thread);
+        let mut error = None;
+        for end in ends {
+            let text = self.memory().read_bytes(base, end.get() - base.get()).unwrap_or_default();
+            match verify(text, base) {
+                Ok(program) => return Ok(Some(program)),
+                // What the longest stretch lacks is what the text lacks.
+                Err(wrong) => error = Some(wrong),
+            }
+        }
+        error.map_or(Ok(None), Err)
+    }
+
+    /// Bytes from the PC arrive on the USB link: command lines, ended by CR. A line that begins with 0x1B and a byte
+    /// that is thrown away is not echoed; 0x03 drops what is under way.
+    pub fn receive(&mut self, bytes: &[u8]) {
+        let (kernel, _) = self.machine.firmware_mut();
+        kernel.usb.receive(bytes);
+        kernel.disturb();
+    }
+
+    /// Whether bytes from the PC wait to be taken.
+    #[must_use]
+    pub fn is_receiving(&self) -> bool {
+        self.machine.firmware().usb.is_busy()
+    }
+
+    /// Runs until `is_over` says so of the events of a tick, or to the end of tick `limit`; whether it said so.
+    ///
+    /// Unlike [`run`](Self::run) it goes on when all threads have ended, and leaves unfinished console lines alone.
+    pub fn run_until(&mut self, limit: Ticks, is_over: &mut dyn FnMut(Event) -> bool) -> bool {
+        while self.machine.tick() < limit {
+            self.step(limit);
+            let mut over = false;
+            self.deliver(&mut |event| over |= is_over(event));
+            if over {
+                return true;
+            }
+        }
+        false
     }
 
     /// Whether no thread is active and nothing is under way that a program has begun.
@@ -287,7 +369,6 @@ mod tests {
     use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, function_named};
     use kmotiondef::structs::Chan;
     use vm::text::assemble;
-    use vm::verify::verify;
 
     use super::*;
 

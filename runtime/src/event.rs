@@ -17,6 +17,12 @@ pub struct Event {
 pub enum EventKind {
     /// The PC received a line of console text, without its line end.
     ConsoleLine(Vec<u8>),
+    /// The PC received a line of a reply, without its line end.
+    Reply(Vec<u8>),
+    /// The PC received back what it sent: the characters of a line without an escape.
+    Echo(Vec<u8>),
+    /// The PC received the answer to 0x03: the line or command in progress is dropped.
+    Aborted,
     /// A program read an input that nothing drives; once for each bit.
     UndrivenInput {
         /// The bit.

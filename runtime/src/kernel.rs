@@ -17,6 +17,7 @@ use vm::memory::GuestMemory;
 use vm::scheduler::Turn;
 use vm::trap::{Trap, TrapKind};
 
+use crate::commands::{self, Downloads, Experiment, Link};
 use crate::console::Console;
 use crate::device::fpga::{Behind, Fpga};
 use crate::device::konnect::Konnects;
@@ -51,6 +52,17 @@ pub(crate) enum Continuation {
     Target(f64),
 }
 
+/// What only the board as a whole can do, as it holds the programs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Request {
+    /// Make a program of what was downloaded into a thread that was started.
+    Load(ThreadId),
+    /// Save programs and settings in flash.
+    Flash,
+    /// Restart from flash.
+    Reboot,
+}
+
 /// The board's firmware.
 #[derive(Debug)]
 pub struct Kernel {
@@ -67,6 +79,14 @@ pub struct Kernel {
     pub(crate) heap: Heap,
     pub(crate) files: OpenFiles,
     pub(crate) host: Host,
+    /// The link to the PC over USB, and the one over the UART.
+    pub(crate) usb: Link,
+    pub(crate) uart_link: Link,
+    pub(crate) downloads: Downloads,
+    pub(crate) experiment: Option<Experiment>,
+    /// Whether a script command is being executed.
+    pub(crate) is_commanding: bool,
+    requests: Vec<Request>,
     /// State of `rand`.
     pub(crate) random: u32,
     /// Where `strtok` goes on.
@@ -97,6 +117,12 @@ impl Kernel {
             heap: Heap::default(),
             files: OpenFiles::new(files),
             host: Host::default(),
+            usb: Link::default(),
+            uart_link: Link::default(),
+            downloads: Downloads::default(),
+            experiment: None,
+            is_commanding: false,
+            requests: Vec::new(),
             random: 1,
             token: GuestAddr::NULL,
             slice_start: Cycles::default(),
@@ -120,6 +146,7 @@ impl Kernel {
     pub(crate) fn diagnose(&mut self, caller: &Caller<'_>, text: String) {
         let text = match caller.thread {
             Some(thread) => format!("thread {thread}: {text}"),
+            None if self.is_commanding => format!("command: {text}"),
             None => format!("call-back: {text}"),
         };
         self.tell(caller.now(), EventKind::Diagnostic(text));
@@ -143,6 +170,16 @@ impl Kernel {
         std::mem::take(&mut self.events)
     }
 
+    /// Asks the board as a whole for something, to be done behind this tick.
+    pub(crate) fn ask(&mut self, request: Request) {
+        self.requests.push(request);
+    }
+
+    /// What was asked for since the last time.
+    pub(crate) fn take_requests(&mut self) -> Vec<Request> {
+        std::mem::take(&mut self.requests)
+    }
+
     /// Sends all console text that waits, the unfinished line included.
     pub(crate) fn flush_console(&mut self, now: Cycles) {
         for line in self.console.drain() {
@@ -160,6 +197,8 @@ impl Kernel {
         !self.console.is_idle()
             || Servo::is_busy(memory)
             || self.host.is_asked(memory)
+            || self.usb.is_busy()
+            || self.experiment.is_some()
             || self.serial.is_busy(memory, &self.uart)
     }
 
@@ -247,11 +286,16 @@ impl Firmware for Kernel {
     }
 
     fn primary_slice(&mut self, context: &mut TickContext<'_>) {
-        if let Some(line) = self.console.send() {
+        if !self.usb.is_in_command()
+            && let Some(line) = self.console.send()
+        {
             self.tell(context.now, EventKind::ConsoleLine(line));
         }
         crate::host::slice(self, context);
         serial::slice(self, context);
+        commands::slice(self, context, |kernel| &mut kernel.usb);
+        commands::slice(self, context, |kernel| &mut kernel.uart_link);
+        commands::advance(self, context);
         self.store_queue_indices(context.memory);
     }
 
@@ -270,6 +314,8 @@ impl Firmware for Kernel {
     fn quiet_ticks(&self, memory: &GuestMemory) -> u64 {
         let is_quiet = self.is_settled
             && self.console.is_idle()
+            && !self.usb.is_busy()
+            && self.experiment.is_none()
             && self.konnects.is_settled(memory)
             && !self.serial.is_busy(memory, &self.uart);
         if is_quiet { self.host.quiet_ticks() } else { 0 }

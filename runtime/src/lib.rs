@@ -13,6 +13,7 @@
 #![forbid(unsafe_code)]
 
 mod board;
+pub mod commands;
 mod console;
 pub mod debug;
 mod device;

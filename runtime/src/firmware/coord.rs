@@ -26,7 +26,7 @@ pub(crate) fn abort_if_member(memory: &mut GuestMemory, axis: AxisId) {
 }
 
 /// Assigns the letters from X on; the others keep theirs.
-fn define(kernel: &mut Kernel, caller: &mut Caller<'_>, axes: &[i32]) {
+pub(crate) fn define(kernel: &mut Kernel, caller: &mut Caller<'_>, axes: &[i32]) {
     let valid = |&axis: &i32| axis == -1 || AxisId::new(axis).is_some();
     if !axes.iter().all(valid) {
         kernel.diagnose(caller, format!("DefineCoordSystem: {axes:?} must be axes 0 to 7 or -1"));

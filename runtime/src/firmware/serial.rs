@@ -1,5 +1,7 @@
 //! The UART and its two rings in guest memory. Source: devices.md section 1.
 
+use std::collections::VecDeque;
+
 use kmotiondef::limits::RS232BUFSZ;
 use kmotiondef::variables::{
     DO_RS232_CMDS, P_RS232_REC_IN, P_RS232_REC_OUT, P_RS232_TX_IN, P_RS232_TX_OUT, RS232_REC_BUF,
@@ -25,33 +27,74 @@ const TRANSMIT_BIT: i32 = 45;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SerialService {
     is_on: bool,
-    /// Whether it was said that an overrun lost characters, and that commands are not obeyed.
+    /// Whether it was said that an overrun lost characters, and where replies go.
     told_overrun: bool,
     told_commands: bool,
+    /// Replies that the transmit ring has no room for yet.
+    replies: VecDeque<u8>,
 }
 
 pub(crate) fn init_rs232(kernel: &mut Kernel, caller: &mut Caller<'_>, divisor: i32) -> Outcome<()> {
     if caller.woken.is_some() {
         return Outcome::Done(());
     }
+    set_up(kernel, caller, divisor);
+    Outcome::Wait(Wake::At(caller.now() + SETUP))
+}
+
+fn set_up(kernel: &mut Kernel, caller: &mut Caller<'_>, divisor: i32) {
     set_bit_direction(kernel, caller, TRANSMIT_BIT, 1);
     kernel.fpga.enable_uart_pins();
     kernel.uart.set_divisor(divisor as u8);
-    Outcome::Wait(Wake::At(caller.now() + SETUP))
 }
 
 pub(crate) fn enable_rs232_cmds(kernel: &mut Kernel, caller: &mut Caller<'_>, divisor: i32) -> Outcome<()> {
     let outcome = init_rs232(kernel, caller, divisor);
     if matches!(outcome, Outcome::Done(())) {
-        let memory = &mut *caller.memory;
-        memory.set(P_RS232_REC_IN, RS232_REC_BUF.address());
-        memory.set(P_RS232_REC_OUT, RS232_REC_BUF.address());
-        memory.set(P_RS232_TX_IN, RS232_TX_BUF.address());
-        memory.set(P_RS232_TX_OUT, RS232_TX_BUF.address());
-        memory.set(DO_RS232_CMDS, 1);
-        kernel.serial.is_on = true;
+        begin(kernel, caller.memory);
     }
     outcome
+}
+
+/// `EnableRS232Cmds` as a script command, which does not wait.
+pub(crate) fn connect(kernel: &mut Kernel, caller: &mut Caller<'_>, divisor: i32) {
+    set_up(kernel, caller, divisor);
+    begin(kernel, caller.memory);
+}
+
+/// Empties both rings and starts the service.
+fn begin(kernel: &mut Kernel, memory: &mut GuestMemory) {
+    memory.set(P_RS232_REC_IN, RS232_REC_BUF.address());
+    memory.set(P_RS232_REC_OUT, RS232_REC_BUF.address());
+    memory.set(P_RS232_TX_IN, RS232_TX_BUF.address());
+    memory.set(P_RS232_TX_OUT, RS232_TX_BUF.address());
+    memory.set(DO_RS232_CMDS, 1);
+    kernel.serial.is_on = true;
+}
+
+/// Whether script commands are taken from the UART and answered there.
+pub(crate) fn has_commands(kernel: &Kernel, memory: &GuestMemory) -> bool {
+    kernel.serial.is_on && memory.get(DO_RS232_CMDS) != 0
+}
+
+/// Sends the bytes of a reply.
+pub(crate) fn write(kernel: &mut Kernel, memory: &mut GuestMemory, bytes: &[u8]) {
+    kernel.serial.replies.extend(bytes);
+    fill(kernel, memory);
+}
+
+/// Puts as much of the replies into the transmit ring as it has room for.
+fn fill(kernel: &mut Kernel, memory: &mut GuestMemory) {
+    while let Some(&byte) = kernel.serial.replies.front() {
+        let place = memory.get(P_RS232_TX_IN);
+        let after = next(place, RS232_TX_BUF.address());
+        if after == memory.get(P_RS232_TX_OUT) {
+            break;
+        }
+        memory.poke(place, byte);
+        memory.set(P_RS232_TX_IN, after);
+        kernel.serial.replies.pop_front();
+    }
 }
 
 pub(crate) fn rs232_get_char(_: &mut Kernel, caller: &mut Caller<'_>) -> Result<Outcome<i32>, TrapKind> {
@@ -88,7 +131,10 @@ fn next(place: GuestAddr, ring: GuestAddr) -> GuestAddr {
 impl SerialService {
     /// Whether characters are still to be sent or received.
     pub(crate) fn is_busy(&self, memory: &GuestMemory, uart: &Uart) -> bool {
-        self.is_on && (uart.is_receiving() || memory.get(P_RS232_TX_OUT) != memory.get(P_RS232_TX_IN))
+        self.is_on
+            && (uart.is_receiving()
+                || !self.replies.is_empty()
+                || memory.get(P_RS232_TX_OUT) != memory.get(P_RS232_TX_IN))
     }
 }
 
@@ -122,17 +168,27 @@ fn receive(kernel: &mut Kernel, context: &mut TickContext<'_>) {
 
 /// What the primary thread does in its slice: it takes what was received as script commands.
 pub(crate) fn slice(kernel: &mut Kernel, context: &mut TickContext<'_>) {
-    if !kernel.serial.is_on || context.memory.get(DO_RS232_CMDS) == 0 {
+    if !has_commands(kernel, context.memory) {
         return;
     }
+    fill(kernel, context.memory);
     let received = context.memory.get(P_RS232_REC_IN);
-    if received != context.memory.get(P_RS232_REC_OUT) {
-        context.memory.set(P_RS232_REC_OUT, received);
-        if !kernel.serial.told_commands {
-            kernel.serial.told_commands = true;
-            let text = "script commands received on the UART are not obeyed; clear DoRS232Cmds to read them";
-            kernel.tell(context.now, EventKind::Diagnostic(text.to_owned()));
-        }
+    let mut out = context.memory.get(P_RS232_REC_OUT);
+    if out == received {
+        return;
+    }
+    let mut bytes = Vec::new();
+    while out != received && bytes.len() < RS232BUFSZ {
+        bytes.push(context.memory.peek(out));
+        out = next(out, RS232_REC_BUF.address());
+    }
+    context.memory.set(P_RS232_REC_OUT, received);
+    kernel.uart_link.receive(&bytes);
+    if !kernel.serial.told_commands {
+        kernel.serial.told_commands = true;
+        let text =
+            "characters received on the UART are taken as script commands; clear DoRS232Cmds to read them";
+        kernel.tell(context.now, EventKind::Diagnostic(text.to_owned()));
     }
 }
 

@@ -3,12 +3,16 @@
 use kmotiondef::ThreadId;
 use vm::firmware::{Caller, Outcome};
 
+use crate::commands;
 use crate::kernel::Kernel;
 
 /// Starts the program of a thread; the caller's own number has no effect.
 pub(crate) fn start_thread(kernel: &mut Kernel, caller: &mut Caller<'_>, thread: i32) {
     match ThreadId::new(thread) {
-        Some(id) if caller.threads.start(id).is_err() => {
+        // The caller's number needs no start, which would look for a download there.
+        Some(id)
+            if caller.thread != Some(id) && !commands::start(kernel, caller.memory, caller.threads, id) =>
+        {
             kernel.diagnose(caller, format!("StartThread({id}): no program is loaded in thread {id}"));
         }
         Some(_) => {}

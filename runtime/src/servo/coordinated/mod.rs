@@ -8,9 +8,7 @@
 //! Source: `coordinated-motion.md`; where it differs from the recorded runs (`coord.jsonl`), the runs win.
 
 pub(crate) mod board;
-#[cfg_attr(not(test), expect(dead_code, reason = "called by the script commands of the PC"))]
 pub(crate) mod buffer;
-#[cfg_attr(not(test), expect(dead_code, reason = "called by the script commands of the PC"))]
 pub(crate) mod download;
 pub(crate) mod feedhold;
 pub(crate) mod path;

@@ -1,0 +1,338 @@
+//! Arguments of script commands: what each command takes, and how the board reads it.
+//!
+//! The rules, odd ones included, are those of the released firmware (host-protocol.md section 2): a number ends where
+//! it ends and what follows it is ignored; only spaces separate; a hexadecimal number takes the character behind it
+//! along, whatever that is; a mistake is reported with the column where reading stopped.
+
+use kmotiondef::{AxisId, Bit, ThreadId};
+
+use crate::text::{float_prefix, integer_prefix};
+
+/// What a command takes at one place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Argument {
+    /// A decimal integer within limits.
+    Integer(i32, i32),
+    /// A real number.
+    Real,
+    /// A real number within limits, which the board holds as singles.
+    Limited(f32, f32),
+    /// A hexadecimal number of 32 bits.
+    Hex,
+    /// A hexadecimal number that may be missing, with all behind it.
+    OptionalHex,
+    /// An equals sign.
+    Equals,
+    /// An equals sign that may be left out.
+    OptionalEquals,
+    /// An equals sign; when the command ends before it, the present value is asked for.
+    Assign,
+}
+
+/// A mistake in a line: what is said, and where reading stopped.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Mistake {
+    pub(super) column: usize,
+    pub(super) message: Message,
+}
+
+/// What is said about a mistake.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Message {
+    /// The first word is no command.
+    InvalidCommand,
+    /// A number is missing or is none.
+    Number,
+    /// A number is out of its limits, which are named.
+    Limits(String),
+    /// A hexadecimal number is missing or is none.
+    Hex,
+    /// A data byte is above FF.
+    Byte,
+    /// The equals sign is missing.
+    Equals,
+}
+
+impl Message {
+    /// The board's words.
+    pub(super) fn text(&self) -> String {
+        match self {
+            Self::InvalidCommand => "error, invalid command".to_owned(),
+            Self::Number => "Error:Expecting Number".to_owned(),
+            Self::Limits(limits) => format!("Error:Expecting value {limits}"),
+            Self::Hex => "error, expecting value".to_owned(),
+            Self::Byte => "error, expecting value 0 to FF".to_owned(),
+            Self::Equals => "Error:Expecting \"=\"".to_owned(),
+        }
+    }
+}
+
+/// A line being read.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Reader<'t> {
+    text: &'t [u8],
+    column: usize,
+}
+
+impl<'t> Reader<'t> {
+    /// Begins at a column.
+    pub(super) const fn new(text: &'t [u8], column: usize) -> Self {
+        Self { text, column }
+    }
+
+    fn rest(&self) -> &'t [u8] {
+        self.text.get(self.column..).unwrap_or_default()
+    }
+
+    /// Where it stands once the spaces are skipped.
+    fn behind_spaces(&self) -> Self {
+        let spaces = self.rest().iter().take_while(|&&byte| byte == b' ').count();
+        Self { column: self.column + spaces, ..*self }
+    }
+
+    fn mistake(&self, message: Message) -> Mistake {
+        Mistake { column: self.column, message }
+    }
+
+    /// A decimal integer.
+    fn integer(&mut self, lo: i32, hi: i32) -> Result<i32, Mistake> {
+        let mut next = self.behind_spaces();
+        let (value, used) = integer_prefix(next.rest(), 10);
+        if used == 0 {
+            return Err(self.mistake(Message::Number));
+        }
+        next.column += used;
+        *self = next;
+        let value = value as i32;
+        if !(lo..=hi).contains(&value) {
+            return Err(self.mistake(Message::Limits(format!("{lo} to {hi}"))));
+        }
+        Ok(value)
+    }
+
+    /// A real number.
+    fn real(&mut self) -> Result<f64, Mistake> {
+        let mut next = self.behind_spaces();
+        let (value, used) = float_prefix(next.rest());
+        if used == 0 {
+            return Err(self.mistake(Message::Number));
+        }
+        next.column += used;
+        *self = next;
+        Ok(value)
+    }
+
+    fn limited(&mut self, lo: f32, hi: f32) -> Result<f64, Mistake> {
+        let value = self.real()?;
+        if !(f64::from(lo)..=f64::from(hi)).contains(&value) {
+            let limits = [lo, hi].map(super::numbers::limit);
+            return Err(self.mistake(Message::Limits(limits.join(" to "))));
+        }
+        Ok(value)
+    }
+
+    /// A hexadecimal number, low 32 bits, and the character behind it.
+    pub(super) fn hex(&mut self) -> Result<u32, Mistake> {
+        let mut next = self.behind_spaces();
+        let is_negative = next.rest().first() == Some(&b'-');
+        next.column += usize::from(is_negative || next.rest().first() == Some(&b'+'));
+        let digits = next.rest().iter().take_while(|byte| byte.is_ascii_hexdigit()).count();
+        if digits == 0 {
+            return Err(self.mistake(Message::Hex));
+        }
+        let value = next.rest()[..digits]
+            .iter()
+            .fold(0_u32, |sum, &byte| (sum << 4) | char::from(byte).to_digit(16).unwrap_or(0));
+        next.column = (next.column + digits + 1).min(next.text.len());
+        *self = next;
+        Ok(if is_negative { value.wrapping_neg() } else { value })
+    }
+
+    /// A data byte.
+    pub(super) fn byte(&mut self) -> Result<u8, Mistake> {
+        let value = self.hex()?;
+        u8::try_from(value).map_err(|_| self.mistake(Message::Byte))
+    }
+
+    fn equals(&mut self) -> Result<(), Mistake> {
+        let mut next = self.behind_spaces();
+        if next.rest().first() != Some(&b'=') {
+            return Err(next.mistake(Message::Equals));
+        }
+        next.column += 1;
+        *self = next;
+        Ok(())
+    }
+
+    fn is_at_end(&self) -> bool {
+        self.behind_spaces().rest().is_empty()
+    }
+}
+
+/// One argument as it was read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Value {
+    Integer(i32),
+    Real(f64),
+    Word(u32),
+}
+
+/// The arguments of a command, as many as there are.
+///
+/// The table says what a command takes; asking for another kind, or for more, yields 0.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Values {
+    values: Vec<Value>,
+    is_question: bool,
+}
+
+impl Values {
+    /// Reads what `arguments` ask for.
+    pub(super) fn read(arguments: &[Argument], reader: &mut Reader<'_>) -> Result<Self, Mistake> {
+        let mut read = Self::default();
+        for argument in arguments {
+            let value = match *argument {
+                Argument::Integer(lo, hi) => Value::Integer(reader.integer(lo, hi)?),
+                Argument::Real => Value::Real(reader.real()?),
+                Argument::Limited(lo, hi) => Value::Real(reader.limited(lo, hi)?),
+                Argument::OptionalHex if reader.is_at_end() => break,
+                Argument::Hex | Argument::OptionalHex => Value::Word(reader.hex()?),
+                Argument::Assign if reader.is_at_end() => {
+                    read.is_question = true;
+                    break;
+                }
+                Argument::Equals | Argument::Assign => {
+                    reader.equals()?;
+                    continue;
+                }
+                Argument::OptionalEquals => {
+                    // Its absence is no mistake.
+                    let _ = reader.equals();
+                    continue;
+                }
+            };
+            read.values.push(value);
+        }
+        Ok(read)
+    }
+
+    /// Whether the present value is asked for.
+    pub(super) const fn is_question(&self) -> bool {
+        self.is_question
+    }
+
+    /// An integer.
+    pub(super) fn integer(&self, index: usize) -> i32 {
+        match self.values.get(index) {
+            Some(Value::Integer(value)) => *value,
+            _ => 0,
+        }
+    }
+
+    /// An integer that the table keeps from being negative.
+    pub(super) fn count(&self, index: usize) -> usize {
+        usize::try_from(self.integer(index)).unwrap_or(0)
+    }
+
+    /// A real number; a hexadecimal one is the bits of a single.
+    pub(super) fn real(&self, index: usize) -> f64 {
+        match self.values.get(index) {
+            Some(Value::Real(value)) => *value,
+            Some(Value::Word(bits)) => f32::from_bits(*bits).into(),
+            _ => 0.0,
+        }
+    }
+
+    /// A real number as the board's singles hold it.
+    pub(super) fn single(&self, index: usize) -> f32 {
+        self.real(index) as f32
+    }
+
+    /// All real numbers as singles.
+    pub(super) fn singles(&self) -> Vec<f32> {
+        (0..self.values.len()).map(|index| self.single(index)).collect()
+    }
+
+    /// All integers.
+    pub(super) fn integers(&self) -> Vec<i32> {
+        (0..self.values.len()).map(|index| self.integer(index)).collect()
+    }
+
+    /// A hexadecimal number, if it is there.
+    pub(super) fn optional_word(&self, index: usize) -> Option<u32> {
+        match self.values.get(index) {
+            Some(Value::Word(value)) => Some(*value),
+            _ => None,
+        }
+    }
+
+    /// A hexadecimal number.
+    pub(super) fn word(&self, index: usize) -> u32 {
+        self.optional_word(index).unwrap_or(0)
+    }
+
+    /// The thread that the first argument names.
+    pub(super) fn thread(&self) -> ThreadId {
+        ThreadId::new(self.integer(0)).expect("the table limits it to threads")
+    }
+
+    /// The axis that the first argument names.
+    pub(super) fn axis(&self) -> AxisId {
+        AxisId::new(self.integer(0)).expect("the table limits it to axes")
+    }
+
+    /// The bit that the first argument names.
+    pub(super) fn bit(&self) -> Bit {
+        Bit::new(self.integer(0)).expect("the table limits it to bits")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is read from a text, or the column and the message.
+    fn check(arguments: &[Argument], text: &str, expect: Result<&[f64], (usize, &str)>) {
+        let read = Values::read(arguments, &mut Reader::new(text.as_bytes(), 0));
+        let numbers = read.map(|read| {
+            let number = |index| match read.values[index] {
+                Value::Integer(value) => value.into(),
+                Value::Real(value) => value,
+                Value::Word(value) => value.into(),
+            };
+            (0..read.values.len()).map(number).collect::<Vec<f64>>()
+        });
+        let expect = expect.map(<[f64]>::to_vec).map_err(|(column, text)| (column, text.to_owned()));
+        assert_eq!(numbers.map_err(|mistake| (mistake.column, mistake.message.text())), expect, "{text:?}");
+    }
+
+    #[test]
+    fn a_number_ends_where_it_ends() {
+        let thread = [Argument::Integer(1, 7)];
+        check(&thread, "1.5", Ok(&[1.0]));
+        check(&thread, " +1 junk", Ok(&[1.0]));
+        check(&thread, " x", Err((0, "Error:Expecting Number")));
+        check(&thread, " 8", Err((2, "Error:Expecting value 1 to 7")));
+        check(&[Argument::Real; 2], "1e3 -.5", Ok(&[1000.0, -0.5]));
+        check(&[Argument::Real; 2], "1,2", Err((1, "Error:Expecting Number")));
+    }
+
+    #[test]
+    fn a_hexadecimal_number_takes_the_next_character_along() {
+        let words = [Argument::Hex; 2];
+        check(&words, "0x12", Ok(&[0.0, 18.0]));
+        check(&words, "123456789,-1", Ok(&[591_751_049.0, 4_294_967_295.0]));
+        check(&words, "1 G", Err((2, "error, expecting value")));
+        check(&words, "1", Err((1, "error, expecting value")));
+    }
+
+    #[test]
+    fn an_assignment_may_be_a_question() {
+        let arguments = [Argument::Integer(0, 7), Argument::Assign, Argument::Limited(0.0, 255.0)];
+        check(&arguments, "0", Ok(&[0.0]));
+        check(&arguments, "0 = 2", Ok(&[0.0, 2.0]));
+        check(&arguments, "0 3", Err((2, "Error:Expecting \"=\"")));
+        check(&arguments, "0=256", Err((5, "Error:Expecting value 0.000000 to 255.000000")));
+        check(&[Argument::OptionalEquals, Argument::Real], " 3", Ok(&[3.0]));
+    }
+}

@@ -1,0 +1,65 @@
+//! The board as a whole: version, restart, flash, and which link it listens to.
+
+use kmotiondef::limits::VERSION;
+use kmotiondef::variables::DO_RS232_CMDS;
+
+use super::arguments::Values;
+use super::session::{Answer, Session};
+use crate::firmware::serial;
+use crate::kernel::Request;
+use crate::views::Typed;
+
+/// What the board says when flash is written.
+const FLASH_COMPLETE: &str = "Program Flash Image Complete";
+/// Characters of `Echo` and the one behind it.
+const ECHO: usize = 5;
+/// The UART's clock, 16 of whose periods make the shortest bit.
+const UART_CLOCK: i32 = 16_666_666 / 16;
+/// The rates that the board knows.
+const RATES: [i32; 5] = [9600, 19_200, 38_400, 57_600, 115_200];
+
+pub(super) fn version(_: &mut Session<'_, '_>, _: &Values) -> Answer {
+    VERSION.trim_end().to_owned().into()
+}
+
+/// The rest of the command as a console line.
+pub(super) fn echo(session: &mut Session<'_, '_>, _: &Values) -> Answer {
+    Answer::Console(session.part.get(ECHO..).unwrap_or_default().to_vec())
+}
+
+pub(super) fn reboot(session: &mut Session<'_, '_>, _: &Values) -> Answer {
+    session.kernel.ask(Request::Reboot);
+    Answer::Nothing
+}
+
+pub(super) fn flash(session: &mut Session<'_, '_>, _: &Values) -> Answer {
+    session.kernel.ask(Request::Flash);
+    Answer::Nothing
+}
+
+pub(super) fn clear_flash_image(_: &mut Session<'_, '_>, _: &Values) -> Answer {
+    Answer::Nothing
+}
+
+/// A new firmware is taken and ignored; the answer is as if it were there.
+pub(super) fn program_flash_image(session: &mut Session<'_, '_>, _: &Values) -> Answer {
+    session.kernel.console.message(FLASH_COMPLETE);
+    Answer::Nothing
+}
+
+/// Replies go to the PC again.
+pub(super) fn usb(session: &mut Session<'_, '_>, _: &Values) -> Answer {
+    session.memory().set(DO_RS232_CMDS, 0);
+    Answer::Nothing
+}
+
+/// Commands are taken from the UART, and replies go there.
+pub(super) fn rs232(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    let rate = values.integer(0);
+    if !RATES.contains(&rate) {
+        return Answer::Refused("Invalid Baud rate");
+    }
+    let divisor = UART_CLOCK / rate - 1;
+    session.call(|kernel, caller| serial::connect(kernel, caller, divisor));
+    Answer::Nothing
+}

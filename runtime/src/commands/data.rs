@@ -1,0 +1,103 @@
+//! Data lines: what some commands ask for behind their own line.
+//!
+//! A data line holds a fixed count of hexadecimal numbers; what follows them on the line is ignored.
+
+use kmotiondef::GuestAddr;
+use kmotiondef::limits::N_BYTES_PER_LINE;
+use kmotiondef::variables::{READ_DISK_BUFFER, READ_DISK_BUFFER_STATUS};
+use vm::firmware::TickContext;
+use vm::memory::GuestMemory;
+
+use super::arguments::{Mistake, Reader};
+use crate::kernel::Kernel;
+use crate::views::Typed;
+
+/// Words on a line of gather data.
+pub(super) const WORDS_PER_LINE: usize = 8;
+/// Bytes on a line of a disk file's text.
+const DISK_BYTES_PER_LINE: usize = 80;
+
+/// What the data is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// Bytes of a program, which are stored.
+    Program,
+    /// Bytes of a new firmware, which are not.
+    Firmware,
+    /// Words of the gather buffer.
+    Gather,
+    /// A line of a file on the PC.
+    Disk,
+}
+
+impl Kind {
+    /// Numbers on a full line.
+    const fn per_line(self) -> usize {
+        match self {
+            Self::Program | Self::Firmware => N_BYTES_PER_LINE,
+            Self::Gather => WORDS_PER_LINE,
+            Self::Disk => DISK_BYTES_PER_LINE,
+        }
+    }
+}
+
+/// A command that waits for data lines.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Data {
+    kind: Kind,
+    /// Where the first number goes.
+    start: GuestAddr,
+    /// Where the next one goes.
+    place: GuestAddr,
+    /// Numbers still to come.
+    left: usize,
+}
+
+impl Data {
+    /// `count` numbers that go to `start` and behind.
+    pub(super) const fn new(kind: Kind, start: GuestAddr, count: usize) -> Self {
+        Self { kind, start, place: start, left: count }
+    }
+
+    /// Whether no number is missing.
+    pub(super) const fn is_complete(&self) -> bool {
+        self.left == 0
+    }
+
+    /// Takes one line; numbers before a mistake are stored.
+    pub(super) fn line(&mut self, memory: &mut GuestMemory, line: &[u8]) -> Result<(), Mistake> {
+        let mut reader = Reader::new(line, 0);
+        for _ in 0..self.left.min(self.kind.per_line()) {
+            let size = if self.kind == Kind::Gather {
+                memory.poke(self.place, reader.hex()?);
+                4
+            } else {
+                let byte = reader.byte()?;
+                if self.kind != Kind::Firmware {
+                    memory.poke(self.place, byte);
+                }
+                1
+            };
+            self.place = self.place.offset(size);
+            self.left -= 1;
+        }
+        Ok(())
+    }
+
+    /// What follows from the data being complete.
+    pub(super) fn finish(&self, kernel: &mut Kernel, context: &mut TickContext<'_>) {
+        match self.kind {
+            Kind::Program => kernel.downloads.record(self.start, self.place),
+            Kind::Disk => {
+                context.memory.poke(self.place, 0_u8);
+                context.memory.set(READ_DISK_BUFFER_STATUS, 1);
+            }
+            Kind::Firmware | Kind::Gather => {}
+        }
+    }
+
+    /// Room for a line of a file.
+    pub(super) fn disk(count: usize) -> Self {
+        Self::new(Kind::Disk, READ_DISK_BUFFER.address(), count)
+    }
+}

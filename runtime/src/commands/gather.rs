@@ -1,0 +1,214 @@
+//! The gather buffer over the link: words, recorded motions, injected noise.
+//!
+//! `GatherMove` and `GatherStep` record an axis while it goes away and comes back: it rests for 0.02 s, moves (or
+//! jumps), and at half of the recording moves back. `Inject` disturbs an axis with filtered noise and records what
+//! comes of it; the noise is always the same, as every run is.
+
+use std::f64::consts::TAU;
+
+use kmotiondef::limits::{N_CPLX, TIMEBASE};
+use kmotiondef::modes::GatherType;
+use kmotiondef::structs::{Chan, Gather, GatherValueDef};
+use kmotiondef::variables::{GATHER, GATHER_BUFFER};
+use kmotiondef::{AxisId, GuestAddr, Place};
+use vm::firmware::TickContext;
+use vm::memory::GuestMemory;
+
+use super::arguments::Values;
+use super::data::{Data, Kind, WORDS_PER_LINE};
+use super::session::{Answer, Session};
+use crate::firmware::{gather, motion};
+use crate::kernel::Kernel;
+use crate::views::{Typed, chan};
+
+/// Ticks before an experiment's motion: 0.02 s.
+const REST: u64 = 222;
+/// Doubles of a recorded sample, and how many of them are uploaded.
+const RECORDED: u32 = 6;
+/// Doubles of an injected sample: stimulus, position, destination, output.
+const INJECTED: u32 = 4;
+/// Numbers on a line of an upload.
+const NUMBERS_PER_LINE: usize = 24;
+/// Bytes of a double.
+const DOUBLE: u32 = 8;
+
+/// A recorded motion in progress.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Experiment {
+    axis: AxisId,
+    amount: f64,
+    jumps: bool,
+    /// Ticks at which the axis goes away and comes back.
+    legs: [u64; 2],
+    done: usize,
+}
+
+/// Begins the legs whose time has come. Says whether an experiment is in progress.
+pub(crate) fn advance(kernel: &mut Kernel, context: &mut TickContext<'_>) -> bool {
+    let Some(experiment) = kernel.experiment else { return false };
+    let Some(&due) = experiment.legs.get(experiment.done) else {
+        kernel.experiment = None;
+        return false;
+    };
+    if context.tick.get() >= due {
+        let distance = if experiment.done == 0 { experiment.amount } else { -experiment.amount };
+        go(kernel, context, experiment.axis, distance, experiment.jumps);
+        kernel.experiment = Some(Experiment { done: experiment.done + 1, ..experiment });
+        kernel.disturb();
+    }
+    true
+}
+
+fn go(kernel: &mut Kernel, context: &mut TickContext<'_>, axis: AxisId, distance: f64, jumps: bool) {
+    let dest = context.memory.axis(axis, Chan::DEST) + distance;
+    if jumps {
+        context.memory.set_axis(axis, Chan::DEST, dest);
+        kernel.servo.axes[axis.index()] = crate::servo::AxisMemory::rest(dest);
+    } else if let Some(limits) = motion::limits(context.memory, axis, None) {
+        motion::start_move_to(context.memory, axis, dest, &limits, kmotiondef::modes::LastMotion::Move);
+    }
+}
+
+fn experiment(session: &mut Session<'_, '_>, values: &Values, jumps: bool) -> Answer {
+    let (axis, amount, samples) = (values.axis(), values.real(1), values.integer(2));
+    session.call(|kernel, caller| {
+        gather::setup_gather_all_on_axis(kernel, caller, i32::from(axis.get()), samples);
+        gather::trigger_gather(kernel, caller);
+    });
+    let now = session.context.tick.get();
+    let half = u64::from(samples.unsigned_abs()) / 2;
+    let legs = [now + REST, now + half.max(REST)];
+    session.kernel.experiment = Some(Experiment { axis, amount, jumps, legs, done: 0 });
+    Answer::Nothing
+}
+
+pub(super) fn gather_move(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    experiment(session, values, false)
+}
+
+pub(super) fn gather_step(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    experiment(session, values, true)
+}
+
+pub(super) fn check_done(session: &mut Session<'_, '_>, _: &Values) -> Answer {
+    session.call(gather::check_done_gather).into()
+}
+
+/// A double of the buffer.
+fn double(memory: &GuestMemory, index: u32) -> f64 {
+    memory.peek(memory.get(GATHER_BUFFER).offset(index * DOUBLE))
+}
+
+/// Numbers as the bits of singles, 24 on a line.
+fn upload(numbers: impl Iterator<Item = f64>) -> Answer {
+    let words: Vec<String> = numbers.map(|number| format!("{:08X}", (number as f32).to_bits())).collect();
+    Answer::Lines(words.chunks(NUMBERS_PER_LINE).map(|line| line.join(" ")).collect())
+}
+
+/// Destination, position and output of each sample.
+pub(super) fn get(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    let memory = &*session.memory();
+    let samples = 0..values.integer(0).unsigned_abs();
+    upload(samples.flat_map(|sample| (0..3).map(move |item| double(memory, sample * RECORDED + item))))
+}
+
+/// A word of the buffer.
+fn word(session: &mut Session<'_, '_>, values: &Values) -> Place<i32> {
+    Place::new(session.memory().get(GATHER_BUFFER).offset(4 * values.integer(0).unsigned_abs()))
+}
+
+pub(super) fn get_decimal(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    let place = word(session, values);
+    session.memory().get(place).into()
+}
+
+/// A real is truncated toward zero and saturates.
+pub(super) fn set_decimal(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    let place = word(session, values);
+    session.memory().set(place, values.real(1) as i32);
+    Answer::Nothing
+}
+
+/// Words that the buffer has from the first one named on, of those asked for.
+fn available(values: &Values) -> usize {
+    values.count(1).min(super::table::GATHER_WORDS as usize - values.count(0))
+}
+
+/// Words, eight on a line; those behind the end of the buffer are left out.
+pub(super) fn get_hex(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    let start = word(session, values).address();
+    let memory = &*session.memory();
+    let words: Vec<String> = (0..available(values) as u32)
+        .map(|index| format!("{:08X}", memory.peek::<u32>(start.offset(4 * index))))
+        .collect();
+    Answer::Lines(words.chunks(WORDS_PER_LINE).map(|line| line.join(" ")).collect())
+}
+
+pub(super) fn set_hex(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    let start = word(session, values).address();
+    Answer::Data(Data::new(Kind::Gather, start, available(values)))
+}
+
+/// The PC's answer to a request for a line of a file.
+pub(super) fn read_disk_data(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    let (status, count) = (values.integer(0), values.count(1));
+    let data = Data::disk(count);
+    if status == 1 && count > 0 {
+        return Answer::Data(data);
+    }
+    if status == 1 {
+        data.finish(session.kernel, session.context);
+    } else {
+        session.memory().set(kmotiondef::variables::READ_DISK_BUFFER_STATUS, status);
+    }
+    Answer::Nothing
+}
+
+/// Numbers between -1 and 1 from one seed, by a linear congruence (Knuth's MMIX).
+struct Noise(u64);
+
+impl Noise {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+}
+
+/// Puts noise below a frequency into the buffer, and has the servo add it to an axis and record.
+pub(super) fn inject(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    let (chan, cutoff, amplitude) = (chan(values.axis()), values.real(1), values.real(2));
+    let memory = session.memory();
+    let start = memory.get(GATHER_BUFFER);
+    let share = 1.0 - libm::exp(-TAU * cutoff.max(0.0) * TIMEBASE);
+    let (mut noise, mut level) = (Noise(1), 0.0);
+    for sample in 0..N_CPLX as u32 {
+        level += share * (noise.next() - level);
+        memory.poke(start.offset(sample * INJECTED * DOUBLE), level * amplitude);
+    }
+    let items = [
+        (GatherType::Double, chan.field(Chan::DEST_OFFSET).address()),
+        (GatherType::Double, chan.field(Chan::POSITION).address()),
+        (GatherType::Double, chan.field(Chan::DEST).address()),
+        (GatherType::Float, chan.field(Chan::OUTPUT).address()),
+        (GatherType::End, GuestAddr::NULL),
+    ];
+    for (index, (kind, address)) in items.into_iter().enumerate() {
+        let item = GATHER.field(Gather::LIST.element(index));
+        memory.set(item.field(GatherValueDef::TYPE), kind.get());
+        memory.set(item.field(GatherValueDef::ADDR), address);
+    }
+    memory.set(GATHER.field(Gather::INJECT), 1);
+    memory.set(GATHER.field(Gather::ENDPTR), start.offset(N_CPLX as u32 * INJECTED * DOUBLE));
+    memory.set(GATHER.field(Gather::BUFPTR), start);
+    Answer::Nothing
+}
+
+/// Stimulus, position less destination, and output of each injected sample.
+pub(super) fn get_inject(session: &mut Session<'_, '_>, _: &Values) -> Answer {
+    let memory = &*session.memory();
+    let sample = |sample: u32| {
+        let item = |index: u32| double(memory, sample * INJECTED + index);
+        [item(0), item(1) - item(2), item(3)]
+    };
+    upload((0..N_CPLX as u32).flat_map(sample))
+}

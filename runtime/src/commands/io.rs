@@ -1,0 +1,119 @@
+//! Digital and analog inputs and outputs, and registers.
+
+use kmotiondef::GuestAddr;
+use kmotiondef::map::FPGA;
+use kmotiondef::variables::{DAC_BUFFER, VIRTUAL_BITS_EX};
+use vm::bus::{AccessSize, Bus};
+
+use super::arguments::Values;
+use super::session::{Answer, Session};
+use crate::firmware::io;
+use crate::views::Typed;
+
+/// The first LED.
+const LED0: i32 = 46;
+/// What the converters' words are above zero.
+const ZERO: i32 = 2048;
+/// Words of the extended virtual bits.
+const VIRTUAL_WORDS: usize = 32;
+
+pub(super) fn set_bit(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    session.call(|kernel, caller| io::set_bit(kernel, caller, values.integer(0)));
+    Answer::Nothing
+}
+
+pub(super) fn clear_bit(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    session.call(|kernel, caller| io::clear_bit(kernel, caller, values.integer(0)));
+    Answer::Nothing
+}
+
+pub(super) fn set_state_bit(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    let (bit, state) = (values.integer(0), values.integer(1));
+    session.call(|kernel, caller| io::set_state_bit(kernel, caller, bit, state));
+    Answer::Nothing
+}
+
+pub(super) fn led(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    let (bit, state) = (LED0 + values.integer(0), values.integer(1));
+    session.call(|kernel, caller| io::set_state_bit(kernel, caller, bit, state));
+    Answer::Nothing
+}
+
+/// The level, without a remark about inputs that nothing drives: people look at them on purpose.
+pub(super) fn read_bit(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    i32::from(io::bit_state(session.kernel, session.context.memory, values.bit()).0).into()
+}
+
+pub(super) fn set_bit_direction(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    let (bit, direction) = (values.integer(0), values.integer(1));
+    session.call(|kernel, caller| io::set_bit_direction(kernel, caller, bit, direction));
+    Answer::Nothing
+}
+
+pub(super) fn get_bit_direction(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    session.call(|kernel, caller| io::get_bit_direction(kernel, caller, values.integer(0))).into()
+}
+
+/// Words of the extended virtual bits on one line. The released firmware goes on reading behind the last word, and
+/// hangs; a count of 0 yields nothing.
+pub(super) fn get_virtual_bits(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    let (first, count) = (values.count(0), values.count(1));
+    if count == 0 {
+        return Answer::Nothing;
+    }
+    let memory = &*session.memory();
+    let start = VIRTUAL_BITS_EX.address();
+    let word = |index: usize| format!("{:X}", memory.peek::<u32>(start.offset(4 * index as u32)));
+    let answer = (first..first + count).map(word).collect::<Vec<_>>().join(" ").into();
+    if first + count > VIRTUAL_WORDS { Answer::Stopped(Box::new(answer)) } else { answer }
+}
+
+pub(super) fn adc(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    (session.call(|kernel, caller| io::read_adc(kernel, caller, values.integer(0))) - ZERO).into()
+}
+
+pub(super) fn dac(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    let word = values.integer(1) + ZERO;
+    session.memory().set(DAC_BUFFER.element(values.count(0)), word as i16);
+    Answer::Nothing
+}
+
+pub(super) fn pwm(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    let (channel, value) = (values.integer(0), values.integer(1));
+    session.call(|kernel, caller| io::write_pwm(kernel, caller, channel, value));
+    Answer::Nothing
+}
+
+pub(super) fn pwmr(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    let (channel, value) = (values.integer(0), values.integer(1));
+    session.call(|kernel, caller| io::write_pwmr(kernel, caller, channel, value));
+    Answer::Nothing
+}
+
+pub(super) fn pwmc(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    let (channel, value) = (values.integer(0), values.integer(1));
+    session.call(|kernel, caller| io::write_pwmc(kernel, caller, channel, value));
+    Answer::Nothing
+}
+
+/// The place of a register; the last number that the command takes lies outside.
+fn register(number: i32) -> Option<GuestAddr> {
+    let offset = number.cast_unsigned() * 4 + 2;
+    (offset < FPGA.size).then(|| FPGA.base.offset(offset))
+}
+
+fn write(session: &mut Session<'_, '_>, values: &Values, size: AccessSize) -> Answer {
+    if let Some(address) = register(values.integer(0)) {
+        let (value, now) = (values.integer(1).cast_unsigned(), session.context.now);
+        session.kernel.write(address, size, value, now);
+    }
+    Answer::Nothing
+}
+
+pub(super) fn fpga(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    write(session, values, AccessSize::Byte)
+}
+
+pub(super) fn fpgaw(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    write(session, values, AccessSize::Half)
+}

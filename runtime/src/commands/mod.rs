@@ -1,0 +1,170 @@
+//! The script commands that a PC sends: one table, one function for each row.
+//!
+//! A row says what a command is called, which arguments it takes and what it does, in one line; reading the
+//! arguments, ranges, mistakes and the form of replies follow from the row. Handlers get arguments that are within
+//! their limits and return an [`Answer`](session::Answer). To add a command, add a row and its function.
+//!
+//! Words, ranges and replies are those of the released firmware 4.34 (host-protocol.md sections 2 and 3).
+
+mod arguments;
+mod axes;
+mod board;
+mod data;
+mod gather;
+mod io;
+mod link;
+mod motion;
+mod numbers;
+mod path;
+mod persist;
+mod programs;
+#[cfg(test)]
+mod recorded;
+mod session;
+mod status;
+mod table;
+
+pub use arguments::Argument;
+pub use table::COMMANDS;
+
+pub(crate) use gather::{Experiment, advance};
+pub(crate) use link::{Link, slice};
+pub(crate) use programs::{Downloads, start};
+
+use arguments::Values;
+use session::{Answer, Session};
+
+/// One script command.
+#[derive(Clone, Copy)]
+pub struct Command {
+    /// Its name as the manual spells it; the board ignores the case.
+    pub name: &'static str,
+    /// What it takes.
+    pub arguments: &'static [Argument],
+    /// What it does, in one line.
+    pub help: &'static str,
+    run: fn(&mut Session<'_, '_>, &Values) -> Answer,
+}
+
+impl std::fmt::Debug for Command {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name)
+    }
+}
+
+impl Command {
+    /// How it is written: `Move <0..7>=<number>`.
+    #[must_use]
+    pub fn usage(&self) -> String {
+        let mut text = self.name.to_owned();
+        let mut open = 0;
+        let mut rest = self.arguments;
+        while let [argument, tail @ ..] = rest {
+            let same = rest.iter().take_while(|other| *other == argument).count();
+            match argument {
+                Argument::Equals => text.push('='),
+                Argument::OptionalEquals => text.push_str("[=]"),
+                Argument::Assign => {
+                    text.push_str("[=");
+                    open += 1;
+                }
+                Argument::OptionalHex => text.push_str(" [<hex>]"),
+                argument => {
+                    let spaced = !text.ends_with('=');
+                    text.push_str(if spaced { " " } else { "" });
+                    text.push_str(&argument.placeholder());
+                    if same > 2 {
+                        text.push_str(&format!(" … ({same} numbers)"));
+                        rest = &rest[same..];
+                        continue;
+                    }
+                }
+            }
+            rest = tail;
+        }
+        text + &"]".repeat(open)
+    }
+}
+
+impl Argument {
+    /// What stands for it in the description of a command.
+    fn placeholder(&self) -> String {
+        match self {
+            Self::Integer(i32::MIN, i32::MAX) => "<integer>".to_owned(),
+            Self::Integer(lo, hi) => format!("<{lo}..{hi}>"),
+            Self::Real => "<number>".to_owned(),
+            Self::Limited(lo, hi) => format!("<{lo:e}..{hi:e}>"),
+            Self::Hex | Self::OptionalHex => "<hex>".to_owned(),
+            Self::Equals | Self::OptionalEquals | Self::Assign => "=".to_owned(),
+        }
+    }
+}
+
+/// The command that a text in upper case begins with, and the length of its word: the longest that matches.
+fn find(text: &[u8]) -> Option<(&'static Command, usize)> {
+    let matches = |command: &&Command| {
+        let length = command.name.len();
+        let word = text.get(..length).is_some_and(|word| word.eq_ignore_ascii_case(command.name.as_bytes()));
+        // Odd and kept: a sign ends this one word as well.
+        let has_sign = command.name == "DisableAxis" && text.get(length) == Some(&b'-');
+        word && (has_sign || text.get(length).is_none_or(|byte| matches!(byte, b' ' | b'=' | b'0'..=b'9')))
+    };
+    let longest = COMMANDS.iter().filter(matches).max_by_key(|command| command.name.len())?;
+    Some((longest, longest.name.len()))
+}
+
+/// The command of this name, in whatever case.
+#[must_use]
+pub fn command_named(name: &str) -> Option<&'static Command> {
+    COMMANDS.iter().find(|command| command.name.eq_ignore_ascii_case(name))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_longest_word_wins() {
+        for (text, expect) in [
+            ("MOVEATVEL0=1 1", Some("MoveAtVel")),
+            ("MOVE0=1", Some("Move")),
+            ("D0", Some("D")),
+            ("DEST", Some("Dest")),
+            ("3PH0=1 1", Some("3PH")),
+            ("LHEX11 2", Some("LHex1")),
+            ("INPUTCHAN0 3=5", Some("InputChan0")),
+            ("VERSIO", None),
+            ("VERSIONX", None),
+            (" VERSION", None),
+            ("CHECKTHREAD+1", None),
+            ("", None),
+        ] {
+            assert_eq!(find(text.as_bytes()).map(|(command, _)| command.name), expect, "{text}");
+        }
+    }
+
+    #[test]
+    fn every_word_stands_in_the_table_once() {
+        let mut words: Vec<_> = COMMANDS.iter().map(|command| command.name.to_ascii_uppercase()).collect();
+        words.sort();
+        let count = words.len();
+        words.dedup();
+        assert_eq!(words.len(), count);
+        assert_eq!(count, 146, "the released firmware has 146");
+    }
+
+    #[test]
+    fn usage_is_as_one_would_write_it() {
+        for (name, expect) in [
+            ("Move", "Move <0..7>=<number>"),
+            ("MoveAtVel", "MoveAtVel <0..7>=<number> <number>"),
+            ("Vel", "Vel <0..7>[=<0e0..1e12>]"),
+            ("GetStatus", "GetStatus [<hex>] [<hex>]"),
+            ("SetBitDirection", "SetBitDirection <0..167>[=]<0..1>"),
+            ("LHex1", "LHex1 <hex> … (11 numbers)"),
+        ] {
+            let command = command_named(name).expect("in the table");
+            assert_eq!(command.usage().replace("[=] <", "[=]<"), expect);
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! Independent motion, and energising a motor by hand.
+
+use vm::firmware::Outcome;
+
+use super::arguments::Values;
+use super::axes::pointer;
+use super::session::{Answer, Session};
+use crate::firmware::motion;
+
+/// A motion call as the primary thread makes it: it plans at once.
+fn planned(outcome: Outcome<()>) -> Answer {
+    debug_assert_eq!(outcome, Outcome::Done(()), "only user threads wait for a slice to plan in");
+    Answer::Nothing
+}
+
+pub(super) fn move_to(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    let (axis, x) = (values.integer(0), values.real(1));
+    planned(session.call(|kernel, caller| motion::move_to(kernel, caller, axis, x)))
+}
+
+pub(super) fn move_rel(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    let (axis, dx) = (values.integer(0), values.real(1));
+    planned(session.call(|kernel, caller| motion::move_rel(kernel, caller, axis, dx)))
+}
+
+pub(super) fn move_at_vel(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    let (axis, x, velocity) = (values.integer(0), values.real(1), values.single(2));
+    planned(session.call(|kernel, caller| motion::move_at_vel(kernel, caller, axis, x, velocity)))
+}
+
+pub(super) fn move_rel_at_vel(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    let (axis, dx, velocity) = (values.integer(0), values.real(1), values.single(2));
+    planned(session.call(|kernel, caller| motion::move_rel_at_vel(kernel, caller, axis, dx, velocity)))
+}
+
+pub(super) fn move_exp(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    let (axis, x, tau) = (values.integer(0), values.real(1), values.real(2));
+    planned(session.call(|kernel, caller| motion::move_exp(kernel, caller, axis, x, tau)))
+}
+
+pub(super) fn move_xyzabc(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    let [x, y, z, a, b, c] = std::array::from_fn(|index| values.real(index));
+    planned(session.call(|kernel, caller| motion::move_xyzabc(kernel, caller, x, y, z, a, b, c)))
+}
+
+pub(super) fn jog(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    let (axis, velocity) = (values.integer(0), values.real(1));
+    planned(session.call(|kernel, caller| motion::jog(kernel, caller, axis, velocity)))
+}
+
+pub(super) fn check_done(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    session.call(|kernel, caller| motion::check_done(kernel, caller, values.integer(0))).into()
+}
+
+pub(super) fn check_done_xyzabc(session: &mut Session<'_, '_>, _: &Values) -> Answer {
+    session.call(motion::check_done_xyzabc).into()
+}
+
+pub(super) fn three_phase(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    let (axis, amplitude, angle) = (pointer(values.axis()), values.single(1), values.real(2));
+    session.call(|kernel, caller| motion::write_3ph(kernel, caller, axis, amplitude, angle));
+    Answer::Nothing
+}
+
+pub(super) fn four_phase(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    let (axis, amplitude, angle) = (pointer(values.axis()), values.single(1), values.real(2));
+    session.call(|kernel, caller| motion::write_4ph(kernel, caller, axis, amplitude, angle));
+    Answer::Nothing
+}

