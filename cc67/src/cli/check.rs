@@ -33,5 +33,5 @@ pub(super) fn check(arguments: &Arguments) -> Result<Exit> {
         compilation.link(thread, &options);
         has_errors |= terminal::report(&compilation, &levels, arguments.compiler.format());
     }
-    Ok(if has_errors { Exit::SourceErrors } else { Exit::Success })
+    Ok(if has_errors { Exit::Failure } else { Exit::Success })
 }

@@ -29,5 +29,5 @@ pub(super) fn diff(arguments: &Arguments) -> Result<Exit> {
         return Ok(Exit::Success);
     }
     output::print(&(differences.join("\n") + "\n"))?;
-    Ok(Exit::SourceErrors)
+    Ok(Exit::Failure)
 }

@@ -7,8 +7,8 @@ use std::process::ExitCode;
 pub enum Exit {
     /// The programs ended, or the asked-for time is over.
     Success = 0,
-    /// The source has errors; or the images that are compared differ.
-    SourceErrors = 1,
+    /// The source has errors; images that are compared differ; a test is not as expected.
+    Failure = 1,
     /// Wrong usage or input.
     WrongInput = 2,
     /// A thread trapped.

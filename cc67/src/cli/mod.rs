@@ -20,6 +20,7 @@ mod program;
 mod run;
 mod setting;
 mod terminal;
+mod test;
 mod units;
 
 use std::ffi::OsString;
@@ -58,6 +59,8 @@ enum Command {
     Diff(diff::Arguments),
     /// The simulated firmware as a file to link against, and as a list
     Firmware(firmware::Arguments),
+    /// Run programs and compare their consoles with what is expected
+    Test(test::Arguments),
     #[command(flatten)]
     Planned(planned::Command),
 }
@@ -71,6 +74,7 @@ impl Command {
             Self::Inspect(arguments) => inspect::inspect(arguments),
             Self::Diff(arguments) => diff::diff(arguments),
             Self::Firmware(arguments) => firmware::firmware(arguments),
+            Self::Test(arguments) => test::test(arguments),
             Self::Planned(command) => command.refuse(),
         }
     }

@@ -29,7 +29,6 @@ planned_commands! {
     Console = "console";
     Init = "init";
     Plot = "plot";
-    Test = "test";
 }
 
 /// Arguments that nobody reads.

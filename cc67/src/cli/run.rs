@@ -61,11 +61,30 @@ pub(super) struct Arguments {
 
 /// Engines by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum EngineName {
+pub(super) enum EngineName {
     /// The interpreter
     Bytecode,
     /// Machine code of the host
     Native,
+}
+
+impl EngineName {
+    /// Those that this command is built with.
+    pub(super) fn available() -> Vec<Self> {
+        let mut engines = vec![Self::Bytecode];
+        if cfg!(feature = "native") {
+            engines.push(Self::Native);
+        }
+        engines
+    }
+
+    /// The name that `--engine` takes.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Bytecode => "bytecode",
+            Self::Native => "native",
+        }
+    }
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
@@ -81,7 +100,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit> {
     all.extend_from_slice(&arguments.load);
     let programs = assign(&all)?;
     let settings: Vec<_> = arguments.set.iter().map(|text| setting::parse(text)).collect::<Result<_>>()?;
-    let Some(images) = images(&programs, arguments)? else { return Ok(Exit::SourceErrors) };
+    let Some(images) = images(&programs, arguments)? else { return Ok(Exit::Failure) };
 
     let files = Box::new(Directory::new(&arguments.files));
     let machine = MachineConfig { shortcuts: !arguments.no_shortcuts, ..MachineConfig::default() };

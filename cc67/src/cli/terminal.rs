@@ -28,9 +28,9 @@ pub(super) fn page(text: &str) -> io::Result<()> {
     }
 }
 
-/// Whether stderr shows colours.
-fn color() -> Color {
-    let shown = io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none();
+/// Whether a stream shows colours.
+pub(super) fn color(stream: &impl IsTerminal) -> Color {
+    let shown = stream.is_terminal() && std::env::var_os("NO_COLOR").is_none();
     if shown { Color::Always } else { Color::Never }
 }
 
@@ -49,7 +49,7 @@ pub(super) fn warnings(unit: &Compilation, levels: &Levels) -> usize {
 pub(super) fn report(compilation: &Compilation, levels: &Levels, format: Format) -> bool {
     let shown: Vec<_> =
         compilation.diagnostics().into_iter().filter_map(|diagnostic| levels.apply(diagnostic)).collect();
-    let text = render::render(&shown, &compilation.sources, format, color());
+    let text = render::render(&shown, &compilation.sources, format, color(&io::stderr()));
     // Nobody is left to be told when stderr is gone.
     let _ = io::stderr().write_all(text.as_bytes());
     shown.iter().any(|diagnostic| diagnostic.severity == Severity::Error)

@@ -71,7 +71,7 @@ pub(super) fn build(arguments: &Arguments) -> Result<Exit> {
     let emit = arguments.emit();
     if emit == [Emit::Object] {
         if terminal::report_all(&units, &levels, arguments.compiler.format()) {
-            return Ok(Exit::SourceErrors);
+            return Ok(Exit::Failure);
         }
         return arguments.write_objects(&units);
     }
@@ -79,7 +79,7 @@ pub(super) fn build(arguments: &Arguments) -> Result<Exit> {
     let objects = if emit.contains(&Emit::Object) { arguments.objects(&units)? } else { Vec::new() };
     let linked = link_units(&mut units, arguments.thread, &options);
     let has_errors = terminal::report_all(&units, &levels, arguments.compiler.format());
-    let Some(linked) = linked.filter(|_| !has_errors) else { return Ok(Exit::SourceErrors) };
+    let Some(linked) = linked.filter(|_| !has_errors) else { return Ok(Exit::Failure) };
     output::write_all(&objects)?;
     arguments.write_program(&linked, &emit)?;
     println!("{}", sizes(&linked, warnings(&units, &levels)));

@@ -57,7 +57,7 @@ pub(super) fn main(arguments: &[OsString]) -> ExitCode {
         Ok(Call::Compile(request)) => compile(&request),
         Ok(Call::Help) => {
             print(arguments::HELP);
-            return Exit::SourceErrors.into();
+            return Exit::Failure.into();
         }
         Ok(Call::SearchDirectories) => {
             let program = arguments.first().map(Path::new).and_then(Path::parent);
@@ -71,7 +71,7 @@ pub(super) fn main(arguments: &[OsString]) -> ExitCode {
         Err(text) => {
             // Nobody is left to be told when stderr is gone.
             let _ = io::stderr().write_all(text.as_bytes());
-            Exit::SourceErrors
+            Exit::Failure
         }
     }
     .into()
