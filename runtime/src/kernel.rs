@@ -190,6 +190,7 @@ impl Kernel {
     /// Something outside has changed what the next tick may depend on.
     pub(crate) fn disturb(&mut self) {
         self.is_settled = false;
+        self.servo.still.interrupt();
     }
 
     /// Whether text, motion, a recording or a request to the PC is still under way.

@@ -1,5 +1,6 @@
 //! Typed access to guest structures. The bytes in guest memory are the only copy.
 
+use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::structs::Chan;
 use kmotiondef::variables::CHAN;
 use kmotiondef::{AxisId, Field, GuestAddr, GuestType, Place, Plain, Scalar};
@@ -45,58 +46,63 @@ impl Typed for GuestMemory {
     }
 }
 
-/// Bytes of an axis' structure.
+/// Bytes of an axis' structure, and of all of them.
 const CHAN_SIZE: usize = Chan::SIZE as usize;
+pub(crate) const CHANS_SIZE: usize = CHAN_SIZE * N_CHANNELS;
 
 /// The structure of an axis, found once for the many fields that a tick needs.
-pub(crate) struct AxisView<'a> {
-    bytes: &'a mut [u8; CHAN_SIZE],
-    /// Whether a store has changed anything.
-    pub(crate) changed: bool,
-}
+pub(crate) struct AxisView<'a>(&'a mut [u8; CHAN_SIZE]);
 
 impl<'a> AxisView<'a> {
     /// The structure of `axis` in `memory`.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn of(memory: &'a mut GuestMemory, axis: AxisId) -> Self {
-        let bytes = memory.block_mut(chan(axis).address()).expect("the axis structures lie in RAM");
-        Self { bytes, changed: false }
+        // All eight, because their address is a constant: where they lie is known while this is compiled.
+        let all: &mut [u8; CHANS_SIZE] =
+            memory.block_mut(CHAN.address()).expect("the axis structures lie in RAM");
+        let (chans, _) = all.as_chunks_mut();
+        Self(&mut chans[axis.index()])
     }
 
     /// The value of a field.
     #[inline(always)]
     pub(crate) fn get<T: Scalar>(&self, field: Field<T>) -> T::Value {
-        T::Value::from_bits(match T::SIZE {
-            1 => u64::from(self.bytes[field.offset() as usize]),
-            2 => u64::from(u16::from_le_bytes(self.chunk(field.offset()))),
-            4 => u64::from(u32::from_le_bytes(self.chunk(field.offset()))),
-            _ => u64::from_le_bytes(self.chunk(field.offset())),
-        })
+        field_of(self.0, field)
     }
 
     /// Stores a value in a field.
     #[inline(always)]
     pub(crate) fn set<T: Scalar>(&mut self, field: Field<T>, value: T::Value) {
-        let (offset, bits) = (field.offset(), value.into_bits());
+        let (offset, bits) = (field.offset() as usize, value.into_bits());
         match T::SIZE {
-            1 => self.set_chunk(offset, (bits as u8).to_le_bytes()),
-            2 => self.set_chunk(offset, (bits as u16).to_le_bytes()),
-            4 => self.set_chunk(offset, (bits as u32).to_le_bytes()),
-            _ => self.set_chunk(offset, bits.to_le_bytes()),
+            1 => self.0[offset] = bits as u8,
+            2 => set_chunk(self.0, offset, (bits as u16).to_le_bytes()),
+            4 => set_chunk(self.0, offset, (bits as u32).to_le_bytes()),
+            _ => set_chunk(self.0, offset, bits.to_le_bytes()),
         }
     }
+}
 
-    #[inline(always)]
-    fn chunk<const N: usize>(&self, offset: u32) -> [u8; N] {
-        *self.bytes[offset as usize..].first_chunk().expect("a field lies in its structure")
-    }
+#[inline(always)]
+fn set_chunk<const N: usize>(bytes: &mut [u8], offset: usize, value: [u8; N]) {
+    *bytes[offset..].first_chunk_mut().expect("a field lies in its structure") = value;
+}
 
-    #[inline(always)]
-    fn set_chunk<const N: usize>(&mut self, offset: u32, value: [u8; N]) {
-        let place = self.bytes[offset as usize..].first_chunk_mut().expect("a field lies in its structure");
-        self.changed |= *place != value;
-        *place = value;
-    }
+/// The value of a field in the bytes of its structure.
+#[inline(always)]
+pub(crate) fn field_of<T: Scalar, const N: usize>(bytes: &[u8; N], field: Field<T>) -> T::Value {
+    let offset = field.offset() as usize;
+    T::Value::from_bits(match T::SIZE {
+        1 => u64::from(bytes[offset]),
+        2 => u64::from(u16::from_le_bytes(chunk(bytes, offset))),
+        4 => u64::from(u32::from_le_bytes(chunk(bytes, offset))),
+        _ => u64::from_le_bytes(chunk(bytes, offset)),
+    })
+}
+
+#[inline(always)]
+fn chunk<const N: usize>(bytes: &[u8], offset: usize) -> [u8; N] {
+    *bytes[offset..].first_chunk().expect("a field lies in its structure")
 }
 
 /// The structure of an axis.

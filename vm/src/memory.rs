@@ -228,6 +228,17 @@ impl GuestMemory {
     /// A block of RAM for the kernel, found once for many accesses; `None` unless all of it is one region's.
     #[must_use]
     #[inline]
+    pub fn block<const N: usize>(&self, addr: GuestAddr) -> Option<&[u8; N]> {
+        let address = addr.get();
+        if let Some(block) = self.sdram.get(index(address.wrapping_sub(SDRAM_BASE))..) {
+            return block.first_chunk();
+        }
+        self.iram.get(index(address.wrapping_sub(IRAM_BASE))..)?.first_chunk()
+    }
+
+    /// [`block`](Self::block), to change it.
+    #[must_use]
+    #[inline]
     pub fn block_mut<const N: usize>(&mut self, addr: GuestAddr) -> Option<&mut [u8; N]> {
         let address = addr.get();
         if let Some(block) = self.iram.get_mut(index(address.wrapping_sub(IRAM_BASE))..) {

@@ -58,6 +58,7 @@ pub(crate) fn enable(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId
     memory.set_axis(axis, Chan::DIRECTION_OF_MOTION, 0);
     memory.set_axis(axis, Chan::LAST_VEL, 0.0);
     memory.set_axis(axis, Chan::ENABLE, 1);
+    kernel.servo.still.interrupt();
     kernel.servo.axes[axis.index()] = AxisMemory::rest(dest);
     kernel.servo.plants[axis.index()].refer_to(dest);
 }
@@ -81,6 +82,7 @@ pub(crate) fn zero(kernel: &mut Kernel, caller: &mut Caller<'_>, axis: i32) {
     memory.set_axis(axis, Chan::LAST_NON_ZERO_DIR, 0);
     memory.set_axis(axis, Chan::DIRECTION_OF_MOTION, 0);
     memory.set_axis(axis, Chan::PREV_BACKLASH_DEST, 0.0);
+    kernel.servo.still.interrupt();
     kernel.servo.axes[axis.index()] = AxisMemory::rest(0.0);
     kernel.servo.plants[axis.index()].refer_to(0.0);
 }
@@ -89,6 +91,7 @@ pub(crate) fn reset_filters(kernel: &mut Kernel, caller: &mut Caller<'_>, axis: 
     let Some(axis) = checked(kernel, caller, "ResetFilters", axis) else { return };
     clear_filters(caller.memory, axis);
     let dest = caller.memory.axis(axis, Chan::DEST);
+    kernel.servo.still.interrupt();
     kernel.servo.axes[axis.index()] = AxisMemory::rest(dest);
 }
 

@@ -50,9 +50,22 @@ pub(crate) fn advance(own: &AxisMemory, chan: &mut AxisView<'_>, command: f64) -
 }
 
 /// One tick of a second-order filter, direct form II.
+#[inline]
 fn filter(chan: &mut AxisView<'_>, iir: Field<Iir>, input: f64) -> f64 {
     let get = |chan: &AxisView<'_>, field: Field<f32>| f64::from(chan.get(iir.field(field)));
     let (d0, d1) = (get(chan, Iir::D0), get(chan, Iir::D1));
+    let is_zero = |field| chan.get(iir.field(field)) == 0.0;
+    let is_plain = chan.get(iir.field(Iir::B0)) == 1.0
+        && is_zero(Iir::A1)
+        && is_zero(Iir::A2)
+        && is_zero(Iir::B1)
+        && is_zero(Iir::B2);
+    if is_plain && (d0 + d1).is_finite() {
+        // Not a filter, as at power-up; most are like that.
+        chan.set(iir.field(Iir::D1), d0 as f32);
+        chan.set(iir.field(Iir::D0), input as f32);
+        return input;
+    }
     let inner = input + get(chan, Iir::A1) * d0 + get(chan, Iir::A2) * d1;
     let output = get(chan, Iir::B0) * inner + get(chan, Iir::B1) * d0 + get(chan, Iir::B2) * d1;
     chan.set(iir.field(Iir::D1), d0 as f32);

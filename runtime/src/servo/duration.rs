@@ -4,13 +4,14 @@
 //! and input modes need (`servo_cycles` of the recorded thread measurements; means at rest, by
 //! output mode, for an axis without input; reading an encoder adds to that).
 
+use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::modes::InputMode;
 use kmotiondef::structs::Chan;
 use kmotiondef::variables::CHAN;
-use kmotiondef::{AxisId, Cycles};
+use kmotiondef::{Cycles, GuestType};
 use vm::memory::GuestMemory;
 
-use crate::views::Typed;
+use crate::views::field_of;
 
 /// Without an enabled axis.
 const IDLE: i64 = 2006;
@@ -21,14 +22,13 @@ const ENCODER: i64 = 44;
 
 /// What the servo interrupt takes of a tick.
 pub(crate) fn duration(memory: &GuestMemory) -> Cycles {
-    let enabled = AxisId::all()
-        .map(|axis| CHAN.element(axis.index()))
-        .filter(|axis| memory.get(axis.field(Chan::ENABLE)) != 0);
-    let axes = enabled.map(|axis| {
-        let mode = usize::try_from(memory.get(axis.field(Chan::OUTPUT_MODE))).unwrap_or_default();
+    const SIZE: usize = Chan::SIZE as usize;
+    let Some(all) = memory.block::<{ SIZE * N_CHANNELS }>(CHAN.address()) else { return Cycles::new(IDLE) };
+    let enabled = all.as_chunks::<SIZE>().0.iter().filter(|chan| field_of(chan, Chan::ENABLE) != 0);
+    let axes = enabled.map(|chan| {
+        let mode = usize::try_from(field_of(chan, Chan::OUTPUT_MODE)).unwrap_or_default();
         let output = BY_OUTPUT_MODE.get(mode).copied().unwrap_or_default();
-        let reads_encoder =
-            InputMode::new(memory.get(axis.field(Chan::INPUT_MODE))) == Some(InputMode::Encoder);
+        let reads_encoder = InputMode::new(field_of(chan, Chan::INPUT_MODE)) == Some(InputMode::Encoder);
         output + if reads_encoder { ENCODER } else { 0 }
     });
     Cycles::new(IDLE + axes.sum::<i64>())
@@ -36,7 +36,10 @@ pub(crate) fn duration(memory: &GuestMemory) -> Cycles {
 
 #[cfg(test)]
 mod tests {
+    use kmotiondef::AxisId;
+
     use super::*;
+    use crate::views::Typed;
 
     #[test]
     fn enabled_axes_cost_what_was_measured() {

@@ -6,26 +6,28 @@ use vm::memory::GuestMemory;
 
 use super::profile::{MAX_STATES, Mode, Point, State};
 use super::trajectory::{Approach, Cursor, Step, point, step};
-use crate::views::{AxisView, Typed};
+use crate::views::{AxisView, Typed, field_of};
 
 /// The state list of an axis.
 fn list(memory: &GuestMemory, axis: AxisId) -> Place<[TripCoeff; MAX_STATES]> {
     Place::new(memory.axis(axis, Chan::C))
 }
 
-/// Reads one state; beyond the list it has ended.
+/// Reads one state; beyond the list, and outside memory, it has ended.
+#[inline]
 fn read(memory: &GuestMemory, base: GuestAddr, index: usize) -> State {
-    let place: Place<TripCoeff> = Place::new(base.offset(TripCoeff::SIZE.wrapping_mul(index as u32)));
-    if index >= MAX_STATES {
+    const SIZE: usize = TripCoeff::SIZE as usize;
+    let address = base.offset(TripCoeff::SIZE.wrapping_mul(index as u32));
+    let Some(bytes) = memory.block::<SIZE>(address).filter(|_| index < MAX_STATES) else {
         return State::END;
-    }
+    };
     State {
-        mode: Mode::from_number(memory.get(place.field(TripCoeff::TRAJECTORY_MODE))),
-        t: memory.get(place.field(TripCoeff::T)),
-        a: memory.get(place.field(TripCoeff::A)),
-        b: memory.get(place.field(TripCoeff::B)),
-        c: memory.get(place.field(TripCoeff::C)),
-        d: memory.get(place.field(TripCoeff::D)),
+        mode: Mode::from_number(field_of(bytes, TripCoeff::TRAJECTORY_MODE)),
+        t: field_of(bytes, TripCoeff::T),
+        a: field_of(bytes, TripCoeff::A),
+        b: field_of(bytes, TripCoeff::B),
+        c: field_of(bytes, TripCoeff::C),
+        d: field_of(bytes, TripCoeff::D),
     }
 }
 

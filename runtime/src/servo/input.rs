@@ -9,9 +9,9 @@ use vm::memory::GuestMemory;
 use super::plant::Plant;
 use crate::views::{AxisView, Typed};
 
-/// Takes the position from the axis' input; whether it has changed.
-pub(crate) fn measure(plant: &mut Plant, memory: &mut GuestMemory, axis: AxisId) -> bool {
-    match InputMode::new(memory.axis(axis, Chan::INPUT_MODE)) {
+/// Takes the position from the axis' input.
+pub(crate) fn measure(plant: &mut Plant, memory: &mut GuestMemory, axis: AxisId) {
+    match InputMode::new(AxisView::of(memory, axis).get(Chan::INPUT_MODE)) {
         Some(InputMode::Encoder) => count(plant, memory, axis),
         Some(InputMode::Adc) => {
             let input = f64::from(converted(memory, memory.axis(axis, Chan::INPUT_CHAN0)));
@@ -20,20 +20,18 @@ pub(crate) fn measure(plant: &mut Plant, memory: &mut GuestMemory, axis: AxisId)
             let position = f64::from(chan.get(Chan::INPUT_GAIN0)) * input + offset;
             chan.set(Chan::POSITION, position);
             plant.note_position(position);
-            chan.changed
         }
         Some(InputMode::Resolver) => {
             let angle = resolver_angle(memory, axis);
-            let before = memory.axis(axis, Chan::POSITION);
             crate::firmware::motion::turn_resolver(memory, axis, angle);
-            memory.axis(axis, Chan::POSITION) != before
         }
-        Some(InputMode::None | InputMode::User) | None => false,
+        Some(InputMode::None | InputMode::User) | None => {}
     }
 }
 
 /// Adds what the encoder's register has counted since the last tick.
-fn count(plant: &mut Plant, memory: &mut GuestMemory, axis: AxisId) -> bool {
+#[inline]
+fn count(plant: &mut Plant, memory: &mut GuestMemory, axis: AxisId) {
     let mut chan = AxisView::of(memory, axis);
     let gain = f64::from(chan.get(Chan::INPUT_GAIN0));
     let count = plant.encoder(gain);
@@ -44,7 +42,6 @@ fn count(plant: &mut Plant, memory: &mut GuestMemory, axis: AxisId) -> bool {
         chan.set(Chan::POSITION, position);
         plant.note_position(position);
     }
-    chan.changed
 }
 
 /// An analog input, −2048 to 2047; 0 for a channel that does not exist.

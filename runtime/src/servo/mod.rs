@@ -20,6 +20,7 @@ mod recorded;
 mod recorded_servo;
 mod recorder;
 mod slave;
+mod still;
 pub(crate) mod trajectory;
 
 use kmotiondef::limits::N_CHANNELS;
@@ -30,7 +31,8 @@ use vm::firmware::TickContext;
 use vm::memory::GuestMemory;
 
 use crate::kernel::Kernel;
-use crate::servo::plant::Plant;
+use crate::servo::plant::{Drive, Plant};
+use crate::servo::still::Stillness;
 use crate::views::AxisView;
 
 pub(crate) use duration::duration;
@@ -58,11 +60,12 @@ impl AxisMemory {
 }
 
 /// What the servo remembers beside guest memory.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Servo {
     pub(crate) axes: [AxisMemory; N_CHANNELS],
     pub(crate) plants: [Plant; N_CHANNELS],
     pub(crate) coordinated: coordinated::Coordinated,
+    pub(crate) still: Stillness,
 }
 
 impl Servo {
@@ -77,6 +80,14 @@ impl Servo {
 /// One tick of the servo; whether anything changed, so that the next tick may change something too.
 pub(crate) fn tick(kernel: &mut Kernel, context: &mut TickContext<'_>) -> bool {
     let memory = &mut *context.memory;
+    let has_path = !kernel.servo.coordinated.is_idle(memory);
+    let moved = (has_path || !kernel.servo.still.lasts(memory)) && run_axes(kernel, memory, context.now);
+    moved | recorder::sample(memory)
+}
+
+/// One tick of all axes; whether anything changed.
+fn run_axes(kernel: &mut Kernel, memory: &mut GuestMemory, now: Cycles) -> bool {
+    kernel.servo.still.begin(memory);
     let mut changed = false;
     let mut has_slaves = false;
     for axis in AxisId::all() {
@@ -95,54 +106,61 @@ pub(crate) fn tick(kernel: &mut Kernel, context: &mut TickContext<'_>) -> bool {
         slave::follow(&kernel.servo, memory);
     }
     for axis in AxisId::all() {
-        changed |= run_axis(kernel, memory, axis, context.now);
+        changed |= run_axis(kernel, memory, axis, now);
     }
-    changed | recorder::sample(memory)
+    if changed {
+        kernel.servo.still.interrupt();
+        return true;
+    }
+    !kernel.servo.still.end(memory)
 }
 
-/// Position, protection, compensation and output of one axis; whether anything changed.
+/// Position, protection, compensation and output of one axis; whether it moves or is told something.
 fn run_axis(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId, now: Cycles) -> bool {
-    let moved = input::measure(&mut kernel.servo.plants[axis.index()], memory, axis);
+    let (own, plant) = (&mut kernel.servo.axes[axis.index()], &mut kernel.servo.plants[axis.index()]);
+    input::measure(plant, memory, axis);
     let mut chan = AxisView::of(memory, axis);
-    let turned = direction(&mut kernel.servo.axes[axis.index()], &mut chan);
+    let moves = direction(own, &mut chan);
     if chan.get(Chan::ENABLE) == 0 {
-        return moved | turned | chan.changed;
+        plant.drive = Drive::None;
+        return moves;
     }
     backlash::advance(&mut chan);
     let command = command(&chan);
     let mode = OutputMode::new(chan.get(Chan::OUTPUT_MODE));
     let is_open_loop = matches!(mode, None | Some(OutputMode::Microstep | OutputMode::StepDir));
-    let is_protected = limits::may_act(&chan) || !is_open_loop && limits::follows_badly(&mut chan, command);
-    let mut changed = moved | turned | chan.changed | is_protected;
-    if is_protected && !limits::check(kernel, memory, axis, now, (!is_open_loop).then_some(command)) {
-        return true;
+    if limits::may_act(&chan) || !is_open_loop && limits::follows_badly(&mut chan, command) {
+        kernel.servo.still.watch();
+        if !limits::check(kernel, memory, axis, now, (!is_open_loop).then_some(command)) {
+            return true;
+        }
+        chan = AxisView::of(memory, axis);
     }
-    let mut chan = AxisView::of(memory, axis);
     let output = if is_open_loop {
         chan.set(Chan::OUTPUT, 0.0);
         0.0
     } else {
         compensation::advance(&kernel.servo.axes[axis.index()], &mut chan, command)
     };
-    changed |= chan.changed;
-    output::drive(kernel, memory, axis, command, output);
-    let mut chan = AxisView::of(memory, axis);
     chan.set(Chan::PREV_DEST, chan.get(Chan::DEST));
-    changed | chan.changed
+    output::drive(kernel, memory, axis, command, output);
+    moves
 }
 
 /// What the servo is to follow.
+#[inline]
 fn command(chan: &AxisView<'_>) -> f64 {
     chan.get(Chan::DEST) + f64::from(chan.get(Chan::BACKLASH)) + chan.get(Chan::DEST_OFFSET)
 }
 
 /// Velocity and direction of the destination in this tick; whether its velocity changes.
+#[inline]
 fn direction(own: &mut AxisMemory, chan: &mut AxisView<'_>) -> bool {
     let dest = chan.get(Chan::DEST);
     let last = own.dest;
     chan.set(Chan::LAST_DEST, last);
     own.last_velocity = own.velocity;
-    own.velocity = (dest - last) / TIMEBASE;
+    own.velocity = if dest == last { 0.0 } else { (dest - last) / TIMEBASE };
     own.dest = dest;
     chan.set(Chan::LAST_VEL, own.velocity as f32);
     let sign = i32::from(dest > last) - i32::from(dest < last);

@@ -14,7 +14,7 @@ use vm::memory::GuestMemory;
 use super::plant::Drive;
 use crate::firmware::io::{antiphase, current, recirculate, store_pwm};
 use crate::kernel::Kernel;
-use crate::views::Typed;
+use crate::views::{AxisView, Typed};
 
 /// The first PWM channel of a SnapAmp: its loops control current.
 const SNAP_AMP: i32 = 8;
@@ -23,9 +23,10 @@ const VECTOR: u32 = 0x8000_0000;
 
 /// Puts out one tick of an enabled axis.
 pub(crate) fn drive(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId, command: f64, output: f32) {
-    let channel = memory.axis(axis, Chan::OUTPUT_CHAN0);
+    let chan = AxisView::of(memory, axis);
+    let channel = chan.get(Chan::OUTPUT_CHAN0);
+    let mode = OutputMode::new(chan.get(Chan::OUTPUT_MODE));
     let plant = &mut kernel.servo.plants[axis.index()];
-    let mode = OutputMode::new(memory.axis(axis, Chan::OUTPUT_MODE));
     plant.drive = match mode {
         None | Some(OutputMode::None) => Drive::None,
         Some(OutputMode::StepDir | OutputMode::Microstep) => Drive::Steps(command),
@@ -105,6 +106,7 @@ pub(crate) fn four_phase(memory: &mut GuestMemory, axis: AxisId, v: f32, angle: 
 /// Disables an axis: its output goes to zero; profile, destination and filters stay as they are.
 pub(crate) fn switch_off(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId) {
     memory.set_axis(axis, Chan::ENABLE, 0);
+    kernel.servo.still.interrupt();
     kernel.servo.plants[axis.index()].drive = Drive::None;
     let channels = [memory.axis(axis, Chan::OUTPUT_CHAN0), memory.axis(axis, Chan::OUTPUT_CHAN1)];
     match OutputMode::new(memory.axis(axis, Chan::OUTPUT_MODE)) {

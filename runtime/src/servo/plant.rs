@@ -42,22 +42,22 @@ pub(crate) struct Plant {
     origin: f64,
     /// Position units of one count, and what the encoder has counted at the load `counted`.
     gain: f64,
-    register: f64,
+    register: i64,
     counted: f64,
     /// Where the gain last changed, and the count there.
     base: f64,
-    base_count: f64,
+    base_count: i64,
     pub(crate) drive: Drive,
 }
 
 impl Plant {
     /// The register of the encoder that the load turns; `gain` position units are one count.
+    #[inline]
     pub(crate) fn encoder(&mut self, gain: f64) -> i8 {
         if self.load != self.counted || gain != self.gain {
             self.count(gain);
         }
-        // The register is the low byte.
-        (self.register as i64) as i8
+        self.register as i8
     }
 
     /// Counts to where the load is. Another gain counts from here on: the register does not jump.
@@ -67,7 +67,10 @@ impl Plant {
         }
         self.counted = self.load;
         if gain != 0.0 && gain.is_finite() {
-            self.register = self.base_count + libm::floor((self.load - self.base) / gain + 0.5);
+            let counts = (self.load - self.base) / gain + 0.5;
+            let whole = counts as i64;
+            let whole = if counts < whole as f64 { whole - 1 } else { whole };
+            self.register = self.base_count.wrapping_add(whole);
         }
     }
 
@@ -84,6 +87,7 @@ impl Plant {
 
     /// Moves the load by what the last tick put out, and takes up a position that a program has written; whether
     /// anything changed.
+    #[inline]
     pub(crate) fn advance(&mut self, chan: &AxisView<'_>) -> bool {
         let position = chan.get(Chan::POSITION);
         let was_written = position != self.position;

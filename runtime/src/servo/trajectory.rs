@@ -41,6 +41,7 @@ pub(crate) enum Step {
 }
 
 /// Advances a motion by one tick; `state` reads the list, `approach` what only an exponential state needs.
+#[inline]
 pub(crate) fn step(
     cursor: Cursor,
     approach: impl FnOnce() -> Approach,

@@ -19,6 +19,9 @@ impl Bits for Kernel {
 
 /// One tick of the path. Says whether it has moved or will.
 pub(crate) fn tick(kernel: &mut Kernel, memory: &mut GuestMemory) -> bool {
+    if kernel.servo.coordinated.is_idle(memory) {
+        return false;
+    }
     let mut coordinated = std::mem::take(&mut kernel.servo.coordinated);
     let moves = coordinated.tick(memory, kernel);
     kernel.servo.coordinated = coordinated;

@@ -29,11 +29,13 @@ enum Halt {
 }
 
 impl Coordinated {
+    /// Whether there is no path.
+    pub(crate) fn is_idle(&self, memory: &GuestMemory) -> bool {
+        self.spline.is_none() && memory.get(COORD_SYSTEM0).is_null()
+    }
+
     /// Moves the axes of the path by one tick. Says whether the path has moved or will.
     pub(crate) fn tick(&mut self, memory: &mut GuestMemory, bits: &mut impl Bits) -> bool {
-        if self.spline.is_none() && memory.get(COORD_SYSTEM0).is_null() {
-            return false;
-        }
         let before = clock(memory);
         self.step(memory, bits);
         self.spline.is_some() || before != clock(memory)

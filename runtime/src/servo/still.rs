@@ -1,0 +1,96 @@
+//! Standing still: a tick that would change nothing is not computed.
+//!
+//! A tick of the axes is a function of what they have in guest memory and of what the servo remembers. If one tick has
+//! changed nothing, neither will the next, until somebody else writes there. So it is enough to compare: the axis
+//! structures, the words of the outputs, which an axis writes again in each tick, and the analog inputs.
+
+use kmotiondef::GuestAddr;
+use kmotiondef::variables::{ADC_BUFFER_IN, CHAN, DAC_BUFFER, LAST_PWM};
+use vm::memory::GuestMemory;
+
+use crate::views::CHANS_SIZE;
+
+/// Bytes of the amplifiers' words, the analog outputs and the analog inputs.
+const PWM_SIZE: usize = 64;
+const DAC_SIZE: usize = 16;
+const ADC_SIZE: usize = 32;
+
+/// What the axes had in memory behind the last tick that was computed.
+#[derive(Clone, Debug)]
+pub(crate) struct Stillness {
+    chans: Box<[u8; CHANS_SIZE]>,
+    pwm: [u8; PWM_SIZE],
+    dac: [u8; DAC_SIZE],
+    adc: [u8; ADC_SIZE],
+    /// Whether that is known.
+    is_known: bool,
+    /// Whether that tick began with it and changed nothing.
+    is_still: bool,
+    is_watching: bool,
+}
+
+impl Default for Stillness {
+    fn default() -> Self {
+        Self {
+            chans: Box::new([0; CHANS_SIZE]),
+            pwm: [0; PWM_SIZE],
+            dac: [0; DAC_SIZE],
+            adc: [0; ADC_SIZE],
+            is_known: false,
+            is_still: false,
+            is_watching: false,
+        }
+    }
+}
+
+impl Stillness {
+    /// Whether the last tick changed nothing and nobody has written anything since.
+    pub(crate) fn lasts(&self, memory: &GuestMemory) -> bool {
+        self.is_still && !self.is_watching && self.is_seen(memory)
+    }
+
+    /// A tick is computed: notes whether it begins with what the last one has left.
+    pub(crate) fn begin(&mut self, memory: &GuestMemory) {
+        self.is_known = self.is_known && self.is_seen(memory);
+        self.is_still = false;
+        self.is_watching = false;
+    }
+
+    /// Something moves, or has been changed outside of memory.
+    pub(crate) const fn interrupt(&mut self) {
+        self.is_known = false;
+        self.is_still = false;
+    }
+
+    /// An axis depends on inputs that are not compared: every tick is computed.
+    pub(crate) const fn watch(&mut self) {
+        self.is_watching = true;
+    }
+
+    /// The tick has moved nothing: whether it has changed nothing at all.
+    pub(crate) fn end(&mut self, memory: &GuestMemory) -> bool {
+        self.is_still = self.is_known && self.is_seen(memory);
+        if !self.is_still {
+            copy(memory, CHAN.address(), &mut self.chans);
+            copy(memory, LAST_PWM.address(), &mut self.pwm);
+            copy(memory, DAC_BUFFER.address(), &mut self.dac);
+            copy(memory, ADC_BUFFER_IN.address(), &mut self.adc);
+            self.is_known = true;
+        }
+        self.is_still
+    }
+
+    /// Whether memory holds what was noted.
+    fn is_seen(&self, memory: &GuestMemory) -> bool {
+        memory.block(CHAN.address()) == Some(&*self.chans)
+            && memory.block(LAST_PWM.address()) == Some(&self.pwm)
+            && memory.block(DAC_BUFFER.address()) == Some(&self.dac)
+            && memory.block(ADC_BUFFER_IN.address()) == Some(&self.adc)
+    }
+}
+
+fn copy<const N: usize>(memory: &GuestMemory, address: GuestAddr, to: &mut [u8; N]) {
+    if let Some(bytes) = memory.block(address) {
+        *to = *bytes;
+    }
+}
