@@ -12,6 +12,7 @@ mod events;
 mod exit;
 mod explain;
 mod firmware;
+mod init;
 mod inspect;
 mod options;
 mod output;
@@ -61,6 +62,8 @@ enum Command {
     Firmware(firmware::Arguments),
     /// Run programs and compare their consoles with what is expected
     Test(test::Arguments),
+    /// Make a project folder ready for an editor and for CI
+    Init(init::Arguments),
     #[command(flatten)]
     Planned(planned::Command),
 }
@@ -75,6 +78,7 @@ impl Command {
             Self::Diff(arguments) => diff::diff(arguments),
             Self::Firmware(arguments) => firmware::firmware(arguments),
             Self::Test(arguments) => test::test(arguments),
+            Self::Init(arguments) => init::init(arguments),
             Self::Planned(command) => command.refuse(),
         }
     }

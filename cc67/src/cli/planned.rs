@@ -27,7 +27,6 @@ macro_rules! planned_commands {
 
 planned_commands! {
     Console = "console";
-    Init = "init";
     Plot = "plot";
 }
 
