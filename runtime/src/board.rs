@@ -181,9 +181,7 @@ impl<E: Engine> Board<E> {
             self.step(limit);
             self.deliver(sink);
         };
-        let (kernel, context) = self.machine.firmware_mut();
-        kernel.flush_console(context.now);
-        self.deliver(sink);
+        self.flush(sink);
         end
     }
 
@@ -250,6 +248,26 @@ impl<E: Engine> Board<E> {
     #[must_use]
     pub fn is_receiving(&self) -> bool {
         self.machine.firmware().usb.is_busy()
+    }
+
+    /// Whether a command waits for its data lines, so that the next line is one.
+    #[must_use]
+    pub fn is_in_command(&self) -> bool {
+        self.machine.firmware().usb.is_in_command()
+    }
+
+    /// Sends the console text that waits, the unfinished line included.
+    pub fn flush(&mut self, sink: &mut dyn FnMut(Event)) {
+        let (kernel, context) = self.machine.firmware_mut();
+        kernel.flush_console(context.now);
+        self.deliver(sink);
+    }
+
+    /// Stops the user threads.
+    pub fn kill(&mut self, threads: impl IntoIterator<Item = ThreadId>) {
+        for thread in threads {
+            self.machine.threads_mut().pause(thread);
+        }
     }
 
     /// Runs until `is_over` says so of the events of a tick, or to the end of tick `limit`; whether it said so.

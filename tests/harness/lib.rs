@@ -6,6 +6,7 @@ pub mod vendor;
 
 use std::ffi::OsStr;
 use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
@@ -47,13 +48,32 @@ pub fn run_in<A: AsRef<OsStr>>(
     folder: &Path,
     arguments: impl IntoIterator<Item = A>,
 ) -> Output {
-    let output = Command::new(binary)
+    run_with_input(binary, folder, arguments, "")
+}
+
+/// Runs the command at `binary` in folder `folder`, with a text on its standard input.
+///
+/// # Panics
+/// If the command does not start.
+#[must_use]
+pub fn run_with_input<A: AsRef<OsStr>>(
+    binary: &str,
+    folder: &Path,
+    arguments: impl IntoIterator<Item = A>,
+    input: &str,
+) -> Output {
+    let mut child = Command::new(binary)
         .args(arguments)
         .current_dir(folder)
         .env("NO_COLOR", "1")
-        .stdin(Stdio::null())
-        .output()
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
         .expect("the command under test starts");
+    // A command that does not read its input is no failure of the test.
+    let _ = child.stdin.take().expect("it is piped").write_all(input.as_bytes());
+    let output = child.wait_with_output().expect("the command under test ends");
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).replace("\r\n", "\n");
     Output {
         code: output.status.code().unwrap_or(-1),

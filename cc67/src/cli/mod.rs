@@ -6,6 +6,7 @@
 
 mod build;
 mod check;
+mod console;
 mod diff;
 mod drop_in;
 mod events;
@@ -54,6 +55,8 @@ enum Command {
     Build(build::Arguments),
     /// Compile programs and report what is wrong with them
     Check(check::Arguments),
+    /// Talk to a simulated board: script commands, programs, what they print; interactive or from a script
+    Console(console::Arguments),
     /// Show what is in an image: headers, symbols, lines, instructions, calls, stack
     Inspect(inspect::Arguments),
     /// Show how two images differ
@@ -74,6 +77,7 @@ impl Command {
             Self::Run(arguments) => run::run(arguments),
             Self::Build(arguments) => build::build(arguments),
             Self::Check(arguments) => check::check(arguments),
+            Self::Console(arguments) => console::console(arguments),
             Self::Inspect(arguments) => inspect::inspect(arguments),
             Self::Diff(arguments) => diff::diff(arguments),
             Self::Firmware(arguments) => firmware::firmware(arguments),

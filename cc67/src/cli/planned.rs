@@ -26,7 +26,6 @@ macro_rules! planned_commands {
 }
 
 planned_commands! {
-    Console = "console";
     Plot = "plot";
 }
 

@@ -23,10 +23,10 @@ use crate::render::Format;
 use crate::{Options, foreign, image};
 
 /// Seconds of board time after which a run without `--for` ends.
-const DEFAULT_LIMIT: f64 = 60.0;
+pub(super) const DEFAULT_LIMIT: f64 = 60.0;
 
 /// Seconds in a tick.
-const TIMEBASE: f64 = 90e-6;
+pub(super) const TIMEBASE: f64 = 90e-6;
 
 /// Arguments of `cc67 run`.
 #[derive(Debug, Args)]
@@ -87,7 +87,7 @@ impl EngineName {
     }
 }
 
-fn seconds(text: &str) -> Result<f64, String> {
+pub(super) fn seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(seconds) if seconds >= 0.0 && seconds.is_finite() => Ok(seconds),
         _ => Err("not a number of seconds".to_owned()),
@@ -100,7 +100,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit> {
     all.extend_from_slice(&arguments.load);
     let programs = assign(&all)?;
     let settings: Vec<_> = arguments.set.iter().map(|text| setting::parse(text)).collect::<Result<_>>()?;
-    let Some(images) = images(&programs, arguments)? else { return Ok(Exit::Failure) };
+    let Some(images) = images(&programs, &arguments.compiler)? else { return Ok(Exit::Failure) };
 
     let files = Box::new(Directory::new(&arguments.files));
     let machine = MachineConfig { shortcuts: !arguments.no_shortcuts, ..MachineConfig::default() };
@@ -144,11 +144,11 @@ impl Session<'_> {
 }
 
 /// The image of every program; `None` if a source has errors, after all have been compiled.
-fn images(programs: &[Program], arguments: &Arguments) -> Result<Option<Vec<Vec<u8>>>> {
-    let options = arguments.compiler.resolve()?;
+pub(super) fn images(programs: &[Program], compiler: &CompilerOptions) -> Result<Option<Vec<Vec<u8>>>> {
+    let options = compiler.resolve()?;
     options.firmware.check_version().context("`--firmware`")?;
-    let levels = arguments.compiler.levels()?;
-    let format = arguments.compiler.format();
+    let levels = compiler.levels()?;
+    let format = compiler.format();
     let mut images = Vec::new();
     let mut has_errors = false;
     for program in programs {
@@ -193,7 +193,7 @@ fn build(
 }
 
 /// Why an image is not loaded; of another tool's file, what it is.
-fn explain(program: &Program, image: &[u8], error: LoadError) -> anyhow::Error {
+pub(super) fn explain(program: &Program, image: &[u8], error: LoadError) -> anyhow::Error {
     match (&error, foreign::describe(image)) {
         (LoadError::NotAnImage(_), Some(what)) => {
             anyhow::anyhow!("{} is {what}, not an image of `cc67 build`", program.name())
