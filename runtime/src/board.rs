@@ -20,6 +20,7 @@ use crate::files::{HostFiles, NoFiles};
 use crate::kernel::{Kernel, Request};
 use crate::loader::{Fill, LoadError, Placed, prepare};
 use crate::power_up;
+use crate::stimulus::Stimulus;
 use crate::views::Typed;
 
 /// Settings of a board.
@@ -169,20 +170,33 @@ impl<E: Engine> Board<E> {
 
     /// Runs to the end of tick `limit` or until everything has ended; `sink` receives what happens.
     ///
-    /// At the end the console text still held is sent.
+    /// At the end the console text still held is sent, and the expectations of the stimulus are checked.
     pub fn run(&mut self, limit: Ticks, sink: &mut dyn FnMut(Event)) -> RunEnd {
-        let end = loop {
+        let end = self.run_part(limit, sink);
+        self.finish(sink);
+        end
+    }
+
+    /// Like [`run`](Self::run), for a run that goes on afterwards or is [finished](Self::finish).
+    pub fn run_part(&mut self, limit: Ticks, sink: &mut dyn FnMut(Event)) -> RunEnd {
+        loop {
             if self.has_ended() {
-                break RunEnd::AllEnded;
+                return RunEnd::AllEnded;
             }
             if self.machine.tick() >= limit {
-                break RunEnd::Limit;
+                return RunEnd::Limit;
             }
             self.step(limit);
             self.deliver(sink);
-        };
+        }
+    }
+
+    /// The run is over: sends the console text still held and checks the expectations of the stimulus.
+    pub fn finish(&mut self, sink: &mut dyn FnMut(Event)) {
         self.flush(sink);
-        end
+        let (kernel, mut context) = self.machine.firmware_mut();
+        kernel.finish(&mut context);
+        self.deliver(sink);
     }
 
     /// Runs to the end of the next tick in which something can happen, and does what was asked for there.
@@ -361,10 +375,17 @@ impl<E: Engine> Board<E> {
         is_inside
     }
 
+    /// Lets the world around the board act as a stimulus says, from now on.
+    pub fn play(&mut self, stimulus: Stimulus) {
+        let (kernel, context) = self.machine.firmware_mut();
+        kernel.play(stimulus, context.memory);
+    }
+
     /// Drives an input from outside.
     pub fn drive_input(&mut self, bit: Bit, level: bool) {
-        let (kernel, _) = self.machine.firmware_mut();
-        kernel.pins.drive(bit, level);
+        let (kernel, context) = self.machine.firmware_mut();
+        kernel.pins.drive(bit, level, context.now);
+        kernel.settle(context.now);
         kernel.disturb();
     }
 
@@ -373,6 +394,11 @@ impl<E: Engine> Board<E> {
         let (kernel, context) = self.machine.firmware_mut();
         kernel.uart.arrive(bytes, context.now);
         kernel.disturb();
+    }
+
+    /// Tells every character that the UART sends from now on, as an event.
+    pub fn hear_uart(&mut self) {
+        self.machine.firmware_mut().0.hear_uart();
     }
 
     /// The level of a bit.

@@ -36,6 +36,10 @@ pub enum EventKind {
     Diagnostic(String),
     /// A thread was stopped by a trap.
     Trap(Trap),
+    /// The UART has sent a character; told to who asked for it.
+    UartSent(u8),
+    /// Something that the stimulus expects is not so.
+    Unmet(String),
     /// The PC did something that a program asked for.
     Host(String),
 }

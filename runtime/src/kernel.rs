@@ -19,7 +19,10 @@ use vm::trap::{Trap, TrapKind};
 
 use crate::commands::{self, Downloads, Experiment, Link};
 use crate::console::Console;
+use crate::device::attached::{Attached, Outside};
+use crate::device::changes::BitChange;
 use crate::device::fpga::{Behind, Fpga};
+use crate::device::kanalog::Kanalog;
 use crate::device::konnect::Konnects;
 use crate::device::pins::Pins;
 use crate::device::snapamp::SnapAmps;
@@ -28,15 +31,20 @@ use crate::device::uart::Uart;
 use crate::dispatch::{HANDLERS, signatures};
 use crate::event::{Event, EventKind};
 use crate::files::{HostFiles, OpenFiles};
+use crate::firmware::io::bit_state;
 use crate::firmware::serial::{self, SerialService};
 use crate::heap::Heap;
 use crate::host::Host;
 use crate::servo::Servo;
+use crate::stimulus::{Player, Stimulus};
 use crate::views::Typed;
 
 /// What a register access costs beyond the instruction: 200 ns, a timer 100 ns.
 const FPGA_CYCLES: Cycles = Cycles::new(40);
 const TIMER_CYCLES: Cycles = Cycles::new(20);
+
+/// Edges that devices may answer at one instant.
+const EDGES_AT_ONCE: usize = 10_000;
 
 /// What a waiting call remembers until it is made again.
 #[derive(Clone, Debug, PartialEq)]
@@ -75,6 +83,13 @@ pub struct Kernel {
     pub(crate) serial: SerialService,
     pub(crate) snapamps: SnapAmps,
     pub(crate) konnects: Konnects,
+    pub(crate) kanalog: Kanalog,
+    /// Devices on pins.
+    attached: Vec<Box<dyn Attached>>,
+    /// Whether characters that the UART sends are told.
+    hears_uart: bool,
+    /// What the world does, if anything.
+    stimulus: Option<Box<Player>>,
     pub(crate) servo: Servo,
     pub(crate) heap: Heap,
     pub(crate) files: OpenFiles,
@@ -91,6 +106,8 @@ pub struct Kernel {
     pub(crate) random: u32,
     /// Where `strtok` goes on.
     pub(crate) token: GuestAddr,
+    /// When the present tick began.
+    pub(crate) tick_start: Cycles,
     /// When the present slice began.
     slice_start: Cycles,
     /// Whether the last tick changed nothing and no thread has run since.
@@ -113,6 +130,10 @@ impl Kernel {
             serial: SerialService::default(),
             snapamps: SnapAmps::default(),
             konnects: Konnects::default(),
+            kanalog: Kanalog::default(),
+            attached: Vec::new(),
+            hears_uart: false,
+            stimulus: None,
             servo: Servo::default(),
             heap: Heap::default(),
             files: OpenFiles::new(files),
@@ -125,6 +146,7 @@ impl Kernel {
             requests: Vec::new(),
             random: 1,
             token: GuestAddr::NULL,
+            tick_start: Cycles::default(),
             slice_start: Cycles::default(),
             is_settled: false,
             hinted: BTreeSet::new(),
@@ -160,8 +182,109 @@ impl Kernel {
         }
     }
 
+    /// Lets the world act as a stimulus says.
+    pub(crate) fn play(&mut self, stimulus: Stimulus, memory: &mut GuestMemory) {
+        let player = Player::new(stimulus, self, memory);
+        self.stimulus = Some(Box::new(player));
+        self.pins.changes.switch_on(memory);
+    }
+
+    /// The world's part of a tick; whether it did anything.
+    fn play_tick(&mut self, context: &mut TickContext<'_>) -> bool {
+        if !self.pins.changes.is_on() && !self.hears_uart {
+            return false;
+        }
+        self.pins.changes.sweep(context.memory, context.now);
+        self.settle(context.now);
+        self.run_devices(context.now);
+        let changes = self.pins.changes.take();
+        let Some(mut player) = self.stimulus.take() else { return false };
+        let acted = player.tick(self, context, &changes);
+        self.stimulus = Some(player);
+        acted
+    }
+
+    /// The run is over: what the stimulus expects then is checked.
+    pub(crate) fn finish(&mut self, context: &mut TickContext<'_>) {
+        if let Some(mut player) = self.stimulus.take() {
+            player.finish(self, context);
+            self.stimulus = Some(player);
+        }
+    }
+
+    /// Attaches a device and shows it what is high.
+    pub(crate) fn attach(&mut self, mut device: Box<dyn Attached>, memory: &GuestMemory, now: Cycles) {
+        self.pins.changes.switch_on(memory);
+        self.uart.listen();
+        let high = Bit::all().filter(|&bit| bit_state(self, memory, bit).0).collect::<Vec<_>>();
+        let (mut outside, _) = self.outside();
+        for bit in high {
+            device.edge(BitChange { at: now, bit, level: true }, &mut outside);
+        }
+        device.tick(now, &mut outside);
+        self.attached.push(device);
+        self.settle(now);
+    }
+
+    /// What devices reach, and the devices.
+    fn outside(&mut self) -> (Outside<'_>, &mut [Box<dyn Attached>]) {
+        let outside = Outside {
+            pins: &mut self.pins,
+            kanalog: &mut self.kanalog,
+            uart: &mut self.uart,
+            fpga: &self.fpga,
+            plants: &self.servo.plants,
+        };
+        (outside, &mut self.attached)
+    }
+
+    /// Bits may have changed: devices that listen to them answer.
+    pub(crate) fn settle(&mut self, now: Cycles) {
+        if self.attached.is_empty() {
+            return;
+        }
+        // Devices that answer each other for ever do so at one instant: that is where it is broken off.
+        for _ in 0..EDGES_AT_ONCE {
+            let Some(change) = self.pins.changes.next_unseen() else { return };
+            let (mut outside, devices) = self.outside();
+            for device in devices {
+                device.edge(change, &mut outside);
+            }
+        }
+        self.attached.clear();
+        let text = "devices on bits answer each other without end: they are taken off".to_owned();
+        self.tell(now, EventKind::Diagnostic(text));
+    }
+
+    /// What devices do at the beginning of a tick.
+    fn run_devices(&mut self, now: Cycles) {
+        while let Some((at, byte)) = self.uart.take_sent(now) {
+            let (mut outside, devices) = self.outside();
+            for device in devices {
+                device.sent(byte, at, &mut outside);
+            }
+            if self.hears_uart {
+                self.tell(at, EventKind::UartSent(byte));
+            }
+        }
+        let (mut outside, devices) = self.outside();
+        for device in devices {
+            device.tick(now, &mut outside);
+        }
+        self.settle(now);
+    }
+
+    /// Tells every character that the UART sends from now on.
+    pub(crate) fn hear_uart(&mut self) {
+        self.uart.listen();
+        self.hears_uart = true;
+    }
+
     /// Records an event.
     pub(crate) fn tell(&mut self, at: Cycles, kind: EventKind) {
+        if let (EventKind::ConsoleLine(line), Some(player)) = (&kind, &mut self.stimulus) {
+            player.note_line(line, at);
+        }
         self.events.push(Event { at, kind });
     }
 
@@ -201,6 +324,7 @@ impl Kernel {
             || self.usb.is_busy()
             || self.experiment.is_some()
             || self.serial.is_busy(memory, &self.uart)
+            || self.stimulus.as_ref().is_some_and(|player| player.is_busy())
     }
 
     fn store_queue_indices(&self, memory: &mut GuestMemory) {
@@ -266,12 +390,20 @@ impl Firmware for Kernel {
     }
 
     fn tick(&mut self, context: &mut TickContext<'_>) {
+        self.tick_start = context.now;
         store_time(context);
+        self.kanalog.tick(&self.fpga, context.memory);
+        if self.snapamps.is_present() {
+            self.snapamps.tick(context.memory);
+        }
+        let acted = self.play_tick(context);
         self.host.tick();
         serial::tick(self, context);
-        self.konnects.tick(context.memory, context.tick);
+        if let Some((board, outputs)) = self.konnects.tick(context.memory, context.tick) {
+            self.attached.iter_mut().for_each(|device| device.konnect(board, outputs, context.now));
+        }
         let changed = crate::servo::tick(self, context);
-        self.is_settled = !changed && context.memory.get(USER_CALL_BACK).is_null();
+        self.is_settled = !changed && !acted && context.memory.get(USER_CALL_BACK).is_null();
     }
 
     fn servo_time(&self, memory: &GuestMemory) -> Cycles {
@@ -318,11 +450,19 @@ impl Firmware for Kernel {
             && !self.usb.is_busy()
             && self.experiment.is_none()
             && self.konnects.is_settled(memory)
+            && self.kanalog.is_settled(&self.fpga, memory)
+            && self.attached.iter().all(|device| device.is_settled())
+            && !self.uart.is_sending()
             && !self.serial.is_busy(memory, &self.uart);
-        if is_quiet { self.host.quiet_ticks() } else { 0 }
+        if !is_quiet {
+            return 0;
+        }
+        let stimulus = self.stimulus.as_ref().map_or(u64::MAX, |player| player.quiet_ticks(self.tick_start));
+        self.host.quiet_ticks().min(stimulus)
     }
 
     fn skip_ticks(&mut self, count: u64, context: &mut TickContext<'_>) {
+        self.tick_start = context.now;
         store_time(context);
         self.host.skip(count);
     }

@@ -27,12 +27,16 @@ mod kernel;
 pub mod loader;
 mod power_up;
 mod servo;
+pub mod stimulus;
 #[cfg(test)]
 mod testing;
 mod text;
 mod views;
 
 pub use board::{Board, Config, RunEnd};
+pub use device::attached::DeviceSpec;
+pub use device::konnect::{Board as KonnectBoard, Port};
+pub use device::snapamp::{Quantity, Side};
 pub use event::{Event, EventKind};
 pub use files::{Directory, HostFiles, NoFiles};
 pub use kernel::Kernel;

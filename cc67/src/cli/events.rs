@@ -8,8 +8,12 @@ use vm::trap::{Trap, TrapKind};
 /// What an event says; `None` for console text, which is not ours to word.
 pub(super) fn describe(event: &Event, programs: &[DebugInfo]) -> Option<String> {
     match &event.kind {
-        EventKind::ConsoleLine(_) | EventKind::Reply(_) | EventKind::Echo(_) | EventKind::Aborted => None,
-        EventKind::Diagnostic(text) | EventKind::Host(text) => Some(text.clone()),
+        EventKind::ConsoleLine(_)
+        | EventKind::Reply(_)
+        | EventKind::Echo(_)
+        | EventKind::UartSent(_)
+        | EventKind::Aborted => None,
+        EventKind::Diagnostic(text) | EventKind::Host(text) | EventKind::Unmet(text) => Some(text.clone()),
         EventKind::Trap(trap) => Some(describe_trap(trap, programs)),
         EventKind::UndrivenInput { bit, thread, place } => {
             let who = thread.map_or("the call-back".to_owned(), |thread| format!("thread {thread}"));

@@ -15,6 +15,8 @@ pub enum Exit {
     Trapped = 3,
     /// Programs were still running at the default time limit.
     StillRunning = 4,
+    /// Something that the stimulus expects was not so.
+    Unmet = 5,
 }
 
 impl From<Exit> for ExitCode {

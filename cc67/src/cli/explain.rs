@@ -1,4 +1,4 @@
-//! `--explain NAME`: the page of a warning; `--explain warnings` lists them all.
+//! `--explain NAME`: the page of a warning or of a language of its own; `--explain warnings` lists the warnings.
 
 use std::fmt::Write as _;
 
@@ -10,10 +10,15 @@ use crate::lints::{Lint, Preset};
 /// What lists all warnings; no lint has this name.
 const LIST: &str = "warnings";
 
+/// Pages about other things than warnings.
+const PAGES: &[(&str, &str)] = &[("stimulus", include_str!("pages/stimulus.md"))];
+
 /// Prints the page of the warning that a message, a switch or the user's memory names.
 pub(super) fn explain(name: &str) -> Result<Exit> {
     if name == LIST {
         terminal::page(&list())?;
+    } else if let Some((_, page)) = PAGES.iter().find(|(known, _)| *known == name) {
+        terminal::page(page)?;
     } else {
         let lint = Lint::named(name)?;
         terminal::page(&format!("{}\n{}", lint.page(), lint.switches()))?;

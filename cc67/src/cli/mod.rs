@@ -21,6 +21,7 @@ mod planned;
 mod program;
 mod run;
 mod setting;
+mod stimulus;
 mod terminal;
 mod test;
 mod units;
@@ -37,7 +38,7 @@ pub use exit::Exit;
 #[derive(Debug, Parser)]
 #[command(name = "cc67", version = VERSION, about, max_term_width = 100, arg_required_else_help = true)]
 struct Arguments {
-    /// Explain a warning by the name in its brackets; `warnings` lists them all
+    /// Explain a warning by the name in its brackets; `warnings` lists them all; `stimulus` is the language of `--stim`
     #[arg(long, value_name = "WARNING", global = true, allow_hyphen_values = true)]
     explain: Option<String>,
     #[command(subcommand)]

@@ -45,7 +45,6 @@ const OPTIONS: &[&str] = &[
     "plot",
     "profile",
     "realtime",
-    "stim",
     "trace",
     "trace-bits",
     "trace-every",

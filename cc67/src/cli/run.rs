@@ -9,6 +9,7 @@ use clap::{Args, ValueEnum};
 use kmotiondef::{Cycles, ThreadId, Ticks};
 use runtime::debug::DebugInfo;
 use runtime::loader::LoadError;
+use runtime::stimulus::Stimulus;
 use runtime::{Board, Config, Directory, Event, EventKind, RunEnd};
 use vm::engine::Engine;
 use vm::interp::BytecodeEngine;
@@ -17,7 +18,7 @@ use vm::machine::Config as MachineConfig;
 use super::options::CompilerOptions;
 use super::program::{Program, assign};
 use super::setting::{self, Setting};
-use super::{Exit, events, terminal, units};
+use super::{Exit, events, stimulus, terminal, units};
 use crate::lints::levels::Levels;
 use crate::render::Format;
 use crate::{Options, foreign, image};
@@ -46,6 +47,9 @@ pub(super) struct Arguments {
     /// Folder of the files that programs open on the PC
     #[arg(long, value_name = "DIR", default_value = "cc67-files")]
     files: PathBuf,
+    /// What the world does and when: a file of statements, or statements such as "t=0.5 bit 136=1"
+    #[arg(long, value_name = "FILE|TEXT")]
+    stim: Vec<String>,
     /// Show the board time in seconds before each console line
     #[arg(long)]
     time: bool,
@@ -100,11 +104,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit> {
     all.extend_from_slice(&arguments.load);
     let programs = assign(&all)?;
     let settings: Vec<_> = arguments.set.iter().map(|text| setting::parse(text)).collect::<Result<_>>()?;
+    let stimulus = stimulus::read(&arguments.stim)?;
     let Some(images) = images(&programs, &arguments.compiler)? else { return Ok(Exit::Failure) };
 
     let files = Box::new(Directory::new(&arguments.files));
     let machine = MachineConfig { shortcuts: !arguments.no_shortcuts, ..MachineConfig::default() };
-    let session = Session { arguments, programs, images, settings };
+    let session = Session { arguments, programs, images, settings, stimulus };
     let config = Config { machine, files, ..Config::default() };
     match arguments.engine {
         EngineName::Bytecode => session.run::<BytecodeEngine>(config),
@@ -121,6 +126,7 @@ struct Session<'a> {
     programs: Vec<Program>,
     images: Vec<Vec<u8>>,
     settings: Vec<Setting>,
+    stimulus: Stimulus,
 }
 
 impl Session<'_> {
@@ -135,6 +141,9 @@ impl Session<'_> {
                 .memory_mut()
                 .poke_bytes(*address, bytes)
                 .with_context(|| format!("`--set` of {address}"))?;
+        }
+        if !self.stimulus.is_empty() {
+            board.play(self.stimulus.clone());
         }
         for program in self.programs.iter().take(self.arguments.programs.len()) {
             board.start(program.thread).with_context(|| program.name().to_string())?;
@@ -211,9 +220,10 @@ fn execute<E: Engine>(board: &mut Board<E>, arguments: &Arguments) -> Result<Exi
         programs: ThreadId::all().filter_map(|thread| board.debug(thread).cloned()).collect(),
         error: None,
     };
-    let mut trapped = false;
+    let (mut trapped, mut unmet) = (false, false);
     let end = board.run(limit, &mut |event| {
         trapped |= matches!(event.kind, EventKind::Trap(_));
+        unmet |= matches!(event.kind, EventKind::Unmet(_));
         screen.show(&event);
     });
     if let Some(error) = screen.finish() {
@@ -225,6 +235,7 @@ fn execute<E: Engine>(board: &mut Board<E>, arguments: &Arguments) -> Result<Exi
     }
     Ok(match end {
         _ if trapped => Exit::Trapped,
+        _ if unmet => Exit::Unmet,
         RunEnd::Limit if arguments.limit.is_none() => {
             terminal::note(&format!(
                 "still running after {DEFAULT_LIMIT} s of board time; `--for SECONDS` sets the limit"

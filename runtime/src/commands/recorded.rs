@@ -80,7 +80,7 @@ impl Wire {
             }
             ["bit", bit, level] => {
                 let bit = bit.parse().ok().and_then(Bit::new).expect("a bit");
-                self.desk.kernel.pins.drive(bit, level == "1");
+                self.desk.kernel.pins.drive(bit, level == "1", kmotiondef::Cycles::default());
             }
             _ => panic!("{line}"),
         }

@@ -6,7 +6,7 @@
 use std::collections::BTreeSet;
 
 use kmotiondef::map::FPGA;
-use kmotiondef::{Cycles, GuestAddr};
+use kmotiondef::{Bit, Cycles, GuestAddr};
 use vm::bus::AccessSize;
 
 use super::pins::{PINS, Pins};
@@ -43,6 +43,10 @@ enum Kind {
     UartData,
     /// The UART's status when read, its divisor when written.
     UartStatus,
+    /// Values and switches of the PWM generators, one after the other.
+    Pwm,
+    /// What the pins of the port carry.
+    Port,
 }
 
 /// The registers that programs know. Source: io.md section 5.
@@ -54,10 +58,10 @@ const REGISTERS: &[Range] = &[
     Range { first: 0x2f, last: 0x2f, kind: Kind::Storage },
     Range { first: 0x3c, last: 0x4f, kind: Kind::Storage },
     Range { first: 0x80, last: 0x98, kind: Kind::Storage },
-    Range { first: 0xa0, last: 0xa0, kind: Kind::Storage },
+    Range { first: PORT_SELECT, last: PORT_SELECT, kind: Kind::Port },
     Range { first: 0xc0, last: 0xc0, kind: Kind::UartData },
     Range { first: 0xc1, last: 0xc1, kind: Kind::UartStatus },
-    Range { first: 0xd0, last: 0xdf, kind: Kind::Storage },
+    Range { first: PWM, last: PWM + 2 * PWMS - 1, kind: Kind::Pwm },
     Range { first: 0x100, last: 0x100 + GROUPS - 1, kind: Kind::BitSet },
     Range { first: 0x110, last: 0x110 + GROUPS - 1, kind: Kind::BitClear },
     Range { first: 0x120, last: 0x120 + GROUPS - 1, kind: Kind::BitDirection },
@@ -72,6 +76,19 @@ const PORT_SELECT: u32 = 0xa0;
 const PORT_BYTE: usize = (PORT_SELECT * STRIDE + LANE) as usize;
 const KANALOG_ON: u8 = 1;
 const UART_ON: u8 = 2;
+/// PWM 0 on a pin of its own, for the analog output of KStep.
+const PWM_MOVED: u8 = 4;
+
+/// PWM generators, from this register on, and their prescaler.
+const PWM: u32 = 0xd0;
+const PWMS: u32 = 8;
+const PRESCALE: u32 = 0x2f;
+/// The pin of generator 0, and where its output goes for KStep.
+const PWM_PIN: i32 = 26;
+const PWM_MOVED_PIN: i32 = 44;
+/// Clocks of a PWM period, and of a second.
+const PWM_PERIOD: f64 = 256.0;
+const CLOCK: f64 = 50e6 / 3.0;
 
 /// What stands behind the registers that act, and the instant of an access.
 #[derive(Debug)]
@@ -133,15 +150,18 @@ impl Fpga {
         let Behind { pins, uart, now } = behind;
         let (number, kind) = register(address);
         match kind {
-            Some((Kind::BitSet, group)) => pins.set_group(group, value as u8),
-            Some((Kind::BitClear, group)) => pins.clear_group(group, value as u8),
-            Some((Kind::BitDirection, group)) => pins.set_direction_group(group, value as u8),
+            Some((Kind::BitSet, group)) => pins.set_group(group, value as u8, now),
+            Some((Kind::BitClear, group)) => pins.clear_group(group, value as u8, now),
+            Some((Kind::BitDirection, group)) => pins.set_direction_group(group, value as u8, now),
             Some((Kind::UartData, _)) => {
-                uart.send(now);
+                uart.send(value as u8, now);
                 return self.note_lost_character();
             }
             Some((Kind::UartStatus, _)) => uart.set_divisor(value as u8),
             _ => self.store(address, size, value),
+        }
+        if matches!(kind, Some((Kind::Pwm | Kind::Port, _))) {
+            self.drive_pwm_pins(pins, now);
         }
         (kind.is_none() && self.unknown.insert(number))
             .then(|| format!("FPGA register {number:#x} is not known: it only stores what is written"))
@@ -150,6 +170,46 @@ impl Fpga {
     /// Connects the UART to its pins.
     pub(crate) fn enable_uart_pins(&mut self) {
         self.bytes[PORT_BYTE] |= UART_ON;
+    }
+
+    /// Whether the port exchanges with Kanalog.
+    pub(crate) fn serves_kanalog(&self) -> bool {
+        self.bytes[PORT_BYTE] & KANALOG_ON != 0
+    }
+
+    /// The duty of a PWM generator from 0 to 1 and its frequency, if it is on.
+    pub(crate) fn pwm(&self, generator: u32) -> Option<(f64, f64)> {
+        let value = PWM + 2 * generator;
+        (self.byte(value + 1) & 1 != 0).then(|| {
+            let hz = CLOCK / PWM_PERIOD / (f64::from(self.byte(PRESCALE)) + 1.0);
+            (f64::from(self.byte(value)) / (PWM_PERIOD - 1.0), hz)
+        })
+    }
+
+    /// The duty of generator 0 at the pin for KStep, from 0 to 1.
+    pub(crate) fn moved_pwm(&self) -> Option<f64> {
+        let (duty, _) = self.pwm(0)?;
+        (self.bytes[PORT_BYTE] & PWM_MOVED != 0).then_some(duty)
+    }
+
+    /// Generators that are on drive their pins; read as a level, they are high from half duty on.
+    fn drive_pwm_pins(&self, pins: &mut Pins, now: Cycles) {
+        let mut drive = |pin: i32, level| {
+            if let Some(bit) = Bit::new(pin) {
+                pins.generate(bit, level, now);
+            }
+        };
+        let level = |generator| self.pwm(generator).map(|(duty, _)| duty >= 0.5);
+        for generator in 0..PWMS {
+            drive(PWM_PIN + generator as i32, level(generator));
+        }
+        let is_moved = self.bytes[PORT_BYTE] & PWM_MOVED != 0;
+        drive(PWM_MOVED_PIN, level(0).filter(|_| is_moved));
+    }
+
+    /// An eight-bit register as stored.
+    fn byte(&self, register: u32) -> u8 {
+        self.bytes.get((register * STRIDE + LANE) as usize).copied().unwrap_or_default()
     }
 
     /// A remark on the first character sent without pins.
@@ -176,8 +236,6 @@ impl Fpga {
 
 #[cfg(test)]
 mod tests {
-    use kmotiondef::Bit;
-
     use super::*;
 
     /// Registers and what stands behind them.
@@ -217,10 +275,26 @@ mod tests {
     }
 
     #[test]
+    fn a_pwm_drives_its_pin_and_knows_its_rate() {
+        let mut bench = Bench::default();
+        let pins = [26, 44].map(|pin| Bit::new(pin).expect("a bit"));
+        for (register, value) in [(0x2f, 65), (0xd0, 128), (0xd1, 1), (0xa0, 4)] {
+            bench.write(register, AccessSize::Byte, value);
+        }
+        let (duty, hz) = bench.fpga.pwm(0).expect("on");
+        assert_eq!((libm::round(duty * 1000.0), libm::round(hz)), (502.0, 986.0));
+        assert_eq!(pins.map(|pin| bench.pins.is_output(pin) && bench.pins.level(pin)), [true, true]);
+        bench.write(0xd0, AccessSize::Byte, 127);
+        assert_eq!(pins.map(|pin| bench.pins.level(pin)), [false, false]);
+        bench.write(0xd1, AccessSize::Byte, 0);
+        assert_eq!(pins.map(|pin| bench.pins.is_output(pin)), [false, false]);
+    }
+
+    #[test]
     fn other_registers_store_and_an_unknown_one_is_told_once() {
         let mut bench = Bench::default();
-        assert_eq!(bench.write(0xd0, AccessSize::Byte, 0x12), None);
-        assert_eq!(bench.read(0xd0, AccessSize::Byte), 0x12);
+        assert_eq!(bench.write(0x06, AccessSize::Byte, 0x12), None);
+        assert_eq!(bench.read(0x06, AccessSize::Byte), 0x12);
         assert!(bench.write(0x200, AccessSize::Half, 0x1234).is_some());
         assert_eq!(bench.write(0x200, AccessSize::Half, 0x5678), None);
         assert_eq!(bench.read(0x200, AccessSize::Half), 0x5678);

@@ -1,8 +1,9 @@
 //! Konnect boards on the auxiliary ports: the list of boards served, one of them in each tick.
 //!
-//! Every board is taken to be there and nothing drives its 32 inputs, so they read 0; its outputs have no reader.
-//! Source: devices.md section 4.
+//! When its turn comes, a board takes the low 16 bits of its output word and gives its 32 inputs, 0 unless the world
+//! drives them. Every address is taken to be there. Source: devices.md section 4.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use kmotiondef::{GuestAddr, Ticks};
@@ -11,51 +12,91 @@ use vm::memory::GuestMemory;
 /// Boards that are served at most: 8 addresses on each of 2 ports.
 const LIMIT: usize = 16;
 
+/// An auxiliary port.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Port {
+    /// JP4.
+    Aux0,
+    /// JP6.
+    Aux1,
+}
+
+/// A board: its port and the address set on it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Board {
+    /// The port.
+    pub port: Port,
+    /// The address, 0 to 7.
+    pub address: u8,
+}
+
 /// The words of a served board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Service {
+    pub(crate) board: Board,
     pub(crate) outputs: GuestAddr,
     pub(crate) inputs: GuestAddr,
 }
 
-/// The boards served.
+/// The boards served, and what stands at their terminals.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Konnects(Vec<Service>);
+pub(crate) struct Konnects {
+    services: Vec<Service>,
+    outputs: BTreeMap<Board, u16>,
+    inputs: BTreeMap<Board, u32>,
+}
 
 impl Konnects {
     /// Empties the list.
     pub(crate) fn clear(&mut self) {
-        self.0.clear();
+        self.services.clear();
     }
 
     /// Adds a board; `false` when the list is full.
     pub(crate) fn add(&mut self, service: Service) -> bool {
-        let has_room = self.0.len() < LIMIT;
+        let has_room = self.services.len() < LIMIT;
         if has_room {
-            self.0.push(service);
+            self.services.push(service);
         }
         has_room
     }
 
-    /// Ends the services whose words lie in a space that is loaded anew; whether there were any.
-    pub(crate) fn drop_within(&mut self, space: &Range<u32>) -> bool {
-        let before = self.0.len();
-        self.0.retain(|service| {
-            !space.contains(&service.outputs.get()) && !space.contains(&service.inputs.get())
-        });
-        self.0.len() < before
+    /// Gives an input of a board, 0 to 31, a level.
+    pub(crate) fn drive(&mut self, board: Board, input: u8, level: bool) {
+        let word = self.inputs.entry(board).or_default();
+        *word = *word & !(1 << input) | u32::from(level) << input;
     }
 
-    /// Exchanges the words of the board whose turn it is.
-    pub(crate) fn tick(&self, memory: &mut GuestMemory, tick: Ticks) {
-        let count = self.0.len().max(1) as u64;
-        if let Some(service) = self.0.get((tick.get() % count) as usize) {
-            memory.poke(service.inputs, 0_i32);
-        }
+    /// Ends the services whose words lie in a space that is loaded anew; whether there were any.
+    pub(crate) fn drop_within(&mut self, space: &Range<u32>) -> bool {
+        let before = self.services.len();
+        self.services.retain(|service| {
+            !space.contains(&service.outputs.get()) && !space.contains(&service.inputs.get())
+        });
+        self.services.len() < before
+    }
+
+    /// Exchanges the words of the board whose turn it is; the board whose outputs have changed by that.
+    pub(crate) fn tick(&mut self, memory: &mut GuestMemory, tick: Ticks) -> Option<(Board, u16)> {
+        let count = self.services.len() as u64;
+        let turn = tick.get().checked_rem(count)?;
+        let service = *self.services.get(turn as usize)?;
+        memory.poke(service.inputs, self.inputs.get(&service.board).copied().unwrap_or(0));
+        let outputs = taken(memory, &service);
+        (self.outputs.insert(service.board, outputs) != Some(outputs)).then_some((service.board, outputs))
     }
 
     /// Whether no exchange changes anything.
     pub(crate) fn is_settled(&self, memory: &GuestMemory) -> bool {
-        self.0.iter().all(|service| memory.peek::<i32>(service.inputs) == 0)
+        self.services.iter().all(|service| {
+            let inputs = self.inputs.get(&service.board).copied().unwrap_or(0);
+            memory.peek::<u32>(service.inputs) == inputs
+                && self.outputs.get(&service.board) == Some(&taken(memory, service))
+        })
     }
+}
+
+/// What a board takes from its output word.
+fn taken(memory: &GuestMemory, service: &Service) -> u16 {
+    memory.peek::<u32>(service.outputs) as u16
 }

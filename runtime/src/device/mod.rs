@@ -1,7 +1,11 @@
 //! The devices of the board.
 
+pub(crate) mod attached;
+pub(crate) mod changes;
 pub(crate) mod fpga;
+pub(crate) mod kanalog;
 pub(crate) mod konnect;
+pub(crate) mod outside;
 pub(crate) mod pins;
 pub(crate) mod snapamp;
 pub(crate) mod timer;

@@ -3,7 +3,9 @@
 //! A pin of the board has an output latch and a direction; what drives it from outside is a separate level, so that
 //! a latch written while the pin is an input appears when it becomes an output.
 
-use kmotiondef::Bit;
+use kmotiondef::{Bit, Cycles};
+
+use super::changes::Changes;
 
 /// Pins of the FPGA, the two diodes included.
 pub(crate) const PINS: u16 = 48;
@@ -33,12 +35,17 @@ impl BitSet {
 pub(crate) struct Pins {
     latch: u64,
     direction: u64,
+    /// Pins that a generator drives in place of their latch, and how.
+    generated: u64,
+    generated_level: u64,
     /// Outputs of option boards, as last written.
     written: BitSet,
     /// Levels from outside.
     inputs: BitSet,
     /// Inputs that something drives.
     driven: BitSet,
+    /// What changed, for those who want to know.
+    pub(crate) changes: Changes,
 }
 
 impl Default for Pins {
@@ -46,9 +53,12 @@ impl Default for Pins {
         Self {
             latch: LEDS,
             direction: LEDS,
+            generated: 0,
+            generated_level: 0,
             written: BitSet::default(),
             inputs: BitSet::default(),
             driven: BitSet::default(),
+            changes: Changes::default(),
         }
     }
 }
@@ -56,24 +66,50 @@ impl Default for Pins {
 impl Pins {
     /// Whether a pin of the board is an output.
     pub(crate) fn is_output(&self, bit: Bit) -> bool {
-        bit.get() < PINS && self.direction >> bit.get() & 1 != 0
+        bit.get() < PINS && (self.direction | self.generated) >> bit.get() & 1 != 0
     }
 
     /// Makes a pin of the board an output or an input.
-    pub(crate) fn set_output(&mut self, bit: Bit, output: bool) {
+    pub(crate) fn set_output(&mut self, bit: Bit, output: bool, now: Cycles) {
         let mask = 1 << bit.get();
-        self.direction = if output { self.direction | mask } else { self.direction & !mask };
+        self.change(now, |pins| pins.direction = with(pins.direction, mask, output));
     }
 
     /// Sets the output latch of a pin of the board.
-    pub(crate) fn set_latch(&mut self, bit: Bit, level: bool) {
+    pub(crate) fn set_latch(&mut self, bit: Bit, level: bool, now: Cycles) {
         let mask = 1 << bit.get();
-        self.latch = if level { self.latch | mask } else { self.latch & !mask };
+        self.change(now, |pins| pins.latch = with(pins.latch, mask, level));
+    }
+
+    /// A generator drives a pin of the board with this level, or leaves it to its latch.
+    pub(crate) fn generate(&mut self, bit: Bit, level: Option<bool>, now: Cycles) {
+        let mask = 1 << bit.get();
+        self.change(now, |pins| {
+            pins.generated = with(pins.generated, mask, level.is_some());
+            pins.generated_level = with(pins.generated_level, mask, level == Some(true));
+        });
+    }
+
+    /// Changes what the pins of the board depend on, and notes the levels that differ.
+    fn change(&mut self, now: Cycles, edit: impl FnOnce(&mut Self)) {
+        let before = self.levels();
+        edit(self);
+        let after = self.levels();
+        if before != after {
+            self.changes.note_mask(before ^ after, after, now);
+        }
+    }
+
+    /// The levels of all pins of the board.
+    fn levels(&self) -> u64 {
+        let outputs = self.latch & !self.generated | self.generated_level;
+        let direction = self.direction | self.generated;
+        outputs & direction | self.inputs.0[0] & !direction & ((1 << PINS) - 1)
     }
 
     /// The level of a pin of the board: an output's latch, an input's level from outside.
     pub(crate) fn level(&self, bit: Bit) -> bool {
-        if self.is_output(bit) { self.latch >> bit.get() & 1 != 0 } else { self.input(bit) }
+        self.levels() >> bit.get() & 1 != 0
     }
 
     /// The level of an input from outside.
@@ -82,8 +118,19 @@ impl Pins {
     }
 
     /// Drives an input from outside.
-    pub(crate) fn drive(&mut self, bit: Bit, level: bool) {
-        self.inputs.set(bit, level);
+    pub(crate) fn drive(&mut self, bit: Bit, level: bool, now: Cycles) {
+        self.driven.set(bit, true);
+        if bit.get() < PINS {
+            return self.change(now, |pins| pins.inputs.set(bit, level));
+        }
+        if self.inputs.contains(bit) != level {
+            self.inputs.set(bit, level);
+            self.changes.note(bit, level, now);
+        }
+    }
+
+    /// Something will drive an input: its level is no accident.
+    pub(crate) fn declare(&mut self, bit: Bit) {
         self.driven.set(bit, true);
     }
 
@@ -98,8 +145,11 @@ impl Pins {
     }
 
     /// Writes an output of an option board.
-    pub(crate) fn write(&mut self, bit: Bit, level: bool) {
-        self.written.set(bit, level);
+    pub(crate) fn write(&mut self, bit: Bit, level: bool, now: Cycles) {
+        if self.written.contains(bit) != level {
+            self.written.set(bit, level);
+            self.changes.note(bit, level, now);
+        }
     }
 
     /// Eight directions as a register has them.
@@ -108,23 +158,49 @@ impl Pins {
     }
 
     /// Stores eight directions.
-    pub(crate) fn set_direction_group(&mut self, group: u32, value: u8) {
-        self.direction = self.direction & !(0xff << (8 * group)) | u64::from(value) << (8 * group);
+    pub(crate) fn set_direction_group(&mut self, group: u32, value: u8, now: Cycles) {
+        let (mask, bits) = (0xff << (8 * group), u64::from(value) << (8 * group));
+        self.change(now, |pins| pins.direction = pins.direction & !mask | bits);
     }
 
     /// Sets the latches where `mask` has ones.
-    pub(crate) fn set_group(&mut self, group: u32, mask: u8) {
-        self.latch |= u64::from(mask) << (8 * group);
+    pub(crate) fn set_group(&mut self, group: u32, mask: u8, now: Cycles) {
+        self.change(now, |pins| pins.latch |= u64::from(mask) << (8 * group));
     }
 
     /// Clears the latches where `mask` has zeros.
-    pub(crate) fn clear_group(&mut self, group: u32, mask: u8) {
-        self.latch &= !(u64::from(!mask) << (8 * group));
+    pub(crate) fn clear_group(&mut self, group: u32, mask: u8, now: Cycles) {
+        self.change(now, |pins| pins.latch &= !(u64::from(!mask) << (8 * group)));
     }
 
     /// Eight levels as a register has them.
     pub(crate) fn level_group(&self, group: u32) -> u8 {
-        let outputs = self.latch & self.direction | self.inputs.0[0] & !self.direction;
-        (outputs >> (8 * group)) as u8
+        (self.levels() >> (8 * group)) as u8
+    }
+}
+
+/// A word with the bits of `mask` set or cleared.
+fn with(word: u64, mask: u64, set: bool) -> u64 {
+    if set { word | mask } else { word & !mask }
+}
+
+#[cfg(test)]
+mod tests {
+    use vm::memory::GuestMemory;
+
+    use super::*;
+
+    #[test]
+    fn changes_are_those_of_levels() {
+        let mut pins = Pins::default();
+        pins.changes.switch_on(&GuestMemory::new());
+        let (bit, at) = (Bit::new(26).expect("a bit"), Cycles::new(7));
+        pins.set_latch(bit, true, at);
+        pins.drive(bit, true, at);
+        pins.set_output(bit, true, at);
+        pins.generate(bit, Some(false), at);
+        pins.generate(bit, None, at);
+        let levels: Vec<bool> = pins.changes.take().iter().map(|change| change.level).collect();
+        assert_eq!(levels, [true, false, true]);
     }
 }

@@ -1,6 +1,15 @@
-//! Registers of the two SnapAmp boards, which are not there: what is written is kept, measurements are fixed.
+//! Registers of the two SnapAmp boards: what is written is kept, measurements are what the world makes them.
 //!
-//! Source: devices.md section 5. The general pins are bits 80 and 112 and on, and belong to the digital outputs.
+//! Nothing runs while they work: faults are brought up to the instant of each access. More current than the limit of a
+//! side, or no limit at all, switches all bridges off for a quarter of a second beyond its end; a board that is not
+//! there has no faults. Sources: devices.md section 5, the manual's page on SnapAmp for the quarter of a second. The
+//! general pins are bits 80 and 112 and on, and belong to the digital outputs.
+
+use kmotiondef::Cycles;
+use kmotiondef::variables::ADC_BUFFER_IN_SNAP;
+use vm::memory::GuestMemory;
+
+use crate::views::Typed;
 
 /// Registers of a board.
 const REGISTERS: usize = 32;
@@ -8,10 +17,21 @@ const REGISTERS: usize = 32;
 const BASE: usize = 0x40;
 const BOARDS: usize = 2;
 
-/// Readings of 48 V, 77 °F and 0 A.
-const VOLTAGE: u16 = 30_916;
-const TEMPERATURE: u16 = 616;
-const CURRENT: u16 = 8192;
+/// Volts and amperes of a full conversion.
+const FULL_VOLTS: f64 = 102.6;
+const FULL_AMPS: f64 = 35.0;
+/// Degrees Fahrenheit from which a side is too hot, and from which the fan runs: 80 and 50 °C.
+const TOO_HOT: f64 = 176.0;
+const WARM: f64 = 122.0;
+/// How long bridges stay off: a quarter of a second.
+const FAULT_TIME: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 4);
+
+/// Registers: currents, clamp level and switch of side A, limit of side A.
+const CURRENTS: usize = 12;
+const CLAMP: usize = 20;
+const PEAK_LIMIT: usize = 24;
+/// The lowest level that is a limit: 2 A, each further one 4 A more.
+const FIRST_LEVEL: u16 = 9;
 
 /// The general pins' registers.
 pub(crate) const PINS: usize = 17;
@@ -37,28 +57,163 @@ impl Register {
     }
 }
 
-/// What was written.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct SnapAmps([[u16; REGISTERS]; BOARDS]);
+/// A side of a board, with its own supply, limit and pair of bridges.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// The first one.
+    A,
+    /// The second one.
+    B,
+}
 
-impl SnapAmps {
-    /// Stores a word.
-    pub(crate) fn write(&mut self, register: Register, value: u16) {
-        self.0[register.board][register.number] = value;
+/// What a side measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// Amperes through the bridge, from lead A to lead C.
+    Current,
+    /// Volts of the supply.
+    Voltage,
+    /// Degrees Fahrenheit.
+    Temperature,
+}
+
+/// What happens at a side.
+#[derive(Clone, Copy, Debug)]
+struct SideState {
+    amps: f64,
+    volts: f64,
+    degrees: f64,
+    /// Until when the bridges stay off after too much current.
+    off_until: Cycles,
+}
+
+impl Default for SideState {
+    fn default() -> Self {
+        Self { amps: 0.0, volts: 48.0, degrees: 77.0, off_until: Cycles::default() }
+    }
+}
+
+/// A board.
+#[derive(Clone, Debug, Default)]
+struct Board {
+    /// Whether it is there: if not, it never reports a fault.
+    is_present: bool,
+    written: [u16; REGISTERS],
+    sides: [SideState; 2],
+}
+
+impl Board {
+    /// Whether more current flows on a side than its limit allows; without a limit any does.
+    fn is_over(&self, side: usize) -> bool {
+        let level = self.written[PEAK_LIMIT + side] & 0xf;
+        let limit = level.checked_sub(FIRST_LEVEL).map_or(0.0, |above| 2.0 + 4.0 * f64::from(above));
+        self.is_present && (level < FIRST_LEVEL || self.sides[side].amps.abs() > limit)
     }
 
-    /// A reading: of what stands still and cool at 48 V, else what was written.
-    pub(crate) fn read(&mut self, register: Register) -> u16 {
+    /// Brings the faults up to an instant, before anything changes and before they are read.
+    fn advance(&mut self, now: Cycles) {
+        for side in 0..2 {
+            if self.is_over(side) {
+                self.sides[side].off_until = now + FAULT_TIME;
+            }
+        }
+    }
+
+    fn status(&self, now: Cycles) -> u16 {
+        let over = [0, 1].map(|side| self.is_over(side) || now < self.sides[side].off_until);
+        let hot = [0, 1].map(|side| self.sides[side].degrees >= TOO_HOT);
+        let fan = self.sides.iter().any(|side| side.degrees >= WARM);
+        let bits = [over[0] || over[1] || hot[0] || hot[1], over[0], over[1], hot[0], hot[1], fan];
+        let word = bits.iter().rev().fold(0, |word, &bit| word << 1 | u16::from(bit));
+        if self.is_present { word } else { 0 }
+    }
+
+    /// The supply's conversion, which the clamp keeps from rising.
+    fn voltage(&self, side: usize) -> u16 {
+        let volts = convert(self.sides[side].volts / FULL_VOLTS * 65_536.0 + 256.0);
+        let clamp = self.written[CLAMP + 2 * side];
+        if self.written[CLAMP + 2 * side + 1] != 0 { volts.min(clamp) } else { volts }
+    }
+
+    fn temperature(&self, side: usize) -> u16 {
+        convert(self.sides[side].degrees * 8.0)
+    }
+
+    /// Conversions of the currents: lead A and lead C of side A, then of side B.
+    fn currents(&self) -> [u16; 4] {
+        let [a, b] = self.sides.map(|side| side.amps / FULL_AMPS * 8192.0);
+        [a, -a, b, -b].map(|counts| convert((counts + 8192.0).min(16_383.0)))
+    }
+}
+
+/// A conversion, which stays within its word.
+fn convert(counts: f64) -> u16 {
+    libm::round(counts) as u16
+}
+
+/// The boards.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SnapAmps([Board; BOARDS]);
+
+impl SnapAmps {
+    /// Puts a board on the bus.
+    pub(crate) fn connect(&mut self, board: usize) {
+        if let Some(board) = self.0.get_mut(board) {
+            board.is_present = true;
+        }
+    }
+
+    /// Whether a board is on the bus.
+    pub(crate) fn is_present(&self) -> bool {
+        self.0.iter().any(|board| board.is_present)
+    }
+
+    /// Something outside changes what a side measures.
+    pub(crate) fn set(&mut self, board: usize, side: Side, quantity: Quantity, value: f64, now: Cycles) {
+        let Some(board) = self.0.get_mut(board) else { return };
+        board.advance(now);
+        let side = &mut board.sides[side as usize];
+        match quantity {
+            Quantity::Current => side.amps = value,
+            Quantity::Voltage => side.volts = value,
+            Quantity::Temperature => side.degrees = value,
+        }
+    }
+
+    /// Stores a word.
+    pub(crate) fn write(&mut self, register: Register, value: u16, now: Cycles) {
+        let board = &mut self.0[register.board];
+        board.advance(now);
+        board.written[register.number] = value;
+    }
+
+    /// A measurement, or what was written.
+    pub(crate) fn read(&mut self, register: Register, now: Cycles) -> u16 {
+        let board = &mut self.0[register.board];
+        board.advance(now);
         match register.number {
-            8..=11 | 16 | 30 => 0,
-            12..=15 => CURRENT,
-            22 | 23 => VOLTAGE,
-            24 | 25 => TEMPERATURE,
+            8..=11 | 16 => 0,
+            number @ CURRENTS..=15 => board.currents()[number - CURRENTS],
+            number @ (22 | 23) => board.voltage(number - 22),
+            number @ (24 | 25) => board.temperature(number - 24),
+            30 => board.status(now),
             RESET => {
-                self.0[register.board] = Default::default();
+                board.written = Default::default();
                 0
             }
-            number => self.0[register.board][number],
+            number => board.written[number],
+        }
+    }
+
+    /// Puts the analog readings of boards that are there into their table.
+    pub(crate) fn tick(&self, memory: &mut GuestMemory) {
+        for (board, first) in self.0.iter().zip([0, 8]).filter(|(board, _)| board.is_present) {
+            let supply = [board.voltage(0), board.voltage(1)];
+            let degrees = [board.temperature(0), board.temperature(1)];
+            let readings = board.currents().into_iter().chain(supply).chain(degrees);
+            for (index, reading) in readings.enumerate() {
+                memory.set(ADC_BUFFER_IN_SNAP.element(first + index), reading.into());
+            }
         }
     }
 }
@@ -83,13 +238,51 @@ mod tests {
         }
     }
 
+    /// A register of board 1.
+    fn register(number: usize) -> Register {
+        Register { board: 1, number }
+    }
+
+    fn ms(ms: i64) -> Cycles {
+        Cycles::new(ms * Cycles::PER_SECOND.get() / 1000)
+    }
+
     #[test]
     fn pulse_widths_are_kept_until_a_reset() {
         let mut boards = SnapAmps::default();
-        let register = |number| Register { board: 1, number };
-        boards.write(register(2), 77);
-        assert_eq!(boards.read(register(2)), 77);
-        boards.read(register(RESET));
-        assert_eq!(boards.read(register(2)), 0);
+        boards.write(register(2), 77, ms(0));
+        assert_eq!(boards.read(register(2), ms(0)), 77);
+        boards.read(register(RESET), ms(0));
+        assert_eq!(boards.read(register(2), ms(0)), 0);
+    }
+
+    #[test]
+    fn a_fault_lasts_until_limits_are_set_and_after_each_over_current() {
+        let mut boards = SnapAmps::default();
+        assert_eq!(boards.read(register(30), ms(0)), 0);
+        boards.connect(1);
+        assert_eq!(boards.read(register(30), ms(0)), 0b111);
+        boards.write(register(24), 9, ms(100));
+        boards.write(register(25), 9, ms(100));
+        boards.set(1, Side::A, Quantity::Current, -2.5, ms(1000));
+        boards.set(1, Side::A, Quantity::Current, 1.0, ms(1010));
+        for (at, expect) in [(349, 0b111), (350, 0), (1000, 0b11), (1259, 0b11), (1260, 0)] {
+            let mut boards = boards.clone();
+            if at < 1000 {
+                boards.0[1].sides[0] = SideState { off_until: ms(350), ..SideState::default() };
+            }
+            assert_eq!(boards.read(register(30), ms(at)), expect, "{at}");
+        }
+    }
+
+    #[test]
+    fn the_clamp_holds_the_supply() {
+        let mut boards = SnapAmps::default();
+        boards.set(1, Side::B, Quantity::Voltage, 95.0, ms(0));
+        let clamp = convert(90.0 / FULL_VOLTS * 65_536.0 + 256.0);
+        boards.write(register(22), clamp, ms(0));
+        assert!(boards.read(register(23), ms(0)) > clamp);
+        boards.write(register(23), 1, ms(0));
+        assert_eq!(boards.read(register(23), ms(0)), clamp);
     }
 }

@@ -1,7 +1,8 @@
 //! The UART: 8 data bits, no parity, 1 stop bit, a shift register and one buffered character each way.
 //!
-//! Nothing runs while it works: each access brings the state up to its own instant. Characters that are sent go
-//! nowhere; those that come are put on the line by the program that embeds the board. Source: devices.md section 1.
+//! Nothing runs while it works: each access brings the state up to its own instant. Characters that are sent are kept
+//! with the instant of their last bit while somebody listens; those that come are put on the line from outside. Source:
+//! devices.md section 1.
 
 use std::collections::VecDeque;
 
@@ -25,8 +26,11 @@ pub(crate) struct Uart {
     divisor: u8,
     /// When the transmitter's shift register is through.
     sent: Cycles,
-    /// Whether a character waits behind it.
-    is_full: bool,
+    /// The character that waits behind it.
+    waiting: Option<u8>,
+    /// Whether somebody listens, and characters sent since the last time.
+    is_heard: bool,
+    out: VecDeque<(Cycles, u8)>,
     /// Characters on the line, the first one complete at `arrival`.
     line: VecDeque<u8>,
     arrival: Cycles,
@@ -60,9 +64,11 @@ impl Uart {
 
     /// Brings the state up to `now`.
     fn advance(&mut self, now: Cycles) {
-        if self.is_full && self.sent <= now {
-            self.is_full = false;
+        if self.sent <= now
+            && let Some(byte) = self.waiting.take()
+        {
             self.sent += self.frame();
+            self.note_sent(byte);
         }
         while self.arrival <= now {
             let Some(byte) = self.line.pop_front() else { break };
@@ -78,7 +84,7 @@ impl Uart {
     pub(crate) fn status(&mut self, now: Cycles) -> u8 {
         self.advance(now);
         let ready = if self.received.is_empty() { 0 } else { DATA_READY };
-        ready | if self.is_full { TRANSMIT_FULL } else { 0 }
+        ready | if self.waiting.is_some() { TRANSMIT_FULL } else { 0 }
     }
 
     /// Reads the data register; 0 when nothing was received.
@@ -93,13 +99,39 @@ impl Uart {
     }
 
     /// Sends a character; one that still waits is lost.
-    pub(crate) fn send(&mut self, now: Cycles) {
+    pub(crate) fn send(&mut self, byte: u8, now: Cycles) {
         self.advance(now);
         if self.sent <= now {
             self.sent = now + self.frame();
+            self.note_sent(byte);
         } else {
-            self.is_full = true;
+            self.waiting = Some(byte);
         }
+    }
+
+    /// Keeps a character whose last bit goes out at `sent`.
+    fn note_sent(&mut self, byte: u8) {
+        if self.is_heard {
+            self.out.push_back((self.sent, byte));
+        }
+    }
+
+    /// Keeps the characters that are sent from now on.
+    pub(crate) fn listen(&mut self) {
+        self.is_heard = true;
+    }
+
+    /// The next character that is through by `now`.
+    pub(crate) fn take_sent(&mut self, now: Cycles) -> Option<(Cycles, u8)> {
+        if self.is_heard {
+            self.advance(now);
+        }
+        self.out.pop_front_if(|(at, _)| *at <= now)
+    }
+
+    /// Whether characters are still on their way to somebody who listens.
+    pub(crate) fn is_sending(&self) -> bool {
+        !self.out.is_empty() || self.is_heard && self.waiting.is_some()
     }
 
     /// Whether a character can be sent without losing one.
@@ -129,14 +161,26 @@ mod tests {
     #[test]
     fn a_character_is_sent_in_ten_bits_and_one_waits() {
         let mut uart = uart();
-        uart.send(at(0));
+        uart.send(b'x', at(0));
         assert!(uart.is_free(at(0)));
-        uart.send(at(0));
+        uart.send(b'x', at(0));
         assert!(!uart.is_free(at(1) - Cycles::new(1)));
         assert!(uart.is_free(at(1)));
-        uart.send(at(1));
+        uart.send(b'x', at(1));
         assert!(!uart.is_free(at(2) - Cycles::new(1)));
         assert!(uart.is_free(at(2)));
+    }
+
+    #[test]
+    fn who_listens_gets_each_character_when_it_is_through() {
+        let mut uart = uart();
+        uart.listen();
+        uart.send(b'a', at(0));
+        uart.send(b'b', at(0));
+        assert_eq!(uart.take_sent(at(1) - Cycles::new(1)), None);
+        assert_eq!(uart.take_sent(at(5)), Some((at(1), b'a')));
+        assert_eq!(uart.take_sent(at(5)), Some((at(2), b'b')));
+        assert!(!uart.is_sending());
     }
 
     #[test]

@@ -3,10 +3,10 @@
 use kmotiondef::bits::{BitKind, range_of};
 use kmotiondef::limits::{MAX_PWM_VALUE, MAX_PWMC_VALUE, MAX_PWMR_VALUE};
 use kmotiondef::variables::{
-    ADC_BUFFER_IN, BIT_DIR_SHADOW, BIT_DIR_SHADOW_SNAP0, BIT_DIR_SHADOW_SNAP1, LAST_PWM, VIRTUAL_BITS,
-    VIRTUAL_BITS_EX,
+    ADC_BUFFER_IN, BIT_DIR_SHADOW, BIT_DIR_SHADOW_SNAP0, BIT_DIR_SHADOW_SNAP1, KSTEP_PRESENT, LAST_PWM,
+    VIRTUAL_BITS, VIRTUAL_BITS_EX,
 };
-use kmotiondef::{Bit, Place};
+use kmotiondef::{Bit, Cycles, Place};
 use vm::firmware::Caller;
 use vm::memory::GuestMemory;
 
@@ -61,7 +61,7 @@ pub(crate) fn set_bit_direction(kernel: &mut Kernel, caller: &mut Caller<'_>, bi
     let output = direction != 0;
     match range_of(bit).map(|range| range.kind) {
         Some(BitKind::Pin) => {
-            kernel.pins.set_output(bit, output);
+            kernel.pins.set_output(bit, output, caller.now());
             let word = BIT_DIR_SHADOW.element(bit.index() / 32);
             change(caller.memory, word, 1 << (bit.get() % 32), output);
         }
@@ -71,6 +71,7 @@ pub(crate) fn set_bit_direction(kernel: &mut Kernel, caller: &mut Caller<'_>, bi
         }
         _ => {}
     }
+    kernel.settle(caller.now());
 }
 
 /// 1 for outputs. Outputs of option boards count as 0, as the board has it.
@@ -97,24 +98,27 @@ pub(crate) fn set_state_bit(kernel: &mut Kernel, caller: &mut Caller<'_>, bit: i
 
 fn write(kernel: &mut Kernel, caller: &mut Caller<'_>, function: &str, bit: i32, level: bool) {
     if let Some(bit) = checked(kernel, caller, function, bit) {
-        write_bit(kernel, caller.memory, bit, level);
+        let now = caller.now();
+        write_bit(kernel, caller.memory, bit, level, now);
     }
 }
 
 /// Writes a bit; inputs and numbers that nothing answers ignore it.
-pub(crate) fn write_bit(kernel: &mut Kernel, memory: &mut GuestMemory, bit: Bit, level: bool) {
+pub(crate) fn write_bit(kernel: &mut Kernel, memory: &mut GuestMemory, bit: Bit, level: bool, now: Cycles) {
     let Some(kind) = range_of(bit).map(|range| range.kind) else { return };
     match kind {
-        BitKind::Pin | BitKind::Led => kernel.pins.set_latch(bit, level),
+        BitKind::Pin | BitKind::Led => kernel.pins.set_latch(bit, level, now),
         BitKind::KanalogOptoOutput | BitKind::KanalogFet | BitKind::KanalogOutput | BitKind::SnapGpio => {
-            kernel.pins.write(bit, level);
+            kernel.pins.write(bit, level, now);
         }
         _ => {
             if let Some((word, mask)) = memory_bit(bit, kind) {
                 change(memory, word, mask, level);
+                kernel.pins.changes.sweep(memory, now);
             }
         }
     }
+    kernel.settle(now);
 }
 
 /// The state of a bit and whether it is an input from outside.
@@ -130,6 +134,8 @@ pub(crate) fn bit_state(kernel: &Kernel, memory: &GuestMemory, bit: Bit) -> (boo
             let (word, mask) = snap_direction(bit);
             if memory.get(word) & mask != 0 { (pins.written(bit), false) } else { (pins.input(bit), true) }
         }
+        // Nobody switches the banks of KStep's inputs through before it is said to be there.
+        BitKind::KstepInput if memory.get(KSTEP_PRESENT) == 0 => (false, false),
         _ => match memory_bit(bit, kind) {
             Some((word, mask)) => (memory.get(word) & mask != 0, false),
             None => (pins.input(bit), true),

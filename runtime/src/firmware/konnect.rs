@@ -4,8 +4,11 @@ use kmotiondef::GuestAddr;
 use vm::firmware::Caller;
 use vm::trap::TrapKind;
 
-use crate::device::konnect::Service;
+use crate::device::konnect::{Board, Port, Service};
 use crate::kernel::Kernel;
+
+/// Addresses on a port.
+const ADDRESSES: i32 = 8;
 
 pub(crate) fn init_aux(kernel: &mut Kernel, _: &mut Caller<'_>) {
     kernel.konnects.clear();
@@ -14,28 +17,40 @@ pub(crate) fn init_aux(kernel: &mut Kernel, _: &mut Caller<'_>) {
 pub(crate) fn add_konnect(
     kernel: &mut Kernel,
     caller: &mut Caller<'_>,
-    _board: i32,
+    address: i32,
     outputs: GuestAddr,
     inputs: GuestAddr,
 ) -> Result<(), TrapKind> {
-    add(kernel, caller, Service { outputs, inputs })
+    add(kernel, caller, "AddKonnect", Port::Aux1, address, (outputs, inputs))
 }
 
 pub(crate) fn add_konnect_aux0(
     kernel: &mut Kernel,
     caller: &mut Caller<'_>,
-    _board: i32,
+    address: i32,
     outputs: GuestAddr,
     inputs: GuestAddr,
 ) -> Result<(), TrapKind> {
-    add(kernel, caller, Service { outputs, inputs })
+    add(kernel, caller, "AddKonnect_Aux0", Port::Aux0, address, (outputs, inputs))
 }
 
 /// Serves a board from now on; words that are not there are the caller's mistake, not that of a later tick.
-fn add(kernel: &mut Kernel, caller: &mut Caller<'_>, service: Service) -> Result<(), TrapKind> {
-    caller.memory.load::<i32>(service.outputs)?;
-    caller.memory.load::<i32>(service.inputs)?;
-    if !kernel.konnects.add(service) {
+fn add(
+    kernel: &mut Kernel,
+    caller: &mut Caller<'_>,
+    function: &str,
+    port: Port,
+    address: i32,
+    (outputs, inputs): (GuestAddr, GuestAddr),
+) -> Result<(), TrapKind> {
+    caller.memory.load::<i32>(outputs)?;
+    caller.memory.load::<i32>(inputs)?;
+    if !(0..ADDRESSES).contains(&address) {
+        kernel.diagnose(caller, format!("{function}({address}, …): boards have addresses 0 to 7"));
+    }
+    // The address goes out on three lines.
+    let board = Board { port, address: (address & (ADDRESSES - 1)) as u8 };
+    if !kernel.konnects.add(Service { board, outputs, inputs }) {
         kernel.console.message("Too many AddKonnects");
     }
     Ok(())

@@ -147,7 +147,7 @@ pub(crate) fn tick(kernel: &mut Kernel, context: &mut TickContext<'_>) {
     let memory = &mut *context.memory;
     let out = memory.get(P_RS232_TX_OUT);
     if out != memory.get(P_RS232_TX_IN) && kernel.uart.is_free(context.now) {
-        kernel.uart.send(context.now);
+        kernel.uart.send(memory.peek(out), context.now);
         memory.set(P_RS232_TX_OUT, next(out, RS232_TX_BUF.address()));
     }
 }

@@ -31,12 +31,13 @@ fn checked(kernel: &mut Kernel, caller: &Caller<'_>, function: &str, address: i3
 
 pub(crate) fn write_snap_amp(kernel: &mut Kernel, caller: &mut Caller<'_>, address: i32, data: i32) {
     let Some(register) = checked(kernel, caller, "WriteSnapAmp", address) else { return };
-    kernel.snapamps.write(register, data as u16);
+    let now = caller.now();
+    kernel.snapamps.write(register, data as u16, now);
     match register.number {
         PINS | CLEAR => {
             for (index, bit) in pins(register.board).enumerate() {
                 if data >> index & 1 != 0 {
-                    write_bit(kernel, caller.memory, bit, register.number == PINS);
+                    write_bit(kernel, caller.memory, bit, register.number == PINS, now);
                 }
             }
         }
@@ -56,7 +57,7 @@ pub(crate) fn read_snap_amp(kernel: &mut Kernel, caller: &mut Caller<'_>, addres
             word | i32::from(bit_state(kernel, caller.memory, bit).0) << index
         });
     }
-    kernel.snapamps.read(register).into()
+    kernel.snapamps.read(register, caller.now()).into()
 }
 
 #[cfg(test)]

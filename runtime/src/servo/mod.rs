@@ -69,6 +69,12 @@ pub(crate) struct Servo {
 }
 
 impl Servo {
+    /// Something outside moves the load of an axis.
+    pub(crate) fn push(&mut self, axis: AxisId, units: f64) {
+        self.plants[axis.index()].push(units);
+        self.still.interrupt();
+    }
+
     /// Whether a path or an axis on its own moves or something is being recorded.
     pub(crate) fn is_busy(memory: &GuestMemory) -> bool {
         recorder::is_recording(memory)

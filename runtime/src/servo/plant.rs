@@ -85,6 +85,12 @@ impl Plant {
         self.origin = self.load - command;
     }
 
+    /// Something outside moves the load; step generators go on from there.
+    pub(crate) fn push(&mut self, units: f64) {
+        self.load += units;
+        self.origin += units;
+    }
+
     /// Moves the load by what the last tick put out, and takes up a position that a program has written; whether
     /// anything changed.
     #[inline]

@@ -10,6 +10,9 @@ use crate::cli::run::read;
 /// What the first line of a program begins with that says how it is run.
 const HEAD: &str = "// cc67: ";
 
+/// Files beside a program that it is run with, and the options that take them.
+const BESIDE: &[(&str, &str)] = &[("toml", "--machine"), ("stim", "--stim")];
+
 /// A program with the console it should show.
 #[derive(Debug)]
 pub(super) struct Case {
@@ -87,10 +90,12 @@ fn case(path: &Path, head: Head) -> Result<Case> {
         Head::Run { options, also } => (options, also),
         Head::Part | Head::None => (Vec::new(), Vec::new()),
     };
-    let machine = path.with_extension("toml");
-    if machine.exists() && !options.iter().any(|option| option.starts_with("--machine")) {
-        let name = machine.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        options.extend(["--machine".to_owned(), name]);
+    for (suffix, option) in BESIDE {
+        let beside = path.with_extension(suffix);
+        if beside.exists() && !options.iter().any(|given| given.starts_with(option)) {
+            let name = beside.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            options.extend([(*option).to_owned(), name]);
+        }
     }
     let golden = path.with_extension("expected");
     let expected = match golden.exists() {

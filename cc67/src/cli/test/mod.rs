@@ -51,8 +51,8 @@ const HELP: &str = "\
 A test is a program NAME.c with NAME.expected beside it: the lines of the console, then `---- notes` and the
 messages of the board, if there were any, then `---- exit N` unless the run succeeded.
 The first line of the program may say how it is run:
-    // cc67: run --for 2.5 --stim door.toml also 2:watchdog.c
-NAME.toml beside it, if there is one, is its machine file.
+    // cc67: run --for 2.5 --stim door.stim also 2:watchdog.c
+NAME.toml beside it, if there is one, is its machine file, and NAME.stim its stimulus.
 Exit code: 0 all as expected, 1 not all, 2 wrong usage.";
 
 /// Finds the tests, runs them and reports.

@@ -13,7 +13,7 @@ impl Bits for Kernel {
     }
 
     fn drive(&mut self, memory: &mut GuestMemory, bit: Bit, high: bool) {
-        write_bit(self, memory, bit, high);
+        write_bit(self, memory, bit, high, self.tick_start);
     }
 }
 

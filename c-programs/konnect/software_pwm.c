@@ -1,0 +1,70 @@
+// cc67: run
+//
+// software_pwm.c - an analog voltage from two outputs of a Konnect board and a low pass.
+//
+//   cc67 run --stim c-programs/konnect/software_pwm.stim c-programs/konnect/software_pwm.c
+//
+// One output charges a capacitor through a resistor, the other one discharges it. The
+// program computes the capacitor's voltage from what it switched last and charges
+// whenever that is below the voltage wanted. It does so in each of its slices, every
+// 0.18 ms; the low pass smooths the rest.
+//
+// The file beside this program connects such a low pass to board 0 on JP4, and its
+// voltage to analog input 0. Expect the measured sine of 5 Hz to stay within 2 % of the
+// one that was wanted.
+
+#include "KMotionDef.h"
+
+#define OHMS     100.0
+#define FARADS   290e-6
+#define SUPPLY   11.23
+#define CHARGE   62             // output 14 of the board
+#define DRAIN    63             // output 15
+
+#define MEAN     5.0
+#define SWING    3.0
+#define HZ       5.0
+
+double Computed;                // the voltage as it should be now
+int Charging;
+
+void Drive(int Charge)
+{
+    ClearBit(Charge ? DRAIN : CHARGE);
+    SetBit(Charge ? CHARGE : DRAIN);
+    Charging = Charge;
+}
+
+double Measured(void)
+{
+    return ADC(0) * 10.0 / 2048.0;
+}
+
+main()
+{
+    double T, Last, Start, Wanted, Error, Largest = 0.0;
+
+    InitAux();
+    AddKonnect_Aux0(0, &VirtualBits, VirtualBitsEx);
+    Drive(TRUE);
+
+    Start = Last = WaitNextTimeSlice();
+    do
+    {
+        T = WaitNextTimeSlice();
+        Computed += ((Charging ? SUPPLY : 0.0) - Computed) * (T - Last) / (OHMS * FARADS);
+        Last = T;
+
+        Wanted = MEAN + SWING * sin((T - Start) * TWO_PI * HZ);
+        Drive(Computed < Wanted);
+
+        Error = fast_fabs(Measured() - Wanted);
+        if (T - Start > 0.2 && Error > Largest) Largest = Error;    // charged by then
+    }
+    while (T - Start < 1.0);
+
+    printf("largest error %.1f %% of %.0f V\n", Largest / (MEAN + SWING) * 100.0, MEAN + SWING);
+    printf("within 2 %%: %s\n", Largest < 0.02 * (MEAN + SWING) ? "yes" : "no");
+    Drive(FALSE);
+    InitAux();                  // the outputs stay as they are
+}

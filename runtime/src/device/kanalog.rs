@@ -1,0 +1,77 @@
+//! Kanalog: eight analog inputs that are converted anew in each tick while the board's port serves it.
+//!
+//! Its outputs are stored bits and `DAC_Buffer`, which nothing else has to copy. Source: devices.md section 2.
+
+use kmotiondef::variables::{ADC_BUFFER_IN, KANALOG_PRESENT};
+use vm::memory::GuestMemory;
+
+use super::fpga::Fpga;
+use crate::views::Typed;
+
+/// Analog inputs.
+pub(crate) const ADC_CHANNELS: usize = 8;
+/// The conversion of 0 V.
+const ZERO: i32 = 2048;
+
+/// What is connected to the inputs.
+#[derive(Clone, Debug)]
+pub(crate) struct Kanalog {
+    /// Whether anything is; nothing has to be done before.
+    is_driven: bool,
+    /// Conversions, 0 to 4095.
+    levels: [i32; ADC_CHANNELS],
+}
+
+impl Default for Kanalog {
+    fn default() -> Self {
+        Self { is_driven: false, levels: [ZERO; ADC_CHANNELS] }
+    }
+}
+
+impl Kanalog {
+    /// Puts a voltage on an input, as its conversion.
+    pub(crate) fn drive(&mut self, channel: usize, conversion: i32) {
+        self.is_driven = true;
+        if let Some(level) = self.levels.get_mut(channel) {
+            *level = conversion;
+        }
+    }
+
+    /// Converts all inputs, if something is connected to them and the port serves Kanalog.
+    pub(crate) fn tick(&self, fpga: &Fpga, memory: &mut GuestMemory) {
+        if !self.is_driven || !is_served(fpga, memory) {
+            return;
+        }
+        for (channel, level) in self.levels.into_iter().enumerate() {
+            memory.set(ADC_BUFFER_IN.element(channel), level);
+        }
+    }
+
+    /// Whether the next tick converts what the last one did.
+    pub(crate) fn is_settled(&self, fpga: &Fpga, memory: &GuestMemory) -> bool {
+        let is_same = |(channel, level): (usize, &i32)| memory.get(ADC_BUFFER_IN.element(channel)) == *level;
+        !self.is_driven || !is_served(fpga, memory) || self.levels.iter().enumerate().all(is_same)
+    }
+}
+
+/// Whether the port serves Kanalog: found at power-up, or switched on by the program.
+fn is_served(fpga: &Fpga, memory: &GuestMemory) -> bool {
+    fpga.serves_kanalog() || memory.get(KANALOG_PRESENT) != 0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn inputs_are_converted_while_the_port_serves_them() {
+        let (mut kanalog, fpga, mut memory) = (Kanalog::default(), Fpga::default(), GuestMemory::new());
+        memory.set(ADC_BUFFER_IN.element(3), ZERO);
+        kanalog.drive(3, 4000);
+        for (present, expect) in [(0, ZERO), (1, 4000)] {
+            memory.set(KANALOG_PRESENT, present);
+            kanalog.tick(&fpga, &mut memory);
+            assert_eq!(memory.get(ADC_BUFFER_IN.element(3)), expect);
+        }
+    }
+}

@@ -1,0 +1,367 @@
+//! Plays a stimulus: what is due is done, and what the board does is watched for.
+
+use std::collections::BTreeMap;
+
+use kmotiondef::bits::{BitDirection, range_of};
+use kmotiondef::structs::{Chan, Persist};
+use kmotiondef::variables::{KANALOG_PRESENT, PERSIST, SNAP_AMP_PRESENT};
+use kmotiondef::{AxisId, Bit, Cycles, ThreadId};
+use vm::firmware::TickContext;
+use vm::memory::GuestMemory;
+use vm::scheduler::ThreadSet;
+
+use super::wave::conversion;
+use super::{Action, Condition, Expectation, Rule, Stimulus, Trigger, Wave};
+use crate::device::changes::BitChange;
+use crate::device::kanalog::ADC_CHANNELS;
+use crate::event::EventKind;
+use crate::firmware::io::{bit_state, write_bit};
+use crate::kernel::Kernel;
+use crate::views::Typed;
+
+/// Inputs of Kanalog.
+const KANALOG_INPUTS: std::ops::RangeInclusive<u16> = 128..=143;
+
+/// Settings of devices that name one of its analog inputs.
+const KANALOG_SETTINGS: &[&str] = &["adc", "sine", "cosine"];
+
+/// What is due at an instant.
+#[derive(Clone, Copy, Debug)]
+enum Due {
+    /// A rule.
+    Rule(usize),
+    /// A pulse ends: the level before it.
+    Level(Bit, bool),
+}
+
+/// An encoder on its way.
+#[derive(Clone, Copy, Debug)]
+struct Turning {
+    axis: AxisId,
+    counts: f64,
+    begun: Cycles,
+    over: Cycles,
+    /// Counts already turned.
+    turned: f64,
+}
+
+/// A stimulus under way.
+#[derive(Debug)]
+pub(crate) struct Player {
+    rules: Vec<Rule>,
+    /// What is due, by time and then in the order it became so.
+    due: BTreeMap<(Cycles, u64), Due>,
+    count: u64,
+    waves: [Option<(Wave, Cycles)>; ADC_CHANNELS],
+    turning: Vec<Turning>,
+    /// Rules for the first time only that have had it.
+    spent: Vec<bool>,
+    /// Console lines, and how many of them were looked at.
+    printed: Vec<(Cycles, String)>,
+    looked_at: usize,
+    active: ThreadSet,
+    /// The analog value each input was last given.
+    converted: [i32; ADC_CHANNELS],
+}
+
+impl Player {
+    /// Gets ready; an option board that something happens to was found at power-up.
+    pub(crate) fn new(stimulus: Stimulus, kernel: &mut Kernel, memory: &mut GuestMemory) -> Self {
+        let rules = stimulus.rules;
+        for Rule { action, .. } in &rules {
+            if needs_kanalog(action) {
+                memory.set(KANALOG_PRESENT, 1);
+            }
+            match action {
+                Action::SnapAmp(board, ..) => {
+                    kernel.snapamps.connect(*board);
+                    memory.set(SNAP_AMP_PRESENT, 1);
+                }
+                Action::Set(bit, _) | Action::Toggle(bit) | Action::Pulse(bit, _) => {
+                    kernel.pins.declare(*bit);
+                }
+                _ => {}
+            }
+        }
+        let mut player = Self {
+            due: BTreeMap::new(),
+            count: 0,
+            waves: [None; ADC_CHANNELS],
+            turning: Vec::new(),
+            spent: vec![false; rules.len()],
+            printed: Vec::new(),
+            looked_at: 0,
+            active: ThreadSet::EMPTY,
+            converted: [-1; ADC_CHANNELS],
+            rules,
+        };
+        for index in 0..player.rules.len() {
+            match player.rules[index].trigger {
+                Trigger::At(time) | Trigger::Every { from: time, .. } => player.plan(time, Due::Rule(index)),
+                Trigger::When { .. } | Trigger::End => {}
+            }
+        }
+        player
+    }
+
+    fn plan(&mut self, at: Cycles, due: Due) {
+        self.due.insert((at, self.count), due);
+        self.count += 1;
+    }
+
+    /// The PC has received a line.
+    pub(crate) fn note_line(&mut self, line: &[u8], at: Cycles) {
+        self.printed.push((at, String::from_utf8_lossy(line).into_owned()));
+    }
+
+    /// Whether a thread is still to be started, so that the run must go on.
+    pub(crate) fn is_busy(&self) -> bool {
+        self.due.values().any(|due| match due {
+            Due::Rule(index) => matches!(self.rules[*index].action, Action::Start(_)),
+            Due::Level(..) => false,
+        })
+    }
+
+    /// How many of the ticks behind the one that began at `now` have nothing to do.
+    pub(crate) fn quiet_ticks(&self, now: Cycles) -> u64 {
+        let moves = self.waves.iter().flatten().any(|(wave, begun)| !wave.is_over(now - *begun));
+        if moves || !self.turning.is_empty() || self.looked_at < self.printed.len() {
+            return 0;
+        }
+        let Some((&(at, _), _)) = self.due.first_key_value() else { return u64::MAX };
+        let tick = Cycles::PER_TICK.get();
+        let first = at.get().saturating_add(tick - 1) / tick;
+        u64::try_from(first - now.get() / tick - 1).unwrap_or(0)
+    }
+
+    /// What the world does at the beginning of a tick; whether it did anything.
+    pub(crate) fn tick(
+        &mut self,
+        kernel: &mut Kernel,
+        context: &mut TickContext<'_>,
+        changes: &[BitChange],
+    ) -> bool {
+        self.watch_bits(changes);
+        self.watch_lines();
+        self.watch_threads(context);
+        let mut acted = false;
+        while let Some(entry) = self.due.first_entry()
+            && entry.key().0 <= context.now
+        {
+            acted = true;
+            match entry.remove() {
+                Due::Level(bit, level) => drive(kernel, context, bit, level),
+                Due::Rule(index) => self.act(kernel, context, index),
+            }
+        }
+        self.turn_encoders(kernel, context);
+        self.run_waves(kernel, context);
+        acted || !self.turning.is_empty()
+    }
+
+    fn watch_bits(&mut self, changes: &[BitChange]) {
+        for change in changes {
+            self.happened(change.at, |condition| {
+                matches!(condition, Condition::Bit(bit, edge) if *bit == change.bit && edge.fits(change.level))
+            });
+        }
+    }
+
+    fn watch_lines(&mut self) {
+        while let Some((at, line)) = self.printed.get(self.looked_at).cloned() {
+            self.looked_at += 1;
+            self.happened(
+                at,
+                |condition| matches!(condition, Condition::Printed(text) if line.contains(text.as_str())),
+            );
+        }
+    }
+
+    fn watch_threads(&mut self, context: &TickContext<'_>) {
+        let before = std::mem::replace(&mut self.active, context.threads.active());
+        let after = self.active;
+        if before == after {
+            return;
+        }
+        for thread in ThreadId::all().filter(|&thread| before.contains(thread) != after.contains(thread)) {
+            let is_active = after.contains(thread);
+            self.happened(context.now, |condition| match condition {
+                Condition::Starts(named) => is_active && *named == thread,
+                Condition::Ends(named) => !is_active && *named == thread,
+                Condition::Bit(..) | Condition::Printed(_) => false,
+            });
+        }
+    }
+
+    /// Something has happened at `at`: plans the rules that waited for it.
+    fn happened(&mut self, at: Cycles, fits: impl Fn(&Condition) -> bool) {
+        for index in 0..self.rules.len() {
+            let Trigger::When { condition, after, is_once } = &self.rules[index].trigger else { continue };
+            if fits(condition) && !(*is_once && self.spent[index]) {
+                self.spent[index] = true;
+                let time = at + *after;
+                self.plan(time, Due::Rule(index));
+            }
+        }
+    }
+
+    fn act(&mut self, kernel: &mut Kernel, context: &mut TickContext<'_>, index: usize) {
+        let now = context.now;
+        if let Trigger::Every { period, from, until } = self.rules[index].trigger {
+            // Counted from the first, so that rounding to ticks does not add up.
+            let next = from + Cycles::new(((now - from).get() / period.get() + 1) * period.get());
+            if until.is_none_or(|until| next <= until) {
+                self.plan(next, Due::Rule(index));
+            }
+        }
+        match self.rules[index].action.clone() {
+            Action::Set(bit, level) => drive(kernel, context, bit, level),
+            Action::Toggle(bit) => {
+                let level = level(kernel, context.memory, bit);
+                drive(kernel, context, bit, !level);
+            }
+            Action::Pulse(bit, duration) => {
+                let level = level(kernel, context.memory, bit);
+                drive(kernel, context, bit, !level);
+                self.plan(now + duration, Due::Level(bit, level));
+            }
+            Action::Adc(channel, wave) => self.waves[channel] = Some((wave, now)),
+            Action::Push(axis, units) => kernel.servo.push(axis, units),
+            Action::Turn(axis, counts, over) => {
+                self.turning.push(Turning { axis, counts, begun: now, over, turned: 0.0 });
+            }
+            Action::Uart(bytes) => kernel.uart.arrive(&bytes, now),
+            Action::Persist(index, value) => {
+                context.memory.set(PERSIST.field(Persist::USER_DATA).element(index), value);
+            }
+            Action::Start(thread) => {
+                if context.threads.start(thread).is_err() {
+                    let text = format!("{}: thread {thread} holds no program", self.rules[index].place);
+                    kernel.tell(now, EventKind::Diagnostic(text));
+                }
+            }
+            Action::Kill(thread) => context.threads.pause(thread),
+            Action::Konnect(board, input, level) => kernel.konnects.drive(board, input, level),
+            Action::SnapAmp(board, side, quantity, value) => {
+                kernel.snapamps.set(board, side, quantity, value, now);
+            }
+            Action::Attach(device) => {
+                if let Ok(device) = device.build() {
+                    kernel.attach(device, context.memory, now);
+                }
+            }
+            Action::Expect(_) => self.check(kernel, context, index),
+        }
+    }
+
+    /// Tells what is not as expected.
+    fn check(&self, kernel: &mut Kernel, context: &TickContext<'_>, index: usize) {
+        let rule = &self.rules[index];
+        let Action::Expect(expectation) = &rule.action else { return };
+        if let Some(text) = self.unmet(kernel, context, expectation) {
+            kernel.tell(context.now, EventKind::Unmet(format!("{}: {text}", rule.place)));
+        }
+    }
+
+    /// What is not as it should be.
+    fn unmet(&self, kernel: &Kernel, context: &TickContext<'_>, expectation: &Expectation) -> Option<String> {
+        match expectation {
+            Expectation::Bit(bit, expected) => {
+                let level = bit_state(kernel, context.memory, *bit).0;
+                (level != *expected)
+                    .then(|| format!("bit {bit} is {}, expected {}", u8::from(level), u8::from(*expected)))
+            }
+            Expectation::Printed(text, expected) => {
+                let is_printed = self.printed.iter().any(|(_, line)| line.contains(text.as_str()));
+                (is_printed != *expected).then(|| {
+                    let what = if *expected { "no line contains" } else { "a line contains" };
+                    format!("{what} \"{text}\"")
+                })
+            }
+            Expectation::Persist(index, expected) => {
+                let value = context.memory.get(PERSIST.field(Persist::USER_DATA).element(*index));
+                (value != *expected).then(|| format!("UserData[{index}] is {value}, expected {expected}"))
+            }
+            Expectation::Active(thread, expected) => {
+                let is_active = context.threads.state(*thread).is_active();
+                (is_active != *expected).then(|| {
+                    let state = if is_active { "active" } else { "not active" };
+                    format!("thread {thread} is {state}")
+                })
+            }
+        }
+    }
+
+    /// The run is over: checks what is expected then, or later than it lasted.
+    pub(crate) fn finish(&mut self, kernel: &mut Kernel, context: &TickContext<'_>) {
+        let late: Vec<usize> = std::mem::take(&mut self.due)
+            .into_values()
+            .filter_map(|due| match due {
+                Due::Rule(index) => Some(index),
+                Due::Level(..) => None,
+            })
+            .collect();
+        let at_end = (0..self.rules.len()).filter(|&index| self.rules[index].trigger == Trigger::End);
+        for index in late.into_iter().chain(at_end) {
+            self.check(kernel, context, index);
+        }
+    }
+
+    fn turn_encoders(&mut self, kernel: &mut Kernel, context: &TickContext<'_>) {
+        for turning in &mut self.turning {
+            let elapsed = context.now - turning.begun;
+            let part =
+                if elapsed < turning.over { elapsed.get() as f64 / turning.over.get() as f64 } else { 1.0 };
+            let step = turning.counts * part - turning.turned;
+            turning.turned += step;
+            let gain = f64::from(context.memory.axis(turning.axis, Chan::INPUT_GAIN0));
+            kernel.servo.push(turning.axis, step * gain);
+        }
+        self.turning.retain(|turning| context.now - turning.begun < turning.over);
+    }
+
+    fn run_waves(&mut self, kernel: &mut Kernel, context: &TickContext<'_>) {
+        for channel in 0..ADC_CHANNELS {
+            let Some((wave, begun)) = &self.waves[channel] else { continue };
+            let load = |axis: AxisId| kernel.servo.plants[axis.index()].load;
+            let value = conversion(wave.value(context.now - *begun, load));
+            if self.converted[channel] != value {
+                self.converted[channel] = value;
+                kernel.kanalog.drive(channel, value);
+            }
+        }
+    }
+}
+
+/// Whether an action is only possible with a Kanalog.
+fn needs_kanalog(action: &Action) -> bool {
+    match action {
+        Action::Adc(..) => true,
+        Action::Attach(device) => {
+            device.settings.iter().any(|(key, _)| KANALOG_SETTINGS.contains(&key.as_str()))
+        }
+        Action::Set(bit, _) | Action::Toggle(bit) | Action::Pulse(bit, _) => {
+            KANALOG_INPUTS.contains(&bit.get())
+        }
+        _ => false,
+    }
+}
+
+/// Whether a bit lives in guest memory.
+fn is_memory(bit: Bit) -> bool {
+    range_of(bit).is_some_and(|range| range.direction == BitDirection::Memory)
+}
+
+/// The level that the world gives a bit.
+fn level(kernel: &Kernel, memory: &GuestMemory, bit: Bit) -> bool {
+    if is_memory(bit) { bit_state(kernel, memory, bit).0 } else { kernel.pins.input(bit) }
+}
+
+fn drive(kernel: &mut Kernel, context: &mut TickContext<'_>, bit: Bit, level: bool) {
+    if is_memory(bit) {
+        write_bit(kernel, context.memory, bit, level, context.now);
+    } else {
+        kernel.pins.drive(bit, level, context.now);
+        kernel.settle(context.now);
+    }
+}

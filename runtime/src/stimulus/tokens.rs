@@ -1,0 +1,126 @@
+//! Words, texts and signs of a line, each with its column.
+
+/// What stands at a place of a line.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum TokenKind {
+    /// A word or number.
+    Word(String),
+    /// Characters between quotation marks, escapes resolved.
+    Text(Vec<u8>),
+    /// `=`
+    Equals,
+    /// `;`, which separates statements.
+    Semicolon,
+}
+
+/// One token.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Token {
+    pub(super) kind: TokenKind,
+    /// Its first character, from 1.
+    pub(super) column: usize,
+}
+
+/// A mistake and its column.
+pub(super) type Mistake = (usize, String);
+
+/// Splits a line; `#` begins a comment.
+pub(super) fn tokens(line: &str) -> Result<Vec<Token>, Mistake> {
+    let characters: Vec<char> = line.chars().collect();
+    let mut tokens = Vec::new();
+    let mut at = 0;
+    while let Some(&character) = characters.get(at) {
+        let column = at + 1;
+        let kind = match character {
+            '#' => break,
+            '=' => single(&mut at, TokenKind::Equals),
+            ';' => single(&mut at, TokenKind::Semicolon),
+            '"' => TokenKind::Text(text(&characters, &mut at)?),
+            character if character.is_whitespace() => {
+                at += 1;
+                continue;
+            }
+            _ => TokenKind::Word(word(&characters, &mut at)),
+        };
+        tokens.push(Token { kind, column });
+    }
+    Ok(tokens)
+}
+
+fn single(at: &mut usize, kind: TokenKind) -> TokenKind {
+    *at += 1;
+    kind
+}
+
+fn word(characters: &[char], at: &mut usize) -> String {
+    let rest = characters.iter().skip(*at);
+    let is_part =
+        |character: &&char| !character.is_whitespace() && !matches!(character, '=' | ';' | '#' | '"');
+    let word: String = rest.take_while(is_part).collect();
+    *at += word.chars().count();
+    word
+}
+
+/// The bytes of a text; `at` goes behind it.
+fn text(characters: &[char], at: &mut usize) -> Result<Vec<u8>, Mistake> {
+    let start = *at + 1;
+    let mut bytes = Vec::new();
+    *at += 1;
+    loop {
+        let column = *at + 1;
+        match characters.get(*at) {
+            None => return Err((start, "the text has no closing \"".to_owned())),
+            Some('"') => {
+                *at += 1;
+                return Ok(bytes);
+            }
+            Some('\\') => bytes.push(escape(characters, at, column)?),
+            Some(&character) => {
+                *at += 1;
+                bytes.extend(character.to_string().bytes());
+            }
+        }
+    }
+}
+
+/// The byte of an escape sequence.
+fn escape(characters: &[char], at: &mut usize, column: usize) -> Result<u8, Mistake> {
+    let named = characters.get(*at + 1).copied();
+    *at += 2;
+    Ok(match named {
+        Some('r') => b'\r',
+        Some('n') => b'\n',
+        Some('t') => b'\t',
+        Some('0') => 0,
+        Some('\\') => b'\\',
+        Some('"') => b'"',
+        Some('x') => {
+            let digits: String = characters.iter().skip(*at).take(2).collect();
+            *at += 2;
+            u8::from_str_radix(&digits, 16)
+                .map_err(|_| (column, "\\x takes two hexadecimal digits".to_owned()))?
+        }
+        _ => return Err((column, "a text knows \\r \\n \\t \\0 \\\\ \\\" and \\xNN".to_owned())),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_fall_into_tokens() {
+        let tokens = tokens("at 1s bit 5=1; uart \"a\\x41\\r#\" # said").expect("it is right");
+        let kinds: Vec<_> = tokens.iter().map(|token| (token.column, format!("{:?}", token.kind))).collect();
+        let columns: Vec<_> = tokens.iter().map(|token| token.column).collect();
+        assert_eq!(columns, [1, 4, 7, 11, 12, 13, 14, 16, 21], "{kinds:?}");
+        assert_eq!(tokens[8].kind, TokenKind::Text(b"aA\r#".to_vec()));
+    }
+
+    #[test]
+    fn texts_end_and_escapes_are_known() {
+        for (line, expect) in [("uart \"a", 6), ("uart \"\\q\"", 7), ("uart \"\\x4\"", 7), ("\"\\", 2)] {
+            assert_eq!(tokens(line).expect_err("it is wrong").0, expect, "{line}");
+        }
+    }
+}
