@@ -424,6 +424,7 @@ impl Firmware for Kernel {
         {
             self.tell(context.now, EventKind::ConsoleLine(line));
         }
+        crate::servo::limits::slice(self, context.memory);
         crate::host::slice(self, context);
         serial::slice(self, context);
         commands::slice(self, context, |kernel| &mut kernel.usb);

@@ -5,7 +5,6 @@
 
 use kmotiondef::structs::{Chan, Spindle};
 use kmotiondef::variables::{CS0_STOPPING_STATE, SPINDLE};
-use vm::trap::TrapKind;
 
 use super::arguments::Values;
 use super::numbers::{fixed, time};
@@ -232,20 +231,15 @@ pub(super) fn stop_state(session: &mut Session<'_, '_>, _: &Values) -> Answer {
 pub(super) fn configure_spindle(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (kind, axis) = (values.integer(0), values.integer(1));
     let [update, tau, counts] = [2, 3, 4].map(|index| values.single(index));
-    let result = session
+    session
         .call(|kernel, caller| spindle::configure_spindle(kernel, caller, kind, axis, update, tau, counts));
-    modelled(session, result)
+    Answer::Nothing
 }
 
 pub(super) fn trigger_threading(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let speed = values.single(0);
-    let result = session.call(|kernel, caller| spindle::trig_threading(kernel, caller, speed));
-    modelled(session, result)
-}
-
-/// What is not modelled says so.
-fn modelled(session: &mut Session<'_, '_>, result: Result<(), TrapKind>) -> Answer {
-    noted(session, result.map_err(|trap| trap.to_string()))
+    session.call(|kernel, caller| spindle::trig_threading(kernel, caller, speed));
+    Answer::Nothing
 }
 
 pub(super) fn spindle_speed(session: &mut Session<'_, '_>, _: &Values) -> Answer {

@@ -1,9 +1,9 @@
 //! The coordinate system, feed override and feedhold. Source: coordinated-motion.md sections 1 and 4 to 5.
 
+use kmotiondef::AxisId;
 use kmotiondef::modes::LastMotion;
 use kmotiondef::structs::Chan;
 use kmotiondef::variables::CS0_STOPPING_STATE;
-use kmotiondef::{AxisId, Cycles};
 use vm::firmware::Caller;
 use vm::memory::GuestMemory;
 
@@ -13,7 +13,7 @@ use crate::servo::coordinated::feedhold::State;
 use crate::servo::coordinated::system::{assign, nominal_change_time};
 use crate::servo::coordinated::{buffer, feedhold, path, rate};
 use crate::servo::independent::{has_motion, is_moving, present, run};
-use crate::servo::profile;
+use crate::servo::{profile, spindle};
 use crate::views::Typed;
 
 pub(crate) use crate::servo::coordinated::system::{is_member, letters, members};
@@ -87,13 +87,13 @@ pub(crate) fn check_done_buf(_: &mut Kernel, caller: &mut Caller<'_>) -> i32 {
 }
 
 pub(crate) fn stop_coordinated_motion(kernel: &mut Kernel, caller: &mut Caller<'_>) {
-    let now = caller.now();
-    stop(kernel, caller.memory, now);
+    stop(kernel, caller.memory);
 }
 
 /// Begins a feedhold if something in the coordinate system moves; whether it does.
-pub(crate) fn stop(kernel: &mut Kernel, memory: &mut GuestMemory, _now: Cycles) -> bool {
-    if State::of(memory) != State::Running {
+pub(crate) fn stop(kernel: &mut Kernel, memory: &mut GuestMemory) -> bool {
+    // Nothing but its end holds a path that the spindle drives.
+    if State::of(memory) != State::Running || spindle::is_threading(memory) {
         return false;
     }
     if feedhold::stop(memory) {
@@ -102,7 +102,7 @@ pub(crate) fn stop(kernel: &mut Kernel, memory: &mut GuestMemory, _now: Cycles) 
     let moving: Vec<AxisId> = members(memory).filter(|&axis| is_moving(memory, axis)).collect();
     for &axis in &moving {
         if let Some(limits) = limits(memory, axis, Some(1.0)) {
-            let states = profile::stop(present(memory, axis), &limits);
+            let states = profile::jog(present(memory, axis), 0.0, &limits);
             run(memory, axis, &states);
             kernel.servo.axes[axis.index()].is_held = true;
         }

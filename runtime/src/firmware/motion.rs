@@ -13,7 +13,7 @@ use vm::trap::TrapKind;
 use super::coord;
 use crate::kernel::{Continuation, Kernel};
 use crate::servo::independent::{has_motion, present, run, start, state, write};
-use crate::servo::profile::{self, Limits, MAX_STATES, Mode, State};
+use crate::servo::profile::{self, Limits, MAX_STATES, Mode, Ramp, State};
 use crate::servo::{AxisMemory, TIMEBASE, four_phase, switch_off, three_phase};
 use crate::views::{Typed, axis_at};
 
@@ -360,17 +360,14 @@ pub(crate) fn setup_for_move(
     count: GuestAddr,
 ) -> Result<(), TrapKind> {
     let Some(axis) = pointed(kernel, caller, "SetupForMove", chan) else { return Ok(()) };
-    if abrupt_start != 0 || abrupt_end != 0 {
-        return super::not_modelled("SetupForMove");
-    }
     let Some(limits) = limits(caller.memory, axis, Some(velocity)) else {
         no_limits(kernel, caller, axis, "SetupForMove");
         return Ok(());
     };
-    let states = profile::move_from_rest(from, to, &limits);
+    let ramps = [abrupt_start, abrupt_end].map(|flag| if flag != 0 { Ramp::Abrupt } else { Ramp::Smooth });
     // Without the standing tick and the end: those come from SetupForMotionPause and SetupForMotionEnd.
-    let states = &states[..states.len() - 2];
-    write(caller.memory, axis, index(offset), states);
+    let states = profile::bare_move(from, to, ramps, &limits);
+    write(caller.memory, axis, index(offset), &states);
     if !count.is_null() {
         caller.memory.store(count, states.len() as i32)?;
     }

@@ -1,23 +1,79 @@
-//! Spindle measurement and threading: not modelled yet.
+//! Spindle measurement and threading. Source: coordinated-motion.md section 7.
 
+use kmotiondef::AxisId;
+use kmotiondef::variables::COORD_SYSTEM0;
 use vm::firmware::Caller;
-use vm::trap::TrapKind;
 
-use super::not_modelled;
 use crate::kernel::Kernel;
+use crate::servo::spindle::{self, Setup};
+use crate::views::Typed;
 
 pub(crate) fn configure_spindle(
-    _: &mut Kernel,
-    _: &mut Caller<'_>,
-    _: i32,
-    _: i32,
-    _: f32,
-    _: f32,
-    _: f32,
-) -> Result<(), TrapKind> {
-    not_modelled("ConfigureSpindle")
+    kernel: &mut Kernel,
+    caller: &mut Caller<'_>,
+    kind: i32,
+    axis: i32,
+    update_time: f32,
+    tau: f32,
+    counts: f32,
+) {
+    let Some(axis) = AxisId::new(axis) else {
+        kernel
+            .diagnose(caller, format!("ConfigureSpindle: axis {axis}; there are axes 0 to {}", AxisId::MAX));
+        return;
+    };
+    if counts == 0.0 || !counts.is_finite() {
+        kernel.diagnose(caller, format!("ConfigureSpindle: {counts} counts of a revolution measure nothing"));
+    }
+    spindle::configure(caller.memory, &Setup { has_encoder: kind == 1, axis, update_time, tau, counts });
 }
 
-pub(crate) fn trig_threading(_: &mut Kernel, _: &mut Caller<'_>, _: f32) -> Result<(), TrapKind> {
-    not_modelled("TrigThreading")
+pub(crate) fn trig_threading(kernel: &mut Kernel, caller: &mut Caller<'_>, base_speed: f32) {
+    if !spindle::is_measured(caller.memory) {
+        kernel.diagnose(caller, "TrigThreading: no spindle is configured, so nothing will move".into());
+    }
+    if base_speed == 0.0 || !base_speed.is_finite() {
+        kernel
+            .diagnose(caller, format!("TrigThreading: {base_speed} revolutions a second are no base speed"));
+        return;
+    }
+    spindle::thread(caller.memory, base_speed);
+    if caller.memory.get(COORD_SYSTEM0).is_null() {
+        kernel.diagnose(caller, "TrigThreading: the segment buffer is empty".into());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use kmotiondef::structs::{Chan, Spindle};
+    use kmotiondef::variables::SPINDLE;
+
+    use super::*;
+    use crate::testing::Desk;
+
+    #[test]
+    fn the_speed_is_measured_over_the_update_time() {
+        let mut desk = Desk::new();
+        let float = |value: f32| u64::from(value.to_bits());
+        desk.call("ConfigureSpindle", &[1, 0, float(0.1), float(0.1), float(4096.0)]);
+        let axis = AxisId::new(0).expect("0 is an axis");
+        desk.memory.set_axis(axis, Chan::INPUT_MODE, 4);
+        for tick in 0..3000 {
+            desk.memory.set_axis(axis, Chan::POSITION, 0.9 * f64::from(tick));
+            desk.run(1);
+        }
+        // `coord.jsonl`, "spindle speed measurement".
+        let speed = desk.memory.get(SPINDLE.field(Spindle::TRUE_SPEED_RPS));
+        assert!((speed - 2.441_406).abs() < 1e-6, "{speed}");
+    }
+
+    #[test]
+    fn a_program_that_asks_for_nonsense_is_told() {
+        let mut desk = Desk::new();
+        let float = |value: f32| u64::from(value.to_bits());
+        desk.call("ConfigureSpindle", &[1, 9, float(0.1), float(0.1), float(4096.0)]);
+        desk.call("TrigThreading", &[float(0.0)]);
+        desk.run(100);
+        assert_eq!(desk.kernel.take_events().len(), 3);
+    }
 }

@@ -2,7 +2,7 @@
 
 use kmotiondef::structs::Chan;
 use kmotiondef::variables::CS0_STOPPING_STATE;
-use kmotiondef::{AxisId, Bit, Cycles, Field};
+use kmotiondef::{AxisId, Bit, Field};
 use vm::memory::GuestMemory;
 
 use super::switch_off;
@@ -77,12 +77,11 @@ pub(crate) fn check(
     kernel: &mut Kernel,
     memory: &mut GuestMemory,
     axis: AxisId,
-    now: Cycles,
     command: Option<f64>,
 ) -> bool {
     for end in &ENDS {
-        check_switch(kernel, memory, axis, end, now);
-        check_soft(kernel, memory, axis, end, now);
+        check_switch(kernel, memory, axis, end);
+        check_soft(kernel, memory, axis, end);
     }
     if command.is_some_and(|command| follows_badly(&mut AxisView::of(memory, axis), command)) {
         kernel.console.message(&format!("Following Error Disabled Axis:{axis}"));
@@ -104,7 +103,7 @@ fn is_active(kernel: &Kernel, memory: &GuestMemory, axis: AxisId, end: &End) -> 
     Bit::new(number).is_some_and(|bit| bit_state(kernel, memory, bit).0 != is_active_low)
 }
 
-fn check_switch(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId, end: &End, now: Cycles) {
+fn check_switch(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId, end: &End) {
     if !is_active(kernel, memory, axis, end) {
         return;
     }
@@ -118,25 +117,70 @@ fn check_switch(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId, end
         return;
     }
     if action == Action::Stop {
-        if memory.get(CS0_STOPPING_STATE) == 0 && coord::stop(kernel, memory, now) {
-            kernel.console.message(&format!("{} Limit Stop Axis:{axis}", end.name));
+        // Nothing stops an axis outside the coordinate system, and nothing says so.
+        if !coord::is_member(memory, axis) {
+            return;
         }
-        return;
+        return kernel.servo.stop_request.ask(format!("{} Limit Stop Axis:{axis}", end.name), Tells::Stop);
     }
     kernel.console.message(&format!("{} Limit Disabled Axis:{axis}", end.name));
     switch_off(kernel, memory, axis);
 }
 
-fn check_soft(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId, end: &End, now: Cycles) {
+fn check_soft(kernel: &mut Kernel, memory: &GuestMemory, axis: AxisId, end: &End) {
     let direction = f64::from(end.direction);
     let beyond = (memory.axis(axis, Chan::DEST) - f64::from(memory.axis(axis, end.soft))) * direction > 0.0;
     let goes_there = memory.axis(axis, Chan::DIRECTION_OF_MOTION) == end.direction;
     if !beyond || !goes_there || memory.get(CS0_STOPPING_STATE) != 0 {
         return;
     }
-    // Nothing stops an axis outside the coordinate system: the message then comes again and again.
-    coord::stop(kernel, memory, now);
-    kernel.console.message(&format!("{} Soft Limit FeedHold Axis:{axis}", end.name));
+    let text = format!("{} Soft Limit FeedHold Axis:{axis}", end.name);
+    kernel.servo.stop_request.ask(text, Tells::Always);
+}
+
+/// When the stop at a limit is told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Tells {
+    /// If something was stopped.
+    Stop,
+    /// Whenever it was tried: again and again of an axis outside the coordinate system, which nothing stops.
+    Always,
+}
+
+/// A feedhold that the servo asks the primary thread for.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct StopRequest {
+    asked: Option<(String, Tells)>,
+    /// Whether the primary thread has seen it: computing the stop takes it until its next slice.
+    is_seen: bool,
+}
+
+impl StopRequest {
+    /// Asks, unless a stop is being computed.
+    fn ask(&mut self, text: String, tells: Tells) {
+        self.asked.get_or_insert((text, tells));
+    }
+}
+
+/// What the primary thread does for the limits in its slice.
+pub(crate) fn slice(kernel: &mut Kernel, memory: &mut GuestMemory) {
+    let request = &mut kernel.servo.stop_request;
+    if request.asked.is_none() {
+        return;
+    }
+    if !request.is_seen {
+        request.is_seen = true;
+        return;
+    }
+    let asked = std::mem::take(request).asked;
+    if memory.get(CS0_STOPPING_STATE) != 0 {
+        return;
+    }
+    let stops = coord::stop(kernel, memory);
+    if let Some((text, _)) = asked.filter(|(_, tells)| stops || *tells == Tells::Always) {
+        kernel.console.message(&text);
+    }
+    kernel.disturb();
 }
 
 #[cfg(test)]

@@ -10,7 +10,7 @@ pub(crate) mod coordinated;
 mod duration;
 pub(crate) mod independent;
 mod input;
-mod limits;
+pub(crate) mod limits;
 mod output;
 pub(crate) mod plant;
 pub(crate) mod profile;
@@ -20,13 +20,14 @@ mod recorded;
 mod recorded_servo;
 mod recorder;
 mod slave;
+pub(crate) mod spindle;
 mod still;
 pub(crate) mod trajectory;
 
+use kmotiondef::AxisId;
 use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::modes::OutputMode;
 use kmotiondef::structs::Chan;
-use kmotiondef::{AxisId, Cycles};
 use vm::firmware::TickContext;
 use vm::memory::GuestMemory;
 
@@ -66,6 +67,7 @@ pub(crate) struct Servo {
     pub(crate) plants: [Plant; N_CHANNELS],
     pub(crate) coordinated: coordinated::Coordinated,
     pub(crate) still: Stillness,
+    pub(crate) stop_request: limits::StopRequest,
 }
 
 impl Servo {
@@ -86,13 +88,14 @@ impl Servo {
 /// One tick of the servo; whether anything changed, so that the next tick may change something too.
 pub(crate) fn tick(kernel: &mut Kernel, context: &mut TickContext<'_>) -> bool {
     let memory = &mut *context.memory;
+    let turned = spindle::measure(memory);
     let has_path = !kernel.servo.coordinated.is_idle(memory);
-    let moved = (has_path || !kernel.servo.still.lasts(memory)) && run_axes(kernel, memory, context.now);
-    moved | recorder::sample(memory)
+    let moved = (has_path || !kernel.servo.still.lasts(memory)) && run_axes(kernel, memory);
+    turned | moved | recorder::sample(memory)
 }
 
 /// One tick of all axes; whether anything changed.
-fn run_axes(kernel: &mut Kernel, memory: &mut GuestMemory, now: Cycles) -> bool {
+fn run_axes(kernel: &mut Kernel, memory: &mut GuestMemory) -> bool {
     kernel.servo.still.begin(memory);
     let mut changed = false;
     let mut has_slaves = false;
@@ -112,7 +115,7 @@ fn run_axes(kernel: &mut Kernel, memory: &mut GuestMemory, now: Cycles) -> bool 
         slave::follow(&kernel.servo, memory);
     }
     for axis in AxisId::all() {
-        changed |= run_axis(kernel, memory, axis, now);
+        changed |= run_axis(kernel, memory, axis);
     }
     if changed {
         kernel.servo.still.interrupt();
@@ -122,7 +125,7 @@ fn run_axes(kernel: &mut Kernel, memory: &mut GuestMemory, now: Cycles) -> bool 
 }
 
 /// Position, protection, compensation and output of one axis; whether it moves or is told something.
-fn run_axis(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId, now: Cycles) -> bool {
+fn run_axis(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId) -> bool {
     let (own, plant) = (&mut kernel.servo.axes[axis.index()], &mut kernel.servo.plants[axis.index()]);
     input::measure(plant, memory, axis);
     let mut chan = AxisView::of(memory, axis);
@@ -137,7 +140,7 @@ fn run_axis(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId, now: Cy
     let is_open_loop = matches!(mode, None | Some(OutputMode::Microstep | OutputMode::StepDir));
     if limits::may_act(&chan) || !is_open_loop && limits::follows_badly(&mut chan, command) {
         kernel.servo.still.watch();
-        if !limits::check(kernel, memory, axis, now, (!is_open_loop).then_some(command)) {
+        if !limits::check(kernel, memory, axis, (!is_open_loop).then_some(command)) {
             return true;
         }
         chan = AxisView::of(memory, axis);

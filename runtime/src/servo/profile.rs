@@ -147,6 +147,15 @@ impl Path {
         }
     }
 
+    /// Appends a change of the velocity by `gain`, from and to acceleration 0.
+    fn ramp(&mut self, (ramp, constant): (f64, f64), gain: f64) {
+        let peak = if ramp + constant > 0.0 { gain / (ramp + constant) } else { 0.0 };
+        let jerk = if ramp > 0.0 { peak / ramp } else { 0.0 };
+        self.push_at(ramp, jerk, 0.0);
+        self.push_at(constant, 0.0, peak);
+        self.push_at(ramp, -jerk, peak);
+    }
+
     /// Appends a segment that starts with exactly this acceleration.
     fn push_at(&mut self, duration: f64, jerk: f64, acceleration: f64) {
         self.end.a = acceleration;
@@ -236,6 +245,68 @@ pub(crate) fn move_from_rest(from: f64, to: f64, limits: &Limits) -> Vec<State> 
     path.states
 }
 
+/// How a half of a move changes its speed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Ramp {
+    /// With limited jerk.
+    Smooth,
+    /// With steps of the acceleration.
+    Abrupt,
+}
+
+impl Ramp {
+    /// Seconds of changing jerk at each end of the change to velocity `v`, and of constant acceleration between.
+    fn phases(self, v: f64, limits: &Limits) -> (f64, f64) {
+        match self {
+            Self::Abrupt => (0.0, v / limits.a),
+            Self::Smooth => {
+                let peak = limits.a.min(libm::sqrt(v * limits.j));
+                if peak > 0.0 { (peak / limits.j, (v / peak - peak / limits.j).max(0.0)) } else { (0.0, 0.0) }
+            }
+        }
+    }
+
+    /// The way from rest to velocity `v`.
+    fn way(self, v: f64, limits: &Limits) -> f64 {
+        let (ramp, constant) = self.phases(v, limits);
+        v * (2.0 * ramp + constant) / 2.0
+    }
+}
+
+/// The states of a move from rest alone, each half with its own ramp.
+pub(crate) fn bare_move(from: f64, to: f64, ramps: [Ramp; 2], limits: &Limits) -> Vec<State> {
+    if ramps == [Ramp::Smooth; 2] {
+        let mut states = move_from_rest(from, to, limits);
+        states.truncate(states.len() - 2);
+        return states;
+    }
+    let [start, end] = ramps;
+    let length = (to - from).abs();
+    let peak = peak_velocity(length, ramps, limits);
+    let sign = if to < from { -1.0 } else { 1.0 };
+    let cruise = (length - start.way(peak, limits) - end.way(peak, limits)).max(0.0);
+    let mut path = Path::from(Point::rest(from));
+    path.ramp(start.phases(peak, limits), sign * peak);
+    path.push_at(if peak > 0.0 { cruise / peak } else { 0.0 }, 0.0, 0.0);
+    path.ramp(end.phases(peak, limits), -sign * peak);
+    path.states
+}
+
+/// The velocity that a move over `length` reaches.
+fn peak_velocity(length: f64, ramps: [Ramp; 2], limits: &Limits) -> f64 {
+    let way = |v: f64| ramps.iter().map(|ramp| ramp.way(v, limits)).sum::<f64>();
+    if way(limits.v) <= length {
+        return limits.v;
+    }
+    let (mut low, mut high) = (0.0, limits.v);
+    // Each step halves the range; 60 of them leave less than rounding.
+    for _ in 0..60 {
+        let middle = f64::midpoint(low, high);
+        if way(middle) <= length { low = middle } else { high = middle }
+    }
+    low
+}
+
 /// A move planned while the axis moves: 20 ticks go on as they are, then either the target is approached at full
 /// speed or the axis stops and starts again.
 pub(crate) fn move_in_motion(start: Point, to: f64, limits: &Limits) -> Vec<State> {
@@ -269,14 +340,6 @@ pub(crate) fn jog(start: Point, velocity: f64, limits: &Limits) -> Vec<State> {
     let mut path = lead(start);
     path.change(velocity, limits);
     path.states.push(if velocity == 0.0 { State::off(FOREVER, path.end.x) } else { constant(&path.end) });
-    path.states
-}
-
-/// The deceleration of a feedhold: the change to standstill, at once.
-pub(crate) fn stop(start: Point, limits: &Limits) -> Vec<State> {
-    let mut path = Path::from(start);
-    path.change(0.0, limits);
-    path.states.push(State::off(FOREVER, path.end.x));
     path.states
 }
 
@@ -314,6 +377,23 @@ mod tests {
         check([40000.0, 400_000.0, 4e6], 10000.0, &[0.1, 0.1, 0.05, 0.1, 0.1]);
         check([40000.0, 200_000.0, 4e6], 800.0, &[0.046_415_888_336_127_79; 4]);
         check([40000.0, 200_000.0, 4e6], 100_000.0, &[0.05, 0.15, 0.05, 2.25, 0.05, 0.15, 0.05]);
+    }
+
+    #[test]
+    fn abrupt_halves_have_no_jerk_phases() {
+        let limits = Limits::new(100.0, 1000.0, 10_000.0).expect("positive limits");
+        let durations = |ramps, distance| {
+            bare_move(0.0, distance, ramps, &limits).iter().map(|state| state.t).collect::<Vec<_>>()
+        };
+        let near = |found: &[f64], expect: &[f64]| {
+            found.len() == expect.len() && found.iter().zip(expect).all(|(a, b)| (a - b).abs() < 1e-12)
+        };
+        // 5 units to full speed and 5 to stop; smooth they are 10 each.
+        assert!(near(&durations([Ramp::Abrupt; 2], 110.0), &[0.1, 1.0, 0.1]));
+        assert!(near(&durations([Ramp::Abrupt, Ramp::Smooth], 115.0), &[0.1, 1.0, 0.1, 0.1]));
+        let short = bare_move(7.0, 3.0, [Ramp::Smooth, Ramp::Abrupt], &limits);
+        let end = short.last().map(|state| state.at(state.t)).expect("states");
+        assert!((end.x - 3.0).abs() < 1e-12 && end.v.abs() < 1e-9, "{end:?}");
     }
 
     #[test]

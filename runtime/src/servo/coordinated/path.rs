@@ -12,6 +12,7 @@ use super::feedhold::State;
 use super::segment::{Command, Entry, Kind};
 use super::smoothing::{self, Spline};
 use super::{Bits, Coordinated, buffer, rate, system};
+use crate::servo::spindle;
 use crate::views::Typed;
 
 /// Seconds in front of its end where a path is held that must not end yet.
@@ -66,7 +67,7 @@ impl Coordinated {
     fn advance(&mut self, memory: &mut GuestMemory, bits: &mut impl Bits, entry: Entry) {
         let time_base = memory.get(CS0_TIME_BASE);
         memory.set(CS0_T, memory.get(CS0_T) + time_base);
-        rate::ramp(memory);
+        run_clock(memory);
         if time_base < 0.0 {
             let entry = go_back(memory, entry);
             return evaluate(memory, entry);
@@ -92,7 +93,7 @@ impl Coordinated {
         self.spline.take_if(|spline| !spline.step(memory));
         if self.spline.is_none() {
             memory.set(LAST_COORD_SYSTEM0, memory.get(COORD_SYSTEM0));
-            memory.set(COORD_SYSTEM0, GuestAddr::NULL);
+            abort(memory);
         }
     }
 }
@@ -113,6 +114,13 @@ pub(crate) fn abort(memory: &mut GuestMemory) {
     memory.set(COORD_SYSTEM0, GuestAddr::NULL);
 }
 
+/// Moves the time base towards the override, unless the spindle drives the path.
+fn run_clock(memory: &mut GuestMemory) {
+    if !spindle::is_threading(memory) {
+        rate::ramp(memory);
+    }
+}
+
 /// Whether the path waits at its end for more data.
 fn is_held_open(memory: &GuestMemory) -> bool {
     memory.get(CS0_HOLD_AT_END) != 0
@@ -122,7 +130,7 @@ fn is_held_open(memory: &GuestMemory) -> bool {
 fn wait(memory: &mut GuestMemory, entry: Entry) {
     memory.set(COORD_SYSTEM0, entry.address());
     let time_base = memory.get(CS0_TIME_BASE);
-    rate::ramp(memory);
+    run_clock(memory);
     if time_base < 0.0 {
         memory.set(CS0_T, memory.get(CS0_T) + time_base);
         let entry = go_back(memory, entry);

@@ -7,12 +7,12 @@
 use std::collections::VecDeque;
 
 use kmotiondef::limits::TIMEBASE;
-use kmotiondef::structs::Chan;
+use kmotiondef::structs::{Chan, Spindle};
 use kmotiondef::variables::{
     CHAN, COORD_SYSTEM0, CS0_DECEL_TIME, CS0_DOING_RAPID, CS0_FLUSHED, CS0_HOLD_AT_END, CS0_LAST_FRO,
     CS0_LAST_RAPID_FRO, CS0_NOM_DECEL_2TB2, CS0_STOPPING_STATE, CS0_T, CS0_TIME_BASE, CS0_TIME_BASE_DELTA,
-    CS0_TIME_BASE_DESIRED, CS0_TIME_DOWNLOADED, CS0_TIME_EXECUTED, CS0_TIME_LOST, KLP, SPLINE_TAU_FACTOR,
-    TAU_KLP, VIRTUAL_BITS,
+    CS0_TIME_BASE_DESIRED, CS0_TIME_DOWNLOADED, CS0_TIME_EXECUTED, CS0_TIME_LOST, KLP, SPINDLE,
+    SPLINE_TAU_FACTOR, TAU_KLP, VIRTUAL_BITS,
 };
 use kmotiondef::{AxisId, Bit, GuestAddr};
 use serde_json::Value as Json;
@@ -21,48 +21,72 @@ use vm::memory::GuestMemory;
 use super::download::{self, Circle, Plane, Point, Timing};
 use super::segment::Command;
 use super::{buffer, system};
+use crate::servo::independent;
 use crate::testing::Desk;
 use crate::text::vectors::rows;
 use crate::views::Typed;
 
-const AXIS: &str = "calls of independent motion, which wait for slices, are not interpreted here";
-const SPINDLE: &str = "spindle and threading are not modelled";
-const LIMIT: &str = "the board notices a limit switch three ticks later than the servo here";
+const ONE_BY_ONE: &str =
+    "the board stops and restarts one axis after another, a slice each; here all at once";
+const IN_SLICE: &str = "the row shows the middle of the slice in which the primary thread stops the path";
+const A_SLICE_LATER: &str = "the board plans the motion of an axis that still moves a slice after the resume";
+const EARLIER: &str = "CS0_DecelTime is that of a slice before, when the stop was begun";
 const ROOT: &str = "the DSP's square root is one bit of a single off, so the stop takes 1e-7 longer";
 
 /// Recordings that are not reproduced here, and why.
 const NOT_REPRODUCED: &[(&str, &str)] = &[
     ("feedhold at FRO 0.5", ROOT),
-    ("independent jog: feedhold, resume", AXIS),
-    ("independent jog: feedhold, clear", AXIS),
-    ("independent jog: resume while decelerating", AXIS),
-    ("independent Move: feedhold, resume", AXIS),
-    ("independent Move: feedhold, clear", AXIS),
-    ("independent Move: resume while decelerating", AXIS),
-    ("independent MoveExp: feedhold, resume", AXIS),
-    ("independent MoveExp: feedhold, clear", AXIS),
-    ("independent MoveExp: resume while decelerating", AXIS),
-    ("independent MoveXYZABC: feedhold, resume", AXIS),
-    ("independent MoveXYZABC: feedhold, clear", AXIS),
-    ("independent MoveXYZABC: resume while decelerating", AXIS),
-    ("independent jog on an axis outside the coordinate system", AXIS),
-    ("motion calls in feedhold", AXIS),
-    ("jog call in feedhold", AXIS),
-    ("jog while decelerating in feedhold", AXIS),
-    ("spindle speed measurement", SPINDLE),
-    ("threading at the base speed", SPINDLE),
-    ("threading at half the base speed", SPINDLE),
-    ("threading, spindle turning backwards", SPINDLE),
-    ("Move call while decelerating in feedhold", AXIS),
-    ("Move call after the stop in feedhold", AXIS),
-    ("Jog call after the stop in feedhold, then clear, then jog", AXIS),
-    ("MoveRel and MoveExp after the stop in feedhold", AXIS),
-    ("independent feedhold polled with GetStopState", AXIS),
-    ("feedhold of a moving axis while another member is at rest, resume", AXIS),
-    ("limit switch action stop on an axis outside the coordinate system", AXIS),
-    ("limit switch action stop during buffer execution, resume into the limit", LIMIT),
-    ("independent move of a member during buffer execution", AXIS),
+    ("independent MoveXYZABC: feedhold, resume", ONE_BY_ONE),
+    ("independent MoveXYZABC: feedhold, clear", ONE_BY_ONE),
+    ("independent MoveXYZABC: resume while decelerating", ONE_BY_ONE),
+    ("independent Move: resume while decelerating", A_SLICE_LATER),
+    ("independent MoveExp: resume while decelerating", A_SLICE_LATER),
+    ("independent feedhold polled with GetStopState", EARLIER),
+    ("limit switch action stop during buffer execution, resume into the limit", IN_SLICE),
 ];
+
+/// A spindle that a recording turned: the axis whose position was written, its position at first and its counts a tick.
+struct Turning {
+    name: &'static str,
+    axis: i32,
+    offset: f64,
+    counts: f64,
+    /// The tick and the base speed at which threading was triggered.
+    threads: Option<(u64, f32)>,
+}
+
+const SPINDLES: [Turning; 4] = [
+    Turning { name: "spindle speed measurement", axis: 0, offset: 0.0, counts: 0.9, threads: None },
+    Turning {
+        name: "threading at the base speed",
+        axis: 3,
+        offset: 0.0,
+        counts: 3.6864,
+        threads: Some((301, 10.0)),
+    },
+    Turning {
+        name: "threading at half the base speed",
+        axis: 3,
+        offset: 100.0,
+        counts: 1.8432,
+        threads: Some((301, 10.0)),
+    },
+    Turning {
+        name: "threading, spindle turning backwards",
+        axis: 3,
+        offset: 0.0,
+        counts: -3.6864,
+        threads: Some((301, 10.0)),
+    },
+];
+
+/// Precision of independent motion: times come from square roots of singles.
+const INDEPENDENT: f64 = 2e-7;
+/// Precision of threading: speed and filter are singles.
+const SPINDLE_FILTER: f64 = 1e-8;
+
+/// Ticks between setting the spindle up and the first row of its recordings, as the measurements show.
+const SPINDLE_LEAD: u64 = 76;
 
 /// The columns that hold positions.
 const POSITIONS: [usize; 4] = [7, 8, 9, 14];
@@ -70,6 +94,10 @@ const POSITIONS: [usize; 4] = [7, 8, 9, 14];
 /// The board of the recordings: axes 0 and 1 enabled, X and Y.
 struct Rig {
     desk: Desk,
+    /// A motion call that waits for its caller's next slice: in so many ticks.
+    waiting: Option<(u64, String, Vec<u64>)>,
+    /// How far a result may be off, relative: what goes through the board's divisions and singles is less exact.
+    precision: f64,
     /// What `CheckDoneBuf` said behind the latest ticks, newest first.
     done: VecDeque<i32>,
 }
@@ -77,14 +105,18 @@ struct Rig {
 impl Rig {
     fn new() -> Self {
         let mut desk = Desk::new();
+        // Nobody asked for the status while the recordings were made.
+        desk.kernel.host.connect(false);
         system::assign(&mut desk.memory, &[0, 1, -1, -1]);
-        for axis in AxisId::all().take(2) {
+        for axis in AxisId::all().take(3) {
             desk.memory.set_axis(axis, Chan::VEL, 1000.0);
             desk.memory.set_axis(axis, Chan::ACCEL, 10_000.0);
             desk.memory.set_axis(axis, Chan::JERK, 100_000.0);
+        }
+        for axis in AxisId::all().take(2) {
             desk.call("EnableAxisDest", &[axis.get().into(), 0]);
         }
-        Self { desk, done: VecDeque::new() }
+        Self { desk, waiting: None, precision: 1e-9, done: VecDeque::new() }
     }
 
     /// Notes what a thread that asks now would be told.
@@ -112,6 +144,7 @@ impl Rig {
             rest.split([' ', '=']).filter(|part| !part.is_empty()).map(str::parse).collect();
         let numbers = parsed.map_err(|_| text.to_owned())?;
         self.buffer_command(word, &numbers)
+            .or_else(|| self.motion_command(word, &numbers))
             .or_else(|| self.function_command(word, &numbers))
             .unwrap_or_else(|| Err(text.to_owned()))
     }
@@ -141,19 +174,78 @@ impl Rig {
         Some(Ok(String::new()))
     }
 
+    /// The commands that move an axis by itself.
+    fn motion_command(&mut self, word: &str, numbers: &[f32]) -> Option<Result<String, String>> {
+        let number = |index: usize| numbers.get(index).copied().unwrap_or_default();
+        let double = |index| f64::from(number(index)).to_bits();
+        let axis = u64::from(number(0) as u32);
+        let arguments = match word {
+            "Jog" | "Move" | "MoveRel" => vec![axis, double(1)],
+            "MoveExp" => vec![axis, double(1), double(2)],
+            "MoveXYZABC" => (0..6).map(double).collect(),
+            _ => return None,
+        };
+        self.precision = INDEPENDENT;
+        if !self.desk.is_done(word, &arguments) {
+            self.waiting = Some((2, word.to_owned(), arguments));
+        }
+        Some(Ok(String::new()))
+    }
+
+    /// What the recording did with its spindle in front of a tick.
+    fn turn(&mut self, spindle: &Turning, tick: u64, last: u64) -> Result<(), String> {
+        let axis = AxisId::new(spindle.axis).ok_or("an axis")?;
+        if tick < last {
+            let position = spindle.offset + spindle.counts * tick as f64;
+            self.desk.memory.set_axis(axis, Chan::POSITION, position);
+        }
+        if let Some((_, speed)) = spindle.threads.filter(|threads| threads.0 == tick) {
+            self.desk.call("TrigThreading", &[speed.to_bits().into()]);
+        }
+        if spindle.threads.is_none() && tick == 3000 {
+            let found = self.line("GetSpindleRPS")?;
+            (found == "2.441406\r\n").then_some(()).ok_or(found)?;
+        }
+        Ok(())
+    }
+
+    /// One tick, and what waits for a slice.
+    fn tick(&mut self) {
+        self.desk.run(1);
+        if let Some((ticks, name, arguments)) = self.waiting.take() {
+            if ticks > 1 {
+                self.waiting = Some((ticks - 1, name, arguments));
+            } else {
+                self.desk.wake(&name, &arguments);
+            }
+        }
+    }
+
     /// The commands that are calls of firmware functions.
     fn function_command(&mut self, word: &str, numbers: &[f32]) -> Option<Result<String, String>> {
-        let first = *numbers.first()?;
+        let first = numbers.first().copied().unwrap_or_default();
         let (desk, single, integer) = (&mut self.desk, u64::from(first.to_bits()), first as i32);
         let second = numbers.get(1).map_or(0, |number| f64::from(*number).to_bits());
         let number = u64::from(integer as u32);
         match (word, integer) {
+            ("ConfigSpindle", _) => {
+                let single =
+                    |index: usize| u64::from(numbers.get(index).copied().unwrap_or_default().to_bits());
+                let axis = numbers.get(1).map_or(0, |axis| *axis as u64);
+                desk.call("ConfigureSpindle", &[number, axis, single(2), single(3), single(4)]);
+                desk.memory.set_axis(AxisId::new(axis as i32)?, Chan::INPUT_MODE, 4);
+            }
+            ("GetSpindleRPS", _) => {
+                let speed = desk.memory.get(SPINDLE.field(Spindle::TRUE_SPEED_RPS));
+                return Some(Ok(format!("{speed:.6}\r\n")));
+            }
             ("SetFRO" | "SetRapidFRO" | "SetFROTemp", _) => desk.call(word, &[single]),
             ("StopImmediate", 0) => desk.call("StopCoordinatedMotion", &[]),
             ("StopImmediate", 1) => desk.call("ResumeCoordinatedMotion", &[]),
             ("StopImmediate", 2) => desk.call("ClearStopImmediately", &[]),
             ("SetBit" | "ClearBit" | "DisableAxis", _) => desk.call(word, &[number]),
             ("EnableAxisDest", _) => desk.call(word, &[number, second]),
+            ("GetStopState", _) => return Some(Ok(self.stop_state())),
             ("Dest", _) => {
                 desk.memory.set_axis(AxisId::new(integer)?, Chan::DEST, f64::from(*numbers.get(1)?));
             }
@@ -164,6 +256,11 @@ impl Rig {
             _ => return None,
         }
         Some(Ok(String::new()))
+    }
+
+    fn stop_state(&mut self) -> String {
+        self.desk.call("UpdateStoppingState", &[]);
+        format!("{}\r\n", self.desk.memory.get(CS0_STOPPING_STATE))
     }
 
     /// `chan+88 f 1000.0`, `KLP d 0.9`: stores a value directly.
@@ -180,6 +277,18 @@ impl Rig {
             _ => return Err(refused()),
         }
         Ok(String::new())
+    }
+
+    /// Whether a value is equal but for the digits that the recording leaves out and what its precision allows.
+    fn is_close(&self, column: usize, found: f64, expect: f64, [extent, path_time]: [f64; 2]) -> bool {
+        let tolerance = match column {
+            1 => self.precision * path_time.abs(),
+            // Overrides are recorded with nine digits.
+            3 | 4 => f64::max(6.0 * self.precision, 6e-9) * expect.abs(),
+            _ if POSITIONS.contains(&column) => self.precision * extent,
+            _ => self.precision * expect.abs(),
+        };
+        (found - expect).abs() <= tolerance + 1e-12
     }
 
     /// What differs between a recorded row and the board.
@@ -202,8 +311,10 @@ impl Rig {
         ];
         // Rounding on the board is relative to the whole path.
         let extent = POSITIONS.iter().map(|&column| number(&row[column]).abs()).fold(1.0, f64::max);
-        let wrong =
-            found.iter().find(|&&(column, value)| !close(column, value, number(&row[column]), extent));
+        let path_time = number(&row[1]) + number(&row[2]);
+        let wrong = found.iter().find(|&&(column, value)| {
+            !self.is_close(column, value, number(&row[column]), [extent, path_time])
+        });
         if let Some((column, value)) = wrong {
             return Some(format!("column {column}: {value:?} instead of {}", row[*column]));
         }
@@ -227,6 +338,13 @@ impl Rig {
             "CS0_DoingRapid" => memory.get(CS0_DOING_RAPID).into(),
             "TauKLP" => memory.get(TAU_KLP).into(),
             "CS0_NomDecel2TB2" => memory.get(CS0_NOM_DECEL_2TB2).into(),
+            "Spindle" => memory.get(SPINDLE.field(Spindle::POSITION)),
+            "Spindle+8" => memory.get(SPINDLE.field(Spindle::START_POSITION)),
+            "Spindle+16" => memory.get(SPINDLE.field(Spindle::LAST_UPDATE_POSITION)),
+            "Spindle+24" => memory.get(SPINDLE.field(Spindle::REVS_PER_COUNT)),
+            "Spindle+40" => memory.get(SPINDLE.field(Spindle::DELTA_TICKS)),
+            "Spindle+48" => memory.get(SPINDLE.field(Spindle::ADJ_TIME_FILT)),
+            "Spindle+56" => memory.get(SPINDLE.field(Spindle::LAST_CS_TIME)),
             "GetNominalFROChangeTime" => system::nominal_change_time(memory).into(),
             _ => return None,
         })
@@ -291,24 +409,20 @@ fn number(value: &Json) -> f64 {
     value.as_f64().expect("a number")
 }
 
-/// Equal but for the digits that the recording leaves out and the last bits of the board's divisions.
-fn close(column: usize, found: f64, expect: f64, extent: f64) -> bool {
-    let tolerance = match column {
-        // Overrides are recorded with nine digits.
-        3 | 4 => 6e-9 * expect.abs(),
-        _ if POSITIONS.contains(&column) => 1e-9 * extent,
-        _ => 1e-9 * expect.abs(),
-    };
-    (found - expect).abs() <= tolerance + 1e-12
-}
-
-/// The tick in front of which a command took effect: the primary thread has every other slice, and computing a stop
-/// takes it two.
-fn effective(tick: u64, line: &str) -> u64 {
+/// How many slices of the primary thread a command takes after the one in which it comes; it has every other tick.
+fn slices(rig: &Rig, line: &str) -> u64 {
     match line {
-        _ if line.starts_with("!poke") => tick,
-        "StopImmediate0" => (tick | 1) + 2,
-        _ => tick | 1,
+        "StopImmediate0" if !rig.desk.memory.get(COORD_SYSTEM0).is_null() => 1,
+        // One to begin, and one for each axis that is to be stopped.
+        "StopImmediate0" => {
+            let moving = |axis: &AxisId| independent::is_moving(&rig.desk.memory, *axis);
+            match system::members(&rig.desk.memory).filter(moving).count() {
+                0 => 0,
+                count => 1 + count as u64,
+            }
+        }
+        _ if line.starts_with("MoveXYZABC") => 1,
+        _ => 0,
     }
 }
 
@@ -318,23 +432,39 @@ fn replay(recording: &Json) -> Result<(), String> {
     for line in recording["setup"].as_array().expect("a list") {
         rig.line(line.as_str().expect("a line"))?;
     }
-    let timeline = recording["timeline"].as_array().ok_or("the timeline is prose")?;
+    let spindle = SPINDLES.iter().find(|spindle| recording["name"] == spindle.name);
+    if spindle.is_some() {
+        rig.precision = SPINDLE_FILTER;
+        rig.desk.run(SPINDLE_LEAD);
+    }
+    let nothing = Vec::new();
+    let timeline = recording["timeline"].as_array().unwrap_or(&nothing);
+    let last_tick =
+        recording["rows"].as_array().and_then(|rows| rows.last()).map_or(0, |row| number(&row[0]) as u64);
     let mut replies = recording["replies"].as_array().expect("a list").iter();
     let mut rows = recording["rows"].as_array().expect("a list").iter().peekable();
-    let mut tick = 0;
+    let (mut tick, mut due) = (0, VecDeque::new());
     while let Some(row) = rows.peek() {
         for event in timeline {
             let line = event[1].as_str().expect("a line");
-            if effective(number(&event[0]) as u64, line) == tick {
-                let reply = rig.line(line)?;
-                if line.starts_with('?') {
-                    let expect = &replies.next().expect("a reply")[2];
-                    (*expect == reply).then_some(()).ok_or(format!("{line}: {reply} instead of {expect}"))?;
-                }
+            let sent = number(&event[0]) as u64;
+            let comes = if line.starts_with("!poke") { sent } else { sent | 1 };
+            if comes == tick {
+                due.push_back((tick + 2 * slices(&rig, line), line));
             }
         }
+        while let Some((_, line)) = due.pop_front_if(|(at, _)| *at <= tick) {
+            let reply = rig.line(line)?;
+            if line.starts_with('?') {
+                let expect = &replies.next().expect("a reply")[2];
+                (*expect == reply).then_some(()).ok_or(format!("{line}: {reply} instead of {expect}"))?;
+            }
+        }
+        if let Some(spindle) = spindle {
+            rig.turn(spindle, tick, last_tick)?;
+        }
         if tick > 0 {
-            rig.desk.run(1);
+            rig.tick();
         }
         rig.ask();
         if number(&row[0]) as u64 == tick {
