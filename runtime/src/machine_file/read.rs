@@ -1,0 +1,274 @@
+//! Reading values of TOML, with the place of everything that is wrong.
+
+use kmotiondef::bits::{BitDirection, range_of};
+use kmotiondef::{AxisId, Bit};
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::MachineFileError;
+
+/// Something wrong at an offset of the text.
+#[derive(Debug)]
+pub(super) struct Wrong {
+    offset: usize,
+    message: String,
+}
+
+impl Wrong {
+    pub(super) fn new(offset: usize, message: impl Into<String>) -> Self {
+        Self { offset, message: message.into() }
+    }
+
+    /// The same with line and column.
+    pub(super) fn in_text(self, text: &str) -> MachineFileError {
+        let before = text.get(..self.offset).unwrap_or(text);
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        MachineFileError {
+            line: before.matches('\n').count() + 1,
+            column: before[line_start..].chars().count() + 1,
+            message: self.message,
+        }
+    }
+}
+
+pub(super) type Read<T> = Result<T, Wrong>;
+
+/// A table, with what a user calls it.
+#[derive(Clone, Debug)]
+pub(super) struct Table<'a> {
+    pub(super) name: String,
+    pub(super) offset: usize,
+    entries: &'a DeTable<'a>,
+}
+
+impl<'a> Table<'a> {
+    pub(super) fn new(name: &str, offset: usize, entries: &'a DeTable<'a>) -> Self {
+        Self { name: name.to_owned(), offset, entries }
+    }
+
+    /// Its keys with their values.
+    pub(super) fn entries(&self) -> impl Iterator<Item = (Key<'a>, Value<'a>)> {
+        let name = self.name.clone();
+        self.entries.iter().map(move |(key, value)| {
+            let text = key.get_ref().as_ref();
+            let path = if name.is_empty() { text.to_owned() } else { format!("{name}.{text}") };
+            let key = Key { text, offset: key.span().start, table: name.clone() };
+            (key, Value { path, source: value })
+        })
+    }
+
+    pub(super) fn is_missing(&self, key: &str) -> Wrong {
+        Wrong::new(self.offset, format!("`{}` needs `{key}`", self.name))
+    }
+}
+
+/// A key.
+#[derive(Clone, Debug)]
+pub(super) struct Key<'a> {
+    pub(super) text: &'a str,
+    offset: usize,
+    table: String,
+}
+
+impl Key<'_> {
+    /// It is none of those that exist.
+    pub(super) fn is_unknown(&self, known: &[&str]) -> Wrong {
+        let place = if self.table.is_empty() { String::new() } else { format!(" in `{}`", self.table) };
+        let near = known.iter().min_by_key(|name| distance(self.text, name));
+        let hint = match near.filter(|name| distance(self.text, name) <= 2) {
+            Some(name) => format!("; did you mean `{name}`?"),
+            None => format!("; there are {}", known.join(", ")),
+        };
+        Wrong::new(self.offset, format!("unknown key `{}`{place}{hint}", self.text))
+    }
+
+    /// The axis it numbers.
+    pub(super) fn axis(&self) -> Read<AxisId> {
+        let number = self.text.parse().ok().and_then(AxisId::new);
+        number.ok_or_else(|| Wrong::new(self.offset, format!("`{}` is no axis; there are 0 to 7", self.text)))
+    }
+}
+
+/// Letters to change to make one word of another.
+fn distance(from: &str, to: &str) -> usize {
+    let to: Vec<char> = to.chars().collect();
+    let mut row: Vec<usize> = (0..=to.len()).collect();
+    for (index, letter) in from.chars().enumerate() {
+        let mut diagonal = std::mem::replace(&mut row[0], index + 1);
+        for (column, other) in to.iter().enumerate() {
+            let cost = diagonal + usize::from(letter != *other);
+            diagonal = row[column + 1];
+            row[column + 1] = cost.min(diagonal + 1).min(row[column] + 1);
+        }
+    }
+    row[to.len()]
+}
+
+/// A value, with the path of its key.
+#[derive(Clone, Debug)]
+pub(super) struct Value<'a> {
+    pub(super) path: String,
+    source: &'a Spanned<DeValue<'a>>,
+}
+
+impl<'a> Value<'a> {
+    pub(super) fn is_wrong(&self, expected: &str) -> Wrong {
+        let found = match self.source.get_ref() {
+            DeValue::String(text) => format!("{text:?}"),
+            DeValue::Integer(number) => number.as_str().to_owned(),
+            DeValue::Float(number) => number.as_str().to_owned(),
+            DeValue::Boolean(flag) => flag.to_string(),
+            other => format!("a value of type {}", other.type_str()),
+        };
+        Wrong::new(self.source.span().start, format!("`{}` must be {expected}, not {found}", self.path))
+    }
+
+    /// Whether it is the only value that is built so far.
+    pub(super) fn only(&self, built: &DeValue<'_>) -> Read<()> {
+        let same = match (self.source.get_ref(), built) {
+            (DeValue::Boolean(found), DeValue::Boolean(built)) => found == built,
+            (DeValue::String(found), DeValue::String(built)) => found == built,
+            (DeValue::Integer(found), DeValue::Integer(built)) => found.as_str() == built.as_str(),
+            _ => false,
+        };
+        same.then_some(()).ok_or_else(|| {
+            Wrong::new(self.source.span().start, format!("`{}` with this value is not built yet", self.path))
+        })
+    }
+
+    fn parsed(&self) -> Option<f64> {
+        match self.source.get_ref() {
+            DeValue::Float(number) => number.as_str().replace('_', "").parse().ok(),
+            DeValue::Integer(number) => {
+                let digits = number.as_str().replace('_', "");
+                i64::from_str_radix(&digits, number.radix()).ok().map(|number| number as f64)
+            }
+            _ => None,
+        }
+    }
+
+    /// A number.
+    pub(super) fn number(&self) -> Read<f64> {
+        self.parsed().filter(|number| number.is_finite()).ok_or_else(|| self.is_wrong("a number"))
+    }
+
+    /// A number above 0.
+    pub(super) fn positive(&self) -> Read<f64> {
+        let number = self.parsed().filter(|number| number.is_finite() && *number > 0.0);
+        number.ok_or_else(|| self.is_wrong("a number above 0"))
+    }
+
+    /// A number from 0.
+    pub(super) fn not_negative(&self) -> Read<f64> {
+        let number = self.parsed().filter(|number| number.is_finite() && *number >= 0.0);
+        number.ok_or_else(|| self.is_wrong("0 or a number above it"))
+    }
+
+    /// A whole number up to `max`.
+    pub(super) fn whole(&self, max: u32) -> Read<u32> {
+        let number =
+            self.parsed().filter(|number| number.fract() == 0.0 && (0.0..=f64::from(max)).contains(number));
+        number
+            .map(|number| number as u32)
+            .ok_or_else(|| self.is_wrong(&format!("a whole number, 0 to {max}")))
+    }
+
+    /// `true` or `false`, or 1 or 0.
+    pub(super) fn flag(&self) -> Read<bool> {
+        match (self.source.get_ref(), self.parsed()) {
+            (DeValue::Boolean(flag), _) => Ok(*flag),
+            (_, Some(number)) if number == 0.0 || number == 1.0 => Ok(number == 1.0),
+            _ => Err(self.is_wrong("true or false")),
+        }
+    }
+
+    /// A text.
+    pub(super) fn text(&self) -> Read<&'a str> {
+        match self.source.get_ref() {
+            DeValue::String(text) => Ok(text),
+            _ => Err(self.is_wrong("a text in quotes")),
+        }
+    }
+
+    /// One of some words.
+    pub(super) fn choice<T: Copy>(&self, choices: &[(&str, T)]) -> Read<T> {
+        let word = match self.source.get_ref() {
+            DeValue::String(text) => text.to_string(),
+            DeValue::Boolean(flag) => flag.to_string(),
+            _ => String::new(),
+        };
+        let names: Vec<String> = choices.iter().map(|(name, _)| format!("{name:?}")).collect();
+        let found = choices.iter().find(|(name, _)| *name == word);
+        found.map(|(_, choice)| *choice).ok_or_else(|| self.is_wrong(&names.join(" or ")))
+    }
+
+    /// An axis number.
+    pub(super) fn axis(&self) -> Read<AxisId> {
+        let number = self
+            .parsed()
+            .filter(|number| number.fract() == 0.0)
+            .and_then(|number| AxisId::new(number as i32));
+        number.ok_or_else(|| self.is_wrong("an axis, 0 to 7"))
+    }
+
+    /// A bit that something outside can drive.
+    pub(super) fn input(&self) -> Read<Bit> {
+        self.bit_that("an input", |direction| {
+            matches!(direction, BitDirection::Input | BitDirection::Programmable)
+        })
+    }
+
+    /// A bit that a program can drive.
+    pub(super) fn output(&self) -> Read<Bit> {
+        self.bit_that("an output", |direction| direction != BitDirection::Input)
+    }
+
+    fn bit_that(&self, what: &str, goes: impl Fn(BitDirection) -> bool) -> Read<Bit> {
+        let number =
+            self.parsed().filter(|number| number.fract() == 0.0).and_then(|number| Bit::new(number as i32));
+        let bit = number.ok_or_else(|| self.is_wrong("a bit number, 0 to 2047"))?;
+        match range_of(bit) {
+            Some(range) if goes(range.direction) => Ok(bit),
+            Some(range) => Err(self.is_wrong(&format!("{what}; bit {bit} is one of {}", range.name))),
+            None => Err(self.is_wrong("a bit that something answers")),
+        }
+    }
+
+    /// An array.
+    pub(super) fn array(&self) -> Read<Vec<Value<'a>>> {
+        match self.source.get_ref() {
+            DeValue::Array(values) => Ok(values
+                .iter()
+                .enumerate()
+                .map(|(index, source)| Value { path: format!("{}[{index}]", self.path), source })
+                .collect()),
+            _ => Err(self.is_wrong("an array in [brackets]")),
+        }
+    }
+
+    /// A table.
+    pub(super) fn table(&self) -> Read<Table<'a>> {
+        match self.source.get_ref() {
+            DeValue::Table(entries) => Ok(Table::new(&self.path, self.source.span().start, entries)),
+            _ => Err(self.is_wrong("a table")),
+        }
+    }
+
+    /// The tables of `[[name]]`.
+    pub(super) fn tables(&self) -> Read<Vec<Table<'a>>> {
+        self.array()?.iter().map(Value::table).collect()
+    }
+}
+
+/// Reads the keys of a table: one arm a key; any other is an error that names them all.
+macro_rules! keys {
+    ($table:expr, |$key:ident, $value:ident| { $($name:literal => $body:expr;)+ }) => {
+        for ($key, $value) in $table.entries() {
+            match $key.text {
+                $($name => $body,)+
+                _ => return Err($key.is_unknown(&[$($name),+])),
+            }
+        }
+    };
+}
+pub(super) use keys;

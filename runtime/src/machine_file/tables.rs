@@ -1,0 +1,332 @@
+//! The tables of a machine file: what each key changes.
+
+use kmotiondef::{AxisId, Bit};
+use toml::de::{DeTable, DeValue};
+
+use super::read::{Read, Table, Value, Wrong, keys};
+use super::{
+    Analog, AnalogSource, Axis, Condition, Encoder, Handwheel, Index, MachineFile, MachineFileError, Model,
+    Probe, Spindle, SpindleDrive, Switch, Wire,
+};
+
+/// Changes a machine by what a text says.
+pub(super) fn apply(machine: &mut MachineFile, text: &str) -> Result<(), MachineFileError> {
+    let table = DeTable::parse(text).map_err(|error| {
+        let offset = error.span().map_or(0, |span| span.start);
+        Wrong::new(offset, error.message()).in_text(text)
+    })?;
+    root(machine, &Table::new("", 0, table.get_ref())).map_err(|wrong| wrong.in_text(text))
+}
+
+fn root(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
+    keys!(table, |key, value| {
+        "axis" => axes(machine, &value.table()?)?;
+        "switch" => machine.switches.extend(each(&value, switch)?);
+        "probe" => machine.probes.extend(each(&value, probe)?);
+        "encoder" => machine.encoders.extend(each(&value, handwheel)?);
+        "adc" => machine.analog.extend(each(&value, analog)?);
+        "wire" => machine.wires.extend(each(&value, wire)?);
+        "spindle" => machine.spindle = Some(spindle(machine.spindle, &value.table()?)?);
+        "inputs" => inputs(machine, &value.table()?)?;
+        "cpu" => cpu(machine, &value.table()?)?;
+        "host" => host(machine, &value.table()?)?;
+        "board" => board(&value.table()?)?;
+    });
+    Ok(())
+}
+
+fn each<T>(value: &Value<'_>, read: impl Fn(&Table<'_>) -> Read<T>) -> Read<Vec<T>> {
+    value.tables()?.iter().map(read).collect()
+}
+
+fn axes(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
+    for (key, value) in table.entries() {
+        axis(&mut machine.axes[key.axis()?.index()], &value.table()?)?;
+    }
+    Ok(())
+}
+
+fn axis(axis: &mut Axis, table: &Table<'_>) -> Read<()> {
+    keys!(table, |key, value| {
+        "name" => value.text()?.clone_into(&mut axis.name);
+        "model" => {
+            let models = [Model::Follow, Model::Motor, Model::None].map(|model| (model.to_string(), model));
+            let named: Vec<(&str, Model)> = models.iter().map(|(name, model)| (name.as_str(), *model)).collect();
+            axis.model = value.choice(&named)?;
+        };
+        "units" => value.text()?.clone_into(&mut axis.units);
+        "counts_per_unit" => axis.counts_per_unit = not_zero(&value)?;
+        "encoder" => {
+            let choices = [("auto", Encoder::Auto), ("true", Encoder::Connected), ("false", Encoder::Absent)];
+            axis.encoder = value.choice(&choices)?;
+        };
+        "lag_s" => axis.lag_s = value.not_negative()?;
+        "min" => axis.min = value.number()?;
+        "max" => axis.max = value.number()?;
+        "start" => axis.start = value.number()?;
+        "ku" => axis.motor.ku = Some(value.number()?);
+        "tau_s" => axis.motor.tau_s = value.positive()?;
+        "friction" => axis.motor.friction = value.not_negative()?;
+        "ka" => axis.motor.ka = value.number()?;
+        "tau_v_s" => axis.motor.tau_v_s = value.positive()?;
+        "inertia" => axis.motor.inertia = value.positive()?;
+        "cycles_per_unit" => axis.cycles_per_unit = Some(not_zero(&value)?);
+        "rotor_phase" => axis.rotor_phase = value.number()?;
+        "index" => axis.index = Some(index(&value.table()?)?);
+    });
+    if axis.min > axis.max {
+        let text = format!("`{}`: min {} lies above max {}", table.name, axis.min, axis.max);
+        return Err(Wrong::new(table.offset, text));
+    }
+    Ok(())
+}
+
+fn not_zero(value: &Value<'_>) -> Read<f64> {
+    let number = value.number()?;
+    if number == 0.0 { Err(value.is_wrong("a number other than 0")) } else { Ok(number) }
+}
+
+fn index(table: &Table<'_>) -> Read<Index> {
+    let (mut bit, mut every, mut width, mut offset) = (None, None, 1.0, 0.0);
+    keys!(table, |key, value| {
+        "bit" => bit = Some(value.input()?);
+        "every" => every = Some(value.positive()?);
+        "width" => width = value.positive()?;
+        "offset" => offset = value.number()?;
+    });
+    let bit = bit.ok_or_else(|| table.is_missing("bit"))?;
+    Ok(Index { bit, every: every.ok_or_else(|| table.is_missing("every"))?, width, offset })
+}
+
+fn switch(table: &Table<'_>) -> Read<Switch> {
+    let (mut bit, mut axis, mut when, mut active) = (None, None, None, true);
+    keys!(table, |key, value| {
+        "bit" => bit = Some(value.input()?);
+        "axis" => axis = Some(value.axis()?);
+        "when" => when = Some(condition(&value)?);
+        "active" => active = value.flag()?;
+    });
+    Ok(Switch {
+        bit: bit.ok_or_else(|| table.is_missing("bit"))?,
+        axis: axis.ok_or_else(|| table.is_missing("axis"))?,
+        when: when.ok_or_else(|| table.is_missing("when"))?,
+        active,
+    })
+}
+
+/// `<= -1000`, `>= 5`, `between 3 7`.
+fn condition(value: &Value<'_>) -> Read<Condition> {
+    let wrong = || value.is_wrong("\"<= X\", \">= X\" or \"between X Y\"");
+    let text = value.text()?.trim();
+    let number = |text: &str| text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
+    if let Some(rest) = text.strip_prefix("<=") {
+        return number(rest).map(Condition::AtMost).ok_or_else(wrong);
+    }
+    if let Some(rest) = text.strip_prefix(">=") {
+        return number(rest).map(Condition::AtLeast).ok_or_else(wrong);
+    }
+    let ends: Option<Vec<f64>> =
+        text.strip_prefix("between").map(|rest| rest.split_whitespace().filter_map(number).collect());
+    match ends.as_deref() {
+        Some(&[from, to]) if from <= to => Ok(Condition::Between(from, to)),
+        _ => Err(wrong()),
+    }
+}
+
+fn probe(table: &Table<'_>) -> Read<Probe> {
+    let (mut bit, mut surface, mut above) = (None, None, false);
+    keys!(table, |key, value| {
+        "bit" => bit = Some(value.input()?);
+        "surface" => surface = Some(place(&value.table()?)?);
+        "trips" => above = value.choice(&[("<=", false), (">=", true)])?;
+    });
+    let (axis, at) = surface.ok_or_else(|| table.is_missing("surface"))?;
+    let touches = if above { Condition::AtLeast(at) } else { Condition::AtMost(at) };
+    Ok(Probe { bit: bit.ok_or_else(|| table.is_missing("bit"))?, axis, touches })
+}
+
+fn place(table: &Table<'_>) -> Read<(AxisId, f64)> {
+    let (mut axis, mut at) = (None, None);
+    keys!(table, |key, value| {
+        "axis" => axis = Some(value.axis()?);
+        "at" => at = Some(value.number()?);
+    });
+    Ok((axis.ok_or_else(|| table.is_missing("axis"))?, at.ok_or_else(|| table.is_missing("at"))?))
+}
+
+fn handwheel(table: &Table<'_>) -> Read<Handwheel> {
+    let (mut channel, mut moves) = (None, Vec::new());
+    keys!(table, |key, value| {
+        "channel" => channel = Some(value.whole(7)? as usize);
+        "moves" => moves = value.array()?.iter().map(turn).collect::<Read<_>>()?;
+    });
+    Ok(Handwheel { channel: channel.ok_or_else(|| table.is_missing("channel"))?, moves })
+}
+
+/// Start in seconds, counts, duration in seconds.
+fn turn(value: &Value<'_>) -> Read<[f64; 3]> {
+    let parts = value.array()?;
+    let [start, counts, duration] = parts.as_slice() else {
+        return Err(value.is_wrong("[start in seconds, counts, duration in seconds]"));
+    };
+    Ok([start.not_negative()?, counts.number()?, duration.not_negative()?])
+}
+
+fn analog(table: &Table<'_>) -> Read<Analog> {
+    let (mut channel, mut source) = (None, None);
+    keys!(table, |key, value| {
+        "channel" => channel = Some(value.whole(7)? as usize);
+        "value" => source = Some(AnalogSource::Value(value.number()?));
+        "sine" => source = Some(sine(&value.table()?)?);
+        "follows" => source = Some(follows(&value.table()?)?);
+    });
+    let source = source.ok_or_else(|| table.is_missing("value"))?;
+    Ok(Analog { channel: channel.ok_or_else(|| table.is_missing("channel"))?, source })
+}
+
+fn sine(table: &Table<'_>) -> Read<AnalogSource> {
+    let (mut mean, mut amp, mut hz) = (0.0, 0.0, 1.0);
+    keys!(table, |key, value| {
+        "mean" => mean = value.number()?;
+        "amp" => amp = value.number()?;
+        "hz" => hz = value.not_negative()?;
+    });
+    Ok(AnalogSource::Sine { mean, amp, hz })
+}
+
+fn follows(table: &Table<'_>) -> Read<AnalogSource> {
+    let (mut axis, mut gain, mut offset) = (None, 1.0, 0.0);
+    keys!(table, |key, value| {
+        "axis" => axis = Some(value.axis()?);
+        "gain" => gain = value.number()?;
+        "offset" => offset = value.number()?;
+    });
+    Ok(AnalogSource::Follows { axis: axis.ok_or_else(|| table.is_missing("axis"))?, gain, offset })
+}
+
+fn wire(table: &Table<'_>) -> Read<Wire> {
+    let (mut from, mut to, mut invert, mut delay_s) = (None, None, false, 0.0);
+    keys!(table, |key, value| {
+        "from" => from = Some(value.output()?);
+        "to" => to = Some(value.input()?);
+        "invert" => invert = value.flag()?;
+        "delay_s" => delay_s = value.not_negative()?;
+    });
+    Ok(Wire {
+        from: from.ok_or_else(|| table.is_missing("from"))?,
+        to: to.ok_or_else(|| table.is_missing("to"))?,
+        invert,
+        delay_s,
+    })
+}
+
+fn spindle(before: Option<Spindle>, table: &Table<'_>) -> Read<Spindle> {
+    let (mut axis, mut drive) = (before.map(|spindle| spindle.axis), before.map(|spindle| spindle.drive));
+    let [mut counts, mut full, mut tau] = before.map_or([4096.0, 50.0, 0.5], |spindle| {
+        [spindle.counts_per_rev, spindle.full_scale_rps, spindle.tau_s]
+    });
+    keys!(table, |key, value| {
+        "axis" => axis = Some(value.axis()?);
+        "counts_per_rev" => counts = not_zero(&value)?;
+        "driven_by" => drive = Some(SpindleDrive::Axis(named_axis(&value)?));
+        "dac" => drive = Some(SpindleDrive::Dac(value.whole(7)? as usize));
+        "bits" => drive = Some(directions(&value.table()?)?);
+        "full_scale_rps" => full = value.positive()?;
+        "tau_s" => tau = value.positive()?;
+    });
+    Ok(Spindle {
+        axis: axis.ok_or_else(|| table.is_missing("axis"))?,
+        counts_per_rev: counts,
+        drive: drive.ok_or_else(|| table.is_missing("driven_by"))?,
+        full_scale_rps: full,
+        tau_s: tau,
+    })
+}
+
+/// `axis 7`.
+fn named_axis(value: &Value<'_>) -> Read<AxisId> {
+    let number = value.text()?.strip_prefix("axis").and_then(|rest| rest.trim().parse().ok());
+    number.and_then(AxisId::new).ok_or_else(|| value.is_wrong("\"axis N\", 0 to 7"))
+}
+
+fn directions(table: &Table<'_>) -> Read<SpindleDrive> {
+    let (mut cw, mut ccw) = (None, None);
+    keys!(table, |key, value| {
+        "cw" => cw = Some(value.output()?);
+        "ccw" => ccw = Some(value.output()?);
+    });
+    Ok(SpindleDrive::Bits {
+        cw: cw.ok_or_else(|| table.is_missing("cw"))?,
+        ccw: ccw.ok_or_else(|| table.is_missing("ccw"))?,
+    })
+}
+
+fn inputs(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
+    keys!(table, |key, value| {
+        "idle_high" => {
+            for item in value.array()? {
+                machine.idle_high.extend(bits(&item)?);
+            }
+        };
+        "hints" => machine.hints = value.flag()?;
+    });
+    Ok(())
+}
+
+/// A bit, or a range of them as a text: `140-143`.
+fn bits(value: &Value<'_>) -> Read<Vec<Bit>> {
+    let Ok(text) = value.text() else { return Ok(vec![value.input()?]) };
+    let ends = text
+        .split_once('-')
+        .and_then(|(from, to)| Some((from.trim().parse().ok()?, to.trim().parse().ok()?)));
+    let (from, to): (i32, i32) = ends.ok_or_else(|| value.is_wrong("a bit or a range as \"140-143\""))?;
+    let range: Option<Vec<Bit>> = (from..=to.min(from.saturating_add(2047))).map(Bit::new).collect();
+    range.filter(|bits| !bits.is_empty()).ok_or_else(|| value.is_wrong("a range of bits, 0 to 2047"))
+}
+
+fn cpu(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
+    keys!(table, |key, value| {
+        "servo_us" => {
+            let time = value.not_negative()?;
+            if time >= 90.0 {
+                return Err(value.is_wrong("below the 90 µs of a tick"));
+            }
+            machine.servo_us = Some(time);
+        };
+        "bss_fill" => machine.bss_fill = value.whole(255)? as u8;
+        "strict_stack" => machine.strict_stack = value.flag()?;
+        "ns_per_instruction" => value.only(&integer("5"))?;
+        "plan_ticks" => value.only(&integer("0"))?;
+        "fresh_globals" => value.only(&DeValue::Boolean(false))?;
+    });
+    Ok(())
+}
+
+fn host(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
+    keys!(table, |key, value| {
+        "enabled" => machine.host = value.flag()?;
+    });
+    Ok(())
+}
+
+/// What only has its default so far.
+fn board(table: &Table<'_>) -> Read<()> {
+    keys!(table, |key, value| {
+        "kanalog" => value.only(&DeValue::String("auto".into()))?;
+        "kstep" => value.only(&DeValue::Boolean(false))?;
+        "respect_enable" => value.only(&DeValue::Boolean(false))?;
+        "konnect" => value.only(&DeValue::String("any".into()))?;
+        "snapamp" => value.only(&integer("0"))?;
+        "flash" => value.only(&DeValue::String("".into()))?;
+        "strict_flash" => value.only(&DeValue::Boolean(false))?;
+    });
+    Ok(())
+}
+
+/// An integer as the parser gives it.
+fn integer(digits: &'static str) -> DeValue<'static> {
+    match DeValue::parse(digits).map(toml::Spanned::into_inner) {
+        Ok(value) => value,
+        Err(_) => DeValue::Boolean(false),
+    }
+}

@@ -1,0 +1,153 @@
+//! Machine files that are right, and the messages about those that are not.
+
+use super::*;
+
+const FULL: &str = r#"
+[axis.0]
+name = "X"
+model = "motor"
+units = "mm"
+counts_per_unit = 400.5
+encoder = true
+min = -10
+max = 1_000
+start = 5.5
+ku = 2.5
+tau_s = 0.03
+friction = 1
+inertia = 2
+index = { bit = 36, every = 4096, width = 2, offset = 100 }
+
+[axis.7]
+model = "none"
+
+[[switch]]
+bit = 136
+axis = 0
+when = "<= -9"
+
+[[switch]]
+bit = 137
+axis = 0
+when = "between 1 2.5"
+active = 0
+
+[[probe]]
+bit = 140
+surface = { axis = 2, at = -5000 }
+trips = "<="
+
+[[encoder]]
+channel = 3
+moves = [[1.0, 40, 0.5], [3.0, -40, 0.2]]
+
+[[adc]]
+channel = 2
+sine = { mean = 0, amp = 1000, hz = 2 }
+
+[spindle]
+axis = 6
+counts_per_rev = 4096
+driven_by = "axis 7"
+
+[[wire]]
+from = 8
+to = 12
+invert = true
+
+[inputs]
+idle_high = [130, "141-143"]
+hints = false
+
+[cpu]
+servo_us = 30
+bss_fill = 0xA5
+strict_stack = true
+
+[board]
+kanalog = "auto"
+snapamp = 0
+"#;
+
+#[test]
+fn a_full_file_says_all_this() {
+    let machine = MachineFile::parse(FULL).expect("a good file");
+    let axis = &machine.axes[0];
+    assert_eq!((axis.model, axis.encoder, axis.counts_per_unit), (Model::Motor, Encoder::Connected, 400.5));
+    assert_eq!((axis.min, axis.max, axis.start), (-10.0, 1000.0, 5.5));
+    assert_eq!((axis.motor.ku, axis.motor.inertia), (Some(2.5), 2.0));
+    assert_eq!(axis.index.map(|index| index.every), Some(4096.0));
+    assert_eq!(machine.axes[7].model, Model::None);
+    assert_eq!(machine.switches.len(), 2);
+    assert!(machine.switches[1].when == Condition::Between(1.0, 2.5) && !machine.switches[1].active);
+    assert_eq!(machine.probes[0].touches, Condition::AtMost(-5000.0));
+    assert_eq!(machine.encoders[0].moves[1], [3.0, -40.0, 0.2]);
+    assert_eq!(
+        machine.spindle.map(|spindle| spindle.drive),
+        Some(SpindleDrive::Axis(AxisId::new(7).expect("7")))
+    );
+    assert_eq!(machine.idle_high.len(), 4);
+    assert_eq!((machine.servo_us, machine.bss_fill, machine.hints), (Some(30.0), 0xA5, false));
+}
+
+#[test]
+fn an_empty_file_is_no_file() {
+    assert_eq!(MachineFile::parse("").expect("a good file"), MachineFile::default());
+}
+
+#[test]
+fn a_key_is_set_alone() {
+    let mut machine = MachineFile::default();
+    for (key, value) in [("axis.0.model", "motor"), ("axis.0.tau_s", "0.5"), ("cpu.bss_fill", "7")] {
+        machine.set(key, value).expect(key);
+    }
+    let axis = &machine.axes[0];
+    assert_eq!((axis.model, axis.motor.tau_s, machine.bss_fill), (Model::Motor, 0.5, 7));
+    assert!(machine.set("axis.0.model", "magic").is_err());
+    assert_eq!(machine.axes[0].model, Model::Motor);
+}
+
+/// The message about a text, with line and column.
+fn message(text: &str) -> String {
+    let error = MachineFile::parse(text).expect_err(text);
+    format!("{}:{}: {error}", error.line, error.column)
+}
+
+#[test]
+fn mistakes_are_named_with_their_place() {
+    for (text, expect) in [
+        ("[axis.0]\nmodle = \"motor\"", "2:1: unknown key `modle` in `axis.0`; did you mean `model`?"),
+        ("[axis.8]\nmodel = \"motor\"", "1:7: `8` is no axis; there are 0 to 7"),
+        (
+            "[axis.0]\n  model = \"servo\"",
+            "2:11: `axis.0.model` must be \"follow\" or \"motor\" or \"none\", not \"servo\"",
+        ),
+        ("[axis.0]\ntau_s = 0", "2:9: `axis.0.tau_s` must be a number above 0, not 0"),
+        ("[axis.0]\nmin = nan", "2:7: `axis.0.min` must be a number, not nan"),
+        ("[axis.0]\nmin = 3\nmax = 1", "1:1: `axis.0`: min 3 lies above max 1"),
+        ("[[switch]]\naxis = 0\nwhen = \">= 3\"", "1:1: `switch[0]` needs `bit`"),
+        (
+            "[[switch]]\nbit = 144",
+            "2:7: `switch[0].bit` must be an input; bit 144 is one of Kanalog opto out, not 144",
+        ),
+        ("[[switch]]\nbit = 5000", "2:7: `switch[0].bit` must be a bit number, 0 to 2047, not 5000"),
+        (
+            "[[switch]]\nwhen = \"< 3\"",
+            "2:8: `switch[0].when` must be \"<= X\", \">= X\" or \"between X Y\", not \"< 3\"",
+        ),
+        (
+            "[[encoder]]\nmoves = [[1, 2]]",
+            "2:10: `encoder[0].moves[0]` must be [start in seconds, counts, duration in seconds], not a value of type array",
+        ),
+        ("[cpu]\nservo_us = 95", "2:12: `cpu.servo_us` must be below the 90 µs of a tick, not 95"),
+        ("[board]\nkstep = true", "2:9: `board.kstep` with this value is not built yet"),
+        ("switch = 5", "1:10: `switch` must be an array in [brackets], not 5"),
+        ("[axis.0\nname = 5", "1:8: unclosed table, expected `]`"),
+        (
+            "colour = 5",
+            "1:1: unknown key `colour`; there are axis, switch, probe, encoder, adc, wire, spindle, inputs, cpu, host, board",
+        ),
+    ] {
+        assert_eq!(message(text), expect, "{text}");
+    }
+}
