@@ -23,6 +23,7 @@ pub mod meter;
 pub mod native;
 pub mod op;
 pub mod operand;
+pub mod profile;
 pub mod program;
 mod protection;
 pub mod scheduler;

@@ -118,6 +118,12 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
             .unwrap_or_default()
     }
 
+    /// The engine.
+    #[must_use]
+    pub const fn engine(&self) -> &E {
+        &self.engine
+    }
+
     /// Guest memory.
     #[must_use]
     pub const fn memory(&self) -> &GuestMemory {

@@ -246,10 +246,13 @@ pub(crate) fn machine_on<E: Engine>(config: Config, programs: &[(i32, &str)]) ->
     machine
 }
 
-/// Runs `programs` for `ticks` and yields the machine; the native engine must do the same.
+/// Runs `programs` for `ticks` and yields the machine; the other engines must do the same.
 pub(crate) fn run(programs: &[(i32, &str)], ticks: u64) -> Machine<Fake> {
     let mut machine = machine(Config::default(), programs);
     machine.run_until(Ticks::new(ticks));
+    let mut profiled = machine_on::<crate::profile::ProfilingEngine>(Config::default(), programs);
+    profiled.run_until(Ticks::new(ticks));
+    assert_same(&machine, &profiled);
     #[cfg(feature = "native")]
     {
         let mut native = machine_on::<crate::native::NativeEngine>(Config::default(), programs);
@@ -260,7 +263,6 @@ pub(crate) fn run(programs: &[(i32, &str)], ticks: u64) -> Machine<Fake> {
 }
 
 /// Checks that no difference between two machines can be seen.
-#[cfg(feature = "native")]
 pub(crate) fn assert_same<A: Engine, B: Engine>(a: &Machine<Fake, A>, b: &Machine<Fake, B>) {
     assert_eq!(a.firmware(), b.firmware());
     assert_eq!(a.threads(), b.threads());

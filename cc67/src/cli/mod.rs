@@ -18,6 +18,7 @@ mod inspect;
 mod options;
 mod output;
 mod planned;
+mod profile;
 mod program;
 mod run;
 mod setting;

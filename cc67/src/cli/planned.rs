@@ -43,7 +43,6 @@ const OPTIONS: &[&str] = &[
     "json",
     "machine",
     "plot",
-    "profile",
     "realtime",
     "trace",
     "trace-bits",

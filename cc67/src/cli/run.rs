@@ -14,11 +14,12 @@ use runtime::{Board, Config, Directory, Event, EventKind, RunEnd};
 use vm::engine::Engine;
 use vm::interp::BytecodeEngine;
 use vm::machine::Config as MachineConfig;
+use vm::profile::ProfilingEngine;
 
 use super::options::CompilerOptions;
 use super::program::{Program, assign};
 use super::setting::{self, Setting};
-use super::{Exit, events, stimulus, terminal, units};
+use super::{Exit, events, profile, stimulus, terminal, units};
 use crate::lints::levels::Levels;
 use crate::render::Format;
 use crate::{Options, foreign, image};
@@ -56,6 +57,9 @@ pub(super) struct Arguments {
     /// Simulate every tick and every wait; the results are the same
     #[arg(long)]
     no_shortcuts: bool,
+    /// Show where board time went; with =FILE.svg also draw it as a flame graph
+    #[arg(long, value_name = "FILE.svg", num_args = 0..=1, require_equals = true, default_missing_value = "")]
+    profile: Option<String>,
     /// What executes the programs
     #[arg(long, value_enum, default_value_t = EngineName::Bytecode)]
     engine: EngineName,
@@ -111,10 +115,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit> {
     let machine = MachineConfig { shortcuts: !arguments.no_shortcuts, ..MachineConfig::default() };
     let session = Session { arguments, programs, images, settings, stimulus };
     let config = Config { machine, files, ..Config::default() };
+    if let Some(target) = &arguments.profile {
+        return session.profile(config, &profile::target(target)?);
+    }
     match arguments.engine {
-        EngineName::Bytecode => session.run::<BytecodeEngine>(config),
+        EngineName::Bytecode => Ok(session.run::<BytecodeEngine>(config)?.0),
         #[cfg(feature = "native")]
-        EngineName::Native => session.run::<vm::native::NativeEngine>(config),
+        EngineName::Native => Ok(session.run::<vm::native::NativeEngine>(config)?.0),
         #[cfg(not(feature = "native"))]
         EngineName::Native => anyhow::bail!("this cc67 is built without the native engine"),
     }
@@ -130,8 +137,15 @@ struct Session<'a> {
 }
 
 impl Session<'_> {
-    /// Loads, starts and executes.
-    fn run<E: Engine>(&self, config: Config) -> Result<Exit> {
+    /// Runs with an account of the time, which is shown at the end.
+    fn profile(&self, config: Config, target: &profile::Target) -> Result<Exit> {
+        let (exit, board) = self.run::<ProfilingEngine>(config)?;
+        terminal::aside(&profile::report(&board, target)?);
+        Ok(exit)
+    }
+
+    /// Loads, starts and executes; yields the board as it is at the end.
+    fn run<E: Engine>(&self, config: Config) -> Result<(Exit, Board<E>)> {
         let mut board: Board<E> = Board::new(config);
         for (program, image) in self.programs.iter().zip(&self.images) {
             board.load(program.thread, image).map_err(|error| explain(program, image, error))?;
@@ -148,7 +162,8 @@ impl Session<'_> {
         for program in self.programs.iter().take(self.arguments.programs.len()) {
             board.start(program.thread).with_context(|| program.name().to_string())?;
         }
-        execute(&mut board, self.arguments)
+        let exit = execute(&mut board, self.arguments)?;
+        Ok((exit, board))
     }
 }
 

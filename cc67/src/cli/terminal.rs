@@ -19,6 +19,12 @@ pub(super) fn note(message: &str) {
     let _ = writeln!(io::stderr(), "cc67: {message}");
 }
 
+/// Prints a text of our own to stderr, apart from the console.
+pub(super) fn aside(text: &str) {
+    // Nobody is left to be told when stderr is gone.
+    let _ = io::stderr().write_all(text.as_bytes());
+}
+
 /// Prints a page that was asked for to stdout.
 pub(super) fn page(text: &str) -> io::Result<()> {
     match io::stdout().write_all(text.as_bytes()) {

@@ -1,0 +1,45 @@
+//! The profile as a flame graph: a picture whose widths are board time.
+
+use anyhow::{Context, Result};
+use inferno::flamegraph::{self, Options};
+
+use super::{Account, context_name};
+
+/// Cycles in a microsecond.
+const CYCLES_PER_US: i64 = 200;
+
+/// Draws the account; the tower of each thread holds its functions, lines, and waits.
+pub(super) fn draw(account: &Account) -> Result<Vec<u8>> {
+    let lines = folded(account);
+    let mut options = Options::default();
+    options.title = "Board time".to_owned();
+    options.count_name = "µs".to_owned();
+    options.deterministic = true;
+    let mut picture = Vec::new();
+    flamegraph::from_lines(&mut options, lines.iter().map(String::as_str), &mut picture)
+        .context("there is nothing to draw: no program spent any time")?;
+    Ok(picture)
+}
+
+/// `thread 1;main;work count` for each place, as flame graph tools read it.
+fn folded(account: &Account) -> Vec<String> {
+    let mut lines = Vec::new();
+    for (place, spent) in account {
+        let mut tower = vec![context_name(place.context)];
+        tower.extend(place.frames.iter().map(|frame| match frame.line {
+            Some(line) => format!("{}:{line}", frame.function),
+            None => frame.function.clone(),
+        }));
+        tower.extend(place.firmware.clone());
+        let mut add = |tower: &[String], cycles: i64| {
+            // Widths are whole microseconds; what is shorter cannot be seen in a picture.
+            if cycles >= CYCLES_PER_US {
+                lines.push(format!("{} {}", tower.join(";"), cycles / CYCLES_PER_US));
+            }
+        };
+        add(&tower, spent.computing.get());
+        tower.push("(waiting)".to_owned());
+        add(&tower, spent.waiting.get());
+    }
+    lines
+}

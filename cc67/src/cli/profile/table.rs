@@ -1,0 +1,119 @@
+//! The profile as a table: for each thread its functions and its lines, the longest first.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write;
+
+use kmotiondef::Cycles;
+use vm::engine::ContextId;
+use vm::profile::Spent;
+
+use super::{Account, Place, context_name};
+
+/// Rows of a table; what is behind them took less.
+const ROWS: usize = 15;
+
+/// What a function took by itself, and with all that it called.
+#[derive(Clone, Copy, Default)]
+struct Function {
+    own: Spent,
+    total: Spent,
+}
+
+/// The tables of all threads.
+pub(super) fn table(account: &Account, end: Cycles) -> String {
+    let mut text = format!("Where {} of board time went\n", time(end));
+    let contexts: BTreeSet<ContextId> = account.keys().map(|place| place.context).collect();
+    for context in contexts {
+        let places: Vec<_> = account.iter().filter(|(place, _)| place.context == context).collect();
+        of_context(&mut text, context, &places, end);
+    }
+    text
+}
+
+fn of_context(text: &mut String, context: ContextId, places: &[(&Place, &Spent)], end: Cycles) {
+    let all = places.iter().fold(Spent::default(), |sum, (_, spent)| plus(sum, **spent));
+    let _ = writeln!(
+        text,
+        "\n{}: computing {} ({}), waiting {} ({}), the rest went to the servo and to others",
+        context_name(context),
+        time(all.computing),
+        percent(all.computing, end),
+        time(all.waiting),
+        percent(all.waiting, end),
+    );
+    let _ = writeln!(text, "  {:>11} {:>11} {:>11}  function", "computing", "waiting", "with calls");
+    for (name, function) in functions(places).into_iter().take(ROWS) {
+        let (own, total) = (function.own, function.total);
+        let _ = writeln!(
+            text,
+            "  {:>11} {:>11} {:>11}  {name}",
+            time(own.computing),
+            time(own.waiting),
+            time(total.computing + total.waiting),
+        );
+    }
+    let _ = writeln!(text, "  {:>11} {:>11} {:>11}  line", "computing", "waiting", "");
+    for (line, spent) in lines(places).into_iter().take(ROWS) {
+        let _ =
+            writeln!(text, "  {:>11} {:>11} {:>11}  {line}", time(spent.computing), time(spent.waiting), "");
+    }
+}
+
+/// The functions of the program and of the firmware, the longest first.
+fn functions(places: &[(&Place, &Spent)]) -> Vec<(String, Function)> {
+    let mut functions: BTreeMap<String, Function> = BTreeMap::new();
+    for (place, spent) in places {
+        let mut names: Vec<String> = place.frames.iter().map(|frame| frame.function.clone()).collect();
+        names.extend(place.firmware.as_ref().map(|name| format!("{name} (firmware)")));
+        if let Some(innermost) = names.last() {
+            let function = functions.entry(innermost.clone()).or_default();
+            function.own = plus(function.own, **spent);
+        }
+        // A function that calls itself is counted once.
+        for name in names.into_iter().collect::<BTreeSet<_>>() {
+            let function = functions.entry(name).or_default();
+            function.total = plus(function.total, **spent);
+        }
+    }
+    longest_first(functions, |function| function.total)
+}
+
+/// The lines, with what the firmware functions they call took.
+fn lines(places: &[(&Place, &Spent)]) -> Vec<(String, Spent)> {
+    let mut lines: BTreeMap<String, Spent> = BTreeMap::new();
+    for (place, spent) in places {
+        let Some(frame) = place.frames.last() else { continue };
+        let name = match frame.line {
+            Some(line) => format!("{}:{line} in {}", frame.file, frame.function),
+            None => frame.function.clone(),
+        };
+        let sum = lines.entry(name).or_default();
+        *sum = plus(*sum, **spent);
+    }
+    longest_first(lines, |spent| *spent)
+}
+
+fn longest_first<T>(rows: BTreeMap<String, T>, spent: impl Fn(&T) -> Spent) -> Vec<(String, T)> {
+    let mut rows: Vec<_> = rows.into_iter().collect();
+    rows.sort_by_key(|(_, row)| std::cmp::Reverse((spent(row).computing + spent(row).waiting).get()));
+    rows
+}
+
+fn plus(a: Spent, b: Spent) -> Spent {
+    Spent { computing: a.computing + b.computing, waiting: a.waiting + b.waiting }
+}
+
+/// A span in the unit in which it is easily read.
+fn time(span: Cycles) -> String {
+    let seconds = span.get() as f64 / Cycles::PER_SECOND.get() as f64;
+    match span.get() {
+        0 => "-".to_owned(),
+        _ if seconds < 1e-3 => format!("{:.2} µs", seconds * 1e6),
+        _ if seconds < 1.0 => format!("{:.3} ms", seconds * 1e3),
+        _ => format!("{seconds:.3} s"),
+    }
+}
+
+fn percent(part: Cycles, whole: Cycles) -> String {
+    format!("{:.1} %", 100.0 * part.get() as f64 / whole.get().max(1) as f64)
+}

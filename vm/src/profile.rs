@@ -1,0 +1,315 @@
+//! The profiling engine: the bytecode engine, with an account of where the time went.
+//!
+//! Nothing is sampled. The interpreter is given nothing to spend, so that every `charge` returns to here: what it
+//! spent is put down to the segment that begins there, then the program goes on with what it really has left. By
+//! [the rule of metering](crate::meter) a segment is executed as a whole, and a call ends it, so the account is exact.
+//! Firmware functions and devices see the true budget, and the run is the same, cycle by cycle, as without a profile.
+
+use std::collections::BTreeMap;
+
+use kmotiondef::{CodeAddr, Cycles, GuestAddr};
+
+use crate::bus::{AccessSize, Bus};
+use crate::engine::{ContextId, Engine, Slice, Stack, Stop};
+use crate::firmware::{Caller, Firmware, Outcome, Signature, TickContext, Value};
+use crate::interp::BytecodeEngine;
+use crate::memory::GuestMemory;
+use crate::op::Op;
+use crate::operand::FuncRef;
+use crate::program::Program;
+use crate::scheduler::Turn;
+use crate::trap::{Trap, TrapKind};
+
+const NOTHING: Cycles = Cycles::new(0);
+
+/// A place of a program, with the calls that led there.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Site {
+    /// The thread or the call-back.
+    pub context: ContextId,
+    /// The first instruction of a segment, then the calls that led there, innermost first.
+    pub calls: Vec<CodeAddr>,
+    /// The firmware function that the segment ends with, if the time was spent in it.
+    pub firmware: Option<GuestAddr>,
+}
+
+/// What was spent at a site.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Spent {
+    /// Processor time.
+    pub computing: Cycles,
+    /// Time in which a firmware function made the thread wait.
+    pub waiting: Cycles,
+}
+
+/// Where the time of a run went.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Profile {
+    spent: BTreeMap<Site, Spent>,
+}
+
+impl Profile {
+    /// The sites in their order, and what was spent at each.
+    pub fn sites(&self) -> impl Iterator<Item = (&Site, Spent)> {
+        self.spent.iter().map(|(site, spent)| (site, *spent))
+    }
+
+    fn add(&mut self, site: Site, computing: Cycles, waiting: Cycles) {
+        if computing != NOTHING || waiting != NOTHING {
+            let spent = self.spent.entry(site).or_default();
+            spent.computing += computing;
+            spent.waiting += waiting;
+        }
+    }
+}
+
+/// The instructions of the segment that begins at `head`, and what each costs.
+pub fn segment(program: &Program, head: CodeAddr) -> impl Iterator<Item = (CodeAddr, u32)> {
+    let first = program.word_at(head).unwrap_or(usize::MAX);
+    let ops = program.ops().iter().enumerate().skip(first);
+    ops.take_while(|(_, op)| !matches!(op, Op::Charge { .. } | Op::Func { .. }))
+        .map(|(word, op)| (program.address_of(word), op.cost()))
+}
+
+/// Interprets programs and keeps a profile.
+#[derive(Debug, Default)]
+pub struct ProfilingEngine {
+    inner: BytecodeEngine,
+    profile: Profile,
+    /// Where each waiting context waits, and since when.
+    waits: [Option<(Site, Cycles)>; ContextId::COUNT],
+}
+
+impl ProfilingEngine {
+    /// What was spent so far.
+    #[must_use]
+    pub const fn profile(&self) -> &Profile {
+        &self.profile
+    }
+
+    fn site(&self, context: ContextId, program: &Program) -> Site {
+        Site { context, calls: self.inner.backtrace(context, program), firmware: None }
+    }
+
+    /// Runs up to the next charge, or to where the program stops before.
+    fn run_segment<F: Firmware + ?Sized>(&mut self, id: ContextId, slice: &mut Slice<'_, F>) -> Stop {
+        let site = self.site(id, slice.program);
+        let left = slice.budget;
+        let mut metered = Metered { firmware: slice.firmware, length: slice.length, left, called: None };
+        let mut part = Slice {
+            program: slice.program,
+            memory: slice.memory,
+            threads: slice.threads,
+            firmware: &mut metered,
+            tick: slice.tick,
+            start: slice.start,
+            length: slice.length - left,
+            budget: NOTHING,
+            woken: slice.woken.take(),
+        };
+        let stop = self.inner.resume(id, &mut part);
+        let spent = NOTHING - part.budget;
+        slice.budget = left - spent;
+        let (function, in_firmware) = metered.called.unzip();
+        let in_firmware = in_firmware.unwrap_or_default();
+        let charged = self.charged(id, slice.program, &stop);
+        // Device registers take time as well; it belongs to the segment that reads or writes them.
+        self.profile.add(site.clone(), spent - in_firmware - charged, NOTHING);
+        let call = Site { firmware: function, ..site };
+        if let Stop::Waiting(_) = stop {
+            self.waits[id.index()] = Some((call.clone(), slice.now()));
+        }
+        self.profile.add(call, in_firmware, NOTHING);
+        self.profile.add(self.site(id, slice.program), charged, NOTHING);
+        stop
+    }
+
+    /// What the charge took that stopped a context.
+    fn charged(&self, id: ContextId, program: &Program, stop: &Stop) -> Cycles {
+        if !matches!(stop, Stop::Preempted) {
+            return NOTHING;
+        }
+        let next = self.inner.backtrace(id, program).first().and_then(|next| program.word_at(*next));
+        match next.and_then(|next| program.ops().get(next.checked_sub(1)?)) {
+            Some(Op::Charge { cycles }) => Cycles::new(i64::from(cycles.0)),
+            _ => NOTHING,
+        }
+    }
+}
+
+impl Engine for ProfilingEngine {
+    fn start(&mut self, id: ContextId, program: &Program, function: FuncRef, stack: Stack) {
+        self.waits[id.index()] = None;
+        self.inner.start(id, program, function, stack);
+    }
+
+    fn resume<F: Firmware + ?Sized>(&mut self, id: ContextId, slice: &mut Slice<'_, F>) -> Stop {
+        if let Some((site, since)) = self.waits[id.index()].take() {
+            self.profile.add(site, NOTHING, slice.now() - since);
+        }
+        loop {
+            let stop = self.run_segment(id, slice);
+            if !matches!(stop, Stop::Preempted) || slice.budget < NOTHING {
+                return stop;
+            }
+        }
+    }
+
+    fn stack_used(&self, id: ContextId) -> u32 {
+        self.inner.stack_used(id)
+    }
+
+    fn backtrace(&self, id: ContextId, program: &Program) -> Vec<CodeAddr> {
+        self.inner.backtrace(id, program)
+    }
+}
+
+/// The firmware, with the true budget and a note of what its calls spend.
+#[derive(Debug)]
+struct Metered<'a, F: ?Sized> {
+    firmware: &'a mut F,
+    /// What the slice could spend in all.
+    length: Cycles,
+    /// What it had left where the part began that the engine knows of.
+    left: Cycles,
+    /// The function that was called, and what it spent.
+    called: Option<(GuestAddr, Cycles)>,
+}
+
+impl<F: Firmware + ?Sized> Bus for Metered<'_, F> {
+    fn read(&mut self, addr: GuestAddr, size: AccessSize, now: Cycles) -> u32 {
+        self.firmware.read(addr, size, now)
+    }
+
+    fn write(&mut self, addr: GuestAddr, size: AccessSize, value: u32, now: Cycles) {
+        self.firmware.write(addr, size, value, now);
+    }
+
+    fn access_cycles(&self, addr: GuestAddr) -> Cycles {
+        self.firmware.access_cycles(addr)
+    }
+}
+
+impl<F: Firmware + ?Sized> Firmware for Metered<'_, F> {
+    fn signature(&self, address: GuestAddr) -> Option<&Signature> {
+        self.firmware.signature(address)
+    }
+
+    fn call(&mut self, address: GuestAddr, caller: &mut Caller<'_>) -> Result<Outcome<Value>, TrapKind> {
+        let mut budget = self.left + *caller.budget;
+        let before = budget;
+        let mut true_caller = Caller {
+            thread: caller.thread,
+            memory: caller.memory,
+            threads: caller.threads,
+            tick: caller.tick,
+            slice_start: caller.slice_start,
+            slice: self.length,
+            budget: &mut budget,
+            woken: caller.woken,
+            arguments: caller.arguments,
+        };
+        let outcome = self.firmware.call(address, &mut true_caller);
+        caller.woken = true_caller.woken;
+        *caller.budget = budget - self.left;
+        self.called = Some((address, before - budget));
+        outcome
+    }
+
+    fn callback(&self, memory: &GuestMemory) -> GuestAddr {
+        self.firmware.callback(memory)
+    }
+
+    fn callback_returned(&mut self, context: &mut TickContext<'_>, spent: Cycles) {
+        self.firmware.callback_returned(context, spent);
+    }
+
+    fn tick(&mut self, context: &mut TickContext<'_>) {
+        self.firmware.tick(context);
+    }
+
+    fn servo_time(&self, memory: &GuestMemory) -> Cycles {
+        self.firmware.servo_time(memory)
+    }
+
+    fn switch_to(&mut self, turn: Turn, context: &mut TickContext<'_>) {
+        self.firmware.switch_to(turn, context);
+    }
+
+    fn primary_slice(&mut self, context: &mut TickContext<'_>) {
+        self.firmware.primary_slice(context);
+    }
+
+    fn trapped(&mut self, trap: &Trap, context: &mut TickContext<'_>) {
+        self.firmware.trapped(trap, context);
+    }
+
+    fn stack_exceeded(&mut self, thread: kmotiondef::ThreadId, used: u32) {
+        self.firmware.stack_exceeded(thread, used);
+    }
+
+    fn quiet_ticks(&self, memory: &GuestMemory) -> u64 {
+        self.firmware.quiet_ticks(memory)
+    }
+
+    fn skip_ticks(&mut self, count: u64, context: &mut TickContext<'_>) {
+        self.firmware.skip_ticks(count, context);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use kmotiondef::Ticks;
+
+    use super::*;
+    use crate::machine::Config;
+    use crate::testing::{machine_on, thread};
+
+    /// Counts to 3 with a function, then delays for 50,000 cycles.
+    const PROGRAM: &str = "@main: func sig0, 2, 0
+types 0
+charge 2
+const_i32 r0, 3
+const_i32 r1, 50000
+@again: charge 6
+arg_i32 r0, 0
+call fn@down
+result_i32 r0
+charge 1
+br_if r0, @again
+charge 6
+arg_i32 r1, 0
+call_fw sig1, 0x10008008
+charge 2
+ret
+@down: func sig3, 1, 0
+types 0
+charge 3
+add_i32_imm r0, r0, -1
+ret_i32 r0";
+
+    #[test]
+    fn every_cycle_is_put_down_where_it_was_spent() {
+        let mut machine = machine_on::<ProfilingEngine>(Config::default(), &[(1, PROGRAM)]);
+        machine.run_until(Ticks::new(20));
+        let program = machine.program(thread(1)).expect("it is loaded");
+        let offset =
+            |at: &CodeAddr| (at.get() - program.base().get()) / 8 - crate::testing::HEAD_WORDS as u32;
+        let lines: Vec<String> = machine
+            .engine()
+            .profile()
+            .sites()
+            .map(|(site, spent)| {
+                let calls: Vec<_> = site.calls.iter().map(|at| offset(at).to_string()).collect();
+                let call = site.firmware.map_or_else(String::new, |address| format!(" {address}"));
+                let (computing, waiting) = (spent.computing.get(), spent.waiting.get());
+                format!("{}{call}: {computing} + {waiting}", calls.join("<"))
+            })
+            .collect();
+        // The delay of 50,000 cycles ends between two slices, so the thread goes on with the next: at 98,000.
+        let expect =
+            ["3: 2 + 0", "6: 18 + 0", "10: 3 + 0", "12: 6 + 0", "12 0x10008008: 0 + 71962", "15: 2 + 0"];
+        assert_eq!(lines[..6], expect);
+        assert_eq!(lines[6..], ["19<7: 9 + 0"]);
+    }
+}
