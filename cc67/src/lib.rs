@@ -8,7 +8,7 @@
 //! [`compile`] goes all the way; each stage is a module that can be used by itself.
 //!
 //! Invariants:
-//! - Everything but [`cli`] knows no board: the image is the interface to the machine.
+//! - Everything but [`cli`] and [`host`] knows no board: the image is the interface to the machine.
 //! - Nothing outside [`bytecode`] knows the instructions of the machine, nothing outside
 //!   [`parse`] the grammar of C.
 //! - Analysis goes on after a diagnostic; nothing is written for a program with errors.
@@ -32,6 +32,7 @@ mod entry;
 pub mod firmware;
 pub mod foreign;
 pub mod foreign_words;
+pub mod host;
 pub mod image;
 mod includers;
 pub mod inspect;

@@ -264,6 +264,21 @@ impl<E: Engine> Board<E> {
         self.machine.firmware().usb.is_busy()
     }
 
+    /// Says whether the PC takes console lines. If not, they wait in the board's queue, and once that is full, so do
+    /// the programs that print.
+    pub fn listen(&mut self, listens: bool) {
+        let (kernel, _) = self.machine.firmware_mut();
+        kernel.is_heard = listens;
+    }
+
+    /// Runs to the end of the next tick in which something can happen, or of tick `limit`, whichever comes first.
+    pub fn advance(&mut self, limit: Ticks, sink: &mut dyn FnMut(Event)) {
+        if self.machine.tick() < limit {
+            self.step(limit);
+        }
+        self.deliver(sink);
+    }
+
     /// Whether a command waits for its data lines, so that the next line is one.
     #[must_use]
     pub fn is_in_command(&self) -> bool {

@@ -6,7 +6,7 @@ use std::io::Write as _;
 use std::path::{Component, Path, PathBuf};
 
 /// Where the PC's files are kept.
-pub trait HostFiles: fmt::Debug {
+pub trait HostFiles: fmt::Debug + Send {
     /// The contents of a file; `None` if it cannot be read.
     fn read(&mut self, name: &str) -> Option<Vec<u8>>;
     /// Makes an empty file, or the directory it goes to if `keep` is set and the file exists.

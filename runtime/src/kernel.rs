@@ -99,6 +99,8 @@ pub struct Kernel {
     pub(crate) uart_link: Link,
     pub(crate) downloads: Downloads,
     pub(crate) experiment: Option<Experiment>,
+    /// Whether the PC takes console lines; if not, they wait in the queue, and then programs do.
+    pub(crate) is_heard: bool,
     /// Whether a script command is being executed.
     pub(crate) is_commanding: bool,
     requests: Vec<Request>,
@@ -142,6 +144,7 @@ impl Kernel {
             uart_link: Link::default(),
             downloads: Downloads::default(),
             experiment: None,
+            is_heard: true,
             is_commanding: false,
             requests: Vec::new(),
             random: 1,
@@ -419,7 +422,8 @@ impl Firmware for Kernel {
     }
 
     fn primary_slice(&mut self, context: &mut TickContext<'_>) {
-        if !self.usb.is_in_command()
+        if self.is_heard
+            && !self.usb.is_in_command()
             && let Some(line) = self.console.send()
         {
             self.tell(context.now, EventKind::ConsoleLine(line));

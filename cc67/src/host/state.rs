@@ -1,0 +1,229 @@
+//! The board and its one link, which all clients share.
+
+use std::collections::VecDeque;
+use std::fmt;
+use std::mem;
+
+use kmotiondef::{Field, Plain, Scalar, Ticks};
+use runtime::{Config, Event, EventKind};
+
+use super::HostError;
+use crate::Options;
+
+/// Ticks that a line and its answer take on the wire, as recorded.
+pub(super) const EXCHANGE: u64 = 28;
+/// Console lines that wait for a client; then the board waits too.
+const CONSOLE_LIMIT: usize = 1000;
+/// Remarks that are kept; older ones are dropped.
+const REMARK_LIMIT: usize = 1000;
+/// Seconds in a tick.
+const TIMEBASE: f64 = 90e-6;
+
+/// What receives console lines.
+pub(super) type Callback = Box<dyn FnMut(&str) + Send>;
+
+/// The status record of the board, `MAIN_STATUS`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Status(Vec<u8>);
+
+/// Bytes of the record.
+const STATUS_SIZE: usize = 464;
+
+impl Status {
+    /// A field of the record.
+    ///
+    /// ```
+    /// use cc67::host::Board;
+    /// use kmotiondef::structs::MainStatus;
+    ///
+    /// let status = Board::new().get_status()?;
+    /// assert_eq!(status.get(MainStatus::THREAD_ACTIVE), 1);
+    /// # Ok::<(), cc67::host::HostError>(())
+    /// ```
+    #[must_use]
+    pub fn get<T: Scalar>(&self, field: Field<T>) -> T::Value {
+        let bytes = self.0.iter().skip(field.offset() as usize).take(T::SIZE as usize);
+        let bits = bytes.rev().fold(0_u64, |bits, byte| bits << 8 | u64::from(*byte));
+        T::Value::from_bits(bits)
+    }
+
+    /// The record as it lies in the memory of a PC.
+    #[must_use]
+    pub fn bytes(&self) -> &[u8] {
+        &self.0
+    }
+}
+
+/// The board, its link, and what came over it.
+pub(super) struct State {
+    pub(super) board: runtime::Board,
+    pub(super) options: Options,
+    pub(super) is_locked: bool,
+    pub(super) is_connected: bool,
+    /// Bytes of replies that are not read yet.
+    incoming: VecDeque<u8>,
+    console: VecDeque<String>,
+    callback: Option<(u64, Callback)>,
+    remarks: VecDeque<Event>,
+    clients: u64,
+}
+
+impl fmt::Debug for State {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("State").field("is_locked", &self.is_locked).finish_non_exhaustive()
+    }
+}
+
+impl State {
+    pub(super) fn new(config: Config) -> Self {
+        Self {
+            board: runtime::Board::new(config),
+            options: Options::default(),
+            is_locked: false,
+            is_connected: true,
+            incoming: VecDeque::new(),
+            console: VecDeque::new(),
+            callback: None,
+            remarks: VecDeque::new(),
+            clients: 0,
+        }
+    }
+
+    /// A number for one more client.
+    pub(super) fn number(&mut self) -> u64 {
+        self.clients += 1;
+        self.clients
+    }
+
+    pub(super) fn set_callback(&mut self, client: u64, callback: Callback) {
+        self.callback = Some((client, callback));
+    }
+
+    /// Takes out the call-back of a client that is gone.
+    pub(super) fn drop_callback(&mut self, client: u64) {
+        self.callback.take_if(|(owner, _)| *owner == client);
+    }
+
+    /// Remarks of the simulation since the last time.
+    pub(super) fn take_remarks(&mut self) -> Vec<Event> {
+        mem::take(&mut self.remarks).into()
+    }
+
+    /// Fails when the connection was given up.
+    pub(super) const fn connected(&self) -> Result<(), HostError> {
+        if self.is_connected { Ok(()) } else { Err(HostError::NotConnected) }
+    }
+
+    /// Connects again: what was under way is dropped.
+    pub(super) fn connect(&mut self) {
+        self.is_connected = true;
+        self.incoming.clear();
+        self.send(b"\x03");
+        self.advance(EXCHANGE, &mut |_| false);
+    }
+
+    /// Bytes for the board.
+    pub(super) fn send(&mut self, bytes: &[u8]) {
+        self.board.receive(bytes);
+    }
+
+    /// Sends a line and lets the board take it.
+    pub(super) fn send_line(&mut self, bytes: &[u8]) {
+        self.send(bytes);
+        self.advance(ticks(1.0), &mut |state| !state.board.is_receiving());
+    }
+
+    /// The next line of a reply, with its line end, if it comes within some ticks.
+    pub(super) fn read_line(&mut self, limit: u64) -> Option<String> {
+        self.advance(limit, &mut |state| state.has_line());
+        self.take_line()
+    }
+
+    fn has_line(&self) -> bool {
+        self.incoming.contains(&b'\n')
+    }
+
+    fn take_line(&mut self) -> Option<String> {
+        let end = self.incoming.iter().position(|byte| *byte == b'\n')?;
+        let line: Vec<u8> = self.incoming.drain(..=end).collect();
+        Some(String::from_utf8_lossy(&line).into_owned())
+    }
+
+    /// Whether a part of a line is there.
+    pub(super) fn has_partial_line(&self) -> bool {
+        !self.incoming.is_empty()
+    }
+
+    /// The next console line that waits.
+    pub(super) fn take_console(&mut self) -> Option<String> {
+        self.console.pop_front()
+    }
+
+    /// Whether a console line waits.
+    pub(super) fn has_console(&self) -> bool {
+        !self.console.is_empty()
+    }
+
+    /// Runs for some ticks, or until `is_over` says so behind one of them; whether it said so.
+    pub(super) fn advance(&mut self, count: u64, is_over: &mut dyn FnMut(&mut Self) -> bool) -> bool {
+        if is_over(self) {
+            return true;
+        }
+        let end = Ticks::new(self.board.tick().get().saturating_add(count));
+        while self.board.tick() < end {
+            self.step(end);
+            if is_over(self) {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Runs to the end of the next tick in which something happens, and takes what comes over the link.
+    fn step(&mut self, end: Ticks) {
+        self.board.listen(self.callback.is_some() || self.console.len() < CONSOLE_LIMIT);
+        let mut events = Vec::new();
+        self.board.advance(end, &mut |event| events.push(event));
+        for event in events {
+            self.take(event);
+        }
+    }
+
+    fn take(&mut self, event: Event) {
+        match event.kind {
+            EventKind::Reply(line) => self.incoming.extend(line.iter().chain(b"\r\n")),
+            EventKind::Echo(bytes) => self.incoming.extend(bytes),
+            EventKind::Aborted => self.incoming.clear(),
+            EventKind::ConsoleLine(line) => {
+                let line = String::from_utf8_lossy(&line).into_owned();
+                match &mut self.callback {
+                    Some((_, callback)) => callback(&line),
+                    None => self.console.push_back(line),
+                }
+            }
+            _ => {
+                if self.remarks.len() == REMARK_LIMIT {
+                    self.remarks.pop_front();
+                }
+                self.remarks.push_back(event);
+            }
+        }
+    }
+
+    /// Reads the lines of a status record.
+    pub(super) fn read_status(&mut self) -> Option<Status> {
+        let mut bytes = Vec::new();
+        while bytes.len() < STATUS_SIZE {
+            let line = self.read_line(ticks(5.0))?;
+            for word in line.split_whitespace() {
+                bytes.extend_from_slice(&u32::from_str_radix(word, 16).ok()?.to_le_bytes());
+            }
+        }
+        Some(Status(bytes))
+    }
+}
+
+/// Ticks in some seconds.
+pub(super) fn ticks(seconds: f64) -> u64 {
+    (seconds / TIMEBASE).round() as u64
+}
