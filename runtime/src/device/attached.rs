@@ -28,7 +28,7 @@ pub(crate) struct Outside<'a> {
 }
 
 /// A device around the board.
-pub(crate) trait Attached: Debug {
+pub(crate) trait Attached: Debug + Send {
     /// A bit has changed.
     fn edge(&mut self, change: BitChange, outside: &mut Outside<'_>) {
         let _ = (change, outside);
