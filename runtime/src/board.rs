@@ -21,6 +21,7 @@ use crate::kernel::{Kernel, Request};
 use crate::loader::{Fill, LoadError, Placed, prepare};
 use crate::power_up;
 use crate::stimulus::Stimulus;
+use crate::trace;
 use crate::views::Typed;
 
 /// Settings of a board.
@@ -394,6 +395,12 @@ impl<E: Engine> Board<E> {
     pub fn play(&mut self, stimulus: Stimulus) {
         let (kernel, context) = self.machine.firmware_mut();
         kernel.play(stimulus, context.memory);
+    }
+
+    /// Records from now on what is asked for; the records come as events.
+    pub fn record(&mut self, request: trace::Request) {
+        let (kernel, context) = self.machine.firmware_mut();
+        kernel.record(request, context.memory);
     }
 
     /// Drives an input from outside.

@@ -3,8 +3,10 @@
 use kmotiondef::{Bit, CodeAddr, Cycles, ThreadId};
 use vm::trap::Trap;
 
+use crate::trace::Record;
+
 /// One event and its time.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Event {
     /// The instant; power-up is 0.
     pub at: Cycles,
@@ -13,7 +15,7 @@ pub struct Event {
 }
 
 /// What happened.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum EventKind {
     /// The PC received a line of console text, without its line end.
     ConsoleLine(Vec<u8>),
@@ -36,6 +38,8 @@ pub enum EventKind {
     Diagnostic(String),
     /// A thread was stopped by a trap.
     Trap(Trap),
+    /// Something that was asked to be recorded.
+    Trace(Record),
     /// The UART has sent a character; told to who asked for it.
     UartSent(u8),
     /// Something that the stimulus expects is not so.

@@ -37,6 +37,7 @@ use crate::heap::Heap;
 use crate::host::Host;
 use crate::servo::Servo;
 use crate::stimulus::{Player, Stimulus};
+use crate::trace::{self, Record, Recorder};
 use crate::views::Typed;
 
 /// What a register access costs beyond the instruction: 200 ns, a timer 100 ns.
@@ -90,6 +91,8 @@ pub struct Kernel {
     hears_uart: bool,
     /// What the world does, if anything.
     stimulus: Option<Box<Player>>,
+    /// What is recorded, if anything.
+    recorder: Option<Box<Recorder>>,
     pub(crate) servo: Servo,
     pub(crate) heap: Heap,
     pub(crate) files: OpenFiles,
@@ -110,8 +113,9 @@ pub struct Kernel {
     pub(crate) token: GuestAddr,
     /// When the present tick began.
     pub(crate) tick_start: Cycles,
-    /// When the present slice began.
+    /// When the present slice began, and whose it is.
     slice_start: Cycles,
+    turn: Turn,
     /// Whether the last tick changed nothing and no thread has run since.
     is_settled: bool,
     hinted: BTreeSet<Bit>,
@@ -136,6 +140,8 @@ impl Kernel {
             attached: Vec::new(),
             hears_uart: false,
             stimulus: None,
+            recorder: None,
+            turn: Turn::Primary,
             servo: Servo::default(),
             heap: Heap::default(),
             files: OpenFiles::new(files),
@@ -201,10 +207,43 @@ impl Kernel {
         self.settle(context.now);
         self.run_devices(context.now);
         let changes = self.pins.changes.take();
+        if self.recorder.as_ref().is_some_and(|recorder| recorder.records_changes()) {
+            for change in &changes {
+                let thread = match self.turn {
+                    Turn::User(thread) if (self.slice_start..context.now).contains(&change.at) => {
+                        Some(thread)
+                    }
+                    _ => None,
+                };
+                let record = Record::Bit { bit: change.bit, level: change.level, thread };
+                self.tell(change.at, EventKind::Trace(record));
+            }
+        }
         let Some(mut player) = self.stimulus.take() else { return false };
         let acted = player.tick(self, context, &changes);
         self.stimulus = Some(player);
         acted
+    }
+
+    /// Records from now on.
+    pub(crate) fn record(&mut self, request: trace::Request, memory: &GuestMemory) {
+        if request.changes {
+            self.pins.changes.switch_on(memory);
+            self.hear_uart();
+        }
+        self.recorder = Some(Box::new(Recorder::new(request)));
+    }
+
+    /// Samples what is recorded at the last of `count` ticks that is to be sampled.
+    fn sample(&mut self, context: &TickContext<'_>, count: u64) {
+        let Some(mut recorder) = self.recorder.take() else { return };
+        if let Some(tick) = recorder.sampled_tick(context.tick, count)
+            && let Some(record) = recorder.sample(self, context.memory)
+        {
+            let back = (context.tick.get() - tick.get()) as i64 * Cycles::PER_TICK.get();
+            self.tell(context.now - Cycles::new(back), EventKind::Trace(record));
+        }
+        self.recorder = Some(recorder);
     }
 
     /// The run is over: what the stimulus expects then is checked.
@@ -406,6 +445,7 @@ impl Firmware for Kernel {
             self.attached.iter_mut().for_each(|device| device.konnect(board, outputs, context.now));
         }
         let changed = crate::servo::tick(self, context);
+        self.sample(context, 1);
         self.is_settled = !changed && !acted && context.memory.get(USER_CALL_BACK).is_null();
     }
 
@@ -415,6 +455,7 @@ impl Firmware for Kernel {
 
     fn switch_to(&mut self, turn: Turn, context: &mut TickContext<'_>) {
         self.slice_start = context.now;
+        self.turn = turn;
         context.memory.set(CURRENT_THREAD, i32::from(turn.number()));
         if turn != Turn::Primary {
             self.is_settled = false;
@@ -435,6 +476,12 @@ impl Firmware for Kernel {
         commands::slice(self, context, |kernel| &mut kernel.uart_link);
         commands::advance(self, context);
         self.store_queue_indices(context.memory);
+    }
+
+    fn slice_ran(&mut self, thread: ThreadId, start: Cycles, end: Cycles) {
+        if self.recorder.as_ref().is_some_and(|recorder| recorder.records_changes()) {
+            self.tell(start, EventKind::Trace(Record::Slice { thread, end }));
+        }
     }
 
     fn trapped(&mut self, trap: &Trap, context: &mut TickContext<'_>) {
@@ -470,5 +517,6 @@ impl Firmware for Kernel {
         self.tick_start = context.now;
         store_time(context);
         self.host.skip(count);
+        self.sample(context, count);
     }
 }

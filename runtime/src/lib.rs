@@ -32,6 +32,7 @@ pub mod stimulus;
 #[cfg(test)]
 mod testing;
 mod text;
+pub mod trace;
 mod views;
 
 pub use board::{Board, Config, RunEnd};

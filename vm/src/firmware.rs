@@ -197,6 +197,11 @@ pub trait Firmware: Bus {
         let _ = context;
     }
 
+    /// A thread has run in its slice, from `start` to `end`.
+    fn slice_ran(&mut self, thread: ThreadId, start: Cycles, end: Cycles) {
+        let _ = (thread, start, end);
+    }
+
     /// A thread was stopped by a trap, or the call-back, which the kernel must then take out.
     fn trapped(&mut self, trap: &Trap, context: &mut TickContext<'_>);
 

@@ -341,6 +341,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         };
         let left = slice.budget;
         self.threads.set_running(None);
+        self.firmware.slice_ran(thread, window.end - budget, window.end - left);
         self.threads.set_debt(thread, (Cycles::default() - left).max(Cycles::default()));
         self.report_stack(thread);
         match stop {

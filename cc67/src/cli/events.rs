@@ -12,6 +12,7 @@ pub(super) fn describe(event: &Event, programs: &[DebugInfo]) -> Option<String> 
         | EventKind::Reply(_)
         | EventKind::Echo(_)
         | EventKind::UartSent(_)
+        | EventKind::Trace(_)
         | EventKind::Aborted => None,
         EventKind::Diagnostic(text) | EventKind::Host(text) | EventKind::Unmet(text) => Some(text.clone()),
         EventKind::Trap(trap) => Some(describe_trap(trap, programs)),

@@ -25,6 +25,7 @@ mod setting;
 mod stimulus;
 mod terminal;
 mod test;
+mod trace;
 mod units;
 
 use std::ffi::OsString;

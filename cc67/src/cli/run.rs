@@ -10,6 +10,7 @@ use kmotiondef::{Cycles, ThreadId, Ticks};
 use runtime::debug::DebugInfo;
 use runtime::loader::LoadError;
 use runtime::stimulus::Stimulus;
+use runtime::trace::Request;
 use runtime::{Board, Config, Directory, Event, EventKind, RunEnd};
 use vm::engine::Engine;
 use vm::interp::BytecodeEngine;
@@ -19,7 +20,7 @@ use vm::profile::ProfilingEngine;
 use super::options::CompilerOptions;
 use super::program::{Program, assign};
 use super::setting::{self, Setting};
-use super::{Exit, events, profile, stimulus, terminal, units};
+use super::{Exit, events, profile, stimulus, terminal, trace, units};
 use crate::lints::levels::Levels;
 use crate::render::Format;
 use crate::{Options, foreign, image};
@@ -63,6 +64,8 @@ pub(super) struct Arguments {
     /// What executes the programs
     #[arg(long, value_enum, default_value_t = EngineName::Bytecode)]
     engine: EngineName,
+    #[command(flatten)]
+    trace: trace::TraceOptions,
     #[command(flatten)]
     compiler: CompilerOptions,
 }
@@ -109,11 +112,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit> {
     let programs = assign(&all)?;
     let settings: Vec<_> = arguments.set.iter().map(|text| setting::parse(text)).collect::<Result<_>>()?;
     let stimulus = stimulus::read(&arguments.stim)?;
+    let trace = arguments.trace.request()?;
     let Some(images) = images(&programs, &arguments.compiler)? else { return Ok(Exit::Failure) };
 
     let files = Box::new(Directory::new(&arguments.files));
     let machine = MachineConfig { shortcuts: !arguments.no_shortcuts, ..MachineConfig::default() };
-    let session = Session { arguments, programs, images, settings, stimulus };
+    let session = Session { arguments, programs, images, settings, stimulus, trace };
     let config = Config { machine, files, ..Config::default() };
     if let Some(target) = &arguments.profile {
         return session.profile(config, &profile::target(target)?);
@@ -134,6 +138,7 @@ struct Session<'a> {
     images: Vec<Vec<u8>>,
     settings: Vec<Setting>,
     stimulus: Stimulus,
+    trace: Option<Request>,
 }
 
 impl Session<'_> {
@@ -162,7 +167,10 @@ impl Session<'_> {
         for program in self.programs.iter().take(self.arguments.programs.len()) {
             board.start(program.thread).with_context(|| program.name().to_string())?;
         }
-        let exit = execute(&mut board, self.arguments)?;
+        if let Some(request) = &self.trace {
+            board.record(request.clone());
+        }
+        let exit = execute(&mut board, self.arguments, self.trace.as_ref())?;
         Ok((exit, board))
     }
 }
@@ -227,7 +235,11 @@ pub(super) fn explain(program: &Program, image: &[u8], error: LoadError) -> anyh
 }
 
 /// Runs the board and prints what happens.
-fn execute<E: Engine>(board: &mut Board<E>, arguments: &Arguments) -> Result<Exit> {
+fn execute<E: Engine>(
+    board: &mut Board<E>,
+    arguments: &Arguments,
+    request: Option<&Request>,
+) -> Result<Exit> {
     let limit = Ticks::new((arguments.limit.unwrap_or(DEFAULT_LIMIT) / TIMEBASE).round() as u64);
     let mut screen = Screen {
         out: BufWriter::new(io::stdout().lock()),
@@ -236,7 +248,11 @@ fn execute<E: Engine>(board: &mut Board<E>, arguments: &Arguments) -> Result<Exi
         error: None,
     };
     let (mut trapped, mut unmet) = (false, false);
+    let mut log = request.map(trace::Log::new);
     let end = board.run(limit, &mut |event| {
+        if let Some(log) = &mut log {
+            log.note(&event);
+        }
         trapped |= matches!(event.kind, EventKind::Trap(_));
         unmet |= matches!(event.kind, EventKind::Unmet(_));
         screen.show(&event);
@@ -247,6 +263,9 @@ fn execute<E: Engine>(board: &mut Board<E>, arguments: &Arguments) -> Result<Exi
             return Ok(Exit::Success);
         }
         return Err(error).context("cannot write to standard output");
+    }
+    if let Some(log) = &log {
+        arguments.trace.write(log, board.tick())?;
     }
     Ok(match end {
         _ if trapped => Exit::Trapped,
@@ -272,6 +291,9 @@ struct Screen<W: Write> {
 impl<W: Write> Screen<W> {
     fn show(&mut self, event: &Event) {
         let EventKind::ConsoleLine(line) = &event.kind else {
+            if matches!(event.kind, EventKind::Trace(_)) {
+                return;
+            }
             // What was printed before stands before it on a terminal that shows both.
             let _ = self.out.flush();
             if let Some(text) = events::describe(event, &self.programs) {

@@ -1,0 +1,61 @@
+//! Samples the items that were asked for.
+
+use kmotiondef::structs::Chan;
+use kmotiondef::{AxisId, Ticks};
+use vm::memory::GuestMemory;
+
+use super::{Record, Request};
+use crate::kernel::Kernel;
+use crate::views::Typed;
+
+/// A recording under way.
+#[derive(Debug)]
+pub(crate) struct Recorder {
+    request: Request,
+    last: Option<(Vec<f64>, u8)>,
+}
+
+impl Recorder {
+    pub(crate) fn new(request: Request) -> Self {
+        Self { request, last: None }
+    }
+
+    /// Whether levels and slices are recorded.
+    pub(crate) fn records_changes(&self) -> bool {
+        self.request.changes
+    }
+
+    /// The last tick of `count` up to and with `tick` that is sampled, if there is one.
+    pub(crate) fn sampled_tick(&self, tick: Ticks, count: u64) -> Option<Ticks> {
+        let sampled = tick.get() - tick.get() % self.request.every;
+        (sampled + count > tick.get()).then_some(Ticks::new(sampled))
+    }
+
+    /// The values, if some of them have changed since the last time.
+    pub(crate) fn sample(&mut self, kernel: &Kernel, memory: &GuestMemory) -> Option<Record> {
+        let values: Vec<f64> = self.request.items.iter().map(|item| item.read(kernel, memory)).collect();
+        let enabled = AxisId::all()
+            .rev()
+            .fold(0, |word, axis| word << 1 | u8::from(memory.axis(axis, Chan::ENABLE) != 0));
+        let sample = Some((values, enabled));
+        if sample == self.last {
+            return None;
+        }
+        self.last.clone_from(&sample);
+        sample.map(|(values, enabled)| Record::Sample { values, enabled })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_sampled_at_multiples_also_when_they_are_skipped() {
+        let recorder = Recorder::new(Request { items: Vec::new(), every: 10, changes: false });
+        for (tick, count, expect) in [(10, 1, Some(10)), (11, 1, None), (35, 20, Some(30)), (29, 9, None)] {
+            let sampled = recorder.sampled_tick(Ticks::new(tick), count).map(Ticks::get);
+            assert_eq!(sampled, expect, "{tick} {count}");
+        }
+    }
+}
