@@ -39,7 +39,7 @@ pub(super) fn text(log: &Log) -> String {
             }
         }
     }
-    let id = dump.variable("string 1", "console", "s ");
+    let id = dump.variable("string 1", "console", "s\\x20 ");
     for (at, line) in &log.lines {
         dump.change(nanoseconds(*at), format!("s{} {id}", escape(line)));
     }
@@ -102,8 +102,9 @@ fn id(mut number: u32) -> String {
     }
 }
 
-/// A string value has no spaces; those and what is not printable are written as viewers read them.
+/// A string value has no spaces; those and what is not printable are written as viewers read them. Nor may it be empty.
 fn escape(line: &str) -> String {
+    let line = if line.is_empty() { " " } else { line };
     line.bytes().fold(String::new(), |mut text, byte| {
         if byte.is_ascii_graphic() && byte != b'\\' {
             text.push(char::from(byte));
@@ -135,7 +136,7 @@ mod tests {
         1a
         0b
         r0 c
-        s d
+        s\x20 d
         $end
         #180000
         r0.5 c
