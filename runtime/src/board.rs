@@ -19,10 +19,11 @@ use crate::event::{Event, EventKind};
 use crate::files::{HostFiles, NoFiles};
 use crate::kernel::{Kernel, Request};
 use crate::loader::{Fill, LoadError, Placed, prepare};
-use crate::power_up;
+use crate::machine_file::MachineFile;
 use crate::stimulus::Stimulus;
 use crate::trace;
 use crate::views::Typed;
+use crate::{plant, power_up};
 
 /// Settings of a board.
 #[derive(Debug)]
@@ -35,13 +36,24 @@ pub struct Config {
     pub files: Box<dyn HostFiles>,
     /// Byte put into uninitialised data at a load.
     pub bss_fill: u8,
+    /// What is connected to the board.
+    pub machine_file: MachineFile,
 }
 
 impl Default for Config {
     fn default() -> Self {
-        Self { machine: MachineConfig::default(), host: true, files: Box::new(NoFiles), bss_fill: 0 }
+        Self {
+            machine: MachineConfig::default(),
+            host: true,
+            files: Box::new(NoFiles),
+            bss_fill: 0,
+            machine_file: MachineFile::default(),
+        }
     }
 }
+
+/// Cycles of a microsecond.
+const CYCLES_PER_US: f64 = Cycles::PER_SECOND.get() as f64 / 1e6;
 
 /// Why a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,11 +84,20 @@ impl<E: Engine> Board<E> {
     /// A board at power-up.
     #[must_use]
     pub fn new(config: Config) -> Self {
+        let connected = &config.machine_file;
         let mut kernel = Kernel::new(config.files);
-        kernel.host.connect(config.host);
-        let mut machine = Machine::new(kernel, config.machine);
+        kernel.host.connect(config.host && connected.host);
+        plant::install(&mut kernel, connected);
+        let servo = connected.servo_us.map(|time| Cycles::new((time * CYCLES_PER_US) as i64));
+        let settings = MachineConfig {
+            servo: config.machine.servo.or(servo),
+            strict_stack: config.machine.strict_stack || connected.strict_stack,
+            ..config.machine
+        };
+        let mut machine = Machine::new(kernel, settings);
         power_up::fill(machine.memory_mut());
-        Self { machine, loaded: Default::default(), bss_fill: config.bss_fill }
+        let bss_fill = if config.bss_fill == 0 { connected.bss_fill } else { config.bss_fill };
+        Self { machine, loaded: Default::default(), bss_fill }
     }
 
     /// Loads an image into `thread`, which is stopped first.

@@ -35,6 +35,7 @@ use crate::firmware::io::bit_state;
 use crate::firmware::serial::{self, SerialService};
 use crate::heap::Heap;
 use crate::host::Host;
+use crate::plant::Mechanics;
 use crate::servo::Servo;
 use crate::stimulus::{Player, Stimulus};
 use crate::trace::{self, Record, Recorder};
@@ -118,6 +119,9 @@ pub struct Kernel {
     turn: Turn,
     /// Whether the last tick changed nothing and no thread has run since.
     is_settled: bool,
+    pub(crate) mechanics: Mechanics,
+    /// Whether reading an input that nothing drives is worth a hint.
+    pub(crate) hints: bool,
     hinted: BTreeSet<Bit>,
     events: Vec<Event>,
 }
@@ -158,6 +162,8 @@ impl Kernel {
             tick_start: Cycles::default(),
             slice_start: Cycles::default(),
             is_settled: false,
+            mechanics: Mechanics::default(),
+            hints: true,
             hinted: BTreeSet::new(),
             events: Vec::new(),
         }
@@ -185,7 +191,7 @@ impl Kernel {
 
     /// A program reads an input that nothing drives.
     pub(crate) fn undriven(&mut self, caller: &Caller<'_>, bit: Bit) {
-        if self.hinted.insert(bit) {
+        if self.hints && self.hinted.insert(bit) {
             let kind = EventKind::UndrivenInput { bit, thread: caller.thread, place: None };
             self.tell(caller.now(), kind);
         }

@@ -26,6 +26,7 @@ mod host;
 mod kernel;
 pub mod loader;
 pub mod machine_file;
+mod plant;
 mod power_up;
 mod servo;
 pub mod stimulus;

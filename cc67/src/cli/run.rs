@@ -11,7 +11,7 @@ use runtime::debug::DebugInfo;
 use runtime::loader::LoadError;
 use runtime::stimulus::Stimulus;
 use runtime::trace::Request;
-use runtime::{Board, Config, Directory, Event, EventKind, RunEnd};
+use runtime::{Board, Config, Directory, Event, EventKind, MachineFile, RunEnd};
 use vm::engine::Engine;
 use vm::interp::BytecodeEngine;
 use vm::machine::Config as MachineConfig;
@@ -43,9 +43,12 @@ pub(super) struct Arguments {
     /// End after so many seconds of board time, with success
     #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
     limit: Option<f64>,
-    /// Start value, `persist.N=VALUE`: an integer, 0x… , f:1.5 a float, d:1.5 a double
+    /// Start value `persist.N=VALUE`, an integer, 0x… , f:1.5 a float, d:1.5 a double; or a key of the machine file
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
+    /// What is connected to the board: motors, switches, probes, encoders; a TOML file
+    #[arg(long, value_name = "FILE")]
+    machine: Option<PathBuf>,
     /// Folder of the files that programs open on the PC
     #[arg(long, value_name = "DIR", default_value = "cc67-files")]
     files: PathBuf,
@@ -110,7 +113,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit> {
     let mut all = arguments.programs.clone();
     all.extend_from_slice(&arguments.load);
     let programs = assign(&all)?;
-    let settings: Vec<_> = arguments.set.iter().map(|text| setting::parse(text)).collect::<Result<_>>()?;
+    let mut machine_file = machine_file(arguments.machine.as_deref())?;
+    let settings = setting::all(&arguments.set, &mut machine_file)?;
     let stimulus = stimulus::read(&arguments.stim)?;
     let trace = arguments.trace.request()?;
     let Some(images) = images(&programs, &arguments.compiler)? else { return Ok(Exit::Failure) };
@@ -118,7 +122,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit> {
     let files = Box::new(Directory::new(&arguments.files));
     let machine = MachineConfig { shortcuts: !arguments.no_shortcuts, ..MachineConfig::default() };
     let session = Session { arguments, programs, images, settings, stimulus, trace };
-    let config = Config { machine, files, ..Config::default() };
+    let config = Config { machine, files, machine_file, ..Config::default() };
     if let Some(target) = &arguments.profile {
         return session.profile(config, &profile::target(target)?);
     }
@@ -129,6 +133,15 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit> {
         #[cfg(not(feature = "native"))]
         EngineName::Native => anyhow::bail!("this cc67 is built without the native engine"),
     }
+}
+
+/// Reads what is connected to the board.
+pub(super) fn machine_file(path: Option<&Path>) -> Result<MachineFile> {
+    let Some(path) = path else { return Ok(MachineFile::default()) };
+    let bytes = read(path)?;
+    let Ok(text) = String::from_utf8(bytes) else { anyhow::bail!("{} is not text", path.display()) };
+    MachineFile::parse(&text)
+        .map_err(|error| anyhow::anyhow!("{}:{}:{}: {error}", path.display(), error.line, error.column))
 }
 
 /// Everything a run needs, whatever engine executes it.

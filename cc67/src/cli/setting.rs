@@ -1,9 +1,10 @@
-//! `--set KEY=VALUE`: start values of what programs read.
+//! `--set KEY=VALUE`: start values of what programs read, and keys of the machine file.
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, anyhow, bail};
 use kmotiondef::GuestAddr;
 use kmotiondef::structs::Persist;
 use kmotiondef::variables::PERSIST;
+use runtime::MachineFile;
 
 /// Elements of `persist.UserData`.
 const USER_DATA: u32 = 200;
@@ -17,12 +18,23 @@ pub(super) struct Setting {
     pub(super) bytes: Vec<u8>,
 }
 
-/// Reads one setting.
-pub(super) fn parse(text: &str) -> Result<Setting> {
-    let (key, value) = text.split_once('=').with_context(|| format!("`--set {text}` has no `=`"))?;
-    let Some(index) = key.strip_prefix("persist.") else {
-        bail!("`--set {key}` is not built yet; only `persist.N` is");
-    };
+/// Reads all settings: start values, and keys of the machine file, which change `machine` at once.
+pub(super) fn all(texts: &[String], machine: &mut MachineFile) -> Result<Vec<Setting>> {
+    let mut settings = Vec::new();
+    for text in texts {
+        let (key, value) = text.split_once('=').with_context(|| format!("`--set {text}` has no `=`"))?;
+        match key.strip_prefix("persist.") {
+            Some(index) => settings.push(persist(text, index, value)?),
+            None => {
+                machine.set(key.trim(), value.trim()).map_err(|error| anyhow!("`--set {text}`: {error}"))?;
+            }
+        }
+    }
+    Ok(settings)
+}
+
+/// Reads one start value.
+fn persist(text: &str, index: &str, value: &str) -> Result<Setting> {
     let index: u32 = index.parse().with_context(|| format!("`{index}` in `--set {text}` is not an index"))?;
     let bytes = bytes(value).with_context(|| format!("value of `--set {text}`"))?;
     if index >= USER_DATA || index + (bytes.len() as u32 / 4) > USER_DATA {
@@ -81,9 +93,13 @@ mod tests {
             ("persist.199=d:1", "outside persist.UserData[0..199]"),
             ("persist.x=1", "is not an index"),
             ("persist.1=5000000000", "value of `--set persist.1=5000000000`"),
-            ("cpu.servo_us=30", "is not built yet"),
+            ("cpu.servo_us=100", "`--set cpu.servo_us=100`: `cpu.servo_us` must be below the 90 µs"),
+            ("axis.0.modle=motor", "did you mean `model`?"),
+            ("axis.0.model=magic", "must be \"follow\" or \"motor\" or \"none\", not \"magic\""),
         ] {
-            let message = parse(text).expect_err("the setting is wrong").to_string();
+            let texts = [text.to_owned()];
+            let error = all(&texts, &mut MachineFile::default()).expect_err("the setting is wrong");
+            let message = error.to_string();
             assert!(message.contains(expect), "{text}: {message}");
         }
     }

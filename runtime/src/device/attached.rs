@@ -15,7 +15,7 @@ use super::konnect::Board;
 use super::outside;
 use super::pins::Pins;
 use super::uart::Uart;
-use crate::servo::plant::Plant;
+use crate::plant::Plant;
 
 /// What a device can reach.
 #[derive(Debug)]

@@ -134,6 +134,11 @@ impl Pins {
         self.driven.set(bit, true);
     }
 
+    /// An input reads 1 as long as nothing drives it.
+    pub(crate) fn idle_high(&mut self, bit: Bit) {
+        self.inputs.set(bit, true);
+    }
+
     /// Whether anything drives an input.
     pub(crate) fn is_driven(&self, bit: Bit) -> bool {
         self.driven.contains(bit)

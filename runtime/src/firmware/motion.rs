@@ -12,6 +12,7 @@ use vm::trap::TrapKind;
 
 use super::coord;
 use crate::kernel::{Continuation, Kernel};
+use crate::plant::Drive;
 use crate::servo::independent::{has_motion, present, run, start, state, write};
 use crate::servo::profile::{self, Limits, MAX_STATES, Mode, Ramp, State};
 use crate::servo::{AxisMemory, TIMEBASE, four_phase, switch_off, three_phase};
@@ -408,9 +409,12 @@ pub(crate) fn setup_for_motion_end(
     }
 }
 
-pub(crate) fn write_3ph(kernel: &mut Kernel, caller: &mut Caller<'_>, chan: GuestAddr, v: f32, _angle: f64) {
+pub(crate) fn write_3ph(kernel: &mut Kernel, caller: &mut Caller<'_>, chan: GuestAddr, v: f32, angle: f64) {
     match axis_at(chan) {
-        Some(axis) => three_phase(caller.memory, axis, v),
+        Some(axis) => {
+            three_phase(caller.memory, axis, v);
+            apply(kernel, caller.memory, axis, v, angle);
+        }
         None => kernel.console.message("Error Invalid Chan Pointer Write3PH"),
     }
 }
@@ -418,6 +422,15 @@ pub(crate) fn write_3ph(kernel: &mut Kernel, caller: &mut Caller<'_>, chan: Gues
 pub(crate) fn write_4ph(kernel: &mut Kernel, caller: &mut Caller<'_>, chan: GuestAddr, v: f32, angle: f64) {
     if let Some(axis) = pointed(kernel, caller, "Write4PH", chan) {
         four_phase(caller.memory, axis, v, angle);
+        apply(kernel, caller.memory, axis, v, angle);
+    }
+}
+
+/// A vector on the phases of a disabled axis turns its rotor; of an enabled one the servo is stronger.
+fn apply(kernel: &mut Kernel, memory: &GuestMemory, axis: AxisId, v: f32, angle: f64) {
+    if memory.axis(axis, Chan::ENABLE) == 0 {
+        kernel.servo.still.interrupt();
+        kernel.servo.plants[axis.index()].drive = Drive::Vector(f64::from(v), angle);
     }
 }
 

@@ -1,25 +1,26 @@
 //! The position of an axis from its input. Source: axes-and-motion.md section 9.
 
 use kmotiondef::AxisId;
-use kmotiondef::modes::InputMode;
+use kmotiondef::limits::N_CHANNELS;
+use kmotiondef::modes::{InputMode, OutputMode};
 use kmotiondef::structs::Chan;
 use kmotiondef::variables::ADC_BUFFER_IN;
 use vm::memory::GuestMemory;
 
-use super::plant::Plant;
+use crate::plant::Plant;
 use crate::views::{AxisView, Typed};
 
 /// Takes the position from the axis' input.
-pub(crate) fn measure(plant: &mut Plant, memory: &mut GuestMemory, axis: AxisId) {
+pub(crate) fn measure(plants: &mut [Plant; N_CHANNELS], memory: &mut GuestMemory, axis: AxisId) {
     match InputMode::new(AxisView::of(memory, axis).get(Chan::INPUT_MODE)) {
-        Some(InputMode::Encoder) => count(plant, memory, axis),
+        Some(InputMode::Encoder) => count(plants, memory, axis),
         Some(InputMode::Adc) => {
             let input = f64::from(converted(memory, memory.axis(axis, Chan::INPUT_CHAN0)));
             let mut chan = AxisView::of(memory, axis);
             let offset = f64::from(chan.get(Chan::INPUT_OFFSET0));
             let position = f64::from(chan.get(Chan::INPUT_GAIN0)) * input + offset;
             chan.set(Chan::POSITION, position);
-            plant.note_position(position);
+            plants[axis.index()].note_position(position);
         }
         Some(InputMode::Resolver) => {
             let angle = resolver_angle(memory, axis);
@@ -31,16 +32,25 @@ pub(crate) fn measure(plant: &mut Plant, memory: &mut GuestMemory, axis: AxisId)
 
 /// Adds what the encoder's register has counted since the last tick.
 #[inline]
-fn count(plant: &mut Plant, memory: &mut GuestMemory, axis: AxisId) {
+fn count(plants: &mut [Plant; N_CHANNELS], memory: &mut GuestMemory, axis: AxisId) {
     let mut chan = AxisView::of(memory, axis);
     let gain = f64::from(chan.get(Chan::INPUT_GAIN0));
-    let count = plant.encoder(gain);
+    let channel = chan.get(Chan::INPUT_CHAN0);
+    let count = if channel != i32::from(axis.get()) && chan.get(Chan::OUTPUT_MODE) == OutputMode::None.get() {
+        // An axis without a motor watches somebody else's encoder.
+        let Some(other) = AxisId::new(channel) else { return };
+        let gain = f64::from(memory.axis(other, Chan::INPUT_GAIN0));
+        chan = AxisView::of(memory, axis);
+        plants[other.index()].encoder(gain)
+    } else {
+        plants[axis.index()].encoder(gain)
+    };
     let moved = count.wrapping_sub(chan.get(Chan::LAST_ENC));
     if moved != 0 {
         chan.set(Chan::LAST_ENC, count);
         let position = chan.get(Chan::POSITION) + gain * f64::from(moved);
         chan.set(Chan::POSITION, position);
-        plant.note_position(position);
+        plants[axis.index()].note_position(position);
     }
 }
 

@@ -12,7 +12,6 @@ pub(crate) mod independent;
 mod input;
 pub(crate) mod limits;
 mod output;
-pub(crate) mod plant;
 pub(crate) mod profile;
 #[cfg(test)]
 mod recorded;
@@ -24,15 +23,15 @@ pub(crate) mod spindle;
 mod still;
 pub(crate) mod trajectory;
 
-use kmotiondef::AxisId;
 use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::modes::OutputMode;
 use kmotiondef::structs::Chan;
+use kmotiondef::{AxisId, Cycles};
 use vm::firmware::TickContext;
 use vm::memory::GuestMemory;
 
 use crate::kernel::Kernel;
-use crate::servo::plant::{Drive, Plant};
+use crate::plant::{self, Plant};
 use crate::servo::still::Stillness;
 use crate::views::AxisView;
 
@@ -88,14 +87,20 @@ impl Servo {
 /// One tick of the servo; whether anything changed, so that the next tick may change something too.
 pub(crate) fn tick(kernel: &mut Kernel, context: &mut TickContext<'_>) -> bool {
     let memory = &mut *context.memory;
+    let is_driven = plant::drive(kernel, memory, context.now);
     let turned = spindle::measure(memory);
     let has_path = !kernel.servo.coordinated.is_idle(memory);
-    let moved = (has_path || !kernel.servo.still.lasts(memory)) && run_axes(kernel, memory);
-    turned | moved | recorder::sample(memory)
+    let moved = if has_path || !kernel.servo.still.lasts(memory) {
+        run_axes(kernel, memory, context.now)
+    } else {
+        plant::signal(kernel, memory, context.now);
+        false
+    };
+    is_driven | turned | moved | recorder::sample(memory)
 }
 
 /// One tick of all axes; whether anything changed.
-fn run_axes(kernel: &mut Kernel, memory: &mut GuestMemory) -> bool {
+fn run_axes(kernel: &mut Kernel, memory: &mut GuestMemory, now: Cycles) -> bool {
     kernel.servo.still.begin(memory);
     let mut changed = false;
     let mut has_slaves = false;
@@ -110,6 +115,7 @@ fn run_axes(kernel: &mut Kernel, memory: &mut GuestMemory) -> bool {
             }
         }
     }
+    plant::signal(kernel, memory, now);
     changed |= coordinated::board::tick(kernel, memory);
     if has_slaves {
         slave::follow(&kernel.servo, memory);
@@ -126,12 +132,12 @@ fn run_axes(kernel: &mut Kernel, memory: &mut GuestMemory) -> bool {
 
 /// Position, protection, compensation and output of one axis; whether it moves or is told something.
 fn run_axis(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId) -> bool {
+    input::measure(&mut kernel.servo.plants, memory, axis);
     let (own, plant) = (&mut kernel.servo.axes[axis.index()], &mut kernel.servo.plants[axis.index()]);
-    input::measure(plant, memory, axis);
     let mut chan = AxisView::of(memory, axis);
     let moves = direction(own, &mut chan);
     if chan.get(Chan::ENABLE) == 0 {
-        plant.drive = Drive::None;
+        plant.release();
         return moves;
     }
     backlash::advance(&mut chan);

@@ -4,16 +4,16 @@
 
 use std::f64::consts::TAU;
 
-use kmotiondef::limits::MAXV;
+use kmotiondef::limits::{MAX_PWM_VALUE, MAX_PWMC_VALUE, MAXV};
 use kmotiondef::modes::OutputMode;
 use kmotiondef::structs::Chan;
 use kmotiondef::variables::DAC_BUFFER;
 use kmotiondef::{AxisId, Field};
 use vm::memory::GuestMemory;
 
-use super::plant::Drive;
 use crate::firmware::io::{antiphase, current, recirculate, store_pwm};
 use crate::kernel::Kernel;
+use crate::plant::{Applied, Drive};
 use crate::views::{AxisView, Typed};
 
 /// The first PWM channel of a SnapAmp: its loops control current.
@@ -26,22 +26,31 @@ pub(crate) fn drive(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId,
     let chan = AxisView::of(memory, axis);
     let channel = chan.get(Chan::OUTPUT_CHAN0);
     let mode = OutputMode::new(chan.get(Chan::OUTPUT_MODE));
-    let plant = &mut kernel.servo.plants[axis.index()];
-    plant.drive = match mode {
+    kernel.servo.plants[axis.index()].drive = match mode {
         None | Some(OutputMode::None) => Drive::None,
         Some(OutputMode::StepDir | OutputMode::Microstep) => Drive::Steps(command),
         // The load is where the axis' command is; the correction is for real mechanics.
         Some(OutputMode::ClosedLoopStepDir | OutputMode::ClosedLoopMicrostep) => Drive::Steps(command),
-        Some(_) => Drive::Loop(command),
+        Some(OutputMode::DcServo) if channel >= SNAP_AMP => {
+            let limit = f64::from(MAX_PWMC_VALUE);
+            Drive::Loop(command, Applied::Current(f64::from(output).clamp(-limit, limit)))
+        }
+        Some(OutputMode::DcServo) => {
+            let limit = f64::from(MAX_PWM_VALUE);
+            Drive::Loop(command, Applied::Pwm(f64::from(output).clamp(-limit, limit)))
+        }
+        Some(OutputMode::DacServo) => Drive::Loop(command, Applied::Dac(f64::from(analog(&chan, output)))),
+        Some(OutputMode::Brushless3Ph | OutputMode::Brushless4Ph) => {
+            let magnitude = f64::from(output.clamp(-MAXV, MAXV));
+            Drive::Loop(command, Applied::Vector(magnitude, phase(&chan)))
+        }
     };
     match mode {
         Some(OutputMode::DcServo) => store_pwm(memory, channel, pwm(channel, output as i32)),
-        Some(OutputMode::DacServo) => write_dac(memory, axis, f64::from(output)),
+        Some(OutputMode::DacServo) => write_dac(memory, axis, output),
         Some(OutputMode::Brushless3Ph) => three_phase(memory, axis, output),
         Some(OutputMode::Brushless4Ph) => {
-            let angle = (memory.axis(axis, Chan::POSITION)
-                + f64::from(memory.axis(axis, Chan::COMMUTATION_OFFSET)))
-                * memory.axis(axis, Chan::INV_DIST_PER_CYCLE);
+            let angle = phase(&chan);
             four_phase(memory, axis, output, angle);
         }
         Some(OutputMode::Microstep) => {
@@ -58,12 +67,24 @@ fn pwm(channel: i32, value: i32) -> i32 {
     if channel >= SNAP_AMP { current(value) } else { antiphase(value) }
 }
 
-/// Writes the analog output of an axis: 12 bits, which wrap.
-fn write_dac(memory: &mut GuestMemory, axis: AxisId, output: f64) {
-    let gain = f64::from(memory.axis(axis, Chan::OUTPUT_GAIN));
-    let value = (output * gain + f64::from(memory.axis(axis, Chan::OUTPUT_OFFSET))) as i32;
-    let channel = usize::try_from(memory.axis(axis, Chan::OUTPUT_CHAN0)).ok();
-    if let Some(channel) = channel.filter(|&channel| channel < 8) {
+/// Where in its electrical cycle a brushless axis is, in cycles.
+fn phase(chan: &AxisView<'_>) -> f64 {
+    (chan.get(Chan::POSITION) + f64::from(chan.get(Chan::COMMUTATION_OFFSET)))
+        * chan.get(Chan::INV_DIST_PER_CYCLE)
+}
+
+/// The analog output of an axis: 12 bits, which wrap.
+fn analog(chan: &AxisView<'_>, output: f32) -> i32 {
+    let gain = f64::from(chan.get(Chan::OUTPUT_GAIN));
+    let value = (f64::from(output) * gain + f64::from(chan.get(Chan::OUTPUT_OFFSET))) as i32;
+    (value.wrapping_add(2048) & 0xfff) - 2048
+}
+
+/// Writes it.
+fn write_dac(memory: &mut GuestMemory, axis: AxisId, output: f32) {
+    let chan = AxisView::of(memory, axis);
+    let (value, channel) = (analog(&chan, output), chan.get(Chan::OUTPUT_CHAN0));
+    if let Some(channel) = usize::try_from(channel).ok().filter(|&channel| channel < 8) {
         memory.set(DAC_BUFFER.element(channel), (value.wrapping_sub(2048) & 0xfff) as i16);
     }
 }

@@ -24,10 +24,11 @@ use input::{Input, Lines};
 use screen::Screen;
 use words::Word;
 
+use super::Exit;
 use super::options::CompilerOptions;
 use super::program::{Program, assign};
 use super::run::{self, DEFAULT_LIMIT, EngineName, TIMEBASE};
-use super::{Exit, setting};
+use super::setting::{self, Setting};
 
 /// Ticks that a line and its answer take on the wire, as recorded.
 const EXCHANGE: u64 = 28;
@@ -54,7 +55,10 @@ pub(super) struct Arguments {
     /// Behind the last line, go on for so many seconds of board time at most
     #[arg(long = "for", value_name = "SECONDS", value_parser = run::seconds)]
     limit: Option<f64>,
-    /// Start value, `persist.N=VALUE`: an integer, 0x… , f:1.5 a float, d:1.5 a double
+    /// What is connected to the board: motors, switches, probes, encoders; a TOML file
+    #[arg(long, value_name = "FILE")]
+    machine: Option<PathBuf>,
+    /// Start value `persist.N=VALUE`, an integer, 0x… , f:1.5 a float, d:1.5 a double; or a key of the machine file
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
     /// Folder of the files that programs open on the PC
@@ -72,11 +76,14 @@ pub(super) struct Arguments {
 
 /// Talks to a board until the input ends.
 pub(super) fn console(arguments: &Arguments) -> Result<Exit> {
-    let config = Config { files: Box::new(Directory::new(&arguments.files)), ..Config::default() };
+    let mut machine_file = run::machine_file(arguments.machine.as_deref())?;
+    let settings = setting::all(&arguments.set, &mut machine_file)?;
+    let files = Box::new(Directory::new(&arguments.files));
+    let config = Config { files, machine_file, ..Config::default() };
     match arguments.engine {
-        EngineName::Bytecode => Console::<BytecodeEngine>::new(arguments, config).run(),
+        EngineName::Bytecode => Console::<BytecodeEngine>::new(arguments, config, settings).run(),
         #[cfg(feature = "native")]
-        EngineName::Native => Console::<vm::native::NativeEngine>::new(arguments, config).run(),
+        EngineName::Native => Console::<vm::native::NativeEngine>::new(arguments, config, settings).run(),
         #[cfg(not(feature = "native"))]
         EngineName::Native => anyhow::bail!("this cc67 is built without the native engine"),
     }
@@ -93,20 +100,20 @@ enum Flow {
 /// A board, and the person or script that talks to it.
 struct Console<'a, E> {
     arguments: &'a Arguments,
+    settings: Vec<Setting>,
     board: Board<E>,
     screen: Screen,
     trapped: bool,
 }
 
 impl<'a, E: Engine> Console<'a, E> {
-    fn new(arguments: &'a Arguments, config: Config) -> Self {
+    fn new(arguments: &'a Arguments, config: Config, settings: Vec<Setting>) -> Self {
         let screen = Screen::new(arguments.time);
-        Self { arguments, board: Board::new(config), screen, trapped: false }
+        Self { arguments, settings, board: Board::new(config), screen, trapped: false }
     }
 
     fn run(mut self) -> Result<Exit> {
-        for text in &self.arguments.set {
-            let setting = setting::parse(text)?;
+        for setting in &self.settings {
             let stored = self.board.memory_mut().poke_bytes(setting.address, &setting.bytes);
             stored.with_context(|| format!("`--set` of {}", setting.address))?;
         }

@@ -10,7 +10,7 @@ use crate::device::fpga::Fpga;
 use crate::device::kanalog::Kanalog;
 use crate::device::pins::Pins;
 use crate::device::uart::Uart;
-use crate::servo::plant::Plant;
+use crate::plant::Plant;
 use crate::views::Typed;
 
 /// A device and what it can reach.

@@ -1,0 +1,289 @@
+//! The load of one axis: where it is, what moves it, what its encoder counts. Source: plant.md sections 1 to 4.
+//!
+//! An axis as it is without a machine file goes where it is commanded: step generators move it by their steps, one
+//! tick late; closed loops follow with a first-order lag, whatever their gains. With the model `motor` it is driven by
+//! what the board really puts out.
+
+use kmotiondef::structs::Chan;
+
+use super::motor::{Applied, Motor};
+use crate::machine_file::{Axis, Encoder, Model};
+use crate::servo::TIMEBASE;
+use crate::views::AxisView;
+
+/// Counts in one tick that an 8-bit encoder register can tell from going backwards, with some room.
+const COUNTS_PER_TICK: f64 = 120.0;
+/// A remaining distance that counts as none.
+const NEGLIGIBLE: f64 = 1e-9;
+/// Fastest stepping: 1 / (2 · 32 clocks of 16.67 MHz), the pulse length at power-up.
+const STEPS_PER_TICK: f64 = 16.666_7e6 / 64.0 * TIMEBASE;
+/// Time constant with which a rotor turns into a vector that stands, seconds.
+const DRAG_S: f64 = 0.01;
+
+/// What drives the load in the next tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) enum Drive {
+    /// Nothing.
+    #[default]
+    None,
+    /// A step generator or microstepping: the command it goes to, in position units.
+    Steps(f64),
+    /// A closed loop with this command, and what it puts out.
+    Loop(f64, Applied),
+    /// A vector on the phases of a disabled axis: magnitude, and angle in cycles.
+    Vector(f64, f64),
+}
+
+/// How the load is built; the same all the time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Build {
+    model: Model,
+    /// What a closed loop follows of the rest in one tick.
+    followed: f64,
+    counts_per_unit: f64,
+    encoder: Encoder,
+    min: f64,
+    max: f64,
+    motor: Motor,
+}
+
+/// One axis' load, in position units of the axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Plant {
+    build: Build,
+    /// Machine coordinate of the load.
+    pub(crate) load: f64,
+    /// Its velocity, if it has a motor.
+    velocity: f64,
+    /// What the axis' position is beyond the load.
+    shift: f64,
+    /// The position as the board last stored it.
+    position: f64,
+    /// Command that the step generator has reached.
+    reached: f64,
+    /// Where the load is when that command is 0.
+    origin: f64,
+    /// Position units of one count, and what the encoder has counted at the load `counted`.
+    gain: f64,
+    register: i64,
+    counted: f64,
+    /// Where the gain last changed, and the count there.
+    base: f64,
+    base_count: i64,
+    pub(crate) drive: Drive,
+}
+
+impl Default for Plant {
+    fn default() -> Self {
+        Self::new(&Axis::default())
+    }
+}
+
+impl Plant {
+    /// The load that a machine file describes.
+    pub(crate) fn new(axis: &Axis) -> Self {
+        let build = Build {
+            model: axis.model,
+            followed: if axis.lag_s > 0.0 { 1.0 - libm::exp(-TIMEBASE / axis.lag_s) } else { 1.0 },
+            counts_per_unit: axis.counts_per_unit,
+            encoder: axis.encoder,
+            min: axis.min,
+            max: axis.max,
+            motor: Motor::new(axis),
+        };
+        Self {
+            build,
+            load: axis.start,
+            velocity: 0.0,
+            shift: -axis.start,
+            position: 0.0,
+            reached: 0.0,
+            origin: axis.start,
+            gain: 0.0,
+            register: 0,
+            counted: axis.start,
+            base: axis.start,
+            base_count: 0,
+            drive: Drive::None,
+        }
+    }
+
+    /// The register of the encoder that the load turns; `gain` is the axis' input gain.
+    #[inline]
+    pub(crate) fn encoder(&mut self, gain: f64) -> i8 {
+        let gain = match (self.build.encoder, self.build.model) {
+            (Encoder::Auto, Model::Follow) => gain,
+            (Encoder::Auto | Encoder::Connected, _) => 1.0 / self.build.counts_per_unit,
+            (Encoder::Absent, _) => return 0,
+        };
+        if self.load != self.counted || gain != self.gain {
+            self.count(gain);
+        }
+        self.register as i8
+    }
+
+    /// Counts to where the load is. Another gain counts from here on: the register does not jump.
+    fn count(&mut self, gain: f64) {
+        if gain != self.gain {
+            (self.base, self.base_count, self.gain) = (self.counted, self.register, gain);
+        }
+        self.counted = self.load;
+        if gain != 0.0 && gain.is_finite() {
+            let counts = (self.load - self.base) / gain + 0.5;
+            let whole = counts as i64;
+            let whole = if counts < whole as f64 { whole - 1 } else { whole };
+            self.register = self.base_count.wrapping_add(whole);
+        }
+    }
+
+    /// The board has stored this position.
+    pub(crate) fn note_position(&mut self, position: f64) {
+        self.position = position;
+    }
+
+    /// The step generator stands at this command: enabling moves nothing.
+    pub(crate) fn refer_to(&mut self, command: f64) {
+        self.reached = command;
+        self.origin = self.load - command;
+    }
+
+    /// Something outside moves the load; step generators go on from there.
+    pub(crate) fn push(&mut self, units: f64) {
+        self.load += units;
+        self.origin += units;
+    }
+
+    /// The axis is disabled: its amplifier is off, unless a program applies a vector.
+    pub(crate) fn release(&mut self) {
+        if !matches!(self.drive, Drive::Vector(..)) {
+            self.drive = Drive::None;
+        }
+    }
+
+    /// Moves the load by what the last tick put out, and takes up a position that a program has written; whether
+    /// anything changed.
+    #[inline]
+    pub(crate) fn advance(&mut self, chan: &AxisView<'_>) -> bool {
+        let position = chan.get(Chan::POSITION);
+        let was_written = position != self.position;
+        if was_written {
+            self.shift += position - self.position;
+            self.position = position;
+        }
+        was_written | self.moves(chan)
+    }
+
+    fn moves(&mut self, chan: &AxisView<'_>) -> bool {
+        let before = self.load;
+        match (self.build.model, self.drive) {
+            (Model::None, _) | (Model::Follow, Drive::None) => return false,
+            (_, Drive::Steps(command)) if command == self.reached => return false,
+            (_, Drive::Steps(command)) => {
+                let steps_per_unit = f64::from(chan.get(Chan::OUTPUT_GAIN)).abs();
+                self.step(command, if steps_per_unit > 0.0 { STEPS_PER_TICK / steps_per_unit } else { 0.0 });
+            }
+            (Model::Follow, Drive::Loop(command, _)) => {
+                self.follow(command, f64::from(chan.get(Chan::INPUT_GAIN0)));
+            }
+            (_, Drive::Vector(magnitude, angle)) => self.turn(magnitude, angle, chan),
+            (Model::Motor, Drive::None) if self.velocity == 0.0 => return false,
+            (Model::Motor, Drive::None) => self.run(Applied::Pwm(0.0), chan),
+            (Model::Motor, Drive::Loop(_, applied)) => self.run(applied, chan),
+        }
+        self.stop_hard();
+        self.load != before || self.velocity != 0.0
+    }
+
+    /// Steps towards a command.
+    fn step(&mut self, command: f64, limit: f64) {
+        let step = command - self.reached;
+        let limited = step.clamp(-limit, limit);
+        self.reached = if step == limited { command } else { self.reached + limited };
+        self.load = self.origin + self.reached;
+    }
+
+    /// Follows a command with a lag.
+    fn follow(&mut self, command: f64, gain: f64) {
+        let rest = command - (self.load + self.shift);
+        if rest == 0.0 {
+            return;
+        }
+        let reach = COUNTS_PER_TICK * gain.abs();
+        let step = if rest.abs() < NEGLIGIBLE { rest } else { rest * self.build.followed };
+        self.load += if reach > 0.0 { step.clamp(-reach, reach) } else { step };
+        self.origin = self.load - self.reached;
+    }
+
+    /// Runs its motor for a tick.
+    fn run(&mut self, applied: Applied, chan: &AxisView<'_>) {
+        let last = self.velocity;
+        let cycles = f64::from_bits(chan.get(Chan::INV_DIST_PER_CYCLE).to_bits());
+        self.velocity = self.build.motor.advance(last, applied, self.load, cycles);
+        self.load += f64::midpoint(last, self.velocity) * TIMEBASE;
+        self.origin = self.load - self.reached;
+    }
+
+    /// Turns the rotor towards a vector: to the nearest place where it stands.
+    fn turn(&mut self, magnitude: f64, angle: f64, chan: &AxisView<'_>) {
+        if magnitude == 0.0 {
+            return;
+        }
+        let cycles = self.build.motor.cycles(chan.get(Chan::INV_DIST_PER_CYCLE));
+        let lead = angle - self.build.motor.angle(self.load, cycles);
+        let lead = lead - libm::floor(lead + 0.5);
+        if lead.abs() > NEGLIGIBLE && cycles != 0.0 {
+            self.load += lead / cycles * (1.0 - libm::exp(-TIMEBASE / DRAG_S));
+            self.origin = self.load - self.reached;
+        }
+    }
+
+    /// Holds the load at its hard stops: a stepper loses steps there, a motor stalls.
+    fn stop_hard(&mut self) {
+        let held = self.load.clamp(self.build.min, self.build.max);
+        if held != self.load {
+            self.load = held;
+            self.velocity = 0.0;
+            self.origin = held - self.reached;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_loop_settles_on_its_command() {
+        let mut plant = Plant::default();
+        for _ in 0..1000 {
+            plant.follow(50.25, 1.0);
+        }
+        assert_eq!((plant.load, plant.encoder(1.0)), (50.25, 50));
+    }
+
+    #[test]
+    fn steps_are_limited_in_rate() {
+        let mut plant = Plant::default();
+        plant.step(100.0, 30.0);
+        assert_eq!(plant.load, 30.0);
+    }
+
+    #[test]
+    fn another_gain_moves_no_register() {
+        let mut plant = Plant::default();
+        plant.push(100.0);
+        assert_eq!(plant.encoder(1.0), 100);
+        assert_eq!(plant.encoder(0.5), 100);
+        plant.push(1.0);
+        assert_eq!(plant.encoder(0.5), 102);
+    }
+
+    #[test]
+    fn a_stepper_loses_steps_at_its_stop() {
+        let mut plant = Plant::new(&Axis { max: 50.0, ..Axis::default() });
+        plant.step(100.0, 1000.0);
+        plant.stop_hard();
+        plant.step(90.0, 1000.0);
+        assert_eq!(plant.load, 40.0);
+    }
+}
