@@ -346,7 +346,9 @@ impl<E: Engine> Board<E> {
     /// Hands over the events since the last time, with the program's place where that is known.
     fn deliver(&mut self, sink: &mut dyn FnMut(Event)) {
         for mut event in self.machine.firmware_mut().0.take_events() {
-            if let EventKind::UndrivenInput { thread: Some(thread), place, .. } = &mut event.kind {
+            if let EventKind::UndrivenInput { thread: Some(thread), place, .. }
+            | EventKind::Assisted { thread: Some(thread), place, .. } = &mut event.kind
+            {
                 *place = self.machine.backtrace(*thread).first().copied();
             }
             sink(event);
@@ -416,6 +418,12 @@ impl<E: Engine> Board<E> {
     pub fn play(&mut self, stimulus: Stimulus) {
         let (kernel, context) = self.machine.firmware_mut();
         kernel.play(stimulus, context.memory);
+    }
+
+    /// Plays an operator for programs that wait on inputs nobody drives.
+    pub fn assist(&mut self) {
+        let (kernel, context) = self.machine.firmware_mut();
+        kernel.assist(context.now);
     }
 
     /// Records from now on what is asked for; the records come as events.

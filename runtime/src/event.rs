@@ -34,6 +34,17 @@ pub enum EventKind {
         /// Where the program stands, as far as known.
         place: Option<CodeAddr>,
     },
+    /// The operator gives an input the other level for a while.
+    Assisted {
+        /// The input.
+        bit: Bit,
+        /// Its level for that while.
+        level: bool,
+        /// The thread that waits for it.
+        thread: Option<ThreadId>,
+        /// Where the program stands, as far as known.
+        place: Option<CodeAddr>,
+    },
     /// A remark of the simulation that the real board would not make.
     Diagnostic(String),
     /// A thread was stopped by a trap.

@@ -37,7 +37,7 @@ use crate::heap::Heap;
 use crate::host::Host;
 use crate::plant::Mechanics;
 use crate::servo::Servo;
-use crate::stimulus::{Player, Stimulus};
+use crate::stimulus::{Assist, Player, Step, Stimulus};
 use crate::trace::{self, Record, Recorder};
 use crate::views::Typed;
 
@@ -92,6 +92,8 @@ pub struct Kernel {
     hears_uart: bool,
     /// What the world does, if anything.
     stimulus: Option<Box<Player>>,
+    /// The operator, if there is one.
+    pub(crate) assist: Option<Assist>,
     /// What is recorded, if anything.
     recorder: Option<Box<Recorder>>,
     pub(crate) servo: Servo,
@@ -144,6 +146,7 @@ impl Kernel {
             attached: Vec::new(),
             hears_uart: false,
             stimulus: None,
+            assist: None,
             recorder: None,
             turn: Turn::Primary,
             servo: Servo::default(),
@@ -229,6 +232,24 @@ impl Kernel {
         let acted = player.tick(self, context, &changes);
         self.stimulus = Some(player);
         acted
+    }
+
+    /// Plays an operator from now on.
+    pub(crate) fn assist(&mut self, now: Cycles) {
+        self.assist = Some(Assist::new(now));
+    }
+
+    /// What the operator does in a tick; whether that is anything.
+    fn assist_tick(&mut self, now: Cycles) -> bool {
+        let Some(step) = self.assist.as_mut().and_then(|assist| assist.step(now)) else { return false };
+        let (Step::Press(bit, _) | Step::Release(bit)) = step;
+        let level = !self.pins.input(bit);
+        if let Step::Press(_, thread) = step {
+            self.tell(now, EventKind::Assisted { bit, level, thread, place: None });
+        }
+        self.pins.drive(bit, level, now);
+        self.settle(now);
+        true
     }
 
     /// Records from now on.
@@ -430,6 +451,9 @@ impl Firmware for Kernel {
         if caller.woken.is_none() {
             caller.spend(FIRMWARE_FUNCTIONS[number].cost);
         }
+        if let Some(assist) = &mut self.assist {
+            assist.called(FIRMWARE_FUNCTIONS[number].name, caller.now());
+        }
         HANDLERS[number](self, caller)
     }
 
@@ -444,7 +468,7 @@ impl Firmware for Kernel {
         if self.snapamps.is_present() {
             self.snapamps.tick(context.memory);
         }
-        let acted = self.play_tick(context);
+        let acted = self.play_tick(context) | self.assist_tick(context.now);
         self.host.tick();
         serial::tick(self, context);
         if let Some((board, outputs)) = self.konnects.tick(context.memory, context.tick) {
@@ -515,8 +539,10 @@ impl Firmware for Kernel {
         if !is_quiet {
             return 0;
         }
-        let stimulus = self.stimulus.as_ref().map_or(u64::MAX, |player| player.quiet_ticks(self.tick_start));
-        self.host.quiet_ticks().min(stimulus)
+        let now = self.tick_start;
+        let stimulus = self.stimulus.as_ref().map_or(u64::MAX, |player| player.quiet_ticks(now));
+        let assist = self.assist.as_ref().map_or(u64::MAX, |assist| assist.quiet_ticks(now));
+        self.host.quiet_ticks().min(stimulus).min(assist)
     }
 
     fn skip_ticks(&mut self, count: u64, context: &mut TickContext<'_>) {

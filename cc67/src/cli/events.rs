@@ -22,6 +22,13 @@ pub(super) fn describe(event: &Event, programs: &[DebugInfo]) -> Option<String> 
                 place.and_then(|place| source(place, programs)).map_or(String::new(), |s| format!(" at {s}"));
             Some(format!("{who} reads bit {bit}{place}, an input that nothing drives; it stays 0"))
         }
+        EventKind::Assisted { bit, level, thread, place } => {
+            let who = thread.map_or("the call-back".to_owned(), |thread| format!("thread {thread}"));
+            let place =
+                place.and_then(|place| source(place, programs)).map_or(String::new(), |s| format!(" at {s}"));
+            let level = u8::from(*level);
+            Some(format!("{who} waits{place}: bit {bit} is {level} for 0.1 s (--assist)"))
+        }
     }
 }
 

@@ -26,6 +26,7 @@ mod stimulus;
 mod terminal;
 mod test;
 mod trace;
+mod uart;
 mod units;
 
 use std::ffi::OsString;

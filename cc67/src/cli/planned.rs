@@ -37,7 +37,7 @@ pub(super) struct Anything {
 }
 
 /// Options of `run` to come, without `--`.
-const OPTIONS: &[&str] = &["assist", "flash", "json", "plot", "realtime", "watch"];
+const OPTIONS: &[&str] = &["flash", "json", "plot", "realtime", "watch"];
 
 /// The option to come that made the parser refuse the command line, if it was one.
 pub(super) fn option(error: &clap::Error) -> Option<&'static str> {

@@ -20,6 +20,7 @@ use vm::profile::ProfilingEngine;
 use super::options::CompilerOptions;
 use super::program::{Program, assign};
 use super::setting::{self, Setting};
+use super::uart::UartOptions;
 use super::{Exit, events, profile, stimulus, terminal, trace, units};
 use crate::lints::levels::Levels;
 use crate::render::Format;
@@ -55,6 +56,9 @@ pub(super) struct Arguments {
     /// What the world does and when: a file of statements, or statements such as "t=0.5 bit 136=1"
     #[arg(long, value_name = "FILE|TEXT")]
     stim: Vec<String>,
+    /// Play an operator: programs that only wait on inputs get the other level of one input after the other
+    #[arg(long)]
+    assist: bool,
     /// Show the board time in seconds before each console line
     #[arg(long)]
     time: bool,
@@ -67,6 +71,8 @@ pub(super) struct Arguments {
     /// What executes the programs
     #[arg(long, value_enum, default_value_t = EngineName::Bytecode)]
     engine: EngineName,
+    #[command(flatten)]
+    uart: UartOptions,
     #[command(flatten)]
     trace: trace::TraceOptions,
     #[command(flatten)]
@@ -180,6 +186,9 @@ impl Session<'_> {
         for program in self.programs.iter().take(self.arguments.programs.len()) {
             board.start(program.thread).with_context(|| program.name().to_string())?;
         }
+        if self.arguments.assist {
+            board.assist();
+        }
         if let Some(request) = &self.trace {
             board.record(request.clone());
         }
@@ -262,14 +271,14 @@ fn execute<E: Engine>(
     };
     let (mut trapped, mut unmet) = (false, false);
     let mut log = request.map(trace::Log::new);
-    let end = board.run(limit, &mut |event| {
+    let end = arguments.uart.connect(board)?.run(board, limit, &mut |event| {
         if let Some(log) = &mut log {
             log.note(&event);
         }
         trapped |= matches!(event.kind, EventKind::Trap(_));
         unmet |= matches!(event.kind, EventKind::Unmet(_));
         screen.show(&event);
-    });
+    })?;
     if let Some(error) = screen.finish() {
         // A reader that has seen enough, as `head` has, is no failure.
         if error.kind() == io::ErrorKind::BrokenPipe {
@@ -304,7 +313,7 @@ struct Screen<W: Write> {
 impl<W: Write> Screen<W> {
     fn show(&mut self, event: &Event) {
         let EventKind::ConsoleLine(line) = &event.kind else {
-            if matches!(event.kind, EventKind::Trace(_)) {
+            if matches!(event.kind, EventKind::Trace(_) | EventKind::UartSent(_)) {
                 return;
             }
             // What was printed before stands before it on a terminal that shows both.

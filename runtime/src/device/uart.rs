@@ -24,6 +24,8 @@ const TRANSMIT_FULL: u8 = 0x02;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Uart {
     divisor: u8,
+    /// Whether the program has looked for characters; those that come before wait for it.
+    is_attended: bool,
     /// When the transmitter's shift register is through.
     sent: Cycles,
     /// The character that waits behind it.
@@ -41,6 +43,13 @@ impl Uart {
     /// Sets the divisor; a character already under way keeps its speed.
     pub(crate) fn set_divisor(&mut self, divisor: u8) {
         self.divisor = divisor;
+    }
+
+    /// The program looks for characters: the line begins to move.
+    fn attend(&mut self, now: Cycles) {
+        if !std::mem::replace(&mut self.is_attended, true) {
+            self.arrival = now + self.frame();
+        }
     }
 
     /// The time of a character.
@@ -70,7 +79,7 @@ impl Uart {
             self.sent += self.frame();
             self.note_sent(byte);
         }
-        while self.arrival <= now {
+        while self.is_attended && self.arrival <= now {
             let Some(byte) = self.line.pop_front() else { break };
             if self.received.len() == RECEIVED_LIMIT {
                 self.received.pop_back();
@@ -82,6 +91,7 @@ impl Uart {
 
     /// The status register.
     pub(crate) fn status(&mut self, now: Cycles) -> u8 {
+        self.attend(now);
         self.advance(now);
         let ready = if self.received.is_empty() { 0 } else { DATA_READY };
         ready | if self.waiting.is_some() { TRANSMIT_FULL } else { 0 }
@@ -94,6 +104,7 @@ impl Uart {
 
     /// The next received character.
     pub(crate) fn receive(&mut self, now: Cycles) -> Option<u8> {
+        self.attend(now);
         self.advance(now);
         self.received.pop_front()
     }
@@ -155,6 +166,7 @@ mod tests {
     fn uart() -> Uart {
         let mut uart = Uart::default();
         uart.set_divisor(DIVISOR);
+        uart.attend(Cycles::default());
         uart
     }
 
@@ -169,6 +181,15 @@ mod tests {
         uart.send(b'x', at(1));
         assert!(!uart.is_free(at(2) - Cycles::new(1)));
         assert!(uart.is_free(at(2)));
+    }
+
+    #[test]
+    fn characters_wait_until_the_program_looks_for_them() {
+        let mut uart = Uart::default();
+        uart.arrive(b"abc", at(0));
+        uart.set_divisor(DIVISOR);
+        assert_eq!(uart.status(at(9)), 0);
+        assert_eq!(uart.status(at(10)), DATA_READY);
     }
 
     #[test]

@@ -149,6 +149,9 @@ pub(crate) fn read_bit(kernel: &mut Kernel, caller: &mut Caller<'_>, bit: i32) -
     if is_input && !kernel.pins.is_driven(bit) {
         kernel.undriven(caller, bit);
     }
+    if is_input && let Some(assist) = &mut kernel.assist {
+        assist.polled(bit, caller.thread);
+    }
     i32::from(level)
 }
 

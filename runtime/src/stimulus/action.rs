@@ -28,6 +28,8 @@ pub enum Action {
     Persist(usize, i32),
     /// Executes the program of a thread, as the PC does.
     Start(ThreadId),
+    /// Sends a script command, as the PC does.
+    Command(String),
     /// Stops a thread, as the PC does.
     Kill(ThreadId),
     /// Connects a device.

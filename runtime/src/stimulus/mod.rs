@@ -19,6 +19,7 @@
 //! order of the text; so a run stays a function of its inputs. Source: plant.md section 8.
 
 mod action;
+mod assist;
 mod player;
 mod text;
 mod tokens;
@@ -30,6 +31,7 @@ pub use text::StimulusError;
 pub use trigger::{Condition, Edge, Trigger};
 pub use wave::Wave;
 
+pub(crate) use assist::{Assist, Step};
 pub(crate) use player::Player;
 pub(crate) use wave::conversion;
 

@@ -114,10 +114,10 @@ impl Player {
         self.printed.push((at, String::from_utf8_lossy(line).into_owned()));
     }
 
-    /// Whether a thread is still to be started, so that the run must go on.
+    /// Whether a thread is still to be started or a command to be sent, so that the run must go on.
     pub(crate) fn is_busy(&self) -> bool {
         self.due.values().any(|due| match due {
-            Due::Rule(index) => matches!(self.rules[*index].action, Action::Start(_)),
+            Due::Rule(index) => matches!(self.rules[*index].action, Action::Start(_) | Action::Command(_)),
             Due::Level(..) => false,
         })
     }
@@ -240,6 +240,8 @@ impl Player {
                     kernel.tell(now, EventKind::Diagnostic(text));
                 }
             }
+            // No echo is wanted.
+            Action::Command(line) => kernel.usb.receive(format!("\u{1b}.{line}\r").as_bytes()),
             Action::Kill(thread) => context.threads.pause(thread),
             Action::Konnect(board, input, level) => kernel.konnects.drive(board, input, level),
             Action::SnapAmp(board, side, quantity, value) => {

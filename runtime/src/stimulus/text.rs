@@ -328,6 +328,7 @@ impl Reader<'_> {
             }
             "snapamp" => self.snapamp()?,
             "device" => Action::Attach(self.device()?),
+            "command" => Action::Command(self.string()?),
             "start" => Action::Start(self.thread()?),
             "stop" | "kill" => Action::Kill(self.thread()?),
             _ => Action::Expect(self.expectation()?),
@@ -338,12 +339,12 @@ impl Reader<'_> {
     fn advance_over(&mut self, word: &str) -> Result<(), Mistake> {
         const ACTIONS: &[&str] = &[
             "set", "clear", "toggle", "pulse", "adc", "axis", "encoder", "uart", "persist", "konnect",
-            "snapamp", "device", "start", "stop", "kill", "expect",
+            "snapamp", "device", "command", "start", "stop", "kill", "expect",
         ];
         if !ACTIONS.contains(&word) {
             return self.expected(
                 "`bit`, `set`, `clear`, `toggle`, `pulse`, `adc`, `axis`, `encoder`, `uart`, `persist`, `konnect`, \
-                 `snapamp`, `device`, `start`, `stop` or `expect`",
+                 `snapamp`, `device`, `command`, `start`, `stop` or `expect`",
             );
         }
         self.advance();

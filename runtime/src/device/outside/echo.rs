@@ -28,6 +28,8 @@ mod tests {
     #[test]
     fn what_is_sent_comes_back() {
         let mut bench = Bench::new("echo");
+        bench.uart.set_divisor(8);
+        bench.uart.status(us(0));
         bench.sent(b'x', 100);
         assert_eq!(bench.uart.read(us(2000)), b'x');
     }

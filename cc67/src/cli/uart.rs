@@ -1,0 +1,267 @@
+//! `--uart` and its kin: what the serial port of the board is connected to.
+//!
+//! Files keep a run a function of its inputs: their characters arrive at the port's rate from the moment the program
+//! first looks for them. A terminal, a TCP peer or another program acts when it likes: the run is then kept at about real time, and
+//! what arrives when is no longer the same in every run. Without these options nothing is connected.
+
+use std::io::{self, Read, Write};
+use std::net::{Ipv4Addr, TcpListener};
+use std::path::PathBuf;
+use std::process::{Child, Command, Stdio};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
+use std::thread;
+use std::time::Duration;
+
+use anyhow::{Context, Result, bail};
+use clap::Args;
+use kmotiondef::Ticks;
+use runtime::{Board, Event, EventKind, RunEnd};
+use vm::engine::Engine;
+
+use super::{output, run, terminal};
+
+/// Ticks that a run with a peer goes on before it looks for what has come: 9.99 ms.
+const PART: u64 = 111;
+/// The same on the peer's clock; the run is about as fast as the board.
+const PART_TIME: Duration = Duration::from_millis(10);
+
+/// What the serial port is connected to.
+#[derive(Debug, Args)]
+pub(super) struct UartOptions {
+    /// Characters that the serial port receives, from when the program first looks for them
+    #[arg(long, value_name = "FILE", conflicts_with = "uart")]
+    uart_input: Option<PathBuf>,
+    /// Write what the serial port sends to FILE
+    #[arg(long, value_name = "FILE")]
+    uart_output: Option<PathBuf>,
+    /// Connect the serial port to the outside, in real time: pty, tcp:PORT (waits for a client on this computer), run:COMMAND
+    #[arg(long, value_name = "PEER")]
+    uart: Option<String>,
+}
+
+impl UartOptions {
+    /// Connects the port of a board; a peer that has to be there is waited for.
+    pub(super) fn connect<E: Engine>(&self, board: &mut Board<E>) -> Result<Line> {
+        if let Some(path) = &self.uart_input {
+            board.send_to_uart(&run::read(path)?);
+        }
+        let peer = self.uart.as_deref().map(peer).transpose()?;
+        if peer.is_some() || self.uart_output.is_some() {
+            board.hear_uart();
+        }
+        Ok(Line { peer, output: self.uart_output.clone(), sent: Vec::new(), is_told: false })
+    }
+}
+
+/// The other end, which lives in real time.
+#[derive(Debug)]
+struct Peer {
+    name: String,
+    /// What it has sent; ends when it goes away.
+    incoming: Receiver<Vec<u8>>,
+    outgoing: Outgoing,
+    /// A program is waited for when the run is over.
+    child: Option<Child>,
+}
+
+/// Where characters for the peer go.
+struct Outgoing(Box<dyn Write>);
+
+impl std::fmt::Debug for Outgoing {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str("Outgoing")
+    }
+}
+
+/// Makes the peer that the option names.
+fn peer(text: &str) -> Result<Peer> {
+    match text.split_once(':') {
+        Some(("tcp", port)) => tcp(port),
+        Some(("run", command)) => program(command),
+        None if text == "pty" => pty(),
+        _ => bail!("`--uart {text}`: there are pty, tcp:PORT and run:COMMAND"),
+    }
+}
+
+/// Waits for a client on this computer.
+fn tcp(port: &str) -> Result<Peer> {
+    let number: u16 = port.parse().with_context(|| format!("`--uart tcp:{port}`: not a port number"))?;
+    let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, number))
+        .with_context(|| format!("cannot listen on port {number}"))?;
+    let address = listener.local_addr()?;
+    terminal::note(&format!("serial port: waiting for a client on {address}"));
+    let (stream, from) = listener.accept().context("serial port")?;
+    stream.set_nodelay(true)?;
+    let outgoing = Box::new(stream.try_clone()?);
+    Ok(Peer::new(format!("client {from}"), stream, outgoing, None))
+}
+
+/// Starts a program whose input and output are the line.
+fn program(command: &str) -> Result<Peer> {
+    let mut words = command.split_whitespace();
+    let name = words.next().context("`--uart run:` names no program")?;
+    let started = Command::new(name).args(words).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn();
+    let mut child = started.with_context(|| format!("cannot run `{name}`"))?;
+    let (Some(outgoing), Some(incoming)) = (child.stdin.take(), child.stdout.take()) else {
+        bail!("`{name}` has no input and output");
+    };
+    Ok(Peer::new(format!("program `{name}`"), incoming, Box::new(outgoing), Some(child)))
+}
+
+/// Opens a pseudo-terminal and says its name.
+#[cfg(unix)]
+fn pty() -> Result<Peer> {
+    use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+    use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
+
+    let controller = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).context("cannot open a terminal")?;
+    grantpt(&controller)?;
+    unlockpt(&controller)?;
+    let name = ptsname(&controller, Vec::new())?.to_string_lossy().into_owned();
+    // Held open, as the line would be broken whenever nobody else has it open.
+    let line = std::fs::OpenOptions::new().read(true).write(true).open(&name)?;
+    let mut mode = tcgetattr(&line)?;
+    mode.make_raw();
+    tcsetattr(&line, OptionalActions::Now, &mode)?;
+    terminal::note(&format!("serial port: terminal {name}"));
+    let controller = std::fs::File::from(controller);
+    let outgoing = Held { file: controller.try_clone()?, _line: line };
+    Ok(Peer::new(format!("terminal {name}"), controller, Box::new(outgoing), None))
+}
+
+#[cfg(not(unix))]
+fn pty() -> Result<Peer> {
+    bail!("`--uart pty`: this system has no pseudo-terminals; tcp:PORT works everywhere")
+}
+
+/// A terminal and its other side, which keeps it alive.
+#[cfg(unix)]
+struct Held {
+    file: std::fs::File,
+    _line: std::fs::File,
+}
+
+#[cfg(unix)]
+impl Write for Held {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+impl Peer {
+    /// Reads what the peer sends in the background.
+    fn new(
+        name: String,
+        mut reader: impl Read + Send + 'static,
+        outgoing: Box<dyn Write>,
+        child: Option<Child>,
+    ) -> Self {
+        let (sender, incoming) = mpsc::channel();
+        thread::spawn(move || {
+            let mut buffer = [0; 256];
+            while let Ok(count) = reader.read(&mut buffer) {
+                let bytes = buffer.get(..count).unwrap_or_default();
+                if count == 0 || sender.send(bytes.to_vec()).is_err() {
+                    break;
+                }
+            }
+        });
+        Self { name, incoming, outgoing: Outgoing(outgoing), child }
+    }
+}
+
+/// The line from the board to whatever it is connected to.
+#[derive(Debug)]
+pub(super) struct Line {
+    peer: Option<Peer>,
+    output: Option<PathBuf>,
+    sent: Vec<u8>,
+    /// Whether it was said that the peer is gone.
+    is_told: bool,
+}
+
+impl Line {
+    /// Takes up a character that the board has sent.
+    fn note(&mut self, event: &Event) {
+        if let EventKind::UartSent(byte) = event.kind {
+            self.sent.push(byte);
+        }
+    }
+
+    /// Runs the board to its end, or to the limit, and the line beside it.
+    pub(super) fn run<E: Engine>(
+        &mut self,
+        board: &mut Board<E>,
+        limit: Ticks,
+        sink: &mut dyn FnMut(Event),
+    ) -> Result<RunEnd> {
+        let mut delivered = 0;
+        let end = loop {
+            let part = if self.peer.is_some() { board.tick().get() + PART } else { limit.get() };
+            let part = Ticks::new(part.min(limit.get()));
+            let end = board.run_part(part, &mut |event| {
+                self.note(&event);
+                sink(event);
+            });
+            let fresh = self.sent.get(delivered..).unwrap_or_default().to_vec();
+            delivered = self.sent.len();
+            let came = self.exchange(&fresh);
+            if !came.is_empty() {
+                board.send_to_uart(&came);
+            }
+            if end == RunEnd::AllEnded || board.tick() >= limit {
+                break end;
+            }
+        };
+        board.finish(&mut |event| {
+            self.note(&event);
+            sink(event);
+        });
+        self.finish()?;
+        Ok(end)
+    }
+
+    /// Gives the peer what was sent and takes what it sends, for as long as a part of the run lasts.
+    fn exchange(&mut self, fresh: &[u8]) -> Vec<u8> {
+        let Some(peer) = &mut self.peer else { return Vec::new() };
+        let written = peer.outgoing.0.write_all(fresh).and_then(|()| peer.outgoing.0.flush());
+        let mut came = Vec::new();
+        let mut is_gone = written.is_err();
+        match peer.incoming.recv_timeout(PART_TIME) {
+            Ok(bytes) => came.extend(bytes),
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => {
+                is_gone = true;
+                // The run is kept at its pace: the peer may still read.
+                thread::sleep(PART_TIME);
+            }
+        }
+        came.extend(peer.incoming.try_iter().flatten());
+        if is_gone && !self.is_told {
+            self.is_told = true;
+            terminal::note(&format!("serial port: {} is gone; the run goes on without it", peer.name));
+        }
+        came
+    }
+
+    /// The run is over: the peer is let go, and what was sent is written.
+    fn finish(&mut self) -> Result<()> {
+        if let Some(peer) = self.peer.take() {
+            drop(peer.outgoing);
+            if let Some(mut child) = peer.child {
+                // It ends with its input, or it is ended.
+                thread::sleep(PART_TIME);
+                let _ = child.kill();
+                let _ = child.wait();
+            }
+        }
+        match &self.output {
+            Some(path) => output::write(path, &self.sent),
+            None => Ok(()),
+        }
+    }
+}

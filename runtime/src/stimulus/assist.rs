@@ -1,0 +1,129 @@
+//! An operator for programs that wait on inputs nobody drives: `--assist`.
+//!
+//! When the programs have done nothing for two seconds but look at inputs and wait, one of these inputs gets the other
+//! level for a tenth of a second; if nothing comes of that, the next one. All in board time. Source: plant.md section 7.
+
+use std::collections::BTreeMap;
+
+use kmotiondef::{Bit, Cycles, ThreadId};
+
+/// How long programs wait before anything is done: 2 s.
+const PATIENCE: Cycles = Cycles::new(2 * Cycles::PER_SECOND.get());
+/// How long an input has the other level: 0.1 s. As long again is what the programs have to show that it helped.
+const PRESSED: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 10);
+
+/// Functions that a program calls while it waits.
+const WAITING: &[&str] = &[
+    "ReadBit",
+    "Delay_sec",
+    "WaitNextTimeSlice",
+    "WaitUntil",
+    "Time_sec",
+    "CheckDone",
+    "CheckDoneXYZABC",
+    "CheckDoneBuf",
+    "CheckDoneGather",
+    "MutexLock",
+];
+
+/// What the operator does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Step {
+    /// Gives an input the other level; the thread that last read it.
+    Press(Bit, Option<ThreadId>),
+    /// Gives it back the level it had.
+    Release(Bit),
+}
+
+/// The operator.
+#[derive(Clone, Debug)]
+pub(crate) struct Assist {
+    /// Inputs that were read since the programs last did something, and by whom.
+    polled: BTreeMap<Bit, Option<ThreadId>>,
+    /// When something is done next.
+    next: Cycles,
+    pressed: Option<Bit>,
+    /// Whether the programs have done something since it was pressed.
+    has_helped: bool,
+    /// The last input that was pressed: the one behind it is next.
+    last: Option<Bit>,
+}
+
+impl Assist {
+    pub(crate) fn new(now: Cycles) -> Self {
+        Self { polled: BTreeMap::new(), next: now + PATIENCE, pressed: None, has_helped: false, last: None }
+    }
+
+    /// A program has called a function.
+    pub(crate) fn called(&mut self, name: &str, now: Cycles) {
+        if !WAITING.contains(&name) {
+            self.polled.clear();
+            self.has_helped = true;
+            if self.pressed.is_none() {
+                self.next = now + PATIENCE;
+            }
+        }
+    }
+
+    /// A program has read an input.
+    pub(crate) fn polled(&mut self, bit: Bit, thread: Option<ThreadId>) {
+        self.polled.insert(bit, thread);
+    }
+
+    /// What is due at the beginning of a tick.
+    pub(crate) fn step(&mut self, now: Cycles) -> Option<Step> {
+        if now < self.next {
+            return None;
+        }
+        self.next = now + PRESSED;
+        if let Some(bit) = self.pressed.take() {
+            // Whoever answered by doing something is left alone for a while.
+            if self.has_helped {
+                self.next = now + PATIENCE;
+            }
+            return Some(Step::Release(bit));
+        }
+        let inputs = || self.polled.iter().map(|(bit, thread)| (*bit, *thread));
+        let (bit, thread) = inputs().find(|(bit, _)| Some(*bit) > self.last).or_else(|| inputs().next())?;
+        (self.last, self.pressed, self.has_helped) = (Some(bit), Some(bit), false);
+        Some(Step::Press(bit, thread))
+    }
+
+    /// How many of the ticks behind the one that began at `now` have nothing to do.
+    pub(crate) fn quiet_ticks(&self, now: Cycles) -> u64 {
+        let rest = (self.next - now).get() / Cycles::PER_TICK.get() - 1;
+        u64::try_from(rest).unwrap_or(0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ms(ms: i64) -> Cycles {
+        Cycles::new(ms * Cycles::PER_SECOND.get() / 1000)
+    }
+
+    #[test]
+    fn inputs_are_pressed_in_turn_after_two_seconds_of_waiting() {
+        let bit = |number| Bit::new(number).expect("a bit");
+        let mut assist = Assist::new(ms(0));
+        assist.called("Jog", ms(500));
+        assist.polled(bit(10), None);
+        assist.polled(bit(136), None);
+        assist.called("ReadBit", ms(1000));
+        for (at, expect) in [
+            (2499, None),
+            (2500, Some(Step::Press(bit(10), None))),
+            (2600, Some(Step::Release(bit(10)))),
+            (2700, Some(Step::Press(bit(136), None))),
+            (2800, Some(Step::Release(bit(136)))),
+            (2900, Some(Step::Press(bit(10), None))),
+        ] {
+            assert_eq!(assist.step(ms(at)), expect, "{at}");
+        }
+        assist.called("Move", ms(2950));
+        assert_eq!(assist.step(ms(3000)), Some(Step::Release(bit(10))));
+        assert_eq!(assist.step(ms(4999)), None);
+    }
+}
