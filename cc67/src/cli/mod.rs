@@ -18,6 +18,7 @@ mod inspect;
 mod options;
 mod output;
 mod planned;
+mod plot;
 mod profile;
 mod program;
 mod run;
@@ -71,8 +72,8 @@ enum Command {
     Test(test::Arguments),
     /// Make a project folder ready for an editor and for CI
     Init(init::Arguments),
-    #[command(flatten)]
-    Planned(planned::Command),
+    /// Draw columns of numbers over time
+    Plot(plot::Arguments),
 }
 
 impl Command {
@@ -87,7 +88,7 @@ impl Command {
             Self::Firmware(arguments) => firmware::firmware(arguments),
             Self::Test(arguments) => test::test(arguments),
             Self::Init(arguments) => init::init(arguments),
-            Self::Planned(command) => command.refuse(),
+            Self::Plot(arguments) => plot::plot(arguments),
         }
     }
 }

@@ -1,0 +1,122 @@
+//! Tables of numbers, as programs that gather data and `cc67 run --trace` write them.
+//!
+//! Columns are separated by commas, semicolons, tabs or blanks. A first line that is not all numbers names the columns.
+//! Lines that begin with `#` and empty lines are skipped.
+
+use anyhow::{Result, bail};
+
+use super::chart::{Chart, Line, Panel};
+
+/// Names of a first column that is the time.
+const TIMES: [&str; 5] = ["t", "time", "time_s", "seconds", "time (s)"];
+
+/// A chart of the table: one panel a column, over the first column if that is the time, else over the line's number.
+pub(super) fn chart(title: &str, text: &str) -> Result<Chart> {
+    let table = read(text)?;
+    let has_time = table.names.first().is_some_and(|name| TIMES.contains(&name.to_lowercase().as_str()));
+    let times: Vec<f64> = match has_time {
+        true => table.rows.iter().filter_map(|row| row.first().copied()).collect(),
+        false => (0..table.rows.len()).map(|index| index as f64).collect(),
+    };
+    if let Some(index) = times.windows(2).position(|pair| pair[1] < pair[0]) {
+        bail!("the time goes back behind row {} of the numbers", index + 1);
+    }
+    let panels: Vec<Panel> = (usize::from(has_time)..table.names.len())
+        .map(|column| {
+            let points = times.iter().copied().zip(table.rows.iter().map(|row| row[column])).collect();
+            let name = table.names[column].clone();
+            Panel { title: name.clone(), unit: String::new(), lines: vec![Line { name, points }] }
+        })
+        .collect();
+    if panels.is_empty() {
+        bail!("there is nothing but the time in it");
+    }
+    let range = (times.first().copied().unwrap_or_default(), times.last().copied().unwrap_or_default());
+    let abscissa = if has_time { "time (s)" } else { "line" };
+    Ok(Chart { title: title.to_owned(), abscissa: abscissa.to_owned(), panels, strips: Vec::new(), range })
+}
+
+/// Named columns of numbers.
+struct Table {
+    names: Vec<String>,
+    rows: Vec<Vec<f64>>,
+}
+
+fn read(text: &str) -> Result<Table> {
+    let mut lines = text
+        .lines()
+        .enumerate()
+        .map(|(index, line)| (index + 1, line.trim()))
+        .filter(|(_, line)| !line.is_empty() && !line.starts_with('#'))
+        .peekable();
+    let Some((_, first)) = lines.peek() else { bail!("there are no numbers in it") };
+    let fields = split(first);
+    let is_head = fields.iter().any(|field| field.parse::<f64>().is_err());
+    let names: Vec<String> = match is_head {
+        true => fields.into_iter().map(str::to_owned).collect(),
+        false => (1..=fields.len()).map(|column| format!("column {column}")).collect(),
+    };
+    if is_head {
+        lines.next();
+    }
+    let mut rows = Vec::new();
+    for (number, line) in lines {
+        let fields = split(line);
+        if fields.len() != names.len() {
+            bail!("line {number} has {} columns, the first has {}", fields.len(), names.len());
+        }
+        let mut row = Vec::with_capacity(fields.len());
+        for field in fields {
+            match field.parse() {
+                Ok(value) => row.push(value),
+                Err(_) => bail!("line {number}: `{field}` is not a number"),
+            }
+        }
+        rows.push(row);
+    }
+    if rows.is_empty() {
+        bail!("there are no numbers in it");
+    }
+    Ok(Table { names, rows })
+}
+
+/// The fields of a line.
+fn split(line: &str) -> Vec<&str> {
+    match [',', ';', '\t'].into_iter().find(|separator| line.contains(*separator)) {
+        Some(separator) => line.split(separator).map(str::trim).collect(),
+        None => line.split_whitespace().collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check(text: &str, expect: &str) {
+        let shown = match chart("", text) {
+            Ok(chart) => {
+                let names: Vec<_> = chart.panels.iter().map(|panel| panel.title.as_str()).collect();
+                format!("{} over {} {:?}", names.join(" "), chart.abscissa, chart.range)
+            }
+            Err(error) => error.to_string(),
+        };
+        assert_eq!(shown, expect);
+    }
+
+    #[test]
+    fn columns_become_panels() {
+        check("time,dest0,pos0\n0.1,1,2\n0.2,3,4\n", "dest0 pos0 over time (s) (0.1, 0.2)");
+        check("1 2\n3 4\n5 6\n", "column 1 column 2 over line (0.0, 2.0)");
+        check("# gathered\nDest; Position\n1; 2\n", "Dest Position over line (0.0, 0.0)");
+    }
+
+    #[test]
+    fn what_is_no_table_is_said() {
+        check("", "there are no numbers in it");
+        check("a,b\n", "there are no numbers in it");
+        check("a,b\n1,2\n3\n", "line 3 has 1 columns, the first has 2");
+        check("a,b\n1,x\n", "line 2: `x` is not a number");
+        check("t,a\n2,1\n1,1\n", "the time goes back behind row 1 of the numbers");
+        check("t\n2\n", "there is nothing but the time in it");
+    }
+}
