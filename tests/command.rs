@@ -163,8 +163,7 @@ fn options_that_do_not_exist_or_are_to_come_are_named() {
     let scratch = Scratch::new("options");
     scratch.write("a.c", HELLO);
     assert_plain(&cc67(&scratch, &["run", "--nosuch", "a.c"]), 2, "--nosuch");
-    assert_plain(&cc67(&scratch, &["run", "--plot", "x.svg", "a.c"]), 2, "option `--plot` is not built yet");
-    assert_plain(&cc67(&scratch, &["plot", "a.csv"]), 2, "`cc67 plot` is not built yet");
+    assert_plain(&cc67(&scratch, &["run", "--realtime", "a.c"]), 2, "option `--realtime` is not built yet");
     assert_plain(&cc67(&scratch, &["run", "--set", "persist.200=1", "a.c"]), 2, "persist.UserData");
 }
 

@@ -287,7 +287,7 @@ fn execute<E: Engine>(
         return Err(error).context("cannot write to standard output");
     }
     if let Some(log) = &log {
-        arguments.trace.write(log, board.tick())?;
+        arguments.trace.write(log, board.tick(), &arguments.programs.join(", "))?;
     }
     Ok(match end {
         _ if trapped => Exit::Trapped,

@@ -97,6 +97,8 @@ impl Item {
     /// # Errors
     /// A name that is not one.
     pub fn new(name: &str) -> Result<Self, UnknownItem> {
+        // `persist.5` is how `--set` calls it.
+        let name = &name.replacen("persist.", "persist", 1);
         let letters = name.trim_end_matches(|character: char| character.is_ascii_digit());
         let kind = KINDS.iter().position(|kind| kind.name == letters);
         let index = name[letters.len()..].parse().ok();
@@ -107,7 +109,7 @@ impl Item {
         }
         let known: Vec<_> =
             KINDS.iter().map(|kind| format!("{}0 to {0}{}", kind.name, kind.count - 1)).collect();
-        Err(UnknownItem { name: name.to_owned(), known: known.join(", ") })
+        Err(UnknownItem { name: name.clone(), known: known.join(", ") })
     }
 
     /// Where every axis is sent, where it is and what drives it.
@@ -115,6 +117,29 @@ impl Item {
     pub fn of_axes() -> Vec<Self> {
         let all = (0..AxisId::all().count()).flat_map(|index| (0..3).map(move |kind| Self { kind, index }));
         all.collect()
+    }
+
+    /// What kind of value it is: its name without the number.
+    #[must_use]
+    pub fn kind(self) -> &'static str {
+        KINDS[self.kind].name
+    }
+
+    /// Its number among those of its kind.
+    #[must_use]
+    pub const fn index(self) -> usize {
+        self.index
+    }
+
+    /// The unit of the value; empty for mere numbers.
+    #[must_use]
+    pub fn unit(self) -> &'static str {
+        match self.kind() {
+            "dest" | "pos" | "load" => "units",
+            "adc" | "dac" => "counts",
+            "iopwmhz" => "Hz",
+            _ => "",
+        }
     }
 
     /// The axis it belongs to, if it is one of [`of_axes`](Self::of_axes).

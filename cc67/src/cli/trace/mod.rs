@@ -6,6 +6,7 @@
 
 mod bits;
 mod chrome;
+mod picture;
 mod table;
 mod vcd;
 
@@ -18,6 +19,7 @@ use runtime::trace::{Item, Record, Request};
 use runtime::{Event, EventKind};
 
 use super::output;
+use super::plot::{self, Form};
 
 /// What to trace.
 #[derive(Debug, Args)]
@@ -28,8 +30,11 @@ pub(super) struct TraceOptions {
     /// Write every change of a bit with its nanosecond and thread to FILE (CSV)
     #[arg(long, value_name = "FILE")]
     trace_bits: Option<PathBuf>,
-    /// What is sampled, such as dest0,pos0,bit46; else Dest, Position and Output of the axes that are enabled
-    #[arg(long, value_name = "LIST")]
+    /// Draw what moved: .svg, .png, or .html for a page with zoom and cursor
+    #[arg(long, value_name = "FILE")]
+    plot: Vec<PathBuf>,
+    /// What is traced and drawn, such as axis0,bit46,persist.5,adc2; else the axes that are enabled
+    #[arg(long, visible_alias = "watch", value_name = "LIST")]
     trace_items: Option<String>,
     /// Sample every N servo ticks
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
@@ -39,20 +44,27 @@ pub(super) struct TraceOptions {
 impl TraceOptions {
     /// What the board is to record; `None` if nothing is traced.
     pub(super) fn request(&self) -> Result<Option<Request>> {
-        if self.trace.is_empty() && self.trace_bits.is_none() {
+        if self.trace.is_empty() && self.trace_bits.is_none() && self.plot.is_empty() {
             return Ok(None);
+        }
+        for picture in &self.plot {
+            Form::of(picture)?;
         }
         let items = match &self.trace_items {
             None => Item::of_axes(),
-            Some(list) => list.split(',').map(|name| Item::new(name.trim())).collect::<Result<_, _>>()?,
+            Some(list) => items(list)?,
         };
         let is_table = |path: &PathBuf| !matches!(suffix(path).as_str(), "vcd" | "json");
-        let changes = self.trace_bits.is_some() || !self.trace.iter().all(is_table);
+        let changes = self.trace_bits.is_some() || !self.plot.is_empty() || !self.trace.iter().all(is_table);
         Ok(Some(Request { items, every: self.trace_every, changes }))
     }
 
-    /// Writes all files; `end` is the last tick of the run.
-    pub(super) fn write(&self, log: &Log, end: Ticks) -> Result<()> {
+    /// Writes all files; `end` is the last tick of the run, `title` what pictures are called.
+    pub(super) fn write(&self, log: &Log, end: Ticks, title: &str) -> Result<()> {
+        for path in &self.plot {
+            let chart = picture::chart(log, title.to_owned(), self.trace_every, end);
+            plot::write(&chart, Form::of(path)?, path)?;
+        }
         for path in &self.trace {
             let text = match suffix(path).as_str() {
                 "vcd" => vcd::text(log),
@@ -66,6 +78,22 @@ impl TraceOptions {
             None => Ok(()),
         }
     }
+}
+
+/// The items of a list; `axis0` stands for all that belong to the axis.
+fn items(list: &str) -> Result<Vec<Item>> {
+    let mut items = Vec::new();
+    for name in list.split(',').map(str::trim) {
+        match name.strip_prefix("axis") {
+            Some(number) => {
+                for kind in ["dest", "pos", "out"] {
+                    items.push(Item::new(&format!("{kind}{number}"))?);
+                }
+            }
+            None => items.push(Item::new(name)?),
+        }
+    }
+    Ok(items)
 }
 
 fn suffix(path: &Path) -> String {
