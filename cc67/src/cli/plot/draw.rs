@@ -178,7 +178,9 @@ fn draw_panel<B: DrawingBackend>(chart: &Chart, panel: &Panel, area: &Area<B>) -
             .filter(|(_, value)| value.is_finite())
             .map(|(time, value)| (across(chart, time), up(value)))
             .collect();
-        area.draw(&PathElement::new(points, color(index).stroke_width(2))).map_err(text_of)?;
+        // A thick line has spikes where it turns back within a pixel, as noise does.
+        let thickness = if points.len() > (right - left) as usize { 1 } else { 2 };
+        area.draw(&PathElement::new(points, color(index).stroke_width(thickness))).map_err(text_of)?;
     }
     Ok(())
 }
