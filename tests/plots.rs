@@ -58,7 +58,7 @@ fn a_run_is_drawn_with_titles_and_units() {
     let texts = texts(&svg);
     for expect in [
         "a.c",
-        "axis 0: where it was sent and where it was (units)",
+        "axis 0: Dest and Position (units)",
         "Dest 0",
         "Position 0",
         "axis 0: velocity (units/s)",
@@ -99,6 +99,21 @@ fn a_picture_of_pixels_is_as_large_as_the_drawing() {
     assert!((400..2000).contains(&height), "{height}");
     let (_, again) = plot("png-again", "a.png", &[]);
     assert_eq!(png, again, "the same run, the same picture");
+}
+
+#[test]
+fn the_picture_in_the_readme_is_what_its_command_draws() {
+    let scratch = Scratch::new("plot-readme");
+    let picture = scratch.path().join("home3.svg");
+    let readme = fs::read_to_string(harness::root().join("README.md")).expect("there is a README");
+    let command = "run --plot homing.svg --watch dest0,dest1,dest2 c-programs/homing/home3.c c-programs/homing/home_switches.c";
+    assert!(readme.contains(command), "the README shows another command");
+    let file = picture.to_string_lossy().into_owned();
+    let arguments = command.split(' ').map(|word| if word == "homing.svg" { &file } else { word });
+    assert_eq!(run_in(BINARY, harness::root(), arguments).code, 0);
+    let kept = harness::root().join("c-programs/homing/home3.svg");
+    // Where it differs, `cp homing.svg c-programs/homing/home3.svg` after a look at it.
+    assert!(fs::read(picture).expect("it was written") == fs::read(kept).expect("it is kept"), "{command}");
 }
 
 #[test]

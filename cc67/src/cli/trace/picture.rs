@@ -93,7 +93,8 @@ fn of_axis(series: &Series<'_>, axis: usize) -> Vec<Panel> {
         .filter_map(|(name, p)| Some((name, p?)))
         .collect();
     if !path.is_empty() {
-        panels.push(panel("where it was sent and where it was", "units", path));
+        let names: Vec<_> = path.iter().map(|(name, _)| *name).collect();
+        panels.push(panel(&names.join(" and "), "units", path));
     }
     for (title, unit, points) in [
         ("velocity", "units/s", velocity),
