@@ -125,9 +125,22 @@ main()
 
 #[test]
 fn what_is_wrong_with_the_world_is_one_message_with_its_place() {
-    let files: &[(&str, &[u8])] = &[("a.stim", b"# door\nat 1s set bit 4711\n"), ("b.stim", b"\xff\xfe")];
+    let files: &[(&str, &[u8])] = &[
+        ("a.stim", b"# door\nat 1s set bit 4711\n"),
+        ("b.stim", b"\xff\xfe"),
+        ("a.toml", b"[[event]]\nat = 1\nset_bit = { 46 = 1 }\n"),
+        ("b.toml", b"[cpu]\nservo_us = 30\n"),
+    ];
     for (options, expect) in [
         (vec!["--stim", "a.stim"], "cc67: a.stim:2:15: expected a bit from 0 to 2047, found `4711`\n"),
+        (
+            vec!["--stim", "a.toml"],
+            "cc67: a.toml:3:18: bit 46 (LED) is an output, only the board drives it\n",
+        ),
+        (
+            vec!["--stim", "b.toml"],
+            "cc67: b.toml: a stimulus has only [[event]] and [[device]]; the rest belongs to `--machine`\n",
+        ),
         (vec!["--stim", "b.stim"], "cc67: b.stim is not text\n"),
         (vec!["--stim", "c.stim"], "cc67: cannot read c.stim: No such file or directory\n"),
         (

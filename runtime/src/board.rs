@@ -96,6 +96,8 @@ impl<E: Engine> Board<E> {
         };
         let mut machine = Machine::new(kernel, settings);
         power_up::fill(machine.memory_mut());
+        let (kernel, context) = machine.firmware_mut();
+        plant::play(kernel, connected, context.memory);
         let bss_fill = if config.bss_fill == 0 { connected.bss_fill } else { config.bss_fill };
         Self { machine, loaded: Default::default(), bss_fill }
     }

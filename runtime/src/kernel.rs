@@ -200,10 +200,11 @@ impl Kernel {
         }
     }
 
-    /// Lets the world act as a stimulus says.
+    /// Lets the world act as a stimulus says, beside what it does already.
     pub(crate) fn play(&mut self, stimulus: Stimulus, memory: &mut GuestMemory) {
-        let player = Player::new(stimulus, self, memory);
-        self.stimulus = Some(Box::new(player));
+        let mut player = self.stimulus.take().unwrap_or_else(|| Box::new(Player::new()));
+        player.extend(stimulus, self, memory);
+        self.stimulus = Some(player);
         self.pins.changes.switch_on(memory);
     }
 

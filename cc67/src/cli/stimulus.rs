@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Result, anyhow, bail};
+use runtime::machine_file::MachineFile;
 use runtime::stimulus::Stimulus;
 
 /// What messages call statements that stand on the command line.
@@ -23,8 +24,22 @@ fn one(argument: &str) -> Result<Stimulus> {
     if path.exists() || !argument.contains([' ', '=']) {
         let bytes = super::run::read(path)?;
         let Ok(text) = String::from_utf8(bytes) else { bail!("{argument} is not text") };
+        if path.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("toml")) {
+            return table(&text, argument);
+        }
         return Ok(Stimulus::parse(&text, argument)?);
     }
     // The statements in full help where the line and column alone do not.
     Stimulus::parse(argument, OPTION).map_err(|error| anyhow!("{error} in `{argument}`"))
+}
+
+/// Events and devices as a machine file has them; what else it says belongs to `--machine`.
+fn table(text: &str, name: &str) -> Result<Stimulus> {
+    let machine = MachineFile::parse(text)
+        .map_err(|error| anyhow!("{name}:{}:{}: {error}", error.line, error.column))?;
+    let others = MachineFile { stimulus: machine.stimulus.clone(), ..MachineFile::default() };
+    if machine != others {
+        bail!("{name}: a stimulus has only [[event]] and [[device]]; the rest belongs to `--machine`");
+    }
+    Ok(machine.stimulus)
 }

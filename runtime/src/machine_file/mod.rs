@@ -3,6 +3,7 @@
 //! Without one there are eight ideal axes and nothing else; each key changes one thing of that. Source: plant.md
 //! section 9. Every error names the line and column it is about, and a misspelt key the one that was meant.
 
+mod events;
 mod read;
 mod tables;
 
@@ -10,6 +11,8 @@ use std::fmt;
 
 use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::{AxisId, Bit};
+
+use crate::stimulus::Stimulus;
 
 /// A machine.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,6 +31,12 @@ pub struct MachineFile {
     pub spindle: Option<Spindle>,
     /// Connections of outputs with inputs.
     pub wires: Vec<Wire>,
+    /// What happens, and devices on pins.
+    pub stimulus: Stimulus,
+    /// SnapAmp boards on the bus.
+    pub snapamps: usize,
+    /// Whether a Kanalog is found at power-up.
+    pub has_kanalog: bool,
     /// Inputs that read 1 while nothing drives them.
     pub idle_high: Vec<Bit>,
     /// Whether reading an input that nothing drives is worth a hint.
@@ -52,6 +61,9 @@ impl Default for MachineFile {
             analog: Vec::new(),
             spindle: None,
             wires: Vec::new(),
+            stimulus: Stimulus::default(),
+            snapamps: 0,
+            has_kanalog: false,
             idle_high: Vec::new(),
             hints: true,
             servo_us: None,

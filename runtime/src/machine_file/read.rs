@@ -123,6 +123,22 @@ impl<'a> Value<'a> {
         Wrong::new(self.source.span().start, format!("`{}` must be {expected}, not {found}", self.path))
     }
 
+    /// Where it stands in the text.
+    pub(super) fn offset(&self) -> usize {
+        self.source.span().start
+    }
+
+    /// A word or number as it stands there.
+    pub(super) fn plain(&self) -> String {
+        match self.source.get_ref() {
+            DeValue::String(text) => text.to_string(),
+            DeValue::Boolean(flag) => flag.to_string(),
+            DeValue::Integer(number) => number.as_str().to_owned(),
+            DeValue::Float(number) => number.as_str().to_owned(),
+            other => other.type_str().to_owned(),
+        }
+    }
+
     /// Whether it is the only value that is built so far.
     pub(super) fn only(&self, built: &DeValue<'_>) -> Read<()> {
         let same = match (self.source.get_ref(), built) {

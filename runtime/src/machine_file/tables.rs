@@ -3,6 +3,7 @@
 use kmotiondef::{AxisId, Bit};
 use toml::de::{DeTable, DeValue};
 
+use super::events;
 use super::read::{Read, Table, Value, Wrong, keys};
 use super::{
     Analog, AnalogSource, Axis, Condition, Encoder, Handwheel, Index, MachineFile, MachineFileError, Model,
@@ -15,10 +16,14 @@ pub(super) fn apply(machine: &mut MachineFile, text: &str) -> Result<(), Machine
         let offset = error.span().map_or(0, |span| span.start);
         Wrong::new(offset, error.message()).in_text(text)
     })?;
-    root(machine, &Table::new("", 0, table.get_ref())).map_err(|wrong| wrong.in_text(text))
+    let mut statements = Vec::new();
+    let root = root(machine, &mut statements, &Table::new("", 0, table.get_ref()));
+    root.map_err(|wrong| wrong.in_text(text))?;
+    machine.stimulus.rules.extend(events::rules(statements, text)?);
+    Ok(())
 }
 
-fn root(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
+fn root(machine: &mut MachineFile, statements: &mut Vec<(usize, String)>, table: &Table<'_>) -> Read<()> {
     keys!(table, |key, value| {
         "axis" => axes(machine, &value.table()?)?;
         "switch" => machine.switches.extend(each(&value, switch)?);
@@ -26,11 +31,13 @@ fn root(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
         "encoder" => machine.encoders.extend(each(&value, handwheel)?);
         "adc" => machine.analog.extend(each(&value, analog)?);
         "wire" => machine.wires.extend(each(&value, wire)?);
+        "event" => statements.extend(events::events(&value)?);
+        "device" => statements.extend(events::devices(&value)?);
         "spindle" => machine.spindle = Some(spindle(machine.spindle, &value.table()?)?);
         "inputs" => inputs(machine, &value.table()?)?;
         "cpu" => cpu(machine, &value.table()?)?;
         "host" => host(machine, &value.table()?)?;
-        "board" => board(&value.table()?)?;
+        "board" => board(machine, &value.table()?)?;
     });
     Ok(())
 }
@@ -309,14 +316,17 @@ fn host(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
     Ok(())
 }
 
-/// What only has its default so far.
-fn board(table: &Table<'_>) -> Read<()> {
+/// The option boards; some have their default only so far.
+fn board(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
     keys!(table, |key, value| {
-        "kanalog" => value.only(&DeValue::String("auto".into()))?;
+        "kanalog" => {
+            let choices = [("auto", false), ("false", false), ("true", true)];
+            machine.has_kanalog = value.choice(&choices)?;
+        };
         "kstep" => value.only(&DeValue::Boolean(false))?;
         "respect_enable" => value.only(&DeValue::Boolean(false))?;
         "konnect" => value.only(&DeValue::String("any".into()))?;
-        "snapamp" => value.only(&integer("0"))?;
+        "snapamp" => machine.snapamps = value.whole(2)? as usize;
         "flash" => value.only(&DeValue::String("".into()))?;
         "strict_flash" => value.only(&DeValue::Boolean(false))?;
     });

@@ -145,8 +145,76 @@ fn mistakes_are_named_with_their_place() {
         ("[axis.0\nname = 5", "1:8: unclosed table, expected `]`"),
         (
             "colour = 5",
-            "1:1: unknown key `colour`; there are axis, switch, probe, encoder, adc, wire, spindle, inputs, cpu, host, board",
+            "1:1: unknown key `colour`; there are axis, switch, probe, encoder, adc, wire, event, device, spindle, inputs, cpu, host, board",
         ),
+    ] {
+        assert_eq!(message(text), expect, "{text}");
+    }
+}
+
+#[test]
+fn events_and_devices_are_statements_of_a_stimulus() {
+    let text = "[[event]]
+at = 2.5
+set_bit = { 24 = 1 }
+adc = { 0 = 1500 }
+uart = \"G1 \\\"X\\\"\\r\"
+encoder = { 3 = 25 }
+disturb = { axis = 1, units = 50 }
+command = \"StopImmediate0\"
+run = { thread = 3 }
+persist = { 10 = 7 }
+kill = 2
+[[event]]
+after = \"printed go on\"
+expect = { bit = { 46 = 1 }, printed = \"done\" }
+[[device]]
+type = \"echo\"
+on = \"uart\"
+[[device]]
+type = \"spi\"
+select = 16
+clock = 17
+out = 18
+word = \"0x10,0x20\"
+";
+    let machine = MachineFile::parse(text).unwrap_or_else(|error| panic!("{}: {error}", error.line));
+    // Keys come in the order of their names.
+    let expect = "at 2.5 adc 0 = 1500; at 2.5 command \"StopImmediate0\"; at 2.5 axis 1 push 50
+at 2.5 encoder 3 moves 25; at 2.5 kill 2; at 2.5 persist 10 = 7; at 2.5 start thread 3
+at 2.5 bit 24 = 1; at 2.5 uart \"G1 \\\"X\\\"\\r\"
+once printed \"go on\" expect bit 46 = 1; once printed \"go on\" expect printed \"done\"
+device echo; device spi clock=17 out=18 select=16 word=0x10,0x20
+";
+    let expect = Stimulus::parse(expect, "expected").unwrap_or_else(|error| panic!("{error}"));
+    let meant = |stimulus: &Stimulus| -> Vec<String> {
+        let mut rules: Vec<String> =
+            stimulus.rules.iter().map(|rule| format!("{:?} {:?}", rule.trigger, rule.action)).collect();
+        rules.sort();
+        rules
+    };
+    assert_eq!(meant(&machine.stimulus), meant(&expect));
+}
+
+#[test]
+fn wrong_events_are_named_with_their_place() {
+    for (text, expect) in [
+        (
+            "[[event]]\nat = 1\nset_bit = { 46 = 1 }",
+            "3:18: bit 46 (LED) is an output, only the board drives it",
+        ),
+        ("[[event]]\nat = -1", "2:6: `event[0].at` must be 0 or a number above it, not -1"),
+        (
+            "[[event]]\nafter = \"bit 46 blinks\"\nkill = 1",
+            "3:8: expected `rises`, `falls` or `changes`, found `blinks`",
+        ),
+        ("[[event]]\nkil = 1", "2:1: unknown key `kil` in `event[0]`; did you mean `kill`?"),
+        (
+            "[[event]]\nrun = { thread = 3, program = \"jog.c\" }",
+            "2:31: a program is named on the command line: `--load N:jog.c`",
+        ),
+        ("[[device]]\nfrom = 3", "1:1: `device[0]` needs `type`"),
+        ("[[device]]\ntype = \"wire\"\nfrom = 3", "1:1: device `wire` needs `to=…`"),
     ] {
         assert_eq!(message(text), expect, "{text}");
     }

@@ -8,20 +8,21 @@ mod motor;
 
 use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::structs::Chan;
-use kmotiondef::variables::DAC_BUFFER;
+use kmotiondef::variables::{DAC_BUFFER, KANALOG_PRESENT, SNAP_AMP_PRESENT};
 use kmotiondef::{AxisId, Bit, Cycles};
 use vm::memory::GuestMemory;
 
 pub(crate) use axis::{Drive, Plant};
 pub(crate) use motor::Applied;
 
+use crate::device::outside::wire::Wire as Line;
 use crate::firmware::io::bit_state;
 use crate::kernel::Kernel;
 use crate::machine_file::{
     Analog, AnalogSource, Axis, Condition, Encoder, Handwheel, MachineFile, Model, Spindle, SpindleDrive,
-    Wire,
 };
 use crate::servo::TIMEBASE;
+use crate::stimulus::conversion;
 use crate::views::Typed;
 
 /// Something that makes contact along an axis.
@@ -54,21 +55,12 @@ impl Contact {
     }
 }
 
-/// A wire with the levels on their way.
-#[derive(Clone, Debug)]
-struct Line {
-    wire: Wire,
-    last: Option<bool>,
-    late: Vec<(Cycles, bool)>,
-}
-
 /// What a machine file connects to the board, beside the loads themselves.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Mechanics {
     contacts: Vec<Contact>,
     analog: Vec<Analog>,
     handwheels: Vec<Handwheel>,
-    lines: Vec<Line>,
     spindle: Option<Spindle>,
     /// Revolutions a second.
     spindle_speed: f64,
@@ -93,12 +85,10 @@ impl Mechanics {
             let closes = Closes::Every(index.every, index.width, index.offset);
             Some(Contact { bit: index.bit, axis, closes, active: true })
         });
-        let line = |wire: &Wire| Line { wire: *wire, last: None, late: Vec::new() };
         Self {
             contacts: switches.chain(probes).chain(indexes).collect(),
             analog: machine.analog.clone(),
             handwheels: machine.encoders.clone(),
-            lines: machine.wires.iter().map(line).collect(),
             spindle: machine.spindle,
             spindle_speed: 0.0,
         }
@@ -108,7 +98,6 @@ impl Mechanics {
         self.contacts.is_empty()
             && self.analog.is_empty()
             && self.handwheels.is_empty()
-            && self.lines.is_empty()
             && self.spindle.is_none()
     }
 
@@ -118,7 +107,6 @@ impl Mechanics {
             |wheel: &Handwheel| wheel.moves.iter().any(|[start, _, duration]| time <= start + duration);
         self.spindle_speed != 0.0
             || self.handwheels.iter().any(turns)
-            || self.lines.iter().any(|line| !line.late.is_empty())
             || self.analog.iter().any(|analog| matches!(analog.source, AnalogSource::Sine { .. }))
     }
 }
@@ -134,9 +122,27 @@ pub(crate) fn install(kernel: &mut Kernel, machine: &MachineFile) {
         kernel.servo.plants[spindle.axis.index()] = Plant::new(&load);
     }
     kernel.mechanics = Mechanics::new(machine);
+    (0..machine.snapamps).for_each(|board| kernel.snapamps.connect(board));
     kernel.hints = machine.hints;
     for &bit in &machine.idle_high {
         kernel.pins.idle_high(bit);
+    }
+}
+
+/// What a machine does by itself: its wires and devices, and its events.
+pub(crate) fn play(kernel: &mut Kernel, machine: &MachineFile, memory: &mut GuestMemory) {
+    if machine.has_kanalog || !machine.analog.is_empty() {
+        memory.set(KANALOG_PRESENT, 1);
+    }
+    if machine.snapamps > 0 {
+        memory.set(SNAP_AMP_PRESENT, 1);
+    }
+    for wire in &machine.wires {
+        kernel.pins.declare(wire.to);
+        kernel.attach(Box::new(Line::of(wire)), memory, Cycles::default());
+    }
+    if !machine.stimulus.is_empty() {
+        kernel.play(machine.stimulus.clone(), memory);
     }
 }
 
@@ -212,12 +218,12 @@ fn fraction(kernel: &Kernel, memory: &GuestMemory, spindle: &Spindle) -> f64 {
     }
 }
 
-/// Shows the board what switches, probes, wires and sources say where the loads are now.
-pub(crate) fn signal(kernel: &mut Kernel, memory: &GuestMemory, now: Cycles) {
+/// Shows the board what switches, probes and sources say where the loads are now.
+pub(crate) fn signal(kernel: &mut Kernel, now: Cycles) {
     if kernel.mechanics.is_empty() {
         return;
     }
-    let mut mechanics = std::mem::take(&mut kernel.mechanics);
+    let mechanics = std::mem::take(&mut kernel.mechanics);
     for (index, contact) in mechanics.contacts.iter().enumerate() {
         let mut others = mechanics.contacts.iter().filter(|other| other.bit == contact.bit);
         // The first contact of a bit speaks for all of them: one that is closed decides.
@@ -228,9 +234,6 @@ pub(crate) fn signal(kernel: &mut Kernel, memory: &GuestMemory, now: Cycles) {
         let level = closed.map_or(!contact.active, |contact| contact.active);
         set(kernel, contact.bit, level, now);
     }
-    for line in &mut mechanics.lines {
-        carry(kernel, memory, line, now);
-    }
     let time = now.get() as f64 / Cycles::PER_SECOND.get() as f64;
     for analog in &mechanics.analog {
         let value = match analog.source {
@@ -240,7 +243,7 @@ pub(crate) fn signal(kernel: &mut Kernel, memory: &GuestMemory, now: Cycles) {
                 kernel.servo.plants[axis.index()].load * gain + offset
             }
         };
-        kernel.kanalog.drive(analog.channel, libm::round(value.clamp(-2048.0, 2047.0)) as i32);
+        kernel.kanalog.drive(analog.channel, conversion(value));
     }
     kernel.mechanics = mechanics;
 }
@@ -249,20 +252,6 @@ pub(crate) fn signal(kernel: &mut Kernel, memory: &GuestMemory, now: Cycles) {
 fn set(kernel: &mut Kernel, bit: Bit, level: bool, now: Cycles) {
     if kernel.pins.input(bit) != level || !kernel.pins.is_driven(bit) {
         kernel.pins.drive(bit, level, now);
-    }
-}
-
-/// Lets the input of a wire follow its output.
-fn carry(kernel: &mut Kernel, memory: &GuestMemory, line: &mut Line, now: Cycles) {
-    let level = bit_state(kernel, memory, line.wire.from).0 != line.wire.invert;
-    if line.last != Some(level) {
-        line.last = Some(level);
-        let delay = (line.wire.delay_s * Cycles::PER_SECOND.get() as f64) as i64;
-        line.late.push((Cycles::new(now.get() + delay), level));
-    }
-    while line.late.first().is_some_and(|(due, _)| *due <= now) {
-        let (_, level) = line.late.remove(0);
-        set(kernel, line.wire.to, level, now);
     }
 }
 

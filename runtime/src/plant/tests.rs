@@ -14,6 +14,7 @@ fn desk(machine: &str) -> Desk {
     let machine = MachineFile::parse(machine).unwrap_or_else(|error| panic!("{}: {error}", error.line));
     let mut desk = Desk::new();
     install(&mut desk.kernel, &machine);
+    play(&mut desk.kernel, &machine, &mut desk.memory);
     desk
 }
 

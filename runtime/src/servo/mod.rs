@@ -93,7 +93,7 @@ pub(crate) fn tick(kernel: &mut Kernel, context: &mut TickContext<'_>) -> bool {
     let moved = if has_path || !kernel.servo.still.lasts(memory) {
         run_axes(kernel, memory, context.now)
     } else {
-        plant::signal(kernel, memory, context.now);
+        plant::signal(kernel, context.now);
         false
     };
     is_driven | turned | moved | recorder::sample(memory)
@@ -115,7 +115,7 @@ fn run_axes(kernel: &mut Kernel, memory: &mut GuestMemory, now: Cycles) -> bool 
             }
         }
     }
-    plant::signal(kernel, memory, now);
+    plant::signal(kernel, now);
     changed |= coordinated::board::tick(kernel, memory);
     if has_slaves {
         slave::follow(&kernel.servo, memory);

@@ -65,43 +65,34 @@ pub(crate) struct Player {
 }
 
 impl Player {
-    /// Gets ready; an option board that something happens to was found at power-up.
-    pub(crate) fn new(stimulus: Stimulus, kernel: &mut Kernel, memory: &mut GuestMemory) -> Self {
-        let rules = stimulus.rules;
-        for Rule { action, .. } in &rules {
-            if needs_kanalog(action) {
-                memory.set(KANALOG_PRESENT, 1);
-            }
-            match action {
-                Action::SnapAmp(board, ..) => {
-                    kernel.snapamps.connect(*board);
-                    memory.set(SNAP_AMP_PRESENT, 1);
-                }
-                Action::Set(bit, _) | Action::Toggle(bit) | Action::Pulse(bit, _) => {
-                    kernel.pins.declare(*bit);
-                }
-                _ => {}
-            }
-        }
-        let mut player = Self {
+    /// Nothing yet.
+    pub(crate) fn new() -> Self {
+        Self {
+            rules: Vec::new(),
             due: BTreeMap::new(),
             count: 0,
             waves: [None; ADC_CHANNELS],
             turning: Vec::new(),
-            spent: vec![false; rules.len()],
+            spent: Vec::new(),
             printed: Vec::new(),
             looked_at: 0,
             active: ThreadSet::EMPTY,
             converted: [-1; ADC_CHANNELS],
-            rules,
-        };
-        for index in 0..player.rules.len() {
-            match player.rules[index].trigger {
-                Trigger::At(time) | Trigger::Every { from: time, .. } => player.plan(time, Due::Rule(index)),
+        }
+    }
+
+    /// Gets ready for more; an option board that something happens to was found at power-up.
+    pub(crate) fn extend(&mut self, stimulus: Stimulus, kernel: &mut Kernel, memory: &mut GuestMemory) {
+        for rule in stimulus.rules {
+            announce(&rule.action, kernel, memory);
+            let index = self.rules.len();
+            match rule.trigger {
+                Trigger::At(time) | Trigger::Every { from: time, .. } => self.plan(time, Due::Rule(index)),
                 Trigger::When { .. } | Trigger::End => {}
             }
+            self.rules.push(rule);
+            self.spent.push(false);
         }
-        player
     }
 
     fn plan(&mut self, at: Cycles, due: Due) {
@@ -332,6 +323,21 @@ impl Player {
                 kernel.kanalog.drive(channel, value);
             }
         }
+    }
+}
+
+/// What will be driven is no accident, and an option board that something happens to is there.
+fn announce(action: &Action, kernel: &mut Kernel, memory: &mut GuestMemory) {
+    if needs_kanalog(action) {
+        memory.set(KANALOG_PRESENT, 1);
+    }
+    match action {
+        Action::SnapAmp(board, ..) => {
+            kernel.snapamps.connect(*board);
+            memory.set(SNAP_AMP_PRESENT, 1);
+        }
+        Action::Set(bit, _) | Action::Toggle(bit) | Action::Pulse(bit, _) => kernel.pins.declare(*bit),
+        _ => {}
     }
 }
 

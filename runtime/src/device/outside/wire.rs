@@ -6,6 +6,7 @@ use kmotiondef::{Bit, Cycles};
 
 use crate::device::attached::{Attached, Outside, Settings};
 use crate::device::changes::BitChange;
+use crate::machine_file;
 
 /// A wire.
 #[derive(Debug)]
@@ -20,18 +21,22 @@ pub(crate) struct Wire {
 }
 
 impl Wire {
+    /// The wire of a machine file.
+    pub(crate) fn of(wire: &machine_file::Wire) -> Self {
+        let machine_file::Wire { from, to, invert, delay_s } = *wire;
+        Self::between(from, to, invert, delay_s)
+    }
+
+    fn between(from: Bit, to: Bit, is_inverted: bool, delay_s: f64) -> Self {
+        let delay = libm::round(delay_s.max(0.0) * Cycles::PER_SECOND.get() as f64) as i64;
+        Self { from, to, is_inverted, delay: Cycles::new(delay), late: VecDeque::new(), is_connected: false }
+    }
+
     /// `from`, `to`, `invert`, `delay_s`.
     pub(crate) fn new(settings: &mut Settings<'_>) -> Result<Self, String> {
-        Ok(Self {
-            from: settings.bit("from")?,
-            to: settings.bit("to")?,
-            is_inverted: settings.flag("invert")?,
-            delay: Cycles::new(libm::round(
-                settings.number("delay_s", 0.0)?.max(0.0) * Cycles::PER_SECOND.get() as f64,
-            ) as i64),
-            late: VecDeque::new(),
-            is_connected: false,
-        })
+        let (from, to) = (settings.bit("from")?, settings.bit("to")?);
+        let is_inverted = settings.flag("invert")?;
+        Ok(Self::between(from, to, is_inverted, settings.number("delay_s", 0.0)?))
     }
 }
 
