@@ -55,7 +55,7 @@ const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (models KFLOP firmwar
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Compile programs into threads, execute them on the simulated board, print the console
-    Run(run::Arguments),
+    Run(Box<run::Arguments>),
     /// Compile and link a program for a thread into an image, FILE(N).out
     Build(build::Arguments),
     /// Compile programs and report what is wrong with them

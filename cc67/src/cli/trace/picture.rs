@@ -86,7 +86,7 @@ fn of_axis(series: &Series<'_>, axis: usize) -> Vec<Panel> {
             .collect(),
     };
     let mut panels = Vec::new();
-    let velocity = dest.as_ref().or(position.as_ref()).map(|points| slope(points));
+    let velocity = dest.as_ref().or(position.as_ref()).map(slope);
     let error = dest.as_ref().zip(position.as_ref()).map(|(dest, position)| difference(dest, position));
     let path: Vec<_> = [("Dest", dest), ("Position", position)]
         .into_iter()
@@ -101,7 +101,7 @@ fn of_axis(series: &Series<'_>, axis: usize) -> Vec<Panel> {
         ("following error", "units", error),
         ("output", "", series.of("out", axis)),
     ] {
-        let Some(points) = points.filter(|points| changes(points)) else { continue };
+        let Some(points) = points.filter(changes) else { continue };
         panels.push(panel(title, unit, vec![(title, points)]));
     }
     panels
