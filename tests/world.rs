@@ -270,3 +270,21 @@ main()
         text.lines().next_back().expect("a line").split(',').filter_map(|cell| cell.parse().ok()).collect();
     assert!((last[1] - 0.502).abs() < 0.001 && (last[2] - 986.0).abs() < 1.0 && last[3] == 1.0, "{last:?}");
 }
+
+#[test]
+fn an_unknown_register_is_storage_and_told_once_to_who_asks() {
+    let program = "#include \"KMotionDef.h\"
+main()
+{
+    int i;
+    for (i = 1; i < 4; i++) { FPGA(0x1f0) = i; FPGAW(0x1f2) = 500 * i; }
+    printf(\"%d %d\\n\", FPGA(0x1f0), FPGAW(0x1f2));
+}
+";
+    let remarks = "cc67: FPGA register 0x1f0 is not known: it only stores what is written\n\
+                   cc67: FPGA register 0x1f2 is not known: it only stores what is written\n";
+    for (options, expect) in [(vec![], ""), (vec!["--verbose"], remarks)] {
+        let (output, _) = run("unknown", program, &[], &options);
+        assert_eq!((output.code, output.stdout.as_str(), output.stderr.as_str()), (0, "3 1500\n", expect));
+    }
+}

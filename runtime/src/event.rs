@@ -47,6 +47,8 @@ pub enum EventKind {
     },
     /// A remark of the simulation that the real board would not make.
     Diagnostic(String),
+    /// A remark that is only worth making to who asks for all of them.
+    Detail(String),
     /// A thread was stopped by a trap.
     Trap(Trap),
     /// Something that was asked to be recorded.

@@ -432,8 +432,8 @@ impl Bus for Kernel {
             return;
         }
         let behind = Behind { pins: &mut self.pins, uart: &mut self.uart, now };
-        if let Some(text) = self.fpga.write(behind, addr, size, value) {
-            self.tell(now, EventKind::Diagnostic(text));
+        if let Some(remark) = self.fpga.write(behind, addr, size, value) {
+            self.tell(now, remark);
         }
     }
 

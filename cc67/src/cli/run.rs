@@ -62,6 +62,9 @@ pub(super) struct Arguments {
     /// Show the board time in seconds before each console line
     #[arg(long)]
     time: bool,
+    /// Show every remark of the board, also on what is probably as intended: unknown FPGA registers
+    #[arg(long)]
+    verbose: bool,
     /// Simulate every tick and every wait; the results are the same
     #[arg(long)]
     no_shortcuts: bool,
@@ -266,6 +269,7 @@ fn execute<E: Engine>(
     let mut screen = Screen {
         out: BufWriter::new(io::stdout().lock()),
         time: arguments.time,
+        is_verbose: arguments.verbose,
         programs: ThreadId::all().filter_map(|thread| board.debug(thread).cloned()).collect(),
         error: None,
     };
@@ -306,6 +310,8 @@ fn execute<E: Engine>(
 struct Screen<W: Write> {
     out: W,
     time: bool,
+    /// Whether details are shown.
+    is_verbose: bool,
     programs: Vec<DebugInfo>,
     error: Option<io::Error>,
 }
@@ -320,6 +326,11 @@ impl<W: Write> Screen<W> {
             let _ = self.out.flush();
             if let Some(text) = events::describe(event, &self.programs) {
                 terminal::note(&text);
+            }
+            if let EventKind::Detail(text) = &event.kind
+                && self.is_verbose
+            {
+                terminal::note(text);
             }
             return;
         };

@@ -11,6 +11,7 @@ use vm::bus::AccessSize;
 
 use super::pins::{PINS, Pins};
 use super::uart::Uart;
+use crate::event::EventKind;
 
 /// Bytes between two registers.
 const STRIDE: u32 = 4;
@@ -146,7 +147,7 @@ impl Fpga {
         address: GuestAddr,
         size: AccessSize,
         value: u32,
-    ) -> Option<String> {
+    ) -> Option<EventKind> {
         let Behind { pins, uart, now } = behind;
         let (number, kind) = register(address);
         match kind {
@@ -155,7 +156,7 @@ impl Fpga {
             Some((Kind::BitDirection, group)) => pins.set_direction_group(group, value as u8, now),
             Some((Kind::UartData, _)) => {
                 uart.send(value as u8, now);
-                return self.note_lost_character();
+                return self.note_lost_character().map(EventKind::Diagnostic);
             }
             Some((Kind::UartStatus, _)) => uart.set_divisor(value as u8),
             _ => self.store(address, size, value),
@@ -165,6 +166,7 @@ impl Fpga {
         }
         (kind.is_none() && self.unknown.insert(number))
             .then(|| format!("FPGA register {number:#x} is not known: it only stores what is written"))
+            .map(EventKind::Detail)
     }
 
     /// Connects the UART to its pins.
@@ -252,7 +254,7 @@ mod tests {
             self.fpga.read(behind, address(register), size)
         }
 
-        fn write(&mut self, register: u32, size: AccessSize, value: u32) -> Option<String> {
+        fn write(&mut self, register: u32, size: AccessSize, value: u32) -> Option<EventKind> {
             let behind = Behind { pins: &mut self.pins, uart: &mut self.uart, now: Cycles::default() };
             self.fpga.write(behind, address(register), size, value)
         }

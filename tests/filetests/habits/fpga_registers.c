@@ -1,4 +1,5 @@
 // Registers by the header's macros, read, changed and written back.
+//@ args: run --verbose
 //@ says: FPGA register 0x2f0 is not known
 //@ says: FPGA register 0x2f4 is not known
 //@ prints: 11
