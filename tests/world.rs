@@ -123,6 +123,31 @@ main()
     assert_eq!(rest.lines().count(), 1, "{rest}");
 }
 
+#[cfg(unix)]
+#[test]
+fn a_terminal_is_the_other_end_of_the_line() {
+    let scratch = Scratch::new("world-terminal");
+    let program = ECHO.replace("Delay_sec(0.002)", "Delay_sec(1.0)");
+    fs::write(scratch.path().join("a.c"), program).expect("it is ours");
+    let mut child = Command::new(env!("CARGO_BIN_EXE_cc67-under-test"))
+        .args(["run", "--uart", "pty", "a.c"])
+        .current_dir(scratch.path())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("it starts");
+    let mut errors = BufReader::new(child.stderr.take().expect("it is piped"));
+    let mut line = String::new();
+    errors.read_line(&mut line).expect("it names its terminal");
+    let name = line.trim_end().rsplit(' ').next().expect("a name");
+    let mut terminal = fs::OpenOptions::new().read(true).write(true).open(name).expect("it is there");
+    terminal.write_all(b"hello.").expect("it takes characters");
+    let mut answer = [0; 7];
+    terminal.read_exact(&mut answer).expect("the program answers");
+    assert_eq!(&answer, b"hello.!");
+    assert!(child.wait().expect("it ends").success());
+}
+
 #[test]
 fn what_is_wrong_with_the_world_is_one_message_with_its_place() {
     let files: &[(&str, &[u8])] = &[
