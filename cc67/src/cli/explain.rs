@@ -11,7 +11,8 @@ use crate::lints::{Lint, Preset};
 const LIST: &str = "warnings";
 
 /// Pages about other things than warnings.
-const PAGES: &[(&str, &str)] = &[("stimulus", include_str!("pages/stimulus.md"))];
+const PAGES: &[(&str, &str)] =
+    &[("stimulus", include_str!("pages/stimulus.md")), ("machine", include_str!("pages/machine.md"))];
 
 /// Prints the page of the warning that a message, a switch or the user's memory names.
 pub(super) fn explain(name: &str) -> Result<Exit> {

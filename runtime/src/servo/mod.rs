@@ -5,9 +5,15 @@
 //! The call-back comes before all of this and is the machine's work.
 
 mod backlash;
+#[cfg(test)]
+mod closed_form;
 mod compensation;
 pub(crate) mod coordinated;
 mod duration;
+#[cfg(test)]
+mod equations;
+#[cfg(test)]
+mod hostile;
 pub(crate) mod independent;
 mod input;
 pub(crate) mod limits;

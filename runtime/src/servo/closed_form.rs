@@ -1,0 +1,149 @@
+//! Profiles against a calculation of their own: the textbook formulas of motion with limited jerk.
+//!
+//! Nothing here knows how the profiles are planned. Random limits, distances and speeds over several decades; at every
+//! sample the limits hold, the target is met, and the time is that of the formulas to a tick.
+
+use proptest::prelude::*;
+
+use super::profile::{FOREVER, Limits, Mode, Point, State, TIMEBASE, jog, move_from_rest, move_in_motion};
+
+/// Planning time of the board in front of a motion planned while another is under way.
+const LEAD: f64 = 0.0018;
+/// The board keeps some results as singles.
+const SINGLE: f64 = 3e-6;
+
+/// Seconds of a change of speed, acceleration 0 at both ends.
+fn change_time(by: f64, limits: &Limits) -> f64 {
+    let by = by.abs();
+    let ramp = limits.a / limits.j;
+    if by >= limits.a * ramp { by / limits.a + ramp } else { 2.0 * (by / limits.j).sqrt() }
+}
+
+/// The way of such a change: symmetric, so at the mean speed.
+fn change_way(from: f64, to: f64, limits: &Limits) -> f64 {
+    (from + to) / 2.0 * change_time(to - from, limits)
+}
+
+/// Seconds of a move from rest to rest.
+fn move_time(length: f64, limits: &Limits) -> f64 {
+    let to_full = change_way(0.0, limits.v, limits);
+    if length >= 2.0 * to_full {
+        return 2.0 * change_time(limits.v, limits) + (length - 2.0 * to_full) / limits.v;
+    }
+    // The speed that is just reached: the way grows with it.
+    let (mut low, mut high) = (0.0, limits.v);
+    for _ in 0..200 {
+        let middle = (low + high) / 2.0;
+        if 2.0 * change_way(0.0, middle, limits) <= length { low = middle } else { high = middle }
+    }
+    2.0 * change_time(low, limits)
+}
+
+/// Seconds of a motion's states without the one tick at rest that the board appends, or the last without end.
+fn duration(states: &[State]) -> f64 {
+    let moving = states.iter().filter(|state| state.mode == Mode::Independent && state.t < FOREVER);
+    moving.filter(|state| (state.a, state.b, state.c) != (0.0, 0.0, 0.0)).map(|state| state.t).sum()
+}
+
+/// Checks every state at its ends and between: limits, and no jump of place or speed.
+fn check(start: Point, states: &[State], limits: &Limits, scale: f64) -> Result<(), TestCaseError> {
+    const SAMPLES: usize = 40;
+    let fastest = limits.v.max(start.v.abs());
+    let (mut x, mut v) = (start.x, start.v);
+    for state in states.iter().filter(|state| state.mode == Mode::Independent) {
+        let begin = state.at(0.0);
+        prop_assert!((begin.x - x).abs() <= SINGLE * scale, "place jumps by {} of {scale}", begin.x - x);
+        prop_assert!((begin.v - v).abs() <= SINGLE * fastest, "speed jumps by {} of {fastest}", begin.v - v);
+        prop_assert!(6.0 * state.a.abs() <= limits.j * (1.0 + SINGLE), "jerk {}", 6.0 * state.a);
+        let length = state.t.min(1e6);
+        for sample in 0..=SAMPLES {
+            let point = state.at(length * sample as f64 / SAMPLES as f64);
+            prop_assert!(point.v.abs() <= fastest * (1.0 + SINGLE), "speed {} of {fastest}", point.v);
+            prop_assert!(
+                point.a.abs() <= limits.a * (1.0 + SINGLE),
+                "acceleration {} of {}",
+                point.a,
+                limits.a
+            );
+        }
+        let end = state.at(if state.t < FOREVER { state.t } else { 0.0 });
+        (x, v) = (end.x, end.v);
+    }
+    Ok(())
+}
+
+fn near(found: f64, expect: f64) -> bool {
+    (found - expect).abs() <= TIMEBASE + SINGLE * expect
+}
+
+/// Numbers over decades.
+fn decades(from: f64, to: f64) -> impl Strategy<Value = f64> {
+    (from..to).prop_map(|exponent| libm::pow(10.0, exponent))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 10_000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn profiles_agree_with_the_formulas(
+        v in decades(0.0, 6.0),
+        a in decades(1.0, 7.0),
+        j in decades(2.0, 9.0),
+        distance in decades(-3.0, 6.0),
+        backwards: bool,
+        speed in -1.0..1.0,
+        jogged in -2.0..2.0,
+    ) {
+        let limits = Limits::new(v as f32, a as f32, j as f32).expect("positive limits");
+        let distance = if backwards { -distance } else { distance };
+
+        let states = move_from_rest(5.0, 5.0 + distance, &limits);
+        check(Point::rest(5.0), &states, &limits, distance.abs())?;
+        let (found, expect) = (duration(&states), move_time(distance.abs(), &limits));
+        prop_assert!(near(found, expect), "from rest: {} s instead of {}", found, expect);
+        prop_assert_eq!(states[states.len() - 2].d, 5.0 + distance);
+
+        let start = Point { x: 0.0, v: speed * limits.v, a: 0.0 };
+        let target: f64 = jogged * limits.v;
+        let reach = start.v.abs().max(target.abs());
+        let states = jog(start, target, &limits);
+        let loose = Limits { v: reach, ..limits };
+        let expect = LEAD + change_time(target - start.v, &limits);
+        check(start, &states, &loose, reach * expect)?;
+        let planned: f64 = states.iter().filter(|state| state.t < FOREVER).map(|state| state.t).sum();
+        prop_assert!(near(planned, expect), "jog: {} s instead of {}", planned, expect);
+
+        let states = move_in_motion(start, distance, &limits);
+        let begun = start.v * LEAD;
+        let scale = distance.abs().max(limits.v * limits.v / limits.a).max(begun.abs()).max(change_way(start.v, 0.0, &limits).abs());
+        check(start, &states, &limits, scale)?;
+        let expect = in_motion(start.v, distance - begun, &limits);
+        prop_assert!(near(duration(&states), expect), "in motion: {} s instead of {}", duration(&states), expect);
+        let moving: Vec<&State> = states.iter().filter(|state| state.mode == Mode::Independent).collect();
+        let end = moving.last().map(|state| state.at(state.t).x).unwrap_or_default();
+        prop_assert!((end - distance).abs() <= SINGLE * scale, "ends at {} instead of {}", end, distance);
+    }
+}
+
+/// Seconds of a move planned at speed `v0`: the lead, then on at full speed if there is room, else a stop and a move.
+fn in_motion(v0: f64, way: f64, limits: &Limits) -> f64 {
+    let lead = if v0 == 0.0 { 0.0 } else { LEAD };
+    let stop = change_way(v0, 0.0, limits);
+    let sign = if way < stop { -1.0 } else { 1.0 };
+    let full = sign * limits.v;
+    let shortest = change_way(v0, full, limits) + change_way(full, 0.0, limits);
+    if sign * (way - shortest) >= 0.0 {
+        let cruise = (way - shortest) / full;
+        return lead + change_time(full - v0, limits) + cruise + change_time(full, limits);
+    }
+    lead + change_time(v0, limits) + move_time((way - stop).abs(), limits)
+}
+
+#[test]
+fn limits_that_are_none_plan_nothing() {
+    for bad in [0.0, -1.0, f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        for limits in [[bad, 1.0, 1.0], [1.0, bad, 1.0], [1.0, 1.0, bad]] {
+            assert_eq!(Limits::new(limits[0], limits[1], limits[2]), None, "{limits:?}");
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! Numbers that no machine has: not one may hang the servo, make it panic or move for ever.
+
+use kmotiondef::structs::{Chan, Iir};
+use kmotiondef::{AxisId, Field, GuestAddr};
+
+use crate::testing::Desk;
+use crate::views::Typed;
+
+const NONSENSE: [f64; 7] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 0.0, -1.0, 1e300, f64::MIN_POSITIVE];
+
+fn axis() -> AxisId {
+    AxisId::new(0).expect("0 is an axis")
+}
+
+fn desk() -> Desk {
+    let mut desk = Desk::new();
+    desk.call("EnableAxisDest", &[0, 0]);
+    desk
+}
+
+#[test]
+fn limits_and_targets_of_nonsense_end() {
+    for field in [Chan::VEL, Chan::ACCEL, Chan::JERK] {
+        for value in NONSENSE {
+            let mut desk = desk();
+            desk.memory.set_axis(axis(), field, value as f32);
+            desk.call("Move", &[0, 10.0_f64.to_bits()]);
+            desk.call_in_slices("Jog", &[0, 5.0_f64.to_bits()]);
+            desk.run(200);
+        }
+    }
+    for value in NONSENSE {
+        let mut desk = desk();
+        let bits = value.to_bits();
+        desk.call("Move", &[0, bits]);
+        desk.run(50);
+        desk.call_in_slices("MoveRel", &[0, bits]);
+        desk.call_in_slices("Jog", &[0, bits]);
+        desk.call_in_slices("MoveExp", &[0, bits, 0.1_f64.to_bits()]);
+        desk.call_in_slices("MoveExp", &[0, 10.0_f64.to_bits(), bits]);
+        desk.run(200);
+        desk.call("EnableAxisDest", &[0, bits]);
+        desk.run(50);
+    }
+}
+
+#[test]
+fn gains_and_filters_of_nonsense_put_out_something() {
+    let gains: [Field<f32>; 12] = [
+        Chan::P,
+        Chan::I,
+        Chan::D,
+        Chan::MAX_I,
+        Chan::MAX_ERR,
+        Chan::MAX_OUTPUT,
+        Chan::DEAD_BAND_RANGE,
+        Chan::DEAD_BAND_GAIN,
+        Chan::FF_VEL,
+        Chan::INPUT_GAIN0,
+        Chan::OUTPUT_GAIN,
+        Chan::IIR.element(0).field(Iir::A1),
+    ];
+    for mode in 0..=9 {
+        for field in gains {
+            for value in NONSENSE {
+                let mut desk = desk();
+                desk.memory.set_axis(axis(), Chan::OUTPUT_MODE, mode);
+                desk.memory.set_axis(axis(), field, value as f32);
+                desk.memory.set_axis(axis(), Chan::DEST, 100.0);
+                desk.run(5);
+            }
+        }
+    }
+}
+
+#[test]
+fn pointers_that_point_nowhere_end_a_motion() {
+    for pointer in [4_u32, 0x1234_5677, 0x4200_0010, 0x9100_0000, 0xFFFF_FFF0] {
+        let mut desk = desk();
+        desk.memory.set_axis(axis(), Chan::PCOEFF, GuestAddr::new(pointer));
+        desk.run(3);
+        desk.memory.set_axis(axis(), Chan::C, GuestAddr::new(pointer));
+        desk.call("StartMove", &[0]);
+        desk.call_in_slices("Move", &[0, 10.0_f64.to_bits()]);
+        desk.run(100);
+        assert_eq!(desk.call_i32("CheckDone", &[0]), 1, "{pointer:#x}");
+    }
+}
