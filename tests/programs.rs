@@ -31,6 +31,27 @@ fn every_golden_console_has_its_program() {
 }
 
 #[test]
+fn the_index_lists_every_program_and_nothing_else() {
+    let folder = harness::root().join("c-programs");
+    let index = fs::read_to_string(folder.join("README.md")).expect("there is an index");
+    let listed: Vec<&str> = index
+        .split("](")
+        .skip(1)
+        .filter_map(|rest| rest.split(')').next())
+        .filter(|link| link.ends_with(".c"))
+        .collect();
+    for link in &listed {
+        assert!(folder.join(link).exists(), "the index lists {link}, which is not there");
+    }
+    for golden in files(&folder, "expected") {
+        let program = golden.with_extension("c");
+        let relative =
+            program.strip_prefix(&folder).expect("it lies there").to_string_lossy().replace('\\', "/");
+        assert!(listed.contains(&relative.as_str()), "{relative} is not in the index");
+    }
+}
+
+#[test]
 fn every_program_compiles_without_a_word() {
     for path in files(&harness::root().join("c-programs"), "c") {
         if !fs::read_to_string(&path).expect("programs are UTF-8").starts_with("// cc67: ") {

@@ -23,6 +23,7 @@ mod profile;
 mod program;
 mod run;
 mod setting;
+mod shell;
 mod stimulus;
 mod terminal;
 mod test;
@@ -74,6 +75,10 @@ enum Command {
     Init(init::Arguments),
     /// Draw columns of numbers over time
     Plot(plot::Arguments),
+    /// Print a script that completes commands and options in a shell
+    Completions(shell::CompletionArguments),
+    /// Write manual pages
+    Man(shell::ManArguments),
 }
 
 impl Command {
@@ -89,6 +94,8 @@ impl Command {
             Self::Test(arguments) => test::test(arguments),
             Self::Init(arguments) => init::init(arguments),
             Self::Plot(arguments) => plot::plot(arguments),
+            Self::Completions(arguments) => shell::completions(arguments),
+            Self::Man(arguments) => shell::man(arguments),
         }
     }
 }

@@ -178,6 +178,7 @@ fn draw_panel<B: DrawingBackend>(chart: &Chart, panel: &Panel, area: &Area<B>) -
             .filter(|(_, value)| value.is_finite())
             .map(|(time, value)| (across(chart, time), up(value)))
             .collect();
+        let points = without_flat(points);
         // A thick line has spikes where it turns back within a pixel, as noise does.
         let thickness = if points.len() > (right - left) as usize { 1 } else { 2 };
         area.draw(&PathElement::new(points, color(index).stroke_width(thickness))).map_err(text_of)?;
@@ -216,18 +217,40 @@ fn draw_strip<B: DrawingBackend>(
     write(area, &strip.name, (LEFT as i32 - 10 - width, 6), 13, &RGBColor(70, 70, 70))?;
     let ground = [(LEFT as i32, bottom), ((WIDTH - RIGHT) as i32, bottom)];
     area.draw(&PathElement::new(ground.to_vec(), RGBColor(200, 200, 200))).map_err(text_of)?;
-    let mut last = i32::MIN;
-    for (from, to) in &strip.spans {
-        let (from, to) = (across(chart, *from), across(chart, *to).max(across(chart, *from) + 1));
-        // Spans that are finer than the picture run together.
-        if to <= last {
-            continue;
-        }
-        let corners = [(from.max(last), top), (to, bottom)];
+    for (from, to) in bars(chart, strip) {
+        let corners = [(from, top), (to, bottom)];
         area.draw(&Rectangle::new(corners, color(index).filled())).map_err(text_of)?;
-        last = to;
     }
     Ok(())
+}
+
+/// The spans of a strip in pixels; those without a gap between them that shows run together.
+fn bars(chart: &Chart, strip: &Strip) -> Vec<(i32, i32)> {
+    let mut bars: Vec<(i32, i32)> = Vec::new();
+    for (from, to) in &strip.spans {
+        let (from, to) = (across(chart, *from), across(chart, *to).max(across(chart, *from) + 1));
+        match bars.last_mut() {
+            Some((_, last)) if from <= *last => *last = to.max(*last),
+            _ => bars.push((from, to)),
+        }
+    }
+    bars
+}
+
+/// The points without those in the middle of a horizontal stretch.
+fn without_flat(points: Vec<(i32, i32)>) -> Vec<(i32, i32)> {
+    let mut kept: Vec<(i32, i32)> = Vec::with_capacity(points.len());
+    for point in points {
+        if let [.., before, last] = kept.as_mut_slice()
+            && before.1 == last.1
+            && last.1 == point.1
+        {
+            *last = point;
+        } else {
+            kept.push(point);
+        }
+    }
+    kept
 }
 
 /// The axis of time.
