@@ -1,0 +1,151 @@
+//! The book: its programs do what it says, its links lead somewhere, its lists are those of the tables.
+//!
+//! Chapters that are lists are made from the tables; `CC67_WRITE_BOOK=1 cargo test --test book` writes them anew.
+
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::PathBuf;
+
+use cc67::lints::Lint;
+use harness::{Scratch, files, run_in};
+use kmotiondef::firmware::{ABSENT, FIRMWARE_FUNCTIONS};
+use kmotiondef::variables::FIRMWARE_VARIABLES;
+
+const BINARY: &str = env!("CARGO_BIN_EXE_cc67-under-test");
+
+fn source() -> PathBuf {
+    harness::root().join("cc67/book/src")
+}
+
+fn read(name: &str) -> String {
+    fs::read_to_string(source().join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+}
+
+/// The fenced blocks of a chapter: what stands behind the fence, and the text.
+fn blocks(text: &str) -> Vec<(String, String)> {
+    let mut blocks = Vec::new();
+    let mut open: Option<(String, String)> = None;
+    for line in text.lines() {
+        match (line.strip_prefix("```"), &mut open) {
+            (Some(info), None) => open = Some((info.to_owned(), String::new())),
+            (Some(_), Some(_)) => blocks.extend(open.take()),
+            (None, Some((_, text))) => {
+                text.push_str(line);
+                text.push('\n');
+            }
+            (None, None) => {}
+        }
+    }
+    blocks
+}
+
+#[test]
+fn programs_do_what_the_book_says() {
+    let scratch = Scratch::new("book");
+    let path = scratch.path().join("program.c");
+    let mut count = 0;
+    for chapter in files(&source(), "md") {
+        let name = chapter.file_name().expect("a name").to_string_lossy().into_owned();
+        let all = blocks(&fs::read_to_string(&chapter).expect("chapters are UTF-8"));
+        for (index, (info, text)) in all.iter().enumerate() {
+            if info != "c" && info != "c run" {
+                continue;
+            }
+            fs::write(&path, text).expect("files can be written");
+            count += 1;
+            let check = run_in(BINARY, scratch.path(), ["check", "program.c"]);
+            assert_eq!(check.code, 0, "{name}: {text}\n{}", check.stderr);
+            if info == "c run" {
+                let output = run_in(BINARY, scratch.path(), ["run", "program.c"]);
+                let (kind, expect) = &all[index + 1];
+                assert_eq!(
+                    (kind.as_str(), output.stdout.as_str()),
+                    ("text", expect.as_str()),
+                    "{name}: {text}"
+                );
+            }
+        }
+    }
+    assert!(count >= 5, "only {count} programs");
+}
+
+/// What stands behind each `mark` up to `end`.
+fn behind<'a>(text: &'a str, mark: &str, end: char) -> Vec<&'a str> {
+    text.split(mark).skip(1).filter_map(|rest| rest.split(end).next()).collect()
+}
+
+#[test]
+fn links_and_includes_lead_to_files() {
+    let summary = read("SUMMARY.md");
+    let listed: BTreeSet<_> = behind(&summary, "](", ')').into_iter().collect();
+    for chapter in files(&source(), "md") {
+        let name = chapter.file_name().expect("a name").to_string_lossy().into_owned();
+        assert!(name == "SUMMARY.md" || listed.contains(name.as_str()), "{name} is not in the summary");
+        let text = read(&name);
+        for link in behind(&text, "](", ')').into_iter().filter(|link| !link.starts_with("http")) {
+            let file = link.split('#').next().expect("a part");
+            assert!(source().join(file).exists(), "{name} links to {link}");
+        }
+        for include in behind(&text, "{{#include ", '}') {
+            assert!(source().join(include).exists(), "{name} includes {include}");
+        }
+    }
+}
+
+/// A chapter is what the tables say.
+fn check_list(name: &str, text: &str) {
+    if std::env::var_os("CC67_WRITE_BOOK").is_some() {
+        fs::write(source().join(name), text).expect("the book can be written");
+    }
+    assert!(
+        read(name) == text,
+        "{name} is out of date: `CC67_WRITE_BOOK=1 cargo test --test book` writes it"
+    );
+}
+
+#[test]
+fn the_chapter_of_warnings_has_the_page_of_each() {
+    let mut text = "# Warnings\n\nMessages name the warning in brackets; `-Wno-NAME` switches it off, `-Werror=NAME` makes it an \
+                    error,\nand `cc67 --explain NAME` shows its page. `-Wall` and `-Wextra` switch on more.\n"
+        .to_owned();
+    let mut lints: Vec<_> = Lint::ALL.iter().collect();
+    lints.sort_by_key(|lint| lint.name());
+    for lint in lints {
+        let _ = write!(text, "\n{{{{#include ../../src/lints/pages/{}.md}}}}\n", lint.name());
+    }
+    check_list("warnings.md", &text);
+}
+
+#[test]
+fn the_chapter_of_functions_has_each() {
+    let mut text =
+        "# Firmware functions\n\nCalls cost processor time; what a function waits comes on top.\n".to_owned();
+    let shown = || FIRMWARE_FUNCTIONS.iter().filter(|function| !ABSENT.contains(&function.name));
+    let groups: BTreeSet<_> = shown().map(|function| function.group).collect();
+    for group in groups {
+        let _ = write!(text, "\n## {group}\n\n");
+        for function in shown().filter(|function| function.group == group) {
+            let cost = function.cost.get() as f64 / 200.0;
+            let (prototype, doc) = (function.prototype(), function.doc.trim().replace('\n', " "));
+            let _ = writeln!(text, "- `{prototype}` ({cost} µs)\n  {doc}");
+        }
+    }
+    check_list("functions.md", &text);
+}
+
+#[test]
+fn the_chapter_of_variables_has_each() {
+    let mut text =
+        "# Firmware variables\n\n| address | variable | what it means |\n|---|---|---|\n".to_owned();
+    for variable in FIRMWARE_VARIABLES {
+        let (declaration, doc) = (variable.ty.declare(variable.name), variable.doc.trim().replace('\n', " "));
+        let _ = writeln!(
+            text,
+            "| `{:08x}` | `{declaration}` | {} |",
+            variable.address.get(),
+            doc.replace('|', "\\|")
+        );
+    }
+    check_list("variables.md", &text);
+}
