@@ -178,3 +178,68 @@ fn ten_thousand_random_lines_leave_a_board_that_answers() {
     });
     result.unwrap_or_else(|error| panic!("{error}"));
 }
+
+#[test]
+fn a_flashed_board_boots_with_its_programs_and_keeps_what_was_flashed() {
+    let scratch = Scratch::new("console-flash");
+    let source = "#include \"KMotionDef.h\"\nint count = 5;\nmain()\n{\n  printf(\"count %d, data %d\\n\", count++, persist.UserData[7]);\n}\n";
+    scratch.write("a.c", source);
+    let binary = env!("CARGO_BIN_EXE_cc67-under-test");
+    let arguments = ["console", "--flash", "board.flash"];
+    let script = "run a.c\nwait 0.01\nSetPersistDec 7 77;Vel3=1234;EnableAxis3\nSetStartupThread1 1\nFlash\nwait 0.1\n\
+                  SetPersistDec 7 1;Vel3=1\nReboot!\nwait 0.1\nVel3;Enabled3;GetPersistDec 7;CheckThread1\n";
+    let output = run_with_input(binary, scratch.path(), arguments, script);
+    let expect = "count 5, data 0\nProgram Flash Image Complete\ncount 6, data 77\n1234.000000\n0\n77\n0\n---- exit 0\n";
+    assert_eq!(output.render(), expect);
+    // The next power-up: no PC says anything, no program is named.
+    for _ in 0..2 {
+        let output = run_with_input(binary, scratch.path(), ["run", "--flash", "board.flash"], "");
+        assert_eq!(output.render(), "count 6, data 77\n---- exit 0\n");
+    }
+}
+
+#[test]
+fn blocks_of_the_users_flash_outlive_the_run() {
+    let scratch = Scratch::new("console-user-flash");
+    let writer = "#include \"KMotionDef.h\"\ndouble table[2] = {1.5, -2.5};\nmain()\n{\n  SetFlashBank(FLASH_USER);\n  \
+                  printf(\"%d\\n\", ProgramFlash((char *)table, 8, FLASH_USER, \"written\\n\"));\n}\n";
+    let reader = "#include \"KMotionDef.h\"\nmain()\n{\n  double *table = (double *)FLASH_USER;\n  printf(\"%g %g\\n\", table[0], table[1]);\n}\n";
+    scratch.write("write.c", writer).write("read.c", reader);
+    let binary = env!("CARGO_BIN_EXE_cc67-under-test");
+    let run = |file: &str| {
+        run_with_input(binary, scratch.path(), ["run", "--flash", "board.flash", file], "").render()
+    };
+    assert_eq!(run("write.c"), "written\n0\n---- exit 0\n");
+    assert_eq!(run("read.c"), "1.5 -2.5\n---- exit 0\n");
+    scratch.write("board.flash", "short");
+    assert!(run("read.c").contains("board.flash is not a board's flash: it has 5 bytes, not 2097152"));
+}
+
+#[test]
+fn answers_of_the_pc_are_scripted() {
+    let source = "#include \"KMotionDef.h\"\n\
+        int ask(int code)\n{\n  persist.UserData[100] = code;\n  while (persist.UserData[100] > 0) ;\n  return persist.UserData[100];\n}\n\
+        main()\n{\n  char *p = (char *)gather_buffer;\n  char *s = \"Tool in place?\";\n  while ((*p++ = *s++)) ;\n\
+        persist.UserData[101] = 0; persist.UserData[102] = 4; persist.UserData[103] = 0;\n  ask(15);\n  printf(\"pressed %d\\n\", persist.UserData[103]);\n\
+        persist.UserData[101] = 0; persist.UserData[102] = 4;\n  ask(15);\n  printf(\"pressed %d\\n\", persist.UserData[103]);\n\
+        persist.UserData[101] = 500; persist.UserData[102] = 1; persist.UserData[103] = 5;\n  ask(16);\n  printf(\"#500 = %g\\n\", ((double *)persist.UserData)[5]);\n\
+        persist.UserData[101] = 3;\n  printf(\"M3: %d\\n\", ask(14));\n}\n";
+    let host = "# the operator\nmsgbox = no\nvar.500 = 2.25\n";
+    let files = [("a.c", source), ("pc.txt", host)];
+    let arguments = ["--host", "pc.txt", "--answer", "msgbox=yes", "--answer", "request.14=-3", "a.c"];
+    let output = console("console-answers", &files, &arguments, "");
+    assert_eq!(output.stdout, "pressed 7\npressed 6\n#500 = 2.25\nM3: -3\n");
+    let shown = "cc67: message box: Tool in place? (no)\ncc67: message box: Tool in place? (yes)\n\
+                 cc67: get G-code variables from 500\ncc67: M code 3\ncc67: request 14 is answered -3\n";
+    assert_eq!(output.stderr, shown);
+    let output = console("console-answers-bad", &[("pc.txt", "\nmsgbox\n")], &["--host", "pc.txt"], "");
+    assert_eq!((output.code, output.stderr.as_str()), (2, "cc67: pc.txt:2: `msgbox` is not `key=value`\n"));
+}
+
+#[test]
+fn m_codes_pass_their_parameters() {
+    let source = "#include \"KMotionDef.h\"\nmain()\n{\n  printf(\"P = %f Q = %f R = %f\\n\", *(float *)&persist.UserData[0],\n    *(float *)&persist.UserData[1], *(float *)&persist.UserData[2]);\n}\n";
+    let arguments = ["--mcode", "M110 P1.23 Q4.56 R-1:0", "a.c"];
+    let expect = "P = 1.230000 Q = 4.560000 R = -1.000000\n---- exit 0\n";
+    check("console-mcode", &[("a.c", source)], &arguments, "", expect);
+}

@@ -133,3 +133,47 @@ fn the_status_record_tells_what_programs_do() {
     let passed = later.get(MainStatus::TIME_STAMP) - status.get(MainStatus::TIME_STAMP);
     assert!((2.0..2.02).contains(&passed), "{passed}");
 }
+
+/// Stores a double in two elements, low word first, as the PC application does.
+fn set_double(board: &mut Board, element: u32, value: f64) {
+    let bits = value.to_bits();
+    for (element, word) in [(element, bits as u32), (element + 1, (bits >> 32) as u32)] {
+        board.write_line(&format!("SetPersistHex {element} {word:X}")).expect("it is connected");
+    }
+}
+
+#[test]
+fn the_tap_cycle_of_the_manual_runs_from_a_scripted_host() {
+    let mut board = Board::new();
+    let file = harness::root().join("tests/inputs/rigid_tap.c");
+    board.compile_and_load_coff(&file, 2).expect("the program is right");
+    for axis in [6, 7] {
+        let setup = format!(
+            "OutputMode{axis}=0;InputMode{axis}=0;Vel{axis}=200000;Accel{axis}=2e6;Jerk{axis}=4e7;EnableAxisDest{axis} 0"
+        );
+        board.write_line(&setup).expect("it is connected");
+    }
+    // TPI, forward and retract RPM, depths in inches: total, forward and back per motion.
+    let parameters = [20.0, 700.0, 1000.0, 0.75, 0.2, 0.05];
+    for (index, parameter) in (0..).zip(parameters) {
+        set_double(&mut board, 18 + 2 * index, parameter);
+    }
+    set_double(&mut board, 30, 0.0);
+    board.write_line("SetPersistDec 6 10084;Execute2").expect("it is connected");
+    let mut polls = 0;
+    while board.write_line_read_line("GetPersistHex 31").expect("it answers") == "0" {
+        board.run_for(0.05);
+        polls += 1;
+        assert!(polls < 1000, "the flag does not come");
+    }
+    assert_eq!(board.write_line_read_line("GetPersistHex 31").expect("it answers"), "3FF00000");
+    assert_eq!(board.write_line_read_line("CheckThread2").expect("it answers"), "0");
+    let lines: Vec<String> = std::iter::from_fn(|| board.service_console()).collect();
+    let depths = ["0.200", "0.150", "0.350", "0.300", "0.500", "0.450", "0.650", "0.600", "0.750", "0.000"];
+    let mut expect = vec!["Mach3 Notify Call, Message = 10084".to_owned()];
+    expect.extend(depths.map(|depth| format!("depth {depth}")));
+    expect.push("Tap Complete".to_owned());
+    assert_eq!(lines, expect);
+    let back: f64 = board.write_line_read_line("Dest7").expect("it answers").parse().expect("a number");
+    assert!(back.abs() < 1.0, "{back}");
+}

@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use kmotiondef::map::{PROGRAM_SIZE, program_base};
+use kmotiondef::map::{FLASH, PROGRAM_SIZE, program_base};
 use kmotiondef::structs::Persist;
-use kmotiondef::variables::{PERSIST, USER_CALL_BACK};
+use kmotiondef::variables::{HOST_STATUS, PERSIST, USER_CALL_BACK};
 use kmotiondef::{Bit, CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
 use vm::engine::Engine;
 use vm::interp::BytecodeEngine;
@@ -14,16 +14,20 @@ use vm::program::Program;
 use vm::thread::{NotLoaded, ThreadState};
 use vm::verify::{VerifyError, verify};
 
+use crate::commands::FLASH_COMPLETE;
 use crate::debug::{DebugInfo, SourcePlace};
 use crate::event::{Event, EventKind};
 use crate::files::{HostFiles, NoFiles};
+use crate::flash::{self, FLASH_SIZE};
+use crate::host::Answers;
 use crate::kernel::{Kernel, Request};
 use crate::loader::{Fill, LoadError, Placed, prepare};
 use crate::machine_file::MachineFile;
+use crate::plant;
+use crate::power_up::{self, Before};
 use crate::stimulus::Stimulus;
 use crate::trace;
 use crate::views::Typed;
-use crate::{plant, power_up};
 
 /// Settings of a board.
 #[derive(Debug)]
@@ -32,12 +36,16 @@ pub struct Config {
     pub machine: MachineConfig,
     /// Whether the built-in PC polls and answers.
     pub host: bool,
+    /// What it answers to programs.
+    pub answers: Answers,
     /// Where the PC keeps its files.
     pub files: Box<dyn HostFiles>,
     /// Byte put into uninitialised data at a load.
     pub bss_fill: u8,
     /// What is connected to the board.
     pub machine_file: MachineFile,
+    /// What flash memory holds, [`FLASH_SIZE`] bytes; `None` for a board whose flash was never written.
+    pub flash: Option<Vec<u8>>,
 }
 
 impl Default for Config {
@@ -45,9 +53,11 @@ impl Default for Config {
         Self {
             machine: MachineConfig::default(),
             host: true,
+            answers: Answers::default(),
             files: Box::new(NoFiles),
             bss_fill: 0,
             machine_file: MachineFile::default(),
+            flash: None,
         }
     }
 }
@@ -77,6 +87,8 @@ struct Loaded {
 pub struct Board<E = BytecodeEngine> {
     machine: Machine<Kernel, E>,
     loaded: [Option<Loaded>; ThreadId::MAX as usize],
+    /// What is known of the programs in flash.
+    flashed: [Option<DebugInfo>; ThreadId::MAX as usize],
     bss_fill: u8,
 }
 
@@ -87,6 +99,7 @@ impl<E: Engine> Board<E> {
         let connected = &config.machine_file;
         let mut kernel = Kernel::new(config.files);
         kernel.host.connect(config.host && connected.host);
+        kernel.host.answer_with(config.answers);
         plant::install(&mut kernel, connected);
         let servo = connected.servo_us.map(|time| Cycles::new((time * CYCLES_PER_US) as i64));
         let settings = MachineConfig {
@@ -94,12 +107,91 @@ impl<E: Engine> Board<E> {
             strict_stack: config.machine.strict_stack || connected.strict_stack,
             ..config.machine
         };
-        let mut machine = Machine::new(kernel, settings);
-        power_up::fill(machine.memory_mut());
-        let (kernel, context) = machine.firmware_mut();
-        plant::play(kernel, connected, context.memory);
+        let machine = Machine::new(kernel, settings);
         let bss_fill = if config.bss_fill == 0 { connected.bss_fill } else { config.bss_fill };
-        Self { machine, loaded: Default::default(), bss_fill }
+        let (loaded, flashed) = Default::default();
+        let mut board = Self { machine, loaded, flashed, bss_fill };
+        if let Some(flash) = config.flash {
+            let stored = board.machine.memory_mut().poke_bytes(FLASH.base, &flash);
+            debug_assert!(stored.is_ok() && flash.len() == FLASH_SIZE, "flash has its size");
+        }
+        board.power_up();
+        let (kernel, context) = board.machine.firmware_mut();
+        plant::play(kernel, connected, context.memory);
+        board
+    }
+
+    /// Fills memory from flash, or as it is when nothing was ever flashed, and starts the programs that start by
+    /// themselves.
+    fn power_up(&mut self) {
+        let memory = self.machine.memory_mut();
+        let before = if flash::is_saved(memory) { Before::Flashed } else { Before::Zero };
+        if before == Before::Flashed {
+            flash::restore(memory);
+        }
+        power_up::fill(memory, before);
+        if before == Before::Flashed {
+            ThreadId::all().for_each(|thread| self.load_flashed(thread));
+            let starts = self.memory().get(PERSIST.field(Persist::RUN_ON_START_UP));
+            for thread in ThreadId::all().filter(|thread| starts & 1 << thread.get() != 0) {
+                // A thread without a program has nothing to start.
+                let _ = self.machine.start(thread);
+            }
+        }
+        let (kernel, context) = self.machine.firmware_mut();
+        let status = i32::from(kernel.host.has_job());
+        context.memory.set(HOST_STATUS, status);
+    }
+
+    /// Makes a program of what flash has brought back for a thread.
+    fn load_flashed(&mut self, thread: ThreadId) {
+        let Some(text) = flash::text(self.memory(), thread) else { return };
+        let length = text.end.get() - text.start.get();
+        let bytes = self.memory().read_bytes(text.start, length).unwrap_or_default();
+        match verify(bytes, text.start) {
+            Ok(program) => {
+                let entry = self.memory().get(PERSIST.field(Persist::ENTRY_POINTS).element(thread.index()));
+                self.machine.load_program(thread, program, GuestAddr::new(entry));
+                let extent = text.start.get()..text.end.get();
+                let debug = self.flashed[thread.index()].clone().unwrap_or_default();
+                self.loaded[thread.index()] = Some(Loaded { debug, extent });
+            }
+            Err(error) => {
+                let (kernel, context) = self.machine.firmware_mut();
+                let text = format!("what was flashed for thread {thread} is no program: {error}");
+                kernel.tell(context.now, EventKind::Diagnostic(text));
+            }
+        }
+    }
+
+    /// Saves programs and settings in flash.
+    fn save(&mut self) {
+        let texts: Vec<_> =
+            ThreadId::all().map(|thread| self.machine.program(thread).map(Program::text)).collect();
+        flash::save(self.machine.memory_mut(), |thread| texts.get(thread.index()).cloned().flatten());
+        self.flashed =
+            std::array::from_fn(|index| self.loaded[index].as_ref().map(|loaded| loaded.debug.clone()));
+        let (kernel, _) = self.machine.firmware_mut();
+        kernel.console.message(FLASH_COMPLETE);
+    }
+
+    /// Starts anew from flash. Time goes on: it counts from the first power-up.
+    fn reboot(&mut self) {
+        ThreadId::all().for_each(|thread| self.machine.unload_program(thread));
+        self.loaded = Default::default();
+        let flash = self.flash().to_vec();
+        let memory = self.machine.memory_mut();
+        *memory = GuestMemory::new();
+        let stored = memory.poke_bytes(FLASH.base, &flash);
+        debug_assert!(stored.is_ok(), "flash is mapped");
+        self.machine.firmware_mut().0.restart();
+        self.power_up();
+    }
+
+    /// What flash memory holds.
+    #[must_use]
+    pub fn flash(&self) -> &[u8] {
+        self.memory().read_bytes(FLASH.base, FLASH.size).unwrap_or_default()
     }
 
     /// Loads an image into `thread`, which is stopped first.
@@ -229,7 +321,8 @@ impl<E: Engine> Board<E> {
         for request in self.machine.firmware_mut().0.take_requests() {
             match request {
                 Request::Load(thread) => self.adopt(thread),
-                Request::Flash | Request::Reboot => {}
+                Request::Flash => self.save(),
+                Request::Reboot => self.reboot(),
             }
         }
     }

@@ -3,7 +3,10 @@
 //! Source: gather-persist-console.md sections 7 and 8. A program stores parameters in `UserData[101]` and on, then a
 //! code in `UserData[100]`, and waits until that is no longer positive.
 
-use std::collections::BTreeMap;
+mod answers;
+mod requests;
+
+pub use answers::{AnswerError, Answers, HELP as ANSWERS_HELP};
 
 use kmotiondef::limits::{N_USER_DATA_VARS, PC_COMM_PERSIST};
 use kmotiondef::structs::Persist;
@@ -20,6 +23,7 @@ use crate::firmware::coord;
 use crate::kernel::Kernel;
 use crate::servo::coordinated::rate;
 use crate::servo::coordinated::system::nominal_change_time;
+use crate::text::float_prefix;
 use crate::views::Typed;
 
 /// Ticks between two polls: 0.1 s.
@@ -34,8 +38,6 @@ const INVALID: i32 = -1;
 const BAD_TOOL: i32 = -2;
 /// Tools of the table.
 const TOOLS: i32 = 100;
-/// Counts per inch of an axis, as the PC is set up.
-const RESOLUTION: f32 = 1000.0;
 
 /// What the PC keeps.
 #[derive(Clone, Debug)]
@@ -44,10 +46,11 @@ pub(crate) struct Host {
     is_connected: bool,
     /// Ticks until it polls.
     until_poll: u64,
-    variables: BTreeMap<i32, f64>,
-    tools: BTreeMap<(i32, i32), f64>,
-    dros: [f64; 6],
+    /// What it answers and holds.
+    answers: Answers,
     jog_overrides: [f32; 6],
+    /// The request that is never answered and was shown.
+    unanswered: i32,
 }
 
 impl Default for Host {
@@ -55,10 +58,9 @@ impl Default for Host {
         Self {
             is_connected: true,
             until_poll: POLL_TICKS,
-            variables: BTreeMap::new(),
-            tools: BTreeMap::new(),
-            dros: [0.0; 6],
+            answers: Answers::default(),
             jog_overrides: [1.0; 6],
+            unanswered: 0,
         }
     }
 }
@@ -69,9 +71,20 @@ impl Host {
         self.is_connected = is_connected;
     }
 
+    /// Says what it answers.
+    pub(crate) fn answer_with(&mut self, answers: Answers) {
+        self.answers = answers;
+    }
+
+    /// Whether a job runs on it when the board starts.
+    pub(crate) const fn has_job(&self) -> bool {
+        self.answers.has_job
+    }
+
     /// Whether a program waits for an answer that will come.
     pub(crate) fn is_asked(&self, memory: &GuestMemory) -> bool {
-        self.is_connected && memory.get(data(0)) > 0
+        let code = memory.get(data(0));
+        self.is_connected && code > 0 && !self.answers.silent.contains(&code)
     }
 
     /// How many ticks it leaves the board alone.
@@ -116,7 +129,14 @@ pub(crate) fn slice(kernel: &mut Kernel, context: &mut TickContext<'_>) {
     context.memory.set(STATUS_REQUEST_COUNTER, polls);
     coord::update_state(context.memory);
     let code = context.memory.get(data(0));
-    if code > 0 {
+    if code <= 0 {
+        kernel.host.unanswered = 0;
+    } else if kernel.host.answers.silent.contains(&code) {
+        if kernel.host.unanswered != code {
+            kernel.host.unanswered = code;
+            say(kernel, context, format!("request {code} is left without an answer"));
+        }
+    } else {
         let answer = answer(kernel, context, code);
         context.memory.set(data(0), answer);
         kernel.disturb();
@@ -126,43 +146,37 @@ pub(crate) fn slice(kernel: &mut Kernel, context: &mut TickContext<'_>) {
 /// Meets a request; what it stores comes before the answer.
 fn answer(kernel: &mut Kernel, context: &mut TickContext<'_>, code: i32) -> i32 {
     let parameters: [i32; 3] = std::array::from_fn(|index| context.memory.get(data(index + 1)));
+    if let Some(text) = requests::shown(code, parameters[0]) {
+        say(kernel, context, text);
+    }
+    if let Some(&result) = kernel.host.answers.results.get(&code) {
+        say(kernel, context, format!("request {code} is answered {result}"));
+        return result;
+    }
     let number = f32::from_bits(parameters[0] as u32);
     match code {
         1 => emergency_stop(context),
         2 => set_job(context.memory, false),
+        3 if kernel.host.answers.has_job => set_job(context.memory, true),
         5 if !(0.001..=1000.0).contains(&number) => return INVALID,
         5 | 6 | 54 | 55 => set_override(kernel, context, code, number),
-        21 | 22 => say(kernel, context, format!("spindle override request {code}: {number}")),
-        7..=12 => kernel.host.dros[code as usize - 7] = f64::from(number),
-        13 | 14 => say(kernel, context, format!("request {code}: {}", parameters[0])),
+        7..=12 => kernel.host.answers.dros[code as usize - 7] = f64::from(number),
         15 => message_box(kernel, context, parameters),
         16 | 17 => return variables(kernel, context.memory, code == 17, parameters),
-        18 => {
-            let line = string(context.memory, parameters[0]);
-            say(kernel, context, format!("MDI: {line}"));
-            context.memory.set(data(2), 0);
-        }
-        19 => return store_floats(context.memory, parameters[0], &[RESOLUTION; 6]),
+        18 => mdi(kernel, context, parameters[0]),
+        19 => return store_floats(context.memory, parameters[0], &kernel.host.answers.resolutions),
         23 | 24 | 30..=35 => return tool(kernel, context.memory, code, parameters),
-        25 => return store_words(context.memory, parameters[0], &[1, 1, 1, 1]),
-        26 | 27 => return store_doubles(context.memory, parameters[0], &kernel.host.dros),
-        29 => {
-            let prompt = string(context.memory, parameters[0]);
-            say(kernel, context, format!("input box: {prompt}"));
-            context.memory.set(data(2), 0);
-            context.memory.set(data(3), 0);
-        }
-        3 | 4 | 20 | 28 | 36..=39 | 52 => {}
+        25 => return store_words(context.memory, parameters[0], &kernel.host.answers.setup),
+        26 | 27 => return store_doubles(context.memory, parameters[0], &kernel.host.answers.dros),
+        29 => input_box(kernel, context, parameters[0]),
+        3 | 4 | 13 | 14 | 20..=22 | 28 | 36..=39 | 52 => {}
         40..=45 => {
             let value = kernel.host.jog_overrides[code as usize - 40];
             context.memory.set(data(1), value.to_bits() as i32);
         }
         46..=51 => kernel.host.jog_overrides[code as usize - 46] = number,
-        53 => return edit_cell(context.memory, parameters[0]),
-        _ => {
-            say(kernel, context, format!("request {code} is unknown"));
-            return INVALID;
-        }
+        53 => return edit_cell(kernel, context.memory, parameters[0]),
+        _ => return INVALID,
     }
     DONE
 }
@@ -212,17 +226,59 @@ fn string(memory: &GuestMemory, offset: i32) -> String {
 /// Buttons of a message box.
 const BUTTONS: i32 = 0xf;
 
-/// Shows a box and presses its first button that goes on.
+/// Shows a box and presses the button that was named for it, or its first one that goes on.
 fn message_box(kernel: &mut Kernel, context: &mut TickContext<'_>, [offset, flags, _]: [i32; 3]) {
     let text = string(context.memory, offset);
-    let pressed = match flags & BUTTONS {
+    let default = match flags & BUTTONS {
         2 => 5,
         3 | 4 => 6,
         5 => 4,
         _ => 1,
     };
-    say(kernel, context, format!("message box: {text}"));
-    context.memory.set(data(3), pressed);
+    let named = kernel.host.answers.buttons.next();
+    let answer = named.map_or(String::new(), |button| format!(" ({})", answers::button_name(button)));
+    say(kernel, context, format!("message box: {text}{answer}"));
+    context.memory.set(data(3), named.unwrap_or(default));
+}
+
+/// Shows a prompt and types the number that was named for it, or 0.
+fn input_box(kernel: &mut Kernel, context: &mut TickContext<'_>, offset: i32) {
+    let prompt = string(context.memory, offset);
+    let (answer, typed) = match kernel.host.answers.inputs.next() {
+        Some(None) => (" (cancel)".to_owned(), None),
+        Some(Some(number)) => (format!(" ({number})"), Some(number)),
+        None => (String::new(), Some(0.0)),
+    };
+    say(kernel, context, format!("input box: {prompt}{answer}"));
+    context.memory.set(data(2), typed.unwrap_or(0.0).to_bits().cast_signed());
+    context.memory.set(data(3), i32::from(typed.is_none()));
+}
+
+/// Shows a line of G code. Of what it says only assignments to #variables are done.
+fn mdi(kernel: &mut Kernel, context: &mut TickContext<'_>, offset: i32) {
+    let line = string(context.memory, offset);
+    for (variable, value) in assignments(&line) {
+        kernel.host.answers.variables.insert(variable, value);
+    }
+    let result = kernel.host.answers.mdi.next();
+    let answer = result.map_or(String::new(), |result| format!(" (result {result})"));
+    say(kernel, context, format!("MDI: {line}{answer}"));
+    context.memory.set(data(2), result.unwrap_or(0));
+}
+
+/// The assignments `#N=NUMBER` of a line of G code.
+fn assignments(line: &str) -> Vec<(i32, f64)> {
+    let mut found = Vec::new();
+    let mut rest = line;
+    while let Some(at) = rest.find('#') {
+        rest = &rest[at + 1..];
+        let Some((variable, value)) = rest.split_once('=') else { break };
+        let (number, _) = float_prefix(value.trim_start().as_bytes());
+        if let Ok(variable) = variable.trim().parse() {
+            found.push((variable, number));
+        }
+    }
+    found
 }
 
 /// Copies #variables to or from `UserData`.
@@ -238,9 +294,9 @@ fn variables(
     for (number, offset) in (first..first.saturating_add(count)).zip((0..).step_by(8)) {
         let place = place.offset(offset);
         if sets {
-            kernel.host.variables.insert(number, memory.peek(place));
+            kernel.host.answers.variables.insert(number, memory.peek(place));
         } else {
-            memory.poke(place, kernel.host.variables.get(&number).copied().unwrap_or(0.0));
+            memory.poke(place, kernel.host.answers.variables.get(&number).copied().unwrap_or(0.0));
         }
     }
     DONE
@@ -258,9 +314,9 @@ fn tool(kernel: &mut Kernel, memory: &mut GuestMemory, code: i32, [tool, index, 
         _ => (code & !1, code & 1 != 0),
     };
     if sets {
-        kernel.host.tools.insert((kind, tool), memory.peek(place));
+        kernel.host.answers.tools.insert((kind, tool), memory.peek(place));
     } else {
-        memory.poke(place, kernel.host.tools.get(&(kind, tool)).copied().unwrap_or(0.0));
+        memory.poke(place, kernel.host.answers.tools.get(&(kind, tool)).copied().unwrap_or(0.0));
     }
     DONE
 }
@@ -286,13 +342,14 @@ fn store_doubles(memory: &mut GuestMemory, index: i32, values: &[f64]) -> i32 {
     DONE
 }
 
-/// The text of a screen cell: "0".
-fn edit_cell(memory: &mut GuestMemory, variable: i32) -> i32 {
+/// The text of a screen cell: "0" where no other was named.
+fn edit_cell(kernel: &Kernel, memory: &mut GuestMemory, variable: i32) -> i32 {
     let Some(place) = named(variable, 1) else { return INVALID };
     let offset: u32 = memory.peek(place);
     let address = memory.get(GATHER_BUFFER).offset(offset.wrapping_mul(4));
-    memory.poke(address, u16::from(b'0'));
-    DONE
+    let text = kernel.host.answers.cells.get(&variable).map_or("0", String::as_str);
+    let stored = memory.write_bytes(address, &[text.as_bytes(), b"\0"].concat());
+    if stored.is_ok() { DONE } else { INVALID }
 }
 
 #[cfg(test)]
@@ -354,5 +411,33 @@ mod tests {
             assert_eq!(ask(&mut desk, get, &parameters), DONE);
             assert_eq!(desk.memory.peek::<f64>(place), 2.5, "{get}");
         }
+    }
+
+    #[test]
+    fn answers_can_be_named() {
+        let mut desk = Desk::new();
+        let mut answers = Answers::default();
+        for setting in
+            ["msgbox=no", "input=2.5", "mdi=-3", "request.14=-7", "cell.110=1.25", "request.13=never"]
+        {
+            answers.set(setting).expect(setting);
+        }
+        desk.kernel.host.answer_with(answers);
+        let buffer = desk.memory.get(GATHER_BUFFER);
+        desk.memory.poke_bytes(buffer.offset(400), b"#5=1.5 #6 = -2\0").expect("mapped");
+        assert_eq!(ask(&mut desk, 15, &[100, 4, 0]), DONE);
+        assert_eq!(desk.memory.get(data(3)), 7);
+        assert_eq!(ask(&mut desk, 29, &[100]), DONE);
+        assert_eq!(f32::from_bits(desk.memory.get(data(2)).cast_unsigned()), 2.5);
+        assert_eq!(ask(&mut desk, 18, &[100]), DONE);
+        assert_eq!(desk.memory.get(data(2)), -3);
+        assert_eq!(ask(&mut desk, 16, &[5, 2, 10]), DONE);
+        let variables =
+            [0, 8].map(|offset| desk.memory.peek::<f64>(doubles(10, 1).expect("inside").offset(offset)));
+        assert_eq!(variables, [1.5, -2.0]);
+        assert_eq!(ask(&mut desk, 14, &[3]), -7);
+        assert_eq!(ask(&mut desk, 53, &[110]), DONE);
+        assert_eq!(desk.memory.read_c_string(buffer, 10).expect("mapped"), b"1.25");
+        assert_eq!(ask(&mut desk, 13, &[1]), 13);
     }
 }

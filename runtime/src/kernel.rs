@@ -373,6 +373,22 @@ impl Kernel {
         std::mem::take(&mut self.requests)
     }
 
+    /// Everything that the firmware keeps is as at power-up; what lies outside of the board is left alone.
+    pub(crate) fn restart(&mut self) {
+        self.continuations = Default::default();
+        self.console = Console::default();
+        self.serial = SerialService::default();
+        self.konnects = Konnects::default();
+        self.heap = Heap::default();
+        self.usb = Link::default();
+        self.uart_link = Link::default();
+        self.downloads = Downloads::default();
+        self.experiment = None;
+        self.random = 1;
+        self.token = GuestAddr::NULL;
+        self.disturb();
+    }
+
     /// Sends all console text that waits, the unfinished line included.
     pub(crate) fn flush_console(&mut self, now: Cycles) {
         for line in self.console.drain() {

@@ -1,37 +1,64 @@
 //! What guest memory holds when the board starts.
 
-use kmotiondef::start::Start;
+use kmotiondef::start::{Start, Stored};
 use kmotiondef::structs::{STRUCTURES, Structure, StructureField};
 use kmotiondef::variables::{FIRMWARE_VARIABLES, FirmwareVariable};
 use kmotiondef::{CType, GuestAddr};
 use vm::memory::GuestMemory;
 
-/// Stores the power-up value of every firmware variable.
-pub(crate) fn fill(memory: &mut GuestMemory) {
-    for variable in FIRMWARE_VARIABLES {
-        start_variable(memory, variable);
+/// What memory holds before it is filled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Before {
+    /// Nothing: all of it is zero.
+    Zero,
+    /// What was flashed; some values stay as they are.
+    Flashed,
+}
+
+impl Before {
+    /// Whether a value is stored.
+    fn takes(self, stored: Stored) -> bool {
+        self == Self::Zero || stored == Stored::Always
     }
 }
 
-fn start_variable(memory: &mut GuestMemory, variable: &FirmwareVariable) {
-    if variable.start == Start::Fields {
-        return start_structures(memory, variable.address, variable.ty);
+/// Stores the power-up value of every firmware variable.
+pub(crate) fn fill(memory: &mut GuestMemory, before: Before) {
+    for variable in FIRMWARE_VARIABLES {
+        start_variable(memory, variable, before);
     }
-    store(memory, variable.address, variable.start, variable.ty, 0);
+}
+
+fn start_variable(memory: &mut GuestMemory, variable: &FirmwareVariable, before: Before) {
+    if variable.start == Start::Fields {
+        return start_structures(memory, variable.address, variable.ty, before);
+    }
+    if before.takes(variable.stored) {
+        clear(memory, variable.address, variable.size, before);
+        store(memory, variable.address, variable.start, variable.ty, 0);
+    }
+}
+
+/// Makes room for a value: what was flashed there goes.
+fn clear(memory: &mut GuestMemory, address: GuestAddr, size: u32, before: Before) {
+    if before == Before::Flashed {
+        let cleared = memory.poke_bytes(address, &vec![0; size as usize]);
+        debug_assert!(cleared.is_ok(), "variables are mapped");
+    }
 }
 
 /// Stores the power-up values of a structure, or of each of an array of them.
-fn start_structures(memory: &mut GuestMemory, address: GuestAddr, ty: CType) {
+fn start_structures(memory: &mut GuestMemory, address: GuestAddr, ty: CType, before: Before) {
     match ty.resolved() {
         CType::Array(element, count) => {
             let Some(structure) = structure(*element) else { return };
             for index in 0..count {
-                start_structure(memory, address.offset(index * structure.size), structure, index);
+                start_structure(memory, address.offset(index * structure.size), structure, (index, before));
             }
         }
         ty => {
             if let Some(structure) = structure(ty) {
-                start_structure(memory, address, structure, 0);
+                start_structure(memory, address, structure, (0, before));
             }
         }
     }
@@ -44,12 +71,18 @@ fn structure(ty: CType) -> Option<&'static Structure> {
     }
 }
 
-fn start_structure(memory: &mut GuestMemory, address: GuestAddr, structure: &Structure, index: u32) {
-    for StructureField { offset, start, ty, .. } in structure.fields {
+fn start_structure(
+    memory: &mut GuestMemory,
+    address: GuestAddr,
+    structure: &Structure,
+    (index, before): (u32, Before),
+) {
+    for StructureField { offset, size, start, stored, ty, .. } in structure.fields {
         let address = address.offset(*offset);
         if *start == Start::Fields {
-            start_structures(memory, address, *ty);
-        } else {
+            start_structures(memory, address, *ty, before);
+        } else if before.takes(*stored) {
+            clear(memory, address, *size, before);
             store(memory, address, *start, *ty, index);
         }
     }
@@ -106,7 +139,7 @@ mod tests {
     #[test]
     fn variables_and_fields_have_their_values() {
         let mut memory = GuestMemory::new();
-        fill(&mut memory);
+        fill(&mut memory, Before::Zero);
         let axis = AxisId::new(3).expect("3 is an axis");
         assert_eq!(memory.get(CH3), CHAN.element(3).address());
         assert_eq!(memory.get(CS0_TIME_BASE), 9e-5);

@@ -25,7 +25,7 @@ pub(crate) struct Desk {
 impl Desk {
     pub(crate) fn new() -> Self {
         let mut memory = GuestMemory::new();
-        power_up::fill(&mut memory);
+        power_up::fill(&mut memory, power_up::Before::Zero);
         let kernel = Kernel::new(Box::new(NoFiles));
         Self { kernel, memory, threads: Threads::new(), now: Cycles::default(), tick: Ticks::default() }
     }

@@ -17,6 +17,7 @@ mod init;
 mod inspect;
 mod options;
 mod output;
+mod pc;
 mod planned;
 mod plot;
 mod profile;

@@ -3,7 +3,7 @@
 use clap::error::{ContextKind, ContextValue};
 
 /// Options of `run` to come, without `--`.
-const OPTIONS: &[&str] = &["flash", "json", "realtime"];
+const OPTIONS: &[&str] = &["json", "realtime"];
 
 /// The option to come that made the parser refuse the command line, if it was one.
 pub(super) fn option(error: &clap::Error) -> Option<&'static str> {

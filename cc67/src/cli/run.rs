@@ -18,6 +18,7 @@ use vm::machine::Config as MachineConfig;
 use vm::profile::ProfilingEngine;
 
 use super::options::CompilerOptions;
+use super::pc::PcOptions;
 use super::program::{Program, assign};
 use super::setting::{self, Setting};
 use super::uart::UartOptions;
@@ -36,7 +37,7 @@ pub(super) const TIMEBASE: f64 = 90e-6;
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The programs, sources or images: FILE for the lowest free thread, N:FILE for thread N
-    #[arg(required_unless_present = "explain", value_name = "[N:]FILE")]
+    #[arg(required_unless_present_any = ["explain", "flash"], value_name = "[N:]FILE")]
     programs: Vec<String>,
     /// Load a program without starting it, for another one to start
     #[arg(long, value_name = "N:FILE")]
@@ -78,6 +79,8 @@ pub(super) struct Arguments {
     uart: UartOptions,
     #[command(flatten)]
     trace: trace::TraceOptions,
+    #[command(flatten)]
+    pc: PcOptions,
     #[command(flatten)]
     compiler: CompilerOptions,
 }
@@ -123,7 +126,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit> {
     all.extend_from_slice(&arguments.load);
     let programs = assign(&all)?;
     let mut machine_file = machine_file(arguments.machine.as_deref())?;
-    let settings = setting::all(&arguments.set, &mut machine_file)?;
+    let settings = [setting::all(&arguments.set, &mut machine_file)?, arguments.pc.mcode()?].concat();
+    let (answers, flash) = (arguments.pc.answers()?, arguments.pc.flash()?);
     let stimulus = stimulus::read(&arguments.stim)?;
     let trace = arguments.trace.request()?;
     let Some(images) = images(&programs, &arguments.compiler)? else { return Ok(Exit::Failure) };
@@ -131,7 +135,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit> {
     let files = Box::new(Directory::new(&arguments.files));
     let machine = MachineConfig { shortcuts: !arguments.no_shortcuts, ..MachineConfig::default() };
     let session = Session { arguments, programs, images, settings, stimulus, trace };
-    let config = Config { machine, files, machine_file, ..Config::default() };
+    let config = Config { machine, files, machine_file, answers, flash, ..Config::default() };
     if let Some(target) = &arguments.profile {
         return session.profile(config, &profile::target(target)?);
     }
@@ -173,6 +177,7 @@ impl Session<'_> {
 
     /// Loads, starts and executes; yields the board as it is at the end.
     fn run<E: Engine>(&self, config: Config) -> Result<(Exit, Board<E>)> {
+        let flash = config.flash.clone();
         let mut board: Board<E> = Board::new(config);
         for (program, image) in self.programs.iter().zip(&self.images) {
             board.load(program.thread, image).map_err(|error| explain(program, image, error))?;
@@ -196,6 +201,7 @@ impl Session<'_> {
             board.record(request.clone());
         }
         let exit = execute(&mut board, self.arguments, self.trace.as_ref())?;
+        self.arguments.pc.keep_flash(flash.as_deref(), board.flash())?;
         Ok((exit, board))
     }
 }

@@ -43,6 +43,24 @@ fn persist(text: &str, index: &str, value: &str) -> Result<Setting> {
     Ok(Setting { address: user_data().offset(4 * index), bytes })
 }
 
+/// A word of `persist.UserData`.
+pub(super) fn word(element: u32, word: u32) -> Result<Setting> {
+    if element >= USER_DATA {
+        bail!("element {element} lies outside persist.UserData[0..{}]", USER_DATA - 1);
+    }
+    Ok(Setting { address: user_data().offset(4 * element), bytes: word.to_le_bytes().into() })
+}
+
+/// A whole number in `persist.UserData`.
+pub(super) fn whole(element: u32, value: i32) -> Result<Setting> {
+    word(element, value.cast_unsigned())
+}
+
+/// A single in `persist.UserData`.
+pub(super) fn single(element: u32, value: f32) -> Result<Setting> {
+    word(element, value.to_bits())
+}
+
 /// Address of `persist.UserData[0]`.
 fn user_data() -> GuestAddr {
     PERSIST.field(Persist::USER_DATA).address()

@@ -10,7 +10,7 @@ use crate::kernel::Request;
 use crate::views::Typed;
 
 /// What the board says when flash is written.
-const FLASH_COMPLETE: &str = "Program Flash Image Complete";
+pub(crate) const FLASH_COMPLETE: &str = "Program Flash Image Complete";
 /// Characters of `Echo` and the one behind it.
 const ECHO: usize = 5;
 /// The UART's clock, 16 of whose periods make the shortest bit.

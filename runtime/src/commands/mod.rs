@@ -27,6 +27,7 @@ mod table;
 pub use arguments::Argument;
 pub use table::COMMANDS;
 
+pub(crate) use board::FLASH_COMPLETE;
 pub(crate) use gather::{Experiment, advance};
 pub(crate) use link::{Link, slice};
 pub(crate) use programs::{Downloads, start};

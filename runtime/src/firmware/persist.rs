@@ -1,33 +1,105 @@
-//! Flash memory: not modelled yet.
+//! Flash memory. Source: devices.md section 7.
 
-use kmotiondef::GuestAddr;
-use vm::firmware::Caller;
+use kmotiondef::{Cycles, GuestAddr};
+use vm::firmware::{Caller, Outcome, Wake};
 use vm::trap::TrapKind;
 
-use super::not_modelled;
-use crate::kernel::Kernel;
+use super::string::text;
+use crate::flash;
+use crate::kernel::{Continuation, Kernel};
 
+/// How long erasing and programming a block takes; other threads and the servo go on.
+const PROGRAMMING: Cycles = Cycles::PER_SECOND;
+/// A block that is none, or words that are too many.
+const REFUSED: i32 = 1;
+
+/// Erases a block of the users' flash and programs it with 16-bit words; then prints a message, if there is one.
 pub(crate) fn program_flash(
-    _: &mut Kernel,
-    _: &mut Caller<'_>,
-    _: GuestAddr,
-    _: i32,
-    _: GuestAddr,
-    _: GuestAddr,
-) -> Result<i32, TrapKind> {
-    not_modelled("ProgramFlash")
+    kernel: &mut Kernel,
+    caller: &mut Caller<'_>,
+    from: GuestAddr,
+    words: i32,
+    to: GuestAddr,
+    message: GuestAddr,
+) -> Result<Outcome<i32>, TrapKind> {
+    if let Some(Continuation::Print { rest, result }) = kernel.take(caller) {
+        return Ok(print(kernel, caller, &rest, result));
+    }
+    let message = if message.is_null() { Vec::new() } else { text(caller, message)? };
+    match program(kernel, caller, (from, words, to))? {
+        Outcome::Done(result) => Ok(print(kernel, caller, &message, result)),
+        waiting => Ok(waiting),
+    }
 }
 
+/// Prints as much as the console has room for; the rest when there is some.
+fn print(kernel: &mut Kernel, caller: &mut Caller<'_>, message: &[u8], result: i32) -> Outcome<i32> {
+    let rest = kernel.console.put(message).to_vec();
+    if rest.is_empty() || caller.thread.is_none() {
+        return Outcome::Done(result);
+    }
+    kernel.keep(caller, Continuation::Print { rest, result });
+    Outcome::Wait(Wake::Retry)
+}
+
+/// The same without a message.
 pub(crate) fn program_flash_no_messages(
-    _: &mut Kernel,
-    _: &mut Caller<'_>,
-    _: GuestAddr,
-    _: i32,
-    _: GuestAddr,
-) -> Result<i32, TrapKind> {
-    not_modelled("ProgramFlashNoMessages")
+    kernel: &mut Kernel,
+    caller: &mut Caller<'_>,
+    from: GuestAddr,
+    words: i32,
+    to: GuestAddr,
+) -> Result<Outcome<i32>, TrapKind> {
+    program(kernel, caller, (from, words, to))
 }
 
-pub(crate) fn set_flash_bank(_: &mut Kernel, _: &mut Caller<'_>, _: GuestAddr) -> Result<(), TrapKind> {
-    not_modelled("SetFlashBank")
+fn program(
+    kernel: &mut Kernel,
+    caller: &mut Caller<'_>,
+    (from, words, to): (GuestAddr, i32, GuestAddr),
+) -> Result<Outcome<i32>, TrapKind> {
+    if caller.woken.is_none() {
+        return Ok(Outcome::Wait(Wake::At(caller.now() + PROGRAMMING)));
+    }
+    let done = match flash::length(words) {
+        Some(length) => {
+            let bytes = caller.memory.read_bytes(from, length)?.to_vec();
+            flash::program(caller.memory, to, &bytes)
+        }
+        None => false,
+    };
+    if !done {
+        let text = format!(
+            "ProgramFlash: {words} words at {to}: blocks of the users' flash begin at multiples of 0x10000 from 0x90100000 and hold 32768 words"
+        );
+        kernel.diagnose(caller, text);
+    }
+    Ok(Outcome::Done(if done { 0 } else { REFUSED }))
+}
+
+/// All of flash can be read where it is, so there is no bank to select.
+pub(crate) fn set_flash_bank(_: &mut Kernel, _: &mut Caller<'_>, _: GuestAddr) {}
+
+#[cfg(test)]
+mod tests {
+    use crate::testing::Desk;
+
+    const USER: u64 = 0x9010_0000;
+
+    #[test]
+    fn a_block_is_programmed_after_a_second() {
+        let mut desk = Desk::new();
+        let from = desk.put_words(0, &[0x0403_0201, 0x0807_0605]);
+        let message = desk.put_text(100, b"done\n");
+        let arguments = [from, 4, USER, message];
+        assert!(!desk.is_done("ProgramFlash", &arguments));
+        assert_eq!(desk.wake_i32("ProgramFlash", &arguments), 0);
+        assert_eq!(desk.bytes_at(USER as u32, 9), [1, 2, 3, 4, 5, 6, 7, 8, 0xff]);
+        assert_eq!(desk.printed(), ["done"]);
+        desk.call("SetFlashBank", &[USER]);
+        for (words, to) in [(40_000, USER), (4, USER + 2), (4, 0x9000_0000)] {
+            let arguments = [from, words, to];
+            assert_eq!(desk.wake_i32("ProgramFlashNoMessages", &arguments), 1, "{to:#x}");
+        }
+    }
 }

@@ -44,7 +44,7 @@ mod tests {
     #[test]
     fn enabled_axes_cost_what_was_measured() {
         let mut memory = GuestMemory::new();
-        crate::power_up::fill(&mut memory);
+        crate::power_up::fill(&mut memory, crate::power_up::Before::Zero);
         assert_eq!(duration(&memory).get(), 2006);
         for axis in AxisId::all() {
             memory.set(CHAN.element(axis.index()).field(Chan::ENABLE), 1);

@@ -26,6 +26,7 @@ use words::Word;
 
 use super::Exit;
 use super::options::CompilerOptions;
+use super::pc::PcOptions;
 use super::program::{Program, assign};
 use super::run::{self, DEFAULT_LIMIT, EngineName, TIMEBASE};
 use super::setting::{self, Setting};
@@ -71,15 +72,18 @@ pub(super) struct Arguments {
     #[arg(long, value_enum, default_value_t = EngineName::Bytecode)]
     engine: EngineName,
     #[command(flatten)]
+    pc: PcOptions,
+    #[command(flatten)]
     compiler: CompilerOptions,
 }
 
 /// Talks to a board until the input ends.
 pub(super) fn console(arguments: &Arguments) -> Result<Exit> {
     let mut machine_file = run::machine_file(arguments.machine.as_deref())?;
-    let settings = setting::all(&arguments.set, &mut machine_file)?;
+    let settings = [setting::all(&arguments.set, &mut machine_file)?, arguments.pc.mcode()?].concat();
+    let (answers, flash) = (arguments.pc.answers()?, arguments.pc.flash()?);
     let files = Box::new(Directory::new(&arguments.files));
-    let config = Config { files, machine_file, ..Config::default() };
+    let config = Config { files, machine_file, answers, flash, ..Config::default() };
     match arguments.engine {
         EngineName::Bytecode => Console::<BytecodeEngine>::new(arguments, config, settings).run(),
         #[cfg(feature = "native")]
@@ -104,12 +108,15 @@ struct Console<'a, E> {
     board: Board<E>,
     screen: Screen,
     trapped: bool,
+    /// What the file of the flash holds.
+    flash: Option<Vec<u8>>,
 }
 
 impl<'a, E: Engine> Console<'a, E> {
     fn new(arguments: &'a Arguments, config: Config, settings: Vec<Setting>) -> Self {
         let screen = Screen::new(arguments.time);
-        Self { arguments, settings, board: Board::new(config), screen, trapped: false }
+        let flash = config.flash.clone();
+        Self { arguments, settings, board: Board::new(config), screen, trapped: false, flash }
     }
 
     fn run(mut self) -> Result<Exit> {
@@ -185,6 +192,7 @@ impl<'a, E: Engine> Console<'a, E> {
         let (screen, trapped) = (&mut self.screen, &mut self.trapped);
         self.board.flush(&mut |event| note(screen, trapped, &event));
         self.screen.finish().context("cannot write to standard output")?;
+        self.arguments.pc.keep_flash(self.flash.as_deref(), self.board.flash())?;
         Ok(if self.trapped { Exit::Trapped } else { Exit::Success })
     }
 

@@ -133,7 +133,7 @@ mod tests {
 
     fn board() -> GuestMemory {
         let mut memory = GuestMemory::new();
-        power_up::fill(&mut memory);
+        power_up::fill(&mut memory, power_up::Before::Zero);
         open(&mut memory);
         memory
     }

@@ -118,7 +118,7 @@ mod tests {
 
     fn board() -> GuestMemory {
         let mut memory = GuestMemory::new();
-        power_up::fill(&mut memory);
+        power_up::fill(&mut memory, power_up::Before::Zero);
         memory
     }
 

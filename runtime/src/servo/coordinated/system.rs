@@ -76,7 +76,7 @@ mod tests {
 
     fn board() -> GuestMemory {
         let mut memory = GuestMemory::new();
-        power_up::fill(&mut memory);
+        power_up::fill(&mut memory, power_up::Before::Zero);
         memory
     }
 

@@ -1,0 +1,162 @@
+//! What the PC beside the board is told to do: its answers, M codes that start programs, the file of the board's flash.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+use clap::Args;
+use runtime::{Answers, FLASH_SIZE};
+
+use super::output;
+use super::run::read;
+use super::setting::{self, Setting};
+
+/// Options about the PC.
+#[derive(Debug, Args)]
+pub(super) struct PcOptions {
+    /// What the PC answers to programs: lines of `key=value`, as for `--answer`
+    #[arg(long = "host", value_name = "FILE")]
+    host: Option<PathBuf>,
+    /// One answer of the PC, such as msgbox=no, input=1.5, mdi=0, request.14=-1, var.500=2; `help` lists them
+    #[arg(long, value_name = "KEY=VALUE")]
+    answer: Vec<String>,
+    /// Parameters as an M code passes them, from element VAR of persist.UserData on: "M110 P1.23 Q4.56 R-1:0"
+    #[arg(long, value_name = "CODE:VAR")]
+    mcode: Option<String>,
+    /// Flash memory of the board: read at the start, if the file is there, and kept in it
+    #[arg(long, value_name = "FILE")]
+    flash: Option<PathBuf>,
+}
+
+impl PcOptions {
+    /// What the PC answers.
+    pub(super) fn answers(&self) -> Result<Answers> {
+        let mut answers = Answers::default();
+        if let Some(path) = &self.host {
+            let text = String::from_utf8_lossy(&read(path)?).into_owned();
+            for (line, number) in text.lines().zip(1..) {
+                answers.line(line).with_context(|| format!("{}:{number}", path.display()))?;
+            }
+        }
+        for setting in &self.answer {
+            if setting == "help" {
+                bail!("`--answer` takes\n{}", runtime::ANSWERS_HELP.trim_end());
+            }
+            answers.set(setting).context("`--answer`")?;
+        }
+        Ok(answers)
+    }
+
+    /// What an M code stores before its program starts.
+    pub(super) fn mcode(&self) -> Result<Vec<Setting>> {
+        self.mcode
+            .as_deref()
+            .map_or(Ok(Vec::new()), |text| mcode(text).with_context(|| format!("`--mcode \"{text}\"`")))
+    }
+
+    /// What flash memory holds at the start.
+    pub(super) fn flash(&self) -> Result<Option<Vec<u8>>> {
+        let Some(path) = self.flash.as_deref().filter(|path| path.exists()) else { return Ok(None) };
+        let bytes = fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
+        if bytes.len() != FLASH_SIZE {
+            bail!(
+                "{} is not a board's flash: it has {} bytes, not {FLASH_SIZE}",
+                path.display(),
+                bytes.len()
+            );
+        }
+        Ok(Some(bytes))
+    }
+
+    /// Keeps what flash memory holds now, if that is another than before.
+    pub(super) fn keep_flash(&self, before: Option<&[u8]>, now: &[u8]) -> Result<()> {
+        let erased = || now.iter().all(|byte| *byte == 0xFF);
+        match &self.flash {
+            Some(path) if before.map_or_else(|| !erased(), |before| before != now) => write(path, now),
+            _ => Ok(()),
+        }
+    }
+}
+
+fn write(path: &Path, flash: &[u8]) -> Result<()> {
+    output::write(path, flash)
+}
+
+/// The words that pass parameters, in the order in which they are stored.
+const LETTERS: [char; 3] = ['P', 'Q', 'R'];
+
+/// Reads an M code with its words, and the element that the PC's set-up names; see the manual, "MCodes with
+/// Parameters": P, Q and R go into consecutive elements as singles, or else the M code's number into one.
+fn mcode(text: &str) -> Result<Vec<Setting>> {
+    let (code, variable) = text.rsplit_once(':').unwrap_or((text, "0"));
+    let variable: u32 =
+        variable.trim().parse().with_context(|| format!("`{variable}` is no element of UserData"))?;
+    let mut words = code.split_whitespace();
+    let first = words.next().unwrap_or_default().to_ascii_uppercase();
+    let number = |word: &str| word.parse::<f32>().with_context(|| format!("`{word}` is not a number"));
+    if let Some(speed) = first.strip_prefix('S') {
+        return Ok(vec![setting::single(variable, number(speed)?)?]);
+    }
+    let code: i32 =
+        first.strip_prefix('M').and_then(|code| code.parse().ok()).context("there is no M code")?;
+    let mut parameters = [None; LETTERS.len()];
+    let mut tool = None;
+    for word in words {
+        let word = word.to_ascii_uppercase();
+        let letter = word.chars().next().unwrap_or_default();
+        let value = word.get(1..).unwrap_or_default();
+        match LETTERS.iter().position(|known| *known == letter) {
+            Some(index) => parameters[index] = Some(number(value)?),
+            None if letter == 'T' && code == 6 => {
+                tool = Some(value.parse::<i32>().context("T needs a tool")?);
+            }
+            None => bail!("`{word}` is neither P, Q nor R"),
+        }
+    }
+    if let Some(tool) = tool {
+        // The slot, and behind it the tool's id; a tool table of the simplest kind has them equal.
+        return Ok(vec![setting::whole(variable, tool)?, setting::whole(variable + 1, tool)?]);
+    }
+    let given: Vec<f32> = parameters.into_iter().flatten().collect();
+    if given.is_empty() {
+        return Ok(vec![setting::whole(variable, code)?]);
+    }
+    (variable..).zip(given).map(|(element, value)| setting::single(element, value)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check(text: &str, expect: &[(u32, u32)]) {
+        let settings = mcode(text).expect(text);
+        let expect: Vec<_> =
+            expect.iter().map(|(element, word)| setting::word(*element, *word).expect("inside")).collect();
+        assert_eq!(settings, expect, "{text}");
+    }
+
+    #[test]
+    fn parameters_go_into_consecutive_elements() {
+        let single = |value: f32| value.to_bits();
+        check("M110 P1.23 Q4.56 R-1:0", &[(0, single(1.23)), (1, single(4.56)), (2, single(-1.0))]);
+        check("m110 r2 p1:10", &[(10, single(1.0)), (11, single(2.0))]);
+        check("M101:5", &[(5, 101)]);
+        check("M101", &[(0, 101)]);
+        check("S1500:99", &[(99, single(1500.0))]);
+        check("M6 T3:20", &[(20, 3), (21, 3)]);
+    }
+
+    #[test]
+    fn wrong_codes_say_what_is_wrong() {
+        for (text, expect) in [
+            ("P1", "there is no M code"),
+            ("M110 X5", "`X5` is neither P, Q nor R"),
+            ("M110 Px", "`X` is not a number"),
+            ("M110 P1:200", "outside"),
+            ("M110 P1:a", "`a` is no element of UserData"),
+        ] {
+            let error = format!("{:#}", mcode(text).expect_err(text));
+            assert!(error.contains(expect), "{text}: {error}");
+        }
+    }
+}
