@@ -12,7 +12,7 @@ use kmotiondef::variables::{
 };
 use kmotiondef::{Bit, Cycles, GuestAddr, ThreadId};
 use vm::bus::{AccessSize, Bus};
-use vm::firmware::{Caller, Firmware, Outcome, Signature, TickContext, Value};
+use vm::firmware::{Caller, Firmware, Outcome, Pure, Signature, TickContext, Value};
 use vm::memory::GuestMemory;
 use vm::scheduler::Turn;
 use vm::trap::{Trap, TrapKind};
@@ -472,6 +472,13 @@ impl Firmware for Kernel {
             assist.called(FIRMWARE_FUNCTIONS[number].name, caller.now());
         }
         HANDLERS[number](self, caller)
+    }
+
+    fn pure(&self, address: GuestAddr) -> Option<Pure> {
+        let row = &FIRMWARE_FUNCTIONS[function_at(address)?];
+        let is_math = row.group == "math";
+        let function = is_math.then(|| crate::firmware::math::pure(row.rust_name)).flatten()?;
+        Some(Pure { cost: row.cost, function })
     }
 
     fn callback(&self, memory: &GuestMemory) -> GuestAddr {

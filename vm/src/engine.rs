@@ -145,7 +145,16 @@ impl<F: Firmware + ?Sized> Slice<'_, F> {
 /// Runs programs. Both engines spend the same cycles and stop at the same instructions.
 pub trait Engine: Default {
     /// Gives `id` a fresh context that stands at the beginning of `function`.
-    fn start(&mut self, id: ContextId, program: &Program, function: FuncRef, stack: Stack);
+    ///
+    /// A program is always run with the same firmware.
+    fn start<F: Firmware + ?Sized>(
+        &mut self,
+        id: ContextId,
+        program: &Program,
+        function: FuncRef,
+        stack: Stack,
+        firmware: &F,
+    );
 
     /// Runs `id` until it stops. A context that was never started has ended.
     fn resume<F: Firmware + ?Sized>(&mut self, id: ContextId, slice: &mut Slice<'_, F>) -> Stop;

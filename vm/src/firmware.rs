@@ -103,6 +103,64 @@ impl Signature {
     }
 }
 
+/// A firmware function that does nothing but compute its result from its arguments, so that an engine may
+/// call it without asking the firmware.
+#[derive(Clone, Copy, Debug)]
+pub struct Pure {
+    /// What a call spends.
+    pub cost: Cycles,
+    /// What is computed.
+    pub function: PureFunction,
+}
+
+macro_rules! pure_functions {
+    ($($(#[$doc:meta])+ $variant:ident $(($pointer:ty))? = ($($parameter:ident),+) -> $result:ident;)*) => {
+        /// What a [`Pure`] function computes.
+        #[derive(Clone, Copy, Debug)]
+        pub enum PureFunction {
+            $($(#[$doc])+ $variant $(($pointer))?,)*
+        }
+
+        impl PureFunction {
+            /// The classes of its parameters.
+            #[must_use]
+            pub const fn parameters(self) -> &'static [Class] {
+                match self {
+                    $(Self::$variant { .. } => &[$(Class::$parameter),+],)*
+                }
+            }
+
+            /// The class of its result.
+            #[must_use]
+            pub const fn result(self) -> Class {
+                match self {
+                    $(Self::$variant { .. } => Class::$result,)*
+                }
+            }
+        }
+
+        $($(impl From<$pointer> for PureFunction {
+            fn from(pointer: $pointer) -> Self {
+                Self::$variant(pointer)
+            }
+        })?)*
+    };
+}
+pure_functions! {
+    /// The square root, rounded to nearest; every NaN is that of [`crate::arith`].
+    SqrtF64 = (F64) -> F64;
+    /// The square root, rounded to nearest; every NaN is that of [`crate::arith`].
+    SqrtF32 = (F32) -> F32;
+    /// A function of a double.
+    F64(extern "C" fn(f64) -> f64) = (F64) -> F64;
+    /// A function of two doubles.
+    F64F64(extern "C" fn(f64, f64) -> f64) = (F64, F64) -> F64;
+    /// A function of a single.
+    F32(extern "C" fn(f32) -> f32) = (F32) -> F32;
+    /// A function of two singles.
+    F32F32(extern "C" fn(f32, f32) -> f32) = (F32, F32) -> F32;
+}
+
 /// One firmware call as the kernel sees it.
 #[derive(Debug)]
 pub struct Caller<'a> {
@@ -166,6 +224,12 @@ pub trait Firmware: Bus {
     /// # Errors
     /// The kind of trap that stops the calling thread.
     fn call(&mut self, address: GuestAddr, caller: &mut Caller<'_>) -> Result<Outcome<Value>, TrapKind>;
+
+    /// The function at `address`, if it is one that only computes; [`call`](Self::call) then does the same.
+    fn pure(&self, address: GuestAddr) -> Option<Pure> {
+        let _ = address;
+        None
+    }
 
     /// The function to call at the beginning of this tick; null for none.
     fn callback(&self, memory: &GuestMemory) -> GuestAddr {

@@ -28,7 +28,14 @@ pub struct BytecodeEngine {
 }
 
 impl Engine for BytecodeEngine {
-    fn start(&mut self, id: ContextId, _program: &Program, function: FuncRef, stack: Stack) {
+    fn start<F: Firmware + ?Sized>(
+        &mut self,
+        id: ContextId,
+        _program: &Program,
+        function: FuncRef,
+        stack: Stack,
+        _firmware: &F,
+    ) {
         self.contexts[id.index()].get_or_insert_with(Context::new).reset(function, stack);
     }
 

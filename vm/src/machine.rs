@@ -238,7 +238,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
             return Cycles::default();
         };
         let id = ContextId::CALLBACK;
-        self.engine.start(id, program, function, id.stack(self.config.strict_stack));
+        self.engine.start(id, program, function, id.stack(self.config.strict_stack), &self.firmware);
         let mut slice = Slice {
             program,
             memory: &mut self.memory,
@@ -305,7 +305,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
             return Err(Trap { kind, at: code_at(entry), thread: Some(thread) });
         };
         let id = ContextId::of(thread);
-        self.engine.start(id, program, function, id.stack(self.config.strict_stack));
+        self.engine.start(id, program, function, id.stack(self.config.strict_stack), &self.firmware);
         Ok(())
     }
 

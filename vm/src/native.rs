@@ -46,14 +46,23 @@ pub struct NativeEngine {
 }
 
 impl Engine for NativeEngine {
-    fn start(&mut self, id: ContextId, program: &Program, function: FuncRef, stack: Stack) {
+    fn start<F: Firmware + ?Sized>(
+        &mut self,
+        id: ContextId,
+        program: &Program,
+        function: FuncRef,
+        stack: Stack,
+        firmware: &F,
+    ) {
         let old = self.contexts[id.index()].take().map(Context::into_fiber);
         let found = program.functions().binary_search_by_key(&function, |function| function.at);
-        if let (Some(code), Ok(index)) = (program.compiled.code(program), found) {
+        if let (Some(code), Ok(index)) =
+            (program.compiled.code(program, &|address| firmware.pure(address)), found)
+        {
             let fiber = Fiber::new(Arc::clone(code), index, stack, old);
             self.contexts[id.index()] = Some(Context::new(fiber, function, stack));
         } else {
-            self.bytecode.start(id, program, function, stack);
+            self.bytecode.start(id, program, function, stack, firmware);
         }
     }
 

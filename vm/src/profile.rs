@@ -138,9 +138,16 @@ impl ProfilingEngine {
 }
 
 impl Engine for ProfilingEngine {
-    fn start(&mut self, id: ContextId, program: &Program, function: FuncRef, stack: Stack) {
+    fn start<F: Firmware + ?Sized>(
+        &mut self,
+        id: ContextId,
+        program: &Program,
+        function: FuncRef,
+        stack: Stack,
+        firmware: &F,
+    ) {
         self.waits[id.index()] = None;
-        self.inner.start(id, program, function, stack);
+        self.inner.start(id, program, function, stack, firmware);
     }
 
     fn resume<F: Firmware + ?Sized>(&mut self, id: ContextId, slice: &mut Slice<'_, F>) -> Stop {

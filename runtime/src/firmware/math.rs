@@ -3,18 +3,51 @@
 use std::f64::consts::TAU;
 
 use kmotiondef::GuestAddr;
-use vm::firmware::Caller;
+use vm::arith::{canonical_f32, canonical_f64};
+use vm::firmware::{Caller, PureFunction};
 use vm::trap::TrapKind;
 
 use crate::kernel::Kernel;
 
+/// A floating number, so that every NaN can be made that of all arithmetic: what `libm` makes differs between hosts.
+trait Number {
+    fn canonical(self) -> Self;
+}
+
+impl Number for f32 {
+    fn canonical(self) -> Self {
+        canonical_f32(self)
+    }
+}
+
+impl Number for f64 {
+    fn canonical(self) -> Self {
+        canonical_f64(self)
+    }
+}
+
 macro_rules! functions {
-    ($($(#[$doc:meta])+ $name:ident($($x:ident),+) -> $ty:ty = $value:expr;)*) => {$(
-        $(#[$doc])+
+    ($($(#[$doc:meta])+ $name:ident($($x:ident),+) -> $ty:ty = $value:expr;)*) => {
+        $($(#[$doc])+
         pub(crate) fn $name(_: &mut Kernel, _: &mut Caller<'_>, $($x: $ty),+) -> $ty {
-            $value
+            Number::canonical($value)
+        })*
+
+        /// The function of this name, if it only computes.
+        pub(crate) fn pure(name: &str) -> Option<PureFunction> {
+            Some(match name {
+                "sqrt" => PureFunction::SqrtF64,
+                "sqrtf" => PureFunction::SqrtF32,
+                $(stringify!($name) => {
+                    extern "C" fn compute($($x: $ty),+) -> $ty {
+                        Number::canonical($value)
+                    }
+                    PureFunction::from(compute as extern "C" fn($($x: $ty),+) -> $ty)
+                })*
+                _ => return None,
+            })
         }
-    )*};
+    };
 }
 
 functions! {

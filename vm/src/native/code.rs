@@ -13,13 +13,13 @@ use cranelift_frontend::FunctionBuilderContext;
 use cranelift_jit::{ArenaMemoryProvider, JITBuilder, JITModule};
 use cranelift_module::{FuncId, Module, ModuleError, default_libcall_names};
 
-use super::entry::Thunk;
+use super::entry::Begin;
 use super::state::BYTES_PER_CALL;
 use super::translate::{
-    Translation, function_signature, request_signature, thunk_signature, translate, translate_request,
-    translate_thunk,
+    PureFunctions, Translation, begin_signature, function_signature, request_signature, thunk_signature,
+    translate, translate_begin, translate_request, translate_thunk,
 };
-use crate::operand::{Class, SigRef};
+use crate::operand::Class;
 use crate::program::Program;
 
 /// Bytes of native stack for what runs besides the program's functions: the way in, and requests.
@@ -65,8 +65,8 @@ pub(crate) struct Compiled(OnceLock<Option<Arc<Code>>>);
 
 impl Compiled {
     /// The machine code of `program`, which holds this; `None` where it cannot be compiled.
-    pub(super) fn code(&self, program: &Program) -> Option<&Arc<Code>> {
-        self.0.get_or_init(|| Code::compile(program).ok().map(Arc::new)).as_ref()
+    pub(super) fn code(&self, program: &Program, pure: PureFunctions<'_>) -> Option<&Arc<Code>> {
+        self.0.get_or_init(|| Code::compile(program, pure).ok().map(Arc::new)).as_ref()
     }
 }
 
@@ -84,11 +84,11 @@ impl PartialEq for Compiled {
 
 impl Eq for Compiled {}
 
-/// How to call a function of a program from outside.
+/// How to call a function of a program through a pointer.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Entry {
-    /// What passes the function its parameters.
-    pub(super) thunk: Thunk,
+    /// What passes the function its arguments.
+    pub(super) thunk: *const u8,
     /// The function.
     pub(super) pointer: *const u8,
 }
@@ -97,10 +97,8 @@ pub(super) struct Entry {
 pub(super) struct Code {
     /// What the pointers point into.
     _memory: CodeMemory,
+    begin: Begin,
     entries: Vec<Entry>,
-    /// Parameters of each function, then of each signature.
-    parameters: Vec<Vec<Class>>,
-    signatures: Vec<Vec<Class>>,
     /// The most native stack that a call takes for each byte of guest stack, and the most it takes at all.
     native_per_guest: u32,
     largest_frame: u32,
@@ -131,56 +129,51 @@ impl Drop for CodeMemory {
 }
 
 impl Code {
-    /// Compiles `program`.
-    pub(super) fn compile(program: &Program) -> Result<Self, CompileError> {
+    /// Compiles `program`, for a firmware that has the functions `pure`.
+    pub(super) fn compile(program: &Program, pure: PureFunctions<'_>) -> Result<Self, CompileError> {
         let mut compiler = Compiler::new(program)?;
         let functions = compiler.declare_functions(program)?;
         let request = compiler.request()?;
+        let begin = compiler.begin()?;
+        let (thunks, thunk_frame) = compiler.thunks(program)?;
         let mut native_per_guest = 0;
         let mut largest_frame = 0;
         for (index, function) in program.functions().iter().enumerate() {
             if function.classes.len() > MAX_REGISTERS {
                 return Err(CompileError::TooManyRegisters(function.classes.len()));
             }
-            let translation = Translation { program, function, functions: &functions, request };
-            let frame = compiler.function(functions[index], translation)?;
+            let translation = Translation { program, function, functions: &functions, request, pure };
+            let frame = compiler.function(functions[index], translation)? + thunk_frame;
             let guest = function.frame + BYTES_PER_CALL;
             native_per_guest = native_per_guest.max(frame.div_ceil(guest));
             largest_frame = largest_frame.max(frame);
         }
-        let thunks = compiler.thunks(program)?;
         compiler.module.0.finalize_definitions()?;
-        let parameters_of = |sig: SigRef| program.signatures()[usize::from(sig.0)].params.clone();
-        let parameters: Vec<_> =
-            program.functions().iter().map(|function| parameters_of(function.signature)).collect();
-        let entries = parameters.iter().zip(&functions).map(|(parameters, function)| Entry {
-            thunk: thunk_at(&compiler.module.0, thunks[parameters]),
-            pointer: compiler.module.0.get_finalized_function(*function),
-        });
-        let entries = entries.collect();
+        let entry = |(function, id): (&crate::program::Function, &FuncId)| {
+            let parameters = &program.signatures()[usize::from(function.signature.0)].params;
+            Entry {
+                thunk: compiler.module.0.get_finalized_function(thunks[parameters]),
+                pointer: compiler.module.0.get_finalized_function(*id),
+            }
+        };
+        let entries = program.functions().iter().zip(&functions).map(entry).collect();
         Ok(Self {
+            begin: begin_at(&compiler.module.0, begin),
             entries,
-            parameters,
-            signatures: program.signatures().iter().map(|signature| signature.params.clone()).collect(),
             _memory: compiler.module,
             native_per_guest,
             largest_frame,
         })
     }
 
+    /// What begins the outermost call.
+    pub(super) const fn begin(&self) -> Begin {
+        self.begin
+    }
+
     /// How to call the function with the given index.
     pub(super) fn entry(&self, function: usize) -> Entry {
         self.entries[function]
-    }
-
-    /// Whether the function with the given index can be called with `signature`: it takes the first of the
-    /// arguments, all of them or fewer.
-    ///
-    /// What it does not take is in registers that it may use as it likes, or on the stack where the caller put
-    /// it and takes it away again; where an argument is depends on those before it only.
-    pub(super) fn accepts(&self, function: usize, signature: SigRef) -> bool {
-        let (taken, passed) = (self.parameters.get(function), self.signatures.get(usize::from(signature.0)));
-        matches!((taken, passed), (Some(taken), Some(passed)) if passed.starts_with(taken))
     }
 
     /// Bytes of native stack that the program cannot exceed on a guest stack of `guest` bytes.
@@ -192,11 +185,11 @@ impl Code {
     }
 }
 
-/// The address of a thunk.
-fn thunk_at(module: &JITModule, thunk: FuncId) -> Thunk {
-    let pointer = module.get_finalized_function(thunk);
-    // SAFETY: a thunk is translated with the signature of `Thunk` (`thunk_signature`).
-    unsafe { std::mem::transmute::<*const u8, Thunk>(pointer) }
+/// The address of what begins the outermost call.
+fn begin_at(module: &JITModule, begin: FuncId) -> Begin {
+    let pointer = module.get_finalized_function(begin);
+    // SAFETY: it is translated with the signature of `Begin` (`begin_signature`).
+    unsafe { std::mem::transmute::<*const u8, Begin>(pointer) }
 }
 
 /// What compiles the functions of one program.
@@ -244,21 +237,33 @@ impl Compiler {
         Ok(id)
     }
 
-    /// Compiles a thunk for each list of parameters that a function of `program` has.
-    fn thunks(&mut self, program: &Program) -> Result<BTreeMap<Vec<Class>, FuncId>, CompileError> {
+    /// Compiles what begins the outermost call.
+    fn begin(&mut self) -> Result<FuncId, CompileError> {
+        let signature = begin_signature(&self.module.0);
+        let id = self.module.0.declare_anonymous_function(&signature)?;
+        self.context.func.signature = signature;
+        translate_begin(&mut self.context.func, &mut self.builder, &self.module.0);
+        self.define(id)?;
+        Ok(id)
+    }
+
+    /// Compiles a thunk for each list of parameters that a function of `program` has, and yields what one takes
+    /// of the native stack.
+    fn thunks(&mut self, program: &Program) -> Result<(BTreeMap<Vec<Class>, FuncId>, u32), CompileError> {
         let mut thunks = BTreeMap::new();
+        let mut largest = 0;
         for function in program.functions() {
             let parameters = &program.signatures()[usize::from(function.signature.0)].params;
             if !thunks.contains_key(parameters) {
-                let signature = thunk_signature(&self.module.0);
+                let signature = thunk_signature();
                 let id = self.module.0.declare_anonymous_function(&signature)?;
                 self.context.func.signature = signature;
                 translate_thunk(&mut self.context.func, &mut self.builder, &self.module.0, parameters);
-                self.define(id)?;
+                largest = largest.max(self.define(id)?);
                 thunks.insert(parameters.clone(), id);
             }
         }
-        Ok(thunks)
+        Ok((thunks, largest))
     }
 
     fn define(&mut self, id: FuncId) -> Result<u32, CompileError> {

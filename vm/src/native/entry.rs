@@ -11,19 +11,19 @@ pub(super) type Leave = unsafe extern "C" fn(*const State, u32, u32, u32, u64, u
 /// A conversion that compiled code leaves to Rust.
 pub(super) type Convert = extern "C" fn(f64) -> i64;
 
-/// What begins the outermost call: a piece of compiled code that calls the function at the second
-/// pointer, all its parameters 0, on the stack that the state describes.
-pub(super) type Thunk = unsafe extern "C" fn(*const State, *const u8);
+/// What begins the outermost call: a piece of compiled code that calls the thunk at the second
+/// pointer on the stack that the state describes.
+pub(super) type Begin = unsafe extern "C" fn(*const State, *const u8);
 
 /// Runs a function of a program to its end.
 ///
 /// # Safety
-/// `thunk` and `function` are compiled code of one program, the function has the parameters that
-/// the thunk passes, and the code is kept until this returns. `state` is valid until then, and at
-/// each moment at which the fiber runs its pointers are those of guest memory.
-pub(super) unsafe fn enter(thunk: Thunk, function: *const u8, state: *const State) {
-    // SAFETY: the caller vouches for thunk, function and state.
-    unsafe { thunk(state, function) }
+/// `begin`, `thunk` and the state's callee are compiled code of one program, the thunk is one for
+/// functions like the callee, and the code is kept until this returns. `state` is valid until then,
+/// and at each moment at which the fiber runs its pointers are those of guest memory.
+pub(super) unsafe fn enter(begin: Begin, thunk: *const u8, state: *const State) {
+    // SAFETY: the caller vouches for the code and the state.
+    unsafe { begin(state, thunk) }
 }
 
 /// Suspends the fiber with a request and yields the answer.

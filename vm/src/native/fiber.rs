@@ -19,7 +19,6 @@ use super::request::{Reason, Request};
 use super::state::State;
 use crate::engine::Stack;
 use crate::memory::GuestMemory;
-use crate::operand::SigRef;
 
 /// What suspends a fiber.
 pub(super) type Yielder = corosensei::Yielder<u64, Request>;
@@ -43,8 +42,8 @@ pub(super) struct Fiber {
     code: Arc<Code>,
     /// Where guest memory and the map of protected blocks are, as soon as it has begun.
     ram: Option<(*mut u8, *mut u8, *const u8)>,
-    /// The signature of the call whose target is being asked for.
-    resolving: Option<SigRef>,
+    /// Whether the last request asked for the target of a call.
+    resolving: bool,
 }
 
 impl fmt::Debug for Fiber {
@@ -69,6 +68,8 @@ impl Fiber {
                 (DefaultStack::new(size).expect("the host has address space for a stack"), size)
             });
         let Entry { thunk, pointer } = code.entry(function);
+        state.callee.set(pointer);
+        let begin = code.begin();
         let shared = Rc::as_ptr(&state);
         let body = move |yielder: &Yielder, _: u64| {
             // SAFETY: the fiber, of which this is the body, holds the state.
@@ -76,10 +77,10 @@ impl Fiber {
             state.yielder.set(yielder);
             // SAFETY: the entry is of the code that the fiber holds, together with the state;
             // `resume` sets the state's pointers each time before this runs.
-            unsafe { entry::enter(thunk, pointer, shared) };
+            unsafe { entry::enter(begin, thunk, shared) };
         };
         let coroutine = Some(Coroutine::with_stack(native_stack, body));
-        Self { coroutine, native_size, state, code, ram: None, resolving: None }
+        Self { coroutine, native_size, state, code, ram: None, resolving: false }
     }
 
     /// Runs the fiber until its next request; `None` when the function has returned.
@@ -103,8 +104,7 @@ impl Fiber {
         self.state.protected.set(ram.2);
         match coroutine.resume(answer) {
             CoroutineResult::Yield(request) => {
-                let resolving = request.reason() == Some(Reason::CallPointer);
-                self.resolving = resolving.then_some(SigRef(request.b as u16));
+                self.resolving = request.reason() == Some(Reason::CallPointer);
                 Some(request)
             }
             CoroutineResult::Return(()) => None,
@@ -113,15 +113,17 @@ impl Fiber {
 
     /// The answer as compiled code takes it.
     ///
-    /// A call through a pointer takes the address of a function that can be called so, or 0: this
-    /// is where it is made certain.
+    /// A call through a pointer takes the address of a thunk, and finds the function in the state; or it
+    /// takes 0: this is where it is made certain.
     fn encode(&self, answer: Answer) -> u64 {
         match (self.resolving, answer) {
-            (None, Answer::Slot(slot)) => slot,
-            (Some(signature), Answer::Function(function)) if self.code.accepts(function, signature) => {
-                self.code.entry(function).pointer.expose_provenance() as u64
+            (false, Answer::Slot(slot)) => slot,
+            (true, Answer::Function(function)) => {
+                let Entry { thunk, pointer } = self.code.entry(function);
+                self.state.callee.set(pointer);
+                thunk.expose_provenance() as u64
             }
-            (Some(_), _) | (None, Answer::Function(_)) => 0,
+            (true, _) | (false, Answer::Function(_)) => 0,
         }
     }
 

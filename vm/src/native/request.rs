@@ -4,8 +4,9 @@
 //! it suspends its fiber with a [`Request`]: two numbers say what and where, two say with which
 //! operands. The engine answers it on the host's stack, in safe code, and resumes the fiber.
 
-/// A request as it leaves compiled code.
+/// A request as it leaves compiled code. The layout is that of C, because compiled code writes the fields.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(C)]
 pub(super) struct Request {
     /// What is asked, as [`Reason::with_width`] made it.
     pub(super) code: u32,

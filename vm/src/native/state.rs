@@ -10,6 +10,7 @@ use kmotiondef::map::STACK_SIZE;
 
 use super::entry::{self, Convert, Leave};
 use super::fiber::Yielder;
+use super::request::Request;
 use crate::engine::Stack;
 use crate::verify::MAX_PARAMETERS;
 
@@ -49,9 +50,14 @@ pub(super) struct State {
     pub(super) returned_at: Cell<u32>,
     /// Where each call in progress stands, at the place of its caller's frame; see [`call_entry`].
     pub(super) calls: [Cell<u32>; CALLS],
-    /// The answer to the last of the requests that are rare.
+    /// The last of the requests that are rare, and the answer to it.
+    pub(super) request: Cell<Request>,
     pub(super) answer: Cell<u64>,
-    /// Arguments of a firmware call.
+    /// Where compiled code stores what a request has stored already.
+    pub(super) scratch: Cell<u64>,
+    /// The function that the next thunk calls.
+    pub(super) callee: Cell<*const u8>,
+    /// Arguments of a firmware call, and of a call through a pointer.
     pub(super) arguments: [Cell<u64>; MAX_PARAMETERS],
 }
 
@@ -71,7 +77,10 @@ impl State {
             top: Cell::new(stack.top),
             returned_at: Cell::new(0),
             calls: [const { Cell::new(0) }; CALLS],
+            request: Cell::new(Request { code: 0, at: 0, stack_pointer: 0, a: 0, b: 0 }),
             answer: Cell::new(0),
+            scratch: Cell::new(0),
+            callee: Cell::new(std::ptr::null()),
             arguments: [const { Cell::new(0) }; MAX_PARAMETERS],
         }
     }
@@ -81,6 +90,7 @@ impl State {
         self.limit.set(stack.limit);
         self.lowest.set(stack.top);
         self.top.set(stack.top);
+        self.arguments.iter().for_each(|argument| argument.set(0));
     }
 
     /// The most bytes of the stack in use since the reset.

@@ -58,7 +58,7 @@ impl<E: Engine> World<E> {
 
     fn start(&mut self, program: &Program) {
         let main = program.functions().last().map_or(FuncRef(0), |function| function.at);
-        self.engine.start(id(), program, main, id().stack(false));
+        self.engine.start(id(), program, main, id().stack(false), &self.firmware);
     }
 
     fn resume(&mut self, program: &Program, budget: i64, woken: Option<Wake>) -> Seen {
@@ -87,7 +87,7 @@ impl<E: Engine> World<E> {
 /// it stopped at last.
 fn lockstep(functions: &str, budgets: &[i64]) -> Stop {
     let program = program(1, functions);
-    assert!(program.compiled.code(&program).is_some());
+    assert!(program.compiled.code(&program, &|_| None).is_some());
     let mut bytecode = World::<BytecodeEngine>::new(&program);
     let mut native = World::<NativeEngine>::new(&program);
     bytecode.start(&program);
@@ -163,7 +163,7 @@ fn a_program_beyond_the_limits_of_compilation_runs_as_bytecode() {
         "@main: func sig0, 5000, 0\n{types}charge 9\nconst_i32 r4999, 7\nstore_i32_at r4999, 0x10000000\nret"
     );
     let program = program(1, &main);
-    assert!(program.compiled.code(&program).is_none());
+    assert!(program.compiled.code(&program, &|_| None).is_none());
     let mut world = World::<NativeEngine>::new(&program);
     world.start(&program);
     assert_eq!(world.resume(&program, 99, None).stop, Stop::Ended);

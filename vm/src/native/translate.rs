@@ -27,8 +27,11 @@ use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext, Variable};
 use cranelift_jit::JITModule;
 use cranelift_module::{FuncId, Module};
 
-use super::request::Reason;
+use kmotiondef::GuestAddr;
+
+use super::request::{Reason, Request};
 use super::state::{BYTES_PER_CALL, State};
+use crate::firmware::Pure;
 use crate::for_each_op;
 use crate::meter::branch_target;
 use crate::op::Op;
@@ -37,6 +40,10 @@ use crate::program::{Function, Program};
 
 /// Reached only if the engine resumed a context that a trap has stopped.
 const RESUMED_BEHIND_TRAP: TrapCode = TrapCode::unwrap_user(1);
+
+/// How functions of a program call each other: no register outlives a call, so that a function saves none
+/// that it does not need itself.
+const CONVENTION: CallConv = CallConv::Tail;
 
 /// Parameters of a machine function before those of the program: state, stack pointer, budget.
 const OWN_PARAMETERS: usize = 3;
@@ -52,11 +59,16 @@ pub(super) struct Translation<'a> {
     pub(super) functions: &'a [FuncId],
     /// What [`translate_request`] has made.
     pub(super) request: FuncId,
+    /// The firmware's functions that only compute.
+    pub(super) pure: PureFunctions<'a>,
 }
+
+/// Where the firmware's functions that only compute are found.
+pub(super) type PureFunctions<'a> = &'a dyn Fn(GuestAddr) -> Option<Pure>;
 
 /// The machine signature of a function with `parameters`.
 pub(super) fn function_signature(parameters: &[Class]) -> Signature {
-    let mut signature = Signature::new(CallConv::Fast);
+    let mut signature = Signature::new(CONVENTION);
     let own: [Type; OWN_PARAMETERS] = [types::I64, types::I32, types::I64];
     signature.params =
         own.into_iter().chain(parameters.iter().map(|class| type_of(*class))).map(AbiParam::new).collect();
@@ -64,11 +76,16 @@ pub(super) fn function_signature(parameters: &[Class]) -> Signature {
     signature
 }
 
-/// The machine signature of [`Thunk`](super::entry::Thunk).
-pub(super) fn thunk_signature(module: &JITModule) -> Signature {
+/// The machine signature of [`Begin`](super::entry::Begin).
+pub(super) fn begin_signature(module: &JITModule) -> Signature {
     let mut signature = module.make_signature();
     signature.params = vec![AbiParam::new(types::I64); 2];
     signature
+}
+
+/// The machine signature of a thunk: that of a function without parameters.
+pub(super) fn thunk_signature() -> Signature {
+    function_signature(&[])
 }
 
 /// The machine signature of [`Leave`](super::entry::Leave).
@@ -83,10 +100,11 @@ fn leave_signature(convention: CallConv) -> Signature {
 /// The signature of the function through which compiled code makes its rare requests.
 ///
 /// It leaves every register as it was, so that the code around a request that is hardly ever
-/// made keeps its values where they are. It can have no result; the state holds the answer.
+/// made keeps its values where they are. For the same reason the state alone is passed: it holds
+/// the request, and afterwards the answer.
 pub(super) fn request_signature() -> Signature {
-    let mut signature = leave_signature(CallConv::PreserveAll);
-    signature.returns.clear();
+    let mut signature = Signature::new(CallConv::PreserveAll);
+    signature.params.push(AbiParam::new(types::I64));
     signature
 }
 
@@ -100,8 +118,17 @@ pub(super) fn translate_request(
     let block = builder.create_block();
     builder.append_block_params_for_function_params(block);
     builder.switch_to_block(block);
-    let arguments = builder.block_params(block).to_vec();
-    let (state, flags) = (arguments[0], MemFlagsData::trusted());
+    let (state, flags) = (builder.block_params(block)[0], MemFlagsData::trusted());
+    let mut field =
+        |ty, field| builder.ins().load(ty, flags, state, offset(offset_of!(State, request) + field));
+    let arguments = [
+        state,
+        field(types::I32, offset_of!(Request, code)),
+        field(types::I32, offset_of!(Request, at)),
+        field(types::I32, offset_of!(Request, stack_pointer)),
+        field(types::I64, offset_of!(Request, a)),
+        field(types::I64, offset_of!(Request, b)),
+    ];
     let leave = builder.ins().load(types::I64, flags, state, offset(offset_of!(State, leave)));
     let signature = builder.import_signature(leave_signature(module.isa().default_call_conv()));
     let call = builder.ins().call_indirect(signature, leave, &arguments);
@@ -148,7 +175,29 @@ pub(super) fn translate(
     translator.builder.finalize(module.target_config());
 }
 
-/// Translates the way into functions with `parameters` into `ir`, whose signature is set.
+/// Translates the way from Rust to a thunk into `ir`, whose signature is set.
+pub(super) fn translate_begin(ir: &mut IrFunction, context: &mut FunctionBuilderContext, module: &JITModule) {
+    let mut builder = FunctionBuilder::new(ir, context);
+    let block = builder.create_block();
+    builder.append_block_params_for_function_params(block);
+    builder.switch_to_block(block);
+    let (state, thunk) = (builder.block_params(block)[0], builder.block_params(block)[1]);
+    let flags = MemFlagsData::trusted();
+    let top = builder.ins().load(types::I32, flags, state, offset(offset_of!(State, top)));
+    let budget = builder.ins().load(types::I64, flags, state, offset(offset_of!(State, budget)));
+    let signature = builder.import_signature(thunk_signature());
+    let call = builder.ins().call_indirect(signature, thunk, &[state, top, budget]);
+    let budget = builder.inst_results(call)[0];
+    builder.ins().store(flags, budget, state, offset(offset_of!(State, budget)));
+    builder.ins().return_(&[]);
+    builder.seal_all_blocks();
+    builder.finalize(module.target_config());
+}
+
+/// Translates the way into functions with `parameters` into `ir`, whose signature is set: the state holds
+/// the function and the arguments.
+///
+/// So whoever calls through a pointer need not know what the function takes.
 pub(super) fn translate_thunk(
     ir: &mut IrFunction,
     context: &mut FunctionBuilderContext,
@@ -159,19 +208,17 @@ pub(super) fn translate_thunk(
     let block = builder.create_block();
     builder.append_block_params_for_function_params(block);
     builder.switch_to_block(block);
-    let (state, function) = (builder.block_params(block)[0], builder.block_params(block)[1]);
-    let flags = MemFlagsData::trusted();
-    let top = builder.ins().load(types::I32, flags, state, offset(offset_of!(State, top)));
-    let budget = builder.ins().load(types::I64, flags, state, offset(offset_of!(State, budget)));
-    let mut arguments = vec![state, top, budget];
-    for class in parameters {
-        arguments.push(zero(&mut builder, *class));
+    let mut arguments = builder.block_params(block).to_vec();
+    let (state, flags) = (arguments[0], MemFlagsData::trusted());
+    for (index, class) in parameters.iter().enumerate() {
+        let place = offset(offset_of!(State, arguments) + index * size_of::<u64>());
+        arguments.push(builder.ins().load(type_of(*class), flags, state, place));
     }
+    let function = builder.ins().load(types::I64, flags, state, offset(offset_of!(State, callee)));
     let signature = builder.import_signature(function_signature(parameters));
     let call = builder.ins().call_indirect(signature, function, &arguments);
-    let budget = builder.inst_results(call)[0];
-    builder.ins().store(flags, budget, state, offset(offset_of!(State, budget)));
-    builder.ins().return_(&[]);
+    let results = builder.inst_results(call).to_vec();
+    builder.ins().return_(&results);
     builder.seal_all_blocks();
     builder.finalize(module.target_config());
 }
@@ -453,8 +500,17 @@ impl<'a, 'b> Translator<'a, 'b> {
 
     /// Makes a request as the word `at` and yields the answer; for requests that are rare.
     fn request(&mut self, code: u32, at: usize, a: Value, b: Value) -> Value {
-        let arguments = self.request_arguments(code, at, a, b);
-        self.builder.ins().call(self.request, &arguments);
+        let [_, code, at, stack_pointer, a, b] = self.request_arguments(code, at, a, b);
+        for (value, field) in [
+            (code, offset_of!(Request, code)),
+            (at, offset_of!(Request, at)),
+            (stack_pointer, offset_of!(Request, stack_pointer)),
+            (a, offset_of!(Request, a)),
+            (b, offset_of!(Request, b)),
+        ] {
+            self.store_state(value, offset_of!(State, request) + field);
+        }
+        self.builder.ins().call(self.request, &[self.state]);
         let answer = self.load_state(types::I64, offset_of!(State, answer));
         self.reload_budget();
         answer

@@ -3,12 +3,16 @@
 use std::mem::offset_of;
 
 use cranelift_codegen::ir::condcodes::IntCC;
-use cranelift_codegen::ir::{BlockCall, FuncRef as IrFuncRef, InstBuilder, JumpTableData, Value, types};
+use cranelift_codegen::ir::{
+    AbiParam, BlockCall, FuncRef as IrFuncRef, InstBuilder, JumpTableData, Signature, Value, types,
+};
 use cranelift_module::Module;
+use kmotiondef::GuestAddr;
 
 use super::super::request::Reason;
 use super::super::state::State;
-use super::{Translator, function_signature};
+use super::{Translator, thunk_signature, type_of};
+use crate::firmware::{Pure, PureFunction};
 use crate::meter::branch_target;
 use crate::operand::{
     Addr, Class, Classes, Count, Count32, FuncRef, Label, RegF32, RegF64, RegI32, RegI64, SigRef,
@@ -122,22 +126,23 @@ impl Translator<'_, '_> {
         let target = self.get(target);
         let address = self.builder.ins().uextend(types::I64, target);
         let signature = self.builder.ins().iconst(types::I64, i64::from(sig.0));
-        let pointer = self.usual_request(Reason::CallPointer.code(), self.at, address, signature);
+        self.store_arguments(sig);
+        let thunk = self.usual_request(Reason::CallPointer.code(), self.at, address, signature);
         let (own, firmware, behind) =
             (self.builder.create_block(), self.builder.create_block(), self.builder.create_block());
         let result = self.builder.append_block_param(behind, types::I64);
-        self.builder.ins().brif(pointer, own, &[], firmware, &[]);
+        self.builder.ins().brif(thunk, own, &[], firmware, &[]);
 
         self.enter_cold(firmware);
-        let slot = self.request_firmware(address, sig);
+        let slot = self.usual_request(Reason::CallFirmware.code(), self.at, address, signature);
         self.builder.ins().jump(behind, &[slot.into()]);
 
         self.enter(own);
         self.note_call();
+        self.arguments.clear();
         let arguments = self.take_call_arguments();
-        let parameters = &self.translation.program.signatures()[usize::from(sig.0)].params;
-        let signature = self.builder.import_signature(function_signature(parameters));
-        let call = self.builder.ins().call_indirect(signature, pointer, &arguments);
+        let signature = self.builder.import_signature(thunk_signature());
+        let call = self.builder.ins().call_indirect(signature, thunk, &arguments);
         self.take_results(call);
         let slot = self.result.unwrap_or(address);
         self.builder.ins().jump(behind, &[slot.into()]);
@@ -147,10 +152,59 @@ impl Translator<'_, '_> {
     }
 
     pub(super) fn call_fw(&mut self, sig: SigRef, addr: Addr) {
-        let address = self.builder.ins().iconst(types::I64, i64::from(addr.0));
-        let slot = self.request_firmware(address, sig);
+        if let Some(pure) = self.pure_function(sig, addr) {
+            return self.call_pure(pure);
+        }
+        self.store_arguments(sig);
         self.arguments.clear();
+        let address = self.builder.ins().iconst(types::I64, i64::from(addr.0));
+        let signature = self.builder.ins().iconst(types::I64, i64::from(sig.0));
+        let slot = self.usual_request(Reason::CallFirmware.code(), self.at, address, signature);
         self.result = Some(slot);
+    }
+
+    /// The firmware function at `addr`, if it only computes and is called as it is.
+    fn pure_function(&self, sig: SigRef, addr: Addr) -> Option<Pure> {
+        let pure = (self.translation.pure)(GuestAddr::new(addr.0))?;
+        let called = &self.translation.program.signatures()[usize::from(sig.0)];
+        let is_same =
+            called.params == pure.function.parameters() && called.result == Some(pure.function.result());
+        is_same.then_some(pure)
+    }
+
+    /// Does what the firmware function does; it takes as long as when the firmware does it.
+    fn call_pure(&mut self, pure: Pure) {
+        let budget = self.builder.use_var(self.budget);
+        let left = self.builder.ins().iadd_imm_s(budget, -pure.cost.get());
+        self.builder.def_var(self.budget, left);
+        let arguments = std::mem::take(&mut self.arguments);
+        let value = match pure.function {
+            PureFunction::SqrtF64 | PureFunction::SqrtF32 => {
+                let root = self.builder.ins().sqrt(arguments[0]);
+                self.canonical(pure.function.result(), root)
+            }
+            PureFunction::F64(function) => self.call_host(pure.function, function as *const (), &arguments),
+            PureFunction::F64F64(function) => {
+                self.call_host(pure.function, function as *const (), &arguments)
+            }
+            PureFunction::F32(function) => self.call_host(pure.function, function as *const (), &arguments),
+            PureFunction::F32F32(function) => {
+                self.call_host(pure.function, function as *const (), &arguments)
+            }
+        };
+        self.result = Some(self.slot(pure.function.result(), value));
+    }
+
+    /// Calls the host's function at `pointer`.
+    fn call_host(&mut self, function: PureFunction, pointer: *const (), arguments: &[Value]) -> Value {
+        let mut signature = Signature::new(self.module.isa().default_call_conv());
+        let parameters = function.parameters().iter().map(|class| AbiParam::new(type_of(*class)));
+        signature.params.extend(parameters);
+        signature.returns.push(AbiParam::new(type_of(function.result())));
+        let signature = self.builder.import_signature(signature);
+        let pointer = self.builder.ins().iconst(types::I64, pointer.expose_provenance() as i64);
+        let call = self.builder.ins().call_indirect(signature, pointer, arguments);
+        self.builder.inst_results(call)[0]
     }
 
     pub(super) fn ret(&mut self) {
@@ -197,15 +251,13 @@ impl Translator<'_, '_> {
         self.result = Some(slot);
     }
 
-    /// Calls the firmware function at `address` and yields its result; the arguments stay.
-    fn request_firmware(&mut self, address: Value, sig: SigRef) -> Value {
+    /// Puts the arguments of a call with signature `sig` into the state.
+    fn store_arguments(&mut self, sig: SigRef) {
         let parameters = &self.translation.program.signatures()[usize::from(sig.0)].params;
         for (index, (class, value)) in parameters.iter().zip(self.arguments.clone()).enumerate() {
             let slot = self.slot(*class, value);
             self.store_state(slot, offset_of!(State, arguments) + index * size_of::<u64>());
         }
-        let signature = self.builder.ins().iconst(types::I64, i64::from(sig.0));
-        self.usual_request(Reason::CallFirmware.code(), self.at, address, signature)
     }
 
     fn return_slot(&mut self, slot: Value) {

@@ -1,20 +1,19 @@
 //! Loads and stores: RAM directly, everything else by a request.
 //!
-//! Whether an access stays in a region is one comparison: the offset in the region, rotated right
-//! by as many bits as an aligned offset has zeros, is below the number of places only if it is
-//! inside and aligned. SDRAM is tried first, out of line then on-chip RAM. A store to SDRAM also
-//! looks at the map of protected blocks. Where the address is a constant, all that is decided here.
+//! Whether an access stays in a region is one test: the offset in the region has none of the bits
+//! that are 0 in every aligned offset inside. SDRAM is tried first, out of line then on-chip RAM. A
+//! store to SDRAM also looks at the map of protected blocks. Where the address is a constant, all
+//! that is decided here.
 
 use std::mem::offset_of;
 
-use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::{Block, InstBuilder, Value, types};
 use kmotiondef::map::{IRAM, PROGRAM_BASE, PROGRAM_LIMIT, Region, SDRAM};
 
 use super::super::protected::BLOCK_BITS;
 use super::super::request::{Reason, Width};
 use super::super::state::State;
-use super::{Register, Translator, offset, type_of};
+use super::{Register, Translator, offset};
 use crate::operand::{Addr, Class, Count, Imm, Off, RegF32, RegF64, RegI32, RegI64};
 
 /// Loads and stores in both address modes: what they move, and the register's class.
@@ -23,8 +22,8 @@ macro_rules! accesses {
      stores { $($store:ident, $store_at:ident: $src:ident = $store_width:ident;)* }) => {
         impl Translator<'_, '_> {
             $(pub(super) fn $load(&mut self, dst: $dst, base: RegI32, off: Off) {
-                let address = self.address(base, off);
-                self.load(dst, address, Width::$load_width);
+                let place = self.place(base, off);
+                self.load(dst, place, Width::$load_width);
             }
 
             pub(super) fn $load_at(&mut self, dst: $dst, addr: Addr) {
@@ -32,8 +31,8 @@ macro_rules! accesses {
             })*
 
             $(pub(super) fn $store(&mut self, src: $src, base: RegI32, off: Off) {
-                let address = self.address(base, off);
-                self.store(src, address, Width::$store_width);
+                let place = self.place(base, off);
+                self.store(src, place, Width::$store_width);
             }
 
             pub(super) fn $store_at(&mut self, src: $src, addr: Addr) {
@@ -63,13 +62,8 @@ accesses! {
     }
 }
 
-/// The ways of an access: in SDRAM, in on-chip RAM when it is not there, and by a request.
-struct AccessBlocks {
-    fast: Block,
-    elsewhere: Block,
-    iram: Block,
-    slow: Block,
-}
+const _: () = assert!(SDRAM.size.is_power_of_two() && SDRAM.base.get().is_multiple_of(SDRAM.size));
+const _: () = assert!(IRAM.size.is_power_of_two() && IRAM.base.get().is_multiple_of(IRAM.size));
 
 impl Translator<'_, '_> {
     pub(super) fn frame_addr(&mut self, dst: RegI32, offset: Imm) {
@@ -94,36 +88,30 @@ impl Translator<'_, '_> {
         self.usual_request(Reason::Clear.code(), self.at, to, len);
     }
 
-    fn address(&mut self, base: RegI32, off: Off) -> Value {
+    /// The offset in SDRAM of the address `base + off`.
+    fn place(&mut self, base: RegI32, off: Off) -> Value {
         let base = self.get(base);
-        self.builder.ins().iadd_imm_s(base, i64::from(off.0))
+        let sdram = SDRAM.base.get().cast_signed();
+        self.builder.ins().iadd_imm_s(base, i64::from(i32::from(off.0).wrapping_sub(sdram)))
     }
 
-    fn load<R: Register>(&mut self, dst: R, address: Value, width: Width) {
-        let behind = self.builder.create_block();
-        let result = self.builder.append_block_param(behind, type_of(R::CLASS));
-        let blocks = self.access_blocks();
-        let place = self.branch_if_inside(SDRAM, address, width, blocks.fast, blocks.elsewhere);
+    fn load<R: Register>(&mut self, dst: R, place: Value, width: Width) {
+        let [elsewhere, slow, behind] = self.access_blocks();
+        let offset_in_sdram = self.builder.ins().uextend(types::I64, place);
+        let bits = self.wrong_bits(SDRAM, place, width);
+        self.builder.ins().brif(bits, elsewhere, &[], behind, &[offset_in_sdram.into()]);
 
-        self.enter(blocks.fast);
-        let pointer = self.pointer(place, offset_of!(State, sdram));
+        let address = self.elsewhere(place, width, elsewhere, slow, behind);
+
+        self.enter_cold(slow);
+        let address = self.builder.ins().uextend(types::I64, address);
+        let none = self.builder.ins().iconst(types::I64, 0);
+        self.request(Reason::Load.with_width(width), self.at, address, none);
+        self.go_on_in_state(offset_of!(State, answer), behind);
+
+        let pointer = self.enter_access(behind);
         let value = self.load_guest(pointer, 0, width);
-        self.builder.ins().jump(behind, &[value.into()]);
-
-        self.enter_cold(blocks.elsewhere);
-        let place = self.branch_if_inside(IRAM, address, width, blocks.iram, blocks.slow);
-
-        self.enter_cold(blocks.iram);
-        let pointer = self.pointer(place, offset_of!(State, iram));
-        let value = self.load_guest(pointer, 0, width);
-        self.builder.ins().jump(behind, &[value.into()]);
-
-        self.enter_cold(blocks.slow);
-        let value = self.request_load(R::CLASS, address, width);
-        self.builder.ins().jump(behind, &[value.into()]);
-
-        self.enter(behind);
-        self.set(dst, result);
+        self.set(dst, value);
     }
 
     fn load_at<R: Register>(&mut self, dst: R, addr: Addr, width: Width) {
@@ -140,35 +128,31 @@ impl Translator<'_, '_> {
         self.set(dst, value);
     }
 
-    fn store<R: Register>(&mut self, src: R, address: Value, width: Width) {
+    fn store<R: Register>(&mut self, src: R, place: Value, width: Width) {
         let value = self.get(src);
-        let (inside, behind) = (self.builder.create_block(), self.builder.create_block());
-        let blocks = self.access_blocks();
-        let place = self.branch_if_inside(SDRAM, address, width, inside, blocks.elsewhere);
+        let inside = self.builder.create_block();
+        let [elsewhere, slow, behind] = self.access_blocks();
+        let bits = self.wrong_bits(SDRAM, place, width);
+        self.builder.ins().brif(bits, elsewhere, &[], inside, &[]);
 
         self.enter(inside);
+        let offset_in_sdram = self.builder.ins().uextend(types::I64, place);
         let block = self.builder.ins().ushr_imm_u(place, i64::from(BLOCK_BITS));
-        let mark = self.pointer(block, offset_of!(State, protected));
-        self.branch_if_protected(mark, 0, blocks.slow, blocks.fast);
+        let block = self.builder.ins().uextend(types::I64, block);
+        let marks = self.load_pointer(offset_of!(State, protected));
+        let mark = self.builder.ins().iadd(marks, block);
+        let mark = self.builder.ins().uload8(types::I32, self.state_flags, mark, 0);
+        self.builder.ins().brif(mark, slow, &[], behind, &[offset_in_sdram.into()]);
 
-        self.enter(blocks.fast);
-        let pointer = self.pointer(place, offset_of!(State, sdram));
-        self.store_guest(value, pointer, 0, width);
-        self.builder.ins().jump(behind, &[]);
+        self.elsewhere(place, width, elsewhere, slow, behind);
 
-        self.enter_cold(blocks.elsewhere);
-        let place = self.branch_if_inside(IRAM, address, width, blocks.iram, blocks.slow);
-
-        self.enter_cold(blocks.iram);
-        let pointer = self.pointer(place, offset_of!(State, iram));
-        self.store_guest(value, pointer, 0, width);
-        self.builder.ins().jump(behind, &[]);
-
-        self.enter_cold(blocks.slow);
+        self.enter_cold(slow);
+        let address = self.toggle_base(SDRAM, place);
         self.request_store(R::CLASS, value, address, width);
-        self.builder.ins().jump(behind, &[]);
+        self.go_on_in_state(offset_of!(State, scratch), behind);
 
-        self.enter(behind);
+        let pointer = self.enter_access(behind);
+        self.store_guest(value, pointer, 0, width);
     }
 
     fn store_at<R: Register>(&mut self, src: R, addr: Addr, width: Width) {
@@ -181,66 +165,87 @@ impl Translator<'_, '_> {
             let base = self.load_pointer(field);
             return self.store_guest(value, base, place, width);
         }
-        let (fast, slow, behind) =
-            (self.builder.create_block(), self.builder.create_block(), self.builder.create_block());
+        let [_, slow, behind] = self.access_blocks();
         let marks = self.load_pointer(offset_of!(State, protected));
-        self.branch_if_protected(marks, place >> BLOCK_BITS, slow, fast);
-
-        self.enter(fast);
-        let base = self.load_pointer(field);
-        self.store_guest(value, base, place, width);
-        self.builder.ins().jump(behind, &[]);
+        let mark = self.builder.ins().uload8(types::I32, self.state_flags, marks, place >> BLOCK_BITS);
+        let place = self.builder.ins().iconst(types::I64, i64::from(place));
+        self.builder.ins().brif(mark, slow, &[], behind, &[place.into()]);
 
         self.enter_cold(slow);
         self.request_store(R::CLASS, value, address, width);
-        self.builder.ins().jump(behind, &[]);
+        self.go_on_in_state(offset_of!(State, scratch), behind);
 
+        let pointer = self.enter_access(behind);
+        self.store_guest(value, pointer, 0, width);
+    }
+
+    /// The blocks of an access: what is not in SDRAM, what is in no RAM, and the access itself, which takes the
+    /// offset from the beginning of SDRAM to where it is to be made.
+    ///
+    /// There is one place where the access is made, whatever way leads there: Cranelift computes a value where
+    /// it is first used, and what it computed on one of several ways it would compute again behind them.
+    fn access_blocks(&mut self) -> [Block; 3] {
+        let behind = self.builder.create_block();
+        self.builder.append_block_param(behind, types::I64);
+        [self.builder.create_block(), self.builder.create_block(), behind]
+    }
+
+    /// Goes on with the access; yields where it is to be made.
+    fn enter_access(&mut self, behind: Block) -> Value {
         self.enter(behind);
-    }
-
-    fn access_blocks(&mut self) -> AccessBlocks {
-        AccessBlocks {
-            fast: self.builder.create_block(),
-            elsewhere: self.builder.create_block(),
-            iram: self.builder.create_block(),
-            slow: self.builder.create_block(),
-        }
-    }
-
-    /// Goes to `inside` if an access of `address` stays in `region` and is aligned, else to `outside`;
-    /// yields the offset in the region.
-    fn branch_if_inside(
-        &mut self,
-        region: Region,
-        address: Value,
-        width: Width,
-        inside: Block,
-        outside: Block,
-    ) -> Value {
-        let base = i64::from(region.base.get().cast_signed());
-        let place = self.builder.ins().iadd_imm_s(address, base.wrapping_neg());
-        let zeros = width.bytes().ilog2();
-        let rotated = match zeros {
-            0 => place,
-            _ => self.builder.ins().rotr_imm_u(place, i64::from(zeros)),
-        };
-        let places = i64::from(region.size >> zeros);
-        let fits = self.builder.ins().icmp_imm_u(IntCC::UnsignedLessThan, rotated, places);
-        self.builder.ins().brif(fits, inside, &[], outside, &[]);
-        place
-    }
-
-    /// Goes to `slow` if the mark at `marks + place` is set, else to `fast`.
-    fn branch_if_protected(&mut self, marks: Value, place: i32, slow: Block, fast: Block) {
-        let mark = self.builder.ins().uload8(types::I32, self.state_flags, marks, place);
-        self.builder.ins().brif(mark, slow, &[], fast, &[]);
-    }
-
-    /// `place` behind the pointer in a field of the state.
-    fn pointer(&mut self, place: Value, field: usize) -> Value {
-        let base = self.load_pointer(field);
-        let place = self.builder.ins().uextend(types::I64, place);
+        let base = self.load_pointer(offset_of!(State, sdram));
+        let place = self.builder.block_params(behind)[0];
         self.builder.ins().iadd(base, place)
+    }
+
+    /// What is not in SDRAM: goes to the access if it is in on-chip RAM, else to `slow`; yields the address.
+    fn elsewhere(
+        &mut self,
+        place: Value,
+        width: Width,
+        elsewhere: Block,
+        slow: Block,
+        behind: Block,
+    ) -> Value {
+        self.enter_cold(elsewhere);
+        let address = self.toggle_base(SDRAM, place);
+        let place = self.toggle_base(IRAM, address);
+        let bits = self.wrong_bits(IRAM, place, width);
+        let iram = self.builder.create_block();
+        self.builder.ins().brif(bits, slow, &[], iram, &[]);
+
+        self.enter_cold(iram);
+        let base = self.load_state(types::I64, offset_of!(State, iram));
+        let place = self.builder.ins().uextend(types::I64, place);
+        let pointer = self.builder.ins().iadd(base, place);
+        self.go_on_at(pointer, behind);
+        address
+    }
+
+    /// Goes on with the access in a field of the state: the request has done what was to be done.
+    fn go_on_in_state(&mut self, field: usize, behind: Block) {
+        let pointer = self.builder.ins().iadd_imm_s(self.state, i64::from(offset(field)));
+        self.go_on_at(pointer, behind);
+    }
+
+    fn go_on_at(&mut self, pointer: Value, behind: Block) {
+        let base = self.load_state(types::I64, offset_of!(State, sdram));
+        let place = self.builder.ins().isub(pointer, base);
+        self.builder.ins().jump(behind, &[place.into()]);
+    }
+
+    /// The bits of `place` that are 0 in the offset of every access that stays in `region` and is aligned.
+    fn wrong_bits(&mut self, region: Region, place: Value, width: Width) -> Value {
+        let never = !(region.size - 1) | (width.bytes() - 1);
+        self.builder.ins().band_imm_s(place, i64::from(never.cast_signed()))
+    }
+
+    /// From an address to the offset in `region`, and back, since regions lie at multiples of their size.
+    ///
+    /// Not written as a sum: Cranelift would share it with the sum that made the address, and keep that over
+    /// the access.
+    fn toggle_base(&mut self, region: Region, value: Value) -> Value {
+        self.builder.ins().bxor_imm_s(value, i64::from(region.base.get().cast_signed()))
     }
 
     fn load_guest(&mut self, pointer: Value, place: i32, width: Width) -> Value {
