@@ -14,6 +14,7 @@ use crate::lower;
 use crate::object::{
     self, DataRelocation, Definition, Initialized, Line, Object, Relocation, SourceLine, Symbol, SymbolKind,
 };
+use crate::passes::inline::Candidates;
 use crate::passes::{self, Level};
 use crate::source::{SourceMap, Span};
 use crate::ty::{Type, TypeId, Types};
@@ -40,9 +41,17 @@ pub fn compile(unit: &Unit, sources: &SourceMap, level: Level, sink: &mut Sink) 
     compiler.symbols();
     compiler.data();
     let definitions = lower::Definitions::new(unit, &mut compiler.object.signatures);
+    let mut candidates = Candidates::default();
     for function in &unit.functions {
         let mut ir = lower::lower(unit, function, &definitions, &mut compiler.object.signatures);
         passes::run(&mut ir, level);
+        if level != Level::None {
+            let file = compiler.place(ir.span).file;
+            candidates.offer(&ir, file);
+            if candidates.run(&mut ir, file) {
+                passes::run(&mut ir, level);
+            }
+        }
         compiler.function(ir);
     }
     compiler.object.pool = compiler.pool.into_values();

@@ -2,12 +2,15 @@
 //!
 //! All are local to a block or to the graph of blocks and take linear time. They work on
 //! values only: loads, stores and calls stay where they are, in number and order
-//! (specification, `dialect.md` 1.5).
+//! (specification, `dialect.md` 1.5); only a call of a small function gives way to that function.
 
 pub mod dead;
 pub mod divide;
 pub mod fold;
+pub mod inline;
 pub mod jumps;
+pub mod loops;
+pub mod reuse;
 mod strength;
 
 use crate::ir::function::Function;
@@ -30,6 +33,9 @@ pub fn run(function: &mut Function, level: Level) {
     jumps::run(function);
     if fold::run(function) {
         jumps::run(function);
+    }
+    if reuse::run(function) | loops::run(function) {
+        fold::run(function);
     }
     dead::run(function);
     divide::run(function);

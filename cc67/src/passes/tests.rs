@@ -140,3 +140,55 @@ fn facts_end_where_a_value_is_written_again() {
 fn an_endless_empty_loop_stays() {
     check("void f(void) { for (;;) ; }", "function f()\nblock0:\njump block1\nblock1:\njump block1");
 }
+
+#[test]
+fn what_does_not_change_leaves_the_loop_and_what_grows_evenly_is_carried() {
+    check(
+        "int a[4][4]; int f(int i, int n) { int k, s = 0; for (k = 0; k < n; k++) s += a[i][k] + (i * 3 ^ n); return s; }",
+        "
+        function f(v0: i32, v1: i32) -> i32
+        block0:
+          v3 = 0
+          v2 = 0
+          v4 = lt.i32 0, v1
+          branch v4, block4, block3
+        block4:
+          v5 = shl.i32 v0, 4
+          v6 = add.i32 v5, &a
+          v10 = mul.i32 v0, 3
+          v11 = xor.i32 v10, v1
+          v16 = v6
+          jump block1
+        block1:
+          v9 = load.i32 [v16]
+          v12 = add.i32 v9, v11
+          v3 = add.i32 v3, v12
+          v2 = add.i32 v2, 1
+          v16 = add.i32 v16, 4
+          v13 = lt.i32 v2, v1
+          branch v13, block1, block3
+        block3:
+          return v3
+        ",
+    );
+}
+
+#[test]
+fn an_expression_is_computed_once_but_each_load_stays() {
+    check(
+        "int a[9]; int f(int i) { return a[3 * i] + a[3 * i]; }",
+        "
+        function f(v0: i32) -> i32
+        block0:
+          v1 = mul.i32 v0, 3
+          v2 = shl.i32 v1, 2
+          v3 = add.i32 v2, &a
+          v4 = load.i32 [v3]
+          v6 = shl.i32 v1, 2
+          v7 = add.i32 v6, &a
+          v8 = load.i32 [v7]
+          v9 = add.i32 v4, v8
+          return v9
+        ",
+    );
+}

@@ -1,0 +1,238 @@
+//! Puts small functions in the place of their calls.
+//!
+//! A function is taken over as it stands: its values, blocks and accesses are copied, its
+//! parameters are written before it, its result is written where it returned. What has objects in
+//! the frame is left alone, so that a frame grows only by what its own function asks for.
+//!
+//! A function that calls itself takes over its own body, from before that, a few levels deep.
+//! The calls that remain still use the stack, so a recursion without end still traps.
+
+use std::collections::BTreeMap;
+
+use cranelift_entity::SecondaryMap;
+
+use crate::ir::function::{Block, Function};
+use crate::ir::inst::{
+    Address, Arguments, Base, BlockId, Callee, Class, Inst, InstKind, Operand, Terminator, ValueId,
+};
+use crate::typed::SymbolId;
+
+/// The most instructions of a function that is put in the place of its calls.
+const SMALL: usize = 40;
+
+/// The most instructions of a function whose calls of itself are replaced.
+const SMALL_RECURSIVE: usize = 16;
+
+/// How often the calls of a function in itself are replaced.
+const LEVELS: usize = 3;
+
+/// What a function may grow to.
+const LARGEST: usize = 1500;
+
+/// The functions that may be put in the place of their calls, each with the source file that it is in.
+#[derive(Debug, Default)]
+pub struct Candidates {
+    functions: BTreeMap<SymbolId, (u32, Function)>,
+}
+
+impl Candidates {
+    /// Offers an optimised function of the source file `file`.
+    pub fn offer(&mut self, function: &Function, file: u32) {
+        if size(function) <= SMALL && function.slots.is_empty() {
+            self.functions.insert(function.symbol, (file, function.clone()));
+        }
+    }
+
+    /// Replaces what `function` of the source file `file` calls; returns whether there was anything.
+    ///
+    /// Only functions of the same file: a function's instructions have lines of one file.
+    pub fn run(&self, function: &mut Function, file: u32) -> bool {
+        let own = function.clone();
+        let find = |symbol: SymbolId| {
+            let found = self.functions.get(&symbol).filter(|_| symbol != own.symbol);
+            found.filter(|(other, _)| *other == file).map(|(_, callee)| callee)
+        };
+        let mut is_changed = replace_calls(function, find);
+        if size(&own) <= SMALL_RECURSIVE && own.slots.is_empty() {
+            for _ in 0..LEVELS {
+                if !replace_calls(function, |symbol| (symbol == own.symbol).then_some(&own)) {
+                    break;
+                }
+                is_changed = true;
+            }
+        }
+        is_changed
+    }
+}
+
+/// Number of instructions, ends of blocks included.
+fn size(function: &Function) -> usize {
+    function.layout.iter().map(|id| function.blocks[*id].insts.len() + 1).sum()
+}
+
+/// Replaces every call for which `find` names a function, as it is now; returns whether there was one.
+fn replace_calls<'a>(function: &mut Function, find: impl Fn(SymbolId) -> Option<&'a Function>) -> bool {
+    let mut total = size(function);
+    let mut is_changed = false;
+    let mut layout = Vec::new();
+    for id in std::mem::take(&mut function.layout) {
+        layout.push(id);
+        let mut block = id;
+        for inst in std::mem::take(&mut function.blocks[id].insts) {
+            let callee = match inst.kind {
+                InstKind::Call { callee: Callee::Symbol(symbol), signature, .. } => {
+                    find(symbol).filter(|callee| callee.signature == signature)
+                }
+                _ => None,
+            };
+            let Some(callee) = callee.filter(|callee| total + size(callee) <= LARGEST) else {
+                function.blocks[block].insts.push(inst);
+                continue;
+            };
+            total += size(callee);
+            is_changed = true;
+            let behind = split(function, block);
+            Copier::new(function, callee).copy(block, inst, behind, &mut layout);
+            layout.push(behind);
+            block = behind;
+        }
+    }
+    function.layout = layout;
+    is_changed
+}
+
+/// A new block that ends as `block` did.
+fn split(function: &mut Function, block: BlockId) -> BlockId {
+    let span = function.blocks[block].span;
+    let terminator = std::mem::replace(&mut function.blocks[block].terminator, Terminator::Unreachable);
+    function.blocks.push(Block { insts: Vec::new(), terminator, span })
+}
+
+/// Copies one function into another.
+struct Copier<'a> {
+    to: &'a mut Function,
+    from: &'a Function,
+    values: SecondaryMap<ValueId, ValueId>,
+    blocks: SecondaryMap<BlockId, BlockId>,
+}
+
+impl<'a> Copier<'a> {
+    fn new(to: &'a mut Function, from: &'a Function) -> Self {
+        // Entity 0 stands where nothing is copied; every one that is mentioned is.
+        let (mut values, mut blocks) = (
+            SecondaryMap::with_default(ValueId::from_u32(0)),
+            SecondaryMap::with_default(BlockId::from_u32(0)),
+        );
+        for (value, class) in &from.values {
+            values[value] = to.values.push(*class);
+        }
+        for id in &from.layout {
+            let span = from.blocks[*id].span;
+            blocks[*id] =
+                to.blocks.push(Block { insts: Vec::new(), terminator: Terminator::Unreachable, span });
+        }
+        Self { to, from, values, blocks }
+    }
+
+    /// Copies the function between `before`, which is to end with `call`, and `behind`.
+    fn copy(mut self, before: BlockId, call: Inst, behind: BlockId, layout: &mut Vec<BlockId>) {
+        let InstKind::Call { arguments, dst, .. } = call.kind else { return };
+        for (index, param) in arguments.range().zip(&self.from.params) {
+            let src = self.to.arguments[index];
+            let kind = InstKind::Copy { dst: self.values[*param], src };
+            self.to.blocks[before].insts.push(Inst { kind, span: call.span });
+        }
+        let Some(&entry) = self.from.layout.first() else { return };
+        self.to.blocks[before].terminator = Terminator::Jump(self.blocks[entry]);
+        self.to.blocks[before].span = call.span;
+        for id in &self.from.layout {
+            let block = &self.from.blocks[*id];
+            let mut insts: Vec<_> = block.insts.iter().map(|inst| self.inst(*inst)).collect();
+            let terminator = match &block.terminator {
+                Terminator::Return(value) => {
+                    if let Some(dst) = dst.expand() {
+                        let class: Class = self.to.values[dst];
+                        let src = value.map_or(class.zero().into(), |value| self.operand(value));
+                        insts.push(Inst { kind: InstKind::Copy { dst, src }, span: block.span });
+                    }
+                    Terminator::Jump(behind)
+                }
+                other => self.terminator(other.clone()),
+            };
+            let copy = self.blocks[*id];
+            self.to.blocks[copy].insts = insts;
+            self.to.blocks[copy].terminator = terminator;
+            layout.push(copy);
+        }
+    }
+
+    fn terminator(&self, mut terminator: Terminator) -> Terminator {
+        terminator.visit_targets(|target| *target = self.blocks[*target]);
+        if let Some(operand) = terminator.operand_mut() {
+            *operand = self.operand(*operand);
+        }
+        terminator
+    }
+
+    fn operand(&self, operand: Operand) -> Operand {
+        match operand {
+            Operand::Value(value) => Operand::Value(self.values[value]),
+            Operand::Constant(_) => operand,
+        }
+    }
+
+    fn address(&self, address: Address) -> Address {
+        match address.base {
+            Base::Value(value) => Address { base: Base::Value(self.values[value]), ..address },
+            _ => address,
+        }
+    }
+
+    fn arguments(&mut self, arguments: Arguments) -> Arguments {
+        let start = self.to.arguments.len() as u32;
+        for index in arguments.range() {
+            let argument = self.operand(self.from.arguments[index]);
+            self.to.arguments.push(argument);
+        }
+        Arguments { start, count: arguments.count }
+    }
+
+    fn inst(&mut self, inst: Inst) -> Inst {
+        let of = |value: ValueId| self.values[value];
+        let kind = match inst.kind {
+            InstKind::Copy { dst, src } => InstKind::Copy { dst: of(dst), src: self.operand(src) },
+            InstKind::Unary { op, dst, src } => InstKind::Unary { op, dst: of(dst), src: self.operand(src) },
+            InstKind::Binary { op, dst, a, b } => {
+                InstKind::Binary { op, dst: of(dst), a: self.operand(a), b: self.operand(b) }
+            }
+            InstKind::Compare { op, dst, a, b } => {
+                InstKind::Compare { op, dst: of(dst), a: self.operand(a), b: self.operand(b) }
+            }
+            InstKind::Convert { op, dst, src } => {
+                InstKind::Convert { op, dst: of(dst), src: self.operand(src) }
+            }
+            InstKind::Load { dst, width, address } => {
+                InstKind::Load { dst: of(dst), width, address: self.address(address) }
+            }
+            InstKind::Store { src, width, address } => {
+                InstKind::Store { src: self.operand(src), width, address: self.address(address) }
+            }
+            InstKind::FrameAddress { dst, slot, offset } => {
+                InstKind::FrameAddress { dst: of(dst), slot, offset }
+            }
+            InstKind::CopyMemory { to, from, len } => {
+                InstKind::CopyMemory { to: self.address(to), from: self.address(from), len }
+            }
+            InstKind::ClearMemory { to, len } => InstKind::ClearMemory { to: self.address(to), len },
+            InstKind::Call { callee, arguments, signature, dst } => {
+                let dst = dst.expand().map(of).into();
+                let callee = match callee {
+                    Callee::Pointer(target) => Callee::Pointer(self.operand(target)),
+                    Callee::Symbol(_) => callee,
+                };
+                InstKind::Call { callee, arguments: self.arguments(arguments), signature, dst }
+            }
+        };
+        Inst { kind, span: inst.span }
+    }
+}
