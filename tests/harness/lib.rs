@@ -2,6 +2,7 @@
 
 pub mod csv;
 pub mod filetest;
+pub mod generate;
 pub mod vendor;
 
 use std::ffi::OsStr;

@@ -1,0 +1,149 @@
+//! Generated programs: what they print, how long they take and what they leave in memory is the same on both
+//! engines, and what they print is the same at every level of optimisation and behind `gcc`, where that is installed.
+//!
+//! An ordinary run takes a few programs. `CC67_PROGRAMS=20000` takes so many, `CC67_SEED=n` begins at another seed.
+
+use std::path::Path;
+use std::process::Command;
+use std::thread;
+
+use cc67::diag::Severity;
+use cc67::passes::Level;
+use cc67::{Options, image};
+use harness::Scratch;
+use harness::generate;
+use kmotiondef::{ThreadId, Ticks};
+use runtime::{Board, Config, Event, EventKind, RunEnd};
+use vm::engine::Engine;
+use vm::interp::BytecodeEngine;
+use vm::memory::GuestMemory;
+
+/// Programs of an ordinary run.
+const PROGRAMS: u64 = 40;
+
+/// Programs that `gcc` compiles in one go.
+const BATCH: u64 = 40;
+
+/// Board time after which a program has gone wrong: a minute.
+const LIMIT: Ticks = Ticks::new(666_667);
+
+fn number(variable: &str, default: u64) -> u64 {
+    std::env::var(variable).ok().and_then(|text| text.parse().ok()).unwrap_or(default)
+}
+
+/// The image of a program.
+fn compile(seed: u64, source: &str, level: Level) -> Vec<u8> {
+    let options = Options { level, ..Options::default() };
+    let files = cc67::pp::Disk;
+    let mut compilation = cc67::compile(Path::new("generated.c"), source.into(), &options, &files);
+    let linked = compilation.link(thread_1(), &options);
+    let errors = || compilation.diagnostics().into_iter().filter(|found| found.severity == Severity::Error);
+    let linked = linked.unwrap_or_else(|| panic!("seed {seed}: {:?}", errors().collect::<Vec<_>>()));
+    image::write(&linked).expect("an image of a small program can be written")
+}
+
+fn thread_1() -> ThreadId {
+    ThreadId::new(1).expect("there is a thread 1")
+}
+
+/// All that can be seen of a run.
+struct Run<E: Engine> {
+    events: Vec<Event>,
+    board: Board<E>,
+}
+
+impl<E: Engine> Run<E> {
+    fn new(seed: u64, image: &[u8]) -> Self {
+        let mut board: Board<E> = Board::new(Config::default());
+        board.load(thread_1(), image).expect("what the compiler makes can be loaded");
+        board.start(thread_1()).expect("it is loaded");
+        let mut events = Vec::new();
+        let end = board.run(LIMIT, &mut |event| events.push(event));
+        assert_eq!(end, RunEnd::AllEnded, "seed {seed}: the program does not end");
+        Self { events, board }
+    }
+
+    fn console(&self) -> String {
+        let mut text = String::new();
+        for event in &self.events {
+            match &event.kind {
+                EventKind::ConsoleLine(line) => text.push_str(&String::from_utf8_lossy(line)),
+                other => text.push_str(&format!("{other:?}")),
+            }
+            text.push('\n');
+        }
+        text
+    }
+
+    fn memory(&self) -> &GuestMemory {
+        self.board.memory()
+    }
+}
+
+/// Runs an image on every engine there is, which must not differ in anything, and yields the console.
+fn run(seed: u64, image: &[u8]) -> String {
+    let bytecode = Run::<BytecodeEngine>::new(seed, image);
+    #[cfg(feature = "native")]
+    {
+        let native = Run::<vm::native::NativeEngine>::new(seed, image);
+        assert_eq!(native.events, bytecode.events, "seed {seed}: the engines differ");
+        assert!(native.memory() == bytecode.memory(), "seed {seed}: the engines leave different memory");
+    }
+    bytecode.console()
+}
+
+/// What each of the programs `seeds` prints behind `gcc`; `None` where that is not installed.
+fn gcc(seeds: &[u64]) -> Option<Vec<String>> {
+    let scratch = Scratch::new(&format!("differential-{}", seeds[0]));
+    let mut source = String::new();
+    let mut main = String::from("int main(void)\n{\n");
+    for seed in seeds {
+        source.push_str(&generate::program(*seed, &format!("p{seed}_"), ""));
+        main.push_str(&format!("    p{seed}_main();\n"));
+    }
+    scratch.write("all.c", format!("{source}\n{main}    return 0;\n}}\n"));
+    let program = scratch.path().join("all");
+    let compiler = Command::new("gcc")
+        .args(["-w", "-O1", "-fwrapv", "-fsigned-char", "-ffp-contract=off", "-o"])
+        .arg(&program)
+        .arg(scratch.path().join("all.c"))
+        .status();
+    if !compiler.is_ok_and(|status| status.success()) {
+        return None;
+    }
+    let output = Command::new(&program).output().expect("what gcc has made starts");
+    let text = String::from_utf8_lossy(&output.stdout);
+    Some(text.lines().map(|line| format!("{line}\n")).collect())
+}
+
+/// Compares the programs `seeds`; returns how many were compared with `gcc`.
+fn compare(seeds: &[u64]) -> usize {
+    let mut compared = 0;
+    for batch in seeds.chunks(BATCH as usize) {
+        let expected = gcc(batch);
+        for (index, seed) in batch.iter().enumerate() {
+            let source = generate::program(*seed, "", "");
+            let optimised = run(*seed, &compile(*seed, &source, Level::Full));
+            let plain = run(*seed, &compile(*seed, &source, Level::None));
+            assert_eq!(optimised, plain, "seed {seed}: optimised and not");
+            if let Some(expected) = &expected {
+                assert_eq!(expected.get(index), Some(&plain), "seed {seed}: gcc and cc67");
+                compared += 1;
+            }
+        }
+    }
+    compared
+}
+
+#[test]
+fn generated_programs_do_the_same_everywhere() {
+    let (first, count) = (number("CC67_SEED", 1), number("CC67_PROGRAMS", PROGRAMS));
+    let seeds: Vec<u64> = (first..first + count).collect();
+    let workers = thread::available_parallelism().map_or(1, |workers| workers.get());
+    let share = seeds.len().div_ceil(workers).max(1);
+    let compared: usize = thread::scope(|scope| {
+        let handles: Vec<_> = seeds.chunks(share).map(|seeds| scope.spawn(move || compare(seeds))).collect();
+        handles.into_iter().map(|handle| handle.join().expect("the programs agree")).sum()
+    });
+    println!("seeds {first} to {}, {compared} of {count} compared with gcc", first + count - 1);
+}
