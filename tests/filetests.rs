@@ -14,7 +14,7 @@ const COMMAND: &str = env!("CARGO_BIN_EXE_cc67-under-test");
 /// Options that must not change a byte of what a program prints.
 const VARIANTS: &[&[&str]] = &[
     #[cfg(feature = "native")]
-    &["--engine", "native"],
+    &["--engine", "bytecode"],
 ];
 
 fn main() -> ExitCode {

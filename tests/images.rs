@@ -50,9 +50,7 @@ fn units_and_objects_make_one_program_that_runs_on_every_engine() {
         succeed(&scratch, &["build", "main.c", "up.c", "down.c", "half.c", "-t2", "-o", "direct.out"]);
     assert_eq!(direct, line);
     assert_eq!(succeed(&scratch, &["run", "2:direct.out"]), expect);
-    if cfg!(feature = "native") {
-        assert_eq!(succeed(&scratch, &["run", "--engine", "native", "2:main(2).out"]), expect);
-    }
+    assert_eq!(succeed(&scratch, &["run", "--engine", "bytecode", "2:main(2).out"]), expect);
 }
 
 #[test]

@@ -73,7 +73,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "FILE.svg", num_args = 0..=1, require_equals = true, default_missing_value = "")]
     profile: Option<String>,
     /// What executes the programs
-    #[arg(long, value_enum, default_value_t = EngineName::Bytecode)]
+    #[arg(long, value_enum, default_value_t)]
     engine: EngineName,
     #[command(flatten)]
     uart: UartOptions,
@@ -92,6 +92,13 @@ pub(super) enum EngineName {
     Bytecode,
     /// Machine code of the host
     Native,
+}
+
+impl Default for EngineName {
+    /// The fastest that this command is built with.
+    fn default() -> Self {
+        if cfg!(feature = "native") { Self::Native } else { Self::Bytecode }
+    }
 }
 
 impl EngineName {

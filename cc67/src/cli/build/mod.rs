@@ -56,6 +56,8 @@ enum Emit {
     Map,
     /// Commands that download the program, FILE(N).kmd
     Download,
+    /// A stand-alone executable for this computer; not built yet
+    Native,
 }
 
 pub(super) fn thread(text: &str) -> Result<ThreadId, String> {
@@ -69,6 +71,10 @@ pub(super) fn build(arguments: &Arguments) -> Result<Exit> {
     let levels = arguments.compiler.levels()?;
     let mut units = units::compile(&arguments.files, &options)?;
     let emit = arguments.emit();
+    ensure!(
+        !emit.contains(&Emit::Native),
+        "`--emit native`: stand-alone executables are not built yet; `cc67 run` translates a program when it starts"
+    );
     if emit == [Emit::Object] {
         if terminal::report_all(&units, &levels, arguments.compiler.format()) {
             return Ok(Exit::Failure);
@@ -150,7 +156,7 @@ impl Arguments {
                     let script = download::script(&image, self.thread);
                     output::write(&names::beside(&program, "kmd"), script.as_bytes())?;
                 }
-                Emit::Object => {}
+                Emit::Object | Emit::Native => {}
             }
         }
         Ok(())

@@ -69,7 +69,7 @@ pub(super) struct Arguments {
     #[arg(long)]
     time: bool,
     /// What executes the programs
-    #[arg(long, value_enum, default_value_t = EngineName::Bytecode)]
+    #[arg(long, value_enum, default_value_t)]
     engine: EngineName,
     #[command(flatten)]
     pc: PcOptions,
