@@ -189,7 +189,7 @@ mod tests {
         check("checkdoneb", 0, &["CheckDoneBuf"]);
         check("Jog0=5;movee", 7, &["MoveExp"]);
         check("help WaitNext", 5, &["WaitNextTimeSlice"]);
-        check("wai", 0, &["WaitBitBuf", "wait"]);
+        check("wai", 0, &["WaitBitBuf", "WaitNotBitBuf", "wait"]);
         check("Jog ", 4, &[]);
     }
 }

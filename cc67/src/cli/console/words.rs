@@ -177,7 +177,7 @@ mod tests {
     #[test]
     fn names_are_explained() {
         assert_eq!(help(Some("jog")), "Jog <0..7>=<number>\n    moves an axis at a speed; 0 stops it\n");
-        assert!(help(Some("SetBit")).contains("void SetBit(int bitno)"), "{}", help(Some("SetBit")));
+        assert!(help(Some("SetBit")).contains("void SetBit(int bit)"), "{}", help(Some("SetBit")));
         assert!(help(Some("Jogg")).contains("did you mean `Jog`?"), "{}", help(Some("Jogg")));
         assert!(help(None).contains("CheckDoneXYZABC"));
     }

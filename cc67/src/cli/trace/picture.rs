@@ -187,7 +187,7 @@ mod tests {
         let chart = chart(&log, String::new(), 2, Ticks::new(7));
         let lines: Vec<_> = chart.panels.iter().flat_map(|panel| &panel.lines).collect();
         assert_eq!(lines[0].name, "Dest 0");
-        let times: Vec<_> = lines[0].points.iter().map(|point| (point.0 * 1e6) as i64).collect();
+        let times: Vec<_> = lines[0].points.iter().map(|point| (point.0 * 1e6).round() as i64).collect();
         assert_eq!(times, [180, 360, 540, 630]);
         let values: Vec<_> = lines[0].points.iter().map(|point| point.1).collect();
         assert_eq!(values, [0.5, 0.5, 2.0, 2.0]);
