@@ -1,7 +1,7 @@
 //! Optimisations of the IR, one a file.
 //!
-//! All are local to a block or to the graph of blocks and take linear time. They work on
-//! values only: loads, stores and calls stay where they are, in number and order
+//! All are local to a block or to the graph of blocks and take linear time, but for the loops,
+//! each of which takes a turn over its function, up to a limit. They work on values only: loads, stores and calls stay where they are, in number and order
 //! (specification, `dialect.md` 1.5); only a call of a small function gives way to that function.
 
 pub mod dead;
@@ -20,7 +20,7 @@ use crate::ir::function::Function;
 pub enum Level {
     /// Nothing: the code follows the source (`-O0`).
     None,
-    /// Everything that takes linear time (`-O1`, `-O2`).
+    /// Everything (`-O1`, `-O2`).
     #[default]
     Full,
 }

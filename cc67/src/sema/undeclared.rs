@@ -4,6 +4,7 @@
 //! (`dialect.md` 2.3). Everything else is an error with the nearest name.
 
 use kmotiondef::CType;
+use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, Origin};
 
 use super::Sema;
 use super::advice::{Advice, HEADER_HELP};
@@ -90,7 +91,10 @@ impl Sema<'_> {
             self.report(
                 Diagnostic::warning(Lint::ImplicitDeclaration, span, format!("`{spelling}` is not declared"))
                     .at(format!("the firmware's `{prototype}` is used"))
-                    .help("include `KMotionDef.h`, or declare the function"),
+                    .help(match is_in_header(spelling) {
+                        true => "include `KMotionDef.h`, or declare the function".to_owned(),
+                        false => format!("`KMotionDef.h` lacks it; declare it: `{prototype};`"),
+                    }),
             );
         }
         Some((Callee::Symbol(symbol), ty))
@@ -227,4 +231,9 @@ impl Sema<'_> {
 /// Whether a name may be suggested for another: one letter is near to every other, only its case can be meant.
 pub(super) fn is_sensible(spelling: &str, name: &str) -> bool {
     spelling.len() > 1 || name.eq_ignore_ascii_case(spelling)
+}
+
+/// Whether the board's header declares a function of the firmware.
+fn is_in_header(name: &str) -> bool {
+    FIRMWARE_FUNCTIONS.iter().any(|function| function.name == name && function.origin == Origin::Header)
 }
