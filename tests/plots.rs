@@ -89,6 +89,85 @@ fn what_is_watched_is_drawn() {
     assert_eq!((output.code, output.stderr.as_str()), (2, expect));
 }
 
+/// The header and the last line of the table that a run of the program writes with this list.
+fn table(name: &str, program: &str, list: &str) -> (String, String) {
+    let scratch = Scratch::new(&format!("watch-{name}"));
+    fs::write(scratch.path().join("b.c"), program).expect("files can be written");
+    let output = cc67(&scratch, &["run", "--trace", "b.csv", "--watch", list, "b.c"]);
+    assert_eq!(output.render(), "---- exit 0\n", "{list}");
+    let text = fs::read_to_string(scratch.path().join("b.csv")).expect("it was written");
+    let line = |text: Option<&str>| text.expect("a line").to_owned();
+    (line(text.lines().next()), line(text.lines().next_back()))
+}
+
+/// Counts to 3 while it waits, with variables of several types.
+const COUNTER: &str = "\
+#include \"KMotionDef.h\"
+#define SPINDLE 3
+int count;
+static double rate = 2.5;
+struct { short state; float feed; } tool = { 4, 0.25f };
+main()
+{
+    persist.UserData[5] = 11;
+    persist.UserData[6] = rate * tool.state;
+    chan[SPINDLE].Dest = 100;
+    while (count < 3)
+    {
+        count++;
+        Delay_sec(0.001);
+    }
+}
+";
+
+#[test]
+fn expressions_are_watched_in_the_words_of_the_program() {
+    let list = "count,count / 2.0,rate*tool.feed,tool.state == 4,chan[SPINDLE].Dest - chan[0].Position,\
+                persist.UserData[5] + persist.5,fabs(-rate),(bit46, bit1024 ? 1 : 2)";
+    let (names, values) = table("program", COUNTER, list);
+    let expect = "time,count,count / 2.0,rate*tool.feed,tool.state == 4,chan[SPINDLE].Dest - chan[0].Position,\
+                  persist.UserData[5] + persist.5,fabs(-rate),\"(bit46, bit1024 ? 1 : 2)\"";
+    assert_eq!(names, expect);
+    assert_eq!(values.split_once(',').expect("a time").1, "3,1.5,0.625,1,100,22,2.5,2");
+}
+
+#[test]
+fn a_name_that_is_not_there_is_answered_with_the_nearest() {
+    let check = |list: &str, expect: &str| {
+        let scratch = Scratch::new("watch-wrong");
+        fs::write(scratch.path().join("b.c"), COUNTER).expect("files can be written");
+        let output = cc67(&scratch, &["run", "--trace", "b.csv", "--watch", list, "b.c"]);
+        assert_eq!(output.render(), format!("---- stderr\ncc67: {expect}\n---- exit 2\n"), "{list}");
+    };
+    check("cuont", "`--watch cuont`: `cuont` is not declared; did you mean `count`?");
+    check("ch0->Dst", "`--watch ch0->Dst`: `CHAN` has no member `Dst`; did you mean `Dest`?");
+    check("count = 1", "`--watch count = 1`: it changes something; an expression that is watched only reads");
+    check("2:count", "`--watch 2:count`: there is no program in that thread");
+    check("bit4000", "`bit4000` is no item; there are bit0 to bit2047");
+    check("count,,rate", "`--watch` wants names between its commas, such as axis0,bit46,persist.5");
+}
+
+#[test]
+fn the_variables_of_an_image_and_of_another_thread_are_watched() {
+    let scratch = Scratch::new("watch-threads");
+    fs::write(scratch.path().join("b.c"), COUNTER).expect("files can be written");
+    assert_eq!(cc67(&scratch, &["build", "b.c", "--thread", "2"]).code, 0);
+    let list = "2:count,rate,1:tool.state";
+    let arguments = ["run", "--trace", "b.csv", "--watch", list, "1:b.c", "2:b(2).out"];
+    assert_eq!(cc67(&scratch, &arguments).render(), "---- exit 0\n");
+    let text = fs::read_to_string(scratch.path().join("b.csv")).expect("it was written");
+    assert_eq!(text.lines().next(), Some("time,2:count,rate,1:tool.state"));
+    assert!(text.trim_end().ends_with(",3,2.5,4"), "{text}");
+}
+
+#[test]
+fn bits_that_are_watched_are_the_strips_of_the_picture() {
+    let (_, svg) = plot("strips", "a.svg", &["--watch", "dest0,bit47,bit1030"]);
+    let texts = texts(&svg);
+    let bits: Vec<_> = texts.iter().filter(|text| text.starts_with("bit ")).collect();
+    assert_eq!(bits, ["bit 47", "bit 1030"]);
+}
+
 #[test]
 fn a_picture_of_pixels_is_as_large_as_the_drawing() {
     let (_, png) = plot("png", "a.png", &[]);

@@ -53,6 +53,7 @@ pub mod source;
 pub mod suggest;
 pub mod ty;
 pub mod typed;
+pub mod watch;
 
 use std::panic::resume_unwind;
 use std::path::Path;
@@ -122,11 +123,15 @@ const STACK: usize = 512 << 20;
 /// If the system cannot start a thread.
 #[must_use]
 pub fn compile(path: &Path, text: Vec<u8>, options: &Options, files: &(dyn pp::Files + Sync)) -> Compilation {
+    on_large_stack(|| compile_here(path, text, options, files))
+}
+
+/// Runs on a stack that is large enough for any source text.
+fn on_large_stack<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     thread::scope(|scope| {
-        let compiler = thread::Builder::new().stack_size(STACK);
-        let handle = compiler.spawn_scoped(scope, || compile_here(path, text, options, files));
+        let handle = thread::Builder::new().stack_size(STACK).spawn_scoped(scope, work);
         match handle.expect("the system can start a thread").join() {
-            Ok(compilation) => compilation,
+            Ok(result) => result,
             Err(panic) => resume_unwind(panic),
         }
     })

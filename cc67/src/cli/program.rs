@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 use anyhow::{Result, bail};
 use kmotiondef::ThreadId;
 
+use super::trace::Watched;
+
 /// A file and its thread.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Program {
@@ -18,6 +20,11 @@ impl Program {
     /// Whether the file is an image rather than a source, by its name.
     pub(super) fn is_image(&self) -> bool {
         self.path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("out"))
+    }
+
+    /// The program with its image, for `--watch`.
+    pub(super) fn watched<'a>(&'a self, image: &'a [u8]) -> Watched<'a> {
+        Watched { thread: self.thread, path: &self.path, is_image: self.is_image(), image }
     }
 
     /// The file's name for messages.

@@ -136,8 +136,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit> {
     let settings = [setting::all(&arguments.set, &mut machine_file)?, arguments.pc.mcode()?].concat();
     let (answers, flash) = (arguments.pc.answers()?, arguments.pc.flash()?);
     let stimulus = stimulus::read(&arguments.stim)?;
-    let trace = arguments.trace.request()?;
     let Some(images) = images(&programs, &arguments.compiler)? else { return Ok(Exit::Failure) };
+    let watched: Vec<_> =
+        programs.iter().zip(&images).map(|(program, image)| program.watched(image)).collect();
+    let trace = arguments.trace.request(&watched, &arguments.compiler.resolve()?)?;
 
     let files = Box::new(Directory::new(&arguments.files));
     let machine = MachineConfig { shortcuts: !arguments.no_shortcuts, ..MachineConfig::default() };

@@ -11,7 +11,7 @@ use crate::typed::{BinaryOp, CompareOp, UnaryOp};
 
 /// The value of a constant; its type is known beside it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Constant {
+pub(crate) enum Constant {
     /// An integer or pointer.
     Int(i64),
     /// A floating-point number, exact in its type.
@@ -20,7 +20,7 @@ pub(super) enum Constant {
 
 impl Constant {
     /// Whether it counts as true.
-    pub(super) fn is_true(self) -> bool {
+    pub(crate) fn is_true(self) -> bool {
         match self {
             Self::Int(value) => value != 0,
             Self::Float(value) => value != 0.0,
@@ -29,7 +29,7 @@ impl Constant {
 }
 
 /// An integer cut to the width of its type and extended again.
-pub(super) const fn wrap(value: i64, ty: TypeId) -> i64 {
+pub(crate) const fn wrap(value: i64, ty: TypeId) -> i64 {
     match ty {
         Types::BOOL => (value != 0) as i64,
         Types::CHAR | Types::SIGNED_CHAR => value as i8 as i64,
@@ -48,7 +48,7 @@ fn round(value: f64, ty: TypeId) -> f64 {
 }
 
 /// A constant of type `from` as one of type `to`.
-pub(super) fn convert(constant: Constant, from: TypeId, to: TypeId) -> Constant {
+pub(crate) fn convert(constant: Constant, from: TypeId, to: TypeId) -> Constant {
     match constant {
         _ if to == Types::BOOL => Constant::Int(i64::from(constant.is_true())),
         Constant::Float(value) if to.is_floating() => Constant::Float(round(value, to)),
@@ -79,7 +79,7 @@ fn float_from(value: i64, from: TypeId, to: TypeId) -> f64 {
 }
 
 /// A unary operator on a constant of type `ty`.
-pub(super) fn unary(op: UnaryOp, constant: Constant, ty: TypeId) -> Option<Constant> {
+pub(crate) fn unary(op: UnaryOp, constant: Constant, ty: TypeId) -> Option<Constant> {
     Some(match (op, constant) {
         (UnaryOp::Not, _) => Constant::Int(i64::from(!constant.is_true())),
         (UnaryOp::Negate, Constant::Int(value)) => Constant::Int(wrap(value.wrapping_neg(), ty)),
@@ -90,7 +90,7 @@ pub(super) fn unary(op: UnaryOp, constant: Constant, ty: TypeId) -> Option<Const
 }
 
 /// A binary operator on two constants of type `ty`; `None` for a division by zero, which happens at run time.
-pub(super) fn binary(op: BinaryOp, a: Constant, b: Constant, ty: TypeId) -> Option<Constant> {
+pub(crate) fn binary(op: BinaryOp, a: Constant, b: Constant, ty: TypeId) -> Option<Constant> {
     match (a, b) {
         (Constant::Int(a), Constant::Int(b)) => {
             let value = if ty.is_long_long() { binary_i64(op, a, b, ty)? } else { binary_i32(op, a, b, ty)? };
@@ -159,7 +159,7 @@ binary_float!(binary_f32, f32);
 binary_float!(binary_f64, f64);
 
 /// A comparison of two constants of type `ty`.
-pub(super) fn compare(op: CompareOp, a: Constant, b: Constant, ty: TypeId) -> Option<bool> {
+pub(crate) fn compare(op: CompareOp, a: Constant, b: Constant, ty: TypeId) -> Option<bool> {
     let order = match (a, b) {
         (Constant::Int(a), Constant::Int(b)) if ty == Types::UNSIGNED_LONG_LONG => {
             Some(a.cast_unsigned().cmp(&b.cast_unsigned()))

@@ -17,7 +17,7 @@ mod assignments;
 mod body;
 mod builtins;
 mod calls;
-mod constants;
+pub(crate) mod constants;
 mod conversions;
 mod declarations;
 mod declarators;

@@ -107,9 +107,19 @@ impl Item {
         {
             return Ok(Self { kind, index });
         }
-        let known: Vec<_> =
-            KINDS.iter().map(|kind| format!("{}0 to {0}{}", kind.name, kind.count - 1)).collect();
+        let is_near = |other: &&Kind| kind.is_none_or(|kind| KINDS[kind].name == other.name);
+        let known: Vec<_> = KINDS
+            .iter()
+            .filter(is_near)
+            .map(|kind| format!("{}0 to {0}{}", kind.name, kind.count - 1))
+            .collect();
         Err(UnknownItem { name: name.clone(), known: known.join(", ") })
+    }
+
+    /// Whether there are items of this name with a number behind it.
+    #[must_use]
+    pub fn is_kind(name: &str) -> bool {
+        KINDS.iter().any(|kind| kind.name == name)
     }
 
     /// Where every axis is sent, where it is and what drives it.

@@ -5,18 +5,20 @@
 //! interval, the skipped ones among them.
 
 mod item;
+mod quantity;
 mod recorder;
 
 pub use item::{Item, UnknownItem};
+pub use quantity::{Formula, Quantity, View};
 pub(crate) use recorder::Recorder;
 
 use kmotiondef::{Bit, Cycles, ThreadId};
 
 /// What is to be recorded.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub struct Request {
     /// Values to sample.
-    pub items: Vec<Item>,
+    pub quantities: Vec<Quantity>,
     /// Ticks from one sample to the next.
     pub every: u64,
     /// Whether levels and slices are recorded as well.
@@ -42,7 +44,7 @@ pub enum Record {
         /// Until when.
         end: Cycles,
     },
-    /// The items have these values, some of which are new.
+    /// The quantities have these values, some of which are new.
     Sample {
         /// In the order of the request.
         values: Vec<f64>,

@@ -1,4 +1,4 @@
-//! Samples the items that were asked for.
+//! Samples the quantities that were asked for.
 
 use kmotiondef::structs::Chan;
 use kmotiondef::{AxisId, Ticks};
@@ -12,7 +12,8 @@ use crate::views::Typed;
 #[derive(Debug)]
 pub(crate) struct Recorder {
     request: Request,
-    last: Option<(Vec<f64>, u8)>,
+    /// The values as bits, so that what is no number is equal to itself, and the enabled axes.
+    last: Option<(Vec<u64>, u8)>,
 }
 
 impl Recorder {
@@ -33,16 +34,17 @@ impl Recorder {
 
     /// The values, if some of them have changed since the last time.
     pub(crate) fn sample(&mut self, kernel: &Kernel, memory: &GuestMemory) -> Option<Record> {
-        let values: Vec<f64> = self.request.items.iter().map(|item| item.read(kernel, memory)).collect();
+        let values: Vec<f64> =
+            self.request.quantities.iter().map(|quantity| quantity.read(kernel, memory)).collect();
         let enabled = AxisId::all()
             .rev()
             .fold(0, |word, axis| word << 1 | u8::from(memory.axis(axis, Chan::ENABLE) != 0));
-        let sample = Some((values, enabled));
+        let sample = Some((values.iter().map(|value| value.to_bits()).collect(), enabled));
         if sample == self.last {
             return None;
         }
-        self.last.clone_from(&sample);
-        sample.map(|(values, enabled)| Record::Sample { values, enabled })
+        self.last = sample;
+        Some(Record::Sample { values, enabled })
     }
 }
 
@@ -52,7 +54,7 @@ mod tests {
 
     #[test]
     fn ticks_are_sampled_at_multiples_also_when_they_are_skipped() {
-        let recorder = Recorder::new(Request { items: Vec::new(), every: 10, changes: false });
+        let recorder = Recorder::new(Request { quantities: Vec::new(), every: 10, changes: false });
         for (tick, count, expect) in [(10, 1, Some(10)), (11, 1, None), (35, 20, Some(30)), (29, 9, None)] {
             let sampled = recorder.sampled_tick(Ticks::new(tick), count).map(Ticks::get);
             assert_eq!(sampled, expect, "{tick} {count}");

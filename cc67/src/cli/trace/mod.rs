@@ -9,17 +9,21 @@ mod chrome;
 mod picture;
 mod table;
 mod vcd;
+mod watch;
 
 use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use clap::Args;
 use kmotiondef::{Bit, Cycles, ThreadId, Ticks};
-use runtime::trace::{Item, Record, Request};
+use runtime::trace::{Item, Quantity, Record, Request};
 use runtime::{Event, EventKind};
 
 use super::output;
 use super::plot::{self, Form};
+use crate::Options;
+
+pub(super) use watch::Watched;
 
 /// What to trace.
 #[derive(Debug, Args)]
@@ -33,7 +37,8 @@ pub(super) struct TraceOptions {
     /// Draw what moved: .svg, .png, or .html for a page with zoom and cursor
     #[arg(long, value_name = "FILE")]
     plot: Vec<PathBuf>,
-    /// What is traced and drawn, such as axis0,bit46,persist.5,adc2; else the axes that are enabled
+    /// What is traced and drawn: axis0,bit46,persist.5,adc2, variables and expressions such as "ch0->Dest - home"; else
+    /// the axes that are enabled
     #[arg(long, visible_alias = "watch", value_name = "LIST")]
     trace_items: Option<String>,
     /// Sample every N servo ticks
@@ -42,21 +47,21 @@ pub(super) struct TraceOptions {
 }
 
 impl TraceOptions {
-    /// What the board is to record; `None` if nothing is traced.
-    pub(super) fn request(&self) -> Result<Option<Request>> {
+    /// What the board is to record of these programs; `None` if nothing is traced.
+    pub(super) fn request(&self, programs: &[Watched<'_>], options: &Options) -> Result<Option<Request>> {
         if self.trace.is_empty() && self.trace_bits.is_none() && self.plot.is_empty() {
             return Ok(None);
         }
         for picture in &self.plot {
             Form::of(picture)?;
         }
-        let items = match &self.trace_items {
-            None => Item::of_axes(),
-            Some(list) => items(list)?,
+        let quantities = match &self.trace_items {
+            None => Item::of_axes().into_iter().map(Quantity::from).collect(),
+            Some(list) => watch::quantities(list, programs, options)?,
         };
         let is_table = |path: &PathBuf| !matches!(suffix(path).as_str(), "vcd" | "json");
         let changes = self.trace_bits.is_some() || !self.plot.is_empty() || !self.trace.iter().all(is_table);
-        Ok(Some(Request { items, every: self.trace_every, changes }))
+        Ok(Some(Request { quantities, every: self.trace_every, changes }))
     }
 
     /// Writes all files; `end` is the last tick of the run, `title` what pictures are called.
@@ -80,22 +85,6 @@ impl TraceOptions {
     }
 }
 
-/// The items of a list; `axis0` stands for all that belong to the axis.
-fn items(list: &str) -> Result<Vec<Item>> {
-    let mut items = Vec::new();
-    for name in list.split(',').map(str::trim) {
-        match name.strip_prefix("axis") {
-            Some(number) => {
-                for kind in ["dest", "pos", "out"] {
-                    items.push(Item::new(&format!("{kind}{number}"))?);
-                }
-            }
-            None => items.push(Item::new(name)?),
-        }
-    }
-    Ok(items)
-}
-
 fn suffix(path: &Path) -> String {
     path.extension().unwrap_or_default().to_string_lossy().to_lowercase()
 }
@@ -112,8 +101,8 @@ struct Change {
 /// Everything that was recorded.
 #[derive(Debug, Default)]
 pub(super) struct Log {
-    items: Vec<Item>,
-    /// Whether the items are those of all axes, of which only the enabled ones are shown.
+    quantities: Vec<Quantity>,
+    /// Whether these are the items of all axes, of which only the enabled ones are shown.
     is_default: bool,
     changes: Vec<Change>,
     slices: Vec<(ThreadId, Cycles, Cycles)>,
@@ -127,8 +116,9 @@ pub(super) struct Log {
 impl Log {
     /// Nothing yet, of what was asked for.
     pub(super) fn new(request: &Request) -> Self {
-        let is_default = request.items == Item::of_axes();
-        Self { items: request.items.clone(), is_default, ..Self::default() }
+        let items: Vec<_> = request.quantities.iter().filter_map(Quantity::item).collect();
+        let is_default = items == Item::of_axes();
+        Self { quantities: request.quantities.clone(), is_default, ..Self::default() }
     }
 
     /// Takes up an event, if it belongs to a trace.
@@ -151,11 +141,13 @@ impl Log {
         }
     }
 
-    /// The items to show, and where each stands in a sample.
-    fn columns(&self) -> Vec<(usize, Item)> {
-        let is_shown =
-            |item: &Item| !self.is_default || item.axis().is_none_or(|axis| self.enabled >> axis & 1 != 0);
-        self.items.iter().copied().enumerate().filter(|(_, item)| is_shown(item)).collect()
+    /// What to show, and where each stands in a sample.
+    fn columns(&self) -> Vec<(usize, &Quantity)> {
+        let is_shown = |quantity: &Quantity| {
+            let axis = quantity.item().and_then(Item::axis);
+            !self.is_default || axis.is_none_or(|axis| self.enabled >> axis & 1 != 0)
+        };
+        self.quantities.iter().enumerate().filter(|(_, quantity)| is_shown(quantity)).collect()
     }
 
     /// Bits that have changed, in ascending order, each with its level before.
@@ -183,8 +175,9 @@ pub(super) mod testing {
     /// A run of a few records of each kind.
     pub(super) fn log() -> Log {
         let us = |us: i64| Cycles::new(us * Cycles::PER_SECOND.get() / 1_000_000);
-        let items = ["dest0", "bit46"].map(|name| Item::new(name).expect("an item")).to_vec();
-        let mut log = Log::new(&Request { items, every: 2, changes: true });
+        let item = |name| Quantity::from(Item::new(name).expect("an item"));
+        let quantities = ["dest0", "bit46"].map(item).to_vec();
+        let mut log = Log::new(&Request { quantities, every: 2, changes: true });
         let (bit, thread) = (Bit::new(46).expect("a bit"), ThreadId::new(1).expect("1 is a thread"));
         let kinds = [
             (180, EventKind::Trace(Record::Sample { values: vec![0.5, 1.0], enabled: 1 })),

@@ -4,8 +4,8 @@
 //! as they ever change. Bits that changed and the slices of the threads become strips. Samples are recorded when they
 //! change; in between the last one holds.
 
-use kmotiondef::{Cycles, Ticks};
-use runtime::trace::Item;
+use kmotiondef::{Bit, Cycles, Ticks};
+use runtime::trace::{Item, Quantity};
 
 use super::Log;
 use crate::cli::plot::chart::{Chart, Line, Panel, Strip};
@@ -51,11 +51,17 @@ struct Series<'a> {
 impl Series<'_> {
     /// The values of an item; `None` if it was not sampled.
     fn of(&self, kind: &str, index: usize) -> Option<Points> {
+        let is_it = |item: Item| item.kind() == kind && item.index() == index;
         let columns = self.log.columns();
-        let (column, _) = columns.iter().find(|(_, item)| item.kind() == kind && item.index() == index)?;
+        let (column, _) = columns.iter().find(|(_, quantity)| quantity.item().is_some_and(is_it))?;
+        Some(self.column(*column))
+    }
+
+    /// The values at a place in the samples.
+    fn column(&self, column: usize) -> Points {
         let mut points: Points = Vec::new();
         for (at, values) in &self.log.samples {
-            let (time, value) = (seconds(*at), values.get(*column).copied().unwrap_or_default());
+            let (time, value) = (seconds(*at), values.get(column).copied().unwrap_or_default());
             match points.last() {
                 Some((last, held)) if time - last > 1.5 * self.step => {
                     let held = *held;
@@ -70,7 +76,7 @@ impl Series<'_> {
         {
             points.push((self.end, held));
         }
-        Some(points)
+        points
     }
 }
 
@@ -107,16 +113,16 @@ fn of_axis(series: &Series<'_>, axis: usize) -> Vec<Panel> {
     panels
 }
 
-/// A panel for each other item, bits apart.
+/// A panel for everything else, bits apart.
 fn of_others(series: &Series<'_>) -> Vec<Panel> {
-    let is_other = |item: &Item| item.axis().is_none() && item.kind() != "bit";
-    let items: Vec<Item> = series.log.columns().into_iter().map(|(_, item)| item).filter(is_other).collect();
-    let panel = |item: Item| {
-        let points = series.of(item.kind(), item.index())?;
-        let lines = vec![Line { name: item.to_string(), points }];
-        Some(Panel { title: item.to_string(), unit: item.unit().to_owned(), lines })
+    let is_other = |item: Option<Item>| item.is_none_or(|item| item.axis().is_none() && item.kind() != "bit");
+    let columns = series.log.columns().into_iter().filter(|(_, quantity)| is_other(quantity.item()));
+    let panel = |(column, quantity): (usize, &Quantity)| {
+        let (name, unit) = (quantity.to_string(), quantity.item().map_or("", Item::unit));
+        let lines = vec![Line { name: name.clone(), points: series.column(column) }];
+        Panel { title: name, unit: unit.to_owned(), lines }
     };
-    items.into_iter().filter_map(panel).collect()
+    columns.map(panel).collect()
 }
 
 fn changes(points: &Points) -> bool {
@@ -146,25 +152,45 @@ fn difference(a: &Points, b: &Points) -> Points {
     a.iter().zip(b).map(|(a, b)| (a.0, a.1 - b.1)).collect()
 }
 
-/// When each bit that changed was high.
+/// When each bit was high: those that are watched, else those that changed.
 fn bits(log: &Log, end: f64) -> Vec<Strip> {
-    let strip = |(bit, before): (kmotiondef::Bit, bool)| {
-        let mut spans = Vec::new();
-        let mut high_since = before.then_some(0.0);
-        for change in log.changes.iter().filter(|change| change.bit == bit) {
-            match (high_since, change.level) {
-                (None, true) => high_since = Some(seconds(change.at)),
-                (Some(since), false) => {
-                    spans.push((since, seconds(change.at)));
-                    high_since = None;
-                }
-                _ => {}
-            }
-        }
-        spans.extend(high_since.map(|since| (since, end)));
-        Strip { name: format!("bit {bit}"), spans }
+    let columns = log.columns();
+    let watched: Vec<(usize, Bit)> =
+        columns.iter().filter_map(|(column, quantity)| Some((*column, bit(quantity)?))).collect();
+    let changed = log.bits();
+    if watched.is_empty() {
+        return changed.into_iter().map(|(bit, before)| strip(log, bit, before, end)).collect();
+    }
+    let first = |column: usize| {
+        log.samples.first().and_then(|(_, values)| values.get(column)).is_some_and(|value| *value != 0.0)
     };
-    log.bits().into_iter().map(strip).collect()
+    let before = |column, bit| {
+        changed.iter().find(|(other, _)| *other == bit).map_or_else(|| first(column), |(_, before)| *before)
+    };
+    watched.into_iter().map(|(column, bit)| strip(log, bit, before(column, bit), end)).collect()
+}
+
+fn bit(quantity: &Quantity) -> Option<Bit> {
+    let item = quantity.item().filter(|item| item.kind() == "bit")?;
+    Bit::new(item.index() as i32)
+}
+
+/// When a bit was high that had a level before all changes.
+fn strip(log: &Log, bit: Bit, before: bool, end: f64) -> Strip {
+    let mut spans = Vec::new();
+    let mut high_since = before.then_some(0.0);
+    for change in log.changes.iter().filter(|change| change.bit == bit) {
+        match (high_since, change.level) {
+            (None, true) => high_since = Some(seconds(change.at)),
+            (Some(since), false) => {
+                spans.push((since, seconds(change.at)));
+                high_since = None;
+            }
+            _ => {}
+        }
+    }
+    spans.extend(high_since.map(|since| (since, end)));
+    Strip { name: format!("bit {bit}"), spans }
 }
 
 /// When each thread had the processor.

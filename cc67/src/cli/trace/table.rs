@@ -10,8 +10,8 @@ use super::Log;
 pub(super) fn text(log: &Log, every: u64, end: Ticks) -> String {
     let columns = log.columns();
     let mut text = "time".to_owned();
-    for (_, item) in &columns {
-        let _ = write!(text, ",{item}");
+    for (_, quantity) in &columns {
+        let _ = write!(text, ",{}", field(&quantity.to_string()));
     }
     text.push('\n');
     let mut samples = log.samples.iter().peekable();
@@ -32,6 +32,11 @@ pub(super) fn text(log: &Log, every: u64, end: Ticks) -> String {
         tick += every;
     }
     text
+}
+
+/// A name as a field of the table: in quotes if it has a comma or quotes.
+fn field(name: &str) -> String {
+    if name.contains([',', '"']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name.to_owned() }
 }
 
 #[cfg(test)]

@@ -2,8 +2,6 @@
 
 use std::fmt::Write as _;
 
-use runtime::trace::Item;
-
 use super::{Log, nanoseconds};
 
 /// The dump; its unit of time is the nanosecond.
@@ -26,9 +24,14 @@ pub(super) fn text(log: &Log) -> String {
         }
     }
     // A bit is a wire already.
-    let is_wire = |item: &Item| log.bits().iter().any(|(bit, _)| format!("bit{bit}") == item.to_string());
-    for (index, item) in log.columns().into_iter().filter(|(_, item)| !is_wire(item)) {
-        let id = dump.variable("real 64", &item.to_string(), "r0 ");
+    let bits: Vec<_> = log.bits().iter().map(|(bit, _)| format!("bit{bit}")).collect();
+    for (index, quantity) in log.columns() {
+        // A name has no blanks.
+        let name: String = quantity.to_string().split_whitespace().collect();
+        if bits.contains(&name) {
+            continue;
+        }
+        let id = dump.variable("real 64", &name, "r0 ");
         let mut last = 0.0;
         for (at, values) in &log.samples {
             // Readers differ in how they write what is no number.

@@ -1,0 +1,379 @@
+//! Expressions that are looked at while a program runs: C, in the words of the program.
+//!
+//! An expression is compiled as the result of a function behind the program's own text, so every name, type and macro of
+//! the program means in it what it means there. It is not executed by the board but computed from the board's memory, so
+//! a run is the same whether it is watched or not. For the same reason it only reads.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use kmotiondef::GuestAddr;
+
+use crate::diag::{Diagnostic, Severity, Sink};
+use crate::link::{FirmwareKind, FirmwareSymbols};
+use crate::names::Names;
+use crate::pp::Files;
+use crate::sema::constants::{self, Constant};
+use crate::source::SourceMap;
+use crate::ty::{BitRange, TypeId, Types};
+use crate::typed::{
+    Call, Callee, ExprId, ExprKind, Function, PlaceId, PlaceKind, StmtKind, SymbolId, UnaryOp, Unit,
+};
+use crate::{Options, on_large_stack, parse, pp, sema};
+
+/// The name of the function around an expression.
+const FUNCTION: &str = "__cc67_watch";
+
+/// Most operators and operands of an expression, those of its macros included.
+const MOST: usize = 1000;
+
+/// Functions that an expression may call.
+const FUNCTIONS: &[(&str, fn(f64) -> f64)] = &[
+    ("fabs", libm::fabs),
+    ("sqrt", libm::sqrt),
+    ("floor", libm::floor),
+    ("ceil", libm::ceil),
+    ("sin", libm::sin),
+    ("cos", libm::cos),
+];
+
+/// What an expression is about.
+#[derive(Clone, Copy)]
+pub struct Scope<'a> {
+    /// The file of the program, beside which its includes are looked for.
+    pub path: &'a Path,
+    /// The text of the program.
+    pub text: &'a [u8],
+    /// Where the program's variables are.
+    pub symbols: &'a BTreeMap<String, GuestAddr>,
+    /// How the program is compiled.
+    pub options: &'a Options,
+    /// The program's includes.
+    pub files: &'a (dyn Files + Sync),
+}
+
+/// What an expression reads.
+pub trait Reader {
+    /// The eight bytes from an address on; 0 outside the memory.
+    fn bytes(&self, address: GuestAddr) -> [u8; 8];
+
+    /// The item of this place in the list that the expression was compiled with.
+    fn item(&self, index: usize) -> f64;
+}
+
+/// An expression that can be computed.
+#[derive(Debug)]
+pub struct Expression {
+    function: Function,
+    value: ExprId,
+    meanings: BTreeMap<SymbolId, Meaning>,
+}
+
+/// What a name stands for.
+#[derive(Clone, Copy, Debug)]
+enum Meaning {
+    Variable(GuestAddr),
+    Item(usize),
+    Function(fn(f64) -> f64),
+}
+
+/// Compiles an expression. `items` are further names in it, of type `double`.
+///
+/// # Errors
+/// What is wrong with it, in one line.
+///
+/// # Panics
+/// If the system cannot start a thread.
+pub fn compile(scope: Scope<'_>, expression: &str, items: &[&str]) -> Result<Expression, String> {
+    on_large_stack(|| compile_here(scope, expression, items))
+}
+
+fn compile_here(scope: Scope<'_>, expression: &str, items: &[&str]) -> Result<Expression, String> {
+    let (mut sources, mut names, mut sink) = (SourceMap::new(), Names::new(), Sink::new());
+    let mut text = scope.text.to_vec();
+    for item in items {
+        text.extend(format!("\nextern double {item};").bytes());
+    }
+    text.extend(format!("\ndouble {FUNCTION}(void) {{ return (\n{expression}\n); }}\n").bytes());
+    let main = sources.add_file(scope.path.to_string_lossy(), Some(scope.path), text, None);
+    let options = &scope.options.preprocessor;
+    let tokens = pp::preprocess(main, options, scope.files, &mut sources, &mut names, &mut sink);
+    let tree = parse::parse(&tokens, &sources, &names, &mut sink);
+    let mut unit = sema::analyze(&tree, &mut names, &sources, &scope.options.firmware, &mut sink);
+    let error = sink.diagnostics().iter().find(|diagnostic| diagnostic.severity == Severity::Error);
+    if let Some(error) = error {
+        return Err(in_one_line(error));
+    }
+    let is_ours = |function: &Function| unit.symbols[function.symbol].name == FUNCTION;
+    let function = unit.functions.iter().position(is_ours).map(|index| unit.functions.swap_remove(index));
+    let Some(function) = function else { return Err("it is no expression".to_owned()) };
+    let [statement] = function.body.as_slice() else { return Err("it is no expression".to_owned()) };
+    let StmtKind::Return(Some(value)) = statement.kind else { return Err("it has no value".to_owned()) };
+    let mut check =
+        Check { unit: &unit, scope, items, function: &function, meanings: BTreeMap::new(), count: 0 };
+    check.expr(value)?;
+    let meanings = check.meanings;
+    Ok(Expression { function, value, meanings })
+}
+
+fn in_one_line(diagnostic: &Diagnostic) -> String {
+    let more = [Some(&diagnostic.at).filter(|text| !text.is_empty()), diagnostic.help.as_ref()];
+    let more = more.into_iter().flatten().filter(|text| !diagnostic.message.contains(text.as_str()));
+    more.fold(diagnostic.message.clone(), |line, text| line + "; " + text)
+}
+
+/// Finds out whether an expression only reads, and what.
+struct Check<'a> {
+    unit: &'a Unit,
+    scope: Scope<'a>,
+    items: &'a [&'a str],
+    function: &'a Function,
+    meanings: BTreeMap<SymbolId, Meaning>,
+    count: usize,
+}
+
+impl Check<'_> {
+    fn expr(&mut self, id: ExprId) -> Result<(), String> {
+        self.count += 1;
+        if self.count > MOST {
+            return Err(format!("it has more than {MOST} operators and operands"));
+        }
+        let function = self.function;
+        match &function.exprs[id].kind {
+            ExprKind::Int(_) | ExprKind::Float(_) => Ok(()),
+            ExprKind::Load(place) | ExprKind::Address(place) => self.place(*place),
+            ExprKind::Unary(_, a) | ExprKind::Convert(a) => self.expr(*a),
+            ExprKind::Binary(_, a, b)
+            | ExprKind::Compare(_, a, b)
+            | ExprKind::And(a, b)
+            | ExprKind::Or(a, b)
+            | ExprKind::Comma(a, b) => self.expr(*a).and_then(|()| self.expr(*b)),
+            ExprKind::Conditional(a, b, c) => [a, b, c].into_iter().try_for_each(|id| self.expr(*id)),
+            ExprKind::Call(call) => self.call(call),
+            ExprKind::Assign(..)
+            | ExprKind::Update(_)
+            | ExprKind::Copy { .. }
+            | ExprKind::Clear(_)
+            | ExprKind::VaArg(_)
+            | ExprKind::Statements(..) => {
+                Err("it changes something; an expression that is watched only reads".to_owned())
+            }
+        }
+    }
+
+    fn place(&mut self, id: PlaceId) -> Result<(), String> {
+        match self.function.places[id].kind {
+            PlaceKind::Local(..) => Err("it has variables of its own".to_owned()),
+            PlaceKind::Symbol(symbol, _) => self.symbol(symbol),
+            PlaceKind::Pointer(pointer, _) => self.expr(pointer),
+            PlaceKind::Bits(unit, _) => self.place(unit),
+        }
+    }
+
+    /// Where a variable is.
+    fn symbol(&mut self, id: SymbolId) -> Result<(), String> {
+        let name = self.unit.symbols[id].name.as_str();
+        let item = self.items.iter().position(|item| *item == name).map(Meaning::Item);
+        let program = || self.scope.symbols.get(name).copied().map(Meaning::Variable);
+        let firmware = || self.scope.options.firmware.find(name);
+        let firmware = || firmware().filter(|symbol| symbol.kind == FirmwareKind::Variable);
+        let meaning = item
+            .or_else(program)
+            .or_else(|| Some(Meaning::Variable(firmware()?.address)))
+            .ok_or_else(|| format!("`{name}` is not in the linked program, as nothing uses it"))?;
+        self.meanings.insert(id, meaning);
+        Ok(())
+    }
+
+    fn call(&mut self, call: &Call) -> Result<(), String> {
+        let known = || FUNCTIONS.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
+        if let (Callee::Symbol(id), [argument]) = (call.callee, call.arguments.as_slice()) {
+            let name = &self.unit.symbols[id].name;
+            if let Some((_, function)) = FUNCTIONS.iter().find(|(known, _)| known == name) {
+                self.meanings.insert(id, Meaning::Function(*function));
+                return self.expr(*argument);
+            }
+        }
+        Err(format!("of functions it may call {}; `bit46` is the level of a bit", known()))
+    }
+}
+
+impl Expression {
+    /// The value now; not a number where it divides an integer by 0.
+    #[must_use]
+    pub fn value(&self, reader: &dyn Reader) -> f64 {
+        match self.constant(self.value, reader) {
+            Some(Constant::Float(value)) => value,
+            Some(Constant::Int(value)) => value as f64,
+            None => f64::NAN,
+        }
+    }
+
+    fn constant(&self, id: ExprId, reader: &dyn Reader) -> Option<Constant> {
+        let expr = &self.function.exprs[id];
+        let of = |id: ExprId| self.constant(id, reader);
+        let is_true = |id: ExprId| of(id).map(Constant::is_true);
+        let boolean = |value: bool| Constant::Int(value.into());
+        Some(match &expr.kind {
+            ExprKind::Int(value) => Constant::Int(*value),
+            ExprKind::Float(value) => Constant::Float(*value),
+            ExprKind::Load(place) => return self.load(*place, reader),
+            ExprKind::Address(place) => Constant::Int(self.address(*place, reader)?.get().into()),
+            ExprKind::Unary(UnaryOp::Not, a) => boolean(!is_true(*a)?),
+            ExprKind::Unary(op, a) => constants::unary(*op, of(*a)?, expr.ty)?,
+            ExprKind::Binary(op, a, b) => constants::binary(*op, of(*a)?, of(*b)?, expr.ty)?,
+            ExprKind::Compare(op, a, b) => {
+                boolean(constants::compare(*op, of(*a)?, of(*b)?, self.function.exprs[*a].ty)?)
+            }
+            ExprKind::And(a, b) => boolean(is_true(*a)? && is_true(*b)?),
+            ExprKind::Or(a, b) => boolean(is_true(*a)? || is_true(*b)?),
+            ExprKind::Conditional(a, b, c) => return of(if is_true(*a)? { *b } else { *c }),
+            ExprKind::Comma(_, b) => return of(*b),
+            ExprKind::Convert(a) => constants::convert(of(*a)?, self.function.exprs[*a].ty, expr.ty),
+            ExprKind::Call(call) => return self.call(call, reader),
+            _ => return None,
+        })
+    }
+
+    fn call(&self, call: &Call, reader: &dyn Reader) -> Option<Constant> {
+        let Callee::Symbol(symbol) = call.callee else { return None };
+        let Some(Meaning::Function(function)) = self.meanings.get(&symbol) else { return None };
+        match self.constant(*call.arguments.first()?, reader)? {
+            Constant::Float(value) => Some(Constant::Float(function(value))),
+            Constant::Int(_) => None,
+        }
+    }
+
+    fn load(&self, id: PlaceId, reader: &dyn Reader) -> Option<Constant> {
+        let place = &self.function.places[id];
+        if let PlaceKind::Symbol(symbol, _) = place.kind
+            && let Some(Meaning::Item(index)) = self.meanings.get(&symbol)
+        {
+            return Some(Constant::Float(reader.item(*index)));
+        }
+        if let PlaceKind::Bits(unit, range) = place.kind {
+            let Constant::Int(word) = self.load(unit, reader)? else { return None };
+            return Some(Constant::Int(bits(word, range, place.ty)));
+        }
+        Some(read(place.ty, reader.bytes(self.address(id, reader)?)))
+    }
+
+    fn address(&self, id: PlaceId, reader: &dyn Reader) -> Option<GuestAddr> {
+        let (base, offset) = match self.function.places[id].kind {
+            PlaceKind::Symbol(symbol, offset) => match self.meanings.get(&symbol)? {
+                Meaning::Variable(address) => (address.get(), offset),
+                Meaning::Item(_) | Meaning::Function(_) => return None,
+            },
+            PlaceKind::Pointer(pointer, offset) => match self.constant(pointer, reader)? {
+                Constant::Int(address) => (address as u32, offset),
+                Constant::Float(_) => return None,
+            },
+            PlaceKind::Local(..) | PlaceKind::Bits(..) => return None,
+        };
+        Some(GuestAddr::new(base.wrapping_add_signed(offset)))
+    }
+}
+
+/// The value that the first of these bytes are in memory; pointers are unsigned.
+fn read(ty: TypeId, bytes: [u8; 8]) -> Constant {
+    let all = i64::from_le_bytes(bytes);
+    match ty {
+        Types::DOUBLE => Constant::Float(f64::from_le_bytes(bytes)),
+        Types::FLOAT => Constant::Float(f32::from_bits(all as u32).into()),
+        _ => Constant::Int(constants::wrap(all, ty)),
+    }
+}
+
+/// A bit-field of a word of type `ty`.
+fn bits(word: i64, range: BitRange, ty: TypeId) -> i64 {
+    let above = 64 - u32::from(range.width);
+    let raised = word << (above - u32::from(range.shift));
+    match ty {
+        Types::BOOL | Types::UNSIGNED | Types::UNSIGNED_CHAR | Types::UNSIGNED_SHORT => {
+            (raised.cast_unsigned() >> above).cast_signed()
+        }
+        _ => raised >> above,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pp::Disk;
+
+    const PROGRAM: &str = "\
+#include \"KMotionDef.h\"
+#define SPINDLE 2
+int count;
+double table[3];
+struct { unsigned low : 3; int high : 4; } fields;
+char *text;
+main() { int local; }
+";
+
+    /// A memory in which every byte is the lowest of its address, and items that count from 100.
+    struct Pattern;
+
+    impl Reader for Pattern {
+        fn bytes(&self, address: GuestAddr) -> [u8; 8] {
+            match address.get() {
+                0x8005_0000 => 7_i64.to_le_bytes(),
+                0x8005_0010 => 2.5_f64.to_le_bytes(),
+                0x8005_0020 => 0b110_1011_i64.to_le_bytes(),
+                _ => [0; 8],
+            }
+        }
+
+        fn item(&self, index: usize) -> f64 {
+            100.0 + index as f64
+        }
+    }
+
+    fn check(expression: &str, expect: Result<f64, &str>) {
+        let symbols = [("count", 0x8005_0000), ("table", 0x8005_0008), ("fields", 0x8005_0020)];
+        let symbols = symbols.into_iter().map(|(name, at)| (name.to_owned(), GuestAddr::new(at))).collect();
+        let scope = Scope {
+            path: Path::new("a.c"),
+            text: PROGRAM.as_bytes(),
+            symbols: &symbols,
+            options: &Options::default(),
+            files: &Disk,
+        };
+        let value = compile(scope, expression, &["bit46"]).map(|compiled| compiled.value(&Pattern));
+        assert_eq!(value, expect.map_err(str::to_owned), "{expression}");
+    }
+
+    #[test]
+    fn expressions_mean_what_they_mean_in_the_program() {
+        check("count", Ok(7.0));
+        check("count / 2 + SPINDLE", Ok(5.0));
+        check("count / 2.0", Ok(3.5));
+        check("table[1] * 2 > 4 && !0", Ok(1.0));
+        check("-count & 0xff", Ok(249.0));
+        check("fields.low", Ok(3.0));
+        check("fields.high", Ok(-3.0));
+        check("bit46 ? fabs(-table[1]) : 0", Ok(2.5));
+        check("chan[SPINDLE].Dest - chan[0].Position", Ok(0.0));
+        check("*(int *)0x80050000", Ok(7.0));
+    }
+
+    #[test]
+    fn what_is_wrong_with_an_expression_is_said() {
+        check("conut", Err("`conut` is not declared; did you mean `count`?"));
+        check("count = 5", Err("it changes something; an expression that is watched only reads"));
+        check(
+            "local",
+            Err(
+                "`local` is not declared; declare the variable before the functions that use it, outside of them",
+            ),
+        );
+        check("count +", Err("expected an expression, found `)`"));
+        check("chan[0].Dst", Err("`CHAN` has no member `Dst`; did you mean `Dest`?"));
+        check("", Err("expected an expression, found `)`"));
+        check(
+            "Move(0, 1)",
+            Err("of functions it may call fabs, sqrt, floor, ceil, sin, cos; `bit46` is the level of a bit"),
+        );
+        check("text[0]", Err("`text` is not in the linked program, as nothing uses it"));
+    }
+}

@@ -1,0 +1,73 @@
+//! What can be sampled: the items of the board, and what is computed from its memory.
+
+use std::fmt;
+use std::sync::Arc;
+
+use vm::memory::GuestMemory;
+
+use super::Item;
+use crate::kernel::Kernel;
+
+/// A value that is sampled.
+#[derive(Clone, Debug)]
+pub enum Quantity {
+    /// An item of the board.
+    Item(Item),
+    /// A value that somebody computes, and what it is called.
+    Formula(String, Arc<dyn Formula>),
+}
+
+/// How a value is computed.
+pub trait Formula: fmt::Debug + Send + Sync {
+    /// The value now.
+    fn value(&self, view: &View<'_>) -> f64;
+}
+
+/// The board as a formula sees it.
+#[derive(Debug)]
+pub struct View<'a> {
+    kernel: &'a Kernel,
+    /// What programs see.
+    pub memory: &'a GuestMemory,
+}
+
+impl View<'_> {
+    /// The value of an item.
+    #[must_use]
+    pub fn item(&self, item: Item) -> f64 {
+        item.read(self.kernel, self.memory)
+    }
+}
+
+impl Quantity {
+    /// The item, if it is one.
+    #[must_use]
+    pub const fn item(&self) -> Option<Item> {
+        match self {
+            Self::Item(item) => Some(*item),
+            Self::Formula(..) => None,
+        }
+    }
+
+    pub(crate) fn read(&self, kernel: &Kernel, memory: &GuestMemory) -> f64 {
+        match self {
+            Self::Item(item) => item.read(kernel, memory),
+            Self::Formula(_, formula) => formula.value(&View { kernel, memory }),
+        }
+    }
+}
+
+impl From<Item> for Quantity {
+    fn from(item: Item) -> Self {
+        Self::Item(item)
+    }
+}
+
+impl fmt::Display for Quantity {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Item(item) => item.fmt(formatter),
+            Self::Formula(name, _) => formatter.write_str(name),
+        }
+    }
+}
