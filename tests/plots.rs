@@ -209,6 +209,28 @@ fn tables_are_drawn() {
     assert_eq!(cc67(&scratch, &["plot", "bad.csv"]).render(), expect);
 }
 
+#[test]
+fn a_saved_trace_is_drawn_as_the_run_itself() {
+    let run = ["--trace", "a.csv", "--trace", "a.vcd", "--watch", "axis0,bit46"];
+    let (scratch, svg) = plot("saved", "a.svg", &run);
+    // The title is that of the file, and a table knows no threads.
+    let shown = |svg: &[u8]| -> Vec<String> {
+        let known = |text: &String| !text.starts_with("a.") && !text.starts_with("thread");
+        texts(svg).into_iter().filter(known).collect()
+    };
+    for saved in ["a.csv", "a.vcd"] {
+        assert_eq!(cc67(&scratch, &["plot", saved, "-o", "saved.svg"]).render(), "---- exit 0\n");
+        let picture = fs::read(scratch.path().join("saved.svg")).expect("it was written");
+        let headings = |svg: &[u8]| -> Vec<String> {
+            shown(svg).into_iter().filter(|text| text.parse::<f64>().is_err()).collect()
+        };
+        assert_eq!(headings(&picture), headings(&svg), "{saved}");
+    }
+    fs::write(scratch.path().join("bad.vcd"), "time,a\n1,2\n").expect("files can be written");
+    let expect = "---- stderr\ncc67: bad.vcd: this is no value change dump: `$enddefinitions` is missing\n---- exit 2\n";
+    assert_eq!(cc67(&scratch, &["plot", "bad.vcd"]).render(), expect);
+}
+
 /// What a person does to the page: reads a value under the pointer, zooms in, goes back.
 const VISITOR: &str = r#"
 <script>

@@ -123,7 +123,10 @@ fn items_that_do_not_exist_are_refused_and_nothing_is_left_behind() {
     let scratch = Scratch::new("traces-refused");
     fs::write(scratch.path().join("a.c"), "main() { }").expect("it is ours");
     for (arguments, expect) in [
-        (vec!["--trace", "a.csv", "--trace-items", "dest0,speed9"], "`speed9` is no item"),
+        (
+            vec!["--trace", "a.csv", "--trace-items", "dest0,speed9"],
+            "`speed9` is not declared, nor is it an item of the board, such as axis0",
+        ),
         (vec!["--trace", "missing/a.vcd"], "cannot write missing/a.vcd"),
         (vec!["--trace", "a.csv", "--trace-every", "0"], "0 is not in"),
     ] {

@@ -27,8 +27,11 @@ const FUNCTION: &str = "__cc67_watch";
 /// Most operators and operands of an expression, those of its macros included.
 const MOST: usize = 1000;
 
+/// What a function computes.
+type Operation = fn(f64) -> f64;
+
 /// Functions that an expression may call.
-const FUNCTIONS: &[(&str, fn(f64) -> f64)] = &[
+const FUNCTIONS: &[(&str, Operation)] = &[
     ("fabs", libm::fabs),
     ("sqrt", libm::sqrt),
     ("floor", libm::floor),
@@ -74,7 +77,7 @@ pub struct Expression {
 enum Meaning {
     Variable(GuestAddr),
     Item(usize),
-    Function(fn(f64) -> f64),
+    Function(Operation),
 }
 
 /// Compiles an expression. `items` are further names in it, of type `double`.

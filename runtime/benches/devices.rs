@@ -55,7 +55,7 @@ fn board_with(stimulus: &str) -> Board {
 
 fn devices(criterion: &mut Criterion) {
     let mut traced = board();
-    traced.record(Request { items: Vec::new(), every: 1, changes: true });
+    traced.record(Request { quantities: Vec::new(), every: 1, changes: true });
     let boards = [
         ("none", board()),
         ("wire", board_with("device wire from=8 to=12")),

@@ -74,7 +74,7 @@ enum Command {
     Test(test::Arguments),
     /// Make a project folder ready for an editor and for CI
     Init(init::Arguments),
-    /// Draw columns of numbers over time
+    /// Draw saved data over time: columns of numbers, traces (.csv, .vcd)
     Plot(plot::Arguments),
     /// Print a script that completes commands and options in a shell
     Completions(shell::CompletionArguments),

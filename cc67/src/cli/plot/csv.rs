@@ -5,7 +5,8 @@
 
 use anyhow::{Result, bail};
 
-use super::chart::{Chart, Line, Panel};
+use super::chart::Chart;
+use super::samples::{Column, Samples};
 
 /// Names of a first column that is the time.
 const TIMES: [&str; 5] = ["t", "time", "time_s", "seconds", "time (s)"];
@@ -21,19 +22,21 @@ pub(super) fn chart(title: &str, text: &str) -> Result<Chart> {
     if let Some(index) = times.windows(2).position(|pair| pair[1] < pair[0]) {
         bail!("the time goes back behind row {} of the numbers", index + 1);
     }
-    let panels: Vec<Panel> = (usize::from(has_time)..table.names.len())
-        .map(|column| {
-            let points = times.iter().copied().zip(table.rows.iter().map(|row| row[column])).collect();
-            let name = table.names[column].clone();
-            Panel { title: name.clone(), unit: String::new(), lines: vec![Line { name, points }] }
-        })
-        .collect();
-    if panels.is_empty() {
+    let first = usize::from(has_time);
+    let names = table.names.iter().skip(first);
+    let columns = names.map(|name| Column { name: name.clone(), unit: String::new() }).collect();
+    let rows = times.iter().copied().zip(table.rows.into_iter().map(|row| row[first..].to_vec())).collect();
+    let end = times.last().copied().unwrap_or_default();
+    // Every value is in the table: none has to be held.
+    let samples = Samples { columns, rows, step: f64::INFINITY, end };
+    let panels = if has_time { samples.panels() } else { samples.plain_panels() };
+    let strips = if has_time { samples.strips() } else { Vec::new() };
+    if panels.is_empty() && strips.is_empty() {
         bail!("there is nothing but the time in it");
     }
-    let range = (times.first().copied().unwrap_or_default(), times.last().copied().unwrap_or_default());
+    let range = (times.first().copied().unwrap_or_default(), end);
     let abscissa = if has_time { "time (s)" } else { "line" };
-    Ok(Chart { title: title.to_owned(), abscissa: abscissa.to_owned(), panels, strips: Vec::new(), range })
+    Ok(Chart { title: title.to_owned(), abscissa: abscissa.to_owned(), panels, strips, range })
 }
 
 /// Named columns of numbers.
@@ -50,10 +53,10 @@ fn read(text: &str) -> Result<Table> {
         .filter(|(_, line)| !line.is_empty() && !line.starts_with('#'))
         .peekable();
     let Some((_, first)) = lines.peek() else { bail!("there are no numbers in it") };
-    let fields = split(first);
+    let fields = head(first);
     let is_head = fields.iter().any(|field| field.parse::<f64>().is_err());
     let names: Vec<String> = match is_head {
-        true => fields.into_iter().map(str::to_owned).collect(),
+        true => fields,
         false => (1..=fields.len()).map(|column| format!("column {column}")).collect(),
     };
     if is_head {
@@ -78,6 +81,23 @@ fn read(text: &str) -> Result<Table> {
         bail!("there are no numbers in it");
     }
     Ok(Table { names, rows })
+}
+
+/// The fields of the first line, of which those in quotes may hold commas.
+fn head(line: &str) -> Vec<String> {
+    if !line.contains('"') {
+        return split(line).into_iter().map(str::to_owned).collect();
+    }
+    let mut fields = vec![String::new()];
+    let mut is_quoted = false;
+    for character in line.chars() {
+        match character {
+            '"' => is_quoted = !is_quoted,
+            ',' | ';' | '\t' if !is_quoted => fields.push(String::new()),
+            _ => fields.last_mut().into_iter().for_each(|field| field.push(character)),
+        }
+    }
+    fields
 }
 
 /// The fields of a line.
@@ -105,8 +125,11 @@ mod tests {
 
     #[test]
     fn columns_become_panels() {
-        check("time,dest0,pos0\n0.1,1,2\n0.2,3,4\n", "dest0 pos0 over time (s) (0.1, 0.2)");
+        check("time,dest0,pos0\n0.1,1,2\n0.2,3,4\n", "axis 0: Dest and Position over time (s) (0.1, 0.2)");
         check("1 2\n3 4\n5 6\n", "column 1 column 2 over line (0.0, 2.0)");
+        check("t,dest0,pos0,bit4\n1,2,3,0\n", "axis 0: Dest and Position over time (s) (1.0, 1.0)");
+        check("dest0\n1\n", "dest0 over line (0.0, 0.0)");
+        check("t,\"f(a, b)\",c\n1,2,3\n", "f(a, b) c over time (s) (1.0, 1.0)");
         check("# gathered\nDest; Position\n1; 2\n", "Dest Position over line (0.0, 0.0)");
     }
 

@@ -6,6 +6,8 @@ pub(super) mod chart;
 mod csv;
 mod draw;
 mod page;
+pub(super) mod samples;
+mod vcd;
 
 use std::path::{Path, PathBuf};
 
@@ -18,7 +20,7 @@ use chart::Chart;
 /// Arguments of `cc67 plot`.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// Numbers in columns: a trace, or what a program has gathered and printed
+    /// Numbers in columns: a trace, or what a program has gathered and printed; or a value change dump (.vcd)
     #[arg(required_unless_present = "explain", value_name = "FILE")]
     data: Option<PathBuf>,
     /// The picture: .svg, .png, or .html for a page with zoom and cursor; else FILE.svg
@@ -33,7 +35,9 @@ pub(super) fn plot(arguments: &Arguments) -> Result<Exit> {
     let form = Form::of(&picture)?;
     let text = String::from_utf8_lossy(&super::run::read(path)?).into_owned();
     let title = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let chart = csv::chart(&title, &text).with_context(|| path.display().to_string())?;
+    let is_dump = path.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("vcd"));
+    let chart = if is_dump { vcd::chart(&title, &text) } else { csv::chart(&title, &text) };
+    let chart = chart.with_context(|| path.display().to_string())?;
     write(&chart, form, &picture)?;
     Ok(Exit::Success)
 }

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::{Log, nanoseconds};
 
-/// The dump; its unit of time is the nanosecond.
+/// The dump; its unit of time is the nanosecond. Numbers have their first sampled value from the start.
 pub(super) fn text(log: &Log) -> String {
     let mut dump = Dump::default();
     for (bit, level) in log.bits() {
@@ -31,11 +31,13 @@ pub(super) fn text(log: &Log) -> String {
         if bits.contains(&name) {
             continue;
         }
-        let id = dump.variable("real 64", &name, "r0 ");
-        let mut last = 0.0;
+        // Readers differ in how they write what is no number.
+        let of =
+            |values: &[f64]| values.get(index).copied().filter(|value| value.is_finite()).unwrap_or_default();
+        let mut last = log.samples.first().map_or(0.0, |(_, values)| of(values));
+        let id = dump.variable("real 64", &name, &format!("r{last} "));
         for (at, values) in &log.samples {
-            // Readers differ in how they write what is no number.
-            let value = values.get(index).copied().filter(|value| value.is_finite()).unwrap_or_default();
+            let value = of(values);
             if value != last {
                 last = value;
                 dump.change(nanoseconds(*at), format!("r{value} {id}"));
@@ -138,11 +140,9 @@ mod tests {
         $dumpvars
         1a
         0b
-        r0 c
+        r0.5 c
         s\x20 d
         $end
-        #180000
-        r0.5 c
         #205000
         1b
         #215000

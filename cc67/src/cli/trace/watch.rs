@@ -18,6 +18,12 @@ use crate::object::SymbolKind;
 use crate::pp::Disk;
 use crate::watch::{self, Expression, Reader, Scope};
 
+/// How the compiler's message on an unknown name ends if no other is near.
+const NOT_DECLARED: &str = "is not declared";
+
+/// What is known without a declaration.
+const KNOWN: &str = ", nor is it an item of the board, such as axis0, bit46, persist.5, adc0";
+
 /// Most characters of an expression.
 const MOST: usize = 500;
 
@@ -96,7 +102,9 @@ fn formula(text: &str, programs: &[Watched<'_>], options: &Options) -> Result<Qu
         }
     }
     let error = first_error.unwrap_or_else(|| "there is no program in that thread".to_owned());
-    bail!("`--watch {text}`: {error}")
+    // With nothing near there is nothing else to say.
+    let is_strange = error.ends_with(NOT_DECLARED);
+    bail!("`--watch {text}`: {error}{}", if is_strange { KNOWN } else { "" })
 }
 
 /// `persist.5` is how `--set` calls an element.
