@@ -11,7 +11,7 @@
 
 use cranelift_entity::{PrimaryMap, SecondaryMap};
 
-use crate::ir::function::Function;
+use crate::ir::function::{Function, table};
 use crate::ir::inst::{
     Address, Base, BlockId, Callee, Class, Constant, Inst, InstKind, Operand, SlotId, ValueId,
 };
@@ -93,7 +93,7 @@ pub(super) fn legalize(function: &mut Function) -> Frame {
 
 /// Which blocks, by their place in the layout, stand between a jump backwards and its target.
 fn blocks_in_loops(function: &Function) -> Vec<bool> {
-    let mut places: SecondaryMap<BlockId, u32> = SecondaryMap::with_capacity(function.blocks.len());
+    let mut places: SecondaryMap<BlockId, u32> = table(function.blocks.len());
     for (index, id) in function.layout.iter().enumerate() {
         places[*id] = index as u32;
     }
@@ -116,7 +116,7 @@ fn blocks_in_loops(function: &Function) -> Vec<bool> {
 
 /// Gives every object of the frame that is used its offset.
 fn place_slots(function: &Function) -> (SecondaryMap<SlotId, u32>, Option<u32>) {
-    let mut used: SecondaryMap<SlotId, bool> = SecondaryMap::with_capacity(function.slots.len());
+    let mut used: SecondaryMap<SlotId, bool> = table(function.slots.len());
     if !function.slots.is_empty() {
         for &id in &function.layout {
             for inst in &function.blocks[id].insts {
@@ -124,7 +124,7 @@ fn place_slots(function: &Function) -> (SecondaryMap<SlotId, u32>, Option<u32>) 
             }
         }
     }
-    let mut offsets = SecondaryMap::with_capacity(function.slots.len());
+    let mut offsets = table(function.slots.len());
     let mut end = Some(0_u32);
     for (id, slot) in &function.slots {
         if used[id] {

@@ -17,7 +17,7 @@ use cranelift_entity::packed_option::PackedOption;
 use vm::operand::Class as RegisterClass;
 use vm::verify::MAX_REGISTERS;
 
-use crate::ir::function::Function;
+use crate::ir::function::{Function, table};
 use crate::ir::inst::{BlockId, Class, Inst, Operand, ValueId};
 
 /// The registers of a function.
@@ -61,7 +61,7 @@ struct Interval {
 /// `None` if there are more than the machine can number.
 pub(super) fn assign(function: &Function, prologue: &[Inst]) -> Option<Registers> {
     let mut scan = Scan {
-        intervals: SecondaryMap::with_capacity(function.values.len()),
+        intervals: table(function.values.len()),
         order: Vec::with_capacity(function.values.len()),
         position: 0,
     };
@@ -113,7 +113,7 @@ impl Scan {
 
     /// Walks the code; returns the loops, in the order of their ends.
     fn function(&mut self, function: &Function) -> Vec<(u32, u32)> {
-        let mut starts: SecondaryMap<BlockId, u32> = SecondaryMap::with_capacity(function.blocks.len());
+        let mut starts: SecondaryMap<BlockId, u32> = table(function.blocks.len());
         let mut loops = Vec::new();
         // Position 0 belongs to the parameters, and no block starts at 0: so 0 means not yet passed.
         self.position = 2;
@@ -168,8 +168,7 @@ impl Scan {
 
     /// Hands out registers in the order in which intervals begin.
     fn allocate(mut self, function: &Function) -> Option<Registers> {
-        let mut registers =
-            Registers { numbers: SecondaryMap::with_capacity(function.values.len()), classes: Vec::new() };
+        let mut registers = Registers { numbers: table(function.values.len()), classes: Vec::new() };
         let mut active: [BinaryHeap<Reverse<(u32, u16)>>; 4] = Default::default();
         for param in &function.params {
             let class = function.values[*param];

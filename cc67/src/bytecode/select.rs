@@ -12,7 +12,7 @@ use super::legalize::Frame;
 use super::operators;
 use super::pool::ConstantPool;
 use super::registers::Registers;
-use crate::ir::function::Function;
+use crate::ir::function::{Function, table};
 use crate::ir::inst::{
     Address, Arguments, Base, BlockId, Callee, Class, Constant, InstKind, Operand, SignatureId, Terminator,
     ValueId,
@@ -49,7 +49,7 @@ pub(super) fn select(
         registers,
         pool,
         code: Code { ops: Vec::with_capacity(words), ..Code::default() },
-        starts: SecondaryMap::with_capacity(function.blocks.len()),
+        starts: table(function.blocks.len()),
         branches: Vec::new(),
     };
     selector.function();

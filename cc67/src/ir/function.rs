@@ -2,11 +2,19 @@
 
 use std::collections::BTreeMap;
 
-use cranelift_entity::{PrimaryMap, SecondaryMap};
+use cranelift_entity::{EntityRef, PrimaryMap, SecondaryMap};
 
 use super::inst::{BlockId, Class, Inst, Operand, SignatureId, SlotId, Terminator, ValueId};
 use crate::source::Span;
 use crate::typed::SymbolId;
+
+/// A map with room for the keys below `len`; one that grows key by key takes longer than most passes.
+#[must_use]
+pub fn table<K: EntityRef, V: Clone + Default>(len: usize) -> SecondaryMap<K, V> {
+    let mut table = SecondaryMap::new();
+    table.resize(len);
+    table
+}
 
 /// What goes into a function and what comes out, as classes.
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -129,7 +137,7 @@ impl Function {
     /// How many edges lead to each block; the entry has one more.
     #[must_use]
     pub fn predecessors(&self) -> SecondaryMap<BlockId, u32> {
-        let mut counts = SecondaryMap::with_capacity(self.blocks.len());
+        let mut counts = table(self.blocks.len());
         if let Some(&entry) = self.layout.first() {
             counts[entry] = 1;
         }

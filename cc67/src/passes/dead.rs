@@ -5,16 +5,13 @@
 
 use cranelift_entity::SecondaryMap;
 
-use crate::ir::function::Function;
+use crate::ir::function::{Function, table};
 use crate::ir::inst::{BlockId, Inst, InstKind, Operand, Terminator, ValueId};
 
 /// Removes dead instructions in one walk from the end to the beginning.
 pub fn run(function: &mut Function) {
-    let mut remover = Remover {
-        reads: count_reads(function),
-        ahead: SecondaryMap::with_capacity(function.values.len()),
-        region: 0,
-    };
+    let mut remover =
+        Remover { reads: count_reads(function), ahead: table(function.values.len()), region: 0 };
     for index in (0..function.layout.len()).rev() {
         let id = function.layout[index];
         remover.block(function, id);
@@ -23,7 +20,7 @@ pub fn run(function: &mut Function) {
 
 /// How often each value is read in the whole function.
 fn count_reads(function: &Function) -> SecondaryMap<ValueId, u32> {
-    let mut reads: SecondaryMap<ValueId, u32> = SecondaryMap::with_capacity(function.values.len());
+    let mut reads: SecondaryMap<ValueId, u32> = table(function.values.len());
     for &id in &function.layout {
         let block = &function.blocks[id];
         for inst in &block.insts {

@@ -8,7 +8,7 @@
 use cranelift_entity::SecondaryMap;
 
 use super::strength::{self, Simplified};
-use crate::ir::function::Function;
+use crate::ir::function::{Function, table};
 use crate::ir::inst::{Address, Base, Constant, Inst, InstKind, Operand, Terminator, ValueId};
 use crate::ir::operators::{BinaryOp, CompareOp};
 
@@ -43,7 +43,8 @@ impl Default for Fact {
 
 /// Folds what can be folded; returns whether a branch was decided.
 pub fn run(function: &mut Function) -> bool {
-    let mut folder = Folder { facts: SecondaryMap::new(), writes: SecondaryMap::new(), region: 0 };
+    let mut folder =
+        Folder { facts: table(function.values.len()), writes: table(function.values.len()), region: 0 };
     let predecessors = function.predecessors();
     let mut is_decided = false;
     let mut previous = None;

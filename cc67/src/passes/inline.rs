@@ -47,15 +47,17 @@ impl Candidates {
     ///
     /// Only functions of the same file: a function's instructions have lines of one file.
     pub fn run(&self, function: &mut Function, file: u32) -> bool {
-        let own = function.clone();
+        let itself = function.symbol;
+        let is_small = size(function) <= SMALL_RECURSIVE && function.slots.is_empty();
+        let own = (is_small && callees(function).any(|symbol| symbol == itself)).then(|| function.clone());
         let find = |symbol: SymbolId| {
-            let found = self.functions.get(&symbol).filter(|_| symbol != own.symbol);
+            let found = self.functions.get(&symbol).filter(|_| symbol != itself);
             found.filter(|(other, _)| *other == file).map(|(_, callee)| callee)
         };
         let mut is_changed = replace_calls(function, find);
-        if size(&own) <= SMALL_RECURSIVE && own.slots.is_empty() {
+        if let Some(own) = &own {
             for _ in 0..LEVELS {
-                if !replace_calls(function, |symbol| (symbol == own.symbol).then_some(&own)) {
+                if !replace_calls(function, |symbol| (symbol == itself).then_some(own)) {
                     break;
                 }
                 is_changed = true;
@@ -70,8 +72,20 @@ fn size(function: &Function) -> usize {
     function.layout.iter().map(|id| function.blocks[*id].insts.len() + 1).sum()
 }
 
+/// The functions that are called by name, once for each call.
+fn callees(function: &Function) -> impl Iterator<Item = SymbolId> {
+    let insts = function.layout.iter().flat_map(|id| &function.blocks[*id].insts);
+    insts.filter_map(|inst| match inst.kind {
+        InstKind::Call { callee: Callee::Symbol(symbol), .. } => Some(symbol),
+        _ => None,
+    })
+}
+
 /// Replaces every call for which `find` names a function, as it is now; returns whether there was one.
 fn replace_calls<'a>(function: &mut Function, find: impl Fn(SymbolId) -> Option<&'a Function>) -> bool {
+    if callees(function).all(|symbol| find(symbol).is_none()) {
+        return false;
+    }
     let mut total = size(function);
     let mut is_changed = false;
     let mut layout = Vec::new();

@@ -4,7 +4,7 @@
 use cranelift_entity::packed_option::PackedOption;
 use cranelift_entity::{EntitySet, SecondaryMap};
 
-use crate::ir::function::Function;
+use crate::ir::function::{Function, table};
 use crate::ir::inst::{BlockId, Terminator};
 
 /// Simplifies the graph of blocks.
@@ -16,7 +16,7 @@ pub fn run(function: &mut Function) {
 
 /// Makes every jump to a block that only jumps on go to the last of such blocks.
 fn thread(function: &mut Function) {
-    let mut forwards: SecondaryMap<BlockId, PackedOption<BlockId>> = SecondaryMap::new();
+    let mut forwards: SecondaryMap<BlockId, PackedOption<BlockId>> = table(function.blocks.len());
     let mut is_any = false;
     for &id in &function.layout {
         let block = &function.blocks[id];

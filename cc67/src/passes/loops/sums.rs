@@ -1,0 +1,191 @@
+//! Expressions that grow evenly with a counter become sums that are carried from turn to turn.
+
+use std::collections::BTreeMap;
+
+use cranelift_entity::EntitySet;
+
+use super::{Stretch, Worker};
+use crate::ir::inst::{Class, Inst, InstKind, Operand, ValueId};
+use crate::ir::operators::BinaryOp;
+
+/// The most sums that one loop carries.
+const MAX_SUMS: usize = 6;
+
+/// What an expression has to cost, in additions, for a sum to be cheaper.
+const WORTH: u32 = 2;
+
+/// An expression that grows by the same amount in each turn.
+#[derive(Clone, Copy, Debug)]
+struct Linear {
+    /// The counter it follows.
+    counter: ValueId,
+    /// By how much it grows when the counter grows by 1.
+    scale: i32,
+    /// What computing it takes.
+    cost: u32,
+    /// Its instruction.
+    kind: InstKind,
+}
+
+impl Worker<'_> {
+    /// Replaces expressions that grow evenly by sums.
+    pub(super) fn carry_sums(&mut self, stretch: Stretch) {
+        let counters = self.counters(stretch);
+        if counters.is_empty() {
+            return;
+        }
+        let linear = self.linear_values(stretch, &counters);
+        if linear.values().all(|sum| sum.cost < WORTH) {
+            return;
+        }
+        let wanted = self.read_as_such(&linear);
+        let header = self.function.layout[stretch.first];
+        let mut steps: BTreeMap<ValueId, Vec<(ValueId, i32)>> = BTreeMap::new();
+        let mut insts = std::mem::take(&mut self.function.blocks[header].insts);
+        let mut count = 0;
+        for inst in &mut insts {
+            let Some(dst) = inst.kind.dst() else { continue };
+            let Some(sum) = linear.get(&dst).filter(|sum| sum.cost >= WORTH && wanted.contains(dst)) else {
+                continue;
+            };
+            if count == MAX_SUMS {
+                break;
+            }
+            count += 1;
+            let start = self.start(&linear, Operand::Value(dst), inst);
+            let carried = self.function.values.push(Class::I32);
+            self.push_before(Inst { kind: InstKind::Copy { dst: carried, src: start }, span: inst.span });
+            let step = counters[&sum.counter].wrapping_mul(sum.scale);
+            steps.entry(sum.counter).or_default().push((carried, step));
+            inst.kind = InstKind::Copy { dst, src: carried.into() };
+        }
+        self.function.blocks[header].insts = insts;
+        if count > 0 {
+            self.insert_steps(stretch, &steps);
+        }
+    }
+
+    /// The values that are written once in the loop, by adding a constant to them.
+    fn counters(&self, stretch: Stretch) -> BTreeMap<ValueId, i32> {
+        let blocks = &self.function.layout[stretch.first..=stretch.last];
+        (blocks.iter().flat_map(|id| &self.function.blocks[*id].insts))
+            .filter_map(|inst| match inst.kind {
+                InstKind::Binary { op, dst, a: Operand::Value(a), b }
+                    if a == dst && self.writes_inside[dst] == 1 =>
+                {
+                    match op {
+                        BinaryOp::Add => Some((dst, b.as_int()?)),
+                        BinaryOp::Subtract => Some((dst, b.as_int()?.wrapping_neg())),
+                        _ => None,
+                    }
+                }
+                _ => None,
+            })
+            .collect()
+    }
+
+    /// The values, each written once, that grow evenly with a counter.
+    fn linear_values(
+        &self,
+        stretch: Stretch,
+        counters: &BTreeMap<ValueId, i32>,
+    ) -> BTreeMap<ValueId, Linear> {
+        let mut linear: BTreeMap<ValueId, Linear> = BTreeMap::new();
+        for id in &self.function.layout[stretch.first..=stretch.last] {
+            for inst in &self.function.blocks[*id].insts {
+                let InstKind::Binary { op, dst, a, b } = inst.kind else { continue };
+                if self.writes[dst] != 1 || self.function.values[dst] != Class::I32 {
+                    continue;
+                }
+                let known = |operand: Operand| {
+                    let value = operand.as_value()?;
+                    let counter = counters.contains_key(&value).then_some((value, 1, 0));
+                    counter.or_else(|| linear.get(&value).map(|sum| (sum.counter, sum.scale, sum.cost)))
+                };
+                let found = match (op, known(a), known(b)) {
+                    (BinaryOp::Multiply, Some((counter, scale, cost)), None) => {
+                        b.as_int().map(|factor| (counter, scale.wrapping_mul(factor), cost + 2))
+                    }
+                    (BinaryOp::ShiftLeft, Some((counter, scale, cost)), None) => {
+                        let count = b.as_int().filter(|count| (0..32).contains(count));
+                        count.map(|count| (counter, scale.wrapping_shl(count.cast_unsigned()), cost + 1))
+                    }
+                    (BinaryOp::Add | BinaryOp::Subtract, Some((counter, scale, cost)), None)
+                        if self.is_invariant(b) =>
+                    {
+                        Some((counter, scale, cost + 1))
+                    }
+                    (BinaryOp::Add, None, Some((counter, scale, cost))) if self.is_invariant(a) => {
+                        Some((counter, scale, cost + 1))
+                    }
+                    _ => None,
+                };
+                if let Some((counter, scale, cost)) = found {
+                    linear.insert(dst, Linear { counter, scale, cost, kind: inst.kind });
+                }
+            }
+        }
+        linear
+    }
+
+    /// The linear values that something else than another linear value reads.
+    fn read_as_such(&self, linear: &BTreeMap<ValueId, Linear>) -> EntitySet<ValueId> {
+        let mut read = EntitySet::with_capacity(self.function.values.len());
+        let mut note = |operand: Operand| {
+            if let Some(value) = operand.as_value() {
+                read.insert(value);
+            }
+        };
+        for id in &self.function.layout {
+            let block = &self.function.blocks[*id];
+            for inst in &block.insts {
+                if inst.kind.dst().is_some_and(|dst| linear.contains_key(&dst)) {
+                    continue;
+                }
+                let mut kind = inst.kind;
+                kind.visit_operands(|operand| note(*operand));
+                if let Some(arguments) = kind.arguments() {
+                    self.function.arguments[arguments.range()].iter().for_each(|operand| note(*operand));
+                }
+            }
+            block.terminator.operand().into_iter().for_each(&mut note);
+        }
+        read
+    }
+
+    /// What `operand` is when the loop begins, computed in front of it.
+    fn start(&mut self, linear: &BTreeMap<ValueId, Linear>, operand: Operand, inst: &Inst) -> Operand {
+        let Some(sum) = operand.as_value().and_then(|value| linear.get(&value)).copied() else {
+            return operand;
+        };
+        let InstKind::Binary { op, a, b, .. } = sum.kind else { return operand };
+        let (a, b) = (self.start(linear, a, inst), self.start(linear, b, inst));
+        let dst = self.function.values.push(Class::I32);
+        self.push_before(Inst { kind: InstKind::Binary { op, dst, a, b }, span: inst.span });
+        dst.into()
+    }
+
+    /// Lets each sum grow where its counter does.
+    fn insert_steps(&mut self, stretch: Stretch, steps: &BTreeMap<ValueId, Vec<(ValueId, i32)>>) {
+        for place in stretch.first..=stretch.last {
+            let id = self.function.layout[place];
+            let insts = std::mem::take(&mut self.function.blocks[id].insts);
+            let mut out = Vec::with_capacity(insts.len() + steps.len());
+            for inst in insts {
+                out.push(inst);
+                let sums = inst.kind.dst().and_then(|dst| steps.get(&dst));
+                for (sum, step) in sums.into_iter().flatten() {
+                    let kind = InstKind::Binary {
+                        op: BinaryOp::Add,
+                        dst: *sum,
+                        a: (*sum).into(),
+                        b: Operand::int(*step),
+                    };
+                    self.writes[*sum] += 1;
+                    out.push(Inst { kind, span: inst.span });
+                }
+            }
+            self.function.blocks[id].insts = out;
+        }
+    }
+}
