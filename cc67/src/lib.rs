@@ -47,6 +47,7 @@ pub mod object;
 pub mod parse;
 pub mod passes;
 pub mod pp;
+mod reason;
 pub mod render;
 pub mod sema;
 pub mod source;

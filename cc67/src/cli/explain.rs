@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use anyhow::Result;
 
-use super::{Exit, terminal};
+use super::{Exit, output};
 use crate::lints::{Lint, Preset};
 
 /// What lists all warnings; no lint has this name.
@@ -17,12 +17,12 @@ const PAGES: &[(&str, &str)] =
 /// Prints the page of the warning that a message, a switch or the user's memory names.
 pub(super) fn explain(name: &str) -> Result<Exit> {
     if name == LIST {
-        terminal::page(&list())?;
+        output::print(&list())?;
     } else if let Some((_, page)) = PAGES.iter().find(|(known, _)| *known == name) {
-        terminal::page(page)?;
+        output::print(page)?;
     } else {
         let lint = Lint::named(name)?;
-        terminal::page(&format!("{}\n{}", lint.page(), lint.switches()))?;
+        output::print(&format!("{}\n{}", lint.page(), lint.switches()))?;
     }
     Ok(Exit::Success)
 }

@@ -4,10 +4,12 @@
 //! any compiler: it would take longer than the compilation.
 
 use std::fs;
-use std::io::Write;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Result, anyhow};
+
+use crate::reason::reason;
 
 /// Writes a file and replaces what was there.
 pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<()> {
@@ -24,10 +26,7 @@ pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     written.map_err(|error| {
         // What is left of it helps nobody.
         let _ = fs::remove_file(&temporary);
-        // The number that the library adds says nothing to the user.
-        let reason = error.to_string();
-        let reason = reason.split(" (os error").next().unwrap_or_default();
-        anyhow!("cannot write {}: {reason}", path.display())
+        anyhow!("cannot write {}: {}", path.display(), reason(&error))
     })
 }
 
@@ -45,11 +44,14 @@ fn temporary(path: &Path) -> PathBuf {
 
 /// Prints what a command answers.
 pub(super) fn print(text: &str) -> Result<()> {
-    match std::io::stdout().write_all(text.as_bytes()) {
+    match io::stdout().write_all(text.as_bytes()) {
         // A reader that has seen enough, as `head` has, is no failure.
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
-            Err(anyhow!("cannot write to standard output: {error}"))
-        }
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(lost_output(&error)),
         _ => Ok(()),
     }
+}
+
+/// What is said when standard output takes no more.
+pub(super) fn lost_output(error: &io::Error) -> anyhow::Error {
+    anyhow!("cannot write to standard output: {}", reason(error))
 }

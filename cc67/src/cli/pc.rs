@@ -1,7 +1,6 @@
 //! What the PC beside the board is told to do: its answers, M codes that start programs, the file of the board's flash.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use anyhow::{Context, Result, bail};
 use clap::Args;
@@ -57,7 +56,7 @@ impl PcOptions {
     /// What flash memory holds at the start.
     pub(super) fn flash(&self) -> Result<Option<Vec<u8>>> {
         let Some(path) = self.flash.as_deref().filter(|path| path.exists()) else { return Ok(None) };
-        let bytes = fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
+        let bytes = read(path)?;
         if bytes.len() != FLASH_SIZE {
             bail!(
                 "{} is not a board's flash: it has {} bytes, not {FLASH_SIZE}",
@@ -72,14 +71,12 @@ impl PcOptions {
     pub(super) fn keep_flash(&self, before: Option<&[u8]>, now: &[u8]) -> Result<()> {
         let erased = || now.iter().all(|byte| *byte == 0xFF);
         match &self.flash {
-            Some(path) if before.map_or_else(|| !erased(), |before| before != now) => write(path, now),
+            Some(path) if before.map_or_else(|| !erased(), |before| before != now) => {
+                output::write(path, now)
+            }
             _ => Ok(()),
         }
     }
-}
-
-fn write(path: &Path, flash: &[u8]) -> Result<()> {
-    output::write(path, flash)
 }
 
 /// The words that pass parameters, in the order in which they are stored.

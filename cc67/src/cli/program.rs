@@ -1,5 +1,6 @@
 //! Program arguments: `[N:]FILE`, and which thread each file goes to.
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
@@ -34,8 +35,8 @@ impl Program {
 }
 
 /// Gives each argument its thread: the one it names, else the lowest that is free.
-pub(super) fn assign(arguments: &[String]) -> Result<Vec<Program>> {
-    let split: Vec<_> = arguments.iter().map(|argument| split(argument)).collect::<Result<_>>()?;
+pub(super) fn assign(arguments: &[impl AsRef<OsStr>]) -> Result<Vec<Program>> {
+    let split: Vec<_> = arguments.iter().map(|argument| split(argument.as_ref())).collect::<Result<_>>()?;
     let mut taken: Vec<(ThreadId, &Path)> = Vec::new();
     for (thread, path) in &split {
         let Some(thread) = *thread else { continue };
@@ -56,8 +57,9 @@ pub(super) fn assign(arguments: &[String]) -> Result<Vec<Program>> {
         .collect()
 }
 
-/// Splits `N:FILE`. A drive letter is not a number, so Windows paths need no care.
-fn split(argument: &str) -> Result<(Option<ThreadId>, PathBuf)> {
+/// Splits `N:FILE`. A drive letter is not a number, so Windows paths need no care; a name that is no text is all FILE.
+fn split(whole: &OsStr) -> Result<(Option<ThreadId>, PathBuf)> {
+    let argument = whole.to_str().unwrap_or_default();
     if let Some((number, path)) = argument.split_once(':')
         && !number.is_empty()
         && number.bytes().all(|byte| byte.is_ascii_digit())
@@ -70,7 +72,7 @@ fn split(argument: &str) -> Result<(Option<ThreadId>, PathBuf)> {
         }
         return Ok((Some(thread), PathBuf::from(path)));
     }
-    Ok((None, PathBuf::from(argument)))
+    Ok((None, PathBuf::from(whole)))
 }
 
 #[cfg(test)]
@@ -78,8 +80,7 @@ mod tests {
     use super::*;
 
     fn check(arguments: &[&str], expect: &str) {
-        let arguments: Vec<_> = arguments.iter().map(ToString::to_string).collect();
-        let result = match assign(&arguments) {
+        let result = match assign(arguments) {
             Ok(programs) => {
                 programs.iter().map(|p| format!("{}={}", p.thread, p.name())).collect::<Vec<_>>().join(" ")
             }

@@ -1,5 +1,6 @@
 //! `cc67 run`: compile, load, execute, print the console.
 
+use std::ffi::{OsStr, OsString};
 use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -22,8 +23,9 @@ use super::pc::PcOptions;
 use super::program::{Program, assign};
 use super::setting::{self, Setting};
 use super::uart::UartOptions;
-use super::{Exit, events, profile, stimulus, terminal, trace, units};
+use super::{Exit, events, output, profile, stimulus, terminal, trace, units};
 use crate::lints::levels::Levels;
+use crate::reason::reason;
 use crate::render::Format;
 use crate::{Options, foreign, image};
 
@@ -38,10 +40,10 @@ pub(super) const TIMEBASE: f64 = 90e-6;
 pub(super) struct Arguments {
     /// The programs, sources or images: FILE for the lowest free thread, N:FILE for thread N
     #[arg(required_unless_present_any = ["explain", "flash"], value_name = "[N:]FILE")]
-    programs: Vec<String>,
+    programs: Vec<OsString>,
     /// Load a program without starting it, for another one to start
     #[arg(long, value_name = "N:FILE")]
-    load: Vec<String>,
+    load: Vec<OsString>,
     /// End after so many seconds of board time, with success
     #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
     limit: Option<f64>,
@@ -239,12 +241,7 @@ pub(super) fn images(programs: &[Program], compiler: &CompilerOptions) -> Result
 
 /// Reads a whole file; a message names it.
 pub(super) fn read(path: &Path) -> Result<Vec<u8>> {
-    fs::read(path).map_err(|error| {
-        // The number that the library adds says nothing to the user.
-        let reason = error.to_string();
-        let reason = reason.split(" (os error").next().unwrap_or_default();
-        anyhow::anyhow!("cannot read {}: {reason}", path.display())
-    })
+    fs::read(path).map_err(|error| anyhow::anyhow!("cannot read {}: {}", path.display(), reason(&error)))
 }
 
 /// Compiles, links and reports; `None` after errors.
@@ -303,10 +300,14 @@ fn execute<E: Engine>(
         if error.kind() == io::ErrorKind::BrokenPipe {
             return Ok(Exit::Success);
         }
-        return Err(error).context("cannot write to standard output");
+        return Err(output::lost_output(&error));
     }
     if let Some(log) = &log {
-        arguments.trace.write(log, board.tick(), &arguments.programs.join(", "))?;
+        arguments.trace.write(
+            log,
+            board.tick(),
+            &arguments.programs.join(OsStr::new(", ")).to_string_lossy(),
+        )?;
     }
     Ok(match end {
         _ if trapped => Exit::Trapped,

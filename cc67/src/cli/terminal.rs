@@ -25,15 +25,6 @@ pub(super) fn aside(text: &str) {
     let _ = io::stderr().write_all(text.as_bytes());
 }
 
-/// Prints a page that was asked for to stdout.
-pub(super) fn page(text: &str) -> io::Result<()> {
-    match io::stdout().write_all(text.as_bytes()) {
-        // A reader that has seen enough, as `head` has, is no failure.
-        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-        result => result,
-    }
-}
-
 /// Whether a stream shows colours.
 pub(super) fn color(stream: &impl IsTerminal) -> Color {
     let shown = stream.is_terminal() && std::env::var_os("NO_COLOR").is_none();

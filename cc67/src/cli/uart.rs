@@ -4,7 +4,7 @@
 //! first looks for them. A terminal, a TCP peer or another program acts when it likes: the run is then kept at about real time, and
 //! what arrives when is no longer the same in every run. Without these options nothing is connected.
 
-use std::io::{self, Read, Write};
+use std::io::{Read, Write};
 use std::net::{Ipv4Addr, TcpListener};
 use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
@@ -143,11 +143,11 @@ struct Held {
 
 #[cfg(unix)]
 impl Write for Held {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
         self.file.write(bytes)
     }
 
-    fn flush(&mut self) -> io::Result<()> {
+    fn flush(&mut self) -> std::io::Result<()> {
         self.file.flush()
     }
 }

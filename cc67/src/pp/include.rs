@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::diag::Diagnostic;
+use crate::reason::reason;
 use crate::source::{FileId, Span};
 use crate::suggest::suggest;
 
@@ -124,10 +125,7 @@ impl Preprocessor<'_> {
                 );
             }
             Some(Found::Unreadable(path, error)) => {
-                // The number that the library adds says nothing to the user.
-                let reason = error.to_string();
-                let reason = reason.split(" (os error").next().unwrap_or_default();
-                let message = format!("cannot read `{}`: {reason}", path.display());
+                let message = format!("cannot read `{}`: {}", path.display(), reason(&error));
                 self.sink.report_lost_names(Diagnostic::error(header.span, message));
             }
             None => self.open_embedded(header, &name, &directories),

@@ -88,7 +88,7 @@ pub(super) fn build(arguments: &Arguments) -> Result<Exit> {
     let Some(linked) = linked.filter(|_| !has_errors) else { return Ok(Exit::Failure) };
     output::write_all(&objects)?;
     arguments.write_program(&linked, &emit)?;
-    println!("{}", sizes(&linked, warnings(&units, &levels)));
+    output::print(&(sizes(&linked, warnings(&units, &levels)) + "\n"))?;
     Ok(Exit::Success)
 }
 

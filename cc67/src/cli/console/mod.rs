@@ -8,6 +8,7 @@ mod input;
 mod screen;
 mod words;
 
+use std::ffi::OsString;
 use std::io::{self, IsTerminal};
 use std::path::PathBuf;
 use std::sync::mpsc::RecvTimeoutError;
@@ -43,10 +44,10 @@ const STRETCH: u64 = 1111;
 pub(super) struct Arguments {
     /// Programs to load and start: FILE for the lowest free thread, N:FILE for thread N
     #[arg(value_name = "[N:]FILE")]
-    programs: Vec<String>,
+    programs: Vec<OsString>,
     /// Load a program without starting it
     #[arg(long, value_name = "N:FILE")]
-    load: Vec<String>,
+    load: Vec<OsString>,
     /// Keep pace with the clock; the default at a terminal
     #[arg(long, overrides_with = "fast")]
     realtime: bool,

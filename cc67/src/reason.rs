@@ -1,0 +1,9 @@
+//! What the operating system says of a failure, in words for the user.
+
+use std::io;
+
+/// The reason alone: the number that the library adds says nothing to the user.
+pub(crate) fn reason(error: &io::Error) -> String {
+    let text = error.to_string();
+    text.split(" (os error").next().unwrap_or_default().to_owned()
+}
