@@ -5,7 +5,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use cc67::lints::Lint;
 use harness::{Scratch, files, run_in};
@@ -75,22 +75,73 @@ fn behind<'a>(text: &'a str, mark: &str, end: char) -> Vec<&'a str> {
     text.split(mark).skip(1).filter_map(|rest| rest.split(end).next()).collect()
 }
 
+/// A text without its fenced blocks, with what it includes.
+fn prose(path: &Path) -> String {
+    let text = fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    let mut prose = String::new();
+    let mut is_code = false;
+    for line in text.lines() {
+        is_code ^= line.starts_with("```");
+        match line.strip_prefix("{{#include ").and_then(|rest| rest.strip_suffix("}}")) {
+            Some(include) => prose.push_str(&self::prose(&path.with_file_name(include))),
+            None if !is_code => prose.push_str(line),
+            None => {}
+        }
+        prose.push('\n');
+    }
+    prose
+}
+
+/// The places that links to a page can name: its headings, as the book and code hosts spell them.
+fn anchors(prose: &str) -> BTreeSet<String> {
+    let headings = prose.lines().filter(|line| line.starts_with('#'));
+    let spell = |line: &str| {
+        let text = line.trim_start_matches('#').trim().to_lowercase();
+        let kept = text.chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'));
+        kept.map(|c| if c == ' ' { '-' } else { c }).collect()
+    };
+    headings.map(spell).collect()
+}
+
+/// Every link of a page leads to a file, and to a heading of it.
+fn check_links(page: &Path) {
+    let text = prose(page);
+    for link in behind(&text, "](", ')').into_iter().filter(|link| !link.contains("://")) {
+        let (file, place) = link.split_once('#').unwrap_or((link, ""));
+        let target = if file.is_empty() { page.to_owned() } else { page.with_file_name(file) };
+        assert!(target.exists(), "{} links to {link}, which is not there", page.display());
+        assert!(
+            place.is_empty() || anchors(&prose(&target)).contains(place),
+            "{} links to {link}: no such heading",
+            page.display()
+        );
+    }
+}
+
 #[test]
-fn links_and_includes_lead_to_files() {
+fn links_lead_to_files_and_headings() {
+    for chapter in files(&source(), "md") {
+        check_links(&chapter);
+    }
+    for page in ["README.md", "c-programs/README.md", "vm/benches/README.md"] {
+        check_links(&harness::root().join(page));
+    }
+}
+
+#[test]
+fn every_chapter_is_in_the_summary() {
     let summary = read("SUMMARY.md");
     let listed: BTreeSet<_> = behind(&summary, "](", ')').into_iter().collect();
     for chapter in files(&source(), "md") {
         let name = chapter.file_name().expect("a name").to_string_lossy().into_owned();
         assert!(name == "SUMMARY.md" || listed.contains(name.as_str()), "{name} is not in the summary");
-        let text = read(&name);
-        for link in behind(&text, "](", ')').into_iter().filter(|link| !link.starts_with("http")) {
-            let file = link.split('#').next().expect("a part");
-            assert!(source().join(file).exists(), "{name} links to {link}");
-        }
-        for include in behind(&text, "{{#include ", '}') {
-            assert!(source().join(include).exists(), "{name} includes {include}");
-        }
     }
+}
+
+#[test]
+fn headings_are_spelled_as_links_name_them() {
+    let anchors = anchors("# A `b` (c), d_e\ntext\n## F-g");
+    assert_eq!(anchors.into_iter().collect::<Vec<_>>(), ["a-b-c-d_e", "f-g"]);
 }
 
 /// A chapter is what the tables say.

@@ -1,0 +1,115 @@
+//! Builds the book and fails on what mdbook warns of, and on links of the pages that lead nowhere.
+//!
+//! The first argument is the folder of the book, the second one where its pages go.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::{env, fs};
+
+use mdbook_driver::MDBook;
+use tracing::field::{Field, Visit};
+use tracing::span::{Attributes, Id, Record};
+use tracing::{Event, Level, Metadata, Subscriber};
+
+/// Warnings and errors so far.
+static COMPLAINTS: AtomicUsize = AtomicUsize::new(0);
+
+fn main() -> ExitCode {
+    let mut arguments = env::args_os().skip(1).map(PathBuf::from);
+    let (Some(book), Some(pages)) = (arguments.next(), arguments.next()) else {
+        eprintln!("usage: cc67-book BOOK PAGES");
+        return ExitCode::from(2);
+    };
+    if tracing::subscriber::set_global_default(Listener).is_err() {
+        complain("somebody listens already");
+    }
+    match build(&book, &pages) {
+        Ok(()) => check(&pages),
+        Err(error) => complain(&error),
+    }
+    ExitCode::from(u8::from(COMPLAINTS.load(Ordering::Relaxed) > 0))
+}
+
+fn complain(text: &str) {
+    eprintln!("{text}");
+    COMPLAINTS.fetch_add(1, Ordering::Relaxed);
+}
+
+fn build(book: &Path, pages: &Path) -> Result<(), String> {
+    let pages = std::path::absolute(pages).map_err(|error| error.to_string())?;
+    let mut book = MDBook::load(book).map_err(|error| format!("{error:?}"))?;
+    book.config.build.build_dir = pages;
+    book.build().map_err(|error| format!("{error:?}"))
+}
+
+/// Hears what mdbook says while it works.
+struct Listener;
+
+impl Subscriber for Listener {
+    fn enabled(&self, metadata: &Metadata<'_>) -> bool {
+        *metadata.level() <= Level::WARN
+    }
+
+    fn event(&self, event: &Event<'_>) {
+        let mut text = format!("{}:", event.metadata().level());
+        event.record(&mut Words(&mut text));
+        complain(&text);
+    }
+
+    fn new_span(&self, _: &Attributes<'_>) -> Id {
+        Id::from_u64(1)
+    }
+
+    fn record(&self, _: &Id, _: &Record<'_>) {}
+    fn record_follows_from(&self, _: &Id, _: &Id) {}
+    fn enter(&self, _: &Id) {}
+    fn exit(&self, _: &Id) {}
+}
+
+/// Puts the fields of an event behind each other.
+struct Words<'a>(&'a mut String);
+
+impl Visit for Words<'_> {
+    fn record_debug(&mut self, _: &Field, value: &dyn std::fmt::Debug) {
+        self.0.push_str(&format!(" {value:?}"));
+    }
+}
+
+/// Every link within the pages leads to a page or file, and to a place in it.
+fn check(pages: &Path) {
+    let mut texts = BTreeMap::new();
+    for entry in fs::read_dir(pages).into_iter().flatten().flatten() {
+        let path = entry.path();
+        // The page of all chapters has the links of the others again.
+        let is_page = path.extension().is_some_and(|suffix| suffix == "html");
+        if is_page && path.file_name().is_some_and(|name| name != "print.html") {
+            let name = entry.file_name().to_string_lossy().into_owned();
+            texts.insert(name, fs::read_to_string(&path).unwrap_or_default());
+        }
+    }
+    let places: BTreeMap<&str, BTreeSet<&str>> =
+        texts.iter().map(|(name, text)| (name.as_str(), values(text, " id=\"").collect())).collect();
+    let mut count = 0;
+    for (name, text) in &texts {
+        for link in values(text, " href=\"").filter(|link| !link.contains("://")) {
+            count += 1;
+            let (file, place) = link.split_once('#').unwrap_or((link, ""));
+            let file = if file.is_empty() { name } else { file };
+            let is_there = match places.get(file) {
+                Some(places) => place.is_empty() || places.contains(place),
+                None => pages.join(file).exists(),
+            };
+            if !is_there {
+                complain(&format!("{name} links to {link}, which is not there"));
+            }
+        }
+    }
+    println!("{} pages, {count} links", texts.len());
+}
+
+/// What stands between each mark and the next quotation mark.
+fn values<'a>(text: &'a str, mark: &'a str) -> impl Iterator<Item = &'a str> {
+    text.split(mark).skip(1).filter_map(|rest| rest.split('"').next())
+}
