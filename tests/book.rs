@@ -11,6 +11,7 @@ use cc67::lints::Lint;
 use harness::{Scratch, files, run_in};
 use kmotiondef::firmware::{ABSENT, FIRMWARE_FUNCTIONS};
 use kmotiondef::variables::FIRMWARE_VARIABLES;
+use runtime::commands::COMMANDS;
 
 const BINARY: &str = env!("CARGO_BIN_EXE_cc67-under-test");
 
@@ -199,4 +200,18 @@ fn the_chapter_of_variables_has_each() {
         );
     }
     check_list("variables.md", &text);
+}
+
+#[test]
+fn the_chapter_of_console_commands_has_each() {
+    let mut text = "# Console commands\n\nWhat `cc67 console` sends to the board, and `command \"...\"` of a stimulus; \
+                    words are read in any case,\nand a line may hold several with `;` between them. The console's own \
+                    words, such as `run` and `wait`, are listed by its `help`.\n\n| command | what it does |\n|---|---|\n"
+        .to_owned();
+    let mut commands: Vec<_> = COMMANDS.iter().collect();
+    commands.sort_by_key(|command| command.name.to_lowercase());
+    for command in commands {
+        let _ = writeln!(text, "| `{}` | {} |", command.usage().replace('|', "\\|"), command.help);
+    }
+    check_list("commands.md", &text);
 }

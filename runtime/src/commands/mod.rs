@@ -94,6 +94,7 @@ impl Argument {
             Self::Integer(i32::MIN, i32::MAX) => "<integer>".to_owned(),
             Self::Integer(lo, hi) => format!("<{lo}..{hi}>"),
             Self::Real => "<number>".to_owned(),
+            Self::Limited(0.0, hi) => format!("<0..{hi:e}>"),
             Self::Limited(lo, hi) => format!("<{lo:e}..{hi:e}>"),
             Self::Hex | Self::OptionalHex => "<hex>".to_owned(),
             Self::Equals | Self::OptionalEquals | Self::Assign => "=".to_owned(),
@@ -159,7 +160,7 @@ mod tests {
         for (name, expect) in [
             ("Move", "Move <0..7>=<number>"),
             ("MoveAtVel", "MoveAtVel <0..7>=<number> <number>"),
-            ("Vel", "Vel <0..7>[=<0e0..1e12>]"),
+            ("Vel", "Vel <0..7>[=<0..1e12>]"),
             ("GetStatus", "GetStatus [<hex>] [<hex>]"),
             ("SetBitDirection", "SetBitDirection <0..167>[=]<0..1>"),
             ("LHex1", "LHex1 <hex> … (11 numbers)"),
