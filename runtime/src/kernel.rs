@@ -10,7 +10,7 @@ use kmotiondef::map::{FPGA, TIMER0};
 use kmotiondef::variables::{
     CURRENT_THREAD, LAST_TIMER0, NEXT_AVAIL_IN, NEXT_AVAIL_OUT, SERVO_TICK, USER_CALL_BACK,
 };
-use kmotiondef::{Bit, Cycles, GuestAddr, ThreadId};
+use kmotiondef::{AxisId, Bit, Cycles, GuestAddr, ThreadId};
 use vm::bus::{AccessSize, Bus};
 use vm::firmware::{Caller, Firmware, Outcome, Pure, Signature, TickContext, Value};
 use vm::memory::GuestMemory;
@@ -60,6 +60,10 @@ pub(crate) enum Continuation {
     },
     /// The target of a motion, as it was when the call began.
     Target(f64),
+    /// That a stop was begun, and the axes that are still to be stopped once those are known.
+    Stop(Option<Vec<AxisId>>),
+    /// The axes that are still to go on after a feedhold.
+    Resume(Vec<AxisId>),
 }
 
 /// What only the board as a whole can do, as it holds the programs.

@@ -68,11 +68,12 @@ impl Desk {
         self.done(name, arguments, None);
     }
 
-    /// Makes a call, and again in the next slice of a single thread if it waits for that.
+    /// Makes a call, and again in each slice of a single thread while it waits for the next one.
     pub(crate) fn call_in_slices(&mut self, name: &str, arguments: &[u64]) {
-        if let Outcome::Wait(wake) = self.outcome(name, arguments, None) {
+        let mut outcome = self.outcome(name, arguments, None);
+        while let Outcome::Wait(wake) = outcome {
             self.run(2);
-            self.done(name, arguments, Some(wake));
+            outcome = self.outcome(name, arguments, Some(wake));
         }
     }
 
@@ -83,9 +84,9 @@ impl Desk {
         }
     }
 
-    /// Makes a call again whose wake has come true.
-    pub(crate) fn wake(&mut self, name: &str, arguments: &[u64]) {
-        self.done(name, arguments, Some(Wake::Retry));
+    /// Makes a call again whose wake has come true; whether it is done then.
+    pub(crate) fn wake(&mut self, name: &str, arguments: &[u64]) -> bool {
+        matches!(self.outcome(name, arguments, Some(Wake::Retry)), Outcome::Done(_))
     }
 
     pub(crate) fn wake_i32(&mut self, name: &str, arguments: &[u64]) -> i32 {

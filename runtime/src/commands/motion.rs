@@ -8,7 +8,7 @@ use super::session::{Answer, Session};
 use crate::firmware::motion;
 
 /// A motion call as the primary thread makes it: it plans at once.
-fn planned(outcome: Outcome<()>) -> Answer {
+pub(super) fn planned(outcome: Outcome<()>) -> Answer {
     debug_assert_eq!(outcome, Outcome::Done(()), "only user threads wait for a slice to plan in");
     Answer::Nothing
 }

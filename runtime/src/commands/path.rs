@@ -7,6 +7,7 @@ use kmotiondef::structs::{Chan, Spindle};
 use kmotiondef::variables::{CS0_STOPPING_STATE, SPINDLE};
 
 use super::arguments::Values;
+use super::motion::planned;
 use super::numbers::{fixed, time};
 use super::session::{Answer, Session};
 use crate::event::EventKind;
@@ -216,11 +217,13 @@ pub(super) fn fro_with_rate(_: &mut Session<'_, '_>, _: &Values) -> Answer {
 /// Stop, resume or clear.
 pub(super) fn stop_immediate(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     match values.integer(0) {
-        0 => session.call(coord::stop_coordinated_motion),
-        1 => session.call(coord::resume_coordinated_motion),
-        _ => session.call(coord::clear_stop_immediately),
+        0 => planned(session.call(coord::stop_coordinated_motion)),
+        1 => planned(session.call(coord::resume_coordinated_motion)),
+        _ => {
+            session.call(coord::clear_stop_immediately);
+            Answer::Nothing
+        }
     }
-    Answer::Nothing
 }
 
 pub(super) fn stop_state(session: &mut Session<'_, '_>, _: &Values) -> Answer {

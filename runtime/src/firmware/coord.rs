@@ -4,11 +4,11 @@ use kmotiondef::AxisId;
 use kmotiondef::modes::LastMotion;
 use kmotiondef::structs::Chan;
 use kmotiondef::variables::CS0_STOPPING_STATE;
-use vm::firmware::Caller;
+use vm::firmware::{Caller, Outcome, Wake};
 use vm::memory::GuestMemory;
 
 use super::motion::{limits, start_move_to};
-use crate::kernel::Kernel;
+use crate::kernel::{Continuation, Kernel};
 use crate::servo::coordinated::feedhold::State;
 use crate::servo::coordinated::system::{assign, nominal_change_time};
 use crate::servo::coordinated::{buffer, feedhold, path, rate};
@@ -86,31 +86,84 @@ pub(crate) fn check_done_buf(_: &mut Kernel, caller: &mut Caller<'_>) -> i32 {
     buffer::check_done(caller.memory)
 }
 
-pub(crate) fn stop_coordinated_motion(kernel: &mut Kernel, caller: &mut Caller<'_>) {
-    stop(kernel, caller.memory);
+/// Begins a feedhold. The board computes it in slices of the caller: one to begin, one for each axis that moves by
+/// itself; the others run on meanwhile. Only a thread can wait for them.
+pub(crate) fn stop_coordinated_motion(kernel: &mut Kernel, caller: &mut Caller<'_>) -> Outcome<()> {
+    if caller.thread.is_none() {
+        stop(kernel, caller.memory);
+        return Outcome::Done(());
+    }
+    let mut left = match (caller.woken, kernel.take(caller)) {
+        (Some(_), Some(Continuation::Stop(Some(left)))) => left,
+        (Some(_), Some(Continuation::Stop(None))) => {
+            if feedhold::stop(caller.memory) {
+                return Outcome::Done(());
+            }
+            let mut moving = moving_members(caller.memory);
+            moving.reverse();
+            return stop_later(kernel, caller, moving);
+        }
+        _ => {
+            if !may_stop(caller.memory) {
+                return Outcome::Done(());
+            }
+            feedhold::note_time(caller.memory);
+            kernel.keep(caller, Continuation::Stop(None));
+            return Outcome::Wait(Wake::NextSlice);
+        }
+    };
+    if let Some(axis) = left.pop() {
+        stop_axis(kernel, caller.memory, axis);
+    }
+    if left.is_empty() {
+        caller.memory.set(CS0_STOPPING_STATE, State::StoppingAxes.number());
+    }
+    stop_later(kernel, caller, left)
 }
 
-/// Begins a feedhold if something in the coordinate system moves; whether it does.
+/// Goes on with stopping axes in the next slice, the last one first.
+fn stop_later(kernel: &mut Kernel, caller: &Caller<'_>, left: Vec<AxisId>) -> Outcome<()> {
+    if left.is_empty() {
+        return Outcome::Done(());
+    }
+    kernel.keep(caller, Continuation::Stop(Some(left)));
+    Outcome::Wait(Wake::NextSlice)
+}
+
+/// Whether there is something for a feedhold to stop. Nothing but its end holds a path that the spindle drives.
+fn may_stop(memory: &GuestMemory) -> bool {
+    State::of(memory) == State::Running && !spindle::is_threading(memory)
+}
+
+/// Begins a feedhold at once if something in the coordinate system moves; whether it does.
 pub(crate) fn stop(kernel: &mut Kernel, memory: &mut GuestMemory) -> bool {
-    // Nothing but its end holds a path that the spindle drives.
-    if State::of(memory) != State::Running || spindle::is_threading(memory) {
+    if !may_stop(memory) {
         return false;
     }
+    feedhold::note_time(memory);
     if feedhold::stop(memory) {
         return true;
     }
-    let moving: Vec<AxisId> = members(memory).filter(|&axis| is_moving(memory, axis)).collect();
-    for &axis in &moving {
-        if let Some(limits) = limits(memory, axis, Some(1.0)) {
-            let states = profile::jog(present(memory, axis), 0.0, &limits);
-            run(memory, axis, &states);
-            kernel.servo.axes[axis.index()].is_held = true;
-        }
-    }
+    let moving = moving_members(memory);
+    moving.iter().for_each(|&axis| stop_axis(kernel, memory, axis));
     if !moving.is_empty() {
         memory.set(CS0_STOPPING_STATE, State::StoppingAxes.number());
     }
     !moving.is_empty()
+}
+
+/// The axes of the coordinate system that move by themselves.
+fn moving_members(memory: &GuestMemory) -> Vec<AxisId> {
+    members(memory).filter(|&axis| is_moving(memory, axis)).collect()
+}
+
+/// Decelerates an axis to rest.
+fn stop_axis(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId) {
+    if let Some(limits) = limits(memory, axis, Some(1.0)) {
+        let states = profile::jog(present(memory, axis), 0.0, &limits);
+        run(memory, axis, &states);
+        kernel.servo.axes[axis.index()].is_held = true;
+    }
 }
 
 /// Ends the second phase of a feedhold when the axes have stopped.
@@ -125,25 +178,48 @@ pub(crate) fn update_stopping_state(_: &mut Kernel, caller: &mut Caller<'_>) {
     update_state(caller.memory);
 }
 
-pub(crate) fn resume_coordinated_motion(kernel: &mut Kernel, caller: &mut Caller<'_>) {
-    let memory = &mut *caller.memory;
-    update_state(memory);
-    if !feedhold::resume(memory) && State::of(memory) != State::Running {
-        memory.set(CS0_STOPPING_STATE, State::Running.number());
-        resume_axes(kernel, memory);
+/// Ends a feedhold. A thread waits for a slice in front of each axis but the first, and of that if it still moves: the
+/// board plans there.
+pub(crate) fn resume_coordinated_motion(kernel: &mut Kernel, caller: &mut Caller<'_>) -> Outcome<()> {
+    let (mut left, mut has_planned) = match (caller.woken, kernel.take(caller)) {
+        (Some(_), Some(Continuation::Resume(mut left))) => {
+            if let Some(axis) = left.pop() {
+                resume_axis(kernel, caller.memory, axis);
+            }
+            (left, true)
+        }
+        _ => {
+            update_state(caller.memory);
+            if feedhold::resume(caller.memory) || State::of(caller.memory) == State::Running {
+                return Outcome::Done(());
+            }
+            caller.memory.set(CS0_STOPPING_STATE, State::Running.number());
+            let held = |axis: &AxisId| kernel.servo.axes[axis.index()].is_held;
+            let mut left: Vec<AxisId> = members(caller.memory).filter(held).collect();
+            left.reverse();
+            (left, false)
+        }
+    };
+    while let Some(&axis) = left.last() {
+        if caller.thread.is_some() && (has_planned || has_motion(caller.memory, axis)) {
+            kernel.keep(caller, Continuation::Resume(left));
+            return Outcome::Wait(Wake::NextSlice);
+        }
+        left.pop();
+        resume_axis(kernel, caller.memory, axis);
+        has_planned = true;
     }
+    Outcome::Done(())
 }
 
 /// Restarts what a feedhold interrupted. A jog is not resumed; an exponential approach becomes a move.
-fn resume_axes(kernel: &mut Kernel, memory: &mut GuestMemory) {
-    for axis in members(memory) {
-        let was_held = std::mem::take(&mut kernel.servo.axes[axis.index()].is_held);
-        let kind = LastMotion::new(memory.axis(axis, Chan::LAST_MOTION_TYPE));
-        let Some(kind) = kind.filter(|&kind| was_held && kind != LastMotion::Jog) else { continue };
-        let target = memory.axis(axis, Chan::LAST_MOTION_DEST);
-        if let Some(limits) = limits(memory, axis, None) {
-            start_move_to(memory, axis, target, &limits, kind);
-        }
+fn resume_axis(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId) {
+    let was_held = std::mem::take(&mut kernel.servo.axes[axis.index()].is_held);
+    let kind = LastMotion::new(memory.axis(axis, Chan::LAST_MOTION_TYPE));
+    let Some(kind) = kind.filter(|&kind| was_held && kind != LastMotion::Jog) else { return };
+    let target = memory.axis(axis, Chan::LAST_MOTION_DEST);
+    if let Some(limits) = limits(memory, axis, None) {
+        start_move_to(memory, axis, target, &limits, kind);
     }
 }
 
@@ -219,7 +295,7 @@ mod tests {
             desk.call("EnableAxisDest", &[0, 0]);
             desk.call(name, &[0, 1000.0_f64.to_bits()]);
             desk.run(1000);
-            desk.call("StopCoordinatedMotion", &[]);
+            desk.call_in_slices("StopCoordinatedMotion", &[]);
             assert_eq!(desk.memory.get(CS0_STOPPING_STATE), State::StoppingAxes.number());
             desk.run(5000);
             desk.call("UpdateStoppingState", &[]);
@@ -233,7 +309,7 @@ mod tests {
     #[test]
     fn without_motion_there_is_no_feedhold() {
         let mut desk = Desk::new();
-        desk.call("StopCoordinatedMotion", &[]);
+        desk.call_in_slices("StopCoordinatedMotion", &[]);
         assert_eq!(desk.memory.get(CS0_STOPPING_STATE), State::Running.number());
         assert_eq!(desk.call_i32("CheckDoneBuf", &[]), -1);
     }

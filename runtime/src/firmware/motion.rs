@@ -274,8 +274,9 @@ pub(crate) fn move_exp(
     }
     let memory = &mut *caller.memory;
     let accel = f64::from(memory.axis(axis, Chan::ACCEL));
-    memory.set_axis(axis, Chan::EXP_MOTION_VC, (accel * tau) as f32);
-    memory.set_axis(axis, Chan::EXP_MOTION_XC, (accel * tau * tau) as f32);
+    let vc = (accel * tau) as f32;
+    memory.set_axis(axis, Chan::EXP_MOTION_VC, vc);
+    memory.set_axis(axis, Chan::EXP_MOTION_XC, (f64::from(vc) * tau) as f32);
     // Only mode, ratio and target of the first state are written; the rest keeps what stood there.
     let first =
         State { mode: Mode::Exponential, a: libm::exp(-TIMEBASE / tau), b: x, ..state(memory, axis, 0) };
@@ -298,8 +299,9 @@ pub(crate) fn move_xyzabc(
 ) -> Outcome<()> {
     let letters = coord::letters(caller.memory).into_iter().zip([x, y, z, a, b, c]);
     let moves: Vec<(AxisId, f64)> = letters.filter_map(|(axis, target)| Some((axis?, target))).collect();
-    if let Some(wake) = moves.iter().find_map(|&(axis, _)| planning_wait(caller, axis)) {
-        return Outcome::Wait(wake);
+    // Unlike the calls for one axis this one waits even if all axes are at rest.
+    if caller.woken.is_none() && caller.thread.is_some() {
+        return Outcome::Wait(Wake::NextSlice);
     }
     for (axis, target) in moves {
         if may_move(kernel, caller, axis, "MoveXYZABC") {

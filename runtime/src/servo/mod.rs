@@ -9,6 +9,7 @@ mod backlash;
 mod closed_form;
 mod compensation;
 pub(crate) mod coordinated;
+mod dsp;
 mod duration;
 #[cfg(test)]
 mod equations;

@@ -1,12 +1,15 @@
 //! Third-order (jerk-limited) profiles: lists of states of constant jerk.
 //!
 //! Source: measurements of the released firmware (`axes-and-motion.md` section 4, `motion.jsonl`). Some of its
-//! intermediate results are singles; they are singles here too, because programs see the states.
+//! intermediate results are singles, and its divisions are those of [`dsp`](super::dsp); they are so here too, because
+//! programs see the states, down to those of a few attoseconds that only rounding leaves.
+
+use super::dsp::{divide, root};
 
 /// Seconds of one tick.
 pub(crate) const TIMEBASE: f64 = 0.000_09;
 /// Ticks at constant velocity in front of a profile planned in motion: the board's planning time.
-const LEAD: f64 = 20.0 * TIMEBASE;
+const LEAD: f64 = 0.0018;
 /// A state without end.
 pub(crate) const FOREVER: f64 = 1e99;
 /// Entries of one axis' state list.
@@ -137,14 +140,25 @@ impl Path {
         Self { states: Vec::new(), end: start }
     }
 
-    /// Appends `duration` seconds of constant `jerk`; nothing for a duration of zero.
+    /// Appends `duration` seconds of constant `jerk`; without a state where there is nothing to do.
     fn push(&mut self, duration: f64, jerk: f64) {
-        if duration > 0.0 {
-            let Point { x, v, a } = self.end;
-            let state = State { mode: Mode::Independent, t: duration, a: jerk / 6.0, b: a / 2.0, c: v, d: x };
-            self.end = state.at(duration);
-            self.states.push(state);
+        if duration.is_nan() {
+            return;
         }
+        self.append(duration, jerk);
+        if duration <= 0.0 {
+            // What lies behind it starts from its end all the same.
+            self.states.pop();
+        }
+    }
+
+    /// Appends `duration` seconds of constant `jerk`, even if they are none or, by rounding, less.
+    fn append(&mut self, duration: f64, jerk: f64) {
+        let Point { x, v, a } = self.end;
+        let state =
+            State { mode: Mode::Independent, t: duration, a: divide(jerk, 6.0), b: a / 2.0, c: v, d: x };
+        self.end = state.at(duration);
+        self.states.push(state);
     }
 
     /// Appends a change of the velocity by `gain`, from and to acceleration 0.
@@ -166,23 +180,25 @@ impl Path {
     fn change(&mut self, target: f64, limits: &Limits) {
         let Point { v, a, .. } = self.end;
         let gain = target - v;
-        let ramp_down = a * a.abs() / (2.0 * limits.j);
+        let ramp_down = divide(a * a.abs(), 2.0 * limits.j);
         let sign = if gain >= ramp_down { 1.0 } else { -1.0 };
         let jerk = sign * limits.j;
-        // The single is the board's.
-        let last = f64::from(libm::sqrt((gain / jerk + a * a / (2.0 * limits.j * limits.j)).max(0.0)) as f32);
+        let last = root((divide(gain, jerk) + divide(a * a, 2.0 * limits.j * limits.j)).max(0.0));
         if last * limits.j <= limits.a {
-            let first = last - a / jerk;
-            self.push(first, jerk);
-            self.push(last, -jerk);
+            self.append(last - divide(a, jerk), jerk);
+            self.append(last, -jerk);
         } else {
             let peak = sign * limits.a;
-            let first = (peak - a) / jerk;
-            self.push(first.abs(), if first < 0.0 { -jerk } else { jerk });
-            let last = limits.a / limits.j;
-            let between = (target - self.end.v - peak * last / 2.0) / peak;
-            self.push_at(between, 0.0, peak);
-            self.push_at(last, -jerk, peak);
+            let first = divide(peak - a, jerk);
+            // Beyond the limit already: the acceleration comes down to it. Less than a nanosecond is rounding.
+            let beyond = first < -1e-9;
+            self.append(if beyond { -first } else { first }, if beyond { -jerk } else { jerk });
+            let last = divide(limits.a, limits.j);
+            let between = divide(target - self.end.v - peak * last / 2.0, peak);
+            self.end.a = peak;
+            self.append(between, 0.0);
+            self.end.a = peak;
+            self.append(last, -jerk);
         }
         self.end.v = target;
         self.end.a = 0.0;
@@ -192,9 +208,9 @@ impl Path {
     fn move_from_rest(&mut self, target: f64, limits: &Limits) {
         let distance = target - self.end.x;
         let sign = if distance < 0.0 { -1.0 } else { 1.0 };
-        let Phases { ramp, constant, cruise } = Phases::of(distance.abs(), limits);
+        let Phases { ramp, constant, cruise, peak } = Phases::of(distance.abs(), limits);
         let jerk = sign * limits.j;
-        let turn = jerk * ramp;
+        let turn = sign * peak;
         self.push(ramp, jerk);
         self.push_at(constant, 0.0, turn);
         self.push_at(ramp, -jerk, turn);
@@ -207,33 +223,43 @@ impl Path {
     }
 }
 
-/// Durations of a symmetric move from rest to rest: ramp, constant, ramp, cruise, ramp, constant, ramp.
+/// A symmetric move from rest to rest: ramp, constant, ramp, cruise, ramp, constant, ramp.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Phases {
+    /// Seconds of each change of the acceleration.
     ramp: f64,
+    /// Seconds of constant acceleration.
     constant: f64,
+    /// Seconds of constant velocity.
     cruise: f64,
+    /// The acceleration that is reached.
+    peak: f64,
 }
 
 impl Phases {
     /// The fastest move over `length` within the limits.
     fn of(length: f64, limits: &Limits) -> Self {
         let Limits { v, a, j } = *limits;
-        let peak = a.min(libm::sqrt(v * j));
-        let ramp = peak / j;
-        let reached = v * (v / peak + ramp) / 2.0;
+        // The product is a single on the board.
+        let peak = a.min(libm::sqrt(f64::from(((v * j) as f32).max(f32::MIN_POSITIVE))));
+        let ramp = divide(peak, j);
         if length < 2.0 * peak * ramp * ramp {
-            return Self { ramp: libm::cbrt(length / (2.0 * j)), constant: 0.0, cruise: 0.0 };
+            let ramp = libm::cbrt(divide(length, 2.0 * j));
+            return Self { ramp, constant: 0.0, cruise: 0.0, peak: j * ramp };
         }
-        if length >= 2.0 * reached {
-            return Self { ramp, constant: v / peak - ramp, cruise: (length - 2.0 * reached) / v };
+        let way = |v: f64| v * (divide(v, peak) + ramp);
+        if length > way(v) {
+            return Self { ramp, constant: divide(v, peak) - ramp, cruise: divide(length - way(v), v), peak };
         }
-        // (J·r/2)·c² + (3·J·r²/2)·c + (J·r³ − L/2) = 0 for the constant phase c; its velocity is a single.
-        let (p, q, r) = (peak / 2.0, 1.5 * peak * ramp, peak * ramp * ramp - length / 2.0);
-        let constant = (libm::sqrt((q * q - 4.0 * p * r).max(0.0)) - q) / (2.0 * p);
-        let velocity = f64::from((peak * (constant + ramp)) as f32);
-        let reached = velocity * (velocity / peak + ramp) / 2.0;
-        Self { ramp, constant: velocity / peak - ramp, cruise: (length - 2.0 * reached) / velocity }
+        // (J·r/2)·c² + (3·J·r²/2)·c + (J·r³ − L/2) = 0 for the constant phase c. The board's root is a single. Where
+        // it leaves no constant phase, at a length just between two cases, the board takes the other solution, a time
+        // before the start, and its list jumps: so it was recorded.
+        let half = peak * ramp / 2.0;
+        let sum = root(half * half + peak * length);
+        let constant = divide(sum - 3.0 * half, peak);
+        let constant = if constant <= 0.0 { -divide(sum + 3.0 * half, peak) } else { constant };
+        // What the single leaves over is covered at the limit of the velocity, even if that is not reached.
+        Self { ramp, constant, cruise: divide(length - way(sum - half), v), peak: j * ramp }
     }
 }
 
@@ -326,7 +352,7 @@ pub(crate) fn move_in_motion(start: Point, to: f64, limits: &Limits) -> Vec<Stat
         path.states.push(State::END);
         return path.states;
     }
-    direct.push(remaining / (sign * limits.v), 0.0);
+    direct.append(divide(remaining, sign * limits.v), 0.0);
     direct.change(0.0, limits);
     direct.states.push(State::off(FOREVER, to));
     direct.states

@@ -3,6 +3,7 @@
 //! `t` counts the seconds inside the current state. A tick first enters the states that `t` has passed, then takes
 //! the position at `t`, and advances `t` last; so a motion planned in tick k leaves its start in tick k + 2.
 
+use super::dsp::{divide, root};
 use super::profile::{Mode, Point, State, TIMEBASE};
 
 /// Where a motion stands in its list.
@@ -73,16 +74,25 @@ pub(crate) fn point(cursor: Cursor, dest: f64, velocity: f64, state: impl Fn(usi
     }
 }
 
-/// The destination after one tick of an exponential approach. Acceleration limits speeding up only.
+/// The destination after one tick of an exponential approach.
+///
+/// Far away the acceleration limits speeding up only, since the velocity follows a root that brakes by itself. The
+/// board takes that root in singles.
 fn exponential(state: &State, approach: &Approach) -> f64 {
     let Approach { dest, velocity, vc, xc, v, a } = *approach;
-    let rest = state.b - dest;
-    let wanted = if rest.abs() <= xc {
-        (1.0 - state.a) * rest / TIMEBASE
+    let sign = if state.b >= dest { 1.0 } else { -1.0 };
+    let (present, step) = (sign * velocity, a * TIMEBASE);
+    let rest = (state.b as f32 - dest as f32).abs();
+    let wanted = if f64::from(rest) <= xc {
+        let next = state.a * dest + (1.0 - state.a) * state.b;
+        let wanted = sign * divide(next - dest, TIMEBASE);
+        if (present - step..=present + step).contains(&wanted) && wanted <= v {
+            return next;
+        }
+        wanted.max(present - step)
     } else {
-        libm::copysign(libm::sqrt(vc * vc + 2.0 * a * (rest.abs() - xc)), rest)
+        let (vc, xc, a) = (vc as f32, xc as f32, a as f32);
+        root(f64::from(vc * vc + 2.0 * a * (rest - xc)))
     };
-    let limited =
-        if rest >= 0.0 { wanted.min(velocity + a * TIMEBASE) } else { wanted.max(velocity - a * TIMEBASE) };
-    dest + limited.clamp(-v, v) * TIMEBASE
+    dest + sign * wanted.min(present + step).clamp(-v, v) * TIMEBASE
 }

@@ -104,7 +104,7 @@ mod tests {
     fn a_feedhold_stops_on_the_path_and_resumes() {
         let mut desk = desk();
         desk.run(100);
-        desk.call("StopCoordinatedMotion", &[]);
+        desk.call_in_slices("StopCoordinatedMotion", &[]);
         assert_eq!(desk.memory.get(CS0_STOPPING_STATE), 1);
         desk.run(5000);
         assert_eq!(desk.memory.get(CS0_STOPPING_STATE), 3);
@@ -112,7 +112,7 @@ mod tests {
         desk.run(100);
         assert_eq!(dest(&desk), held);
         assert_eq!(desk.call_i32("CheckDoneBuf", &[]), 0);
-        desk.call("ResumeCoordinatedMotion", &[]);
+        desk.call_in_slices("ResumeCoordinatedMotion", &[]);
         desk.run(20_000);
         assert_eq!(desk.call_i32("CheckDoneBuf", &[]), 1);
         assert!((dest(&desk) - 200.0).abs() < 0.1);

@@ -53,15 +53,19 @@ impl State {
     }
 }
 
-/// Notes how long a stop takes and, if a path is executing, begins to stop it. Says whether there was one.
+/// Notes how long a stop from the present speeds takes.
 ///
 /// The caller has seen that no feedhold is on.
+pub(crate) fn note_time(memory: &mut GuestMemory) {
+    memory.set(CS0_DECEL_TIME, system::stopping_time(memory));
+}
+
+/// Begins to stop a path that is executing, in the time noted. Says whether there was one.
 pub(crate) fn stop(memory: &mut GuestMemory) -> bool {
-    let time = system::stopping_time(memory);
     let executing = !memory.get(COORD_SYSTEM0).is_null();
-    let time = if executing { time.max(LEAST_STOPPING_TIME) } else { time };
-    memory.set(CS0_DECEL_TIME, time);
     if executing {
+        let time = memory.get(CS0_DECEL_TIME).max(LEAST_STOPPING_TIME);
+        memory.set(CS0_DECEL_TIME, time);
         rate::aim(memory, 0.0, time);
         memory.set(CS0_STOPPING_STATE, State::StoppingPath.number());
     }

@@ -21,29 +21,15 @@ use vm::memory::GuestMemory;
 use super::download::{self, Circle, Plane, Point, Timing};
 use super::segment::Command;
 use super::{buffer, system};
-use crate::servo::independent;
 use crate::testing::Desk;
 use crate::text::vectors::rows;
 use crate::views::Typed;
 
-const ONE_BY_ONE: &str =
-    "the board stops and restarts one axis after another, a slice each; here all at once";
 const IN_SLICE: &str = "the row shows the middle of the slice in which the primary thread stops the path";
-const A_SLICE_LATER: &str = "the board plans the motion of an axis that still moves a slice after the resume";
-const EARLIER: &str = "CS0_DecelTime is that of a slice before, when the stop was begun";
-const ROOT: &str = "the DSP's square root is one bit of a single off, so the stop takes 1e-7 longer";
 
 /// Recordings that are not reproduced here, and why.
-const NOT_REPRODUCED: &[(&str, &str)] = &[
-    ("feedhold at FRO 0.5", ROOT),
-    ("independent MoveXYZABC: feedhold, resume", ONE_BY_ONE),
-    ("independent MoveXYZABC: feedhold, clear", ONE_BY_ONE),
-    ("independent MoveXYZABC: resume while decelerating", ONE_BY_ONE),
-    ("independent Move: resume while decelerating", A_SLICE_LATER),
-    ("independent MoveExp: resume while decelerating", A_SLICE_LATER),
-    ("independent feedhold polled with GetStopState", EARLIER),
-    ("limit switch action stop during buffer execution, resume into the limit", IN_SLICE),
-];
+const NOT_REPRODUCED: &[(&str, &str)] =
+    &[("limit switch action stop during buffer execution, resume into the limit", IN_SLICE)];
 
 /// A spindle that a recording turned: the axis whose position was written, its position at first and its counts a tick.
 struct Turning {
@@ -80,8 +66,6 @@ const SPINDLES: [Turning; 4] = [
     },
 ];
 
-/// Precision of independent motion: times come from square roots of singles.
-const INDEPENDENT: f64 = 2e-7;
 /// Precision of threading: speed and filter are singles.
 const SPINDLE_FILTER: f64 = 1e-8;
 
@@ -174,7 +158,7 @@ impl Rig {
         Some(Ok(String::new()))
     }
 
-    /// The commands that move an axis by itself.
+    /// The commands that may wait for slices of their caller, which has every other tick.
     fn motion_command(&mut self, word: &str, numbers: &[f32]) -> Option<Result<String, String>> {
         let number = |index: usize| numbers.get(index).copied().unwrap_or_default();
         let double = |index| f64::from(number(index)).to_bits();
@@ -183,9 +167,14 @@ impl Rig {
             "Jog" | "Move" | "MoveRel" => vec![axis, double(1)],
             "MoveExp" => vec![axis, double(1), double(2)],
             "MoveXYZABC" => (0..6).map(double).collect(),
+            "StopImmediate" if number(0) < 2.0 => Vec::new(),
             _ => return None,
         };
-        self.precision = INDEPENDENT;
+        let word = match (word, number(0) == 0.0) {
+            ("StopImmediate", true) => "StopCoordinatedMotion",
+            ("StopImmediate", false) => "ResumeCoordinatedMotion",
+            _ => word,
+        };
         if !self.desk.is_done(word, &arguments) {
             self.waiting = Some((2, word.to_owned(), arguments));
         }
@@ -209,16 +198,16 @@ impl Rig {
         Ok(())
     }
 
-    /// One tick, and what waits for a slice.
+    /// What waits for the slice in front of a tick, and the tick.
     fn tick(&mut self) {
-        self.desk.run(1);
         if let Some((ticks, name, arguments)) = self.waiting.take() {
-            if ticks > 1 {
+            if ticks > 0 {
                 self.waiting = Some((ticks - 1, name, arguments));
-            } else {
-                self.desk.wake(&name, &arguments);
+            } else if !self.desk.wake(&name, &arguments) {
+                self.waiting = Some((1, name, arguments));
             }
         }
+        self.desk.run(1);
     }
 
     /// The commands that are calls of firmware functions.
@@ -240,8 +229,6 @@ impl Rig {
                 return Some(Ok(format!("{speed:.6}\r\n")));
             }
             ("SetFRO" | "SetRapidFRO" | "SetFROTemp", _) => desk.call(word, &[single]),
-            ("StopImmediate", 0) => desk.call("StopCoordinatedMotion", &[]),
-            ("StopImmediate", 1) => desk.call("ResumeCoordinatedMotion", &[]),
             ("StopImmediate", 2) => desk.call("ClearStopImmediately", &[]),
             ("SetBit" | "ClearBit" | "DisableAxis", _) => desk.call(word, &[number]),
             ("EnableAxisDest", _) => desk.call(word, &[number, second]),
@@ -409,23 +396,6 @@ fn number(value: &Json) -> f64 {
     value.as_f64().expect("a number")
 }
 
-/// How many slices of the primary thread a command takes after the one in which it comes; it has every other tick.
-fn slices(rig: &Rig, line: &str) -> u64 {
-    match line {
-        "StopImmediate0" if !rig.desk.memory.get(COORD_SYSTEM0).is_null() => 1,
-        // One to begin, and one for each axis that is to be stopped.
-        "StopImmediate0" => {
-            let moving = |axis: &AxisId| independent::is_moving(&rig.desk.memory, *axis);
-            match system::members(&rig.desk.memory).filter(moving).count() {
-                0 => 0,
-                count => 1 + count as u64,
-            }
-        }
-        _ if line.starts_with("MoveXYZABC") => 1,
-        _ => 0,
-    }
-}
-
 /// Replays a recording; the result is the first difference.
 fn replay(recording: &Json) -> Result<(), String> {
     let mut rig = Rig::new();
@@ -443,17 +413,17 @@ fn replay(recording: &Json) -> Result<(), String> {
         recording["rows"].as_array().and_then(|rows| rows.last()).map_or(0, |row| number(&row[0]) as u64);
     let mut replies = recording["replies"].as_array().expect("a list").iter();
     let mut rows = recording["rows"].as_array().expect("a list").iter().peekable();
-    let (mut tick, mut due) = (0, VecDeque::new());
+    let (mut tick, mut due) = (0, Vec::new());
     while let Some(row) = rows.peek() {
         for event in timeline {
             let line = event[1].as_str().expect("a line");
             let sent = number(&event[0]) as u64;
             let comes = if line.starts_with("!poke") { sent } else { sent | 1 };
             if comes == tick {
-                due.push_back((tick + 2 * slices(&rig, line), line));
+                due.push(line);
             }
         }
-        while let Some((_, line)) = due.pop_front_if(|(at, _)| *at <= tick) {
+        for line in std::mem::take(&mut due) {
             let reply = rig.line(line)?;
             if line.starts_with('?') {
                 let expect = &replies.next().expect("a reply")[2];
@@ -481,11 +451,9 @@ fn replay(recording: &Json) -> Result<(), String> {
     Ok(())
 }
 
-/// Compares a final value; a time that comes from a square root has the last bit of a single to spare.
+/// Compares a final value.
 fn close_enough(name: &str, found: f64, expect: f64) -> Result<(), String> {
-    let is_root = matches!(name, "CS0_DecelTime" | "GetNominalFROChangeTime");
-    let tolerance = if is_root { 1.2e-7 } else { 1e-12 };
-    let differs = (found - expect).abs() > tolerance * expect.abs();
+    let differs = (found - expect).abs() > 1e-12 * expect.abs();
     if differs { Err(format!("{name}: {found:?} instead of {expect:?}")) } else { Ok(()) }
 }
 

@@ -1,5 +1,6 @@
 //! The coordinate system: which axes its eight letters drive, and how fast those can change speed.
 
+use kmotiondef::limits::TIMEBASE;
 use kmotiondef::structs::Chan;
 use kmotiondef::variables::{
     CS0_AXIS_A, CS0_AXIS_B, CS0_AXIS_C, CS0_AXIS_U, CS0_AXIS_V, CS0_AXIS_X, CS0_AXIS_Y, CS0_AXIS_Z,
@@ -7,6 +8,7 @@ use kmotiondef::variables::{
 use kmotiondef::{AxisId, Place};
 use vm::memory::GuestMemory;
 
+use crate::servo::dsp::{divide_singles, root};
 use crate::views::Typed;
 
 /// Letters of the coordinate system: x y z a b c u v.
@@ -48,25 +50,29 @@ pub(crate) fn is_disabled(memory: &GuestMemory) -> bool {
 /// Seconds in which every axis of the system can change the override by 1.0 at its full speed.
 pub(crate) fn nominal_change_time(memory: &GuestMemory) -> f32 {
     let times = members(memory).map(|axis| change_time(memory, axis, memory.axis(axis, Chan::VEL)));
-    longest(times).map_or(DEFAULT_CHANGE_TIME, |time| time as f32)
+    longest(times).unwrap_or(DEFAULT_CHANGE_TIME)
 }
 
 /// Seconds in which every axis of the system can stop from its present speed; 0 at rest.
 pub(crate) fn stopping_time(memory: &GuestMemory) -> f32 {
-    let times = members(memory).map(|axis| change_time(memory, axis, memory.axis(axis, Chan::LAST_VEL)));
-    longest(times).map_or(0.0, |time| time as f32)
+    let velocity = |axis| {
+        // The board does not use `last_vel` here: it makes a single of the way before it divides.
+        let way = (memory.axis(axis, Chan::DEST) - memory.axis(axis, Chan::LAST_DEST)) as f32;
+        (f64::from(way) / TIMEBASE) as f32
+    };
+    longest(members(memory).map(|axis| change_time(memory, axis, velocity(axis)))).unwrap_or(0.0)
 }
 
 /// Seconds an axis needs between rest and a velocity; the board's formula counts the jerk phases twice.
-fn change_time(memory: &GuestMemory, axis: AxisId, velocity: f32) -> f64 {
-    let limit = |field| f64::from(memory.axis(axis, field));
-    let velocity = f64::from(velocity.abs());
-    velocity / limit(Chan::ACCEL) + 2.0 * libm::sqrt(2.0 * velocity / limit(Chan::JERK))
+fn change_time(memory: &GuestMemory, axis: AxisId, velocity: f32) -> f32 {
+    let velocity = velocity.abs();
+    let ramps = root(f64::from(divide_singles(2.0 * velocity, memory.axis(axis, Chan::JERK)))) as f32;
+    divide_singles(velocity, memory.axis(axis, Chan::ACCEL)) + 2.0 * ramps
 }
 
 /// The longest of some times; limits of 0 give none.
-fn longest(times: impl Iterator<Item = f64>) -> Option<f64> {
-    times.filter(|time| time.is_finite()).reduce(f64::max)
+fn longest(times: impl Iterator<Item = f32>) -> Option<f32> {
+    times.filter(|time| time.is_finite()).reduce(f32::max)
 }
 
 #[cfg(test)]
