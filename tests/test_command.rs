@@ -40,7 +40,7 @@ fn a_failure_shows_the_lines_that_differ() {
     let files =
         [("sub/a.c", COUNT), ("sub/a.expected", "1\n2\n4\n"), ("b.c", COUNT), ("b.expected", "1\n2\n3\n")];
     let expect = "\
-FAILED   sub/a (bytecode), - expected, + shown now
+FAILED   sub/a: - expected, + shown now
   line 1
     1
     2

@@ -24,9 +24,9 @@ pub(super) enum Verdict {
     Blessed,
     /// There is no expected text.
     Unknown,
-    /// An engine showed something else.
-    Differs(EngineName, Shown),
-    /// The second engine did not show what the first did.
+    /// The engines agree on something else.
+    Differs(Shown),
+    /// An engine did not show what the first one did.
     Disagrees(Shown, EngineName, Shown),
 }
 
@@ -37,7 +37,7 @@ impl Verdict {
     }
 }
 
-/// Runs all cases on all engines, `jobs` at a time; the verdicts have the order of the cases.
+/// Runs all cases on all engines, `jobs` runs at a time; the verdicts have the order of the cases.
 pub(super) fn all(
     cases: &[Case],
     engines: &[EngineName],
@@ -46,22 +46,34 @@ pub(super) fn all(
     jobs: usize,
 ) -> Result<Vec<Verdict>> {
     let command = this_command()?;
-    let bar = ProgressBar::new(cases.len() as u64);
+    let runs: Vec<_> = cases
+        .iter()
+        .flat_map(|case| engines.iter().map(move |engine| (case, *engine)))
+        .zip(0..)
+        .map(|((case, engine), scratch)| Run { command: &command, case, engine, options, scratch })
+        .collect();
+    let mut shown = execute(&runs, jobs)?.into_iter();
+    let of_case = |case: &Case| verdict(case, engines.iter().copied().zip(shown.by_ref()), bless);
+    cases.iter().map(of_case).collect()
+}
+
+/// What every run shows, in their order.
+fn execute(runs: &[Run<'_>], jobs: usize) -> Result<Vec<Shown>> {
+    let bar = ProgressBar::new(runs.len() as u64);
     if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}") {
         bar.set_style(style);
     }
     let next = AtomicUsize::new(0);
-    let verdicts: Vec<_> = cases.iter().map(|_| Mutex::new(None)).collect();
+    let slots: Vec<_> = runs.iter().map(|_| Mutex::new(None)).collect();
     thread::scope(|scope| {
-        for _ in 0..jobs.min(cases.len()) {
+        for _ in 0..jobs.min(runs.len()) {
             scope.spawn(|| {
-                while let Some(index) = claim(&next, cases.len()) {
-                    let (Some(case), Some(slot)) = (cases.get(index), verdicts.get(index)) else { return };
-                    bar.set_message(case.name());
-                    let test = Test { command: &command, case, options, scratch: index };
-                    let verdict = test.run(engines, bless);
+                while let Some(index) = claim(&next, runs.len()) {
+                    let (Some(run), Some(slot)) = (runs.get(index), slots.get(index)) else { return };
+                    bar.set_message(run.case.name());
+                    let shown = run.execute();
                     if let Ok(mut slot) = slot.lock() {
-                        *slot = Some(verdict);
+                        *slot = Some(shown);
                     }
                     bar.inc(1);
                 }
@@ -69,55 +81,60 @@ pub(super) fn all(
         }
     });
     bar.finish_and_clear();
-    verdicts.into_iter().map(|slot| slot.into_inner().ok().flatten().context("a test was not run")?).collect()
+    slots.into_iter().map(|slot| slot.into_inner().ok().flatten().context("a test was not run")?).collect()
 }
 
-/// The index of a case that nobody has taken.
+/// What the runs of a case say, the first engine first.
+fn verdict(case: &Case, runs: impl Iterator<Item = (EngineName, Shown)>, bless: bool) -> Result<Verdict> {
+    let mut first: Option<Shown> = None;
+    let mut verdict = None;
+    for (engine, shown) in runs {
+        match &first {
+            None => first = Some(shown),
+            Some(first) if first.golden != shown.golden => {
+                verdict.get_or_insert(Verdict::Disagrees(first.clone(), engine, shown));
+            }
+            Some(_) => {}
+        }
+    }
+    let first = first.context("a test was not run")?;
+    if let Some(verdict) = verdict {
+        return Ok(verdict);
+    }
+    Ok(match &case.expected {
+        Some(expected) if *expected == first.golden => Verdict::Passed,
+        _ if bless => {
+            output::write(&case.golden(), first.golden.as_bytes())?;
+            Verdict::Blessed
+        }
+        None => Verdict::Unknown,
+        Some(_) => Verdict::Differs(first),
+    })
+}
+
+/// The index of a run that nobody has taken.
 fn claim(next: &AtomicUsize, count: usize) -> Option<usize> {
     let index = next.fetch_add(1, Ordering::Relaxed);
     (index < count).then_some(index)
 }
 
-/// One test about to be run.
-struct Test<'a> {
+/// One test about to be run on one engine.
+struct Run<'a> {
     command: &'a Path,
     case: &'a Case,
+    engine: EngineName,
     options: &'a [String],
     /// A number of its own, for the name of its temporary folder.
     scratch: usize,
 }
 
-impl Test<'_> {
-    fn run(&self, engines: &[EngineName], bless: bool) -> Result<Verdict> {
-        let mut first: Option<Shown> = None;
-        for engine in engines {
-            let shown = self.run_on(*engine)?;
-            match (&first, &self.case.expected) {
-                (Some(first), _) if first.golden != shown.golden => {
-                    return Ok(Verdict::Disagrees(first.clone(), *engine, shown));
-                }
-                (_, Some(expected)) if !bless && *expected != shown.golden => {
-                    return Ok(Verdict::Differs(*engine, shown));
-                }
-                _ => first = Some(shown),
-            }
-        }
-        match (first, &self.case.expected) {
-            (Some(shown), expected) if bless && expected.as_ref() != Some(&shown.golden) => {
-                output::write(&self.case.golden(), shown.golden.as_bytes())?;
-                Ok(Verdict::Blessed)
-            }
-            (_, None) => Ok(Verdict::Unknown),
-            _ => Ok(Verdict::Passed),
-        }
-    }
-
+impl Run<'_> {
     /// Runs the program in its folder; files that it writes go to a temporary one.
-    fn run_on(&self, engine: EngineName) -> Result<Shown> {
+    fn execute(&self) -> Result<Shown> {
         let files = env::temp_dir().join(format!("cc67-test-{}-{}", process::id(), self.scratch));
         let name = self.case.source.file_name().unwrap_or_default();
         let mut command = Command::new(self.command);
-        command.arg("run").arg("--engine").arg(engine.name());
+        command.arg("run").arg("--engine").arg(self.engine.name());
         if !self.case.options.iter().any(|option| option.starts_with("--files")) {
             command.arg("--files").arg(&files);
         }
@@ -127,5 +144,33 @@ impl Test<'_> {
         // It exists only if the program wrote a file.
         let _ = fs::remove_dir_all(&files);
         Ok(golden::shown(&output.stdout, &output.stderr, output.status.code()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check(expected: Option<&str>, shown: [&str; 2], expect: &str) {
+        let case = Case {
+            source: "a.c".into(),
+            expected: expected.map(str::to_owned),
+            options: Vec::new(),
+            also: Vec::new(),
+        };
+        let shown = shown.map(|text| Shown { golden: text.to_owned(), messages: String::new() });
+        let runs = [EngineName::Bytecode, EngineName::Native].into_iter().zip(shown);
+        let verdict = verdict(&case, runs, false).map(|verdict| format!("{verdict:?}"));
+        let verdict = verdict.expect("nothing is written");
+        assert!(verdict.starts_with(expect), "{verdict}");
+    }
+
+    #[test]
+    fn engines_must_agree_with_each_other_and_with_what_is_expected() {
+        check(Some("a"), ["a", "a"], "Passed");
+        check(Some("a"), ["b", "b"], "Differs");
+        check(Some("a"), ["a", "b"], "Disagrees");
+        check(Some("a"), ["b", "a"], "Disagrees");
+        check(None, ["a", "a"], "Unknown");
     }
 }

@@ -46,10 +46,9 @@ fn failure(case: &Case, verdict: &Verdict, paint: &Paint) -> String {
             case.golden().display(),
             case.source.display(),
         ),
-        Verdict::Differs(engine, shown) => {
+        Verdict::Differs(shown) => {
             let expected = case.expected.as_deref().unwrap_or_default();
-            let head =
-                format!("{failed}   {name} ({engine}), - expected, + shown now\n", engine = engine.name());
+            let head = format!("{failed}   {name}: - expected, + shown now\n");
             head + &messages(shown) + &diff(expected, &shown.golden, paint)
         }
         Verdict::Disagrees(first, engine, second) => {
@@ -106,5 +105,16 @@ impl Paint {
             Color::Always => format!("\x1b[{code}m{text}\x1b[0m"),
             Color::Never => text.to_owned(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn on_a_terminal_a_difference_is_red_and_green() {
+        let text = diff("a\nb\n", "a\nc\n", &Paint { color: Color::Always });
+        assert_eq!(text, "  line 1\n    a\n\x1b[31m  - b\x1b[0m\n\x1b[32m  + c\x1b[0m\n");
     }
 }

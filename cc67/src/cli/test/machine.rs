@@ -36,8 +36,7 @@ fn test<'a>(case: &'a Case, verdict: &'a Verdict) -> Test<'a> {
         Verdict::Passed => plain("passed"),
         Verdict::Blessed => plain("written"),
         Verdict::Unknown => plain("nothing expected"),
-        Verdict::Differs(engine, shown) => Test {
-            engine: Some(engine.name()),
+        Verdict::Differs(shown) => Test {
             expected: case.expected.as_deref(),
             shown: Some(&shown.golden),
             messages: &shown.messages,

@@ -33,7 +33,7 @@ pub(super) struct Arguments {
     /// Run on this engine alone; else on all, which must agree
     #[arg(long, value_enum)]
     engine: Option<EngineName>,
-    /// Programs that run at a time; else as many as there are processors
+    /// Runs at a time, a program on two engines being two; else as many as there are processors
     #[arg(long, short, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     jobs: Option<u16>,
     /// Print the results as JSON
