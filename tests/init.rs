@@ -41,6 +41,21 @@ fn the_tasks_for_the_editor_find_what_is_reported() {
     fs::write(scratch.path().join("wrong.c"), "main() { x = 1; }\n").expect("files can be written");
     let output = cc67(&scratch, &["check", "--message-format", "short", "wrong.c"]);
     assert_eq!(output.stderr, "wrong.c:1:10: error: `x` is not declared\n");
+    // Of several files each message has its own, and no line is anything else.
+    let program = "#include \"KMotionDef.h\"\n#include \"sub/part.c\"\nmain()\n{\n    int x = 5\n    if (x = 3) Delaysec(1);\n}\n";
+    fs::create_dir(scratch.path().join("sub")).expect("folders can be made");
+    fs::write(scratch.path().join("sub/part.c"), "int f(void) { return y; }\n")
+        .expect("files can be written");
+    fs::write(scratch.path().join("more.c"), program).expect("files can be written");
+    let output = cc67(&scratch, &["check", "--message-format", "short", "more.c"]);
+    let places: Vec<_> = output.stderr.lines().map(|line| line.splitn(5, ':').collect::<Vec<_>>()).collect();
+    assert!(places.len() >= 4, "{}", output.stderr);
+    for place in places {
+        let [file, line, column, severity, message] = place[..] else { panic!("{place:?}") };
+        assert!(["more.c", "sub/part.c"].contains(&file), "{place:?}");
+        assert!(line.parse::<u32>().is_ok() && column.parse::<u32>().is_ok(), "{place:?}");
+        assert!([" error", " warning", " note"].contains(&severity) && !message.is_empty(), "{place:?}");
+    }
     assert_eq!(
         check["problemMatcher"]["pattern"]["regexp"],
         r"^(.+?):(\d+):(\d+): (error|warning|note): (.*)$"
