@@ -1,6 +1,8 @@
 //! The board as a program that embeds it sees it.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
+use std::sync::Arc;
 
 use kmotiondef::map::{FLASH, PROGRAM_SIZE, program_base};
 use kmotiondef::structs::Persist;
@@ -36,8 +38,8 @@ pub struct Config {
     pub machine: MachineConfig,
     /// Whether the built-in PC polls and answers.
     pub host: bool,
-    /// What it answers to programs.
-    pub answers: Answers,
+    /// What it answers to programs; `None` for what the machine file says.
+    pub answers: Option<Answers>,
     /// Where the PC keeps its files.
     pub files: Box<dyn HostFiles>,
     /// Byte put into uninitialised data at a load.
@@ -53,7 +55,7 @@ impl Default for Config {
         Self {
             machine: MachineConfig::default(),
             host: true,
-            answers: Answers::default(),
+            answers: None,
             files: Box::new(NoFiles),
             bss_fill: 0,
             machine_file: MachineFile::default(),
@@ -89,6 +91,8 @@ pub struct Board<E = BytecodeEngine> {
     loaded: [Option<Loaded>; ThreadId::MAX as usize],
     /// What is known of the programs in flash.
     flashed: [Option<DebugInfo>; ThreadId::MAX as usize],
+    /// Images that a stimulus may load, by the thread they are linked for and what it calls them.
+    offered: BTreeMap<(ThreadId, Arc<str>), Vec<u8>>,
     bss_fill: u8,
 }
 
@@ -99,7 +103,7 @@ impl<E: Engine> Board<E> {
         let connected = &config.machine_file;
         let mut kernel = Kernel::new(config.files);
         kernel.host.connect(config.host && connected.host);
-        kernel.host.answer_with(config.answers);
+        kernel.host.answer_with(config.answers.unwrap_or_else(|| connected.answers.clone()));
         plant::install(&mut kernel, connected);
         let servo = connected.servo_us.map(|time| Cycles::new((time * CYCLES_PER_US) as i64));
         let settings = MachineConfig {
@@ -109,8 +113,8 @@ impl<E: Engine> Board<E> {
         };
         let machine = Machine::new(kernel, settings);
         let bss_fill = if config.bss_fill == 0 { connected.bss_fill } else { config.bss_fill };
-        let (loaded, flashed) = Default::default();
-        let mut board = Self { machine, loaded, flashed, bss_fill };
+        let (loaded, flashed, offered) = Default::default();
+        let mut board = Self { machine, loaded, flashed, offered, bss_fill };
         if let Some(flash) = config.flash {
             let stored = board.machine.memory_mut().poke_bytes(FLASH.base, &flash);
             debug_assert!(stored.is_ok() && flash.len() == FLASH_SIZE, "flash has its size");
@@ -323,7 +327,27 @@ impl<E: Engine> Board<E> {
                 Request::Load(thread) => self.adopt(thread),
                 Request::Flash => self.save(),
                 Request::Reboot => self.reboot(),
+                Request::Run(thread, name) => self.run_offered(thread, &name),
             }
+        }
+    }
+
+    /// Keeps an image that a stimulus loads into `thread` under this name.
+    pub fn offer(&mut self, thread: ThreadId, name: &str, image: Vec<u8>) {
+        self.offered.insert((thread, name.into()), image);
+    }
+
+    /// Loads an image that was offered and starts it.
+    fn run_offered(&mut self, thread: ThreadId, name: &Arc<str>) {
+        let result = match self.offered.get(&(thread, name.clone())).cloned() {
+            Some(image) => self.load(thread, &image).map_err(|error| error.to_string()),
+            None => Err("nobody has compiled it".to_owned()),
+        };
+        let started = result.and_then(|()| self.start(thread).map_err(|error| error.to_string()));
+        if let Err(error) = started {
+            let (kernel, context) = self.machine.firmware_mut();
+            let text = format!("{name} is not run in thread {thread}: {error}");
+            kernel.tell(context.now, EventKind::Diagnostic(text));
         }
     }
 

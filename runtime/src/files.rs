@@ -37,18 +37,27 @@ impl HostFiles for NoFiles {
 #[derive(Clone, Debug)]
 pub struct Directory {
     root: PathBuf,
+    /// Names that programs use, and the files meant instead.
+    names: Vec<(String, String)>,
 }
 
 impl Directory {
     /// Files below `root`, which is made at the first write.
     pub fn new(root: impl Into<PathBuf>) -> Self {
-        Self { root: root.into() }
+        Self { root: root.into(), names: Vec::new() }
+    }
+
+    /// The same with other names for some files: what programs say, and what is meant below the root.
+    #[must_use]
+    pub fn with_names(self, names: Vec<(String, String)>) -> Self {
+        Self { names, ..self }
     }
 
     /// The place of a PC path: drive letters go, backslashes become slashes, and a name that exists in
     /// other letter case is that file; `None` outside the root.
     fn place(&self, name: &str) -> Option<PathBuf> {
-        let name = name.replace('\\', "/");
+        let other = self.names.iter().find(|(said, _)| said.eq_ignore_ascii_case(name));
+        let name = other.map_or(name, |(_, meant)| meant).replace('\\', "/");
         let name = match name.split_once(':') {
             Some((drive, rest)) if drive.len() == 1 => rest,
             _ => &name,
@@ -166,6 +175,8 @@ mod tests {
         check("data.txt", Some("root/data.txt"));
         check("..\\data.txt", None);
         check("c:\\", None);
+        let directory = directory.with_names(vec![("C:\\Log.txt".to_owned(), "logs/today.txt".to_owned())]);
+        assert_eq!(directory.place("c:\\log.txt"), Some(PathBuf::from("root/logs/today.txt")));
     }
 
     #[test]

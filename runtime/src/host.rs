@@ -76,6 +76,11 @@ impl Host {
         self.answers = answers;
     }
 
+    /// Gives it its next answer.
+    pub(crate) fn answer_next(&mut self, setting: &str) -> Result<(), AnswerError> {
+        self.answers.set_next(setting)
+    }
+
     /// Whether a job runs on it when the board starts.
     pub(crate) const fn has_job(&self) -> bool {
         self.answers.has_job

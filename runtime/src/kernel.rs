@@ -3,7 +3,10 @@
 //! It keeps what guest memory does not hold: output latches, the console queue, step generators, what waiting calls
 //! have to remember. Everything a program can see in memory is only there.
 
+mod world;
+
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, function_at};
 use kmotiondef::map::{FPGA, TIMER0};
@@ -19,34 +22,37 @@ use vm::trap::{Trap, TrapKind};
 
 use crate::commands::{self, Downloads, Experiment, Link};
 use crate::console::Console;
-use crate::device::attached::{Attached, Outside};
-use crate::device::changes::BitChange;
+use crate::device::attached::Attached;
+use crate::device::encoder::Encoders;
 use crate::device::fpga::{Behind, Fpga};
-use crate::device::kanalog::Kanalog;
+use crate::device::kanalog::{self, Kanalog};
 use crate::device::konnect::Konnects;
 use crate::device::pins::Pins;
 use crate::device::snapamp::SnapAmps;
+use crate::device::stepgen::StepGenerators;
 use crate::device::timer;
 use crate::device::uart::Uart;
 use crate::dispatch::{HANDLERS, signatures};
 use crate::event::{Event, EventKind};
 use crate::files::{HostFiles, OpenFiles};
-use crate::firmware::io::bit_state;
 use crate::firmware::serial::{self, SerialService};
 use crate::heap::Heap;
 use crate::host::Host;
 use crate::plant::Mechanics;
 use crate::servo::Servo;
-use crate::stimulus::{Assist, Player, Step, Stimulus};
-use crate::trace::{self, Record, Recorder};
+use crate::stimulus::{Assist, Player};
+use crate::trace::{Record, Recorder};
 use crate::views::Typed;
 
 /// What a register access costs beyond the instruction: 200 ns, a timer 100 ns.
 const FPGA_CYCLES: Cycles = Cycles::new(40);
 const TIMER_CYCLES: Cycles = Cycles::new(20);
 
-/// Edges that devices may answer at one instant.
-const EDGES_AT_ONCE: usize = 10_000;
+/// A round trip to the PC's files: 20 ms, unless a machine file says otherwise.
+const FILES_LATENCY: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 50);
+
+/// Pins of JP7 that the interface of Kanalog occupies.
+const JP7_PINS: u16 = 16;
 
 /// What a waiting call remembers until it is made again.
 #[derive(Clone, Debug, PartialEq)]
@@ -67,7 +73,7 @@ pub(crate) enum Continuation {
 }
 
 /// What only the board as a whole can do, as it holds the programs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Request {
     /// Make a program of what was downloaded into a thread that was started.
     Load(ThreadId),
@@ -75,6 +81,8 @@ pub(crate) enum Request {
     Flash,
     /// Restart from flash.
     Reboot,
+    /// Load a program that was offered and start it.
+    Run(ThreadId, Arc<str>),
 }
 
 /// The board's firmware.
@@ -90,6 +98,8 @@ pub struct Kernel {
     pub(crate) snapamps: SnapAmps,
     pub(crate) konnects: Konnects,
     pub(crate) kanalog: Kanalog,
+    pub(crate) encoders: Encoders,
+    pub(crate) stepgens: StepGenerators,
     /// Devices on pins.
     attached: Vec<Box<dyn Attached>>,
     /// Whether characters that the UART sends are told.
@@ -103,6 +113,8 @@ pub struct Kernel {
     pub(crate) servo: Servo,
     pub(crate) heap: Heap,
     pub(crate) files: OpenFiles,
+    /// How long a round trip to them takes.
+    pub(crate) files_latency: Cycles,
     pub(crate) host: Host,
     /// The link to the PC over USB, and the one over the UART.
     pub(crate) usb: Link,
@@ -129,6 +141,9 @@ pub struct Kernel {
     /// Whether reading an input that nothing drives is worth a hint.
     pub(crate) hints: bool,
     hinted: BTreeSet<Bit>,
+    /// Whether it was said that Kanalog needs the pins of JP7, and that nothing serves it.
+    told_jp7: bool,
+    told_kanalog: bool,
     events: Vec<Event>,
 }
 
@@ -147,6 +162,8 @@ impl Kernel {
             snapamps: SnapAmps::default(),
             konnects: Konnects::default(),
             kanalog: Kanalog::default(),
+            encoders: Encoders::default(),
+            stepgens: StepGenerators::default(),
             attached: Vec::new(),
             hears_uart: false,
             stimulus: None,
@@ -156,6 +173,7 @@ impl Kernel {
             servo: Servo::default(),
             heap: Heap::default(),
             files: OpenFiles::new(files),
+            files_latency: FILES_LATENCY,
             host: Host::default(),
             usb: Link::default(),
             uart_link: Link::default(),
@@ -172,6 +190,8 @@ impl Kernel {
             mechanics: Mechanics::default(),
             hints: true,
             hinted: BTreeSet::new(),
+            told_jp7: false,
+            told_kanalog: false,
             events: Vec::new(),
         }
     }
@@ -204,154 +224,30 @@ impl Kernel {
         }
     }
 
-    /// Lets the world act as a stimulus says, beside what it does already.
-    pub(crate) fn play(&mut self, stimulus: Stimulus, memory: &mut GuestMemory) {
-        let mut player = self.stimulus.take().unwrap_or_else(|| Box::new(Player::new()));
-        player.extend(stimulus, self, memory);
-        self.stimulus = Some(player);
-        self.pins.changes.switch_on(memory);
-    }
-
-    /// The world's part of a tick; whether it did anything.
-    fn play_tick(&mut self, context: &mut TickContext<'_>) -> bool {
-        if !self.pins.changes.is_on() && !self.hears_uart {
-            return false;
-        }
-        self.pins.changes.sweep(context.memory, context.now);
-        self.settle(context.now);
-        self.run_devices(context.now);
-        let changes = self.pins.changes.take();
-        if self.recorder.as_ref().is_some_and(|recorder| recorder.records_changes()) {
-            for change in &changes {
-                let thread = match self.turn {
-                    Turn::User(thread) if (self.slice_start..context.now).contains(&change.at) => {
-                        Some(thread)
-                    }
-                    _ => None,
-                };
-                let record = Record::Bit { bit: change.bit, level: change.level, thread };
-                self.tell(change.at, EventKind::Trace(record));
-            }
-        }
-        let Some(mut player) = self.stimulus.take() else { return false };
-        let acted = player.tick(self, context, &changes);
-        self.stimulus = Some(player);
-        acted
-    }
-
-    /// Plays an operator from now on.
-    pub(crate) fn assist(&mut self, now: Cycles) {
-        self.assist = Some(Assist::new(now));
-    }
-
-    /// What the operator does in a tick; whether that is anything.
-    fn assist_tick(&mut self, now: Cycles) -> bool {
-        let Some(step) = self.assist.as_mut().and_then(|assist| assist.step(now)) else { return false };
-        let (Step::Press(bit, _) | Step::Release(bit)) = step;
-        let level = !self.pins.input(bit);
-        if let Step::Press(_, thread) = step {
-            self.tell(now, EventKind::Assisted { bit, level, thread, place: None });
-        }
-        self.pins.drive(bit, level, now);
-        self.settle(now);
-        true
-    }
-
-    /// Records from now on.
-    pub(crate) fn record(&mut self, request: trace::Request, memory: &GuestMemory) {
-        if request.changes {
-            self.pins.changes.switch_on(memory);
-            self.hear_uart();
-        }
-        self.recorder = Some(Box::new(Recorder::new(request)));
-    }
-
-    /// Samples what is recorded at the last of `count` ticks that is to be sampled.
-    fn sample(&mut self, context: &TickContext<'_>, count: u64) {
-        let Some(mut recorder) = self.recorder.take() else { return };
-        if let Some(tick) = recorder.sampled_tick(context.tick, count)
-            && let Some(record) = recorder.sample(self, context.memory)
+    /// A program makes a pin of JP7 an output.
+    pub(crate) fn check_jp7(&mut self, caller: &Caller<'_>, bit: Bit) {
+        if bit.get() < JP7_PINS
+            && !self.told_jp7
+            && kanalog::is_served(&self.fpga, caller.memory)
+            && !self.pins.is_output(bit)
         {
-            let back = (context.tick.get() - tick.get()) as i64 * Cycles::PER_TICK.get();
-            self.tell(context.now - Cycles::new(back), EventKind::Trace(record));
-        }
-        self.recorder = Some(recorder);
-    }
-
-    /// The run is over: what the stimulus expects then is checked.
-    pub(crate) fn finish(&mut self, context: &mut TickContext<'_>) {
-        if let Some(mut player) = self.stimulus.take() {
-            player.finish(self, context);
-            self.stimulus = Some(player);
+            self.told_jp7 = true;
+            let text =
+                format!("bit {bit} becomes an output, but Kanalog is connected to bits 0 to 15 of JP7");
+            self.diagnose(caller, text);
         }
     }
 
-    /// Attaches a device and shows it what is high.
-    pub(crate) fn attach(&mut self, mut device: Box<dyn Attached>, memory: &GuestMemory, now: Cycles) {
-        self.pins.changes.switch_on(memory);
-        self.uart.listen();
-        let high = Bit::all().filter(|&bit| bit_state(self, memory, bit).0).collect::<Vec<_>>();
-        let (mut outside, _) = self.outside();
-        for bit in high {
-            device.edge(BitChange { at: now, bit, level: true }, &mut outside);
+    /// A program writes an output of Kanalog.
+    pub(crate) fn check_kanalog(&mut self, memory: &GuestMemory, bit: Bit, now: Cycles) {
+        if !self.told_kanalog && !kanalog::is_served(&self.fpga, memory) {
+            self.told_kanalog = true;
+            let text = format!(
+                "bit {bit} is an output of Kanalog, which nothing has switched on: it is stored, no more \
+                 (`board.kanalog = true` in the machine file)"
+            );
+            self.tell(now, EventKind::Detail(text));
         }
-        device.tick(now, &mut outside);
-        self.attached.push(device);
-        self.settle(now);
-    }
-
-    /// What devices reach, and the devices.
-    fn outside(&mut self) -> (Outside<'_>, &mut [Box<dyn Attached>]) {
-        let outside = Outside {
-            pins: &mut self.pins,
-            kanalog: &mut self.kanalog,
-            uart: &mut self.uart,
-            fpga: &self.fpga,
-            plants: &self.servo.plants,
-        };
-        (outside, &mut self.attached)
-    }
-
-    /// Bits may have changed: devices that listen to them answer.
-    pub(crate) fn settle(&mut self, now: Cycles) {
-        if self.attached.is_empty() {
-            return;
-        }
-        // Devices that answer each other for ever do so at one instant: that is where it is broken off.
-        for _ in 0..EDGES_AT_ONCE {
-            let Some(change) = self.pins.changes.next_unseen() else { return };
-            let (mut outside, devices) = self.outside();
-            for device in devices {
-                device.edge(change, &mut outside);
-            }
-        }
-        self.attached.clear();
-        let text = "devices on bits answer each other without end: they are taken off".to_owned();
-        self.tell(now, EventKind::Diagnostic(text));
-    }
-
-    /// What devices do at the beginning of a tick.
-    fn run_devices(&mut self, now: Cycles) {
-        while let Some((at, byte)) = self.uart.take_sent(now) {
-            let (mut outside, devices) = self.outside();
-            for device in devices {
-                device.sent(byte, at, &mut outside);
-            }
-            if self.hears_uart {
-                self.tell(at, EventKind::UartSent(byte));
-            }
-        }
-        let (mut outside, devices) = self.outside();
-        for device in devices {
-            device.tick(now, &mut outside);
-        }
-        self.settle(now);
-    }
-
-    /// Tells every character that the UART sends from now on.
-    pub(crate) fn hear_uart(&mut self) {
-        self.uart.listen();
-        self.hears_uart = true;
     }
 
     /// Records an event.
@@ -417,6 +313,18 @@ impl Kernel {
             || self.stimulus.as_ref().is_some_and(|player| player.is_busy())
     }
 
+    /// The registers and what stands behind them.
+    fn registers(&mut self, now: Cycles) -> (&mut Fpga, Behind<'_>) {
+        let behind = Behind {
+            pins: &mut self.pins,
+            uart: &mut self.uart,
+            encoders: &mut self.encoders,
+            stepgens: &mut self.stepgens,
+            now,
+        };
+        (&mut self.fpga, behind)
+    }
+
     fn store_queue_indices(&self, memory: &mut GuestMemory) {
         let (write, read) = self.console.indices();
         memory.set(NEXT_AVAIL_IN, write);
@@ -442,8 +350,8 @@ impl Bus for Kernel {
         if addr < FPGA.base {
             return 0;
         }
-        let behind = Behind { pins: &mut self.pins, uart: &mut self.uart, now };
-        self.fpga.read(behind, addr, size)
+        let (fpga, behind) = self.registers(now);
+        fpga.read(behind, addr, size)
     }
 
     fn write(&mut self, addr: GuestAddr, size: AccessSize, value: u32, now: Cycles) {
@@ -451,8 +359,8 @@ impl Bus for Kernel {
             self.tell(now, EventKind::Diagnostic(format!("write to {addr} has no effect")));
             return;
         }
-        let behind = Behind { pins: &mut self.pins, uart: &mut self.uart, now };
-        if let Some(remark) = self.fpga.write(behind, addr, size, value) {
+        let (fpga, behind) = self.registers(now);
+        if let Some(remark) = fpga.write(behind, addr, size, value) {
             self.tell(now, remark);
         }
     }
@@ -563,6 +471,7 @@ impl Firmware for Kernel {
             && self.kanalog.is_settled(&self.fpga, memory)
             && self.attached.iter().all(|device| device.is_settled())
             && !self.uart.is_sending()
+            && !self.records_motion()
             && !self.serial.is_busy(memory, &self.uart);
         if !is_quiet {
             return 0;

@@ -5,7 +5,6 @@
 
 use std::fmt::Debug;
 
-use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::{Bit, Cycles};
 
 use super::changes::BitChange;
@@ -15,7 +14,7 @@ use super::konnect::Board;
 use super::outside;
 use super::pins::Pins;
 use super::uart::Uart;
-use crate::plant::Plant;
+use crate::servo::Servo;
 
 /// What a device can reach.
 #[derive(Debug)]
@@ -24,7 +23,7 @@ pub(crate) struct Outside<'a> {
     pub(crate) kanalog: &'a mut Kanalog,
     pub(crate) uart: &'a mut Uart,
     pub(crate) fpga: &'a Fpga,
-    pub(crate) plants: &'a [Plant; N_CHANNELS],
+    pub(crate) servo: &'a mut Servo,
 }
 
 /// A device around the board.
@@ -47,6 +46,12 @@ pub(crate) trait Attached: Debug + Send {
     /// A tick begins.
     fn tick(&mut self, now: Cycles, outside: &mut Outside<'_>) {
         let _ = (now, outside);
+    }
+
+    /// Whether it takes every edge of a bit; else one level a tick is enough.
+    fn watches(&self, bit: Bit) -> bool {
+        let _ = bit;
+        false
     }
 
     /// Whether the next tick does what the last one did.
@@ -78,6 +83,8 @@ const DEVICES: &[Row] = &[
     Row { name: "spi", build: |settings| boxed(outside::spi::Spi::new(settings)) },
     // A low pass on outputs, its voltage on an analog input.
     Row { name: "rc", build: |settings| boxed(outside::rc::Filter::new(settings)) },
+    // An encoder that outputs turn.
+    Row { name: "quadrature", build: |settings| boxed(outside::quadrature::Quadrature::new(settings)) },
     // The analog output of KStep, on an analog input.
     Row { name: "kstep_analog", build: |settings| boxed(outside::kstep_analog::KStepAnalog::new(settings)) },
     // A resolver excited by an output, its two windings on analog inputs.
@@ -208,7 +215,7 @@ mod tests {
         for (text, expect) in [
             (
                 "wier from=1 to=2",
-                "there is no device `wier`; known: wire, spi, rc, kstep_analog, resolver, echo",
+                "there is no device `wier`; known: wire, spi, rc, quadrature, kstep_analog, resolver, echo",
             ),
             ("wire from=1", "device `wire` needs `to=…`"),
             ("wire from=1 to=2048", "`to=2048` of device `wire` is not a bit from 0 to 2047"),

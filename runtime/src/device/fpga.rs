@@ -4,12 +4,16 @@
 //! the rest is storage that reads back what was written.
 
 use std::collections::BTreeSet;
+use std::ops::Range;
 
 use kmotiondef::map::FPGA;
 use kmotiondef::{Bit, Cycles, GuestAddr};
 use vm::bus::AccessSize;
 
+use super::encoder::Encoders;
+use super::kstep::AnalogOutput;
 use super::pins::{PINS, Pins};
+use super::stepgen::StepGenerators;
 use super::uart::Uart;
 use crate::event::EventKind;
 
@@ -21,7 +25,7 @@ const LANE: u32 = 2;
 const GROUPS: u32 = PINS as u32 / 8;
 
 /// A range of registers and what is known of it.
-struct Range {
+struct Registers {
     first: u32,
     last: u32,
     kind: Kind,
@@ -48,29 +52,46 @@ enum Kind {
     Pwm,
     /// What the pins of the port carry.
     Port,
+    /// Filter and pins of the encoder inputs.
+    EncoderFilter,
+    /// Errors of the encoder inputs.
+    EncoderErrors,
+    /// Length, polarity and pins of the step pulses.
+    StepPulse,
+    /// The rate of a step generator, in four bytes; the last one makes it act.
+    StepRate,
+    /// Positions of the step generators, low and high byte of each.
+    StepPosition,
 }
 
 /// The registers that programs know. Source: io.md section 5.
-const REGISTERS: &[Range] = &[
-    Range { first: 0x05, last: 0x06, kind: Kind::Storage },
-    Range { first: 0x08, last: 0x0d, kind: Kind::Storage },
-    Range { first: 0x10, last: 0x10, kind: Kind::Storage },
-    Range { first: 0x28, last: 0x28, kind: Kind::Storage },
-    Range { first: 0x2f, last: 0x2f, kind: Kind::Storage },
-    Range { first: 0x3c, last: 0x4f, kind: Kind::Storage },
-    Range { first: 0x80, last: 0x98, kind: Kind::Storage },
-    Range { first: PORT_SELECT, last: PORT_SELECT, kind: Kind::Port },
-    Range { first: 0xc0, last: 0xc0, kind: Kind::UartData },
-    Range { first: 0xc1, last: 0xc1, kind: Kind::UartStatus },
-    Range { first: PWM, last: PWM + 2 * PWMS - 1, kind: Kind::Pwm },
-    Range { first: 0x100, last: 0x100 + GROUPS - 1, kind: Kind::BitSet },
-    Range { first: 0x110, last: 0x110 + GROUPS - 1, kind: Kind::BitClear },
-    Range { first: 0x120, last: 0x120 + GROUPS - 1, kind: Kind::BitDirection },
-    Range { first: 0x130, last: 0x130 + GROUPS - 1, kind: Kind::BitRead },
+const REGISTERS: &[Registers] = &[
+    Registers { first: ENCODER_FILTER, last: ENCODER_FILTER, kind: Kind::EncoderFilter },
+    Registers { first: 0x06, last: 0x06, kind: Kind::StepPulse },
+    Registers { first: 0x08, last: 0x08, kind: Kind::EncoderErrors },
+    Registers { first: 0x09, last: 0x0d, kind: Kind::Storage },
+    Registers { first: 0x10, last: 0x10, kind: Kind::Storage },
+    Registers { first: 0x28, last: 0x28, kind: Kind::Storage },
+    Registers { first: PRESCALE, last: PRESCALE, kind: Kind::Pwm },
+    Registers { first: STEP_RATE, last: STEP_RATE + 3, kind: Kind::StepRate },
+    Registers { first: 0x40, last: 0x4f, kind: Kind::StepPosition },
+    Registers { first: 0x80, last: 0x98, kind: Kind::Storage },
+    Registers { first: PORT_SELECT, last: PORT_SELECT, kind: Kind::Port },
+    Registers { first: 0xc0, last: 0xc0, kind: Kind::UartData },
+    Registers { first: 0xc1, last: 0xc1, kind: Kind::UartStatus },
+    Registers { first: PWM, last: PWM + 2 * PWMS - 1, kind: Kind::Pwm },
+    Registers { first: 0x100, last: 0x100 + GROUPS - 1, kind: Kind::BitSet },
+    Registers { first: 0x110, last: 0x110 + GROUPS - 1, kind: Kind::BitClear },
+    Registers { first: 0x120, last: 0x120 + GROUPS - 1, kind: Kind::BitDirection },
+    Registers { first: 0x130, last: 0x130 + GROUPS - 1, kind: Kind::BitRead },
 ];
 
 /// Values at power-up: step pulses of 32 clocks, encoder filter 7.
-const START: [(u32, u8); 2] = [(0x06, 32), (0x05, 7)];
+const START: [(u32, u8); 2] = [(0x06, 32), (ENCODER_FILTER, 7)];
+
+/// Registers that are read by what acts on them.
+const ENCODER_FILTER: u32 = 0x05;
+const STEP_RATE: u32 = 0x3c;
 
 /// What connects the port of the Kanalog and the UART to their pins, and its bits.
 const PORT_SELECT: u32 = 0xa0;
@@ -87,8 +108,9 @@ const PRESCALE: u32 = 0x2f;
 /// The pin of generator 0, and where its output goes for KStep.
 const PWM_PIN: i32 = 26;
 const PWM_MOVED_PIN: i32 = 44;
-/// Clocks of a PWM period, and of a second.
+/// Clocks of a PWM period, processor cycles of one, and clocks of a second.
 const PWM_PERIOD: f64 = 256.0;
+const CLOCK_CYCLES: i64 = 12;
 const CLOCK: f64 = 50e6 / 3.0;
 
 /// What stands behind the registers that act, and the instant of an access.
@@ -96,6 +118,8 @@ const CLOCK: f64 = 50e6 / 3.0;
 pub(crate) struct Behind<'a> {
     pub(crate) pins: &'a mut Pins,
     pub(crate) uart: &'a mut Uart,
+    pub(crate) encoders: &'a mut Encoders,
+    pub(crate) stepgens: &'a mut StepGenerators,
     pub(crate) now: Cycles,
 }
 
@@ -107,6 +131,9 @@ pub(crate) struct Fpga {
     unknown: BTreeSet<u32>,
     /// Whether a character was sent while the UART had no pins.
     sent_nowhere: bool,
+    /// Until when the edges of watched PWM pins are told.
+    told: Cycles,
+    kstep: AnalogOutput,
 }
 
 impl Default for Fpga {
@@ -115,7 +142,23 @@ impl Default for Fpga {
         for (register, value) in START {
             bytes[(register * STRIDE + LANE) as usize] = value;
         }
-        Self { bytes, unknown: BTreeSet::new(), sent_nowhere: false }
+        Self {
+            bytes,
+            unknown: BTreeSet::new(),
+            sent_nowhere: false,
+            told: Cycles::default(),
+            kstep: AnalogOutput::default(),
+        }
+    }
+}
+
+/// Tells the edges of a pin that is high at the beginning of each period, for so long.
+fn tell_train(pins: &mut Pins, bit: Bit, (period, high): (i64, i64), span: Range<Cycles>) {
+    let mut at = span.start.get();
+    while at <= span.end.get() {
+        let phase = at.rem_euclid(period);
+        pins.show(bit, phase < high, Cycles::new(at));
+        at += if phase < high { high - phase } else { period - phase };
     }
 }
 
@@ -130,12 +173,17 @@ fn register(address: GuestAddr) -> (u32, Option<(Kind, u32)>) {
 impl Fpga {
     /// Reads a register.
     pub(crate) fn read(&mut self, behind: Behind<'_>, address: GuestAddr, size: AccessSize) -> u32 {
-        let Behind { pins, uart, now } = behind;
+        let Behind { pins, uart, encoders, stepgens, now } = behind;
         match register(address).1 {
             Some((Kind::BitRead, group)) => u32::from(pins.level_group(group)),
             Some((Kind::BitDirection, group)) => u32::from(pins.direction_group(group)),
             Some((Kind::UartData, _)) => uart.read(now).into(),
             Some((Kind::UartStatus, _)) => uart.status(now).into(),
+            Some((Kind::EncoderErrors, _)) => encoders.errors().into(),
+            Some((Kind::StepPosition, byte)) => {
+                let word = u32::from(stepgens.register((byte / 2) as usize)) >> (8 * (byte % 2));
+                if size == AccessSize::Byte { word & 0xff } else { word }
+            }
             _ => self.stored(address, size),
         }
     }
@@ -148,8 +196,12 @@ impl Fpga {
         size: AccessSize,
         value: u32,
     ) -> Option<EventKind> {
-        let Behind { pins, uart, now } = behind;
+        let Behind { pins, uart, encoders, stepgens, now } = behind;
         let (number, kind) = register(address);
+        let is_pwm = matches!(kind, Some((Kind::Pwm | Kind::Port, _)));
+        if is_pwm {
+            self.tell_pwm(pins, now);
+        }
         match kind {
             Some((Kind::BitSet, group)) => pins.set_group(group, value as u8, now),
             Some((Kind::BitClear, group)) => pins.clear_group(group, value as u8, now),
@@ -159,10 +211,26 @@ impl Fpga {
                 return self.note_lost_character().map(EventKind::Diagnostic);
             }
             Some((Kind::UartStatus, _)) => uart.set_divisor(value as u8),
+            Some((Kind::EncoderErrors, _)) => encoders.clear_errors(),
             _ => self.store(address, size, value),
         }
-        if matches!(kind, Some((Kind::Pwm | Kind::Port, _))) {
+        match kind {
+            Some((Kind::EncoderFilter, _)) => {
+                let filter = [ENCODER_FILTER * STRIDE + LANE, ENCODER_FILTER * STRIDE + LANE + 1];
+                let filter = filter.map(|at| self.bytes.get(at as usize).copied().unwrap_or_default());
+                encoders.set_filter(u16::from_le_bytes(filter), pins, now);
+            }
+            Some((Kind::StepPulse, _)) => stepgens.set_up(value as u8, pins, now),
+            Some((Kind::StepRate, 3)) => {
+                let word: [u8; 4] = std::array::from_fn(|index| self.byte(STEP_RATE + index as u32));
+                stepgens.command(u32::from_le_bytes(word), pins, now);
+            }
+            _ => {}
+        }
+        if is_pwm {
             self.drive_pwm_pins(pins, now);
+            self.tell_pwm(pins, now);
+            self.kstep.drive(self.moved_pwm(), now);
         }
         (kind.is_none() && self.unknown.insert(number))
             .then(|| format!("FPGA register {number:#x} is not known: it only stores what is written"))
@@ -189,9 +257,46 @@ impl Fpga {
     }
 
     /// The duty of generator 0 at the pin for KStep, from 0 to 1.
-    pub(crate) fn moved_pwm(&self) -> Option<f64> {
+    fn moved_pwm(&self) -> Option<f64> {
         let (duty, _) = self.pwm(0)?;
         (self.bytes[PORT_BYTE] & PWM_MOVED != 0).then_some(duty)
+    }
+
+    /// The analog output that a KStep makes of it.
+    pub(crate) fn kstep_output(&self) -> &AnalogOutput {
+        &self.kstep
+    }
+
+    /// Whether there are edges of watched pins to tell in every tick.
+    pub(crate) fn is_telling(&self, pins: &Pins) -> bool {
+        let is_watched = |generator: u32| {
+            let pin = Bit::new(PWM_PIN + generator as i32);
+            let moved = Bit::new(PWM_MOVED_PIN).filter(|_| generator == 0);
+            pin.into_iter().chain(moved).any(|bit| pins.is_watched(bit))
+        };
+        pins.watches_any()
+            && (0..PWMS).any(|generator| self.pwm(generator).is_some() && is_watched(generator))
+    }
+
+    /// Tells the edges of watched pins up to an instant. All generators count one clock, from power-up on.
+    pub(crate) fn tell_pwm(&mut self, pins: &mut Pins, now: Cycles) {
+        let from = std::mem::replace(&mut self.told, now);
+        if !pins.watches_any() {
+            return;
+        }
+        let is_moved = self.bytes[PORT_BYTE] & PWM_MOVED != 0;
+        for generator in 0..PWMS {
+            let Some((duty, _)) = self.pwm(generator) else { continue };
+            let clocks = PWM_PERIOD as i64 * (i64::from(self.byte(PRESCALE)) + 1);
+            let period = clocks * CLOCK_CYCLES;
+            let high = libm::round(duty * period as f64) as i64;
+            let moved = (is_moved && generator == 0).then_some(PWM_MOVED_PIN);
+            for pin in [Some(PWM_PIN + generator as i32), moved].into_iter().flatten() {
+                if let Some(bit) = Bit::new(pin).filter(|bit| pins.is_watched(*bit)) {
+                    tell_train(pins, bit, (period, high), from..now);
+                }
+            }
+        }
     }
 
     /// Generators that are on drive their pins; read as a level, they are high from half duty on.
@@ -238,6 +343,8 @@ impl Fpga {
 
 #[cfg(test)]
 mod tests {
+    use vm::memory::GuestMemory;
+
     use super::*;
 
     /// Registers and what stands behind them.
@@ -246,17 +353,31 @@ mod tests {
         fpga: Fpga,
         pins: Pins,
         uart: Uart,
+        encoders: Encoders,
+        stepgens: StepGenerators,
+        now: Cycles,
     }
 
     impl Bench {
+        fn parts(&mut self) -> (&mut Fpga, Behind<'_>) {
+            let behind = Behind {
+                pins: &mut self.pins,
+                uart: &mut self.uart,
+                encoders: &mut self.encoders,
+                stepgens: &mut self.stepgens,
+                now: self.now,
+            };
+            (&mut self.fpga, behind)
+        }
+
         fn read(&mut self, register: u32, size: AccessSize) -> u32 {
-            let behind = Behind { pins: &mut self.pins, uart: &mut self.uart, now: Cycles::default() };
-            self.fpga.read(behind, address(register), size)
+            let (fpga, behind) = self.parts();
+            fpga.read(behind, address(register), size)
         }
 
         fn write(&mut self, register: u32, size: AccessSize, value: u32) -> Option<EventKind> {
-            let behind = Behind { pins: &mut self.pins, uart: &mut self.uart, now: Cycles::default() };
-            self.fpga.write(behind, address(register), size, value)
+            let (fpga, behind) = self.parts();
+            fpga.write(behind, address(register), size, value)
         }
     }
 
@@ -290,6 +411,47 @@ mod tests {
         assert_eq!(pins.map(|pin| bench.pins.level(pin)), [false, false]);
         bench.write(0xd1, AccessSize::Byte, 0);
         assert_eq!(pins.map(|pin| bench.pins.is_output(pin)), [false, false]);
+    }
+
+    #[test]
+    fn the_edges_of_a_watched_pwm_have_its_period_and_duty() {
+        let mut bench = Bench::default();
+        let bit = Bit::new(27).expect("a bit");
+        bench.pins.changes.switch_on(&GuestMemory::new());
+        bench.pins.watch(bit);
+        // 65.1 kHz: 3072 cycles, of which a fifth is high.
+        for (register, value) in [(0xd2, 51), (0xd3, 1)] {
+            bench.write(register, AccessSize::Byte, value);
+        }
+        bench.now = Cycles::new(8000);
+        bench.write(0xd3, AccessSize::Byte, 0);
+        let told: Vec<_> =
+            bench.pins.changes.take().iter().map(|change| (change.at.get(), change.level)).collect();
+        let expect = [(0, true), (614, false), (3072, true), (3686, false), (6144, true), (6758, false)];
+        assert_eq!(told, expect);
+    }
+
+    #[test]
+    fn encoder_errors_are_cleared_by_writing() {
+        let mut bench = Bench::default();
+        bench.encoders.fail(2);
+        assert_eq!(bench.read(0x08, AccessSize::Byte), 0x40);
+        bench.write(0x08, AccessSize::Byte, 0);
+        assert_eq!(bench.read(0x08, AccessSize::Byte), 0);
+    }
+
+    #[test]
+    fn four_bytes_run_a_step_generator_and_its_position_has_two() {
+        let mut bench = Bench::default();
+        // Generator 1, 0x800 units of 1.987 steps a second.
+        for (register, value) in [(0x3c, 0), (0x3d, 8), (0x3e, 0), (0x3f, 0x89)] {
+            bench.write(register, AccessSize::Byte, value);
+        }
+        bench.stepgens.run(0.01, &mut bench.pins, Cycles::PER_TICK);
+        let word = bench.read(0x42, AccessSize::Half);
+        assert_eq!(word, (0.01_f64 * 50e6 / 3.0 / 4096.0 * 128.0) as u32);
+        assert_eq!(bench.read(0x42, AccessSize::Byte), word & 0xff);
+        assert_eq!(bench.read(0x43, AccessSize::Byte), word >> 8);
     }
 
     #[test]

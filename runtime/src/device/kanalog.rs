@@ -55,7 +55,7 @@ impl Kanalog {
 }
 
 /// Whether the port serves Kanalog: found at power-up, or switched on by the program.
-fn is_served(fpga: &Fpga, memory: &GuestMemory) -> bool {
+pub(crate) fn is_served(fpga: &Fpga, memory: &GuestMemory) -> bool {
     fpga.serves_kanalog() || memory.get(KANALOG_PRESENT) != 0
 }
 

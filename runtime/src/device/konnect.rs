@@ -1,7 +1,8 @@
 //! Konnect boards on the auxiliary ports: the list of boards served, one of them in each tick.
 //!
 //! When its turn comes, a board takes the low 16 bits of its output word and gives its 32 inputs, 0 unless the world
-//! drives them. Every address is taken to be there. Source: devices.md section 4.
+//! drives them. Every address is taken to be there unless a machine file names those that are. Source: devices.md
+//! section 4.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -44,9 +45,31 @@ pub(crate) struct Konnects {
     services: Vec<Service>,
     outputs: BTreeMap<Board, u16>,
     inputs: BTreeMap<Board, u32>,
+    /// Addresses that are not there, a bit for each; on JP4 and on JP6.
+    absent: [u8; 2],
 }
 
 impl Konnects {
+    /// Says which addresses of a port are there, a bit for each.
+    pub(crate) fn set_present(&mut self, port: Port, present: u8) {
+        self.absent[port as usize] = !present;
+    }
+
+    /// Whether a board is there.
+    pub(crate) fn is_present(&self, board: Board) -> bool {
+        self.absent[board.port as usize] >> board.address & 1 == 0
+    }
+
+    /// The word that a board has taken.
+    pub(crate) fn outputs(&self, board: Board) -> u16 {
+        self.outputs.get(&board).copied().unwrap_or(0)
+    }
+
+    /// The word that a board gives.
+    fn given(&self, board: Board) -> u32 {
+        if self.is_present(board) { self.inputs.get(&board).copied().unwrap_or(0) } else { 0 }
+    }
+
     /// Empties the list.
     pub(crate) fn clear(&mut self) {
         self.services.clear();
@@ -81,7 +104,10 @@ impl Konnects {
         let count = self.services.len() as u64;
         let turn = tick.get().checked_rem(count)?;
         let service = *self.services.get(turn as usize)?;
-        memory.poke(service.inputs, self.inputs.get(&service.board).copied().unwrap_or(0));
+        memory.poke(service.inputs, self.given(service.board));
+        if !self.is_present(service.board) {
+            return None;
+        }
         let outputs = taken(memory, &service);
         (self.outputs.insert(service.board, outputs) != Some(outputs)).then_some((service.board, outputs))
     }
@@ -89,9 +115,9 @@ impl Konnects {
     /// Whether no exchange changes anything.
     pub(crate) fn is_settled(&self, memory: &GuestMemory) -> bool {
         self.services.iter().all(|service| {
-            let inputs = self.inputs.get(&service.board).copied().unwrap_or(0);
-            memory.peek::<u32>(service.inputs) == inputs
-                && self.outputs.get(&service.board) == Some(&taken(memory, service))
+            memory.peek::<u32>(service.inputs) == self.given(service.board)
+                && (!self.is_present(service.board)
+                    || self.outputs.get(&service.board) == Some(&taken(memory, service)))
         })
     }
 }

@@ -2,6 +2,9 @@
 //!
 //! A pin of the board has an output latch and a direction; what drives it from outside is a separate level, so that
 //! a latch written while the pin is an input appears when it becomes an output.
+//!
+//! Some pins carry signals that are far faster than a program looks: pulse widths, steps, the phases of encoders. What
+//! a program reads of them is one level a tick; their edges are made only for pins that somebody watches.
 
 use kmotiondef::{Bit, Cycles};
 
@@ -44,6 +47,11 @@ pub(crate) struct Pins {
     inputs: BitSet,
     /// Inputs that something drives.
     driven: BitSet,
+    /// Inputs that carry the phases of an encoder.
+    phases: u64,
+    /// Pins whose fast signals are told edge by edge, and the levels last told of them.
+    watched: u64,
+    shown: u64,
     /// What changed, for those who want to know.
     pub(crate) changes: Changes,
 }
@@ -58,6 +66,9 @@ impl Default for Pins {
             written: BitSet::default(),
             inputs: BitSet::default(),
             driven: BitSet::default(),
+            phases: 0,
+            watched: 0,
+            shown: 0,
             changes: Changes::default(),
         }
     }
@@ -95,8 +106,56 @@ impl Pins {
         let before = self.levels();
         edit(self);
         let after = self.levels();
-        if before != after {
-            self.changes.note_mask(before ^ after, after, now);
+        if before != after || self.watched != 0 {
+            let plain = !self.watched & (before ^ after);
+            let left = self.watched & !self.generated & (self.shown ^ after);
+            self.shown = self.shown & !left | after & left;
+            self.changes.note_mask(plain | left, after, now);
+        }
+    }
+
+    /// From now on the fast signals of a pin are told edge by edge.
+    pub(crate) fn watch(&mut self, bit: Bit) {
+        if bit.get() < PINS {
+            let mask = 1 << bit.get();
+            self.shown = with(self.shown, mask, self.level(bit));
+            self.watched |= mask;
+        }
+    }
+
+    /// Whether the fast signals of any pin are told.
+    pub(crate) fn watches_any(&self) -> bool {
+        self.watched != 0
+    }
+
+    /// Whether those of a pin are.
+    pub(crate) fn is_watched(&self, bit: Bit) -> bool {
+        bit.get() < PINS && self.watched >> bit.get() & 1 != 0
+    }
+
+    /// Whether a generator drives a pin.
+    pub(crate) fn is_generated(&self, bit: Bit) -> bool {
+        bit.get() < PINS && self.generated >> bit.get() & 1 != 0
+    }
+
+    /// A watched pin has got a level at an instant.
+    pub(crate) fn show(&mut self, bit: Bit, level: bool, at: Cycles) {
+        let mask = 1 << bit.get();
+        if self.watched & mask != 0 && (self.shown & mask != 0) != level {
+            self.shown = with(self.shown, mask, level);
+            self.changes.note(bit, level, at);
+        }
+    }
+
+    /// An encoder gives one of its inputs a level, unless something else stands there.
+    pub(crate) fn show_phase(&mut self, bit: Bit, level: bool, at: Cycles) {
+        if self.driven.contains(bit) {
+            return;
+        }
+        self.phases |= 1 << bit.get();
+        self.inputs.set(bit, level);
+        if !self.is_output(bit) {
+            self.show(bit, level, at);
         }
     }
 
@@ -136,12 +195,14 @@ impl Pins {
 
     /// An input reads 1 as long as nothing drives it.
     pub(crate) fn idle_high(&mut self, bit: Bit) {
-        self.inputs.set(bit, true);
+        if !self.is_driven(bit) {
+            self.inputs.set(bit, true);
+        }
     }
 
     /// Whether anything drives an input.
     pub(crate) fn is_driven(&self, bit: Bit) -> bool {
-        self.driven.contains(bit)
+        self.driven.contains(bit) || bit.get() < PINS && self.phases >> bit.get() & 1 != 0
     }
 
     /// An output of an option board, as last written.
@@ -207,5 +268,24 @@ mod tests {
         pins.generate(bit, None, at);
         let levels: Vec<bool> = pins.changes.take().iter().map(|change| change.level).collect();
         assert_eq!(levels, [true, false, true]);
+    }
+
+    #[test]
+    fn edges_of_fast_signals_are_told_for_watched_pins_alone() {
+        let mut pins = Pins::default();
+        pins.changes.switch_on(&GuestMemory::new());
+        let bits = [26, 27].map(|number| Bit::new(number).expect("a bit"));
+        pins.watch(bits[0]);
+        for bit in bits {
+            pins.generate(bit, Some(false), Cycles::new(0));
+            for (at, level) in [(10, true), (20, true), (30, false), (40, true)] {
+                pins.show(bit, level, Cycles::new(at));
+            }
+            assert!(!pins.level(bit), "what a program reads");
+            pins.generate(bit, None, Cycles::new(50));
+        }
+        let told: Vec<_> =
+            pins.changes.take().iter().map(|change| (change.bit.get(), change.at.get())).collect();
+        assert_eq!(told, [(26, 10), (26, 30), (26, 40), (26, 50)]);
     }
 }

@@ -3,7 +3,7 @@
 //! Nothing runs while they work: faults are brought up to the instant of each access. More current than the limit of a
 //! side, or no limit at all, switches all bridges off for a quarter of a second beyond its end; a board that is not
 //! there has no faults. Sources: devices.md section 5, the manual's page on SnapAmp for the quarter of a second. The
-//! general pins are bits 80 and 112 and on, and belong to the digital outputs.
+//! general pins are bits 80 and 112 and on, and belong to the digital outputs; the encoders are with those of the board.
 
 use kmotiondef::Cycles;
 use kmotiondef::variables::ADC_BUFFER_IN_SNAP;
@@ -32,6 +32,11 @@ const CLAMP: usize = 20;
 const PEAK_LIMIT: usize = 24;
 /// The lowest level that is a limit: 2 A, each further one 4 A more.
 const FIRST_LEVEL: u16 = 9;
+
+/// The encoders' registers: words of the four, and the levels of all inputs of the board.
+pub(crate) const ENCODERS: std::ops::RangeInclusive<usize> = 8..=11;
+pub(crate) const CLEAR_ERRORS: usize = 8;
+pub(crate) const LEVELS: usize = 16;
 
 /// The general pins' registers.
 pub(crate) const PINS: usize = 17;
@@ -163,6 +168,17 @@ impl SnapAmps {
         }
     }
 
+    /// Whether the bridges of an amplifier's channel are off after too much current. Channels 8 and 9 are side A of
+    /// board 0, 10 and 11 its side B, and so on.
+    pub(crate) fn is_off(&mut self, channel: i32, now: Cycles) -> bool {
+        let Some(pair) = usize::try_from(channel).ok().and_then(|channel| channel.checked_sub(8)) else {
+            return false;
+        };
+        let Some(board) = self.0.get_mut(pair / 4).filter(|board| board.is_present) else { return false };
+        board.advance(now);
+        now < board.sides[pair % 4 / 2].off_until
+    }
+
     /// Whether a board is on the bus.
     pub(crate) fn is_present(&self) -> bool {
         self.0.iter().any(|board| board.is_present)
@@ -192,7 +208,6 @@ impl SnapAmps {
         let board = &mut self.0[register.board];
         board.advance(now);
         match register.number {
-            8..=11 | 16 => 0,
             number @ CURRENTS..=15 => board.currents()[number - CURRENTS],
             number @ (22 | 23) => board.voltage(number - 22),
             number @ (24 | 25) => board.temperature(number - 24),
@@ -273,6 +288,21 @@ mod tests {
             }
             assert_eq!(boards.read(register(30), ms(at)), expect, "{at}");
         }
+    }
+
+    #[test]
+    fn a_fault_switches_off_both_channels_of_its_side() {
+        let mut boards = SnapAmps::default();
+        boards.connect(1);
+        for limit in [24, 25] {
+            boards.write(register(limit), 9, ms(0));
+        }
+        boards.set(1, Side::B, Quantity::Current, 5.0, ms(1000));
+        boards.set(1, Side::B, Quantity::Current, 0.0, ms(1000));
+        let off =
+            |boards: &mut SnapAmps, at| [7, 9, 12, 13, 14, 15].map(|channel| boards.is_off(channel, ms(at)));
+        assert_eq!(off(&mut boards, 1100), [false, false, false, false, true, true]);
+        assert_eq!(off(&mut boards, 1250), [false; 6]);
     }
 
     #[test]

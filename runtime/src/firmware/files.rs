@@ -3,9 +3,9 @@
 //! `FILE` is an int and the board keeps no table: one handle stands for the file open for reading, one for the file
 //! open for writing.
 
+use kmotiondef::GuestAddr;
 use kmotiondef::limits::MAX_READ_DISK_LENGTH;
 use kmotiondef::variables::{READ_DISK_BUFFER, READ_DISK_BUFFER_STATUS};
-use kmotiondef::{Cycles, GuestAddr};
 use vm::firmware::{Caller, Outcome, Wake};
 use vm::trap::TrapKind;
 
@@ -20,17 +20,14 @@ use crate::views::Typed;
 const READING: GuestAddr = GuestAddr::new(0x1001_A818);
 /// The handle of the file open for writing.
 const WRITING: GuestAddr = GuestAddr::new(0x1001_A81C);
-/// A round trip to the PC: 20 ms.
-const LATENCY: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 50);
-
 /// States of the line buffer.
 const LINE_ARRIVED: i32 = 1;
 const FAILED: i32 = 2;
 const NO_MORE: i32 = 3;
 
 /// Waits for the PC's answer, once.
-fn round_trip(caller: &Caller<'_>) -> Option<Wake> {
-    caller.woken.is_none().then(|| Wake::At(caller.now() + LATENCY))
+fn round_trip(kernel: &Kernel, caller: &Caller<'_>) -> Option<Wake> {
+    caller.woken.is_none().then(|| Wake::At(caller.now() + kernel.files_latency))
 }
 
 pub(crate) fn fopen(
@@ -47,7 +44,7 @@ pub(crate) fn fopen(
         }
         return Ok(Outcome::Done(WRITING));
     }
-    if let Some(wake) = round_trip(caller) {
+    if let Some(wake) = round_trip(kernel, caller) {
         return Ok(Outcome::Wait(wake));
     }
     if kernel.files.open_for_reading(&name) {
@@ -130,7 +127,7 @@ pub(crate) fn fgets(
     if file != READING {
         return Ok(Outcome::Done(GuestAddr::NULL));
     }
-    if let Some(wake) = round_trip(caller) {
+    if let Some(wake) = round_trip(kernel, caller) {
         return Ok(Outcome::Wait(wake));
     }
     let Some(mut line) = fetch(kernel, caller)? else {
@@ -153,7 +150,7 @@ pub(crate) fn fscanf(
     if file != READING {
         return Ok(Outcome::Done(0));
     }
-    if let Some(wake) = round_trip(caller) {
+    if let Some(wake) = round_trip(kernel, caller) {
         return Ok(Outcome::Wait(wake));
     }
     let pattern = text(caller, pattern)?;

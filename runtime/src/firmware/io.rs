@@ -61,6 +61,9 @@ pub(crate) fn set_bit_direction(kernel: &mut Kernel, caller: &mut Caller<'_>, bi
     let output = direction != 0;
     match range_of(bit).map(|range| range.kind) {
         Some(BitKind::Pin) => {
+            if output {
+                kernel.check_jp7(caller, bit);
+            }
             kernel.pins.set_output(bit, output, caller.now());
             let word = BIT_DIR_SHADOW.element(bit.index() / 32);
             change(caller.memory, word, 1 << (bit.get() % 32), output);
@@ -108,9 +111,11 @@ pub(crate) fn write_bit(kernel: &mut Kernel, memory: &mut GuestMemory, bit: Bit,
     let Some(kind) = range_of(bit).map(|range| range.kind) else { return };
     match kind {
         BitKind::Pin | BitKind::Led => kernel.pins.set_latch(bit, level, now),
-        BitKind::KanalogOptoOutput | BitKind::KanalogFet | BitKind::KanalogOutput | BitKind::SnapGpio => {
+        BitKind::KanalogOptoOutput | BitKind::KanalogFet | BitKind::KanalogOutput => {
+            kernel.check_kanalog(memory, bit, now);
             kernel.pins.write(bit, level, now);
         }
+        BitKind::SnapGpio => kernel.pins.write(bit, level, now),
         _ => {
             if let Some((word, mask)) = memory_bit(bit, kind) {
                 change(memory, word, mask, level);
@@ -201,7 +206,10 @@ pub(crate) fn write_pwmc(_: &mut Kernel, caller: &mut Caller<'_>, channel: i32, 
 
 #[cfg(test)]
 mod tests {
+    use kmotiondef::variables::KANALOG_PRESENT;
+
     use super::*;
+    use crate::event::EventKind;
     use crate::testing::Desk;
 
     fn read(desk: &mut Desk, bit: u64) -> i32 {
@@ -242,6 +250,22 @@ mod tests {
         assert_eq!(read(&mut desk, 46), 1);
         desk.call("ClearBit", &[46]);
         assert_eq!(read(&mut desk, 46), 0);
+    }
+
+    #[test]
+    fn pins_that_kanalog_occupies_are_told_once() {
+        let mut desk = Desk::new();
+        desk.call("SetBitDirection", &[3, 1]);
+        desk.memory.set(KANALOG_PRESENT, 1);
+        for (bit, output) in [(3, 1), (4, 0), (16, 1), (5, 1), (6, 1)] {
+            desk.call("SetBitDirection", &[bit, output]);
+        }
+        let told = desk.kernel.take_events();
+        let [event] = &told[..] else { panic!("{told:?}") };
+        assert!(
+            matches!(&event.kind, EventKind::Diagnostic(text) if text.contains("bit 5 becomes")),
+            "{event:?}"
+        );
     }
 
     #[test]

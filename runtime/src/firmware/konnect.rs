@@ -50,6 +50,12 @@ fn add(
     }
     // The address goes out on three lines.
     let board = Board { port, address: (address & (ADDRESSES - 1)) as u8 };
+    if !kernel.konnects.is_present(board) {
+        kernel.diagnose(
+            caller,
+            format!("{function}({address}, …): the machine has no board with that address"),
+        );
+    }
     if !kernel.konnects.add(Service { board, outputs, inputs }) {
         kernel.console.message("Too many AddKonnects");
     }
@@ -60,6 +66,7 @@ fn add(
 mod tests {
     use kmotiondef::variables::{VIRTUAL_BITS, VIRTUAL_BITS_EX};
 
+    use super::*;
     use crate::testing::Desk;
     use crate::views::Typed;
 
@@ -78,6 +85,25 @@ mod tests {
         assert_eq!(desk.memory.get(VIRTUAL_BITS_EX.element(0)), 0);
         assert_eq!(desk.memory.get(VIRTUAL_BITS_EX.element(1)), 0);
         assert_eq!(desk.memory.get(VIRTUAL_BITS), 0x1234);
+    }
+
+    #[test]
+    fn a_board_that_is_not_there_is_told_and_gives_nothing() {
+        let mut desk = Desk::new();
+        let word: u64 = VIRTUAL_BITS.address().get().into();
+        desk.kernel.konnects.set_present(Port::Aux1, 0b01);
+        for address in [0, 1] {
+            let board = Board { port: Port::Aux1, address };
+            desk.kernel.konnects.drive(board, 5, true);
+            let inputs: u64 = VIRTUAL_BITS_EX.element(address.into()).address().get().into();
+            desk.call("AddKonnect", &[address.into(), word, inputs]);
+        }
+        desk.memory.set(VIRTUAL_BITS, 3);
+        desk.run(4);
+        let inputs = [0, 1].map(|board| desk.memory.get(VIRTUAL_BITS_EX.element(board)));
+        let outputs = [0, 1].map(|address| desk.kernel.konnects.outputs(Board { port: Port::Aux1, address }));
+        assert_eq!((inputs, outputs), ([32, 0], [3, 0]));
+        assert_eq!(desk.kernel.take_events().len(), 1);
     }
 
     #[test]

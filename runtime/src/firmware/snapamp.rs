@@ -5,19 +5,28 @@ use kmotiondef::variables::{BIT_DIR_SHADOW_SNAP0, BIT_DIR_SHADOW_SNAP1};
 use vm::firmware::Caller;
 
 use super::io::{bit_state, write_bit};
-use crate::device::snapamp::{CLEAR, DIRECTION, PINS, Register};
+use crate::device::snapamp::{CLEAR, CLEAR_ERRORS, DIRECTION, ENCODERS, LEVELS, PINS, Register};
 use crate::kernel::Kernel;
 use crate::views::Typed;
 
 /// General pins of a board, and the first of each board.
 const COUNT: i32 = 14;
 const FIRST: [i32; 2] = [80, 112];
+/// Differential inputs of a board, and the first of each board.
+const DIFFERENTIALS: i32 = 8;
+const FIRST_DIFFERENTIAL: [i32; 2] = [64, 96];
 /// Where their directions lie in the board's word.
 const SHADOW_SHIFT: i32 = 16;
 
 /// The general pins of a board, lowest first.
 fn pins(board: usize) -> impl Iterator<Item = Bit> {
     (0..COUNT).filter_map(move |pin| Bit::new(FIRST[board] + pin))
+}
+
+/// Levels of bits as a word, the first one lowest.
+fn levels(kernel: &Kernel, caller: &Caller<'_>, bits: impl Iterator<Item = Bit>) -> i32 {
+    let levels = bits.map(|bit| bit_state(kernel, caller.memory, bit).0).enumerate();
+    levels.fold(0, |word, (index, level)| word | i32::from(level) << index)
 }
 
 /// The register that a program names.
@@ -41,6 +50,7 @@ pub(crate) fn write_snap_amp(kernel: &mut Kernel, caller: &mut Caller<'_>, addre
                 }
             }
         }
+        CLEAR_ERRORS => kernel.encoders.clear_snap_errors(register.board),
         DIRECTION => {
             let shadow = [BIT_DIR_SHADOW_SNAP0, BIT_DIR_SHADOW_SNAP1][register.board];
             caller.memory.set(shadow, (data & ((1 << COUNT) - 1)) << SHADOW_SHIFT);
@@ -51,17 +61,26 @@ pub(crate) fn write_snap_amp(kernel: &mut Kernel, caller: &mut Caller<'_>, addre
 
 pub(crate) fn read_snap_amp(kernel: &mut Kernel, caller: &mut Caller<'_>, address: i32) -> i32 {
     let Some(register) = checked(kernel, caller, "ReadSnapAmp", address) else { return 0 };
-    if register.number == PINS {
-        let levels = pins(register.board).enumerate();
-        return levels.fold(0, |word, (index, bit)| {
-            word | i32::from(bit_state(kernel, caller.memory, bit).0) << index
-        });
+    let Register { board, number } = register;
+    match number {
+        PINS => levels(kernel, caller, pins(board)),
+        LEVELS => {
+            let first = FIRST_DIFFERENTIAL[board];
+            let inputs = (first..first + DIFFERENTIALS).filter_map(Bit::new);
+            levels(kernel, caller, inputs) << DIFFERENTIALS | i32::from(kernel.encoders.snap_levels(board))
+        }
+        number if ENCODERS.contains(&number) => {
+            kernel.encoders.snap_word(board, number - ENCODERS.start()).into()
+        }
+        _ => kernel.snapamps.read(register, caller.now()).into(),
     }
-    kernel.snapamps.read(register, caller.now()).into()
 }
 
 #[cfg(test)]
 mod tests {
+    use kmotiondef::Cycles;
+
+    use super::*;
     use crate::testing::Desk;
 
     #[test]
@@ -73,6 +92,18 @@ mod tests {
         assert_eq!(desk.call_i32("ReadSnapAmp", &[0x60 + 17]), 0b01);
         assert_eq!(desk.call_i32("ReadBit", &[112]), 1);
         assert_eq!(desk.call_i32("ReadBit", &[113]), 0);
+    }
+
+    #[test]
+    fn encoders_and_inputs_have_their_registers() {
+        let mut desk = Desk::new();
+        desk.kernel.encoders.count(13, -2, &mut desk.kernel.pins, Cycles::default());
+        desk.kernel.encoders.fail(13);
+        desk.kernel.pins.drive(Bit::new(96 + 3).expect("a bit"), true, Cycles::default());
+        assert_eq!(desk.call_i32("ReadSnapAmp", &[0x60 + 9]), 0x80fe);
+        assert_eq!(desk.call_i32("ReadSnapAmp", &[0x60 + 16]), 0x080c);
+        desk.call("WriteSnapAmp", &[0x60 + 8, 0]);
+        assert_eq!(desk.call_i32("ReadSnapAmp", &[0x60 + 9]), 0x00fe);
     }
 
     #[test]

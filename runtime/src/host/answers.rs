@@ -53,7 +53,7 @@ pub enum AnswerError {
 }
 
 /// Answers that are given in turn.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Turns<T>(VecDeque<T>);
 
 impl<T> Default for Turns<T> {
@@ -70,7 +70,7 @@ impl<T: Copy> Turns<T> {
 }
 
 /// What the PC answers, and what it holds.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Answers {
     pub(super) buttons: Turns<i32>,
     /// Numbers typed; `None` for the cancel button.
@@ -117,6 +117,20 @@ impl Answers {
     pub fn line(&mut self, line: &str) -> Result<(), AnswerError> {
         let line = line.trim();
         if line.is_empty() || line.starts_with('#') { Ok(()) } else { self.set(line) }
+    }
+
+    /// Takes one setting whose answer is the next one, whatever was to come before it.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn set_next(&mut self, setting: &str) -> Result<(), AnswerError> {
+        match setting.split('=').next().map(str::trim) {
+            Some("msgbox") => self.buttons.0.clear(),
+            Some("input") => self.inputs.0.clear(),
+            Some("mdi") => self.mdi.0.clear(),
+            _ => {}
+        }
+        self.set(setting)
     }
 
     /// Takes one setting, `key=value`.
@@ -201,6 +215,14 @@ mod tests {
         let typed: Vec<_> = (0..3).map(|_| answers.inputs.next()).collect();
         assert_eq!(typed, [Some(Some(1.5)), Some(None), Some(None)]);
         assert_eq!(answers.mdi.next(), None);
+    }
+
+    #[test]
+    fn the_next_answer_takes_the_place_of_those_to_come() {
+        let mut answers = Answers::default();
+        answers.line("msgbox=no").expect("an answer");
+        answers.set_next("msgbox=yes").expect("an answer");
+        assert_eq!(answers.buttons.next(), Some(6));
     }
 
     #[test]

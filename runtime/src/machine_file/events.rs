@@ -3,7 +3,7 @@
 //! Each key of an event is one statement of [`crate::stimulus`], which checks it; a mistake is told at the key's value.
 
 use super::MachineFileError;
-use super::read::{Read, Table, Value, Wrong, keys};
+use super::read::{Key, Read, Table, Value, Wrong, keys};
 use crate::stimulus::{Place, Rule, Stimulus};
 
 /// What messages about rules of a machine file call it.
@@ -52,6 +52,8 @@ fn event(table: &Table<'_>) -> Read<Vec<Statement>> {
         "persist" => actions.extend(each(&value, |index, number| format!("persist {index} = {number}"))?);
         "kill" => actions.push((value.offset(), format!("kill {}", value.whole(7)?)));
         "expect" => actions.extend(expect(&value.table()?)?);
+        "host" => actions.extend(answers(&value.table()?)?);
+        "encoder_error" => actions.push((value.offset(), format!("encoder {} fails", value.whole(15)?)));
     });
     let moment = moment.unwrap_or_default();
     Ok(actions.into_iter().map(|(offset, action)| (offset, format!("{moment} {action}"))).collect())
@@ -82,16 +84,25 @@ fn disturb(table: &Table<'_>) -> Read<String> {
 }
 
 fn run(table: &Table<'_>) -> Read<String> {
-    let mut thread = None;
+    let (mut thread, mut program) = (None, None);
     keys!(table, |key, value| {
         "thread" => thread = Some(value.whole(7)?);
-        "program" => {
-            let program = value.text()?;
-            let text = format!("a program is named on the command line: `--load N:{program}`");
-            return Err(Wrong::new(value.offset(), text));
-        };
+        "program" => program = Some(value.text()?);
     });
-    Ok(format!("start thread {}", thread.ok_or_else(|| table.is_missing("thread"))?))
+    let thread = thread.ok_or_else(|| table.is_missing("thread"))?;
+    Ok(match program {
+        Some(program) => format!("run thread {thread} {}", quoted(program)),
+        None => format!("start thread {thread}"),
+    })
+}
+
+/// Answers of the PC: the keys that it has for them, and `message_box`.
+fn answers(table: &Table<'_>) -> Read<Vec<Statement>> {
+    let setting = |(key, value): (Key<'_>, Value<'_>)| {
+        let key = if key.text == "message_box" { "msgbox" } else { key.text };
+        (value.offset(), format!("answer {}", quoted(&format!("{key}={}", value.plain()))))
+    };
+    Ok(table.entries().map(setting).collect())
 }
 
 fn expect(table: &Table<'_>) -> Read<Vec<Statement>> {

@@ -3,15 +3,19 @@
 //! Without one there are eight ideal axes and nothing else; each key changes one thing of that. Source: plant.md
 //! section 9. Every error names the line and column it is about, and a misspelt key the one that was meant.
 
+mod boards;
 mod events;
+mod pc;
 mod read;
 mod tables;
 
 use std::fmt;
+use std::path::Path;
 
 use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::{AxisId, Bit};
 
+use crate::host::Answers;
 use crate::stimulus::Stimulus;
 
 /// A machine.
@@ -49,6 +53,26 @@ pub struct MachineFile {
     pub strict_stack: bool,
     /// Whether the built-in PC polls and answers.
     pub host: bool,
+    /// What it answers.
+    pub answers: Answers,
+    /// The folder of its files; `None` for the usual one.
+    pub disk_root: Option<String>,
+    /// How long a round trip to its files takes, seconds.
+    pub disk_latency_s: f64,
+    /// Names that programs use for its files, and the files meant, relative to the folder.
+    pub disk_files: Vec<(String, String)>,
+    /// Whether a KStep is on JP7, and whether its motors need the enable signal on bit 45.
+    pub has_kstep: bool,
+    /// See `has_kstep`.
+    pub respect_enable: bool,
+    /// Konnect boards that are there, a bit for each address: on JP4 and on JP6.
+    pub konnects: [u8; 2],
+    /// File that keeps the flash; `None` for this run only.
+    pub flash: Option<String>,
+    /// File with the characters that the UART receives.
+    pub uart_input: Option<String>,
+    /// File for the characters that it sends.
+    pub uart_output: Option<String>,
 }
 
 impl Default for MachineFile {
@@ -70,6 +94,16 @@ impl Default for MachineFile {
             bss_fill: 0,
             strict_stack: false,
             host: true,
+            answers: Answers::default(),
+            disk_root: None,
+            disk_latency_s: 0.02,
+            disk_files: Vec::new(),
+            has_kstep: false,
+            respect_enable: false,
+            konnects: [u8::MAX; 2],
+            flash: None,
+            uart_input: None,
+            uart_output: None,
         }
     }
 }
@@ -83,6 +117,14 @@ impl MachineFile {
         let mut machine = Self::default();
         tables::apply(&mut machine, text)?;
         Ok(machine)
+    }
+
+    /// Takes names of files that do not begin at a root as relative to `folder`, the one of the machine file.
+    pub fn beside(&mut self, folder: &Path) {
+        let names = [&mut self.disk_root, &mut self.flash, &mut self.uart_input, &mut self.uart_output];
+        for name in names.into_iter().flatten() {
+            *name = folder.join(&*name).to_string_lossy().into_owned();
+        }
     }
 
     /// Changes one key, given as `axis.0.model=motor`: the path of the key, and a value with or without quotes.

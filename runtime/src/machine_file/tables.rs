@@ -3,12 +3,12 @@
 use kmotiondef::{AxisId, Bit};
 use toml::de::{DeTable, DeValue};
 
-use super::events;
 use super::read::{Read, Table, Value, Wrong, keys};
 use super::{
     Analog, AnalogSource, Axis, Condition, Encoder, Handwheel, Index, MachineFile, MachineFileError, Model,
     Probe, Spindle, SpindleDrive, Switch, Wire,
 };
+use super::{boards, events, pc};
 
 /// Changes a machine by what a text says.
 pub(super) fn apply(machine: &mut MachineFile, text: &str) -> Result<(), MachineFileError> {
@@ -36,8 +36,9 @@ fn root(machine: &mut MachineFile, statements: &mut Vec<(usize, String)>, table:
         "spindle" => machine.spindle = Some(spindle(machine.spindle, &value.table()?)?);
         "inputs" => inputs(machine, &value.table()?)?;
         "cpu" => cpu(machine, &value.table()?)?;
-        "host" => host(machine, &value.table()?)?;
-        "board" => board(machine, &value.table()?)?;
+        "host" => pc::host(machine, &value.table()?)?;
+        "board" => boards::board(machine, &value.table()?)?;
+        "uart" => boards::uart(machine, &value.table()?)?;
     });
     Ok(())
 }
@@ -305,30 +306,6 @@ fn cpu(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
         "ns_per_instruction" => value.only(&integer("5"))?;
         "plan_ticks" => value.only(&integer("0"))?;
         "fresh_globals" => value.only(&DeValue::Boolean(false))?;
-    });
-    Ok(())
-}
-
-fn host(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
-    keys!(table, |key, value| {
-        "enabled" => machine.host = value.flag()?;
-    });
-    Ok(())
-}
-
-/// The option boards; some have their default only so far.
-fn board(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
-    keys!(table, |key, value| {
-        "kanalog" => {
-            let choices = [("auto", false), ("false", false), ("true", true)];
-            machine.has_kanalog = value.choice(&choices)?;
-        };
-        "kstep" => value.only(&DeValue::Boolean(false))?;
-        "respect_enable" => value.only(&DeValue::Boolean(false))?;
-        "konnect" => value.only(&DeValue::String("any".into()))?;
-        "snapamp" => machine.snapamps = value.whole(2)? as usize;
-        "flash" => value.only(&DeValue::String("".into()))?;
-        "strict_flash" => value.only(&DeValue::Boolean(false))?;
     });
     Ok(())
 }

@@ -107,6 +107,43 @@ fn a_key_is_set_alone() {
     assert_eq!(machine.axes[0].model, Model::Motor);
 }
 
+#[test]
+fn boards_the_serial_port_and_the_pc_have_their_keys() {
+    let text = r#"
+[board]
+kstep = true
+respect_enable = true
+konnect = [0, 2]
+konnect_aux0 = []
+flash = "flash.bin"
+
+[uart]
+input = "in.txt"
+output = ""
+
+[host]
+disk_root = "pc"
+disk_latency_s = 0.05
+files = { 'c:\Temp\Log.txt' = "log.txt" }
+message_box = ["no", "yes"]
+cells = { 5 = "1.25" }
+answers = ["input=1.5", "dro.x=2"]
+"#;
+    let mut machine = MachineFile::parse(text).unwrap_or_else(|error| panic!("{}: {error}", error.line));
+    assert!(machine.has_kstep && machine.respect_enable);
+    assert_eq!(machine.konnects, [0, 0b101]);
+    assert_eq!((machine.uart_input.as_deref(), machine.uart_output.as_deref()), (Some("in.txt"), None));
+    assert_eq!(machine.disk_files, [("c:\\Temp\\Log.txt".to_owned(), "log.txt".to_owned())]);
+    assert_eq!(machine.disk_latency_s, 0.05);
+    let mut answers = Answers::default();
+    for setting in ["msgbox=no", "msgbox=yes", "cell.5=1.25", "input=1.5", "dro.x=2"] {
+        answers.set(setting).expect(setting);
+    }
+    assert_eq!(machine.answers, answers);
+    machine.beside(Path::new("machines"));
+    assert_eq!(machine.disk_root.as_deref().map(Path::new), Some(Path::new("machines").join("pc").as_path()));
+}
+
 /// The message about a text, with line and column.
 fn message(text: &str) -> String {
     let error = MachineFile::parse(text).expect_err(text);
@@ -140,12 +177,19 @@ fn mistakes_are_named_with_their_place() {
             "2:10: `encoder[0].moves[0]` must be [start in seconds, counts, duration in seconds], not a value of type array",
         ),
         ("[cpu]\nservo_us = 95", "2:12: `cpu.servo_us` must be below the 90 µs of a tick, not 95"),
-        ("[board]\nkstep = true", "2:9: `board.kstep` with this value is not built yet"),
+        ("[board]\nstrict_flash = true", "2:16: `board.strict_flash` with this value is not built yet"),
+        ("[board]\nkonnect = [8]", "2:12: `board.konnect[0]` must be a whole number, 0 to 7, not 8"),
+        (
+            "[board]\nkonnect = 5",
+            "2:11: `board.konnect` must be \"any\" or a list of addresses as [0, 1], not 5",
+        ),
+        ("[uart]\ninput = 5", "2:9: `uart.input` must be a text in quotes, not 5"),
+        ("[host]\nanswers = [\"input=x\"]", "2:12: `x` is not what `input` takes: a number"),
         ("switch = 5", "1:10: `switch` must be an array in [brackets], not 5"),
         ("[axis.0\nname = 5", "1:8: unclosed table, expected `]`"),
         (
             "colour = 5",
-            "1:1: unknown key `colour`; there are axis, switch, probe, encoder, adc, wire, event, device, spindle, inputs, cpu, host, board",
+            "1:1: unknown key `colour`; there are axis, switch, probe, encoder, adc, wire, event, device, spindle, inputs, cpu, host, board, uart",
         ),
     ] {
         assert_eq!(message(text), expect, "{text}");
@@ -162,7 +206,9 @@ uart = \"G1 \\\"X\\\"\\r\"
 encoder = { 3 = 25 }
 disturb = { axis = 1, units = 50 }
 command = \"StopImmediate0\"
-run = { thread = 3 }
+run = { thread = 3, program = \"jog.c\" }
+host = { message_box = \"no\", input = 1.5 }
+encoder_error = 2
 persist = { 10 = 7 }
 kill = 2
 [[event]]
@@ -181,7 +227,8 @@ word = \"0x10,0x20\"
     let machine = MachineFile::parse(text).unwrap_or_else(|error| panic!("{}: {error}", error.line));
     // Keys come in the order of their names.
     let expect = "at 2.5 adc 0 = 1500; at 2.5 command \"StopImmediate0\"; at 2.5 axis 1 push 50
-at 2.5 encoder 3 moves 25; at 2.5 kill 2; at 2.5 persist 10 = 7; at 2.5 start thread 3
+at 2.5 encoder 3 moves 25; at 2.5 kill 2; at 2.5 persist 10 = 7; at 2.5 run thread 3 \"jog.c\"
+at 2.5 answer \"input=1.5\"; at 2.5 answer \"msgbox=no\"; at 2.5 encoder 2 fails
 at 2.5 bit 24 = 1; at 2.5 uart \"G1 \\\"X\\\"\\r\"
 once printed \"go on\" expect bit 46 = 1; once printed \"go on\" expect printed \"done\"
 device echo; device spi clock=17 out=18 select=16 word=0x10,0x20
@@ -210,8 +257,16 @@ fn wrong_events_are_named_with_their_place() {
         ),
         ("[[event]]\nkil = 1", "2:1: unknown key `kil` in `event[0]`; did you mean `kill`?"),
         (
-            "[[event]]\nrun = { thread = 3, program = \"jog.c\" }",
-            "2:31: a program is named on the command line: `--load N:jog.c`",
+            "[[event]]\nrun = { thread = 8, program = \"jog.c\" }",
+            "2:18: `event[0].run.thread` must be a whole number, 0 to 7, not 8",
+        ),
+        (
+            "[[event]]\nhost = { message_box = \"maybe\" }",
+            "2:24: `maybe` is not what `msgbox` takes: a button, as `yes`",
+        ),
+        (
+            "[[event]]\nencoder_error = 16",
+            "2:17: `event[0].encoder_error` must be a whole number, 0 to 15, not 16",
         ),
         ("[[device]]\nfrom = 3", "1:1: `device[0]` needs `type`"),
         ("[[device]]\ntype = \"wire\"\nfrom = 3", "1:1: device `wire` needs `to=…`"),

@@ -70,6 +70,9 @@ pub(crate) struct Plant {
     /// Where the gain last changed, and the count there.
     base: f64,
     base_count: i64,
+    /// What the step generator has put out in the last tick, and whether its amplifier is off.
+    stepped: f64,
+    is_off: bool,
     pub(crate) drive: Drive,
 }
 
@@ -104,6 +107,8 @@ impl Plant {
             counted: axis.start,
             base: axis.start,
             base_count: 0,
+            stepped: 0.0,
+            is_off: false,
             drive: Drive::None,
         }
     }
@@ -191,15 +196,29 @@ impl Plant {
             (Model::Motor, Drive::Loop(_, applied)) => self.run(applied, chan),
         }
         self.stop_hard();
-        self.load != before || self.velocity != 0.0
+        self.load != before || self.velocity != 0.0 || self.stepped != 0.0
     }
 
     /// Steps towards a command.
     fn step(&mut self, command: f64, limit: f64) {
         let step = command - self.reached;
-        let limited = step.clamp(-limit, limit);
-        self.reached = if step == limited { command } else { self.reached + limited };
-        self.load = self.origin + self.reached;
+        self.stepped = step.clamp(-limit, limit);
+        self.reached = if step == self.stepped { command } else { self.reached + self.stepped };
+        if self.is_off {
+            self.origin = self.load - self.reached;
+        } else {
+            self.load = self.origin + self.reached;
+        }
+    }
+
+    /// Position units that the step generator has put out since the last time.
+    pub(crate) fn take_stepped(&mut self) -> f64 {
+        std::mem::take(&mut self.stepped)
+    }
+
+    /// Switches the amplifier behind the step generator on or off; without it the steps are lost.
+    pub(crate) fn set_amplifier(&mut self, is_on: bool) {
+        self.is_off = !is_on;
     }
 
     /// Follows a command with a lag.
@@ -266,6 +285,17 @@ mod tests {
         let mut plant = Plant::default();
         plant.step(100.0, 30.0);
         assert_eq!(plant.load, 30.0);
+    }
+
+    #[test]
+    fn steps_are_lost_while_the_amplifier_is_off() {
+        let mut plant = Plant::default();
+        for (is_on, command, expect) in [(true, 10.0, 10.0), (false, 30.0, 10.0), (true, 35.0, 15.0)] {
+            plant.set_amplifier(is_on);
+            plant.step(command, 100.0);
+            assert_eq!(plant.load, expect, "{command}");
+        }
+        assert_eq!(plant.take_stepped(), 5.0);
     }
 
     #[test]

@@ -15,6 +15,7 @@ use vm::memory::GuestMemory;
 pub(crate) use axis::{Drive, Plant};
 pub(crate) use motor::Applied;
 
+use crate::device::konnect::Port;
 use crate::device::outside::wire::Wire as Line;
 use crate::firmware::io::bit_state;
 use crate::kernel::Kernel;
@@ -24,6 +25,10 @@ use crate::machine_file::{
 use crate::servo::TIMEBASE;
 use crate::stimulus::conversion;
 use crate::views::Typed;
+
+/// Opto inputs of a SnapAmp, and the first of each board.
+const OPTOS: i32 = 8;
+const FIRST_OPTOS: [i32; 2] = [72, 104];
 
 /// Something that makes contact along an axis.
 #[derive(Clone, Copy, Debug)]
@@ -122,11 +127,23 @@ pub(crate) fn install(kernel: &mut Kernel, machine: &MachineFile) {
         kernel.servo.plants[spindle.axis.index()] = Plant::new(&load);
     }
     kernel.mechanics = Mechanics::new(machine);
-    (0..machine.snapamps).for_each(|board| kernel.snapamps.connect(board));
+    (0..machine.snapamps).for_each(|board| connect_snapamp(kernel, board));
+    kernel.servo.needs_enable = machine.has_kstep && machine.respect_enable;
+    for (port, present) in [(Port::Aux0, machine.konnects[0]), (Port::Aux1, machine.konnects[1])] {
+        kernel.konnects.set_present(port, present);
+    }
+    kernel.files_latency = Cycles::new((machine.disk_latency_s * Cycles::PER_SECOND.get() as f64) as i64);
     kernel.hints = machine.hints;
     for &bit in &machine.idle_high {
         kernel.pins.idle_high(bit);
     }
+}
+
+/// Puts a SnapAmp on the bus. Its opto inputs read 1 while no current flows.
+pub(crate) fn connect_snapamp(kernel: &mut Kernel, board: usize) {
+    kernel.snapamps.connect(board);
+    let Some(first) = FIRST_OPTOS.get(board) else { return };
+    (*first..first + OPTOS).filter_map(Bit::new).for_each(|bit| kernel.pins.idle_high(bit));
 }
 
 /// What a machine does by itself: its wires and devices, and its events.

@@ -10,10 +10,14 @@ use vm::memory::GuestMemory;
 use crate::plant::Plant;
 use crate::views::{AxisView, Typed};
 
-/// Takes the position from the axis' input.
-pub(crate) fn measure(plants: &mut [Plant; N_CHANNELS], memory: &mut GuestMemory, axis: AxisId) {
+/// Takes the position from the axis' input. An encoder that has counted is told: its channel and register.
+pub(crate) fn measure(
+    plants: &mut [Plant; N_CHANNELS],
+    memory: &mut GuestMemory,
+    axis: AxisId,
+) -> Option<(usize, i8)> {
     match InputMode::new(AxisView::of(memory, axis).get(Chan::INPUT_MODE)) {
-        Some(InputMode::Encoder) => count(plants, memory, axis),
+        Some(InputMode::Encoder) => return count(plants, memory, axis),
         Some(InputMode::Adc) => {
             let input = f64::from(converted(memory, memory.axis(axis, Chan::INPUT_CHAN0)));
             let mut chan = AxisView::of(memory, axis);
@@ -28,17 +32,18 @@ pub(crate) fn measure(plants: &mut [Plant; N_CHANNELS], memory: &mut GuestMemory
         }
         Some(InputMode::None | InputMode::User) | None => {}
     }
+    None
 }
 
 /// Adds what the encoder's register has counted since the last tick.
 #[inline]
-fn count(plants: &mut [Plant; N_CHANNELS], memory: &mut GuestMemory, axis: AxisId) {
+fn count(plants: &mut [Plant; N_CHANNELS], memory: &mut GuestMemory, axis: AxisId) -> Option<(usize, i8)> {
     let mut chan = AxisView::of(memory, axis);
     let gain = f64::from(chan.get(Chan::INPUT_GAIN0));
     let channel = chan.get(Chan::INPUT_CHAN0);
     let count = if channel != i32::from(axis.get()) && chan.get(Chan::OUTPUT_MODE) == OutputMode::None.get() {
         // An axis without a motor watches somebody else's encoder.
-        let Some(other) = AxisId::new(channel) else { return };
+        let other = AxisId::new(channel)?;
         let gain = f64::from(memory.axis(other, Chan::INPUT_GAIN0));
         chan = AxisView::of(memory, axis);
         plants[other.index()].encoder(gain)
@@ -46,12 +51,14 @@ fn count(plants: &mut [Plant; N_CHANNELS], memory: &mut GuestMemory, axis: AxisI
         plants[axis.index()].encoder(gain)
     };
     let moved = count.wrapping_sub(chan.get(Chan::LAST_ENC));
-    if moved != 0 {
-        chan.set(Chan::LAST_ENC, count);
-        let position = chan.get(Chan::POSITION) + gain * f64::from(moved);
-        chan.set(Chan::POSITION, position);
-        plants[axis.index()].note_position(position);
+    if moved == 0 {
+        return None;
     }
+    chan.set(Chan::LAST_ENC, count);
+    let position = chan.get(Chan::POSITION) + gain * f64::from(moved);
+    chan.set(Chan::POSITION, position);
+    plants[axis.index()].note_position(position);
+    Some((usize::try_from(channel).ok()?, count))
 }
 
 /// An analog input, −2048 to 2047; 0 for a channel that does not exist.

@@ -33,18 +33,23 @@ pub(crate) mod trajectory;
 use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::modes::OutputMode;
 use kmotiondef::structs::Chan;
-use kmotiondef::{AxisId, Cycles};
+use kmotiondef::{AxisId, Bit, Cycles};
 use vm::firmware::TickContext;
 use vm::memory::GuestMemory;
 
+use crate::device::stepgen::generator_of;
 use crate::kernel::Kernel;
 use crate::plant::{self, Plant};
 use crate::servo::still::Stillness;
-use crate::views::AxisView;
+use crate::views::{AxisView, Typed};
 
 pub(crate) use duration::duration;
 pub(crate) use output::{four_phase, switch_off, three_phase};
 pub(crate) use profile::TIMEBASE;
+
+/// Step generators of a KStep, from 0 on, and the bit that enables its amplifiers.
+const ON_KSTEP: usize = 4;
+const KSTEP_ENABLE: i32 = 45;
 
 /// What the servo remembers of an axis beside its structure.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -74,6 +79,8 @@ pub(crate) struct Servo {
     pub(crate) coordinated: coordinated::Coordinated,
     pub(crate) still: Stillness,
     pub(crate) stop_request: limits::StopRequest,
+    /// Whether motors on the first four step generators need the enable signal of a KStep.
+    pub(crate) needs_enable: bool,
 }
 
 impl Servo {
@@ -96,6 +103,7 @@ pub(crate) fn tick(kernel: &mut Kernel, context: &mut TickContext<'_>) -> bool {
     let memory = &mut *context.memory;
     let is_driven = plant::drive(kernel, memory, context.now);
     let turned = spindle::measure(memory);
+    let stepped = kernel.stepgens.is_driven() && run_generators(kernel, memory, context.now);
     let has_path = !kernel.servo.coordinated.is_idle(memory);
     let moved = if has_path || !kernel.servo.still.lasts(memory) {
         run_axes(kernel, memory, context.now)
@@ -103,7 +111,34 @@ pub(crate) fn tick(kernel: &mut Kernel, context: &mut TickContext<'_>) -> bool {
         plant::signal(kernel, context.now);
         false
     };
-    is_driven | turned | moved | recorder::sample(memory)
+    is_driven | turned | stepped | moved | recorder::sample(memory)
+}
+
+/// Runs the step generators that programs drive by themselves, and what is connected to them: the axis that names a
+/// generator as its output, or else the one of its number.
+fn run_generators(kernel: &mut Kernel, memory: &GuestMemory, now: Cycles) -> bool {
+    let moved = kernel.stepgens.run(TIMEBASE, &mut kernel.pins, now);
+    let is_off = amplifiers_are_off(kernel);
+    for (generator, steps) in moved.into_iter().enumerate().filter(|(_, steps)| *steps != 0.0) {
+        let names = |axis: &AxisId| {
+            let mode = OutputMode::new(memory.axis(*axis, Chan::OUTPUT_MODE));
+            matches!(mode, Some(OutputMode::StepDir | OutputMode::ClosedLoopStepDir))
+                && generator_of(memory.axis(*axis, Chan::OUTPUT_CHAN0)) == generator
+        };
+        let axis = AxisId::all().find(names).or_else(|| AxisId::new(generator as i32));
+        let Some(axis) = axis.filter(|_| !is_off || generator >= ON_KSTEP) else { continue };
+        let gain = f64::from(memory.axis(axis, Chan::OUTPUT_GAIN));
+        if gain != 0.0 {
+            kernel.servo.push(axis, steps / gain);
+        }
+    }
+    true
+}
+
+/// Whether the amplifiers of a KStep wait for their enable signal.
+fn amplifiers_are_off(kernel: &Kernel) -> bool {
+    kernel.servo.needs_enable
+        && !Bit::new(KSTEP_ENABLE).is_some_and(|bit| kernel.pins.is_output(bit) && kernel.pins.level(bit))
 }
 
 /// One tick of all axes; whether anything changed.
@@ -111,9 +146,18 @@ fn run_axes(kernel: &mut Kernel, memory: &mut GuestMemory, now: Cycles) -> bool 
     kernel.servo.still.begin(memory);
     let mut changed = false;
     let mut has_slaves = false;
+    let is_off = amplifiers_are_off(kernel);
     for axis in AxisId::all() {
         let chan = AxisView::of(memory, axis);
-        changed |= kernel.servo.plants[axis.index()].advance(&chan);
+        let plant = &mut kernel.servo.plants[axis.index()];
+        if kernel.servo.needs_enable {
+            plant.set_amplifier(!is_off || generator_of(chan.get(Chan::OUTPUT_CHAN0)) >= ON_KSTEP);
+        }
+        if plant.advance(&chan) {
+            changed = true;
+            let steps = plant.take_stepped() * f64::from(chan.get(Chan::OUTPUT_GAIN));
+            kernel.stepgens.step(axis, steps, &mut kernel.pins, now);
+        }
         if chan.get(Chan::ENABLE) != 0 {
             has_slaves |= chan.get(Chan::MASTER_AXIS) >= 0;
             if !chan.get(Chan::PCOEFF).is_null() {
@@ -139,12 +183,15 @@ fn run_axes(kernel: &mut Kernel, memory: &mut GuestMemory, now: Cycles) -> bool 
 
 /// Position, protection, compensation and output of one axis; whether it moves or is told something.
 fn run_axis(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId) -> bool {
-    input::measure(&mut kernel.servo.plants, memory, axis);
+    if let Some((channel, count)) = input::measure(&mut kernel.servo.plants, memory, axis) {
+        kernel.encoders.count(channel, count, &mut kernel.pins, kernel.tick_start);
+    }
     let (own, plant) = (&mut kernel.servo.axes[axis.index()], &mut kernel.servo.plants[axis.index()]);
     let mut chan = AxisView::of(memory, axis);
     let moves = direction(own, &mut chan);
     if chan.get(Chan::ENABLE) == 0 {
         plant.release();
+        kernel.stepgens.release(axis, &mut kernel.pins, kernel.tick_start);
         return moves;
     }
     backlash::advance(&mut chan);

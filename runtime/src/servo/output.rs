@@ -26,8 +26,18 @@ pub(crate) fn drive(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId,
     let chan = AxisView::of(memory, axis);
     let channel = chan.get(Chan::OUTPUT_CHAN0);
     let mode = OutputMode::new(chan.get(Chan::OUTPUT_MODE));
+    if matches!(mode, Some(OutputMode::StepDir | OutputMode::ClosedLoopStepDir)) {
+        kernel.stepgens.claim(axis, channel, &mut kernel.pins, kernel.tick_start);
+    } else {
+        kernel.stepgens.release(axis, &mut kernel.pins, kernel.tick_start);
+    }
+    let is_faulted = kernel.snapamps.is_present() && kernel.snapamps.is_off(channel, kernel.tick_start);
     kernel.servo.plants[axis.index()].drive = match mode {
         None | Some(OutputMode::None) => Drive::None,
+        // The bridges of a SnapAmp that has a fault are off.
+        Some(OutputMode::DcServo | OutputMode::Brushless3Ph | OutputMode::Brushless4Ph) if is_faulted => {
+            Drive::None
+        }
         Some(OutputMode::StepDir | OutputMode::Microstep) => Drive::Steps(command),
         // The load is where the axis' command is; the correction is for real mechanics.
         Some(OutputMode::ClosedLoopStepDir | OutputMode::ClosedLoopMicrostep) => Drive::Steps(command),

@@ -1,5 +1,7 @@
 //! What a statement does.
 
+use std::sync::Arc;
+
 use kmotiondef::{AxisId, Bit, Cycles, ThreadId};
 
 use super::Wave;
@@ -22,12 +24,18 @@ pub enum Action {
     Push(AxisId, f64),
     /// Turns the encoder of an axis by counts, over a time.
     Turn(AxisId, f64, Cycles),
+    /// Both phases of an encoder input change at once, which its error bit keeps.
+    EncoderError(usize),
     /// Sends characters to the UART, at its rate.
     Uart(Vec<u8>),
     /// Stores an element of `persist.UserData`.
     Persist(usize, i32),
     /// Executes the program of a thread, as the PC does.
     Start(ThreadId),
+    /// Loads a program of this name into a thread and executes it, as the PC does.
+    Run(ThreadId, Arc<str>),
+    /// What the PC answers next, as `key=value`.
+    Answer(String),
     /// Sends a script command, as the PC does.
     Command(String),
     /// Stops a thread, as the PC does.

@@ -38,6 +38,8 @@ pub(crate) use wave::conversion;
 use std::fmt;
 use std::sync::Arc;
 
+use kmotiondef::ThreadId;
+
 /// Where a statement stands.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Place {
@@ -85,6 +87,14 @@ impl Stimulus {
     /// Adds the statements of another one behind these.
     pub fn extend(&mut self, other: Self) {
         self.rules.extend(other.rules);
+    }
+
+    /// Programs that it loads while it is played, each with its thread.
+    pub fn programs(&self) -> impl Iterator<Item = (ThreadId, &Arc<str>)> {
+        self.rules.iter().filter_map(|rule| match &rule.action {
+            Action::Run(thread, name) => Some((*thread, name)),
+            _ => None,
+        })
     }
 
     /// Whether it does nothing.

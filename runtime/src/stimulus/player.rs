@@ -16,7 +16,7 @@ use crate::device::changes::BitChange;
 use crate::device::kanalog::ADC_CHANNELS;
 use crate::event::EventKind;
 use crate::firmware::io::{bit_state, write_bit};
-use crate::kernel::Kernel;
+use crate::kernel::{Kernel, Request};
 use crate::views::Typed;
 
 /// Inputs of Kanalog.
@@ -95,6 +95,14 @@ impl Player {
         }
     }
 
+    /// Bits whose changes statements wait for.
+    pub(crate) fn watched(&self) -> impl Iterator<Item = Bit> {
+        self.rules.iter().filter_map(|rule| match &rule.trigger {
+            Trigger::When { condition: Condition::Bit(bit, _), .. } => Some(*bit),
+            _ => None,
+        })
+    }
+
     fn plan(&mut self, at: Cycles, due: Due) {
         self.due.insert((at, self.count), due);
         self.count += 1;
@@ -108,7 +116,9 @@ impl Player {
     /// Whether a thread is still to be started or a command to be sent, so that the run must go on.
     pub(crate) fn is_busy(&self) -> bool {
         self.due.values().any(|due| match due {
-            Due::Rule(index) => matches!(self.rules[*index].action, Action::Start(_) | Action::Command(_)),
+            Due::Rule(index) => {
+                matches!(self.rules[*index].action, Action::Start(_) | Action::Run(..) | Action::Command(_))
+            }
             Due::Level(..) => false,
         })
     }
@@ -218,6 +228,7 @@ impl Player {
             }
             Action::Adc(channel, wave) => self.waves[channel] = Some((wave, now)),
             Action::Push(axis, units) => kernel.servo.push(axis, units),
+            Action::EncoderError(channel) => kernel.encoders.fail(channel),
             Action::Turn(axis, counts, over) => {
                 self.turning.push(Turning { axis, counts, begun: now, over, turned: 0.0 });
             }
@@ -230,6 +241,11 @@ impl Player {
                     let text = format!("{}: thread {thread} holds no program", self.rules[index].place);
                     kernel.tell(now, EventKind::Diagnostic(text));
                 }
+            }
+            Action::Run(thread, name) => kernel.ask(Request::Run(thread, name)),
+            Action::Answer(setting) => {
+                let taken = kernel.host.answer_next(&setting);
+                debug_assert!(taken.is_ok(), "it was checked when it was read");
             }
             // No echo is wanted.
             Action::Command(line) => kernel.usb.receive(format!("\u{1b}.{line}\r").as_bytes()),
@@ -333,7 +349,7 @@ fn announce(action: &Action, kernel: &mut Kernel, memory: &mut GuestMemory) {
     }
     match action {
         Action::SnapAmp(board, ..) => {
-            kernel.snapamps.connect(*board);
+            crate::plant::connect_snapamp(kernel, *board);
             memory.set(SNAP_AMP_PRESENT, 1);
         }
         Action::Set(bit, _) | Action::Toggle(bit) | Action::Pulse(bit, _) => kernel.pins.declare(*bit),

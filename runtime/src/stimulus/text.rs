@@ -8,8 +8,10 @@ use kmotiondef::{AxisId, Bit, Cycles, ThreadId};
 
 use super::tokens::{Mistake, Token, TokenKind, tokens};
 use crate::device::attached::DeviceSpec;
+use crate::device::encoder::CHANNELS;
 use crate::device::konnect::{Board, Port};
 use crate::device::snapamp::{Quantity, Side};
+use crate::host::Answers;
 
 use super::{Action, Condition, Edge, Expectation, Place, Rule, Trigger, Wave};
 
@@ -303,7 +305,15 @@ impl Reader<'_> {
                 Action::Push(axis, self.number("a distance")?)
             }
             "encoder" => {
-                let axis = self.axis()?;
+                let column = self.column();
+                let channel = self.index("an encoder input from 0 to 15", |channel| {
+                    usize::try_from(channel).ok().filter(|&channel| channel < CHANNELS)
+                })?;
+                if self.accept("fails") {
+                    return Ok(Action::EncoderError(channel));
+                }
+                let axis = AxisId::new(channel as i32)
+                    .ok_or_else(|| (column, "only encoders 0 to 7 can be moved".to_owned()))?;
                 self.expect("moves")?;
                 let counts = self.number("a number of counts")?;
                 Action::Turn(axis, counts, if self.accept("in") { self.time()? } else { Cycles::default() })
@@ -330,6 +340,17 @@ impl Reader<'_> {
             "device" => Action::Attach(self.device()?),
             "command" => Action::Command(self.string()?),
             "start" => Action::Start(self.thread()?),
+            "run" => {
+                let thread = self.thread()?;
+                Action::Run(thread, self.string()?.into())
+            }
+            "answer" => {
+                let column = self.column();
+                let setting = self.string()?;
+                let known = Answers::default().set(&setting);
+                known.map_err(|error| (column, error.to_string()))?;
+                Action::Answer(setting)
+            }
             "stop" | "kill" => Action::Kill(self.thread()?),
             _ => Action::Expect(self.expectation()?),
         })
@@ -339,12 +360,12 @@ impl Reader<'_> {
     fn advance_over(&mut self, word: &str) -> Result<(), Mistake> {
         const ACTIONS: &[&str] = &[
             "set", "clear", "toggle", "pulse", "adc", "axis", "encoder", "uart", "persist", "konnect",
-            "snapamp", "device", "command", "start", "stop", "kill", "expect",
+            "snapamp", "device", "command", "start", "run", "answer", "stop", "kill", "expect",
         ];
         if !ACTIONS.contains(&word) {
             return self.expected(
                 "`bit`, `set`, `clear`, `toggle`, `pulse`, `adc`, `axis`, `encoder`, `uart`, `persist`, `konnect`, \
-                 `snapamp`, `device`, `command`, `start`, `stop` or `expect`",
+                 `snapamp`, `device`, `command`, `start`, `run`, `answer`, `stop` or `expect`",
             );
         }
         self.advance();
@@ -537,6 +558,9 @@ mod tests {
             ("axis 0 push 100", "At(Cycles(0)) Push(AxisId(0), 100.0)"),
             ("encoder 3 moves -40 in 0.5s", "At(Cycles(0)) Turn(AxisId(3), -40.0, Cycles(100000000))"),
             ("at 1 start thread 2", "At(Cycles(200000000)) Start(ThreadId(2))"),
+            ("run thread 3 \"jog.c\"", "At(Cycles(0)) Run(ThreadId(3), \"jog.c\")"),
+            ("answer \"msgbox=no\"", "At(Cycles(0)) Answer(\"msgbox=no\")"),
+            ("at 1s encoder 9 fails", "At(Cycles(200000000)) EncoderError(9)"),
             ("persist 10 = 0xFFFFFFFF", "At(Cycles(0)) Persist(10, -1)"),
             ("expect not printed \"x\"", "End Expect(Printed(\"x\", false))"),
             ("kill 2; # no more", "At(Cycles(0)) Kill(ThreadId(2))"),
@@ -573,6 +597,11 @@ mod tests {
             ("at end set bit 1", "x.stim:1:17: at the end there is only something to `expect`"),
             ("adc 8 = 0", "x.stim:1:5: expected an analog input from 0 to 7, found `8`"),
             ("bit 0=1; kill 8", "x.stim:1:15: expected a thread from 1 to 7, found `8`"),
+            (
+                "answer \"box=no\"",
+                "x.stim:1:8: there is no answer `box`; there are msgbox, input, mdi, request.N, var.N, tool.N.KIND, dro.AXIS, resolution.AXIS, cell.N, setup and job",
+            ),
+            ("encoder 8 moves 5", "x.stim:1:9: only encoders 0 to 7 can be moved"),
             ("uart 5", "x.stim:1:6: expected a text in \"…\", found `5`"),
             ("persist 200 = 1", "x.stim:1:9: expected an index from 0 to 199, found `200`"),
         ] {

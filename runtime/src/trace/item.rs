@@ -7,6 +7,7 @@ use kmotiondef::variables::{ADC_BUFFER_IN, DAC_BUFFER, LAST_PWM, PERSIST};
 use kmotiondef::{AxisId, Bit};
 use vm::memory::GuestMemory;
 
+use crate::device::konnect::{Board, Port};
 use crate::firmware::io::bit_state;
 use crate::kernel::Kernel;
 use crate::views::Typed;
@@ -52,6 +53,16 @@ const KINDS: &[Kind] = &[
         count: 8,
         read: |kernel, _, index| kernel.fpga.pwm(index as u32).unwrap_or_default().1,
     },
+    // Steps that a generator has made.
+    Kind { name: "step", count: 8, read: |kernel, _, index| kernel.stepgens.position(index) },
+    // The outputs of a Konnect board: 0 to 7 on JP6, 8 to 15 on JP4.
+    Kind { name: "konnect", count: 16, read: |kernel, _, index| konnect(kernel, index) },
+    // The analog output of a KStep, as part of its supply.
+    Kind {
+        name: "kstep_analog",
+        count: 1,
+        read: |kernel, _, _| kernel.fpga.kstep_output().level(kernel.tick_start),
+    },
     // An element of `persist.UserData`.
     Kind { name: "persist", count: 200, read: |_, memory, index| user_data(memory, index) },
 ];
@@ -68,6 +79,11 @@ fn bit(kernel: &Kernel, memory: &GuestMemory, index: usize) -> f64 {
 
 fn dac(_: &Kernel, memory: &GuestMemory, index: usize) -> f64 {
     f64::from((i32::from(memory.get(DAC_BUFFER.element(index))) & 0xfff) - 2048)
+}
+
+fn konnect(kernel: &Kernel, index: usize) -> f64 {
+    let port = if index < 8 { Port::Aux1 } else { Port::Aux0 };
+    kernel.konnects.outputs(Board { port, address: (index % 8) as u8 }).into()
 }
 
 fn user_data(memory: &GuestMemory, index: usize) -> f64 {
@@ -101,7 +117,9 @@ impl Item {
         let name = &name.replacen("persist.", "persist", 1);
         let letters = name.trim_end_matches(|character: char| character.is_ascii_digit());
         let kind = KINDS.iter().position(|kind| kind.name == letters);
-        let index = name[letters.len()..].parse().ok();
+        // What there is only one of has no number.
+        let is_single = kind.is_some_and(|kind| KINDS[kind].count == 1) && letters.len() == name.len();
+        let index = if is_single { Some(0) } else { name[letters.len()..].parse().ok() };
         if let (Some(kind), Some(index)) = (kind, index)
             && index < KINDS[kind].count
         {
@@ -111,7 +129,10 @@ impl Item {
         let known: Vec<_> = KINDS
             .iter()
             .filter(is_near)
-            .map(|kind| format!("{}0 to {0}{}", kind.name, kind.count - 1))
+            .map(|kind| match kind.count {
+                1 => kind.name.to_owned(),
+                count => format!("{}0 to {0}{}", kind.name, count - 1),
+            })
             .collect();
         Err(UnknownItem { name: name.clone(), known: known.join(", ") })
     }
@@ -147,6 +168,7 @@ impl Item {
         match self.kind() {
             "dest" | "pos" | "load" => "units",
             "adc" | "dac" => "counts",
+            "step" => "steps",
             "iopwmhz" => "Hz",
             _ => "",
         }
@@ -158,6 +180,11 @@ impl Item {
         (self.kind < 3).then_some(self.index)
     }
 
+    /// The bit it is, if it is one.
+    pub(crate) fn bit(self) -> Option<Bit> {
+        Bit::new(i32::try_from(self.index).ok()?).filter(|_| self.kind() == "bit")
+    }
+
     pub(crate) fn read(self, kernel: &Kernel, memory: &GuestMemory) -> f64 {
         (KINDS[self.kind].read)(kernel, memory, self.index)
     }
@@ -165,7 +192,10 @@ impl Item {
 
 impl fmt::Display for Item {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(formatter, "{}{}", KINDS[self.kind].name, self.index)
+        match KINDS[self.kind] {
+            Kind { name, count: 1, .. } => formatter.write_str(name),
+            Kind { name, .. } => write!(formatter, "{name}{}", self.index),
+        }
     }
 }
 
@@ -175,10 +205,12 @@ mod tests {
 
     #[test]
     fn names_are_read_and_written() {
-        for name in ["dest0", "bit2047", "iopwm7", "iopwmhz0", "persist199"] {
+        for name in
+            ["dest0", "bit2047", "iopwm7", "iopwmhz0", "persist199", "step7", "konnect15", "kstep_analog"]
+        {
             assert_eq!(Item::new(name).map(|item| item.to_string()).as_deref(), Ok(name));
         }
-        for name in ["dest8", "dest", "0", "", "speed0", "bit2048", "bit-1", "é0"] {
+        for name in ["dest8", "dest", "0", "", "speed0", "bit2048", "bit-1", "é0", "kstep_analog1"] {
             assert_eq!(Item::new(name).map_err(|error| error.name), Err(name.to_owned()));
         }
     }

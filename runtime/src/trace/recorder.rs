@@ -4,7 +4,7 @@ use kmotiondef::structs::Chan;
 use kmotiondef::{AxisId, Ticks};
 use vm::memory::GuestMemory;
 
-use super::{Record, Request};
+use super::{Quantity, Record, Request};
 use crate::kernel::Kernel;
 use crate::views::Typed;
 
@@ -24,6 +24,11 @@ impl Recorder {
     /// Whether levels and slices are recorded.
     pub(crate) fn records_changes(&self) -> bool {
         self.request.changes
+    }
+
+    /// Whether an item is sampled.
+    pub(crate) fn samples(&self, name: &str) -> bool {
+        self.request.quantities.iter().filter_map(Quantity::item).any(|item| item.kind() == name)
     }
 
     /// The last tick of `count` up to and with `tick` that is sampled, if there is one.

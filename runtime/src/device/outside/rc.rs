@@ -1,7 +1,8 @@
 //! A resistor and a capacitor behind outputs: the voltage is exact between edges, and an analog input sees it.
 //!
 //! `high` alone drives the resistor to the supply and to ground; with `low` beside it each output only drives one way,
-//! and the capacitor keeps its voltage while neither does. With `konnect` the two are outputs 0 to 15 of that board.
+//! and the capacitor keeps its voltage while neither does. With `konnect` the two are outputs 0 to 15 of that board. An
+//! output that carries a pulse width signal is followed edge by edge.
 
 use kmotiondef::{Bit, Cycles};
 
@@ -111,6 +112,10 @@ impl Attached for Filter {
         self.advance(now);
         self.shown = conversion(self.voltage * COUNTS_PER_VOLT);
         outside.kanalog.drive(self.adc, self.shown);
+    }
+
+    fn watches(&self, bit: Bit) -> bool {
+        matches!(self.driver, Driver::Bits { high, low } if bit == high || Some(bit) == low)
     }
 
     fn is_settled(&self) -> bool {

@@ -64,9 +64,13 @@ impl Attached for Resolver {
         }
     }
 
+    fn watches(&self, bit: Bit) -> bool {
+        bit == self.drive
+    }
+
     fn tick(&mut self, now: Cycles, outside: &mut Outside<'_>) {
         self.advance(now);
-        let angle = outside.plants[self.axis.index()].load / self.turn * std::f64::consts::TAU;
+        let angle = outside.servo.plants[self.axis.index()].load / self.turn * std::f64::consts::TAU;
         let level = self.amplitude * self.field;
         outside.kanalog.drive(self.sine, conversion(level * libm::sin(angle)));
         outside.kanalog.drive(self.cosine, conversion(level * libm::cos(angle)));
@@ -84,7 +88,7 @@ mod tests {
     #[test]
     fn windings_show_the_angle_of_the_load() {
         let mut bench = Bench::new("resolver drive=30 sine=0 cosine=1 amplitude=1000");
-        bench.plants[0].push(125.0);
+        bench.servo.plants[0].push(125.0);
         for (level, at, expect) in [(true, 1000, 707), (false, 2000, -707)] {
             bench.output(30, level, at);
             bench.tick(at + 500);

@@ -109,6 +109,10 @@ impl Attached for Spi {
             self.show(change, outside);
         }
     }
+
+    fn watches(&self, bit: Bit) -> bool {
+        bit == self.select || bit == self.clock || Some(bit) == self.input
+    }
 }
 
 #[cfg(test)]

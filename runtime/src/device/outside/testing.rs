@@ -1,6 +1,5 @@
 //! A bench for one device: pins, port and UART without a kernel.
 
-use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::variables::ADC_BUFFER_IN;
 use kmotiondef::{Bit, Cycles};
 use vm::memory::GuestMemory;
@@ -10,7 +9,7 @@ use crate::device::fpga::Fpga;
 use crate::device::kanalog::Kanalog;
 use crate::device::pins::Pins;
 use crate::device::uart::Uart;
-use crate::plant::Plant;
+use crate::servo::Servo;
 use crate::views::Typed;
 
 /// A device and what it can reach.
@@ -20,7 +19,7 @@ pub(crate) struct Bench {
     pub(crate) kanalog: Kanalog,
     pub(crate) uart: Uart,
     pub(crate) fpga: Fpga,
-    pub(crate) plants: [Plant; N_CHANNELS],
+    pub(crate) servo: Servo,
     memory: GuestMemory,
 }
 
@@ -43,7 +42,7 @@ impl Bench {
             kanalog: Kanalog::default(),
             uart: Uart::default(),
             fpga: Fpga::default(),
-            plants: Default::default(),
+            servo: Servo::default(),
             memory: GuestMemory::new(),
         };
         bench.pins.changes.switch_on(&bench.memory);
@@ -56,7 +55,7 @@ impl Bench {
             kanalog: &mut self.kanalog,
             uart: &mut self.uart,
             fpga: &self.fpga,
-            plants: &self.plants,
+            servo: &mut self.servo,
         };
         work(&mut *self.device, &mut outside)
     }

@@ -68,6 +68,10 @@ impl Attached for Wire {
         }
     }
 
+    fn watches(&self, bit: Bit) -> bool {
+        bit == self.from
+    }
+
     fn is_settled(&self) -> bool {
         self.late.is_empty() && self.is_connected
     }

@@ -1,0 +1,180 @@
+//! Encoder inputs: eight-bit counters, the phases on their pins, and the errors that noise has caused.
+//!
+//! The counters are turned by the loads; here is what programs can see of them beside `Position`. An encoder that no
+//! axis reads shows nothing, so its pins are free for other inputs. Sources: io.md sections 5 and 7, devices.md
+//! section 5.
+
+use kmotiondef::{Bit, Cycles};
+
+use super::pins::Pins;
+
+/// Channels: eight of the board, four of each SnapAmp.
+pub(crate) const CHANNELS: usize = 16;
+/// Those of the board, and those of a group whose pins move together.
+const ON_BOARD: usize = 8;
+const GROUP: usize = 4;
+
+/// First pins of channels 0 and 4: where they are at power-up, and where a bit of the filter's register moves them.
+const PINS: [[u16; 2]; 2] = [[0, 16], [36, 26]];
+/// The bits that do: JP4 in place of JP7, JP6 in place of JP5.
+const MOVED: [u16; 2] = [1 << 9, 1 << 8];
+
+/// The error of encoder 0 in the register of errors.
+const FIRST_ERROR: u32 = 4;
+/// The error in a SnapAmp's word.
+const SNAP_ERROR: u16 = 1 << 15;
+
+/// All encoder inputs.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Encoders {
+    counts: [i8; CHANNELS],
+    /// Channels that an axis reads, channel 0 lowest.
+    used: u16,
+    errors: u16,
+    /// The register that filters them and says which pins they are on.
+    filter: u16,
+}
+
+/// The levels A and B of a count: one edge for each step.
+fn phases(count: i8) -> [bool; 2] {
+    let step = count & 3;
+    [step == 1 || step == 2, step >= 2]
+}
+
+impl Encoders {
+    /// The first pin of a channel; `None` for those of SnapAmps.
+    fn pin(&self, channel: usize) -> Option<u16> {
+        let group = channel / GROUP;
+        let places = PINS.get(group)?;
+        let place = usize::from(self.filter & MOVED.get(group)? != 0);
+        Some(places[place] + 2 * (channel % GROUP) as u16)
+    }
+
+    /// A counter has a new value.
+    pub(crate) fn count(&mut self, channel: usize, count: i8, pins: &mut Pins, now: Cycles) {
+        if let Some(held) = self.counts.get_mut(channel) {
+            *held = count;
+            self.used |= 1 << channel;
+            self.show(channel, phases(count), pins, now);
+        }
+    }
+
+    fn show(&self, channel: usize, levels: [bool; 2], pins: &mut Pins, now: Cycles) {
+        let Some(first) = self.pin(channel) else { return };
+        for (pin, level) in (i32::from(first)..).zip(levels) {
+            if let Some(bit) = Bit::new(pin) {
+                pins.show_phase(bit, level, now);
+            }
+        }
+    }
+
+    /// Sets the filter; its upper bits move the inputs to other pins. The filter itself has nothing to do here.
+    pub(crate) fn set_filter(&mut self, filter: u16, pins: &mut Pins, now: Cycles) {
+        if filter == self.filter {
+            return;
+        }
+        let channels = (0..ON_BOARD).filter(|channel| self.used >> channel & 1 != 0).collect::<Vec<_>>();
+        for &channel in &channels {
+            self.show(channel, [false; 2], pins, now);
+        }
+        self.filter = filter;
+        for &channel in &channels {
+            self.show(channel, phases(self.counts[channel]), pins, now);
+        }
+    }
+
+    /// Both phases of an input have changed at once.
+    pub(crate) fn fail(&mut self, channel: usize) {
+        if channel < CHANNELS {
+            self.errors |= 1 << channel;
+        }
+    }
+
+    /// The register of errors.
+    pub(crate) fn errors(&self) -> u8 {
+        (self.errors << FIRST_ERROR) as u8
+    }
+
+    /// Clears the errors in it.
+    pub(crate) fn clear_errors(&mut self) {
+        self.errors &= !0xf;
+    }
+
+    /// First channel of a SnapAmp.
+    fn of_snapamp(board: usize) -> usize {
+        ON_BOARD + GROUP * board
+    }
+
+    /// The word of one of a SnapAmp's encoders: count and error.
+    pub(crate) fn snap_word(&self, board: usize, encoder: usize) -> u16 {
+        let channel = Self::of_snapamp(board) + encoder;
+        let count = self.counts.get(channel).copied().unwrap_or_default().cast_unsigned();
+        u16::from(count) | if self.errors >> channel & 1 != 0 { SNAP_ERROR } else { 0 }
+    }
+
+    /// Levels of a SnapAmp's encoder inputs, A of the first one lowest.
+    pub(crate) fn snap_levels(&self, board: usize) -> u8 {
+        let first = Self::of_snapamp(board);
+        let levels = (first..first + GROUP)
+            .flat_map(|channel| phases(self.counts.get(channel).copied().unwrap_or_default()));
+        (0..).zip(levels).fold(0, |byte, (index, level)| byte | u8::from(level) << index)
+    }
+
+    /// Clears the errors of a SnapAmp.
+    pub(crate) fn clear_snap_errors(&mut self, board: usize) {
+        self.errors &= !(0xf << Self::of_snapamp(board));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn levels(pins: &Pins, first: i32) -> [bool; 2] {
+        [first, first + 1].map(|number| pins.level(Bit::new(number).expect("a bit")))
+    }
+
+    #[test]
+    fn counts_show_as_phases_and_move_with_the_filters_upper_bits() {
+        let (mut encoders, mut pins) = (Encoders::default(), Pins::default());
+        for (count, expect) in [
+            (0, [false, false]),
+            (1, [true, false]),
+            (2, [true, true]),
+            (3, [false, true]),
+            (-1, [false, true]),
+        ] {
+            encoders.count(1, count, &mut pins, Cycles::default());
+            assert_eq!(levels(&pins, 2), expect, "{count}");
+        }
+        encoders.set_filter(7 | 1 << 9, &mut pins, Cycles::default());
+        assert_eq!((levels(&pins, 2), levels(&pins, 18)), ([false; 2], [false, true]));
+        encoders.count(5, 2, &mut pins, Cycles::default());
+        assert_eq!(levels(&pins, 38), [true, true]);
+        encoders.set_filter(7 | 1 << 8, &mut pins, Cycles::default());
+        assert_eq!((levels(&pins, 2), levels(&pins, 28)), ([false, true], [true, true]));
+    }
+
+    #[test]
+    fn an_input_that_something_drives_shows_no_phase() {
+        let (mut encoders, mut pins) = (Encoders::default(), Pins::default());
+        pins.drive(Bit::new(0).expect("a bit"), false, Cycles::default());
+        encoders.count(0, 2, &mut pins, Cycles::default());
+        assert_eq!(levels(&pins, 0), [false, true]);
+    }
+
+    #[test]
+    fn errors_last_until_they_are_cleared() {
+        let mut encoders = Encoders::default();
+        for channel in [0, 3, 9, 15, 16] {
+            encoders.fail(channel);
+        }
+        assert_eq!(
+            (encoders.errors(), encoders.snap_word(0, 1), encoders.snap_word(1, 3)),
+            (0x90, 0x8000, 0x8000)
+        );
+        encoders.clear_errors();
+        encoders.clear_snap_errors(1);
+        assert_eq!((encoders.errors(), encoders.snap_word(0, 1), encoders.snap_word(1, 3)), (0, 0x8000, 0));
+    }
+}

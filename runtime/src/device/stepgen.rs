@@ -1,0 +1,369 @@
+//! The eight step generators: how many steps each has made, and the pins it claims.
+//!
+//! An enabled axis in a step mode owns its generator; a program that writes the rate register drives one itself.
+//! Positions are kept per tick; the pulses of a tick are made only for pins that are watched, spread evenly over it.
+//! Sources: io.md sections 5 and 6, axes-and-motion.md section 11.
+
+use kmotiondef::{AxisId, Bit, Cycles};
+
+use super::pins::Pins;
+
+/// Generators.
+pub(crate) const GENERATORS: usize = 8;
+
+/// Step pins of the generators, and where a bit of the pulse register moves the first four; direction is the next pin.
+const STEP_PINS: [i32; GENERATORS] = [8, 10, 12, 14, 36, 38, 40, 42];
+const MOVED_PINS: [i32; 4] = [22, 24, 32, 34];
+
+/// Bits of the pulse register: length, other pins, other polarity.
+const LENGTH: u8 = 0x3f;
+const MOVED: u8 = 0x40;
+const INVERTED: u8 = 0x80;
+/// Length at power-up, in clocks.
+const START: u8 = 32;
+
+/// Bits of an axis' output channel: the generator, and two phases in place of step and direction.
+const GENERATOR_BITS: i32 = 7;
+const QUADRATURE: i32 = 16;
+
+/// Clocks in a second, processor cycles of one, and the unit of the rate register.
+const CLOCK: f64 = 50e6 / 3.0;
+const CLOCK_CYCLES: i64 = 12;
+const RATE_UNIT: f64 = CLOCK / (1 << 23) as f64;
+/// Fastest stepping, whatever the pulses' length.
+const FASTEST: f64 = 2.5e6;
+
+/// Fields of the rate register: signed rate, generator, enable.
+const RATE_BITS: u32 = 24;
+const ENABLE: u32 = 1 << 31;
+
+/// Parts of a step in the position register.
+const FRACTIONS: f64 = 128.0;
+
+/// One generator.
+#[derive(Clone, Copy, Debug, Default)]
+struct Generator {
+    /// Steps made since power-up.
+    position: f64,
+    /// Steps a second that a program has set.
+    rate: f64,
+    /// The axis that owns it, and whether its pins are two phases.
+    owner: Option<(AxisId, bool)>,
+    goes_back: bool,
+}
+
+/// All generators.
+#[derive(Clone, Debug)]
+pub(crate) struct StepGenerators {
+    generators: [Generator; GENERATORS],
+    /// The output channel by which each axis owns one.
+    channels: [Option<i32>; GENERATORS],
+    settings: u8,
+    /// Whether a program drives any.
+    is_driven: bool,
+}
+
+impl Default for StepGenerators {
+    fn default() -> Self {
+        Self {
+            generators: [Generator::default(); GENERATORS],
+            channels: [None; GENERATORS],
+            settings: START,
+            is_driven: false,
+        }
+    }
+}
+
+/// The generator that an output channel names.
+pub(crate) fn generator_of(channel: i32) -> usize {
+    (channel & GENERATOR_BITS) as usize
+}
+
+impl StepGenerators {
+    /// An axis steps on an output channel, whose pins become outputs.
+    #[inline]
+    pub(crate) fn claim(&mut self, axis: AxisId, channel: i32, pins: &mut Pins, now: Cycles) {
+        if self.channels[axis.index()] != Some(channel) {
+            self.release(axis, pins, now);
+            self.channels[axis.index()] = Some(channel);
+            let generator = generator_of(channel);
+            self.generators[generator].owner = Some((axis, channel & QUADRATURE != 0));
+            self.generators[generator].rate = 0.0;
+            self.drive(generator, pins, now);
+        }
+    }
+
+    /// An axis steps no longer.
+    #[inline]
+    pub(crate) fn release(&mut self, axis: AxisId, pins: &mut Pins, now: Cycles) {
+        let Some(channel) = self.channels[axis.index()].take() else { return };
+        let generator = generator_of(channel);
+        if self.generators[generator].owner.is_some_and(|(owner, _)| owner == axis) {
+            self.generators[generator].owner = None;
+            self.drive(generator, pins, now);
+        }
+    }
+
+    /// The pins of a generator: step and direction.
+    fn pins(&self, generator: usize) -> [Option<Bit>; 2] {
+        let moved = MOVED_PINS.get(generator).filter(|_| self.settings & MOVED != 0);
+        let step = moved.copied().unwrap_or(STEP_PINS[generator]);
+        [Bit::new(step), Bit::new(step + 1)]
+    }
+
+    /// Levels of both pins while no pulse is under way.
+    fn levels(&self, generator: usize) -> [bool; 2] {
+        let Generator { position, owner, goes_back, .. } = self.generators[generator];
+        let is_inverted = self.settings & INVERTED != 0;
+        if owner.is_some_and(|(_, is_quadrature)| is_quadrature) {
+            let step = (libm::floor(position + 0.5) as i64) & 3;
+            return [step == 1 || step == 2, step >= 2];
+        }
+        [!is_inverted, goes_back == is_inverted]
+    }
+
+    /// Gives the pins the levels they have between pulses, or leaves them to their latches.
+    fn drive(&self, generator: usize, pins: &mut Pins, now: Cycles) {
+        let Generator { owner, rate, .. } = self.generators[generator];
+        let is_on = owner.is_some() || rate != 0.0;
+        for (bit, level) in self.pins(generator).into_iter().zip(self.levels(generator)) {
+            let Some(bit) = bit else { continue };
+            pins.generate(bit, is_on.then_some(level), now);
+            if is_on {
+                pins.show(bit, level, now);
+            }
+        }
+    }
+
+    /// An axis has stepped in the tick that ends now.
+    pub(crate) fn step(&mut self, axis: AxisId, steps: f64, pins: &mut Pins, now: Cycles) {
+        if let Some(channel) = self.channels[axis.index()] {
+            self.advance(generator_of(channel), steps, pins, now);
+        }
+    }
+
+    /// Adds the steps of a tick, and makes their pulses for who watches them.
+    fn advance(&mut self, generator: usize, steps: f64, pins: &mut Pins, now: Cycles) {
+        let from = self.generators[generator].position;
+        self.generators[generator].position += steps;
+        let goes_back = steps < 0.0;
+        let start = now - Cycles::PER_TICK;
+        let Generator { owner, goes_back: went_back, .. } = self.generators[generator];
+        let is_quadrature = owner.is_some_and(|(_, is_quadrature)| is_quadrature);
+        if steps != 0.0 && went_back != goes_back {
+            self.generators[generator].goes_back = goes_back;
+            if !is_quadrature {
+                self.drive(generator, pins, start);
+            }
+        }
+        if pins.watches_any() {
+            self.pulse(generator, (from, from + steps), is_quadrature, pins, start);
+        }
+        if is_quadrature {
+            self.drive(generator, pins, now);
+        }
+    }
+
+    /// The edges of a tick's steps: one where the position passes the middle between two of them.
+    fn pulse(
+        &self,
+        generator: usize,
+        range: (f64, f64),
+        is_quadrature: bool,
+        pins: &mut Pins,
+        start: Cycles,
+    ) {
+        let (from, to) = range;
+        let (first, last) = (libm::floor(from + 0.5) as i64, libm::floor(to + 0.5) as i64);
+        let [Some(step), Some(direction)] = self.pins(generator) else { return };
+        if first == last || !pins.is_watched(step) && !pins.is_watched(direction) {
+            return;
+        }
+        let count = last.abs_diff(first) as i64;
+        let spacing = Cycles::PER_TICK.get() / count;
+        let length = i64::from((self.settings & LENGTH).max(1)) * CLOCK_CYCLES;
+        let idle = self.levels(generator)[0];
+        for index in 0..count {
+            let passed = if last > first { first + index } else { first - index - 1 };
+            let part = (passed as f64 + 0.5 - from) / (to - from);
+            let at = start + Cycles::new(libm::round(part * Cycles::PER_TICK.get() as f64) as i64);
+            if is_quadrature {
+                let now = (if last > first { passed + 1 } else { passed }) & 3;
+                pins.show(step, now == 1 || now == 2, at);
+                pins.show(direction, now >= 2, at);
+            } else {
+                pins.show(step, !idle, at);
+                pins.show(step, idle, at + Cycles::new(length.min(spacing / 2)));
+            }
+        }
+    }
+
+    /// Takes the settings of all generators: length and polarity of the pulses, and which pins they are on.
+    pub(crate) fn set_up(&mut self, settings: u8, pins: &mut Pins, now: Cycles) {
+        if settings == self.settings {
+            return;
+        }
+        let in_use = |generator: &usize| {
+            let Generator { owner, rate, .. } = self.generators[*generator];
+            owner.is_some() || rate != 0.0
+        };
+        let in_use: Vec<usize> = (0..GENERATORS).filter(in_use).collect();
+        for &generator in &in_use {
+            self.pins(generator).into_iter().flatten().for_each(|bit| pins.generate(bit, None, now));
+        }
+        self.settings = settings;
+        for &generator in &in_use {
+            self.drive(generator, pins, now);
+        }
+    }
+
+    /// A program sets the rate of a generator. One that an axis owns gets that axis' rate again in the next tick.
+    pub(crate) fn command(&mut self, word: u32, pins: &mut Pins, now: Cycles) {
+        let generator = (word >> RATE_BITS & 7) as usize;
+        if self.generators[generator].owner.is_some() {
+            return;
+        }
+        let unused = u32::BITS - RATE_BITS;
+        let signed = (word << unused).cast_signed() >> unused;
+        let rate = if word & ENABLE != 0 { f64::from(signed) * RATE_UNIT } else { 0.0 };
+        let limit = self.limit();
+        self.generators[generator].rate = rate.clamp(-limit, limit);
+        self.is_driven = self.generators.iter().any(|generator| generator.rate != 0.0);
+        self.drive(generator, pins, now);
+    }
+
+    /// Steps a second at most: a pulse and a pause of its length.
+    fn limit(&self) -> f64 {
+        FASTEST.min(CLOCK / 2.0 / f64::from((self.settings & LENGTH).max(1)))
+    }
+
+    /// Whether a program drives any.
+    pub(crate) const fn is_driven(&self) -> bool {
+        self.is_driven
+    }
+
+    /// Moves those that programs drive on by a tick; the steps of each.
+    pub(crate) fn run(&mut self, seconds: f64, pins: &mut Pins, now: Cycles) -> [f64; GENERATORS] {
+        let mut moved = [0.0; GENERATORS];
+        for (generator, moved) in moved.iter_mut().enumerate() {
+            let steps = self.generators[generator].rate * seconds;
+            if steps != 0.0 {
+                self.advance(generator, steps, pins, now);
+                *moved = steps;
+            }
+        }
+        moved
+    }
+
+    /// Steps made by a generator.
+    pub(crate) fn position(&self, generator: usize) -> f64 {
+        self.generators.get(generator).map_or(0.0, |generator| generator.position)
+    }
+
+    /// The same as its register has it: nine bits of steps, seven of a fraction.
+    pub(crate) fn register(&self, generator: usize) -> u16 {
+        libm::floor(self.position(generator) * FRACTIONS) as i64 as u16
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use vm::memory::GuestMemory;
+
+    use super::*;
+
+    fn bit(number: i32) -> Bit {
+        Bit::new(number).expect("a bit")
+    }
+
+    fn tick(tick: i64) -> Cycles {
+        Cycles::new(tick * Cycles::PER_TICK.get())
+    }
+
+    /// Generators whose pins 8 and 9 are watched, with axis 0 on a channel.
+    fn bench(channel: i32) -> (StepGenerators, Pins) {
+        let (mut generators, mut pins) = (StepGenerators::default(), Pins::default());
+        pins.changes.switch_on(&GuestMemory::new());
+        pins.watch(bit(8));
+        pins.watch(bit(9));
+        generators.claim(AxisId::new(0).expect("0"), channel, &mut pins, tick(1));
+        (generators, pins)
+    }
+
+    /// Changes since the last time: pin, level, nanoseconds since an instant.
+    fn told(pins: &mut Pins, since: Cycles) -> Vec<(u16, u8, i64)> {
+        let changes = pins.changes.take();
+        changes
+            .iter()
+            .map(|change| (change.bit.get(), u8::from(change.level), (change.at - since).get() * 5))
+            .collect()
+    }
+
+    #[test]
+    fn an_axis_claims_its_pins_and_gives_them_back() {
+        let (mut generators, mut pins) = bench(8);
+        assert!(pins.is_output(bit(8)) && pins.level(bit(8)) && pins.level(bit(9)));
+        assert_eq!(told(&mut pins, tick(1)), [(8, 1, 0), (9, 1, 0)]);
+        generators.set_up(32 | INVERTED | MOVED, &mut pins, tick(2));
+        assert!(!pins.is_output(bit(8)) && pins.is_output(bit(22)));
+        assert!(!pins.level(bit(22)) && !pins.level(bit(23)));
+        generators.release(AxisId::new(0).expect("0"), &mut pins, tick(3));
+        assert!(!pins.is_output(bit(22)));
+    }
+
+    #[test]
+    fn steps_are_low_pulses_with_a_direction() {
+        let (mut generators, mut pins) = bench(0);
+        pins.changes.take();
+        let axis = AxisId::new(0).expect("0");
+        generators.step(axis, 2.0, &mut pins, tick(2));
+        // Between 0 and 1 after a quarter of the tick, between 1 and 2 after three quarters; 1.92 µs long.
+        let expect = [(8, 0, 22_500), (8, 1, 24_420), (8, 0, 67_500), (8, 1, 69_420)];
+        assert_eq!(told(&mut pins, tick(1)), expect);
+        generators.step(axis, -1.0, &mut pins, tick(3));
+        assert_eq!(told(&mut pins, tick(2)), [(9, 0, 0), (8, 0, 45_000), (8, 1, 46_920)]);
+        assert_eq!(generators.register(0), 128);
+    }
+
+    #[test]
+    fn quadrature_has_one_edge_a_step() {
+        let (mut generators, mut pins) = bench(16);
+        pins.changes.take();
+        let axis = AxisId::new(0).expect("0");
+        generators.step(axis, 3.0, &mut pins, tick(2));
+        generators.step(axis, -1.0, &mut pins, tick(3));
+        let levels: Vec<_> = told(&mut pins, tick(1)).iter().map(|(bit, level, _)| (*bit, *level)).collect();
+        assert_eq!(levels, [(8, 1), (9, 1), (8, 0), (8, 1)]);
+    }
+
+    #[test]
+    fn a_rate_register_runs_a_generator_that_no_axis_owns() {
+        let (mut generators, mut pins) = (StepGenerators::default(), Pins::default());
+        // 1000 steps a second on generator 2, and as many back.
+        let rate = libm::round(1000.0 / RATE_UNIT) as u32;
+        generators.command(ENABLE | 2 << 24 | rate, &mut pins, tick(1));
+        assert!(generators.is_driven() && pins.is_output(bit(12)));
+        for at in 2..1002 {
+            generators.run(90e-6, &mut pins, tick(at));
+        }
+        assert!((generators.position(2) - 90.0).abs() < 0.1, "{}", generators.position(2));
+        let back = rate.wrapping_neg() & 0xff_ffff;
+        generators.command(ENABLE | 2 << 24 | back, &mut pins, tick(1002));
+        for at in 1003..3003 {
+            generators.run(90e-6, &mut pins, tick(at));
+        }
+        assert!((generators.position(2) + 90.0).abs() < 0.1, "{}", generators.position(2));
+        generators.command(2 << 24 | rate, &mut pins, tick(3003));
+        assert!(!generators.is_driven() && !pins.is_output(bit(12)));
+        let position = f64::from(generators.register(2).cast_signed()) / FRACTIONS;
+        assert!((position + 90.0).abs() < 0.1, "{position}");
+    }
+
+    #[test]
+    fn long_pulses_limit_the_rate() {
+        let (mut generators, mut pins) = (StepGenerators::default(), Pins::default());
+        generators.command(ENABLE | 0x7f_ffff, &mut pins, tick(1));
+        let [steps, ..] = generators.run(1.0, &mut pins, tick(2));
+        assert_eq!(libm::round(steps), 260_417.0);
+    }
+}

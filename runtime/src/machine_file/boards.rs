@@ -1,0 +1,49 @@
+//! `[board]` and `[uart]`: option boards, flash and the serial port.
+
+use toml::de::DeValue;
+
+use super::MachineFile;
+use super::read::{Read, Table, Value, keys};
+
+/// Addresses on a port.
+const ADDRESSES: u32 = 8;
+
+pub(super) fn board(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
+    keys!(table, |key, value| {
+        "kanalog" => {
+            let choices = [("auto", false), ("false", false), ("true", true)];
+            machine.has_kanalog = value.choice(&choices)?;
+        };
+        "kstep" => machine.has_kstep = value.flag()?;
+        "respect_enable" => machine.respect_enable = value.flag()?;
+        "konnect" => machine.konnects[1] = konnects(&value)?;
+        "konnect_aux0" => machine.konnects[0] = konnects(&value)?;
+        "snapamp" => machine.snapamps = value.whole(2)? as usize;
+        "flash" => machine.flash = file(&value)?;
+        "strict_flash" => value.only(&DeValue::Boolean(false))?;
+    });
+    Ok(())
+}
+
+/// The addresses that are there: all of them, or a list.
+fn konnects(value: &Value<'_>) -> Read<u8> {
+    if value.text().is_ok() {
+        return value.choice(&[("any", u8::MAX)]);
+    }
+    let list = value.array().map_err(|_| value.is_wrong("\"any\" or a list of addresses as [0, 1]"))?;
+    list.iter().try_fold(0, |present, address| Ok(present | 1 << address.whole(ADDRESSES - 1)?))
+}
+
+pub(super) fn uart(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
+    keys!(table, |key, value| {
+        "input" => machine.uart_input = file(&value)?;
+        "output" => machine.uart_output = file(&value)?;
+    });
+    Ok(())
+}
+
+/// The name of a file; an empty one is none.
+pub(super) fn file(value: &Value<'_>) -> Read<Option<String>> {
+    let name = value.text()?;
+    Ok((!name.is_empty()).then(|| name.to_owned()))
+}

@@ -1,0 +1,47 @@
+//! `[host]`: what the PC answers, and its files.
+//!
+//! What it answers are the settings of [`Answers`], which checks them; a mistake is told at the value.
+
+use super::boards::file;
+use super::read::{Read, Table, Value, Wrong, keys};
+use super::{Answers, MachineFile};
+
+pub(super) fn host(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
+    keys!(table, |key, value| {
+        "enabled" => machine.host = value.flag()?;
+        "disk_root" => machine.disk_root = file(&value)?;
+        "disk_latency_s" => machine.disk_latency_s = value.not_negative()?;
+        "files" => machine.disk_files.extend(files(&value)?);
+        "message_box" => {
+            for button in one_or_more(&value) {
+                answer(&mut machine.answers, &button, &format!("msgbox={}", button.plain()))?;
+            }
+        };
+        "cells" => {
+            for (key, text) in value.table()?.entries() {
+                answer(&mut machine.answers, &text, &format!("cell.{}={}", key.text, text.text()?))?;
+            }
+        };
+        "answers" => {
+            for setting in one_or_more(&value) {
+                answer(&mut machine.answers, &setting, setting.text()?)?;
+            }
+        };
+    });
+    Ok(())
+}
+
+/// A value, or those of a list.
+fn one_or_more<'a>(value: &Value<'a>) -> Vec<Value<'a>> {
+    value.array().unwrap_or_else(|_| vec![value.clone()])
+}
+
+fn answer(answers: &mut Answers, value: &Value<'_>, setting: &str) -> Read<()> {
+    answers.set(setting).map_err(|error| Wrong::new(value.offset(), error.to_string()))
+}
+
+/// Names that programs use, and the files meant.
+fn files(value: &Value<'_>) -> Read<Vec<(String, String)>> {
+    let table = value.table()?;
+    table.entries().map(|(key, value)| Ok((key.text.to_owned(), value.text()?.to_owned()))).collect()
+}
