@@ -332,9 +332,14 @@ impl<E: Engine> Board<E> {
         }
     }
 
-    /// Keeps an image that a stimulus loads into `thread` under this name.
-    pub fn offer(&mut self, thread: ThreadId, name: &str, image: Vec<u8>) {
+    /// Keeps an image that a stimulus may load into `thread` under this name; what is known of its program.
+    ///
+    /// # Errors
+    /// Why the image would be refused.
+    pub fn offer(&mut self, thread: ThreadId, name: &str, image: Vec<u8>) -> Result<DebugInfo, LoadError> {
+        let debug = prepare(&image, thread, |_| false)?.debug;
         self.offered.insert((thread, name.into()), image);
+        Ok(debug)
     }
 
     /// Loads an image that was offered and starts it.
@@ -344,11 +349,14 @@ impl<E: Engine> Board<E> {
             None => Err("nobody has compiled it".to_owned()),
         };
         let started = result.and_then(|()| self.start(thread).map_err(|error| error.to_string()));
-        if let Err(error) = started {
-            let (kernel, context) = self.machine.firmware_mut();
-            let text = format!("{name} is not run in thread {thread}: {error}");
-            kernel.tell(context.now, EventKind::Diagnostic(text));
-        }
+        let (kernel, context) = self.machine.firmware_mut();
+        kernel.tell(
+            context.now,
+            match started {
+                Ok(()) => EventKind::Loaded(thread, name.clone()),
+                Err(error) => EventKind::Diagnostic(format!("{name} is not run in thread {thread}: {error}")),
+            },
+        );
     }
 
     /// Makes a program of what was downloaded into a thread that was started.

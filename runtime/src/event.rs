@@ -1,5 +1,7 @@
 //! What a run tells the outside, with the board time at which it happened.
 
+use std::sync::Arc;
+
 use kmotiondef::{Bit, CodeAddr, Cycles, ThreadId};
 use vm::trap::Trap;
 
@@ -49,6 +51,8 @@ pub enum EventKind {
     Diagnostic(String),
     /// A remark that is only worth making to who asks for all of them.
     Detail(String),
+    /// A stimulus has loaded the program of this name.
+    Loaded(ThreadId, Arc<str>),
     /// A thread was stopped by a trap.
     Trap(Trap),
     /// Something that was asked to be recorded.

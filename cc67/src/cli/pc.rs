@@ -1,10 +1,10 @@
 //! What the PC beside the board is told to do: its answers, M codes that start programs, the file of the board's flash.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use clap::Args;
-use runtime::{Answers, FLASH_SIZE};
+use runtime::{Answers, Directory, FLASH_SIZE, MachineFile};
 
 use super::output;
 use super::run::read;
@@ -28,9 +28,9 @@ pub(super) struct PcOptions {
 }
 
 impl PcOptions {
-    /// What the PC answers.
-    pub(super) fn answers(&self) -> Result<Answers> {
-        let mut answers = Answers::default();
+    /// What the PC answers: what the machine file says, and then these.
+    pub(super) fn answers(&self, machine: &MachineFile) -> Result<Option<Answers>> {
+        let mut answers = machine.answers.clone();
         if let Some(path) = &self.host {
             let text = String::from_utf8_lossy(&read(path)?).into_owned();
             for (line, number) in text.lines().zip(1..) {
@@ -43,7 +43,7 @@ impl PcOptions {
             }
             answers.set(setting).context("`--answer`")?;
         }
-        Ok(answers)
+        Ok(Some(answers))
     }
 
     /// What an M code stores before its program starts.
@@ -53,30 +53,35 @@ impl PcOptions {
             .map_or(Ok(Vec::new()), |text| mcode(text).with_context(|| format!("`--mcode \"{text}\"`")))
     }
 
-    /// What flash memory holds at the start.
-    pub(super) fn flash(&self) -> Result<Option<Vec<u8>>> {
-        let Some(path) = self.flash.as_deref().filter(|path| path.exists()) else { return Ok(None) };
-        let bytes = read(path)?;
-        if bytes.len() != FLASH_SIZE {
-            bail!(
-                "{} is not a board's flash: it has {} bytes, not {FLASH_SIZE}",
-                path.display(),
-                bytes.len()
-            );
-        }
-        Ok(Some(bytes))
+    /// The file of the flash, here or in the machine file.
+    pub(super) fn flash_file(&self, machine: &MachineFile) -> Option<PathBuf> {
+        self.flash.clone().or_else(|| machine.flash.as_ref().map(PathBuf::from))
     }
+}
 
-    /// Keeps what flash memory holds now, if that is another than before.
-    pub(super) fn keep_flash(&self, before: Option<&[u8]>, now: &[u8]) -> Result<()> {
-        let erased = || now.iter().all(|byte| *byte == 0xFF);
-        match &self.flash {
-            Some(path) if before.map_or_else(|| !erased(), |before| before != now) => {
-                output::write(path, now)
-            }
-            _ => Ok(()),
-        }
+/// What flash memory holds at the start.
+pub(super) fn flash(path: Option<&Path>) -> Result<Option<Vec<u8>>> {
+    let Some(path) = path.filter(|path| path.exists()) else { return Ok(None) };
+    let bytes = read(path)?;
+    if bytes.len() != FLASH_SIZE {
+        bail!("{} is not a board's flash: it has {} bytes, not {FLASH_SIZE}", path.display(), bytes.len());
     }
+    Ok(Some(bytes))
+}
+
+/// Keeps what flash memory holds now, if that is another than before.
+pub(super) fn keep_flash(path: Option<&Path>, before: Option<&[u8]>, now: &[u8]) -> Result<()> {
+    let erased = || now.iter().all(|byte| *byte == 0xFF);
+    match path {
+        Some(path) if before.map_or_else(|| !erased(), |before| before != now) => output::write(path, now),
+        _ => Ok(()),
+    }
+}
+
+/// Where the PC's files are: in this folder, in that of the machine file, or in the usual one.
+pub(super) fn files(folder: Option<&Path>, machine: &MachineFile) -> Box<Directory> {
+    let folder = folder.or(machine.disk_root.as_deref().map(Path::new)).unwrap_or(Path::new("cc67-files"));
+    Box::new(Directory::new(folder).with_names(machine.disk_files.clone()))
 }
 
 /// The words that pass parameters, in the order in which they are stored.

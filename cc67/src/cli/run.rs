@@ -12,7 +12,7 @@ use runtime::debug::DebugInfo;
 use runtime::loader::LoadError;
 use runtime::stimulus::Stimulus;
 use runtime::trace::Request;
-use runtime::{Board, Config, Directory, Event, EventKind, MachineFile, RunEnd};
+use runtime::{Board, Config, Event, EventKind, MachineFile, RunEnd};
 use vm::engine::Engine;
 use vm::interp::BytecodeEngine;
 use vm::machine::Config as MachineConfig;
@@ -23,7 +23,7 @@ use super::pc::PcOptions;
 use super::program::{Program, assign};
 use super::setting::{self, Setting};
 use super::uart::UartOptions;
-use super::{Exit, events, output, profile, stimulus, terminal, trace, units};
+use super::{Exit, events, output, pc, profile, stimulus, terminal, trace, units};
 use crate::lints::levels::Levels;
 use crate::reason::reason;
 use crate::render::Format;
@@ -53,9 +53,9 @@ pub(super) struct Arguments {
     /// What is connected to the board: motors, switches, probes, encoders; a TOML file
     #[arg(long, value_name = "FILE")]
     machine: Option<PathBuf>,
-    /// Folder of the files that programs open on the PC
-    #[arg(long, value_name = "DIR", default_value = "cc67-files")]
-    files: PathBuf,
+    /// Folder of the files that programs open on the PC; `cc67-files` if neither this nor the machine file names one
+    #[arg(long, value_name = "DIR")]
+    files: Option<PathBuf>,
     /// What the world does and when: a file of statements, or statements such as "t=0.5 bit 136=1"
     #[arg(long, value_name = "FILE|TEXT")]
     stim: Vec<String>,
@@ -136,16 +136,30 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit> {
     let programs = assign(&all)?;
     let mut machine_file = machine_file(arguments.machine.as_deref())?;
     let settings = [setting::all(&arguments.set, &mut machine_file)?, arguments.pc.mcode()?].concat();
-    let (answers, flash) = (arguments.pc.answers()?, arguments.pc.flash()?);
+    let (answers, flash_file) =
+        (arguments.pc.answers(&machine_file)?, arguments.pc.flash_file(&machine_file));
+    let flash = pc::flash(flash_file.as_deref())?;
     let stimulus = stimulus::read(&arguments.stim)?;
-    let Some(images) = images(&programs, &arguments.compiler)? else { return Ok(Exit::Failure) };
-    let watched: Vec<_> =
-        programs.iter().zip(&images).map(|(program, image)| program.watched(image)).collect();
+    let uart = arguments.uart.or_those_of(&machine_file);
+    let offered = stimulus::programs(&[&machine_file.stimulus, &stimulus]);
+    let all = [programs.clone(), offered].concat();
+    let Some(images) = images(&all, &arguments.compiler)? else { return Ok(Exit::Failure) };
+    let watched: Vec<_> = all.iter().zip(&images).map(|(program, image)| program.watched(image)).collect();
     let trace = arguments.trace.request(&watched, &arguments.compiler.resolve()?)?;
 
-    let files = Box::new(Directory::new(&arguments.files));
+    let files = pc::files(arguments.files.as_deref(), &machine_file);
     let machine = MachineConfig { shortcuts: !arguments.no_shortcuts, ..MachineConfig::default() };
-    let session = Session { arguments, programs, images, settings, stimulus, trace };
+    let session = Session {
+        arguments,
+        programs: all,
+        loaded: programs.len(),
+        images,
+        settings,
+        stimulus,
+        trace,
+        uart,
+        flash_file,
+    };
     let config = Config { machine, files, machine_file, answers, flash, ..Config::default() };
     if let Some(target) = &arguments.profile {
         return session.profile(config, &profile::target(target)?);
@@ -164,18 +178,24 @@ pub(super) fn machine_file(path: Option<&Path>) -> Result<MachineFile> {
     let Some(path) = path else { return Ok(MachineFile::default()) };
     let bytes = read(path)?;
     let Ok(text) = String::from_utf8(bytes) else { anyhow::bail!("{} is not text", path.display()) };
-    MachineFile::parse(&text)
-        .map_err(|error| anyhow::anyhow!("{}:{}:{}: {error}", path.display(), error.line, error.column))
+    let mut machine = MachineFile::parse(&text)
+        .map_err(|error| anyhow::anyhow!("{}:{}:{}: {error}", path.display(), error.line, error.column))?;
+    machine.beside(path.parent().unwrap_or(Path::new("")));
+    Ok(machine)
 }
 
 /// Everything a run needs, whatever engine executes it.
 struct Session<'a> {
     arguments: &'a Arguments,
+    /// Those to load, and behind them those that a stimulus may load.
     programs: Vec<Program>,
+    loaded: usize,
     images: Vec<Vec<u8>>,
     settings: Vec<Setting>,
     stimulus: Stimulus,
     trace: Option<Request>,
+    uart: UartOptions,
+    flash_file: Option<PathBuf>,
 }
 
 impl Session<'_> {
@@ -190,8 +210,16 @@ impl Session<'_> {
     fn run<E: Engine>(&self, config: Config) -> Result<(Exit, Board<E>)> {
         let flash = config.flash.clone();
         let mut board: Board<E> = Board::new(config);
-        for (program, image) in self.programs.iter().zip(&self.images) {
-            board.load(program.thread, image).map_err(|error| explain(program, image, error))?;
+        let mut offered = Vec::new();
+        for (index, (program, image)) in self.programs.iter().zip(&self.images).enumerate() {
+            let explain = |error| explain(program, image, error);
+            if index < self.loaded {
+                board.load(program.thread, image).map_err(explain)?;
+            } else {
+                let name = program.name().to_string();
+                let debug = board.offer(program.thread, &name, image.clone()).map_err(explain)?;
+                offered.push((program.thread, name, debug));
+            }
         }
         for Setting { address, bytes } in &self.settings {
             board
@@ -211,11 +239,53 @@ impl Session<'_> {
         if let Some(request) = &self.trace {
             board.record(request.clone());
         }
-        let exit = execute(&mut board, self.arguments, self.trace.as_ref())?;
-        self.arguments.pc.keep_flash(flash.as_deref(), board.flash())?;
+        let exit = self.execute(&mut board, offered)?;
+        pc::keep_flash(self.flash_file.as_deref(), flash.as_deref(), board.flash())?;
         Ok((exit, board))
     }
+
+    /// Runs the board and prints what happens.
+    fn execute<E: Engine>(&self, board: &mut Board<E>, offered: Vec<Offered>) -> Result<Exit> {
+        let arguments = self.arguments;
+        let limit = Ticks::new((arguments.limit.unwrap_or(DEFAULT_LIMIT) / TIMEBASE).round() as u64);
+        let mut screen = Screen::new(arguments, board, offered);
+        let (mut trapped, mut unmet) = (false, false);
+        let mut trace = self.trace.as_ref().map(|request| arguments.trace.begin(request)).transpose()?;
+        let end = self.uart.connect(board)?.run(board, limit, &mut |event| {
+            if let Some(trace) = &mut trace {
+                trace.note(&event);
+            }
+            trapped |= matches!(event.kind, EventKind::Trap(_));
+            unmet |= matches!(event.kind, EventKind::Unmet(_));
+            screen.show(&event);
+        })?;
+        if let Some(error) = screen.finish() {
+            // A reader that has seen enough, as `head` has, is no failure.
+            if error.kind() == io::ErrorKind::BrokenPipe {
+                return Ok(Exit::Success);
+            }
+            return Err(output::lost_output(&error));
+        }
+        if let Some(trace) = trace {
+            let title = arguments.programs.join(OsStr::new(", "));
+            arguments.trace.finish(trace, board.tick(), &title.to_string_lossy())?;
+        }
+        Ok(match end {
+            _ if trapped => Exit::Trapped,
+            _ if unmet => Exit::Unmet,
+            RunEnd::Limit if arguments.limit.is_none() => {
+                terminal::note(&format!(
+                    "still running after {DEFAULT_LIMIT} s of board time; `--for SECONDS` sets the limit"
+                ));
+                Exit::StillRunning
+            }
+            RunEnd::Limit | RunEnd::AllEnded => Exit::Success,
+        })
+    }
 }
+
+/// A program that a stimulus may load: its thread, its name, and what is known of it.
+type Offered = (ThreadId, String, DebugInfo);
 
 /// The image of every program; `None` if a source has errors, after all have been compiled.
 pub(super) fn images(programs: &[Program], compiler: &CompilerOptions) -> Result<Option<Vec<Vec<u8>>>> {
@@ -271,72 +341,56 @@ pub(super) fn explain(program: &Program, image: &[u8], error: LoadError) -> anyh
     }
 }
 
-/// Runs the board and prints what happens.
-fn execute<E: Engine>(
-    board: &mut Board<E>,
-    arguments: &Arguments,
-    request: Option<&Request>,
-) -> Result<Exit> {
-    let limit = Ticks::new((arguments.limit.unwrap_or(DEFAULT_LIMIT) / TIMEBASE).round() as u64);
-    let mut screen = Screen {
-        out: BufWriter::new(io::stdout().lock()),
-        time: arguments.time,
-        is_verbose: arguments.verbose,
-        programs: ThreadId::all().filter_map(|thread| board.debug(thread).cloned()).collect(),
-        error: None,
-    };
-    let (mut trapped, mut unmet) = (false, false);
-    let mut log = request.map(trace::Log::new);
-    let end = arguments.uart.connect(board)?.run(board, limit, &mut |event| {
-        if let Some(log) = &mut log {
-            log.note(&event);
-        }
-        trapped |= matches!(event.kind, EventKind::Trap(_));
-        unmet |= matches!(event.kind, EventKind::Unmet(_));
-        screen.show(&event);
-    })?;
-    if let Some(error) = screen.finish() {
-        // A reader that has seen enough, as `head` has, is no failure.
-        if error.kind() == io::ErrorKind::BrokenPipe {
-            return Ok(Exit::Success);
-        }
-        return Err(output::lost_output(&error));
-    }
-    if let Some(log) = &log {
-        arguments.trace.write(
-            log,
-            board.tick(),
-            &arguments.programs.join(OsStr::new(", ")).to_string_lossy(),
-        )?;
-    }
-    Ok(match end {
-        _ if trapped => Exit::Trapped,
-        _ if unmet => Exit::Unmet,
-        RunEnd::Limit if arguments.limit.is_none() => {
-            terminal::note(&format!(
-                "still running after {DEFAULT_LIMIT} s of board time; `--for SECONDS` sets the limit"
-            ));
-            Exit::StillRunning
-        }
-        RunEnd::Limit | RunEnd::AllEnded => Exit::Success,
-    })
-}
-
 /// Where events go: console lines to stdout, everything else to stderr.
 struct Screen<W: Write> {
     out: W,
     time: bool,
     /// Whether details are shown.
     is_verbose: bool,
+    /// What is known of the programs, and the thread of each.
     programs: Vec<DebugInfo>,
+    threads: Vec<ThreadId>,
+    offered: Vec<Offered>,
     error: Option<io::Error>,
 }
 
+impl Screen<BufWriter<io::StdoutLock<'static>>> {
+    fn new<E: Engine>(arguments: &Arguments, board: &Board<E>, offered: Vec<Offered>) -> Self {
+        let known = ThreadId::all().filter_map(|thread| Some((thread, board.debug(thread).cloned()?)));
+        let (threads, programs) = known.unzip();
+        Self {
+            out: BufWriter::new(io::stdout().lock()),
+            time: arguments.time,
+            is_verbose: arguments.verbose,
+            programs,
+            threads,
+            offered,
+            error: None,
+        }
+    }
+}
+
 impl<W: Write> Screen<W> {
+    /// Another program has been loaded.
+    fn replace(&mut self, thread: ThreadId, name: &str) {
+        let offered = self.offered.iter().find(|(other, known, _)| *other == thread && known == name);
+        let Some((_, _, debug)) = offered else { return };
+        match self.threads.iter().position(|other| *other == thread) {
+            Some(index) => self.programs[index] = debug.clone(),
+            None => {
+                self.threads.push(thread);
+                self.programs.push(debug.clone());
+            }
+        }
+    }
+
     fn show(&mut self, event: &Event) {
         let EventKind::ConsoleLine(line) = &event.kind else {
             if matches!(event.kind, EventKind::Trace(_) | EventKind::UartSent(_)) {
                 return;
+            }
+            if let EventKind::Loaded(thread, name) = &event.kind {
+                return self.replace(*thread, name);
             }
             // What was printed before stands before it on a terminal that shows both.
             let _ = self.out.flush();

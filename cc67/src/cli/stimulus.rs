@@ -1,10 +1,12 @@
 //! `--stim FILE|TEXT`: what the world around the board does.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Result, anyhow, bail};
 use runtime::machine_file::MachineFile;
 use runtime::stimulus::Stimulus;
+
+use super::program::Program;
 
 /// What messages call statements that stand on the command line.
 const OPTION: &str = "--stim";
@@ -16,6 +18,18 @@ pub(super) fn read(arguments: &[String]) -> Result<Stimulus> {
         all.extend(one(argument)?);
     }
     Ok(all)
+}
+
+/// Programs that stimuli load while they are played, each once.
+pub(super) fn programs(stimuli: &[&Stimulus]) -> Vec<Program> {
+    let named = stimuli.iter().flat_map(|stimulus| stimulus.programs());
+    let mut programs: Vec<Program> = Vec::new();
+    for program in named.map(|(thread, name)| Program { thread, path: PathBuf::from(&**name) }) {
+        if !programs.contains(&program) {
+            programs.push(program);
+        }
+    }
+    programs
 }
 
 /// A file of that name, else statements: those have spaces or signs in them.

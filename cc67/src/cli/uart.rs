@@ -15,7 +15,7 @@ use std::time::Duration;
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use kmotiondef::Ticks;
-use runtime::{Board, Event, EventKind, RunEnd};
+use runtime::{Board, Event, EventKind, MachineFile, RunEnd};
 use vm::engine::Engine;
 
 use super::{output, run, terminal};
@@ -26,7 +26,7 @@ const PART: u64 = 111;
 const PART_TIME: Duration = Duration::from_millis(10);
 
 /// What the serial port is connected to.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(super) struct UartOptions {
     /// Characters that the serial port receives, from when the program first looks for them
     #[arg(long, value_name = "FILE", conflicts_with = "uart")]
@@ -40,6 +40,17 @@ pub(super) struct UartOptions {
 }
 
 impl UartOptions {
+    /// These, and where they say nothing the files of a machine file.
+    pub(super) fn or_those_of(&self, machine: &MachineFile) -> Self {
+        let file = |name: &Option<String>| name.as_ref().map(PathBuf::from);
+        let input = file(&machine.uart_input).filter(|_| self.uart.is_none());
+        Self {
+            uart_input: self.uart_input.clone().or(input),
+            uart_output: self.uart_output.clone().or_else(|| file(&machine.uart_output)),
+            uart: self.uart.clone(),
+        }
+    }
+
     /// Connects the port of a board; a peer that has to be there is waited for.
     pub(super) fn connect<E: Engine>(&self, board: &mut Board<E>) -> Result<Line> {
         if let Some(path) = &self.uart_input {

@@ -181,7 +181,8 @@ impl Item {
     }
 
     /// The bit it is, if it is one.
-    pub(crate) fn bit(self) -> Option<Bit> {
+    #[must_use]
+    pub fn bit(self) -> Option<Bit> {
         Bit::new(i32::try_from(self.index).ok()?).filter(|_| self.kind() == "bit")
     }
 

@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, Result};
 use clap::Args;
 use kmotiondef::{ThreadId, Ticks};
-use runtime::{Board, Config, Directory, Event, EventKind, RunEnd};
+use runtime::{Board, Config, Event, EventKind, RunEnd};
 use vm::engine::Engine;
 use vm::interp::BytecodeEngine;
 
@@ -27,7 +27,7 @@ use words::Word;
 
 use super::Exit;
 use super::options::CompilerOptions;
-use super::pc::PcOptions;
+use super::pc::{self, PcOptions};
 use super::program::{Program, assign};
 use super::run::{self, DEFAULT_LIMIT, EngineName, TIMEBASE};
 use super::setting::{self, Setting};
@@ -63,9 +63,9 @@ pub(super) struct Arguments {
     /// Start value `persist.N=VALUE`, an integer, 0x… , f:1.5 a float, d:1.5 a double; or a key of the machine file
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
-    /// Folder of the files that programs open on the PC
-    #[arg(long, value_name = "DIR", default_value = "cc67-files")]
-    files: PathBuf,
+    /// Folder of the files that programs open on the PC; `cc67-files` if neither this nor the machine file names one
+    #[arg(long, value_name = "DIR")]
+    files: Option<PathBuf>,
     /// Show the board time in seconds before each line of the board
     #[arg(long)]
     time: bool,
@@ -82,13 +82,17 @@ pub(super) struct Arguments {
 pub(super) fn console(arguments: &Arguments) -> Result<Exit> {
     let mut machine_file = run::machine_file(arguments.machine.as_deref())?;
     let settings = [setting::all(&arguments.set, &mut machine_file)?, arguments.pc.mcode()?].concat();
-    let (answers, flash) = (arguments.pc.answers()?, arguments.pc.flash()?);
-    let files = Box::new(Directory::new(&arguments.files));
+    let answers = arguments.pc.answers(&machine_file)?;
+    let flash_file = arguments.pc.flash_file(&machine_file);
+    let flash = pc::flash(flash_file.as_deref())?;
+    let files = pc::files(arguments.files.as_deref(), &machine_file);
     let config = Config { files, machine_file, answers, flash, ..Config::default() };
     match arguments.engine {
-        EngineName::Bytecode => Console::<BytecodeEngine>::new(arguments, config, settings).run(),
+        EngineName::Bytecode => Console::<BytecodeEngine>::new(arguments, config, settings, flash_file).run(),
         #[cfg(feature = "native")]
-        EngineName::Native => Console::<vm::native::NativeEngine>::new(arguments, config, settings).run(),
+        EngineName::Native => {
+            Console::<vm::native::NativeEngine>::new(arguments, config, settings, flash_file).run()
+        }
         #[cfg(not(feature = "native"))]
         EngineName::Native => anyhow::bail!("this cc67 is built without the native engine"),
     }
@@ -111,13 +115,19 @@ struct Console<'a, E> {
     trapped: bool,
     /// What the file of the flash holds.
     flash: Option<Vec<u8>>,
+    flash_file: Option<PathBuf>,
 }
 
 impl<'a, E: Engine> Console<'a, E> {
-    fn new(arguments: &'a Arguments, config: Config, settings: Vec<Setting>) -> Self {
+    fn new(
+        arguments: &'a Arguments,
+        config: Config,
+        settings: Vec<Setting>,
+        flash_file: Option<PathBuf>,
+    ) -> Self {
         let screen = Screen::new(arguments.time);
         let flash = config.flash.clone();
-        Self { arguments, settings, board: Board::new(config), screen, trapped: false, flash }
+        Self { arguments, settings, board: Board::new(config), screen, trapped: false, flash, flash_file }
     }
 
     fn run(mut self) -> Result<Exit> {
@@ -193,7 +203,7 @@ impl<'a, E: Engine> Console<'a, E> {
         let (screen, trapped) = (&mut self.screen, &mut self.trapped);
         self.board.flush(&mut |event| note(screen, trapped, &event));
         self.screen.finish().context("cannot write to standard output")?;
-        self.arguments.pc.keep_flash(self.flash.as_deref(), self.board.flash())?;
+        pc::keep_flash(self.flash_file.as_deref(), self.flash.as_deref(), self.board.flash())?;
         Ok(if self.trapped { Exit::Trapped } else { Exit::Success })
     }
 

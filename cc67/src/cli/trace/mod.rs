@@ -1,16 +1,21 @@
 //! `--trace` and its kin: what a run did, as a file for a viewer or a table.
 //!
 //! The suffix of the file decides: `.vcd` for waveform viewers, `.json` for trace viewers (Perfetto, Chrome), anything
-//! else is a table of values. Everything is kept until the run is over, as the head of these files names what is in
-//! them; then each file is written under a temporary name and renamed.
+//! else is a table of values. Files grow while the run goes on, under temporary names, and get their own when it is
+//! over: a run of any length needs no more memory than a short one, and one that is killed leaves no half file. Only
+//! pictures are made of what was kept in memory.
 
 mod bits;
 mod chrome;
+mod columns;
+mod log;
+mod order;
 mod picture;
 mod table;
 mod vcd;
 mod watch;
 
+use std::io;
 use std::path::{Path, PathBuf};
 
 use anyhow::Result;
@@ -22,6 +27,9 @@ use runtime::{Event, EventKind};
 use super::output;
 use super::plot::{self, Form};
 use crate::Options;
+use columns::Columns;
+use log::Log;
+use order::Order;
 
 pub(super) use watch::Watched;
 
@@ -64,24 +72,43 @@ impl TraceOptions {
         Ok(Some(Request { quantities, every: self.trace_every, changes }))
     }
 
-    /// Writes all files; `end` is the last tick of the run, `title` what pictures are called.
-    pub(super) fn write(&self, log: &Log, end: Ticks, title: &str) -> Result<()> {
+    /// Begins all files.
+    pub(super) fn begin(&self, request: &Request) -> Result<Trace> {
+        let mut sinks: Vec<Box<dyn Sink>> = Vec::new();
+        for path in &self.trace {
+            let columns = Columns::new(request);
+            sinks.push(match suffix(path).as_str() {
+                "vcd" => Box::new(vcd::Dump::new(path, columns)?),
+                "json" => Box::new(chrome::Events::new(path, columns)?),
+                _ => Box::new(table::Table::new(path, columns, request.every)?),
+            });
+        }
+        if let Some(path) = &self.trace_bits {
+            sinks.push(Box::new(bits::Changes::new(path)?));
+        }
+        let log = (!self.plot.is_empty()).then(|| Log::new(request));
+        Ok(Trace { order: Order::default(), sinks, log, failed: None })
+    }
+
+    /// Completes all files; `end` is the last tick of the run, `title` what pictures are called.
+    pub(super) fn finish(&self, mut trace: Trace, end: Ticks, title: &str) -> Result<()> {
+        trace.pass_on(true);
+        if let Some((path, error)) = trace.failed {
+            return Err(output::cannot_write(&path, &error));
+        }
+        for sink in trace.sinks {
+            let path = sink.path().to_owned();
+            sink.finish(end).map_err(|error| match error.downcast::<io::Error>() {
+                Ok(error) => output::cannot_write(&path, &error),
+                Err(other) => other,
+            })?;
+        }
         for path in &self.plot {
+            let Some(log) = &trace.log else { continue };
             let chart = picture::chart(log, title.to_owned(), self.trace_every, end);
             plot::write(&chart, Form::of(path)?, path)?;
         }
-        for path in &self.trace {
-            let text = match suffix(path).as_str() {
-                "vcd" => vcd::text(log),
-                "json" => chrome::text(log)?,
-                _ => table::text(log, self.trace_every, end),
-            };
-            output::write(path, text.as_bytes())?;
-        }
-        match &self.trace_bits {
-            Some(path) => output::write(path, bits::text(log).as_bytes()),
-            None => Ok(()),
-        }
+        Ok(())
     }
 }
 
@@ -89,77 +116,83 @@ fn suffix(path: &Path) -> String {
     path.extension().unwrap_or_default().to_string_lossy().to_lowercase()
 }
 
-/// A change of a bit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Change {
-    at: Cycles,
-    bit: Bit,
-    level: bool,
-    thread: Option<ThreadId>,
+/// Something that a trace shows; its instant comes with it.
+#[derive(Clone, Debug, PartialEq)]
+enum Entry {
+    /// A bit has changed, and the thread that did it.
+    Bit { bit: Bit, level: bool, thread: Option<ThreadId> },
+    /// A thread has the processor until then.
+    Slice { thread: ThreadId, end: Cycles },
+    /// Items have these values; the axes that are enabled.
+    Sample { values: Vec<f64>, enabled: u8 },
+    /// A console line.
+    Line(String),
+    /// A character sent by the serial port.
+    Sent(u8),
 }
 
-/// Everything that was recorded.
-#[derive(Debug, Default)]
-pub(super) struct Log {
-    quantities: Vec<Quantity>,
-    /// Whether these are the items of all axes, of which only the enabled ones are shown.
-    is_default: bool,
-    changes: Vec<Change>,
-    slices: Vec<(ThreadId, Cycles, Cycles)>,
-    samples: Vec<(Cycles, Vec<f64>)>,
-    /// Axes that were enabled at some time.
-    enabled: u8,
-    lines: Vec<(Cycles, String)>,
-    sent: Vec<(Cycles, u8)>,
-}
-
-impl Log {
-    /// Nothing yet, of what was asked for.
-    pub(super) fn new(request: &Request) -> Self {
-        let items: Vec<_> = request.quantities.iter().filter_map(Quantity::item).collect();
-        let is_default = items == Item::of_axes();
-        Self { quantities: request.quantities.clone(), is_default, ..Self::default() }
+impl Entry {
+    /// What an event shows, if it belongs to a trace.
+    fn of(event: &Event) -> Option<Self> {
+        Some(match &event.kind {
+            EventKind::Trace(Record::Bit { bit, level, thread }) => {
+                Self::Bit { bit: *bit, level: *level, thread: *thread }
+            }
+            EventKind::Trace(Record::Slice { thread, end }) => Self::Slice { thread: *thread, end: *end },
+            EventKind::Trace(Record::Sample { values, enabled }) => {
+                Self::Sample { values: values.clone(), enabled: *enabled }
+            }
+            EventKind::ConsoleLine(line) => Self::Line(String::from_utf8_lossy(line).into_owned()),
+            EventKind::UartSent(byte) => Self::Sent(*byte),
+            _ => return None,
+        })
     }
+}
 
+/// A file that grows with a run.
+trait Sink {
+    /// Takes up what has happened; instants never go back.
+    fn note(&mut self, at: Cycles, entry: &Entry) -> io::Result<()>;
+
+    /// The run has ended with this tick.
+    fn finish(self: Box<Self>, end: Ticks) -> Result<()>;
+
+    /// The file.
+    fn path(&self) -> &Path;
+}
+
+/// All files of a run.
+pub(super) struct Trace {
+    order: Order,
+    sinks: Vec<Box<dyn Sink>>,
+    log: Option<Log>,
+    /// The first file that could not be written, and why.
+    failed: Option<(PathBuf, io::Error)>,
+}
+
+impl Trace {
     /// Takes up an event, if it belongs to a trace.
     pub(super) fn note(&mut self, event: &Event) {
-        let at = event.at;
-        match &event.kind {
-            EventKind::Trace(Record::Bit { bit, level, thread }) => {
-                self.changes.push(Change { at, bit: *bit, level: *level, thread: *thread });
-            }
-            EventKind::Trace(Record::Slice { thread, end }) => self.slices.push((*thread, at, *end)),
-            EventKind::Trace(Record::Sample { values, enabled }) => {
-                self.enabled |= enabled;
-                self.samples.push((at, values.clone()));
-            }
-            EventKind::ConsoleLine(line) => {
-                self.lines.push((at, String::from_utf8_lossy(line).into_owned()));
-            }
-            EventKind::UartSent(byte) => self.sent.push((at, *byte)),
-            _ => {}
+        if let Some(entry) = Entry::of(event) {
+            self.order.add(event.at, entry);
+            self.pass_on(false);
         }
     }
 
-    /// What to show, and where each stands in a sample.
-    fn columns(&self) -> Vec<(usize, &Quantity)> {
-        let is_shown = |quantity: &Quantity| {
-            let axis = quantity.item().and_then(Item::axis);
-            !self.is_default || axis.is_none_or(|axis| self.enabled >> axis & 1 != 0)
-        };
-        self.quantities.iter().enumerate().filter(|(_, quantity)| is_shown(quantity)).collect()
-    }
-
-    /// Bits that have changed, in ascending order, each with its level before.
-    fn bits(&self) -> Vec<(Bit, bool)> {
-        let mut bits: Vec<(Bit, bool)> = Vec::new();
-        for change in &self.changes {
-            if bits.iter().all(|(bit, _)| *bit != change.bit) {
-                bits.push((change.bit, !change.level));
+    /// Writes what is in order, at the end everything.
+    fn pass_on(&mut self, is_over: bool) {
+        while let Some((at, entry)) = self.order.take(is_over) {
+            for sink in &mut self.sinks {
+                if self.failed.is_none()
+                    && let Err(error) = sink.note(at, &entry)
+                {
+                    self.failed = Some((sink.path().to_owned(), error));
+                }
+            }
+            if let Some(log) = &mut self.log {
+                log.note(at, entry);
             }
         }
-        bits.sort_unstable();
-        bits
     }
 }
 
@@ -169,15 +202,18 @@ fn nanoseconds(at: Cycles) -> i64 {
 }
 
 #[cfg(test)]
-pub(super) mod testing {
+mod testing {
     use super::*;
 
-    /// A run of a few records of each kind.
-    pub(super) fn log() -> Log {
-        let us = |us: i64| Cycles::new(us * Cycles::PER_SECOND.get() / 1_000_000);
+    /// What a run with a few records of each kind was asked for.
+    pub(super) fn request() -> Request {
         let item = |name| Quantity::from(Item::new(name).expect("an item"));
-        let quantities = ["dest0", "bit46"].map(item).to_vec();
-        let mut log = Log::new(&Request { quantities, every: 2, changes: true });
+        Request { quantities: ["dest0", "bit46"].map(item).to_vec(), every: 2, changes: true }
+    }
+
+    /// Its records, as they come: not quite in order.
+    pub(super) fn events() -> Vec<Event> {
+        let us = |us: i64| Cycles::new(us * Cycles::PER_SECOND.get() / 1_000_000);
         let (bit, thread) = (Bit::new(46).expect("a bit"), ThreadId::new(1).expect("1 is a thread"));
         let kinds = [
             (180, EventKind::Trace(Record::Sample { values: vec![0.5, 1.0], enabled: 1 })),
@@ -187,8 +223,38 @@ pub(super) mod testing {
             (540, EventKind::Trace(Record::Sample { values: vec![2.0, 0.0], enabled: 1 })),
             (560, EventKind::UartSent(b'x')),
         ];
-        for (at, kind) in kinds {
-            log.note(&Event { at: us(at), kind });
+        kinds.into_iter().map(|(at, kind)| Event { at: us(at), kind }).collect()
+    }
+
+    /// The file that a run of seven ticks leaves under this name.
+    pub(super) fn file(name: &str) -> String {
+        let folder = std::env::temp_dir().join(format!("cc67-trace-{}-{name}", std::process::id()));
+        std::fs::create_dir_all(&folder).expect("a folder");
+        let path = folder.join(name);
+        let is_bits = name.starts_with("bits");
+        let options = TraceOptions {
+            trace: if is_bits { Vec::new() } else { vec![path.clone()] },
+            trace_bits: is_bits.then(|| path.clone()),
+            plot: Vec::new(),
+            trace_items: None,
+            trace_every: 2,
+        };
+        let mut trace = options.begin(&request()).expect("it can be written");
+        events().iter().for_each(|event| trace.note(event));
+        assert!(!path.exists(), "it has its name before it is complete");
+        options.finish(trace, Ticks::new(7), "").expect("it can be written");
+        let text = std::fs::read_to_string(&path).expect("it is written");
+        let left: Vec<_> = std::fs::read_dir(&folder).expect("it is there").collect();
+        assert_eq!(left.len(), 1, "{left:?}");
+        std::fs::remove_dir_all(&folder).expect("it is ours");
+        text
+    }
+
+    /// The same records for pictures.
+    pub(super) fn log() -> Log {
+        let mut log = Log::new(&request());
+        for event in events() {
+            log.note(event.at, Entry::of(&event).expect("it belongs to a trace"));
         }
         log
     }

@@ -5,7 +5,7 @@
 use kmotiondef::{Bit, Cycles, Ticks};
 use runtime::trace::{Item, Quantity};
 
-use super::Log;
+use super::log::Log;
 use crate::cli::plot::chart::{Chart, Strip};
 use crate::cli::plot::samples::{Column, Samples};
 
@@ -60,8 +60,7 @@ fn bits(log: &Log, end: f64) -> Vec<Strip> {
 }
 
 fn bit(quantity: &Quantity) -> Option<Bit> {
-    let item = quantity.item().filter(|item| item.kind() == "bit")?;
-    Bit::new(item.index() as i32)
+    quantity.item().and_then(Item::bit)
 }
 
 /// When a bit was high that had a level before all changes.
