@@ -185,7 +185,7 @@ main()
     assert_eq!(output.code, 0, "{}", output.stderr);
     for row in table(&scratch, "a.csv") {
         // Begun within the first two ticks, with 10 ms.
-        let follows = |begun: f64| 1.0 - (-(row[0] - begun).max(0.0) / 0.01).exp();
+        let follows = |begun: f64| 1.0 - libm::exp(-(row[0] - begun).max(0.0) / 0.01);
         assert!((follows(0.0003)..=follows(0.0)).contains(&row[1]), "{row:?}");
     }
 }
@@ -254,7 +254,7 @@ fn the_filter_is_the_closed_form_of_a_low_pass() {
             (0, 1) => 0.0,
             _ => volts,
         };
-        volts = target + (volts - target) * (-TICK / CONSTANT).exp();
+        volts = target + (volts - target) * libm::exp(-TICK / CONSTANT);
     }
 }
 
@@ -268,12 +268,12 @@ fn the_filtered_sine_is_the_one_wanted_within_two_percent() {
     let volts = |row: &[f64]| row[2] / 204.8;
     let phase = |row: &[f64]| row[0] * 5.0 * std::f64::consts::TAU;
     let offset = mean(&volts);
-    let sine = 2.0 * mean(&|row| volts(row) * phase(row).sin());
-    let cosine = 2.0 * mean(&|row| volts(row) * phase(row).cos());
+    let sine = 2.0 * mean(&|row| volts(row) * libm::sin(phase(row)));
+    let cosine = 2.0 * mean(&|row| volts(row) * libm::cos(phase(row)));
     let swing = sine.hypot(cosine);
     assert!((offset - 5.0).abs() < 0.02 * 3.0, "mean {offset}");
     assert!((swing - 3.0).abs() < 0.02 * 3.0, "amplitude {swing}");
-    let fitted = |row: &[f64]| offset + sine * phase(row).sin() + cosine * phase(row).cos();
+    let fitted = |row: &[f64]| offset + sine * libm::sin(phase(row)) + cosine * libm::cos(phase(row));
     let worst = periods.iter().map(|row| (volts(row) - fitted(row)).abs()).fold(0.0, f64::max);
     assert!(worst < 0.02 * 3.0, "up to {worst} V beside it");
 }
