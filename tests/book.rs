@@ -71,6 +71,40 @@ fn programs_do_what_the_book_says() {
     assert!(count >= 5, "only {count} programs");
 }
 
+/// The command lines of `cc67` in a text: the words of each, without what the shell makes of them.
+fn command_lines(text: &str) -> Vec<Vec<&str>> {
+    const BEGINNINGS: [&str; 3] = ["cc67 ", "target/release/cc67 ", "cargo run --release -- "];
+    let lines = text.lines().filter_map(|line| BEGINNINGS.iter().find_map(|start| line.strip_prefix(start)));
+    lines.map(|line| line.split('#').next().unwrap_or_default().split_whitespace().collect()).collect()
+}
+
+#[test]
+fn commands_and_options_in_the_book_exist() {
+    let mut count = 0;
+    let pages = files(&source(), "md").into_iter().chain([harness::root().join("README.md")]);
+    for page in pages {
+        let text = fs::read_to_string(&page).expect("pages are UTF-8");
+        let shell = blocks(&text).into_iter().filter(|(info, _)| info.starts_with("sh"));
+        let lines: Vec<_> = shell.map(|(_, text)| text).collect();
+        for words in lines.iter().flat_map(|text| command_lines(text)) {
+            let (command, options) = words.split_first().expect("a command");
+            if command.starts_with('-') {
+                continue;
+            }
+            let help = run_in(BINARY, harness::root(), [command, "--help"]);
+            assert_eq!(help.code, 0, "{}: cc67 {words:?}", page.display());
+            for option in options.iter().filter(|word| word.starts_with("--")) {
+                let name = option.split('=').next().unwrap_or_default();
+                let is_known =
+                    help.stdout.split(|c: char| !(c.is_alphanumeric() || c == '-')).any(|word| word == name);
+                assert!(is_known, "{}: cc67 {command} has no {name}", page.display());
+            }
+            count += 1;
+        }
+    }
+    assert!(count >= 15, "only {count} commands");
+}
+
 /// What stands behind each `mark` up to `end`.
 fn behind<'a>(text: &'a str, mark: &str, end: char) -> Vec<&'a str> {
     text.split(mark).skip(1).filter_map(|rest| rest.split(end).next()).collect()

@@ -71,6 +71,11 @@ use object::Object;
 use passes::Level;
 use source::SourceMap;
 
+/// The programs in the book are tests, too.
+#[cfg(doctest)]
+#[doc = include_str!("../book/src/embedding.md")]
+struct Book;
+
 /// How to compile.
 #[derive(Clone, Debug)]
 pub struct Options {
