@@ -195,6 +195,7 @@ fn kill_after(folder: &Path, arguments: &[&str], delay: Duration) {
 /// Kills the command that writes `file` at `times` moments spread over its run.
 ///
 /// Whatever the moment, the file is what was there before or what the whole run writes.
+#[expect(clippy::disallowed_methods, reason = "the process is killed at moments of the host's time")]
 fn assert_whole(name: &str, arguments: &[&str], file: &str, before: &[u8], times: u32) {
     let scratch = with_program(name);
     let path = scratch.path().join(file);

@@ -152,7 +152,7 @@ impl Diagnostic {
 pub const MAX_ERRORS: usize = 20;
 
 /// What a stage says when it gives up.
-pub const TOO_MANY_ERRORS: &str = "too many errors; the rest of the program was not checked";
+pub const TOO_MANY_ERRORS: &str = "more than 20 errors; the rest of the program was not checked";
 
 /// Warnings and notes that are kept; the rest is only counted, so that hostile text cannot fill the memory.
 const MAX_REMARKS: usize = 2000;

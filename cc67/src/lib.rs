@@ -38,6 +38,7 @@ mod includers;
 pub mod inspect;
 pub mod ir;
 mod library;
+pub mod limits;
 pub mod link;
 pub mod lints;
 pub mod lower;

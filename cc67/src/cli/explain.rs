@@ -5,10 +5,14 @@ use std::fmt::Write as _;
 use anyhow::Result;
 
 use super::{Exit, output};
+use crate::limits;
 use crate::lints::{Lint, Preset};
 
 /// What lists all warnings; no lint has this name.
 const LIST: &str = "warnings";
+
+/// What lists all limits.
+const LIMITS: &str = "limits";
 
 /// Pages about other things than warnings.
 const PAGES: &[(&str, &str)] =
@@ -18,6 +22,8 @@ const PAGES: &[(&str, &str)] =
 pub(super) fn explain(name: &str) -> Result<Exit> {
     if name == LIST {
         output::print(&list())?;
+    } else if name == LIMITS {
+        output::print(&limits::page())?;
     } else if let Some((_, page)) = PAGES.iter().find(|(known, _)| *known == name) {
         output::print(page)?;
     } else {

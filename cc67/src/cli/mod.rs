@@ -44,7 +44,7 @@ pub use exit::Exit;
 #[derive(Debug, Parser)]
 #[command(name = "cc67", version = VERSION, about, max_term_width = 100, arg_required_else_help = true)]
 struct Arguments {
-    /// Explain a warning by the name in its brackets; `warnings` lists them all; `stimulus` is the language of `--stim`
+    /// Explain a warning by the name in its brackets; `warnings` lists them all; also limits, machine, stimulus
     #[arg(long, value_name = "WARNING", global = true, allow_hyphen_values = true)]
     explain: Option<String>,
     #[command(subcommand)]

@@ -20,7 +20,7 @@ use crate::ty::{BitRange, QualifiedType, RecordId, Type, TypeId, Types};
 use crate::typed::{ExprId, ExprKind, LocalId, PlaceId, PlaceKind, StaticData};
 
 /// More values than one object can take: the board has no room for them.
-const MAX_LEAVES: usize = 1 << 20;
+pub const MAX_VALUES: usize = 1 << 20;
 
 /// A value and the part of the object it goes to.
 #[derive(Debug)]
@@ -348,7 +348,7 @@ impl Sema<'_> {
         let depth = stack.len();
         let mut kept = None;
         for turn in 0..times {
-            self.check_leaves(leaves, stack)?;
+            self.check_leaves(leaves)?;
             match &item.initializer {
                 Initializer::List { items, span } => {
                     let slot = self.next_slot(stack, *span)?;
@@ -387,12 +387,12 @@ impl Sema<'_> {
     }
 
     /// A range can ask for any number of values; there is an end.
-    fn check_leaves(&mut self, leaves: &[Leaf], stack: &[Level]) -> Option<()> {
-        if leaves.len() < MAX_LEAVES {
+    fn check_leaves(&mut self, leaves: &[Leaf]) -> Option<()> {
+        if leaves.len() < MAX_VALUES {
             return Some(());
         }
-        let ty = stack.first().map_or(Types::VOID, |level| level.slot.ty.ty);
-        self.too_many(ty, leaves.last().map(|leaf| leaf.span)?);
+        let span = leaves.last().map(|leaf| leaf.span)?;
+        self.report(Diagnostic::error(span, format!("more than {MAX_VALUES} values in one initialiser")));
         None
     }
 

@@ -45,6 +45,7 @@ mod tests;
 mod undeclared;
 
 pub use firmware_names::{FirmwareNames, Prototype};
+pub use initializers::MAX_VALUES;
 
 use std::collections::{BTreeMap, BTreeSet};
 

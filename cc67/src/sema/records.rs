@@ -7,7 +7,7 @@ use crate::ast::{Expression, MemberDeclaration, MemberDeclarator, RecordKind, Re
 use crate::diag::Diagnostic;
 use crate::names::Name;
 use crate::source::Span;
-use crate::ty::layout::LayoutBuilder;
+use crate::ty::layout::{LayoutBuilder, MAX_OBJECT_SIZE};
 use crate::ty::{Layout, QualifiedType, RecordId, TypeId, Types};
 
 /// Members of a structure; each is compared with those before it.
@@ -209,7 +209,10 @@ impl Sema<'_> {
         }
         let placed = builder.member(&self.types, name, ty, align);
         if placed.is_none() {
-            self.report(Diagnostic::error(span, "the structure is too large"));
+            self.report(
+                Diagnostic::error(span, "the structure is too large")
+                    .note(format!("the limit is {MAX_OBJECT_SIZE} bytes")),
+            );
         }
         placed
     }

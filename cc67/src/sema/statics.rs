@@ -8,6 +8,7 @@ use super::declarators::MAX_SEARCH;
 use super::initializers::{Leaf, LeafValue};
 use crate::diag::Diagnostic;
 use crate::source::Span;
+use crate::ty::layout::MAX_OBJECT_SIZE;
 use crate::ty::{BitRange, TypeId, Types};
 use crate::typed::{AddressWord, BinaryOp, ExprId, ExprKind, PlaceKind, StaticData, SymbolId};
 
@@ -31,8 +32,11 @@ impl Sema<'_> {
         let end =
             leaves.iter().filter_map(|leaf| leaf.offset.checked_add(self.types.size_of(leaf.ty)?)).max();
         let size = self.types.size_of(ty)?.max(end.unwrap_or(0));
-        if size > crate::ty::layout::MAX_OBJECT_SIZE {
-            self.report(Diagnostic::error(span, format!("an object of {size} bytes is too large")));
+        if size > MAX_OBJECT_SIZE {
+            let message = format!("an object of {size} bytes is too large");
+            self.report(
+                Diagnostic::error(span, message).note(format!("the limit is {MAX_OBJECT_SIZE} bytes")),
+            );
             return None;
         }
         let mut image = Image { bytes: vec![0; size as usize], addresses: BTreeMap::new() };

@@ -1,0 +1,100 @@
+//! Every limit of the compiler that a source can reach: the message says its number.
+
+use cc67::limits::{COMPILER, Limit};
+use harness::{Output, Scratch, run_in};
+
+/// A source that goes beyond one limit.
+struct Case {
+    /// Where the limit's description begins.
+    what: &'static str,
+    source: fn(usize) -> String,
+}
+
+const CASES: &[Case] = &[
+    Case { what: "files included within each other", source: |_| "#include \"a.c\"\n".to_owned() },
+    Case {
+        what: "`#if` within `#if`",
+        source: |most| "#if 1\n".repeat(most + 1) + &"#endif\n".repeat(most + 1),
+    },
+    Case {
+        what: "parameters of a macro",
+        source: |most| format!("#define M({}) 1\n", list(most + 1, |index| format!("a{index}"))),
+    },
+    Case {
+        what: "macro calls within each other",
+        source: |most| {
+            let (open, close) = ("M(".repeat(most + 1), ")".repeat(most + 1));
+            format!("#define M(x) x\nint a = {open}1{close};\n")
+        },
+    },
+    Case {
+        what: "tokens that macros make",
+        source: |_| {
+            let levels = (1..24).map(|level| format!("#define M{level} M{0} M{0}\n", level - 1));
+            format!("#define M0 ;\n{}M23\n", levels.collect::<String>())
+        },
+    },
+    Case {
+        what: "bytes of a token that",
+        source: |_| {
+            let (open, close) = ("D(".repeat(21), ")".repeat(21));
+            format!("#define E(a) a##a\n#define D(a) E(a)\nint {open}a{close};\n")
+        },
+    },
+    Case {
+        what: "parentheses, blocks",
+        source: |most| format!("int a = {}1{};\n", "(".repeat(most + 1), ")".repeat(most + 1)),
+    },
+    Case {
+        what: "binary operators in a row",
+        source: |most| format!("int a = 1{};\n", "+1".repeat(most + 1)),
+    },
+    Case {
+        what: "values of an initialiser",
+        source: |most| format!("char a[{0}] = {{ [0 ... {0} - 1] = 1 }};\n", most + 1),
+    },
+    Case {
+        what: "errors in one stage",
+        source: |most| (0..=most).map(|index| format!("int a{index} = b{index};\n")).collect(),
+    },
+    Case { what: "bytes of an object", source: |most| format!("char a[{}];\n", most + 1) },
+    Case {
+        what: "bytes of the local variables",
+        source: |most| format!("void f(void)\n{{\n  char a[{}];\n  a[0] = 1;\n}}\n", most + 8),
+    },
+];
+
+fn list(count: usize, item: impl Fn(usize) -> String) -> String {
+    (0..count).map(item).collect::<Vec<_>>().join(", ")
+}
+
+fn check(limit: &Limit, source: &str) -> Output {
+    let scratch = Scratch::new(&format!("limits-{}", limit.number));
+    scratch.write("a.c", format!("{source}main() {{ }}\n"));
+    run_in(env!("CARGO_BIN_EXE_cc67-under-test"), scratch.path(), ["check", "a.c"])
+}
+
+#[test]
+fn messages_say_the_number() {
+    for case in CASES {
+        let limit = COMPILER.iter().find(|limit| limit.what.starts_with(case.what)).expect("it is listed");
+        let output = check(limit, &(case.source)(limit.number as usize));
+        assert_eq!(output.code, 1, "{}: {output:?}", limit.what);
+        assert!(output.stderr.contains(&limit.number.to_string()), "{}: {}", limit.what, output.stderr);
+    }
+}
+
+#[test]
+fn every_limit_has_a_source_or_a_reason() {
+    // Half a gigabyte of source for each is too much for a test of every day.
+    const TOO_LARGE: [&str; 4] = [
+        "files included by one compilation, each time counted",
+        "bytes of one source file",
+        "bytes of all source files together, each inclusion counted",
+        "tokens after preprocessing",
+    ];
+    for limit in COMPILER {
+        let has_case = CASES.iter().any(|case| limit.what.starts_with(case.what));
+        assert!(has_case || TOO_LARGE.contains(&limit.what), "{}", limit.what);
+    }
+}
