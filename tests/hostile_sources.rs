@@ -26,7 +26,7 @@ const BINARY: &str = env!("CARGO_BIN_EXE_cc67-under-test");
 const PATIENCE: Duration = Duration::from_secs(60);
 
 /// The same for the command's own time on the processor, in seconds.
-const PROCESSOR_TIME: u32 = 10;
+const PROCESSOR_TIME: u32 = 60;
 
 /// More diagnostics than this are no help to anybody.
 const MOST_ERRORS: usize = 25;
@@ -34,8 +34,8 @@ const MOST_ERRORS: usize = 25;
 /// The longest text that the diagnostics of one input may have.
 const MOST_TEXT: usize = 1 << 20;
 
-/// Address space of the command in KiB: 1 GiB.
-const ADDRESS_SPACE: u32 = 1 << 20;
+/// Address space of the command in KiB: 1 GiB, and the 512 MiB that the stack may grow to.
+const ADDRESS_SPACE: u32 = (1 << 20) + (1 << 19);
 
 /// What is wrong with how the compiler treats an input; nothing if all is well.
 fn complaint(input: &Input) -> Option<String> {

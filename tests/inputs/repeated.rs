@@ -35,6 +35,8 @@ pub(super) fn heavy() -> Vec<Input> {
         Input::new("a million additions", in_main(format!("a = {}1;", "1 + ".repeat(LONG))))
             .says("30000 operators"),
         Input::new("a million statements", in_main("a++;\n".repeat(LONG / 4))),
+        Input::new("two million tokens of string constants", in_main(strings())),
+        Input::new("more tokens than there may be", in_main(";".repeat(3 * LONG))).says("2000000 tokens"),
         Input::new("a macro that doubles 40 times", bomb(40)),
         Input::new("a macro that doubles by arguments", argument_bomb()),
         Input::new("a gigantic array", "int x[0x7FFFFFFF / 8];\nmain() { x[0] = 1; }\n"),
@@ -49,6 +51,14 @@ pub(super) fn heavy() -> Vec<Input> {
         )
         .says("64"),
     ]
+}
+
+/// What takes most memory for its tokens.
+fn strings() -> String {
+    (0..LONG - LONG / 20).fold(String::new(), |mut text, n| {
+        let _ = write!(text, "\"a{n}\";");
+        text
+    })
 }
 
 fn bomb(doublings: usize) -> String {
