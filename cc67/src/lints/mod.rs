@@ -17,6 +17,7 @@ mod firmware_name;
 mod format;
 mod header_mismatch;
 mod idle_loop;
+mod missing_call;
 mod missing_return;
 mod portability;
 mod recursion;
@@ -98,6 +99,8 @@ macro_rules! for_each_lint {
             MissingAddress = "missing-address", On;
             /// An assignment is used as a condition.
             AssignmentCondition = "assignment-condition", On;
+            /// The name of a function stands where its result is meant: the `()` is missing.
+            MissingCall = "missing-call", On, pass missing_call;
             /// A statement computes a value and drops it.
             UnusedValue = "unused-value", On;
             /// An `if` ends in a `;` on its own line.
