@@ -84,6 +84,9 @@ fn what_is_watched_is_drawn() {
         "{}",
         output.stderr
     );
+    let output = cc67(&Scratch::new("plot-nowhere"), &["run", "--watch", "dest0", "a.c"]);
+    let expect = "---- stderr\ncc67: `--watch` says what is shown; `--plot FILE.svg` or `--trace FILE.csv` says where\n---- exit 2\n";
+    assert_eq!(output.render(), expect);
     let output = cc67(&Scratch::new("plot-form"), &["run", "--plot", "a.gif", "a.c"]);
     let expect = "cc67: a.gif is no picture: its name must end in .svg, .png or .html\n";
     assert_eq!((output.code, output.stderr.as_str()), (2, expect));
@@ -278,8 +281,7 @@ fn the_page_zooms_and_tells_values_in_a_browser() {
     let (scratch, page) = plot("page", "a.html", &[]);
     let page = String::from_utf8(page).expect("the page is UTF-8");
     assert!(!page.contains("http://") && !page.contains("https://"), "the page needs nothing else");
-    let listener =
-        "<head><script>const errors = []; window.onerror = message => errors.push(message);</script>";
+    let listener = "<head><script>const errors = []; window.onerror = console.error = message => errors.push(message);</script>";
     let page = page.replacen("<head>", listener, 1).replacen("</body>", VISITOR, 1);
     fs::write(scratch.path().join("visited.html"), page).expect("files can be written");
     let output = Command::new(browser)

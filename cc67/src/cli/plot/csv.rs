@@ -46,6 +46,9 @@ struct Table {
 }
 
 fn read(text: &str) -> Result<Table> {
+    if text.contains('\0') {
+        bail!("this is no text");
+    }
     let mut lines = text
         .lines()
         .enumerate()
@@ -136,6 +139,7 @@ mod tests {
     #[test]
     fn what_is_no_table_is_said() {
         check("", "there are no numbers in it");
+        check("GIF\0", "this is no text");
         check("a,b\n", "there are no numbers in it");
         check("a,b\n1,2\n3\n", "line 3 has 1 columns, the first has 2");
         check("a,b\n1,x\n", "line 2: `x` is not a number");

@@ -18,7 +18,7 @@ mod watch;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use anyhow::Result;
+use anyhow::{Result, bail};
 use clap::Args;
 use kmotiondef::{Bit, Cycles, ThreadId, Ticks};
 use runtime::trace::{Item, Quantity, Record, Request};
@@ -57,6 +57,9 @@ pub(super) struct TraceOptions {
 impl TraceOptions {
     /// What the board is to record of these programs; `None` if nothing is traced.
     pub(super) fn request(&self, programs: &[Watched<'_>], options: &Options) -> Result<Option<Request>> {
+        if self.trace.is_empty() && self.plot.is_empty() && self.trace_items.is_some() {
+            bail!("`--watch` says what is shown; `--plot FILE.svg` or `--trace FILE.csv` says where");
+        }
         if self.trace.is_empty() && self.trace_bits.is_none() && self.plot.is_empty() {
             return Ok(None);
         }
