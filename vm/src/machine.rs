@@ -378,8 +378,11 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         if !self.firmware.callback(&self.memory).is_null() {
             return;
         }
-        let count = self
-            .idle_ticks()
+        let idle = self.idle_ticks();
+        if idle == 0 {
+            return;
+        }
+        let count = idle
             .min(limit.get().saturating_sub(self.tick.get()))
             .min(self.firmware.quiet_ticks(&self.memory));
         if count == 0 {

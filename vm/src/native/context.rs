@@ -42,6 +42,8 @@ pub(super) struct Context {
     /// Address of the current call's frame; the top of the stack outside all calls.
     stack_pointer: u32,
     next: Next,
+    /// The ranges of program text that the state's windows are for.
+    protected: Option<u64>,
     /// Arguments of the firmware call being made.
     arguments: Vec<u64>,
 }
@@ -55,6 +57,7 @@ impl Context {
             at: function.0 as usize,
             stack_pointer: stack.top,
             next: Next::Answer(Answer::Slot(0)),
+            protected: None,
             arguments: Vec::new(),
         }
     }
@@ -123,6 +126,10 @@ impl Context {
             let state = self.fiber.state();
             state.budget.set(slice.budget.get());
             protected.follow(slice.memory.protected_texts());
+            if self.protected != Some(protected.version()) {
+                self.protected = Some(protected.version());
+                state.set_windows(protected.windows(slice.program.text().end.get()));
+            }
             let request = self.fiber.resume(slice.memory, protected, answer);
             slice.budget = Cycles::new(self.fiber.state().budget.get());
             let Some(request) = request else {

@@ -20,6 +20,8 @@ pub(super) type Marks = [u8; (SDRAM.size >> BLOCK_BITS) as usize];
 pub(super) struct ProtectedBlocks {
     texts: Texts,
     marks: Box<Marks>,
+    /// How often the ranges have changed.
+    version: u64,
 }
 
 impl Default for ProtectedBlocks {
@@ -27,7 +29,7 @@ impl Default for ProtectedBlocks {
         // Through a vector, because an array of this size must not pass over the stack.
         let marks = vec![0; size_of::<Marks>()].into_boxed_slice();
         let Ok(marks) = marks.try_into() else { unreachable!("the vector has the length of the array") };
-        Self { texts: Default::default(), marks }
+        Self { texts: Default::default(), marks, version: 0 }
     }
 }
 
@@ -49,6 +51,23 @@ impl ProtectedBlocks {
             self.marks[blocks(text)].fill(1);
         }
         self.texts.clone_from(texts);
+        self.version += 1;
+    }
+
+    /// A number that is another one when the ranges have changed.
+    pub(super) const fn version(&self) -> u64 {
+        self.version
+    }
+
+    /// Offsets in SDRAM without program text: from the end of the text at `own` on, and from the end of the last one.
+    pub(super) fn windows(&self, own: u32) -> [Range<u32>; 2] {
+        let texts = || self.texts.iter().filter(|text| text.start < text.end);
+        let last = texts().map(|text| text.end).max().unwrap_or(SDRAM.base.get());
+        [own, last].map(|start| {
+            let next = texts().filter(|text| text.end > start).map(|text| text.start).min();
+            let start = offset(start).next_multiple_of(8);
+            start..offset(next.unwrap_or(u32::MAX)).max(start)
+        })
     }
 
     /// The map.
@@ -57,10 +76,13 @@ impl ProtectedBlocks {
     }
 }
 
+/// The offset of an address in SDRAM, or the end of SDRAM that is next to it.
+fn offset(address: u32) -> u32 {
+    address.clamp(SDRAM.base.get(), SDRAM.base.get() + SDRAM.size) - SDRAM.base.get()
+}
+
 /// The blocks of SDRAM that hold bytes of `text`.
 fn blocks(text: &Range<u32>) -> Range<usize> {
-    let offset =
-        |address: u32| address.clamp(SDRAM.base.get(), SDRAM.base.get() + SDRAM.size) - SDRAM.base.get();
     let (first, end) = (offset(text.start), offset(text.end));
     if first >= end {
         return 0..0;

@@ -5,6 +5,7 @@
 //! All of them are cells, so both sides may hold a shared reference for as long as they like.
 
 use std::cell::Cell;
+use std::ops::Range;
 
 use kmotiondef::map::STACK_SIZE;
 
@@ -22,6 +23,16 @@ pub(super) const CALLS: usize = (STACK_SIZE / BYTES_PER_CALL) as usize;
 
 const _: () = assert!(CALLS.is_power_of_two());
 
+/// A stretch of SDRAM.
+#[derive(Debug, Default)]
+#[repr(C)]
+pub(super) struct Window {
+    /// Offset of its first byte in SDRAM.
+    pub(super) start: Cell<u32>,
+    /// Bytes of it.
+    pub(super) length: Cell<u32>,
+}
+
 /// The shared fields. The layout is that of C, because compiled code relies on it.
 #[derive(Debug)]
 #[repr(C)]
@@ -34,6 +45,8 @@ pub(super) struct State {
     pub(super) iram: Cell<*mut u8>,
     /// One byte for each block of SDRAM, not 0 where a store must be checked.
     pub(super) protected: Cell<*const u8>,
+    /// Stretches of SDRAM without program text; the first holds the program's own data, the second all stacks.
+    pub(super) windows: [Window; 2],
     /// How compiled code makes a request.
     pub(super) leave: Leave,
     /// The conversion of a double to 64 bits modulo 2⁶⁴ where it does not simply fit.
@@ -69,6 +82,7 @@ impl State {
             sdram: Cell::new(std::ptr::null_mut()),
             iram: Cell::new(std::ptr::null_mut()),
             protected: Cell::new(std::ptr::null()),
+            windows: Default::default(),
             leave: entry::leave,
             convert: entry::convert,
             yielder: Cell::new(std::ptr::null()),
@@ -91,6 +105,14 @@ impl State {
         self.lowest.set(stack.top);
         self.top.set(stack.top);
         self.arguments.iter().for_each(|argument| argument.set(0));
+    }
+
+    /// Sets where compiled code may store without asking, as offsets in SDRAM.
+    pub(super) fn set_windows(&self, ranges: [Range<u32>; 2]) {
+        for (window, range) in self.windows.iter().zip(ranges) {
+            window.start.set(range.start);
+            window.length.set(range.end - range.start);
+        }
     }
 
     /// The most bytes of the stack in use since the reset.

@@ -1,6 +1,7 @@
 //! The native engine against the bytecode engine: they must not differ in anything.
 
 mod generate;
+mod loops;
 
 use kmotiondef::{CodeAddr, Cycles, GuestAddr, Ticks};
 use proptest::prelude::*;

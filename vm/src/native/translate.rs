@@ -11,8 +11,10 @@
 
 mod arith;
 mod control;
+mod fast;
 mod memory;
 mod nan;
+mod turns;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::mem::offset_of;
@@ -29,6 +31,8 @@ use cranelift_module::{FuncId, Module};
 
 use kmotiondef::GuestAddr;
 
+use self::fast::{Fast, Way};
+use self::turns::Plan;
 use super::request::{Reason, Request};
 use super::state::{BYTES_PER_CALL, State};
 use crate::firmware::Pure;
@@ -268,6 +272,11 @@ struct Translator<'a, 'b> {
     leave: IrSigRef,
     /// Blocks at the words that branches go to or that follow a conditional one.
     blocks: BTreeMap<usize, Block>,
+    /// The loops that are translated in several turns at once, by their first word, and the one at hand.
+    plans: BTreeMap<usize, Plan>,
+    fast: Option<Fast>,
+    /// What is still to be translated of the ways that the next branch takes.
+    ways: Vec<Way>,
     /// Flags of accesses to the state and to guest memory, which never overlap.
     state_flags: MemFlagsData,
     guest_flags: MemFlagsData,
@@ -317,6 +326,9 @@ impl<'a, 'b> Translator<'a, 'b> {
             request,
             leave,
             blocks: BTreeMap::new(),
+            plans: BTreeMap::new(),
+            fast: None,
+            ways: Vec::new(),
             state_flags,
             guest_flags,
             state: parameters[0],
@@ -399,25 +411,42 @@ impl<'a, 'b> Translator<'a, 'b> {
 
     /// Translates the words.
     fn body(&mut self) {
-        let body = self.translation.function.body.clone();
+        let mut body = self.translation.function.body.clone();
         self.find_blocks();
-        for at in body {
-            self.at = at;
-            if let Some(block) = self.blocks.get(&at).copied() {
-                if self.reachable {
-                    self.builder.ins().jump(block, &[]);
-                }
-                self.builder.switch_to_block(block);
-                self.reachable = true;
-                self.raw.clear();
+        while let Some(at) = body.next() {
+            let plan = self.plans.remove(&at);
+            let entry = plan.as_ref().map_or(at, Plan::entry);
+            if let Some(block) = self.blocks.get(&entry).copied() {
+                self.begin(block);
             }
-            if self.reachable {
-                self.op(self.translation.program.ops()[at]);
+            if let Some(plan) = plan.filter(|_| self.reachable) {
+                body.start = *plan.words.end() + 1;
+                self.turns(plan);
+            } else {
+                self.word(at);
             }
         }
         if self.reachable {
             self.unreachable();
         }
+    }
+
+    /// Translates the word `at` if it can be reached.
+    fn word(&mut self, at: usize) {
+        self.at = at;
+        if self.reachable {
+            self.op(self.translation.program.ops()[at]);
+        }
+    }
+
+    /// Goes on in `block`, which has other predecessors too.
+    fn begin(&mut self, block: Block) {
+        if self.reachable {
+            self.builder.ins().jump(block, &[]);
+        }
+        self.builder.switch_to_block(block);
+        self.reachable = true;
+        self.raw.clear();
     }
 
     /// Makes a block for each word at which one begins.
@@ -430,7 +459,22 @@ impl<'a, 'b> Translator<'a, 'b> {
                 begins.insert(at + 1);
             }
         }
+        let Translation { program, function, .. } = self.translation;
+        self.plans = turns::plans(program, function, &begins, &|op| self.cost_in_turns(op));
         self.blocks = begins.into_iter().map(|at| (at, self.builder.create_block())).collect();
+    }
+
+    /// What an instruction takes besides its charge, `None` for one that fast turns of a loop cannot hold.
+    fn cost_in_turns(&self, op: &Op) -> Option<u32> {
+        match *op {
+            Op::Call { .. }
+            | Op::CallPtr { .. }
+            | Op::BrTable { .. }
+            | Op::Copy { .. }
+            | Op::Clear { .. } => None,
+            Op::CallFw { sig, addr } => u32::try_from(self.pure_function(sig, addr)?.cost.get()).ok(),
+            _ => memory::is_in_ram(op).then_some(0),
+        }
     }
 
     /// Goes on in `block`, all of whose predecessors are known.
@@ -539,8 +583,16 @@ impl<'a, 'b> Translator<'a, 'b> {
         self.builder.def_var(self.budget, budget);
     }
 
+    /// Takes cycles from the budget.
+    fn spend(&mut self, cycles: u32) {
+        let budget = self.builder.use_var(self.budget);
+        let left = self.builder.ins().iadd_imm_s(budget, -i64::from(cycles));
+        self.builder.def_var(self.budget, left);
+    }
+
     /// Ends the block with a request from which the context does not come back.
     fn trap(&mut self, reason: Reason, a: Value) {
+        self.settle();
         let none = self.builder.ins().iconst(types::I64, 0);
         self.request(reason.code(), self.at, a, none);
         self.builder.ins().trap(RESUMED_BEHIND_TRAP);

@@ -294,6 +294,12 @@ impl Translator<'_, '_> {
     }
 
     fn trap_if_zero(&mut self, divisor: Value) {
+        if let Some(bail) = self.bail() {
+            let go_on = self.builder.create_block();
+            self.builder.ins().brif(divisor, go_on, &[], bail, &[]);
+            self.finish_edges();
+            return self.enter(go_on);
+        }
         let (zero, go_on) = (self.builder.create_block(), self.builder.create_block());
         self.builder.ins().brif(divisor, go_on, &[], zero, &[]);
         self.enter_cold(zero);

@@ -67,9 +67,11 @@ for_each_class! {
 
 impl Translator<'_, '_> {
     pub(super) fn charge(&mut self, cycles: Count32) {
-        let budget = self.builder.use_var(self.budget);
-        let left = self.builder.ins().iadd_imm_s(budget, -i64::from(cycles.0));
-        self.builder.def_var(self.budget, left);
+        if self.defer(cycles.0) {
+            return;
+        }
+        self.spend(cycles.0);
+        let left = self.builder.use_var(self.budget);
         let overdrawn = self.builder.ins().icmp_imm_s(IntCC::SignedLessThan, left, 0);
         let (stop, go_on) = (self.builder.create_block(), self.builder.create_block());
         self.builder.ins().brif(overdrawn, stop, &[], go_on, &[]);
@@ -81,22 +83,23 @@ impl Translator<'_, '_> {
     }
 
     pub(super) fn br(&mut self, to: Label) {
-        let block = self.blocks[&(to.0 as usize)];
-        self.builder.ins().jump(block, &[]);
-        self.reachable = false;
+        self.go_to(to.0 as usize);
     }
 
     pub(super) fn br_if(&mut self, cond: RegI32, to: Label) {
-        let cond = self.get(cond);
-        let (then, otherwise) = (self.blocks[&(to.0 as usize)], self.blocks[&(self.at + 1)]);
-        self.builder.ins().brif(cond, then, &[], otherwise, &[]);
-        self.reachable = false;
+        self.branch(cond, to.0 as usize, self.at + 1);
     }
 
     pub(super) fn br_unless(&mut self, cond: RegI32, to: Label) {
+        self.branch(cond, self.at + 1, to.0 as usize);
+    }
+
+    /// Goes to the word `then` if the register is not 0, else to `otherwise`.
+    fn branch(&mut self, cond: RegI32, then: usize, otherwise: usize) {
         let cond = self.get(cond);
-        let (then, otherwise) = (self.blocks[&(self.at + 1)], self.blocks[&(to.0 as usize)]);
+        let (then, otherwise) = (self.edge(then), self.edge(otherwise));
         self.builder.ins().brif(cond, then, &[], otherwise, &[]);
+        self.finish_edges();
         self.reachable = false;
     }
 
@@ -164,7 +167,7 @@ impl Translator<'_, '_> {
     }
 
     /// The firmware function at `addr`, if it only computes and is called as it is.
-    fn pure_function(&self, sig: SigRef, addr: Addr) -> Option<Pure> {
+    pub(super) fn pure_function(&self, sig: SigRef, addr: Addr) -> Option<Pure> {
         let pure = (self.translation.pure)(GuestAddr::new(addr.0))?;
         let called = &self.translation.program.signatures()[usize::from(sig.0)];
         let is_same =
@@ -174,9 +177,10 @@ impl Translator<'_, '_> {
 
     /// Does what the firmware function does; it takes as long as when the firmware does it.
     fn call_pure(&mut self, pure: Pure) {
-        let budget = self.builder.use_var(self.budget);
-        let left = self.builder.ins().iadd_imm_s(budget, -pure.cost.get());
-        self.builder.def_var(self.budget, left);
+        let cycles = u32::try_from(pure.cost.get()).expect("functions cost little");
+        if !self.defer(cycles) {
+            self.spend(cycles);
+        }
         let arguments = std::mem::take(&mut self.arguments);
         let value = match pure.function {
             PureFunction::SqrtF64 | PureFunction::SqrtF32 => {
@@ -261,6 +265,7 @@ impl Translator<'_, '_> {
     }
 
     fn return_slot(&mut self, slot: Value) {
+        self.settle();
         let at = self.builder.ins().iconst(types::I32, self.at as i64);
         self.store_state(at, offset_of!(State, returned_at));
         let budget = self.builder.use_var(self.budget);

@@ -14,6 +14,7 @@ use super::super::protected::BLOCK_BITS;
 use super::super::request::{Reason, Width};
 use super::super::state::State;
 use super::{Register, Translator, offset};
+use crate::op::Op;
 use crate::operand::{Addr, Class, Count, Imm, Off, RegF32, RegF64, RegI32, RegI64};
 
 /// Loads and stores in both address modes: what they move, and the register's class.
@@ -22,8 +23,7 @@ macro_rules! accesses {
      stores { $($store:ident, $store_at:ident: $src:ident = $store_width:ident;)* }) => {
         impl Translator<'_, '_> {
             $(pub(super) fn $load(&mut self, dst: $dst, base: RegI32, off: Off) {
-                let place = self.place(base, off);
-                self.load(dst, place, Width::$load_width);
+                self.load(dst, base, off, Width::$load_width);
             }
 
             pub(super) fn $load_at(&mut self, dst: $dst, addr: Addr) {
@@ -31,8 +31,7 @@ macro_rules! accesses {
             })*
 
             $(pub(super) fn $store(&mut self, src: $src, base: RegI32, off: Off) {
-                let place = self.place(base, off);
-                self.store(src, place, Width::$store_width);
+                self.store(src, base, off, Width::$store_width);
             }
 
             pub(super) fn $store_at(&mut self, src: $src, addr: Addr) {
@@ -95,7 +94,12 @@ impl Translator<'_, '_> {
         self.builder.ins().iadd_imm_s(base, i64::from(i32::from(off.0).wrapping_sub(sdram)))
     }
 
-    fn load<R: Register>(&mut self, dst: R, place: Value, width: Width) {
+    fn load<R: Register>(&mut self, dst: R, base: RegI32, off: Off, width: Width) {
+        if let Some((pointer, place)) = self.checked_place(base, width, false) {
+            let value = self.load_guest(pointer, place, width);
+            return self.set(dst, value);
+        }
+        let place = self.place(base, off);
         let [elsewhere, slow, behind] = self.access_blocks();
         let offset_in_sdram = self.builder.ins().uextend(types::I64, place);
         let bits = self.wrong_bits(SDRAM, place, width);
@@ -128,8 +132,13 @@ impl Translator<'_, '_> {
         self.set(dst, value);
     }
 
-    fn store<R: Register>(&mut self, src: R, place: Value, width: Width) {
+    fn store<R: Register>(&mut self, src: R, base: RegI32, off: Off, width: Width) {
+        if let Some((pointer, place)) = self.checked_place(base, width, true) {
+            let value = self.get(src);
+            return self.store_guest(value, pointer, place, width);
+        }
         let value = self.get(src);
+        let place = self.place(base, off);
         let inside = self.builder.create_block();
         let [elsewhere, slow, behind] = self.access_blocks();
         let bits = self.wrong_bits(SDRAM, place, width);
@@ -165,9 +174,14 @@ impl Translator<'_, '_> {
             let base = self.load_pointer(field);
             return self.store_guest(value, base, place, width);
         }
-        let [_, slow, behind] = self.access_blocks();
         let marks = self.load_pointer(offset_of!(State, protected));
         let mark = self.builder.ins().uload8(types::I32, self.state_flags, marks, place >> BLOCK_BITS);
+        if self.fast.is_some() {
+            self.bail_if(mark);
+            let base = self.load_pointer(field);
+            return self.store_guest(value, base, place, width);
+        }
+        let [_, slow, behind] = self.access_blocks();
         let place = self.builder.ins().iconst(types::I64, i64::from(place));
         self.builder.ins().brif(mark, slow, &[], behind, &[place.into()]);
 
@@ -285,6 +299,24 @@ impl Translator<'_, '_> {
         let slot = self.slot(class, value);
         self.request(Reason::Store.with_width(width), self.at, address, slot);
     }
+}
+
+/// Whether an instruction either uses no constant address or one in RAM.
+pub(super) fn is_in_ram(op: &Op) -> bool {
+    let access = match *op {
+        Op::LoadI8SAt { addr, .. } | Op::LoadI8UAt { addr, .. } | Op::StoreI8At { addr, .. } => {
+            (addr, Width::I8U)
+        }
+        Op::LoadI16SAt { addr, .. } | Op::LoadI16UAt { addr, .. } | Op::StoreI16At { addr, .. } => {
+            (addr, Width::I16U)
+        }
+        Op::LoadI32At { addr, .. } | Op::StoreI32At { addr, .. } => (addr, Width::I32),
+        Op::LoadF32At { addr, .. } | Op::StoreF32At { addr, .. } => (addr, Width::F32),
+        Op::LoadI64At { addr, .. } | Op::StoreI64At { addr, .. } => (addr, Width::I64),
+        Op::LoadF64At { addr, .. } | Op::StoreF64At { addr, .. } => (addr, Width::F64),
+        _ => return true,
+    };
+    ram_field(access.0, access.1).is_some()
 }
 
 /// Where an aligned access of the constant address `addr` goes, if that is RAM: the field of the

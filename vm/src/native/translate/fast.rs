@@ -1,0 +1,279 @@
+//! Several turns of a loop at once: the budget is tested where they begin, addresses where they are first used.
+//!
+//! [`turns`](super::turns) has decided which loops, and what is known in them. Here their words are
+//! translated once for each turn, by the same methods as elsewhere; the few that differ ask for
+//! [`Translator::fast`]. Behind the fast turns stands the loop as it is, for what they cannot do and for the
+//! last turns of a slice.
+
+use std::collections::BTreeMap;
+use std::mem::{offset_of, take};
+
+use cranelift_codegen::ir::condcodes::IntCC;
+use cranelift_codegen::ir::{Block, InstBuilder, Value, types};
+use kmotiondef::map::SDRAM;
+
+use super::super::request::Width;
+use super::super::state::{State, Window};
+use super::Translator;
+use super::turns::{Group, Place, Plan, Root};
+use crate::operand::RegI32;
+
+/// The fast turns while they are translated.
+pub(super) struct Fast {
+    plan: Plan,
+    turn: usize,
+    /// Cycles that have been charged but not taken from the budget.
+    spent: u32,
+    /// The roots that have been checked, with the address in the host of the first byte of their group.
+    checked: BTreeMap<Root, Value>,
+    /// The same on all ways to a block that have been translated.
+    arriving: BTreeMap<Place, BTreeMap<Root, Value>>,
+    blocks: BTreeMap<Place, Block>,
+    /// The words at which the loop as it is takes over.
+    bails: BTreeMap<usize, Block>,
+}
+
+/// A way between two blocks on which the budget is made exact.
+pub(super) struct Way {
+    block: Block,
+    to: Block,
+    cycles: u32,
+    is_rare: bool,
+}
+
+impl Translator<'_, '_> {
+    /// Translates a loop or a stretch; its first block has been entered.
+    pub(super) fn turns(&mut self, plan: Plan) {
+        let (words, order, turns) = (plan.words.clone(), plan.order.clone(), plan.turns);
+        let entry = plan.entry();
+        let (fast, ordinary) = (self.builder.create_block(), self.builder.create_block());
+        if turns == 0 {
+            self.builder.ins().jump(fast, &[]);
+        } else {
+            let budget = self.builder.use_var(self.budget);
+            let covered =
+                self.builder.ins().icmp_imm_s(IntCC::SignedGreaterThanOrEqual, budget, i64::from(plan.cost));
+            self.builder.ins().brif(covered, fast, &[], ordinary, &[]);
+        }
+        self.reachable = false;
+        self.fast = Some(self.fast_blocks(plan, fast));
+        for turn in 0..turns.max(1) {
+            for at in &order {
+                self.fast_word(turn, *at);
+            }
+        }
+        if turns > 0 && self.reachable {
+            self.go_to(entry);
+        }
+        let bails = self.fast.take().map(|fast| fast.bails).unwrap_or_default();
+        let behind = self.reachable.then(|| self.builder.create_block());
+        if let Some(behind) = behind {
+            self.builder.ins().jump(behind, &[]);
+            self.reachable = false;
+        }
+        for at in words {
+            if at == entry && turns > 0 {
+                if self.reachable {
+                    self.go_to(entry);
+                }
+                self.builder.set_cold_block(ordinary);
+                self.begin(ordinary);
+            }
+            let block = self.blocks.get(&at).filter(|_| at != entry);
+            for block in block.into_iter().chain(bails.get(&at)).copied().collect::<Vec<_>>() {
+                self.builder.set_cold_block(block);
+                self.begin(block);
+            }
+            self.word(at);
+        }
+        if let Some(behind) = behind {
+            self.begin(behind);
+        }
+    }
+
+    fn fast_blocks(&mut self, plan: Plan, first: Block) -> Fast {
+        let mut blocks: BTreeMap<Place, Block> =
+            plan.entries.keys().map(|place| (*place, self.builder.create_block())).collect();
+        blocks.insert((0, plan.entry()), first);
+        Fast {
+            plan,
+            turn: 0,
+            spent: 0,
+            checked: BTreeMap::new(),
+            arriving: BTreeMap::new(),
+            blocks,
+            bails: BTreeMap::new(),
+        }
+    }
+
+    /// Translates one word of one turn.
+    fn fast_word(&mut self, turn: usize, at: usize) {
+        let Some(fast) = &mut self.fast else { return };
+        if let Some(block) = fast.blocks.get(&(turn, at)).copied() {
+            if self.reachable {
+                self.go_to(at);
+            }
+            self.begin(block);
+            if let Some(fast) = &mut self.fast {
+                fast.spent = fast.plan.entries.get(&(turn, at)).copied().unwrap_or(0);
+                fast.checked = fast.arriving.remove(&(turn, at)).unwrap_or_default();
+                fast.turn = turn;
+            }
+        }
+        self.word(at);
+    }
+
+    /// Adds to what has been charged; `false` outside of fast turns, where that must be taken at once.
+    pub(super) fn defer(&mut self, cycles: u32) -> bool {
+        self.fast.as_mut().map(|fast| fast.spent += cycles).is_some()
+    }
+
+    /// Makes the budget exact where the fast turns are left for good.
+    pub(super) fn settle(&mut self) {
+        if let Some(fast) = &mut self.fast {
+            let cycles = take(&mut fast.spent);
+            self.spend(cycles);
+        }
+    }
+
+    /// Goes to the word `to`.
+    pub(super) fn go_to(&mut self, to: usize) {
+        let block = self.edge(to);
+        self.builder.ins().jump(block, &[]);
+        self.finish_edges();
+        self.reachable = false;
+    }
+
+    /// The block to branch to in order to get to the word `to`; [`finish_edges`](Self::finish_edges) must follow.
+    pub(super) fn edge(&mut self, to: usize) -> Block {
+        let Some(fast) = &mut self.fast else { return self.blocks[&to] };
+        let (block, kept) = match fast.plan.target(fast.turn, to) {
+            Some(place) => {
+                let checked = &fast.checked;
+                let same = |root: &Root, value: &mut Value| checked.get(root) == Some(value);
+                let met = fast.arriving.entry(place).or_insert_with(|| checked.clone());
+                met.retain(same);
+                (fast.blocks[&place], fast.plan.entries[&place])
+            }
+            None => (self.blocks[&to], 0),
+        };
+        let cycles = fast.spent - kept;
+        self.way(block, cycles, false)
+    }
+
+    /// The block to branch to if the instruction is one for the loop as it is; `None` outside of fast turns.
+    ///
+    /// [`finish_edges`](Self::finish_edges) must follow.
+    pub(super) fn bail(&mut self) -> Option<Block> {
+        let fast = self.fast.as_mut()?;
+        let cycles = fast.spent;
+        let block = *fast.bails.entry(self.at).or_insert_with(|| self.builder.create_block());
+        Some(self.way(block, cycles, true))
+    }
+
+    fn way(&mut self, to: Block, cycles: u32, is_rare: bool) -> Block {
+        if cycles == 0 {
+            return to;
+        }
+        let block = self.builder.create_block();
+        self.ways.push(Way { block, to, cycles, is_rare });
+        block
+    }
+
+    /// Translates the ways that the branch just written takes.
+    pub(super) fn finish_edges(&mut self) {
+        for Way { block, to, cycles, is_rare } in take(&mut self.ways) {
+            if is_rare {
+                self.builder.set_cold_block(block);
+            }
+            self.enter(block);
+            self.spend(cycles);
+            self.builder.ins().jump(to, &[]);
+        }
+    }
+
+    /// Leaves the fast turns if `condition` is not 0.
+    pub(super) fn bail_if(&mut self, condition: Value) {
+        let Some(bail) = self.bail() else { return };
+        let go_on = self.builder.create_block();
+        self.builder.ins().brif(condition, bail, &[], go_on, &[]);
+        self.finish_edges();
+        self.enter(go_on);
+    }
+
+    /// The place in the host's memory of the access at hand, as a pointer and a distance; `None` outside of fast
+    /// turns.
+    pub(super) fn checked_place(
+        &mut self,
+        base: RegI32,
+        width: Width,
+        is_store: bool,
+    ) -> Option<(Value, i32)> {
+        let fast = self.fast.as_ref()?;
+        let access = *fast.plan.accesses.get(&(fast.turn, self.at))?;
+        let shared = fast.plan.groups.get(&access.root).copied();
+        let shared = shared.filter(|group| group.covers(access.at, width, is_store));
+        if let (Some(group), Some(pointer)) = (shared, fast.checked.get(&access.root)) {
+            return Some((*pointer, access.at - group.first));
+        }
+        let end = access.at + width.bytes().cast_signed();
+        let group =
+            shared.unwrap_or(Group { first: access.at, end, width: width.bytes(), has_store: is_store });
+        let base = self.get(base);
+        let distance = (group.first - access.base).wrapping_sub(SDRAM.base.get().cast_signed());
+        let place = self.builder.ins().iadd_imm_s(base, i64::from(distance));
+        self.check(place, group);
+        let place = self.builder.ins().uextend(types::I64, place);
+        let sdram = self.load_pointer(offset_of!(State, sdram));
+        let pointer = self.builder.ins().iadd(sdram, place);
+        if let (Some(_), Some(fast)) = (shared, &mut self.fast) {
+            fast.checked.insert(access.root, pointer);
+        }
+        Some((pointer, access.at - group.first))
+    }
+
+    /// Leaves the fast turns unless all of the group, the first byte of which is `place` in SDRAM, may be accessed.
+    fn check(&mut self, place: Value, group: Group) {
+        let span = (group.end - group.first).cast_unsigned();
+        if group.has_store {
+            let bits = self.builder.ins().band_imm_u(place, i64::from(group.width - 1));
+            if group.width > 1 {
+                self.bail_if(bits);
+            }
+            return self.check_window(place, span);
+        }
+        if span == group.width {
+            let never = !(SDRAM.size - 1) | (span - 1);
+            let bits = self.builder.ins().band_imm_s(place, i64::from(never.cast_signed()));
+            return self.bail_if(bits);
+        }
+        // A place that is not aligned becomes a large number.
+        let shift = group.width.ilog2();
+        let units = self.builder.ins().rotr_imm_u(place, i64::from(shift));
+        let last = (SDRAM.size - span) >> shift;
+        let outside = self.builder.ins().icmp_imm_u(IntCC::UnsignedGreaterThan, units, i64::from(last));
+        self.bail_if(outside);
+    }
+
+    /// Leaves the fast turns unless the `span` bytes at `place` are in one of the windows.
+    fn check_window(&mut self, place: Value, span: u32) {
+        let Some(bail) = self.bail() else { return };
+        let (second, inside) = (self.builder.create_block(), self.builder.create_block());
+        for (window, otherwise) in [(0, second), (1, bail)] {
+            let field = offset_of!(State, windows) + window * size_of::<Window>();
+            let start = self.load_state(types::I32, field + offset_of!(Window, start));
+            let length = self.load_state(types::I32, field + offset_of!(Window, length));
+            let from = self.builder.ins().isub(place, start);
+            let from = self.builder.ins().uextend(types::I64, from);
+            let end = self.builder.ins().iadd_imm_u(from, i64::from(span));
+            let length = self.builder.ins().uextend(types::I64, length);
+            let outside = self.builder.ins().icmp(IntCC::UnsignedGreaterThan, end, length);
+            self.builder.ins().brif(outside, otherwise, &[], inside, &[]);
+            if window == 0 {
+                self.enter_cold(second);
+            }
+        }
+        self.finish_edges();
+        self.enter(inside);
+    }
+}

@@ -1,0 +1,464 @@
+//! Which loops are translated a second time, several turns at once, and what is known in there.
+//!
+//! A loop without calls that has no loop inside may run for several turns as soon as the budget
+//! covers the most that they can cost: no charge on the way could end the slice, so the charges are
+//! only added up, and the sum is taken where the fast turns are left. The budget is exact wherever
+//! somebody can see it.
+//!
+//! The same stretch of code reaches memory through few registers that move by constants. The
+//! [`Plan`] follows them: an access is at a [`Root`], some value that a register held, plus a
+//! constant. One check, where the first access through a root is made, covers all of that root.
+//!
+//! Whatever the fast turns cannot do, an access elsewhere than in plain RAM or a division by 0, the
+//! ordinary translation of the same instruction does, from that instruction on.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::RangeInclusive;
+
+use super::super::request::Width;
+use crate::for_each_op;
+use crate::meter::{self, branch_target};
+use crate::op::Op;
+use crate::operand::{Class, Off, Operand, RegI32};
+use crate::program::{Function, Program};
+
+/// The most words of a loop that is translated twice, and of all its fast turns together.
+const MAX_WORDS: usize = 160;
+const MAX_WORDS_OF_TURNS: usize = 128;
+
+/// The most turns that run at once.
+const MAX_TURNS: usize = 4;
+
+/// How far from its root an access is followed.
+const MAX_DISTANCE: u32 = 1 << 16;
+
+/// A value that the plan follows.
+pub(super) type Root = u32;
+
+/// A place in the fast turns: the turn, and the word.
+pub(super) type Place = (usize, usize);
+
+/// A register as a root and a distance from it.
+type Symbol = (Root, i32);
+
+/// What the accesses through one root have in common.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Group {
+    /// The first byte, as a distance from the root; aligned for the widest access if the root's accesses are.
+    pub(super) first: i32,
+    /// One past the last byte.
+    pub(super) end: i32,
+    /// Bytes of the widest access.
+    pub(super) width: u32,
+    /// Whether something is stored.
+    pub(super) has_store: bool,
+}
+
+/// An access through a root.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Access {
+    /// The root.
+    pub(super) root: Root,
+    /// Where the access is made, as a distance from the root.
+    pub(super) at: i32,
+    /// Where its base register points.
+    pub(super) base: i32,
+}
+
+/// A loop in several turns, or a stretch without branches.
+#[derive(Debug)]
+pub(super) struct Plan {
+    /// The words of the loop.
+    pub(super) words: RangeInclusive<usize>,
+    /// The same in the order of a turn.
+    pub(super) order: Vec<usize>,
+    /// How many turns; none for a stretch that is no loop.
+    pub(super) turns: usize,
+    /// The most cycles that they cost.
+    pub(super) cost: u32,
+    /// The blocks that can be reached, with the cycles that were charged but not yet taken when they begin.
+    pub(super) entries: BTreeMap<Place, u32>,
+    /// The accesses through registers.
+    pub(super) accesses: BTreeMap<Place, Access>,
+    /// By root, those of their accesses that one check can cover.
+    pub(super) groups: BTreeMap<Root, Group>,
+}
+
+/// The loops of a function that are worth it, by their first word.
+///
+/// `cost` is what an instruction takes in cycles besides its charge, `None` for one that must not be there.
+pub(super) fn plans(
+    program: &Program,
+    function: &Function,
+    begins: &BTreeSet<usize>,
+    cost: &dyn Fn(&Op) -> Option<u32>,
+) -> BTreeMap<usize, Plan> {
+    let planner =
+        |words, entry, turns| Planner::new(program, function, begins, words, cost)?.plan(entry, turns);
+    let mut plans = BTreeMap::new();
+    for (words, entry) in innermost_loops(program, function) {
+        if let Some(plan) = planner(words.clone(), entry, MAX_TURNS) {
+            plans.insert(*words.start(), plan);
+        }
+    }
+    for words in straight_stretches(program, function, begins, cost) {
+        let before = plans.range(..=*words.start()).next_back();
+        if before.is_some_and(|(_, plan)| plan.words.contains(words.start())) {
+            continue;
+        }
+        let plan = planner(words.clone(), *words.start(), 0);
+        if let Some(plan) = plan.filter(Plan::shares_checks) {
+            plans.insert(*words.start(), plan);
+        }
+    }
+    plans
+}
+
+/// The stretches of a block, between charges, calls and branches, that make several accesses.
+fn straight_stretches(
+    program: &Program,
+    function: &Function,
+    begins: &BTreeSet<usize>,
+    cost: &dyn Fn(&Op) -> Option<u32>,
+) -> Vec<RangeInclusive<usize>> {
+    let mut stretches = Vec::new();
+    let (mut first, mut last, mut accesses) = (function.body.start, 0, 0);
+    for at in function.body.clone() {
+        let op = program.ops()[at];
+        let ends = ends_stretch(&op) || cost(&op) != Some(0);
+        if ends || begins.contains(&at) {
+            // What follows the last access is not translated twice.
+            if accesses > 1 {
+                stretches.push(first..=last);
+            }
+            (first, accesses) = (at + usize::from(ends), 0);
+        }
+        if accessed(&op).is_some() {
+            (last, accesses) = (at, accesses + 1);
+        }
+    }
+    stretches
+}
+
+/// Whether an instruction is none of those that simply go on with the next.
+const fn ends_stretch(op: &Op) -> bool {
+    let is_argument =
+        matches!(op, Op::ArgI32 { .. } | Op::ArgI64 { .. } | Op::ArgF32 { .. } | Op::ArgF64 { .. });
+    let is_jump = matches!(op, Op::BrIf { .. } | Op::BrUnless { .. } | Op::Charge { .. });
+    is_argument || is_jump || meter::is_result(op) || meter::ends_path(op)
+}
+
+/// The loops that hold no other, each with the word at which it is entered.
+///
+/// A loop is the stretch from the target of a branch backwards to the branch. It may be entered at one word only, often
+/// where its condition is.
+fn innermost_loops(program: &Program, function: &Function) -> Vec<(RangeInclusive<usize>, usize)> {
+    let branches: Vec<(usize, usize)> = (function.body.clone())
+        .filter_map(|at| branch_target(&program.ops()[at]).map(|to| (at, to.0 as usize)))
+        .collect();
+    let mut ends = BTreeMap::new();
+    for (at, to) in branches.iter().filter(|(at, to)| to <= at) {
+        ends.insert(*to, *at);
+    }
+    let entered = |words: RangeInclusive<usize>| {
+        let falls_in = function.body.contains(&(words.start() - 1))
+            && !meter::ends_path(&program.ops()[words.start() - 1]);
+        let inside = ends.range(words.clone()).count();
+        let jumps = branches.iter().filter(|(at, to)| !words.contains(at) && words.contains(to));
+        let mut entries = jumps.map(|(_, to)| *to).chain(falls_in.then_some(*words.start()));
+        let entry = entries.next()?;
+        let is_only_one = inside == 1 && entries.all(|other| other == entry);
+        let is_charged = matches!(program.ops()[entry], Op::Charge { .. });
+        (is_only_one && is_charged).then_some((words, entry))
+    };
+    ends.iter().filter_map(|(first, last)| entered(*first..=*last)).collect()
+}
+
+/// What is known where a block begins or an instruction stands.
+#[derive(Clone, Debug)]
+struct Known {
+    spent: u32,
+    symbols: Vec<Symbol>,
+}
+
+/// How a root is made of others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Made {
+    Sum(Root, Root),
+    Difference(Root, Root),
+    Product(Root, i32),
+}
+
+/// Follows a loop through its turns.
+struct Planner<'a> {
+    program: &'a Program,
+    begins: &'a BTreeSet<usize>,
+    cost: &'a dyn Fn(&Op) -> Option<u32>,
+    roots: Root,
+    known_roots: BTreeMap<Made, Root>,
+    arriving: BTreeMap<Place, Known>,
+    plan: Plan,
+    registers: usize,
+}
+
+impl<'a> Planner<'a> {
+    fn new(
+        program: &'a Program,
+        function: &Function,
+        begins: &'a BTreeSet<usize>,
+        words: RangeInclusive<usize>,
+        cost: &'a dyn Fn(&Op) -> Option<u32>,
+    ) -> Option<Self> {
+        if words.clone().count() > MAX_WORDS {
+            return None;
+        }
+        let mut sum = 0_u32;
+        for op in &program.ops()[words.clone()] {
+            sum = sum.checked_add(cost(op)?)?;
+            if let Op::Charge { cycles } = op {
+                sum = sum.checked_add(cycles.0)?;
+            }
+        }
+        let plan = Plan {
+            order: Vec::new(),
+            words,
+            turns: 0,
+            cost: sum,
+            entries: BTreeMap::new(),
+            accesses: BTreeMap::new(),
+            groups: BTreeMap::new(),
+        };
+        let registers = function.classes.len();
+        Some(Self {
+            program,
+            begins,
+            cost,
+            roots: 0,
+            known_roots: BTreeMap::new(),
+            arriving: BTreeMap::new(),
+            plan,
+            registers,
+        })
+    }
+
+    fn root(&mut self) -> Symbol {
+        self.roots += 1;
+        (self.roots, 0)
+    }
+
+    /// The plan for at most so many turns, each of which begins at `entry`.
+    fn plan(mut self, entry: usize, turns: usize) -> Option<Plan> {
+        let (first, last) = (*self.plan.words.start(), *self.plan.words.end());
+        self.plan.order = (entry..=last).chain(first..entry).collect();
+        self.plan.turns = (MAX_WORDS_OF_TURNS / self.plan.order.len()).max(1).min(turns);
+        self.plan.cost = self.plan.cost.checked_mul(self.plan.turns as u32)?;
+        let symbols = (0..self.registers).map(|_| self.root()).collect();
+        self.arriving.insert((0, entry), Known { spent: 0, symbols });
+        let mut known = None;
+        for turn in 0..self.plan.turns.max(1) {
+            for at in self.plan.order.clone() {
+                if at == entry || self.begins.contains(&at) {
+                    if let Some(known) = known.take() {
+                        self.arrive((turn, at), known);
+                    }
+                    known = self.arriving.remove(&(turn, at));
+                    if let Some(known) = &known {
+                        self.plan.entries.insert((turn, at), known.spent);
+                    }
+                }
+                known = known.and_then(|known| self.word(turn, at, known));
+            }
+        }
+        Some(self.plan)
+    }
+
+    /// Follows one instruction; yields what is known behind it, if it goes on there.
+    fn word(&mut self, turn: usize, at: usize, mut known: Known) -> Option<Known> {
+        let op = self.program.ops()[at];
+        known.spent += (self.cost)(&op).unwrap_or(0);
+        if let Some(access) = accessed(&op) {
+            self.note(turn, at, access, &known);
+        }
+        match op {
+            Op::Charge { cycles } => known.spent += cycles.0,
+            Op::Br { to } => {
+                self.leave(turn, to.0 as usize, known);
+                return None;
+            }
+            Op::BrIf { to, .. } | Op::BrUnless { to, .. } => {
+                self.leave(turn, to.0 as usize, known.clone());
+                self.leave(turn, at + 1, known);
+                return None;
+            }
+            _ => {
+                if let Some(dst) = int_destination(&op) {
+                    known.symbols[dst] = self.result(&op, &known.symbols);
+                }
+            }
+        }
+        Some(known)
+    }
+
+    /// What an instruction makes of the symbols of its operands.
+    ///
+    /// Equal sums and products of roots are the same root, and a constant in a factor is one in the product.
+    fn result(&mut self, op: &Op, symbols: &[Symbol]) -> Symbol {
+        let of = |register: RegI32| symbols[register.index()];
+        let (root, distance) = match *op {
+            Op::MovI32 { src, .. } => of(src),
+            Op::AddI32Imm { a, imm, .. } => (of(a).0, of(a).1.wrapping_add(imm.0.into())),
+            Op::MulI32Imm { a, imm, .. } => self.product(of(a), imm.0.into()),
+            Op::ShlI32Imm { a, imm, .. } if (0..16).contains(&imm.0) => self.product(of(a), 1 << imm.0),
+            Op::AddI32 { a, b, .. } => {
+                let ((a, from), (b, by)) = (of(a), of(b));
+                (self.made(Made::Sum(a.min(b), a.max(b))), from.wrapping_add(by))
+            }
+            Op::SubI32 { a, b, .. } => {
+                let ((a, from), (b, by)) = (of(a), of(b));
+                (self.made(Made::Difference(a, b)), from.wrapping_sub(by))
+            }
+            _ => self.root(),
+        };
+        if distance.unsigned_abs() < MAX_DISTANCE { (root, distance) } else { self.root() }
+    }
+
+    fn product(&mut self, (root, distance): Symbol, factor: i32) -> Symbol {
+        (self.made(Made::Product(root, factor)), distance.wrapping_mul(factor))
+    }
+
+    /// The root that is made of others in one way.
+    fn made(&mut self, made: Made) -> Root {
+        if let Some(root) = self.known_roots.get(&made) {
+            return *root;
+        }
+        let (root, _) = self.root();
+        self.known_roots.insert(made, root);
+        root
+    }
+
+    /// A branch to `to`.
+    fn leave(&mut self, turn: usize, to: usize, known: Known) {
+        if let Some(place) = self.plan.target(turn, to) {
+            self.arrive(place, known);
+        }
+    }
+
+    /// What is known where several ways meet is what is known on all of them.
+    fn arrive(&mut self, place: Place, known: Known) {
+        let Some(mut met) = self.arriving.remove(&place) else {
+            self.arriving.insert(place, known);
+            return;
+        };
+        met.spent = met.spent.min(known.spent);
+        for (one, other) in met.symbols.iter_mut().zip(&known.symbols) {
+            if *one != *other {
+                *one = self.root();
+            }
+        }
+        self.arriving.insert(place, met);
+    }
+
+    /// Notes an access and widens the group of its root, if their alignments agree.
+    fn note(&mut self, turn: usize, at: usize, (base, off, width, is_store): Accessed, known: &Known) {
+        let (root, base) = known.symbols[base.index()];
+        let begin = base.wrapping_add(i32::from(off.0));
+        self.plan.accesses.insert((turn, at), Access { root, at: begin, base });
+        let size = width.bytes();
+        let end = begin + size.cast_signed();
+        let group = self.plan.groups.entry(root).or_insert(Group {
+            first: begin,
+            end,
+            width: size,
+            has_store: is_store,
+        });
+        let narrow = size.min(group.width).cast_signed();
+        if (begin - group.first) % narrow != 0 {
+            return;
+        }
+        // The first byte stays where the widest access could be.
+        let aligned = if size > group.width { begin } else { group.first };
+        let wide = size.max(group.width).cast_signed();
+        let first = group.first.min(begin);
+        group.first = aligned - (aligned - first + wide - 1) / wide * wide;
+        group.end = group.end.max(end);
+        group.width = wide.cast_unsigned();
+        group.has_store |= is_store;
+    }
+}
+
+impl Plan {
+    /// The word at which a turn begins.
+    pub(super) fn entry(&self) -> usize {
+        self.order.first().copied().unwrap_or(*self.words.start())
+    }
+
+    /// Whether a root has several accesses.
+    fn shares_checks(&self) -> bool {
+        let mut seen = BTreeSet::new();
+        self.accesses.values().any(|access| !seen.insert(access.root))
+    }
+
+    /// Where a branch of `turn` to the word `to` goes on, if that is in the fast turns.
+    pub(super) fn target(&self, turn: usize, to: usize) -> Option<Place> {
+        if to == self.entry() {
+            return (turn + 1 < self.turns).then_some((turn + 1, to));
+        }
+        self.words.contains(&to).then_some((turn, to))
+    }
+}
+
+impl Group {
+    /// Whether the check of the group covers an access of `width` at `at`.
+    pub(super) fn covers(&self, at: i32, width: Width, is_store: bool) -> bool {
+        let size = width.bytes().cast_signed();
+        self.first <= at
+            && at + size <= self.end
+            && size.cast_unsigned() <= self.width
+            && (at - self.first) % size == 0
+            && (self.has_store || !is_store)
+    }
+}
+
+/// Base register, displacement and width of an access, and whether it is a store.
+type Accessed = (RegI32, Off, Width, bool);
+
+/// The access that an instruction makes through a register.
+const fn accessed(op: &Op) -> Option<Accessed> {
+    Some(match *op {
+        Op::LoadI8S { base, off, .. } => (base, off, Width::I8S, false),
+        Op::LoadI8U { base, off, .. } => (base, off, Width::I8U, false),
+        Op::LoadI16S { base, off, .. } => (base, off, Width::I16S, false),
+        Op::LoadI16U { base, off, .. } => (base, off, Width::I16U, false),
+        Op::LoadI32 { base, off, .. } => (base, off, Width::I32, false),
+        Op::LoadI64 { base, off, .. } => (base, off, Width::I64, false),
+        Op::LoadF32 { base, off, .. } => (base, off, Width::F32, false),
+        Op::LoadF64 { base, off, .. } => (base, off, Width::F64, false),
+        Op::StoreI8 { base, off, .. } => (base, off, Width::I8U, true),
+        Op::StoreI16 { base, off, .. } => (base, off, Width::I16U, true),
+        Op::StoreI32 { base, off, .. } => (base, off, Width::I32, true),
+        Op::StoreI64 { base, off, .. } => (base, off, Width::I64, true),
+        Op::StoreF32 { base, off, .. } => (base, off, Width::F32, true),
+        Op::StoreF64 { base, off, .. } => (base, off, Width::F64, true),
+        _ => return None,
+    })
+}
+
+macro_rules! define_int_destination {
+    ($($(#[$doc:meta])* $name:ident = $variant:ident { $($field:ident: $operand:ident),* }, cost $cost:expr;)*) => {
+        /// The integer register to which an instruction assigns.
+        fn int_destination(op: &Op) -> Option<usize> {
+            match *op {
+                $(Op::$variant { $($field),* } => {
+                    let destinations: &[Option<usize>] = &[$(int_register(stringify!($field), $field)),*];
+                    destinations.iter().copied().flatten().next()
+                })*
+            }
+        }
+    };
+}
+for_each_op!(define_int_destination);
+
+/// The number of the register that an operand is, if it is one for integers that receives a value.
+fn int_register<O: Operand>(field: &str, operand: O) -> Option<usize> {
+    (field == "dst" && O::CLASS == Some(Class::I32)).then(|| operand.to_bits() as usize)
+}
