@@ -579,6 +579,12 @@ impl<E: Engine> Board<E> {
         self.machine.firmware_mut().0.hear_uart();
     }
 
+    /// The present value of something that can be recorded.
+    #[must_use]
+    pub fn value(&self, item: trace::Item) -> f64 {
+        item.read(self.machine.firmware(), self.memory())
+    }
+
     /// The level of a bit.
     #[must_use]
     pub fn bit(&self, bit: Bit) -> bool {

@@ -5,6 +5,7 @@ use kmotiondef::variables::DO_RS232_CMDS;
 
 use super::arguments::Values;
 use super::session::{Answer, Session};
+use crate::event::EventKind;
 use crate::firmware::serial;
 use crate::kernel::Request;
 use crate::views::Typed;
@@ -37,7 +38,9 @@ pub(super) fn flash(session: &mut Session<'_, '_>, _: &Values) -> Answer {
     Answer::Nothing
 }
 
-pub(super) fn clear_flash_image(_: &mut Session<'_, '_>, _: &Values) -> Answer {
+pub(super) fn clear_flash_image(session: &mut Session<'_, '_>, _: &Values) -> Answer {
+    let text = "ClearFlashImage begins a new firmware: the simulated board has none to replace, and ignores what comes";
+    session.kernel.tell(session.context.now, EventKind::Diagnostic(text.to_owned()));
     Answer::Nothing
 }
 

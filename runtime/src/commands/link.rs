@@ -12,7 +12,7 @@ use vm::firmware::TickContext;
 use super::arguments::{Message, Mistake, Reader, Values};
 use super::data::Data;
 use super::path::Geometry;
-use super::{Answer, Command, Session, find};
+use super::{Answer, Command, Session, absent, find};
 use crate::event::EventKind;
 use crate::firmware::serial;
 use crate::kernel::Kernel;
@@ -228,6 +228,9 @@ impl Turn<'_, '_> {
     /// One command.
     fn part(&mut self, part: &[u8]) {
         let Some((command, length)) = find(part) else {
+            if let Some(text) = absent::explain(part) {
+                self.kernel.tell(self.context.now, EventKind::Diagnostic(text));
+            }
             return self.mistake(part, &Mistake { column: 0, message: Message::InvalidCommand });
         };
         match Values::read(command.arguments, &mut Reader::new(part, length)) {

@@ -6,6 +6,7 @@
 //!
 //! Words, ranges and replies are those of the released firmware 4.34 (host-protocol.md sections 2 and 3).
 
+mod absent;
 mod arguments;
 mod axes;
 mod board;
@@ -113,6 +114,12 @@ fn find(text: &[u8]) -> Option<(&'static Command, usize)> {
     };
     let longest = COMMANDS.iter().filter(matches).max_by_key(|command| command.name.len())?;
     Some((longest, longest.name.len()))
+}
+
+/// The command that a line begins with, in whatever case.
+#[must_use]
+pub fn command_at(line: &str) -> Option<&'static Command> {
+    find(line.to_ascii_uppercase().as_bytes()).map(|(command, _)| command)
 }
 
 /// The command of this name, in whatever case.

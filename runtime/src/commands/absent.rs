@@ -1,0 +1,116 @@
+//! Words that people send and this board does not have: what they are, and what to send instead.
+//!
+//! The board answers them as it answers every unknown word; the simulation adds a remark beside it. The words are
+//! those of the manual's command references that firmware 4.34 lacks, some of them only misprinted there, and G code.
+
+/// Why the board does not know a word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Why {
+    /// The board has it under this name.
+    Named(&'static str),
+    /// Firmware after 4.34 has it.
+    Later,
+    /// Another board has it.
+    OtherBoard,
+}
+
+use Why::{Later, Named, OtherBoard};
+
+/// Words in upper case without their numbers, as the manual writes them.
+const WORDS: &[(&str, Why)] = &[
+    ("ARCEX", Later),
+    ("ARCZX", Named("ArcXZ")),
+    ("ARCHEXXZ", Named("ArcHexZX")),
+    ("CONFIGURESPINDLE", Named("ConfigSpindle")),
+    ("ENABLE", Named("EnableAxis")),
+    ("LINHEX", Named("LHex1 or LHex2")),
+    ("LINHEXEX", Named("LHexEx1")),
+    ("SETINPUTMODE", Named("InputMode")),
+    ("SETOUTPUTMODE", Named("OutputMode")),
+    ("ARCXZEX", Later),
+    ("ARCYZEX", Later),
+    ("GETALLDESTHEX", Later),
+    ("GETALLDESTVELHEX", Later),
+    ("JOGATACCEL", Later),
+    ("MOVEATVELACCEL", Later),
+    ("MOVERELATVELACCEL", Later),
+    ("MOVERELATVELACCELSOFT", Later),
+    ("ARCHEXP", OtherBoard),
+    ("ARCHEXYZP", OtherBoard),
+    ("ARCHEXZXP", OtherBoard),
+    ("ARCP", OtherBoard),
+    ("ARCXZP", OtherBoard),
+    ("ARCYZP", OtherBoard),
+    ("DEFINECSP", OtherBoard),
+    ("GETIPADDR", OtherBoard),
+    ("GETKOGNAPWMEN", OtherBoard),
+    ("GETKOGNAPWMLENGTH", OtherBoard),
+    ("GETSERIALNUMBER", OtherBoard),
+    ("HRPWMSETMODE", OtherBoard),
+    ("LHEXP", OtherBoard),
+    ("LINEARHEXP", OtherBoard),
+    ("LINEARP", OtherBoard),
+    ("LINHEXP", OtherBoard),
+    ("SETIPADDR", OtherBoard),
+    ("SETKOGNAPWMEN", OtherBoard),
+    ("SETKOGNAPWMLENGTH", OtherBoard),
+    ("SETSERIALNUMBER", OtherBoard),
+    ("SPISETMODE", OtherBoard),
+];
+
+/// Letters that a block of G code begins with, and behind which a number stands.
+const G_CODE: &[u8] = b"GMTSFN";
+
+/// What is to be said of a part, in upper case, that begins with no command.
+pub(super) fn explain(part: &[u8]) -> Option<String> {
+    let letters = part.iter().take_while(|byte| byte.is_ascii_alphabetic()).count();
+    let word = std::str::from_utf8(&part[..letters]).ok()?;
+    let is_number = part.get(letters).is_some_and(u8::is_ascii_digit);
+    if letters == 1 && is_number && G_CODE.contains(&part[0]) {
+        return Some(
+            "G code is planned by the PC's application: the board has no command for it, nor has the simulated one"
+                .to_owned(),
+        );
+    }
+    let (_, why) = WORDS.iter().find(|(known, _)| *known == word)?;
+    Some(match why {
+        Named(name) => format!("firmware 4.34 has no command {word}; its name there is {name}"),
+        Later => format!("{word} is a command of later firmware than 4.34, which the simulated board models"),
+        OtherBoard => format!("{word} is a command of the Kogna board; the simulated board is a KFLOP"),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::commands::command_named;
+
+    #[test]
+    fn no_word_is_one_of_the_board() {
+        for (word, why) in WORDS {
+            assert!(command_named(word).is_none(), "{word}");
+            if let Named(names) = why {
+                assert!(names.split(" or ").all(|name| command_named(name).is_some()), "{names}");
+            }
+        }
+    }
+
+    #[test]
+    fn words_are_explained_without_their_numbers() {
+        for (part, expect) in [
+            ("ENABLE0", Some("EnableAxis")),
+            ("LINHEX1 3F800000", Some("LHex1")),
+            ("JOGATACCEL0=1 2", Some("later firmware")),
+            ("G1 X5", Some("G code")),
+            ("M3", Some("G code")),
+            ("GET", None),
+            ("G", None),
+            ("", None),
+            ("BOGUS", None),
+        ] {
+            let found = explain(part.as_bytes());
+            assert_eq!(found.is_some(), expect.is_some(), "{part}: {found:?}");
+            assert!(found.is_none_or(|text| text.contains(expect.unwrap_or_default())), "{part}");
+        }
+    }
+}
