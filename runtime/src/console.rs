@@ -61,6 +61,11 @@ impl Console {
         self.queue.drain(..).collect()
     }
 
+    /// Whether a line was begun and has not ended.
+    pub(crate) fn is_holding(&self) -> bool {
+        !self.held.is_empty()
+    }
+
     /// Whether nothing waits to be sent.
     pub(crate) fn is_idle(&self) -> bool {
         self.queue.is_empty()

@@ -1,18 +1,59 @@
-//! Files on the PC: where they live and what the board knows of them.
+//! Where files of the PC live: a folder that the user names, and nothing outside of it.
 
 use std::ffi::OsStr;
 use std::fmt;
-use std::io::Write as _;
-use std::path::{Component, Path, PathBuf};
+use std::fs::{self, OpenOptions};
+use std::io::{ErrorKind, Write as _};
+use std::path::{Path, PathBuf};
+
+/// Why the PC does not open a file.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum FileError {
+    /// There are no files at all.
+    #[error("this PC has no files")]
+    NoFiles,
+    /// The name leads out of the folder, or is none.
+    #[error("it is no name inside the folder of the PC's files")]
+    Outside,
+    /// Something on the way is a link, which may lead anywhere.
+    #[error("`{0}` is a link, and links are not followed")]
+    Link(String),
+    /// What is there is no file: a folder, a device.
+    #[error("it is not a file")]
+    NotAFile,
+    /// There is no such file.
+    #[error("there is no such file")]
+    Missing,
+    /// The system does not let us.
+    #[error("{0}")]
+    System(ErrorKind),
+}
+
+impl From<std::io::Error> for FileError {
+    fn from(error: std::io::Error) -> Self {
+        if error.kind() == ErrorKind::NotFound { Self::Missing } else { Self::System(error.kind()) }
+    }
+}
 
 /// Where the PC's files are kept.
 pub trait HostFiles: fmt::Debug + Send {
-    /// The contents of a file; `None` if it cannot be read.
-    fn read(&mut self, name: &str) -> Option<Vec<u8>>;
-    /// Makes an empty file, or the directory it goes to if `keep` is set and the file exists.
-    fn create(&mut self, name: &str, keep: bool) -> bool;
+    /// The contents of a file.
+    ///
+    /// # Errors
+    /// Why it is not read.
+    fn read(&mut self, name: &str) -> Result<Vec<u8>, FileError>;
+
+    /// Makes a file empty, or leaves what it holds if `keep` is set.
+    ///
+    /// # Errors
+    /// Why it is not made.
+    fn create(&mut self, name: &str, keep: bool) -> Result<(), FileError>;
+
     /// Adds to the end of a file.
-    fn append(&mut self, name: &str, bytes: &[u8]) -> bool;
+    ///
+    /// # Errors
+    /// Why it cannot grow.
+    fn append(&mut self, name: &str, bytes: &[u8]) -> Result<(), FileError>;
 }
 
 /// A PC without files.
@@ -20,20 +61,23 @@ pub trait HostFiles: fmt::Debug + Send {
 pub struct NoFiles;
 
 impl HostFiles for NoFiles {
-    fn read(&mut self, _: &str) -> Option<Vec<u8>> {
-        None
+    fn read(&mut self, _: &str) -> Result<Vec<u8>, FileError> {
+        Err(FileError::NoFiles)
     }
 
-    fn create(&mut self, _: &str, _: bool) -> bool {
-        false
+    fn create(&mut self, _: &str, _: bool) -> Result<(), FileError> {
+        Err(FileError::NoFiles)
     }
 
-    fn append(&mut self, _: &str, _: &[u8]) -> bool {
-        false
+    fn append(&mut self, _: &str, _: &[u8]) -> Result<(), FileError> {
+        Err(FileError::NoFiles)
     }
 }
 
-/// Files below one directory, whatever path the program names.
+/// Files below one folder, whatever path the program names.
+///
+/// Names are those of a PC: a drive letter goes, backslashes become slashes, letter case does not matter. A name with
+/// `..` is refused, and so is one that passes through a link or ends at one, so that a program reaches nothing outside.
 #[derive(Clone, Debug)]
 pub struct Directory {
     root: PathBuf,
@@ -53,135 +97,221 @@ impl Directory {
         Self { names, ..self }
     }
 
-    /// The place of a PC path: drive letters go, backslashes become slashes, and a name that exists in
-    /// other letter case is that file; `None` outside the root.
-    fn place(&self, name: &str) -> Option<PathBuf> {
+    /// The place of a PC's path. The root itself may be a link: the user names it, not the program.
+    fn place(&self, name: &str) -> Result<PathBuf, FileError> {
         let other = self.names.iter().find(|(said, _)| said.eq_ignore_ascii_case(name));
         let name = other.map_or(name, |(_, meant)| meant).replace('\\', "/");
         let name = match name.split_once(':') {
             Some((drive, rest)) if drive.len() == 1 => rest,
             _ => &name,
         };
-        let name = Path::new(name.trim_start_matches('/'));
-        let inside = name.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
-        (inside && name.file_name().is_some()).then(|| {
-            name.components().fold(self.root.clone(), |folder, part| entry(&folder, part.as_os_str()))
-        })
+        let parts: Vec<&str> = name.split('/').filter(|part| !matches!(*part, "" | ".")).collect();
+        if parts.is_empty() || name.ends_with('/') || !parts.iter().all(|part| is_name(part)) {
+            return Err(FileError::Outside);
+        }
+        let mut place = self.root.clone();
+        for part in parts {
+            place = entry(&place, OsStr::new(part));
+            if fs::symlink_metadata(&place).is_ok_and(|known| is_link(&known)) {
+                return Err(FileError::Link(part.to_owned()));
+            }
+        }
+        match fs::metadata(&place) {
+            Ok(known) if !known.is_file() => Err(FileError::NotAFile),
+            _ => Ok(place),
+        }
     }
+}
+
+/// Whether a part of a path is an ordinary name. What names a device on some PC is none on any.
+fn is_name(part: &str) -> bool {
+    const DEVICES: [&str; 4] = ["CON", "PRN", "AUX", "NUL"];
+    let stem = part.split('.').next().unwrap_or_default().trim_end().to_ascii_uppercase();
+    let is_port = |kind: &str| stem.strip_prefix(kind).is_some_and(|number| number.len() == 1);
+    let is_device = DEVICES.contains(&stem.as_str()) || is_port("COM") || is_port("LPT");
+    let is_plain = part != ".." && !part.chars().any(|character| character == ':' || character.is_control());
+    is_plain && !is_device
+}
+
+#[cfg(not(windows))]
+fn is_link(known: &fs::Metadata) -> bool {
+    known.is_symlink()
+}
+
+/// Junctions lead elsewhere as links do; both are reparse points.
+#[cfg(windows)]
+fn is_link(known: &fs::Metadata) -> bool {
+    use std::os::windows::fs::MetadataExt;
+    const REPARSE_POINT: u32 = 0x400;
+    known.file_attributes() & REPARSE_POINT != 0
 }
 
 /// The entry of `folder` called `name`: with exactly this spelling, else the first in another letter case.
 fn entry(folder: &Path, name: &OsStr) -> PathBuf {
     let exact = folder.join(name);
-    if exact.exists() {
+    if fs::symlink_metadata(&exact).is_ok() {
         return exact;
     }
-    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.file_name());
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.file_name());
     let same = entries.filter(|found| found.eq_ignore_ascii_case(name)).min();
     same.map_or(exact, |found| folder.join(found))
 }
 
 impl HostFiles for Directory {
-    fn read(&mut self, name: &str) -> Option<Vec<u8>> {
-        std::fs::read(self.place(name)?).ok()
+    fn read(&mut self, name: &str) -> Result<Vec<u8>, FileError> {
+        Ok(fs::read(self.place(name)?)?)
     }
 
-    fn create(&mut self, name: &str, keep: bool) -> bool {
-        let Some(place) = self.place(name) else { return false };
-        let made = place.parent().is_none_or(|folder| std::fs::create_dir_all(folder).is_ok());
-        made && (keep && place.exists() || std::fs::write(place, b"").is_ok())
+    fn create(&mut self, name: &str, keep: bool) -> Result<(), FileError> {
+        let place = self.place(name)?;
+        if let Some(folder) = place.parent() {
+            fs::create_dir_all(folder)?;
+        }
+        OpenOptions::new().create(true).write(true).truncate(!keep).open(place)?;
+        Ok(())
     }
 
-    fn append(&mut self, name: &str, bytes: &[u8]) -> bool {
-        let file =
-            self.place(name).and_then(|place| std::fs::OpenOptions::new().append(true).open(place).ok());
-        file.is_some_and(|mut file| file.write_all(bytes).is_ok())
+    fn append(&mut self, name: &str, bytes: &[u8]) -> Result<(), FileError> {
+        let mut file = OpenOptions::new().append(true).open(self.place(name)?)?;
+        Ok(file.write_all(bytes)?)
     }
-}
-
-/// What the PC has open for the board: at most one file for reading and one for writing.
-#[derive(Debug)]
-pub(crate) struct OpenFiles {
-    files: Box<dyn HostFiles>,
-    /// Lines still to be read.
-    lines: Option<std::vec::IntoIter<Vec<u8>>>,
-    writing: Option<String>,
-}
-
-/// Longest line the PC delivers.
-const LINE_LIMIT: usize = 1024;
-
-impl OpenFiles {
-    /// No file is open.
-    pub(crate) fn new(files: Box<dyn HostFiles>) -> Self {
-        Self { files, lines: None, writing: None }
-    }
-
-    /// Opens a file for reading in place of the one before; `false` if it cannot be read or is empty.
-    pub(crate) fn open_for_reading(&mut self, name: &str) -> bool {
-        let text = self.files.read(name).filter(|text| !text.is_empty());
-        self.lines = text.map(|text| lines(&text).into_iter());
-        self.lines.is_some()
-    }
-
-    /// Opens a file for writing in place of the one before; `false` if it cannot be made.
-    pub(crate) fn open_for_writing(&mut self, name: &str, append: bool) -> bool {
-        let made = self.files.create(name, append);
-        self.writing = made.then(|| name.to_owned());
-        made
-    }
-
-    /// The next line.
-    pub(crate) fn next_line(&mut self) -> Option<Vec<u8>> {
-        self.lines.as_mut()?.next()
-    }
-
-    /// Adds to the file open for writing; `false` if there is none.
-    pub(crate) fn write(&mut self, bytes: &[u8]) -> bool {
-        self.writing.as_ref().is_some_and(|name| self.files.append(name, bytes))
-    }
-
-    /// Closes the file open for reading.
-    pub(crate) fn close_reading(&mut self) {
-        self.lines = None;
-    }
-
-    /// Closes the file open for writing.
-    pub(crate) fn close_writing(&mut self) {
-        self.writing = None;
-    }
-}
-
-/// The lines of a text without their ends; a last line without an end counts.
-fn lines(text: &[u8]) -> Vec<Vec<u8>> {
-    let text = text.strip_suffix(b"\n").unwrap_or(text);
-    let line = |line: &[u8]| {
-        let line = line.strip_suffix(b"\r").unwrap_or(line);
-        line[..line.len().min(LINE_LIMIT)].to_vec()
-    };
-    text.split(|&byte| byte == b'\n').map(line).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    #[test]
-    fn paths_stay_inside_the_root() {
-        let directory = Directory::new("root");
-        let check =
-            |name: &str, expect: Option<&str>| assert_eq!(directory.place(name), expect.map(PathBuf::from));
-        check("c:\\Temp\\Data.txt", Some("root/Temp/Data.txt"));
-        check("data.txt", Some("root/data.txt"));
-        check("..\\data.txt", None);
-        check("c:\\", None);
-        let directory = directory.with_names(vec![("C:\\Log.txt".to_owned(), "logs/today.txt".to_owned())]);
-        assert_eq!(directory.place("c:\\log.txt"), Some(PathBuf::from("root/logs/today.txt")));
+    /// A folder with a file inside and one beside it; removed at the end.
+    struct Scratch(PathBuf);
+
+    impl Scratch {
+        fn new(name: &str) -> Self {
+            let path = std::env::temp_dir().join(format!("cc67-files-{}-{name}", std::process::id()));
+            fs::create_dir_all(path.join("disk/Temp")).expect("the temporary folder is writable");
+            fs::write(path.join("disk/Temp/Data.txt"), "inside").expect("it is writable");
+            fs::write(path.join("secret.txt"), "outside").expect("it is writable");
+            Self(path)
+        }
+
+        fn directory(&self) -> Directory {
+            Directory::new(self.0.join("disk"))
+        }
+    }
+
+    impl Drop for Scratch {
+        fn drop(&mut self) {
+            // A leftover folder is untidy, not wrong.
+            let _ = fs::remove_dir_all(&self.0);
+        }
     }
 
     #[test]
-    fn a_last_line_without_end_is_a_line() {
-        assert_eq!(lines(b"a\r\n\r\nb"), [&b"a"[..], b"", b"b"]);
-        assert_eq!(lines(b"a\n"), [b"a"]);
+    fn paths_stay_inside_the_root() {
+        let directory = Directory::new("root");
+        for (name, expect) in [
+            ("c:\\Temp\\Data.txt", Some("root/Temp/Data.txt")),
+            ("C:Data.txt", Some("root/Data.txt")),
+            ("/etc/passwd", Some("root/etc/passwd")),
+            ("\\\\server\\share\\x.txt", Some("root/server/share/x.txt")),
+            ("data.txt", Some("root/data.txt")),
+            (".\\a\\.\\b.txt", Some("root/a/b.txt")),
+            ("..data..txt", Some("root/..data..txt")),
+            ("..\\data.txt", None),
+            ("c:..\\data.txt", None),
+            ("a/../../data.txt", None),
+            ("a\\..", None),
+            ("c:\\", None),
+            ("folder\\", None),
+            ("", None),
+            (".", None),
+            ("c:\\a:stream", None),
+            ("d:\\c:\\x", None),
+            ("nul", None),
+            ("c:\\Temp\\Con.txt", None),
+            ("lpt1", None),
+            ("a\tb", None),
+        ] {
+            let found = directory.place(name);
+            assert_eq!(found, expect.map(PathBuf::from).ok_or(FileError::Outside), "{name}");
+        }
+        let names = [("C:\\Log.txt", "logs/today.txt"), ("c:\\x", "../x")];
+        let directory =
+            directory.with_names(names.map(|(said, meant)| (said.to_owned(), meant.to_owned())).to_vec());
+        assert_eq!(directory.place("c:\\log.txt"), Ok(PathBuf::from("root/logs/today.txt")));
+        assert_eq!(directory.place("c:\\x"), Err(FileError::Outside));
+    }
+
+    #[test]
+    fn a_file_is_found_in_any_letter_case() {
+        let scratch = Scratch::new("case");
+        assert_eq!(scratch.directory().read("C:\\TEMP\\data.TXT"), Ok(b"inside".to_vec()));
+        assert_eq!(scratch.directory().read("c:\\Temp\\nosuch.txt"), Err(FileError::Missing));
+        assert_eq!(scratch.directory().read("c:\\Temp"), Err(FileError::NotAFile));
+        assert_eq!(scratch.directory().create("c:\\Temp", false), Err(FileError::NotAFile));
+    }
+
+    #[test]
+    fn nothing_beside_the_folder_is_reached_by_name() {
+        let scratch = Scratch::new("beside");
+        let secret = scratch.0.join("secret.txt");
+        let absolute = secret.to_string_lossy().into_owned();
+        for name in
+            ["../secret.txt", "..\\secret.txt", "Temp/../../secret.txt", "c:..\\secret.txt", &absolute]
+        {
+            let mut directory = scratch.directory();
+            assert!(directory.read(name).is_err(), "{name} is read");
+            // An absolute path is one inside the folder.
+            let _ = directory.create(name, false);
+            let _ = directory.append(name, b"changed");
+        }
+        assert_eq!(fs::read(secret).expect("it is there"), b"outside");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_are_not_followed() {
+        use std::os::unix::fs::symlink;
+
+        let scratch = Scratch::new("links");
+        let disk = scratch.0.join("disk");
+        symlink(scratch.0.join("secret.txt"), disk.join("file")).expect("a link");
+        symlink(&scratch.0, disk.join("folder")).expect("a link");
+        symlink(scratch.0.join("made.txt"), disk.join("dangling")).expect("a link");
+        symlink("Temp", disk.join("inside")).expect("a link");
+        let link = |name: &str| Err::<(), _>(FileError::Link(name.to_owned()));
+        for (name, part) in [
+            ("file", "file"),
+            ("FILE", "FILE"),
+            ("folder/secret.txt", "folder"),
+            ("c:\\folder\\new.txt", "folder"),
+            ("dangling", "dangling"),
+            ("inside\\Data.txt", "inside"),
+        ] {
+            let mut directory = scratch.directory();
+            assert_eq!(directory.read(name).map(drop), link(part), "{name} is read");
+            assert_eq!(directory.create(name, false), link(part), "{name} is made");
+            assert_eq!(directory.create(name, true), link(part), "{name} is opened");
+            assert_eq!(directory.append(name, b"changed"), link(part), "{name} grows");
+        }
+        assert_eq!(fs::read(scratch.0.join("secret.txt")).expect("it is there"), b"outside");
+        assert!(!scratch.0.join("made.txt").exists() && !scratch.0.join("new.txt").exists());
+        // The folder itself is the user's choice.
+        symlink(&disk, scratch.0.join("way")).expect("a link");
+        let mut directory = Directory::new(scratch.0.join("way"));
+        assert_eq!(directory.read("Temp/Data.txt"), Ok(b"inside".to_vec()));
+    }
+
+    #[test]
+    fn a_file_is_made_kept_and_grows() {
+        let scratch = Scratch::new("grows");
+        let mut directory = scratch.directory();
+        assert_eq!(directory.create("c:\\new\\a.txt", false), Ok(()));
+        assert_eq!(directory.append("new/a.txt", b"one\n"), Ok(()));
+        assert_eq!(directory.create("new/a.txt", true), Ok(()));
+        assert_eq!(directory.append("new/a.txt", b"two\n"), Ok(()));
+        assert_eq!(directory.read("new/a.txt"), Ok(b"one\ntwo\n".to_vec()));
+        assert_eq!(directory.create("new/a.txt", false), Ok(()));
+        assert_eq!(directory.read("new/a.txt"), Ok(Vec::new()));
+        assert_eq!(directory.append("nosuch.txt", b""), Err(FileError::Missing));
     }
 }

@@ -4,6 +4,7 @@
 //! code in `UserData[100]`, and waits until that is no longer positive.
 
 mod answers;
+pub(crate) mod disk;
 mod requests;
 
 pub use answers::{AnswerError, Answers, HELP as ANSWERS_HELP};
@@ -69,6 +70,11 @@ impl Host {
     /// Connects or removes the PC.
     pub(crate) fn connect(&mut self, is_connected: bool) {
         self.is_connected = is_connected;
+    }
+
+    /// Whether there is a PC, which serves files too.
+    pub(crate) const fn is_connected(&self) -> bool {
+        self.is_connected
     }
 
     /// Says what it answers.

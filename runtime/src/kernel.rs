@@ -34,10 +34,12 @@ use crate::device::timer;
 use crate::device::uart::Uart;
 use crate::dispatch::{HANDLERS, signatures};
 use crate::event::{Event, EventKind};
-use crate::files::{HostFiles, OpenFiles};
+use crate::files::HostFiles;
+use crate::firmware::files::Reading;
 use crate::firmware::serial::{self, SerialService};
 use crate::heap::Heap;
 use crate::host::Host;
+use crate::host::disk::{self, Disk};
 use crate::plant::Mechanics;
 use crate::servo::Servo;
 use crate::stimulus::{Assist, Player};
@@ -47,9 +49,6 @@ use crate::views::Typed;
 /// What a register access costs beyond the instruction: 200 ns, a timer 100 ns.
 const FPGA_CYCLES: Cycles = Cycles::new(40);
 const TIMER_CYCLES: Cycles = Cycles::new(20);
-
-/// A round trip to the PC's files: 20 ms, unless a machine file says otherwise.
-const FILES_LATENCY: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 50);
 
 /// Pins of JP7 that the interface of Kanalog occupies.
 const JP7_PINS: u16 = 16;
@@ -112,9 +111,9 @@ pub struct Kernel {
     recorder: Option<Box<Recorder>>,
     pub(crate) servo: Servo,
     pub(crate) heap: Heap,
-    pub(crate) files: OpenFiles,
-    /// How long a round trip to them takes.
-    pub(crate) files_latency: Cycles,
+    /// The PC's disk, and what the board remembers of its files.
+    pub(crate) disk: Disk,
+    pub(crate) reading: Reading,
     pub(crate) host: Host,
     /// The link to the PC over USB, and the one over the UART.
     pub(crate) usb: Link,
@@ -172,8 +171,8 @@ impl Kernel {
             turn: Turn::Primary,
             servo: Servo::default(),
             heap: Heap::default(),
-            files: OpenFiles::new(files),
-            files_latency: FILES_LATENCY,
+            disk: Disk::new(files),
+            reading: Reading::default(),
             host: Host::default(),
             usb: Link::default(),
             uart_link: Link::default(),
@@ -277,6 +276,8 @@ impl Kernel {
     pub(crate) fn restart(&mut self) {
         self.continuations = Default::default();
         self.console = Console::default();
+        self.reading = Reading::default();
+        self.disk.forget_answers();
         self.serial = SerialService::default();
         self.konnects = Konnects::default();
         self.heap = Heap::default();
@@ -292,6 +293,13 @@ impl Kernel {
     /// Sends all console text that waits, the unfinished line included.
     pub(crate) fn flush_console(&mut self, now: Cycles) {
         for line in self.console.drain() {
+            self.send_line(line, now);
+        }
+    }
+
+    /// Sends a console line; the PC keeps those for itself that are requests for files.
+    fn send_line(&mut self, line: Vec<u8>, now: Cycles) {
+        if !self.host.is_connected() || !disk::take(self, &line, now) {
             self.tell(now, EventKind::ConsoleLine(line));
         }
     }
@@ -433,8 +441,9 @@ impl Firmware for Kernel {
             && !self.usb.is_in_command()
             && let Some(line) = self.console.send()
         {
-            self.tell(context.now, EventKind::ConsoleLine(line));
+            self.send_line(line, context.now);
         }
+        disk::slice(self, context);
         crate::servo::limits::slice(self, context.memory);
         crate::host::slice(self, context);
         serial::slice(self, context);
@@ -479,7 +488,7 @@ impl Firmware for Kernel {
         let now = self.tick_start;
         let stimulus = self.stimulus.as_ref().map_or(u64::MAX, |player| player.quiet_ticks(now));
         let assist = self.assist.as_ref().map_or(u64::MAX, |assist| assist.quiet_ticks(now));
-        self.host.quiet_ticks().min(stimulus).min(assist)
+        self.host.quiet_ticks().min(stimulus).min(assist).min(self.disk.quiet_ticks(now))
     }
 
     fn skip_ticks(&mut self, count: u64, context: &mut TickContext<'_>) {

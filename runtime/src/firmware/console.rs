@@ -117,7 +117,7 @@ pub(crate) fn cut(text: &[u8]) -> &[u8] {
 }
 
 /// Puts text on the console; the call waits while the queue is full.
-fn put(kernel: &mut Kernel, caller: &Caller<'_>, text: &[u8], result: i32) -> Outcome<i32> {
+pub(crate) fn put(kernel: &mut Kernel, caller: &Caller<'_>, text: &[u8], result: i32) -> Outcome<i32> {
     let rest = kernel.console.put(text).to_vec();
     if rest.is_empty() {
         return Outcome::Done(result);
@@ -127,7 +127,7 @@ fn put(kernel: &mut Kernel, caller: &Caller<'_>, text: &[u8], result: i32) -> Ou
 }
 
 /// Goes on with a call that waits for the queue.
-fn resumed(kernel: &mut Kernel, caller: &Caller<'_>) -> Option<Outcome<i32>> {
+pub(crate) fn resumed(kernel: &mut Kernel, caller: &Caller<'_>) -> Option<Outcome<i32>> {
     caller.woken?;
     match kernel.take(caller) {
         Some(Continuation::Print { rest, result }) => Some(put(kernel, caller, &rest, result)),

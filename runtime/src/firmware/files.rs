@@ -1,7 +1,9 @@
-//! Text files on the PC. Source: gather-persist-console.md section 6.
+//! Text files on the PC. Source: gather-persist-console.md section 6, host-protocol.md section 6.
 //!
-//! `FILE` is an int and the board keeps no table: one handle stands for the file open for reading, one for the file
-//! open for writing.
+//! Everything goes through the console's queue, as lines that begin with a code; so what programs write stands in the
+//! order of all that is printed, and waits as prints do. Reading is one line ahead: `fopen` brings the first line into
+//! `read_disk_buffer`, and each line that is taken asks for the next. `FILE` is an int and the board keeps no table: one
+//! handle stands for the file open for reading, one for the file open for writing.
 
 use kmotiondef::GuestAddr;
 use kmotiondef::limits::MAX_READ_DISK_LENGTH;
@@ -9,59 +11,28 @@ use kmotiondef::variables::{READ_DISK_BUFFER, READ_DISK_BUFFER_STATUS};
 use vm::firmware::{Caller, Outcome, Wake};
 use vm::trap::TrapKind;
 
-use super::console::{converted, cut, formatted};
+use super::console::{converted, cut, formatted, put, resumed};
 use super::string::text;
 use crate::dispatch::Varargs;
-use crate::kernel::Kernel;
+use crate::host::disk::{ARRIVED, ASKED, Request};
+use crate::kernel::{Continuation, Kernel};
 use crate::text::{Arguments, format};
 use crate::views::Typed;
 
 /// The handle of the file open for reading.
-const READING: GuestAddr = GuestAddr::new(0x1001_A818);
+const READING: GuestAddr = GuestAddr::new(0x1001_A418);
 /// The handle of the file open for writing.
-const WRITING: GuestAddr = GuestAddr::new(0x1001_A81C);
-/// States of the line buffer.
-const LINE_ARRIVED: i32 = 1;
-const FAILED: i32 = 2;
-const NO_MORE: i32 = 3;
+const WRITING: GuestAddr = GuestAddr::new(0x1001_A41C);
 
-/// Waits for the PC's answer, once.
-fn round_trip(kernel: &Kernel, caller: &Caller<'_>) -> Option<Wake> {
-    caller.woken.is_none().then(|| Wake::At(caller.now() + kernel.files_latency))
-}
-
-pub(crate) fn fopen(
-    kernel: &mut Kernel,
-    caller: &mut Caller<'_>,
-    path: GuestAddr,
-    mode: GuestAddr,
-) -> Result<Outcome<GuestAddr>, TrapKind> {
-    let (path, mode) = (text(caller, path)?, text(caller, mode)?);
-    let name = String::from_utf8_lossy(&path).into_owned();
-    if mode.first() != Some(&b'r') {
-        if !kernel.files.open_for_writing(&name, mode.first() == Some(&b'a')) {
-            kernel.diagnose(caller, format!("fopen: {name} cannot be written"));
-        }
-        return Ok(Outcome::Done(WRITING));
-    }
-    if let Some(wake) = round_trip(kernel, caller) {
-        return Ok(Outcome::Wait(wake));
-    }
-    if kernel.files.open_for_reading(&name) {
-        caller.memory.set(READ_DISK_BUFFER_STATUS, LINE_ARRIVED);
-        return Ok(Outcome::Done(READING));
-    }
-    caller.memory.set(READ_DISK_BUFFER_STATUS, FAILED);
-    kernel.diagnose(caller, format!("fopen: {name} cannot be read or is empty"));
-    Ok(Outcome::Done(GuestAddr::NULL))
-}
-
-pub(crate) fn fclose(kernel: &mut Kernel, _: &mut Caller<'_>, file: GuestAddr) -> i32 {
-    match file {
-        READING => kernel.files.close_reading(),
-        _ => kernel.files.close_writing(),
-    }
-    0
+/// What the board remembers of its files.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Reading {
+    /// Whether the last opening or reading failed or came to the end, which `feof` tells.
+    has_failed: bool,
+    /// Whether it was said that lines written in parts have stray characters.
+    told_of_parts: bool,
+    /// Whether it was said that `%` is taken twice.
+    told_of_percent: bool,
 }
 
 /// Values for a text that is taken as a format once more: there are none.
@@ -87,33 +58,126 @@ impl Arguments for Nothing {
     }
 }
 
-/// Writes formatted text. Odd and kept: the text is taken as a format a second time.
+/// A request as it is printed. Odd and kept: the text behind the code is taken as a format a second time.
+fn printed(request: Request, text: &[u8]) -> Result<Vec<u8>, TrapKind> {
+    let text = format(&[&[request.code()], text].concat(), &mut Nothing)?;
+    Ok(cut(&text).to_vec())
+}
+
+/// Sends a request and returns `result` when the queue has taken it.
+fn send(kernel: &mut Kernel, caller: &Caller<'_>, request: Request, result: GuestAddr) -> Outcome<GuestAddr> {
+    let outcome = put(kernel, caller, &[request.code(), b'\n'], result.get().cast_signed());
+    address(outcome)
+}
+
+/// A result that is an address.
+fn address(outcome: Outcome<i32>) -> Outcome<GuestAddr> {
+    match outcome {
+        Outcome::Done(value) => Outcome::Done(GuestAddr::new(value.cast_unsigned())),
+        Outcome::Wait(wake) => Outcome::Wait(wake),
+        Outcome::End => Outcome::End,
+        Outcome::Pause => Outcome::Pause,
+    }
+}
+
+/// What became of the line that was asked for last: `None` while it is on its way.
+fn arrival(kernel: &mut Kernel, caller: &Caller<'_>) -> Option<bool> {
+    let status = caller.memory.get(READ_DISK_BUFFER_STATUS);
+    if status == ASKED {
+        return None;
+    }
+    kernel.reading.has_failed = status != ARRIVED;
+    Some(status == ARRIVED)
+}
+
+pub(crate) fn fopen(
+    kernel: &mut Kernel,
+    caller: &mut Caller<'_>,
+    path: GuestAddr,
+    mode: GuestAddr,
+) -> Result<Outcome<GuestAddr>, TrapKind> {
+    if caller.woken.is_some() {
+        return Ok(opened(kernel, caller));
+    }
+    let (path, mode) = (text(caller, path)?, text(caller, mode)?);
+    let (request, handle) = match mode.first() {
+        Some(b'r') => (Request::Open, READING),
+        Some(b'a') => (Request::Append, WRITING),
+        _ => (Request::Create, WRITING),
+    };
+    let mut line = printed(request, &path)?;
+    line.push(b'\n');
+    if request == Request::Open {
+        caller.memory.set(READ_DISK_BUFFER_STATUS, ASKED);
+    }
+    let outcome = put(kernel, caller, &line, handle.get().cast_signed());
+    // The answer comes later than the request goes.
+    let waits = request == Request::Open && matches!(outcome, Outcome::Done(_));
+    Ok(if waits { Outcome::Wait(Wake::Retry) } else { address(outcome) })
+}
+
+/// Goes on with an opening: the request is still to be sent, or its answer to come.
+fn opened(kernel: &mut Kernel, caller: &Caller<'_>) -> Outcome<GuestAddr> {
+    if let Some(Continuation::Print { rest, result }) = kernel.take(caller) {
+        let outcome = address(put(kernel, caller, &rest, result));
+        let waits = outcome == Outcome::Done(READING);
+        return if waits { Outcome::Wait(Wake::Retry) } else { outcome };
+    }
+    match arrival(kernel, caller) {
+        None => Outcome::Wait(Wake::Retry),
+        Some(true) => Outcome::Done(READING),
+        Some(false) => Outcome::Done(GuestAddr::NULL),
+    }
+}
+
+pub(crate) fn fclose(kernel: &mut Kernel, caller: &mut Caller<'_>, file: GuestAddr) -> Outcome<i32> {
+    if let Some(outcome) = resumed(kernel, caller) {
+        return outcome;
+    }
+    let request = if file == READING { Request::CloseReading } else { Request::CloseWriting };
+    put(kernel, caller, &[request.code(), b'\n'], 0)
+}
+
+/// Whether there is a sign that another one does not follow.
+fn has_conversion(text: &[u8]) -> bool {
+    let mut rest = text;
+    while let Some(at) = rest.iter().position(|byte| *byte == b'%') {
+        if rest.get(at + 1) != Some(&b'%') {
+            return true;
+        }
+        rest = &rest[at + 2..];
+    }
+    false
+}
+
+/// Says once each what is odd about writing on the board.
+fn warn(kernel: &mut Kernel, caller: &Caller<'_>, text: &[u8]) {
+    if kernel.console.is_holding() && !std::mem::replace(&mut kernel.reading.told_of_parts, true) {
+        let text = "fprintf: the line before has not ended; as on the board, a stray character 2 stands where this \
+                    text begins, and a line begun by printf goes to the console. Write each line by one call";
+        kernel.diagnose(caller, text.to_owned());
+    }
+    if has_conversion(text) && !std::mem::replace(&mut kernel.reading.told_of_percent, true) {
+        let text = "fprintf: the text has a % in it, which the board takes as a conversion once more. Write %%%% for it";
+        kernel.diagnose(caller, text.to_owned());
+    }
+}
+
+/// Writes formatted text: a line, or the part of one.
 pub(crate) fn fprintf(
     kernel: &mut Kernel,
     caller: &mut Caller<'_>,
     _file: GuestAddr,
     pattern: GuestAddr,
     arguments: Varargs,
-) -> Result<i32, TrapKind> {
-    let text = formatted(caller, pattern, arguments)?;
-    let text = format(cut(&text), &mut Nothing)?;
-    if !kernel.files.write(cut(&text)) {
-        kernel.diagnose(caller, "fprintf: no file is open for writing".to_owned());
+) -> Result<Outcome<i32>, TrapKind> {
+    if let Some(outcome) = resumed(kernel, caller) {
+        return Ok(outcome);
     }
-    Ok(0)
-}
-
-/// Fetches the next line into the line buffer; `false` at the end of the file.
-fn fetch(kernel: &mut Kernel, caller: &mut Caller<'_>) -> Result<Option<Vec<u8>>, TrapKind> {
-    let Some(line) = kernel.files.next_line() else {
-        caller.memory.set(READ_DISK_BUFFER_STATUS, NO_MORE);
-        return Ok(None);
-    };
-    let mut stored = line.clone();
-    stored.push(0);
-    caller.memory.poke_bytes(READ_DISK_BUFFER.address(), &stored)?;
-    caller.memory.set(READ_DISK_BUFFER_STATUS, LINE_ARRIVED);
-    Ok(Some(line))
+    let text = formatted(caller, pattern, arguments)?;
+    let line = printed(Request::Write, cut(&text))?;
+    warn(kernel, caller, &text);
+    Ok(put(kernel, caller, &line, 0))
 }
 
 /// The next line, up to `limit` characters; without a terminator when the line has as many or more.
@@ -127,16 +191,34 @@ pub(crate) fn fgets(
     if file != READING {
         return Ok(Outcome::Done(GuestAddr::NULL));
     }
-    if let Some(wake) = round_trip(kernel, caller) {
-        return Ok(Outcome::Wait(wake));
+    if let Some(outcome) = sent(kernel, caller) {
+        return Ok(address(outcome));
     }
-    let Some(mut line) = fetch(kernel, caller)? else {
-        return Ok(Outcome::Done(GuestAddr::NULL));
-    };
+    match arrival(kernel, caller) {
+        None => return Ok(Outcome::Wait(Wake::Retry)),
+        Some(false) => return Ok(Outcome::Done(GuestAddr::NULL)),
+        Some(true) => {}
+    }
+    let mut line = buffered(caller)?;
     line.push(0);
     line.truncate(usize::try_from(limit).unwrap_or(0));
     caller.memory.write_bytes(to, &line)?;
-    Ok(Outcome::Done(to))
+    caller.memory.set(READ_DISK_BUFFER_STATUS, ASKED);
+    Ok(send(kernel, caller, Request::NextLine, to))
+}
+
+/// Goes on with sending the request for the next line, if the call waits for that.
+fn sent(kernel: &mut Kernel, caller: &Caller<'_>) -> Option<Outcome<i32>> {
+    caller.woken?;
+    match kernel.take(caller) {
+        Some(Continuation::Print { rest, result }) => Some(put(kernel, caller, &rest, result)),
+        _ => None,
+    }
+}
+
+/// The line in the board's buffer.
+fn buffered(caller: &Caller<'_>) -> Result<Vec<u8>, TrapKind> {
+    caller.memory.read_c_string(READ_DISK_BUFFER.address(), MAX_READ_DISK_LENGTH as u32)
 }
 
 /// Converts the next line, at most 128 characters of it. At the end of the file the last line is converted again.
@@ -150,18 +232,21 @@ pub(crate) fn fscanf(
     if file != READING {
         return Ok(Outcome::Done(0));
     }
-    if let Some(wake) = round_trip(kernel, caller) {
-        return Ok(Outcome::Wait(wake));
+    if let Some(outcome) = sent(kernel, caller) {
+        return Ok(outcome);
     }
+    let Some(is_there) = arrival(kernel, caller) else { return Ok(Outcome::Wait(Wake::Retry)) };
     let pattern = text(caller, pattern)?;
-    let line = match fetch(kernel, caller)? {
-        Some(line) => line,
-        None => caller.memory.read_c_string(READ_DISK_BUFFER.address(), MAX_READ_DISK_LENGTH as u32)?,
-    };
-    converted(caller, cut(&line), &pattern, places).map(Outcome::Done)
+    let line = buffered(caller)?;
+    let count = converted(caller, cut(&line), &pattern, places)?;
+    if !is_there {
+        return Ok(Outcome::Done(count));
+    }
+    caller.memory.set(READ_DISK_BUFFER_STATUS, ASKED);
+    Ok(put(kernel, caller, &[Request::NextLine.code(), b'\n'], count))
 }
 
 /// 1 after a failed read or opening.
-pub(crate) fn feof(_: &mut Kernel, caller: &mut Caller<'_>, _file: GuestAddr) -> i32 {
-    i32::from(matches!(caller.memory.get(READ_DISK_BUFFER_STATUS), FAILED | NO_MORE))
+pub(crate) fn feof(kernel: &mut Kernel, _: &mut Caller<'_>, _file: GuestAddr) -> i32 {
+    i32::from(kernel.reading.has_failed)
 }

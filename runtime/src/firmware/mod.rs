@@ -2,7 +2,7 @@
 
 pub(crate) mod console;
 pub(crate) mod coord;
-mod files;
+pub(crate) mod files;
 pub(crate) mod gather;
 pub(crate) mod io;
 pub(crate) mod konnect;

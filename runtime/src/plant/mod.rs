@@ -132,7 +132,7 @@ pub(crate) fn install(kernel: &mut Kernel, machine: &MachineFile) {
     for (port, present) in [(Port::Aux0, machine.konnects[0]), (Port::Aux1, machine.konnects[1])] {
         kernel.konnects.set_present(port, present);
     }
-    kernel.files_latency = Cycles::new((machine.disk_latency_s * Cycles::PER_SECOND.get() as f64) as i64);
+    kernel.disk.latency = Cycles::new((machine.disk_latency_s * Cycles::PER_SECOND.get() as f64) as i64);
     kernel.hints = machine.hints;
     for &bit in &machine.idle_high {
         kernel.pins.idle_high(bit);

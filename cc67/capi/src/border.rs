@@ -1,0 +1,138 @@
+//! Where C's pointers become Rust's references, and panics become results.
+
+use std::ffi::{CStr, c_char};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::slice;
+
+use cc67::host::{Board, HostError, fill};
+
+use crate::Client;
+
+/// What became of a call.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(C)]
+pub enum Outcome {
+    /// It did what it is for.
+    Ok = 0,
+    /// It did not; where there is a message, that says why.
+    Failed = 1,
+    /// The board did not answer in time.
+    Timeout = 2,
+    /// There is no connection: it was given up.
+    NotConnected = 3,
+    /// Another client has the board to itself.
+    InUse = 4,
+    /// An argument is wrong: a null pointer, a text that is not UTF-8, a number out of range.
+    Argument = 5,
+    /// The library failed; the board is not to be used any more.
+    Internal = 6,
+}
+
+impl From<HostError> for Outcome {
+    fn from(error: HostError) -> Self {
+        match error {
+            HostError::NotConnected => Self::NotConnected,
+            HostError::Timeout => Self::Timeout,
+            HostError::InUse => Self::InUse,
+            HostError::Thread(_) => Self::Argument,
+            HostError::Read { .. } | HostError::Compile(_) | HostError::Load(_) => Self::Failed,
+        }
+    }
+}
+
+/// Does the work of a call; a panic stops here.
+pub(crate) fn guarded(work: impl FnOnce() -> Result<(), Outcome>) -> Outcome {
+    match catch_unwind(AssertUnwindSafe(work)) {
+        Ok(Ok(())) => Outcome::Ok,
+        Ok(Err(outcome)) => outcome,
+        Err(_) => Outcome::Internal,
+    }
+}
+
+/// The same for a call that yields a value; `failure` stands for a panic.
+pub(crate) fn guarded_or<R>(failure: R, work: impl FnOnce() -> R) -> R {
+    catch_unwind(AssertUnwindSafe(work)).unwrap_or(failure)
+}
+
+/// The board of a client.
+///
+/// # Safety
+/// Null, or what [`cc67_open`](crate::cc67_open) or [`cc67_another_client`](crate::cc67_another_client) has returned
+/// and nobody has closed; no other call uses it meanwhile.
+pub(crate) unsafe fn board<'a>(client: *mut Client) -> Result<&'a mut Board, Outcome> {
+    // SAFETY: the caller vouches for a client that is alive and that only this call uses.
+    let client = unsafe { client.as_mut() };
+    client.map(|client| &mut client.board).ok_or(Outcome::Argument)
+}
+
+/// A text of the caller.
+///
+/// # Safety
+/// Null, or bytes that end with a 0 and stay as they are during the call.
+pub(crate) unsafe fn text<'a>(pointer: *const c_char) -> Result<&'a str, Outcome> {
+    if pointer.is_null() {
+        return Err(Outcome::Argument);
+    }
+    // SAFETY: the caller vouches for bytes that end with a 0, and null was ruled out.
+    let text = unsafe { CStr::from_ptr(pointer) };
+    text.to_str().map_err(|_| Outcome::Argument)
+}
+
+/// A text that may be missing.
+///
+/// # Safety
+/// As of [`text`].
+pub(crate) unsafe fn optional_text<'a>(pointer: *const c_char) -> Result<Option<&'a str>, Outcome> {
+    if pointer.is_null() {
+        return Ok(None);
+    }
+    // SAFETY: the same is asked of the caller.
+    unsafe { text(pointer) }.map(Some)
+}
+
+/// A buffer of the caller; empty where there is none.
+///
+/// # Safety
+/// Null, or so many bytes that nobody else uses during the call.
+pub(crate) unsafe fn buffer<'a>(pointer: *mut c_char, size: usize) -> &'a mut [u8] {
+    if pointer.is_null() || isize::try_from(size).is_err() {
+        return &mut [];
+    }
+    // SAFETY: the caller vouches for so many bytes, null and an impossible size were ruled out, and any byte is a u8.
+    unsafe { slice::from_raw_parts_mut(pointer.cast::<u8>(), size) }
+}
+
+/// Stores a value where the caller wants it.
+///
+/// # Safety
+/// Null, or a place for the value that nobody else uses during the call.
+pub(crate) unsafe fn store<T>(pointer: *mut T, value: T) -> Result<(), Outcome> {
+    // SAFETY: the caller vouches for the place.
+    let place = unsafe { pointer.as_mut() };
+    *place.ok_or(Outcome::Argument)? = value;
+    Ok(())
+}
+
+/// Puts a text into a buffer; it needs room for the 0 at least.
+pub(crate) fn put(buffer: &mut [u8], text: &str) -> Result<(), Outcome> {
+    if buffer.is_empty() {
+        return Err(Outcome::Argument);
+    }
+    fill(buffer, text);
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_is_an_outcome() {
+        let hook = std::panic::take_hook();
+        std::panic::set_hook(Box::new(|_| ()));
+        let outcome = guarded(|| panic!("a mistake of ours"));
+        let value = guarded_or(-1, || panic!("another one"));
+        std::panic::set_hook(hook);
+        assert_eq!((outcome, value), (Outcome::Internal, -1));
+    }
+}

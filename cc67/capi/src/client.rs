@@ -1,0 +1,142 @@
+//! Clients: making a board, sharing it, letting it go.
+
+use std::ffi::{c_char, c_int};
+use std::path::{Path, PathBuf};
+use std::ptr;
+
+use cc67::Options;
+use cc67::host::{Board, fill};
+use runtime::{Config, Directory, MachineFile};
+
+use crate::border::{board, buffer, guarded_or, optional_text};
+
+/// A client of a simulated board. One thread at a time may use it; clients of the same board may be used in
+/// different threads.
+#[derive(Debug)]
+pub struct Client {
+    pub(crate) board: Board,
+    /// How its programs are compiled.
+    pub(crate) options: Options,
+}
+
+impl Client {
+    fn into_pointer(self) -> *mut Self {
+        Box::into_raw(Box::new(self))
+    }
+}
+
+/// Makes a board at power-up, and its first client. `files` is the folder of the files that programs open on the PC, or
+/// null for none; `machine` is a machine file, what is connected to the board, or null for nothing. Null on failure,
+/// with the reason in `message`, which may be null.
+///
+/// # Safety
+/// Texts end with a 0; `message` has room for `size` bytes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cc67_open(
+    files: *const c_char,
+    machine: *const c_char,
+    message: *mut c_char,
+    size: usize,
+) -> *mut Client {
+    guarded_or(ptr::null_mut(), || {
+        // SAFETY: the caller vouches for the buffer.
+        let message = unsafe { buffer(message, size) };
+        // SAFETY: the caller vouches for the text.
+        let files = unsafe { optional_text(files) };
+        // SAFETY: the caller vouches for the text.
+        let machine = unsafe { optional_text(machine) };
+        let (Ok(files), Ok(machine)) = (files, machine) else {
+            fill(message, "a name is not UTF-8");
+            return ptr::null_mut();
+        };
+        match open(files.map(PathBuf::from), machine.map(Path::new)) {
+            Ok(client) => {
+                fill(message, "");
+                client.into_pointer()
+            }
+            Err(error) => {
+                fill(message, &error);
+                ptr::null_mut()
+            }
+        }
+    })
+}
+
+fn open(files: Option<PathBuf>, machine: Option<&Path>) -> Result<Client, String> {
+    let mut config = Config::default();
+    if let Some(folder) = files {
+        config.files = Box::new(Directory::new(folder));
+    }
+    if let Some(path) = machine {
+        let text = std::fs::read_to_string(path)
+            .map_err(|error| format!("cannot read {}: {error}", path.display()))?;
+        config.machine_file = MachineFile::parse(&text)
+            .map_err(|error| format!("{}:{}:{}: {error}", path.display(), error.line, error.column))?;
+    }
+    Ok(Client { board: Board::with(config), options: Options::default() })
+}
+
+/// Makes one more client of the same board, for another thread or another part of the program. Null on failure.
+///
+/// # Safety
+/// `client` is open, and no other call uses it meanwhile.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cc67_another_client(client: *mut Client) -> *mut Client {
+    guarded_or(ptr::null_mut(), || {
+        // SAFETY: the caller vouches for the client.
+        let board = unsafe { board(client) };
+        board.map_or(ptr::null_mut(), |board| {
+            Client { board: board.another_client(), options: Options::default() }.into_pointer()
+        })
+    })
+}
+
+/// Closes a client. It loses the token if it holds it, and its call-back is taken out; the last client of a board
+/// takes the board with it. Null is ignored.
+///
+/// # Safety
+/// `client` is open, and is not used any more.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cc67_close(client: *mut Client) {
+    guarded_or((), || {
+        if !client.is_null() {
+            // SAFETY: it came from a box, as the caller vouches, and nobody uses it any more.
+            drop(unsafe { Box::from_raw(client) });
+        }
+    });
+}
+
+/// Writes the identifiers of the boards that are connected to `list`, as many as fit, and returns how many there are;
+/// -1 if an argument is wrong. `list` may be null if `capacity` is 0.
+///
+/// # Safety
+/// `client` is open, and no other call uses it meanwhile; `list` has room for `capacity` numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cc67_list_locations(
+    client: *mut Client,
+    list: *mut c_int,
+    capacity: usize,
+) -> c_int {
+    guarded_or(-1, || {
+        // SAFETY: the caller vouches for the client.
+        let Ok(board) = (unsafe { board(client) }) else { return -1 };
+        let found = board.list_locations();
+        for (index, location) in found.iter().take(capacity).enumerate() {
+            // SAFETY: the index is below the capacity that the caller vouches for.
+            let place = unsafe { list.wrapping_add(index).as_mut() };
+            let Some(place) = place else { return -1 };
+            *place = *location;
+        }
+        c_int::try_from(found.len()).unwrap_or(c_int::MAX)
+    })
+}
+
+/// The generation of the board's firmware: 2, as of every board but the oldest; -1 if the client is null.
+///
+/// # Safety
+/// `client` is open, and no other call uses it meanwhile.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cc67_firmware_version(client: *mut Client) -> c_int {
+    // SAFETY: the caller vouches for the client.
+    guarded_or(-1, || unsafe { board(client) }.map_or(-1, |board| board.firmware_version()))
+}

@@ -1,0 +1,38 @@
+//! The host interface for C programs: a library, `cc67board`, and its header, `include/cc67board.h`.
+//!
+//! The calls are those of [`cc67::host::Board`] under the same names with `cc67_` in front. A call says by its result
+//! whether it did what it is for; texts go into buffers of the caller, are cut to fit and always ended with a 0.
+//!
+//! Invariants:
+//! - Unsafe code is here and in the machine's native engine only: pointers of the caller are looked at in [`border`]
+//!   and nowhere else. What a caller must keep to is the same for all calls, and stands in the header.
+//! - No panic leaves a call: it comes back as [`Outcome::Internal`].
+//! - A null pointer, a text that is not UTF-8 or a buffer without room is an answer, never undefined behaviour.
+//! - The header is made from these files; a test compares it.
+
+#![expect(unsafe_code, reason = "what C programs hand over are pointers, and they call by unmangled names")]
+
+mod border;
+mod client;
+mod console;
+mod lines;
+mod programs;
+mod time;
+mod token;
+
+pub use border::Outcome;
+pub use client::Client;
+pub use console::{LineCallback, cc67_service_console, cc67_set_console_callback, cc67_take_remark};
+
+pub use client::{cc67_another_client, cc67_close, cc67_firmware_version, cc67_list_locations, cc67_open};
+pub use lines::{
+    cc67_check_for_ready, cc67_get_status, cc67_read_line_timeout, cc67_write_line,
+    cc67_write_line_read_line, cc67_write_line_with_echo,
+};
+pub use programs::{
+    cc67_compile_and_load_coff, cc67_compile_and_load_coff_with_message, cc67_include_dir, cc67_load_coff,
+};
+pub use time::{
+    EndCallback, cc67_drive_input, cc67_run_for, cc67_run_until, cc67_set_user_data, cc67_user_data,
+};
+pub use token::{cc67_disconnect, cc67_failed, cc67_kmotion_lock, cc67_release_token, cc67_wait_token};

@@ -1,0 +1,104 @@
+//! Board time, and looking at the board and its inputs meanwhile.
+
+use std::ffi::{c_int, c_void};
+
+use kmotiondef::Bit;
+
+use crate::border::{board, guarded, guarded_or, store};
+use crate::{Client, Outcome};
+
+/// Seconds in a tick.
+const TIMEBASE: f64 = 90e-6;
+
+/// Says whether a run is over, by a number other than 0. It may use the client.
+pub type EndCallback = Option<unsafe extern "C" fn(client: *mut Client, user: *mut c_void) -> c_int>;
+
+/// Lets so many seconds of board time pass.
+///
+/// # Safety
+/// `client` is open, and no other call uses it meanwhile.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cc67_run_for(client: *mut Client, seconds: f64) -> Outcome {
+    guarded(|| {
+        if !(seconds >= 0.0 && seconds.is_finite()) {
+            return Err(Outcome::Argument);
+        }
+        // SAFETY: the caller vouches for the client.
+        unsafe { board(client) }?.run_for(seconds);
+        Ok(())
+    })
+}
+
+/// Lets board time pass until `is_over` says so behind a tick, at most so many seconds: 1 it said so, 0 the time is over, -1
+/// an argument is wrong.
+///
+/// # Safety
+/// `client` is open, and no other thread uses it meanwhile; `is_over` does not close it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cc67_run_until(
+    client: *mut Client,
+    seconds: f64,
+    is_over: EndCallback,
+    user: *mut c_void,
+) -> c_int {
+    guarded_or(-1, || {
+        let Some(is_over) = is_over.filter(|_| seconds >= 0.0 && seconds.is_finite()) else { return -1 };
+        let mut ticks = (seconds / TIMEBASE).round() as u64;
+        loop {
+            // SAFETY: the caller vouches for the function; no reference to the client is held here.
+            if unsafe { is_over(client, user) } != 0 {
+                return 1;
+            }
+            if ticks == 0 {
+                return 0;
+            }
+            ticks -= 1;
+            // SAFETY: the caller vouches for the client; the reference ends with the tick.
+            let Ok(board) = (unsafe { board(client) }) else { return -1 };
+            board.run_for(TIMEBASE);
+        }
+    })
+}
+
+/// Reads an element of `persist.UserData`, 0 to 199, without a command and without board time.
+///
+/// # Safety
+/// `client` is open, and no other call uses it meanwhile; `value` is a place for the number.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cc67_user_data(client: *mut Client, element: c_int, value: *mut i32) -> Outcome {
+    guarded(|| {
+        let element = usize::try_from(element).map_err(|_| Outcome::Argument)?;
+        // SAFETY: the caller vouches for the client.
+        let found = unsafe { board(client) }?.with_board(|board| board.user_data(element));
+        // SAFETY: the caller vouches for the place.
+        unsafe { store(value, found.ok_or(Outcome::Argument)?) }
+    })
+}
+
+/// Stores an element of `persist.UserData`, 0 to 199, without a command and without board time.
+///
+/// # Safety
+/// `client` is open, and no other call uses it meanwhile.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cc67_set_user_data(client: *mut Client, element: c_int, value: i32) -> Outcome {
+    guarded(|| {
+        let element = usize::try_from(element).map_err(|_| Outcome::Argument)?;
+        // SAFETY: the caller vouches for the client.
+        let is_stored = unsafe { board(client) }?.with_board(|board| board.set_user_data(element, value));
+        if is_stored { Ok(()) } else { Err(Outcome::Argument) }
+    })
+}
+
+/// Drives an input bit, 0 to 2047, from outside: 0 low, any other number high.
+///
+/// # Safety
+/// `client` is open, and no other call uses it meanwhile.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cc67_drive_input(client: *mut Client, bit: c_int, level: c_int) -> Outcome {
+    guarded(|| {
+        let bit = Bit::new(bit).ok_or(Outcome::Argument)?;
+        // SAFETY: the caller vouches for the client.
+        unsafe { board(client) }?.with_board(|board| board.drive_input(bit, level != 0));
+        Ok(())
+    })
+}

@@ -1,0 +1,196 @@
+//! What a run shows, and where: console lines on stdout and everything else on stderr, or all of it as JSON on stdout.
+//!
+//! With `--json` each line is an object with a `type`, and the last one, of type `end`, sums the run up. Texts that are
+//! not UTF-8 have the replacement character where they are not.
+
+use std::io::{self, Write};
+
+use kmotiondef::{Cycles, Ticks};
+use runtime::debug::DebugInfo;
+use runtime::{Event, EventKind};
+use serde::Serialize;
+
+use super::run::TIMEBASE;
+use super::{Exit, terminal};
+use crate::host::remark;
+
+/// How a run is shown.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Style {
+    /// The board time stands before each console line.
+    pub(super) time: bool,
+    /// Details are shown, too.
+    pub(super) is_verbose: bool,
+    /// Every line is written at once, not only when the buffer is full.
+    pub(super) is_live: bool,
+    /// As JSON.
+    pub(super) json: bool,
+}
+
+/// A line of `--json`.
+#[derive(Debug, Serialize)]
+#[serde(tag = "type", rename_all = "lowercase")]
+enum Line<'a> {
+    /// A line of the console.
+    Console { seconds: f64, text: &'a str },
+    /// A thread or the call-back was stopped.
+    Trap { seconds: f64, thread: Option<u8>, text: &'a str },
+    /// The PC did something for a program.
+    Pc { seconds: f64, text: &'a str },
+    /// An expectation of the stimulus was not met.
+    Unmet { seconds: f64, text: &'a str },
+    /// The simulation has something to say.
+    Remark { seconds: f64, text: &'a str },
+    /// The run is over.
+    End(Summary<'a>),
+}
+
+/// What a run came to.
+#[derive(Clone, Copy, Debug, Serialize)]
+struct Summary<'a> {
+    /// `ended`, `limit`, `still running`, `trapped` or `unmet`.
+    reason: &'a str,
+    /// The exit code that goes with it.
+    exit: u8,
+    /// Board time.
+    seconds: f64,
+    ticks: u64,
+    /// How many lines, traps and remarks there were.
+    console_lines: u64,
+    traps: u64,
+    remarks: u64,
+    /// Threads that are active still.
+    active: &'a [u8],
+}
+
+/// Where events go.
+pub(super) struct Screen<W: Write> {
+    out: W,
+    style: Style,
+    /// What is known of the programs.
+    programs: Vec<DebugInfo>,
+    console_lines: u64,
+    traps: u64,
+    remarks: u64,
+    error: Option<io::Error>,
+}
+
+impl<W: Write> Screen<W> {
+    /// A screen for a run of these programs.
+    pub(super) fn new(out: W, style: Style, programs: Vec<DebugInfo>) -> Self {
+        Self { out, style, programs, console_lines: 0, traps: 0, remarks: 0, error: None }
+    }
+
+    /// Shows an event.
+    pub(super) fn show(&mut self, event: &Event) {
+        match &event.kind {
+            EventKind::ConsoleLine(line) => {
+                self.console_lines += 1;
+                let written = self.write_line(line, event.at);
+                self.keep(written);
+            }
+            EventKind::Trace(_) | EventKind::UartSent(_) => {}
+            EventKind::Detail(text) if self.style.is_verbose => self.say(event, text),
+            _ => {
+                if let Some(text) = remark::describe(event, &self.programs) {
+                    self.say(event, &text);
+                }
+            }
+        }
+    }
+
+    fn write_line(&mut self, line: &[u8], at: Cycles) -> io::Result<()> {
+        if self.style.json {
+            let text = String::from_utf8_lossy(line);
+            return self.write_json(&Line::Console { seconds: seconds(at), text: &text });
+        }
+        if self.style.time {
+            write!(self.out, "{:.6} ", seconds(at))?;
+        }
+        self.out.write_all(line)?;
+        self.out.write_all(b"\n")?;
+        if self.style.is_live { self.out.flush() } else { Ok(()) }
+    }
+
+    /// Shows a text that is not the programs'.
+    fn say(&mut self, event: &Event, text: &str) {
+        let is_trap = matches!(event.kind, EventKind::Trap(_));
+        *(if is_trap { &mut self.traps } else { &mut self.remarks }) += 1;
+        if !self.style.json {
+            // What was printed before stands before it on a terminal that shows both.
+            let flushed = self.out.flush();
+            self.keep(flushed);
+            return terminal::note(text);
+        }
+        let seconds = seconds(event.at);
+        let line = match &event.kind {
+            EventKind::Trap(trap) => {
+                Line::Trap { seconds, thread: trap.thread.map(kmotiondef::ThreadId::get), text }
+            }
+            EventKind::Host(_) => Line::Pc { seconds, text },
+            EventKind::Unmet(_) => Line::Unmet { seconds, text },
+            _ => Line::Remark { seconds, text },
+        };
+        let written = self.write_json(&line);
+        self.keep(written);
+    }
+
+    fn write_json(&mut self, line: &Line<'_>) -> io::Result<()> {
+        if self.error.is_some() {
+            return Ok(());
+        }
+        serde_json::to_writer(&mut self.out, line)?;
+        self.out.write_all(b"\n")?;
+        if self.style.is_live { self.out.flush() } else { Ok(()) }
+    }
+
+    /// Keeps the first error of all writes.
+    fn keep(&mut self, written: io::Result<()>) {
+        self.error = self.error.take().or(written.err());
+    }
+
+    /// Says how the run has ended.
+    pub(super) fn end(&mut self, exit: Exit, reason: &str, at: Ticks, active: &[u8]) {
+        if !self.style.json {
+            return;
+        }
+        let line = Line::End(Summary {
+            reason,
+            exit: exit as u8,
+            seconds: at.get() as f64 * TIMEBASE,
+            ticks: at.get(),
+            console_lines: self.console_lines,
+            traps: self.traps,
+            remarks: self.remarks,
+            active,
+        });
+        let written = self.write_json(&line);
+        self.keep(written);
+    }
+
+    /// Writes what is left; whether anybody reads it, and the first error of all writes.
+    ///
+    /// # Errors
+    /// Why stdout cannot be written; a reader that has seen enough, as `head` has, is no failure.
+    pub(super) fn finish(&mut self) -> io::Result<Reader> {
+        let flushed = self.out.flush();
+        self.keep(flushed);
+        match self.error.take() {
+            Some(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(Reader::Gone),
+            Some(error) => Err(error),
+            None => Ok(Reader::There),
+        }
+    }
+}
+
+/// Whether somebody reads what is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[must_use]
+pub(super) enum Reader {
+    There,
+    Gone,
+}
+
+fn seconds(at: Cycles) -> f64 {
+    at.get() as f64 / Cycles::PER_SECOND.get() as f64
+}
