@@ -159,11 +159,10 @@ fn threads_are_one_to_seven_and_hold_one_program_each() {
 }
 
 #[test]
-fn options_that_do_not_exist_or_are_to_come_are_named() {
+fn options_that_do_not_exist_are_named() {
     let scratch = Scratch::new("options");
     scratch.write("a.c", HELLO);
     assert_plain(&cc67(&scratch, &["run", "--nosuch", "a.c"]), 2, "--nosuch");
-    assert_plain(&cc67(&scratch, &["run", "--realtime", "a.c"]), 2, "option `--realtime` is not built yet");
     assert_plain(&cc67(&scratch, &["run", "--set", "persist.200=1", "a.c"]), 2, "persist.UserData");
 }
 
@@ -322,4 +321,62 @@ fn switches_silence_and_harden_warnings() {
             output.stderr
         );
     }
+}
+
+#[test]
+fn a_run_as_json_is_an_object_a_line_and_a_summary() {
+    let scratch = Scratch::new("json");
+    let source = "#include \"KMotionDef.h\"\nmain()\n{\n  printf(\"say \\\"hi\\\"\\n\");\n  MoveRel(0, 5);\n  *(int *)0 = 1;\n}\n";
+    scratch.write("a.c", source);
+    let output = cc67(&scratch, &["run", "--json", "a.c"]);
+    assert_eq!((output.code, output.stderr.as_str()), (3, ""));
+    let lines: Vec<serde_json::Value> =
+        output.stdout.lines().map(|line| serde_json::from_str(line).expect(line)).collect();
+    let field = |index: usize, name: &str| lines[index][name].clone();
+    let kinds: Vec<_> = lines.iter().map(|line| line["type"].as_str().expect("a type")).collect();
+    assert_eq!(kinds, ["remark", "trap", "console", "end"]);
+    assert_eq!(field(2, "text"), "say \"hi\"");
+    assert_eq!(field(1, "thread"), 1);
+    assert!(field(1, "text").as_str().expect("a text").contains("a.c:6 in `main`"), "{}", output.stdout);
+    assert!(field(0, "seconds").as_f64().expect("a time") < field(2, "seconds").as_f64().expect("a time"));
+    let end = ["reason", "exit", "console_lines", "traps", "remarks"].map(|name| field(3, name).to_string());
+    assert_eq!(end, ["\"trapped\"", "3", "1", "1", "1"]);
+    assert_eq!(field(3, "active"), serde_json::json!([]));
+}
+
+#[test]
+fn the_summary_tells_why_a_run_ended() {
+    let scratch = Scratch::new("json-end");
+    scratch
+        .write("end.c", HELLO)
+        .write("loop.c", "#include \"KMotionDef.h\"\nmain() { for (;;) WaitNextTimeSlice(); }\n");
+    for (arguments, reason, exit, active) in [
+        (&["end.c"][..], "ended", 0, "[]"),
+        (&["--for", "0.1", "2:loop.c"], "limit", 0, "[2]"),
+        (&["3:loop.c"], "still running", 4, "[3]"),
+        (&["--stim", "expect bit 46=0", "end.c"], "unmet", 5, "[]"),
+    ] {
+        let output = cc67(&scratch, &[&["run", "--json"], arguments].concat());
+        assert_eq!(output.code, exit, "{output:?}");
+        let end = output.stdout.lines().next_back().expect("a line");
+        assert!(
+            end.starts_with(&format!("{{\"type\":\"end\",\"reason\":\"{reason}\",\"exit\":{exit},")),
+            "{end}"
+        );
+        assert!(end.ends_with(&format!("\"active\":{active}}}")), "{end}");
+    }
+}
+
+#[test]
+fn a_run_in_real_time_takes_its_time_and_does_the_same() {
+    let scratch = Scratch::new("realtime");
+    let source = "#include \"KMotionDef.h\"\nmain()\n{\n  int i;\n  for (i = 0; i < 4; i++) { Delay_sec(0.1); printf(\"%f\\n\", Time_sec()); }\n}\n";
+    scratch.write("a.c", source);
+    let fast = cc67(&scratch, &["run", "--time", "a.c"]);
+    #[expect(clippy::disallowed_methods, reason = "the pace is what is tested")]
+    let start = std::time::Instant::now();
+    let paced = cc67(&scratch, &["run", "--time", "--realtime", "a.c"]);
+    let seconds = start.elapsed().as_secs_f64();
+    assert_eq!(paced, fast);
+    assert!(seconds >= 0.4, "0.4 s of board time took {seconds} s");
 }

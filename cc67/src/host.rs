@@ -20,6 +20,7 @@
 mod client;
 mod message;
 mod program;
+pub(crate) mod remark;
 mod state;
 
 pub use client::{Board, Lock, Readiness};

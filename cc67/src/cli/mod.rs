@@ -9,7 +9,6 @@ mod check;
 mod console;
 mod diff;
 mod drop_in;
-mod events;
 mod exit;
 mod explain;
 mod firmware;
@@ -17,12 +16,13 @@ mod init;
 mod inspect;
 mod options;
 mod output;
+mod pace;
 mod pc;
-mod planned;
 mod plot;
 mod profile;
 mod program;
 mod run;
+mod screen;
 mod setting;
 mod shell;
 mod stimulus;
@@ -110,10 +110,6 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
         Err(error) => {
-            if let Some(option) = planned::option(&error) {
-                terminal::note(&format!("option `--{option}` is not built yet"));
-                return Exit::WrongInput.into();
-            }
             // Help and version go to stdout with success, wrong usage to stderr with 2.
             error.exit()
         }

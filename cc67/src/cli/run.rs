@@ -2,28 +2,29 @@
 
 use std::ffi::{OsStr, OsString};
 use std::fs;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use clap::{Args, ValueEnum};
-use kmotiondef::{Cycles, ThreadId, Ticks};
-use runtime::debug::DebugInfo;
+use kmotiondef::{ThreadId, Ticks};
 use runtime::loader::LoadError;
 use runtime::stimulus::Stimulus;
 use runtime::trace::Request;
-use runtime::{Board, Config, Event, EventKind, MachineFile, RunEnd};
+use runtime::{Board, Config, EventKind, MachineFile, RunEnd};
 use vm::engine::Engine;
 use vm::interp::BytecodeEngine;
 use vm::machine::Config as MachineConfig;
 use vm::profile::ProfilingEngine;
 
 use super::options::CompilerOptions;
+use super::pace::Pace;
 use super::pc::PcOptions;
 use super::program::{Program, assign};
+use super::screen::{Offered, Reader, Screen, Style};
 use super::setting::{self, Setting};
 use super::uart::UartOptions;
-use super::{Exit, events, output, pc, profile, stimulus, terminal, trace, units};
+use super::{Exit, output, pc, profile, stimulus, terminal, trace, units};
 use crate::lints::levels::Levels;
 use crate::reason::reason;
 use crate::render::Format;
@@ -65,6 +66,12 @@ pub(super) struct Arguments {
     /// Show the board time in seconds before each console line
     #[arg(long)]
     time: bool,
+    /// Keep pace with the clock; what happens is the same
+    #[arg(long)]
+    realtime: bool,
+    /// Show all of it as JSON on stdout, an object a line; the last one sums it up
+    #[arg(long, conflicts_with = "time")]
+    json: bool,
     /// Show every remark of the board, also on what is probably as intended: unknown FPGA registers
     #[arg(long)]
     verbose: bool,
@@ -248,10 +255,19 @@ impl Session<'_> {
     fn execute<E: Engine>(&self, board: &mut Board<E>, offered: Vec<Offered>) -> Result<Exit> {
         let arguments = self.arguments;
         let limit = Ticks::new((arguments.limit.unwrap_or(DEFAULT_LIMIT) / TIMEBASE).round() as u64);
-        let mut screen = Screen::new(arguments, board, offered);
+        let style = Style {
+            time: arguments.time,
+            is_verbose: arguments.verbose,
+            is_live: arguments.realtime,
+            json: arguments.json,
+        };
+        let known = ThreadId::all().filter_map(|thread| Some((thread, board.debug(thread).cloned()?)));
+        let mut screen = Screen::new(BufWriter::new(io::stdout().lock()), style, known.collect(), offered);
         let (mut trapped, mut unmet) = (false, false);
         let mut trace = self.trace.as_ref().map(|request| arguments.trace.begin(request)).transpose()?;
-        let end = self.uart.connect(board)?.run(board, limit, &mut |event| {
+        let mut line = self.uart.connect(board)?;
+        let pace = arguments.realtime.then(|| Pace::new(board.tick()));
+        let end = line.run(board, limit, pace.as_ref(), &mut |event| {
             if let Some(trace) = &mut trace {
                 trace.note(&event);
             }
@@ -259,33 +275,31 @@ impl Session<'_> {
             unmet |= matches!(event.kind, EventKind::Unmet(_));
             screen.show(&event);
         })?;
-        if let Some(error) = screen.finish() {
-            // A reader that has seen enough, as `head` has, is no failure.
-            if error.kind() == io::ErrorKind::BrokenPipe {
-                return Ok(Exit::Success);
-            }
-            return Err(output::lost_output(&error));
+        let (exit, why) = match end {
+            _ if trapped => (Exit::Trapped, "trapped"),
+            _ if unmet => (Exit::Unmet, "unmet"),
+            RunEnd::Limit if arguments.limit.is_none() => (Exit::StillRunning, "still running"),
+            RunEnd::Limit => (Exit::Success, "limit"),
+            RunEnd::AllEnded => (Exit::Success, "ended"),
+        };
+        let is_active = |thread: &ThreadId| board.thread(*thread).is_active();
+        let active: Vec<u8> = ThreadId::all().filter(is_active).map(ThreadId::get).collect();
+        screen.end(exit, why, board.tick(), &active);
+        if screen.finish().map_err(|error| output::lost_output(&error))? == Reader::Gone {
+            return Ok(Exit::Success);
         }
         if let Some(trace) = trace {
             let title = arguments.programs.join(OsStr::new(", "));
             arguments.trace.finish(trace, board.tick(), &title.to_string_lossy())?;
         }
-        Ok(match end {
-            _ if trapped => Exit::Trapped,
-            _ if unmet => Exit::Unmet,
-            RunEnd::Limit if arguments.limit.is_none() => {
-                terminal::note(&format!(
-                    "still running after {DEFAULT_LIMIT} s of board time; `--for SECONDS` sets the limit"
-                ));
-                Exit::StillRunning
-            }
-            RunEnd::Limit | RunEnd::AllEnded => Exit::Success,
-        })
+        if exit == Exit::StillRunning {
+            terminal::note(&format!(
+                "still running after {DEFAULT_LIMIT} s of board time; `--for SECONDS` sets the limit"
+            ));
+        }
+        Ok(exit)
     }
 }
-
-/// A program that a stimulus may load: its thread, its name, and what is known of it.
-type Offered = (ThreadId, String, DebugInfo);
 
 /// The image of every program; `None` if a source has errors, after all have been compiled.
 pub(super) fn images(programs: &[Program], compiler: &CompilerOptions) -> Result<Option<Vec<Vec<u8>>>> {
@@ -338,89 +352,5 @@ pub(super) fn explain(program: &Program, image: &[u8], error: LoadError) -> anyh
             anyhow::anyhow!("{} is {what}, not an image of `cc67 build`", program.name())
         }
         _ => anyhow::Error::new(error).context(program.name().to_string()),
-    }
-}
-
-/// Where events go: console lines to stdout, everything else to stderr.
-struct Screen<W: Write> {
-    out: W,
-    time: bool,
-    /// Whether details are shown.
-    is_verbose: bool,
-    /// What is known of the programs, and the thread of each.
-    programs: Vec<DebugInfo>,
-    threads: Vec<ThreadId>,
-    offered: Vec<Offered>,
-    error: Option<io::Error>,
-}
-
-impl Screen<BufWriter<io::StdoutLock<'static>>> {
-    fn new<E: Engine>(arguments: &Arguments, board: &Board<E>, offered: Vec<Offered>) -> Self {
-        let known = ThreadId::all().filter_map(|thread| Some((thread, board.debug(thread).cloned()?)));
-        let (threads, programs) = known.unzip();
-        Self {
-            out: BufWriter::new(io::stdout().lock()),
-            time: arguments.time,
-            is_verbose: arguments.verbose,
-            programs,
-            threads,
-            offered,
-            error: None,
-        }
-    }
-}
-
-impl<W: Write> Screen<W> {
-    /// Another program has been loaded.
-    fn replace(&mut self, thread: ThreadId, name: &str) {
-        let offered = self.offered.iter().find(|(other, known, _)| *other == thread && known == name);
-        let Some((_, _, debug)) = offered else { return };
-        match self.threads.iter().position(|other| *other == thread) {
-            Some(index) => self.programs[index] = debug.clone(),
-            None => {
-                self.threads.push(thread);
-                self.programs.push(debug.clone());
-            }
-        }
-    }
-
-    fn show(&mut self, event: &Event) {
-        let EventKind::ConsoleLine(line) = &event.kind else {
-            if matches!(event.kind, EventKind::Trace(_) | EventKind::UartSent(_)) {
-                return;
-            }
-            if let EventKind::Loaded(thread, name) = &event.kind {
-                return self.replace(*thread, name);
-            }
-            // What was printed before stands before it on a terminal that shows both.
-            let _ = self.out.flush();
-            if let Some(text) = events::describe(event, &self.programs) {
-                terminal::note(&text);
-            }
-            if let EventKind::Detail(text) = &event.kind
-                && self.is_verbose
-            {
-                terminal::note(text);
-            }
-            return;
-        };
-        if self.error.is_none() {
-            self.error = self.write_line(line, event.at).err();
-        }
-    }
-
-    fn write_line(&mut self, line: &[u8], at: Cycles) -> io::Result<()> {
-        if self.time {
-            let seconds = at.get() as f64 / Cycles::PER_SECOND.get() as f64;
-            write!(self.out, "{seconds:.6} ")?;
-        }
-        self.out.write_all(line)?;
-        self.out.write_all(b"\n")
-    }
-
-    /// Writes what is left; the first error of all writes.
-    fn finish(mut self) -> Option<io::Error> {
-        let flushed = self.out.flush().err();
-        self.error.or(flushed)
     }
 }

@@ -5,7 +5,7 @@
 
 use std::io::{self, Write};
 
-use kmotiondef::{Cycles, Ticks};
+use kmotiondef::{Cycles, ThreadId, Ticks};
 use runtime::debug::DebugInfo;
 use runtime::{Event, EventKind};
 use serde::Serialize;
@@ -63,12 +63,17 @@ struct Summary<'a> {
     active: &'a [u8],
 }
 
+/// A program that a stimulus may load: its thread, its name, and what is known of it.
+pub(super) type Offered = (ThreadId, String, DebugInfo);
+
 /// Where events go.
 pub(super) struct Screen<W: Write> {
     out: W,
     style: Style,
-    /// What is known of the programs.
+    /// What is known of the programs, and the thread of each.
     programs: Vec<DebugInfo>,
+    threads: Vec<ThreadId>,
+    offered: Vec<Offered>,
     console_lines: u64,
     traps: u64,
     remarks: u64,
@@ -76,9 +81,28 @@ pub(super) struct Screen<W: Write> {
 }
 
 impl<W: Write> Screen<W> {
-    /// A screen for a run of these programs.
-    pub(super) fn new(out: W, style: Style, programs: Vec<DebugInfo>) -> Self {
-        Self { out, style, programs, console_lines: 0, traps: 0, remarks: 0, error: None }
+    /// A screen for a run of these programs, and of those that a stimulus may load.
+    pub(super) fn new(
+        out: W,
+        style: Style,
+        programs: Vec<(ThreadId, DebugInfo)>,
+        offered: Vec<Offered>,
+    ) -> Self {
+        let (threads, programs) = programs.into_iter().unzip();
+        Self { out, style, programs, threads, offered, console_lines: 0, traps: 0, remarks: 0, error: None }
+    }
+
+    /// Another program has been loaded.
+    fn replace(&mut self, thread: ThreadId, name: &str) {
+        let offered = self.offered.iter().find(|(other, known, _)| *other == thread && known == name);
+        let Some((_, _, debug)) = offered else { return };
+        match self.threads.iter().position(|other| *other == thread) {
+            Some(index) => self.programs[index] = debug.clone(),
+            None => {
+                self.threads.push(thread);
+                self.programs.push(debug.clone());
+            }
+        }
     }
 
     /// Shows an event.
@@ -90,6 +114,7 @@ impl<W: Write> Screen<W> {
                 self.keep(written);
             }
             EventKind::Trace(_) | EventKind::UartSent(_) => {}
+            EventKind::Loaded(thread, name) => self.replace(*thread, name),
             EventKind::Detail(text) if self.style.is_verbose => self.say(event, text),
             _ => {
                 if let Some(text) = remark::describe(event, &self.programs) {
@@ -124,9 +149,7 @@ impl<W: Write> Screen<W> {
         }
         let seconds = seconds(event.at);
         let line = match &event.kind {
-            EventKind::Trap(trap) => {
-                Line::Trap { seconds, thread: trap.thread.map(kmotiondef::ThreadId::get), text }
-            }
+            EventKind::Trap(trap) => Line::Trap { seconds, thread: trap.thread.map(ThreadId::get), text },
             EventKind::Host(_) => Line::Pc { seconds, text },
             EventKind::Unmet(_) => Line::Unmet { seconds, text },
             _ => Line::Remark { seconds, text },

@@ -18,6 +18,7 @@ use kmotiondef::Ticks;
 use runtime::{Board, Event, EventKind, MachineFile, RunEnd};
 use vm::engine::Engine;
 
+use super::pace::Pace;
 use super::{output, run, terminal};
 
 /// Ticks that a run with a peer goes on before it looks for what has come: 9.99 ms.
@@ -203,16 +204,18 @@ impl Line {
         }
     }
 
-    /// Runs the board to its end, or to the limit, and the line beside it.
+    /// Runs the board to its end, or to the limit, and the line beside it; at the pace of a clock, if there is one.
     pub(super) fn run<E: Engine>(
         &mut self,
         board: &mut Board<E>,
         limit: Ticks,
+        pace: Option<&Pace>,
         sink: &mut dyn FnMut(Event),
     ) -> Result<RunEnd> {
         let mut delivered = 0;
         let end = loop {
-            let part = if self.peer.is_some() { board.tick().get() + PART } else { limit.get() };
+            let is_paced = self.peer.is_some() || pace.is_some();
+            let part = if is_paced { board.tick().get() + PART } else { limit.get() };
             let part = Ticks::new(part.min(limit.get()));
             let end = board.run_part(part, &mut |event| {
                 self.note(&event);
@@ -221,6 +224,9 @@ impl Line {
             let fresh = self.sent.get(delivered..).unwrap_or_default().to_vec();
             delivered = self.sent.len();
             let came = self.exchange(&fresh);
+            if let Some(pace) = pace {
+                pace.wait(board.tick());
+            }
             if !came.is_empty() {
                 board.send_to_uart(&came);
             }

@@ -411,6 +411,20 @@ impl Board {
         self.state().set_callback(self.number, Box::new(callback));
     }
 
+    /// Takes the call-back of this client out: console lines wait for [`service_console`](Self::service_console) again.
+    ///
+    /// ```
+    /// let mut board = cc67::host::Board::new();
+    /// board.set_console_callback(|_| ());
+    /// board.drop_console_callback();
+    /// board.write_line("Echo hello")?;
+    /// assert_eq!(board.service_console(), Some("HELLO".to_owned()));
+    /// # Ok::<(), cc67::host::HostError>(())
+    /// ```
+    pub fn drop_console_callback(&mut self) {
+        self.state().drop_callback(self.number);
+    }
+
     /// Reads lines until `Ready` comes, or none for 0.1 s.
     ///
     /// # Errors
@@ -514,6 +528,19 @@ impl Board {
     /// ```
     pub fn take_remarks(&mut self) -> Vec<Event> {
         self.state().take_remarks()
+    }
+
+    /// The oldest of these remarks in words, as `cc67 run` shows it: a trap with its source line.
+    ///
+    /// ```
+    /// let mut board = cc67::host::Board::new();
+    /// board.write_line("Move0=5")?;
+    /// assert_eq!(board.take_remark().as_deref(), Some("command: Move: axis 0 is disabled, nothing moves"));
+    /// assert_eq!(board.take_remark(), None);
+    /// # Ok::<(), cc67::host::HostError>(())
+    /// ```
+    pub fn take_remark(&mut self) -> Option<String> {
+        self.state().take_remark()
     }
 
     /// The shared state. A client that panicked in the middle of a call leaves a board that others can use.

@@ -14,6 +14,7 @@ pub(crate) fn describe(event: &Event, programs: &[DebugInfo]) -> Option<String> 
         | EventKind::UartSent(_)
         | EventKind::Trace(_)
         | EventKind::Detail(_)
+        | EventKind::Loaded(..)
         | EventKind::Aborted => None,
         EventKind::Diagnostic(text) | EventKind::Host(text) | EventKind::Unmet(text) => Some(text.clone()),
         EventKind::Trap(trap) => Some(describe_trap(trap, programs)),

@@ -4,10 +4,10 @@ use std::collections::VecDeque;
 use std::fmt;
 use std::mem;
 
-use kmotiondef::{Field, Plain, Scalar, Ticks};
+use kmotiondef::{Field, Plain, Scalar, ThreadId, Ticks};
 use runtime::{Config, Event, EventKind};
 
-use super::HostError;
+use super::{HostError, remark};
 use crate::Options;
 
 /// Ticks that a line and its answer take on the wire, as recorded.
@@ -107,6 +107,13 @@ impl State {
     /// Remarks of the simulation since the last time.
     pub(super) fn take_remarks(&mut self) -> Vec<Event> {
         mem::take(&mut self.remarks).into()
+    }
+
+    /// The next of them in words.
+    pub(super) fn take_remark(&mut self) -> Option<String> {
+        let programs: Vec<_> =
+            ThreadId::all().filter_map(|thread| self.board.debug(thread).cloned()).collect();
+        std::iter::from_fn(|| self.remarks.pop_front()).find_map(|event| remark::describe(&event, &programs))
     }
 
     /// Fails when the connection was given up.

@@ -12,7 +12,7 @@ use std::ffi::OsString;
 use std::io::{self, IsTerminal};
 use std::path::PathBuf;
 use std::sync::mpsc::RecvTimeoutError;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use anyhow::{Context, Result};
 use clap::Args;
@@ -27,6 +27,7 @@ use words::Word;
 
 use super::Exit;
 use super::options::CompilerOptions;
+use super::pace::Pace;
 use super::pc::{self, PcOptions};
 use super::program::{Program, assign};
 use super::run::{self, DEFAULT_LIMIT, EngineName, TIMEBASE};
@@ -175,14 +176,13 @@ impl<'a, E: Engine> Console<'a, E> {
 
     /// Takes lines as they come while the board keeps pace with the clock.
     fn keep_pace(&mut self, input: &Lines) -> Result<Exit> {
-        let (start, origin) = (now(), self.board.tick().get());
+        let pace = Pace::new(self.board.tick());
         let mut interrupted = false;
         loop {
             if self.take(input, input.within(BEAT), &mut interrupted) == Flow::Leave {
                 return self.leave();
             }
-            let due = origin + (start.elapsed().as_secs_f64() / TIMEBASE) as u64;
-            self.advance(Ticks::new(due));
+            self.advance(pace.due());
         }
     }
 
@@ -323,9 +323,4 @@ impl<'a, E: Engine> Console<'a, E> {
 fn note(screen: &mut Screen, trapped: &mut bool, event: &Event) {
     *trapped |= matches!(event.kind, EventKind::Trap(_));
     screen.show(event);
-}
-
-#[expect(clippy::disallowed_methods, reason = "the board is paced by the clock here; what it does is not")]
-fn now() -> Instant {
-    Instant::now()
 }

@@ -10,7 +10,8 @@ use runtime::debug::DebugInfo;
 use runtime::{Event, EventKind};
 use rustyline::ExternalPrinter;
 
-use crate::cli::{events, terminal};
+use crate::cli::terminal;
+use crate::host::remark;
 
 /// The printer of a line editor.
 pub(super) type Printer = Box<dyn ExternalPrinter + Send>;
@@ -62,7 +63,7 @@ impl Screen {
                 self.bytes(&text);
             }
             _ => {
-                if let Some(text) = events::describe(event, &self.programs) {
+                if let Some(text) = remark::describe(event, &self.programs) {
                     self.note(&text);
                 }
             }
