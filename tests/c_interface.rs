@@ -1,6 +1,7 @@
 //! The library for C programs: its header is the one its sources give, and a C program drives a board with it.
 
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
+use std::ffi::OsStr;
 use std::fs;
 use std::path::PathBuf;
 use std::process::Command;
@@ -76,12 +77,38 @@ fn library() -> PathBuf {
     own.with_file_name(format!("{DLL_PREFIX}cc67board{DLL_SUFFIX}"))
 }
 
+/// Whether there is a C compiler.
+fn has_compiler() -> bool {
+    let is_there = !cfg!(windows) && Command::new("cc").arg("--version").output().is_ok();
+    if !is_there {
+        println!("there is no C compiler: not tested");
+    }
+    is_there
+}
+
+#[test]
+fn the_program_of_the_book_compiles() {
+    let page = fs::read_to_string(root().join("cc67/book/src/embedding.md")).expect("the chapter is there");
+    let program = page.split("```c host\n").nth(1).and_then(|rest| rest.split("```").next());
+    if has_compiler() {
+        let scratch = Scratch::new("c-book");
+        scratch.write("host.c", program.expect("the chapter has the program"));
+        let include = root().join("cc67/capi/include");
+        let arguments = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", "-I"].map(OsStr::new);
+        let output = run_in(
+            "cc",
+            scratch.path(),
+            arguments.into_iter().chain([include.as_os_str(), "host.c".as_ref()]),
+        );
+        assert_eq!(output.code, 0, "{}", output.stderr);
+    }
+}
+
 #[test]
 fn a_c_program_drives_a_board() {
-    // Calling it keeps the library among what is built for these tests.
+    // Naming it keeps the library among what is built for these tests.
     assert_eq!(cc67board::Outcome::Ok as i32, 0);
-    if cfg!(windows) || Command::new("cc").arg("--version").output().is_err() {
-        println!("there is no C compiler: not tested");
+    if !has_compiler() {
         return;
     }
     let scratch = Scratch::new("c-interface");
