@@ -160,7 +160,8 @@ impl Player {
     /// An effect.
     fn value(&self, text: &str) -> String {
         if let Ok(item) = Item::new(text) {
-            return self.board.value(item).to_string();
+            // What is behind the sixth decimal is the business of the tests of motion.
+            return ((self.board.value(item) * 1e6).round() / 1e6).to_string();
         }
         let (kind, place) = text.split_once(' ').expect(text);
         if kind == "thread" {
