@@ -6,8 +6,8 @@
 //
 // After homing the board itself knows where the axis may go. A jog that crosses a limit
 // becomes a feedhold of everything: the axis comes to rest a little behind the limit, and
-// nothing moves until the hold is cleared. A program that takes its targets from a person checks them before, as here, because a
-// move that ends somewhere else is found too late.
+// nothing moves until the hold is cleared. A program that takes its targets from a person
+// checks them before, as here, because a move that ends somewhere else is found too late.
 //
 // Expect a refused target, a jog that is held behind the limit, and the way back free.
 

@@ -11,6 +11,7 @@ use kmotiondef::GuestAddr;
 
 use crate::diag::{Diagnostic, Severity, Sink};
 use crate::link::{FirmwareKind, FirmwareSymbols};
+use crate::lints::Lint;
 use crate::names::Names;
 use crate::pp::Files;
 use crate::sema::constants::{self, Constant};
@@ -19,7 +20,7 @@ use crate::ty::{BitRange, TypeId, Types};
 use crate::typed::{
     Call, Callee, ExprId, ExprKind, Function, PlaceId, PlaceKind, StmtKind, SymbolId, UnaryOp, Unit,
 };
-use crate::{Options, on_large_stack, parse, pp, sema};
+use crate::{Options, lints, on_large_stack, parse, pp, sema};
 
 /// The name of the function around an expression.
 const FUNCTION: &str = "__cc67_watch";
@@ -97,6 +98,7 @@ fn compile_here(scope: Scope<'_>, expression: &str, items: &[&str]) -> Result<Ex
     for item in items {
         text.extend(format!("\nextern double {item};").bytes());
     }
+    let before = text.len() as u32;
     text.extend(format!("\ndouble {FUNCTION}(void) {{ return (\n{expression}\n); }}\n").bytes());
     let main = sources.add_file(scope.path.to_string_lossy(), Some(scope.path), text, None);
     let options = &scope.options.preprocessor;
@@ -107,6 +109,14 @@ fn compile_here(scope: Scope<'_>, expression: &str, items: &[&str]) -> Result<Ex
     if let Some(error) = error {
         return Err(in_one_line(error));
     }
+    // What is doubtful in the program was said when it was compiled; in an expression it is a mistake.
+    let (start, known) = (sources.file(main).start + before, sink.diagnostics().len());
+    lints::check(&unit, &names, &sources, &scope.options.firmware, &mut sink);
+    let is_here = |diagnostic: &&Diagnostic| {
+        // The board's lack of `fabs` matters to no expression.
+        diagnostic.lint != Some(Lint::Portability) && diagnostic.span.is_some_and(|span| span.lo >= start)
+    };
+    let doubt = sink.diagnostics().iter().skip(known).find(is_here).map(in_one_line);
     let is_ours = |function: &Function| unit.symbols[function.symbol].name == FUNCTION;
     let function = unit.functions.iter().position(is_ours).map(|index| unit.functions.swap_remove(index));
     let Some(function) = function else { return Err("it is no expression".to_owned()) };
@@ -116,7 +126,10 @@ fn compile_here(scope: Scope<'_>, expression: &str, items: &[&str]) -> Result<Ex
         Check { unit: &unit, scope, items, function: &function, meanings: BTreeMap::new(), count: 0 };
     check.expr(value)?;
     let meanings = check.meanings;
-    Ok(Expression { function, value, meanings })
+    match doubt {
+        Some(doubt) => Err(doubt),
+        None => Ok(Expression { function, value, meanings }),
+    }
 }
 
 fn in_one_line(diagnostic: &Diagnostic) -> String {
@@ -167,7 +180,14 @@ impl Check<'_> {
     fn place(&mut self, id: PlaceId) -> Result<(), String> {
         match self.function.places[id].kind {
             PlaceKind::Local(..) => Err("it has variables of its own".to_owned()),
-            PlaceKind::Symbol(symbol, _) => self.symbol(symbol),
+            PlaceKind::Symbol(symbol, offset) => {
+                let entry = &self.unit.symbols[symbol];
+                let size = self.unit.types.size_of(entry.ty);
+                if size.is_some_and(|size| offset < 0 || offset.unsigned_abs() >= size) {
+                    return Err(format!("it reads beyond the end of `{}`", entry.name));
+                }
+                self.symbol(symbol)
+            }
             PlaceKind::Pointer(pointer, _) => self.expr(pointer),
             PlaceKind::Bits(unit, _) => self.place(unit),
         }
@@ -373,6 +393,9 @@ main() { int local; }
         check("count +", Err("expected an expression, found `)`"));
         check("chan[0].Dst", Err("`CHAN` has no member `Dst`; did you mean `Dest`?"));
         check("", Err("expected an expression, found `)`"));
+        check("chan[9].Dest", Err("it reads beyond the end of `chan`"));
+        check("table[3]", Err("it reads beyond the end of `table`"));
+        check("persist.UserData[200]", Err("it reads beyond the end of `persist`"));
         check(
             "Move(0, 1)",
             Err("of functions it may call fabs, sqrt, floor, ceil, sin, cos; `bit46` is the level of a bit"),
