@@ -6,6 +6,7 @@
 
 mod input;
 mod screen;
+mod serve;
 mod words;
 
 use std::ffi::OsString;
@@ -55,6 +56,9 @@ pub(super) struct Arguments {
     /// Run as fast as possible; the default from a script
     #[arg(long, overrides_with = "realtime")]
     fast: bool,
+    /// Serve programs of the PC instead of a person: the socket of the vendor's server, /tmp/kmotionsocket, or tcp:PORT
+    #[arg(long, value_name = "ADDRESS", conflicts_with = "time")]
+    serve: Option<String>,
     /// Behind the last line, go on for so many seconds of board time at most
     #[arg(long = "for", value_name = "SECONDS", value_parser = run::seconds)]
     limit: Option<f64>,
@@ -88,6 +92,9 @@ pub(super) fn console(arguments: &Arguments) -> Result<Exit> {
     let flash = pc::flash(flash_file.as_deref())?;
     let files = pc::files(arguments.files.as_deref(), &machine_file);
     let config = Config { files, machine_file, answers, flash, ..Config::default() };
+    if let Some(address) = &arguments.serve {
+        return serve::serve(arguments, config, &settings, flash_file.as_deref(), address);
+    }
     match arguments.engine {
         EngineName::Bytecode => Console::<BytecodeEngine>::new(arguments, config, settings, flash_file).run(),
         #[cfg(feature = "native")]
