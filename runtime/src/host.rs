@@ -15,7 +15,7 @@ use kmotiondef::variables::{
     COORD_SYSTEM0, CS0_LAST_FRO, CS0_LAST_RAPID_FRO, GATHER_BUFFER, HOST_STATUS, PERSIST,
     STATUS_REQUEST_COUNTER,
 };
-use kmotiondef::{GuestAddr, Place, ThreadId};
+use kmotiondef::{Cycles, GuestAddr, Place, ThreadId};
 use vm::firmware::TickContext;
 use vm::memory::GuestMemory;
 
@@ -29,6 +29,8 @@ use crate::views::Typed;
 
 /// Ticks between two polls: 0.1 s.
 const POLL_TICKS: u64 = 1111;
+/// How long a request waits for a PC that is not there before that is said: 5 s.
+const PATIENCE: Cycles = Cycles::new(5 * Cycles::PER_SECOND.get());
 /// Longest string the PC reads, in words.
 const STRING_WORDS: u32 = 50;
 /// Success.
@@ -52,6 +54,8 @@ pub(crate) struct Host {
     jog_overrides: [f32; 6],
     /// The request that is never answered and was shown.
     unanswered: i32,
+    /// Since when a request waits for a PC that is not there; `None` once that was said.
+    waits_since: Option<Cycles>,
 }
 
 impl Default for Host {
@@ -62,6 +66,7 @@ impl Default for Host {
             answers: Answers::default(),
             jog_overrides: [1.0; 6],
             unanswered: 0,
+            waits_since: None,
         }
     }
 }
@@ -132,7 +137,10 @@ fn doubles(index: i32, count: usize) -> Option<GuestAddr> {
 
 /// What the PC does while the primary thread has its slice.
 pub(crate) fn slice(kernel: &mut Kernel, context: &mut TickContext<'_>) {
-    if !kernel.host.is_connected || kernel.host.until_poll > 0 {
+    if !kernel.host.is_connected {
+        return miss(kernel, context);
+    }
+    if kernel.host.until_poll > 0 {
         return;
     }
     kernel.host.until_poll = POLL_TICKS;
@@ -151,6 +159,20 @@ pub(crate) fn slice(kernel: &mut Kernel, context: &mut TickContext<'_>) {
         let answer = answer(kernel, context, code);
         context.memory.set(data(0), answer);
         kernel.disturb();
+    }
+}
+
+/// Says of a request that waits for a PC which is not there that it does.
+fn miss(kernel: &mut Kernel, context: &TickContext<'_>) {
+    let code = context.memory.get(data(0));
+    let host = &mut kernel.host;
+    if code <= 0 || code != host.unanswered {
+        host.unanswered = code.max(0);
+        host.waits_since = (code > 0).then_some(context.now);
+    } else if host.waits_since.is_some_and(|since| context.now - since > PATIENCE) {
+        host.waits_since = None;
+        let text = format!("request {code} waits for a PC, and none is connected (`host.enabled = false`)");
+        kernel.tell(context.now, EventKind::Diagnostic(text));
     }
 }
 
@@ -389,6 +411,34 @@ mod tests {
         }
         let told: Vec<_> = desk.kernel.take_events();
         assert_eq!(told[0].kind, EventKind::Host("message box: go on?".to_owned()));
+    }
+
+    #[test]
+    fn every_request_has_an_answer_that_lets_the_program_go_on() {
+        let mut desk = Desk::new();
+        for code in 1..=55 {
+            // An element of UserData, an index of doubles, a tool and a number: what the request takes of them is valid.
+            let first = match code {
+                5..=12 | 21 | 22 | 46..=51 | 54 | 55 => 1.0_f32.to_bits().cast_signed(),
+                _ => 10,
+            };
+            assert_eq!(ask(&mut desk, code, &[first, 1, 20]), DONE, "request {code}");
+            let shown =
+                desk.kernel.take_events().into_iter().any(|event| matches!(event.kind, EventKind::Host(_)));
+            assert!(shown, "request {code} is not shown");
+        }
+    }
+
+    #[test]
+    fn a_request_without_a_pc_is_told_once() {
+        let mut desk = Desk::new();
+        desk.kernel.host.connect(false);
+        assert_eq!(ask(&mut desk, 15, &[100, 0, 0]), 15);
+        desk.run(60_000);
+        desk.run(60_000);
+        let told: Vec<_> = desk.kernel.take_events().into_iter().map(|event| event.kind).collect();
+        let expect = "request 15 waits for a PC, and none is connected (`host.enabled = false`)".to_owned();
+        assert_eq!(told, [EventKind::Diagnostic(expect)]);
     }
 
     #[test]
