@@ -199,10 +199,6 @@ fn kill_after(folder: &Path, arguments: &[&str], delay: Duration) {
 fn assert_whole(name: &str, arguments: &[&str], file: &str, before: &[u8], times: u32) {
     let scratch = with_program(name);
     let path = scratch.path().join(file);
-    #[expect(
-        clippy::disallowed_methods,
-        reason = "the moments of the kills are spread over the time a run takes"
-    )]
     let started = Instant::now();
     let output = run_in(BINARY, scratch.path(), arguments);
     let duration = started.elapsed();
