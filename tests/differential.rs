@@ -10,13 +10,10 @@ use std::thread;
 use cc67::diag::Severity;
 use cc67::passes::Level;
 use cc67::{Options, image};
-use harness::Scratch;
-use harness::generate;
+use harness::oracles::execute_everywhere;
+use harness::{Scratch, generate};
 use kmotiondef::{ThreadId, Ticks};
-use runtime::{Board, Config, Event, EventKind, RunEnd};
-use vm::engine::Engine;
-use vm::interp::BytecodeEngine;
-use vm::memory::GuestMemory;
+use runtime::{EventKind, RunEnd};
 
 /// Programs of an ordinary run.
 const PROGRAMS: u64 = 40;
@@ -46,50 +43,19 @@ fn thread_1() -> ThreadId {
     ThreadId::new(1).expect("there is a thread 1")
 }
 
-/// All that can be seen of a run.
-struct Run<E: Engine> {
-    events: Vec<Event>,
-    board: Board<E>,
-}
-
-impl<E: Engine> Run<E> {
-    fn new(seed: u64, image: &[u8]) -> Self {
-        let mut board: Board<E> = Board::new(Config::default());
-        board.load(thread_1(), image).expect("what the compiler makes can be loaded");
-        board.start(thread_1()).expect("it is loaded");
-        let mut events = Vec::new();
-        let end = board.run(LIMIT, &mut |event| events.push(event));
-        assert_eq!(end, RunEnd::AllEnded, "seed {seed}: the program does not end");
-        Self { events, board }
-    }
-
-    fn console(&self) -> String {
-        let mut text = String::new();
-        for event in &self.events {
-            match &event.kind {
-                EventKind::ConsoleLine(line) => text.push_str(&String::from_utf8_lossy(line)),
-                other => text.push_str(&format!("{other:?}")),
-            }
-            text.push('\n');
-        }
-        text
-    }
-
-    fn memory(&self) -> &GuestMemory {
-        self.board.memory()
-    }
-}
-
 /// Runs an image on every engine there is, which must not differ in anything, and yields the console.
 fn run(seed: u64, image: &[u8]) -> String {
-    let bytecode = Run::<BytecodeEngine>::new(seed, image);
-    #[cfg(feature = "native")]
-    {
-        let native = Run::<vm::native::NativeEngine>::new(seed, image);
-        assert_eq!(native.events, bytecode.events, "seed {seed}: the engines differ");
-        assert!(native.memory() == bytecode.memory(), "seed {seed}: the engines leave different memory");
+    let seen = execute_everywhere(image, LIMIT).expect("what the compiler makes can be loaded");
+    assert_eq!(seen.end, RunEnd::AllEnded, "seed {seed}: the program does not end");
+    let mut text = String::new();
+    for event in seen.events {
+        match event.kind {
+            EventKind::ConsoleLine(line) => text.push_str(&String::from_utf8_lossy(&line)),
+            other => text.push_str(&format!("{other:?}")),
+        }
+        text.push('\n');
     }
-    bytecode.console()
+    text
 }
 
 /// What each of the programs `seeds` prints behind `gcc`; `None` where that is not installed.

@@ -4,16 +4,8 @@
 //! `cargo test` tries 50,000 of each kind; with `CC67_LONG=1` in the environment it is a million,
 //! for which a release build is advisable. One test only, so that what it allocates can be measured.
 
-use cc67::firmware::FirmwareFile;
-use cc67::inspect::Inspection;
-use cc67::object::Object;
-use cc67::pp::Disk;
-use cc67::{Options, image};
-use coff::Image;
-use harness::vendor;
-use kmotiondef::ThreadId;
+use harness::oracles::{read_file, valid_files};
 use peak_alloc::PeakAlloc;
-use runtime::loader::{LoadError, prepare};
 
 #[global_allocator]
 static ALLOCATED: PeakAlloc = PeakAlloc;
@@ -35,22 +27,6 @@ impl Numbers {
     fn below(&mut self, limit: usize) -> usize {
         (self.next() % limit.max(1) as u64) as usize
     }
-}
-
-/// An image and an object of a small program, an image of the vendor's, a piece of firmware.
-fn seeds() -> Vec<Vec<u8>> {
-    let source = b"#include \"KMotionDef.h\"\nint table[3] = { 1, 2, 3 };\nstatic int n;\nint f(int x) { return x + table[1]; }\n\
-                   main() { n = f(2); printf(\"%d %f\\n\", n, 1.5); }\n";
-    let options = Options::default();
-    let mut compilation = cc67::compile("a.c".as_ref(), source.to_vec(), &options, &Disk);
-    let object = compilation.object.as_ref().expect("it compiles").write().expect("it fits");
-    let linked = compilation.link(thread(), &options).expect("it links");
-    let firmware = cc67::firmware::export().expect("it fits");
-    vec![image::write(&linked).expect("it fits"), object, vendor::image(), firmware]
-}
-
-fn thread() -> ThreadId {
-    ThreadId::new(1).expect("1 is a thread")
 }
 
 /// Changes a few bytes, mostly of the headers, to values that are often awkward; may cut the end off.
@@ -82,43 +58,10 @@ fn random(numbers: &mut Numbers) -> Vec<u8> {
     bytes
 }
 
-/// Puts bytes through every reader; whether they load, and what they took.
-fn read_all(bytes: &[u8]) -> bool {
-    let read = Image::read(bytes);
-    match &read {
-        Ok(image) => {
-            if image.symbols.len() < 100 {
-                let inspection = Inspection::new(image.clone());
-                let _ =
-                    (inspection.headers(), inspection.line_table(), inspection.calls(), inspection.stack());
-            }
-        }
-        Err(error) => assert!(error.to_string().contains("(at offset 0x"), "{error}"),
-    }
-    let _ = FirmwareFile::read(bytes);
-    if let Ok(object) = Object::read(bytes) {
-        let options = cc67::link::Options {
-            thread: thread(),
-            firmware: &cc67::firmware::BuiltIn,
-            gc: false,
-            addresses: cc67::link::SectionAddresses::default(),
-        };
-        // What links need not be a program that the machine accepts.
-        let _ = cc67::link::link(std::slice::from_ref(&object), &options);
-    }
-    let prepared = prepare(bytes, thread(), |_| false);
-    match &prepared {
-        Ok(_) => assert!(read.is_ok()),
-        Err(LoadError::NotAnImage(error)) => assert_eq!(Err(error), read.as_ref()),
-        Err(error) => assert!(!error.to_string().is_empty()),
-    }
-    prepared.is_ok()
-}
-
 #[test]
 fn hostile_files_do_no_harm() {
     let rounds = if std::env::var_os("CC67_LONG").is_some() { 1_000_000 } else { 50_000 };
-    let seeds = seeds();
+    let seeds = valid_files();
     let mut numbers = Numbers(0x6701_C0FF);
     let (mut accepted, mut most) = (0, 0);
     for round in 0..rounds {
@@ -131,7 +74,7 @@ fn hostile_files_do_no_harm() {
         };
         let before = ALLOCATED.current_usage();
         ALLOCATED.reset_peak_usage();
-        accepted += usize::from(read_all(&bytes));
+        accepted += usize::from(read_file(&bytes));
         most = most.max(ALLOCATED.peak_usage().saturating_sub(before));
         assert!(most <= LIMIT, "round {round} takes {most} bytes");
     }

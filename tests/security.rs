@@ -5,14 +5,10 @@ use std::fs;
 use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
 
-use cc67::pp::Disk;
-use cc67::{Options, image};
+use harness::choices::{Choices, random_bytes};
+use harness::oracles::{execute_everywhere, victim};
 use harness::{Scratch, files, run_in};
-use kmotiondef::{ThreadId, Ticks};
-use runtime::loader::LoadError;
-use runtime::{Board, Config, Event};
-use vm::engine::Engine;
-use vm::interp::BytecodeEngine;
+use kmotiondef::Ticks;
 
 const BINARY: &str = env!("CARGO_BIN_EXE_cc67-under-test");
 
@@ -20,7 +16,7 @@ const BINARY: &str = env!("CARGO_BIN_EXE_cc67-under-test");
 const LIMIT: Ticks = Ticks::new(100);
 
 /// How many changed images are tried; with `CC67_LONG=1` in the environment a hundred times as many.
-const ROUNDS: usize = 300;
+const ROUNDS: u64 = 300;
 
 #[test]
 fn every_promise_has_its_test() {
@@ -85,74 +81,23 @@ fn addresses_outside_guest_memory_trap() {
     }
 }
 
-/// Loops, calls, memory, floating point and printing: something of everything to break.
-const VICTIM: &str = r#"#include "KMotionDef.h"
-int table[16];
-double sum;
-int mix(int a, int b) { return a * 31 + (b ^ table[a & 15]); }
-main()
-{
-    int i, n = 1;
-
-    for (i = 0; i < 40; i++)
-    {
-        n = mix(n, i);
-        table[i & 15] = n;
-        sum += n * 0.5;
-        switch (n & 3)
-        {
-            case 0: n++; break;
-            case 1: n ^= 5; break;
-            default: n -= i;
-        }
-    }
-    printf("%d %g\n", n, sum);
-}
-"#;
-
-/// Executes an image; what was seen, and what memory holds then.
-fn execute<E: Engine>(image: &[u8]) -> Result<(Vec<Event>, Board<E>), LoadError> {
-    let mut board = Board::<E>::new(Config::default());
-    let thread = ThreadId::new(1).expect("1 is a thread");
-    board.load(thread, image)?;
-    board.start(thread).expect("it was loaded");
-    let mut events = Vec::new();
-    board.run(LIMIT, &mut |event| events.push(event));
-    Ok((events, board))
-}
-
 #[test]
 fn a_changed_image_is_refused_or_runs_alike_on_every_engine() {
-    let options = Options::default();
-    let mut compilation = cc67::compile("a.c".as_ref(), VICTIM.into(), &options, &Disk);
-    let linked = compilation.link(ThreadId::new(1).expect("1 is a thread"), &options).expect("it links");
-    let whole = image::write(&linked).expect("it fits");
-    let mut state = 0x5EED_u64;
-    let mut below = |limit: usize| {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 33) as usize % limit
-    };
+    let whole = victim();
     let rounds = if std::env::var_os("CC67_LONG").is_some() { 100 * ROUNDS } else { ROUNDS };
     let (mut refused, mut executed) = (0, 0);
     for round in 0..rounds {
+        let random = random_bytes(round, 16);
+        let mut choices = Choices::new(&random);
         let mut bytes = whole.clone();
-        for _ in 0..=below(3) {
-            let at = below(bytes.len());
-            bytes[at] ^= 1 << below(8);
+        for _ in 0..=choices.below(3) {
+            let at = choices.below(bytes.len());
+            bytes[at] ^= 1 << choices.below(8);
         }
-        let Ok((events, board)) = execute::<BytecodeEngine>(&bytes) else {
-            refused += 1;
-            continue;
-        };
-        executed += 1;
-        #[cfg(feature = "native")]
-        {
-            let native = execute::<vm::native::NativeEngine>(&bytes).expect("both engines take it");
-            assert_eq!(native.0, events, "round {round}: the engines differ");
-            assert!(native.1.memory() == board.memory(), "round {round}: the engines leave different memory");
+        match execute_everywhere(&bytes, LIMIT) {
+            Ok(_) => executed += 1,
+            Err(_) => refused += 1,
         }
-        #[cfg(not(feature = "native"))]
-        let _ = (round, board, events);
     }
     println!("{rounds} changed images: {refused} refused, {executed} executed");
     assert!(refused > 0 && executed > 0);

@@ -1,8 +1,10 @@
 //! What the whole-system tests share: running the command, scratch folders, program files.
 
+pub mod choices;
 pub mod csv;
 pub mod filetest;
 pub mod generate;
+pub mod oracles;
 pub mod vendor;
 
 use std::ffi::OsStr;
