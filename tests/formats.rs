@@ -25,7 +25,9 @@ fn corpus() -> Vec<(String, Vec<u8>, Vec<u8>)> {
         let Some(object) = &compilation.object else { continue };
         let object = object.write().expect("objects of the corpus fit");
         let Some(linked) = compilation.link(thread(), &options) else { continue };
-        let name = path.file_name().expect("a file has a name").to_string_lossy().into_owned();
+        // Programs in different folders may have the same name.
+        let name =
+            path.strip_prefix(root()).expect("it lies there").to_string_lossy().replace(['/', '\\'], "-");
         images.push((name, image::write(&linked).expect("images of the corpus fit"), object));
     }
     assert!(images.len() >= 40, "only {} programs link", images.len());
