@@ -41,7 +41,7 @@ struct PageLine<'a> {
 #[derive(Serialize)]
 struct PageStrip<'a> {
     name: &'a str,
-    spans: &'a [(f64, f64)],
+    spans: Vec<(f64, f64)>,
 }
 
 /// The page of a chart.
@@ -63,7 +63,7 @@ pub(super) fn html(chart: &Chart) -> Result<Vec<u8>> {
         strips: chart
             .strips
             .iter()
-            .map(|strip| PageStrip { name: &strip.name, spans: &strip.spans })
+            .map(|strip| PageStrip { name: &strip.name, spans: joined(&strip.spans) })
             .collect(),
     };
     // A `</script>` in a name must not end the data.
@@ -72,7 +72,63 @@ pub(super) fn html(chart: &Chart) -> Result<Vec<u8>> {
 }
 
 fn page_line(line: &Line, range: (f64, f64)) -> PageLine<'_> {
-    let points = line.thinned(range, POINTS / 4);
-    let (t, v) = points.into_iter().unzip();
+    let points = corners(line.thinned(range, POINTS / 4));
+    let (t, v) = points.into_iter().map(|(time, value)| (short(time), short(value))).unzip();
     PageLine { name: &line.name, t, v }
+}
+
+/// The points without those within a stretch where the value stays the same: the line is the same without them.
+fn corners(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+    let mut kept: Vec<(f64, f64)> = Vec::new();
+    for point in points {
+        if let [.., before, last] = kept.as_mut_slice()
+            && before.1 == last.1
+            && last.1 == point.1
+        {
+            *last = point;
+        } else {
+            kept.push(point);
+        }
+    }
+    kept
+}
+
+/// The spans, those that touch as one.
+fn joined(spans: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let mut joined: Vec<(f64, f64)> = Vec::new();
+    for (from, to) in spans {
+        let (from, to) = (short(*from), short(*to));
+        match joined.last_mut() {
+            Some((_, end)) if *end == from => *end = to,
+            _ => joined.push((from, to)),
+        }
+    }
+    joined
+}
+
+/// The number with nine digits, which is more than a page can show; all of them would double its size.
+fn short(value: f64) -> f64 {
+    format!("{value:.8e}").parse().unwrap_or(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_keeps_its_corners() {
+        let points = [1.0, 1.0, 1.0, 2.0, 2.0, 3.0].into_iter().enumerate();
+        let kept = corners(points.map(|(time, value)| (time as f64, value)).collect());
+        assert_eq!(kept, [(0.0, 1.0), (2.0, 1.0), (3.0, 2.0), (4.0, 2.0), (5.0, 3.0)]);
+    }
+
+    #[test]
+    fn spans_that_touch_are_one() {
+        assert_eq!(joined(&[(0.0, 1.0), (1.0, 2.0), (3.0, 4.0)]), [(0.0, 2.0), (3.0, 4.0)]);
+    }
+
+    #[test]
+    fn numbers_are_as_long_as_they_need_to_be() {
+        assert_eq!([short(1.0 / 3.0), short(-1234.5), short(0.0)], [0.333_333_333, -1234.5, 0.0]);
+    }
 }
