@@ -196,6 +196,11 @@ fn a_flashed_board_boots_with_its_programs_and_keeps_what_was_flashed() {
         let output = run_with_input(binary, scratch.path(), ["run", "--flash", "board.flash"], "");
         assert_eq!(output.render(), "count 6, data 77\n---- exit 0\n");
     }
+    // A machine file may name the file too.
+    scratch.write("machine.toml", "[board]\nflash = \"board.flash\"\n");
+    let arguments = ["run", "--machine", "machine.toml", "2:a.c"];
+    let output = run_with_input(binary, scratch.path(), arguments, "");
+    assert!(output.render().contains("count 6, data 77"), "{}", output.render());
 }
 
 #[test]

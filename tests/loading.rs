@@ -6,7 +6,7 @@ use cc67::pp::MemoryFiles;
 use cc67::{Options, compile};
 use coff::{Contents, Image, Name};
 use kmotiondef::{ThreadId, Ticks};
-use runtime::{Board, Config, Event, EventKind};
+use runtime::{Board, Config, Event, EventKind, MachineFile};
 
 /// Counts its runs in an initialised and in an uninitialised global.
 const COUNTER: &str =
@@ -59,6 +59,55 @@ fn another_byte_can_fill_bss() {
     let mut board: Board = Board::new(Config { bss_fill: 0xa5, ..Config::default() });
     load(&mut board, &image_of(UNSET));
     assert_eq!(execute(&mut board), "a5a5a5a5 a5 a5");
+}
+
+/// A board with a machine file.
+fn board(machine: &str) -> Board {
+    let machine_file = MachineFile::parse(machine).unwrap_or_else(|error| panic!("{error}"));
+    Board::new(Config { machine_file, ..Config::default() })
+}
+
+#[test]
+fn a_machine_file_makes_globals_fresh() {
+    let mut board = board("[cpu]\nfresh_globals = true");
+    load(&mut board, &image_of(COUNTER));
+    assert_eq!([execute(&mut board), execute(&mut board)], ["5 0", "5 0"]);
+}
+
+#[test]
+fn a_machine_file_says_how_fast_programs_run() {
+    // Turns of a loop without a call in a millisecond.
+    let source = "#include \"KMotionDef.h\"\nmain()\n{\n  int n = 0;\n  double end = ServoTick + 11;\n  \
+                  while (ServoTick < end) n++;\n  printf(\"%d\\n\", n);\n}\n";
+    let image = image_of(source);
+    let turns = |machine: &str| -> f64 {
+        let mut board = board(machine);
+        load(&mut board, &image);
+        execute(&mut board).parse().expect("a number")
+    };
+    let usual = turns("");
+    for (machine, factor) in
+        [("[cpu]\nns_per_instruction = 10", 0.5), ("[cpu]\nns_per_instruction = 50", 0.1)]
+    {
+        let ratio = turns(machine) / usual;
+        assert!((ratio / factor - 1.0).abs() < 0.03, "{machine}: {ratio}");
+    }
+    assert_eq!(turns("[cpu]\nns_per_instruction = 5"), usual);
+}
+
+#[test]
+fn a_machine_file_says_how_long_a_motion_is_planned() {
+    let source = "#include \"KMotionDef.h\"\nmain()\n{\n  double begin;\n  EnableAxisDest(0, 0);\n  \
+                  begin = ServoTick;\n  Move(0, 100);\n  while (ch0->Dest == 0) ;\n  \
+                  printf(\"%.0f\\n\", ServoTick - begin);\n}\n";
+    let image = image_of(source);
+    let ticks = |machine: &str| -> f64 {
+        let mut board = board(machine);
+        load(&mut board, &image);
+        execute(&mut board).parse().expect("a number")
+    };
+    let late = ticks("[cpu]\nplan_ticks = 26") - ticks("");
+    assert!((25.0..=28.0).contains(&late), "{late}");
 }
 
 #[test]

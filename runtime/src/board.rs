@@ -24,7 +24,7 @@ use crate::flash::{self, FLASH_SIZE};
 use crate::host::Answers;
 use crate::kernel::{Kernel, Request};
 use crate::loader::{Fill, LoadError, Placed, prepare};
-use crate::machine_file::MachineFile;
+use crate::machine_file::{MachineFile, NS_PER_INSTRUCTION};
 use crate::plant;
 use crate::power_up::{self, Before};
 use crate::stimulus::Stimulus;
@@ -94,6 +94,8 @@ pub struct Board<E = BytecodeEngine> {
     /// Images that a stimulus may load, by the thread they are linked for and what it calls them.
     offered: BTreeMap<(ThreadId, Arc<str>), Vec<u8>>,
     bss_fill: u8,
+    /// What an instruction takes, in units of what it takes on the board.
+    price: f64,
 }
 
 impl<E: Engine> Board<E> {
@@ -114,7 +116,8 @@ impl<E: Engine> Board<E> {
         let machine = Machine::new(kernel, settings);
         let bss_fill = if config.bss_fill == 0 { connected.bss_fill } else { config.bss_fill };
         let (loaded, flashed, offered) = Default::default();
-        let mut board = Self { machine, loaded, flashed, offered, bss_fill };
+        let price = connected.ns_per_instruction / NS_PER_INSTRUCTION;
+        let mut board = Self { machine, loaded, flashed, offered, bss_fill, price };
         if let Some(flash) = config.flash {
             let stored = board.machine.memory_mut().poke_bytes(FLASH.base, &flash);
             debug_assert!(stored.is_ok() && flash.len() == FLASH_SIZE, "flash has its size");
@@ -155,7 +158,7 @@ impl<E: Engine> Board<E> {
         match verify(bytes, text.start) {
             Ok(program) => {
                 let entry = self.memory().get(PERSIST.field(Persist::ENTRY_POINTS).element(thread.index()));
-                self.machine.load_program(thread, program, GuestAddr::new(entry));
+                self.hand_over(thread, program, GuestAddr::new(entry));
                 let extent = text.start.get()..text.end.get();
                 let debug = self.flashed[thread.index()].clone().unwrap_or_default();
                 self.loaded[thread.index()] = Some(Loaded { debug, extent });
@@ -206,8 +209,9 @@ impl<E: Engine> Board<E> {
         let prepared = prepare(image, thread, |other| self.is_taken(other, thread))?;
         self.machine.unload_program(thread);
         self.machine.firmware_mut().0.downloads.forget(thread);
+        self.machine.firmware_mut().0.globals.forget(thread);
         for section in &prepared.sections {
-            self.place(section);
+            self.place(thread, section, &prepared.program);
         }
         self.drop_callback(thread);
         self.drop_konnects(thread);
@@ -228,13 +232,16 @@ impl<E: Engine> Board<E> {
     }
 
     /// Puts a section into memory; the loader has checked that it fits.
-    fn place(&mut self, section: &Placed) {
+    fn place(&mut self, thread: ThreadId, section: &Placed, program: &Program) {
         let bytes = match &section.contents {
             Fill::Bytes(bytes) => bytes.clone(),
             Fill::Uninitialised(size) => vec![self.bss_fill; *size as usize],
         };
         let placed = self.machine.memory_mut().poke_bytes(section.address, &bytes);
         debug_assert!(placed.is_ok(), "the loader checks that sections lie in memory");
+        if !program.text().contains(&section.address) {
+            self.machine.firmware_mut().0.globals.note(thread, section.address, &bytes);
+        }
     }
 
     /// Takes out a call-back whose code a load has replaced; the board would run what is there now.
@@ -277,6 +284,12 @@ impl<E: Engine> Board<E> {
     pub fn load_program(&mut self, thread: ThreadId, program: Program, entry: GuestAddr) {
         let entry_points = PERSIST.field(Persist::ENTRY_POINTS);
         self.machine.memory_mut().set(entry_points.element(thread.index()), entry.get());
+        self.hand_over(thread, program, entry);
+    }
+
+    /// Gives the machine a program, at the price of instructions that the machine file says.
+    fn hand_over(&mut self, thread: ThreadId, program: Program, entry: GuestAddr) {
+        let program = if self.price == 1.0 { program } else { program.priced(self.price) };
         self.machine.load_program(thread, program, entry);
     }
 
@@ -368,7 +381,8 @@ impl<E: Engine> Board<E> {
         let error = match self.downloaded(thread, &ends) {
             Ok(Some(program)) => {
                 self.loaded[thread.index()] = None;
-                self.machine.load_program(thread, program, entry);
+                self.machine.firmware_mut().0.globals.forget(thread);
+                self.hand_over(thread, program, entry);
                 let started = self.machine.start(thread);
                 debug_assert!(started.is_ok(), "a program was loaded");
                 return;

@@ -37,6 +37,7 @@ use crate::event::{Event, EventKind};
 use crate::files::HostFiles;
 use crate::firmware::files::Reading;
 use crate::firmware::serial::{self, SerialService};
+use crate::globals::Globals;
 use crate::heap::Heap;
 use crate::host::Host;
 use crate::host::disk::{self, Disk};
@@ -114,6 +115,9 @@ pub struct Kernel {
     /// The PC's disk, and what the board remembers of its files.
     pub(crate) disk: Disk,
     pub(crate) reading: Reading,
+    pub(crate) globals: Globals,
+    /// Ticks that a motion call plans before its motion begins.
+    pub(crate) plan_ticks: u32,
     pub(crate) host: Host,
     /// The link to the PC over USB, and the one over the UART.
     pub(crate) usb: Link,
@@ -173,6 +177,8 @@ impl Kernel {
             heap: Heap::default(),
             disk: Disk::new(files),
             reading: Reading::default(),
+            globals: Globals::default(),
+            plan_ticks: 0,
             host: Host::default(),
             usb: Link::default(),
             uart_link: Link::default(),
@@ -399,6 +405,10 @@ impl Firmware for Kernel {
         let is_math = row.group == "math";
         let function = is_math.then(|| crate::firmware::math::pure(row.rust_name)).flatten()?;
         Some(Pure { cost: row.cost, function })
+    }
+
+    fn begins(&mut self, thread: ThreadId, memory: &mut GuestMemory) {
+        self.globals.restore(thread, memory);
     }
 
     fn callback(&self, memory: &GuestMemory) -> GuestAddr {

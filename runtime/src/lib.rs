@@ -22,6 +22,7 @@ mod event;
 mod files;
 mod firmware;
 mod flash;
+mod globals;
 mod heap;
 mod host;
 mod kernel;

@@ -165,6 +165,15 @@ impl Desk {
         String::from_utf8(text).expect("text")
     }
 
+    /// The remarks of the simulation since the last time anything was asked for.
+    pub(crate) fn diagnostics(&mut self) -> Vec<String> {
+        let texts = self.kernel.take_events().into_iter().filter_map(|event| match event.kind {
+            EventKind::Diagnostic(text) => Some(text),
+            _ => None,
+        });
+        texts.collect()
+    }
+
     /// All console lines so far, the unfinished one included.
     pub(crate) fn printed(&mut self) -> Vec<String> {
         self.kernel.flush_console(self.now);

@@ -261,6 +261,11 @@ pub trait Firmware: Bus {
         let _ = context;
     }
 
+    /// `thread` is about to run from its entry point.
+    fn begins(&mut self, thread: ThreadId, memory: &mut GuestMemory) {
+        let _ = (thread, memory);
+    }
+
     /// A thread has run in its slice, from `start` to `end`.
     fn slice_ran(&mut self, thread: ThreadId, start: Cycles, end: Cycles) {
         let _ = (thread, start, end);

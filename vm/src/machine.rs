@@ -306,6 +306,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         };
         let id = ContextId::of(thread);
         self.engine.start(id, program, function, id.stack(self.config.strict_stack), &self.firmware);
+        self.firmware.begins(thread, &mut self.memory);
         Ok(())
     }
 

@@ -60,6 +60,19 @@ impl Program {
         &self.ops
     }
 
+    /// The same program on a processor that takes `factor` times as long for everything between its calls.
+    ///
+    /// A segment costs a cycle at least, and what fits a count at most.
+    #[must_use]
+    pub fn priced(mut self, factor: f64) -> Self {
+        for op in &mut self.ops {
+            if let Op::Charge { cycles } = op {
+                cycles.0 = (f64::from(cycles.0) * factor).clamp(1.0, f64::from(i32::MAX)) as u32;
+            }
+        }
+        self
+    }
+
     /// The constants of eight bytes.
     #[must_use]
     pub fn pool(&self) -> &[u64] {

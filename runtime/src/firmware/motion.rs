@@ -5,7 +5,7 @@ use std::f32::consts::{PI, TAU};
 use kmotiondef::modes::{LastMotion, OutputMode};
 use kmotiondef::structs::{Chan, Iir};
 use kmotiondef::variables::{COORD_SYSTEM0, CS0_STOPPING_STATE, RESOLVER_FACTOR};
-use kmotiondef::{AxisId, GuestAddr};
+use kmotiondef::{AxisId, Cycles, GuestAddr};
 use vm::firmware::{Caller, Outcome, Wake};
 use vm::memory::GuestMemory;
 use vm::trap::TrapKind;
@@ -131,10 +131,17 @@ fn may_move(kernel: &mut Kernel, caller: &Caller<'_>, axis: AxisId, function: &s
     !(is_member && memory.get(CS0_STOPPING_STATE) != 0)
 }
 
-/// Waits for the caller's next slice if the axis is moving: the board plans there. The call-back cannot wait.
-fn planning_wait(caller: &Caller<'_>, axis: AxisId) -> Option<Wake> {
-    let waits = caller.woken.is_none() && caller.thread.is_some() && has_motion(caller.memory, axis);
-    waits.then_some(Wake::NextSlice)
+/// Waits for the caller's next slice if the axis is moving: the board plans there; for the planning time of the machine
+/// file if it has one. The call-back cannot wait.
+fn planning_wait(kernel: &Kernel, caller: &Caller<'_>, axis: AxisId) -> Option<Wake> {
+    if caller.woken.is_some() || caller.thread.is_none() {
+        return None;
+    }
+    if kernel.plan_ticks > 0 {
+        let planning = Cycles::PER_TICK.get() * i64::from(kernel.plan_ticks);
+        return Some(Wake::At(caller.now() + Cycles::new(planning)));
+    }
+    has_motion(caller.memory, axis).then_some(Wake::NextSlice)
 }
 
 /// Starts a move to `target`, from rest or in motion.
@@ -159,6 +166,14 @@ pub(crate) fn start_move_to(
     memory.set_axis(axis, Chan::LAST_MOTION_DEST, target);
 }
 
+/// Whether a target or speed is a number that an axis can go to.
+fn is_place(kernel: &mut Kernel, caller: &Caller<'_>, function: &str, value: f64) -> bool {
+    if !value.is_finite() {
+        kernel.diagnose(caller, format!("{function}: {value} is no number to go to, nothing moves"));
+    }
+    value.is_finite()
+}
+
 /// One of the four moves.
 struct Request {
     function: &'static str,
@@ -179,9 +194,12 @@ fn request(kernel: &mut Kernel, caller: &mut Caller<'_>, request: &Request) -> O
     if !may_move(kernel, caller, axis, request.function) {
         return Outcome::Done(());
     }
-    if let Some(wake) = planning_wait(caller, axis) {
+    if let Some(wake) = planning_wait(kernel, caller, axis) {
         kernel.keep(caller, Continuation::Target(target));
         return Outcome::Wait(wake);
+    }
+    if !is_place(kernel, caller, request.function, target) {
+        return Outcome::Done(());
     }
     match limits(caller.memory, axis, request.velocity) {
         Some(limits) => start_move_to(caller.memory, axis, target, &limits, LastMotion::Move),
@@ -238,10 +256,10 @@ pub(crate) fn move_rel_at_vel(
 
 pub(crate) fn jog(kernel: &mut Kernel, caller: &mut Caller<'_>, axis: i32, velocity: f64) -> Outcome<()> {
     let Some(axis) = checked(kernel, caller, "Jog", axis) else { return Outcome::Done(()) };
-    if !may_move(kernel, caller, axis, "Jog") {
+    if !may_move(kernel, caller, axis, "Jog") || !is_place(kernel, caller, "Jog", velocity) {
         return Outcome::Done(());
     }
-    if let Some(wake) = planning_wait(caller, axis) {
+    if let Some(wake) = planning_wait(kernel, caller, axis) {
         return Outcome::Wait(wake);
     }
     // Any speed will do: only acceleration and jerk limit a jog.
@@ -266,10 +284,10 @@ pub(crate) fn move_exp(
         return move_to(kernel, caller, axis, x);
     }
     let Some(axis) = checked(kernel, caller, "MoveExp", axis) else { return Outcome::Done(()) };
-    if !may_move(kernel, caller, axis, "MoveExp") {
+    if !may_move(kernel, caller, axis, "MoveExp") || !is_place(kernel, caller, "MoveExp", x) {
         return Outcome::Done(());
     }
-    if let Some(wake) = planning_wait(caller, axis) {
+    if let Some(wake) = planning_wait(kernel, caller, axis) {
         return Outcome::Wait(wake);
     }
     let memory = &mut *caller.memory;
@@ -301,10 +319,11 @@ pub(crate) fn move_xyzabc(
     let moves: Vec<(AxisId, f64)> = letters.filter_map(|(axis, target)| Some((axis?, target))).collect();
     // Unlike the calls for one axis this one waits even if all axes are at rest.
     if caller.woken.is_none() && caller.thread.is_some() {
-        return Outcome::Wait(Wake::NextSlice);
+        let wake = moves.first().and_then(|&(axis, _)| planning_wait(kernel, caller, axis));
+        return Outcome::Wait(wake.unwrap_or(Wake::NextSlice));
     }
     for (axis, target) in moves {
-        if may_move(kernel, caller, axis, "MoveXYZABC") {
+        if may_move(kernel, caller, axis, "MoveXYZABC") && is_place(kernel, caller, "MoveXYZABC", target) {
             match limits(caller.memory, axis, None) {
                 Some(limits) => start_move_to(caller.memory, axis, target, &limits, LastMotion::Multi),
                 None => no_limits(kernel, caller, axis, "MoveXYZABC"),

@@ -18,6 +18,9 @@ use kmotiondef::{AxisId, Bit};
 use crate::host::Answers;
 use crate::stimulus::Stimulus;
 
+/// Nanoseconds of a cycle of the board's processor, in which the costs of instructions are counted.
+pub(crate) const NS_PER_INSTRUCTION: f64 = 5.0;
+
 /// A machine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MachineFile {
@@ -47,6 +50,12 @@ pub struct MachineFile {
     pub hints: bool,
     /// Microseconds of the servo interrupt; what was measured if absent.
     pub servo_us: Option<f64>,
+    /// Nanoseconds of an instruction on average.
+    pub ns_per_instruction: f64,
+    /// Ticks that a motion call plans before its motion begins.
+    pub plan_ticks: u32,
+    /// Whether a program that is started again finds its globals as they were loaded.
+    pub fresh_globals: bool,
     /// Byte put into uninitialised data at a load.
     pub bss_fill: u8,
     /// Whether stacks are as small as the board's.
@@ -91,6 +100,9 @@ impl Default for MachineFile {
             idle_high: Vec::new(),
             hints: true,
             servo_us: None,
+            ns_per_instruction: NS_PER_INSTRUCTION,
+            plan_ticks: 0,
+            fresh_globals: false,
             bss_fill: 0,
             strict_stack: false,
             host: true,

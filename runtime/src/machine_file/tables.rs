@@ -1,7 +1,7 @@
 //! The tables of a machine file: what each key changes.
 
 use kmotiondef::{AxisId, Bit};
-use toml::de::{DeTable, DeValue};
+use toml::de::DeTable;
 
 use super::read::{Read, Table, Value, Wrong, keys};
 use super::{
@@ -303,17 +303,15 @@ fn cpu(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
         };
         "bss_fill" => machine.bss_fill = value.whole(255)? as u8;
         "strict_stack" => machine.strict_stack = value.flag()?;
-        "ns_per_instruction" => value.only(&integer("5"))?;
-        "plan_ticks" => value.only(&integer("0"))?;
-        "fresh_globals" => value.only(&DeValue::Boolean(false))?;
+        "ns_per_instruction" => {
+            let time = value.positive()?;
+            if !(0.1..=1000.0).contains(&time) {
+                return Err(value.is_wrong("from 0.1 to 1000 nanoseconds"));
+            }
+            machine.ns_per_instruction = time;
+        };
+        "plan_ticks" => machine.plan_ticks = value.whole(100_000)? as u32;
+        "fresh_globals" => machine.fresh_globals = value.flag()?;
     });
     Ok(())
-}
-
-/// An integer as the parser gives it.
-fn integer(digits: &'static str) -> DeValue<'static> {
-    match DeValue::parse(digits).map(toml::Spanned::into_inner) {
-        Ok(value) => value,
-        Err(_) => DeValue::Boolean(false),
-    }
 }

@@ -134,6 +134,10 @@ pub(crate) fn install(kernel: &mut Kernel, machine: &MachineFile) {
     }
     kernel.disk.latency = Cycles::new((machine.disk_latency_s * Cycles::PER_SECOND.get() as f64) as i64);
     kernel.hints = machine.hints;
+    kernel.plan_ticks = machine.plan_ticks;
+    if machine.fresh_globals {
+        kernel.globals.keep();
+    }
     for &bit in &machine.idle_high {
         kernel.pins.idle_high(bit);
     }

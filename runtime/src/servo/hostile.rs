@@ -45,6 +45,47 @@ fn limits_and_targets_of_nonsense_end() {
 }
 
 #[test]
+fn what_is_no_number_or_no_limit_moves_nothing_and_is_told() {
+    let nan = f64::NAN.to_bits();
+    let calls: [(&str, Vec<u64>); 5] = [
+        ("Move", vec![0, nan]),
+        ("MoveRel", vec![0, f64::INFINITY.to_bits()]),
+        ("Jog", vec![0, nan]),
+        ("MoveExp", vec![0, nan, 0.1_f64.to_bits()]),
+        ("MoveXYZABC", vec![nan, 0, 0, 0, 0, 0]),
+    ];
+    for (name, arguments) in calls {
+        let mut desk = desk();
+        desk.memory.set(kmotiondef::variables::CS0_AXIS_Y, -1);
+        desk.memory.set(kmotiondef::variables::CS0_AXIS_Z, -1);
+        desk.memory.set(kmotiondef::variables::CS0_AXIS_A, -1);
+        desk.call_in_slices(name, &arguments);
+        let told = desk.diagnostics();
+        assert!(
+            matches!(&told[..], [text] if text.contains("is no number to go to, nothing moves")),
+            "{told:?}"
+        );
+        desk.run(10);
+        assert_eq!(desk.memory.axis(axis(), Chan::DEST), 0.0, "{name}");
+    }
+    for field in [Chan::VEL, Chan::ACCEL, Chan::JERK] {
+        for limit in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+            let mut desk = desk();
+            desk.memory.set_axis(axis(), field, limit);
+            desk.call("Move", &[0, 10.0_f64.to_bits()]);
+            let told = desk.diagnostics();
+            assert_eq!(
+                told,
+                ["thread 1: Move: Vel, Accel and Jerk of axis 0 are not all positive"],
+                "{limit}"
+            );
+            desk.run(10);
+            assert_eq!(desk.memory.axis(axis(), Chan::DEST), 0.0, "{limit}");
+        }
+    }
+}
+
+#[test]
 fn gains_and_filters_of_nonsense_put_out_something() {
     let gains: [Field<f32>; 12] = [
         Chan::P,
@@ -84,5 +125,8 @@ fn pointers_that_point_nowhere_end_a_motion() {
         desk.call_in_slices("Move", &[0, 10.0_f64.to_bits()]);
         desk.run(100);
         assert_eq!(desk.call_i32("CheckDone", &[0]), 1, "{pointer:#x}");
+        let told = "axis 0: pcoeff points at no list of states; its motion has ended";
+        let found = desk.diagnostics();
+        assert!(!found.is_empty() && found.iter().all(|text| text == told), "{pointer:#x}: {found:?}");
     }
 }

@@ -89,8 +89,8 @@ pub(crate) fn present(memory: &GuestMemory, axis: AxisId) -> Point {
     point(cursor(memory, axis), dest, velocity, |index| read(memory, current, index))
 }
 
-/// Advances the motion of an axis by one tick.
-pub(crate) fn advance(memory: &mut GuestMemory, axis: AxisId) {
+/// Advances the motion of an axis by one tick; whether its pointer points at a state.
+pub(crate) fn advance(memory: &mut GuestMemory, axis: AxisId) -> bool {
     let current = memory.axis(axis, Chan::PCOEFF);
     let stepped = {
         let read = |index| read(memory, current, index);
@@ -106,8 +106,10 @@ pub(crate) fn advance(memory: &mut GuestMemory, axis: AxisId) {
         Step::Ended => {
             chan.set(Chan::PCOEFF, GuestAddr::NULL);
             chan.set(Chan::T, 0.0);
+            return memory.block::<{ TripCoeff::SIZE as usize }>(current).is_some();
         }
     }
+    true
 }
 
 /// What an exponential approach depends on.

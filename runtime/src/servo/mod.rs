@@ -38,6 +38,7 @@ use vm::firmware::TickContext;
 use vm::memory::GuestMemory;
 
 use crate::device::stepgen::generator_of;
+use crate::event::EventKind;
 use crate::kernel::Kernel;
 use crate::plant::{self, Plant};
 use crate::servo::still::Stillness;
@@ -162,7 +163,11 @@ fn run_axes(kernel: &mut Kernel, memory: &mut GuestMemory, now: Cycles) -> bool 
             has_slaves |= chan.get(Chan::MASTER_AXIS) >= 0;
             if !chan.get(Chan::PCOEFF).is_null() {
                 changed = true;
-                independent::advance(memory, axis);
+                if !independent::advance(memory, axis) {
+                    let text =
+                        format!("axis {axis}: pcoeff points at no list of states; its motion has ended");
+                    kernel.tell(now, EventKind::Diagnostic(text));
+                }
             }
         }
     }

@@ -1,11 +1,15 @@
 //! The path on the board: its bits are the kernel's.
 
 use kmotiondef::Bit;
+use kmotiondef::variables::COORD_SYSTEM0;
 use vm::memory::GuestMemory;
 
 use super::Bits;
+use super::segment::SIZE;
+use crate::event::EventKind;
 use crate::firmware::io::{bit_state, write_bit};
 use crate::kernel::Kernel;
+use crate::views::Typed;
 
 impl Bits for Kernel {
     fn is_high(&mut self, memory: &GuestMemory, bit: Bit) -> bool {
@@ -22,6 +26,11 @@ pub(crate) fn tick(kernel: &mut Kernel, memory: &mut GuestMemory) -> bool {
     if kernel.servo.coordinated.is_idle(memory) {
         return false;
     }
+    let list = memory.get(COORD_SYSTEM0);
+    if !list.is_null() && memory.block::<{ SIZE as usize }>(list).is_none() {
+        let text = format!("CoordSystem0 is {list}, where no segments lie; the path has ended");
+        kernel.tell(kernel.tick_start, EventKind::Diagnostic(text));
+    }
     let mut coordinated = std::mem::take(&mut kernel.servo.coordinated);
     let moves = coordinated.tick(memory, kernel);
     kernel.servo.coordinated = coordinated;
@@ -34,14 +43,12 @@ mod tests {
     use kmotiondef::modes::TrajectoryMode;
     use kmotiondef::structs::{Chan, ParametricCoeff, TripCircleLinear};
     use kmotiondef::variables::{
-        COORD_SYSTEM0, CS0_FLUSHED, CS0_STOPPING_STATE, LAST_COORD_SYSTEM0, PARAMETRIC_COEFFS,
-        VIRTUAL_BITS_EX,
+        CS0_FLUSHED, CS0_STOPPING_STATE, LAST_COORD_SYSTEM0, PARAMETRIC_COEFFS, VIRTUAL_BITS_EX,
     };
 
-    use super::super::segment::{Command, Entry, SIZE};
+    use super::super::segment::{Command, Entry};
     use super::*;
     use crate::testing::Desk;
-    use crate::views::Typed;
 
     /// A desk with axes 0 and 1 enabled and a path as a program builds it: X at 1000 units a second to 100, then a bit
     /// and 0.1 s more.
@@ -116,6 +123,18 @@ mod tests {
         desk.run(20_000);
         assert_eq!(desk.call_i32("CheckDoneBuf", &[]), 1);
         assert!((dest(&desk) - 200.0).abs() < 0.1);
+    }
+
+    #[test]
+    fn a_pointer_that_points_nowhere_ends_the_path_and_is_told() {
+        let mut desk = desk();
+        desk.memory.set(COORD_SYSTEM0, kmotiondef::GuestAddr::new(0x1234_5678));
+        desk.run(2);
+        assert!(desk.memory.get(COORD_SYSTEM0).is_null());
+        assert_eq!(
+            desk.diagnostics(),
+            ["CoordSystem0 is 0x12345678, where no segments lie; the path has ended"]
+        );
     }
 
     #[test]

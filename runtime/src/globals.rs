@@ -1,0 +1,41 @@
+//! The initial data of programs, for boards whose programs start afresh.
+//!
+//! On a real board only a load writes it: globals of a program that is started again hold what the run before has
+//! left. `cpu.fresh_globals` of a machine file shows what would be if it were otherwise.
+
+use kmotiondef::{GuestAddr, ThreadId};
+use vm::memory::GuestMemory;
+
+/// What the data of each program was when it was loaded; nothing unless that is wanted.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Globals {
+    is_kept: bool,
+    sections: [Vec<(GuestAddr, Vec<u8>)>; ThreadId::MAX as usize],
+}
+
+impl Globals {
+    /// Keeps what is loaded from now on.
+    pub(crate) fn keep(&mut self) {
+        self.is_kept = true;
+    }
+
+    /// The program of a thread goes.
+    pub(crate) fn forget(&mut self, thread: ThreadId) {
+        self.sections[thread.index()].clear();
+    }
+
+    /// A section of data is loaded for a thread.
+    pub(crate) fn note(&mut self, thread: ThreadId, address: GuestAddr, bytes: &[u8]) {
+        if self.is_kept {
+            self.sections[thread.index()].push((address, bytes.to_vec()));
+        }
+    }
+
+    /// Brings the data of a thread's program back to what it was.
+    pub(crate) fn restore(&self, thread: ThreadId, memory: &mut GuestMemory) {
+        for (address, bytes) in &self.sections[thread.index()] {
+            let placed = memory.poke_bytes(*address, bytes);
+            debug_assert!(placed.is_ok(), "it was loaded there");
+        }
+    }
+}
