@@ -2,9 +2,14 @@
 //!
 //! `servo/moving/8`: eight servo axes with encoders, jogging. `servo/still/3`: three of them at rest. `servo/idle`: no
 //! axis is enabled. Shortcuts are off, so that no tick is skipped.
+//!
+//! What is measured is the time of the processor where the system tells it, so that a busy machine does not blur it.
+//! Wanted: 2,000,000 ticks a second of eight moving axes, 5,000,000 of three still ones.
 
 use std::hint::black_box;
+use std::time::{Duration, Instant};
 
+use criterion::measurement::{Measurement, ValueFormatter, WallTime};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, function_named};
 use kmotiondef::map::program_base;
@@ -80,7 +85,53 @@ fn board(axes: u64) -> Board {
     board
 }
 
-fn servo(criterion: &mut Criterion) {
+/// The time that this process has had a processor.
+struct CpuTime;
+
+/// It so far, where the system tells it.
+fn on_cpu() -> Option<Duration> {
+    #[cfg(unix)]
+    {
+        let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
+        Some(Duration::new(time.tv_sec.try_into().ok()?, time.tv_nsec.try_into().ok()?))
+    }
+    #[cfg(not(unix))]
+    None
+}
+
+impl Measurement for CpuTime {
+    type Intermediate = (Option<Duration>, Instant);
+    type Value = Duration;
+
+    fn start(&self) -> Self::Intermediate {
+        (on_cpu(), WallTime.start())
+    }
+
+    fn end(&self, (before, start): Self::Intermediate) -> Duration {
+        match (before, on_cpu()) {
+            (Some(before), Some(now)) => now.saturating_sub(before),
+            _ => WallTime.end(start),
+        }
+    }
+
+    fn add(&self, a: &Duration, b: &Duration) -> Duration {
+        *a + *b
+    }
+
+    fn zero(&self) -> Duration {
+        Duration::ZERO
+    }
+
+    fn to_f64(&self, value: &Duration) -> f64 {
+        WallTime.to_f64(value)
+    }
+
+    fn formatter(&self) -> &dyn ValueFormatter {
+        WallTime.formatter()
+    }
+}
+
+fn servo(criterion: &mut Criterion<CpuTime>) {
     let mut group = criterion.benchmark_group("servo");
     group.throughput(Throughput::Elements(TICKS));
     let mut measure = |name: &str, mut board: Board| {
@@ -95,5 +146,5 @@ fn servo(criterion: &mut Criterion) {
     measure("idle", board(0));
 }
 
-criterion_group!(benches, servo);
+criterion_group!(name = benches; config = Criterion::default().with_measurement(CpuTime); targets = servo);
 criterion_main!(benches);

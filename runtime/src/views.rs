@@ -25,6 +25,7 @@ pub(crate) trait Typed {
 }
 
 impl Typed for GuestMemory {
+    #[inline]
     fn get<T: Scalar>(&self, place: Place<T>) -> T::Value {
         let address = place.address();
         T::Value::from_bits(match T::SIZE {
@@ -35,6 +36,7 @@ impl Typed for GuestMemory {
         })
     }
 
+    #[inline]
     fn set<T: Scalar>(&mut self, place: Place<T>, value: T::Value) {
         let (address, bits) = (place.address(), value.into_bits());
         match T::SIZE {
@@ -68,6 +70,12 @@ impl<'a> AxisView<'a> {
     #[inline(always)]
     pub(crate) fn get<T: Scalar>(&self, field: Field<T>) -> T::Value {
         field_of(self.0, field)
+    }
+
+    /// Whether these bytes lie at an offset.
+    #[inline(always)]
+    pub(crate) fn holds<const N: usize>(&self, offset: u32, bytes: &[u8; N]) -> bool {
+        chunk::<N>(self.0, offset as usize) == *bytes
     }
 
     /// Stores a value in a field.

@@ -310,7 +310,7 @@ fn cpu(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
             }
             machine.ns_per_instruction = time;
         };
-        "plan_ticks" => machine.plan_ticks = value.whole(100_000)? as u32;
+        "plan_ticks" => machine.plan_ticks = value.whole(100_000)?;
         "fresh_globals" => machine.fresh_globals = value.flag()?;
     });
     Ok(())

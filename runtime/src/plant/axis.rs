@@ -4,6 +4,8 @@
 //! tick late; closed loops follow with a first-order lag, whatever their gains. With the model `motor` it is driven by
 //! what the board really puts out.
 
+use std::f64::consts::TAU;
+
 use kmotiondef::structs::Chan;
 
 use super::motor::{Applied, Motor};
@@ -67,6 +69,8 @@ pub(crate) struct Plant {
     gain: f64,
     register: i64,
     counted: f64,
+    /// Whether anything can be counted with that gain.
+    counts: bool,
     /// Where the gain last changed, and the count there.
     base: f64,
     base_count: i64,
@@ -74,6 +78,16 @@ pub(crate) struct Plant {
     stepped: f64,
     is_off: bool,
     pub(crate) drive: Drive,
+    torque: Torque,
+}
+
+/// How well a brushless motor that follows its command would have been driven.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Torque {
+    /// Sum over some ticks of what part of the current turns the motor.
+    sum: f64,
+    ticks: u32,
+    is_told: bool,
 }
 
 impl Default for Plant {
@@ -105,11 +119,13 @@ impl Plant {
             gain: 0.0,
             register: 0,
             counted: axis.start,
+            counts: false,
             base: axis.start,
             base_count: 0,
             stepped: 0.0,
             is_off: false,
             drive: Drive::None,
+            torque: Torque::default(),
         }
     }
 
@@ -131,14 +147,37 @@ impl Plant {
     fn count(&mut self, gain: f64) {
         if gain != self.gain {
             (self.base, self.base_count, self.gain) = (self.counted, self.register, gain);
+            self.counts = gain != 0.0 && gain.is_finite();
         }
         self.counted = self.load;
-        if gain != 0.0 && gain.is_finite() {
-            let counts = (self.load - self.base) / gain + 0.5;
+        if self.counts {
+            let way = self.load - self.base;
+            // A division takes the board's tick longer here than everything else of an encoder.
+            let counts = if gain == 1.0 { way } else { way / gain } + 0.5;
             let whole = counts as i64;
             let whole = if counts < whole as f64 { whole - 1 } else { whole };
             self.register = self.base_count.wrapping_add(whole);
         }
+    }
+
+    /// Whether a real motor would hardly turn under a vector at this angle in cycles, where this one follows whatever
+    /// is applied; told once. `own_cycles` is what the axis says of its cycles.
+    pub(crate) fn would_not_turn(&mut self, angle: f64, own_cycles: f64) -> bool {
+        const TICKS: u32 = 100;
+        const ENOUGH: f64 = 0.3;
+        if self.build.model != Model::Follow || self.torque.is_told {
+            return false;
+        }
+        let motor = &self.build.motor;
+        let lead = angle - motor.angle(self.load, motor.cycles(own_cycles));
+        self.torque.sum += libm::sin(TAU * (lead - libm::floor(lead)));
+        self.torque.ticks += 1;
+        if self.torque.ticks < TICKS {
+            return false;
+        }
+        let is_enough = self.torque.sum >= ENOUGH * f64::from(TICKS);
+        self.torque = Torque { is_told: !is_enough, ..Torque::default() };
+        !is_enough
     }
 
     /// The board has stored this position.
@@ -229,7 +268,11 @@ impl Plant {
         }
         let reach = COUNTS_PER_TICK * gain.abs();
         let step = if rest.abs() < NEGLIGIBLE { rest } else { rest * self.build.followed };
-        self.load += if reach > 0.0 { step.clamp(-reach, reach) } else { step };
+        self.load += match reach > 0.0 {
+            true if step > reach => reach,
+            true if step < -reach => -reach,
+            _ => step,
+        };
         self.origin = self.load - self.reached;
     }
 
@@ -258,8 +301,9 @@ impl Plant {
 
     /// Holds the load at its hard stops: a stepper loses steps there, a motor stalls.
     fn stop_hard(&mut self) {
-        let held = self.load.clamp(self.build.min, self.build.max);
-        if held != self.load {
+        let is_beyond = self.load > self.build.max;
+        if is_beyond || self.load < self.build.min {
+            let held = if is_beyond { self.build.max } else { self.build.min };
             self.load = held;
             self.velocity = 0.0;
             self.origin = held - self.reached;

@@ -175,6 +175,22 @@ fn a_rotor_turns_with_its_vector() {
 }
 
 #[test]
+fn a_brushless_axis_with_a_wrong_offset_is_told_of_once() {
+    for (offset, is_told) in [(0.0, false), (250.0, true), (500.0, true), (100.0, false)] {
+        let mut desk = desk("");
+        desk.memory.set_axis(axis(0), Chan::OUTPUT_MODE, OutputMode::Brushless3Ph.get());
+        desk.memory.set_axis(axis(0), Chan::INV_DIST_PER_CYCLE, 0.001);
+        desk.memory.set_axis(axis(0), Chan::COMMUTATION_OFFSET, offset);
+        desk.call("EnableAxisDest", &[0, 0]);
+        desk.call("Move", &[0, 1000.0_f64.to_bits()]);
+        desk.run(5000);
+        let told = desk.diagnostics();
+        assert_eq!(told.len(), usize::from(is_told), "offset {offset}: {told:?}");
+        assert!((desk.memory.axis(axis(0), Chan::POSITION) - 1000.0).abs() <= 1.0);
+    }
+}
+
+#[test]
 fn wires_lead_outputs_to_inputs() {
     let mut desk =
         desk("[[wire]]\nfrom = 8\nto = 12\n[[wire]]\nfrom = 8\nto = 13\ninvert = true\ndelay_s = 0.001");

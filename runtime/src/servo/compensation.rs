@@ -9,14 +9,25 @@ use super::{AxisMemory, TIMEBASE};
 use crate::views::AxisView;
 
 /// Limits `value` to ±`limit`; no limit below 0.
+#[inline]
 fn clamp(value: f64, limit: f32) -> f64 {
     let limit = f64::from(limit).max(0.0);
-    value.clamp(-limit, limit)
+    if value > limit {
+        limit
+    } else if value < -limit {
+        -limit
+    } else {
+        value
+    }
 }
 
 /// The error after the dead band.
+#[inline]
 fn dead_band(error: f64, range: f64, gain: f64) -> f64 {
-    if error.abs() <= range {
+    if range == 0.0 && gain == 1.0 {
+        // None, as at power-up.
+        error
+    } else if error.abs() <= range {
         gain * error
     } else {
         error - libm::copysign(1.0, error) * range * (1.0 - gain)
@@ -39,8 +50,11 @@ pub(crate) fn advance(own: &AxisMemory, chan: &mut AxisView<'_>, command: f64) -
     let filtered = filter(chan, Chan::IIR.element(0), pid);
     let filtered = filter(chan, Chan::IIR.element(1), filtered);
     // The feed forward sees the destination alone, without backlash and offset.
-    let acceleration = (own.velocity - own.last_velocity) / TIMEBASE;
-    let forward = gain(chan, Chan::FF_VEL) * own.velocity + gain(chan, Chan::FF_ACCEL) * acceleration;
+    let mut forward = gain(chan, Chan::FF_VEL) * own.velocity;
+    let accelerating = gain(chan, Chan::FF_ACCEL);
+    if accelerating != 0.0 {
+        forward += accelerating * ((own.velocity - own.last_velocity) / TIMEBASE);
+    }
     let filtered = filter(chan, Chan::IIR.element(2), filtered + forward);
     let output = clamp(filtered, chan.get(Chan::MAX_OUTPUT)) as f32;
     let last = chan.get(Chan::OUTPUT);
@@ -49,23 +63,23 @@ pub(crate) fn advance(own: &AxisMemory, chan: &mut AxisView<'_>, command: f64) -
     output
 }
 
+/// The coefficients A1, A2, B0, B1, B2 of what is no filter, as at power-up; most are like that.
+const PLAIN: [u8; 20] = [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0x80, 0x3f, 0, 0, 0, 0, 0, 0, 0, 0];
+
 /// One tick of a second-order filter, direct form II.
 #[inline]
 fn filter(chan: &mut AxisView<'_>, iir: Field<Iir>, input: f64) -> f64 {
     let get = |chan: &AxisView<'_>, field: Field<f32>| f64::from(chan.get(iir.field(field)));
-    let (d0, d1) = (get(chan, Iir::D0), get(chan, Iir::D1));
-    let is_zero = |field| chan.get(iir.field(field)) == 0.0;
-    let is_plain = chan.get(iir.field(Iir::B0)) == 1.0
-        && is_zero(Iir::A1)
-        && is_zero(Iir::A2)
-        && is_zero(Iir::B1)
-        && is_zero(Iir::B2);
-    if is_plain && (d0 + d1).is_finite() {
-        // Not a filter, as at power-up; most are like that.
-        chan.set(iir.field(Iir::D1), d0 as f32);
-        chan.set(iir.field(Iir::D0), input as f32);
-        return input;
+    let single = |chan: &AxisView<'_>, field: Field<f32>| chan.get(iir.field(field));
+    if chan.holds(iir.offset(), &PLAIN) {
+        let (d0, d1) = (single(chan, Iir::D0), single(chan, Iir::D1));
+        if (d0 + d1).is_finite() {
+            chan.set(iir.field(Iir::D1), d0);
+            chan.set(iir.field(Iir::D0), input as f32);
+            return input;
+        }
     }
+    let (d0, d1) = (get(chan, Iir::D0), get(chan, Iir::D1));
     let inner = input + get(chan, Iir::A1) * d0 + get(chan, Iir::A2) * d1;
     let output = get(chan, Iir::B0) * inner + get(chan, Iir::B1) * d0 + get(chan, Iir::B2) * d1;
     chan.set(iir.field(Iir::D1), d0 as f32);

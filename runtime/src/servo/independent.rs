@@ -101,7 +101,9 @@ pub(crate) fn advance(memory: &mut GuestMemory, axis: AxisId) -> bool {
         Step::Moving(dest, next) => {
             chan.set(Chan::DEST, dest);
             chan.set(Chan::T, next.t);
-            chan.set(Chan::PCOEFF, current.offset(TripCoeff::SIZE * next.index as u32));
+            if next.index > 0 {
+                chan.set(Chan::PCOEFF, current.offset(TripCoeff::SIZE * next.index as u32));
+            }
         }
         Step::Ended => {
             chan.set(Chan::PCOEFF, GuestAddr::NULL);

@@ -217,7 +217,7 @@ fn run_axis(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId) -> bool
         compensation::advance(&kernel.servo.axes[axis.index()], &mut chan, command)
     };
     chan.set(Chan::PREV_DEST, chan.get(Chan::DEST));
-    output::drive(kernel, memory, axis, command, output);
+    output::drive(kernel, memory, axis, mode, command, output);
     moves
 }
 

@@ -11,6 +11,7 @@ use kmotiondef::variables::DAC_BUFFER;
 use kmotiondef::{AxisId, Field};
 use vm::memory::GuestMemory;
 
+use crate::event::EventKind;
 use crate::firmware::io::{antiphase, current, recirculate, store_pwm};
 use crate::kernel::Kernel;
 use crate::plant::{Applied, Drive};
@@ -22,10 +23,17 @@ const SNAP_AMP: i32 = 8;
 const VECTOR: u32 = 0x8000_0000;
 
 /// Puts out one tick of an enabled axis.
-pub(crate) fn drive(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId, command: f64, output: f32) {
+#[inline]
+pub(crate) fn drive(
+    kernel: &mut Kernel,
+    memory: &mut GuestMemory,
+    axis: AxisId,
+    mode: Option<OutputMode>,
+    command: f64,
+    output: f32,
+) {
     let chan = AxisView::of(memory, axis);
     let channel = chan.get(Chan::OUTPUT_CHAN0);
-    let mode = OutputMode::new(chan.get(Chan::OUTPUT_MODE));
     if matches!(mode, Some(OutputMode::StepDir | OutputMode::ClosedLoopStepDir)) {
         kernel.stepgens.claim(axis, channel, &mut kernel.pins, kernel.tick_start);
     } else {
@@ -55,6 +63,11 @@ pub(crate) fn drive(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId,
             Drive::Loop(command, Applied::Vector(magnitude, phase(&chan)))
         }
     };
+    if matches!(mode, Some(OutputMode::Brushless3Ph | OutputMode::Brushless4Ph)) {
+        let angle = phase(&chan);
+        let cycles = chan.get(Chan::INV_DIST_PER_CYCLE);
+        check_commutation(kernel, axis, angle, cycles);
+    }
     match mode {
         Some(OutputMode::DcServo) => store_pwm(memory, channel, pwm(channel, output as i32)),
         Some(OutputMode::DacServo) => write_dac(memory, axis, output),
@@ -69,6 +82,17 @@ pub(crate) fn drive(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId,
         }
         Some(OutputMode::ClosedLoopMicrostep) => microstep(memory, axis, command + f64::from(output)),
         _ => {}
+    }
+}
+
+/// Tells once of a brushless axis whose real motor would not follow as the simulated one does.
+fn check_commutation(kernel: &mut Kernel, axis: AxisId, angle: f64, cycles: f64) {
+    if kernel.servo.plants[axis.index()].would_not_turn(angle, cycles) {
+        let text = format!(
+            "axis {axis}: with this CommutationOffset a real brushless motor would not turn as it is told; the \
+             simulated one follows (model \"follow\")"
+        );
+        kernel.tell(kernel.tick_start, EventKind::Diagnostic(text));
     }
 }
 
