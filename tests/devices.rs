@@ -336,6 +336,59 @@ fn pins_that_kanalog_occupies_are_warned_of() {
 }
 
 #[test]
+fn outputs_of_a_kanalog_that_is_not_there_are_told_to_who_asks() {
+    let program = "main() { SetBit(152); SetBit(144); printf(\"%d%d\\n\", ReadBit(152), ReadBit(153)); }";
+    let told = "cc67: bit 152 is an output of Kanalog, which nothing has switched on: it is stored, no more \
+                (`board.kanalog = true` in the machine file)\n";
+    for (options, expect) in
+        [(vec!["--verbose"], told), (vec![], ""), (vec!["--verbose", "--set", "board.kanalog=true"], "")]
+    {
+        let (output, _) = run("kanalog", program, &[], &options);
+        assert_eq!((output.code, output.stdout.as_str(), output.stderr.as_str()), (0, "10\n", expect));
+    }
+}
+
+#[test]
+fn an_axis_that_is_to_step_too_fast_falls_behind() {
+    let program = "
+int Steps(void) { return (short)FPGAW(STEP_POSITION_ADD0) >> 7; }
+main()
+{
+    ch0->InputMode = NO_INPUT_MODE;
+    ch0->OutputMode = STEP_DIR_MODE;
+    FPGA(STEP_PULSE_LENGTH_ADD) = 63;
+    EnableAxisDest(0, 0.0);
+    WaitNextTimeSlice();
+    ch0->Dest = 200.0;
+    Delay_sec(0.001);
+    printf(\"%d\", Steps() > 100 && Steps() < 150);
+    Delay_sec(0.001);
+    printf(\" %d\\n\", Steps());
+    DisableAxis(0);
+}
+";
+    let (output, _) = run("behind", program, &[], &[]);
+    assert_eq!((output.code, output.stdout.as_str()), (0, "1 200\n"));
+    let told = "cc67: axis 0 is to make more than the 132275 steps a second that pulses of 3.78 µs leave room for: \
+                it falls behind and catches up (STEP_PULSE_LENGTH_ADD)\n";
+    assert_eq!(output.stderr, told);
+}
+
+#[test]
+fn the_flash_of_a_machine_file_is_kept() {
+    let program = "main() { printf(\"%d\\n\", ++persist.UserData[7]); Delay_sec(0.01); }";
+    let scratch = Scratch::new("devices-flash");
+    scratch.write("a.c", format!("#include \"KMotionDef.h\"\n{program}"));
+    scratch.write("m/a.toml", "[board]\nflash = \"flash.bin\"\n[[event]]\nat = 0.005\ncommand = \"Flash\"\n");
+    for expect in ["1", "2"] {
+        let arguments = ["run", "--machine", "m/a.toml", "a.c"];
+        let output = run_in(env!("CARGO_BIN_EXE_cc67-under-test"), scratch.path(), arguments);
+        assert_eq!((output.code, output.stdout.lines().next()), (0, Some(expect)), "{}", output.stderr);
+    }
+    assert!(scratch.path().join("m/flash.bin").exists());
+}
+
+#[test]
 fn the_serial_ports_files_stand_in_the_machine_file() {
     let program = "
 main()

@@ -51,9 +51,6 @@ use crate::views::Typed;
 const FPGA_CYCLES: Cycles = Cycles::new(40);
 const TIMER_CYCLES: Cycles = Cycles::new(20);
 
-/// Pins of JP7 that the interface of Kanalog occupies.
-const JP7_PINS: u16 = 16;
-
 /// What a waiting call remembers until it is made again.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Continuation {
@@ -144,8 +141,7 @@ pub struct Kernel {
     /// Whether reading an input that nothing drives is worth a hint.
     pub(crate) hints: bool,
     hinted: BTreeSet<Bit>,
-    /// Whether it was said that Kanalog needs the pins of JP7, and that nothing serves it.
-    told_jp7: bool,
+    /// Whether it was said that nothing serves Kanalog.
     told_kanalog: bool,
     events: Vec<Event>,
 }
@@ -195,7 +191,6 @@ impl Kernel {
             mechanics: Mechanics::default(),
             hints: true,
             hinted: BTreeSet::new(),
-            told_jp7: false,
             told_kanalog: false,
             events: Vec::new(),
         }
@@ -231,14 +226,10 @@ impl Kernel {
 
     /// A program makes a pin of JP7 an output.
     pub(crate) fn check_jp7(&mut self, caller: &Caller<'_>, bit: Bit) {
-        if bit.get() < JP7_PINS
-            && !self.told_jp7
-            && kanalog::is_served(&self.fpga, caller.memory)
+        if kanalog::is_served(&self.fpga, caller.memory)
             && !self.pins.is_output(bit)
+            && let Some(text) = self.fpga.note_jp7(bit)
         {
-            self.told_jp7 = true;
-            let text =
-                format!("bit {bit} becomes an output, but Kanalog is connected to bits 0 to 15 of JP7");
             self.diagnose(caller, text);
         }
     }

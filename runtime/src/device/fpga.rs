@@ -113,6 +113,9 @@ const PWM_PERIOD: f64 = 256.0;
 const CLOCK_CYCLES: i64 = 12;
 const CLOCK: f64 = 50e6 / 3.0;
 
+/// Pins of JP7 that the interface of Kanalog occupies.
+const JP7_PINS: u16 = 16;
+
 /// What stands behind the registers that act, and the instant of an access.
 #[derive(Debug)]
 pub(crate) struct Behind<'a> {
@@ -131,6 +134,8 @@ pub(crate) struct Fpga {
     unknown: BTreeSet<u32>,
     /// Whether a character was sent while the UART had no pins.
     sent_nowhere: bool,
+    /// Whether it was said that Kanalog needs the pins of JP7.
+    told_jp7: bool,
     /// Until when the edges of watched PWM pins are told.
     told: Cycles,
     kstep: AnalogOutput,
@@ -146,6 +151,7 @@ impl Default for Fpga {
             bytes,
             unknown: BTreeSet::new(),
             sent_nowhere: false,
+            told_jp7: false,
             told: Cycles::default(),
             kstep: AnalogOutput::default(),
         }
@@ -205,7 +211,13 @@ impl Fpga {
         match kind {
             Some((Kind::BitSet, group)) => pins.set_group(group, value as u8, now),
             Some((Kind::BitClear, group)) => pins.clear_group(group, value as u8, now),
-            Some((Kind::BitDirection, group)) => pins.set_direction_group(group, value as u8, now),
+            Some((Kind::BitDirection, group)) => {
+                let new = value as u8 & !pins.direction_group(group);
+                pins.set_direction_group(group, value as u8, now);
+                let first = Bit::new((8 * group + new.trailing_zeros()) as i32).filter(|_| new != 0);
+                let remark = first.filter(|_| self.serves_kanalog()).and_then(|bit| self.note_jp7(bit));
+                return remark.map(EventKind::Diagnostic);
+            }
             Some((Kind::UartData, _)) => {
                 uart.send(value as u8, now);
                 return self.note_lost_character().map(EventKind::Diagnostic);
@@ -235,6 +247,12 @@ impl Fpga {
         (kind.is_none() && self.unknown.insert(number))
             .then(|| format!("FPGA register {number:#x} is not known: it only stores what is written"))
             .map(EventKind::Detail)
+    }
+
+    /// A remark on the first pin of JP7 that becomes an output while Kanalog is connected there.
+    pub(crate) fn note_jp7(&mut self, bit: Bit) -> Option<String> {
+        (bit.get() < JP7_PINS && !std::mem::replace(&mut self.told_jp7, true))
+            .then(|| format!("bit {bit} becomes an output, but Kanalog is connected to bits 0 to 15 of JP7"))
     }
 
     /// Connects the UART to its pins.
@@ -429,6 +447,16 @@ mod tests {
             bench.pins.changes.take().iter().map(|change| (change.at.get(), change.level)).collect();
         let expect = [(0, true), (614, false), (3072, true), (3686, false), (6144, true), (6758, false)];
         assert_eq!(told, expect);
+    }
+
+    #[test]
+    fn directions_of_pins_that_kanalog_needs_are_told_once() {
+        let mut bench = Bench::default();
+        bench.write(0xa0, AccessSize::Byte, 1);
+        assert_eq!(bench.write(0x123, AccessSize::Byte, 0xff), None);
+        let told = bench.write(0x121, AccessSize::Byte, 0x0c);
+        assert!(matches!(told, Some(EventKind::Diagnostic(text)) if text.contains("bit 10 becomes")));
+        assert_eq!(bench.write(0x120, AccessSize::Byte, 1), None);
     }
 
     #[test]

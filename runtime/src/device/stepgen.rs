@@ -32,6 +32,8 @@ const CLOCK_CYCLES: i64 = 12;
 const RATE_UNIT: f64 = CLOCK / (1 << 23) as f64;
 /// Fastest stepping, whatever the pulses' length.
 const FASTEST: f64 = 2.5e6;
+/// The same with the pulses of power-up.
+const LIMIT: f64 = CLOCK / 2.0 / START as f64;
 
 /// Fields of the rate register: signed rate, generator, enable.
 const RATE_BITS: u32 = 24;
@@ -59,8 +61,12 @@ pub(crate) struct StepGenerators {
     /// The output channel by which each axis owns one.
     channels: [Option<i32>; GENERATORS],
     settings: u8,
+    /// Steps a second at most.
+    fastest: f64,
     /// Whether a program drives any.
     is_driven: bool,
+    /// Axes that have fallen behind, axis 0 lowest.
+    late: u8,
 }
 
 impl Default for StepGenerators {
@@ -69,9 +75,16 @@ impl Default for StepGenerators {
             generators: [Generator::default(); GENERATORS],
             channels: [None; GENERATORS],
             settings: START,
+            fastest: LIMIT,
             is_driven: false,
+            late: 0,
         }
     }
+}
+
+/// Steps a second at most: a pulse and a pause of its length.
+fn fastest(settings: u8) -> f64 {
+    FASTEST.min(CLOCK / 2.0 / f64::from((settings & LENGTH).max(1)))
 }
 
 /// The generator that an output channel names.
@@ -212,6 +225,7 @@ impl StepGenerators {
             self.pins(generator).into_iter().flatten().for_each(|bit| pins.generate(bit, None, now));
         }
         self.settings = settings;
+        self.fastest = fastest(settings);
         for &generator in &in_use {
             self.drive(generator, pins, now);
         }
@@ -226,15 +240,30 @@ impl StepGenerators {
         let unused = u32::BITS - RATE_BITS;
         let signed = (word << unused).cast_signed() >> unused;
         let rate = if word & ENABLE != 0 { f64::from(signed) * RATE_UNIT } else { 0.0 };
-        let limit = self.limit();
-        self.generators[generator].rate = rate.clamp(-limit, limit);
+        self.generators[generator].rate = rate.clamp(-self.fastest, self.fastest);
         self.is_driven = self.generators.iter().any(|generator| generator.rate != 0.0);
         self.drive(generator, pins, now);
     }
 
-    /// Steps a second at most: a pulse and a pause of its length.
-    fn limit(&self) -> f64 {
-        FASTEST.min(CLOCK / 2.0 / f64::from((self.settings & LENGTH).max(1)))
+    /// Steps that an axis can make in a tick.
+    #[inline]
+    pub(crate) fn steps_per_tick(&self, axis: AxisId) -> f64 {
+        let per_second = if self.channels[axis.index()].is_some() { self.fastest } else { LIMIT };
+        per_second * (Cycles::PER_TICK.get() as f64 / Cycles::PER_SECOND.get() as f64)
+    }
+
+    /// What an axis that was to make more is told: once.
+    pub(crate) fn fall_behind(&mut self, axis: AxisId) -> Option<String> {
+        let is_known = self.late >> axis.get() & 1 != 0 || self.channels[axis.index()].is_none();
+        self.late |= 1 << axis.get();
+        let length = f64::from((self.settings & LENGTH).max(1)) / CLOCK * 1e6;
+        (!is_known).then(|| {
+            format!(
+                "axis {axis} is to make more than the {:.0} steps a second that pulses of {length:.2} µs leave room \
+                 for: it falls behind and catches up (STEP_PULSE_LENGTH_ADD)",
+                self.fastest
+            )
+        })
     }
 
     /// Whether a program drives any.
@@ -365,5 +394,16 @@ mod tests {
         generators.command(ENABLE | 0x7f_ffff, &mut pins, tick(1));
         let [steps, ..] = generators.run(1.0, &mut pins, tick(2));
         assert_eq!(libm::round(steps), 260_417.0);
+        let axis = AxisId::new(3).expect("3");
+        generators.claim(axis, 8 + 3, &mut pins, tick(3));
+        for (settings, expect) in [(63, 132_275.0), (1, 2_500_000.0), (32, 260_417.0)] {
+            generators.set_up(settings, &mut pins, tick(3));
+            assert_eq!(libm::round(generators.steps_per_tick(axis) / 90e-6), expect, "{settings}");
+        }
+        let told = [generators.fall_behind(axis), generators.fall_behind(axis)];
+        assert!(
+            told[0].as_ref().is_some_and(|text| text.contains("260417 steps")) && told[1].is_none(),
+            "{told:?}"
+        );
     }
 }

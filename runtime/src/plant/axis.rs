@@ -17,8 +17,6 @@ use crate::views::AxisView;
 const COUNTS_PER_TICK: f64 = 120.0;
 /// A remaining distance that counts as none.
 const NEGLIGIBLE: f64 = 1e-9;
-/// Fastest stepping: 1 / (2 · 32 clocks of 16.67 MHz), the pulse length at power-up.
-const STEPS_PER_TICK: f64 = 16.666_7e6 / 64.0 * TIMEBASE;
 /// Time constant with which a rotor turns into a vector that stands, seconds.
 const DRAG_S: f64 = 0.01;
 
@@ -77,6 +75,8 @@ pub(crate) struct Plant {
     /// What the step generator has put out in the last tick, and whether its amplifier is off.
     stepped: f64,
     is_off: bool,
+    /// Whether it was to make more steps than it can.
+    is_behind: bool,
     pub(crate) drive: Drive,
     torque: Torque,
 }
@@ -124,6 +124,7 @@ impl Plant {
             base_count: 0,
             stepped: 0.0,
             is_off: false,
+            is_behind: false,
             drive: Drive::None,
             torque: Torque::default(),
         }
@@ -205,26 +206,26 @@ impl Plant {
     }
 
     /// Moves the load by what the last tick put out, and takes up a position that a program has written; whether
-    /// anything changed.
+    /// anything changed. A step generator makes at most `steps_per_tick`.
     #[inline]
-    pub(crate) fn advance(&mut self, chan: &AxisView<'_>) -> bool {
+    pub(crate) fn advance(&mut self, chan: &AxisView<'_>, steps_per_tick: f64) -> bool {
         let position = chan.get(Chan::POSITION);
         let was_written = position != self.position;
         if was_written {
             self.shift += position - self.position;
             self.position = position;
         }
-        was_written | self.moves(chan)
+        was_written | self.moves(chan, steps_per_tick)
     }
 
-    fn moves(&mut self, chan: &AxisView<'_>) -> bool {
+    fn moves(&mut self, chan: &AxisView<'_>, steps_per_tick: f64) -> bool {
         let before = self.load;
         match (self.build.model, self.drive) {
             (Model::None, _) | (Model::Follow, Drive::None) => return false,
             (_, Drive::Steps(command)) if command == self.reached => return false,
             (_, Drive::Steps(command)) => {
                 let steps_per_unit = f64::from(chan.get(Chan::OUTPUT_GAIN)).abs();
-                self.step(command, if steps_per_unit > 0.0 { STEPS_PER_TICK / steps_per_unit } else { 0.0 });
+                self.step(command, if steps_per_unit > 0.0 { steps_per_tick / steps_per_unit } else { 0.0 });
             }
             (Model::Follow, Drive::Loop(command, _)) => {
                 self.follow(command, f64::from(chan.get(Chan::INPUT_GAIN0)));
@@ -242,6 +243,7 @@ impl Plant {
     fn step(&mut self, command: f64, limit: f64) {
         let step = command - self.reached;
         self.stepped = step.clamp(-limit, limit);
+        self.is_behind |= step != self.stepped;
         self.reached = if step == self.stepped { command } else { self.reached + self.stepped };
         if self.is_off {
             self.origin = self.load - self.reached;
@@ -253,6 +255,11 @@ impl Plant {
     /// Position units that the step generator has put out since the last time.
     pub(crate) fn take_stepped(&mut self) -> f64 {
         std::mem::take(&mut self.stepped)
+    }
+
+    /// Whether the step generator could not follow its command since the last time.
+    pub(crate) fn take_behind(&mut self) -> bool {
+        std::mem::take(&mut self.is_behind)
     }
 
     /// Switches the amplifier behind the step generator on or off; without it the steps are lost.

@@ -154,9 +154,14 @@ fn run_axes(kernel: &mut Kernel, memory: &mut GuestMemory, now: Cycles) -> bool 
         if kernel.servo.needs_enable {
             plant.set_amplifier(!is_off || generator_of(chan.get(Chan::OUTPUT_CHAN0)) >= ON_KSTEP);
         }
-        if plant.advance(&chan) {
+        if plant.advance(&chan, kernel.stepgens.steps_per_tick(axis)) {
             changed = true;
             let steps = plant.take_stepped() * f64::from(chan.get(Chan::OUTPUT_GAIN));
+            if plant.take_behind()
+                && let Some(text) = kernel.stepgens.fall_behind(axis)
+            {
+                kernel.tell(now, EventKind::Diagnostic(text));
+            }
             kernel.stepgens.step(axis, steps, &mut kernel.pins, now);
         }
         if chan.get(Chan::ENABLE) != 0 {
