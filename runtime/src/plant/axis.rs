@@ -190,6 +190,10 @@ impl Plant {
     pub(crate) fn refer_to(&mut self, command: f64) {
         self.reached = command;
         self.origin = self.load - command;
+        // What was commanded in the last tick counts from there as well.
+        if let Drive::Steps(last) = &mut self.drive {
+            *last = command;
+        }
     }
 
     /// Something outside moves the load; step generators go on from there.
