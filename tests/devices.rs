@@ -80,6 +80,32 @@ main()
 }
 
 #[test]
+fn a_device_answers_bits_that_registers_set_and_read() {
+    // Select on bit 16, clock on 17, data on 18: the third group of eight.
+    let program = "
+#define GROUP 2
+main()
+{
+    int i, Word = 0;
+    FPGA(BIT_SET + GROUP) = 1;
+    FPGA(BIT_CLR + GROUP) = ~2;
+    FPGA(BIT_DIR + GROUP) = 3;
+    FPGA(BIT_CLR + GROUP) = ~1;
+    for (i = 0; i < 16; i++)
+    {
+        FPGA(BIT_SET + GROUP) = 2;
+        Word = Word << 1 | (FPGA(BIT_READ + GROUP) >> 2 & 1);
+        FPGA(BIT_CLR + GROUP) = ~2;
+    }
+    FPGA(BIT_SET + GROUP) = 1;
+    printf(\"%04X\\n\", Word);
+}
+";
+    let stimulus = "device spi select=16 clock=17 out=18 word=0xCA67";
+    assert_eq!(shows("registers", program, &[], &["--stim", stimulus]), "CA67\n");
+}
+
+#[test]
 fn a_step_generator_is_run_by_its_register() {
     // 3000 steps a second are 0x5E6 in units of 1.987.
     let program = "

@@ -323,6 +323,7 @@ impl Kernel {
         let behind = Behind {
             pins: &mut self.pins,
             uart: &mut self.uart,
+            kanalog: &self.kanalog,
             encoders: &mut self.encoders,
             stepgens: &mut self.stepgens,
             now,
@@ -368,6 +369,7 @@ impl Bus for Kernel {
         if let Some(remark) = fpga.write(behind, addr, size, value) {
             self.tell(now, remark);
         }
+        self.settle(now);
     }
 
     fn access_cycles(&self, addr: GuestAddr) -> Cycles {

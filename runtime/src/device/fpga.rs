@@ -3,14 +3,16 @@
 //! Register r of eight bits is the byte at base + 4·r + 2; of 16 bits, the half word there. The registers below act;
 //! the rest is storage that reads back what was written.
 
+mod pwm;
+
 use std::collections::BTreeSet;
-use std::ops::Range;
 
 use kmotiondef::map::FPGA;
 use kmotiondef::{Bit, Cycles, GuestAddr};
 use vm::bus::AccessSize;
 
 use super::encoder::Encoders;
+use super::kanalog::Kanalog;
 use super::kstep::AnalogOutput;
 use super::pins::{PINS, Pins};
 use super::stepgen::StepGenerators;
@@ -62,6 +64,12 @@ enum Kind {
     StepRate,
     /// Positions of the step generators, low and high byte of each.
     StepPosition,
+    /// Outputs of Kanalog: opto outputs and drivers, general outputs.
+    KanalogOutputs,
+    /// Inputs of Kanalog: general inputs and opto inputs.
+    KanalogInputs,
+    /// Conversions of Kanalog's analog inputs.
+    KanalogAdc,
 }
 
 /// The registers that programs know. Source: io.md section 5.
@@ -75,7 +83,10 @@ const REGISTERS: &[Registers] = &[
     Registers { first: PRESCALE, last: PRESCALE, kind: Kind::Pwm },
     Registers { first: STEP_RATE, last: STEP_RATE + 3, kind: Kind::StepRate },
     Registers { first: 0x40, last: 0x4f, kind: Kind::StepPosition },
-    Registers { first: 0x80, last: 0x98, kind: Kind::Storage },
+    Registers { first: 0x80, last: 0x87, kind: Kind::Storage },
+    Registers { first: 0x88, last: 0x89, kind: Kind::KanalogOutputs },
+    Registers { first: 0x90, last: 0x97, kind: Kind::KanalogAdc },
+    Registers { first: 0x98, last: 0x98, kind: Kind::KanalogInputs },
     Registers { first: PORT_SELECT, last: PORT_SELECT, kind: Kind::Port },
     Registers { first: 0xc0, last: 0xc0, kind: Kind::UartData },
     Registers { first: 0xc1, last: 0xc1, kind: Kind::UartStatus },
@@ -105,13 +116,10 @@ const PWM_MOVED: u8 = 4;
 const PWM: u32 = 0xd0;
 const PWMS: u32 = 8;
 const PRESCALE: u32 = 0x2f;
-/// The pin of generator 0, and where its output goes for KStep.
-const PWM_PIN: i32 = 26;
-const PWM_MOVED_PIN: i32 = 44;
-/// Clocks of a PWM period, processor cycles of one, and clocks of a second.
-const PWM_PERIOD: f64 = 256.0;
-const CLOCK_CYCLES: i64 = 12;
-const CLOCK: f64 = 50e6 / 3.0;
+
+/// The first outputs and the first inputs of Kanalog.
+const KANALOG_OUTPUTS: i32 = 144;
+const KANALOG_INPUTS: i32 = 128;
 
 /// Pins of JP7 that the interface of Kanalog occupies.
 const JP7_PINS: u16 = 16;
@@ -121,6 +129,7 @@ const JP7_PINS: u16 = 16;
 pub(crate) struct Behind<'a> {
     pub(crate) pins: &'a mut Pins,
     pub(crate) uart: &'a mut Uart,
+    pub(crate) kanalog: &'a Kanalog,
     pub(crate) encoders: &'a mut Encoders,
     pub(crate) stepgens: &'a mut StepGenerators,
     pub(crate) now: Cycles,
@@ -158,14 +167,25 @@ impl Default for Fpga {
     }
 }
 
-/// Tells the edges of a pin that is high at the beginning of each period, for so long.
-fn tell_train(pins: &mut Pins, bit: Bit, (period, high): (i64, i64), span: Range<Cycles>) {
-    let mut at = span.start.get();
-    while at <= span.end.get() {
-        let phase = at.rem_euclid(period);
-        pins.show(bit, phase < high, Cycles::new(at));
-        at += if phase < high { high - phase } else { period - phase };
-    }
+/// So many bits from a number on.
+fn bits(first: i32, count: i32) -> impl Iterator<Item = Bit> {
+    (first..first + count).filter_map(Bit::new)
+}
+
+/// Outputs of Kanalog that an access of a register reaches: 8 opto outputs and 8 drivers, or the 8 general ones.
+fn kanalog_outputs(index: u32, size: AccessSize) -> impl Iterator<Item = Bit> {
+    let count = if index == 0 && size != AccessSize::Byte { 16 } else { 8 };
+    bits(KANALOG_OUTPUTS + 16 * index as i32, count)
+}
+
+/// Levels as a word, the first one lowest.
+fn word(levels: impl Iterator<Item = bool>) -> u32 {
+    (0..).zip(levels).fold(0, |word, (index, level)| word | u32::from(level) << index)
+}
+
+/// As much of a word as an access takes.
+fn cut(word: u32, size: AccessSize) -> u32 {
+    if size == AccessSize::Byte { word & 0xff } else { word }
 }
 
 /// The register at an address and what it does; the number within its range comes with it.
@@ -179,7 +199,7 @@ fn register(address: GuestAddr) -> (u32, Option<(Kind, u32)>) {
 impl Fpga {
     /// Reads a register.
     pub(crate) fn read(&mut self, behind: Behind<'_>, address: GuestAddr, size: AccessSize) -> u32 {
-        let Behind { pins, uart, encoders, stepgens, now } = behind;
+        let Behind { pins, uart, kanalog, encoders, stepgens, now } = behind;
         match register(address).1 {
             Some((Kind::BitRead, group)) => u32::from(pins.level_group(group)),
             Some((Kind::BitDirection, group)) => u32::from(pins.direction_group(group)),
@@ -187,9 +207,16 @@ impl Fpga {
             Some((Kind::UartStatus, _)) => uart.status(now).into(),
             Some((Kind::EncoderErrors, _)) => encoders.errors().into(),
             Some((Kind::StepPosition, byte)) => {
-                let word = u32::from(stepgens.register((byte / 2) as usize)) >> (8 * (byte % 2));
-                if size == AccessSize::Byte { word & 0xff } else { word }
+                cut(u32::from(stepgens.register((byte / 2) as usize)) >> (8 * (byte % 2)), size)
             }
+            Some((Kind::KanalogOutputs, index)) => {
+                let outputs = kanalog_outputs(index, AccessSize::Half);
+                cut(word(outputs.map(|bit| pins.written(bit))), size)
+            }
+            Some((Kind::KanalogInputs, _)) => {
+                cut(word(bits(KANALOG_INPUTS, 16).map(|bit| pins.input(bit))), size)
+            }
+            Some((Kind::KanalogAdc, channel)) => cut(kanalog.conversion(channel as usize), size),
             _ => self.stored(address, size),
         }
     }
@@ -202,7 +229,7 @@ impl Fpga {
         size: AccessSize,
         value: u32,
     ) -> Option<EventKind> {
-        let Behind { pins, uart, encoders, stepgens, now } = behind;
+        let Behind { pins, uart, encoders, stepgens, now, kanalog: _ } = behind;
         let (number, kind) = register(address);
         let is_pwm = matches!(kind, Some((Kind::Pwm | Kind::Port, _)));
         if is_pwm {
@@ -224,6 +251,12 @@ impl Fpga {
             }
             Some((Kind::UartStatus, _)) => uart.set_divisor(value as u8),
             Some((Kind::EncoderErrors, _)) => encoders.clear_errors(),
+            Some((Kind::KanalogOutputs, index)) => {
+                for (at, bit) in kanalog_outputs(index, size).enumerate() {
+                    pins.write(bit, value >> at & 1 != 0, now);
+                }
+            }
+            Some((Kind::KanalogInputs | Kind::KanalogAdc, _)) => {}
             _ => self.store(address, size, value),
         }
         match kind {
@@ -265,73 +298,6 @@ impl Fpga {
         self.bytes[PORT_BYTE] & KANALOG_ON != 0
     }
 
-    /// The duty of a PWM generator from 0 to 1 and its frequency, if it is on.
-    pub(crate) fn pwm(&self, generator: u32) -> Option<(f64, f64)> {
-        let value = PWM + 2 * generator;
-        (self.byte(value + 1) & 1 != 0).then(|| {
-            let hz = CLOCK / PWM_PERIOD / (f64::from(self.byte(PRESCALE)) + 1.0);
-            (f64::from(self.byte(value)) / (PWM_PERIOD - 1.0), hz)
-        })
-    }
-
-    /// The duty of generator 0 at the pin for KStep, from 0 to 1.
-    fn moved_pwm(&self) -> Option<f64> {
-        let (duty, _) = self.pwm(0)?;
-        (self.bytes[PORT_BYTE] & PWM_MOVED != 0).then_some(duty)
-    }
-
-    /// The analog output that a KStep makes of it.
-    pub(crate) fn kstep_output(&self) -> &AnalogOutput {
-        &self.kstep
-    }
-
-    /// Whether there are edges of watched pins to tell in every tick.
-    pub(crate) fn is_telling(&self, pins: &Pins) -> bool {
-        let is_watched = |generator: u32| {
-            let pin = Bit::new(PWM_PIN + generator as i32);
-            let moved = Bit::new(PWM_MOVED_PIN).filter(|_| generator == 0);
-            pin.into_iter().chain(moved).any(|bit| pins.is_watched(bit))
-        };
-        pins.watches_any()
-            && (0..PWMS).any(|generator| self.pwm(generator).is_some() && is_watched(generator))
-    }
-
-    /// Tells the edges of watched pins up to an instant. All generators count one clock, from power-up on.
-    pub(crate) fn tell_pwm(&mut self, pins: &mut Pins, now: Cycles) {
-        let from = std::mem::replace(&mut self.told, now);
-        if !pins.watches_any() {
-            return;
-        }
-        let is_moved = self.bytes[PORT_BYTE] & PWM_MOVED != 0;
-        for generator in 0..PWMS {
-            let Some((duty, _)) = self.pwm(generator) else { continue };
-            let clocks = PWM_PERIOD as i64 * (i64::from(self.byte(PRESCALE)) + 1);
-            let period = clocks * CLOCK_CYCLES;
-            let high = libm::round(duty * period as f64) as i64;
-            let moved = (is_moved && generator == 0).then_some(PWM_MOVED_PIN);
-            for pin in [Some(PWM_PIN + generator as i32), moved].into_iter().flatten() {
-                if let Some(bit) = Bit::new(pin).filter(|bit| pins.is_watched(*bit)) {
-                    tell_train(pins, bit, (period, high), from..now);
-                }
-            }
-        }
-    }
-
-    /// Generators that are on drive their pins; read as a level, they are high from half duty on.
-    fn drive_pwm_pins(&self, pins: &mut Pins, now: Cycles) {
-        let mut drive = |pin: i32, level| {
-            if let Some(bit) = Bit::new(pin) {
-                pins.generate(bit, level, now);
-            }
-        };
-        let level = |generator| self.pwm(generator).map(|(duty, _)| duty >= 0.5);
-        for generator in 0..PWMS {
-            drive(PWM_PIN + generator as i32, level(generator));
-        }
-        let is_moved = self.bytes[PORT_BYTE] & PWM_MOVED != 0;
-        drive(PWM_MOVED_PIN, level(0).filter(|_| is_moved));
-    }
-
     /// An eight-bit register as stored.
     fn byte(&self, register: u32) -> u8 {
         self.bytes.get((register * STRIDE + LANE) as usize).copied().unwrap_or_default()
@@ -361,19 +327,18 @@ impl Fpga {
 
 #[cfg(test)]
 mod tests {
-    use vm::memory::GuestMemory;
-
     use super::*;
 
     /// Registers and what stands behind them.
     #[derive(Default)]
-    struct Bench {
-        fpga: Fpga,
-        pins: Pins,
+    pub(super) struct Bench {
+        pub(super) fpga: Fpga,
+        pub(super) pins: Pins,
         uart: Uart,
+        kanalog: Kanalog,
         encoders: Encoders,
         stepgens: StepGenerators,
-        now: Cycles,
+        pub(super) now: Cycles,
     }
 
     impl Bench {
@@ -381,6 +346,7 @@ mod tests {
             let behind = Behind {
                 pins: &mut self.pins,
                 uart: &mut self.uart,
+                kanalog: &self.kanalog,
                 encoders: &mut self.encoders,
                 stepgens: &mut self.stepgens,
                 now: self.now,
@@ -388,12 +354,12 @@ mod tests {
             (&mut self.fpga, behind)
         }
 
-        fn read(&mut self, register: u32, size: AccessSize) -> u32 {
+        pub(super) fn read(&mut self, register: u32, size: AccessSize) -> u32 {
             let (fpga, behind) = self.parts();
             fpga.read(behind, address(register), size)
         }
 
-        fn write(&mut self, register: u32, size: AccessSize, value: u32) -> Option<EventKind> {
+        pub(super) fn write(&mut self, register: u32, size: AccessSize, value: u32) -> Option<EventKind> {
             let (fpga, behind) = self.parts();
             fpga.write(behind, address(register), size, value)
         }
@@ -416,37 +382,21 @@ mod tests {
     }
 
     #[test]
-    fn a_pwm_drives_its_pin_and_knows_its_rate() {
+    fn kanalog_has_its_bits_and_conversions_in_registers() {
         let mut bench = Bench::default();
-        let pins = [26, 44].map(|pin| Bit::new(pin).expect("a bit"));
-        for (register, value) in [(0x2f, 65), (0xd0, 128), (0xd1, 1), (0xa0, 4)] {
-            bench.write(register, AccessSize::Byte, value);
+        let bit = |number| Bit::new(number).expect("a bit");
+        bench.write(0x88, AccessSize::Half, 0x8101);
+        bench.write(0x89, AccessSize::Byte, 0x02);
+        let levels = [144, 152, 159, 160, 161].map(|number| bench.pins.written(bit(number)));
+        assert_eq!(levels, [true, true, true, false, true]);
+        bench.write(0x88, AccessSize::Byte, 0x02);
+        assert_eq!((bench.read(0x88, AccessSize::Half), bench.read(0x89, AccessSize::Byte)), (0x8102, 2));
+        for number in [128, 143] {
+            bench.pins.drive(bit(number), true, Cycles::default());
         }
-        let (duty, hz) = bench.fpga.pwm(0).expect("on");
-        assert_eq!((libm::round(duty * 1000.0), libm::round(hz)), (502.0, 986.0));
-        assert_eq!(pins.map(|pin| bench.pins.is_output(pin) && bench.pins.level(pin)), [true, true]);
-        bench.write(0xd0, AccessSize::Byte, 127);
-        assert_eq!(pins.map(|pin| bench.pins.level(pin)), [false, false]);
-        bench.write(0xd1, AccessSize::Byte, 0);
-        assert_eq!(pins.map(|pin| bench.pins.is_output(pin)), [false, false]);
-    }
-
-    #[test]
-    fn the_edges_of_a_watched_pwm_have_its_period_and_duty() {
-        let mut bench = Bench::default();
-        let bit = Bit::new(27).expect("a bit");
-        bench.pins.changes.switch_on(&GuestMemory::new());
-        bench.pins.watch(bit);
-        // 65.1 kHz: 3072 cycles, of which a fifth is high.
-        for (register, value) in [(0xd2, 51), (0xd3, 1)] {
-            bench.write(register, AccessSize::Byte, value);
-        }
-        bench.now = Cycles::new(8000);
-        bench.write(0xd3, AccessSize::Byte, 0);
-        let told: Vec<_> =
-            bench.pins.changes.take().iter().map(|change| (change.at.get(), change.level)).collect();
-        let expect = [(0, true), (614, false), (3072, true), (3686, false), (6144, true), (6758, false)];
-        assert_eq!(told, expect);
+        assert_eq!((bench.read(0x98, AccessSize::Half), bench.read(0x98, AccessSize::Byte)), (0x8001, 1));
+        bench.kanalog.drive(3, 4000);
+        assert_eq!((bench.read(0x93, AccessSize::Half), bench.read(0x92, AccessSize::Half)), (4000, 2048));
     }
 
     #[test]

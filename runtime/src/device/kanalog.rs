@@ -37,6 +37,11 @@ impl Kanalog {
         }
     }
 
+    /// The conversion of an input, 0 to 4095.
+    pub(crate) fn conversion(&self, channel: usize) -> u32 {
+        self.levels.get(channel).copied().unwrap_or_default().cast_unsigned()
+    }
+
     /// Converts all inputs, if something is connected to them and the port serves Kanalog.
     pub(crate) fn tick(&self, fpga: &Fpga, memory: &mut GuestMemory) {
         if !self.is_driven || !is_served(fpga, memory) {
