@@ -70,7 +70,7 @@ fn gcc(seeds: &[u64]) -> Option<Vec<String>> {
     scratch.write("all.c", format!("{source}\n{main}    return 0;\n}}\n"));
     let program = scratch.path().join("all");
     let compiler = Command::new("gcc")
-        .args(["-w", "-O0", "-fwrapv", "-fsigned-char", "-ffp-contract=off", "-o"])
+        .args(["-w", "-O1", "-fwrapv", "-fsigned-char", "-ffp-contract=off", "-o"])
         .arg(&program)
         .arg(scratch.path().join("all.c"))
         .status();
