@@ -241,9 +241,10 @@ main()
     }
 }
 
-/// The program that makes a sine with two outputs of a Konnect board, what the board took and what came of it.
-fn software_pwm() -> Vec<Vec<f64>> {
-    let scratch = Scratch::new("devices-software-pwm");
+/// The program that makes a sine with two outputs of a Konnect board, what the board took and what came of it; `name` is
+/// the test's own.
+fn software_pwm(name: &str) -> Vec<Vec<f64>> {
+    let scratch = Scratch::new(name);
     let folder = root().join("c-programs/konnect");
     let (stimulus, program) = (folder.join("software_pwm.stim"), folder.join("software_pwm.c"));
     let trace = scratch.path().join("a.csv");
@@ -268,7 +269,7 @@ const TICK: f64 = 90e-6;
 
 #[test]
 fn the_filter_is_the_closed_form_of_a_low_pass() {
-    let rows = software_pwm();
+    let rows = software_pwm("devices-closed-form");
     let mut volts = 0.0;
     for pair in rows.windows(2) {
         // The input shows the voltage at the end of the tick before.
@@ -286,7 +287,7 @@ fn the_filter_is_the_closed_form_of_a_low_pass() {
 
 #[test]
 fn the_filtered_sine_is_the_one_wanted_within_two_percent() {
-    let rows = software_pwm();
+    let rows = software_pwm("devices-sine");
     // Four whole periods of 5 Hz, the capacitor charged before.
     let periods: Vec<_> = rows.iter().filter(|row| (0.2..1.0).contains(&row[0])).collect();
     let count = periods.len() as f64;

@@ -57,10 +57,10 @@ pub(super) struct TraceOptions {
 impl TraceOptions {
     /// What the board is to record of these programs; `None` if nothing is traced.
     pub(super) fn request(&self, programs: &[Watched<'_>], options: &Options) -> Result<Option<Request>> {
-        if self.trace.is_empty() && self.plot.is_empty() && self.trace_items.is_some() {
-            bail!("`--watch` says what is shown; `--plot FILE.svg` or `--trace FILE.csv` says where");
-        }
         if self.trace.is_empty() && self.trace_bits.is_none() && self.plot.is_empty() {
+            if self.trace_items.is_some() {
+                bail!("`--watch` says what is shown; `--plot FILE.svg` or `--trace FILE.csv` says where");
+            }
             return Ok(None);
         }
         for picture in &self.plot {
