@@ -63,6 +63,23 @@ impl Terminal {
         self.keyboard.write_all(keys.as_bytes()).expect("somebody reads the terminal");
     }
 
+    /// Presses Ctrl-C at the prompt that comes next; between two prompts nobody reads single keys.
+    fn interrupt(&mut self) {
+        self.wait("KFLOP> ");
+        self.press("\x03");
+    }
+
+    /// Waits for the end; whether it was success.
+    fn ends_well(mut self) -> bool {
+        for _ in 0..PATIENCE.as_millis() / 10 {
+            if let Some(status) = self.child.try_wait().expect("it can be asked") {
+                return status.success();
+            }
+            thread::sleep(Duration::from_millis(10));
+        }
+        false
+    }
+
     /// Waits until a text is shown behind what was looked for before.
     fn wait(&mut self, expect: &str) {
         while !self.text.contains(expect) {
@@ -103,7 +120,7 @@ fn lines_are_remembered_and_completed() {
     terminal.press("help SetStateB\t\x15help SetStateBit\r");
     terminal.wait("void SetStateBit(int bit, int state)");
     terminal.press("quit\r");
-    assert!(terminal.child.wait().expect("it ends").success());
+    assert!(terminal.ends_well());
 }
 
 #[test]
@@ -115,13 +132,13 @@ fn the_first_ctrl_c_stops_the_programs_and_the_second_one_leaves() {
     );
     let mut terminal = Terminal::new(&scratch, &["a.c"]);
     terminal.wait("begun");
-    terminal.press("\x03");
+    terminal.interrupt();
     terminal.wait("all threads are stopped; Ctrl-C once more leaves");
     terminal.press("CheckThread1\r");
     terminal.wait("0\r\n");
     // A line in between counts anew.
-    terminal.press("\x03");
+    terminal.interrupt();
     terminal.wait("all threads are stopped");
-    terminal.press("\x03");
-    assert!(terminal.child.wait().expect("it ends").success());
+    terminal.interrupt();
+    assert!(terminal.ends_well());
 }
