@@ -114,24 +114,24 @@ impl Names {
 
     /// The number of a spelling, new if it was not seen before.
     pub fn intern(&mut self, spelling: &str) -> Name {
-        let slot = self.slot_of(spelling);
-        if let Some(number) = self.slots[slot].checked_sub(1) {
-            return Name(number);
+        let slot = self.slot_of(spelling.as_bytes(), SpellingHash::of(spelling.as_bytes()));
+        self.name_in(slot).unwrap_or_else(|| self.add(spelling, slot))
+    }
+
+    /// The number of a spelling whose hash was made while it was read; none if it is not UTF-8.
+    pub fn intern_hashed(&mut self, spelling: &[u8], hash: SpellingHash) -> Option<Name> {
+        let slot = self.slot_of(spelling, hash);
+        match self.name_in(slot) {
+            Some(name) => Some(name),
+            None => Some(self.add(std::str::from_utf8(spelling).ok()?, slot)),
         }
-        let name = Name::new(self.ends.len());
-        self.text.push_str(spelling);
-        self.ends.push(self.text.len());
-        self.slots[slot] = name.0 + 1;
-        if self.ends.len() * 2 > self.slots.len() {
-            self.grow();
-        }
-        name
     }
 
     /// The number of a spelling that was seen before.
     #[must_use]
     pub fn find(&self, spelling: &str) -> Option<Name> {
-        self.slots[self.slot_of(spelling)].checked_sub(1).map(Name)
+        let spelling = spelling.as_bytes();
+        self.name_in(self.slot_of(spelling, SpellingHash::of(spelling)))
     }
 
     /// The spelling of a name.
@@ -165,12 +165,17 @@ impl Names {
         self.ends.is_empty()
     }
 
+    /// The name in a slot; none if it is empty.
+    fn name_in(&self, slot: usize) -> Option<Name> {
+        self.slots[slot].checked_sub(1).map(Name)
+    }
+
     /// The slot that holds `spelling`, or the empty one where it belongs.
-    fn slot_of(&self, spelling: &str) -> usize {
+    fn slot_of(&self, spelling: &[u8], hash: SpellingHash) -> usize {
         let mask = self.slots.len() - 1;
-        let mut slot = hash(spelling) as usize & mask;
-        while let Some(number) = self.slots[slot].checked_sub(1) {
-            if self.get(Name(number)) == spelling {
+        let mut slot = hash.finish() as usize & mask;
+        while let Some(name) = self.name_in(slot) {
+            if self.get(name).as_bytes() == spelling {
                 break;
             }
             slot = (slot + 1) & mask;
@@ -178,22 +183,68 @@ impl Names {
         slot
     }
 
+    /// Adds a spelling that was not seen before, in the slot where it belongs.
+    fn add(&mut self, spelling: &str, slot: usize) -> Name {
+        let name = Name::new(self.ends.len());
+        self.text.push_str(spelling);
+        self.ends.push(self.text.len());
+        self.slots[slot] = name.0 + 1;
+        if self.ends.len() * 2 > self.slots.len() {
+            self.grow();
+        }
+        name
+    }
+
     fn grow(&mut self) {
         self.slots = vec![0; self.slots.len() * 2];
         for index in 0..self.ends.len() {
             let name = Name::new(index);
-            let slot = self.slot_of(self.get(name));
+            let spelling = self.get(name).as_bytes();
+            let slot = self.slot_of(spelling, SpellingHash::of(spelling));
             self.slots[slot] = name.0 + 1;
         }
     }
 }
 
-/// FNV-1a, with the high bits folded into the low ones that choose the slot.
-fn hash(spelling: &str) -> u64 {
-    let hash = spelling
-        .bytes()
-        .fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3));
-    hash ^ (hash >> 32)
+/// Whether a byte can go on an identifier.
+#[must_use]
+pub fn is_name_byte(byte: u8) -> bool {
+    const NAME_BYTES: [bool; 256] = {
+        let mut table = [false; 256];
+        let mut byte = 0;
+        while byte < 128 {
+            table[byte as usize] = (byte as u8).is_ascii_alphanumeric() || byte as u8 == b'_';
+            byte += 1;
+        }
+        table
+    };
+    NAME_BYTES[usize::from(byte)]
+}
+
+/// FNV-1a of a spelling, so that the lexer can make it with the same look at a byte that finds the end.
+#[derive(Clone, Copy, Debug)]
+pub struct SpellingHash(u64);
+
+impl SpellingHash {
+    /// The hash of no bytes.
+    pub const START: Self = Self(0xcbf2_9ce4_8422_2325);
+
+    /// The hash of a spelling.
+    #[must_use]
+    pub fn of(spelling: &[u8]) -> Self {
+        spelling.iter().fold(Self::START, |hash, byte| hash.with(*byte))
+    }
+
+    /// The hash with one more byte.
+    #[must_use]
+    pub const fn with(self, byte: u8) -> Self {
+        Self((self.0 ^ byte as u64).wrapping_mul(0x100_0000_01b3))
+    }
+
+    /// The number that chooses a slot: its low bits depend on all others.
+    const fn finish(self) -> u64 {
+        self.0 ^ (self.0 >> 32)
+    }
 }
 
 #[cfg(test)]

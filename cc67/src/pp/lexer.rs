@@ -17,7 +17,7 @@ mod space;
 use std::sync::Arc;
 
 use crate::diag::{Diagnostic, Sink};
-use crate::names::{Name, Names, word};
+use crate::names::{Names, SpellingHash, is_name_byte, word};
 use crate::source::Span;
 
 use super::token::{Flags, Token, TokenKind};
@@ -33,10 +33,11 @@ pub(super) struct Context<'a> {
 /// A place in the text of a file.
 #[derive(Debug)]
 pub(super) struct Lexer {
+    /// The bytes that count.
     text: Arc<Vec<u8>>,
     /// Offset of the next byte.
     at: usize,
-    /// Offset behind the last byte that counts.
+    /// Offset behind the last byte.
     end: usize,
     /// Position of the first byte in the source map.
     base: u32,
@@ -60,6 +61,7 @@ impl Lexer {
         let tail = text.len() - padding.count();
         let ctrl_z = text.iter().skip(tail).position(|byte| *byte == 0x1A);
         let end = ctrl_z.map_or(text.len(), |offset| tail + offset);
+        let text = if end < text.len() { Arc::new(text.get(..end).unwrap_or(&[]).to_vec()) } else { text };
         Self {
             text,
             at,
@@ -139,12 +141,12 @@ impl Lexer {
 
     /// The byte at an offset; NUL behind the end.
     fn byte(&self, at: usize) -> u8 {
-        if at < self.end { self.text.get(at).copied().unwrap_or(0) } else { 0 }
+        self.text.get(at).copied().unwrap_or(0)
     }
 
     /// The bytes of a range.
     fn bytes(&self, lo: usize, hi: usize) -> &[u8] {
-        self.text.get(lo..hi.min(self.end)).unwrap_or(&[])
+        self.text.get(lo..hi.min(self.text.len())).unwrap_or(&[])
     }
 
     fn span_to(&self, lo: usize, hi: usize) -> Span {
@@ -159,8 +161,16 @@ impl Lexer {
 
     fn identifier(&mut self, flags: Flags, cx: &mut Context<'_>) -> Token {
         let lo = self.at;
-        let rest = self.bytes(lo, self.end);
-        self.at += rest.iter().position(|byte| !is_name_byte(*byte)).unwrap_or(rest.len());
+        let mut hash = SpellingHash::START;
+        let mut length = 0;
+        for byte in self.bytes(lo, self.end) {
+            if !is_name_byte(*byte) {
+                break;
+            }
+            hash = hash.with(*byte);
+            length += 1;
+        }
+        self.at += length;
         let mut flags = flags;
         match self.byte(self.at) {
             b'\\' if self.past_splices(self.at) != self.at => {
@@ -174,10 +184,13 @@ impl Lexer {
             _ => {}
         }
         let name = if flags.has(Flags::SPLICED) {
-            intern(&without_splices(self.bytes(lo, self.at)), cx)
+            let spelling = without_splices(self.bytes(lo, self.at));
+            cx.names.intern_hashed(&spelling, SpellingHash::of(&spelling))
         } else {
-            intern(self.bytes(lo, self.at), cx)
+            cx.names.intern_hashed(self.bytes(lo, self.at), hash)
         };
+        // The bytes were looked at one by one: letters, digits and underscores.
+        let name = name.unwrap_or(word::FUNC);
         Token { kind: TokenKind::Identifier, flags, name, span: self.span_from(lo) }
     }
 
@@ -241,17 +254,6 @@ impl Lexer {
         self.at = behind;
         true
     }
-}
-
-/// The number of a name made of ASCII.
-fn intern(spelling: &[u8], cx: &mut Context<'_>) -> Name {
-    // The bytes were checked one by one to be letters, digits and underscores.
-    std::str::from_utf8(spelling).map_or(word::FUNC, |spelling| cx.names.intern(spelling))
-}
-
-/// Whether a byte can go on an identifier.
-pub(super) fn is_name_byte(byte: u8) -> bool {
-    byte.is_ascii_alphanumeric() || byte == b'_'
 }
 
 /// White space within a line; a carriage return alone does not end one.

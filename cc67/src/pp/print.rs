@@ -1,8 +1,9 @@
 //! Tokens as text again, for people and tests.
 
+use crate::names::is_name_byte;
 use crate::source::SourceMap;
 
-use super::lexer::{is_name_byte, without_splices};
+use super::lexer::without_splices;
 use super::token::{Flags, Token, TokenKind};
 
 /// The text of a preprocessed translation unit; lines stay lines, other white space becomes one blank.

@@ -4,10 +4,11 @@
 //! the character's name and what to write instead, and is then taken for what was meant.
 
 use crate::diag::Diagnostic;
+use crate::names::is_name_byte;
 
 use super::super::LAX;
 use super::super::token::{Flags, Token, TokenKind};
-use super::{Context, Lexer, is_name_byte};
+use super::{Context, Lexer};
 
 /// What was already said about this file.
 #[derive(Debug, Default)]

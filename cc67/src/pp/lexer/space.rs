@@ -87,20 +87,12 @@ impl Lexer {
     /// The offset of the line feed that ends the line of `at`, whatever stands before it.
     pub(super) fn end_of_line(&self, at: usize) -> usize {
         let rest = self.bytes(at, self.end);
-        at + rest.iter().position(|byte| *byte == b'\n').unwrap_or(rest.len())
+        at + memchr::memchr(b'\n', rest).unwrap_or(rest.len())
     }
 
     /// The offset behind the end of the block comment whose text is at `at`.
     pub(super) fn end_of_comment(&self, at: usize) -> Option<usize> {
-        let rest = self.bytes(at, self.end);
-        let mut from = 0;
-        loop {
-            let star = from + rest.get(from..)?.iter().position(|byte| *byte == b'*')?;
-            if rest.get(star + 1) == Some(&b'/') {
-                return Some(at + star + 2);
-            }
-            from = star + 1;
-        }
+        Some(at + find_pair(self.bytes(at, self.end), *b"*/")? + 2)
     }
 
     fn skip_comment(&mut self, cx: &mut Context<'_>) -> bool {
@@ -141,7 +133,7 @@ impl Lexer {
             return;
         };
         let comment = self.bytes(text, end - 2);
-        if let Some(inner) = comment.windows(2).position(|pair| pair == b"/*") {
+        if let Some(inner) = find_pair(comment, *b"/*") {
             let span = self.span_to(text + inner, text + inner + 2);
             cx.sink.report(
                 Diagnostic::warning(LAX, span, "`/*` within a comment")
@@ -170,4 +162,9 @@ impl Lexer {
         }
         self.at += 1;
     }
+}
+
+/// Where two bytes stand together first.
+fn find_pair(text: &[u8], [first, second]: [u8; 2]) -> Option<usize> {
+    memchr::memchr_iter(first, text).find(|at| text.get(at + 1) == Some(&second))
 }
