@@ -5,7 +5,7 @@ use super::constants::Constant;
 use super::conversions::Target;
 use super::operands::Operand;
 use super::places::Located;
-use crate::ast::{BinaryOperator, Expression};
+use crate::ast::{BinaryOperator, Expression, ExpressionKind};
 use crate::diag::Diagnostic;
 use crate::lints::Lint;
 use crate::source::Span;
@@ -25,6 +25,19 @@ impl Sema<'_> {
         let value = self.read(source, from.span)?;
         let value = self.assigned(value, target.ty.ty, Target::Assignment, from.span)?;
         Some(Operand::Value(self.body.expr(ExprKind::Assign(target.place, value), target.ty.ty, span)))
+    }
+
+    /// Reports `if (f() = 1)`, which cannot be meant as it is written.
+    pub(super) fn refuse_assigned_call(&mut self, condition: &Expression) -> bool {
+        let ExpressionKind::Assign(to, _) = &condition.kind else { return false };
+        let is_call = matches!(to.kind, ExpressionKind::Call(..));
+        if is_call {
+            self.report(
+                Diagnostic::error(to.span, "what a function returns cannot be assigned to")
+                    .help("write `==` to compare"),
+            );
+        }
+        is_call
     }
 
     /// The place that an assignment changes.

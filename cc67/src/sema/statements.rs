@@ -135,6 +135,9 @@ impl Sema<'_> {
 
     /// A condition: a scalar value; 0 in its place if it is wrong.
     pub(super) fn condition(&mut self, expression: &Expression) -> ExprId {
+        if self.refuse_assigned_call(expression) {
+            return self.placeholder(expression.span);
+        }
         self.report_finding(assignment_condition::finding(expression));
         self.value(expression).unwrap_or_else(|| self.placeholder(expression.span))
     }
