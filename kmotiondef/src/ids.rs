@@ -118,7 +118,7 @@ macro_rules! small_id {
 
             /// All valid numbers in ascending order.
             pub fn all() -> impl DoubleEndedIterator<Item = Self> {
-                ($low..=$high).map(Self)
+                ($low..$high + 1).map(Self)
             }
         }
 

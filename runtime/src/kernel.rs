@@ -301,10 +301,20 @@ impl Kernel {
         }
     }
 
+    /// Exchanges inputs and outputs with one of the Konnects, if there are any; whether that was done.
+    fn exchange(&mut self, context: &mut TickContext<'_>) -> bool {
+        let has_any = self.konnects.has_any();
+        if has_any && let Some((board, outputs)) = self.konnects.tick(context.memory, context.tick) {
+            self.attached.iter_mut().for_each(|device| device.konnect(board, outputs, context.now));
+        }
+        has_any
+    }
+
     /// Something outside has changed what the next tick may depend on.
     pub(crate) fn disturb(&mut self) {
         self.is_settled = false;
         self.servo.still.interrupt();
+        self.servo.forget_plans();
     }
 
     /// Whether text, motion, a recording or a request to the PC is still under way.
@@ -417,17 +427,22 @@ impl Firmware for Kernel {
         }
         let acted = self.play_tick(context) | self.assist_tick(context.now);
         self.host.tick();
-        serial::tick(self, context);
-        if let Some((board, outputs)) = self.konnects.tick(context.memory, context.tick) {
-            self.attached.iter_mut().for_each(|device| device.konnect(board, outputs, context.now));
+        // What goes in here may be stored wherever a program has said.
+        let received = serial::tick(self, context) | self.exchange(context);
+        if acted || received {
+            self.servo.forget_plans();
         }
         let changed = crate::servo::tick(self, context);
         self.sample(context, 1);
-        self.is_settled = !changed && !acted && context.memory.get(USER_CALL_BACK).is_null();
+        let calls_back = !context.memory.get(USER_CALL_BACK).is_null();
+        if calls_back {
+            self.servo.forget_plans();
+        }
+        self.is_settled = !changed && !acted && !calls_back;
     }
 
     fn servo_time(&self, memory: &GuestMemory) -> Cycles {
-        crate::servo::duration(memory)
+        self.servo.duration(memory)
     }
 
     fn switch_to(&mut self, turn: Turn, context: &mut TickContext<'_>) {
@@ -436,6 +451,7 @@ impl Firmware for Kernel {
         context.memory.set(CURRENT_THREAD, i32::from(turn.number()));
         if turn != Turn::Primary {
             self.is_settled = false;
+            self.servo.forget_plans();
         }
     }
 
@@ -450,8 +466,12 @@ impl Firmware for Kernel {
         crate::servo::limits::slice(self, context.memory);
         crate::host::slice(self, context);
         serial::slice(self, context);
-        commands::slice(self, context, |kernel| &mut kernel.usb);
-        commands::slice(self, context, |kernel| &mut kernel.uart_link);
+        if self.usb.is_busy() {
+            commands::slice(self, context, |kernel| &mut kernel.usb);
+        }
+        if self.uart_link.is_busy() {
+            commands::slice(self, context, |kernel| &mut kernel.uart_link);
+        }
         commands::advance(self, context);
         self.store_queue_indices(context.memory);
     }

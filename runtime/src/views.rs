@@ -72,12 +72,6 @@ impl<'a> AxisView<'a> {
         field_of(self.0, field)
     }
 
-    /// Whether these bytes lie at an offset.
-    #[inline(always)]
-    pub(crate) fn holds<const N: usize>(&self, offset: u32, bytes: &[u8; N]) -> bool {
-        chunk::<N>(self.0, offset as usize) == *bytes
-    }
-
     /// Stores a value in a field.
     #[inline(always)]
     pub(crate) fn set<T: Scalar>(&mut self, field: Field<T>, value: T::Value) {

@@ -80,9 +80,10 @@ impl FromIterator<ThreadId> for ThreadSet {
 /// The turn after `current`: the next active thread in ascending order, then the primary thread.
 #[must_use]
 pub fn next(active: ThreadSet, current: Turn) -> Turn {
-    ThreadId::all()
-        .find(|thread| thread.get() > current.number() && active.contains(*thread))
-        .map_or(Turn::Primary, Turn::User)
+    let passed = (2 << current.number()) - 1;
+    let left = u32::from(active.bits()) & !passed;
+    // No bit is number 32, which is no thread's.
+    ThreadId::new(left.trailing_zeros().cast_signed()).map_or(Turn::Primary, Turn::User)
 }
 
 /// The turn `ticks` after `current`, while the same threads are active.

@@ -163,9 +163,6 @@ impl Output {
 
 /// What the primary thread does for one end of the link in its slice: at most one line.
 pub(crate) fn slice(kernel: &mut Kernel, context: &mut TickContext<'_>, end: fn(&mut Kernel) -> &mut Link) {
-    if !end(kernel).is_busy() {
-        return;
-    }
     let mut link = std::mem::take(end(kernel));
     let mut out = Vec::new();
     if let Some(line) = link.take_line(&mut out) {

@@ -4,7 +4,7 @@
 //! axis reads shows nothing, so its pins are free for other inputs. Sources: io.md sections 5 and 7, devices.md
 //! section 5.
 
-use kmotiondef::{Bit, Cycles};
+use kmotiondef::Cycles;
 
 use super::pins::Pins;
 
@@ -25,9 +25,11 @@ const FIRST_ERROR: u32 = 4;
 const SNAP_ERROR: u16 = 1 << 15;
 
 /// All encoder inputs.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct Encoders {
     counts: [i8; CHANNELS],
+    /// First pin of each channel of the board.
+    pins: [u16; ON_BOARD],
     /// Channels that an axis reads, channel 0 lowest.
     used: u16,
     errors: u16,
@@ -35,22 +37,30 @@ pub(crate) struct Encoders {
     filter: u16,
 }
 
-/// The levels A and B of a count: one edge for each step.
-fn phases(count: i8) -> [bool; 2] {
-    let step = count & 3;
-    [step == 1 || step == 2, step >= 2]
+/// The levels A and B of a count, A the lower bit: one edge for each step.
+fn phases(count: i8) -> u64 {
+    let step = (count & 3) as u64;
+    step ^ step >> 1
+}
+
+/// The first pin of each channel of the board.
+fn pins(filter: u16) -> [u16; ON_BOARD] {
+    std::array::from_fn(|channel| {
+        let group = channel / GROUP;
+        let place = usize::from(filter & MOVED[group] != 0);
+        PINS[group][place] + 2 * (channel % GROUP) as u16
+    })
+}
+
+impl Default for Encoders {
+    fn default() -> Self {
+        Self { counts: [0; CHANNELS], pins: pins(0), used: 0, errors: 0, filter: 0 }
+    }
 }
 
 impl Encoders {
-    /// The first pin of a channel; `None` for those of SnapAmps.
-    fn pin(&self, channel: usize) -> Option<u16> {
-        let group = channel / GROUP;
-        let places = PINS.get(group)?;
-        let place = usize::from(self.filter & MOVED.get(group)? != 0);
-        Some(places[place] + 2 * (channel % GROUP) as u16)
-    }
-
     /// A counter has a new value.
+    #[inline]
     pub(crate) fn count(&mut self, channel: usize, count: i8, pins: &mut Pins, now: Cycles) {
         if let Some(held) = self.counts.get_mut(channel) {
             *held = count;
@@ -59,12 +69,11 @@ impl Encoders {
         }
     }
 
-    fn show(&self, channel: usize, levels: [bool; 2], pins: &mut Pins, now: Cycles) {
-        let Some(first) = self.pin(channel) else { return };
-        for (pin, level) in (i32::from(first)..).zip(levels) {
-            if let Some(bit) = Bit::new(pin) {
-                pins.show_phase(bit, level, now);
-            }
+    /// Those of SnapAmps have no pins.
+    #[inline]
+    fn show(&self, channel: usize, levels: u64, pins: &mut Pins, now: Cycles) {
+        if let Some(&first) = self.pins.get(channel) {
+            pins.show_phases(first, levels, now);
         }
     }
 
@@ -75,9 +84,10 @@ impl Encoders {
         }
         let channels = (0..ON_BOARD).filter(|channel| self.used >> channel & 1 != 0).collect::<Vec<_>>();
         for &channel in &channels {
-            self.show(channel, [false; 2], pins, now);
+            self.show(channel, 0, pins, now);
         }
         self.filter = filter;
+        self.pins = self::pins(filter);
         for &channel in &channels {
             self.show(channel, phases(self.counts[channel]), pins, now);
         }
@@ -116,8 +126,8 @@ impl Encoders {
     pub(crate) fn snap_levels(&self, board: usize) -> u8 {
         let first = Self::of_snapamp(board);
         let levels = (first..first + GROUP)
-            .flat_map(|channel| phases(self.counts.get(channel).copied().unwrap_or_default()));
-        (0..).zip(levels).fold(0, |byte, (index, level)| byte | u8::from(level) << index)
+            .map(|channel| phases(self.counts.get(channel).copied().unwrap_or_default()));
+        (0..).zip(levels).fold(0, |byte, (index, levels)| byte | (levels as u8) << (2 * index))
     }
 
     /// Clears the errors of a SnapAmp.
@@ -128,6 +138,8 @@ impl Encoders {
 
 #[cfg(test)]
 mod tests {
+    use kmotiondef::Bit;
+
     use super::*;
 
     fn levels(pins: &Pins, first: i32) -> [bool; 2] {

@@ -112,6 +112,11 @@ impl Konnects {
         (self.outputs.insert(service.board, outputs) != Some(outputs)).then_some((service.board, outputs))
     }
 
+    /// Whether any is exchanged with.
+    pub(crate) const fn has_any(&self) -> bool {
+        !self.services.is_empty()
+    }
+
     /// Whether no exchange changes anything.
     pub(crate) fn is_settled(&self, memory: &GuestMemory) -> bool {
         self.services.iter().all(|service| {

@@ -147,15 +147,19 @@ impl Pins {
         }
     }
 
-    /// An encoder gives one of its inputs a level, unless something else stands there.
-    pub(crate) fn show_phase(&mut self, bit: Bit, level: bool, at: Cycles) {
-        if self.driven.contains(bit) {
-            return;
-        }
-        self.phases |= 1 << bit.get();
-        self.inputs.set(bit, level);
-        if !self.is_output(bit) {
-            self.show(bit, level, at);
+    /// An encoder gives its two inputs from `first` on the levels of two bits, unless something else stands there.
+    #[inline]
+    pub(crate) fn show_phases(&mut self, first: u16, levels: u64, at: Cycles) {
+        let mask = 0b11 << first & !self.driven.0[0];
+        self.phases |= mask;
+        self.inputs.0[0] = self.inputs.0[0] & !mask | levels << first & mask;
+        if self.watched & mask != 0 {
+            let shown = mask & !(self.direction | self.generated);
+            for pin in [first, first + 1].into_iter().filter(|pin| shown >> pin & 1 != 0) {
+                if let Some(bit) = Bit::new(pin.into()) {
+                    self.show(bit, self.inputs.contains(bit), at);
+                }
+            }
         }
     }
 

@@ -180,6 +180,7 @@ impl SnapAmps {
     }
 
     /// Whether a board is on the bus.
+    #[inline]
     pub(crate) fn is_present(&self) -> bool {
         self.0.iter().any(|board| board.is_present)
     }

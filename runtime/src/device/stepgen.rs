@@ -109,6 +109,12 @@ impl StepGenerators {
     /// An axis steps no longer.
     #[inline]
     pub(crate) fn release(&mut self, axis: AxisId, pins: &mut Pins, now: Cycles) {
+        if self.channels[axis.index()].is_some() {
+            self.give_up(axis, pins, now);
+        }
+    }
+
+    fn give_up(&mut self, axis: AxisId, pins: &mut Pins, now: Cycles) {
         let Some(channel) = self.channels[axis.index()].take() else { return };
         let generator = generator_of(channel);
         if self.generators[generator].owner.is_some_and(|(owner, _)| owner == axis) {

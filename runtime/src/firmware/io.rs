@@ -170,6 +170,7 @@ pub(crate) fn read_adc(kernel: &mut Kernel, caller: &mut Caller<'_>, channel: i3
 }
 
 /// Stores the word sent to a PWM channel.
+#[inline]
 pub(crate) fn store_pwm(memory: &mut GuestMemory, channel: i32, word: i32) {
     if let Some(channel) = usize::try_from(channel).ok().filter(|&channel| channel < 16) {
         memory.set(LAST_PWM.element(channel), word);
@@ -177,6 +178,7 @@ pub(crate) fn store_pwm(memory: &mut GuestMemory, channel: i32, word: i32) {
 }
 
 /// The word of a locked-antiphase value.
+#[inline]
 pub(crate) fn antiphase(value: i32) -> i32 {
     value.clamp(-MAX_PWM_VALUE, MAX_PWM_VALUE) + 1280
 }
@@ -188,6 +190,7 @@ pub(crate) fn recirculate(value: i32) -> i32 {
 }
 
 /// The word of a current-loop value.
+#[inline]
 pub(crate) fn current(value: i32) -> i32 {
     value.clamp(-MAX_PWMC_VALUE, MAX_PWMC_VALUE) + 41_984
 }

@@ -73,6 +73,7 @@ fn begin(kernel: &mut Kernel, memory: &mut GuestMemory) {
 }
 
 /// Whether script commands are taken from the UART and answered there.
+#[inline]
 pub(crate) fn has_commands(kernel: &Kernel, memory: &GuestMemory) -> bool {
     kernel.serial.is_on && memory.get(DO_RS232_CMDS) != 0
 }
@@ -138,10 +139,10 @@ impl SerialService {
     }
 }
 
-/// The service of one tick: a character each way.
-pub(crate) fn tick(kernel: &mut Kernel, context: &mut TickContext<'_>) {
+/// The service of one tick: a character each way; whether there is any.
+pub(crate) fn tick(kernel: &mut Kernel, context: &mut TickContext<'_>) -> bool {
     if !kernel.serial.is_busy(context.memory, &kernel.uart) {
-        return;
+        return false;
     }
     receive(kernel, context);
     let memory = &mut *context.memory;
@@ -150,6 +151,7 @@ pub(crate) fn tick(kernel: &mut Kernel, context: &mut TickContext<'_>) {
         kernel.uart.send(memory.peek(out), context.now);
         memory.set(P_RS232_TX_OUT, next(out, RS232_TX_BUF.address()));
     }
+    true
 }
 
 /// Puts a received character into its ring; a full ring begins anew, as its two pointers are equal then.
@@ -167,10 +169,12 @@ fn receive(kernel: &mut Kernel, context: &mut TickContext<'_>) {
 }
 
 /// What the primary thread does in its slice: it takes what was received as script commands.
+#[inline]
 pub(crate) fn slice(kernel: &mut Kernel, context: &mut TickContext<'_>) {
     if !has_commands(kernel, context.memory) {
         return;
     }
+    kernel.servo.forget_plans();
     fill(kernel, context.memory);
     let received = context.memory.get(P_RS232_REC_IN);
     let mut out = context.memory.get(P_RS232_REC_OUT);

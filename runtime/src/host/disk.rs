@@ -178,6 +178,7 @@ pub(crate) fn take(kernel: &mut Kernel, line: &[u8], now: Cycles) -> bool {
 }
 
 /// Puts an answer that has arrived into the board's line buffer.
+#[inline]
 pub(crate) fn slice(kernel: &mut Kernel, context: &mut TickContext<'_>) {
     if let Some(answer) = kernel.disk.arrived(context.now) {
         match answer {

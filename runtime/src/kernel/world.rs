@@ -85,7 +85,14 @@ impl Kernel {
     }
 
     /// Samples what is recorded at the last of `count` ticks that is to be sampled.
+    #[inline]
     pub(super) fn sample(&mut self, context: &TickContext<'_>, count: u64) {
+        if self.recorder.is_some() {
+            self.record_sample(context, count);
+        }
+    }
+
+    fn record_sample(&mut self, context: &TickContext<'_>, count: u64) {
         let Some(mut recorder) = self.recorder.take() else { return };
         if let Some(tick) = recorder.sampled_tick(context.tick, count)
             && let Some(record) = recorder.sample(self, context.memory)

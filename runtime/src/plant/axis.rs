@@ -14,7 +14,7 @@ use crate::servo::TIMEBASE;
 use crate::views::AxisView;
 
 /// Counts in one tick that an 8-bit encoder register can tell from going backwards, with some room.
-const COUNTS_PER_TICK: f64 = 120.0;
+pub(crate) const COUNTS_PER_TICK: f64 = 120.0;
 /// A remaining distance that counts as none.
 const NEGLIGIBLE: f64 = 1e-9;
 /// Time constant with which a rotor turns into a vector that stands, seconds.
@@ -40,11 +40,30 @@ struct Build {
     model: Model,
     /// What a closed loop follows of the rest in one tick.
     followed: f64,
-    counts_per_unit: f64,
-    encoder: Encoder,
+    encoder: Scale,
     min: f64,
     max: f64,
     motor: Motor,
+}
+
+/// Position units of a count of the encoder that the load turns.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Scale {
+    /// The axis' own input gain: whatever that is, the position follows the load.
+    Axis,
+    Units(f64),
+    /// There is no encoder.
+    Absent,
+}
+
+impl Scale {
+    fn of(axis: &Axis) -> Self {
+        match (axis.encoder, axis.model) {
+            (Encoder::Auto, Model::Follow) => Self::Axis,
+            (Encoder::Auto | Encoder::Connected, _) => Self::Units(1.0 / axis.counts_per_unit),
+            (Encoder::Absent, _) => Self::Absent,
+        }
+    }
 }
 
 /// One axis' load, in position units of the axis.
@@ -72,8 +91,10 @@ pub(crate) struct Plant {
     /// Where the gain last changed, and the count there.
     base: f64,
     base_count: i64,
-    /// What the step generator has put out in the last tick, and whether its amplifier is off.
+    /// What the step generator has put out in the last tick, whether that is to be told, and whether its amplifier is
+    /// off.
     stepped: f64,
+    has_stepped: bool,
     is_off: bool,
     /// Whether it was to make more steps than it can.
     is_behind: bool,
@@ -102,8 +123,7 @@ impl Plant {
         let build = Build {
             model: axis.model,
             followed: if axis.lag_s > 0.0 { 1.0 - libm::exp(-TIMEBASE / axis.lag_s) } else { 1.0 },
-            counts_per_unit: axis.counts_per_unit,
-            encoder: axis.encoder,
+            encoder: Scale::of(axis),
             min: axis.min,
             max: axis.max,
             motor: Motor::new(axis),
@@ -123,6 +143,7 @@ impl Plant {
             base: axis.start,
             base_count: 0,
             stepped: 0.0,
+            has_stepped: false,
             is_off: false,
             is_behind: false,
             drive: Drive::None,
@@ -131,12 +152,12 @@ impl Plant {
     }
 
     /// The register of the encoder that the load turns; `gain` is the axis' input gain.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn encoder(&mut self, gain: f64) -> i8 {
-        let gain = match (self.build.encoder, self.build.model) {
-            (Encoder::Auto, Model::Follow) => gain,
-            (Encoder::Auto | Encoder::Connected, _) => 1.0 / self.build.counts_per_unit,
-            (Encoder::Absent, _) => return 0,
+        let gain = match self.build.encoder {
+            Scale::Axis => gain,
+            Scale::Units(units) => units,
+            Scale::Absent => return 0,
         };
         if self.load != self.counted || gain != self.gain {
             self.count(gain);
@@ -145,6 +166,7 @@ impl Plant {
     }
 
     /// Counts to where the load is. Another gain counts from here on: the register does not jump.
+    #[inline(always)]
     fn count(&mut self, gain: f64) {
         if gain != self.gain {
             (self.base, self.base_count, self.gain) = (self.counted, self.register, gain);
@@ -210,32 +232,45 @@ impl Plant {
     }
 
     /// Moves the load by what the last tick put out, and takes up a position that a program has written; whether
-    /// anything changed. A step generator makes at most `steps_per_tick`.
-    #[inline]
-    pub(crate) fn advance(&mut self, chan: &AxisView<'_>, steps_per_tick: f64) -> bool {
+    /// anything changed. An encoder reaches as far as `reach` in a tick, a step generator makes at most
+    /// `steps_per_tick`.
+    #[inline(always)]
+    pub(crate) fn advance(
+        &mut self,
+        chan: &AxisView<'_>,
+        reach: f64,
+        steps_per_tick: impl FnOnce() -> f64,
+    ) -> bool {
         let position = chan.get(Chan::POSITION);
         let was_written = position != self.position;
         if was_written {
             self.shift += position - self.position;
             self.position = position;
         }
-        was_written | self.moves(chan, steps_per_tick)
+        let moves = match self.drive {
+            Drive::Loop(command, _) if self.build.model == Model::Follow => {
+                let before = self.load;
+                self.follow(command, reach);
+                self.stop_hard();
+                self.load != before
+            }
+            Drive::None if self.velocity == 0.0 => false,
+            _ => self.moves(chan, steps_per_tick()),
+        };
+        was_written | moves
     }
 
+    /// What is neither at rest nor follows its command.
     fn moves(&mut self, chan: &AxisView<'_>, steps_per_tick: f64) -> bool {
         let before = self.load;
         match (self.build.model, self.drive) {
-            (Model::None, _) | (Model::Follow, Drive::None) => return false,
+            (Model::None, _) | (Model::Follow, Drive::None | Drive::Loop(..)) => return false,
             (_, Drive::Steps(command)) if command == self.reached => return false,
             (_, Drive::Steps(command)) => {
                 let steps_per_unit = f64::from(chan.get(Chan::OUTPUT_GAIN)).abs();
                 self.step(command, if steps_per_unit > 0.0 { steps_per_tick / steps_per_unit } else { 0.0 });
             }
-            (Model::Follow, Drive::Loop(command, _)) => {
-                self.follow(command, f64::from(chan.get(Chan::INPUT_GAIN0)));
-            }
             (_, Drive::Vector(magnitude, angle)) => self.turn(magnitude, angle, chan),
-            (Model::Motor, Drive::None) if self.velocity == 0.0 => return false,
             (Model::Motor, Drive::None) => self.run(Applied::Pwm(0.0), chan),
             (Model::Motor, Drive::Loop(_, applied)) => self.run(applied, chan),
         }
@@ -247,6 +282,7 @@ impl Plant {
     fn step(&mut self, command: f64, limit: f64) {
         let step = command - self.reached;
         self.stepped = step.clamp(-limit, limit);
+        self.has_stepped = true;
         self.is_behind |= step != self.stepped;
         self.reached = if step == self.stepped { command } else { self.reached + self.stepped };
         if self.is_off {
@@ -256,8 +292,14 @@ impl Plant {
         }
     }
 
+    /// Whether the step generator has put anything out since the last time, or was to.
+    pub(crate) const fn has_stepped(&self) -> bool {
+        self.has_stepped
+    }
+
     /// Position units that the step generator has put out since the last time.
     pub(crate) fn take_stepped(&mut self) -> f64 {
+        self.has_stepped = false;
         std::mem::take(&mut self.stepped)
     }
 
@@ -271,19 +313,15 @@ impl Plant {
         self.is_off = !is_on;
     }
 
-    /// Follows a command with a lag.
-    fn follow(&mut self, command: f64, gain: f64) {
+    /// Follows a command with a lag, by `reach` in a tick at most; 0 for no limit.
+    #[inline(always)]
+    fn follow(&mut self, command: f64, reach: f64) {
         let rest = command - (self.load + self.shift);
         if rest == 0.0 {
             return;
         }
-        let reach = COUNTS_PER_TICK * gain.abs();
         let step = if rest.abs() < NEGLIGIBLE { rest } else { rest * self.build.followed };
-        self.load += match reach > 0.0 {
-            true if step > reach => reach,
-            true if step < -reach => -reach,
-            _ => step,
-        };
+        self.load += if step.abs() > reach && reach > 0.0 { libm::copysign(reach, step) } else { step };
         self.origin = self.load - self.reached;
     }
 
@@ -311,6 +349,7 @@ impl Plant {
     }
 
     /// Holds the load at its hard stops: a stepper loses steps there, a motor stalls.
+    #[inline(always)]
     fn stop_hard(&mut self) {
         let is_beyond = self.load > self.build.max;
         if is_beyond || self.load < self.build.min {
@@ -330,7 +369,7 @@ mod tests {
     fn a_loop_settles_on_its_command() {
         let mut plant = Plant::default();
         for _ in 0..1000 {
-            plant.follow(50.25, 1.0);
+            plant.follow(50.25, COUNTS_PER_TICK);
         }
         assert_eq!((plant.load, plant.encoder(1.0)), (50.25, 50));
     }

@@ -12,7 +12,7 @@ use kmotiondef::variables::{DAC_BUFFER, KANALOG_PRESENT, SNAP_AMP_PRESENT};
 use kmotiondef::{AxisId, Bit, Cycles};
 use vm::memory::GuestMemory;
 
-pub(crate) use axis::{Drive, Plant};
+pub(crate) use axis::{COUNTS_PER_TICK, Drive, Plant};
 pub(crate) use motor::Applied;
 
 use crate::device::konnect::Port;
@@ -69,6 +69,8 @@ pub(crate) struct Mechanics {
     spindle: Option<Spindle>,
     /// Revolutions a second.
     spindle_speed: f64,
+    /// Whether there is anything of all that.
+    is_any: bool,
 }
 
 impl Mechanics {
@@ -90,20 +92,12 @@ impl Mechanics {
             let closes = Closes::Every(index.every, index.width, index.offset);
             Some(Contact { bit: index.bit, axis, closes, active: true })
         });
-        Self {
-            contacts: switches.chain(probes).chain(indexes).collect(),
-            analog: machine.analog.clone(),
-            handwheels: machine.encoders.clone(),
-            spindle: machine.spindle,
-            spindle_speed: 0.0,
-        }
-    }
-
-    fn is_empty(&self) -> bool {
-        self.contacts.is_empty()
-            && self.analog.is_empty()
-            && self.handwheels.is_empty()
-            && self.spindle.is_none()
+        let contacts: Vec<_> = switches.chain(probes).chain(indexes).collect();
+        let (analog, handwheels) = (machine.analog.clone(), machine.encoders.clone());
+        let spindle = machine.spindle;
+        let is_any =
+            !(contacts.is_empty() && analog.is_empty() && handwheels.is_empty() && spindle.is_none());
+        Self { contacts, analog, handwheels, spindle, spindle_speed: 0.0, is_any }
     }
 
     /// Whether it moves by itself after `time`, so that ticks cannot be skipped.
@@ -167,11 +161,19 @@ pub(crate) fn play(kernel: &mut Kernel, machine: &MachineFile, memory: &mut Gues
     }
 }
 
+/// Whether a machine file connects anything to the board beside the loads themselves.
+#[inline]
+pub(crate) const fn has_mechanics(kernel: &Kernel) -> bool {
+    kernel.mechanics.is_any
+}
+
 /// What moves by time and by other outputs than the axes' own; whether it will move in the next tick too.
+#[inline]
 pub(crate) fn drive(kernel: &mut Kernel, memory: &GuestMemory, now: Cycles) -> bool {
-    if kernel.mechanics.is_empty() {
-        return false;
-    }
+    kernel.mechanics.is_any && turn(kernel, memory, now)
+}
+
+fn turn(kernel: &mut Kernel, memory: &GuestMemory, now: Cycles) -> bool {
     let time = now.get() as f64 / Cycles::PER_SECOND.get() as f64;
     turn_handwheels(kernel, memory, time);
     turn_spindle(kernel, memory);
@@ -240,10 +242,14 @@ fn fraction(kernel: &Kernel, memory: &GuestMemory, spindle: &Spindle) -> f64 {
 }
 
 /// Shows the board what switches, probes and sources say where the loads are now.
+#[inline]
 pub(crate) fn signal(kernel: &mut Kernel, now: Cycles) {
-    if kernel.mechanics.is_empty() {
-        return;
+    if kernel.mechanics.is_any {
+        show(kernel, now);
     }
+}
+
+fn show(kernel: &mut Kernel, now: Cycles) {
     let mechanics = std::mem::take(&mut kernel.mechanics);
     for (index, contact) in mechanics.contacts.iter().enumerate() {
         let mut others = mechanics.contacts.iter().filter(|other| other.bit == contact.bit);

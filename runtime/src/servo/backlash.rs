@@ -1,16 +1,12 @@
 //! Backlash compensation: an offset that ramps with the direction of motion.
 
-use kmotiondef::modes::BacklashMode;
 use kmotiondef::structs::Chan;
 
 use super::TIMEBASE;
 use crate::views::AxisView;
 
-/// Advances the offset by one tick.
+/// Advances the offset of an axis that has one by one tick.
 pub(crate) fn advance(chan: &mut AxisView<'_>) {
-    if BacklashMode::new(chan.get(Chan::BACKLASH_MODE)) != Some(BacklashMode::Linear) {
-        return chan.set(Chan::BACKLASH, 0.0);
-    }
     let (dest, judged) = (chan.get(Chan::DEST) as f32, chan.get(Chan::PREV_BACKLASH_DEST));
     if dest != judged {
         chan.set(Chan::BACKLASH_DIRECTION, if dest > judged { 1 } else { -1 });

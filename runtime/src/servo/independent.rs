@@ -4,7 +4,7 @@ use kmotiondef::structs::{Chan, TripCoeff};
 use kmotiondef::{AxisId, GuestAddr, GuestType, Place};
 use vm::memory::GuestMemory;
 
-use super::profile::{MAX_STATES, Mode, Point, State};
+use super::profile::{MAX_STATES, Mode, Point, State, TIMEBASE};
 use super::trajectory::{Approach, Cursor, Step, point, step};
 use crate::views::{AxisView, Typed, field_of};
 
@@ -14,7 +14,7 @@ fn list(memory: &GuestMemory, axis: AxisId) -> Place<[TripCoeff; MAX_STATES]> {
 }
 
 /// Reads one state; beyond the list, and outside memory, it has ended.
-#[inline]
+#[inline(always)]
 fn read(memory: &GuestMemory, base: GuestAddr, index: usize) -> State {
     const SIZE: usize = TripCoeff::SIZE as usize;
     let address = base.offset(TripCoeff::SIZE.wrapping_mul(index as u32));
@@ -90,7 +90,22 @@ pub(crate) fn present(memory: &GuestMemory, axis: AxisId) -> Point {
 }
 
 /// Advances the motion of an axis by one tick; whether its pointer points at a state.
+#[inline(always)]
 pub(crate) fn advance(memory: &mut GuestMemory, axis: AxisId) -> bool {
+    let (current, t) = (memory.axis(axis, Chan::PCOEFF), memory.axis(axis, Chan::T));
+    let state = read(memory, current, 0);
+    if state.mode != Mode::Independent || t >= state.t {
+        return enter(memory, axis);
+    }
+    // Most ticks stay inside a polynomial.
+    let mut chan = AxisView::of(memory, axis);
+    chan.set(Chan::DEST, state.at(t).x);
+    chan.set(Chan::T, t + TIMEBASE);
+    true
+}
+
+/// The same where another state begins, or something else than a polynomial goes on.
+fn enter(memory: &mut GuestMemory, axis: AxisId) -> bool {
     let current = memory.axis(axis, Chan::PCOEFF);
     let stepped = {
         let read = |index| read(memory, current, index);

@@ -2,63 +2,61 @@
 
 use kmotiondef::AxisId;
 use kmotiondef::limits::N_CHANNELS;
-use kmotiondef::modes::{InputMode, OutputMode};
 use kmotiondef::structs::Chan;
 use kmotiondef::variables::ADC_BUFFER_IN;
 use vm::memory::GuestMemory;
 
+use super::plan::Input;
 use crate::plant::Plant;
 use crate::views::{AxisView, Typed};
 
-/// Takes the position from the axis' input. An encoder that has counted is told: its channel and register.
+/// Takes the position from an input that is no encoder.
 pub(crate) fn measure(
+    input: Input,
     plants: &mut [Plant; N_CHANNELS],
     memory: &mut GuestMemory,
     axis: AxisId,
-) -> Option<(usize, i8)> {
-    match InputMode::new(AxisView::of(memory, axis).get(Chan::INPUT_MODE)) {
-        Some(InputMode::Encoder) => return count(plants, memory, axis),
-        Some(InputMode::Adc) => {
-            let input = f64::from(converted(memory, memory.axis(axis, Chan::INPUT_CHAN0)));
-            let mut chan = AxisView::of(memory, axis);
-            let offset = f64::from(chan.get(Chan::INPUT_OFFSET0));
-            let position = f64::from(chan.get(Chan::INPUT_GAIN0)) * input + offset;
-            chan.set(Chan::POSITION, position);
-            plants[axis.index()].note_position(position);
-        }
-        Some(InputMode::Resolver) => {
+) {
+    match input {
+        Input::None | Input::Encoder(_) => {}
+        Input::Adc => convert(plants, memory, axis),
+        Input::Resolver => {
             let angle = resolver_angle(memory, axis);
             crate::firmware::motion::turn_resolver(memory, axis, angle);
         }
-        Some(InputMode::None | InputMode::User) | None => {}
     }
-    None
 }
 
-/// Adds what the encoder's register has counted since the last tick.
-#[inline]
-fn count(plants: &mut [Plant; N_CHANNELS], memory: &mut GuestMemory, axis: AxisId) -> Option<(usize, i8)> {
-    let mut chan = AxisView::of(memory, axis);
-    let gain = f64::from(chan.get(Chan::INPUT_GAIN0));
-    let channel = chan.get(Chan::INPUT_CHAN0);
-    let count = if channel != i32::from(axis.get()) && chan.get(Chan::OUTPUT_MODE) == OutputMode::None.get() {
-        // An axis without a motor watches somebody else's encoder.
-        let other = AxisId::new(channel)?;
-        let gain = f64::from(memory.axis(other, Chan::INPUT_GAIN0));
-        chan = AxisView::of(memory, axis);
-        plants[other.index()].encoder(gain)
-    } else {
-        plants[axis.index()].encoder(gain)
-    };
+/// Adds what the encoder's register has counted since the last tick. One that has counted is told: its channel and
+/// register.
+#[inline(always)]
+pub(crate) fn count(
+    input: &Input,
+    plants: &mut [Plant; N_CHANNELS],
+    chan: &mut AxisView<'_>,
+    axis: AxisId,
+) -> Option<(usize, i8)> {
+    let Input::Encoder(encoder) = input else { return None };
+    let count = plants[encoder.turned_by.index()].encoder(encoder.turned_gain);
     let moved = count.wrapping_sub(chan.get(Chan::LAST_ENC));
     if moved == 0 {
         return None;
     }
     chan.set(Chan::LAST_ENC, count);
-    let position = chan.get(Chan::POSITION) + gain * f64::from(moved);
+    let position = chan.get(Chan::POSITION) + encoder.gain * f64::from(moved);
     chan.set(Chan::POSITION, position);
     plants[axis.index()].note_position(position);
-    Some((usize::try_from(channel).ok()?, count))
+    Some((encoder.channel? as usize, count))
+}
+
+/// Takes the position from an analog input.
+fn convert(plants: &mut [Plant; N_CHANNELS], memory: &mut GuestMemory, axis: AxisId) {
+    let input = f64::from(converted(memory, memory.axis(axis, Chan::INPUT_CHAN0)));
+    let mut chan = AxisView::of(memory, axis);
+    let offset = f64::from(chan.get(Chan::INPUT_OFFSET0));
+    let position = f64::from(chan.get(Chan::INPUT_GAIN0)) * input + offset;
+    chan.set(Chan::POSITION, position);
+    plants[axis.index()].note_position(position);
 }
 
 /// An analog input, −2048 to 2047; 0 for a channel that does not exist.

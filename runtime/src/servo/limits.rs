@@ -5,6 +5,7 @@ use kmotiondef::variables::CS0_STOPPING_STATE;
 use kmotiondef::{AxisId, Bit, Field};
 use vm::memory::GuestMemory;
 
+use super::plan::Plan;
 use super::switch_off;
 use crate::firmware::coord;
 use crate::firmware::io::bit_state;
@@ -55,20 +56,25 @@ const ENDS: [End; 2] = [
     },
 ];
 
-/// Whether a limit switch is watched or a soft limit is passed: only then [`check`] can do anything.
-pub(crate) fn may_act(chan: &AxisView<'_>) -> bool {
+/// Whether an axis watches a limit switch.
+pub(crate) fn watches_switches(chan: &AxisView<'_>) -> bool {
     const WATCHED: i32 = 3;
-    let dest = chan.get(Chan::DEST);
     chan.get(Chan::LIMIT_SWITCH_OPTIONS) & WATCHED != 0
-        || dest > f64::from(chan.get(Chan::SOFT_LIMIT_POS))
-        || dest < f64::from(chan.get(Chan::SOFT_LIMIT_NEG))
+}
+
+/// Whether a limit switch is watched or a soft limit is passed: only then [`check`] can do anything.
+#[inline(always)]
+pub(crate) fn may_act(chan: &AxisView<'_>, plan: &Plan) -> bool {
+    let dest = chan.get(Chan::DEST);
+    plan.watches_switches || dest > plan.soft_limit_pos || dest < plan.soft_limit_neg
 }
 
 /// Notes the following error of an axis in a closed loop; whether it is too large.
-pub(crate) fn follows_badly(chan: &mut AxisView<'_>, command: f64) -> bool {
+#[inline(always)]
+pub(crate) fn follows_badly(chan: &mut AxisView<'_>, plan: &Plan, command: f64) -> bool {
     let error = f64::from((command - chan.get(Chan::POSITION)) as f32);
     chan.set(Chan::LAST_FOLLOWING_ERROR, error);
-    error.abs() > chan.get(Chan::MAX_FOLLOWING_ERROR)
+    error.abs() > plan.max_following_error
 }
 
 /// Checks both ends of an enabled axis and, in a closed loop, whether it follows its command; whether it is enabled
@@ -83,7 +89,8 @@ pub(crate) fn check(
         check_switch(kernel, memory, axis, end);
         check_soft(kernel, memory, axis, end);
     }
-    if command.is_some_and(|command| follows_badly(&mut AxisView::of(memory, axis), command)) {
+    let plan = &kernel.servo.plans[axis.index()];
+    if command.is_some_and(|command| follows_badly(&mut AxisView::of(memory, axis), plan, command)) {
         kernel.console.message(&format!("Following Error Disabled Axis:{axis}"));
         switch_off(kernel, memory, axis);
         coord::abort_if_member(memory, axis);

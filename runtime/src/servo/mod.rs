@@ -19,6 +19,7 @@ pub(crate) mod independent;
 mod input;
 pub(crate) mod limits;
 mod output;
+mod plan;
 pub(crate) mod profile;
 #[cfg(test)]
 mod recorded;
@@ -41,10 +42,10 @@ use crate::device::stepgen::generator_of;
 use crate::event::EventKind;
 use crate::kernel::Kernel;
 use crate::plant::{self, Plant};
+use crate::servo::plan::{Input, Plan};
 use crate::servo::still::Stillness;
 use crate::views::{AxisView, Typed};
 
-pub(crate) use duration::duration;
 pub(crate) use output::{four_phase, switch_off, three_phase};
 pub(crate) use profile::TIMEBASE;
 
@@ -77,6 +78,13 @@ impl AxisMemory {
 pub(crate) struct Servo {
     pub(crate) axes: [AxisMemory; N_CHANNELS],
     pub(crate) plants: [Plant; N_CHANNELS],
+    plans: [Plan; N_CHANNELS],
+    /// Whether nobody else may have changed what they were made of.
+    has_plans: bool,
+    /// Whether an axis depends on another by them.
+    is_coupled: bool,
+    /// What the interrupt takes with them.
+    duration: Cycles,
     pub(crate) coordinated: coordinated::Coordinated,
     pub(crate) still: Stillness,
     pub(crate) stop_request: limits::StopRequest,
@@ -89,6 +97,12 @@ impl Servo {
     pub(crate) fn push(&mut self, axis: AxisId, units: f64) {
         self.plants[axis.index()].push(units);
         self.still.interrupt();
+    }
+
+    /// What the servo interrupt takes of a tick.
+    #[inline]
+    pub(crate) fn duration(&self, memory: &GuestMemory) -> Cycles {
+        if self.has_plans { self.duration } else { duration::duration(memory) }
     }
 
     /// Whether a path or an axis on its own moves or something is being recorded.
@@ -112,7 +126,11 @@ pub(crate) fn tick(kernel: &mut Kernel, context: &mut TickContext<'_>) -> bool {
         plant::signal(kernel, context.now);
         false
     };
-    is_driven | turned | stepped | moved | recorder::sample(memory)
+    let recorded = recorder::sample(memory);
+    if recorded && recorder::injects(memory) {
+        kernel.servo.forget_plans();
+    }
+    is_driven | turned | stepped | moved | recorded
 }
 
 /// Runs the step generators that programs drive by themselves, and what is connected to them: the axis that names a
@@ -145,44 +163,18 @@ fn amplifiers_are_off(kernel: &Kernel) -> bool {
 /// One tick of all axes; whether anything changed.
 fn run_axes(kernel: &mut Kernel, memory: &mut GuestMemory, now: Cycles) -> bool {
     kernel.servo.still.begin(memory);
+    kernel.servo.make_plans(memory);
     let mut changed = false;
-    let mut has_slaves = false;
-    let is_off = amplifiers_are_off(kernel);
-    for axis in AxisId::all() {
-        let chan = AxisView::of(memory, axis);
-        let plant = &mut kernel.servo.plants[axis.index()];
-        if kernel.servo.needs_enable {
-            plant.set_amplifier(!is_off || generator_of(chan.get(Chan::OUTPUT_CHAN0)) >= ON_KSTEP);
-        }
-        if plant.advance(&chan, kernel.stepgens.steps_per_tick(axis)) {
-            changed = true;
-            let steps = plant.take_stepped() * f64::from(chan.get(Chan::OUTPUT_GAIN));
-            if plant.take_behind()
-                && let Some(text) = kernel.stepgens.fall_behind(axis)
-            {
-                kernel.tell(now, EventKind::Diagnostic(text));
-            }
-            kernel.stepgens.step(axis, steps, &mut kernel.pins, now);
-        }
-        if chan.get(Chan::ENABLE) != 0 {
-            has_slaves |= chan.get(Chan::MASTER_AXIS) >= 0;
-            if !chan.get(Chan::PCOEFF).is_null() {
-                changed = true;
-                if !independent::advance(memory, axis) {
-                    let text =
-                        format!("axis {axis}: pcoeff points at no list of states; its motion has ended");
-                    kernel.tell(now, EventKind::Diagnostic(text));
-                }
-            }
-        }
+    if kernel.servo.needs_enable {
+        switch_amplifiers(kernel, memory);
     }
-    plant::signal(kernel, now);
-    changed |= coordinated::board::tick(kernel, memory);
-    if has_slaves {
-        slave::follow(&kernel.servo, memory);
-    }
-    for axis in AxisId::all() {
-        changed |= run_axis(kernel, memory, axis);
+    let has_path = !kernel.servo.coordinated.is_idle(memory);
+    if has_path || kernel.servo.is_coupled || plant::has_mechanics(kernel) {
+        changed |= run_together(kernel, memory, now);
+    } else {
+        for axis in AxisId::all() {
+            changed |= run_alone(kernel, memory, axis, now);
+        }
     }
     if changed {
         kernel.servo.still.interrupt();
@@ -191,39 +183,129 @@ fn run_axes(kernel: &mut Kernel, memory: &mut GuestMemory, now: Cycles) -> bool 
     !kernel.servo.still.end(memory)
 }
 
+/// One tick of an axis that depends on nothing but itself; whether anything changed.
+#[inline(never)]
+fn run_alone(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId, now: Cycles) -> bool {
+    advance(kernel, memory, axis, now) | run_axis(kernel, memory, axis)
+}
+
+/// One tick of all axes, step by step, as each may depend on the others; whether anything changed.
+fn run_together(kernel: &mut Kernel, memory: &mut GuestMemory, now: Cycles) -> bool {
+    let mut changed = false;
+    for axis in AxisId::all() {
+        changed |= advance(kernel, memory, axis, now);
+    }
+    plant::signal(kernel, now);
+    if !kernel.servo.coordinated.is_idle(memory) {
+        changed |= coordinated::board::tick(kernel, memory);
+    }
+    if kernel.servo.plans.iter().any(|plan| plan.is_slave) {
+        slave::follow(&kernel.servo, memory);
+    }
+    for axis in AxisId::all() {
+        changed |= run_axis(kernel, memory, axis);
+    }
+    changed
+}
+
+/// Switches the amplifiers of a KStep as their enable signal says.
+fn switch_amplifiers(kernel: &mut Kernel, memory: &mut GuestMemory) {
+    let is_off = amplifiers_are_off(kernel);
+    for axis in AxisId::all() {
+        let is_on_kstep = generator_of(memory.axis(axis, Chan::OUTPUT_CHAN0)) < ON_KSTEP;
+        kernel.servo.plants[axis.index()].set_amplifier(!(is_off && is_on_kstep));
+    }
+}
+
+/// Moves the load of an axis by what the last tick has put out, and its destination by what it is told; whether that
+/// changed anything.
+#[inline(always)]
+fn advance(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId, now: Cycles) -> bool {
+    let chan = AxisView::of(memory, axis);
+    let (plant, plan) = (&mut kernel.servo.plants[axis.index()], &kernel.servo.plans[axis.index()]);
+    let moved = plant.advance(&chan, plan.reach, || kernel.stepgens.steps_per_tick(axis));
+    let is_told = chan.get(Chan::ENABLE) != 0 && !chan.get(Chan::PCOEFF).is_null();
+    if plant.has_stepped() {
+        step(kernel, memory, axis, now);
+    }
+    if !is_told {
+        return moved;
+    }
+    if !independent::advance(memory, axis) {
+        let text = format!("axis {axis}: pcoeff points at no list of states; its motion has ended");
+        kernel.tell(now, EventKind::Diagnostic(text));
+    }
+    true
+}
+
+/// The step generator of an axis has moved its load.
+fn step(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId, now: Cycles) {
+    let plant = &mut kernel.servo.plants[axis.index()];
+    let steps = plant.take_stepped() * f64::from(memory.axis(axis, Chan::OUTPUT_GAIN));
+    if plant.take_behind()
+        && let Some(text) = kernel.stepgens.fall_behind(axis)
+    {
+        kernel.tell(now, EventKind::Diagnostic(text));
+    }
+    kernel.stepgens.step(axis, steps, &mut kernel.pins, now);
+}
+
 /// Position, protection, compensation and output of one axis; whether it moves or is told something.
+#[inline(always)]
 fn run_axis(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId) -> bool {
-    if let Some((channel, count)) = input::measure(&mut kernel.servo.plants, memory, axis) {
+    let servo = &mut kernel.servo;
+    let plan = &servo.plans[axis.index()];
+    if !matches!(plan.input, Input::Encoder(_)) {
+        input::measure(plan.input, &mut servo.plants, memory, axis);
+    }
+    let (plan, own) = (&servo.plans[axis.index()], &mut servo.axes[axis.index()]);
+    let mut chan = AxisView::of(memory, axis);
+    if let Some((channel, count)) = input::count(&plan.input, &mut servo.plants, &mut chan, axis) {
         kernel.encoders.count(channel, count, &mut kernel.pins, kernel.tick_start);
     }
-    let (own, plant) = (&mut kernel.servo.axes[axis.index()], &mut kernel.servo.plants[axis.index()]);
-    let mut chan = AxisView::of(memory, axis);
     let moves = direction(own, &mut chan);
     if chan.get(Chan::ENABLE) == 0 {
-        plant.release();
+        servo.plants[axis.index()].release();
         kernel.stepgens.release(axis, &mut kernel.pins, kernel.tick_start);
         return moves;
     }
-    backlash::advance(&mut chan);
-    let command = command(&chan);
-    let mode = OutputMode::new(chan.get(Chan::OUTPUT_MODE));
-    let is_open_loop = matches!(mode, None | Some(OutputMode::Microstep | OutputMode::StepDir));
-    if limits::may_act(&chan) || !is_open_loop && limits::follows_badly(&mut chan, command) {
-        kernel.servo.still.watch();
-        if !limits::check(kernel, memory, axis, (!is_open_loop).then_some(command)) {
-            return true;
-        }
-        chan = AxisView::of(memory, axis);
+    if plan.has_backlash {
+        backlash::advance(&mut chan);
+    } else {
+        chan.set(Chan::BACKLASH, 0.0);
     }
-    let output = if is_open_loop {
+    let command = command(&chan);
+    if limits::may_act(&chan, plan) || !plan.is_open_loop && limits::follows_badly(&mut chan, plan, command) {
+        return run_guarded(kernel, memory, axis, command) | moves;
+    }
+    put_out(kernel, memory, axis, command);
+    moves
+}
+
+/// The rest of a tick of an axis that its limits may stop; whether they did.
+fn run_guarded(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId, command: f64) -> bool {
+    kernel.servo.still.watch();
+    let is_open_loop = kernel.servo.plans[axis.index()].is_open_loop;
+    let is_enabled = limits::check(kernel, memory, axis, (!is_open_loop).then_some(command));
+    if is_enabled {
+        put_out(kernel, memory, axis, command);
+    }
+    !is_enabled
+}
+
+/// Compensation and output of an enabled axis.
+#[inline(always)]
+fn put_out(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId, command: f64) {
+    let mut chan = AxisView::of(memory, axis);
+    let (plan, own) = (&kernel.servo.plans[axis.index()], &kernel.servo.axes[axis.index()]);
+    let output = if plan.is_open_loop {
         chan.set(Chan::OUTPUT, 0.0);
         0.0
     } else {
-        compensation::advance(&kernel.servo.axes[axis.index()], &mut chan, command)
+        compensation::advance(own, &plan.gains, &mut chan, command)
     };
     chan.set(Chan::PREV_DEST, chan.get(Chan::DEST));
-    output::drive(kernel, memory, axis, mode, command, output);
-    moves
+    output::drive(kernel, memory, axis, command, output);
 }
 
 /// What the servo is to follow.
@@ -239,15 +321,20 @@ fn direction(own: &mut AxisMemory, chan: &mut AxisView<'_>) -> bool {
     let last = own.dest;
     chan.set(Chan::LAST_DEST, last);
     own.last_velocity = own.velocity;
-    own.velocity = if dest == last { 0.0 } else { (dest - last) / TIMEBASE };
     own.dest = dest;
-    chan.set(Chan::LAST_VEL, own.velocity as f32);
-    let sign = i32::from(dest > last) - i32::from(dest < last);
-    // The first tick of a direction counts as standing still.
-    let goes_on = sign != 0 && chan.get(Chan::LAST_NON_ZERO_DIR) == sign;
-    chan.set(Chan::DIRECTION_OF_MOTION, if goes_on { sign } else { 0 });
-    if sign != 0 {
-        chan.set(Chan::LAST_NON_ZERO_DIR, sign);
+    let (mut sign, mut goes_on) = (0, false);
+    if dest == last {
+        own.velocity = 0.0;
+    } else {
+        own.velocity = (dest - last) / TIMEBASE;
+        sign = i32::from(dest > last) - i32::from(dest < last);
+        // The first tick of a direction counts as standing still.
+        goes_on = sign != 0 && chan.get(Chan::LAST_NON_ZERO_DIR) == sign;
+        if sign != 0 {
+            chan.set(Chan::LAST_NON_ZERO_DIR, sign);
+        }
     }
+    chan.set(Chan::LAST_VEL, own.velocity as f32);
+    chan.set(Chan::DIRECTION_OF_MOTION, if goes_on { sign } else { 0 });
     own.velocity != 0.0 || own.last_velocity != 0.0
 }

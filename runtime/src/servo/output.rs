@@ -23,66 +23,90 @@ const SNAP_AMP: i32 = 8;
 const VECTOR: u32 = 0x8000_0000;
 
 /// Puts out one tick of an enabled axis.
-#[inline]
-pub(crate) fn drive(
-    kernel: &mut Kernel,
-    memory: &mut GuestMemory,
-    axis: AxisId,
-    mode: Option<OutputMode>,
-    command: f64,
-    output: f32,
-) {
+#[inline(always)]
+pub(crate) fn drive(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId, command: f64, output: f32) {
+    let mode = kernel.servo.plans[axis.index()].mode;
+    if mode == Some(OutputMode::DcServo) {
+        kernel.stepgens.release(axis, &mut kernel.pins, kernel.tick_start);
+        let channel = AxisView::of(memory, axis).get(Chan::OUTPUT_CHAN0);
+        store_pwm(memory, channel, pwm(channel, output as i32));
+        let drive = match channel >= SNAP_AMP {
+            true if is_faulted(kernel, channel) => Drive::None,
+            true => Drive::Loop(command, Applied::Current(limited(output, MAX_PWMC_VALUE))),
+            false => Drive::Loop(command, Applied::Pwm(limited(output, MAX_PWM_VALUE))),
+        };
+        kernel.servo.plants[axis.index()].drive = drive;
+    } else {
+        drive_otherwise(kernel, memory, axis, command, output);
+    }
+}
+
+/// The same in any other mode than that of a brushed motor.
+fn drive_otherwise(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId, command: f64, output: f32) {
+    let mode = kernel.servo.plans[axis.index()].mode;
     let chan = AxisView::of(memory, axis);
-    let channel = chan.get(Chan::OUTPUT_CHAN0);
     if matches!(mode, Some(OutputMode::StepDir | OutputMode::ClosedLoopStepDir)) {
+        let channel = chan.get(Chan::OUTPUT_CHAN0);
         kernel.stepgens.claim(axis, channel, &mut kernel.pins, kernel.tick_start);
     } else {
         kernel.stepgens.release(axis, &mut kernel.pins, kernel.tick_start);
     }
-    let is_faulted = kernel.snapamps.is_present() && kernel.snapamps.is_off(channel, kernel.tick_start);
-    kernel.servo.plants[axis.index()].drive = match mode {
-        None | Some(OutputMode::None) => Drive::None,
-        // The bridges of a SnapAmp that has a fault are off.
-        Some(OutputMode::DcServo | OutputMode::Brushless3Ph | OutputMode::Brushless4Ph) if is_faulted => {
-            Drive::None
+    let drive = match mode {
+        None | Some(OutputMode::None | OutputMode::DcServo) => Drive::None,
+        // The load of a closed loop is where the axis' command is; the correction is for real mechanics.
+        Some(OutputMode::StepDir | OutputMode::ClosedLoopStepDir) => Drive::Steps(command),
+        Some(OutputMode::Microstep) => {
+            let gain = f64::from(chan.get(Chan::OUTPUT_GAIN));
+            microstep(memory, axis, gain * command);
+            Drive::Steps(command)
         }
-        Some(OutputMode::StepDir | OutputMode::Microstep) => Drive::Steps(command),
-        // The load is where the axis' command is; the correction is for real mechanics.
-        Some(OutputMode::ClosedLoopStepDir | OutputMode::ClosedLoopMicrostep) => Drive::Steps(command),
-        Some(OutputMode::DcServo) if channel >= SNAP_AMP => {
-            let limit = f64::from(MAX_PWMC_VALUE);
-            Drive::Loop(command, Applied::Current(f64::from(output).clamp(-limit, limit)))
+        Some(OutputMode::ClosedLoopMicrostep) => {
+            microstep(memory, axis, command + f64::from(output));
+            Drive::Steps(command)
         }
-        Some(OutputMode::DcServo) => {
-            let limit = f64::from(MAX_PWM_VALUE);
-            Drive::Loop(command, Applied::Pwm(f64::from(output).clamp(-limit, limit)))
+        Some(OutputMode::DacServo) => {
+            let applied = Applied::Dac(f64::from(analog(&chan, output)));
+            write_dac(memory, axis, output);
+            Drive::Loop(command, applied)
         }
-        Some(OutputMode::DacServo) => Drive::Loop(command, Applied::Dac(f64::from(analog(&chan, output)))),
-        Some(OutputMode::Brushless3Ph | OutputMode::Brushless4Ph) => {
-            let magnitude = f64::from(output.clamp(-MAXV, MAXV));
-            Drive::Loop(command, Applied::Vector(magnitude, phase(&chan)))
+        Some(mode @ (OutputMode::Brushless3Ph | OutputMode::Brushless4Ph)) => {
+            let applied = turn(kernel, memory, axis, mode, output);
+            applied.map_or(Drive::None, |applied| Drive::Loop(command, applied))
         }
     };
-    if matches!(mode, Some(OutputMode::Brushless3Ph | OutputMode::Brushless4Ph)) {
-        let angle = phase(&chan);
-        let cycles = chan.get(Chan::INV_DIST_PER_CYCLE);
-        check_commutation(kernel, axis, angle, cycles);
+    kernel.servo.plants[axis.index()].drive = drive;
+}
+
+/// The bridges of a SnapAmp that has a fault are off.
+fn is_faulted(kernel: &mut Kernel, channel: i32) -> bool {
+    kernel.snapamps.is_present() && kernel.snapamps.is_off(channel, kernel.tick_start)
+}
+
+/// An output within ±`limit`.
+#[inline(always)]
+fn limited(output: f32, limit: i32) -> f64 {
+    let limit = f64::from(limit);
+    f64::from(output).clamp(-limit, limit)
+}
+
+/// Puts out the vector of a brushless axis; `None` if its amplifier is off.
+fn turn(
+    kernel: &mut Kernel,
+    memory: &mut GuestMemory,
+    axis: AxisId,
+    mode: OutputMode,
+    output: f32,
+) -> Option<Applied> {
+    let chan = AxisView::of(memory, axis);
+    let (angle, channel) = (phase(&chan), chan.get(Chan::OUTPUT_CHAN0));
+    check_commutation(kernel, axis, angle, chan.get(Chan::INV_DIST_PER_CYCLE));
+    if mode == OutputMode::Brushless3Ph {
+        three_phase(memory, axis, output);
+    } else {
+        four_phase(memory, axis, output, angle);
     }
-    match mode {
-        Some(OutputMode::DcServo) => store_pwm(memory, channel, pwm(channel, output as i32)),
-        Some(OutputMode::DacServo) => write_dac(memory, axis, output),
-        Some(OutputMode::Brushless3Ph) => three_phase(memory, axis, output),
-        Some(OutputMode::Brushless4Ph) => {
-            let angle = phase(&chan);
-            four_phase(memory, axis, output, angle);
-        }
-        Some(OutputMode::Microstep) => {
-            let gain = f64::from(memory.axis(axis, Chan::OUTPUT_GAIN));
-            microstep(memory, axis, gain * command);
-        }
-        Some(OutputMode::ClosedLoopMicrostep) => microstep(memory, axis, command + f64::from(output)),
-        _ => {}
-    }
+    let magnitude = f64::from(output.clamp(-MAXV, MAXV));
+    (!is_faulted(kernel, channel)).then_some(Applied::Vector(magnitude, angle))
 }
 
 /// Tells once of a brushless axis whose real motor would not follow as the simulated one does.
@@ -97,6 +121,7 @@ fn check_commutation(kernel: &mut Kernel, axis: AxisId, angle: f64, cycles: f64)
 }
 
 /// The word of a value in the mode that its channel has.
+#[inline]
 fn pwm(channel: i32, value: i32) -> i32 {
     if channel >= SNAP_AMP { current(value) } else { antiphase(value) }
 }
@@ -162,6 +187,7 @@ pub(crate) fn four_phase(memory: &mut GuestMemory, axis: AxisId, v: f32, angle: 
 pub(crate) fn switch_off(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId) {
     memory.set_axis(axis, Chan::ENABLE, 0);
     kernel.servo.still.interrupt();
+    kernel.servo.forget_plans();
     kernel.servo.plants[axis.index()].drive = Drive::None;
     let channels = [memory.axis(axis, Chan::OUTPUT_CHAN0), memory.axis(axis, Chan::OUTPUT_CHAN1)];
     match OutputMode::new(memory.axis(axis, Chan::OUTPUT_MODE)) {

@@ -14,6 +14,11 @@ pub(crate) fn is_recording(memory: &GuestMemory) -> bool {
     memory.get(GATHER.field(Gather::BUFPTR)) < end(memory)
 }
 
+/// Whether a recording writes somewhere else than into its buffer.
+pub(crate) fn injects(memory: &GuestMemory) -> bool {
+    memory.get(GATHER.field(Gather::INJECT)) != 0
+}
+
 /// Where recording ends: at most at the end of the buffer, if it goes there.
 fn end(memory: &GuestMemory) -> GuestAddr {
     let limit = memory.get(GATHER_BUFFER).offset(8 * MAX_GATHER_DATA as u32);
@@ -27,7 +32,7 @@ pub(crate) fn sample(memory: &mut GuestMemory) -> bool {
     }
     let mut place = memory.get(GATHER.field(Gather::BUFPTR));
     let mut first = 0;
-    if memory.get(GATHER.field(Gather::INJECT)) != 0 {
+    if injects(memory) {
         let target = memory.get(GATHER.field(Gather::LIST.element(0).field(GatherValueDef::ADDR)));
         let stimulus: f64 = memory.peek(place);
         memory.poke(target, stimulus);

@@ -23,9 +23,6 @@ impl Bits for Kernel {
 
 /// One tick of the path. Says whether it has moved or will.
 pub(crate) fn tick(kernel: &mut Kernel, memory: &mut GuestMemory) -> bool {
-    if kernel.servo.coordinated.is_idle(memory) {
-        return false;
-    }
     let list = memory.get(COORD_SYSTEM0);
     if !list.is_null() && memory.block::<{ SIZE as usize }>(list).is_none() {
         let text = format!("CoordSystem0 is {list}, where no segments lie; the path has ended");

@@ -31,6 +31,7 @@ enum Halt {
 
 impl Coordinated {
     /// Whether there is no path.
+    #[inline]
     pub(crate) fn is_idle(&self, memory: &GuestMemory) -> bool {
         self.spline.is_none() && memory.get(COORD_SYSTEM0).is_null()
     }

@@ -1,0 +1,198 @@
+//! What the settings of an axis come to, ready for a tick.
+//!
+//! The settings lie in guest memory, where programs write them at any time. A tick in front of which nobody but the
+//! servo had the board need not look at each of them: what they come to is kept from tick to tick, and worked out
+//! again as soon as a thread, the call-back, the PC or the world has done anything. Builds with debug assertions
+//! compare it in every tick.
+
+use kmotiondef::AxisId;
+use kmotiondef::Field;
+use kmotiondef::modes::{BacklashMode, InputMode, OutputMode};
+use kmotiondef::structs::{Chan, Iir};
+use vm::memory::GuestMemory;
+
+use super::duration::duration;
+use super::{Servo, limits};
+use crate::plant::COUNTS_PER_TICK;
+use crate::views::AxisView;
+
+/// Where the position of an axis comes from.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) enum Input {
+    /// Nowhere, or a program writes it.
+    #[default]
+    None,
+    Encoder(Encoder),
+    Adc,
+    Resolver,
+}
+
+/// An encoder that an axis reads.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Encoder {
+    /// Position units of a count.
+    pub(crate) gain: f64,
+    /// Its channel, if there is one of that number.
+    pub(crate) channel: Option<u32>,
+    /// The axis whose load turns it.
+    pub(crate) turned_by: AxisId,
+    /// That axis' position units of a count.
+    pub(crate) turned_gain: f64,
+}
+
+/// A filter's coefficients.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Filter {
+    /// Whether it passes its input on, as at power-up; most do.
+    pub(crate) is_plain: bool,
+    pub(crate) a1: f64,
+    pub(crate) a2: f64,
+    pub(crate) b0: f64,
+    pub(crate) b1: f64,
+    pub(crate) b2: f64,
+}
+
+/// The compensation's settings.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Gains {
+    pub(crate) p: f64,
+    pub(crate) i: f64,
+    pub(crate) d: f64,
+    pub(crate) max_i: f64,
+    pub(crate) max_err: f64,
+    pub(crate) max_output: f64,
+    pub(crate) ff_vel: f64,
+    pub(crate) ff_accel: f64,
+    /// Half width and gain of the dead band, if there is one.
+    pub(crate) dead_band: Option<(f64, f64)>,
+    pub(crate) filters: [Filter; 3],
+}
+
+/// What the settings of an axis come to. Of a disabled axis only the input counts.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Plan {
+    pub(crate) input: Input,
+    pub(crate) mode: Option<OutputMode>,
+    /// Whether nothing is compensated: steps and microsteps go where they are told.
+    pub(crate) is_open_loop: bool,
+    pub(crate) is_slave: bool,
+    /// Whether a limit switch is watched.
+    pub(crate) watches_switches: bool,
+    pub(crate) has_backlash: bool,
+    pub(crate) soft_limit_neg: f64,
+    pub(crate) soft_limit_pos: f64,
+    pub(crate) max_following_error: f64,
+    /// How far an encoder that follows the command gets in a tick, position units; 0 for no limit.
+    pub(crate) reach: f64,
+    pub(crate) gains: Gains,
+}
+
+impl Plan {
+    /// Whether what this axis does in a tick depends on what others do in it: on their motion, their load, or a step
+    /// generator that both name.
+    fn is_coupled(&self, axis: AxisId) -> bool {
+        self.is_slave
+            || matches!(self.input, Input::Encoder(encoder) if encoder.turned_by != axis)
+            || matches!(self.mode, Some(OutputMode::StepDir | OutputMode::ClosedLoopStepDir))
+    }
+
+    /// What an axis has set.
+    fn of(memory: &mut GuestMemory, axis: AxisId) -> Self {
+        let input = input(memory, axis);
+        let chan = AxisView::of(memory, axis);
+        if chan.get(Chan::ENABLE) == 0 {
+            return Self { input, ..Self::default() };
+        }
+        let mode = OutputMode::new(chan.get(Chan::OUTPUT_MODE));
+        Self {
+            input,
+            mode,
+            is_open_loop: matches!(mode, None | Some(OutputMode::Microstep | OutputMode::StepDir)),
+            is_slave: chan.get(Chan::MASTER_AXIS) >= 0,
+            watches_switches: limits::watches_switches(&chan),
+            has_backlash: BacklashMode::new(chan.get(Chan::BACKLASH_MODE)) == Some(BacklashMode::Linear),
+            soft_limit_neg: chan.get(Chan::SOFT_LIMIT_NEG).into(),
+            soft_limit_pos: chan.get(Chan::SOFT_LIMIT_POS).into(),
+            max_following_error: chan.get(Chan::MAX_FOLLOWING_ERROR),
+            reach: COUNTS_PER_TICK * f64::from(chan.get(Chan::INPUT_GAIN0)).abs(),
+            gains: gains(&chan),
+        }
+    }
+}
+
+fn input(memory: &mut GuestMemory, axis: AxisId) -> Input {
+    let chan = AxisView::of(memory, axis);
+    match InputMode::new(chan.get(Chan::INPUT_MODE)) {
+        Some(InputMode::Encoder) => encoder(memory, axis).map_or(Input::None, Input::Encoder),
+        Some(InputMode::Adc) => Input::Adc,
+        Some(InputMode::Resolver) => Input::Resolver,
+        Some(InputMode::None | InputMode::User) | None => Input::None,
+    }
+}
+
+fn encoder(memory: &mut GuestMemory, axis: AxisId) -> Option<Encoder> {
+    let chan = AxisView::of(memory, axis);
+    let gain = f64::from(chan.get(Chan::INPUT_GAIN0));
+    let channel = chan.get(Chan::INPUT_CHAN0);
+    // An axis without a motor watches somebody else's encoder.
+    let watches = channel != i32::from(axis.get()) && chan.get(Chan::OUTPUT_MODE) == OutputMode::None.get();
+    let turned_by = if watches { AxisId::new(channel)? } else { axis };
+    let turned_gain = f64::from(AxisView::of(memory, turned_by).get(Chan::INPUT_GAIN0));
+    Some(Encoder { gain, channel: u32::try_from(channel).ok(), turned_by, turned_gain })
+}
+
+fn gains(chan: &AxisView<'_>) -> Gains {
+    let gain = |field: Field<f32>| f64::from(chan.get(field));
+    // A limit below 0, or one that is no number, lets nothing through.
+    let limit = |field| gain(field).max(0.0);
+    let (range, slope) = (gain(Chan::DEAD_BAND_RANGE), gain(Chan::DEAD_BAND_GAIN));
+    Gains {
+        p: gain(Chan::P),
+        i: gain(Chan::I),
+        d: gain(Chan::D),
+        max_i: limit(Chan::MAX_I),
+        max_err: limit(Chan::MAX_ERR),
+        max_output: limit(Chan::MAX_OUTPUT),
+        ff_vel: gain(Chan::FF_VEL),
+        ff_accel: gain(Chan::FF_ACCEL),
+        dead_band: (range != 0.0 || slope != 1.0).then_some((range, slope)),
+        filters: [0, 1, 2].map(|index| filter(chan, Chan::IIR.element(index))),
+    }
+}
+
+fn filter(chan: &AxisView<'_>, iir: Field<Iir>) -> Filter {
+    let [a1, a2, b0, b1, b2] =
+        [Iir::A1, Iir::A2, Iir::B0, Iir::B1, Iir::B2].map(|field| chan.get(iir.field(field)));
+    let is_plain = [a1, a2, b0, b1, b2].map(f32::to_bits) == [0.0_f32, 0.0, 1.0, 0.0, 0.0].map(f32::to_bits);
+    Filter { is_plain, a1: a1.into(), a2: a2.into(), b0: b0.into(), b1: b1.into(), b2: b2.into() }
+}
+
+impl Servo {
+    /// Somebody else may write guest memory before the next tick.
+    pub(crate) const fn forget_plans(&mut self) {
+        self.has_plans = false;
+    }
+
+    /// Works the plans out, unless they are known.
+    pub(super) fn make_plans(&mut self, memory: &mut GuestMemory) {
+        if !self.has_plans {
+            AxisId::all().for_each(|axis| self.plans[axis.index()] = Plan::of(memory, axis));
+            self.is_coupled = AxisId::all().any(|axis| self.plans[axis.index()].is_coupled(axis));
+            self.duration = duration(memory);
+            self.has_plans = true;
+        }
+        debug_assert!(
+            self.plans_hold(memory) && self.duration == duration(memory),
+            "settings have changed unnoticed"
+        );
+    }
+
+    /// Whether the settings still come to what is known;
+    fn plans_hold(&self, memory: &mut GuestMemory) -> bool {
+        AxisId::all().zip(&self.plans).all(|(axis, plan)| {
+            let now = Plan::of(memory, axis);
+            // No number that is none equals another.
+            *plan == now || format!("{now:?}").contains("NaN")
+        })
+    }
+}
