@@ -1,34 +1,31 @@
 //! The board as a program that embeds it sees it.
 
+mod boot;
+mod outside;
+mod programs;
+
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
-use kmotiondef::map::{FLASH, PROGRAM_SIZE, program_base};
+use kmotiondef::map::FLASH;
 use kmotiondef::structs::Persist;
-use kmotiondef::variables::{HOST_STATUS, PERSIST, USER_CALL_BACK};
-use kmotiondef::{Bit, CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
+use kmotiondef::variables::PERSIST;
+use kmotiondef::{Cycles, ThreadId, Ticks};
 use vm::engine::Engine;
 use vm::interp::BytecodeEngine;
 use vm::machine::{Config as MachineConfig, Machine};
 use vm::memory::GuestMemory;
-use vm::program::Program;
-use vm::thread::{NotLoaded, ThreadState};
-use vm::verify::{VerifyError, verify};
+use vm::thread::ThreadState;
 
-use crate::commands::FLASH_COMPLETE;
-use crate::debug::{DebugInfo, SourcePlace};
+use crate::debug::DebugInfo;
 use crate::event::{Event, EventKind};
 use crate::files::{HostFiles, NoFiles};
-use crate::flash::{self, FLASH_SIZE};
+use crate::flash::FLASH_SIZE;
 use crate::host::Answers;
 use crate::kernel::{Kernel, Request};
-use crate::loader::{Fill, LoadError, Placed, prepare};
 use crate::machine_file::{MachineFile, NS_PER_INSTRUCTION};
 use crate::plant;
-use crate::power_up::{self, Before};
-use crate::stimulus::Stimulus;
-use crate::trace;
 use crate::views::Typed;
 
 /// Settings of a board.
@@ -122,183 +119,10 @@ impl<E: Engine> Board<E> {
             let stored = board.machine.memory_mut().poke_bytes(FLASH.base, &flash);
             debug_assert!(stored.is_ok() && flash.len() == FLASH_SIZE, "flash has its size");
         }
-        board.power_up();
+        board.power_up(connected.strict_flash);
         let (kernel, context) = board.machine.firmware_mut();
         plant::play(kernel, connected, context.memory);
         board
-    }
-
-    /// Fills memory from flash, or as it is when nothing was ever flashed, and starts the programs that start by
-    /// themselves.
-    fn power_up(&mut self) {
-        let memory = self.machine.memory_mut();
-        let before = if flash::is_saved(memory) { Before::Flashed } else { Before::Zero };
-        if before == Before::Flashed {
-            flash::restore(memory);
-        }
-        power_up::fill(memory, before);
-        if before == Before::Flashed {
-            ThreadId::all().for_each(|thread| self.load_flashed(thread));
-            let starts = self.memory().get(PERSIST.field(Persist::RUN_ON_START_UP));
-            for thread in ThreadId::all().filter(|thread| starts & 1 << thread.get() != 0) {
-                // A thread without a program has nothing to start.
-                let _ = self.machine.start(thread);
-            }
-        }
-        let (kernel, context) = self.machine.firmware_mut();
-        let status = i32::from(kernel.host.has_job());
-        context.memory.set(HOST_STATUS, status);
-    }
-
-    /// Makes a program of what flash has brought back for a thread.
-    fn load_flashed(&mut self, thread: ThreadId) {
-        let Some(text) = flash::text(self.memory(), thread) else { return };
-        let length = text.end.get() - text.start.get();
-        let bytes = self.memory().read_bytes(text.start, length).unwrap_or_default();
-        match verify(bytes, text.start) {
-            Ok(program) => {
-                let entry = self.memory().get(PERSIST.field(Persist::ENTRY_POINTS).element(thread.index()));
-                self.hand_over(thread, program, GuestAddr::new(entry));
-                let extent = text.start.get()..text.end.get();
-                let debug = self.flashed[thread.index()].clone().unwrap_or_default();
-                self.loaded[thread.index()] = Some(Loaded { debug, extent });
-            }
-            Err(error) => {
-                let (kernel, context) = self.machine.firmware_mut();
-                let text = format!("what was flashed for thread {thread} is no program: {error}");
-                kernel.tell(context.now, EventKind::Diagnostic(text));
-            }
-        }
-    }
-
-    /// Saves programs and settings in flash.
-    fn save(&mut self) {
-        let texts: Vec<_> =
-            ThreadId::all().map(|thread| self.machine.program(thread).map(Program::text)).collect();
-        flash::save(self.machine.memory_mut(), |thread| texts.get(thread.index()).cloned().flatten());
-        self.flashed =
-            std::array::from_fn(|index| self.loaded[index].as_ref().map(|loaded| loaded.debug.clone()));
-        let (kernel, _) = self.machine.firmware_mut();
-        kernel.console.message(FLASH_COMPLETE);
-    }
-
-    /// Starts anew from flash. Time goes on: it counts from the first power-up.
-    fn reboot(&mut self) {
-        ThreadId::all().for_each(|thread| self.machine.unload_program(thread));
-        self.loaded = Default::default();
-        let flash = self.flash().to_vec();
-        let memory = self.machine.memory_mut();
-        *memory = GuestMemory::new();
-        let stored = memory.poke_bytes(FLASH.base, &flash);
-        debug_assert!(stored.is_ok(), "flash is mapped");
-        self.machine.firmware_mut().0.restart();
-        self.power_up();
-    }
-
-    /// What flash memory holds.
-    #[must_use]
-    pub fn flash(&self) -> &[u8] {
-        self.memory().read_bytes(FLASH.base, FLASH.size).unwrap_or_default()
-    }
-
-    /// Loads an image into `thread`, which is stopped first.
-    ///
-    /// # Errors
-    /// Why the image is refused; nothing has changed then.
-    pub fn load(&mut self, thread: ThreadId, image: &[u8]) -> Result<(), LoadError> {
-        let prepared = prepare(image, thread, |other| self.is_taken(other, thread))?;
-        self.machine.unload_program(thread);
-        self.machine.firmware_mut().0.downloads.forget(thread);
-        self.machine.firmware_mut().0.globals.forget(thread);
-        for section in &prepared.sections {
-            self.place(thread, section, &prepared.program);
-        }
-        self.drop_callback(thread);
-        self.drop_konnects(thread);
-        let start = program_base(thread).get();
-        let ends = prepared.sections.iter().map(|section| section.address.get() + section.size());
-        let extent = start..ends.max().unwrap_or(start);
-        self.load_program(thread, prepared.program, prepared.entry);
-        self.loaded[thread.index()] = Some(Loaded { debug: prepared.debug, extent });
-        Ok(())
-    }
-
-    /// Whether a program other than that of `except` lies in the space of `thread`.
-    fn is_taken(&self, thread: ThreadId, except: ThreadId) -> bool {
-        let start = program_base(thread).get();
-        let others = ThreadId::all().filter(|&other| other != except);
-        let mut extents = others.filter_map(|other| self.loaded[other.index()].as_ref());
-        extents.any(|loaded| loaded.extent.start < start + PROGRAM_SIZE && loaded.extent.end > start)
-    }
-
-    /// Puts a section into memory; the loader has checked that it fits.
-    fn place(&mut self, thread: ThreadId, section: &Placed, program: &Program) {
-        let bytes = match &section.contents {
-            Fill::Bytes(bytes) => bytes.clone(),
-            Fill::Uninitialised(size) => vec![self.bss_fill; *size as usize],
-        };
-        let placed = self.machine.memory_mut().poke_bytes(section.address, &bytes);
-        debug_assert!(placed.is_ok(), "the loader checks that sections lie in memory");
-        if !program.text().contains(&section.address) {
-            self.machine.firmware_mut().0.globals.note(thread, section.address, &bytes);
-        }
-    }
-
-    /// Takes out a call-back whose code a load has replaced; the board would run what is there now.
-    fn drop_callback(&mut self, thread: ThreadId) {
-        let start = program_base(thread).get();
-        let callback = self.memory().get(USER_CALL_BACK);
-        if (start..start + PROGRAM_SIZE).contains(&callback.get()) {
-            let (kernel, context) = self.machine.firmware_mut();
-            context.memory.set(USER_CALL_BACK, GuestAddr::NULL);
-            let text = format!(
-                "the call-back in the space of thread {thread} is taken out: its program is replaced"
-            );
-            kernel.tell(context.now, EventKind::Diagnostic(text));
-        }
-    }
-
-    /// Ends the service of Konnect boards whose words a load has replaced.
-    fn drop_konnects(&mut self, thread: ThreadId) {
-        let start = program_base(thread).get();
-        let (kernel, context) = self.machine.firmware_mut();
-        if kernel.konnects.drop_within(&(start..start + PROGRAM_SIZE)) {
-            let text = format!("Konnect service with words of thread {thread} ends: its program is replaced");
-            kernel.tell(context.now, EventKind::Diagnostic(text));
-        }
-    }
-
-    /// What is known of the image in `thread`.
-    #[must_use]
-    pub fn debug(&self, thread: ThreadId) -> Option<&DebugInfo> {
-        self.loaded[thread.index()].as_ref().map(|loaded| &loaded.debug)
-    }
-
-    /// The source of a code address, in whatever thread's program it lies.
-    #[must_use]
-    pub fn source(&self, address: CodeAddr) -> Option<SourcePlace<'_>> {
-        self.loaded.iter().flatten().find_map(|loaded| loaded.debug.place(address))
-    }
-
-    /// Makes `thread` ready to run a program whose bytes are in guest memory.
-    pub fn load_program(&mut self, thread: ThreadId, program: Program, entry: GuestAddr) {
-        let entry_points = PERSIST.field(Persist::ENTRY_POINTS);
-        self.machine.memory_mut().set(entry_points.element(thread.index()), entry.get());
-        self.hand_over(thread, program, entry);
-    }
-
-    /// Gives the machine a program, at the price of instructions that the machine file says.
-    fn hand_over(&mut self, thread: ThreadId, program: Program, entry: GuestAddr) {
-        let program = if self.price == 1.0 { program } else { program.priced(self.price) };
-        self.machine.load_program(thread, program, entry);
-    }
-
-    /// Starts `thread` at its entry point.
-    ///
-    /// # Errors
-    /// [`NotLoaded`] for an empty thread.
-    pub fn start(&mut self, thread: ThreadId) -> Result<(), NotLoaded> {
-        self.machine.start(thread)
     }
 
     /// Runs to the end of tick `limit` or until everything has ended; `sink` receives what happens.
@@ -345,95 +169,6 @@ impl<E: Engine> Board<E> {
         }
     }
 
-    /// Keeps an image that a stimulus may load into `thread` under this name; what is known of its program.
-    ///
-    /// # Errors
-    /// Why the image would be refused.
-    pub fn offer(&mut self, thread: ThreadId, name: &str, image: Vec<u8>) -> Result<DebugInfo, LoadError> {
-        let debug = prepare(&image, thread, |_| false)?.debug;
-        self.offered.insert((thread, name.into()), image);
-        Ok(debug)
-    }
-
-    /// Loads an image that was offered and starts it.
-    fn run_offered(&mut self, thread: ThreadId, name: &Arc<str>) {
-        let result = match self.offered.get(&(thread, name.clone())).cloned() {
-            Some(image) => self.load(thread, &image).map_err(|error| error.to_string()),
-            None => Err("nobody has compiled it".to_owned()),
-        };
-        let started = result.and_then(|()| self.start(thread).map_err(|error| error.to_string()));
-        let (kernel, context) = self.machine.firmware_mut();
-        kernel.tell(
-            context.now,
-            match started {
-                Ok(()) => EventKind::Loaded(thread, name.clone()),
-                Err(error) => EventKind::Diagnostic(format!("{name} is not run in thread {thread}: {error}")),
-            },
-        );
-    }
-
-    /// Makes a program of what was downloaded into a thread that was started.
-    fn adopt(&mut self, thread: ThreadId) {
-        let entry = self.machine.threads().entry(thread);
-        let (kernel, _) = self.machine.firmware_mut();
-        let ends = kernel.downloads.ends(thread);
-        kernel.downloads.forget(thread);
-        let error = match self.downloaded(thread, &ends) {
-            Ok(Some(program)) => {
-                self.loaded[thread.index()] = None;
-                self.machine.firmware_mut().0.globals.forget(thread);
-                self.hand_over(thread, program, entry);
-                let started = self.machine.start(thread);
-                debug_assert!(started.is_ok(), "a program was loaded");
-                return;
-            }
-            // Only the entry point is new.
-            Ok(None) if self.machine.program(thread).is_some() => return,
-            Ok(None) => "nothing was downloaded to the beginning of its space".to_owned(),
-            Err(error) => error.to_string(),
-        };
-        self.machine.unload_program(thread);
-        let (kernel, context) = self.machine.firmware_mut();
-        let text = format!("thread {thread} is not started: {error}");
-        kernel.tell(context.now, EventKind::Diagnostic(text));
-    }
-
-    /// The program whose text ends at one of some places; `None` if nothing was downloaded.
-    fn downloaded(&self, thread: ThreadId, ends: &[GuestAddr]) -> Result<Option<Program>, VerifyError> {
-        let base = program_base(thread);
-        let mut error = None;
-        for end in ends {
-            let text = self.memory().read_bytes(base, end.get() - base.get()).unwrap_or_default();
-            match verify(text, base) {
-                Ok(program) => return Ok(Some(program)),
-                // What the longest stretch lacks is what the text lacks.
-                Err(wrong) => error = Some(wrong),
-            }
-        }
-        error.map_or(Ok(None), Err)
-    }
-
-    /// Bytes from the PC arrive on the USB link: command lines, ended by CR. A line that begins with 0x1B and a byte
-    /// that is thrown away is not echoed; 0x03 drops what is under way.
-    pub fn receive(&mut self, bytes: &[u8]) {
-        let (kernel, _) = self.machine.firmware_mut();
-        kernel.usb.receive(bytes);
-        kernel.disturb();
-    }
-
-    /// Whether bytes from the PC wait to be taken.
-    #[must_use]
-    pub fn is_receiving(&self) -> bool {
-        self.machine.firmware().usb.is_busy()
-    }
-
-    /// Says whether the PC takes console lines. If not, they wait in the board's queue, and once that is full, so do
-    /// the programs that print.
-    pub fn listen(&mut self, listens: bool) {
-        let (kernel, _) = self.machine.firmware_mut();
-        kernel.is_heard = listens;
-    }
-
     /// Runs to the end of the next tick in which something can happen, or of tick `limit`, whichever comes first.
     pub fn advance(&mut self, limit: Ticks, sink: &mut dyn FnMut(Event)) {
         if self.machine.tick() < limit {
@@ -442,24 +177,11 @@ impl<E: Engine> Board<E> {
         self.deliver(sink);
     }
 
-    /// Whether a command waits for its data lines, so that the next line is one.
-    #[must_use]
-    pub fn is_in_command(&self) -> bool {
-        self.machine.firmware().usb.is_in_command()
-    }
-
     /// Sends the console text that waits, the unfinished line included.
     pub fn flush(&mut self, sink: &mut dyn FnMut(Event)) {
         let (kernel, context) = self.machine.firmware_mut();
         kernel.flush_console(context.now);
         self.deliver(sink);
-    }
-
-    /// Stops the user threads.
-    pub fn kill(&mut self, threads: impl IntoIterator<Item = ThreadId>) {
-        for thread in threads {
-            self.machine.threads_mut().pause(thread);
-        }
     }
 
     /// Runs until `is_over` says so of the events of a tick, or to the end of tick `limit`; whether it said so.
@@ -554,63 +276,16 @@ impl<E: Engine> Board<E> {
         }
         is_inside
     }
-
-    /// Lets the world around the board act as a stimulus says, from now on.
-    pub fn play(&mut self, stimulus: Stimulus) {
-        let (kernel, context) = self.machine.firmware_mut();
-        kernel.play(stimulus, context.memory);
-    }
-
-    /// Plays an operator for programs that wait on inputs nobody drives.
-    pub fn assist(&mut self) {
-        let (kernel, context) = self.machine.firmware_mut();
-        kernel.assist(context.now);
-    }
-
-    /// Records from now on what is asked for; the records come as events.
-    pub fn record(&mut self, request: trace::Request) {
-        let (kernel, context) = self.machine.firmware_mut();
-        kernel.record(request, context.memory);
-    }
-
-    /// Drives an input from outside.
-    pub fn drive_input(&mut self, bit: Bit, level: bool) {
-        let (kernel, context) = self.machine.firmware_mut();
-        kernel.pins.drive(bit, level, context.now);
-        kernel.settle(context.now);
-        kernel.disturb();
-    }
-
-    /// Puts characters on the UART's line; they arrive one after the other at its rate.
-    pub fn send_to_uart(&mut self, bytes: &[u8]) {
-        let (kernel, context) = self.machine.firmware_mut();
-        kernel.uart.arrive(bytes, context.now);
-        kernel.disturb();
-    }
-
-    /// Tells every character that the UART sends from now on, as an event.
-    pub fn hear_uart(&mut self) {
-        self.machine.firmware_mut().0.hear_uart();
-    }
-
-    /// The present value of something that can be recorded.
-    #[must_use]
-    pub fn value(&self, item: trace::Item) -> f64 {
-        item.read(self.machine.firmware(), self.memory())
-    }
-
-    /// The level of a bit.
-    #[must_use]
-    pub fn bit(&self, bit: Bit) -> bool {
-        crate::firmware::io::bit_state(self.machine.firmware(), self.memory(), bit).0
-    }
 }
 
 #[cfg(test)]
 mod tests {
+    use kmotiondef::GuestAddr;
     use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, function_named};
+    use kmotiondef::map::program_base;
     use kmotiondef::structs::Chan;
     use vm::text::assemble;
+    use vm::verify::verify;
 
     use super::*;
 

@@ -4,11 +4,15 @@
 //! the settings of the axes, and the seven program spaces. The second megabyte is the users'; programs write its blocks
 //! with `ProgramFlash` and read them where they are. All of it lies in guest memory, at [`FLASH`].
 
+mod banks;
+
 use std::ops::Range;
 
 use kmotiondef::map::{FLASH, IRAM, PROGRAM_BASE, PROGRAM_SIZE, program_base};
 use kmotiondef::{GuestAddr, ThreadId};
 use vm::memory::GuestMemory;
+
+pub(crate) use banks::Banks;
 
 /// Bytes of flash memory, and of a file that holds it.
 pub const FLASH_SIZE: usize = FLASH.size as usize;

@@ -37,6 +37,7 @@ use crate::event::{Event, EventKind};
 use crate::files::HostFiles;
 use crate::firmware::files::Reading;
 use crate::firmware::serial::{self, SerialService};
+use crate::flash::Banks;
 use crate::globals::Globals;
 use crate::heap::Heap;
 use crate::host::Host;
@@ -109,6 +110,8 @@ pub struct Kernel {
     recorder: Option<Box<Recorder>>,
     pub(crate) servo: Servo,
     pub(crate) heap: Heap,
+    /// How much of flash is seen.
+    pub(crate) flash: Banks,
     /// The PC's disk, and what the board remembers of its files.
     pub(crate) disk: Disk,
     pub(crate) reading: Reading,
@@ -171,6 +174,7 @@ impl Kernel {
             turn: Turn::Primary,
             servo: Servo::default(),
             heap: Heap::default(),
+            flash: Banks::default(),
             disk: Disk::new(files),
             reading: Reading::default(),
             globals: Globals::default(),

@@ -64,7 +64,7 @@ fn program(
     let done = match flash::length(words) {
         Some(length) => {
             let bytes = caller.memory.read_bytes(from, length)?.to_vec();
-            flash::program(caller.memory, to, &bytes)
+            kernel.flash.with_chip(caller.memory, |memory| flash::program(memory, to, &bytes))
         }
         None => false,
     };
@@ -77,8 +77,10 @@ fn program(
     Ok(Outcome::Done(if done { 0 } else { REFUSED }))
 }
 
-/// All of flash can be read where it is, so there is no bank to select.
-pub(crate) fn set_flash_bank(_: &mut Kernel, _: &mut Caller<'_>, _: GuestAddr) {}
+/// Selects the bank that reads find, on a board that is strict about it; others show all of flash where it is.
+pub(crate) fn set_flash_bank(kernel: &mut Kernel, caller: &mut Caller<'_>, address: GuestAddr) {
+    kernel.flash.select(address, caller.memory);
+}
 
 #[cfg(test)]
 mod tests {
@@ -101,5 +103,18 @@ mod tests {
             let arguments = [from, words, to];
             assert_eq!(desk.wake_i32("ProgramFlashNoMessages", &arguments), 1, "{to:#x}");
         }
+    }
+
+    #[test]
+    fn a_strict_board_shows_the_selected_bank() {
+        let mut desk = Desk::new();
+        desk.kernel.flash.be_strict(&mut desk.memory);
+        let from = desk.put_words(0, &[0x0403_0201]);
+        assert_eq!(desk.wake_i32("ProgramFlashNoMessages", &[from, 2, USER]), 0);
+        assert_eq!(desk.bytes_at(USER as u32, 2), [0xff, 0xff]);
+        desk.call("SetFlashBank", &[USER]);
+        assert_eq!(desk.bytes_at(USER as u32, 5), [1, 2, 3, 4, 0xff]);
+        desk.call("SetFlashBank", &[USER + 0x8000]);
+        assert_eq!(desk.bytes_at(USER as u32, 2), [0xff, 0xff]);
     }
 }

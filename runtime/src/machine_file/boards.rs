@@ -1,7 +1,5 @@
 //! `[board]` and `[uart]`: option boards, flash and the serial port.
 
-use toml::de::DeValue;
-
 use super::MachineFile;
 use super::read::{Read, Table, Value, keys};
 
@@ -20,7 +18,7 @@ pub(super) fn board(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
         "konnect_aux0" => machine.konnects[0] = konnects(&value)?;
         "snapamp" => machine.snapamps = value.whole(2)? as usize;
         "flash" => machine.flash = file(&value)?;
-        "strict_flash" => value.only(&DeValue::Boolean(false))?;
+        "strict_flash" => machine.strict_flash = value.flag()?;
     });
     Ok(())
 }

@@ -78,6 +78,8 @@ pub struct MachineFile {
     pub konnects: [u8; 2],
     /// File that keeps the flash; `None` for this run only.
     pub flash: Option<String>,
+    /// Whether reads of flash find the bank that `SetFlashBank` has selected, as the board's address lines have it.
+    pub strict_flash: bool,
     /// File with the characters that the UART receives.
     pub uart_input: Option<String>,
     /// File for the characters that it sends.
@@ -114,6 +116,7 @@ impl Default for MachineFile {
             respect_enable: false,
             konnects: [u8::MAX; 2],
             flash: None,
+            strict_flash: false,
             uart_input: None,
             uart_output: None,
         }

@@ -139,19 +139,6 @@ impl<'a> Value<'a> {
         }
     }
 
-    /// Whether it is the only value that is built so far.
-    pub(super) fn only(&self, built: &DeValue<'_>) -> Read<()> {
-        let same = match (self.source.get_ref(), built) {
-            (DeValue::Boolean(found), DeValue::Boolean(built)) => found == built,
-            (DeValue::String(found), DeValue::String(built)) => found == built,
-            (DeValue::Integer(found), DeValue::Integer(built)) => found.as_str() == built.as_str(),
-            _ => false,
-        };
-        same.then_some(()).ok_or_else(|| {
-            Wrong::new(self.source.span().start, format!("`{}` with this value is not built yet", self.path))
-        })
-    }
-
     fn parsed(&self) -> Option<f64> {
         match self.source.get_ref() {
             DeValue::Float(number) => number.as_str().replace('_', "").parse().ok(),

@@ -177,7 +177,6 @@ fn mistakes_are_named_with_their_place() {
             "2:10: `encoder[0].moves[0]` must be [start in seconds, counts, duration in seconds], not a value of type array",
         ),
         ("[cpu]\nservo_us = 95", "2:12: `cpu.servo_us` must be below the 90 µs of a tick, not 95"),
-        ("[board]\nstrict_flash = true", "2:16: `board.strict_flash` with this value is not built yet"),
         ("[board]\nkonnect = [8]", "2:12: `board.konnect[0]` must be a whole number, 0 to 7, not 8"),
         (
             "[board]\nkonnect = 5",

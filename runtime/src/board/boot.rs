@@ -1,0 +1,100 @@
+//! Power-up from flash, and what goes into flash.
+
+use kmotiondef::map::FLASH;
+use kmotiondef::structs::Persist;
+use kmotiondef::variables::{HOST_STATUS, PERSIST};
+use kmotiondef::{GuestAddr, ThreadId};
+use vm::engine::Engine;
+use vm::memory::GuestMemory;
+use vm::program::Program;
+use vm::verify::verify;
+
+use super::{Board, Loaded};
+use crate::commands::FLASH_COMPLETE;
+use crate::event::EventKind;
+use crate::flash;
+use crate::power_up::{self, Before};
+use crate::views::Typed;
+
+impl<E: Engine> Board<E> {
+    /// Fills memory from flash, or as it is when nothing was ever flashed, and starts the programs that start by
+    /// themselves. From then on a board that `is_strict` shows one bank of flash.
+    pub(super) fn power_up(&mut self, is_strict: bool) {
+        let memory = self.machine.memory_mut();
+        let before = if flash::is_saved(memory) { Before::Flashed } else { Before::Zero };
+        if before == Before::Flashed {
+            flash::restore(memory);
+        }
+        power_up::fill(memory, before);
+        if before == Before::Flashed {
+            ThreadId::all().for_each(|thread| self.load_flashed(thread));
+            let starts = self.memory().get(PERSIST.field(Persist::RUN_ON_START_UP));
+            for thread in ThreadId::all().filter(|thread| starts & 1 << thread.get() != 0) {
+                // A thread without a program has nothing to start.
+                let _ = self.machine.start(thread);
+            }
+        }
+        let (kernel, context) = self.machine.firmware_mut();
+        let status = i32::from(kernel.host.has_job());
+        context.memory.set(HOST_STATUS, status);
+        if is_strict {
+            kernel.flash.be_strict(context.memory);
+        }
+    }
+
+    /// Makes a program of what flash has brought back for a thread.
+    pub(super) fn load_flashed(&mut self, thread: ThreadId) {
+        let Some(text) = flash::text(self.memory(), thread) else { return };
+        let length = text.end.get() - text.start.get();
+        let bytes = self.memory().read_bytes(text.start, length).unwrap_or_default();
+        match verify(bytes, text.start) {
+            Ok(program) => {
+                let entry = self.memory().get(PERSIST.field(Persist::ENTRY_POINTS).element(thread.index()));
+                self.hand_over(thread, program, GuestAddr::new(entry));
+                let extent = text.start.get()..text.end.get();
+                let debug = self.flashed[thread.index()].clone().unwrap_or_default();
+                self.loaded[thread.index()] = Some(Loaded { debug, extent });
+            }
+            Err(error) => {
+                let (kernel, context) = self.machine.firmware_mut();
+                let text = format!("what was flashed for thread {thread} is no program: {error}");
+                kernel.tell(context.now, EventKind::Diagnostic(text));
+            }
+        }
+    }
+
+    /// Saves programs and settings in flash.
+    pub(super) fn save(&mut self) {
+        let texts: Vec<_> =
+            ThreadId::all().map(|thread| self.machine.program(thread).map(Program::text)).collect();
+        let (kernel, context) = self.machine.firmware_mut();
+        kernel.flash.with_chip(context.memory, |memory| {
+            flash::save(memory, |thread| texts.get(thread.index()).cloned().flatten());
+        });
+        self.flashed =
+            std::array::from_fn(|index| self.loaded[index].as_ref().map(|loaded| loaded.debug.clone()));
+        let (kernel, _) = self.machine.firmware_mut();
+        kernel.console.message(FLASH_COMPLETE);
+    }
+
+    /// Starts anew from flash. Time goes on: it counts from the first power-up.
+    pub(super) fn reboot(&mut self) {
+        ThreadId::all().for_each(|thread| self.machine.unload_program(thread));
+        self.loaded = Default::default();
+        let flash = self.flash().to_vec();
+        let is_strict = self.machine.firmware().flash.chip().is_some();
+        let memory = self.machine.memory_mut();
+        *memory = GuestMemory::new();
+        let stored = memory.poke_bytes(FLASH.base, &flash);
+        debug_assert!(stored.is_ok(), "flash is mapped");
+        self.machine.firmware_mut().0.restart();
+        self.power_up(is_strict);
+    }
+
+    /// What flash memory holds.
+    #[must_use]
+    pub fn flash(&self) -> &[u8] {
+        let seen = || self.memory().read_bytes(FLASH.base, FLASH.size).unwrap_or_default();
+        self.machine.firmware().flash.chip().unwrap_or_else(seen)
+    }
+}
