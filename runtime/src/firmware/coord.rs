@@ -90,6 +90,7 @@ pub(crate) fn check_done_buf(_: &mut Kernel, caller: &mut Caller<'_>) -> i32 {
 /// itself; the others run on meanwhile. Only a thread can wait for them.
 pub(crate) fn stop_coordinated_motion(kernel: &mut Kernel, caller: &mut Caller<'_>) -> Outcome<()> {
     if caller.thread.is_none() {
+        prepare_stop(caller.memory);
         stop(kernel, caller.memory);
         return Outcome::Done(());
     }
@@ -135,12 +136,18 @@ fn may_stop(memory: &GuestMemory) -> bool {
     State::of(memory) == State::Running && !spindle::is_threading(memory)
 }
 
-/// Begins a feedhold at once if something in the coordinate system moves; whether it does.
+/// Computes how long a stop takes, for [`stop`].
+pub(crate) fn prepare_stop(memory: &mut GuestMemory) {
+    if may_stop(memory) {
+        feedhold::note_time(memory);
+    }
+}
+
+/// Begins a feedhold that was prepared, if something in the coordinate system moves; whether it does.
 pub(crate) fn stop(kernel: &mut Kernel, memory: &mut GuestMemory) -> bool {
     if !may_stop(memory) {
         return false;
     }
-    feedhold::note_time(memory);
     if feedhold::stop(memory) {
         return true;
     }

@@ -1,4 +1,8 @@
 //! Backlash compensation: an offset that ramps with the direction of motion.
+//!
+//! The offset runs between 0 and the amount. One that is above the amount goes there at once, as when a program makes
+//! the amount smaller; with an amount below 0 it is either above it or below 0, and flips between the two while the
+//! axis goes back. The board does so too.
 
 use kmotiondef::structs::Chan;
 
@@ -8,18 +12,21 @@ use crate::views::AxisView;
 /// Advances the offset of an axis that has one by one tick.
 pub(crate) fn advance(chan: &mut AxisView<'_>) {
     let (dest, judged) = (chan.get(Chan::DEST) as f32, chan.get(Chan::PREV_BACKLASH_DEST));
+    let (offset, amount) = (chan.get(Chan::BACKLASH), chan.get(Chan::BACKLASH_AMOUNT));
+    let is_above = offset > amount;
     if dest != judged {
         chan.set(Chan::BACKLASH_DIRECTION, if dest > judged { 1 } else { -1 });
         chan.set(Chan::PREV_BACKLASH_DEST, dest);
+    } else if is_above {
+        chan.set(Chan::BACKLASH_DIRECTION, 1);
     }
-    let goal = match chan.get(Chan::BACKLASH_DIRECTION) {
-        1 => chan.get(Chan::BACKLASH_AMOUNT),
-        -1 => 0.0,
+    let step = (f64::from(chan.get(Chan::BACKLASH_RATE)) * TIMEBASE) as f32;
+    let offset = match chan.get(Chan::BACKLASH_DIRECTION) {
+        _ if is_above => amount,
+        1 => (offset + step).min(amount),
+        -1 => (offset - step).max(0.0),
         _ => return,
     };
-    let step = (f64::from(chan.get(Chan::BACKLASH_RATE)) * TIMEBASE) as f32;
-    let offset = chan.get(Chan::BACKLASH);
-    let offset = if goal > offset { (offset + step).min(goal) } else { (offset - step).max(goal) };
     chan.set(Chan::BACKLASH, offset);
 }
 

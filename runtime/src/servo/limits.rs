@@ -177,7 +177,7 @@ pub(crate) fn slice(kernel: &mut Kernel, memory: &mut GuestMemory) {
     }
     if !request.is_seen {
         request.is_seen = true;
-        return;
+        return coord::prepare_stop(memory);
     }
     let asked = std::mem::take(request).asked;
     if memory.get(CS0_STOPPING_STATE) != 0 {
