@@ -368,6 +368,22 @@ fn the_summary_tells_why_a_run_ended() {
 }
 
 #[test]
+fn an_axis_that_jogs_on_is_named_when_the_run_is_broken_off() {
+    let scratch = Scratch::new("jogs-on");
+    let source = "#include \"KMotionDef.h\"\nmain() { EnableAxisDest(2, 0); Jog(2, 100); }\n";
+    scratch.write("jog.c", source);
+    let output = cc67(&scratch, &["run", "jog.c"]);
+    assert_eq!(output.code, 4, "{output:?}");
+    assert_eq!(
+        output.stderr,
+        "cc67: the programs have ended, but axis 2 still moves after 60 s of board time: what `Jog` begins, \
+         `Jog(2, 0)` or `DisableAxis(2)` ends; `--for SECONDS` ends the run at a time of your choice, with exit code 0\n"
+    );
+    let output = cc67(&scratch, &["run", "--for", "0.5", "jog.c"]);
+    assert_eq!((output.code, &*output.stderr), (0, ""));
+}
+
+#[test]
 fn a_run_in_real_time_takes_its_time_and_does_the_same() {
     let scratch = Scratch::new("realtime");
     let source = "#include \"KMotionDef.h\"\nmain()\n{\n  int i;\n  for (i = 0; i < 4; i++) { Delay_sec(0.1); printf(\"%f\\n\", Time_sec()); }\n}\n";

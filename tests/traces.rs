@@ -262,7 +262,7 @@ main()
 fn a_run_that_is_killed_leaves_no_file_under_the_name() {
     let scratch = Scratch::new("traces-killed");
     let program = "#include \"KMotionDef.h\"
-main() { for (;;) { SetStateBit(46, ReadBit(136)); Delay_sec(0.01); } }";
+main() { int axis = 9; EnableAxis(axis); for (;;) { SetStateBit(46, ReadBit(136)); Delay_sec(0.01); } }";
     scratch.write("a.c", program);
     let mut child = Process::new(env!("CARGO_BIN_EXE_cc67-under-test"))
         .args(["run", "--for", "1e9", "--trace", "a.vcd", "--trace", "a.json", "--trace", "a.csv", "a.c"])
@@ -272,7 +272,7 @@ main() { for (;;) { SetStateBit(46, ReadBit(136)); Delay_sec(0.01); } }";
         .expect("it starts");
     let mut line = String::new();
     let mut errors = BufReader::new(child.stderr.take().expect("it is piped"));
-    errors.read_line(&mut line).expect("it hints at the input that nothing drives");
+    errors.read_line(&mut line).expect("it says that there is no such axis");
     child.kill().expect("it runs");
     child.wait().expect("it ends");
     for name in ["a.vcd", "a.json", "a.csv"] {

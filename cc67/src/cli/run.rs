@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use clap::{Args, ValueEnum};
-use kmotiondef::{ThreadId, Ticks};
+use kmotiondef::{AxisId, ThreadId, Ticks};
 use runtime::loader::LoadError;
 use runtime::stimulus::Stimulus;
 use runtime::trace::Request;
@@ -293,12 +293,24 @@ impl Session<'_> {
             arguments.trace.finish(trace, board.tick(), &title.to_string_lossy())?;
         }
         if exit == Exit::StillRunning {
-            terminal::note(&format!(
-                "still running after {DEFAULT_LIMIT} s of board time; `--for SECONDS` sets the limit"
-            ));
+            terminal::note(&still_running(&active, &board.moving()));
         }
         Ok(exit)
     }
+}
+
+/// Why a run has not ended by the usual limit, and what can be done.
+fn still_running(active: &[u8], moving: &[AxisId]) -> String {
+    let after = format!("after {DEFAULT_LIMIT} s of board time");
+    let (Some(first), []) = (moving.first(), active) else {
+        return format!("still running {after}; `--for SECONDS` sets the limit");
+    };
+    let numbers = moving.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+    let (axes, verb) = if moving.len() == 1 { ("axis", "moves") } else { ("axes", "move") };
+    format!(
+        "the programs have ended, but {axes} {numbers} still {verb} {after}: what `Jog` begins, `Jog({first}, 0)` or \
+         `DisableAxis({first})` ends; `--for SECONDS` ends the run at a time of your choice, with exit code 0"
+    )
 }
 
 /// The image of every program; `None` if a source has errors, after all have been compiled.

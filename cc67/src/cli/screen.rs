@@ -5,7 +5,7 @@
 
 use std::io::{self, Write};
 
-use kmotiondef::{Cycles, ThreadId, Ticks};
+use kmotiondef::{Bit, Cycles, ThreadId, Ticks};
 use runtime::debug::DebugInfo;
 use runtime::{Event, EventKind};
 use serde::Serialize;
@@ -77,6 +77,8 @@ pub(super) struct Screen<W: Write> {
     console_lines: u64,
     traps: u64,
     remarks: u64,
+    /// Who has read which inputs that nothing drives: told together when the run is over.
+    undriven: Vec<(String, Bit)>,
     error: Option<io::Error>,
 }
 
@@ -89,7 +91,8 @@ impl<W: Write> Screen<W> {
         offered: Vec<Offered>,
     ) -> Self {
         let (threads, programs) = programs.into_iter().unzip();
-        Self { out, style, programs, threads, offered, console_lines: 0, traps: 0, remarks: 0, error: None }
+        let (console_lines, traps, remarks, undriven) = Default::default();
+        Self { out, style, programs, threads, offered, console_lines, traps, remarks, undriven, error: None }
     }
 
     /// Another program has been loaded.
@@ -116,6 +119,9 @@ impl<W: Write> Screen<W> {
             EventKind::Trace(_) | EventKind::UartSent(_) => {}
             EventKind::Loaded(thread, name) => self.replace(*thread, name),
             EventKind::Detail(text) if self.style.is_verbose => self.say(event, text),
+            EventKind::UndrivenInput { bit, thread, place } if !self.style.json && !self.style.is_live => {
+                self.undriven.push((remark::reader(*thread, *place, &self.programs), *bit));
+            }
             _ => {
                 if let Some(text) = remark::describe(event, &self.programs) {
                     self.say(event, &text);
@@ -174,6 +180,11 @@ impl<W: Write> Screen<W> {
 
     /// Says how the run has ended.
     pub(super) fn end(&mut self, exit: Exit, reason: &str, at: Ticks, active: &[u8]) {
+        if !self.undriven.is_empty() {
+            let flushed = self.out.flush();
+            self.keep(flushed);
+            terminal::note(&remark::undriven(&self.undriven));
+        }
         if !self.style.json {
             return;
         }
