@@ -8,6 +8,9 @@
 //! Source: tables `api/functions.csv` of the specification, firmware 4.34; the functions of
 //! origin `library` are those that programs expect and firmware 4.34 lacks
 //! (`api/README.md`, `dialect.md` section 5).
+//!
+//! The file is as long as the board has functions: behind the hundred lines of the row's type there is nothing but
+//! rows, and a row cut off from the others would be looked for in two places.
 
 use std::collections::BTreeMap;
 use std::sync::LazyLock;

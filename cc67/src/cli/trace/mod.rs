@@ -12,6 +12,7 @@ mod log;
 mod order;
 mod picture;
 mod table;
+mod unit;
 mod vcd;
 mod watch;
 

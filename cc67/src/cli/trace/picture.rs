@@ -6,6 +6,7 @@ use kmotiondef::{Bit, Cycles, Ticks};
 use runtime::trace::{Item, Quantity};
 
 use super::log::Log;
+use super::unit;
 use crate::cli::plot::chart::{Chart, Strip};
 use crate::cli::plot::samples::{Column, Samples};
 
@@ -18,7 +19,7 @@ pub(super) fn chart(log: &Log, title: String, every: u64, end: Ticks) -> Chart {
     let columns = log.columns();
     let column = |(_, quantity): &(usize, &Quantity)| Column {
         name: quantity.to_string(),
-        unit: quantity.item().map_or("", Item::unit).to_owned(),
+        unit: unit::of(quantity).to_owned(),
     };
     let value = |values: &[f64], index: usize| values.get(index).copied().unwrap_or_default();
     let row = |(at, values): &(Cycles, Vec<f64>)| {

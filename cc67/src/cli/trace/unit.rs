@@ -1,0 +1,74 @@
+//! The unit of a watched expression, where it is one place of the board whose meaning says it.
+
+use kmotiondef::structs::{Chan, StructureField};
+use kmotiondef::variables::FIRMWARE_VARIABLES;
+use runtime::trace::{Item, Quantity};
+
+/// How a meaning ends, and the unit that stands for.
+const UNITS: &[(&str, &str)] = &[
+    (", position units.", "units"),
+    (", units/s.", "units/s"),
+    (", units/s^2.", "units/s²"),
+    (", units/s^3.", "units/s³"),
+    (", PWM counts.", "counts"),
+    (", seconds.", "s"),
+    (", seconds a tick.", "s"),
+];
+
+/// The unit of what is watched; empty for mere numbers.
+pub(super) fn of(quantity: &Quantity) -> &'static str {
+    match quantity {
+        Quantity::Item(item) => Item::unit(*item),
+        Quantity::Formula(text, _) => of_expression(text),
+    }
+}
+
+fn of_expression(text: &str) -> &'static str {
+    // `2:count` is the `count` of thread 2.
+    let place = text.rsplit(':').next().unwrap_or_default().trim();
+    let is_place = |character: char| character.is_ascii_alphanumeric() || "_.[]->".contains(character);
+    // A minus that is no arrow makes it a difference.
+    if !place.chars().all(is_place) || place.replace("->", ".").contains(['-', '>']) {
+        return "";
+    }
+    let path = place.replace("->", ".");
+    match path.rsplit_once('.') {
+        Some((axis, field)) if axis.starts_with("ch") => of_field(field),
+        Some(_) => "",
+        None => {
+            let variable = FIRMWARE_VARIABLES.iter().find(|variable| variable.name == path);
+            variable.map_or("", |variable| of_meaning(variable.doc))
+        }
+    }
+}
+
+fn of_field(name: &str) -> &'static str {
+    let field = Chan::STRUCTURE.fields.iter().find(|field| field.name == name);
+    field.map_or("", |StructureField { doc, .. }| of_meaning(doc))
+}
+
+fn of_meaning(doc: &str) -> &'static str {
+    UNITS.iter().find(|(ending, _)| doc.ends_with(ending)).map_or("", |(_, unit)| unit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_place_of_the_board_has_the_unit_of_its_meaning() {
+        for (text, unit) in [
+            ("ch0->Dest", "units"),
+            ("chan[3].Vel", "units/s"),
+            ("2:chan[i].Jerk", "units/s³"),
+            ("ch1->StepperAmplitude", "counts"),
+            ("CS0_TimeBaseDelta", "s"),
+            ("ch0->P", ""),
+            ("ch0->Dest - ch1->Dest", ""),
+            ("other.Dest", ""),
+            ("count", ""),
+        ] {
+            assert_eq!(of_expression(text), unit, "{text}");
+        }
+    }
+}
