@@ -17,24 +17,23 @@
     )
 )]
 
+mod flash;
+
 use std::ops::Range;
 
 use kmotiondef::map::{FLASH, IRAM, REGIONS, RegionKind, SDRAM};
 use kmotiondef::{GuestAddr, ThreadId};
 
+use self::flash::Flash;
 use crate::protection::Protection;
 use crate::trap::{Access, TrapKind};
 
 const SDRAM_SIZE: usize = 0x100_0000;
 const IRAM_SIZE: usize = 0x2_0000;
-const FLASH_SIZE: usize = 0x20_0000;
 
 const SDRAM_BASE: u32 = SDRAM.base.get();
 const IRAM_BASE: u32 = IRAM.base.get();
 const FLASH_BASE: u32 = FLASH.base.get();
-
-/// What erased flash reads as.
-const ERASED: u8 = 0xff;
 
 /// A type that one load or store moves.
 pub trait Scalar: sealed::Sealed + Copy + Default {
@@ -103,7 +102,7 @@ scalars! {
 pub struct GuestMemory {
     sdram: Box<[u8; SDRAM_SIZE]>,
     iram: Box<[u8; IRAM_SIZE]>,
-    flash: Box<[u8; FLASH_SIZE]>,
+    flash: Flash,
     protection: Protection,
 }
 
@@ -117,7 +116,7 @@ impl GuestMemory {
     /// Memory as at power-up: zero, the flash erased.
     #[must_use]
     pub fn new() -> Self {
-        Self { sdram: filled(0), iram: filled(0), flash: filled(ERASED), protection: Protection::default() }
+        Self { sdram: filled(0), iram: filled(0), flash: Flash::default(), protection: Protection::default() }
     }
 
     /// Loads a value on behalf of a program.
@@ -145,7 +144,7 @@ impl GuestMemory {
         if address & (T::LOAD_ALIGN - 1) != 0 {
             return Err(TrapKind::Misaligned { addr, size: T::SIZE, access: Access::Read });
         }
-        T::get(&self.flash[..], index(address.wrapping_sub(FLASH_BASE)))
+        T::get(self.flash.bytes(), index(address.wrapping_sub(FLASH_BASE)))
             .ok_or(TrapKind::Unmapped { addr, access: Access::Read })
     }
 
@@ -184,7 +183,7 @@ impl GuestMemory {
         let address = addr.get();
         T::get(&self.iram[..], index(address.wrapping_sub(IRAM_BASE)))
             .or_else(|| T::get(&self.sdram[..], index(address.wrapping_sub(SDRAM_BASE))))
-            .or_else(|| T::get(&self.flash[..], index(address.wrapping_sub(FLASH_BASE))))
+            .or_else(|| T::get(self.flash.bytes(), index(address.wrapping_sub(FLASH_BASE))))
             .unwrap_or_default()
     }
 
@@ -196,7 +195,7 @@ impl GuestMemory {
         let _ = value
             .set(&mut self.iram[..], index(address.wrapping_sub(IRAM_BASE)))
             .or_else(|| value.set(&mut self.sdram[..], index(address.wrapping_sub(SDRAM_BASE))))
-            .or_else(|| value.set(&mut self.flash[..], index(address.wrapping_sub(FLASH_BASE))));
+            .or_else(|| value.set(self.flash.bytes_mut(), index(address.wrapping_sub(FLASH_BASE))));
     }
 
     /// The `len` bytes from `addr` on.
@@ -352,8 +351,8 @@ impl GuestMemory {
             (&mut self.sdram[..], offset)
         } else if let Some(offset) = offset_in(addr, IRAM_BASE, IRAM_SIZE) {
             (&mut self.iram[..], offset)
-        } else if let Some(offset) = offset_in(addr, FLASH_BASE, FLASH_SIZE) {
-            (&mut self.flash[..], offset)
+        } else if let Some(offset) = offset_in(addr, FLASH_BASE, flash::SIZE) {
+            (&mut self.flash.bytes_mut()[..], offset)
         } else {
             return Err(TrapKind::Unmapped { addr, access: Access::Write });
         };
@@ -369,7 +368,7 @@ impl GuestMemory {
         } else if let Some(offset) = offset_in(addr, IRAM_BASE, IRAM_SIZE) {
             self.iram.get(offset..)
         } else {
-            self.flash.get(offset_in(addr, FLASH_BASE, FLASH_SIZE)?..)
+            self.flash.bytes().get(offset_in(addr, FLASH_BASE, flash::SIZE)?..)
         }
     }
 }
@@ -389,7 +388,7 @@ pub fn is_on_bus(addr: GuestAddr, access: Access) -> bool {
 
 const _: () = assert!(index_const(SDRAM.size) == SDRAM_SIZE);
 const _: () = assert!(index_const(IRAM.size) == IRAM_SIZE);
-const _: () = assert!(index_const(FLASH.size) == FLASH_SIZE);
+const _: () = assert!(index_const(FLASH.size) == flash::SIZE);
 
 #[expect(
     clippy::as_conversions,

@@ -1,0 +1,36 @@
+//! The bytes of flash memory, which take no memory of the host until something is written.
+
+use super::filled;
+
+/// Bytes of flash memory.
+pub(super) const SIZE: usize = 0x20_0000;
+
+/// What erased flash reads as.
+const ERASED_BYTE: u8 = 0xff;
+
+/// Flash to which nothing was ever written; a board of a few milliseconds shall not have to fill two megabytes.
+static ERASED: [u8; SIZE] = [ERASED_BYTE; SIZE];
+
+/// Flash memory.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Flash(Option<Box<[u8; SIZE]>>);
+
+impl Flash {
+    /// All bytes.
+    pub(super) fn bytes(&self) -> &[u8; SIZE] {
+        self.0.as_deref().unwrap_or(&ERASED)
+    }
+
+    /// All bytes, to be changed.
+    pub(super) fn bytes_mut(&mut self) -> &mut [u8; SIZE] {
+        self.0.get_or_insert_with(|| filled(ERASED_BYTE))
+    }
+}
+
+impl PartialEq for Flash {
+    fn eq(&self, other: &Self) -> bool {
+        (self.0.is_none() && other.0.is_none()) || self.bytes() == other.bytes()
+    }
+}
+
+impl Eq for Flash {}
