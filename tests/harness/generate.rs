@@ -2,9 +2,10 @@
 //!
 //! What the C standard leaves open does not occur: expressions have no side effects, a call is the only thing on
 //! the right of its assignment and can change nothing on the left, shift counts and indices are masked, divisors
-//! are neither 0 nor -1, a double becomes an integer only where it fits, everything is initialised. Integers wrap
+//! are at least 2, a double becomes an integer only where it fits, everything is initialised. Integers wrap
 //! (`gcc -fwrapv`), `char` is signed, and no type is used whose size differs between the board and a PC: no
-//! `long`, no sizes of pointers.
+//! `long`, no sizes of pointers. Dividing by 1 is defined, but GCC computes `-(a / b)` as `a / -b`, and then a
+//! processor refuses to divide the least integer by -1.
 //!
 //! A program ends: loops count to a constant, and a function calls only those before it, a few times.
 
@@ -348,8 +349,8 @@ impl Writer {
             7 => format!("({} {a})", self.pick(&["~", "!", "-"])),
             8 => format!("(({}){a})", TYPES[self.below(9)].0),
             9 => format!("({a} ? {} : {})", self.integer(depth - 1), self.integer(depth - 1)),
-            // From 1 to 255, or from 3 to 18.
-            10 => format!("({a} {} (({} & 254) + 1))", self.pick(&["/", "%"]), self.integer(depth - 1)),
+            // From 2 to 257, or from 3 to 18.
+            10 => format!("({a} {} (({} & 255) + 2))", self.pick(&["/", "%"]), self.integer(depth - 1)),
             11 => format!("({a} {} {})", self.pick(&["/", "%"]), 3 + self.below(16)),
             12 => {
                 let operator = self.pick(&["<", ">", "<=", ">=", "==", "!="]);
