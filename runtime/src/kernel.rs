@@ -391,6 +391,15 @@ impl Bus for Kernel {
     }
 }
 
+/// The firmware function at `address` if it only computes its result from its arguments.
+#[must_use]
+pub fn pure_function(address: GuestAddr) -> Option<Pure> {
+    let row = &FIRMWARE_FUNCTIONS[function_at(address)?];
+    let is_math = row.group == "math";
+    let function = is_math.then(|| crate::firmware::math::pure(row.rust_name)).flatten()?;
+    Some(Pure { cost: row.cost, function })
+}
+
 impl Firmware for Kernel {
     fn signature(&self, address: GuestAddr) -> Option<&Signature> {
         self.signatures.get(function_at(address)?)
@@ -408,10 +417,7 @@ impl Firmware for Kernel {
     }
 
     fn pure(&self, address: GuestAddr) -> Option<Pure> {
-        let row = &FIRMWARE_FUNCTIONS[function_at(address)?];
-        let is_math = row.group == "math";
-        let function = is_math.then(|| crate::firmware::math::pure(row.rust_name)).flatten()?;
-        Some(Pure { cost: row.cost, function })
+        pure_function(address)
     }
 
     fn begins(&mut self, thread: ThreadId, memory: &mut GuestMemory) {

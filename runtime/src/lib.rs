@@ -46,5 +46,5 @@ pub use event::{Event, EventKind};
 pub use files::{Directory, FileError, HostFiles, NoFiles};
 pub use flash::FLASH_SIZE;
 pub use host::{ANSWERS_HELP, AnswerError, Answers};
-pub use kernel::Kernel;
+pub use kernel::{Kernel, pure_function};
 pub use machine_file::{MachineFile, MachineFileError};

@@ -161,6 +161,20 @@ pure_functions! {
     F32F32(extern "C" fn(f32, f32) -> f32) = (F32, F32) -> F32;
 }
 
+impl PureFunction {
+    /// The function that computes it; `None` for those that are one instruction of any processor.
+    #[must_use]
+    pub fn pointer(self) -> Option<*const ()> {
+        match self {
+            Self::SqrtF64 | Self::SqrtF32 => None,
+            Self::F64(function) => Some(function as *const ()),
+            Self::F64F64(function) => Some(function as *const ()),
+            Self::F32(function) => Some(function as *const ()),
+            Self::F32F32(function) => Some(function as *const ()),
+        }
+    }
+}
+
 /// One firmware call as the kernel sees it.
 #[derive(Debug)]
 pub struct Caller<'a> {

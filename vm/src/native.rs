@@ -11,9 +11,12 @@
 //! a bytecode engine kept for that.
 
 mod code;
+mod compile;
 mod context;
 mod entry;
 mod fiber;
+mod linked;
+mod object;
 mod protected;
 mod request;
 mod state;
@@ -24,6 +27,10 @@ mod translate;
 use std::sync::Arc;
 
 use kmotiondef::CodeAddr;
+
+pub use self::compile::CompileError;
+pub use self::linked::{Description, Linked, LinkedError};
+pub use self::object::{PREFIX, Parts, START, object};
 
 pub(crate) use self::code::Compiled;
 use self::context::Context;

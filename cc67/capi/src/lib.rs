@@ -17,6 +17,8 @@ mod client;
 mod console;
 mod lines;
 mod programs;
+#[cfg(feature = "native")]
+mod stand_alone;
 mod time;
 mod token;
 
@@ -32,6 +34,8 @@ pub use lines::{
 pub use programs::{
     cc67_compile_and_load_coff, cc67_compile_and_load_coff_with_message, cc67_include_dir, cc67_load_coff,
 };
+#[cfg(feature = "native")]
+pub use stand_alone::cc67_run_linked;
 pub use time::{
     EndCallback, cc67_drive_input, cc67_run_for, cc67_run_until, cc67_set_user_data, cc67_user_data,
 };

@@ -25,6 +25,8 @@ mod run;
 mod screen;
 mod setting;
 mod shell;
+#[cfg(feature = "native")]
+mod stand_alone;
 mod stimulus;
 mod terminal;
 mod test;
@@ -39,6 +41,8 @@ use anyhow::Result;
 use clap::{Parser, Subcommand};
 
 pub use exit::Exit;
+#[cfg(feature = "native")]
+pub use stand_alone::main as stand_alone;
 
 /// C compiler, linker and simulated KFLOP board.
 #[derive(Debug, Parser)]

@@ -113,7 +113,25 @@ impl Write for Scratch {
 
 /// A temporary name: what still has it in the end is removed.
 #[derive(Debug)]
-struct Temporary(PathBuf);
+pub(super) struct Temporary(PathBuf);
+
+#[cfg(feature = "native")]
+impl Temporary {
+    /// A name beside that of `path`.
+    pub(super) fn beside(path: &Path, suffix: &str) -> Self {
+        Self(temporary(path, suffix))
+    }
+
+    /// The name.
+    pub(super) fn path(&self) -> &Path {
+        &self.0
+    }
+
+    /// Renames the file that another process has made under the name.
+    pub(super) fn commit(self, path: &Path) -> Result<()> {
+        fs::rename(&self.0, path).map_err(|error| cannot_write(path, &error))
+    }
+}
 
 impl Drop for Temporary {
     fn drop(&mut self) {

@@ -138,6 +138,11 @@ pub(super) fn seconds(text: &str) -> Result<f64, String> {
 
 /// Compiles, loads and runs the programs.
 pub(super) fn run(arguments: &Arguments) -> Result<Exit> {
+    run_with(arguments, None)
+}
+
+/// The same, where the image of the first program may be at hand already.
+pub(super) fn run_with(arguments: &Arguments, first: Option<&[u8]>) -> Result<Exit> {
     let mut all = arguments.programs.clone();
     all.extend_from_slice(&arguments.load);
     let programs = assign(&all)?;
@@ -150,7 +155,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit> {
     let uart = arguments.uart.or_those_of(&machine_file);
     let offered = stimulus::programs(&[&machine_file.stimulus, &stimulus]);
     let all = [programs.clone(), offered].concat();
-    let Some(images) = images(&all, &arguments.compiler)? else { return Ok(Exit::Failure) };
+    let rest = &all[usize::from(first.is_some())..];
+    let Some(rest) = images(rest, &arguments.compiler)? else { return Ok(Exit::Failure) };
+    let images: Vec<_> = first.map(<[u8]>::to_vec).into_iter().chain(rest).collect();
     let watched: Vec<_> = all.iter().zip(&images).map(|(program, image)| program.watched(image)).collect();
     let trace = arguments.trace.request(&watched, &arguments.compiler.resolve()?)?;
 

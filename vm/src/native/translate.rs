@@ -19,6 +19,7 @@ mod memory;
 mod nan;
 mod turns;
 
+use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::mem::offset_of;
 
@@ -29,8 +30,7 @@ use cranelift_codegen::ir::{
 };
 use cranelift_codegen::isa::CallConv;
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext, Variable};
-use cranelift_jit::JITModule;
-use cranelift_module::{FuncId, Module};
+use cranelift_module::{DataId, FuncId, Module};
 
 use kmotiondef::GuestAddr;
 
@@ -68,10 +68,26 @@ pub(super) struct Translation<'a> {
     pub(super) request: FuncId,
     /// The firmware's functions that only compute.
     pub(super) pure: PureFunctions<'a>,
+    /// How they are called.
+    pub(super) host: HostFunctions<'a>,
 }
 
 /// Where the firmware's functions that only compute are found.
 pub(super) type PureFunctions<'a> = &'a dyn Fn(GuestAddr) -> Option<Pure>;
+
+/// How compiled code finds the host's functions behind [`PureFunctions`].
+#[derive(Clone, Copy)]
+pub(super) enum HostFunctions<'a> {
+    /// At the addresses that they have in this process.
+    Here,
+    /// In a table of pointers, which is filled when the program starts.
+    Table {
+        /// The table.
+        data: DataId,
+        /// The firmware's functions that it has pointers for, in its order.
+        used: &'a RefCell<Vec<GuestAddr>>,
+    },
+}
 
 /// The machine signature of a function with `parameters`.
 pub(super) fn function_signature(parameters: &[Class]) -> Signature {
@@ -84,7 +100,7 @@ pub(super) fn function_signature(parameters: &[Class]) -> Signature {
 }
 
 /// The machine signature of [`Begin`](super::entry::Begin).
-pub(super) fn begin_signature(module: &JITModule) -> Signature {
+pub(super) fn begin_signature(module: &dyn Module) -> Signature {
     let mut signature = module.make_signature();
     signature.params = vec![AbiParam::new(types::I64); 2];
     signature
@@ -119,7 +135,7 @@ pub(super) fn request_signature() -> Signature {
 pub(super) fn translate_request(
     ir: &mut IrFunction,
     context: &mut FunctionBuilderContext,
-    module: &JITModule,
+    module: &dyn Module,
 ) {
     let mut builder = FunctionBuilder::new(ir, context);
     let block = builder.create_block();
@@ -169,7 +185,7 @@ fn zero(builder: &mut FunctionBuilder<'_>, class: Class) -> Value {
 pub(super) fn translate(
     ir: &mut IrFunction,
     context: &mut FunctionBuilderContext,
-    module: &mut JITModule,
+    module: &mut dyn Module,
     translation: Translation<'_>,
 ) {
     let signature = usize::from(translation.function.signature.0);
@@ -183,7 +199,11 @@ pub(super) fn translate(
 }
 
 /// Translates the way from Rust to a thunk into `ir`, whose signature is set.
-pub(super) fn translate_begin(ir: &mut IrFunction, context: &mut FunctionBuilderContext, module: &JITModule) {
+pub(super) fn translate_begin(
+    ir: &mut IrFunction,
+    context: &mut FunctionBuilderContext,
+    module: &dyn Module,
+) {
     let mut builder = FunctionBuilder::new(ir, context);
     let block = builder.create_block();
     builder.append_block_params_for_function_params(block);
@@ -208,7 +228,7 @@ pub(super) fn translate_begin(ir: &mut IrFunction, context: &mut FunctionBuilder
 pub(super) fn translate_thunk(
     ir: &mut IrFunction,
     context: &mut FunctionBuilderContext,
-    module: &JITModule,
+    module: &dyn Module,
     parameters: &[Class],
 ) {
     let mut builder = FunctionBuilder::new(ir, context);
@@ -265,7 +285,7 @@ registers! {
 /// One function while it is translated.
 struct Translator<'a, 'b> {
     builder: FunctionBuilder<'b>,
-    module: &'a mut JITModule,
+    module: &'a mut dyn Module,
     translation: Translation<'a>,
     registers: Vec<Variable>,
     budget: Variable,
@@ -304,7 +324,7 @@ struct Translator<'a, 'b> {
 impl<'a, 'b> Translator<'a, 'b> {
     fn new(
         mut builder: FunctionBuilder<'b>,
-        module: &'a mut JITModule,
+        module: &'a mut dyn Module,
         translation: Translation<'a>,
     ) -> Self {
         let entry = builder.create_block();

@@ -1,6 +1,8 @@
 //! `cc67 build`: compile and link for a thread, write what is asked for.
 
 mod names;
+#[cfg(feature = "native")]
+mod native;
 
 use std::path::{Path, PathBuf};
 
@@ -56,7 +58,7 @@ enum Emit {
     Map,
     /// Commands that download the program, FILE(N).kmd
     Download,
-    /// A stand-alone executable for this computer; not built yet
+    /// A stand-alone executable for this computer, FILE; needs `cc`. With `-o NAME.o` the host's object file alone
     Native,
 }
 
@@ -72,8 +74,8 @@ pub(super) fn build(arguments: &Arguments) -> Result<Exit> {
     let mut units = units::compile(&arguments.files, &options)?;
     let emit = arguments.emit();
     ensure!(
-        !emit.contains(&Emit::Native),
-        "`--emit native`: stand-alone executables are not built yet; `cc67 run` translates a program when it starts"
+        cfg!(feature = "native") || !emit.contains(&Emit::Native),
+        "`--emit native`: this cc67 is built without the native engine"
     );
     if emit == [Emit::Object] {
         if terminal::report_all(&units, &levels, arguments.compiler.format()) {
@@ -156,7 +158,19 @@ impl Arguments {
                     let script = download::script(&image, self.thread);
                     output::write(&names::beside(&program, "kmd"), script.as_bytes())?;
                 }
-                Emit::Object | Emit::Native => {}
+                #[cfg(feature = "native")]
+                Emit::Native => {
+                    let given = self.output.as_ref();
+                    let target = match given {
+                        Some(name) if emit == [Emit::Native] => name.clone(),
+                        _ => names::executable(given.unwrap_or(first)),
+                    };
+                    ensure!(!self.files.contains(&target), "{} would be overwritten", target.display());
+                    native::write(&target, &bytes, self.thread)?;
+                }
+                #[cfg(not(feature = "native"))]
+                Emit::Native => {}
+                Emit::Object => {}
             }
         }
         Ok(())

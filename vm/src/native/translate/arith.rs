@@ -11,7 +11,6 @@ use std::mem::offset_of;
 use cranelift_codegen::ir::condcodes::{FloatCC, IntCC};
 use cranelift_codegen::ir::immediates::{Ieee32, Ieee64};
 use cranelift_codegen::ir::{AbiParam, InstBuilder, Signature, Value, types};
-use cranelift_module::Module;
 
 use super::super::request::Reason;
 use super::super::state::State;

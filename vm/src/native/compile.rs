@@ -1,0 +1,215 @@
+//! From a program to the functions of a Cranelift module.
+//!
+//! The module is memory of this process ([`code`](super::code)) or an object file
+//! ([`object`](super::object)): what is compiled is the same.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use cranelift_codegen::Context;
+use cranelift_codegen::isa::OwnedTargetIsa;
+use cranelift_codegen::settings::{self, Configurable};
+use cranelift_frontend::FunctionBuilderContext;
+use cranelift_module::{FuncId, Linkage, Module, ModuleError};
+
+use super::state::BYTES_PER_CALL;
+use super::translate::{
+    HostFunctions, PureFunctions, Translation, begin_signature, function_signature, request_signature,
+    thunk_signature, translate, translate_begin, translate_request, translate_thunk,
+};
+use crate::operand::Class;
+use crate::program::{Function, Program};
+
+/// Bytes of native stack that a call takes besides what Cranelift counts: return address, frame
+/// pointer and alignment.
+const NATIVE_CALL_OVERHEAD: u32 = 32;
+
+/// Most registers of a function: a stack full of calls of functions like that stays within the
+/// interpreter's bound on the registers of all calls together, of which compiled code knows nothing.
+const MAX_REGISTERS: usize = 4096;
+
+/// Why a program cannot be compiled on this host; it runs on the bytecode engine then.
+#[derive(Debug, thiserror::Error)]
+pub enum CompileError {
+    /// Cranelift has no code generator for the host.
+    #[error("no native code for this host: {0}")]
+    Host(String),
+    /// A function has so many registers that the interpreter would bound the depth of its calls by them.
+    #[error("a function of {0} registers, more than {MAX_REGISTERS}")]
+    TooManyRegisters(usize),
+    /// A function is beyond a limit of Cranelift's.
+    #[error(transparent)]
+    Module(#[from] Box<ModuleError>),
+}
+
+impl CompileError {
+    pub(super) fn host(error: &dyn fmt::Display) -> Self {
+        Self::Host(error.to_string())
+    }
+}
+
+impl From<ModuleError> for CompileError {
+    fn from(error: ModuleError) -> Self {
+        Self::Module(Box::new(error))
+    }
+}
+
+/// Where machine code is to be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Place {
+    /// In memory, at addresses that are known.
+    Memory,
+    /// In a file, to be put anywhere.
+    File,
+}
+
+/// The code generator for this computer.
+pub(super) fn host_isa(place: Place) -> Result<OwnedTargetIsa, CompileError> {
+    let mut flags = settings::builder();
+    let verify = if cfg!(debug_assertions) { "true" } else { "false" };
+    for (name, value) in [
+        ("opt_level", "speed"),
+        ("is_pic", if place == Place::File { "true" } else { "false" }),
+        ("use_colocated_libcalls", "false"),
+        ("enable_probestack", "false"),
+        ("enable_verifier", verify),
+    ] {
+        flags.set(name, value).map_err(|error| CompileError::host(&error))?;
+    }
+    let builder = cranelift_native::builder().map_err(|error| CompileError::host(&error))?;
+    builder.finish(settings::Flags::new(flags)).map_err(|error| CompileError::host(&error))
+}
+
+/// What is to be compiled, and for which surroundings.
+#[derive(Clone, Copy)]
+pub(super) struct Job<'a> {
+    /// The program.
+    pub(super) program: &'a Program,
+    /// The firmware's functions that only compute.
+    pub(super) pure: PureFunctions<'a>,
+    /// How they are called.
+    pub(super) host: HostFunctions<'a>,
+    /// What a function is called; `None` for one that needs no name.
+    pub(super) name: &'a dyn Fn(&Function) -> Option<String>,
+}
+
+/// The functions of a program in a module.
+pub(super) struct Functions {
+    /// What begins the outermost call.
+    pub(super) begin: FuncId,
+    /// For each function of the program, what passes it its arguments, and itself.
+    pub(super) entries: Vec<(FuncId, FuncId)>,
+    /// What calls take of the native stack.
+    pub(super) stack: StackUse,
+}
+
+/// What the calls of a program take of the native stack.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct StackUse {
+    /// The most bytes that a call takes for each byte of guest stack.
+    pub(super) native_per_guest: u32,
+    /// The most bytes that a call takes at all.
+    pub(super) largest_frame: u32,
+}
+
+/// Compiles all functions of a program, and the ways into them, into `module`.
+pub(super) fn compile(module: &mut dyn Module, job: Job<'_>) -> Result<Functions, CompileError> {
+    let mut compiler = Compiler { context: module.make_context(), module, builder: Default::default() };
+    let functions = compiler.declare_functions(job)?;
+    let request = compiler.request()?;
+    let begin = compiler.begin()?;
+    let (thunks, thunk_frame) = compiler.thunks(job.program)?;
+    let mut stack = StackUse::default();
+    for (function, id) in job.program.functions().iter().zip(&functions) {
+        if function.classes.len() > MAX_REGISTERS {
+            return Err(CompileError::TooManyRegisters(function.classes.len()));
+        }
+        let Job { program, pure, host, .. } = job;
+        let translation = Translation { program, function, functions: &functions, request, pure, host };
+        let frame = compiler.function(*id, translation)? + thunk_frame;
+        let guest = function.frame + BYTES_PER_CALL;
+        stack.native_per_guest = stack.native_per_guest.max(frame.div_ceil(guest));
+        stack.largest_frame = stack.largest_frame.max(frame);
+    }
+    let thunk_of = |function: &Function| thunks[parameters(job.program, function)];
+    let entries = job.program.functions().iter().map(thunk_of).zip(functions).collect();
+    Ok(Functions { begin, entries, stack })
+}
+
+/// The classes of the parameters of a function.
+fn parameters<'a>(program: &'a Program, function: &Function) -> &'a Vec<Class> {
+    &program.signatures()[usize::from(function.signature.0)].params
+}
+
+/// What compiles the functions of one program.
+struct Compiler<'m> {
+    module: &'m mut dyn Module,
+    context: Context,
+    builder: FunctionBuilderContext,
+}
+
+impl Compiler<'_> {
+    fn declare_functions(&mut self, job: Job<'_>) -> Result<Vec<FuncId>, CompileError> {
+        let declare = |function: &Function| {
+            let signature = function_signature(parameters(job.program, function));
+            Ok(match (job.name)(function) {
+                Some(name) => self.module.declare_function(&name, Linkage::Local, &signature)?,
+                None => self.module.declare_anonymous_function(&signature)?,
+            })
+        };
+        job.program.functions().iter().map(declare).collect()
+    }
+
+    /// Compiles one function and yields what a call of it takes of the native stack.
+    fn function(&mut self, id: FuncId, translation: Translation<'_>) -> Result<u32, CompileError> {
+        translate(&mut self.context.func, &mut self.builder, self.module, translation);
+        self.define(id)
+    }
+
+    /// Compiles what makes the rare requests of all functions.
+    fn request(&mut self) -> Result<FuncId, CompileError> {
+        let signature = request_signature();
+        let id = self.module.declare_anonymous_function(&signature)?;
+        self.context.func.signature = signature;
+        translate_request(&mut self.context.func, &mut self.builder, self.module);
+        self.define(id)?;
+        Ok(id)
+    }
+
+    /// Compiles what begins the outermost call.
+    fn begin(&mut self) -> Result<FuncId, CompileError> {
+        let signature = begin_signature(self.module);
+        let id = self.module.declare_anonymous_function(&signature)?;
+        self.context.func.signature = signature;
+        translate_begin(&mut self.context.func, &mut self.builder, self.module);
+        self.define(id)?;
+        Ok(id)
+    }
+
+    /// Compiles a thunk for each list of parameters that a function of `program` has, and yields what one takes
+    /// of the native stack.
+    fn thunks(&mut self, program: &Program) -> Result<(BTreeMap<Vec<Class>, FuncId>, u32), CompileError> {
+        let mut thunks = BTreeMap::new();
+        let mut largest = 0;
+        for function in program.functions() {
+            let parameters = parameters(program, function);
+            if !thunks.contains_key(parameters) {
+                let signature = thunk_signature();
+                let id = self.module.declare_anonymous_function(&signature)?;
+                self.context.func.signature = signature;
+                translate_thunk(&mut self.context.func, &mut self.builder, self.module, parameters);
+                largest = largest.max(self.define(id)?);
+                thunks.insert(parameters.clone(), id);
+            }
+        }
+        Ok((thunks, largest))
+    }
+
+    fn define(&mut self, id: FuncId) -> Result<u32, CompileError> {
+        self.module.define_function(id, &mut self.context)?;
+        let layout = self.context.compiled_code().and_then(|code| code.buffer.frame_layout());
+        let frame = layout.map_or(0, |layout| layout.frame_to_fp_offset);
+        self.module.clear_context(&mut self.context);
+        Ok(frame + NATIVE_CALL_OVERHEAD)
+    }
+}
