@@ -609,3 +609,14 @@ fn what_is_wrong_with_a_machine_file_is_one_message_with_its_place() {
         (2, "cc67: cannot read gone.txt: No such file or directory\n")
     );
 }
+
+#[test]
+fn a_switch_on_an_axis_that_drives_nothing_is_told_of() {
+    let program = "#include \"KMotionDef.h\"\nmain() { EnableAxis(2); Jog(2, 100); Jog(2, 0); Jog(3, 1); }";
+    let machine = "[[switch]]\nbit = 12\naxis = 2\nwhen = \"<= -4000\"\n";
+    let (output, _) = run("unmoved", program, &[("s.toml", machine)], &["--machine", "s.toml"]);
+    let told = "cc67: thread 1: Jog: axis 2 drives nothing, its OutputMode is NO_OUTPUT_MODE: what the machine file \
+                connects to it stays as it is (is a program that sets the axes up to run first?)\n";
+    assert_eq!(output.stderr.lines().next(), told.lines().next());
+    assert_eq!(output.stderr.matches("drives nothing").count(), 1, "{}", output.stderr);
+}

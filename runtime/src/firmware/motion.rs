@@ -128,7 +128,16 @@ fn may_move(kernel: &mut Kernel, caller: &Caller<'_>, axis: AxisId, function: &s
             .diagnose(caller, format!("{function}: axis {axis} executes coordinated motion, which goes on"));
         return false;
     }
-    !(is_member && memory.get(CS0_STOPPING_STATE) != 0)
+    let may = !(is_member && memory.get(CS0_STOPPING_STATE) != 0);
+    let drives_nothing = memory.axis(axis, Chan::OUTPUT_MODE) == OutputMode::None.get();
+    if may && drives_nothing && kernel.hints && kernel.mechanics.take_unmoved(axis) {
+        let text = format!(
+            "{function}: axis {axis} drives nothing, its OutputMode is NO_OUTPUT_MODE: what the machine file connects to \
+             it stays as it is (is a program that sets the axes up to run first?)"
+        );
+        kernel.diagnose(caller, text);
+    }
+    may
 }
 
 /// Waits for the caller's next slice if the axis is moving: the board plans there; for the planning time of the machine

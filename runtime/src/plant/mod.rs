@@ -71,6 +71,8 @@ pub(crate) struct Mechanics {
     spindle_speed: f64,
     /// Whether there is anything of all that.
     is_any: bool,
+    /// Axes with contacts of which it was told that nothing moves them.
+    unmoved: [bool; N_CHANNELS],
 }
 
 impl Mechanics {
@@ -97,7 +99,14 @@ impl Mechanics {
         let spindle = machine.spindle;
         let is_any =
             !(contacts.is_empty() && analog.is_empty() && handwheels.is_empty() && spindle.is_none());
-        Self { contacts, analog, handwheels, spindle, spindle_speed: 0.0, is_any }
+        let unmoved = [false; N_CHANNELS];
+        Self { contacts, analog, handwheels, spindle, spindle_speed: 0.0, is_any, unmoved }
+    }
+
+    /// Whether it is to be told, once, that an axis with contacts is commanded and drives nothing.
+    pub(crate) fn take_unmoved(&mut self, axis: AxisId) -> bool {
+        let has_contacts = self.contacts.iter().any(|contact| contact.axis == axis);
+        has_contacts && !std::mem::replace(&mut self.unmoved[axis.index()], true)
     }
 
     /// Whether it moves by itself after `time`, so that ticks cannot be skipped.
