@@ -141,6 +141,7 @@ fn encoder(memory: &mut GuestMemory, axis: AxisId) -> Option<Encoder> {
     Some(Encoder { gain, channel: u32::try_from(channel).ok(), turned_by, turned_gain })
 }
 
+#[inline(always)]
 fn gains(chan: &AxisView<'_>) -> Gains {
     let gain = |field: Field<f32>| f64::from(chan.get(field));
     // A limit below 0, or one that is no number, lets nothing through.
@@ -156,14 +157,20 @@ fn gains(chan: &AxisView<'_>) -> Gains {
         ff_vel: gain(Chan::FF_VEL),
         ff_accel: gain(Chan::FF_ACCEL),
         dead_band: (range != 0.0 || slope != 1.0).then_some((range, slope)),
-        filters: [0, 1, 2].map(|index| filter(chan, Chan::IIR.element(index))),
+        filters: [
+            filter(chan, Chan::IIR.element(0)),
+            filter(chan, Chan::IIR.element(1)),
+            filter(chan, Chan::IIR.element(2)),
+        ],
     }
 }
 
+#[inline(always)]
 fn filter(chan: &AxisView<'_>, iir: Field<Iir>) -> Filter {
-    let [a1, a2, b0, b1, b2] =
-        [Iir::A1, Iir::A2, Iir::B0, Iir::B1, Iir::B2].map(|field| chan.get(iir.field(field)));
-    let is_plain = [a1, a2, b0, b1, b2].map(f32::to_bits) == [0.0_f32, 0.0, 1.0, 0.0, 0.0].map(f32::to_bits);
+    let get = |field: Field<f32>| chan.get(iir.field(field));
+    let (a1, a2, b0, b1, b2) = (get(Iir::A1), get(Iir::A2), get(Iir::B0), get(Iir::B1), get(Iir::B2));
+    let others = a1.to_bits() | a2.to_bits() | b1.to_bits() | b2.to_bits();
+    let is_plain = others == 0 && b0.to_bits() == 1.0_f32.to_bits();
     Filter { is_plain, a1: a1.into(), a2: a2.into(), b0: b0.into(), b1: b1.into(), b2: b2.into() }
 }
 
@@ -176,7 +183,9 @@ impl Servo {
     /// Works the plans out, unless they are known.
     pub(super) fn make_plans(&mut self, memory: &mut GuestMemory) {
         if !self.has_plans {
-            AxisId::all().for_each(|axis| self.plans[axis.index()] = Plan::of(memory, axis));
+            for axis in AxisId::all() {
+                self.plans[axis.index()] = Plan::of(memory, axis);
+            }
             self.is_coupled = AxisId::all().any(|axis| self.plans[axis.index()].is_coupled(axis));
             self.duration = duration(memory);
             self.has_plans = true;
