@@ -1,6 +1,6 @@
 //! Plays a stimulus: what is due is done, and what the board does is watched for.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 
 use kmotiondef::bits::{BitDirection, range_of};
 use kmotiondef::structs::{Chan, Persist};
@@ -56,9 +56,10 @@ pub(crate) struct Player {
     turning: Vec<Turning>,
     /// Rules for the first time only that have had it.
     spent: Vec<bool>,
-    /// Console lines, and how many of them were looked at.
-    printed: Vec<(Cycles, String)>,
-    looked_at: usize,
+    /// Expectations of a printed text that has been printed.
+    said: Vec<bool>,
+    /// Console lines that no statement has been compared with yet.
+    lines: VecDeque<(Cycles, String)>,
     active: ThreadSet,
     /// The analog value each input was last given.
     converted: [i32; ADC_CHANNELS],
@@ -74,8 +75,8 @@ impl Player {
             waves: [None; ADC_CHANNELS],
             turning: Vec::new(),
             spent: Vec::new(),
-            printed: Vec::new(),
-            looked_at: 0,
+            said: Vec::new(),
+            lines: VecDeque::new(),
             active: ThreadSet::EMPTY,
             converted: [-1; ADC_CHANNELS],
         }
@@ -92,6 +93,7 @@ impl Player {
             }
             self.rules.push(rule);
             self.spent.push(false);
+            self.said.push(false);
         }
     }
 
@@ -110,7 +112,13 @@ impl Player {
 
     /// The PC has received a line.
     pub(crate) fn note_line(&mut self, line: &[u8], at: Cycles) {
-        self.printed.push((at, String::from_utf8_lossy(line).into_owned()));
+        let line = String::from_utf8_lossy(line).into_owned();
+        for (rule, said) in self.rules.iter().zip(&mut self.said) {
+            if let Action::Expect(Expectation::Printed(text, _)) = &rule.action {
+                *said |= line.contains(text.as_str());
+            }
+        }
+        self.lines.push_back((at, line));
     }
 
     /// Whether a thread is still to be started or a command to be sent, so that the run must go on.
@@ -126,7 +134,7 @@ impl Player {
     /// How many of the ticks behind the one that began at `now` have nothing to do.
     pub(crate) fn quiet_ticks(&self, now: Cycles) -> u64 {
         let moves = self.waves.iter().flatten().any(|(wave, begun)| !wave.is_over(now - *begun));
-        if moves || !self.turning.is_empty() || self.looked_at < self.printed.len() {
+        if moves || !self.turning.is_empty() || !self.lines.is_empty() {
             return 0;
         }
         let Some((&(at, _), _)) = self.due.first_key_value() else { return u64::MAX };
@@ -169,8 +177,7 @@ impl Player {
     }
 
     fn watch_lines(&mut self) {
-        while let Some((at, line)) = self.printed.get(self.looked_at).cloned() {
-            self.looked_at += 1;
+        while let Some((at, line)) = self.lines.pop_front() {
             self.happened(
                 at,
                 |condition| matches!(condition, Condition::Printed(text) if line.contains(text.as_str())),
@@ -267,13 +274,19 @@ impl Player {
     fn check(&self, kernel: &mut Kernel, context: &TickContext<'_>, index: usize) {
         let rule = &self.rules[index];
         let Action::Expect(expectation) = &rule.action else { return };
-        if let Some(text) = self.unmet(kernel, context, expectation) {
+        if let Some(text) = self.unmet(kernel, context, index, expectation) {
             kernel.tell(context.now, EventKind::Unmet(format!("{}: {text}", rule.place)));
         }
     }
 
-    /// What is not as it should be.
-    fn unmet(&self, kernel: &Kernel, context: &TickContext<'_>, expectation: &Expectation) -> Option<String> {
+    /// What is not as it should be with the expectation of a rule.
+    fn unmet(
+        &self,
+        kernel: &Kernel,
+        context: &TickContext<'_>,
+        index: usize,
+        expectation: &Expectation,
+    ) -> Option<String> {
         match expectation {
             Expectation::Bit(bit, expected) => {
                 let level = bit_state(kernel, context.memory, *bit).0;
@@ -281,15 +294,15 @@ impl Player {
                     .then(|| format!("bit {bit} is {}, expected {}", u8::from(level), u8::from(*expected)))
             }
             Expectation::Printed(text, expected) => {
-                let is_printed = self.printed.iter().any(|(_, line)| line.contains(text.as_str()));
+                let is_printed = self.said[index];
                 (is_printed != *expected).then(|| {
                     let what = if *expected { "no line contains" } else { "a line contains" };
                     format!("{what} \"{text}\"")
                 })
             }
-            Expectation::Persist(index, expected) => {
-                let value = context.memory.get(PERSIST.field(Persist::USER_DATA).element(*index));
-                (value != *expected).then(|| format!("UserData[{index}] is {value}, expected {expected}"))
+            Expectation::Persist(word, expected) => {
+                let value = context.memory.get(PERSIST.field(Persist::USER_DATA).element(*word));
+                (value != *expected).then(|| format!("UserData[{word}] is {value}, expected {expected}"))
             }
             Expectation::Active(thread, expected) => {
                 let is_active = context.threads.state(*thread).is_active();
