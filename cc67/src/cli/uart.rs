@@ -4,7 +4,7 @@
 //! first looks for them. A terminal, a TCP peer or another program acts when it likes: the run is then kept at about real time, and
 //! what arrives when is no longer the same in every run. Without these options nothing is connected.
 
-use std::io::{Read, Write};
+use std::io::{self, Read, Write};
 use std::net::{Ipv4Addr, TcpListener};
 use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
@@ -18,11 +18,15 @@ use kmotiondef::Ticks;
 use runtime::{Board, Event, EventKind, MachineFile, RunEnd};
 use vm::engine::Engine;
 
+use super::output::{Draft, cannot_write};
 use super::pace::Pace;
-use super::{output, run, terminal};
+use super::{run, terminal};
 
 /// Ticks that a run with a peer goes on before it looks for what has come: 9.99 ms.
 const PART: u64 = 111;
+/// Pieces that a peer may be ahead with, and characters that wait on the line, before it has to wait.
+const AHEAD: usize = 16;
+const BACKLOG: usize = 4096;
 /// The same on the peer's clock; the run is about as fast as the board.
 const PART_TIME: Duration = Duration::from_millis(10);
 
@@ -61,7 +65,8 @@ impl UartOptions {
         if peer.is_some() || self.uart_output.is_some() {
             board.hear_uart();
         }
-        Ok(Line { peer, output: self.uart_output.clone(), sent: Vec::new(), is_told: false })
+        let output = self.uart_output.as_deref().map(Draft::new).transpose()?;
+        Ok(Line { peer, output, failed: None, fresh: Vec::new(), is_told: false })
     }
 }
 
@@ -172,7 +177,7 @@ impl Peer {
         outgoing: Box<dyn Write>,
         child: Option<Child>,
     ) -> Self {
-        let (sender, incoming) = mpsc::channel();
+        let (sender, incoming) = mpsc::sync_channel(AHEAD);
         thread::spawn(move || {
             let mut buffer = [0; 256];
             while let Ok(count) = reader.read(&mut buffer) {
@@ -190,8 +195,11 @@ impl Peer {
 #[derive(Debug)]
 pub(super) struct Line {
     peer: Option<Peer>,
-    output: Option<PathBuf>,
-    sent: Vec<u8>,
+    output: Option<Draft>,
+    /// Why a character could not be written.
+    failed: Option<io::Error>,
+    /// What the board has sent and the peer has not been given.
+    fresh: Vec<u8>,
     /// Whether it was said that the peer is gone.
     is_told: bool,
 }
@@ -200,7 +208,14 @@ impl Line {
     /// Takes up a character that the board has sent.
     fn note(&mut self, event: &Event) {
         if let EventKind::UartSent(byte) = event.kind {
-            self.sent.push(byte);
+            if self.peer.is_some() {
+                self.fresh.push(byte);
+            }
+            if let Some(output) = &mut self.output
+                && self.failed.is_none()
+            {
+                self.failed = output.write_all(&[byte]).err();
+            }
         }
     }
 
@@ -212,7 +227,6 @@ impl Line {
         pace: Option<&Pace>,
         sink: &mut dyn FnMut(Event),
     ) -> Result<RunEnd> {
-        let mut delivered = 0;
         let end = loop {
             let is_paced = self.peer.is_some() || pace.is_some();
             let part = if is_paced { board.tick().get() + PART } else { limit.get() };
@@ -221,9 +235,7 @@ impl Line {
                 self.note(&event);
                 sink(event);
             });
-            let fresh = self.sent.get(delivered..).unwrap_or_default().to_vec();
-            delivered = self.sent.len();
-            let came = self.exchange(&fresh);
+            let came = self.exchange(board.uart_backlog());
             if let Some(pace) = pace {
                 pace.wait(board.tick());
             }
@@ -242,10 +254,16 @@ impl Line {
         Ok(end)
     }
 
-    /// Gives the peer what was sent and takes what it sends, for as long as a part of the run lasts.
-    fn exchange(&mut self, fresh: &[u8]) -> Vec<u8> {
+    /// Gives the peer what was sent and takes what it sends, for as long as a part of the run lasts. While enough
+    /// waits on the line it is not listened to.
+    fn exchange(&mut self, backlog: usize) -> Vec<u8> {
         let Some(peer) = &mut self.peer else { return Vec::new() };
-        let written = peer.outgoing.0.write_all(fresh).and_then(|()| peer.outgoing.0.flush());
+        let fresh = std::mem::take(&mut self.fresh);
+        let written = peer.outgoing.0.write_all(&fresh).and_then(|()| peer.outgoing.0.flush());
+        if backlog >= BACKLOG {
+            thread::sleep(PART_TIME);
+            return Vec::new();
+        }
         let mut came = Vec::new();
         let mut is_gone = written.is_err();
         match peer.incoming.recv_timeout(PART_TIME) {
@@ -257,7 +275,7 @@ impl Line {
                 thread::sleep(PART_TIME);
             }
         }
-        came.extend(peer.incoming.try_iter().flatten());
+        came.extend(peer.incoming.try_iter().take(AHEAD).flatten());
         if is_gone && !self.is_told {
             self.is_told = true;
             terminal::note(&format!("serial port: {} is gone; the run goes on without it", peer.name));
@@ -276,9 +294,10 @@ impl Line {
                 let _ = child.wait();
             }
         }
-        match &self.output {
-            Some(path) => output::write(path, &self.sent),
-            None => Ok(()),
+        let Some(output) = self.output.take() else { return Ok(()) };
+        match self.failed.take() {
+            Some(error) => Err(cannot_write(output.path(), &error)),
+            None => output.commit(),
         }
     }
 }

@@ -69,6 +69,12 @@ impl<E: Engine> Board<E> {
         kernel.disturb();
     }
 
+    /// Characters on the UART's line that have not arrived yet.
+    #[must_use]
+    pub fn uart_backlog(&self) -> usize {
+        self.machine.firmware().uart.backlog()
+    }
+
     /// Tells every character that the UART sends from now on, as an event.
     pub fn hear_uart(&mut self) {
         self.machine.firmware_mut().0.hear_uart();

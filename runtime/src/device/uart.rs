@@ -66,6 +66,11 @@ impl Uart {
         self.line.extend(bytes);
     }
 
+    /// Characters on the line.
+    pub(crate) fn backlog(&self) -> usize {
+        self.line.len()
+    }
+
     /// Whether characters are still to come or to be read.
     pub(crate) fn is_receiving(&self) -> bool {
         !self.line.is_empty() || !self.received.is_empty()
