@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use cc67::limits::{BOARD, COMPILER, grouped};
+use cc67::limits::{ALL, grouped};
 use cc67::lints::Lint;
 use harness::{Scratch, files, run_in};
 use kmotiondef::firmware::{ABSENT, FIRMWARE_FUNCTIONS};
@@ -207,10 +207,10 @@ fn the_chapter_of_warnings_has_the_page_of_each() {
 #[test]
 fn the_chapter_of_limits_has_each() {
     let mut text = "# Limits\n\nEvery limit has a number, and what refuses to go beyond it says the number; `cc67 --explain limits` lists them.\n\
-                    Compiling takes at most a gigabyte of memory, whatever the source; a run takes a hundred megabytes, and what its\n\
-                    traces, plots and outputs need beside it.\n"
+                    Compiling takes at most a gigabyte of memory, whatever the source. A run takes at most half a gigabyte, however\n\
+                    long it is and whatever it prints, traces and draws; an ordinary one takes less than 20 megabytes, traced or not.\n"
         .to_owned();
-    for (title, limits) in [("The compiler", COMPILER), ("A program on the board", BOARD)] {
+    for (title, limits) in ALL {
         let _ = write!(text, "\n## {title}\n\n| at most | of | beyond |\n|--:|---|---|\n");
         for limit in limits {
             let _ = writeln!(text, "| {} | {} | {} |", grouped(limit.number), limit.what, limit.beyond);

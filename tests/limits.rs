@@ -1,5 +1,6 @@
 //! Every limit of the compiler that a source can reach: the message says its number.
 
+use cc67::input::FILE_BYTES;
 use cc67::limits::{COMPILER, Limit};
 use harness::{Output, Scratch, run_in};
 
@@ -97,4 +98,67 @@ fn every_limit_has_a_source_or_a_reason() {
         let has_case = CASES.iter().any(|case| limit.what.starts_with(case.what));
         assert!(has_case || TOO_LARGE.contains(&limit.what), "{}", limit.what);
     }
+}
+
+/// A file that is too large and takes no place on the disk.
+fn write_large(scratch: &Scratch, name: &str) {
+    let file = std::fs::File::create(scratch.path().join(name)).expect("the folder is writable");
+    file.set_len(FILE_BYTES + 1).expect("the disk can");
+}
+
+const BINARY: &str = env!("CARGO_BIN_EXE_cc67-under-test");
+
+#[test]
+fn files_that_are_too_large_are_refused_with_the_number() {
+    let scratch = Scratch::new("limits-files");
+    write_large(&scratch, "large.txt");
+    scratch.write("a.c", "main() { }\n");
+    for arguments in [
+        &["run", "large.txt"][..],
+        &["run", "--machine", "large.txt", "a.c"],
+        &["run", "--uart-input", "large.txt", "a.c"],
+        &["run", "--stim", "large.txt", "a.c"],
+        &["inspect", "large.txt"],
+        &["check", "large.txt"],
+        &["build", "--firmware", "large.txt", "a.c"],
+    ] {
+        let output = run_in(BINARY, scratch.path(), arguments);
+        let expect = format!("cannot read large.txt: it is larger than {FILE_BYTES} bytes");
+        assert_eq!(output.code, 2, "{arguments:?}: {output:?}");
+        assert!(output.stderr.contains(&expect), "{arguments:?}: {output:?}");
+    }
+}
+
+#[test]
+#[cfg(unix)]
+fn a_device_that_never_ends_is_refused_like_a_large_file() {
+    let scratch = Scratch::new("limits-device");
+    let output = run_in(BINARY, scratch.path(), ["inspect", "/dev/zero"]);
+    assert_eq!(output.code, 2, "{output:?}");
+    assert!(output.stderr.contains(&format!("larger than {FILE_BYTES} bytes")), "{output:?}");
+}
+
+#[test]
+fn a_program_cannot_read_a_file_of_the_pc_that_is_too_large() {
+    let scratch = Scratch::new("limits-pc");
+    let source = "main()\n{\n  FILE *f = fopen(\"large.txt\", \"rt\");\n  printf(f ? \"opened\\n\" : \"refused\\n\");\n}\n";
+    scratch.write("a.c", format!("#include \"KMotionDef.h\"\n{source}"));
+    write_large(&scratch, "large.txt");
+    let output = run_in(BINARY, scratch.path(), ["run", "--files", ".", "a.c"]);
+    assert_eq!(output.stdout, "refused\n", "{output:?}");
+    let expect = format!("the PC does not read large.txt: it is larger than {} bytes", runtime::FILE_BYTES);
+    assert!(output.stderr.contains(&expect), "{output:?}");
+}
+
+#[test]
+fn a_picture_of_a_long_run_says_what_it_leaves_out() {
+    let scratch = Scratch::new("limits-picture");
+    let source = "main()\n{\n  ch0->InputMode = NO_INPUT_MODE;\n  ch0->OutputMode = NO_OUTPUT_MODE;\n  EnableAxisDest(0, 0);\n  \
+                  Jog(0, 100);\n}\n";
+    scratch.write("a.c", format!("#include \"KMotionDef.h\"\n{source}"));
+    let options = ["--for", "20", "--plot", "a.svg", "--watch", "dest0"];
+    let output = run_in(BINARY, scratch.path(), ["run"].into_iter().chain(options).chain(["a.c"]));
+    assert_eq!(output.code, 0, "{output:?}");
+    let expect = "the picture shows every 2 ticks what was so then: it is made of 200000 samples at most";
+    assert!(output.stderr.contains(expect), "{output:?}");
 }

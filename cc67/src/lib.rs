@@ -35,6 +35,7 @@ pub mod foreign_words;
 pub mod host;
 pub mod image;
 mod includers;
+pub mod input;
 pub mod inspect;
 pub mod ir;
 mod library;
@@ -170,6 +171,11 @@ fn compile_here(path: &Path, text: Vec<u8>, options: &Options, files: &dyn pp::F
     let name = path.to_string_lossy().into_owned();
     if let Some(what) = binary::not_source(&text) {
         sink.report(Diagnostic::global_error(format!("{} is not C source text but {what}", path.display())));
+        return Compilation { name, sources, sink, object: None, included_by: Vec::new() };
+    }
+    if text.len() > pp::limits::FILE_BYTES as usize {
+        let most = pp::limits::FILE_BYTES;
+        sink.report(Diagnostic::global_error(format!("{} is larger than {most} bytes", path.display())));
         return Compilation { name, sources, sink, object: None, included_by: Vec::new() };
     }
     let main = sources.add_file(path.to_string_lossy(), Some(path), text, None);

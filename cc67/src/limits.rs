@@ -11,7 +11,9 @@ use kmotiondef::limits::MAX_NSTRINGS;
 use kmotiondef::map::{PROGRAM_BASE, PROGRAM_SIZE, STACK_BASE, STACK_SIZE};
 
 use crate::bytecode::unit::MAX_FRAME;
+use crate::cli::{PC_FILE_BYTES, PICTURE_SAMPLES};
 use crate::diag::MAX_ERRORS;
+use crate::input::{DATA_BYTES, FILE_BYTES};
 use crate::parse;
 use crate::pp::limits as pp;
 use crate::sema::MAX_VALUES;
@@ -82,6 +84,26 @@ pub const BOARD: &[Limit] = &[
     limit("files that a program has open for writing", 1, "`fopen` closes the one before"),
 ];
 
+/// What is read and drawn.
+pub const FILES: &[Limit] = &[
+    limit("bytes of an image, a machine file or another input", FILE_BYTES, "the file is refused"),
+    limit("bytes of saved data that `cc67 plot` draws", DATA_BYTES, "the file is refused"),
+    limit(
+        "bytes of a file of the PC that a program reads",
+        PC_FILE_BYTES,
+        "the program is told that there is no such file, and a remark says why",
+    ),
+    limit(
+        "samples in a picture of a run",
+        PICTURE_SAMPLES as u64,
+        "the picture shows what was so every so many ticks, as it says; traces show all",
+    ),
+];
+
+/// All of them, under their headings.
+pub const ALL: [(&str, &[Limit]); 3] =
+    [("The compiler", COMPILER), ("A program on the board", BOARD), ("Files and pictures", FILES)];
+
 /// A number with its thousands apart.
 #[must_use]
 pub fn grouped(number: u64) -> String {
@@ -100,7 +122,7 @@ pub fn grouped(number: u64) -> String {
 #[must_use]
 pub fn page() -> String {
     let mut text = String::new();
-    for (title, limits) in [("The compiler", COMPILER), ("A program on the board", BOARD)] {
+    for (title, limits) in ALL {
         let _ = write!(text, "{title}\n\n");
         for limit in limits {
             let _ = writeln!(text, "{:>13}  {}: {}", grouped(limit.number), limit.what, limit.beyond);

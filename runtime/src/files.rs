@@ -3,8 +3,11 @@
 use std::ffi::OsStr;
 use std::fmt;
 use std::fs::{self, OpenOptions};
-use std::io::{ErrorKind, Write as _};
+use std::io::{ErrorKind, Read as _, Write as _};
 use std::path::{Path, PathBuf};
+
+/// Bytes of a file that a program may read.
+pub const FILE_BYTES: u64 = 32 << 20;
 
 /// Why the PC does not open a file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -21,6 +24,9 @@ pub enum FileError {
     /// What is there is no file: a folder, a device.
     #[error("it is not a file")]
     NotAFile,
+    /// It does not fit into memory beside everything else.
+    #[error("it is larger than {FILE_BYTES} bytes")]
+    TooLarge,
     /// There is no such file.
     #[error("there is no such file")]
     Missing,
@@ -159,7 +165,9 @@ fn entry(folder: &Path, name: &OsStr) -> PathBuf {
 
 impl HostFiles for Directory {
     fn read(&mut self, name: &str) -> Result<Vec<u8>, FileError> {
-        Ok(fs::read(self.place(name)?)?)
+        let mut bytes = Vec::new();
+        fs::File::open(self.place(name)?)?.take(FILE_BYTES + 1).read_to_end(&mut bytes)?;
+        if bytes.len() as u64 > FILE_BYTES { Err(FileError::TooLarge) } else { Ok(bytes) }
     }
 
     fn create(&mut self, name: &str, keep: bool) -> Result<(), FileError> {

@@ -43,7 +43,7 @@ pub use device::attached::DeviceSpec;
 pub use device::konnect::{Board as KonnectBoard, Port};
 pub use device::snapamp::{Quantity, Side};
 pub use event::{Event, EventKind};
-pub use files::{Directory, FileError, HostFiles, NoFiles};
+pub use files::{Directory, FILE_BYTES, FileError, HostFiles, NoFiles};
 pub use flash::FLASH_SIZE;
 pub use host::{ANSWERS_HELP, AnswerError, Answers};
 pub use kernel::{Kernel, pure_function};

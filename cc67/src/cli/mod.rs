@@ -41,6 +41,8 @@ use anyhow::Result;
 use clap::{Parser, Subcommand};
 
 pub use exit::Exit;
+pub(crate) use runtime::FILE_BYTES as PC_FILE_BYTES;
+pub(crate) use trace::SAMPLES as PICTURE_SAMPLES;
 #[cfg(feature = "native")]
 pub use stand_alone::main as stand_alone;
 

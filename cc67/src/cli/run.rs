@@ -1,7 +1,6 @@
 //! `cc67 run`: compile, load, execute, print the console.
 
 use std::ffi::{OsStr, OsString};
-use std::fs;
 use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 
@@ -28,7 +27,7 @@ use super::{Exit, output, pc, profile, stimulus, terminal, trace, units};
 use crate::lints::levels::Levels;
 use crate::reason::reason;
 use crate::render::Format;
-use crate::{Options, foreign, image};
+use crate::{Options, foreign, image, input};
 
 /// Seconds of board time after which a run without `--for` ends.
 pub(super) const DEFAULT_LIMIT: f64 = 60.0;
@@ -344,7 +343,12 @@ pub(super) fn images(programs: &[Program], compiler: &CompilerOptions) -> Result
 
 /// Reads a whole file; a message names it.
 pub(super) fn read(path: &Path) -> Result<Vec<u8>> {
-    fs::read(path).map_err(|error| anyhow::anyhow!("cannot read {}: {}", path.display(), reason(&error)))
+    input::read(path).map_err(|error| cannot_read(path, &error))
+}
+
+/// The message about a file that cannot be read.
+pub(super) fn cannot_read(path: &Path, error: &io::Error) -> anyhow::Error {
+    anyhow::anyhow!("cannot read {}: {}", path.display(), reason(error))
 }
 
 /// Compiles, links and reports; `None` after errors.

@@ -1,7 +1,6 @@
 //! From a source file to an image, with the compiler's answer as the vendor's tools show it.
 
 use std::fmt;
-use std::fs;
 use std::path::Path;
 
 use kmotiondef::ThreadId;
@@ -11,7 +10,7 @@ use crate::diag::Severity;
 use crate::lints::levels::Levels;
 use crate::pp::Disk;
 use crate::render::vendor;
-use crate::{Options, image};
+use crate::{Options, image, input};
 
 /// What the compiler says of a source with errors: lines of `file:line: message`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -25,7 +24,7 @@ impl fmt::Display for CompileError {
 
 /// The bytes of a file.
 pub(super) fn read(path: &Path) -> Result<Vec<u8>, HostError> {
-    fs::read(path).map_err(|error| HostError::Read { path: path.to_owned(), error })
+    input::read(path).map_err(|error| HostError::Read { path: path.to_owned(), error })
 }
 
 /// Compiles and links a source for a thread.

@@ -81,8 +81,8 @@ enum Answer {
 #[derive(Debug)]
 pub(crate) struct Disk {
     files: Box<dyn HostFiles>,
-    /// Lines still to be read.
-    lines: Option<std::vec::IntoIter<Vec<u8>>>,
+    /// What is still to be read.
+    reading: Option<Lines>,
     writing: Option<String>,
     /// From a request to its answer.
     pub(crate) latency: Cycles,
@@ -95,7 +95,14 @@ pub(crate) struct Disk {
 impl Disk {
     /// Nothing is open.
     pub(crate) fn new(files: Box<dyn HostFiles>) -> Self {
-        Self { files, lines: None, writing: None, latency: LATENCY, answers: VecDeque::new(), is_told: false }
+        Self {
+            files,
+            reading: None,
+            writing: None,
+            latency: LATENCY,
+            answers: VecDeque::new(),
+            is_told: false,
+        }
     }
 
     /// The board restarts: nothing is awaited any more.
@@ -127,16 +134,17 @@ impl Disk {
             }
             Request::Open => {
                 let opened = self.files.read(text);
-                self.lines = opened.as_ref().ok().map(|text| lines(text).into_iter());
+                let error = opened.as_ref().err().cloned();
+                self.reading = opened.ok().map(Lines::new);
                 self.answer(now);
-                opened.err().map(|error| format!("the PC does not read {text}: {error}"))
+                error.map(|error| format!("the PC does not read {text}: {error}"))
             }
             Request::NextLine => {
                 self.answer(now);
                 None
             }
             Request::CloseReading => {
-                self.lines = None;
+                self.reading = None;
                 None
             }
         }
@@ -153,7 +161,7 @@ impl Disk {
 
     /// Sends the next line, or says that there is none.
     fn answer(&mut self, now: Cycles) {
-        let answer = match &mut self.lines {
+        let answer = match &mut self.reading {
             None => Answer::Failure,
             Some(lines) => lines.next().map_or(Answer::End, Answer::Line),
         };
@@ -198,16 +206,31 @@ fn deliver(memory: &mut GuestMemory, line: &[u8]) {
 }
 
 /// The lines of a text without their ends; a last line without an end counts.
-fn lines(text: &[u8]) -> Vec<Vec<u8>> {
-    if text.is_empty() {
-        return Vec::new();
+#[derive(Debug)]
+struct Lines {
+    text: Vec<u8>,
+    /// Where the next one begins.
+    next: usize,
+}
+
+impl Lines {
+    fn new(text: Vec<u8>) -> Self {
+        Self { text, next: 0 }
     }
-    let text = text.strip_suffix(b"\n").unwrap_or(text);
-    let line = |line: &[u8]| {
-        let line = line.strip_suffix(b"\r").unwrap_or(line);
-        line[..line.len().min(LINE_LIMIT)].to_vec()
-    };
-    text.split(|&byte| byte == b'\n').map(line).collect()
+}
+
+impl Iterator for Lines {
+    type Item = Vec<u8>;
+
+    fn next(&mut self) -> Option<Vec<u8>> {
+        let rest = self.text.get(self.next..).filter(|rest| !rest.is_empty())?;
+        let length = rest.iter().position(|&byte| byte == b'\n');
+        let line = &rest[..length.unwrap_or(rest.len())];
+        let shown = line.strip_suffix(b"\r").unwrap_or(line);
+        let shown = shown[..shown.len().min(LINE_LIMIT)].to_vec();
+        self.next += line.len() + 1;
+        Some(shown)
+    }
 }
 
 #[cfg(test)]
@@ -216,6 +239,7 @@ mod tests {
 
     #[test]
     fn a_last_line_without_end_is_a_line() {
+        let lines = |text: &[u8]| Lines::new(text.to_vec()).collect::<Vec<_>>();
         assert_eq!(lines(b"a\r\n\r\nb"), [&b"a"[..], b"", b"b"]);
         assert_eq!(lines(b"a\n"), [b"a"]);
         assert_eq!(lines(b"\n"), [b""]);
@@ -224,7 +248,7 @@ mod tests {
 
     #[test]
     fn a_line_of_more_than_1024_characters_is_cut() {
-        assert_eq!(lines(&[b'x'; 2000]), [vec![b'x'; 1024]]);
+        assert_eq!(Lines::new(vec![b'x'; 2000]).collect::<Vec<_>>(), [vec![b'x'; 1024]]);
     }
 
     #[test]

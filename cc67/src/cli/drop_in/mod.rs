@@ -12,7 +12,6 @@
 mod arguments;
 
 use std::ffi::OsString;
-use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 use std::process::ExitCode;
@@ -31,7 +30,7 @@ use crate::lints::levels::Levels;
 use crate::passes::Level;
 use crate::pp::{self, Disk};
 use crate::render::vendor;
-use crate::{Compilation, Options, image};
+use crate::{Compilation, Options, image, input};
 
 /// The name under which programs expect the vendor's compiler.
 const NAME: &str = "tcc67";
@@ -84,7 +83,7 @@ fn print(text: &str) {
 
 /// Compiles, links and writes; the error is all that the compiler says.
 fn compile(request: &Request) -> Result<(), String> {
-    let text = fs::read(&request.source)
+    let text = input::read(&request.source)
         .map_err(|_| format!("tcc: file '{}' not found\n", request.source.display()))?;
     let firmware = request.firmware.as_deref().map(read_firmware).transpose()?;
     let options = options(request, firmware);
@@ -107,7 +106,7 @@ fn compile(request: &Request) -> Result<(), String> {
 
 /// The firmware's symbols.
 fn read_firmware(path: &Path) -> Result<Firmware, String> {
-    let bytes = fs::read(path).map_err(|_| format!("tcc: file '{}' not found\n", path.display()))?;
+    let bytes = input::read(path).map_err(|_| format!("tcc: file '{}' not found\n", path.display()))?;
     let file = FirmwareFile::read(&bytes).map_err(|error| format!("tcc: '{}': {error}\n", path.display()))?;
     Ok(Firmware::File(Arc::new(file)))
 }

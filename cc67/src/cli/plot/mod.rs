@@ -14,7 +14,9 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 
+use super::run::cannot_read;
 use super::{Exit, output};
+use crate::input;
 use chart::Chart;
 
 /// Arguments of `cc67 plot`.
@@ -33,7 +35,8 @@ pub(super) fn plot(arguments: &Arguments) -> Result<Exit> {
     let Some(path) = &arguments.data else { return Ok(Exit::WrongInput) };
     let picture = arguments.output.clone().unwrap_or_else(|| path.with_extension("svg"));
     let form = Form::of(&picture)?;
-    let text = String::from_utf8_lossy(&super::run::read(path)?).into_owned();
+    let bytes = input::read_up_to(path, input::DATA_BYTES).map_err(|error| cannot_read(path, &error))?;
+    let text = String::from_utf8_lossy(&bytes).into_owned();
     let title = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let is_dump = path.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("vcd"));
     let chart = if is_dump { vcd::chart(&title, &text) } else { csv::chart(&title, &text) };

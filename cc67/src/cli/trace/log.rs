@@ -1,4 +1,9 @@
-//! What pictures are made of: everything that was recorded, in memory.
+//! What pictures are made of: what was recorded, in memory.
+//!
+//! A picture is no larger because a run was longer, and neither is this: when there is too much, of every two samples
+//! the later one is kept, and spans with little between them become one.
+
+use std::collections::{BTreeMap, BTreeSet};
 
 use kmotiondef::{Bit, Cycles, ThreadId};
 use runtime::trace::{Quantity, Request};
@@ -6,39 +11,79 @@ use runtime::trace::{Quantity, Request};
 use super::Entry;
 use super::columns::Columns;
 
-/// A change of a bit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Change {
-    pub(super) at: Cycles,
-    pub(super) bit: Bit,
-    pub(super) level: bool,
-}
+/// Most samples.
+pub(crate) const SAMPLES: usize = 200_000;
+/// Most spans of bits, and as many of threads.
+const SPANS: usize = 500_000;
 
-/// Everything that was recorded.
+/// What was recorded.
 #[derive(Debug)]
 pub(super) struct Log {
     columns: Columns,
-    pub(super) changes: Vec<Change>,
-    pub(super) slices: Vec<(ThreadId, Cycles, Cycles)>,
     pub(super) samples: Vec<(Cycles, Vec<f64>)>,
+    /// The time for which a sample stands.
+    pub(super) step: Cycles,
+    /// When bits were high.
+    bits: Spans<Bit>,
+    /// Bits that are high, and since when.
+    high: BTreeMap<Bit, Cycles>,
+    /// Bits that have changed.
+    changed: BTreeSet<Bit>,
+    /// When threads had the processor.
+    pub(super) threads: Spans<ThreadId>,
 }
 
 impl Log {
     /// Nothing yet, of what was asked for.
     pub(super) fn new(request: &Request) -> Self {
-        Self { columns: Columns::new(request), changes: Vec::new(), slices: Vec::new(), samples: Vec::new() }
+        let every = i64::try_from(request.every).unwrap_or(i64::MAX);
+        Self {
+            columns: Columns::new(request),
+            samples: Vec::new(),
+            step: Cycles::new(Cycles::PER_TICK.get().saturating_mul(every)),
+            bits: Spans::new(SPANS),
+            high: BTreeMap::new(),
+            changed: BTreeSet::new(),
+            threads: Spans::new(SPANS),
+        }
     }
 
     /// Keeps an entry.
     pub(super) fn note(&mut self, at: Cycles, entry: Entry) {
         match entry {
-            Entry::Bit { bit, level, .. } => self.changes.push(Change { at, bit, level }),
-            Entry::Slice { thread, end } => self.slices.push((thread, at, end)),
+            Entry::Bit { bit, level, .. } => self.note_bit(bit, level, at),
+            Entry::Slice { thread, end } => self.threads.add(thread, at, end),
             Entry::Sample { values, enabled } => {
                 self.columns.note(enabled);
-                self.samples.push((at, values));
+                keep(&mut self.samples, self.step, (at, values));
+                if self.samples.len() > SAMPLES {
+                    self.thin();
+                }
             }
             Entry::Line(_) | Entry::Sent(_) => {}
+        }
+    }
+
+    fn note_bit(&mut self, bit: Bit, level: bool, at: Cycles) {
+        let is_first = self.changed.insert(bit);
+        if level {
+            self.high.entry(bit).or_insert(at);
+        } else if let Some(since) = self.high.remove(&bit) {
+            self.bits.add(bit, since, at);
+        } else if is_first {
+            self.bits.add(bit, Cycles::default(), at);
+        }
+    }
+
+    /// Makes samples stand for twice the time, until a quarter of them is gone.
+    fn thin(&mut self) {
+        while self.samples.len() > SAMPLES / 4 * 3 {
+            self.step = self.step + self.step;
+            let mut thin = Vec::new();
+            for sample in self.samples.drain(..) {
+                keep(&mut thin, self.step, sample);
+            }
+            self.samples = thin;
         }
     }
 
@@ -47,15 +92,116 @@ impl Log {
         self.columns.shown().collect()
     }
 
-    /// Bits that have changed, in ascending order, each with its level before.
-    pub(super) fn bits(&self) -> Vec<(Bit, bool)> {
-        let mut bits: Vec<(Bit, bool)> = Vec::new();
-        for change in &self.changes {
-            if bits.iter().all(|(bit, _)| *bit != change.bit) {
-                bits.push((change.bit, !change.level));
-            }
+    /// Bits that have changed, in ascending order.
+    pub(super) fn changed_bits(&self) -> impl Iterator<Item = Bit> {
+        self.changed.iter().copied()
+    }
+
+    /// When a bit that has changed was high, up to `end`.
+    pub(super) fn spans_of(&self, bit: Bit, end: Cycles) -> Vec<(Cycles, Cycles)> {
+        let last = self.high.get(&bit).map(|since| (*since, end));
+        self.bits.of(bit).chain(last).collect()
+    }
+
+    /// Whether a bit has changed.
+    pub(super) fn has_changed(&self, bit: Bit) -> bool {
+        self.changed.contains(&bit)
+    }
+}
+
+/// Adds a sample; of those in a stretch of time `step` long only the last one is kept: what holds at its end.
+fn keep(samples: &mut Vec<(Cycles, Vec<f64>)>, step: Cycles, sample: (Cycles, Vec<f64>)) {
+    let stretch = |at: Cycles| (at.get() - 1).div_euclid(step.get());
+    match samples.last_mut() {
+        Some(last) if stretch(last.0) == stretch(sample.0) => *last = sample,
+        _ => samples.push(sample),
+    }
+}
+
+/// Stretches of time in which something was so.
+#[derive(Debug)]
+pub(super) struct Spans<K> {
+    list: Vec<(K, Cycles, Cycles)>,
+    limit: usize,
+    /// Spans with less between them are one.
+    gap: Cycles,
+}
+
+impl<K: Copy + Ord> Spans<K> {
+    fn new(limit: usize) -> Self {
+        Self { list: Vec::new(), limit, gap: Cycles::PER_TICK }
+    }
+
+    /// Adds a span; those of one thing come in the order of time.
+    fn add(&mut self, key: K, from: Cycles, to: Cycles) {
+        self.list.push((key, from, to));
+        if self.list.len() > self.limit {
+            self.join();
         }
-        bits.sort_unstable();
-        bits
+    }
+
+    /// Joins what lies close together until half of the spans are gone.
+    fn join(&mut self) {
+        while self.list.len() > self.limit / 2 {
+            let mut last: BTreeMap<K, usize> = BTreeMap::new();
+            let mut joined: Vec<(K, Cycles, Cycles)> = Vec::new();
+            for (key, from, to) in self.list.drain(..) {
+                match last.get(&key).and_then(|index| joined.get_mut(*index)) {
+                    Some(span) if from - span.2 < self.gap => span.2 = span.2.max(to),
+                    _ => {
+                        last.insert(key, joined.len());
+                        joined.push((key, from, to));
+                    }
+                }
+            }
+            self.list = joined;
+            self.gap = self.gap + self.gap;
+        }
+    }
+
+    /// The spans of one thing.
+    pub(super) fn of(&self, key: K) -> impl Iterator<Item = (Cycles, Cycles)> {
+        self.list.iter().filter(move |(other, _, _)| *other == key).map(|(_, from, to)| (*from, *to))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ticks(ticks: i64) -> Cycles {
+        Cycles::new(ticks * Cycles::PER_TICK.get())
+    }
+
+    #[test]
+    fn a_long_run_takes_no_more_memory_than_a_picture_needs() {
+        let mut log = Log::new(&Request { quantities: Vec::new(), every: 1, changes: true });
+        let count = 5 * SAMPLES as i64;
+        for tick in 1..=count {
+            log.note(ticks(tick), Entry::Sample { values: vec![tick as f64], enabled: 0 });
+        }
+        assert_eq!(log.step, ticks(8));
+        assert!((SAMPLES / 2..=SAMPLES).contains(&log.samples.len()), "{}", log.samples.len());
+        // What is kept stands at the ends of stretches of eight ticks.
+        assert!(
+            log.samples
+                .iter()
+                .all(|(at, values)| at.get() % log.step.get() == 0 && ticks(values[0] as i64) == *at)
+        );
+        assert_eq!(log.samples.last(), Some(&(ticks(count), vec![count as f64])));
+    }
+
+    #[test]
+    fn spans_that_are_close_become_one_when_there_are_too_many() {
+        let mut spans = Spans::new(100);
+        for index in 0..101 {
+            spans.add(index % 2, ticks(4 * index), ticks(4 * index + 1));
+        }
+        assert_eq!(spans.of(0).collect::<Vec<_>>(), [(ticks(0), ticks(401))]);
+        assert_eq!(spans.of(1).collect::<Vec<_>>(), [(ticks(4), ticks(397))]);
+        let mut few = Spans::new(100);
+        few.add((), ticks(0), ticks(1));
+        few.add((), ticks(1), ticks(2));
+        assert_eq!(few.of(()).count(), 2);
     }
 }

@@ -3,7 +3,7 @@
 //! The suffix of the file decides: `.vcd` for waveform viewers, `.json` for trace viewers (Perfetto, Chrome), anything
 //! else is a table of values. Files grow while the run goes on, under temporary names, and get their own when it is
 //! over: a run of any length needs no more memory than a short one, and one that is killed leaves no half file. Only
-//! pictures are made of what was kept in memory.
+//! pictures are made of what is kept in memory, which is bounded, too.
 
 mod bits;
 mod chrome;
@@ -25,11 +25,12 @@ use kmotiondef::{Bit, Cycles, ThreadId, Ticks};
 use runtime::trace::{Item, Quantity, Record, Request};
 use runtime::{Event, EventKind};
 
-use super::output;
 use super::plot::{self, Form};
+use super::{output, terminal};
 use crate::Options;
 use columns::Columns;
 use log::Log;
+pub(crate) use log::SAMPLES;
 use order::Order;
 
 pub(super) use watch::Watched;
@@ -107,9 +108,16 @@ impl TraceOptions {
                 Err(other) => other,
             })?;
         }
+        let every = trace.log.as_ref().map_or(0, |log| log.step.get() / Cycles::PER_TICK.get());
+        if every as u64 > self.trace_every {
+            terminal::note(&format!(
+                "the picture shows every {every} ticks what was so then: it is made of {SAMPLES} samples at most; \
+                 `--trace FILE` writes all"
+            ));
+        }
         for path in &self.plot {
             let Some(log) = &trace.log else { continue };
-            let chart = picture::chart(log, title.to_owned(), self.trace_every, end);
+            let chart = picture::chart(log, title.to_owned(), end);
             plot::write(&chart, Form::of(path)?, path)?;
         }
         Ok(())

@@ -14,7 +14,7 @@ use crate::cli::plot::samples::{Column, Samples};
 const STRIPS: usize = 16;
 
 /// The chart of a run up to a tick.
-pub(super) fn chart(log: &Log, title: String, every: u64, end: Ticks) -> Chart {
+pub(super) fn chart(log: &Log, title: String, end: Ticks) -> Chart {
     let end = Cycles::new((end.get() as i64).saturating_mul(Cycles::PER_TICK.get()));
     let columns = log.columns();
     let column = |(_, quantity): &(usize, &Quantity)| Column {
@@ -28,11 +28,11 @@ pub(super) fn chart(log: &Log, title: String, every: u64, end: Ticks) -> Chart {
     let samples = Samples {
         columns: columns.iter().map(column).collect(),
         rows: log.samples.iter().map(row).collect(),
-        step: seconds(Cycles::PER_TICK) * every as f64,
+        step: seconds(log.step),
         end: seconds(end),
     };
     let panels = samples.panels();
-    let mut strips = bits(log, seconds(end));
+    let mut strips = bits(log, end);
     strips.truncate(STRIPS);
     strips.extend(threads(log));
     Chart { title, abscissa: "time (s)".to_owned(), panels, strips, range: (0.0, seconds(end)) }
@@ -43,52 +43,34 @@ fn seconds(at: Cycles) -> f64 {
 }
 
 /// When each bit was high: those that are watched, else those that changed.
-fn bits(log: &Log, end: f64) -> Vec<Strip> {
+fn bits(log: &Log, end: Cycles) -> Vec<Strip> {
     let columns = log.columns();
     let watched: Vec<(usize, Bit)> =
         columns.iter().filter_map(|(column, quantity)| Some((*column, bit(quantity)?))).collect();
-    let changed = log.bits();
     if watched.is_empty() {
-        return changed.into_iter().map(|(bit, before)| strip(log, bit, before, end)).collect();
+        return log.changed_bits().map(|bit| strip(format!("bit {bit}"), log.spans_of(bit, end))).collect();
     }
     let first = |column: usize| {
         log.samples.first().and_then(|(_, values)| values.get(column)).is_some_and(|value| *value != 0.0)
     };
-    let before = |column, bit| {
-        changed.iter().find(|(other, _)| *other == bit).map_or_else(|| first(column), |(_, before)| *before)
+    let spans = |column, bit| match log.has_changed(bit) {
+        true => log.spans_of(bit, end),
+        false => first(column).then_some((Cycles::default(), end)).into_iter().collect(),
     };
-    watched.into_iter().map(|(column, bit)| strip(log, bit, before(column, bit), end)).collect()
+    watched.into_iter().map(|(column, bit)| strip(format!("bit {bit}"), spans(column, bit))).collect()
 }
 
 fn bit(quantity: &Quantity) -> Option<Bit> {
     quantity.item().and_then(Item::bit)
 }
 
-/// When a bit was high that had a level before all changes.
-fn strip(log: &Log, bit: Bit, before: bool, end: f64) -> Strip {
-    let mut spans = Vec::new();
-    let mut high_since = before.then_some(0.0);
-    for change in log.changes.iter().filter(|change| change.bit == bit) {
-        match (high_since, change.level) {
-            (None, true) => high_since = Some(seconds(change.at)),
-            (Some(since), false) => {
-                spans.push((since, seconds(change.at)));
-                high_since = None;
-            }
-            _ => {}
-        }
-    }
-    spans.extend(high_since.map(|since| (since, end)));
-    Strip { name: format!("bit {bit}"), spans }
+fn strip(name: String, spans: impl IntoIterator<Item = (Cycles, Cycles)>) -> Strip {
+    Strip { name, spans: spans.into_iter().map(|(from, to)| (seconds(from), seconds(to))).collect() }
 }
 
 /// When each thread had the processor.
 fn threads(log: &Log) -> Vec<Strip> {
-    let strip = |thread| {
-        let slices = log.slices.iter().filter(|(other, _, _)| *other == thread);
-        let spans: Vec<_> = slices.map(|(_, from, to)| (seconds(*from), seconds(*to))).collect();
-        Strip { name: format!("thread {thread}"), spans }
-    };
+    let strip = |thread| strip(format!("thread {thread}"), log.threads.of(thread));
     kmotiondef::ThreadId::all().map(strip).filter(|strip| !strip.spans.is_empty()).collect()
 }
 
@@ -99,7 +81,7 @@ mod tests {
     #[test]
     fn a_value_holds_between_its_samples() {
         let log = super::super::testing::log();
-        let chart = chart(&log, String::new(), 2, Ticks::new(7));
+        let chart = chart(&log, String::new(), Ticks::new(7));
         let lines: Vec<_> = chart.panels.iter().flat_map(|panel| &panel.lines).collect();
         assert_eq!(lines[0].name, "Dest 0");
         let times: Vec<_> = lines[0].points.iter().map(|point| (point.0 * 1e6).round() as i64).collect();

@@ -1,0 +1,36 @@
+//! Files that are read whole: up to a size that no program, image or description comes near.
+
+use std::fs::File;
+use std::io::{self, ErrorKind, Read};
+use std::path::Path;
+
+use crate::pp::limits;
+
+/// Bytes of a source, an image, a machine file. A device that never ends, or a film with the wrong name, does not fill
+/// the memory.
+pub const FILE_BYTES: u64 = limits::FILE_BYTES as u64;
+
+/// Bytes of saved data that are drawn.
+pub const DATA_BYTES: u64 = 512 << 20;
+
+/// The bytes of a file, [`FILE_BYTES`] at most.
+///
+/// # Errors
+/// What the system says, or that the file is too large.
+pub(crate) fn read(path: &Path) -> io::Result<Vec<u8>> {
+    read_up_to(path, FILE_BYTES)
+}
+
+/// The bytes of a file, so many at most.
+///
+/// # Errors
+/// What the system says, or that the file is too large.
+pub(crate) fn read_up_to(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    // One byte more than allowed shows that the file is too large without reading all of it.
+    File::open(path)?.take(most + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > most {
+        return Err(io::Error::new(ErrorKind::FileTooLarge, format!("it is larger than {most} bytes")));
+    }
+    Ok(bytes)
+}
