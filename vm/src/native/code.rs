@@ -21,6 +21,10 @@ const STACK_RESERVE: usize = 0x1_0000;
 const RESERVE_PER_FUNCTION: usize = 0x1000;
 const RESERVE_PER_WORD: usize = 0x400;
 
+/// Most words of a function that is translated when it is started: the time that Cranelift takes grows with their square,
+/// and this many take it a second or two. Longer ones are tables written as statements, which run once.
+const MAX_WORDS: usize = 0x4000;
+
 /// The compiled form of a program, made when it is first started and shared by its copies.
 ///
 /// It follows from the program, so two programs are equal whether or not they have one.
@@ -109,6 +113,10 @@ impl Drop for CodeMemory {
 impl Code {
     /// Compiles `program`, for a firmware that has the functions `pure`.
     pub(super) fn compile(program: &Program, pure: PureFunctions<'_>) -> Result<Self, CompileError> {
+        let mut lengths = program.functions().iter().map(|function| function.body.len());
+        if let Some(length) = lengths.find(|length| *length > MAX_WORDS) {
+            return Err(CompileError::TooLong(length));
+        }
         let mut memory = CodeMemory::new(program)?;
         let job = Job { program, pure, host: HostFunctions::Here, name: &|_| None };
         let functions = compile(&mut *memory.0, job)?;

@@ -37,6 +37,9 @@ pub enum CompileError {
     /// A function has so many registers that the interpreter would bound the depth of its calls by them.
     #[error("a function of {0} registers, more than {MAX_REGISTERS}")]
     TooManyRegisters(usize),
+    /// A function is so long that to translate it takes longer than to interpret it.
+    #[error("a function of {0} words takes longer to translate than to interpret")]
+    TooLong(usize),
     /// A function is beyond a limit of Cranelift's.
     #[error(transparent)]
     Module(#[from] Box<ModuleError>),

@@ -160,15 +160,21 @@ fn stores_into_program_text_are_found_whatever_the_address_mode() {
 #[test]
 fn a_program_beyond_the_limits_of_compilation_runs_as_bytecode() {
     let types = "types 0\n".repeat(313);
-    let main = format!(
+    let wide = format!(
         "@main: func sig0, 5000, 0\n{types}charge 9\nconst_i32 r4999, 7\nstore_i32_at r4999, 0x10000000\nret"
     );
-    let program = program(1, &main);
-    assert!(program.compiled.code(&program, &|_| None).is_none());
-    let mut world = World::<NativeEngine>::new(&program);
-    world.start(&program);
-    assert_eq!(world.resume(&program, 99, None).stop, Stop::Ended);
-    assert_eq!(world.memory.peek::<i32>(GuestAddr::new(0x1000_0000)), 7);
+    let steps = "add_i32_imm r0, r0, 1\n".repeat(0x4000);
+    let long = format!(
+        "@main: func sig0, 1, 0\ntypes 0\ncharge 99999\nconst_i32 r0, -16377\n{steps}store_i32_at r0, 0x10000000\nret"
+    );
+    for main in [wide, long] {
+        let program = program(1, &main);
+        assert!(program.compiled.code(&program, &|_| None).is_none());
+        let mut world = World::<NativeEngine>::new(&program);
+        world.start(&program);
+        assert_eq!(world.resume(&program, 100_000, None).stop, Stop::Ended);
+        assert_eq!(world.memory.peek::<i32>(GuestAddr::new(0x1000_0000)), 7);
+    }
 }
 
 /// Two programs with a call-back, one of them replaced while it waits, on stacks as small as the board's.
