@@ -4,6 +4,7 @@
 //! `cargo test` tries 50,000 of each kind; with `CC67_LONG=1` in the environment it is a million,
 //! for which a release build is advisable. One test only, so that what it allocates can be measured.
 
+use harness::is_long;
 use harness::oracles::{read_file, valid_files};
 use peak_alloc::PeakAlloc;
 
@@ -60,7 +61,7 @@ fn random(numbers: &mut Numbers) -> Vec<u8> {
 
 #[test]
 fn hostile_files_do_no_harm() {
-    let rounds = if std::env::var_os("CC67_LONG").is_some() { 1_000_000 } else { 50_000 };
+    let rounds = if is_long() { 1_000_000 } else { 50_000 };
     let seeds = valid_files();
     let mut numbers = Numbers(0x6701_C0FF);
     let (mut accepted, mut most) = (0, 0);

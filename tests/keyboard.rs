@@ -142,3 +142,27 @@ fn the_first_ctrl_c_stops_the_programs_and_the_second_one_leaves() {
     terminal.interrupt();
     assert!(terminal.ends_well());
 }
+
+/// For an hour where tests take their long form.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_board_left_at_a_prompt_takes_next_to_nothing() {
+    let seconds = if harness::is_long() { 3600 } else { 2 };
+    let scratch = Scratch::new("keyboard-idle");
+    let source = "main() { for (;;) { Delay_sec(0.1); SetStateBit(47, !ReadBit(47)); } }\n";
+    scratch.write("blink.c", format!("#include \"KMotionDef.h\"\n{source}"));
+    let mut terminal = Terminal::new(&scratch, &["blink.c"]);
+    terminal.press("Version\r");
+    terminal.wait(VERSION);
+    let before = harness::usage::Usage::of(terminal.child.id());
+    let shown = terminal.shown.recv_timeout(Duration::from_secs(seconds));
+    assert!(shown.is_err(), "nothing happens, so nothing is shown");
+    let after = harness::usage::Usage::of(terminal.child.id());
+    let cpu = after.cpu - before.cpu;
+    println!("{seconds} s at a prompt: {cpu:?} of processor time, {before:?}, {after:?}");
+    assert!(cpu < Duration::from_millis(20) + Duration::from_secs(seconds) / 20, "{cpu:?}");
+    assert!(after.peak <= before.peak + 1024, "{before:?}, {after:?}");
+    terminal.press("time\r");
+    terminal.press("quit\r");
+    assert!(terminal.ends_well());
+}

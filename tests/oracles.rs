@@ -7,6 +7,7 @@ use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use harness::choices::random_bytes;
+use harness::is_long;
 use harness::oracles::{TARGETS, Target};
 use libtest_mimic::{Arguments, Failed, Trial};
 
@@ -37,7 +38,7 @@ fn each_has_a_fuzz_target() -> Result<(), Failed> {
 }
 
 fn random(target: &Target) -> Result<(), Failed> {
-    let count = if std::env::var_os("CC67_LONG").is_some() { 100 * INPUTS } else { INPUTS };
+    let count = if is_long() { 100 * INPUTS } else { INPUTS };
     for seed in 0..count {
         let input = random_bytes(seed, 8 + (seed as usize * 37) % 400);
         attempt(target, &input).map_err(|error| format!("seed {seed}: {error}"))?;

@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 
 use harness::choices::{Choices, random_bytes};
 use harness::oracles::{execute_everywhere, victim};
-use harness::{Scratch, files, run_in};
+use harness::{Scratch, files, is_long, run_in};
 use kmotiondef::Ticks;
 
 const BINARY: &str = env!("CARGO_BIN_EXE_cc67-under-test");
@@ -84,7 +84,7 @@ fn addresses_outside_guest_memory_trap() {
 #[test]
 fn a_changed_image_is_refused_or_runs_alike_on_every_engine() {
     let whole = victim();
-    let rounds = if std::env::var_os("CC67_LONG").is_some() { 100 * ROUNDS } else { ROUNDS };
+    let rounds = if is_long() { 100 * ROUNDS } else { ROUNDS };
     let (mut refused, mut executed) = (0, 0);
     for round in 0..rounds {
         let random = random_bytes(round, 16);

@@ -5,6 +5,7 @@ pub mod csv;
 pub mod filetest;
 pub mod generate;
 pub mod oracles;
+pub mod usage;
 pub mod vendor;
 
 use std::ffi::OsStr;
@@ -17,6 +18,12 @@ use std::process::{Command, Stdio};
 #[must_use]
 pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the package lies in the workspace")
+}
+
+/// Whether tests that have a long form take it: where `CC67_LONG` is in the environment.
+#[must_use]
+pub fn is_long() -> bool {
+    std::env::var_os("CC67_LONG").is_some()
 }
 
 /// What a run of the command left behind.
