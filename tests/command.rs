@@ -396,3 +396,30 @@ fn a_run_in_real_time_takes_its_time_and_does_the_same() {
     assert_eq!(paced, fast);
     assert!(seconds >= 0.4, "0.4 s of board time took {seconds} s");
 }
+
+/// What `cargo install` leaves: one file, which brings its headers, its pages and its letters with it.
+#[test]
+#[cfg(unix)]
+fn the_command_needs_no_file_but_itself() {
+    let scratch = Scratch::new("command-alone");
+    let command = scratch.path().join("cc67");
+    std::fs::copy(env!("CARGO_BIN_EXE_cc67-under-test"), &command).expect("there is room");
+    scratch.write("a.c", "#include \"KMotionDef.h\"\nmain() { printf(\"alone %d\\n\", 7 * 6); }\n");
+    let run = |arguments: &[&str]| {
+        let output = std::process::Command::new(&command)
+            .args(arguments)
+            .current_dir(scratch.path())
+            .env_clear()
+            .output()
+            .expect("it starts");
+        assert!(output.status.success(), "{arguments:?}: {output:?}");
+        String::from_utf8(output.stdout).expect("it is text")
+    };
+    assert!(run(&["--version"]).ends_with("(models KFLOP firmware 4.34)\n"));
+    assert_eq!(run(&["run", "--plot", "a.svg", "--watch", "dest0", "a.c"]), "alone 42\n");
+    run(&["build", "a.c"]);
+    assert_eq!(run(&["run", "a(1).out"]), "alone 42\n");
+    assert!(run(&["--explain", "limits"]).contains("user threads"));
+    run(&["init", "machine"]);
+    assert!(run(&["test", "machine"]).contains("passed"));
+}
