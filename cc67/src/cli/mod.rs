@@ -42,9 +42,9 @@ use clap::{Parser, Subcommand};
 
 pub use exit::Exit;
 pub(crate) use runtime::FILE_BYTES as PC_FILE_BYTES;
-pub(crate) use trace::SAMPLES as PICTURE_SAMPLES;
 #[cfg(feature = "native")]
 pub use stand_alone::main as stand_alone;
+pub(crate) use trace::SAMPLES as PICTURE_SAMPLES;
 
 /// C compiler, linker and simulated KFLOP board.
 #[derive(Debug, Parser)]
