@@ -10,14 +10,17 @@ use clap::Parser;
 use runtime::loader::prepare;
 use vm::native::{Linked, LinkedError};
 
-use super::{Exit, run, terminal};
+use super::{Exit, explain, run, terminal};
 
 /// A KFLOP program with the simulated board that it runs on, made by `cc67 build --emit native`.
 ///
 /// The options are those of `cc67 run`; further programs run beside it in other threads.
 #[derive(Debug, Parser)]
 #[command(max_term_width = 100)]
-struct Arguments {
+struct StandAlone {
+    /// Explain a warning, or limits, machine, stimulus, as the command does
+    #[arg(long, value_name = "WARNING")]
+    explain: Option<String>,
     #[command(flatten)]
     run: run::Arguments,
 }
@@ -48,6 +51,9 @@ fn run(arguments: impl IntoIterator<Item = OsString>, linked: &Linked) -> Result
     let mut name = OsString::from(format!("{thread}:"));
     name.push(Path::new(&own).file_stem().unwrap_or_default());
     name.push(".out");
-    let arguments = Arguments::parse_from([own, name].into_iter().chain(arguments));
-    run::run_with(&arguments.run, Some(image))
+    let arguments = StandAlone::parse_from([own, name].into_iter().chain(arguments));
+    match &arguments.explain {
+        Some(name) => explain::explain(name),
+        None => run::run_with(&arguments.run, Some(image)),
+    }
 }
