@@ -1,8 +1,8 @@
 //! What lies between an image and a running program: reading, loading, translating, running, calling the firmware.
 //!
-//! `image/read/...`: bytes to an image. `load/...`: an image to a program in a thread, with all checks; on the native
-//! engine translation comes with it. `execute/...`: one call of a program that computes, and one of a program that calls
-//! the firmware or a function of its own a thousand times, so that the difference is what a call costs.
+//! `image/read/...`: bytes to an image. `load/...`: an image to a program in a thread, with all checks, and its first
+//! tick, in front of which the native engine translates it. `execute/...`: a program that computes, and one that calls
+//! the firmware or a function of its own by its address in each turn, so that the difference is what a call costs.
 //!
 //! `cargo bench -p cc67 --bench board`
 
@@ -43,6 +43,7 @@ fn program(name: &str) -> Vec<u8> {
 fn repeat(what: &str) -> Vec<u8> {
     let text = format!(
         "#include \"KMotionDef.h\"\nint state;\nint own(int bit) {{ return state >> bit & 1; }}\n\
+         int (*called)(int) = own;\n\
          main() {{ int i, n = 0; for (i = 0; i < {CALLS}; i++) {{ {what}; }} state = n; }}\n"
     );
     compile(Path::new("repeat.c"), text.into_bytes())
@@ -62,7 +63,12 @@ fn load<E: Engine>(c: &mut Criterion, engine: &str) {
     let image = program("motion/path.c");
     let mut board = Board::<E>::new(Config::default());
     c.bench_function(&format!("load/{engine}/path"), |b| {
-        b.iter(|| board.load(thread(), black_box(&image)).expect("it is an image"));
+        b.iter(|| {
+            board.load(thread(), black_box(&image)).expect("it is an image");
+            board.start(thread()).expect("it is loaded");
+            let limit = Ticks::new(board.tick().get() + 2);
+            board.run(limit, &mut |event| drop(black_box(event)))
+        });
     });
 }
 
@@ -71,7 +77,7 @@ fn execute<E: Engine>(c: &mut Criterion, engine: &str) {
     let programs = [
         ("nothing", repeat("n += i")),
         ("firmware", repeat("n += ReadBit(i & 31)")),
-        ("function", repeat("n += own(i & 31)")),
+        ("function", repeat("n += called(i & 31)")),
     ];
     let mut group = c.benchmark_group(format!("execute/{engine}"));
     group.throughput(Throughput::Elements(CALLS)).sample_size(20);
