@@ -208,14 +208,15 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The words of the unit's text at addresses of the section.
+    /// The words of a function in the unit's text, at addresses of the section.
     fn words(&self, bytes: Range<u32>) -> Option<Range<u32>> {
         let word = |at: u32| {
             let word = at.is_multiple_of(WORD as u32).then_some(at / WORD as u32)?.checked_sub(self.head)?;
             (word as usize <= self.object.text.len()).then_some(word)
         };
         let words = word(bytes.start)?..word(bytes.end)?;
-        matches!(self.object.text.get(words.start as usize), Some(Op::Func { .. })).then_some(words)
+        let text = self.object.text.get(words.start as usize..words.end as usize)?;
+        matches!(text.first(), Some(Op::Func { .. })).then_some(words)
     }
 
     /// Functions in the order of the text, with the relocations and lines of each.

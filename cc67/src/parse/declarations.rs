@@ -112,8 +112,11 @@ impl Parser<'_> {
         }
         if is_outer {
             self.report(diagnostic.help("is a `}` missing before it?"));
-            self.at = start;
-            self.is_unwinding = true;
+            // One error too many has left out the rest, which must not be taken up again.
+            if !self.is_stopped {
+                self.at = start;
+                self.is_unwinding = true;
+            }
         } else {
             self.report(diagnostic.note("functions cannot be nested"));
             self.skip_braces();
@@ -176,7 +179,7 @@ impl Parser<'_> {
                 declarators.push(InitDeclarator { declarator, initializer });
                 if self.take(TokenKind::Comma).is_some() {
                     self.skip_decimals();
-                } else if !self.continues_name() {
+                } else if !self.continues_name() && !self.continues_without_comma() {
                     break;
                 }
                 if self.kind() == TokenKind::Semicolon {
@@ -239,6 +242,19 @@ impl Parser<'_> {
             let diagnostic = Diagnostic::error(span, "the decimal point of a number is `.`, not `,`");
             self.report(diagnostic.help(format!("write `{number}`")));
         }
+    }
+
+    /// Whether the next variable begins without a comma, as in `int last = 0 pulses = 0;`; reports it.
+    fn continues_without_comma(&mut self) -> bool {
+        let next = self.peek();
+        let is_variable = self.is_identifier_at(0)
+            && !next.flags.has(Flags::LINE_START)
+            && self.kind_at(1) == TokenKind::Assign;
+        if is_variable {
+            let before = format!("before {}", self.describe(next));
+            self.report(Diagnostic::error(self.end_of_last(), "expected `,` between two variables").at(before));
+        }
+        is_variable
     }
 
     /// Whether the name of a variable goes on behind a `-`, as in `int home-speed = 5;`; reports it.
