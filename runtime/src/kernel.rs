@@ -347,8 +347,10 @@ impl Kernel {
 
     fn store_queue_indices(&self, memory: &mut GuestMemory) {
         let (write, read) = self.console.indices();
-        memory.set(NEXT_AVAIL_IN, write);
-        memory.set(NEXT_AVAIL_OUT, read);
+        memory.untouched(|memory| {
+            memory.set(NEXT_AVAIL_IN, write);
+            memory.set(NEXT_AVAIL_OUT, read);
+        });
     }
 }
 
@@ -358,8 +360,11 @@ fn slot(thread: Option<ThreadId>) -> usize {
 
 /// The time variables of a tick.
 fn store_time(context: &mut TickContext<'_>) {
-    context.memory.set(SERVO_TICK, context.tick.get() as f64);
-    context.memory.set(LAST_TIMER0, timer::count(context.now));
+    let (tick, now) = (context.tick, context.now);
+    context.memory.untouched(|memory| {
+        memory.set(SERVO_TICK, tick.get() as f64);
+        memory.set(LAST_TIMER0, timer::count(now));
+    });
 }
 
 impl Bus for Kernel {
@@ -430,6 +435,7 @@ impl Firmware for Kernel {
 
     fn tick(&mut self, context: &mut TickContext<'_>) {
         self.tick_start = context.now;
+        let is_touched = context.memory.take_touched();
         store_time(context);
         self.kanalog.tick(&self.fpga, context.memory);
         if self.snapamps.is_present() {
@@ -439,15 +445,12 @@ impl Firmware for Kernel {
         self.host.tick();
         // What goes in here may be stored wherever a program has said.
         let received = serial::tick(self, context) | self.exchange(context);
-        if acted || received {
+        if acted || received || is_touched {
             self.servo.forget_plans();
         }
-        let changed = crate::servo::tick(self, context);
+        let changed = crate::servo::tick(self, context, is_touched);
         self.sample(context, 1);
         let calls_back = !context.memory.get(USER_CALL_BACK).is_null();
-        if calls_back {
-            self.servo.forget_plans();
-        }
         self.is_settled = !changed && !acted && !calls_back;
     }
 
@@ -458,10 +461,9 @@ impl Firmware for Kernel {
     fn switch_to(&mut self, turn: Turn, context: &mut TickContext<'_>) {
         self.slice_start = context.now;
         self.turn = turn;
-        context.memory.set(CURRENT_THREAD, i32::from(turn.number()));
+        context.memory.untouched(|memory| memory.set(CURRENT_THREAD, i32::from(turn.number())));
         if turn != Turn::Primary {
             self.is_settled = false;
-            self.servo.forget_plans();
         }
     }
 

@@ -112,7 +112,6 @@ impl Desk {
 
     /// Runs so many ticks, every other one the primary thread's.
     pub(crate) fn run(&mut self, ticks: u64) {
-        self.kernel.servo.forget_plans();
         for _ in 0..ticks {
             self.tick = self.tick.next();
             self.now = Cycles::new(self.tick.get() as i64 * Cycles::PER_TICK.get());

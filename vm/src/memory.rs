@@ -98,13 +98,27 @@ scalars! {
 }
 
 /// The guest's 32-bit address space.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub struct GuestMemory {
     sdram: Box<[u8; SDRAM_SIZE]>,
     iram: Box<[u8; IRAM_SIZE]>,
     flash: Flash,
     protection: Protection,
+    /// Whether on-chip RAM may have been written, see [`GuestMemory::take_touched`].
+    is_touched: bool,
 }
+
+/// What a program can see; not who has written it.
+impl PartialEq for GuestMemory {
+    fn eq(&self, other: &Self) -> bool {
+        self.sdram == other.sdram
+            && self.iram == other.iram
+            && self.flash == other.flash
+            && self.protection == other.protection
+    }
+}
+
+impl Eq for GuestMemory {}
 
 impl Default for GuestMemory {
     fn default() -> Self {
@@ -116,7 +130,36 @@ impl GuestMemory {
     /// Memory as at power-up: zero, the flash erased.
     #[must_use]
     pub fn new() -> Self {
-        Self { sdram: filled(0), iram: filled(0), flash: Flash::default(), protection: Protection::default() }
+        Self {
+            sdram: filled(0),
+            iram: filled(0),
+            flash: Flash::default(),
+            protection: Protection::default(),
+            is_touched: true,
+        }
+    }
+
+    /// Whether on-chip RAM, where the variables of the firmware are, may have been written since this was last asked.
+    ///
+    /// Whoever works out something from them need not look again if nobody has.
+    #[inline]
+    pub const fn take_touched(&mut self) -> bool {
+        std::mem::replace(&mut self.is_touched, false)
+    }
+
+    /// Notes a write to on-chip RAM that was not made here.
+    #[cfg(feature = "native")]
+    pub(crate) const fn touch(&mut self) {
+        self.is_touched = true;
+    }
+
+    /// Does `work`, the writes of which nobody needs to look at: those that the firmware makes in every slice.
+    #[inline]
+    pub fn untouched<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
+        let was_touched = self.is_touched;
+        let result = work(self);
+        self.is_touched = was_touched;
+        result
     }
 
     /// Loads a value on behalf of a program.
@@ -161,6 +204,7 @@ impl GuestMemory {
                 return Ok(());
             }
             if value.set(&mut self.iram[..], index(address.wrapping_sub(IRAM_BASE))).is_some() {
+                self.is_touched = true;
                 return Ok(());
             }
         }
@@ -192,9 +236,12 @@ impl GuestMemory {
     #[inline]
     pub fn poke<T: Scalar>(&mut self, addr: GuestAddr, value: T) {
         let address = addr.get();
+        if value.set(&mut self.iram[..], index(address.wrapping_sub(IRAM_BASE))).is_some() {
+            self.is_touched = true;
+            return;
+        }
         let _ = value
-            .set(&mut self.iram[..], index(address.wrapping_sub(IRAM_BASE)))
-            .or_else(|| value.set(&mut self.sdram[..], index(address.wrapping_sub(SDRAM_BASE))))
+            .set(&mut self.sdram[..], index(address.wrapping_sub(SDRAM_BASE)))
             .or_else(|| value.set(self.flash.bytes_mut(), index(address.wrapping_sub(FLASH_BASE))));
     }
 
@@ -240,6 +287,7 @@ impl GuestMemory {
     #[inline]
     pub fn block_mut<const N: usize>(&mut self, addr: GuestAddr) -> Option<&mut [u8; N]> {
         let address = addr.get();
+        self.is_touched = true;
         if let Some(block) = self.iram.get_mut(index(address.wrapping_sub(IRAM_BASE))..) {
             return block.first_chunk_mut();
         }
@@ -301,7 +349,7 @@ impl GuestMemory {
         self.protection.set(thread, 0..0);
     }
 
-    /// SDRAM and on-chip RAM as they are, for compiled code, which makes the checks itself.
+    /// SDRAM and on-chip RAM as they are, for compiled code, which makes the checks itself and says what it touches.
     #[cfg(feature = "native")]
     pub(crate) fn ram_mut(&mut self) -> (&mut [u8; SDRAM_SIZE], &mut [u8; IRAM_SIZE]) {
         (&mut self.sdram, &mut self.iram)
@@ -350,6 +398,7 @@ impl GuestMemory {
         let (region, offset) = if let Some(offset) = offset_in(addr, SDRAM_BASE, SDRAM_SIZE) {
             (&mut self.sdram[..], offset)
         } else if let Some(offset) = offset_in(addr, IRAM_BASE, IRAM_SIZE) {
+            self.is_touched = true;
             (&mut self.iram[..], offset)
         } else if let Some(offset) = offset_in(addr, FLASH_BASE, flash::SIZE) {
             (&mut self.flash.bytes_mut()[..], offset)

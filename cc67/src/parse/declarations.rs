@@ -252,7 +252,8 @@ impl Parser<'_> {
             && self.kind_at(1) == TokenKind::Assign;
         if is_variable {
             let before = format!("before {}", self.describe(next));
-            self.report(Diagnostic::error(self.end_of_last(), "expected `,` between two variables").at(before));
+            let diagnostic = Diagnostic::error(self.end_of_last(), "expected `,` between two variables");
+            self.report(diagnostic.at(before));
         }
         is_variable
     }

@@ -174,7 +174,6 @@ pub(crate) fn slice(kernel: &mut Kernel, context: &mut TickContext<'_>) {
     if !has_commands(kernel, context.memory) {
         return;
     }
-    kernel.servo.forget_plans();
     fill(kernel, context.memory);
     let received = context.memory.get(P_RS232_REC_IN);
     let mut out = context.memory.get(P_RS232_REC_OUT);

@@ -114,22 +114,24 @@ impl Servo {
 }
 
 /// One tick of the servo; whether anything changed, so that the next tick may change something too.
-pub(crate) fn tick(kernel: &mut Kernel, context: &mut TickContext<'_>) -> bool {
+///
+/// `is_touched` says whether anybody may have written to on-chip RAM since the last.
+pub(crate) fn tick(kernel: &mut Kernel, context: &mut TickContext<'_>, is_touched: bool) -> bool {
     let memory = &mut *context.memory;
     let is_driven = plant::drive(kernel, memory, context.now);
     let turned = spindle::measure(memory);
     let stepped = kernel.stepgens.is_driven() && run_generators(kernel, memory, context.now);
     let has_path = !kernel.servo.coordinated.is_idle(memory);
-    let moved = if has_path || !kernel.servo.still.lasts(memory) {
+    let is_touched = memory.take_touched() || is_touched;
+    let moved = if has_path || !kernel.servo.still.lasts(memory, is_touched) {
         run_axes(kernel, memory, context.now)
     } else {
         plant::signal(kernel, context.now);
         false
     };
+    // What was written so far is the servo's own. A recording may write anywhere.
+    memory.take_touched();
     let recorded = recorder::sample(memory);
-    if recorded && recorder::injects(memory) {
-        kernel.servo.forget_plans();
-    }
     is_driven | turned | stepped | moved | recorded
 }
 

@@ -175,7 +175,7 @@ fn filter(chan: &AxisView<'_>, iir: Field<Iir>) -> Filter {
 }
 
 impl Servo {
-    /// Somebody else may write guest memory before the next tick.
+    /// Somebody else may have written what they were made of.
     pub(crate) const fn forget_plans(&mut self) {
         self.has_plans = false;
     }

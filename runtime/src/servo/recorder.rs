@@ -15,7 +15,7 @@ pub(crate) fn is_recording(memory: &GuestMemory) -> bool {
 }
 
 /// Whether a recording writes somewhere else than into its buffer.
-pub(crate) fn injects(memory: &GuestMemory) -> bool {
+fn injects(memory: &GuestMemory) -> bool {
     memory.get(GATHER.field(Gather::INJECT)) != 0
 }
 
@@ -46,7 +46,7 @@ pub(crate) fn sample(memory: &mut GuestMemory) -> bool {
         memory.poke(place, value);
         place = place.offset(8);
     }
-    memory.set(GATHER.field(Gather::BUFPTR), place);
+    memory.untouched(|memory| memory.set(GATHER.field(Gather::BUFPTR), place));
     true
 }
 

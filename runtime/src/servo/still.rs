@@ -44,9 +44,14 @@ impl Default for Stillness {
 }
 
 impl Stillness {
-    /// Whether the last tick changed nothing and nobody has written anything since.
-    pub(crate) fn lasts(&self, memory: &GuestMemory) -> bool {
-        self.is_still && !self.is_watching && self.is_seen(memory)
+    /// Whether the last tick changed nothing and nobody has written anything since. Unless `is_touched`, nobody has
+    /// written to the axis structures, which are most of it.
+    pub(crate) fn lasts(&self, memory: &GuestMemory, is_touched: bool) -> bool {
+        debug_assert!(is_touched || !self.is_still || self.has_seen_axes(memory), "an axis has changed unnoticed");
+        self.is_still
+            && !self.is_watching
+            && self.has_seen_outputs(memory)
+            && (!is_touched || self.has_seen_axes(memory))
     }
 
     /// A tick is computed: notes whether it begins with what the last one has left.
@@ -82,8 +87,16 @@ impl Stillness {
 
     /// Whether memory holds what was noted.
     fn is_seen(&self, memory: &GuestMemory) -> bool {
+        self.has_seen_axes(memory) && self.has_seen_outputs(memory)
+    }
+
+    fn has_seen_axes(&self, memory: &GuestMemory) -> bool {
         memory.block(CHAN.address()) == Some(&*self.chans)
-            && memory.block(LAST_PWM.address()) == Some(&self.pwm)
+    }
+
+    /// Those of the words of the outputs and the analog inputs.
+    fn has_seen_outputs(&self, memory: &GuestMemory) -> bool {
+        memory.block(LAST_PWM.address()) == Some(&self.pwm)
             && memory.block(DAC_BUFFER.address()) == Some(&self.dac)
             && memory.block(ADC_BUFFER_IN.address()) == Some(&self.adc)
     }

@@ -67,6 +67,27 @@ fn program_text_is_protected_from_programs() {
 }
 
 #[test]
+fn every_write_to_on_chip_ram_is_noticed() {
+    let writes: &[fn(&mut GuestMemory, GuestAddr)] = &[
+        |memory, to| assert_eq!(memory.store(to, 0_u8), Ok(())),
+        |memory, to| memory.poke(to, 0_u64),
+        |memory, to| assert_eq!(memory.write_bytes(to, &[0]), Ok(())),
+        |memory, to| assert_eq!(memory.fill(to, 0, 1), Ok(())),
+        |memory, to| assert_eq!(memory.copy(to, at(SDRAM_BASE), 1), Ok(())),
+    ];
+    let mut memory = GuestMemory::new();
+    for write in writes {
+        memory.take_touched();
+        write(&mut memory, at(SDRAM_BASE + 64));
+        memory.untouched(|memory| write(memory, at(IRAM_BASE)));
+        assert!(!memory.take_touched());
+        write(&mut memory, at(IRAM_BASE + 64));
+        assert!(memory.take_touched() && !memory.take_touched());
+    }
+    assert!(memory.block_mut::<4>(at(IRAM_BASE)).is_some() && memory.take_touched());
+}
+
+#[test]
 fn strings_end_at_their_zero_or_at_the_limit() {
     let mut memory = GuestMemory::new();
     memory.poke_bytes(at(0x80ff_fff8), b"abc\0wxyz").expect("it is mapped");

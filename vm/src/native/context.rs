@@ -132,6 +132,9 @@ impl Context {
             }
             let request = self.fiber.resume(slice.memory, protected, answer);
             slice.budget = Cycles::new(self.fiber.state().budget.get());
+            if self.fiber.state().touched.take() != 0 {
+                slice.memory.touch();
+            }
             let Some(request) = request else {
                 self.at = self.fiber.state().returned_at.get() as usize;
                 self.stack_pointer = self.stack.top;

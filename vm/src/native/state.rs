@@ -51,6 +51,8 @@ pub(super) struct State {
     pub(super) leave: Leave,
     /// The conversion of a double to 64 bits modulo 2⁶⁴ where it does not simply fit.
     pub(super) convert: Convert,
+    /// Not 0 behind a store to on-chip RAM.
+    pub(super) touched: Cell<u32>,
     /// What suspends the fiber, from its first instruction on.
     pub(super) yielder: Cell<*const Yielder>,
     /// The lowest address that the stack may reach.
@@ -85,6 +87,7 @@ impl State {
             windows: Default::default(),
             leave: entry::leave,
             convert: entry::convert,
+            touched: Cell::new(0),
             yielder: Cell::new(std::ptr::null()),
             limit: Cell::new(stack.limit),
             lowest: Cell::new(stack.top),

@@ -98,6 +98,7 @@ fn lockstep(functions: &str, budgets: &[i64]) -> Stop {
     for budget in budgets {
         let seen = bytecode.resume(&program, *budget, woken);
         assert_eq!(native.resume(&program, *budget, woken), seen, "{functions}");
+        assert_eq!(native.memory.take_touched(), bytecode.memory.take_touched(), "{functions}");
         woken = if let Stop::Waiting(wake) = seen.stop { Some(wake) } else { None };
         last = seen.stop;
         if matches!(last, Stop::Ended | Stop::Trapped(_)) {
@@ -145,6 +146,22 @@ fn a_context_that_is_started_anew_forgets_its_fiber() {
         world.start(&program);
         assert_eq!(world.resume(&program, 69, None).stop, Stop::Preempted);
         assert_eq!(world.memory.peek::<i32>(GuestAddr::new(0x1000_0000)), 9);
+    }
+}
+
+#[test]
+fn stores_into_on_chip_ram_are_noticed_whatever_the_address_mode() {
+    let stores = ["store_i32_at r0, ADDRESS", "store_i32 r0, r1, +0", "clear r1, 4", "copy r1, r2, 4"];
+    for (address, is_noticed) in [("0x10000040", true), ("0x80f00040", false)] {
+        for store in stores.map(|store| store.replace("ADDRESS", address)) {
+            let body = format!("const_i32 r1, {address}\nconst_i32 r2, 0x80f00000\n{store}");
+            let program = program(1, &format!("@main: func sig0, 3, 0\ntypes 0\ncharge 99\n{body}\nret"));
+            let mut world = World::<NativeEngine>::new(&program);
+            world.memory.take_touched();
+            world.start(&program);
+            assert_eq!(world.resume(&program, 999, None).stop, Stop::Ended);
+            assert_eq!(world.memory.take_touched(), is_noticed, "{store} at {address}");
+        }
     }
 }
 

@@ -105,7 +105,7 @@ impl Translator<'_, '_> {
         let bits = self.wrong_bits(SDRAM, place, width);
         self.builder.ins().brif(bits, elsewhere, &[], behind, &[offset_in_sdram.into()]);
 
-        let address = self.elsewhere(place, width, elsewhere, slow, behind);
+        let address = self.elsewhere(place, width, false, [elsewhere, slow, behind]);
 
         self.enter_cold(slow);
         let address = self.builder.ins().uextend(types::I64, address);
@@ -153,7 +153,7 @@ impl Translator<'_, '_> {
         let mark = self.builder.ins().uload8(types::I32, self.state_flags, mark, 0);
         self.builder.ins().brif(mark, slow, &[], behind, &[offset_in_sdram.into()]);
 
-        self.elsewhere(place, width, elsewhere, slow, behind);
+        self.elsewhere(place, width, true, [elsewhere, slow, behind]);
 
         self.enter_cold(slow);
         let address = self.toggle_base(SDRAM, place);
@@ -171,6 +171,9 @@ impl Translator<'_, '_> {
             return self.request_store(R::CLASS, value, address, width);
         };
         if !(PROGRAM_BASE..PROGRAM_LIMIT).contains(&addr.0) {
+            if field == offset_of!(State, iram) {
+                self.touch();
+            }
             let base = self.load_pointer(field);
             return self.store_guest(value, base, place, width);
         }
@@ -217,9 +220,8 @@ impl Translator<'_, '_> {
         &mut self,
         place: Value,
         width: Width,
-        elsewhere: Block,
-        slow: Block,
-        behind: Block,
+        is_store: bool,
+        [elsewhere, slow, behind]: [Block; 3],
     ) -> Value {
         self.enter_cold(elsewhere);
         let address = self.toggle_base(SDRAM, place);
@@ -229,11 +231,20 @@ impl Translator<'_, '_> {
         self.builder.ins().brif(bits, slow, &[], iram, &[]);
 
         self.enter_cold(iram);
+        if is_store {
+            self.touch();
+        }
         let base = self.load_state(types::I64, offset_of!(State, iram));
         let place = self.builder.ins().uextend(types::I64, place);
         let pointer = self.builder.ins().iadd(base, place);
         self.go_on_at(pointer, behind);
         address
+    }
+
+    /// Says that on-chip RAM is written.
+    fn touch(&mut self) {
+        let yes = self.builder.ins().iconst(types::I32, 1);
+        self.store_state(yes, offset_of!(State, touched));
     }
 
     /// Goes on with the access in a field of the state: the request has done what was to be done.
