@@ -47,7 +47,10 @@ impl Stillness {
     /// Whether the last tick changed nothing and nobody has written anything since. Unless `is_touched`, nobody has
     /// written to the axis structures, which are most of it.
     pub(crate) fn lasts(&self, memory: &GuestMemory, is_touched: bool) -> bool {
-        debug_assert!(is_touched || !self.is_still || self.has_seen_axes(memory), "an axis has changed unnoticed");
+        debug_assert!(
+            is_touched || !self.is_still || self.has_seen_axes(memory),
+            "an axis has changed unnoticed"
+        );
         self.is_still
             && !self.is_watching
             && self.has_seen_outputs(memory)
