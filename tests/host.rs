@@ -116,6 +116,22 @@ fn a_reader_that_does_not_read_makes_the_program_wait() {
 }
 
 #[test]
+fn replies_that_nobody_reads_take_limited_memory() -> Result<(), HostError> {
+    let mut board = Board::new();
+    let mut remarks = Vec::new();
+    // Each is 1000 lines of 72 bytes.
+    for _ in 0..40 {
+        board.write_line("GetGatherHex 0 8000")?;
+        board.run_for(1.0);
+        remarks.extend(board.take_remark());
+    }
+    assert_eq!(remarks, ["1048576 bytes of replies wait, which nobody reads; what comes now is lost"]);
+    // What came first is there.
+    assert_eq!(board.read_line_timeout(0)?, ["00000000"; 8].join(" ") + "\r\n");
+    Ok(())
+}
+
+#[test]
 fn the_status_record_tells_what_programs_do() {
     let (mut board, _scratch) = board("host-status", COUNTER);
     board.write_line("EnableAxis0;Move0=1000;SetBit1024;SetPersistDec 103 77").expect("connected");

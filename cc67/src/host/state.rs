@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::fmt;
 use std::mem;
 
-use kmotiondef::{Field, Plain, Scalar, ThreadId, Ticks};
+use kmotiondef::{Cycles, Field, Plain, Scalar, ThreadId, Ticks};
 use runtime::{Config, Event, EventKind};
 
 use super::{HostError, remark};
@@ -14,6 +14,8 @@ use crate::Options;
 pub(super) const EXCHANGE: u64 = 28;
 /// Console lines that wait for a client; then the board waits too.
 const CONSOLE_LIMIT: usize = 1000;
+/// Bytes of replies that wait for a client; what comes then is lost.
+const REPLY_LIMIT: usize = 1 << 20;
 /// Remarks that are kept; older ones are dropped.
 const REMARK_LIMIT: usize = 1000;
 /// Seconds in a tick.
@@ -62,6 +64,8 @@ pub(super) struct State {
     pub(super) is_connected: bool,
     /// Bytes of replies that are not read yet.
     incoming: VecDeque<u8>,
+    /// Whether it was said that more came than are kept.
+    has_told_loss: bool,
     console: VecDeque<String>,
     callback: Option<(u64, Callback)>,
     remarks: VecDeque<Event>,
@@ -82,6 +86,7 @@ impl State {
             is_locked: false,
             is_connected: true,
             incoming: VecDeque::new(),
+            has_told_loss: false,
             console: VecDeque::new(),
             callback: None,
             remarks: VecDeque::new(),
@@ -198,6 +203,9 @@ impl State {
 
     fn take(&mut self, event: Event) {
         match event.kind {
+            EventKind::Reply(_) | EventKind::Echo(_) if self.incoming.len() >= REPLY_LIMIT => {
+                self.tell_loss(event.at);
+            }
             EventKind::Reply(line) => self.incoming.extend(line.iter().chain(b"\r\n")),
             EventKind::Echo(bytes) => self.incoming.extend(bytes),
             EventKind::Aborted => self.incoming.clear(),
@@ -208,12 +216,23 @@ impl State {
                     None => self.console.push_back(line),
                 }
             }
-            _ => {
-                if self.remarks.len() == REMARK_LIMIT {
-                    self.remarks.pop_front();
-                }
-                self.remarks.push_back(event);
-            }
+            _ => self.remark(event),
+        }
+    }
+
+    fn remark(&mut self, event: Event) {
+        if self.remarks.len() == REMARK_LIMIT {
+            self.remarks.pop_front();
+        }
+        self.remarks.push_back(event);
+    }
+
+    /// Says once that no client reads the replies.
+    fn tell_loss(&mut self, at: Cycles) {
+        if !std::mem::replace(&mut self.has_told_loss, true) {
+            let text =
+                format!("{REPLY_LIMIT} bytes of replies wait, which nobody reads; what comes now is lost");
+            self.remark(Event { at, kind: EventKind::Diagnostic(text) });
         }
     }
 
