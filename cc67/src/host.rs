@@ -27,6 +27,7 @@ pub use client::{Board, Lock, Readiness};
 pub use message::fill;
 pub use program::CompileError;
 pub use state::Status;
+pub(crate) use state::{CONSOLE_LINES, REPLY_BYTES};
 
 use std::path::PathBuf;
 

@@ -13,6 +13,7 @@ use kmotiondef::map::{PROGRAM_BASE, PROGRAM_SIZE, STACK_BASE, STACK_SIZE};
 use crate::bytecode::unit::MAX_FRAME;
 use crate::cli::{PC_FILE_BYTES, PICTURE_SAMPLES};
 use crate::diag::MAX_ERRORS;
+use crate::host::{CONSOLE_LINES, REPLY_BYTES};
 use crate::input::{DATA_BYTES, FILE_BYTES};
 use crate::parse;
 use crate::pp::limits as pp;
@@ -84,6 +85,16 @@ pub const BOARD: &[Limit] = &[
     limit("files that a program has open for writing", 1, "`fopen` closes the one before"),
 ];
 
+/// What waits for a client of the board, see [`crate::host`].
+pub const CLIENTS: &[Limit] = &[
+    limit("console lines that no client has taken", CONSOLE_LINES as u64, "the board's own queue fills"),
+    limit(
+        "bytes of replies that no client has read",
+        REPLY_BYTES as u64,
+        "what comes then is lost; a remark says so",
+    ),
+];
+
 /// What is read and drawn.
 pub const FILES: &[Limit] = &[
     limit("bytes of an image, a machine file or another input", FILE_BYTES, "the file is refused"),
@@ -101,8 +112,12 @@ pub const FILES: &[Limit] = &[
 ];
 
 /// All of them, under their headings.
-pub const ALL: [(&str, &[Limit]); 3] =
-    [("The compiler", COMPILER), ("A program on the board", BOARD), ("Files and pictures", FILES)];
+pub const ALL: [(&str, &[Limit]); 4] = [
+    ("The compiler", COMPILER),
+    ("A program on the board", BOARD),
+    ("A board that serves programs of the PC", CLIENTS),
+    ("Files and pictures", FILES),
+];
 
 /// A number with its thousands apart.
 #[must_use]

@@ -13,9 +13,9 @@ use crate::Options;
 /// Ticks that a line and its answer take on the wire, as recorded.
 pub(super) const EXCHANGE: u64 = 28;
 /// Console lines that wait for a client; then the board waits too.
-const CONSOLE_LIMIT: usize = 1000;
+pub(crate) const CONSOLE_LINES: usize = 1000;
 /// Bytes of replies that wait for a client; what comes then is lost.
-const REPLY_LIMIT: usize = 1 << 20;
+pub(crate) const REPLY_BYTES: usize = 1 << 20;
 /// Remarks that are kept; older ones are dropped.
 const REMARK_LIMIT: usize = 1000;
 /// Seconds in a tick.
@@ -193,7 +193,7 @@ impl State {
 
     /// Runs to the end of the next tick in which something happens, and takes what comes over the link.
     fn step(&mut self, end: Ticks) {
-        self.board.listen(self.callback.is_some() || self.console.len() < CONSOLE_LIMIT);
+        self.board.listen(self.callback.is_some() || self.console.len() < CONSOLE_LINES);
         let mut events = Vec::new();
         self.board.advance(end, &mut |event| events.push(event));
         for event in events {
@@ -203,7 +203,7 @@ impl State {
 
     fn take(&mut self, event: Event) {
         match event.kind {
-            EventKind::Reply(_) | EventKind::Echo(_) if self.incoming.len() >= REPLY_LIMIT => {
+            EventKind::Reply(_) | EventKind::Echo(_) if self.incoming.len() >= REPLY_BYTES => {
                 self.tell_loss(event.at);
             }
             EventKind::Reply(line) => self.incoming.extend(line.iter().chain(b"\r\n")),
@@ -231,7 +231,7 @@ impl State {
     fn tell_loss(&mut self, at: Cycles) {
         if !std::mem::replace(&mut self.has_told_loss, true) {
             let text =
-                format!("{REPLY_LIMIT} bytes of replies wait, which nobody reads; what comes now is lost");
+                format!("{REPLY_BYTES} bytes of replies wait, which nobody reads; what comes now is lost");
             self.remark(Event { at, kind: EventKind::Diagnostic(text) });
         }
     }
