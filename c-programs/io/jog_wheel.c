@@ -7,6 +7,8 @@
 // The wheel is an axis without a motor: only its position is used. A wheel with 100
 // clicks gives 400 counts a turn. In every slice the axis is sent on by what the wheel
 // has turned, times the factor of the range switch, while the enable button is held.
+// By MoveExp, which may be called in every slice: a Move that is called while the axis
+// moves is planned for 1.8 ms first, at the speed that the axis has.
 //
 // The file beside this program is the operator: a turn forward, half a turn back with the
 // button released, and another turn at ten times the range. Expect 400, 400 and 4400.
@@ -17,6 +19,7 @@
 #define AXIS   0
 #define ENABLE 136
 #define TIMES10 137
+#define TAU    0.02                 // seconds for 63 percent of the way
 
 void InitAxes(void)
 {
@@ -45,7 +48,7 @@ main()
         if (Turned != 0.0 && ReadBit(ENABLE))
         {
             Target += Turned * (ReadBit(TIMES10) ? 10.0 : 1.0);
-            Move(AXIS, Target);
+            MoveExp(AXIS, Target, TAU);
         }
         if (Time_sec() >= Report)
         {

@@ -11,6 +11,9 @@
 // A wheel that is turned faster than the axis can follow would make it run on for a long
 // time after the hand has stopped; so no more than LEAD counts are owed at any time.
 //
+// MoveExp may be called in every slice. A Move that is called while the axis moves is
+// planned for 1.8 ms first, at the speed that the axis has: it would hardly get on.
+//
 // The file beside this program is the operator. Expect X at 100 and Z at -1000.
 
 #include "KMotionDef.h"
@@ -23,6 +26,7 @@
 #define TIMES100  141
 #define AXES      3
 #define LEAD      2000.0            // steps
+#define TAU       0.02              // seconds for 63 percent of the way
 
 // The selected axis, or -1.
 int Selected(void)
@@ -70,7 +74,7 @@ main()
         {
             Target += Turned / PER_CLICK * Factor();
             Target = Limited(Target, chan[Axis].Dest - LEAD, chan[Axis].Dest + LEAD);
-            Move(Axis, Target);
+            MoveExp(Axis, Target, TAU);
         }
         if (Now >= Report)
         {
@@ -78,4 +82,5 @@ main()
             Report += 1.0;
         }
     }
+    for (i = 0; i < AXES; i++) DisableAxis(i);
 }

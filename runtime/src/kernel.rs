@@ -9,6 +9,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, function_at};
+use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::map::{FPGA, TIMER0};
 use kmotiondef::variables::{
     CURRENT_THREAD, LAST_TIMER0, NEXT_AVAIL_IN, NEXT_AVAIL_OUT, SERVO_TICK, USER_CALL_BACK,
@@ -143,6 +144,8 @@ pub struct Kernel {
     pub(crate) mechanics: Mechanics,
     /// Whether reading an input that nothing drives is worth a hint.
     pub(crate) hints: bool,
+    /// Motion calls in a row that each came while the one before was planned, of each axis.
+    pub(crate) hurried_calls: [u8; N_CHANNELS],
     hinted: BTreeSet<Bit>,
     /// Whether it was said that nothing serves Kanalog.
     told_kanalog: bool,
@@ -194,6 +197,7 @@ impl Kernel {
             is_settled: false,
             mechanics: Mechanics::default(),
             hints: true,
+            hurried_calls: [0; N_CHANNELS],
             hinted: BTreeSet::new(),
             told_kanalog: false,
             events: Vec::new(),

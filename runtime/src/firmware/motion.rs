@@ -13,8 +13,8 @@ use vm::trap::TrapKind;
 use super::coord;
 use crate::kernel::{Continuation, Kernel};
 use crate::plant::Drive;
-use crate::servo::independent::{has_motion, present, run, start, state, write};
-use crate::servo::profile::{self, Limits, MAX_STATES, Mode, Ramp, State};
+use crate::servo::independent::{has_motion, is_planned, present, run, start, state, write};
+use crate::servo::profile::{self, LEAD, Limits, MAX_STATES, Mode, Ramp, State};
 use crate::servo::{AxisMemory, TIMEBASE, four_phase, switch_off, three_phase};
 use crate::views::{Typed, axis_at};
 
@@ -153,6 +153,27 @@ fn planning_wait(kernel: &Kernel, caller: &Caller<'_>, axis: AxisId) -> Option<W
     has_motion(caller.memory, axis).then_some(Wake::NextSlice)
 }
 
+/// Tells a program that calls motions faster than the board plans them why the axis does not get on.
+fn notice_hurry(kernel: &mut Kernel, caller: &Caller<'_>, axis: AxisId, function: &str) {
+    /// So many in a row are no chance; it is told once.
+    const CALLS: u8 = 50;
+    let calls = &mut kernel.hurried_calls[axis.index()];
+    if is_planned(caller.memory, axis) {
+        *calls = calls.saturating_add(1);
+    } else if *calls < CALLS {
+        *calls = 0;
+    }
+    if *calls == CALLS && kernel.hints {
+        let text = format!(
+            "{function}: axis {axis} is told where to go again within {} ms, {CALLS} times in a row. The board plans a \
+             motion that is called in motion for so long, and the axis keeps its speed meanwhile: it never gets on. \
+             Call less often, or use MoveExp",
+            1e3 * LEAD
+        );
+        kernel.diagnose(caller, text);
+    }
+}
+
 /// Starts a move to `target`, from rest or in motion.
 pub(crate) fn start_move_to(
     memory: &mut GuestMemory,
@@ -210,6 +231,7 @@ fn request(kernel: &mut Kernel, caller: &mut Caller<'_>, request: &Request) -> O
     if !is_place(kernel, caller, request.function, target) {
         return Outcome::Done(());
     }
+    notice_hurry(kernel, caller, axis, request.function);
     match limits(caller.memory, axis, request.velocity) {
         Some(limits) => start_move_to(caller.memory, axis, target, &limits, LastMotion::Move),
         None => no_limits(kernel, caller, axis, request.function),
@@ -276,7 +298,11 @@ pub(crate) fn jog(kernel: &mut Kernel, caller: &mut Caller<'_>, axis: i32, veloc
         no_limits(kernel, caller, axis, "Jog");
         return Outcome::Done(());
     };
-    let states = profile::jog(present(caller.memory, axis), velocity, &limits);
+    let point = present(caller.memory, axis);
+    if point.v != velocity {
+        notice_hurry(kernel, caller, axis, "Jog");
+    }
+    let states = profile::jog(point, velocity, &limits);
     run(caller.memory, axis, &states);
     caller.memory.set_axis(axis, Chan::LAST_MOTION_TYPE, LastMotion::Jog.get());
     Outcome::Done(())

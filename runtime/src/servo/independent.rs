@@ -4,7 +4,7 @@ use kmotiondef::structs::{Chan, TripCoeff};
 use kmotiondef::{AxisId, GuestAddr, GuestType, Place};
 use vm::memory::GuestMemory;
 
-use super::profile::{MAX_STATES, Mode, Point, State, TIMEBASE};
+use super::profile::{LEAD, MAX_STATES, Mode, Point, State, TIMEBASE};
 use super::trajectory::{Approach, Cursor, Step, point, step};
 use crate::views::{AxisView, Typed, field_of};
 
@@ -66,6 +66,15 @@ pub(crate) fn run(memory: &mut GuestMemory, axis: AxisId, states: &[State]) {
 /// Whether a list is being executed.
 pub(crate) fn has_motion(memory: &GuestMemory, axis: AxisId) -> bool {
     !memory.axis(axis, Chan::PCOEFF).is_null()
+}
+
+/// Whether a motion that was called in motion has not begun: the axis keeps its speed while it is planned.
+pub(crate) fn is_planned(memory: &GuestMemory, axis: AxisId) -> bool {
+    let first = state(memory, axis, 0);
+    has_motion(memory, axis)
+        && memory.axis(axis, Chan::PCOEFF) == memory.axis(axis, Chan::C)
+        && memory.axis(axis, Chan::T) < LEAD
+        && (first.t, first.a, first.b) == (LEAD, 0.0, 0.0)
 }
 
 /// Whether an enabled axis executes a list.

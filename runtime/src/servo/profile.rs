@@ -8,8 +8,8 @@ use super::dsp::{divide, root};
 
 /// Seconds of one tick.
 pub(crate) const TIMEBASE: f64 = 0.000_09;
-/// Ticks at constant velocity in front of a profile planned in motion: the board's planning time.
-const LEAD: f64 = 0.0018;
+/// Seconds at constant velocity in front of a profile planned in motion: the board's planning time.
+pub(crate) const LEAD: f64 = 0.0018;
 /// A state without end.
 pub(crate) const FOREVER: f64 = 1e99;
 /// Entries of one axis' state list.
