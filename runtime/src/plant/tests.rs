@@ -62,8 +62,8 @@ fn servos_with_a_motor_respond_as_the_table_says() {
     for (p, i, d, expect) in table {
         let found = response(&mut servo(p, i, d), 4000);
         let is_near = (found[0] / expect[0] - 1.0).abs() < 0.02
-            && (found[1] - expect[1]).abs() < 4.0
-            && (found[2] / expect[2] - 1.0).abs() < 0.03;
+            && (found[1] - expect[1]).abs() < 2.0
+            && (found[2] / expect[2] - 1.0).abs() < 0.02;
         assert!(is_near, "P {p} I {i} D {d}: {found:?} instead of {expect:?}");
     }
 }
