@@ -1,7 +1,8 @@
 //! Words of other languages and boards, and what a program for KFLOP has in their place.
 //!
-//! People come to KFLOP from Arduino, C++, Python, Basic and G-code, and write what they know. A
-//! row of [`WORDS`] is such a word with advice that tells what to write instead.
+//! People come to KFLOP from Arduino, C++, Python, Basic and G-code, and write what they know; or they take a call from
+//! an example of the manual and not the function. A row of [`WORDS`] is such a word with advice that tells what to write
+//! instead.
 
 /// Where a word comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -14,6 +15,8 @@ pub enum Origin {
     Script,
     /// C on computers.
     Computer,
+    /// Examples of the manual, which define it themselves.
+    Example,
 }
 
 /// A word that the board's C does not have.
@@ -43,7 +46,11 @@ const fn companion(spelling: &'static str, origin: Origin, advice: &'static str)
     Word { spelling, origin, is_companion: true, advice }
 }
 
-use Origin::{Arduino, Computer, Cpp, Script};
+use Origin::{Arduino, Computer, Cpp, Example, Script};
+
+/// Where the functions are that ask the PC for something.
+const PC_REQUESTS: &str =
+    "take it from the manual's example `KFLOPtoPCCmdExamples.c`, or `#include` a file that defines it";
 
 /// Every word, by origin.
 const WORDS: &[Word] = &[
@@ -85,6 +92,11 @@ const WORDS: &[Word] = &[
     lead("not", Script, "write `!`"),
     lead("true", Computer, "use `TRUE` of `KMotionDef.h`, or 1"),
     lead("false", Computer, "use `FALSE` of `KMotionDef.h`, or 0"),
+    lead("MsgBox", Example, PC_REQUESTS),
+    lead("MDI", Example, PC_REQUESTS),
+    lead("DoPC", Example, PC_REQUESTS),
+    lead("DoPCInt", Example, PC_REQUESTS),
+    lead("DoPCFloat", Example, PC_REQUESTS),
     lead("PI", Computer, "write `#define PI 3.14159265358979`"),
     lead("M_PI", Computer, "write `#define M_PI 3.14159265358979`"),
 ];

@@ -22,12 +22,23 @@ pub(crate) struct Desk {
     tick: Ticks,
 }
 
+/// Guest memory as a board has it at power-up.
+pub(crate) fn powered_memory() -> GuestMemory {
+    let mut memory = GuestMemory::new();
+    power_up::fill(&mut memory, power_up::Before::Zero);
+    memory
+}
+
 impl Desk {
     pub(crate) fn new() -> Self {
-        let mut memory = GuestMemory::new();
-        power_up::fill(&mut memory, power_up::Before::Zero);
         let kernel = Kernel::new(Box::new(NoFiles));
-        Self { kernel, memory, threads: Threads::new(), now: Cycles::default(), tick: Ticks::default() }
+        Self {
+            kernel,
+            memory: powered_memory(),
+            threads: Threads::new(),
+            now: Cycles::default(),
+            tick: Ticks::default(),
+        }
     }
 
     pub(crate) fn set_now(&mut self, now: Cycles) {

@@ -39,12 +39,12 @@ mod tests {
     use kmotiondef::AxisId;
 
     use super::*;
+    use crate::testing::powered_memory;
     use crate::views::Typed;
 
     #[test]
     fn enabled_axes_cost_what_was_measured() {
-        let mut memory = GuestMemory::new();
-        crate::power_up::fill(&mut memory, crate::power_up::Before::Zero);
+        let mut memory = powered_memory();
         assert_eq!(duration(&memory).get(), 2006);
         for axis in AxisId::all() {
             memory.set(CHAN.element(axis.index()).field(Chan::ENABLE), 1);

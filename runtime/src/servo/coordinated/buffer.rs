@@ -129,11 +129,10 @@ mod tests {
     use kmotiondef::structs::ParametricCoeff;
 
     use super::*;
-    use crate::power_up;
+    use crate::testing::powered_memory;
 
     fn board() -> GuestMemory {
-        let mut memory = GuestMemory::new();
-        power_up::fill(&mut memory, power_up::Before::Zero);
+        let mut memory = powered_memory();
         open(&mut memory);
         memory
     }

@@ -114,17 +114,11 @@ fn aim_within_data(memory: &GuestMemory, now: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::power_up;
-
-    fn board() -> GuestMemory {
-        let mut memory = GuestMemory::new();
-        power_up::fill(&mut memory, power_up::Before::Zero);
-        memory
-    }
+    use crate::testing::powered_memory;
 
     #[test]
     fn an_override_is_kept_when_it_does_not_apply() {
-        let mut memory = board();
+        let mut memory = powered_memory();
         set_rapid(&mut memory, 0.25, 1.0);
         assert_eq!(memory.get(CS0_LAST_RAPID_FRO), 0.25);
         assert_eq!(memory.get(CS0_TIME_BASE_DESIRED), TIMEBASE);
@@ -140,7 +134,7 @@ mod tests {
     #[test]
     fn no_time_is_a_jump() {
         for time in [0.0, -1.0, f32::NAN] {
-            let mut memory = board();
+            let mut memory = powered_memory();
             memory.set(CS0_FLUSHED, 1);
             set_feed(&mut memory, 0.5, time);
             ramp(&mut memory);
@@ -150,7 +144,7 @@ mod tests {
 
     #[test]
     fn lost_data_stops_the_way_back() {
-        let mut memory = board();
+        let mut memory = powered_memory();
         set_feed(&mut memory, -1.0, 0.0);
         memory.set(CS0_TIME_BASE, 0.0);
         memory.set(CS0_TIME_LOST, 2.0);

@@ -78,17 +78,11 @@ fn longest(times: impl Iterator<Item = f32>) -> Option<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::power_up;
-
-    fn board() -> GuestMemory {
-        let mut memory = GuestMemory::new();
-        power_up::fill(&mut memory, power_up::Before::Zero);
-        memory
-    }
+    use crate::testing::powered_memory;
 
     #[test]
     fn letters_not_given_keep_their_axes() {
-        let mut memory = board();
+        let mut memory = powered_memory();
         assign(&mut memory, &[5, 1, -1, -1, 7, -1]);
         assign(&mut memory, &[0, 1, 2, -1]);
         assert_eq!(members(&memory).map(AxisId::get).collect::<Vec<_>>(), [0, 1, 2, 7]);
@@ -98,7 +92,7 @@ mod tests {
     #[test]
     fn change_time_is_that_of_the_slowest_axis() {
         let check = |limits: [f32; 3], expect: f32| {
-            let mut memory = board();
+            let mut memory = powered_memory();
             assign(&mut memory, &[0, 1, -1, -1]);
             for (axis, speed) in members(&memory).zip([1.0, 0.5]) {
                 memory.set_axis(axis, Chan::VEL, speed * limits[0]);
