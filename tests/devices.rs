@@ -611,6 +611,40 @@ fn what_is_wrong_with_a_machine_file_is_one_message_with_its_place() {
 }
 
 #[test]
+fn a_stimulus_moves_a_load_and_starts_and_stops_threads() {
+    let program = "static int goes(void)\n{\n  int before = persist.UserData[5];\n  Delay_sec(0.05);\n\
+                   return persist.UserData[5] != before;\n}\n\
+                   main()\n{\n  ch0->InputMode = ENCODER_MODE;\n  printf(\"%d \", goes());\n  Delay_sec(0.2);\n\
+                   printf(\"%.0f %d %d \", ch0->Position, ADC(0), goes());\n  Delay_sec(0.2);\n\
+                   printf(\"%d\\n\", goes());\n}\n";
+    let counter =
+        "#include \"KMotionDef.h\"\nmain() { for (;;) { WaitNextTimeSlice(); persist.UserData[5]++; } }\n";
+    let stimulus = "t=0.15 axis 0 push 950; adc 0 = follows axis 0 gain 2 offset 100\n\
+                    t=0.2 start thread 2; t=0.4 stop thread 2; at end expect thread 2 ended\n\
+                    t=0.3 start thread 5\n";
+    let files = [("b.c", counter), ("s.stim", stimulus)];
+    let (output, _) = run("threads", program, &files, &["--load", "2:b.c", "--stim", "s.stim"]);
+    assert_eq!(output.stdout, "0 950 2000 1 0\n");
+    assert_eq!((output.code, output.stderr.as_str()), (0, "cc67: s.stim:3:1: thread 5 holds no program\n"));
+}
+
+#[test]
+fn a_spindle_is_switched_by_two_bits() {
+    let program = "static double speed(void)\n{\n  double before, t;\n  Delay_sec(0.5);\n\
+                   before = chan[6].Position;\n  t = Time_sec();\n  Delay_sec(0.5);\n\
+                   return (chan[6].Position - before) / 1000 / (Time_sec() - t);\n}\n\
+                   main()\n{\n  chan[6].InputMode = ENCODER_MODE;\n  chan[6].InputChan0 = 6;\n\
+                   SetBitDirection(154, 1);\n  SetBitDirection(155, 1);\n  printf(\"%.1f \", speed());\n\
+                   SetBit(154);\n  printf(\"%.1f \", speed());\n  ClearBit(154);\n  SetBit(155);\n\
+                   printf(\"%.1f \", speed());\n  SetBit(154);\n  printf(\"%.1f\\n\", speed());\n}\n";
+    let machine = "[spindle]\naxis = 6\ncounts_per_rev = 1000\nbits = { cw = 154, ccw = 155 }\n\
+                   full_scale_rps = 20\ntau_s = 0.05\n";
+    // Ten time constants later it runs at full speed; with both bits it stands.
+    let shown = shows("spindle-bits", program, &[("s.toml", machine)], &["--machine", "s.toml"]);
+    assert_eq!(shown.replace("-0.0", "0.0"), "0.0 20.0 -20.0 0.0\n");
+}
+
+#[test]
 fn a_switch_on_an_axis_that_drives_nothing_is_told_of() {
     let program = "#include \"KMotionDef.h\"\nmain() { EnableAxis(2); Jog(2, 100); Jog(2, 0); Jog(3, 1); }";
     let machine = "[[switch]]\nbit = 12\naxis = 2\nwhen = \"<= -4000\"\n";

@@ -162,3 +162,26 @@ fn a_picture_of_a_long_run_says_what_it_leaves_out() {
     let expect = "the picture shows every 2 ticks what was so then: it is made of 200000 samples at most";
     assert!(output.stderr.contains(expect), "{output:?}");
 }
+
+#[test]
+fn the_command_lists_what_the_book_lists() {
+    let shown =
+        run_in(env!("CARGO_BIN_EXE_cc67-under-test"), &harness::root(), ["--explain", "limits"]).stdout;
+    let book = std::fs::read_to_string(harness::root().join("cc67/book/src/limits.md")).expect("it is there");
+    let rows: Vec<Vec<&str>> = book.lines().filter_map(row).collect();
+    assert!(rows.len() > 20);
+    for cells in rows {
+        let [most, what, beyond] = cells[..] else { panic!("{cells:?}") };
+        let is_listed = |line: &str| {
+            let rest = line.trim_start().strip_prefix(most);
+            rest.is_some_and(|rest| rest.trim_start() == format!("{what}: {beyond}"))
+        };
+        assert!(shown.lines().any(is_listed), "{most} {what}: {beyond}");
+    }
+}
+
+/// The cells of a row of a table that begins with a number.
+fn row(line: &str) -> Option<Vec<&str>> {
+    let cells: Vec<_> = line.strip_prefix("| ")?.strip_suffix(" |")?.split(" | ").collect();
+    cells[0].starts_with(|first: char| first.is_ascii_digit()).then_some(cells)
+}

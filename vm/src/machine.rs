@@ -161,17 +161,6 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         )
     }
 
-    /// The settings.
-    #[must_use]
-    pub const fn config(&self) -> Config {
-        self.config
-    }
-
-    /// Changes the settings from the next tick on.
-    pub const fn set_config(&mut self, config: Config) {
-        self.config = config;
-    }
-
     /// Number of servo interrupts since power-up.
     #[must_use]
     pub const fn tick(&self) -> Ticks {

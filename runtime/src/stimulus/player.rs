@@ -17,6 +17,7 @@ use crate::device::kanalog::ADC_CHANNELS;
 use crate::event::EventKind;
 use crate::firmware::io::{bit_state, write_bit};
 use crate::kernel::{Kernel, Request};
+use crate::plant::COUNTS_PER_TICK;
 use crate::views::Typed;
 
 /// Inputs of Kanalog.
@@ -234,7 +235,7 @@ impl Player {
                 self.plan(now + duration, Due::Level(bit, level));
             }
             Action::Adc(channel, wave) => self.waves[channel] = Some((wave, now)),
-            Action::Push(axis, units) => kernel.servo.push(axis, units),
+            Action::Push(axis, units) => self.push(kernel, context, axis, units),
             Action::EncoderError(channel) => kernel.encoders.fail(channel),
             Action::Turn(axis, counts, over) => {
                 self.turning.push(Turning { axis, counts, begun: now, over, turned: 0.0 });
@@ -327,6 +328,17 @@ impl Player {
         for index in late.into_iter().chain(at_end) {
             self.check(kernel, context, index);
         }
+    }
+
+    /// Moves a load at once, or as fast as an encoder can be read.
+    fn push(&mut self, kernel: &mut Kernel, context: &TickContext<'_>, axis: AxisId, units: f64) {
+        let gain = f64::from(context.memory.axis(axis, Chan::INPUT_GAIN0));
+        let ticks = (units / gain / COUNTS_PER_TICK).abs().ceil();
+        if gain == 0.0 || ticks <= 1.0 {
+            return kernel.servo.push(axis, units);
+        }
+        let over = Cycles::new((ticks as i64).saturating_mul(Cycles::PER_TICK.get()));
+        self.turning.push(Turning { axis, counts: units / gain, begun: context.now, over, turned: 0.0 });
     }
 
     fn turn_encoders(&mut self, kernel: &mut Kernel, context: &TickContext<'_>) {
