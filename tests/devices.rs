@@ -629,6 +629,14 @@ fn a_stimulus_moves_a_load_and_starts_and_stops_threads() {
 }
 
 #[test]
+fn a_stimulus_that_plans_without_end_is_limited() {
+    let stimulus = "every 90us toggle bit 24; when bit 24 changes after 1000s set bit 25";
+    let (output, _) = run("plans", "main() { Delay_sec(10); }", &[], &["--stim", stimulus]);
+    let told = "cc67: the stimulus has more than 100000 things to do; later ones are left out\n";
+    assert_eq!((output.code, output.stderr.as_str()), (0, told));
+}
+
+#[test]
 fn a_spindle_is_switched_by_two_bits() {
     let program = "static double speed(void)\n{\n  double before, t;\n  Delay_sec(0.5);\n\
                    before = chan[6].Position;\n  t = Time_sec();\n  Delay_sec(0.5);\n\

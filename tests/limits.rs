@@ -166,7 +166,7 @@ fn a_picture_of_a_long_run_says_what_it_leaves_out() {
 #[test]
 fn the_command_lists_what_the_book_lists() {
     let shown =
-        run_in(env!("CARGO_BIN_EXE_cc67-under-test"), &harness::root(), ["--explain", "limits"]).stdout;
+        run_in(env!("CARGO_BIN_EXE_cc67-under-test"), harness::root(), ["--explain", "limits"]).stdout;
     let book = std::fs::read_to_string(harness::root().join("cc67/book/src/limits.md")).expect("it is there");
     let rows: Vec<Vec<&str>> = book.lines().filter_map(row).collect();
     assert!(rows.len() > 20);

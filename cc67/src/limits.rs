@@ -9,6 +9,7 @@ use std::fmt::Write as _;
 use kmotiondef::ThreadId;
 use kmotiondef::limits::MAX_NSTRINGS;
 use kmotiondef::map::{PROGRAM_BASE, PROGRAM_SIZE, STACK_BASE, STACK_SIZE};
+use runtime::stimulus::MOST_PLANNED;
 
 use crate::bytecode::unit::MAX_FRAME;
 use crate::cli::{PC_FILE_BYTES, PICTURE_SAMPLES};
@@ -105,6 +106,11 @@ pub const FILES: &[Limit] = &[
         "the program is told that there is no such file, and a remark says why",
     ),
     limit(
+        "things that a stimulus has planned at a time",
+        MOST_PLANNED as u64,
+        "later ones are left out; a remark says so",
+    ),
+    limit(
         "samples in a picture of a run",
         PICTURE_SAMPLES as u64,
         "the picture shows what was so every so many ticks, as it says; traces show all",
@@ -116,7 +122,7 @@ pub const ALL: [(&str, &[Limit]); 4] = [
     ("The compiler", COMPILER),
     ("A program on the board", BOARD),
     ("A board that serves programs of the PC", CLIENTS),
-    ("Files and pictures", FILES),
+    ("Files, stimuli and pictures", FILES),
 ];
 
 /// A number with its thousands apart.

@@ -27,6 +27,7 @@ mod trigger;
 mod wave;
 
 pub use action::{Action, Expectation};
+pub use player::MOST_PLANNED;
 pub use text::StimulusError;
 pub use trigger::{Condition, Edge, Trigger};
 pub use wave::Wave;

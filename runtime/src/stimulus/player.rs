@@ -35,6 +35,9 @@ enum Due {
     Level(Bit, bool),
 }
 
+/// The most that may be planned at a time.
+pub const MOST_PLANNED: usize = 100_000;
+
 /// An encoder on its way.
 #[derive(Clone, Copy, Debug)]
 struct Turning {
@@ -55,8 +58,11 @@ pub(crate) struct Player {
     count: u64,
     waves: [Option<(Wave, Cycles)>; ADC_CHANNELS],
     turning: Vec<Turning>,
-    /// Rules for the first time only that have had it.
-    spent: Vec<bool>,
+    /// When each rule that waited for something was due last. At one instant it happens once, so that rules which
+    /// make each other happen do not multiply.
+    last_due: Vec<Option<Cycles>>,
+    /// Whether it was said that too much was planned.
+    has_told_surplus: bool,
     /// Expectations of a printed text that has been printed.
     said: Vec<bool>,
     /// Console lines that no statement has been compared with yet.
@@ -75,7 +81,8 @@ impl Player {
             count: 0,
             waves: [None; ADC_CHANNELS],
             turning: Vec::new(),
-            spent: Vec::new(),
+            last_due: Vec::new(),
+            has_told_surplus: false,
             said: Vec::new(),
             lines: VecDeque::new(),
             active: ThreadSet::EMPTY,
@@ -93,7 +100,7 @@ impl Player {
                 Trigger::When { .. } | Trigger::End => {}
             }
             self.rules.push(rule);
-            self.spent.push(false);
+            self.last_due.push(None);
             self.said.push(false);
         }
     }
@@ -154,6 +161,7 @@ impl Player {
         self.watch_bits(changes);
         self.watch_lines();
         self.watch_threads(context);
+        self.limit(kernel, context.now);
         let mut acted = false;
         while let Some(entry) = self.due.first_entry()
             && entry.key().0 <= context.now
@@ -167,6 +175,21 @@ impl Player {
         self.turn_encoders(kernel, context);
         self.run_waves(kernel, context);
         acted || !self.turning.is_empty()
+    }
+
+    /// Leaves out what is farthest in the future if too much is planned.
+    fn limit(&mut self, kernel: &mut Kernel, now: Cycles) {
+        if self.due.len() <= MOST_PLANNED {
+            return;
+        }
+        while self.due.len() > MOST_PLANNED {
+            self.due.pop_last();
+        }
+        if !std::mem::replace(&mut self.has_told_surplus, true) {
+            let text =
+                format!("the stimulus has more than {MOST_PLANNED} things to do; later ones are left out");
+            kernel.tell(now, EventKind::Diagnostic(text));
+        }
     }
 
     fn watch_bits(&mut self, changes: &[BitChange]) {
@@ -206,9 +229,10 @@ impl Player {
     fn happened(&mut self, at: Cycles, fits: impl Fn(&Condition) -> bool) {
         for index in 0..self.rules.len() {
             let Trigger::When { condition, after, is_once } = &self.rules[index].trigger else { continue };
-            if fits(condition) && !(*is_once && self.spent[index]) {
-                self.spent[index] = true;
-                let time = at + *after;
+            let time = at + *after;
+            let was_due = self.last_due[index];
+            if fits(condition) && !(*is_once && was_due.is_some()) && was_due != Some(time) {
+                self.last_due[index] = Some(time);
                 self.plan(time, Due::Rule(index));
             }
         }
