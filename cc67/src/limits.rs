@@ -9,10 +9,9 @@ use std::fmt::Write as _;
 use kmotiondef::ThreadId;
 use kmotiondef::limits::MAX_NSTRINGS;
 use kmotiondef::map::{PROGRAM_BASE, PROGRAM_SIZE, STACK_BASE, STACK_SIZE};
-use runtime::stimulus::MOST_PLANNED;
 
 use crate::bytecode::unit::MAX_FRAME;
-use crate::cli::{PC_FILE_BYTES, PICTURE_SAMPLES};
+use crate::cli::{PC_FILE_BYTES, PICTURE_SAMPLES, STIMULUS_PLANS};
 use crate::diag::MAX_ERRORS;
 use crate::host::{CONSOLE_LINES, REPLY_BYTES};
 use crate::input::{DATA_BYTES, FILE_BYTES};
@@ -107,7 +106,7 @@ pub const FILES: &[Limit] = &[
     ),
     limit(
         "things that a stimulus has planned at a time",
-        MOST_PLANNED as u64,
+        STIMULUS_PLANS as u64,
         "later ones are left out; a remark says so",
     ),
     limit(

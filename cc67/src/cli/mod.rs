@@ -42,6 +42,7 @@ use clap::{Parser, Subcommand};
 
 pub use exit::Exit;
 pub(crate) use runtime::FILE_BYTES as PC_FILE_BYTES;
+pub(crate) use runtime::stimulus::MOST_PLANNED as STIMULUS_PLANS;
 #[cfg(feature = "native")]
 pub use stand_alone::main as stand_alone;
 pub(crate) use trace::SAMPLES as PICTURE_SAMPLES;
