@@ -19,6 +19,8 @@ use crate::trap::Trap;
 pub enum Stop {
     /// The budget is used up.
     Preempted,
+    /// Only of a long slice: what comes next involves the board, so it belongs into an ordinary slice.
+    NeedsBoard,
     /// A firmware call waits; it is repeated when the wake comes true.
     Waiting(Wake),
     /// The program has returned from its entry function or called `ThreadDone`.
@@ -108,6 +110,11 @@ pub struct Slice<'a, F: ?Sized> {
     pub budget: Cycles,
     /// The wake that came true, if the context stands in a waiting call.
     pub woken: Option<Wake>,
+    /// Whether the budget is that of several slices, of a thread that is alone and of a board that does nothing.
+    ///
+    /// The context then computes with registers and SDRAM alone. Before anything else it stops with
+    /// [`Stop::NeedsBoard`].
+    pub is_long: bool,
 }
 
 impl<F: Firmware + ?Sized> Slice<'_, F> {
@@ -158,6 +165,14 @@ pub trait Engine: Default {
 
     /// Runs `id` until it stops. A context that was never started has ended.
     fn resume<F: Firmware + ?Sized>(&mut self, id: ContextId, slice: &mut Slice<'_, F>) -> Stop;
+
+    /// Whether `id` may be resumed with a [long slice](Slice::is_long).
+    ///
+    /// In one it must stop as well before it uses more of its stack than ever.
+    fn takes_long_slices(&self, id: ContextId) -> bool {
+        let _ = id;
+        false
+    }
 
     /// The most bytes of its stack that `id` has used since its start.
     fn stack_used(&self, id: ContextId) -> u32;

@@ -299,6 +299,12 @@ pub trait Firmware: Bus {
         0
     }
 
+    /// The same while a program computes with SDRAM and sees nothing else; at most as many.
+    fn quiet_slices(&self, memory: &GuestMemory) -> u64 {
+        let _ = memory;
+        0
+    }
+
     /// Stands for `count` calls of `tick`, `switch_to` and `primary_slice`; `context` is that of the
     /// last of these ticks.
     fn skip_ticks(&mut self, count: u64, context: &mut TickContext<'_>) {

@@ -4,6 +4,8 @@
 //! kernel's work, the choice of the next thread. What is left of the tick is that thread's
 //! slice. Rules: threads-and-time.md of the specification.
 
+mod long;
+
 use kmotiondef::map::BOARD_STACK_SIZE;
 use kmotiondef::{CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
 
@@ -47,6 +49,8 @@ pub struct Machine<F, E = BytecodeEngine> {
     memory: GuestMemory,
     threads: Threads,
     programs: [Option<Program>; ThreadId::MAX as usize],
+    /// By thread, the most cycles that its program spends between two tests of the budget.
+    longest_steps: [Cycles; ThreadId::MAX as usize],
     engine: E,
     firmware: F,
     tick: Ticks,
@@ -71,6 +75,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
             memory: GuestMemory::new(),
             threads: Threads::new(),
             programs: Default::default(),
+            longest_steps: Default::default(),
             engine: E::default(),
             firmware,
             tick: Ticks::default(),
@@ -84,6 +89,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
     /// The program's bytes are in guest memory already; its text is protected from now on.
     pub fn load_program(&mut self, thread: ThreadId, program: Program, entry: GuestAddr) {
         self.memory.protect(thread, program.text());
+        self.longest_steps[thread.index()] = program.longest_step(&|function| self.firmware.pure(function));
         self.programs[thread.index()] = Some(program);
         self.stack_reported = self.stack_reported.without(thread);
         self.threads.set_entry(thread, entry);
@@ -179,6 +185,9 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
     pub fn step(&mut self, limit: Ticks) {
         if self.config.shortcuts {
             self.skip_quiet_ticks(limit);
+            if self.run_long_slice(limit) {
+                return;
+            }
         }
         if self.tick < limit {
             self.run_tick();
@@ -238,6 +247,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
             length: CALLBACK_LIMIT,
             budget: CALLBACK_LIMIT,
             woken: None,
+            is_long: false,
         };
         let stop = self.engine.resume(id, &mut slice);
         let spent = slice.length - slice.budget;
@@ -248,7 +258,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
             }
             Stop::Trapped(trap) => trap.kind,
             Stop::Waiting(_) | Stop::Paused => TrapKind::CallbackWaits,
-            Stop::Preempted => TrapKind::CallbackEndless { limit: CALLBACK_TICKS },
+            Stop::Preempted | Stop::NeedsBoard => TrapKind::CallbackEndless { limit: CALLBACK_TICKS },
         };
         let at = self.engine.backtrace(id, program).first().copied().unwrap_or_else(|| code_at(address));
         self.report_trap(begin, Trap { kind, at, thread: None });
@@ -316,6 +326,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
             length: window.end - window.start,
             budget,
             woken,
+            is_long: false,
         };
         let stop = loop {
             let stop = self.engine.resume(id, &mut slice);
@@ -332,16 +343,23 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         let left = slice.budget;
         self.threads.set_running(None);
         self.firmware.slice_ran(thread, window.end - budget, window.end - left);
+        self.stopped(thread, window.end, left, stop);
+    }
+
+    /// Notes how `thread` has stopped in the slice that ends at `end`, with `left` of its budget.
+    fn stopped(&mut self, thread: ThreadId, end: Cycles, left: Cycles, stop: Stop) {
         self.threads.set_debt(thread, (Cycles::default() - left).max(Cycles::default()));
         self.report_stack(thread);
         match stop {
-            Stop::Preempted => self.threads.set_state(thread, ThreadState::Active(Progress::Going)),
+            Stop::Preempted | Stop::NeedsBoard => {
+                self.threads.set_state(thread, ThreadState::Active(Progress::Going));
+            }
             Stop::Waiting(wake) => {
                 self.threads.set_state(thread, ThreadState::Active(Progress::Waiting(wake)));
             }
             Stop::Paused => self.threads.set_state(thread, ThreadState::Paused(Progress::Going)),
             Stop::Ended => self.threads.set_state(thread, ThreadState::Ready),
-            Stop::Trapped(trap) => self.fault(window.end - left, thread, trap),
+            Stop::Trapped(trap) => self.fault(end - left, thread, trap),
         }
     }
 
@@ -375,9 +393,13 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         let count = idle
             .min(limit.get().saturating_sub(self.tick.get()))
             .min(self.firmware.quiet_ticks(&self.memory));
-        if count == 0 {
-            return;
+        if count > 0 {
+            self.pass_ticks(count);
         }
+    }
+
+    /// Lets ticks pass in which the firmware has nothing to do, up to the beginning of a slice.
+    fn pass_ticks(&mut self, count: u64) {
         self.tick = Ticks::new(self.tick.get() + count);
         self.turn = scheduler::after(self.threads.active(), self.turn, count);
         let begin = start_of(self.tick);

@@ -83,6 +83,10 @@ impl Engine for NativeEngine {
         })
     }
 
+    fn takes_long_slices(&self, id: ContextId) -> bool {
+        self.contexts[id.index()].is_some()
+    }
+
     fn stack_used(&self, id: ContextId) -> u32 {
         self.contexts[id.index()].as_ref().map_or_else(|| self.bytecode.stack_used(id), Context::stack_used)
     }

@@ -106,6 +106,7 @@ impl ProfilingEngine {
             length: slice.length - left,
             budget: NOTHING,
             woken: slice.woken.take(),
+            is_long: false,
         };
         let stop = self.inner.resume(id, &mut part);
         let spent = NOTHING - part.budget;

@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use kmotiondef::{CodeAddr, GuestAddr};
+use kmotiondef::{CodeAddr, Cycles, GuestAddr};
 
-use crate::firmware::Signature;
+use crate::firmware::{Pure, Signature};
 use crate::op::{Op, WORD};
 use crate::operand::{Class, FuncRef, SigRef};
 
@@ -71,6 +71,22 @@ impl Program {
             }
         }
         self
+    }
+
+    /// The most cycles spent from one test of the budget to the next, `pure` functions of the firmware included.
+    pub(crate) fn longest_step(&self, pure: &dyn Fn(GuestAddr) -> Option<Pure>) -> Cycles {
+        let (mut charge, mut call) = (Cycles::default(), Cycles::default());
+        for op in &self.ops {
+            match op {
+                Op::Charge { cycles } => charge = charge.max(Cycles::new(cycles.0.into())),
+                Op::CallFw { addr, .. } => {
+                    let cost = pure(GuestAddr::new(addr.0)).map_or(Cycles::default(), |pure| pure.cost);
+                    call = call.max(cost);
+                }
+                _ => {}
+            }
+        }
+        charge + call
     }
 
     /// The constants of eight bytes.

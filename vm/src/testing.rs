@@ -90,7 +90,7 @@ impl Function {
 }
 
 /// A firmware of a few functions that writes down what it sees.
-#[derive(Debug, PartialEq, Eq)]
+#[derive(Debug)]
 pub(crate) struct Fake {
     signatures: [Signature; 4],
     pub(crate) log: Vec<String>,
@@ -116,6 +116,11 @@ impl Fake {
             bus: Vec::new(),
             skipped: 0,
         }
+    }
+
+    /// What must be the same however time passes: in single ticks or in many at once.
+    pub(crate) fn seen(&self) -> (&[String], u64, &[String]) {
+        (&self.log, self.ticks, &self.bus)
     }
 
     fn note(&mut self, now: Cycles, who: Option<ThreadId>, what: &str) {
@@ -221,6 +226,10 @@ impl Firmware for Fake {
         u64::MAX
     }
 
+    fn quiet_slices(&self, _: &GuestMemory) -> u64 {
+        u64::MAX
+    }
+
     fn skip_ticks(&mut self, count: u64, _: &mut TickContext<'_>) {
         self.ticks += count;
         self.skipped += count;
@@ -264,7 +273,7 @@ pub(crate) fn run(programs: &[(i32, &str)], ticks: u64) -> Machine<Fake> {
 
 /// Checks that no difference between two machines can be seen.
 pub(crate) fn assert_same<A: Engine, B: Engine>(a: &Machine<Fake, A>, b: &Machine<Fake, B>) {
-    assert_eq!(a.firmware(), b.firmware());
+    assert_eq!(a.firmware().seen(), b.firmware().seen());
     assert_eq!(a.threads(), b.threads());
     for thread in ThreadId::all() {
         assert_eq!(a.backtrace(thread), b.backtrace(thread));

@@ -18,6 +18,8 @@ use crate::trap::TrapKind;
 enum Next {
     /// With the answer to its last request.
     Answer(Answer),
+    /// With the answer to this request, which a long slice could not give.
+    Request(Request),
     /// With the firmware call of this address and signature, for which it waits.
     CallFirmware(GuestAddr, SigRef),
     /// Not at all; it stopped for good.
@@ -109,6 +111,10 @@ impl Context {
     ) -> Result<Stop, TrapKind> {
         let mut step = match &self.next {
             Next::Answer(answer) => Step::Go(*answer),
+            Next::Request(request) => {
+                let request = *request;
+                self.answer(id, slice, request)?
+            }
             Next::CallFirmware(address, signature) => {
                 let (address, signature) = (*address, *signature);
                 self.call_firmware(id, slice, address, signature)?
@@ -125,6 +131,7 @@ impl Context {
             };
             let state = self.fiber.state();
             state.budget.set(slice.budget.get());
+            state.is_long.set(slice.is_long.into());
             protected.follow(slice.memory.protected_texts());
             if self.protected != Some(protected.version()) {
                 self.protected = Some(protected.version());
@@ -154,6 +161,9 @@ impl Context {
         request: Request,
     ) -> Result<Step, TrapKind> {
         let address = GuestAddr::new(request.a as u32);
+        if slice.is_long && request.involves_board() {
+            return Ok(Step::Stop(Stop::NeedsBoard, Next::Request(request)));
+        }
         let slot = match request.reason().unwrap_or(Reason::Unreachable) {
             Reason::Preempted => return Ok(Step::Stop(Stop::Preempted, Next::Answer(Answer::Slot(0)))),
             Reason::Load => load_slot(slice, address, request.width())?,
@@ -171,6 +181,7 @@ impl Context {
             Reason::CallPointer => {
                 return resolve(slice, address, SigRef(request.b as u16)).map(Step::Go);
             }
+            Reason::NeedsBoard => 0,
             Reason::StackOverflow => return Err(self.overflow(request)),
             Reason::DivisionByZero => return Err(TrapKind::DivisionByZero),
             Reason::Unreachable => return Err(TrapKind::Unreachable),

@@ -4,6 +4,8 @@
 //! it suspends its fiber with a [`Request`]: two numbers say what and where, two say with which
 //! operands. The engine answers it on the host's stack, in safe code, and resumes the fiber.
 
+use kmotiondef::map::SDRAM;
+
 /// A request as it leaves compiled code. The layout is that of C, because compiled code writes the fields.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
@@ -58,6 +60,8 @@ codes! {
         /// Resolve the function pointer `a` for a call with signature `b`; the answer is the function, none
         /// for one of the firmware.
         CallPointer,
+        /// End the slice if it is a long one.
+        NeedsBoard,
         /// The stack has no room for the `a` bytes of a call; `stack_pointer` is that of the caller.
         StackOverflow,
         /// An integer division by zero.
@@ -105,6 +109,27 @@ impl Request {
     /// What is asked; `None` for a code that no compiled code uses.
     pub(super) fn reason(&self) -> Option<Reason> {
         Reason::from_code(self.code & 0xff)
+    }
+
+    /// Whether the answer may depend on more than the context and SDRAM, or change more.
+    pub(super) fn involves_board(&self) -> bool {
+        let is_in_sdram = |address: u64| {
+            let place = (address as u32).wrapping_sub(SDRAM.base.get());
+            u64::from(place) + self.b <= u64::from(SDRAM.size)
+        };
+        match self.reason() {
+            Some(Reason::Load | Reason::Store | Reason::CallFirmware | Reason::NeedsBoard) => true,
+            Some(Reason::Copy) => !is_in_sdram(self.a) || !is_in_sdram(self.a >> 32),
+            Some(Reason::Clear) => !is_in_sdram(self.a),
+            Some(
+                Reason::Preempted
+                | Reason::CallPointer
+                | Reason::StackOverflow
+                | Reason::DivisionByZero
+                | Reason::Unreachable,
+            )
+            | None => false,
+        }
     }
 
     /// What a load or store is to move.

@@ -53,6 +53,8 @@ pub(super) struct State {
     pub(super) convert: Convert,
     /// Not 0 behind a store to on-chip RAM.
     pub(super) touched: Cell<u32>,
+    /// Not 0 in a long slice.
+    pub(super) is_long: Cell<u32>,
     /// What suspends the fiber, from its first instruction on.
     pub(super) yielder: Cell<*const Yielder>,
     /// The lowest address that the stack may reach.
@@ -88,6 +90,7 @@ impl State {
             leave: entry::leave,
             convert: entry::convert,
             touched: Cell::new(0),
+            is_long: Cell::new(0),
             yielder: Cell::new(std::ptr::null()),
             limit: Cell::new(stack.limit),
             lowest: Cell::new(stack.top),

@@ -384,6 +384,7 @@ impl<'a, 'b> Translator<'a, 'b> {
         let lowest = self.load_state(types::I32, offset_of!(State, lowest));
         self.branch_if_room(caller, lowest, bytes, body, deeper);
         self.enter_cold(deeper);
+        self.end_long_slice();
         let overflow = self.builder.create_block();
         let limit = self.load_state(types::I32, offset_of!(State, limit));
         self.branch_if_room(caller, limit, bytes, lower, overflow);
@@ -496,7 +497,7 @@ impl<'a, 'b> Translator<'a, 'b> {
             | Op::Copy { .. }
             | Op::Clear { .. } => None,
             Op::CallFw { sig, addr } => u32::try_from(self.pure_function(sig, addr)?.cost.get()).ok(),
-            _ => memory::is_in_ram(op).then_some(0),
+            _ => memory::is_in_sdram(op).then_some(0),
         }
     }
 
@@ -604,6 +605,18 @@ impl<'a, 'b> Translator<'a, 'b> {
     fn reload_budget(&mut self) {
         let budget = self.load_state(types::I64, offset_of!(State, budget));
         self.builder.def_var(self.budget, budget);
+    }
+
+    /// Ends the slice if it is a long one: what follows involves the board.
+    fn end_long_slice(&mut self) {
+        let is_long = self.load_state(types::I32, offset_of!(State, is_long));
+        let (long, go_on) = (self.builder.create_block(), self.builder.create_block());
+        self.builder.ins().brif(is_long, long, &[], go_on, &[]);
+        self.enter_cold(long);
+        let none = self.builder.ins().iconst(types::I64, 0);
+        self.request(Reason::NeedsBoard.code(), self.at, none, none);
+        self.builder.ins().jump(go_on, &[]);
+        self.enter(go_on);
     }
 
     /// Takes cycles from the budget.

@@ -121,6 +121,9 @@ impl Translator<'_, '_> {
     fn load_at<R: Register>(&mut self, dst: R, addr: Addr, width: Width) {
         let value = match ram_field(addr, width) {
             Some((field, place)) => {
+                if field == offset_of!(State, iram) {
+                    self.end_long_slice();
+                }
                 let base = self.load_pointer(field);
                 self.load_guest(base, place, width)
             }
@@ -172,6 +175,7 @@ impl Translator<'_, '_> {
         };
         if !(PROGRAM_BASE..PROGRAM_LIMIT).contains(&addr.0) {
             if field == offset_of!(State, iram) {
+                self.end_long_slice();
                 self.touch();
             }
             let base = self.load_pointer(field);
@@ -231,6 +235,7 @@ impl Translator<'_, '_> {
         self.builder.ins().brif(bits, slow, &[], iram, &[]);
 
         self.enter_cold(iram);
+        self.end_long_slice();
         if is_store {
             self.touch();
         }
@@ -312,8 +317,8 @@ impl Translator<'_, '_> {
     }
 }
 
-/// Whether an instruction either uses no constant address or one in RAM.
-pub(super) fn is_in_ram(op: &Op) -> bool {
+/// Whether an instruction either uses no constant address or one in SDRAM.
+pub(super) fn is_in_sdram(op: &Op) -> bool {
     let access = match *op {
         Op::LoadI8SAt { addr, .. } | Op::LoadI8UAt { addr, .. } | Op::StoreI8At { addr, .. } => {
             (addr, Width::I8U)
@@ -327,7 +332,7 @@ pub(super) fn is_in_ram(op: &Op) -> bool {
         Op::LoadF64At { addr, .. } | Op::StoreF64At { addr, .. } => (addr, Width::F64),
         _ => return true,
     };
-    ram_field(access.0, access.1).is_some()
+    ram_field(access.0, access.1).is_some_and(|(field, _)| field == offset_of!(State, sdram))
 }
 
 /// Where an aligned access of the constant address `addr` goes, if that is RAM: the field of the

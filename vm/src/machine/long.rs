@@ -1,0 +1,91 @@
+//! Long slices: a thread that is alone computes through many ticks of a board that does nothing.
+//!
+//! The context gets the budget of all its slices at once. It stops before it would do anything but
+//! compute with registers and SDRAM; what it has spent until then says in which slice that is. So the
+//! ticks before can be made up for by [`Firmware::skip_ticks`], and everything happens at the instant at
+//! which it happens in slices of one tick each.
+
+use kmotiondef::{Cycles, ThreadId, Ticks};
+
+use super::{Machine, Window, end_of, start_of};
+use crate::engine::{ContextId, Engine, Slice, Stop};
+use crate::firmware::Firmware;
+use crate::scheduler::Turn;
+use crate::thread::{Progress, ThreadState};
+
+/// The most slices that a long one stands for: a tenth of a second of the board's time.
+const MOST_SLICES: u64 = 512;
+
+/// What a long slice consists of.
+struct Plan {
+    thread: ThreadId,
+    slices: u64,
+    /// What each of them can spend.
+    each: Cycles,
+    /// What the last slice's block takes of the first.
+    debt: Cycles,
+}
+
+impl<F: Firmware, E: Engine> Machine<F, E> {
+    /// Runs a long slice, if there can be one before tick `limit` is over; whether there was one.
+    pub(super) fn run_long_slice(&mut self, limit: Ticks) -> bool {
+        let Some(plan) = self.plan_long_slice(limit) else { return false };
+        let (stop, spent) = self.compute(&plan);
+        // A block that ends exactly with a slice belongs to it.
+        let whole = (spent.get() - 1).max(0) / plan.each.get();
+        let whole = whole.min(plan.slices as i64 - 1);
+        let left = Cycles::new(plan.each.get() * (whole + 1)) - spent;
+        self.pass_ticks(whole.cast_unsigned() * 2 + 1);
+        let end = end_of(self.tick);
+        if matches!(stop, Stop::NeedsBoard) {
+            let start = start_of(self.tick) + self.servo_time();
+            self.run_thread(plan.thread, Window { start, end, callback: Cycles::default() }, left, None);
+        } else {
+            self.stopped(plan.thread, end, left, stop);
+        }
+        true
+    }
+
+    /// The next slices as a long one: every other tick, the primary thread has those between them.
+    fn plan_long_slice(&self, limit: Ticks) -> Option<Plan> {
+        let active = self.threads.active();
+        if active.len() != 1 || self.turn != Turn::Primary {
+            return None;
+        }
+        let thread = ThreadId::all().find(|thread| active.contains(*thread))?;
+        let is_going = matches!(self.threads.state(thread), ThreadState::Active(Progress::Going));
+        if !is_going || !self.engine.takes_long_slices(ContextId::of(thread)) {
+            return None;
+        }
+        let ticks = limit.get().saturating_sub(self.tick.get()).min(self.firmware.quiet_slices(&self.memory));
+        let slices = (ticks / 2).min(MOST_SLICES);
+        let each = Cycles::PER_TICK - self.servo_time();
+        let debt = self.threads.debt(thread);
+        // No block may take a whole slice: it would be skipped.
+        let longest = debt.max(self.longest_steps[thread.index()]);
+        let is_callback_set = !self.firmware.callback(&self.memory).is_null();
+        (slices > 1 && longest < each && !is_callback_set).then_some(Plan { thread, slices, each, debt })
+    }
+
+    /// Lets the thread compute; how it stopped, and what was spent with the debt.
+    fn compute(&mut self, plan: &Plan) -> (Stop, Cycles) {
+        let all = Cycles::new(plan.each.get() * plan.slices as i64);
+        let Some(program) = self.programs[plan.thread.index()].as_ref() else {
+            return (Stop::NeedsBoard, plan.debt);
+        };
+        let mut slice = Slice {
+            program,
+            memory: &mut self.memory,
+            threads: &mut self.threads,
+            firmware: &mut self.firmware,
+            tick: self.tick,
+            start: start_of(self.tick),
+            length: all,
+            budget: all - plan.debt,
+            woken: None,
+            is_long: true,
+        };
+        let stop = self.engine.resume(ContextId::of(plan.thread), &mut slice);
+        (stop, all - slice.budget)
+    }
+}
