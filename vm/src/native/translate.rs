@@ -48,8 +48,7 @@ use crate::program::{Function, Program};
 /// Reached only if the engine resumed a context that a trap has stopped.
 const RESUMED_BEHIND_TRAP: TrapCode = TrapCode::unwrap_user(1);
 
-/// How functions of a program call each other: no register outlives a call, so that a function saves none
-/// that it does not need itself.
+/// How functions of a program call each other: the one convention with two results in registers on every host.
 const CONVENTION: CallConv = CallConv::Tail;
 
 /// Parameters of a machine function before those of the program: state, stack pointer, budget.
@@ -298,6 +297,8 @@ struct Translator<'a, 'b> {
     /// The loops that are translated in several turns at once, by their first word, and the one at hand.
     plans: BTreeMap<usize, Plan>,
     fast: Option<Fast>,
+    /// Whether what is translated is there for the rare case that fast turns cannot go on.
+    is_rare: bool,
     /// What is still to be translated of the ways that the next branch takes.
     ways: Vec<Way>,
     /// Flags of accesses to the state and to guest memory, which never overlap.
@@ -313,7 +314,7 @@ struct Translator<'a, 'b> {
     reachable: bool,
     /// Arguments of the next call.
     arguments: Vec<Value>,
-    /// Result of the call directly before, as a slot.
+    /// Result of the call directly before, as a slot or as it is.
     result: Option<Value>,
     /// The floating registers in which any NaN stands for the one that arithmetic makes.
     lax: Vec<bool>,
@@ -351,6 +352,7 @@ impl<'a, 'b> Translator<'a, 'b> {
             blocks: BTreeMap::new(),
             plans: BTreeMap::new(),
             fast: None,
+            is_rare: false,
             ways: Vec::new(),
             state_flags,
             guest_flags,
@@ -503,6 +505,9 @@ impl<'a, 'b> Translator<'a, 'b> {
 
     /// Goes on in `block`, all of whose predecessors are known.
     fn enter(&mut self, block: Block) {
+        if self.is_rare {
+            self.builder.set_cold_block(block);
+        }
         self.builder.switch_to_block(block);
         self.builder.seal_block(block);
     }
@@ -552,8 +557,11 @@ impl<'a, 'b> Translator<'a, 'b> {
         }
     }
 
-    /// The value of `class` in a register slot.
+    /// The value of `class` in a register slot, or as it is.
     fn unslot(&mut self, class: Class, slot: Value) -> Value {
+        if self.builder.func.dfg.value_type(slot) == type_of(class) {
+            return slot;
+        }
         let bits = MemFlagsData::new();
         match class {
             Class::I32 => self.builder.ins().ireduce(types::I32, slot),

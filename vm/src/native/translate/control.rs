@@ -189,7 +189,7 @@ impl Translator<'_, '_> {
                 self.canonical(pure.function.result(), root)
             }
         };
-        self.result = Some(self.slot(pure.function.result(), value));
+        self.result = Some(value);
     }
 
     /// Calls the host's function at `pointer`, which is the firmware's at `addr`.

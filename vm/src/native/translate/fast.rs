@@ -47,7 +47,8 @@ impl Translator<'_, '_> {
         let (words, order, turns) = (plan.words.clone(), plan.order.clone(), plan.turns);
         let entry = plan.entry();
         let (fast, ordinary) = (self.builder.create_block(), self.builder.create_block());
-        if turns == 0 {
+        let is_tested = plan.cost > 0;
+        if !is_tested {
             self.builder.ins().jump(fast, &[]);
         } else {
             let budget = self.builder.use_var(self.budget);
@@ -65,14 +66,18 @@ impl Translator<'_, '_> {
         if turns > 0 && self.reachable {
             self.go_to(entry);
         }
+        if self.reachable {
+            self.settle();
+        }
         let bails = self.fast.take().map(|fast| fast.bails).unwrap_or_default();
         let behind = self.reachable.then(|| self.builder.create_block());
         if let Some(behind) = behind {
             self.builder.ins().jump(behind, &[]);
             self.reachable = false;
         }
+        self.is_rare = true;
         for at in words {
-            if at == entry && turns > 0 {
+            if at == entry && is_tested {
                 if self.reachable {
                     self.go_to(entry);
                 }
@@ -86,6 +91,7 @@ impl Translator<'_, '_> {
             }
             self.word(at);
         }
+        self.is_rare = false;
         if let Some(behind) = behind {
             self.begin(behind);
         }
@@ -147,18 +153,18 @@ impl Translator<'_, '_> {
     /// The block to branch to in order to get to the word `to`; [`finish_edges`](Self::finish_edges) must follow.
     pub(super) fn edge(&mut self, to: usize) -> Block {
         let Some(fast) = &mut self.fast else { return self.blocks[&to] };
-        let (block, kept) = match fast.plan.target(fast.turn, to) {
+        let (block, kept, is_rare) = match fast.plan.target(fast.turn, to) {
             Some(place) => {
                 let checked = &fast.checked;
                 let same = |root: &Root, value: &mut Value| checked.get(root) == Some(value);
                 let met = fast.arriving.entry(place).or_insert_with(|| checked.clone());
                 met.retain(same);
-                (fast.blocks[&place], fast.plan.entries[&place])
+                (fast.blocks[&place], fast.plan.entries[&place], false)
             }
-            None => (self.blocks[&to], 0),
+            None => (self.blocks[&to], 0, fast.plan.is_counted && to != fast.plan.entry()),
         };
         let cycles = fast.spent - kept;
-        self.way(block, cycles, false)
+        self.way(block, cycles, is_rare)
     }
 
     /// The block to branch to if the instruction is one for the loop as it is; `None` outside of fast turns.

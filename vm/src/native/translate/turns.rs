@@ -26,8 +26,12 @@ use crate::program::{Function, Program};
 const MAX_WORDS: usize = 160;
 const MAX_WORDS_OF_TURNS: usize = 128;
 
-/// The most turns that run at once.
+/// The most turns that run at once, and those of a loop of so few words that its test and its jump weigh more.
+///
+/// In longer turns more values wait for the last one than there are registers.
 const MAX_TURNS: usize = 4;
+const MAX_SMALL_TURNS: usize = 8;
+const SMALL: usize = 8;
 
 /// How far from its root an access is followed.
 const MAX_DISTANCE: u32 = 1 << 16;
@@ -74,8 +78,10 @@ pub(super) struct Plan {
     pub(super) order: Vec<usize>,
     /// How many turns; none for a stretch that is no loop.
     pub(super) turns: usize,
-    /// The most cycles that they cost.
+    /// The most cycles that they cost; none for a stretch without charges.
     pub(super) cost: u32,
+    /// Whether it is a loop that is left in one place, as those that count are: most of their turns do not leave it.
+    pub(super) is_counted: bool,
     /// The blocks that can be reached, with the cycles that were charged but not yet taken when they begin.
     pub(super) entries: BTreeMap<Place, u32>,
     /// The accesses through registers.
@@ -94,24 +100,81 @@ pub(super) fn plans(
     cost: &dyn Fn(&Op) -> Option<u32>,
 ) -> BTreeMap<usize, Plan> {
     let planner =
-        |words, entry, turns| Planner::new(program, function, begins, words, cost)?.plan(entry, turns);
+        |words, entry, is_loop| Planner::new(program, function, begins, words, cost)?.plan(entry, is_loop);
     let mut plans = BTreeMap::new();
     for (words, entry) in innermost_loops(program, function) {
-        if let Some(plan) = planner(words.clone(), entry, MAX_TURNS) {
+        if let Some(plan) = planner(words.clone(), entry, true) {
+            plans.insert(*words.start(), plan);
+        }
+    }
+    for words in regions(program, function, &plans, cost) {
+        if let Some(plan) = planner(words.clone(), *words.start(), false) {
             plans.insert(*words.start(), plan);
         }
     }
     for words in straight_stretches(program, function, begins, cost) {
-        let before = plans.range(..=*words.start()).next_back();
-        if before.is_some_and(|(_, plan)| plan.words.contains(words.start())) {
+        if is_planned(&plans, *words.start()) {
             continue;
         }
-        let plan = planner(words.clone(), *words.start(), 0);
+        let plan = planner(words.clone(), *words.start(), false);
         if let Some(plan) = plan.filter(Plan::shares_checks) {
             plans.insert(*words.start(), plan);
         }
     }
     plans
+}
+
+/// Whether the word `at` is in one of `plans`.
+fn is_planned(plans: &BTreeMap<usize, Plan>, at: usize) -> bool {
+    plans.range(..=at).next_back().is_some_and(|(_, plan)| plan.words.contains(&at))
+}
+
+/// The regions: words in which execution only goes forward, that are entered at the first alone and charge more than once.
+///
+/// One test of the budget, where a region is entered, stands for those of its charges.
+fn regions(
+    program: &Program,
+    function: &Function,
+    plans: &BTreeMap<usize, Plan>,
+    cost: &dyn Fn(&Op) -> Option<u32>,
+) -> Vec<RangeInclusive<usize>> {
+    let mut sources: BTreeMap<usize, RangeInclusive<usize>> = BTreeMap::new();
+    for at in function.body.clone() {
+        if let Some(to) = branch_target(&program.ops()[at]) {
+            let from = sources.entry(to.0 as usize).or_insert(at..=at);
+            *from = *from.start()..=at;
+        }
+    }
+    let mut regions = Vec::new();
+    let mut first = function.body.start;
+    while first < function.body.end {
+        let (mut end, mut charges, mut argument) = (first, 0, None);
+        while end < function.body.end && end - first < MAX_WORDS && !is_planned(plans, end) {
+            let op = &program.ops()[end];
+            let from = sources.get(&end).filter(|_| end > first);
+            let is_entered = from.is_some_and(|from| *from.start() < first || *from.end() >= end);
+            if is_entered || cost(op).is_none() {
+                break;
+            }
+            charges += usize::from(matches!(op, Op::Charge { .. }));
+            if is_argument(op) {
+                argument.get_or_insert(end);
+            } else if meter::is_call(op) {
+                argument = None;
+            }
+            end += 1;
+        }
+        // The arguments of a call belong to it.
+        end = argument.unwrap_or(end);
+        if charges > 1 && end > first {
+            regions.push(first..=end - 1);
+        }
+        first = end.max(first + 1);
+        while first < function.body.end && !matches!(program.ops()[first], Op::Charge { .. }) {
+            first += 1;
+        }
+    }
+    regions
 }
 
 /// The stretches of a block, between charges, calls and branches, that make several accesses.
@@ -142,10 +205,13 @@ fn straight_stretches(
 
 /// Whether an instruction is none of those that simply go on with the next.
 const fn ends_stretch(op: &Op) -> bool {
-    let is_argument =
-        matches!(op, Op::ArgI32 { .. } | Op::ArgI64 { .. } | Op::ArgF32 { .. } | Op::ArgF64 { .. });
     let is_jump = matches!(op, Op::BrIf { .. } | Op::BrUnless { .. } | Op::Charge { .. });
-    is_argument || is_jump || meter::is_result(op) || meter::ends_path(op)
+    is_argument(op) || is_jump || meter::is_result(op) || meter::ends_path(op)
+}
+
+/// Whether an instruction passes an argument to the call behind it.
+const fn is_argument(op: &Op) -> bool {
+    matches!(op, Op::ArgI32 { .. } | Op::ArgI64 { .. } | Op::ArgF32 { .. } | Op::ArgF64 { .. })
 }
 
 /// The loops that hold no other, each with the word at which it is entered.
@@ -224,6 +290,7 @@ impl<'a> Planner<'a> {
             words,
             turns: 0,
             cost: sum,
+            is_counted: false,
             entries: BTreeMap::new(),
             accesses: BTreeMap::new(),
             groups: BTreeMap::new(),
@@ -246,12 +313,15 @@ impl<'a> Planner<'a> {
         (self.roots, 0)
     }
 
-    /// The plan for at most so many turns, each of which begins at `entry`.
-    fn plan(mut self, entry: usize, turns: usize) -> Option<Plan> {
+    /// The plan for turns of a loop, each of which begins at `entry`, or for a stretch.
+    fn plan(mut self, entry: usize, is_loop: bool) -> Option<Plan> {
         let (first, last) = (*self.plan.words.start(), *self.plan.words.end());
         self.plan.order = (entry..=last).chain(first..entry).collect();
-        self.plan.turns = (MAX_WORDS_OF_TURNS / self.plan.order.len()).max(1).min(turns);
-        self.plan.cost = self.plan.cost.checked_mul(self.plan.turns as u32)?;
+        let words = self.plan.order.len();
+        let most = if words <= SMALL { MAX_SMALL_TURNS } else { MAX_TURNS };
+        self.plan.turns = if is_loop { (MAX_WORDS_OF_TURNS / words).clamp(1, most) } else { 0 };
+        self.plan.cost = self.plan.cost.checked_mul(self.plan.turns.max(1) as u32)?;
+        self.plan.is_counted = is_loop && self.exits() == 1;
         let symbols = (0..self.registers).map(|_| self.root()).collect();
         self.arriving.insert((0, entry), Known { spent: 0, symbols });
         let mut known = None;
@@ -270,6 +340,18 @@ impl<'a> Planner<'a> {
             }
         }
         Some(self.plan)
+    }
+
+    /// In how many places the words are left.
+    fn exits(&self) -> usize {
+        let words = &self.plan.words;
+        let leaves = |to: usize| usize::from(!words.contains(&to));
+        let of = |at: usize| match self.program.ops()[at] {
+            Op::Br { to } => leaves(to.0 as usize),
+            Op::BrIf { to, .. } | Op::BrUnless { to, .. } => leaves(to.0 as usize) + leaves(at + 1),
+            ref op => usize::from(meter::ends_path(op)),
+        };
+        words.clone().map(of).sum()
     }
 
     /// Follows one instruction; yields what is known behind it, if it goes on there.
