@@ -6,17 +6,19 @@
 //! result as a register slot. So the budget stays in a processor register; it is written to the
 //! state for a request and read back behind it.
 //!
-//! A small loop is translated twice: `turns.rs` plans several turns on one test of the budget and few checks of
-//! addresses, `fast.rs` makes them.
+//! A small loop is translated twice, and so is a stretch of code without calls: `candidates.rs` finds them, `turns.rs`
+//! plans several turns on one test of the budget and few checks of addresses, `fast.rs` makes them.
 //!
 //! The arms of the instructions stand in `arith.rs`, `memory.rs` and `control.rs`, one method an
 //! instruction, named as in the table.
 
 mod arith;
+mod candidates;
 mod control;
 mod fast;
 mod memory;
 mod nan;
+mod strides;
 mod turns;
 
 use std::cell::RefCell;

@@ -144,3 +144,23 @@ fn several_accesses_through_one_register_trap_at_the_first_that_must() {
         let _ = trap_of(&functions);
     }
 }
+
+#[test]
+fn an_address_may_move_by_a_register() {
+    let skips = "and_i32_imm r3, r1, 1\nbr_if r3, @odd\ncharge 40\nstore_i32 r1, r0, +0\n@odd: charge 23";
+    for body in
+        ["store_i32 r1, r0, +0", "load_i32 r3, r0, +4\nload_i8_u r3, r0, +0", "store_i8 r1, r0, +3", skips]
+    {
+        for step in [0, 1, 4, 12, 4096, 0x0020_0000, 0x4000_0000, -4, i32::MIN] {
+            for from in [0x8010_0000_u32, 0x80ff_ffd0, 0x8004_ffd0, 0x8005_0400] {
+                let moved = walk(from, 0, 40, body)
+                    .replace(
+                        "charge 9\nconst_i32 r0",
+                        &format!("charge 9\nconst_i32 r2, {step}\nconst_i32 r0"),
+                    )
+                    .replace("add_i32_imm r0, r0, 0", "add_i32 r0, r0, r2");
+                let _ = stop_of(&moved);
+            }
+        }
+    }
+}

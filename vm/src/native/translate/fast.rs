@@ -15,6 +15,7 @@ use kmotiondef::map::SDRAM;
 use super::super::request::Width;
 use super::super::state::{State, Window};
 use super::Translator;
+use super::strides::Stride;
 use super::turns::{Group, Place, Plan, Root};
 use crate::operand::RegI32;
 
@@ -222,30 +223,66 @@ impl Translator<'_, '_> {
         if let (Some(group), Some(pointer)) = (shared, fast.checked.get(&access.root)) {
             return Some((*pointer, access.at - group.first));
         }
+        let stride = fast.plan.strides.get(access.root).filter(|_| shared.is_some());
+        let before = stride.and_then(|stride| fast.checked.get(&stride.before?).copied());
         let end = access.at + width.bytes().cast_signed();
         let group =
             shared.unwrap_or(Group { first: access.at, end, width: width.bytes(), has_store: is_store });
-        let base = self.get(base);
-        let distance = (group.first - access.base).wrapping_sub(SDRAM.base.get().cast_signed());
-        let place = self.builder.ins().iadd_imm_s(base, i64::from(distance));
-        self.check(place, group);
-        let place = self.builder.ins().uextend(types::I64, place);
-        let sdram = self.load_pointer(offset_of!(State, sdram));
-        let pointer = self.builder.ins().iadd(sdram, place);
+        let pointer = if let (Some(before), Some(stride)) = (before, stride) {
+            let step = self.step(stride);
+            self.builder.ins().iadd(before, step)
+        } else {
+            let base = self.get(base);
+            let distance = (group.first - access.base).wrapping_sub(SDRAM.base.get().cast_signed());
+            let place = self.builder.ins().iadd_imm_s(base, i64::from(distance));
+            self.check(place, group, stride.filter(|stride| stride.later > 0));
+            let place = self.builder.ins().uextend(types::I64, place);
+            let sdram = self.load_pointer(offset_of!(State, sdram));
+            self.builder.ins().iadd(sdram, place)
+        };
         if let (Some(_), Some(fast)) = (shared, &mut self.fast) {
             fast.checked.insert(access.root, pointer);
         }
         Some((pointer, access.at - group.first))
     }
 
-    /// Leaves the fast turns unless all of the group, the first byte of which is `place` in SDRAM, may be accessed.
-    fn check(&mut self, place: Value, group: Group) {
+    /// What the address of an access moves by from turn to turn, as 64 bits; it never moves back.
+    fn step(&mut self, stride: Stride) -> Value {
+        let step = self.get(stride.step);
+        self.builder.ins().uextend(types::I64, step)
+    }
+
+    /// Leaves the fast turns unless all of the group, the first byte of which is `place` in SDRAM, may be accessed, and
+    /// the same in the later turns of a stride.
+    fn check(&mut self, place: Value, group: Group, stride: Option<Stride>) {
         let span = (group.end - group.first).cast_unsigned();
+        let Some(stride) = stride else { return self.check_group(place, group, span) };
+        if group.width > 1 {
+            let step = self.get(stride.step);
+            let both = self.builder.ins().bor(place, step);
+            let bits = self.builder.ins().band_imm_u(both, i64::from(group.width - 1));
+            self.bail_if(bits);
+        }
+        let step = self.step(stride);
+        let later = self.builder.ins().imul_imm_u(step, i64::from(stride.later));
+        let span = self.builder.ins().iadd_imm_u(later, i64::from(span));
+        if group.has_store {
+            return self.check_window(place, span);
+        }
+        let place = self.builder.ins().uextend(types::I64, place);
+        let end = self.builder.ins().iadd(place, span);
+        let outside = self.builder.ins().icmp_imm_u(IntCC::UnsignedGreaterThan, end, i64::from(SDRAM.size));
+        self.bail_if(outside);
+    }
+
+    /// The same for a group alone, of `span` bytes.
+    fn check_group(&mut self, place: Value, group: Group, span: u32) {
         if group.has_store {
             let bits = self.builder.ins().band_imm_u(place, i64::from(group.width - 1));
             if group.width > 1 {
                 self.bail_if(bits);
             }
+            let span = self.builder.ins().iconst(types::I64, i64::from(span));
             return self.check_window(place, span);
         }
         if span == group.width {
@@ -262,7 +299,7 @@ impl Translator<'_, '_> {
     }
 
     /// Leaves the fast turns unless the `span` bytes at `place` are in one of the windows.
-    fn check_window(&mut self, place: Value, span: u32) {
+    fn check_window(&mut self, place: Value, span: Value) {
         let Some(bail) = self.bail() else { return };
         let (second, inside) = (self.builder.create_block(), self.builder.create_block());
         for (window, otherwise) in [(0, second), (1, bail)] {
@@ -271,7 +308,7 @@ impl Translator<'_, '_> {
             let length = self.load_state(types::I32, field + offset_of!(Window, length));
             let from = self.builder.ins().isub(place, start);
             let from = self.builder.ins().uextend(types::I64, from);
-            let end = self.builder.ins().iadd_imm_u(from, i64::from(span));
+            let end = self.builder.ins().iadd(from, span);
             let length = self.builder.ins().uextend(types::I64, length);
             let outside = self.builder.ins().icmp(IntCC::UnsignedGreaterThan, end, length);
             self.builder.ins().brif(outside, otherwise, &[], inside, &[]);

@@ -1,9 +1,9 @@
-//! Which loops are translated a second time, several turns at once, and what is known in there.
+//! What is translated a second time, with fewer tests, and what is known in there.
 //!
 //! A loop without calls that has no loop inside may run for several turns as soon as the budget
 //! covers the most that they can cost: no charge on the way could end the slice, so the charges are
 //! only added up, and the sum is taken where the fast turns are left. The budget is exact wherever
-//! somebody can see it.
+//! somebody can see it. The same goes for a region in which execution only goes forward: it is one turn.
 //!
 //! The same stretch of code reaches memory through few registers that move by constants. The
 //! [`Plan`] follows them: an access is at a [`Root`], some value that a register held, plus a
@@ -16,14 +16,16 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
 
 use super::super::request::Width;
+use super::candidates::{innermost_loops, regions, straight_stretches};
+use super::strides::{Strides, common_step};
 use crate::for_each_op;
-use crate::meter::{self, branch_target};
+use crate::meter;
 use crate::op::Op;
 use crate::operand::{Class, Off, Operand, RegI32};
 use crate::program::{Function, Program};
 
 /// The most words of a loop that is translated twice, and of all its fast turns together.
-const MAX_WORDS: usize = 160;
+pub(super) const MAX_WORDS: usize = 160;
 const MAX_WORDS_OF_TURNS: usize = 128;
 
 /// The most turns that run at once, and those of a loop of so few words that its test and its jump weigh more.
@@ -33,8 +35,9 @@ const MAX_TURNS: usize = 4;
 const MAX_SMALL_TURNS: usize = 8;
 const SMALL: usize = 8;
 
-/// How far from its root an access is followed.
+/// How far from its root an access is followed, and of how many others a root is made at most.
 const MAX_DISTANCE: u32 = 1 << 16;
+const MAX_TERMS: usize = 12;
 
 /// A value that the plan follows.
 pub(super) type Root = u32;
@@ -88,6 +91,8 @@ pub(super) struct Plan {
     pub(super) accesses: BTreeMap<Place, Access>,
     /// By root, those of their accesses that one check can cover.
     pub(super) groups: BTreeMap<Root, Group>,
+    /// The roots that lie at equal distances.
+    pub(super) strides: Strides,
 }
 
 /// The loops of a function that are worth it, by their first word.
@@ -107,7 +112,7 @@ pub(super) fn plans(
             plans.insert(*words.start(), plan);
         }
     }
-    for words in regions(program, function, &plans, cost) {
+    for words in regions(program, function, &|at| is_planned(&plans, at), cost) {
         if let Some(plan) = planner(words.clone(), *words.start(), false) {
             plans.insert(*words.start(), plan);
         }
@@ -129,117 +134,6 @@ fn is_planned(plans: &BTreeMap<usize, Plan>, at: usize) -> bool {
     plans.range(..=at).next_back().is_some_and(|(_, plan)| plan.words.contains(&at))
 }
 
-/// The regions: words in which execution only goes forward, that are entered at the first alone and charge more than once.
-///
-/// One test of the budget, where a region is entered, stands for those of its charges.
-fn regions(
-    program: &Program,
-    function: &Function,
-    plans: &BTreeMap<usize, Plan>,
-    cost: &dyn Fn(&Op) -> Option<u32>,
-) -> Vec<RangeInclusive<usize>> {
-    let mut sources: BTreeMap<usize, RangeInclusive<usize>> = BTreeMap::new();
-    for at in function.body.clone() {
-        if let Some(to) = branch_target(&program.ops()[at]) {
-            let from = sources.entry(to.0 as usize).or_insert(at..=at);
-            *from = *from.start()..=at;
-        }
-    }
-    let mut regions = Vec::new();
-    let mut first = function.body.start;
-    while first < function.body.end {
-        let (mut end, mut charges, mut argument) = (first, 0, None);
-        while end < function.body.end && end - first < MAX_WORDS && !is_planned(plans, end) {
-            let op = &program.ops()[end];
-            let from = sources.get(&end).filter(|_| end > first);
-            let is_entered = from.is_some_and(|from| *from.start() < first || *from.end() >= end);
-            if is_entered || cost(op).is_none() {
-                break;
-            }
-            charges += usize::from(matches!(op, Op::Charge { .. }));
-            if is_argument(op) {
-                argument.get_or_insert(end);
-            } else if meter::is_call(op) {
-                argument = None;
-            }
-            end += 1;
-        }
-        // The arguments of a call belong to it.
-        end = argument.unwrap_or(end);
-        if charges > 1 && end > first {
-            regions.push(first..=end - 1);
-        }
-        first = end.max(first + 1);
-        while first < function.body.end && !matches!(program.ops()[first], Op::Charge { .. }) {
-            first += 1;
-        }
-    }
-    regions
-}
-
-/// The stretches of a block, between charges, calls and branches, that make several accesses.
-fn straight_stretches(
-    program: &Program,
-    function: &Function,
-    begins: &BTreeSet<usize>,
-    cost: &dyn Fn(&Op) -> Option<u32>,
-) -> Vec<RangeInclusive<usize>> {
-    let mut stretches = Vec::new();
-    let (mut first, mut last, mut accesses) = (function.body.start, 0, 0);
-    for at in function.body.clone() {
-        let op = program.ops()[at];
-        let ends = ends_stretch(&op) || cost(&op) != Some(0);
-        if ends || begins.contains(&at) {
-            // What follows the last access is not translated twice.
-            if accesses > 1 {
-                stretches.push(first..=last);
-            }
-            (first, accesses) = (at + usize::from(ends), 0);
-        }
-        if accessed(&op).is_some() {
-            (last, accesses) = (at, accesses + 1);
-        }
-    }
-    stretches
-}
-
-/// Whether an instruction is none of those that simply go on with the next.
-const fn ends_stretch(op: &Op) -> bool {
-    let is_jump = matches!(op, Op::BrIf { .. } | Op::BrUnless { .. } | Op::Charge { .. });
-    is_argument(op) || is_jump || meter::is_result(op) || meter::ends_path(op)
-}
-
-/// Whether an instruction passes an argument to the call behind it.
-const fn is_argument(op: &Op) -> bool {
-    matches!(op, Op::ArgI32 { .. } | Op::ArgI64 { .. } | Op::ArgF32 { .. } | Op::ArgF64 { .. })
-}
-
-/// The loops that hold no other, each with the word at which it is entered.
-///
-/// A loop is the stretch from the target of a branch backwards to the branch. It may be entered at one word only, often
-/// where its condition is.
-fn innermost_loops(program: &Program, function: &Function) -> Vec<(RangeInclusive<usize>, usize)> {
-    let branches: Vec<(usize, usize)> = (function.body.clone())
-        .filter_map(|at| branch_target(&program.ops()[at]).map(|to| (at, to.0 as usize)))
-        .collect();
-    let mut ends = BTreeMap::new();
-    for (at, to) in branches.iter().filter(|(at, to)| to <= at) {
-        ends.insert(*to, *at);
-    }
-    let entered = |words: RangeInclusive<usize>| {
-        let falls_in = function.body.contains(&(words.start() - 1))
-            && !meter::ends_path(&program.ops()[words.start() - 1]);
-        let inside = ends.range(words.clone()).count();
-        let jumps = branches.iter().filter(|(at, to)| !words.contains(at) && words.contains(to));
-        let mut entries = jumps.map(|(_, to)| *to).chain(falls_in.then_some(*words.start()));
-        let entry = entries.next()?;
-        let is_only_one = inside == 1 && entries.all(|other| other == entry);
-        let is_charged = matches!(program.ops()[entry], Op::Charge { .. });
-        (is_only_one && is_charged).then_some((words, entry))
-    };
-    ends.iter().filter_map(|(first, last)| entered(*first..=*last)).collect()
-}
-
 /// What is known where a block begins or an instruction stands.
 #[derive(Clone, Debug)]
 struct Known {
@@ -248,9 +142,10 @@ struct Known {
 }
 
 /// How a root is made of others.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Made {
-    Sum(Root, Root),
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Made {
+    /// Of these in ascending order, none of which is a sum.
+    Sum(Vec<Root>),
     Difference(Root, Root),
     Product(Root, i32),
 }
@@ -262,6 +157,7 @@ struct Planner<'a> {
     cost: &'a dyn Fn(&Op) -> Option<u32>,
     roots: Root,
     known_roots: BTreeMap<Made, Root>,
+    sums: BTreeMap<Root, Vec<Root>>,
     arriving: BTreeMap<Place, Known>,
     plan: Plan,
     registers: usize,
@@ -294,6 +190,7 @@ impl<'a> Planner<'a> {
             entries: BTreeMap::new(),
             accesses: BTreeMap::new(),
             groups: BTreeMap::new(),
+            strides: Strides::default(),
         };
         let registers = function.classes.len();
         Some(Self {
@@ -302,6 +199,7 @@ impl<'a> Planner<'a> {
             cost,
             roots: 0,
             known_roots: BTreeMap::new(),
+            sums: BTreeMap::new(),
             arriving: BTreeMap::new(),
             plan,
             registers,
@@ -339,6 +237,7 @@ impl<'a> Planner<'a> {
                 known = known.and_then(|known| self.word(turn, at, known));
             }
         }
+        self.plan.strides = self.strides();
         Some(self.plan)
     }
 
@@ -393,7 +292,7 @@ impl<'a> Planner<'a> {
             Op::ShlI32Imm { a, imm, .. } if (0..16).contains(&imm.0) => self.product(of(a), 1 << imm.0),
             Op::AddI32 { a, b, .. } => {
                 let ((a, from), (b, by)) = (of(a), of(b));
-                (self.made(Made::Sum(a.min(b), a.max(b))), from.wrapping_add(by))
+                (self.sum(a, b), from.wrapping_add(by))
             }
             Op::SubI32 { a, b, .. } => {
                 let ((a, from), (b, by)) = (of(a), of(b));
@@ -408,14 +307,57 @@ impl<'a> Planner<'a> {
         (self.made(Made::Product(root, factor)), distance.wrapping_mul(factor))
     }
 
+    /// The sum of two roots, each of which may be one.
+    fn sum(&mut self, a: Root, b: Root) -> Root {
+        let mut terms = [self.terms(a), self.terms(b)].concat();
+        terms.sort_unstable();
+        if terms.len() > MAX_TERMS { self.root().0 } else { self.made(Made::Sum(terms)) }
+    }
+
+    /// The roots that `root` is the sum of; itself if it is none.
+    fn terms(&self, root: Root) -> Vec<Root> {
+        self.sums.get(&root).cloned().unwrap_or_else(|| vec![root])
+    }
+
     /// The root that is made of others in one way.
     fn made(&mut self, made: Made) -> Root {
         if let Some(root) = self.known_roots.get(&made) {
             return *root;
         }
         let (root, _) = self.root();
+        if let Made::Sum(terms) = &made {
+            self.sums.insert(root, terms.clone());
+        }
         self.known_roots.insert(made, root);
         root
+    }
+
+    /// The accesses that move by the same register in each turn.
+    fn strides(&self) -> Strides {
+        let assigned: BTreeSet<usize> =
+            self.plan.words.clone().filter_map(|at| int_destination(&self.program.ops()[at])).collect();
+        let steps = |root: Root| {
+            // The first roots are what the registers hold when the turns begin.
+            let register = (root as usize).checked_sub(1).filter(|register| *register < self.registers)?;
+            (!assigned.contains(&register)).then_some(RegI32(register as u16))
+        };
+        let mut strides = Strides::default();
+        for at in self.plan.order.iter().filter(|_| self.plan.turns > 1) {
+            let access = |turn: usize| self.plan.accesses.get(&(turn, *at));
+            let Some(accesses) = (0..self.plan.turns).map(access).collect::<Option<Vec<_>>>() else {
+                continue;
+            };
+            let roots: Vec<Root> = accesses.iter().map(|access| access.root).collect();
+            let terms: Vec<_> = roots.iter().map(|root| self.terms(*root)).collect();
+            let group = self.plan.groups.get(&roots[0]);
+            if accesses.iter().all(|access| access.at == accesses[0].at)
+                && roots.iter().all(|root| self.plan.groups.get(root) == group)
+                && let Some(step) = common_step(&terms).and_then(steps)
+            {
+                strides.insert(&roots, step);
+            }
+        }
+        strides
     }
 
     /// A branch to `to`.
@@ -502,10 +444,10 @@ impl Group {
 }
 
 /// Base register, displacement and width of an access, and whether it is a store.
-type Accessed = (RegI32, Off, Width, bool);
+pub(super) type Accessed = (RegI32, Off, Width, bool);
 
 /// The access that an instruction makes through a register.
-const fn accessed(op: &Op) -> Option<Accessed> {
+pub(super) const fn accessed(op: &Op) -> Option<Accessed> {
     Some(match *op {
         Op::LoadI8S { base, off, .. } => (base, off, Width::I8S, false),
         Op::LoadI8U { base, off, .. } => (base, off, Width::I8U, false),

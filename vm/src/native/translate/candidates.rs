@@ -1,0 +1,138 @@
+//! Which words may be translated a second time: loops, regions and stretches.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::{Range, RangeInclusive};
+
+use super::turns::{MAX_WORDS, accessed};
+use crate::meter::{self, branch_target};
+use crate::op::Op;
+use crate::program::{Function, Program};
+
+/// The loops that hold no other, each with the word at which it is entered.
+///
+/// A loop is the stretch from the target of a branch backwards to the branch. It may be entered at one word only, often
+/// where its condition is.
+pub(super) fn innermost_loops(program: &Program, function: &Function) -> Vec<(RangeInclusive<usize>, usize)> {
+    let branches: Vec<(usize, usize)> = (function.body.clone())
+        .filter_map(|at| branch_target(&program.ops()[at]).map(|to| (at, to.0 as usize)))
+        .collect();
+    let mut ends = BTreeMap::new();
+    for (at, to) in branches.iter().filter(|(at, to)| to <= at) {
+        ends.insert(*to, *at);
+    }
+    let entered = |words: RangeInclusive<usize>| {
+        let falls_in = function.body.contains(&(words.start() - 1))
+            && !meter::ends_path(&program.ops()[words.start() - 1]);
+        let inside = ends.range(words.clone()).count();
+        let jumps = branches.iter().filter(|(at, to)| !words.contains(at) && words.contains(to));
+        let mut entries = jumps.map(|(_, to)| *to).chain(falls_in.then_some(*words.start()));
+        let entry = entries.next()?;
+        let is_only_one = inside == 1 && entries.all(|other| other == entry);
+        let is_charged = matches!(program.ops()[entry], Op::Charge { .. });
+        (is_only_one && is_charged).then_some((words, entry))
+    };
+    ends.iter().filter_map(|(first, last)| entered(*first..=*last)).collect()
+}
+
+/// Which words execution enters elsewhere than from the word before, and from where: the first and the last branch.
+struct Entries(BTreeMap<usize, RangeInclusive<usize>>);
+
+impl Entries {
+    fn of(program: &Program, function: &Function) -> Self {
+        let mut entries: BTreeMap<usize, RangeInclusive<usize>> = BTreeMap::new();
+        for at in function.body.clone() {
+            if let Some(to) = branch_target(&program.ops()[at]) {
+                let from = entries.entry(to.0 as usize).or_insert(at..=at);
+                *from = *from.start()..=at;
+            }
+        }
+        Self(entries)
+    }
+
+    /// Whether a branch to `at` comes from outside of the words from `first` on, or from behind.
+    fn is_entered(&self, at: usize, first: usize) -> bool {
+        self.0.get(&at).is_some_and(|from| *from.start() < first || *from.end() >= at)
+    }
+}
+
+/// The regions: words in which execution only goes forward, that are entered at the first alone and charge more than
+/// once.
+///
+/// One test of the budget, where a region is entered, stands for those of its charges. What `is_taken` is left out.
+pub(super) fn regions(
+    program: &Program,
+    function: &Function,
+    is_taken: &dyn Fn(usize) -> bool,
+    cost: &dyn Fn(&Op) -> Option<u32>,
+) -> Vec<RangeInclusive<usize>> {
+    let entries = Entries::of(program, function);
+    let is_charge = |at: &usize| matches!(program.ops()[*at], Op::Charge { .. });
+    let mut regions = Vec::new();
+    let mut first = function.body.start;
+    while first < function.body.end {
+        let may_go_on = |at: &usize| {
+            let is_entered = *at > first && entries.is_entered(*at, first);
+            !is_taken(*at) && !is_entered && cost(&program.ops()[*at]).is_some()
+        };
+        let most = function.body.end.min(first + MAX_WORDS);
+        let end = (first..most).take_while(may_go_on).last().map_or(first, |last| last + 1);
+        let end = without_arguments(program, first..end);
+        if (first..end).filter(is_charge).count() > 1 {
+            regions.push(first..=end - 1);
+        }
+        let next = end.max(first + 1);
+        first = (next..function.body.end).find(is_charge).unwrap_or(function.body.end);
+    }
+    regions
+}
+
+/// The end of `words` without the arguments of a call behind them, which belong to it.
+fn without_arguments(program: &Program, words: Range<usize>) -> usize {
+    let mut argument = None;
+    for at in words.clone() {
+        let op = &program.ops()[at];
+        if is_argument(op) {
+            argument.get_or_insert(at);
+        } else if meter::is_call(op) {
+            argument = None;
+        }
+    }
+    argument.unwrap_or(words.end)
+}
+
+/// The stretches of a block, between charges, calls and branches, that make several accesses.
+pub(super) fn straight_stretches(
+    program: &Program,
+    function: &Function,
+    begins: &BTreeSet<usize>,
+    cost: &dyn Fn(&Op) -> Option<u32>,
+) -> Vec<RangeInclusive<usize>> {
+    let mut stretches = Vec::new();
+    let (mut first, mut last, mut accesses) = (function.body.start, 0, 0);
+    for at in function.body.clone() {
+        let op = program.ops()[at];
+        let ends = ends_stretch(&op) || cost(&op) != Some(0);
+        if ends || begins.contains(&at) {
+            // What follows the last access is not translated twice.
+            if accesses > 1 {
+                stretches.push(first..=last);
+            }
+            (first, accesses) = (at + usize::from(ends), 0);
+        }
+        if accessed(&op).is_some() {
+            (last, accesses) = (at, accesses + 1);
+        }
+    }
+    stretches
+}
+
+/// Whether an instruction is none of those that simply go on with the next.
+const fn ends_stretch(op: &Op) -> bool {
+    let is_jump = matches!(op, Op::BrIf { .. } | Op::BrUnless { .. } | Op::Charge { .. });
+    is_argument(op) || is_jump || meter::is_result(op) || meter::ends_path(op)
+}
+
+/// Whether an instruction passes an argument to the call behind it.
+const fn is_argument(op: &Op) -> bool {
+    matches!(op, Op::ArgI32 { .. } | Op::ArgI64 { .. } | Op::ArgF32 { .. } | Op::ArgF64 { .. })
+}

@@ -1,0 +1,74 @@
+//! Accesses whose address moves by a register that stays the same, turn by turn.
+//!
+//! One check covers them all: the step must be so small that even the last turn's access is inside.
+
+use std::collections::BTreeMap;
+
+use super::turns::Root;
+use crate::operand::RegI32;
+
+/// A root among those at equal distances.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Stride {
+    /// What is added from turn to turn.
+    pub(super) step: RegI32,
+    /// The root in the turn before, unless this is the first.
+    pub(super) before: Option<Root>,
+    /// How many turns follow.
+    pub(super) later: u32,
+}
+
+/// The roots of such accesses.
+#[derive(Debug, Default)]
+pub(super) struct Strides(BTreeMap<Root, Stride>);
+
+impl Strides {
+    /// Notes the roots of an access in all turns.
+    pub(super) fn insert(&mut self, roots: &[Root], step: RegI32) {
+        if roots.iter().any(|root| self.0.contains_key(root)) {
+            return;
+        }
+        let mut before = None;
+        for (later, root) in (0..roots.len() as u32).rev().zip(roots) {
+            self.0.insert(*root, Stride { step, before, later });
+            before = Some(*root);
+        }
+    }
+
+    /// Where `root` stands among them.
+    pub(super) fn get(&self, root: Root) -> Option<Stride> {
+        self.0.get(&root).copied()
+    }
+}
+
+/// The root that each of `turns`, as sorted sums, has once more than the one before; `None` if they are no such row.
+pub(super) fn common_step(turns: &[Vec<Root>]) -> Option<Root> {
+    let (first, second) = (turns.first()?, turns.get(1)?);
+    let step = *second.iter().find(|root| count(second, **root) > count(first, **root))?;
+    let mut expected = first.clone();
+    let is_row = turns.iter().all(|terms| {
+        let is_next = *terms == expected;
+        expected.push(step);
+        expected.sort_unstable();
+        is_next
+    });
+    is_row.then_some(step)
+}
+
+fn count(terms: &[Root], root: Root) -> usize {
+    terms.iter().filter(|term| **term == root).count()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_row_gains_the_same_root_in_each_turn() {
+        assert_eq!(common_step(&[vec![1, 4], vec![1, 2, 4], vec![1, 2, 2, 4]]), Some(2));
+        assert_eq!(common_step(&[vec![2], vec![2, 2], vec![2, 2, 2]]), Some(2));
+        assert_eq!(common_step(&[vec![1], vec![1, 2], vec![1, 2, 3]]), None);
+        assert_eq!(common_step(&[vec![1], vec![1], vec![1]]), None);
+        assert_eq!(common_step(&[vec![1]]), None);
+    }
+}
