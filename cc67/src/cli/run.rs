@@ -57,7 +57,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "DIR")]
     files: Option<PathBuf>,
     /// What the world does and when: a file of statements, or statements such as "t=0.5 bit 136=1"
-    #[arg(long, value_name = "FILE|TEXT")]
+    #[arg(long, alias = "stimulus", value_name = "FILE|TEXT")]
     stim: Vec<String>,
     /// Play an operator: programs that only wait on inputs get the other level of one input after the other
     #[arg(long)]

@@ -232,7 +232,10 @@ impl<'a> Value<'a> {
         let bit = number.ok_or_else(|| self.is_wrong("a bit number, 0 to 2047"))?;
         match range_of(bit) {
             Some(range) if goes(range.direction) => Ok(bit),
-            Some(range) => Err(self.is_wrong(&format!("{what}; bit {bit} is one of {}", range.name))),
+            Some(range) => {
+                let text = format!("`{}` must be {what}, not bit {bit} ({})", self.path, range.name);
+                Err(Wrong::new(self.source.span().start, text))
+            }
             None => Err(self.is_wrong("a bit that something answers")),
         }
     }
