@@ -423,3 +423,14 @@ fn the_command_needs_no_file_but_itself() {
     run(&["init", "machine"]);
     assert!(run(&["test", "machine"]).contains("passed"));
 }
+
+#[test]
+fn a_remark_that_comes_again_and_again_is_shown_once() {
+    let source = "#include \"KMotionDef.h\"\nmain()\n{\n  int i, bit = 5000 + persist.UserData[9];\n\
+                  for (i = 0; i < 1000; i++) SetBit(bit);\n  SetBit(bit + 1);\n}\n";
+    let output = run_source("repeats", source, &[]);
+    let remark = |bit| format!("thread 1: SetBit({bit}): there are bits 0 to 2047");
+    let expected =
+        format!("cc67: {}\ncc67: {}\ncc67: 999 times more: {}\n", remark(5000), remark(5001), remark(5000));
+    assert_eq!((output.code, output.stderr), (0, expected));
+}

@@ -21,6 +21,7 @@ mod pc;
 mod plot;
 mod profile;
 mod program;
+mod repeats;
 mod run;
 mod screen;
 mod setting;

@@ -10,6 +10,7 @@ use runtime::debug::DebugInfo;
 use runtime::{Event, EventKind};
 use serde::Serialize;
 
+use super::repeats::Repeats;
 use super::run::TIMEBASE;
 use super::{Exit, terminal};
 use crate::host::remark;
@@ -77,6 +78,7 @@ pub(super) struct Screen<W: Write> {
     console_lines: u64,
     traps: u64,
     remarks: u64,
+    repeats: Repeats,
     /// Who has read which inputs that nothing drives: told together when the run is over.
     undriven: Vec<(String, Bit)>,
     error: Option<io::Error>,
@@ -91,8 +93,21 @@ impl<W: Write> Screen<W> {
         offered: Vec<Offered>,
     ) -> Self {
         let (threads, programs) = programs.into_iter().unzip();
-        let (console_lines, traps, remarks, undriven) = Default::default();
-        Self { out, style, programs, threads, offered, console_lines, traps, remarks, undriven, error: None }
+        let (console_lines, traps, remarks, repeats, undriven) = Default::default();
+        let error = None;
+        Self {
+            out,
+            style,
+            programs,
+            threads,
+            offered,
+            console_lines,
+            traps,
+            remarks,
+            repeats,
+            undriven,
+            error,
+        }
     }
 
     /// Another program has been loaded.
@@ -148,6 +163,9 @@ impl<W: Write> Screen<W> {
         let is_trap = matches!(event.kind, EventKind::Trap(_));
         *(if is_trap { &mut self.traps } else { &mut self.remarks }) += 1;
         if !self.style.json {
+            if matches!(event.kind, EventKind::Diagnostic(_)) && !self.repeats.is_shown(text) {
+                return;
+            }
             // What was printed before stands before it on a terminal that shows both.
             let flushed = self.out.flush();
             self.keep(flushed);
@@ -180,11 +198,15 @@ impl<W: Write> Screen<W> {
 
     /// Says how the run has ended.
     pub(super) fn end(&mut self, exit: Exit, reason: &str, at: Ticks, active: &[u8]) {
+        let mut last = self.repeats.summary();
         if !self.undriven.is_empty() {
+            last.push(remark::undriven(&self.undriven));
+        }
+        if !last.is_empty() {
             let flushed = self.out.flush();
             self.keep(flushed);
-            terminal::note(&remark::undriven(&self.undriven));
         }
+        last.iter().for_each(|text| terminal::note(text));
         if !self.style.json {
             return;
         }
