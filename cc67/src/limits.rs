@@ -11,7 +11,7 @@ use kmotiondef::limits::MAX_NSTRINGS;
 use kmotiondef::map::{PROGRAM_BASE, PROGRAM_SIZE, STACK_BASE, STACK_SIZE};
 
 use crate::bytecode::unit::MAX_FRAME;
-use crate::cli::{PC_FILE_BYTES, PICTURE_SAMPLES, STIMULUS_PLANS};
+use crate::cli::{PC_FILE_BYTES, PICTURE_SAMPLES, SHOWN_REMARKS, STIMULUS_PLANS};
 use crate::diag::MAX_ERRORS;
 use crate::host::{CONSOLE_LINES, REPLY_BYTES};
 use crate::input::{DATA_BYTES, FILE_BYTES};
@@ -110,6 +110,11 @@ pub const FILES: &[Limit] = &[
         "later ones are left out; a remark says so",
     ),
     limit(
+        "different remarks that a run shows",
+        SHOWN_REMARKS as u64,
+        "further ones are counted; `--json` shows all",
+    ),
+    limit(
         "samples in a picture of a run",
         PICTURE_SAMPLES as u64,
         "the picture shows what was so every so many ticks, as it says; traces show all",
@@ -121,7 +126,7 @@ pub const ALL: [(&str, &[Limit]); 4] = [
     ("The compiler", COMPILER),
     ("A program on the board", BOARD),
     ("A board that serves programs of the PC", CLIENTS),
-    ("Files, stimuli and pictures", FILES),
+    ("Files, stimuli, remarks and pictures", FILES),
 ];
 
 /// A number with its thousands apart.

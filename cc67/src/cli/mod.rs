@@ -42,6 +42,7 @@ use anyhow::Result;
 use clap::{Parser, Subcommand};
 
 pub use exit::Exit;
+pub(crate) use repeats::MOST as SHOWN_REMARKS;
 pub(crate) use runtime::FILE_BYTES as PC_FILE_BYTES;
 pub(crate) use runtime::stimulus::MOST_PLANNED as STIMULUS_PLANS;
 #[cfg(feature = "native")]

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 /// How many different remarks are shown.
-const MOST: usize = 1000;
+pub(crate) const MOST: usize = 1000;
 
 /// The remarks so far.
 #[derive(Debug, Default)]
