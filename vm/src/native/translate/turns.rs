@@ -72,7 +72,7 @@ pub(super) struct Access {
     pub(super) base: i32,
 }
 
-/// A loop in several turns, or a stretch without branches.
+/// A loop in several turns, or words that are passed once.
 #[derive(Debug)]
 pub(super) struct Plan {
     /// The words of the loop.
@@ -143,7 +143,7 @@ struct Known {
 
 /// How a root is made of others.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Made {
+enum Made {
     /// Of these in ascending order, none of which is a sum.
     Sum(Vec<Root>),
     Difference(Root, Root),
