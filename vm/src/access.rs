@@ -6,15 +6,63 @@ use crate::bus::AccessSize;
 use crate::engine::Slice;
 use crate::firmware::Firmware;
 use crate::memory::{Scalar, is_on_bus};
+use crate::slot::Slot;
 use crate::trap::{Access, TrapKind};
+
+macro_rules! widths {
+    ($($(#[$doc:meta])* $width:ident;)*) => {
+        /// What a load or store moves.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[repr(u8)]
+        pub(crate) enum Width {
+            $($(#[$doc])* $width,)*
+        }
+
+        impl Width {
+            /// All widths in the order of their numbers.
+            #[cfg(feature = "native")]
+            pub(crate) const ALL: &'static [Self] = &[$(Self::$width),*];
+        }
+    };
+}
+widths! {
+    /// 8 bits, sign-extended.
+    I8S;
+    /// 8 bits, zero-extended.
+    I8U;
+    /// 16 bits, sign-extended.
+    I16S;
+    /// 16 bits, zero-extended.
+    I16U;
+    /// 32 bits of an integer.
+    I32;
+    /// 64 bits of an integer.
+    I64;
+    /// A single.
+    F32;
+    /// A double.
+    F64;
+}
+
+#[cfg(feature = "native")]
+impl Width {
+    /// Number of bytes.
+    pub(crate) const fn bytes(self) -> u32 {
+        match self {
+            Self::I8S | Self::I8U => 1,
+            Self::I16S | Self::I16U => 2,
+            Self::I32 | Self::F32 => 4,
+            Self::I64 | Self::F64 => 8,
+        }
+    }
+}
 
 impl<F: Firmware + ?Sized> Slice<'_, F> {
     /// Loads a value from memory or from registers of a device.
     ///
     /// # Errors
     /// [`TrapKind::Unmapped`] or [`TrapKind::Misaligned`].
-    #[inline(always)]
-    pub(crate) fn load<T: Scalar>(&mut self, addr: GuestAddr) -> Result<T, TrapKind> {
+    fn load<T: Scalar>(&mut self, addr: GuestAddr) -> Result<T, TrapKind> {
         self.memory.load(addr).or_else(|kind| self.load_from_bus(addr, kind))
     }
 
@@ -22,9 +70,40 @@ impl<F: Firmware + ?Sized> Slice<'_, F> {
     ///
     /// # Errors
     /// [`TrapKind::Unmapped`], [`TrapKind::Misaligned`] or [`TrapKind::WriteProtected`].
-    #[inline(always)]
-    pub(crate) fn store<T: Scalar>(&mut self, addr: GuestAddr, value: T) -> Result<(), TrapKind> {
+    fn store<T: Scalar>(&mut self, addr: GuestAddr, value: T) -> Result<(), TrapKind> {
         self.memory.store(addr, value).or_else(|kind| self.store_to_bus(addr, value, kind))
+    }
+
+    /// Loads a value as a register slot.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub(crate) fn load_slot(&mut self, addr: GuestAddr, width: Width) -> Result<u64, TrapKind> {
+        Ok(match width {
+            Width::I8S => i32::from(self.load::<i8>(addr)?).into_slot(),
+            Width::I8U => i32::from(self.load::<u8>(addr)?).into_slot(),
+            Width::I16S => i32::from(self.load::<i16>(addr)?).into_slot(),
+            Width::I16U => i32::from(self.load::<u16>(addr)?).into_slot(),
+            Width::I32 => self.load::<i32>(addr)?.into_slot(),
+            Width::I64 => self.load::<i64>(addr)?.into_slot(),
+            Width::F32 => self.load::<f32>(addr)?.into_slot(),
+            Width::F64 => self.load::<f64>(addr)?.into_slot(),
+        })
+    }
+
+    /// Stores a register slot.
+    ///
+    /// # Errors
+    /// As [`store`](Self::store).
+    pub(crate) fn store_slot(&mut self, addr: GuestAddr, width: Width, slot: u64) -> Result<(), TrapKind> {
+        match width {
+            Width::I8S | Width::I8U => self.store(addr, slot as u8),
+            Width::I16S | Width::I16U => self.store(addr, slot as u16),
+            Width::I32 => self.store(addr, i32::from_slot(slot)),
+            Width::I64 => self.store(addr, i64::from_slot(slot)),
+            Width::F32 => self.store(addr, f32::from_slot(slot)),
+            Width::F64 => self.store(addr, f64::from_slot(slot)),
+        }
     }
 
     /// A load that memory has refused as `kind`.

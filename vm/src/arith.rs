@@ -7,18 +7,28 @@
 //! The bits of a NaN that an operation makes differ between processors, so every operation
 //! here yields the same one.
 
+use std::hint::cold_path;
+
 /// `value`, with every NaN made the same.
 #[must_use]
 #[inline]
 pub const fn canonical_f32(value: f32) -> f32 {
-    if value.is_nan() { f32::from_bits(0x7fc0_0000) } else { value }
+    if value.is_nan() {
+        cold_path();
+        return f32::from_bits(0x7fc0_0000);
+    }
+    value
 }
 
 /// `value`, with every NaN made the same.
 #[must_use]
 #[inline]
 pub const fn canonical_f64(value: f64) -> f64 {
-    if value.is_nan() { f64::from_bits(0x7ff8_0000_0000_0000) } else { value }
+    if value.is_nan() {
+        cold_path();
+        return f64::from_bits(0x7ff8_0000_0000_0000);
+    }
+    value
 }
 
 macro_rules! float_operations {

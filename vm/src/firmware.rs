@@ -101,6 +101,11 @@ impl Signature {
         let results_agree = self.result.is_none() || called.result.is_none() || self.result == called.result;
         results_agree && called.params.starts_with(&self.params)
     }
+
+    /// [`may_be_called_as`](Self::may_be_called_as), as what stops a program that calls the function at `addr`.
+    pub(crate) fn check_call(&self, addr: GuestAddr, called: &Self) -> Result<(), TrapKind> {
+        if self.may_be_called_as(called) { Ok(()) } else { Err(TrapKind::SignatureMismatch { addr }) }
+    }
 }
 
 /// A firmware function that does nothing but compute its result from its arguments, so that an engine may

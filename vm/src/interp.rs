@@ -2,22 +2,26 @@
 //!
 //! The registers of all calls of a context lie in one array, each call's window directly
 //! behind its caller's registers, so that an argument is written where the callee has its
-//! parameter. `Activation::run` executes one call until it calls, returns or stops; the loop
-//! around it keeps the call frames.
+//! parameter. `dispatch::execute` goes from instruction to instruction, calls and returns
+//! included, until something else is needed than registers and RAM; the loop around it sees to that.
 
 mod activation;
 mod arith;
+mod code;
 mod context;
 mod control;
+mod dispatch;
 mod memory;
+mod sequences;
 
-use kmotiondef::{CodeAddr, GuestAddr};
+use kmotiondef::{CodeAddr, Cycles, GuestAddr};
 
-use self::activation::{Activation, Exit};
+use self::activation::{Exit, State};
+pub(crate) use self::code::Code;
 use self::context::Context;
 use crate::engine::{ContextId, Engine, Slice, Stack, Stop};
-use crate::firmware::{Firmware, Outcome, Signature};
-use crate::operand::FuncRef;
+use crate::firmware::{Firmware, Outcome};
+use crate::operand::{FuncRef, SigRef};
 use crate::program::Program;
 use crate::trap::{Trap, TrapKind};
 
@@ -44,7 +48,7 @@ impl Engine for BytecodeEngine {
             return Stop::Ended;
         };
         run(id, context, slice).unwrap_or_else(|kind| {
-            Stop::Trapped(Trap { kind, at: slice.program.address_of(context.pc), thread: id.thread() })
+            Stop::Trapped(Trap { kind, at: slice.program.address_of(context.calls.pc), thread: id.thread() })
         })
     }
 
@@ -53,7 +57,7 @@ impl Engine for BytecodeEngine {
     }
 
     fn backtrace(&self, id: ContextId, program: &Program) -> Vec<CodeAddr> {
-        let words = self.contexts[id.index()].as_ref().map(Context::calls).unwrap_or_default();
+        let words = self.contexts[id.index()].as_ref().map(Context::backtrace).unwrap_or_default();
         words.into_iter().map(|word| program.address_of(word)).collect()
     }
 }
@@ -69,77 +73,93 @@ fn run<F: Firmware + ?Sized>(
         context.enter(program, function)?;
     }
     loop {
-        let exit = Activation::run(context, slice);
-        // Behind the instruction, from where a call goes on; set back where it does not.
-        let next = context.pc + 1;
+        let exit = execute(context, slice);
         match exit {
             Exit::Preempted => {
-                context.pc = next;
+                context.calls.pc += 1;
                 return Ok(Stop::Preempted);
+            }
+            Exit::Load(address, width, register) => {
+                let slot = slice.load_slot(address, width)?;
+                context.set(register, slot);
+                context.calls.pc += 1;
+            }
+            Exit::Store(address, width, slot) => {
+                slice.store_slot(address, width, slot)?;
+                context.calls.pc += 1;
+            }
+            Exit::Copy { to, from, len } => {
+                slice.memory.copy(to, from, len.into())?;
+                context.calls.pc += 1;
+            }
+            Exit::Clear { to, len } => {
+                slice.memory.fill(to, 0, len.into())?;
+                context.calls.pc += 1;
             }
             Exit::Trap(kind) => return Err(kind),
             Exit::Call(function) => context.call(program, function)?,
-            Exit::Return(result) => {
-                context.result = result;
-                if !context.leave() {
-                    return Ok(Stop::Ended);
-                }
-            }
+            Exit::Ended => return Ok(Stop::Ended),
             Exit::CallFirmware(address, signature) => {
-                let signature = program.signature(signature);
-                let Some(callee) = slice.firmware.signature(address) else {
-                    return Err(TrapKind::UnknownFirmwareFunction { addr: address });
-                };
-                check_signature(address, callee, signature)?;
-                if let Some(stop) = call_firmware(id, context, slice, address, signature.params.len())? {
+                let missing = TrapKind::UnknownFirmwareFunction { addr: address };
+                if let Some(stop) = call_firmware(id, context, slice, address, signature, missing)? {
                     return Ok(stop);
                 }
             }
             Exit::CallPointer(address, signature) => {
-                let signature = program.signature(signature);
                 if let Some(function) = program.function_at(address) {
-                    check_signature(address, program.signature_of(function), signature)?;
+                    let called = program.signature(signature);
+                    program.signature_of(function).check_call(address, called)?;
                     context.call(program, function)?;
-                } else if let Some(callee) = slice.firmware.signature(address) {
-                    check_signature(address, callee, signature)?;
-                    if let Some(stop) = call_firmware(id, context, slice, address, signature.params.len())? {
-                        return Ok(stop);
-                    }
-                } else {
-                    return Err(TrapKind::BadCallTarget { addr: address });
+                    continue;
+                }
+                let missing = TrapKind::BadCallTarget { addr: address };
+                if let Some(stop) = call_firmware(id, context, slice, address, signature, missing)? {
+                    return Ok(stop);
                 }
             }
         }
     }
 }
 
+/// Executes `context`, whose `pc` is then the instruction that ended that.
+fn execute<F: Firmware + ?Sized>(context: &mut Context, slice: &mut Slice<'_, F>) -> Exit {
+    let program = slice.program;
+    let (calls, registers) = context.parts();
+    let mut state =
+        State { program, memory: slice.memory, budget: slice.budget.get(), registers, calls, exit: None };
+    let exit = dispatch::execute(&mut state, program.code.words(&program.ops));
+    slice.budget = Cycles::new(state.budget);
+    exit
+}
+
 /// Makes a firmware call; the stop, if the context does not go on behind it at once.
+///
+/// # Errors
+/// `missing` if there is no function at `address`, or what the call itself yields.
 fn call_firmware<F: Firmware + ?Sized>(
     id: ContextId,
     context: &mut Context,
     slice: &mut Slice<'_, F>,
     address: GuestAddr,
-    parameters: usize,
+    signature: SigRef,
+    missing: TrapKind,
 ) -> Result<Option<Stop>, TrapKind> {
-    let stop = match slice.call_firmware(id, address, context.arguments(parameters))? {
+    let called = slice.program.signature(signature);
+    slice.firmware.signature(address).ok_or(missing)?.check_call(address, called)?;
+    let stop = match slice.call_firmware(id, address, context.arguments(called.params.len()))? {
         Outcome::Done(value) => {
-            context.result = value.into_slot();
+            context.calls.result = value.into_slot();
             None
         }
         Outcome::Wait(wake) => return Ok(Some(Stop::Waiting(wake))),
         Outcome::End => return Ok(Some(Stop::Ended)),
         Outcome::Pause => {
-            context.result = 0;
+            context.calls.result = 0;
             Some(Stop::Paused)
         }
     };
-    context.pc += 1;
+    context.calls.pc += 1;
     Ok(stop)
-}
-
-/// Whether `callee` can be called as the instruction says.
-fn check_signature(addr: GuestAddr, callee: &Signature, called: &Signature) -> Result<(), TrapKind> {
-    if callee.may_be_called_as(called) { Ok(()) } else { Err(TrapKind::SignatureMismatch { addr }) }
 }
 
 #[cfg(test)]

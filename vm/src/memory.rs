@@ -168,16 +168,18 @@ impl GuestMemory {
     /// [`TrapKind::Unmapped`] or [`TrapKind::Misaligned`].
     #[inline]
     pub fn load<T: Scalar>(&self, addr: GuestAddr) -> Result<T, TrapKind> {
+        self.load_ram(addr).map_or_else(|| self.load_elsewhere(addr), Ok)
+    }
+
+    /// Loads a value on behalf of a program if [`load`](Self::load) finds it in SDRAM or in on-chip RAM.
+    #[inline(always)]
+    pub(crate) fn load_ram<T: Scalar>(&self, addr: GuestAddr) -> Option<T> {
         let address = addr.get();
-        if address & (T::LOAD_ALIGN - 1) == 0 {
-            if let Some(value) = T::get(&self.sdram[..], index(address.wrapping_sub(SDRAM_BASE))) {
-                return Ok(value);
-            }
-            if let Some(value) = T::get(&self.iram[..], index(address.wrapping_sub(IRAM_BASE))) {
-                return Ok(value);
-            }
+        if address & (T::LOAD_ALIGN - 1) != 0 {
+            return None;
         }
-        self.load_elsewhere(addr)
+        T::get(&self.sdram[..], index(address.wrapping_sub(SDRAM_BASE)))
+            .or_else(|| T::get(&self.iram[..], index(address.wrapping_sub(IRAM_BASE))))
     }
 
     #[cold]
@@ -200,15 +202,28 @@ impl GuestMemory {
     pub fn store<T: Scalar>(&mut self, addr: GuestAddr, value: T) -> Result<(), TrapKind> {
         let address = addr.get();
         if address & (T::STORE_ALIGN - 1) == 0 && !self.protection.covers(address, T::SIZE) {
-            if value.set(&mut self.sdram[..], index(address.wrapping_sub(SDRAM_BASE))).is_some() {
-                return Ok(());
-            }
-            if value.set(&mut self.iram[..], index(address.wrapping_sub(IRAM_BASE))).is_some() {
-                self.is_touched = true;
-                return Ok(());
-            }
+            return self.write_ram(address, value).ok_or_else(|| self.store_refusal(addr, T::SIZE));
         }
         Err(self.store_refusal(addr, T::SIZE))
+    }
+
+    /// Stores a value on behalf of a program as [`store`](Self::store), but only at a multiple of its size in RAM.
+    #[inline(always)]
+    pub(crate) fn store_ram<T: Scalar>(&mut self, addr: GuestAddr, value: T) -> Option<()> {
+        let address = addr.get();
+        if address & (T::SIZE - 1) != 0 || self.protection.covers_aligned(address) {
+            return None;
+        }
+        self.write_ram(address, value)
+    }
+
+    #[inline(always)]
+    fn write_ram<T: Scalar>(&mut self, address: u32, value: T) -> Option<()> {
+        if value.set(&mut self.sdram[..], index(address.wrapping_sub(SDRAM_BASE))).is_none() {
+            value.set(&mut self.iram[..], index(address.wrapping_sub(IRAM_BASE)))?;
+            self.is_touched = true;
+        }
+        Some(())
     }
 
     /// Why a store was refused.

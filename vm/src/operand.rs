@@ -98,6 +98,7 @@ macro_rules! register {
                 u32::from(self.0)
             }
 
+            #[inline]
             fn from_bits(bits: u32) -> Self {
                 Self(u16::from_low_bytes(bits.to_le_bytes()))
             }
@@ -146,6 +147,7 @@ macro_rules! number {
                 u32::from_le_bytes(self.0.to_le_bytes_padded())
             }
 
+            #[inline]
             fn from_bits(bits: u32) -> Self {
                 Self(<$repr>::from_low_bytes(bits.to_le_bytes()))
             }
@@ -184,6 +186,7 @@ macro_rules! numbers {
                 padded
             }
 
+            #[inline]
             fn from_low_bytes(bytes: [u8; 4]) -> Self {
                 let mut own = [0; size_of::<$ty>()];
                 for (to, from) in own.iter_mut().zip(bytes) {

@@ -2,11 +2,15 @@
 
 use std::ops::Range;
 
+use kmotiondef::map::{PROGRAM_BASE, PROGRAM_LIMIT};
 use kmotiondef::{CodeAddr, Cycles, GuestAddr};
 
 use crate::firmware::{Pure, Signature};
 use crate::op::{Op, WORD};
 use crate::operand::{Class, FuncRef, SigRef};
+
+/// Most bytes of a text: the whole program area.
+pub(crate) const MAX_TEXT: usize = (PROGRAM_LIMIT - PROGRAM_BASE) as usize;
 
 /// One function of a program.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -35,6 +39,8 @@ pub struct Program {
     pub(crate) pool: Vec<u64>,
     pub(crate) signatures: Vec<Signature>,
     pub(crate) functions: Vec<Function>,
+    /// Its words for the interpreter, once it has been started on the bytecode engine.
+    pub(crate) code: crate::interp::Code,
     /// Its machine code, once it has been started on the native engine.
     #[cfg(feature = "native")]
     pub(crate) compiled: crate::native::Compiled,
@@ -147,6 +153,7 @@ impl Program {
     }
 
     /// Signature, number of registers, and units of 8 bytes of the frame of a function.
+    #[inline]
     pub(crate) fn head_of(&self, function: FuncRef) -> (SigRef, u16, u16) {
         match self.ops[function.0 as usize] {
             Op::Func { sig, regs, frame } => (sig, regs.0, frame.0),

@@ -11,6 +11,9 @@ use kmotiondef::map::{PROGRAM_BASE, PROGRAM_LIMIT};
 const GRANULE: u32 = 8;
 const GRANULES: u32 = (PROGRAM_LIMIT - PROGRAM_BASE) / GRANULE;
 
+/// Words of the map.
+const MAP: usize = GRANULES.div_ceil(u64::BITS) as usize;
+
 /// A range of addresses for each thread.
 pub(crate) type Texts = [Range<u32>; ThreadId::MAX as usize];
 
@@ -18,15 +21,12 @@ pub(crate) type Texts = [Range<u32>; ThreadId::MAX as usize];
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Protection {
     texts: Texts,
-    map: Box<[u64]>,
+    map: Box<[u64; MAP]>,
 }
 
 impl Default for Protection {
     fn default() -> Self {
-        Self {
-            texts: Default::default(),
-            map: vec![0; GRANULES.div_ceil(u64::BITS) as usize].into_boxed_slice(),
-        }
+        Self { texts: Default::default(), map: Box::new([0; MAP]) }
     }
 }
 
@@ -54,12 +54,17 @@ impl Protection {
     /// Whether one of the `len` bytes from `address` on is protected.
     #[inline]
     pub(crate) fn covers(&self, address: u32, len: u32) -> bool {
-        let first = address.wrapping_sub(PROGRAM_BASE) / GRANULE;
         // Within one granule, as all aligned accesses are but a double at an odd word.
         if address % GRANULE + len <= GRANULE {
-            return self.is_set(first);
+            return self.covers_aligned(address);
         }
         self.covers_long(address, len)
+    }
+
+    /// Whether bytes from `address` on within its granule are protected.
+    #[inline]
+    pub(crate) fn covers_aligned(&self, address: u32) -> bool {
+        self.is_set(address.wrapping_sub(PROGRAM_BASE) / GRANULE)
     }
 
     #[cold]

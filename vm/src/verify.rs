@@ -25,7 +25,7 @@ use self::body::check_body;
 use crate::firmware::Signature;
 use crate::op::{Op, VERSION, WORD};
 use crate::operand::{Class, Classes, Count, FuncRef, SigRef};
-use crate::program::{Function, Program};
+use crate::program::{Function, MAX_TEXT, Program};
 
 /// Most parameters of a function.
 pub const MAX_PARAMETERS: usize = 255;
@@ -147,6 +147,7 @@ pub fn verify(text: &[u8], base: GuestAddr) -> Result<Program, VerifyError> {
         pool,
         signatures: Vec::new(),
         functions: Vec::new(),
+        code: crate::interp::Code::default(),
         #[cfg(feature = "native")]
         compiled: crate::native::Compiled::default(),
     };
@@ -160,9 +161,6 @@ pub fn verify(text: &[u8], base: GuestAddr) -> Result<Program, VerifyError> {
     }
     Ok(program)
 }
-
-/// Most bytes of a text: more than the whole program area.
-const MAX_TEXT: usize = 0x100_0000;
 
 /// Checks the `program` word and yields the size of the pool.
 fn read_head(words: &[[u8; WORD]]) -> Result<usize, VerifyErrorKind> {

@@ -1,38 +1,46 @@
-//! The loop: executes one call of a function until it calls, returns or stops.
+//! What instructions work with: one call of a function while it executes.
 //!
-//! The dispatch is expanded from the instruction table, one method an instruction; the
-//! methods stand in `arith.rs`, `memory.rs` and `control.rs`. What a method returns says how
-//! the loop goes on ([`Finish`]).
+//! There is one method an instruction, in `arith.rs`, `memory.rs` and `control.rs`. What it returns
+//! says how the execution goes on ([`Finish`]).
+
+use std::cell::Cell;
 
 use kmotiondef::GuestAddr;
 
-use super::context::{Context, Window};
-use crate::engine::Slice;
-use crate::firmware::Firmware;
-use crate::for_each_op;
-use crate::op::Op;
+use super::context::{Calls, Window};
+use crate::access::Width;
+use crate::memory::GuestMemory;
 use crate::operand::{FuncRef, Label, RegF32, RegF64, RegI32, RegI64, SigRef};
+use crate::program::Program;
 use crate::slot::Slot;
 use crate::trap::TrapKind;
 
-/// Why the loop was left.
+/// Why the execution stopped.
 #[derive(Debug)]
 pub(super) enum Exit {
     /// The budget is used up.
     Preempted,
-    /// A call within the program.
+    /// A call within the program for which there is no room yet.
     Call(FuncRef),
     /// A call of the firmware.
     CallFirmware(GuestAddr, SigRef),
     /// A call through a pointer.
     CallPointer(GuestAddr, SigRef),
-    /// A return with a result as a slot, 0 for none.
-    Return(u64),
+    /// A return from the outermost call.
+    Ended,
+    /// A load that is not from RAM, into the register of the given index.
+    Load(GuestAddr, Width, u16),
+    /// A store of a slot that is not to RAM, or to where nothing may be written.
+    Store(GuestAddr, Width, u64),
+    /// A copy within memory.
+    Copy { to: GuestAddr, from: GuestAddr, len: u16 },
+    /// Bytes to clear.
+    Clear { to: GuestAddr, len: u16 },
     /// The program did the impossible.
     Trap(TrapKind),
 }
 
-/// How the loop goes on behind an instruction.
+/// How the execution goes on behind an instruction.
 pub(super) enum Flow {
     /// With the next word.
     Next,
@@ -109,63 +117,35 @@ registers! {
     RegF64 holds f64;
 }
 
+/// What an execution has besides the registers of the current call.
+pub(super) struct State<'m> {
+    pub(super) program: &'m Program,
+    pub(super) memory: &'m mut GuestMemory,
+    /// What is left of the slice, in cycles.
+    pub(super) budget: i64,
+    /// The registers of all calls.
+    pub(super) registers: &'m [Cell<u64>],
+    pub(super) calls: &'m mut Calls,
+    /// Why the execution ended, once it has.
+    pub(super) exit: Option<Exit>,
+}
+
 /// One call of a function while it executes.
-pub(super) struct Activation<'a, 's, F: ?Sized> {
-    pub(super) window: &'a mut Window,
-    /// Where the arguments of the next call begin.
-    pub(super) arguments_at: u16,
-    /// Address of the frame in guest memory.
-    pub(super) frame_address: u32,
-    /// Result of the last call.
-    pub(super) result: u64,
-    pub(super) slice: &'a mut Slice<'s, F>,
+pub(super) struct Activation<'a, 'm> {
+    pub(super) state: &'a mut State<'m>,
+    pub(super) window: &'m Window,
+    /// The instruction that is executed.
+    pub(super) pc: usize,
 }
 
-macro_rules! define_loop {
-    ($($(#[$doc:meta])* $name:ident = $variant:ident { $($field:ident: $operand:ident),* }, cost $cost:expr;)*) => {
-        impl<F: Firmware + ?Sized> Activation<'_, '_, F> {
-            /// Executes from `pc` on; yields why it was left, and the instruction that left it.
-            fn execute(&mut self, ops: &[Op], mut pc: usize) -> (Exit, usize) {
-                loop {
-                    let next = pc + 1;
-                    pc = match ops[pc] {
-                        $(Op::$variant { $($field),* } => match self.$name($($field),*).flow() {
-                            Flow::Next => next,
-                            Flow::Skip(words) => next + words,
-                            Flow::Jump(to) => to.0 as usize,
-                            Flow::Leave(exit) => return (exit, pc),
-                        },)*
-                    };
-                }
-            }
-        }
-    };
-}
-for_each_op!(define_loop);
-
-impl<F: Firmware + ?Sized> Activation<'_, '_, F> {
-    /// Executes the current call of `context`, whose `pc` is then the instruction that left the loop.
-    pub(super) fn run(context: &mut Context, slice: &mut Slice<'_, F>) -> Exit {
-        let (program, pc) = (slice.program, context.pc);
-        let mut activation = Activation {
-            arguments_at: context.arguments_at(),
-            frame_address: context.frame_address(),
-            result: context.result,
-            window: context.window(),
-            slice,
-        };
-        let (exit, pc) = activation.execute(&program.ops, pc);
-        context.pc = pc;
-        exit
-    }
-
+impl Activation<'_, '_> {
     #[inline(always)]
     pub(super) fn get<R: Register>(&self, register: R) -> R::Value {
-        R::Value::from_slot(self.window[usize::from(register.index())])
+        R::Value::from_slot(self.window[usize::from(register.index())].get())
     }
 
     #[inline(always)]
-    pub(super) fn set<R: Register>(&mut self, register: R, value: R::Value) {
-        self.window[usize::from(register.index())] = value.into_slot();
+    pub(super) fn set<R: Register>(&self, register: R, value: R::Value) {
+        self.window[usize::from(register.index())].set(value.into_slot());
     }
 }

@@ -5,7 +5,6 @@ use std::ops::{BitAnd, BitOr, BitXor, Neg};
 
 use super::activation::Activation;
 use crate::arith;
-use crate::firmware::Firmware;
 use crate::operand::{Bits32, Imm, Imm16, Pool, RegF32, RegF64, RegI32, RegI64};
 use crate::slot::Slot;
 use crate::trap::TrapKind;
@@ -15,7 +14,7 @@ macro_rules! operations {
     (unary { $($un:ident: $un_src:ident -> $un_dst:ident = $un_fn:expr;)* }
      binary { $($bin:ident: $bin_a:ident, $bin_b:ident -> $bin_dst:ident = $bin_fn:expr;)* }
      divide { $($div:ident: $div_reg:ident = $div_fn:expr;)* }) => {
-        impl<F: Firmware + ?Sized> Activation<'_, '_, F> {
+        impl Activation<'_, '_> {
             $(#[inline(always)]
             pub(super) fn $un(&mut self, dst: $un_dst, src: $un_src) {
                 self.set(dst, $un_fn(self.get(src)));
@@ -130,7 +129,7 @@ operations! {
 /// Operations of 32 bits with an immediate.
 macro_rules! immediates {
     ($($name:ident = $function:expr;)*) => {
-        impl<F: Firmware + ?Sized> Activation<'_, '_, F> {
+        impl Activation<'_, '_> {
             $(#[inline(always)]
             pub(super) fn $name(&mut self, dst: RegI32, a: RegI32, imm: Imm16) {
                 self.set(dst, $function(self.get(a), i32::from(imm.0)));
@@ -147,7 +146,7 @@ immediates! {
     shr_i32_u_imm = arith::shr_i32_u;
 }
 
-impl<F: Firmware + ?Sized> Activation<'_, '_, F> {
+impl Activation<'_, '_> {
     #[inline(always)]
     pub(super) fn const_i32(&mut self, dst: RegI32, imm: Imm) {
         self.set(dst, imm.0);
@@ -155,7 +154,7 @@ impl<F: Firmware + ?Sized> Activation<'_, '_, F> {
 
     #[inline(always)]
     pub(super) fn const_i64(&mut self, dst: RegI64, pool: Pool) {
-        let slot = self.slice.program.pool[pool.0 as usize];
+        let slot = self.state.program.pool[pool.0 as usize];
         self.set(dst, i64::from_slot(slot));
     }
 
@@ -166,7 +165,7 @@ impl<F: Firmware + ?Sized> Activation<'_, '_, F> {
 
     #[inline(always)]
     pub(super) fn const_f64(&mut self, dst: RegF64, pool: Pool) {
-        let slot = self.slice.program.pool[pool.0 as usize];
+        let slot = self.state.program.pool[pool.0 as usize];
         self.set(dst, f64::from_slot(slot));
     }
 }

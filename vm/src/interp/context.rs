@@ -1,5 +1,7 @@
 //! A context: registers, call frames and the stack pointer of one thread.
 
+use std::cell::Cell;
+
 use crate::engine::Stack;
 use crate::operand::FuncRef;
 use crate::program::Program;
@@ -7,7 +9,9 @@ use crate::trap::TrapKind;
 use crate::verify::MAX_PARAMETERS;
 
 /// The registers that one call can name; an index of 16 bits is always inside.
-pub(super) type Window = [u64; WINDOW];
+///
+/// They are cells, as the windows of a caller and of its callee overlap.
+pub(super) type Window = [Cell<u64>; WINDOW];
 
 /// Number of registers in a window.
 const WINDOW: usize = 1 << 16;
@@ -31,11 +35,9 @@ struct Frame {
     stack_pointer: u32,
 }
 
-/// What a thread has besides guest memory.
+/// The calls of a context, and where it stands.
 #[derive(Debug)]
-pub(super) struct Context {
-    /// Of all calls, with a whole window behind the first register of the current one.
-    registers: Vec<u64>,
+pub(super) struct Calls {
     /// The calls around the current one, outermost first.
     frames: Vec<Frame>,
     /// The current call; its `pc` is kept in `pc`.
@@ -46,6 +48,82 @@ pub(super) struct Context {
     pub(super) pc: usize,
     /// Result of the last call, as a slot.
     pub(super) result: u64,
+}
+
+impl Calls {
+    /// Calls `function` from the instruction `pc`, if the stack and `registers` have room; its window then.
+    #[inline]
+    pub(super) fn call<'a>(
+        &mut self,
+        program: &Program,
+        function: FuncRef,
+        pc: usize,
+        registers: &'a [Cell<u64>],
+    ) -> Option<&'a Window> {
+        let caller = Frame { pc: pc + 1, ..self.current };
+        let window = self.begin(program, function, registers)?;
+        self.frames.push(caller);
+        Some(window)
+    }
+
+    /// Begins a call with the parameters that lie behind the current registers; all its others are 0.
+    #[inline]
+    fn begin<'a>(
+        &mut self,
+        program: &Program,
+        function: FuncRef,
+        registers: &'a [Cell<u64>],
+    ) -> Option<&'a Window> {
+        let (signature, count, frame) = program.head_of(function);
+        let base = self.current.base + usize::from(self.current.registers);
+        let bytes = bytes_of(frame);
+        if bytes > self.current.stack_pointer - self.stack.limit {
+            return None;
+        }
+        let window = registers.get(base..)?.first_chunk::<WINDOW>()?;
+        let parameters = program.signature(signature).params.len();
+        clear(&window[parameters..], usize::from(count) - parameters);
+        let stack_pointer = self.current.stack_pointer - bytes;
+        self.lowest = self.lowest.min(stack_pointer);
+        self.pc = function.0 as usize + 1 + usize::from(count).div_ceil(16);
+        self.current = Frame { pc: self.pc, base, registers: count, stack_pointer };
+        Some(window)
+    }
+
+    /// Goes back to the caller, whose window among `registers` it yields; `None` if there is none.
+    #[inline]
+    pub(super) fn leave<'a>(&mut self, registers: &'a [Cell<u64>]) -> Option<&'a Window> {
+        let caller = self.frames.pop()?;
+        self.pc = caller.pc;
+        self.current = caller;
+        self.window(registers)
+    }
+
+    /// The registers of the current call and what lies behind them, among all `registers`.
+    #[inline]
+    pub(super) fn window<'a>(&self, registers: &'a [Cell<u64>]) -> Option<&'a Window> {
+        registers.get(self.current.base..)?.first_chunk()
+    }
+
+    /// Where the arguments of the next call begin in the window.
+    #[inline(always)]
+    pub(super) const fn arguments_at(&self) -> u16 {
+        self.current.registers
+    }
+
+    /// Address of the current call's frame in guest memory.
+    #[inline(always)]
+    pub(super) const fn frame_address(&self) -> u32 {
+        self.current.stack_pointer
+    }
+}
+
+/// What a context has besides guest memory.
+#[derive(Debug)]
+pub(super) struct Context {
+    /// Of all calls, with a whole window behind the first register of the current one.
+    registers: Vec<u64>,
+    pub(super) calls: Calls,
     /// The entry function, until it is entered.
     pub(super) pending: Option<FuncRef>,
 }
@@ -54,101 +132,105 @@ impl Context {
     pub(super) fn new() -> Self {
         Self {
             registers: vec![0; WINDOW],
-            frames: Vec::new(),
-            current: Frame { pc: 0, base: 0, registers: 0, stack_pointer: 0 },
-            stack: Stack { limit: 0, top: 0 },
-            lowest: 0,
-            pc: 0,
-            result: 0,
+            calls: Calls {
+                frames: Vec::new(),
+                current: Frame { pc: 0, base: 0, registers: 0, stack_pointer: 0 },
+                stack: Stack { limit: 0, top: 0 },
+                lowest: 0,
+                pc: 0,
+                result: 0,
+            },
             pending: None,
         }
     }
 
     /// Forgets everything; the next thing to do is entering `function`.
     pub(super) fn reset(&mut self, function: FuncRef, stack: Stack) {
-        self.frames.clear();
-        self.current = Frame { pc: 0, base: 0, registers: 0, stack_pointer: stack.top };
-        self.stack = stack;
-        self.lowest = stack.top;
-        self.pc = function.0 as usize;
-        self.result = 0;
+        let calls = &mut self.calls;
+        calls.frames.clear();
+        calls.current = Frame { pc: 0, base: 0, registers: 0, stack_pointer: stack.top };
+        calls.stack = stack;
+        calls.lowest = stack.top;
+        calls.pc = function.0 as usize;
+        calls.result = 0;
         self.pending = Some(function);
     }
 
     /// Begins the outermost call; its parameters are 0.
     pub(super) fn enter(&mut self, program: &Program, function: FuncRef) -> Result<(), TrapKind> {
         self.registers[..MAX_PARAMETERS].fill(0);
-        self.begin(program, function)
+        self.make_room(program, function)?;
+        let (calls, registers) = self.parts();
+        calls.begin(program, function, registers).expect("there is room");
+        Ok(())
     }
 
     /// Calls `function` with the arguments that lie behind the current registers.
     pub(super) fn call(&mut self, program: &Program, function: FuncRef) -> Result<(), TrapKind> {
-        let caller = Frame { pc: self.pc + 1, ..self.current };
-        self.begin(program, function)?;
-        self.frames.push(caller);
+        self.make_room(program, function)?;
+        let (calls, registers) = self.parts();
+        calls.call(program, function, calls.pc, registers).expect("there is room");
         Ok(())
     }
 
-    fn begin(&mut self, program: &Program, function: FuncRef) -> Result<(), TrapKind> {
-        let (signature, registers, frame) = program.head_of(function);
-        let base = self.current.base + usize::from(self.current.registers);
-        let bytes = u32::from(frame) * 8 + CALL_OVERHEAD;
-        let room = self.current.stack_pointer - self.stack.limit;
-        if bytes > room || base > MAX_REGISTERS {
-            let used = self.stack.top - self.current.stack_pointer + bytes;
-            return Err(TrapKind::StackOverflow { used, size: self.stack.size() });
+    /// Makes room for the registers of a call of `function`, if the stack has room for its frame.
+    fn make_room(&mut self, program: &Program, function: FuncRef) -> Result<(), TrapKind> {
+        let Calls { current, stack, .. } = &self.calls;
+        let bytes = bytes_of(program.head_of(function).2);
+        let base = current.base + usize::from(current.registers);
+        if bytes > current.stack_pointer - stack.limit || base > MAX_REGISTERS {
+            let used = stack.top - current.stack_pointer + bytes;
+            return Err(TrapKind::StackOverflow { used, size: stack.size() });
         }
         if self.registers.len() < base + WINDOW {
             self.registers.resize(2 * base + WINDOW, 0);
         }
-        let parameters = program.signature(signature).params.len();
-        self.registers[base + parameters..base + usize::from(registers)].fill(0);
-        let stack_pointer = self.current.stack_pointer - bytes;
-        self.lowest = self.lowest.min(stack_pointer);
-        self.current = Frame { pc: 0, base, registers, stack_pointer };
-        self.pc = function.0 as usize + 1 + usize::from(registers).div_ceil(16);
         Ok(())
     }
 
-    /// Goes back to the caller; false if there is none.
-    pub(super) fn leave(&mut self) -> bool {
-        let Some(caller) = self.frames.pop() else {
-            return false;
-        };
-        self.pc = caller.pc;
-        self.current = caller;
-        true
+    /// The calls, and the registers of all of them.
+    pub(super) fn parts(&mut self) -> (&mut Calls, &[Cell<u64>]) {
+        (&mut self.calls, Cell::from_mut(&mut self.registers[..]).as_slice_of_cells())
     }
 
-    /// The registers of the current call and what lies behind them.
-    pub(super) fn window(&mut self) -> &mut Window {
-        self.registers[self.current.base..].first_chunk_mut().expect("a call begins only where a window fits")
-    }
-
-    /// Where the arguments of the next call begin in the window.
-    pub(super) const fn arguments_at(&self) -> u16 {
-        self.current.registers
+    /// Sets a register of the current call.
+    pub(super) fn set(&mut self, register: u16, slot: u64) {
+        self.registers[self.calls.current.base + usize::from(register)] = slot;
     }
 
     /// The arguments of the next call.
     pub(super) fn arguments(&self, count: usize) -> &[u64] {
-        let first = self.current.base + usize::from(self.current.registers);
+        let first = self.calls.current.base + usize::from(self.calls.current.registers);
         &self.registers[first..first + count]
-    }
-
-    /// Address of the current call's frame in guest memory.
-    pub(super) const fn frame_address(&self) -> u32 {
-        self.current.stack_pointer
     }
 
     /// The most bytes of the stack in use since the reset.
     pub(super) const fn stack_used(&self) -> u32 {
-        self.stack.top - self.lowest
+        self.calls.stack.top - self.calls.lowest
     }
 
     /// The current instruction and the calls that led there, innermost first.
-    pub(super) fn calls(&self) -> Vec<usize> {
-        let callers = self.frames.iter().rev().map(|frame| frame.pc - 1);
-        std::iter::once(self.pc).chain(callers).collect()
+    pub(super) fn backtrace(&self) -> Vec<usize> {
+        let callers = self.calls.frames.iter().rev().map(|frame| frame.pc - 1);
+        std::iter::once(self.calls.pc).chain(callers).collect()
     }
+}
+
+/// Sets the first `count` of `registers` to 0, and up to seven behind them, which nobody reads before they are set.
+#[inline]
+fn clear(registers: &[Cell<u64>], count: usize) {
+    let (blocks, rest) = registers.as_chunks::<8>();
+    for block in blocks.iter().take(count.div_ceil(8)) {
+        for register in block {
+            register.set(0);
+        }
+    }
+    for register in rest.iter().take(count.saturating_sub(8 * blocks.len())) {
+        register.set(0);
+    }
+}
+
+/// Bytes that a call takes of the stack whose frame has `frame` units.
+fn bytes_of(frame: u16) -> u32 {
+    u32::from(frame) * 8 + CALL_OVERHEAD
 }

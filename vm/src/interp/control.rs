@@ -1,9 +1,9 @@
 //! Instructions that decide what is executed next: time, branches, calls, returns.
 
-use kmotiondef::{Cycles, GuestAddr};
+use kmotiondef::GuestAddr;
 
-use super::activation::{Activation, Exit, Flow, Register};
-use crate::firmware::Firmware;
+use super::activation::{Activation, Exit, Flow, Register, State};
+use super::context::Window;
 use crate::operand::{Addr, Classes, Count, Count32, FuncRef, Label, RegF32, RegF64, RegI32, RegI64, SigRef};
 use crate::slot::Slot;
 use crate::trap::TrapKind;
@@ -11,7 +11,7 @@ use crate::trap::TrapKind;
 /// Words that are never executed in a verified program.
 macro_rules! structure {
     ($($name:ident($($operand:ty),*);)*) => {
-        impl<F: Firmware + ?Sized> Activation<'_, '_, F> {
+        impl Activation<'_, '_> {
             $(#[inline(always)]
             pub(super) fn $name(&mut self, $(_: $operand),*) -> Exit {
                 Exit::Trap(TrapKind::Unreachable)
@@ -30,21 +30,23 @@ structure! {
 /// The four classes of the instructions that move a slot into a call or out of it.
 macro_rules! for_each_class {
     ($($arg:ident, $result:ident, $ret:ident: $register:ident;)*) => {
-        impl<F: Firmware + ?Sized> Activation<'_, '_, F> {$(
+        impl Activation<'_, '_> {$(
             #[inline(always)]
             pub(super) fn $arg(&mut self, src: $register, index: Count) {
-                self.window[usize::from(self.arguments_at.wrapping_add(index.0))] = self.get(src).into_slot();
+                let first = self.state.calls.arguments_at();
+                self.window[usize::from(first.wrapping_add(index.0))].set(self.get(src).into_slot());
             }
 
             #[inline(always)]
             pub(super) fn $result(&mut self, dst: $register) {
-                let result = <$register as Register>::Value::from_slot(self.result);
+                let result = <$register as Register>::Value::from_slot(self.state.calls.result);
                 self.set(dst, result);
             }
 
             #[inline(always)]
-            pub(super) fn $ret(&mut self, src: $register) -> Exit {
-                Exit::Return(self.get(src).into_slot())
+            pub(super) fn $ret(&mut self, src: $register) -> Flow {
+                self.state.calls.result = self.get(src).into_slot();
+                self.leave_call()
             }
         )*}
     };
@@ -56,11 +58,11 @@ for_each_class! {
     arg_f64, result_f64, ret_f64: RegF64;
 }
 
-impl<F: Firmware + ?Sized> Activation<'_, '_, F> {
+impl<'m> Activation<'_, 'm> {
     #[inline(always)]
     pub(super) fn charge(&mut self, cycles: Count32) -> Flow {
-        self.slice.budget -= Cycles::new(i64::from(cycles.0));
-        if self.slice.budget < Cycles::new(0) { Flow::Leave(Exit::Preempted) } else { Flow::Next }
+        self.state.budget -= i64::from(cycles.0);
+        if self.state.budget < 0 { Flow::Leave(Exit::Preempted) } else { Flow::Next }
     }
 
     #[inline(always)]
@@ -85,8 +87,12 @@ impl<F: Firmware + ?Sized> Activation<'_, '_, F> {
     }
 
     #[inline(always)]
-    pub(super) fn call(&mut self, func: FuncRef) -> Exit {
-        Exit::Call(func)
+    pub(super) fn call(&mut self, func: FuncRef) -> Flow {
+        let State { program, registers, calls, .. } = &mut *self.state;
+        match calls.call(program, func, self.pc, registers) {
+            Some(window) => self.go_to_call(window),
+            None => Flow::Leave(Exit::Call(func)),
+        }
     }
 
     #[inline(always)]
@@ -100,7 +106,23 @@ impl<F: Firmware + ?Sized> Activation<'_, '_, F> {
     }
 
     #[inline(always)]
-    pub(super) fn ret(&mut self) -> Exit {
-        Exit::Return(0)
+    pub(super) fn ret(&mut self) -> Flow {
+        self.state.calls.result = 0;
+        self.leave_call()
+    }
+
+    #[inline(always)]
+    fn leave_call(&mut self) -> Flow {
+        match self.state.calls.leave(self.state.registers) {
+            Some(window) => self.go_to_call(window),
+            None => Flow::Leave(Exit::Ended),
+        }
+    }
+
+    /// Goes on where the current call stands, whose registers are in `window`.
+    #[inline(always)]
+    fn go_to_call(&mut self, window: &'m Window) -> Flow {
+        self.window = window;
+        Flow::Jump(Label(self.state.calls.pc as u32))
     }
 }

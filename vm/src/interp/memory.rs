@@ -2,81 +2,95 @@
 
 use kmotiondef::GuestAddr;
 
-use super::activation::Activation;
-use crate::firmware::Firmware;
+use super::activation::{Activation, Exit, Flow};
+use crate::access::Width;
 use crate::operand::{Addr, Count, Imm, Off, RegF32, RegF64, RegI32, RegI64};
-use crate::trap::TrapKind;
+use crate::slot::Slot;
 
 /// Loads and stores in both address modes: what lies in memory, and the value of the register.
 macro_rules! accesses {
-    (loads { $($load:ident, $load_at:ident: $from:ty => $dst:ident as $value:ty;)* }
-     stores { $($store:ident, $store_at:ident: $src:ident => $to:ty;)* }) => {
-        impl<F: Firmware + ?Sized> Activation<'_, '_, F> {
+    (loads { $($load:ident, $load_at:ident: $load_width:ident, $from:ty => $dst:ident as $value:ty;)* }
+     stores { $($store:ident, $store_at:ident: $store_width:ident, $src:ident => $to:ty;)* }) => {
+        impl Activation<'_, '_> {
             $(#[inline(always)]
-            pub(super) fn $load(&mut self, dst: $dst, base: RegI32, off: Off) -> Result<(), TrapKind> {
-                let value: $from = self.slice.load(self.address(base, off))?;
-                self.set(dst, value as $value);
-                Ok(())
+            pub(super) fn $load(&mut self, dst: $dst, base: RegI32, off: Off) -> Flow {
+                let address = self.address(base, off);
+                match self.state.memory.load_ram::<$from>(address) {
+                    Some(value) => {
+                        self.set(dst, value as $value);
+                        Flow::Next
+                    }
+                    None => Flow::Leave(Exit::Load(address, Width::$load_width, dst.0)),
+                }
             }
 
             #[inline(always)]
-            pub(super) fn $load_at(&mut self, dst: $dst, addr: Addr) -> Result<(), TrapKind> {
-                let value: $from = self.slice.load(GuestAddr::new(addr.0))?;
-                self.set(dst, value as $value);
-                Ok(())
+            pub(super) fn $load_at(&mut self, dst: $dst, addr: Addr) -> Flow {
+                let address = GuestAddr::new(addr.0);
+                match self.state.memory.load_ram::<$from>(address) {
+                    Some(value) => {
+                        self.set(dst, value as $value);
+                        Flow::Next
+                    }
+                    None => Flow::Leave(Exit::Load(address, Width::$load_width, dst.0)),
+                }
             })*
 
             $(#[inline(always)]
-            pub(super) fn $store(&mut self, src: $src, base: RegI32, off: Off) -> Result<(), TrapKind> {
-                let value = self.get(src) as $to;
-                self.slice.store(self.address(base, off), value)
+            pub(super) fn $store(&mut self, src: $src, base: RegI32, off: Off) -> Flow {
+                let (address, value) = (self.address(base, off), self.get(src));
+                match self.state.memory.store_ram(address, value as $to) {
+                    Some(()) => Flow::Next,
+                    None => Flow::Leave(Exit::Store(address, Width::$store_width, value.into_slot())),
+                }
             }
 
             #[inline(always)]
-            pub(super) fn $store_at(&mut self, src: $src, addr: Addr) -> Result<(), TrapKind> {
-                let value = self.get(src) as $to;
-                self.slice.store(GuestAddr::new(addr.0), value)
+            pub(super) fn $store_at(&mut self, src: $src, addr: Addr) -> Flow {
+                let (address, value) = (GuestAddr::new(addr.0), self.get(src));
+                match self.state.memory.store_ram(address, value as $to) {
+                    Some(()) => Flow::Next,
+                    None => Flow::Leave(Exit::Store(address, Width::$store_width, value.into_slot())),
+                }
             })*
         }
     };
 }
 accesses! {
     loads {
-        load_i8_s, load_i8_s_at: i8 => RegI32 as i32;
-        load_i8_u, load_i8_u_at: u8 => RegI32 as i32;
-        load_i16_s, load_i16_s_at: i16 => RegI32 as i32;
-        load_i16_u, load_i16_u_at: u16 => RegI32 as i32;
-        load_i32, load_i32_at: i32 => RegI32 as i32;
-        load_i64, load_i64_at: i64 => RegI64 as i64;
-        load_f32, load_f32_at: f32 => RegF32 as f32;
-        load_f64, load_f64_at: f64 => RegF64 as f64;
+        load_i8_s, load_i8_s_at: I8S, i8 => RegI32 as i32;
+        load_i8_u, load_i8_u_at: I8U, u8 => RegI32 as i32;
+        load_i16_s, load_i16_s_at: I16S, i16 => RegI32 as i32;
+        load_i16_u, load_i16_u_at: I16U, u16 => RegI32 as i32;
+        load_i32, load_i32_at: I32, i32 => RegI32 as i32;
+        load_i64, load_i64_at: I64, i64 => RegI64 as i64;
+        load_f32, load_f32_at: F32, f32 => RegF32 as f32;
+        load_f64, load_f64_at: F64, f64 => RegF64 as f64;
     }
     stores {
-        store_i8, store_i8_at: RegI32 => u8;
-        store_i16, store_i16_at: RegI32 => u16;
-        store_i32, store_i32_at: RegI32 => i32;
-        store_i64, store_i64_at: RegI64 => i64;
-        store_f32, store_f32_at: RegF32 => f32;
-        store_f64, store_f64_at: RegF64 => f64;
+        store_i8, store_i8_at: I8U, RegI32 => u8;
+        store_i16, store_i16_at: I16U, RegI32 => u16;
+        store_i32, store_i32_at: I32, RegI32 => i32;
+        store_i64, store_i64_at: I64, RegI64 => i64;
+        store_f32, store_f32_at: F32, RegF32 => f32;
+        store_f64, store_f64_at: F64, RegF64 => f64;
     }
 }
 
-impl<F: Firmware + ?Sized> Activation<'_, '_, F> {
+impl Activation<'_, '_> {
     #[inline(always)]
     pub(super) fn frame_addr(&mut self, dst: RegI32, offset: Imm) {
-        self.set(dst, self.frame_address.wrapping_add_signed(offset.0).cast_signed());
+        self.set(dst, self.state.calls.frame_address().wrapping_add_signed(offset.0).cast_signed());
     }
 
     #[inline(always)]
-    pub(super) fn copy(&mut self, to: RegI32, src: RegI32, len: Count) -> Result<(), TrapKind> {
-        let (to, from) = (self.pointer(to), self.pointer(src));
-        self.slice.memory.copy(to, from, u32::from(len.0))
+    pub(super) fn copy(&mut self, to: RegI32, src: RegI32, len: Count) -> Exit {
+        Exit::Copy { to: self.pointer(to), from: self.pointer(src), len: len.0 }
     }
 
     #[inline(always)]
-    pub(super) fn clear(&mut self, to: RegI32, len: Count) -> Result<(), TrapKind> {
-        let to = self.pointer(to);
-        self.slice.memory.fill(to, 0, u32::from(len.0))
+    pub(super) fn clear(&mut self, to: RegI32, len: Count) -> Exit {
+        Exit::Clear { to: self.pointer(to), len: len.0 }
     }
 
     #[inline(always)]

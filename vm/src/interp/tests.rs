@@ -1,5 +1,7 @@
 //! Every kind of instruction on its own, data first.
 
+mod every;
+
 use crate::machine::Machine;
 use crate::testing::{Fake, OUT, run};
 

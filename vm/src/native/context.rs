@@ -4,13 +4,12 @@ use kmotiondef::{Cycles, GuestAddr};
 
 use super::fiber::{Answer, Fiber};
 use super::protected::ProtectedBlocks;
-use super::request::{Reason, Request, Width};
+use super::request::{Reason, Request};
 use super::state::BYTES_PER_CALL;
 use crate::engine::{ContextId, Slice, Stack, Stop};
-use crate::firmware::{Firmware, Outcome, Signature};
+use crate::firmware::{Firmware, Outcome};
 use crate::operand::{FuncRef, SigRef};
 use crate::program::Program;
-use crate::slot::Slot;
 use crate::trap::TrapKind;
 
 /// How a context goes on when it is resumed.
@@ -166,8 +165,11 @@ impl Context {
         }
         let slot = match request.reason().unwrap_or(Reason::Unreachable) {
             Reason::Preempted => return Ok(Step::Stop(Stop::Preempted, Next::Answer(Answer::Slot(0)))),
-            Reason::Load => load_slot(slice, address, request.width())?,
-            Reason::Store => store_slot(slice, address, request.width(), request.b)?,
+            Reason::Load => slice.load_slot(address, request.width().ok_or(TrapKind::Unreachable)?)?,
+            Reason::Store => {
+                slice.store_slot(address, request.width().ok_or(TrapKind::Unreachable)?, request.b)?;
+                0
+            }
             Reason::Copy => {
                 let from = GuestAddr::new((request.a >> 32) as u32);
                 slice.memory.copy(address, from, request.b as u32)?;
@@ -210,7 +212,7 @@ impl Context {
         let Some(callee) = slice.firmware.signature(address) else {
             return Err(TrapKind::UnknownFirmwareFunction { addr: address });
         };
-        check_signature(address, callee, stated)?;
+        callee.check_call(address, stated)?;
         self.call_firmware(id, slice, address, signature)
     }
 
@@ -246,52 +248,11 @@ fn resolve<F: Firmware + ?Sized>(
 ) -> Result<Answer, TrapKind> {
     let stated = slice.program.signature(signature);
     if let Some(function) = slice.program.function_at(address) {
-        check_signature(address, slice.program.signature_of(function), stated)?;
+        slice.program.signature_of(function).check_call(address, stated)?;
         let found = slice.program.functions().binary_search_by_key(&function, |function| function.at);
         return found.map(Answer::Function).map_err(|_| TrapKind::BadCallTarget { addr: address });
     }
     let callee = slice.firmware.signature(address).ok_or(TrapKind::BadCallTarget { addr: address })?;
-    check_signature(address, callee, stated)?;
+    callee.check_call(address, stated)?;
     Ok(Answer::Slot(0))
-}
-
-/// Whether `callee` can be called as the instruction says.
-fn check_signature(addr: GuestAddr, callee: &Signature, called: &Signature) -> Result<(), TrapKind> {
-    if callee.may_be_called_as(called) { Ok(()) } else { Err(TrapKind::SignatureMismatch { addr }) }
-}
-
-/// A load that compiled code leaves to the engine, as a register slot.
-fn load_slot<F: Firmware + ?Sized>(
-    slice: &mut Slice<'_, F>,
-    addr: GuestAddr,
-    width: Option<Width>,
-) -> Result<u64, TrapKind> {
-    Ok(match width.ok_or(TrapKind::Unreachable)? {
-        Width::I8S => i32::from(slice.load::<i8>(addr)?).into_slot(),
-        Width::I8U => i32::from(slice.load::<u8>(addr)?).into_slot(),
-        Width::I16S => i32::from(slice.load::<i16>(addr)?).into_slot(),
-        Width::I16U => i32::from(slice.load::<u16>(addr)?).into_slot(),
-        Width::I32 => slice.load::<i32>(addr)?.into_slot(),
-        Width::I64 => slice.load::<i64>(addr)?.into_slot(),
-        Width::F32 => slice.load::<f32>(addr)?.into_slot(),
-        Width::F64 => slice.load::<f64>(addr)?.into_slot(),
-    })
-}
-
-/// A store of a register slot that compiled code leaves to the engine; yields nothing, as 0.
-fn store_slot<F: Firmware + ?Sized>(
-    slice: &mut Slice<'_, F>,
-    addr: GuestAddr,
-    width: Option<Width>,
-    slot: u64,
-) -> Result<u64, TrapKind> {
-    match width.ok_or(TrapKind::Unreachable)? {
-        Width::I8S | Width::I8U => slice.store(addr, slot as u8),
-        Width::I16S | Width::I16U => slice.store(addr, slot as u16),
-        Width::I32 => slice.store(addr, i32::from_slot(slot)),
-        Width::I64 => slice.store(addr, i64::from_slot(slot)),
-        Width::F32 => slice.store(addr, f32::from_slot(slot)),
-        Width::F64 => slice.store(addr, f64::from_slot(slot)),
-    }?;
-    Ok(0)
 }

@@ -6,6 +6,8 @@
 
 use kmotiondef::map::SDRAM;
 
+use crate::access::Width;
+
 /// A request as it leaves compiled code. The layout is that of C, because compiled code writes the fields.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
@@ -71,28 +73,6 @@ codes! {
     }
 }
 
-codes! {
-    /// What a load or store moves.
-    Width {
-        /// 8 bits, sign-extended.
-        I8S,
-        /// 8 bits, zero-extended.
-        I8U,
-        /// 16 bits, sign-extended.
-        I16S,
-        /// 16 bits, zero-extended.
-        I16U,
-        /// 32 bits of an integer.
-        I32,
-        /// 64 bits of an integer.
-        I64,
-        /// A single.
-        F32,
-        /// A double.
-        F64,
-    }
-}
-
 impl Reason {
     /// The code of the request.
     pub(super) const fn code(self) -> u32 {
@@ -134,19 +114,7 @@ impl Request {
 
     /// What a load or store is to move.
     pub(super) fn width(&self) -> Option<Width> {
-        Width::from_code(self.code >> 8)
-    }
-}
-
-impl Width {
-    /// Number of bytes.
-    pub(super) const fn bytes(self) -> u32 {
-        match self {
-            Self::I8S | Self::I8U => 1,
-            Self::I16S | Self::I16U => 2,
-            Self::I32 | Self::F32 => 4,
-            Self::I64 | Self::F64 => 8,
-        }
+        Width::ALL.get(usize::try_from(self.code >> 8).ok()?).copied()
     }
 }
 

@@ -12,11 +12,11 @@ use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::{Block, InstBuilder, Value, types};
 use kmotiondef::map::SDRAM;
 
-use super::super::request::Width;
 use super::super::state::{State, Window};
 use super::Translator;
 use super::strides::Stride;
 use super::turns::{Group, Place, Plan, Root};
+use crate::access::Width;
 use crate::operand::RegI32;
 
 /// The fast turns while they are translated.

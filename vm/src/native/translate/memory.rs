@@ -11,9 +11,10 @@ use cranelift_codegen::ir::{Block, InstBuilder, Value, types};
 use kmotiondef::map::{IRAM, PROGRAM_BASE, PROGRAM_LIMIT, Region, SDRAM};
 
 use super::super::protected::BLOCK_BITS;
-use super::super::request::{Reason, Width};
+use super::super::request::Reason;
 use super::super::state::State;
 use super::{Register, Translator, offset};
+use crate::access::Width;
 use crate::op::Op;
 use crate::operand::{Addr, Class, Count, Imm, Off, RegF32, RegF64, RegI32, RegI64};
 

@@ -15,9 +15,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
 
-use super::super::request::Width;
 use super::candidates::{innermost_loops, regions, straight_stretches};
 use super::strides::{Strides, common_step};
+use crate::access::Width;
 use crate::for_each_op;
 use crate::meter;
 use crate::op::Op;

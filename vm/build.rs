@@ -1,0 +1,13 @@
+//! Says where the interpreter may go from handler to handler by calls: see `src/interp/dispatch.rs`.
+
+fn main() {
+    println!("cargo::rerun-if-changed=build.rs");
+    println!("cargo::rustc-check-cfg=cfg(tail_calls)");
+    let setting = |name: &str| std::env::var(name).unwrap_or_default();
+    let is_optimised = matches!(setting("OPT_LEVEL").as_str(), "2" | "3");
+    let has_registers = matches!(setting("CARGO_CFG_TARGET_ARCH").as_str(), "x86_64" | "aarch64");
+    // The calling convention of Windows passes one argument fewer in registers than a handler has.
+    if is_optimised && has_registers && setting("CARGO_CFG_TARGET_OS") != "windows" {
+        println!("cargo::rustc-cfg=tail_calls");
+    }
+}
