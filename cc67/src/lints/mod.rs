@@ -12,6 +12,7 @@ mod flow;
 mod program;
 mod used_values;
 
+mod array_bounds;
 mod call_back_wait;
 mod firmware_name;
 mod format;
@@ -125,6 +126,8 @@ macro_rules! for_each_lint {
             LongString = "long-string", On;
             /// A `const` object is changed.
             ConstWrite = "const-write", On;
+            /// An array is read or written at an element that it does not have.
+            ArrayBounds = "array-bounds", On, pass array_bounds;
             /// `persist.UserData` is indexed outside 0..199.
             UserDataIndex = "user-data-index", On;
             /// A `double` lies at an odd index of `persist.UserData`.

@@ -137,6 +137,34 @@ fn indentation_that_misleads() {
 }
 
 #[test]
+fn elements_that_an_array_lacks() {
+    said(
+        "int a[3], m[2][2], i; char t[4]; struct { int n[2], end; } s[2]; void f(void) {\nint l[3], j; a[3] = a[-1]; l[3] = 0; l[j = 0] = 1;\nm[2][0] = m[1][2]; m[0][3]++; s[2].end = s[1].n[2];\nfor (j = 0; j <= 3; j++) a[j] = 0;\nfor (j = 1; j < 4; j += 2) t[j + 1] = t[j - 1];\nfor (j = 0; j < 2; j++) { if (a[j + 2]) i++; }\n*(a + 4) = *(int *)(t + 2);\n}",
+        &[
+            "2: array-bounds: `a` has no element -1",
+            "2: array-bounds: `a` has no element 3",
+            "2: array-bounds: `l` has no element 3",
+            "3: array-bounds: `m` has no element 2",
+            "3: array-bounds: `m` has no element 2",
+            "3: array-bounds: `s` has no element 2",
+            "7: array-bounds: `t` has no element 4",
+            "7: array-bounds: `a` has no element 4",
+            "4: array-bounds: `a` has no element 3",
+            "5: array-bounds: `t` has no element 4",
+            "6: array-bounds: `a` has no element 3",
+        ],
+    );
+    accept(
+        "int a[3], n; extern int e[]; char t[4]; int *p = a + 3; void g(int *); struct { int n[2], end; } s;
+         void f(int i) { int j; a[2] = e[9]; s.n[2] = 0; p = &a[3]; n = &a[3] - a + sizeof a[3]; *(int *)t = 0; g(a + 3);
+         for (j = 0; j < 3; j++) a[j] = 0; for (j = 0; j <= 3; j++) { if (j == 3) break; a[j] = 0; }
+         for (j = 0; j <= 3; j++) if (j < 3) a[j] = 0; for (j = 0; j <= 3; j++) { a[j] = 0; j++; }
+         for (j = 0; j <= 3; j++) n += j < 3 && a[j]; for (j = 0; j <= n; j++) a[j] = 0; for (j = 3; j < 3; j++) a[j] = 0;
+         for (j = 0; j <= 3; j++) n += j < 3 ? a[j] : 0; for (j = 0; j <= 3; j++) a[i] = 0; }",
+    );
+}
+
+#[test]
 fn call_backs_must_not_wait() {
     said(
         "extern void (*UserCallBack)(void); void WaitNextTimeSlice(void); int n;\nvoid good(void) { n++; } void bad(void) { WaitNextTimeSlice(); } main() { UserCallBack = good; UserCallBack = bad; WaitNextTimeSlice(); }",

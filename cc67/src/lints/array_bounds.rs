@@ -1,0 +1,336 @@
+//! Elements that an array does not have.
+//!
+//! Only whole objects count: beyond a member array there is the next member, which programs reach on purpose. An
+//! index that changes is followed through the simplest loops, where every turn is known.
+
+use super::Lint;
+use super::program::Program;
+use crate::diag::{Diagnostic, Sink};
+use crate::ty::TypeId;
+use crate::typed::{
+    BinaryOp, CompareOp, ExprId, ExprKind, Function, LocalId, LoopTest, PlaceId, PlaceKind, Stmt, StmtKind,
+    SymbolId,
+};
+
+/// Reports loads and stores outside of arrays, at constant indexes and in loops that count.
+pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
+    for function in program.whole_functions() {
+        let search = Search { program, function };
+        for place in function.exprs.values().flat_map(|expr| accesses(function, &expr.kind)) {
+            sink.report_if(search.finding(place, None));
+        }
+        search.loops(&function.body, sink);
+        function.each_stmt(&mut |stmt| match &stmt.kind {
+            StmtKind::Block(body) | StmtKind::Loop { body, .. } | StmtKind::Switch { body, .. } => {
+                search.loops(body, sink);
+            }
+            StmtKind::If { then, otherwise, .. } => {
+                search.loops(then, sink);
+                search.loops(otherwise, sink);
+            }
+            _ => {}
+        });
+    }
+}
+
+/// The places that an expression itself reads or writes.
+fn accesses(function: &Function, kind: &ExprKind) -> Vec<PlaceId> {
+    let storage = |place: PlaceId| match function.places[place].kind {
+        PlaceKind::Bits(unit, _) => unit,
+        _ => place,
+    };
+    match kind {
+        ExprKind::Load(place) | ExprKind::Assign(place, _) => vec![storage(*place)],
+        ExprKind::Update(update) => vec![storage(update.place)],
+        ExprKind::Copy { to, from } => vec![storage(*to), storage(*from)],
+        _ => Vec::new(),
+    }
+}
+
+/// An object with an address of its own.
+#[derive(Clone, Copy)]
+enum Object {
+    Local(LocalId),
+    Symbol(SymbolId),
+}
+
+/// A local that counts: its value in the first turn of a loop, and in the last.
+#[derive(Clone, Copy)]
+struct Counter {
+    local: LocalId,
+    first: i64,
+    last: i64,
+}
+
+struct Search<'a> {
+    program: &'a Program<'a>,
+    function: &'a Function,
+}
+
+impl Search<'_> {
+    /// Reports accesses in the loops of `stmts` that every turn makes.
+    fn loops(&self, stmts: &[Stmt], sink: &mut Sink) {
+        for [before, stmt] in stmts.array_windows() {
+            let StmtKind::Loop { condition: Some(condition), test: LoopTest::Before, body, step: Some(step) } =
+                &stmt.kind
+            else {
+                continue;
+            };
+            let Some(counter) = self.counter(before, *condition, *step) else { continue };
+            if is_plain(body) && !self.changes(body, counter.local) {
+                self.turns(body, counter, sink);
+            }
+        }
+    }
+
+    /// The counter of `for (i = 0; i < 8; i++)`.
+    fn counter(&self, before: &Stmt, condition: ExprId, step: ExprId) -> Option<Counter> {
+        let exprs = &self.function.exprs;
+        let (StmtKind::Expr(start), ExprKind::Update(update)) = (&before.kind, &exprs[step].kind) else {
+            return None;
+        };
+        let ExprKind::Assign(place, start) = exprs[*start].kind else { return None };
+        let ExprKind::Compare(op, tested, end) = exprs[condition].kind else { return None };
+        let local = self.register(place)?;
+        let (ExprKind::Int(first), ExprKind::Int(end), ExprKind::Int(step)) =
+            (&exprs[start].kind, &exprs[end].kind, &exprs[update.operand].kind)
+        else {
+            return None;
+        };
+        let last = match op {
+            CompareOp::Less => end - 1,
+            CompareOp::LessEqual => *end,
+            _ => return None,
+        };
+        let counts = update.op == BinaryOp::Add && self.register(update.place) == Some(local) && *step > 0;
+        if !counts || self.loaded(tested) != Some(local) || last < *first {
+            return None;
+        }
+        Some(Counter { local, first: *first, last: last - (last - first) % step })
+    }
+
+    /// The local of a place that is all of one which only this function can change.
+    fn register(&self, place: PlaceId) -> Option<LocalId> {
+        match self.function.places[place].kind {
+            PlaceKind::Local(local, 0) if !self.function.locals[local].in_memory => Some(local),
+            _ => None,
+        }
+    }
+
+    /// The local whose value an expression is.
+    fn loaded(&self, expr: ExprId) -> Option<LocalId> {
+        match self.function.exprs[expr].kind {
+            ExprKind::Load(place) => self.register(place),
+            ExprKind::Convert(inner) => self.loaded(inner),
+            _ => None,
+        }
+    }
+
+    /// Whether something in `body` writes `local`.
+    fn changes(&self, body: &[Stmt], local: LocalId) -> bool {
+        let mut found = false;
+        self.each_expr(body, true, &mut |expr| {
+            let kind = &self.function.exprs[expr].kind;
+            found |= match kind {
+                ExprKind::Assign(place, _) => self.register(*place) == Some(local),
+                ExprKind::Update(update) => self.register(update.place) == Some(local),
+                ExprKind::Statements(..) => true,
+                _ => false,
+            };
+        });
+        found
+    }
+
+    /// Reports what every turn of a loop does outside of an array in its first or last one.
+    fn turns(&self, body: &[Stmt], counter: Counter, sink: &mut Sink) {
+        self.each_expr(body, false, &mut |expr| {
+            for place in accesses(self.function, &self.function.exprs[expr].kind) {
+                sink.report_if(self.finding(place, Some(counter)));
+            }
+        });
+    }
+
+    /// Hands over the expressions of `stmts`: all of them, or those that are evaluated whatever is computed.
+    fn each_expr(&self, stmts: &[Stmt], all: bool, visit: &mut dyn FnMut(ExprId)) {
+        for stmt in stmts {
+            match &stmt.kind {
+                StmtKind::Expr(expr) => self.each_part(*expr, all, visit),
+                StmtKind::Block(inner) => self.each_expr(inner, all, visit),
+                StmtKind::If { condition, then, otherwise } => {
+                    self.each_part(*condition, all, visit);
+                    if all {
+                        self.each_expr(then, all, visit);
+                        self.each_expr(otherwise, all, visit);
+                    }
+                }
+                StmtKind::Loop { condition, body, step, .. } if all => {
+                    condition.iter().chain(step).for_each(|expr| self.each_part(*expr, all, visit));
+                    self.each_expr(body, all, visit);
+                }
+                StmtKind::Switch { value, body, .. } => {
+                    self.each_part(*value, all, visit);
+                    if all {
+                        self.each_expr(body, all, visit);
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// Hands over an expression and its parts likewise.
+    fn each_part(&self, expr: ExprId, all: bool, visit: &mut dyn FnMut(ExprId)) {
+        visit(expr);
+        let mut part = |inner: ExprId| self.each_part(inner, all, visit);
+        let place = |place: PlaceId| match self.function.places[place].kind {
+            PlaceKind::Pointer(pointer, _) => Some(pointer),
+            _ => None,
+        };
+        match &self.function.exprs[expr].kind {
+            ExprKind::Load(from) | ExprKind::Address(from) | ExprKind::VaArg(from) => {
+                place(*from).map(&mut part);
+            }
+            ExprKind::Assign(to, value) => {
+                place(*to).map(&mut part);
+                part(*value);
+            }
+            ExprKind::Update(update) => {
+                place(update.place).map(&mut part);
+                part(update.operand);
+            }
+            ExprKind::Unary(_, value) | ExprKind::Convert(value) => part(*value),
+            ExprKind::Binary(_, a, b) | ExprKind::Compare(_, a, b) | ExprKind::Comma(a, b) => {
+                part(*a);
+                part(*b);
+            }
+            ExprKind::And(a, b) | ExprKind::Or(a, b) => {
+                part(*a);
+                if all {
+                    part(*b);
+                }
+            }
+            ExprKind::Conditional(condition, a, b) => {
+                part(*condition);
+                if all {
+                    part(*a);
+                    part(*b);
+                }
+            }
+            ExprKind::Call(call) => {
+                call.arguments
+                    .iter()
+                    .chain(call.variable.iter().flatten())
+                    .for_each(|argument| part(*argument));
+            }
+            _ => {}
+        }
+    }
+
+    /// What is said of an access to `place`, in the first and the last turn of a counter or without one.
+    fn finding(&self, place: PlaceId, counter: Option<Counter>) -> Option<Diagnostic> {
+        let (object, from) = self.target(place, counter.map(|counter| (counter.local, counter.first)))?;
+        let (_, to) = self.target(place, counter.map(|counter| (counter.local, counter.last)))?;
+        if counter.is_some() && from == to {
+            return None;
+        }
+        let (name, ty) = self.named(object)?;
+        let types = &self.program.unit.types;
+        let (element, length) = types.array(ty)?;
+        let element = i64::from(types.size_of(element.ty)?.max(1));
+        let size = i64::from(types.size_of(self.function.places[place].ty)?.max(1));
+        let end = element * i64::from(length?);
+        let wrong = [to, from].into_iter().find(|at| *at < 0 || at + size > end)?;
+        // Where an access begins inside, what it lacks is behind the end.
+        let index = if wrong < 0 { wrong } else { wrong.max(end) }.div_euclid(element);
+        let message = format!("`{name}` has no element {index}");
+        let has =
+            length?.checked_sub(1).map_or("it has none".to_owned(), |last| format!("it has 0 to {last}"));
+        let finding =
+            Diagnostic::warning(Lint::ArrayBounds, self.function.places[place].span, message).at(has);
+        Some(match counter {
+            None => finding,
+            Some(Counter { local, first, last }) => {
+                let (value, turn) = if wrong == to { (last, "last") } else { (first, "first") };
+                let name = &self.function.locals[local].name;
+                finding.note(format!("`{name}` is {value} in the {turn} turn of the loop"))
+            }
+        })
+    }
+
+    /// The object that a place lies in or beside, and the byte of it, with a local as a number.
+    fn target(&self, place: PlaceId, value: Option<(LocalId, i64)>) -> Option<(Object, i64)> {
+        match self.function.places[place].kind {
+            PlaceKind::Local(local, offset) => Some((Object::Local(local), offset.into())),
+            PlaceKind::Symbol(symbol, offset) => Some((Object::Symbol(symbol), offset.into())),
+            PlaceKind::Pointer(pointer, offset) => {
+                let (object, at) = self.pointed(pointer, value)?;
+                Some((object, at + i64::from(offset)))
+            }
+            PlaceKind::Bits(..) => None,
+        }
+    }
+
+    fn pointed(&self, pointer: ExprId, value: Option<(LocalId, i64)>) -> Option<(Object, i64)> {
+        match self.function.exprs[pointer].kind {
+            ExprKind::Address(place) => self.target(place, value),
+            ExprKind::Convert(inner) => self.pointed(inner, value),
+            ExprKind::Binary(BinaryOp::Add, base, bytes) => {
+                let (object, at) = self.pointed(base, value)?;
+                Some((object, at + self.number(bytes, value)?))
+            }
+            _ => None,
+        }
+    }
+
+    /// The value of an expression of constants and of the local that is known.
+    fn number(&self, expr: ExprId, value: Option<(LocalId, i64)>) -> Option<i64> {
+        match self.function.exprs[expr].kind {
+            ExprKind::Int(number) => Some(number),
+            ExprKind::Convert(inner) => self.number(inner, value),
+            ExprKind::Load(_) => {
+                value.filter(|(local, _)| self.loaded(expr) == Some(*local)).map(|(_, number)| number)
+            }
+            ExprKind::Binary(op, a, b) => {
+                let (a, b) = (self.number(a, value)?, self.number(b, value)?);
+                match op {
+                    BinaryOp::Add => a.checked_add(b),
+                    BinaryOp::Subtract => a.checked_sub(b),
+                    BinaryOp::Multiply => a.checked_mul(b),
+                    _ => None,
+                }
+            }
+            _ => None,
+        }
+    }
+
+    /// Name and type of an object that is not the firmware's.
+    fn named(&self, object: Object) -> Option<(&str, TypeId)> {
+        match object {
+            Object::Local(local) => {
+                let local = &self.function.locals[local];
+                Some((local.name.as_str(), local.ty)).filter(|(name, _)| !name.is_empty())
+            }
+            Object::Symbol(symbol) => {
+                let symbol = &self.program.unit.symbols[symbol];
+                (!symbol.is_anonymous()).then_some((symbol.name.as_str(), symbol.ty))
+            }
+        }
+    }
+}
+
+/// Whether every turn of a loop with this body goes from its beginning to its end.
+fn is_plain(body: &[Stmt]) -> bool {
+    body.iter().all(|stmt| match &stmt.kind {
+        StmtKind::Expr(_) | StmtKind::Case(_) | StmtKind::DefaultCase => true,
+        StmtKind::Block(inner)
+        | StmtKind::Loop { body: inner, .. }
+        | StmtKind::Switch { body: inner, .. } => is_plain(inner),
+        StmtKind::If { then, otherwise, .. } => is_plain(then) && is_plain(otherwise),
+        StmtKind::Break
+        | StmtKind::Continue
+        | StmtKind::Return(_)
+        | StmtKind::Label(_)
+        | StmtKind::Goto(_)
+        | StmtKind::GotoAddress(_) => false,
+    })
+}
