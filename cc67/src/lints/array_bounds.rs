@@ -34,17 +34,17 @@ pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
 }
 
 /// The places that an expression itself reads or writes.
-fn accesses(function: &Function, kind: &ExprKind) -> Vec<PlaceId> {
-    let storage = |place: PlaceId| match function.places[place].kind {
+fn accesses(function: &Function, kind: &ExprKind) -> impl Iterator<Item = PlaceId> {
+    let places = match kind {
+        ExprKind::Load(place) | ExprKind::Assign(place, _) => [Some(*place), None],
+        ExprKind::Update(update) => [Some(update.place), None],
+        ExprKind::Copy { to, from } => [Some(*to), Some(*from)],
+        _ => [None, None],
+    };
+    places.into_iter().flatten().map(|place| match function.places[place].kind {
         PlaceKind::Bits(unit, _) => unit,
         _ => place,
-    };
-    match kind {
-        ExprKind::Load(place) | ExprKind::Assign(place, _) => vec![storage(*place)],
-        ExprKind::Update(update) => vec![storage(update.place)],
-        ExprKind::Copy { to, from } => vec![storage(*to), storage(*from)],
-        _ => Vec::new(),
-    }
+    })
 }
 
 /// An object with an address of its own.
