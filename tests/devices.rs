@@ -662,16 +662,3 @@ fn a_switch_on_an_axis_that_drives_nothing_is_told_of() {
     assert_eq!(output.stderr.lines().next(), told.lines().next());
     assert_eq!(output.stderr.matches("drives nothing").count(), 1, "{}", output.stderr);
 }
-
-#[test]
-fn an_encoder_on_an_axis_that_drives_nothing_is_told_of() {
-    let program = "#include \"KMotionDef.h\"\nmain() { ch1->InputMode = ENCODER_MODE; ch1->MaxFollowingError = 1e9; \
-                   ch2->InputMode = NO_INPUT_MODE; EnableAxis(1); Move(1, 100); Move(1, 0); EnableAxis(2); Move(2, 100); }";
-    let (output, _) = run("unmoved-encoder", program, &[], &["--for", "0.5"]);
-    let told = "cc67: thread 1: Move: axis 1 drives nothing, its OutputMode is NO_OUTPUT_MODE: its encoder stays as it is \
-                (is a program that sets the axes up to run first?)";
-    assert_eq!(
-        output.stderr.lines().filter(|line| line.contains("drives nothing")).collect::<Vec<_>>(),
-        [told]
-    );
-}

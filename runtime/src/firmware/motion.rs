@@ -2,7 +2,7 @@
 
 use std::f32::consts::{PI, TAU};
 
-use kmotiondef::modes::{InputMode, LastMotion, OutputMode};
+use kmotiondef::modes::{LastMotion, OutputMode};
 use kmotiondef::structs::{Chan, Iir};
 use kmotiondef::variables::{COORD_SYSTEM0, CS0_STOPPING_STATE, RESOLVER_FACTOR};
 use kmotiondef::{AxisId, Cycles, GuestAddr};
@@ -129,22 +129,15 @@ fn may_move(kernel: &mut Kernel, caller: &Caller<'_>, axis: AxisId, function: &s
         return false;
     }
     let may = !(is_member && memory.get(CS0_STOPPING_STATE) != 0);
-    if may && memory.axis(axis, Chan::OUTPUT_MODE) == OutputMode::None.get() && kernel.hints {
-        let has_input = memory.axis(axis, Chan::INPUT_MODE) != InputMode::None.get();
-        notice_unmoved(kernel, caller, axis, function, has_input);
+    let drives_nothing = memory.axis(axis, Chan::OUTPUT_MODE) == OutputMode::None.get();
+    if may && drives_nothing && kernel.hints && kernel.mechanics.take_unmoved(axis) {
+        let text = format!(
+            "{function}: axis {axis} drives nothing, its OutputMode is NO_OUTPUT_MODE: what the machine file connects to \
+             it stays as it is (is a program that sets the axes up to run first?)"
+        );
+        kernel.diagnose(caller, text);
     }
     may
-}
-
-/// Tells, once, a program that commands an axis without an output what will not move, if there is such a thing.
-fn notice_unmoved(kernel: &mut Kernel, caller: &Caller<'_>, axis: AxisId, function: &str, has_input: bool) {
-    let Some(has_contacts) = kernel.mechanics.take_unmoved(axis, has_input) else { return };
-    let what = if has_contacts { "what the machine file connects to it" } else { "its encoder" };
-    let text = format!(
-        "{function}: axis {axis} drives nothing, its OutputMode is NO_OUTPUT_MODE: {what} stays as it is (is a program \
-         that sets the axes up to run first?)"
-    );
-    kernel.diagnose(caller, text);
 }
 
 /// Waits for the caller's next slice if the axis is moving: the board plans there; for the planning time of the machine

@@ -103,13 +103,10 @@ impl Mechanics {
         Self { contacts, analog, handwheels, spindle, spindle_speed: 0.0, is_any, unmoved }
     }
 
-    /// What is to be told, once, of an axis that is commanded and drives nothing: whether it has contacts; nothing of
-    /// one that has neither contacts nor an input.
-    pub(crate) fn take_unmoved(&mut self, axis: AxisId, has_input: bool) -> Option<bool> {
+    /// Whether it is to be told, once, that an axis with contacts is commanded and drives nothing.
+    pub(crate) fn take_unmoved(&mut self, axis: AxisId) -> bool {
         let has_contacts = self.contacts.iter().any(|contact| contact.axis == axis);
-        let is_first =
-            (has_contacts || has_input) && !std::mem::replace(&mut self.unmoved[axis.index()], true);
-        is_first.then_some(has_contacts)
+        has_contacts && !std::mem::replace(&mut self.unmoved[axis.index()], true)
     }
 
     /// Whether it moves by itself after `time`, so that ticks cannot be skipped.
