@@ -12,6 +12,12 @@ use crate::operand::{Class, FuncRef, SigRef};
 /// Most bytes of a text: the whole program area.
 pub(crate) const MAX_TEXT: usize = (PROGRAM_LIMIT - PROGRAM_BASE) as usize;
 
+/// Index of the first executable word of a function with `registers`: behind its `func` and `types` words.
+#[inline]
+pub(crate) fn body_of(function: FuncRef, registers: u16) -> usize {
+    function.0 as usize + 1 + usize::from(registers).div_ceil(16)
+}
+
 /// One function of a program.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Function {

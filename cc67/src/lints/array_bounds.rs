@@ -5,6 +5,7 @@
 
 use super::Lint;
 use super::program::Program;
+use super::walk::{Extent, Walk};
 use crate::diag::{Diagnostic, Sink};
 use crate::ty::TypeId;
 use crate::typed::{
@@ -129,7 +130,7 @@ impl Search<'_> {
     /// Whether something in `body` writes `local`.
     fn changes(&self, body: &[Stmt], local: LocalId) -> bool {
         let mut found = false;
-        self.each_expr(body, true, &mut |expr| {
+        Walk { function: self.function, extent: Extent::All }.stmts(body, &mut |expr| {
             let kind = &self.function.exprs[expr].kind;
             found |= match kind {
                 ExprKind::Assign(place, _) => self.register(*place) == Some(local),
@@ -143,87 +144,11 @@ impl Search<'_> {
 
     /// Reports what every turn of a loop does outside of an array in its first or last one.
     fn turns(&self, body: &[Stmt], counter: Counter, sink: &mut Sink) {
-        self.each_expr(body, false, &mut |expr| {
+        Walk { function: self.function, extent: Extent::Always }.stmts(body, &mut |expr| {
             for place in accesses(self.function, &self.function.exprs[expr].kind) {
                 sink.report_if(self.finding(place, Some(counter)));
             }
         });
-    }
-
-    /// Hands over the expressions of `stmts`: all of them, or those that are evaluated whatever is computed.
-    fn each_expr(&self, stmts: &[Stmt], all: bool, visit: &mut dyn FnMut(ExprId)) {
-        for stmt in stmts {
-            match &stmt.kind {
-                StmtKind::Expr(expr) => self.each_part(*expr, all, visit),
-                StmtKind::Block(inner) => self.each_expr(inner, all, visit),
-                StmtKind::If { condition, then, otherwise } => {
-                    self.each_part(*condition, all, visit);
-                    if all {
-                        self.each_expr(then, all, visit);
-                        self.each_expr(otherwise, all, visit);
-                    }
-                }
-                StmtKind::Loop { condition, body, step, .. } if all => {
-                    condition.iter().chain(step).for_each(|expr| self.each_part(*expr, all, visit));
-                    self.each_expr(body, all, visit);
-                }
-                StmtKind::Switch { value, body, .. } => {
-                    self.each_part(*value, all, visit);
-                    if all {
-                        self.each_expr(body, all, visit);
-                    }
-                }
-                _ => {}
-            }
-        }
-    }
-
-    /// Hands over an expression and its parts likewise.
-    fn each_part(&self, expr: ExprId, all: bool, visit: &mut dyn FnMut(ExprId)) {
-        visit(expr);
-        let mut part = |inner: ExprId| self.each_part(inner, all, visit);
-        let place = |place: PlaceId| match self.function.places[place].kind {
-            PlaceKind::Pointer(pointer, _) => Some(pointer),
-            _ => None,
-        };
-        match &self.function.exprs[expr].kind {
-            ExprKind::Load(from) | ExprKind::Address(from) | ExprKind::VaArg(from) => {
-                place(*from).map(&mut part);
-            }
-            ExprKind::Assign(to, value) => {
-                place(*to).map(&mut part);
-                part(*value);
-            }
-            ExprKind::Update(update) => {
-                place(update.place).map(&mut part);
-                part(update.operand);
-            }
-            ExprKind::Unary(_, value) | ExprKind::Convert(value) => part(*value),
-            ExprKind::Binary(_, a, b) | ExprKind::Compare(_, a, b) | ExprKind::Comma(a, b) => {
-                part(*a);
-                part(*b);
-            }
-            ExprKind::And(a, b) | ExprKind::Or(a, b) => {
-                part(*a);
-                if all {
-                    part(*b);
-                }
-            }
-            ExprKind::Conditional(condition, a, b) => {
-                part(*condition);
-                if all {
-                    part(*a);
-                    part(*b);
-                }
-            }
-            ExprKind::Call(call) => {
-                call.arguments
-                    .iter()
-                    .chain(call.variable.iter().flatten())
-                    .for_each(|argument| part(*argument));
-            }
-            _ => {}
-        }
     }
 
     /// What is said of an access to `place`, in the first and the last turn of a counter or without one.

@@ -11,6 +11,7 @@ mod call_graph;
 mod flow;
 mod program;
 mod used_values;
+mod walk;
 
 mod array_bounds;
 mod call_back_wait;

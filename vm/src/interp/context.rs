@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use crate::engine::Stack;
 use crate::operand::FuncRef;
-use crate::program::Program;
+use crate::program::{Program, body_of};
 use crate::trap::TrapKind;
 use crate::verify::MAX_PARAMETERS;
 
@@ -85,7 +85,7 @@ impl Calls {
         clear(&window[parameters..], usize::from(count) - parameters);
         let stack_pointer = self.current.stack_pointer - bytes;
         self.lowest = self.lowest.min(stack_pointer);
-        self.pc = function.0 as usize + 1 + usize::from(count).div_ceil(16);
+        self.pc = body_of(function, count);
         self.current = Frame { pc: self.pc, base, registers: count, stack_pointer };
         Some(window)
     }

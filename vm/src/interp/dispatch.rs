@@ -19,7 +19,6 @@ use super::code::{Word, Words, word_at};
 use super::context::Window;
 use super::sequences::for_each_sequence;
 use crate::for_each_op;
-use crate::operand::Label;
 use crate::trap::TrapKind;
 
 /// Executes the word `word`, number `pc`, and what comes then, until something leaves the state an exit.
@@ -29,9 +28,9 @@ type Handler = for<'m> fn(&mut State<'m>, &'m Window, &Words, pc: usize, &Word);
 macro_rules! run {
     ($activation:ident, $words:ident, $word:expr, $last:ident) => {
         match step::$last(&mut $activation, $word) {
-            Flow::Next => go_on($activation, $words, 1),
-            Flow::Skip(count) => go_on($activation, $words, 1 + count),
-            Flow::Jump(to) => go_to($activation, $words, to),
+            Flow::Next => go_to($activation.pc + 1, $activation, $words),
+            Flow::Skip(count) => go_to($activation.pc + 1 + count, $activation, $words),
+            Flow::Jump(to) => go_to(to.0 as usize, $activation, $words),
             Flow::Leave(exit) => leave($activation, exit),
         }
     };
@@ -42,7 +41,7 @@ macro_rules! run {
                 let word = word_at($words, $activation.pc);
                 run!($activation, $words, word, $($then)+)
             }
-            Flow::Skip(count) => go_on($activation, $words, 1 + count),
+            Flow::Skip(count) => go_to($activation.pc + 1 + count, $activation, $words),
             Flow::Jump(to) => {
                 $activation.pc = to.0 as usize;
                 let word = word_at($words, $activation.pc);
@@ -78,7 +77,7 @@ macro_rules! define_steps {
 macro_rules! define_handlers {
     ($($name:ident: $($step:ident)+;)*) => {
         mod handler {
-            use super::{Activation, Flow, State, Window, Word, Words, go_on, go_to, leave, step, word_at};
+            use super::{Activation, Flow, State, Window, Word, Words, go_to, leave, step, word_at};
 
             $(
                 pub(super) fn $name<'m>(
@@ -111,6 +110,12 @@ static HANDLERS: [Handler; 256] = {
     handlers
 };
 
+/// The handler of a word; `sequences.rs` sees to it that an opcode fits a byte.
+#[inline(always)]
+fn handler_of(word: &Word) -> Handler {
+    HANDLERS[usize::from(word[0] as u8)]
+}
+
 /// Executes from where the calls stand; yields why that ended, with the instruction that did it in `pc`.
 pub(super) fn execute(state: &mut State<'_>, words: &Words) -> Exit {
     loop {
@@ -119,33 +124,21 @@ pub(super) fn execute(state: &mut State<'_>, words: &Words) -> Exit {
         };
         let pc = state.calls.pc;
         let word = word_at(words, pc);
-        HANDLERS[usize::from(word[0] as u8)](state, window, words, pc, word);
+        handler_of(word)(state, window, words, pc, word);
         if let Some(exit) = state.exit.take() {
             return exit;
         }
     }
 }
 
-/// Goes on `count` words further on.
+/// Goes on with the word `next`.
 #[inline(always)]
-fn go_on(activation: Activation<'_, '_>, words: &Words, count: usize) {
-    let next = activation.pc + count;
-    dispatch(activation, words, next);
-}
-
-/// Goes on at a label.
-#[inline(always)]
-fn go_to(activation: Activation<'_, '_>, words: &Words, to: Label) {
-    dispatch(activation, words, to.0 as usize);
-}
-
-#[inline(always)]
-fn dispatch(activation: Activation<'_, '_>, words: &Words, next: usize) {
+fn go_to(next: usize, activation: Activation<'_, '_>, words: &Words) {
     let Activation { state, window, .. } = activation;
     if cfg!(tail_calls) {
         let pc = next % words.len();
         let word = &words[pc];
-        HANDLERS[usize::from(word[0] as u8)](state, window, words, pc, word);
+        handler_of(word)(state, window, words, pc, word);
     } else {
         state.calls.pc = next;
     }

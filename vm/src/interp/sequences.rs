@@ -10,7 +10,7 @@
 use std::ops::Range;
 
 use crate::op::{OPCODES, Op};
-use crate::operand::FuncRef;
+use crate::program::body_of;
 
 /// Hands rows `name: instruction instruction…;` to the macro `$m`, behind those given.
 macro_rules! for_each_sequence {
@@ -150,18 +150,12 @@ fn stands_at(sequence: &[u16], ops: &[Op], codes: &[u16], pc: usize) -> bool {
             || match ops[pc] {
                 Op::Br { to } => goes_on(to.0 as usize),
                 Op::BrIf { to, .. } | Op::BrUnless { to, .. } => goes_on(pc + 1) && goes_on(to.0 as usize),
-                Op::Call { func } => body_of(ops, func).is_some_and(goes_on),
+                Op::Call { func } => match ops.get(func.0 as usize) {
+                    Some(Op::Func { regs, .. }) => goes_on(body_of(func, regs.0)),
+                    _ => false,
+                },
                 _ => goes_on(pc + 1),
             })
-}
-
-/// Where the body of a function begins.
-pub(super) fn body_of(ops: &[Op], function: FuncRef) -> Option<usize> {
-    let at = function.0 as usize;
-    match ops.get(at) {
-        Some(Op::Func { regs, .. }) => Some(at + 1 + usize::from(regs.0).div_ceil(16)),
-        _ => None,
-    }
 }
 
 /// The opcode of the instruction called `name`.
@@ -185,7 +179,7 @@ const fn is_same(a: &[u8], b: &[u8]) -> bool {
 mod tests {
     use super::*;
     use crate::op::WORD;
-    use crate::operand::{Count, Label, RegI32, SigRef};
+    use crate::operand::{Count, FuncRef, Label, RegI32, SigRef};
 
     /// The opcode at the first of `ops`.
     fn opcode_of_first(ops: &[Op]) -> u16 {

@@ -160,7 +160,10 @@ fn elements_that_an_array_lacks() {
          for (j = 0; j < 3; j++) a[j] = 0; for (j = 0; j <= 3; j++) { if (j == 3) break; a[j] = 0; }
          for (j = 0; j <= 3; j++) if (j < 3) a[j] = 0; for (j = 0; j <= 3; j++) { a[j] = 0; j++; }
          for (j = 0; j <= 3; j++) n += j < 3 && a[j]; for (j = 0; j <= n; j++) a[j] = 0; for (j = 3; j < 3; j++) a[j] = 0;
-         for (j = 0; j <= 3; j++) n += j < 3 ? a[j] : 0; for (j = 0; j <= 3; j++) a[i] = 0; }",
+         for (j = 0; j <= 3; j++) n += j < 3 ? a[j] : 0; for (j = 0; j <= 3; j++) a[i] = 0; }
+         struct P { int x, y; } q[3]; void (*h[3])(void); struct { unsigned on : 1; } b[3];
+         void k(struct P z) { int j; for (j = 0; j <= 3; j++) { q[j].x = 1; q[j++] = z; }
+         for (j = 0; j <= 3; j++) { a[j] = 0; h[j++](); } for (j = 0; j <= 3; j++) { a[j] = 0; b[j++].on = 1; } }",
     );
 }
 

@@ -29,10 +29,12 @@ sig 1, 1\ntypes 0
 sig 1, 2\ntypes 1
 sig 1, 3\ntypes 2
 sig 1, 4\ntypes 3
+sig 6, 0\ntypes 0xf80
 @pass_i32: func sig1, 1, 0\ntypes 0\ncharge 9\nret_i32 r0
 @pass_i64: func sig2, 1, 0\ntypes 1\ncharge 9\nret_i64 l0
 @pass_f32: func sig3, 1, 0\ntypes 2\ncharge 9\nret_f32 f0
 @pass_f64: func sig4, 1, 0\ntypes 3\ncharge 9\nret_f64 d0
+@take: func sig5, 6, 0\ntypes 0xf80\ncharge 9\nret
 @nothing: func sig0, 0, 0\ncharge 9\nret
 ";
 
@@ -94,6 +96,10 @@ fn call(class: &str, register: &str) -> String {
     format!("arg_{class} {register}, 0\ncall fn@pass_{class}\nresult_{class} {register}\ncharge 2000\n")
 }
 
+/// Arguments of each class that are not the last one: two in a row, then one by one; and a table.
+const MORE: &str = "arg_i32 r0, 0\narg_i32 r0, 1\narg_i32 r0, 2\narg_f32 f8, 3\narg_f64 d12, 4\narg_f64 d12, 5\n\
+                    call fn@take\ncharge 2000\nbr_table r3, 0\nbr @behind\n@behind: charge 2000\n";
+
 /// A program whose `main` does everything.
 fn everything() -> String {
     let each = (0..OPCODES).map(|code| vec![code]);
@@ -102,7 +108,7 @@ fn everything() -> String {
     let calls = [("i32", "r0"), ("i64", "l4"), ("f32", "f8"), ("f64", "d12")];
     let calls: String = calls.iter().map(|(class, register)| call(class, register)).collect();
     format!(
-        "{HEAD}@main: func sig0, 16, 2\ntypes 0xffaa5500\ncharge 9\nconst_i32 r3, {TURNS}\n@turn: {pieces}{calls}\
+        "{HEAD}@main: func sig0, 16, 2\ntypes 0xffaa5500\ncharge 9\nconst_i32 r3, {TURNS}\n@turn: {pieces}{calls}{MORE}\
          call fn@nothing\ncharge 2000\nadd_i32_imm r3, r3, -1\nbr_if r3, @turn\ncharge 9\nret\n"
     )
 }
