@@ -3,6 +3,7 @@
 //! It keeps what guest memory does not hold: output latches, the console queue, step generators, what waiting calls
 //! have to remember. Everything a program can see in memory is only there.
 
+pub(crate) mod globals;
 mod world;
 
 use std::collections::BTreeSet;
@@ -22,32 +23,32 @@ use vm::scheduler::Turn;
 use vm::trap::{Trap, TrapKind};
 
 use crate::commands::{self, Downloads, Experiment, Link};
-use crate::console::Console;
-use crate::device::attached::Attached;
-use crate::device::encoder::Encoders;
-use crate::device::fpga::{Behind, Fpga};
-use crate::device::kanalog::{self, Kanalog};
-use crate::device::konnect::Konnects;
-use crate::device::pins::Pins;
-use crate::device::snapamp::SnapAmps;
-use crate::device::stepgen::StepGenerators;
-use crate::device::timer;
-use crate::device::uart::Uart;
-use crate::dispatch::{HANDLERS, signatures};
-use crate::event::{Event, EventKind};
-use crate::files::HostFiles;
+use crate::firmware::dispatch::{HANDLERS, signatures};
 use crate::firmware::files::Reading;
+use crate::firmware::heap::Heap;
 use crate::firmware::serial::{self, SerialService};
-use crate::flash::Banks;
-use crate::globals::Globals;
-use crate::heap::Heap;
-use crate::host::Host;
-use crate::host::disk::{self, Disk};
-use crate::plant::Mechanics;
+use crate::io::encoder::Encoders;
+use crate::io::flash::Banks;
+use crate::io::fpga::{Behind, Fpga};
+use crate::io::kanalog::{self, Kanalog};
+use crate::io::konnect::Konnects;
+use crate::io::pins::Pins;
+use crate::io::snapamp::SnapAmps;
+use crate::io::stepgen::StepGenerators;
+use crate::io::timer;
+use crate::io::uart::Uart;
+use crate::kernel::globals::Globals;
+use crate::machine::plant::Mechanics;
+use crate::out::{Event, EventKind};
+use crate::pc::console::Console;
+use crate::pc::disk::{self, Disk};
+use crate::pc::files::HostFiles;
+use crate::pc::host::Host;
 use crate::servo::Servo;
-use crate::stimulus::{Assist, Player};
-use crate::trace::{Record, Recorder};
 use crate::views::Typed;
+use crate::world::attached::Attached;
+use crate::world::stimulus::{Assist, Player};
+use crate::world::trace::{Record, Recorder};
 
 /// What a register access costs beyond the instruction: 200 ns, a timer 100 ns.
 const FPGA_CYCLES: Cycles = Cycles::new(40);
@@ -480,7 +481,7 @@ impl Firmware for Kernel {
         }
         disk::slice(self, context);
         crate::servo::limits::slice(self, context.memory);
-        crate::host::slice(self, context);
+        crate::pc::host::slice(self, context);
         serial::slice(self, context);
         if self.usb.is_busy() {
             commands::slice(self, context, |kernel| &mut kernel.usb);

@@ -8,10 +8,10 @@ use vm::memory::GuestMemory;
 use vm::scheduler::Turn;
 use vm::thread::Threads;
 
-use crate::event::EventKind;
-use crate::files::NoFiles;
+use crate::board::power_up;
 use crate::kernel::Kernel;
-use crate::power_up;
+use crate::out::EventKind;
+use crate::pc::files::NoFiles;
 
 /// A board that calls come to by hand, from thread 1.
 pub(crate) struct Desk {

@@ -10,10 +10,10 @@ use vm::program::Program;
 use vm::verify::verify;
 
 use super::{Board, Loaded};
+use crate::board::power_up::{self, Before};
 use crate::commands::FLASH_COMPLETE;
-use crate::event::EventKind;
-use crate::flash;
-use crate::power_up::{self, Before};
+use crate::io::flash;
+use crate::out::EventKind;
 use crate::views::Typed;
 
 impl<E: Engine> Board<E> {

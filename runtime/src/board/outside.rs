@@ -5,8 +5,8 @@ use vm::engine::Engine;
 
 use super::Board;
 use crate::servo::independent;
-use crate::stimulus::Stimulus;
-use crate::trace;
+use crate::world::stimulus::Stimulus;
+use crate::world::trace;
 
 impl<E: Engine> Board<E> {
     /// Bytes from the PC arrive on the USB link: command lines, ended by CR. A line that begins with 0x1B and a byte

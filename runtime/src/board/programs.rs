@@ -12,9 +12,9 @@ use vm::thread::NotLoaded;
 use vm::verify::{VerifyError, verify};
 
 use super::{Board, Loaded};
-use crate::debug::{DebugInfo, SourcePlace};
-use crate::event::EventKind;
-use crate::loader::{Fill, LoadError, Placed, prepare};
+use crate::board::debug::{DebugInfo, SourcePlace};
+use crate::board::loader::{Fill, LoadError, Placed, prepare};
+use crate::out::EventKind;
 use crate::views::Typed;
 
 impl<E: Engine> Board<E> {

@@ -5,9 +5,9 @@ use kmotiondef::variables::DO_RS232_CMDS;
 
 use super::arguments::Values;
 use super::session::{Answer, Session};
-use crate::event::EventKind;
 use crate::firmware::serial;
 use crate::kernel::Request;
+use crate::out::EventKind;
 use crate::views::Typed;
 
 /// What the board says when flash is written.

@@ -13,9 +13,9 @@ use super::arguments::{Message, Mistake, Reader, Values};
 use super::data::Data;
 use super::path::Geometry;
 use super::{Answer, Command, Session, absent, find};
-use crate::event::EventKind;
 use crate::firmware::serial;
 use crate::kernel::Kernel;
+use crate::out::EventKind;
 
 /// Drops the line and the command in progress.
 const ABORT: u8 = 0x03;

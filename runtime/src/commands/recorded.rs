@@ -6,7 +6,7 @@ use kmotiondef::Bit;
 use serde_json::Value as Json;
 
 use super::COMMANDS;
-use crate::event::EventKind;
+use crate::out::EventKind;
 use crate::testing::Desk;
 use crate::text::vectors::rows;
 

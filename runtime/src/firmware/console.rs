@@ -10,7 +10,7 @@ use vm::trap::TrapKind;
 
 pub(crate) use super::files::{fclose, feof, fgets, fopen, fprintf, fscanf};
 use super::string::text;
-use crate::dispatch::Varargs;
+use crate::firmware::dispatch::Varargs;
 use crate::kernel::{Continuation, Kernel};
 use crate::text::{Arguments, Scanned, Sink, format, scan};
 

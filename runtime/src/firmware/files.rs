@@ -13,9 +13,9 @@ use vm::trap::TrapKind;
 
 use super::console::{converted, cut, formatted, put, resumed};
 use super::string::text;
-use crate::dispatch::Varargs;
-use crate::host::disk::{ARRIVED, ASKED, Request};
+use crate::firmware::dispatch::Varargs;
 use crate::kernel::{Continuation, Kernel};
+use crate::pc::disk::{ARRIVED, ASKED, Request};
 use crate::text::{Arguments, format};
 use crate::views::Typed;
 

@@ -212,7 +212,7 @@ mod tests {
     use kmotiondef::variables::KANALOG_PRESENT;
 
     use super::*;
-    use crate::event::EventKind;
+    use crate::out::EventKind;
     use crate::testing::Desk;
 
     fn read(desk: &mut Desk, bit: u64) -> i32 {

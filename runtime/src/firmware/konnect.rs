@@ -4,7 +4,7 @@ use kmotiondef::GuestAddr;
 use vm::firmware::Caller;
 use vm::trap::TrapKind;
 
-use crate::device::konnect::{Board, Port, Service};
+use crate::io::konnect::{Board, Port, Service};
 use crate::kernel::Kernel;
 
 /// Addresses on a port.

@@ -2,8 +2,10 @@
 
 pub(crate) mod console;
 pub(crate) mod coord;
+pub(crate) mod dispatch;
 pub(crate) mod files;
 pub(crate) mod gather;
+pub(crate) mod heap;
 pub(crate) mod io;
 pub(crate) mod konnect;
 pub(crate) mod math;

@@ -12,7 +12,7 @@ use vm::trap::TrapKind;
 
 use super::coord;
 use crate::kernel::{Continuation, Kernel};
-use crate::plant::Drive;
+use crate::machine::plant::Drive;
 use crate::servo::independent::{has_motion, is_planned, present, run, start, state, write};
 use crate::servo::profile::{self, LEAD, Limits, MAX_STATES, Mode, Ramp, State};
 use crate::servo::{AxisMemory, TIMEBASE, four_phase, switch_off, three_phase};

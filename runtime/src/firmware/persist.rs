@@ -5,7 +5,7 @@ use vm::firmware::{Caller, Outcome, Wake};
 use vm::trap::TrapKind;
 
 use super::string::text;
-use crate::flash;
+use crate::io::flash;
 use crate::kernel::{Continuation, Kernel};
 
 /// How long erasing and programming a block takes; other threads and the servo go on.

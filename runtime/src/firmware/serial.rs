@@ -13,9 +13,9 @@ use vm::memory::GuestMemory;
 use vm::trap::TrapKind;
 
 use super::io::set_bit_direction;
-use crate::device::uart::Uart;
-use crate::event::EventKind;
+use crate::io::uart::Uart;
 use crate::kernel::Kernel;
+use crate::out::EventKind;
 use crate::views::Typed;
 
 /// How long setting up takes: 2 ms.

@@ -5,7 +5,7 @@ use kmotiondef::variables::{BIT_DIR_SHADOW_SNAP0, BIT_DIR_SHADOW_SNAP1};
 use vm::firmware::Caller;
 
 use super::io::{bit_state, write_bit};
-use crate::device::snapamp::{CLEAR, CLEAR_ERRORS, DIRECTION, ENCODERS, LEVELS, PINS, Register};
+use crate::io::snapamp::{CLEAR, CLEAR_ERRORS, DIRECTION, ENCODERS, LEVELS, PINS, Register};
 use crate::kernel::Kernel;
 use crate::views::Typed;
 

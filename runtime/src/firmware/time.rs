@@ -5,7 +5,7 @@ use kmotiondef::limits::{CLOCKFREQ, TIMEBASE};
 use kmotiondef::variables::{LAST_TIMER0, SERVO_TICK};
 use vm::firmware::{Caller, Outcome, Wake};
 
-use crate::device::timer;
+use crate::io::timer;
 use crate::kernel::Kernel;
 use crate::views::Typed;
 

@@ -6,12 +6,12 @@ use vm::memory::GuestMemory;
 use vm::scheduler::Turn;
 
 use super::Kernel;
-use crate::device::attached::{Attached, Outside};
-use crate::device::changes::BitChange;
-use crate::event::EventKind;
 use crate::firmware::io::bit_state;
-use crate::stimulus::{Assist, Player, Step, Stimulus};
-use crate::trace::{self, Item, Quantity, Record, Recorder};
+use crate::io::changes::BitChange;
+use crate::out::EventKind;
+use crate::world::attached::{Attached, Outside};
+use crate::world::stimulus::{Assist, Player, Step, Stimulus};
+use crate::world::trace::{self, Item, Quantity, Record, Recorder};
 
 /// Edges that devices may answer at one instant.
 const EDGES_AT_ONCE: usize = 10_000;

@@ -7,7 +7,7 @@ use kmotiondef::variables::ADC_BUFFER_IN;
 use vm::memory::GuestMemory;
 
 use super::plan::Input;
-use crate::plant::Plant;
+use crate::machine::plant::Plant;
 use crate::views::{AxisView, Typed};
 
 /// Takes the position from an input that is no encoder.

@@ -38,10 +38,10 @@ use kmotiondef::{AxisId, Bit, Cycles};
 use vm::firmware::TickContext;
 use vm::memory::GuestMemory;
 
-use crate::device::stepgen::generator_of;
-use crate::event::EventKind;
+use crate::io::stepgen::generator_of;
 use crate::kernel::Kernel;
-use crate::plant::{self, Plant};
+use crate::machine::plant::{self, Plant};
+use crate::out::EventKind;
 use crate::servo::plan::{Input, Plan};
 use crate::servo::still::Stillness;
 use crate::views::{AxisView, Typed};

@@ -11,10 +11,10 @@ use kmotiondef::variables::DAC_BUFFER;
 use kmotiondef::{AxisId, Field};
 use vm::memory::GuestMemory;
 
-use crate::event::EventKind;
 use crate::firmware::io::{antiphase, current, recirculate, store_pwm};
 use crate::kernel::Kernel;
-use crate::plant::{Applied, Drive};
+use crate::machine::plant::{Applied, Drive};
+use crate::out::EventKind;
 use crate::views::{AxisView, Typed};
 
 /// The first PWM channel of a SnapAmp: its loops control current.

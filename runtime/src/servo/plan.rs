@@ -13,7 +13,7 @@ use vm::memory::GuestMemory;
 
 use super::duration::duration;
 use super::{Servo, limits};
-use crate::plant::COUNTS_PER_TICK;
+use crate::machine::plant::COUNTS_PER_TICK;
 use crate::views::AxisView;
 
 /// Where the position of an axis comes from.

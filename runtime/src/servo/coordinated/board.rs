@@ -6,9 +6,9 @@ use vm::memory::GuestMemory;
 
 use super::Bits;
 use super::segment::SIZE;
-use crate::event::EventKind;
 use crate::firmware::io::{bit_state, write_bit};
 use crate::kernel::Kernel;
+use crate::out::EventKind;
 use crate::views::Typed;
 
 impl Bits for Kernel {

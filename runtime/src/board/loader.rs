@@ -1,0 +1,279 @@
+//! From the bytes of an image to a program in a thread; refuses before anything changes.
+//!
+//! [`prepare`] checks everything that can be wrong with an image (`coff.md` sections 4 and 9,
+//! design.md D7) and yields a [`Prepared`] that the board can take without failing. The vendor's
+//! own loader checks next to nothing; a mistake there overwrites another thread's program.
+
+use coff::{Contents, FileFlags, Image, Line, Section, SectionFlags, SectionNumber, StorageClass, Target};
+use kmotiondef::limits::{VERSION, VERSION_STAMP};
+use kmotiondef::map::{PROGRAM_BASE, PROGRAM_SIZE, STACK_BASE, program_base};
+use kmotiondef::{GuestAddr, ThreadId};
+use vm::program::Program;
+use vm::verify::{VerifyError, verify};
+
+use crate::board::debug::{DebugInfo, FunctionInfo, ObjectInfo};
+
+/// An image that can be loaded without failing.
+#[derive(Debug)]
+pub struct Prepared {
+    /// The verified code.
+    pub program: Program,
+    /// Where `main` begins.
+    pub entry: GuestAddr,
+    /// What goes into memory.
+    pub sections: Vec<Placed>,
+    /// Names and lines.
+    pub debug: DebugInfo,
+}
+
+/// A section and its place.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Placed {
+    /// Where it goes.
+    pub address: GuestAddr,
+    /// What goes there.
+    pub contents: Fill,
+}
+
+/// Contents of a section.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Fill {
+    /// These bytes.
+    Bytes(Vec<u8>),
+    /// So many bytes of uninitialised data.
+    Uninitialised(u32),
+}
+
+impl Placed {
+    /// Bytes that it takes.
+    #[must_use]
+    pub fn size(&self) -> u32 {
+        match &self.contents {
+            Fill::Bytes(bytes) => bytes.len() as u32,
+            Fill::Uninitialised(size) => *size,
+        }
+    }
+}
+
+/// Why an image is refused.
+#[derive(Debug, thiserror::Error)]
+pub enum LoadError {
+    /// The bytes are not a TI COFF image.
+    #[error("not a KFLOP image: {0}")]
+    NotAnImage(coff::Error),
+    /// Machine code for the DSP.
+    #[error("machine code for the controller's DSP, which the simulated board does not execute")]
+    MachineCode,
+    /// Code for something else.
+    #[error("code for target {0}, not for the simulated board")]
+    OtherTarget(Target),
+    /// Linked against another firmware.
+    #[error("linked against firmware of {}; the board runs {}", version(*found), VERSION.trim_end())]
+    OtherFirmware {
+        /// The image's stamp.
+        found: i16,
+    },
+    /// An object, or an image with something left to link.
+    #[error("an object that is not linked yet; `cc67 build` links it")]
+    NotLinked,
+    /// A part that every image has is missing.
+    #[error("the image has no {0}")]
+    Missing(&'static str),
+    /// Linked for another thread.
+    #[error(
+        "the image is linked for thread {linked}, not for thread {wanted}: its code and data stand at the \
+         addresses of thread {linked}; load it there, or build it for thread {wanted}"
+    )]
+    OtherThread {
+        /// Thread it is linked for.
+        linked: ThreadId,
+        /// Thread it should go into.
+        wanted: ThreadId,
+    },
+    /// A section lies outside the memory for programs.
+    #[error("section {name} at {address}, {size} bytes, lies outside the program area")]
+    OutsideProgramArea {
+        /// The section.
+        name: String,
+        /// Where it is.
+        address: GuestAddr,
+        /// Its size.
+        size: u64,
+    },
+    /// Two sections share memory.
+    #[error("sections {first} and {second} overlap")]
+    Overlap {
+        /// The lower one.
+        first: String,
+        /// The higher one.
+        second: String,
+    },
+    /// The program needs the space of a thread that holds another program.
+    #[error("the program enters the space of thread {0}, which holds another program")]
+    EntersThread(ThreadId),
+    /// A large program of another thread takes the space.
+    #[error("the space of thread {0} is taken: the program of a lower thread reaches into it")]
+    SpaceTaken(ThreadId),
+    /// The code breaks a rule of the bytecode.
+    #[error("the code is refused: {0}")]
+    Refused(VerifyError),
+    /// The entry point is not a function.
+    #[error("the entry point {0} is not a function of the image")]
+    Entry(GuestAddr),
+}
+
+/// Checks an image for `thread`; `holds` says in which threads' spaces a program lies, apart from
+/// the one that the image replaces.
+///
+/// # Errors
+/// The first reason found to refuse it.
+pub fn prepare(
+    bytes: &[u8],
+    thread: ThreadId,
+    holds: impl Fn(ThreadId) -> bool,
+) -> Result<Prepared, LoadError> {
+    let image = Image::read(bytes).map_err(LoadError::NotAnImage)?;
+    check_origin(&image)?;
+    let header = image.program.ok_or(LoadError::Missing("entry point"))?;
+    let text = image.section(".text").ok_or(LoadError::Missing("section .text"))?;
+    check_thread(text, thread)?;
+    check_sections(&image, thread, holds)?;
+    let program = verify(text.data(), GuestAddr::new(text.address)).map_err(LoadError::Refused)?;
+    let entry = GuestAddr::new(header.entry);
+    program.function_at(entry).ok_or(LoadError::Entry(entry))?;
+    let sections = image.sections.iter().filter(|section| is_loaded(section)).map(place).collect();
+    Ok(Prepared { program, entry, sections, debug: debug(&image) })
+}
+
+fn check_origin(image: &Image) -> Result<(), LoadError> {
+    match image.target {
+        Target::CC67 => {}
+        Target::C6000 => return Err(LoadError::MachineCode),
+        other => return Err(LoadError::OtherTarget(other)),
+    }
+    let has_relocations = image.sections.iter().any(|section| !section.relocations.is_empty());
+    if has_relocations || !image.flags.contains(FileFlags::EXECUTABLE) {
+        return Err(LoadError::NotLinked);
+    }
+    match image.program {
+        Some(header) if header.version_stamp != VERSION_STAMP => {
+            Err(LoadError::OtherFirmware { found: header.version_stamp })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// A version stamp in words.
+fn version(stamp: i16) -> String {
+    match stamp {
+        1.. => format!("version {}.{:02}", stamp / 100, stamp % 100),
+        _ => "an unknown version".to_owned(),
+    }
+}
+
+/// Whether a load puts the section into memory (`coff.md` section 9.2).
+fn is_loaded(section: &Section) -> bool {
+    let is = |flag| section.flags.contains(flag);
+    let is_kept_back = is(SectionFlags::DSECT) || is(SectionFlags::NOLOAD) || is(SectionFlags::COPY);
+    let has_bytes = match section.contents {
+        Contents::Data(_) => true,
+        Contents::Uninitialised(_) => section.name == *".bss" && is(SectionFlags::BSS),
+    };
+    section.size() > 0 && !is_kept_back && has_bytes
+}
+
+fn check_thread(text: &Section, wanted: ThreadId) -> Result<(), LoadError> {
+    if text.address == program_base(wanted).get() {
+        return Ok(());
+    }
+    match ThreadId::all().find(|thread| program_base(*thread).get() == text.address) {
+        Some(linked) => Err(LoadError::OtherThread { linked, wanted }),
+        None => Err(outside(text)),
+    }
+}
+
+fn outside(section: &Section) -> LoadError {
+    LoadError::OutsideProgramArea {
+        name: section.name.to_string(),
+        address: GuestAddr::new(section.address),
+        size: section.size(),
+    }
+}
+
+/// Every section inside the program area, none over another, none in a space that is taken.
+fn check_sections(
+    image: &Image,
+    thread: ThreadId,
+    holds: impl Fn(ThreadId) -> bool,
+) -> Result<(), LoadError> {
+    let mut ranges = Vec::new();
+    for section in image.sections.iter().filter(|section| is_loaded(section)) {
+        let (start, end) = (u64::from(section.address), u64::from(section.address) + section.size());
+        if start < u64::from(program_base(thread).get()) || end > u64::from(STACK_BASE) {
+            return Err(outside(section));
+        }
+        for other in ThreadId::all().filter(|other| holds(*other)) {
+            let base = u64::from(program_base(other).get());
+            if start < base + u64::from(PROGRAM_SIZE) && end > base {
+                return Err(if other == thread {
+                    LoadError::SpaceTaken(thread)
+                } else {
+                    LoadError::EntersThread(other)
+                });
+            }
+        }
+        ranges.push((start, end, section));
+    }
+    ranges.sort_by_key(|(start, ..)| *start);
+    for pair in ranges.windows(2) {
+        if let [(_, end, first), (start, _, second)] = pair
+            && start < end
+        {
+            return Err(LoadError::Overlap {
+                first: first.name.to_string(),
+                second: second.name.to_string(),
+            });
+        }
+    }
+    Ok(())
+}
+
+fn place(section: &Section) -> Placed {
+    let contents = match &section.contents {
+        Contents::Data(bytes) => Fill::Bytes(bytes.clone()),
+        Contents::Uninitialised(size) => Fill::Uninitialised(*size),
+    };
+    Placed { address: GuestAddr::new(section.address), contents }
+}
+
+/// Collects functions, lines and objects from the symbol table.
+///
+/// A file symbol names the file of the functions behind it. The size of an object stands in its
+/// auxiliary entry, where that of a function is too.
+fn debug(image: &Image) -> DebugInfo {
+    let mut file = String::new();
+    let (mut functions, mut objects) = (Vec::new(), Vec::new());
+    for symbol in &image.symbols {
+        let name = symbol.name.to_string();
+        let size = symbol.aux.first().map_or(0, |aux| aux.as_function().size.get());
+        match symbol.class {
+            StorageClass::FILE => file = name,
+            StorageClass::EXTERNAL | StorageClass::STATIC if symbol.section == SectionNumber(1) => {
+                let (start, end) = (symbol.value, symbol.value.saturating_add(size));
+                functions.push(FunctionInfo { name, file: file.clone(), start, end });
+            }
+            StorageClass::EXTERNAL | StorageClass::STATIC
+                if symbol.section.0 > 1 && (PROGRAM_BASE..STACK_BASE).contains(&symbol.value) =>
+            {
+                objects.push(ObjectInfo { name, start: symbol.value, size });
+            }
+            _ => {}
+        }
+    }
+    let lines = image.sections.iter().flat_map(|section| &section.lines);
+    let lines = lines.filter_map(|line| match line {
+        Line::Statement { address, line } => Some((*address, u32::from(line.get()))),
+        Line::Function(_) => None,
+    });
+    DebugInfo::new(functions, lines.collect(), objects)
+}

@@ -1,0 +1,357 @@
+//! The board as a program that embeds it sees it.
+
+mod boot;
+pub mod debug;
+pub mod loader;
+pub mod machine_file;
+mod outside;
+pub(crate) mod power_up;
+mod programs;
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::sync::Arc;
+
+use kmotiondef::map::FLASH;
+use kmotiondef::structs::Persist;
+use kmotiondef::variables::PERSIST;
+use kmotiondef::{Cycles, ThreadId, Ticks};
+use vm::engine::Engine;
+use vm::interp::BytecodeEngine;
+use vm::machine::{Config as MachineConfig, Machine};
+use vm::memory::GuestMemory;
+use vm::thread::ThreadState;
+
+use crate::board::debug::DebugInfo;
+use crate::board::machine_file::{MachineFile, NS_PER_INSTRUCTION};
+use crate::io::flash::FLASH_SIZE;
+use crate::kernel::{Kernel, Request};
+use crate::machine::plant;
+use crate::out::{Event, EventKind};
+use crate::pc::Answers;
+use crate::pc::files::{HostFiles, NoFiles};
+use crate::views::Typed;
+
+/// Settings of a board.
+#[derive(Debug)]
+pub struct Config {
+    /// Settings of the machine: servo time, shortcuts, stacks.
+    pub machine: MachineConfig,
+    /// Whether the built-in PC polls and answers.
+    pub host: bool,
+    /// What it answers to programs; `None` for what the machine file says.
+    pub answers: Option<Answers>,
+    /// Where the PC keeps its files.
+    pub files: Box<dyn HostFiles>,
+    /// Byte put into uninitialised data at a load.
+    pub bss_fill: u8,
+    /// What is connected to the board.
+    pub machine_file: MachineFile,
+    /// What flash memory holds, [`FLASH_SIZE`] bytes; `None` for a board whose flash was never written.
+    pub flash: Option<Vec<u8>>,
+}
+
+impl Default for Config {
+    fn default() -> Self {
+        Self {
+            machine: MachineConfig::default(),
+            host: true,
+            answers: None,
+            files: Box::new(NoFiles),
+            bss_fill: 0,
+            machine_file: MachineFile::default(),
+            flash: None,
+        }
+    }
+}
+
+/// Cycles of a microsecond.
+const CYCLES_PER_US: f64 = Cycles::PER_SECOND.get() as f64 / 1e6;
+
+/// Why a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RunEnd {
+    /// No thread is active, and nothing moves, records, prints or waits for the PC.
+    AllEnded,
+    /// The limit is reached.
+    Limit,
+}
+
+/// What the board knows of a loaded image.
+#[derive(Debug)]
+struct Loaded {
+    debug: DebugInfo,
+    /// Addresses from its first to behind its last byte.
+    extent: Range<u32>,
+}
+
+/// A simulated board.
+#[derive(Debug)]
+pub struct Board<E = BytecodeEngine> {
+    machine: Machine<Kernel, E>,
+    loaded: [Option<Loaded>; ThreadId::MAX as usize],
+    /// What is known of the programs in flash.
+    flashed: [Option<DebugInfo>; ThreadId::MAX as usize],
+    /// Images that a stimulus may load, by the thread they are linked for and what it calls them.
+    offered: BTreeMap<(ThreadId, Arc<str>), Vec<u8>>,
+    bss_fill: u8,
+    /// What an instruction takes, in units of what it takes on the board.
+    price: f64,
+}
+
+impl<E: Engine> Board<E> {
+    /// A board at power-up.
+    #[must_use]
+    pub fn new(config: Config) -> Self {
+        let connected = &config.machine_file;
+        let mut kernel = Kernel::new(config.files);
+        kernel.host.connect(config.host && connected.host);
+        kernel.host.answer_with(config.answers.unwrap_or_else(|| connected.answers.clone()));
+        plant::install(&mut kernel, connected);
+        let servo = connected.servo_us.map(|time| Cycles::new((time * CYCLES_PER_US) as i64));
+        let settings = MachineConfig {
+            servo: config.machine.servo.or(servo),
+            strict_stack: config.machine.strict_stack || connected.strict_stack,
+            ..config.machine
+        };
+        let machine = Machine::new(kernel, settings);
+        let bss_fill = if config.bss_fill == 0 { connected.bss_fill } else { config.bss_fill };
+        let (loaded, flashed, offered) = Default::default();
+        let price = connected.ns_per_instruction / NS_PER_INSTRUCTION;
+        let mut board = Self { machine, loaded, flashed, offered, bss_fill, price };
+        if let Some(flash) = config.flash {
+            let stored = board.machine.memory_mut().poke_bytes(FLASH.base, &flash);
+            debug_assert!(stored.is_ok() && flash.len() == FLASH_SIZE, "flash has its size");
+        }
+        board.power_up(connected.strict_flash);
+        let (kernel, context) = board.machine.firmware_mut();
+        plant::play(kernel, connected, context.memory);
+        board
+    }
+
+    /// Runs to the end of tick `limit` or until everything has ended; `sink` receives what happens.
+    ///
+    /// At the end the console text still held is sent, and the expectations of the stimulus are checked.
+    pub fn run(&mut self, limit: Ticks, sink: &mut dyn FnMut(Event)) -> RunEnd {
+        let end = self.run_part(limit, sink);
+        self.finish(sink);
+        end
+    }
+
+    /// Like [`run`](Self::run), for a run that goes on afterwards or is [finished](Self::finish).
+    pub fn run_part(&mut self, limit: Ticks, sink: &mut dyn FnMut(Event)) -> RunEnd {
+        loop {
+            if self.has_ended() {
+                return RunEnd::AllEnded;
+            }
+            if self.machine.tick() >= limit {
+                return RunEnd::Limit;
+            }
+            self.step(limit);
+            self.deliver(sink);
+        }
+    }
+
+    /// The run is over: sends the console text still held and checks the expectations of the stimulus.
+    pub fn finish(&mut self, sink: &mut dyn FnMut(Event)) {
+        self.flush(sink);
+        let (kernel, mut context) = self.machine.firmware_mut();
+        kernel.finish(&mut context);
+        self.deliver(sink);
+    }
+
+    /// Runs to the end of the next tick in which something can happen, and does what was asked for there.
+    fn step(&mut self, limit: Ticks) {
+        self.machine.step(limit);
+        for request in self.machine.firmware_mut().0.take_requests() {
+            match request {
+                Request::Load(thread) => self.adopt(thread),
+                Request::Flash => self.save(),
+                Request::Reboot => self.reboot(),
+                Request::Run(thread, name) => self.run_offered(thread, &name),
+            }
+        }
+    }
+
+    /// Runs to the end of the next tick in which something can happen, or of tick `limit`, whichever comes first.
+    pub fn advance(&mut self, limit: Ticks, sink: &mut dyn FnMut(Event)) {
+        if self.machine.tick() < limit {
+            self.step(limit);
+        }
+        self.deliver(sink);
+    }
+
+    /// Sends the console text that waits, the unfinished line included.
+    pub fn flush(&mut self, sink: &mut dyn FnMut(Event)) {
+        let (kernel, context) = self.machine.firmware_mut();
+        kernel.flush_console(context.now);
+        self.deliver(sink);
+    }
+
+    /// Runs until `is_over` says so of the events of a tick, or to the end of tick `limit`; whether it said so.
+    ///
+    /// Unlike [`run`](Self::run) it goes on when all threads have ended, and leaves unfinished console lines alone.
+    pub fn run_until(&mut self, limit: Ticks, is_over: &mut dyn FnMut(Event) -> bool) -> bool {
+        while self.machine.tick() < limit {
+            self.step(limit);
+            let mut over = false;
+            self.deliver(&mut |event| over |= is_over(event));
+            if over {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Whether no thread is active and nothing is under way that a program has begun.
+    #[must_use]
+    pub fn has_ended(&self) -> bool {
+        let is_active = ThreadId::all().any(|thread| self.machine.threads().state(thread).is_active());
+        !is_active && !self.machine.firmware().is_busy(self.machine.memory())
+    }
+
+    /// Hands over the events since the last time, with the program's place where that is known.
+    fn deliver(&mut self, sink: &mut dyn FnMut(Event)) {
+        for mut event in self.machine.firmware_mut().0.take_events() {
+            if let EventKind::UndrivenInput { thread: Some(thread), place, .. }
+            | EventKind::Assisted { thread: Some(thread), place, .. } = &mut event.kind
+            {
+                *place = self.machine.backtrace(*thread).first().copied();
+            }
+            sink(event);
+        }
+    }
+
+    /// The present time: the end of the last tick.
+    #[must_use]
+    pub fn now(&self) -> Cycles {
+        let tick = i64::try_from(self.machine.tick().get()).unwrap_or(i64::MAX);
+        Cycles::new(tick.saturating_add(1).saturating_mul(Cycles::PER_TICK.get()))
+    }
+
+    /// Number of servo interrupts since power-up.
+    #[must_use]
+    pub const fn tick(&self) -> Ticks {
+        self.machine.tick()
+    }
+
+    /// Guest memory.
+    #[must_use]
+    pub const fn memory(&self) -> &GuestMemory {
+        self.machine.memory()
+    }
+
+    /// Guest memory, to change it from outside.
+    pub fn memory_mut(&mut self) -> &mut GuestMemory {
+        self.machine.firmware_mut().0.disturb();
+        self.machine.memory_mut()
+    }
+
+    /// The machine.
+    #[must_use]
+    pub const fn machine(&self) -> &Machine<Kernel, E> {
+        &self.machine
+    }
+
+    /// The machine, to load programs and to watch it.
+    pub fn machine_mut(&mut self) -> &mut Machine<Kernel, E> {
+        self.machine.firmware_mut().0.disturb();
+        &mut self.machine
+    }
+
+    /// The state of a thread.
+    #[must_use]
+    pub fn thread(&self, thread: ThreadId) -> &ThreadState {
+        self.machine.threads().state(thread)
+    }
+
+    /// An element of `persist.UserData`; `None` beyond the last.
+    #[must_use]
+    pub fn user_data(&self, index: usize) -> Option<i32> {
+        let data = PERSIST.field(Persist::USER_DATA);
+        (index < kmotiondef::limits::N_USER_DATA_VARS).then(|| self.memory().get(data.element(index)))
+    }
+
+    /// Stores an element of `persist.UserData`; `false` beyond the last.
+    pub fn set_user_data(&mut self, index: usize, value: i32) -> bool {
+        let is_inside = index < kmotiondef::limits::N_USER_DATA_VARS;
+        if is_inside {
+            self.memory_mut().set(PERSIST.field(Persist::USER_DATA).element(index), value);
+        }
+        is_inside
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use kmotiondef::GuestAddr;
+    use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, function_named};
+    use kmotiondef::map::program_base;
+    use kmotiondef::structs::Chan;
+    use vm::text::assemble;
+    use vm::verify::verify;
+
+    use super::*;
+
+    /// `sig0` is `()`, `sig1` `(i32, f64)`, `sig2` `(f64)`, `sig3` `(i32) -> i32`; the pool holds 0, 100 and 0.5.
+    const HEAD: &str = "program 1, 3\nword 0x0\nword 0x4059000000000000\nword 0x3fe0000000000000
+sig 0, 0\nsig 2, 0\ntypes 0xc\nsig 1, 0\ntypes 3\nsig 1, 1\ntypes 0\n";
+    /// First word behind it.
+    const MAIN: usize = 11;
+    /// Where the text to print stands, in the thread's own space.
+    const TEXT: u32 = 0x8005_F000;
+
+    fn call(name: &str, signature: usize, loads: &str, arguments: &str) -> String {
+        let address = FIRMWARE_FUNCTIONS[function_named(name).expect(name)].address.get();
+        format!("charge 20\n{loads}\n{arguments}\ncall_fw sig{signature}, {address:#x}\n")
+    }
+
+    /// Enables axis 0, moves it by 100, waits half a second, prints a line and ends.
+    fn program() -> String {
+        let axis_and = |pool: usize| format!("const_i32 r0, 0\nconst_f64 d1, pool[{pool}]");
+        let calls = [
+            call("EnableAxisDest", 1, &axis_and(0), "arg_i32 r0, 0\narg_f64 d1, 1"),
+            call("Move", 1, &axis_and(1), "arg_i32 r0, 0\narg_f64 d1, 1"),
+            call("Delay_sec", 2, &axis_and(2), "arg_f64 d1, 0"),
+            call("Print", 3, &format!("const_i32 r0, {}", TEXT.cast_signed()), "arg_i32 r0, 0"),
+        ];
+        format!("{HEAD}@main: func sig0, 2, 0\ntypes 0xc\n{}charge 2\nret", calls.concat())
+    }
+
+    fn run(shortcuts: bool, limit: u64) -> (RunEnd, Vec<Event>, Board) {
+        let machine = MachineConfig { shortcuts, ..MachineConfig::default() };
+        let mut board: Board = Board::new(Config { machine, ..Config::default() });
+        let thread = ThreadId::new(1).expect("1 is a thread");
+        let text = assemble(&program()).unwrap_or_else(|error| panic!("{error}"));
+        let program = verify(&text, program_base(thread)).unwrap_or_else(|error| panic!("{error}"));
+        board.memory_mut().poke_bytes(program_base(thread), &text).expect("mapped");
+        board.memory_mut().poke_bytes(GuestAddr::new(TEXT), b"moved\n\0").expect("mapped");
+        let entry = program.address_of(MAIN).as_guest_addr();
+        board.load_program(thread, program, entry);
+        board.start(thread).expect("loaded");
+        let mut events = Vec::new();
+        let end = board.run(Ticks::new(limit), &mut |event| events.push(event));
+        (end, events, board)
+    }
+
+    #[test]
+    fn a_program_runs_to_its_end() {
+        let (end, events, board) = run(true, 100_000);
+        assert_eq!(end, RunEnd::AllEnded);
+        let lines: Vec<_> = events.iter().map(|event| event.kind.clone()).collect();
+        assert_eq!(lines, [EventKind::ConsoleLine(b"moved".to_vec())]);
+        let seconds = events[0].at.get() as f64 / Cycles::PER_SECOND.get() as f64;
+        assert!((0.5..0.501).contains(&seconds), "{seconds}");
+        let axis = kmotiondef::AxisId::new(0).expect("0 is an axis");
+        assert_eq!(board.memory().axis(axis, Chan::DEST), 100.0);
+    }
+
+    #[test]
+    fn shortcuts_change_nothing() {
+        let limit = 8_000;
+        let (slow, fast) = (run(false, limit), run(true, limit));
+        assert_eq!(slow.0, fast.0);
+        assert_eq!(slow.1, fast.1);
+        assert!(slow.2.memory() == fast.2.memory(), "memory differs");
+    }
+}

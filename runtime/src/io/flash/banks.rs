@@ -1,0 +1,103 @@
+//! The window on flash memory, for a board that is strict about it.
+//!
+//! The chip has more address lines than the bus: `SetFlashBank` sets its lines 14 to 19, and a read finds the 32 KiB of
+//! that bank wherever it looks. Programs that forget to select a bank read the wrong one; a board that is not strict
+//! shows all of the chip where it is, and hides their mistake. Here guest memory holds what can be seen, and the chip
+//! is kept beside it.
+
+use kmotiondef::GuestAddr;
+use kmotiondef::map::FLASH;
+use vm::memory::GuestMemory;
+
+use super::FLASH_SIZE;
+
+/// Bytes of a bank: 2^14 words.
+const BANK: usize = 0x8000;
+
+/// What the chip holds, and the bank that is seen.
+#[derive(Debug)]
+struct Chip {
+    bytes: Vec<u8>,
+    bank: usize,
+}
+
+/// The selected bank; none where all of flash is seen.
+#[derive(Debug, Default)]
+pub(crate) struct Banks(Option<Chip>);
+
+impl Banks {
+    /// From now on one bank is seen, the first one to begin with.
+    pub(crate) fn be_strict(&mut self, memory: &mut GuestMemory) {
+        self.0 = Some(Chip { bytes: flash(memory), bank: 0 });
+        self.show(memory);
+    }
+
+    /// Selects the bank of an address.
+    pub(crate) fn select(&mut self, address: GuestAddr, memory: &mut GuestMemory) {
+        let Some(chip) = &mut self.0 else { return };
+        let offset = address.get().wrapping_sub(FLASH.base.get()) as usize;
+        chip.bank = offset % FLASH_SIZE / BANK;
+        self.show(memory);
+    }
+
+    /// Does something that needs all of flash where it is.
+    pub(crate) fn with_chip<R>(
+        &mut self,
+        memory: &mut GuestMemory,
+        work: impl FnOnce(&mut GuestMemory) -> R,
+    ) -> R {
+        if let Some(chip) = &self.0 {
+            store(memory, &chip.bytes);
+        }
+        let result = work(memory);
+        if let Some(chip) = &mut self.0 {
+            chip.bytes = flash(memory);
+        }
+        self.show(memory);
+        result
+    }
+
+    /// What the chip holds, if that is not what is seen.
+    pub(crate) fn chip(&self) -> Option<&[u8]> {
+        self.0.as_ref().map(|chip| &*chip.bytes)
+    }
+
+    fn show(&self, memory: &mut GuestMemory) {
+        let Some(Chip { bytes, bank }) = &self.0 else { return };
+        let seen = &bytes[bank * BANK..][..BANK];
+        store(memory, &seen.repeat(FLASH_SIZE / BANK));
+    }
+}
+
+fn flash(memory: &GuestMemory) -> Vec<u8> {
+    memory.read_bytes(FLASH.base, FLASH.size).unwrap_or_default().to_vec()
+}
+
+fn store(memory: &mut GuestMemory, bytes: &[u8]) {
+    let stored = memory.poke_bytes(FLASH.base, bytes);
+    debug_assert!(stored.is_ok() && bytes.len() == FLASH_SIZE, "flash is mapped");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::flash;
+
+    #[test]
+    fn a_read_finds_the_selected_bank_wherever_it_looks() {
+        let (mut memory, mut banks) = (GuestMemory::new(), Banks::default());
+        let user = FLASH.base.offset(0x10_0000);
+        banks.be_strict(&mut memory);
+        assert!(banks.with_chip(&mut memory, |memory| flash::program(memory, user, &[7; 0x8001])));
+        let look = |memory: &GuestMemory| {
+            [0, 0x10_0000, 0x10_8000].map(|at| memory.peek::<u8>(FLASH.base.offset(at)))
+        };
+        assert_eq!(look(&memory), [0xFF; 3]);
+        banks.select(user.offset(2), &mut memory);
+        assert_eq!(look(&memory), [7; 3]);
+        banks.select(user.offset(0x8000), &mut memory);
+        assert_eq!(look(&memory), [7; 3]);
+        assert_eq!(memory.peek::<u8>(user.offset(1)), 0xFF);
+        assert_eq!(banks.chip().map(|bytes| bytes[0x10_7FFF..0x10_8002].to_vec()), Some(vec![7, 7, 0xFF]));
+    }
+}

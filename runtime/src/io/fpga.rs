@@ -1,0 +1,456 @@
+//! Registers of the FPGA.
+//!
+//! Register r of eight bits is the byte at base + 4·r + 2; of 16 bits, the half word there. The registers below act;
+//! the rest is storage that reads back what was written.
+
+mod pwm;
+
+use std::collections::BTreeSet;
+
+use kmotiondef::map::FPGA;
+use kmotiondef::{Bit, Cycles, GuestAddr};
+use vm::bus::AccessSize;
+
+use super::encoder::Encoders;
+use super::kanalog::Kanalog;
+use super::kstep::AnalogOutput;
+use super::pins::{PINS, Pins};
+use super::stepgen::StepGenerators;
+use super::uart::Uart;
+use crate::out::EventKind;
+
+/// Bytes between two registers.
+const STRIDE: u32 = 4;
+/// Where a register lies in its four bytes.
+const LANE: u32 = 2;
+/// Groups of eight pins.
+const GROUPS: u32 = PINS as u32 / 8;
+
+/// A range of registers and what is known of it.
+struct Registers {
+    first: u32,
+    last: u32,
+    kind: Kind,
+}
+
+/// What a register does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    /// Known to programs; here it only stores.
+    Storage,
+    /// Ones set latches.
+    BitSet,
+    /// Zeros clear latches.
+    BitClear,
+    /// Directions.
+    BitDirection,
+    /// Levels, read only.
+    BitRead,
+    /// Characters of the UART.
+    UartData,
+    /// The UART's status when read, its divisor when written.
+    UartStatus,
+    /// Values and switches of the PWM generators, one after the other.
+    Pwm,
+    /// What the pins of the port carry.
+    Port,
+    /// Filter and pins of the encoder inputs.
+    EncoderFilter,
+    /// Errors of the encoder inputs.
+    EncoderErrors,
+    /// Length, polarity and pins of the step pulses.
+    StepPulse,
+    /// The rate of a step generator, in four bytes; the last one makes it act.
+    StepRate,
+    /// Positions of the step generators, low and high byte of each.
+    StepPosition,
+    /// Outputs of Kanalog: opto outputs and drivers, general outputs.
+    KanalogOutputs,
+    /// Inputs of Kanalog: general inputs and opto inputs.
+    KanalogInputs,
+    /// Conversions of Kanalog's analog inputs.
+    KanalogAdc,
+}
+
+/// The registers that programs know. Source: io.md section 5.
+const REGISTERS: &[Registers] = &[
+    Registers { first: ENCODER_FILTER, last: ENCODER_FILTER, kind: Kind::EncoderFilter },
+    Registers { first: 0x06, last: 0x06, kind: Kind::StepPulse },
+    Registers { first: 0x08, last: 0x08, kind: Kind::EncoderErrors },
+    Registers { first: 0x09, last: 0x0d, kind: Kind::Storage },
+    Registers { first: 0x10, last: 0x10, kind: Kind::Storage },
+    Registers { first: 0x28, last: 0x28, kind: Kind::Storage },
+    Registers { first: PRESCALE, last: PRESCALE, kind: Kind::Pwm },
+    Registers { first: STEP_RATE, last: STEP_RATE + 3, kind: Kind::StepRate },
+    Registers { first: 0x40, last: 0x4f, kind: Kind::StepPosition },
+    Registers { first: 0x80, last: 0x87, kind: Kind::Storage },
+    Registers { first: 0x88, last: 0x89, kind: Kind::KanalogOutputs },
+    Registers { first: 0x90, last: 0x97, kind: Kind::KanalogAdc },
+    Registers { first: 0x98, last: 0x98, kind: Kind::KanalogInputs },
+    Registers { first: PORT_SELECT, last: PORT_SELECT, kind: Kind::Port },
+    Registers { first: 0xc0, last: 0xc0, kind: Kind::UartData },
+    Registers { first: 0xc1, last: 0xc1, kind: Kind::UartStatus },
+    Registers { first: PWM, last: PWM + 2 * PWMS - 1, kind: Kind::Pwm },
+    Registers { first: 0x100, last: 0x100 + GROUPS - 1, kind: Kind::BitSet },
+    Registers { first: 0x110, last: 0x110 + GROUPS - 1, kind: Kind::BitClear },
+    Registers { first: 0x120, last: 0x120 + GROUPS - 1, kind: Kind::BitDirection },
+    Registers { first: 0x130, last: 0x130 + GROUPS - 1, kind: Kind::BitRead },
+];
+
+/// Values at power-up: step pulses of 32 clocks, encoder filter 7.
+const START: [(u32, u8); 2] = [(0x06, 32), (ENCODER_FILTER, 7)];
+
+/// Registers that are read by what acts on them.
+const ENCODER_FILTER: u32 = 0x05;
+const STEP_RATE: u32 = 0x3c;
+
+/// What connects the port of the Kanalog and the UART to their pins, and its bits.
+const PORT_SELECT: u32 = 0xa0;
+const PORT_BYTE: usize = (PORT_SELECT * STRIDE + LANE) as usize;
+const KANALOG_ON: u8 = 1;
+const UART_ON: u8 = 2;
+/// PWM 0 on a pin of its own, for the analog output of KStep.
+const PWM_MOVED: u8 = 4;
+
+/// PWM generators, from this register on, and their prescaler.
+const PWM: u32 = 0xd0;
+const PWMS: u32 = 8;
+const PRESCALE: u32 = 0x2f;
+
+/// The first outputs and the first inputs of Kanalog.
+const KANALOG_OUTPUTS: i32 = 144;
+const KANALOG_INPUTS: i32 = 128;
+
+/// Pins of JP7 that the interface of Kanalog occupies.
+const JP7_PINS: u16 = 16;
+
+/// What stands behind the registers that act, and the instant of an access.
+#[derive(Debug)]
+pub(crate) struct Behind<'a> {
+    pub(crate) pins: &'a mut Pins,
+    pub(crate) uart: &'a mut Uart,
+    pub(crate) kanalog: &'a Kanalog,
+    pub(crate) encoders: &'a mut Encoders,
+    pub(crate) stepgens: &'a mut StepGenerators,
+    pub(crate) now: Cycles,
+}
+
+/// The registers' memory.
+#[derive(Clone, Debug)]
+pub(crate) struct Fpga {
+    bytes: Box<[u8]>,
+    /// Unknown registers that programs have used.
+    unknown: BTreeSet<u32>,
+    /// Whether a character was sent while the UART had no pins.
+    sent_nowhere: bool,
+    /// Whether it was said that Kanalog needs the pins of JP7.
+    told_jp7: bool,
+    /// Until when the edges of watched PWM pins are told.
+    told: Cycles,
+    kstep: AnalogOutput,
+}
+
+impl Default for Fpga {
+    fn default() -> Self {
+        let mut bytes = vec![0; FPGA.size as usize].into_boxed_slice();
+        for (register, value) in START {
+            bytes[(register * STRIDE + LANE) as usize] = value;
+        }
+        Self {
+            bytes,
+            unknown: BTreeSet::new(),
+            sent_nowhere: false,
+            told_jp7: false,
+            told: Cycles::default(),
+            kstep: AnalogOutput::default(),
+        }
+    }
+}
+
+/// So many bits from a number on.
+fn bits(first: i32, count: i32) -> impl Iterator<Item = Bit> {
+    (first..first + count).filter_map(Bit::new)
+}
+
+/// Outputs of Kanalog that an access of a register reaches: 8 opto outputs and 8 drivers, or the 8 general ones.
+fn kanalog_outputs(index: u32, size: AccessSize) -> impl Iterator<Item = Bit> {
+    let count = if index == 0 && size != AccessSize::Byte { 16 } else { 8 };
+    bits(KANALOG_OUTPUTS + 16 * index as i32, count)
+}
+
+/// Levels as a word, the first one lowest.
+fn word(levels: impl Iterator<Item = bool>) -> u32 {
+    (0..).zip(levels).fold(0, |word, (index, level)| word | u32::from(level) << index)
+}
+
+/// As much of a word as an access takes.
+fn cut(word: u32, size: AccessSize) -> u32 {
+    if size == AccessSize::Byte { word & 0xff } else { word }
+}
+
+/// The register at an address and what it does; the number within its range comes with it.
+fn register(address: GuestAddr) -> (u32, Option<(Kind, u32)>) {
+    let offset = address.get().wrapping_sub(FPGA.base.get());
+    let number = offset / STRIDE;
+    let range = REGISTERS.iter().find(|range| (range.first..=range.last).contains(&number));
+    (number, range.filter(|_| offset % STRIDE == LANE).map(|range| (range.kind, number - range.first)))
+}
+
+impl Fpga {
+    /// Reads a register.
+    pub(crate) fn read(&mut self, behind: Behind<'_>, address: GuestAddr, size: AccessSize) -> u32 {
+        let Behind { pins, uart, kanalog, encoders, stepgens, now } = behind;
+        match register(address).1 {
+            Some((Kind::BitRead, group)) => u32::from(pins.level_group(group)),
+            Some((Kind::BitDirection, group)) => u32::from(pins.direction_group(group)),
+            Some((Kind::UartData, _)) => uart.read(now).into(),
+            Some((Kind::UartStatus, _)) => uart.status(now).into(),
+            Some((Kind::EncoderErrors, _)) => encoders.errors().into(),
+            Some((Kind::StepPosition, byte)) => {
+                cut(u32::from(stepgens.register((byte / 2) as usize)) >> (8 * (byte % 2)), size)
+            }
+            Some((Kind::KanalogOutputs, index)) => {
+                let outputs = kanalog_outputs(index, AccessSize::Half);
+                cut(word(outputs.map(|bit| pins.written(bit))), size)
+            }
+            Some((Kind::KanalogInputs, _)) => {
+                cut(word(bits(KANALOG_INPUTS, 16).map(|bit| pins.input(bit))), size)
+            }
+            Some((Kind::KanalogAdc, channel)) => cut(kanalog.conversion(channel as usize), size),
+            _ => self.stored(address, size),
+        }
+    }
+
+    /// Writes a register; a remark comes back when that is in vain, the first time.
+    pub(crate) fn write(
+        &mut self,
+        behind: Behind<'_>,
+        address: GuestAddr,
+        size: AccessSize,
+        value: u32,
+    ) -> Option<EventKind> {
+        let Behind { pins, uart, encoders, stepgens, now, kanalog: _ } = behind;
+        let (number, kind) = register(address);
+        let is_pwm = matches!(kind, Some((Kind::Pwm | Kind::Port, _)));
+        if is_pwm {
+            self.tell_pwm(pins, now);
+        }
+        match kind {
+            Some((Kind::BitSet, group)) => pins.set_group(group, value as u8, now),
+            Some((Kind::BitClear, group)) => pins.clear_group(group, value as u8, now),
+            Some((Kind::BitDirection, group)) => {
+                let new = value as u8 & !pins.direction_group(group);
+                pins.set_direction_group(group, value as u8, now);
+                let first = Bit::new((8 * group + new.trailing_zeros()) as i32).filter(|_| new != 0);
+                let remark = first.filter(|_| self.serves_kanalog()).and_then(|bit| self.note_jp7(bit));
+                return remark.map(EventKind::Diagnostic);
+            }
+            Some((Kind::UartData, _)) => {
+                uart.send(value as u8, now);
+                return self.note_lost_character().map(EventKind::Diagnostic);
+            }
+            Some((Kind::UartStatus, _)) => uart.set_divisor(value as u8),
+            Some((Kind::EncoderErrors, _)) => encoders.clear_errors(),
+            Some((Kind::KanalogOutputs, index)) => {
+                for (at, bit) in kanalog_outputs(index, size).enumerate() {
+                    pins.write(bit, value >> at & 1 != 0, now);
+                }
+            }
+            Some((Kind::KanalogInputs | Kind::KanalogAdc, _)) => {}
+            _ => self.store(address, size, value),
+        }
+        match kind {
+            Some((Kind::EncoderFilter, _)) => {
+                let filter = [ENCODER_FILTER * STRIDE + LANE, ENCODER_FILTER * STRIDE + LANE + 1];
+                let filter = filter.map(|at| self.bytes.get(at as usize).copied().unwrap_or_default());
+                encoders.set_filter(u16::from_le_bytes(filter), pins, now);
+            }
+            Some((Kind::StepPulse, _)) => stepgens.set_up(value as u8, pins, now),
+            Some((Kind::StepRate, 3)) => {
+                let word: [u8; 4] = std::array::from_fn(|index| self.byte(STEP_RATE + index as u32));
+                stepgens.command(u32::from_le_bytes(word), pins, now);
+            }
+            _ => {}
+        }
+        if is_pwm {
+            self.drive_pwm_pins(pins, now);
+            self.tell_pwm(pins, now);
+            self.kstep.drive(self.moved_pwm(), now);
+        }
+        (kind.is_none() && self.unknown.insert(number))
+            .then(|| format!("FPGA register {number:#x} is not known: it only stores what is written"))
+            .map(EventKind::Detail)
+    }
+
+    /// A remark on the first pin of JP7 that becomes an output while Kanalog is connected there.
+    pub(crate) fn note_jp7(&mut self, bit: Bit) -> Option<String> {
+        (bit.get() < JP7_PINS && !std::mem::replace(&mut self.told_jp7, true))
+            .then(|| format!("bit {bit} becomes an output, but Kanalog is connected to bits 0 to 15 of JP7"))
+    }
+
+    /// Connects the UART to its pins.
+    pub(crate) fn enable_uart_pins(&mut self) {
+        self.bytes[PORT_BYTE] |= UART_ON;
+    }
+
+    /// Whether the port exchanges with Kanalog.
+    pub(crate) fn serves_kanalog(&self) -> bool {
+        self.bytes[PORT_BYTE] & KANALOG_ON != 0
+    }
+
+    /// An eight-bit register as stored.
+    fn byte(&self, register: u32) -> u8 {
+        self.bytes.get((register * STRIDE + LANE) as usize).copied().unwrap_or_default()
+    }
+
+    /// A remark on the first character sent without pins.
+    fn note_lost_character(&mut self) -> Option<String> {
+        let is_lost = self.bytes[PORT_BYTE] & (UART_ON | KANALOG_ON) == 0;
+        (is_lost && !std::mem::replace(&mut self.sent_nowhere, true)).then(|| {
+            "the UART is not connected to its pins: call InitRS232, or write 2 to KAN_TRIG_REG".to_owned()
+        })
+    }
+
+    fn stored(&self, address: GuestAddr, size: AccessSize) -> u32 {
+        let start = address.get().wrapping_sub(FPGA.base.get()) as usize;
+        let bytes = self.bytes.get(start..start + size.bytes() as usize).unwrap_or_default();
+        bytes.iter().rev().fold(0, |value, &byte| value << 8 | u32::from(byte))
+    }
+
+    fn store(&mut self, address: GuestAddr, size: AccessSize, value: u32) {
+        let start = address.get().wrapping_sub(FPGA.base.get()) as usize;
+        if let Some(bytes) = self.bytes.get_mut(start..start + size.bytes() as usize) {
+            bytes.copy_from_slice(&value.to_le_bytes()[..size.bytes() as usize]);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Registers and what stands behind them.
+    #[derive(Default)]
+    pub(super) struct Bench {
+        pub(super) fpga: Fpga,
+        pub(super) pins: Pins,
+        uart: Uart,
+        kanalog: Kanalog,
+        encoders: Encoders,
+        stepgens: StepGenerators,
+        pub(super) now: Cycles,
+    }
+
+    impl Bench {
+        fn parts(&mut self) -> (&mut Fpga, Behind<'_>) {
+            let behind = Behind {
+                pins: &mut self.pins,
+                uart: &mut self.uart,
+                kanalog: &self.kanalog,
+                encoders: &mut self.encoders,
+                stepgens: &mut self.stepgens,
+                now: self.now,
+            };
+            (&mut self.fpga, behind)
+        }
+
+        pub(super) fn read(&mut self, register: u32, size: AccessSize) -> u32 {
+            let (fpga, behind) = self.parts();
+            fpga.read(behind, address(register), size)
+        }
+
+        pub(super) fn write(&mut self, register: u32, size: AccessSize, value: u32) -> Option<EventKind> {
+            let (fpga, behind) = self.parts();
+            fpga.write(behind, address(register), size, value)
+        }
+    }
+
+    fn address(register: u32) -> GuestAddr {
+        FPGA.base.offset(register * STRIDE + LANE)
+    }
+
+    #[test]
+    fn bit_registers_reach_the_pins() {
+        let mut bench = Bench::default();
+        let bit = Bit::new(46).expect("a bit");
+        assert!(bench.pins.level(bit));
+        bench.write(0x115, AccessSize::Byte, 0x3f);
+        assert!(!bench.pins.level(bit));
+        bench.write(0x105, AccessSize::Byte, 0xc0);
+        assert!(bench.pins.level(bit));
+        assert_eq!(bench.read(0x135, AccessSize::Byte), 0xc0);
+    }
+
+    #[test]
+    fn kanalog_has_its_bits_and_conversions_in_registers() {
+        let mut bench = Bench::default();
+        let bit = |number| Bit::new(number).expect("a bit");
+        bench.write(0x88, AccessSize::Half, 0x8101);
+        bench.write(0x89, AccessSize::Byte, 0x02);
+        let levels = [144, 152, 159, 160, 161].map(|number| bench.pins.written(bit(number)));
+        assert_eq!(levels, [true, true, true, false, true]);
+        bench.write(0x88, AccessSize::Byte, 0x02);
+        assert_eq!((bench.read(0x88, AccessSize::Half), bench.read(0x89, AccessSize::Byte)), (0x8102, 2));
+        for number in [128, 143] {
+            bench.pins.drive(bit(number), true, Cycles::default());
+        }
+        assert_eq!((bench.read(0x98, AccessSize::Half), bench.read(0x98, AccessSize::Byte)), (0x8001, 1));
+        bench.kanalog.drive(3, 4000);
+        assert_eq!((bench.read(0x93, AccessSize::Half), bench.read(0x92, AccessSize::Half)), (4000, 2048));
+    }
+
+    #[test]
+    fn directions_of_pins_that_kanalog_needs_are_told_once() {
+        let mut bench = Bench::default();
+        bench.write(0xa0, AccessSize::Byte, 1);
+        assert_eq!(bench.write(0x123, AccessSize::Byte, 0xff), None);
+        let told = bench.write(0x121, AccessSize::Byte, 0x0c);
+        assert!(matches!(told, Some(EventKind::Diagnostic(text)) if text.contains("bit 10 becomes")));
+        assert_eq!(bench.write(0x120, AccessSize::Byte, 1), None);
+    }
+
+    #[test]
+    fn encoder_errors_are_cleared_by_writing() {
+        let mut bench = Bench::default();
+        bench.encoders.fail(2);
+        assert_eq!(bench.read(0x08, AccessSize::Byte), 0x40);
+        bench.write(0x08, AccessSize::Byte, 0);
+        assert_eq!(bench.read(0x08, AccessSize::Byte), 0);
+    }
+
+    #[test]
+    fn four_bytes_run_a_step_generator_and_its_position_has_two() {
+        let mut bench = Bench::default();
+        // Generator 1, 0x800 units of 1.987 steps a second.
+        for (register, value) in [(0x3c, 0), (0x3d, 8), (0x3e, 0), (0x3f, 0x89)] {
+            bench.write(register, AccessSize::Byte, value);
+        }
+        bench.stepgens.run(0.01, &mut bench.pins, Cycles::PER_TICK);
+        let word = bench.read(0x42, AccessSize::Half);
+        assert_eq!(word, (0.01_f64 * 50e6 / 3.0 / 4096.0 * 128.0) as u32);
+        assert_eq!(bench.read(0x42, AccessSize::Byte), word & 0xff);
+        assert_eq!(bench.read(0x43, AccessSize::Byte), word >> 8);
+    }
+
+    #[test]
+    fn other_registers_store_and_an_unknown_one_is_told_once() {
+        let mut bench = Bench::default();
+        assert_eq!(bench.write(0x06, AccessSize::Byte, 0x12), None);
+        assert_eq!(bench.read(0x06, AccessSize::Byte), 0x12);
+        assert!(bench.write(0x200, AccessSize::Half, 0x1234).is_some());
+        assert_eq!(bench.write(0x200, AccessSize::Half, 0x5678), None);
+        assert_eq!(bench.read(0x200, AccessSize::Half), 0x5678);
+    }
+
+    #[test]
+    fn the_uart_answers_and_says_when_it_has_no_pins() {
+        let mut bench = Bench::default();
+        assert!(bench.write(0xc0, AccessSize::Byte, 65).is_some());
+        assert_eq!(bench.read(0xc1, AccessSize::Byte), 0);
+        assert_eq!(bench.write(0xc0, AccessSize::Byte, 65), None);
+        assert_eq!(bench.read(0xc1, AccessSize::Byte), 2);
+        let mut bench = Bench::default();
+        bench.fpga.enable_uart_pins();
+        assert_eq!(bench.write(0xc0, AccessSize::Byte, 65), None);
+    }
+}

@@ -1,0 +1,3 @@
+//! The simulated mechanics that the board moves.
+
+pub(crate) mod plant;

@@ -1,0 +1,262 @@
+//! The PC's side of disk files: requests that come among the console lines, and the answers to them.
+//!
+//! The board has no disk. `fopen` and its kin send a console line whose first character is a code; the PC does what it
+//! says, and answers a reading one with a line of the file, which the board puts into `read_disk_buffer`. The PC has
+//! one file open for writing and one for reading. Source: host-protocol.md section 6.
+
+use std::collections::VecDeque;
+
+use kmotiondef::Cycles;
+use kmotiondef::variables::{READ_DISK_BUFFER, READ_DISK_BUFFER_STATUS};
+use vm::firmware::TickContext;
+use vm::memory::GuestMemory;
+
+use crate::kernel::Kernel;
+use crate::out::EventKind;
+use crate::pc::files::HostFiles;
+use crate::views::Typed;
+
+/// From a request to its answer: 20 ms, unless a machine file says otherwise.
+const LATENCY: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 50);
+/// Longest line the PC delivers.
+const LINE_LIMIT: usize = 1024;
+
+/// States of the board's line buffer.
+pub(crate) const ASKED: i32 = 0;
+pub(crate) const ARRIVED: i32 = 1;
+pub(crate) const FAILED: i32 = 2;
+pub(crate) const NO_MORE: i32 = 3;
+
+/// What a program asks of the disk.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Request {
+    /// Open for writing, and make empty.
+    Create = 1,
+    /// Write a line.
+    Write = 2,
+    /// Close the file open for writing.
+    CloseWriting = 3,
+    /// Open for reading; the answer is the first line.
+    Open = 4,
+    /// The next line.
+    NextLine = 5,
+    /// Close the file open for reading.
+    CloseReading = 6,
+    /// Open for writing behind what is there.
+    Append = 7,
+}
+
+impl Request {
+    const ALL: [Self; 7] = [
+        Self::Create,
+        Self::Write,
+        Self::CloseWriting,
+        Self::Open,
+        Self::NextLine,
+        Self::CloseReading,
+        Self::Append,
+    ];
+
+    /// The request that a console line is, and what stands behind its code.
+    fn read(line: &[u8]) -> Option<(Self, &[u8])> {
+        let (code, text) = line.split_first()?;
+        Self::ALL.into_iter().find(|request| request.code() == *code).map(|request| (request, text))
+    }
+
+    /// The character that it is sent as.
+    pub(crate) const fn code(self) -> u8 {
+        self as u8
+    }
+}
+
+/// What the board is told.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Answer {
+    Line(Vec<u8>),
+    End,
+    Failure,
+}
+
+/// The disk, and what is open on it.
+#[derive(Debug)]
+pub(crate) struct Disk {
+    files: Box<dyn HostFiles>,
+    /// What is still to be read.
+    reading: Option<Lines>,
+    writing: Option<String>,
+    /// From a request to its answer.
+    pub(crate) latency: Cycles,
+    /// Answers on their way, and when they arrive.
+    answers: VecDeque<(Cycles, Answer)>,
+    /// Whether it was said that no file is open for writing.
+    is_told: bool,
+}
+
+impl Disk {
+    /// Nothing is open.
+    pub(crate) fn new(files: Box<dyn HostFiles>) -> Self {
+        Self {
+            files,
+            reading: None,
+            writing: None,
+            latency: LATENCY,
+            answers: VecDeque::new(),
+            is_told: false,
+        }
+    }
+
+    /// The board restarts: nothing is awaited any more.
+    pub(crate) fn forget_answers(&mut self) {
+        self.answers.clear();
+    }
+
+    /// For how many ticks from `now` no answer arrives.
+    pub(crate) fn quiet_ticks(&self, now: Cycles) -> u64 {
+        self.answers.front().map_or(u64::MAX, |(due, _)| {
+            let ticks = (*due - now).get() / Cycles::PER_TICK.get();
+            u64::try_from(ticks - 1).unwrap_or(0)
+        })
+    }
+
+    /// Does what a request says; a remark if it cannot.
+    fn serve(&mut self, request: Request, text: &str, now: Cycles) -> Option<String> {
+        match request {
+            Request::Create | Request::Append => {
+                self.is_told = false;
+                let made = self.files.create(text, request == Request::Append);
+                self.writing = made.is_ok().then(|| text.to_owned());
+                made.err().map(|error| format!("the PC does not write {text}: {error}"))
+            }
+            Request::Write => self.write(text),
+            Request::CloseWriting => {
+                self.writing = None;
+                None
+            }
+            Request::Open => {
+                let opened = self.files.read(text);
+                let error = opened.as_ref().err().cloned();
+                self.reading = opened.ok().map(Lines::new);
+                self.answer(now);
+                error.map(|error| format!("the PC does not read {text}: {error}"))
+            }
+            Request::NextLine => {
+                self.answer(now);
+                None
+            }
+            Request::CloseReading => {
+                self.reading = None;
+                None
+            }
+        }
+    }
+
+    fn write(&mut self, text: &str) -> Option<String> {
+        let Some(name) = &self.writing else {
+            let first = !std::mem::replace(&mut self.is_told, true);
+            return first.then(|| "a line is written, and no file is open for writing on the PC".to_owned());
+        };
+        let written = self.files.append(name, format!("{text}\n").as_bytes());
+        written.err().map(|error| format!("the PC cannot write {name}: {error}"))
+    }
+
+    /// Sends the next line, or says that there is none.
+    fn answer(&mut self, now: Cycles) {
+        let answer = match &mut self.reading {
+            None => Answer::Failure,
+            Some(lines) => lines.next().map_or(Answer::End, Answer::Line),
+        };
+        self.answers.push_back((now + self.latency, answer));
+    }
+
+    /// The answer that has arrived by now.
+    fn arrived(&mut self, now: Cycles) -> Option<Answer> {
+        let is_due = self.answers.front().is_some_and(|(due, _)| *due <= now);
+        if is_due { self.answers.pop_front().map(|(_, answer)| answer) } else { None }
+    }
+}
+
+/// Takes a console line that is a request; whether it was one.
+pub(crate) fn take(kernel: &mut Kernel, line: &[u8], now: Cycles) -> bool {
+    let Some((request, text)) = Request::read(line) else { return false };
+    let text = String::from_utf8_lossy(text);
+    if let Some(remark) = kernel.disk.serve(request, &text, now) {
+        kernel.tell(now, EventKind::Diagnostic(remark));
+    }
+    true
+}
+
+/// Puts an answer that has arrived into the board's line buffer.
+#[inline]
+pub(crate) fn slice(kernel: &mut Kernel, context: &mut TickContext<'_>) {
+    if let Some(answer) = kernel.disk.arrived(context.now) {
+        match answer {
+            Answer::Line(line) => deliver(context.memory, &line),
+            Answer::End => context.memory.set(READ_DISK_BUFFER_STATUS, NO_MORE),
+            Answer::Failure => context.memory.set(READ_DISK_BUFFER_STATUS, FAILED),
+        }
+        kernel.disturb();
+    }
+}
+
+fn deliver(memory: &mut GuestMemory, line: &[u8]) {
+    for (index, byte) in (0..).zip(line.iter().chain(&[0])) {
+        memory.poke(READ_DISK_BUFFER.address().offset(index), *byte);
+    }
+    memory.set(READ_DISK_BUFFER_STATUS, ARRIVED);
+}
+
+/// The lines of a text without their ends; a last line without an end counts.
+#[derive(Debug)]
+struct Lines {
+    text: Vec<u8>,
+    /// Where the next one begins.
+    next: usize,
+}
+
+impl Lines {
+    fn new(text: Vec<u8>) -> Self {
+        Self { text, next: 0 }
+    }
+}
+
+impl Iterator for Lines {
+    type Item = Vec<u8>;
+
+    fn next(&mut self) -> Option<Vec<u8>> {
+        let rest = self.text.get(self.next..).filter(|rest| !rest.is_empty())?;
+        let length = rest.iter().position(|&byte| byte == b'\n');
+        let line = &rest[..length.unwrap_or(rest.len())];
+        let shown = line.strip_suffix(b"\r").unwrap_or(line);
+        let shown = shown[..shown.len().min(LINE_LIMIT)].to_vec();
+        self.next += line.len() + 1;
+        Some(shown)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_last_line_without_end_is_a_line() {
+        let lines = |text: &[u8]| Lines::new(text.to_vec()).collect::<Vec<_>>();
+        assert_eq!(lines(b"a\r\n\r\nb"), [&b"a"[..], b"", b"b"]);
+        assert_eq!(lines(b"a\n"), [b"a"]);
+        assert_eq!(lines(b"\n"), [b""]);
+        assert!(lines(b"").is_empty());
+    }
+
+    #[test]
+    fn a_line_of_more_than_1024_characters_is_cut() {
+        assert_eq!(Lines::new(vec![b'x'; 2000]).collect::<Vec<_>>(), [vec![b'x'; 1024]]);
+    }
+
+    #[test]
+    fn requests_are_told_from_console_lines_by_their_first_character() {
+        assert_eq!(Request::read(b"\x04a.txt"), Some((Request::Open, &b"a.txt"[..])));
+        assert_eq!(Request::read(b"\x07"), Some((Request::Append, &b""[..])));
+        for line in [&b"text"[..], b"", b"\x08", b"a\x02"] {
+            assert_eq!(Request::read(line), None);
+        }
+    }
+}

@@ -1,0 +1,500 @@
+//! The minimal PC: polls the board's status and answers what programs ask for.
+//!
+//! Source: gather-persist-console.md sections 7 and 8. A program stores parameters in `UserData[101]` and on, then a
+//! code in `UserData[100]`, and waits until that is no longer positive.
+
+use kmotiondef::limits::{N_USER_DATA_VARS, PC_COMM_PERSIST};
+use kmotiondef::structs::Persist;
+use kmotiondef::variables::{
+    COORD_SYSTEM0, CS0_LAST_FRO, CS0_LAST_RAPID_FRO, GATHER_BUFFER, HOST_STATUS, PERSIST,
+    STATUS_REQUEST_COUNTER,
+};
+use kmotiondef::{Cycles, GuestAddr, Place, ThreadId};
+use vm::firmware::TickContext;
+use vm::memory::GuestMemory;
+
+use super::answers::{self, AnswerError, Answers};
+use super::requests;
+use crate::firmware::coord;
+use crate::kernel::Kernel;
+use crate::out::EventKind;
+use crate::servo::coordinated::rate;
+use crate::servo::coordinated::system::nominal_change_time;
+use crate::text::float_prefix;
+use crate::views::Typed;
+
+/// Ticks between two polls: 0.1 s.
+const POLL_TICKS: u64 = 1111;
+/// How long a request waits for a PC that is not there before that is said: 5 s.
+const PATIENCE: Cycles = Cycles::new(5 * Cycles::PER_SECOND.get());
+/// Longest string the PC reads, in words.
+const STRING_WORDS: u32 = 50;
+/// Success.
+const DONE: i32 = 0;
+/// The request cannot be met.
+const INVALID: i32 = -1;
+/// A tool that does not exist.
+const BAD_TOOL: i32 = -2;
+/// Tools of the table.
+const TOOLS: i32 = 100;
+
+/// What the PC keeps.
+#[derive(Clone, Debug)]
+pub(crate) struct Host {
+    /// Whether there is a PC at all.
+    is_connected: bool,
+    /// Ticks until it polls.
+    until_poll: u64,
+    /// What it answers and holds.
+    answers: Answers,
+    jog_overrides: [f32; 6],
+    /// The request that is never answered and was shown.
+    unanswered: i32,
+    /// Since when a request waits for a PC that is not there; `None` once that was said.
+    waits_since: Option<Cycles>,
+}
+
+impl Default for Host {
+    fn default() -> Self {
+        Self {
+            is_connected: true,
+            until_poll: POLL_TICKS,
+            answers: Answers::default(),
+            jog_overrides: [1.0; 6],
+            unanswered: 0,
+            waits_since: None,
+        }
+    }
+}
+
+impl Host {
+    /// Connects or removes the PC.
+    pub(crate) fn connect(&mut self, is_connected: bool) {
+        self.is_connected = is_connected;
+    }
+
+    /// Whether there is a PC, which serves files too.
+    pub(crate) const fn is_connected(&self) -> bool {
+        self.is_connected
+    }
+
+    /// Says what it answers.
+    pub(crate) fn answer_with(&mut self, answers: Answers) {
+        self.answers = answers;
+    }
+
+    /// Gives it its next answer.
+    pub(crate) fn answer_next(&mut self, setting: &str) -> Result<(), AnswerError> {
+        self.answers.set_next(setting)
+    }
+
+    /// Whether a job runs on it when the board starts.
+    pub(crate) const fn has_job(&self) -> bool {
+        self.answers.has_job
+    }
+
+    /// Whether a program waits for an answer that will come.
+    pub(crate) fn is_asked(&self, memory: &GuestMemory) -> bool {
+        let code = memory.get(data(0));
+        self.is_connected && code > 0 && !self.answers.silent.contains(&code)
+    }
+
+    /// How many ticks it leaves the board alone.
+    pub(crate) fn quiet_ticks(&self) -> u64 {
+        if self.is_connected { self.until_poll.saturating_sub(2) } else { u64::MAX }
+    }
+
+    /// So many ticks have passed at once.
+    pub(crate) fn skip(&mut self, ticks: u64) {
+        self.until_poll = self.until_poll.saturating_sub(ticks);
+    }
+
+    /// One tick has passed.
+    pub(crate) fn tick(&mut self) {
+        self.until_poll = self.until_poll.saturating_sub(1);
+    }
+}
+
+/// An element of `UserData`, counted from the request's.
+fn data(offset: usize) -> Place<i32> {
+    PERSIST.field(Persist::USER_DATA).element(PC_COMM_PERSIST + offset)
+}
+
+/// An element of `UserData` that a parameter names.
+fn named(index: i32, count: usize) -> Option<GuestAddr> {
+    let index = usize::try_from(index).ok().filter(|index| index + count <= N_USER_DATA_VARS)?;
+    Some(PERSIST.field(Persist::USER_DATA).element(index).address())
+}
+
+/// Doubles in `UserData`, by their index as such.
+fn doubles(index: i32, count: usize) -> Option<GuestAddr> {
+    named(index.checked_mul(2)?, count.checked_mul(2)?)
+}
+
+/// What the PC does while the primary thread has its slice.
+pub(crate) fn slice(kernel: &mut Kernel, context: &mut TickContext<'_>) {
+    if !kernel.host.is_connected {
+        return miss(kernel, context);
+    }
+    if kernel.host.until_poll > 0 {
+        return;
+    }
+    kernel.host.until_poll = POLL_TICKS;
+    let polls = context.memory.get(STATUS_REQUEST_COUNTER).wrapping_add(1);
+    context.memory.set(STATUS_REQUEST_COUNTER, polls);
+    coord::update_state(context.memory);
+    let code = context.memory.get(data(0));
+    if code <= 0 {
+        kernel.host.unanswered = 0;
+    } else if kernel.host.answers.silent.contains(&code) {
+        if kernel.host.unanswered != code {
+            kernel.host.unanswered = code;
+            say(kernel, context, format!("request {code} is left without an answer"));
+        }
+    } else {
+        let answer = answer(kernel, context, code);
+        context.memory.set(data(0), answer);
+        kernel.disturb();
+    }
+}
+
+/// Says of a request that waits for a PC which is not there that it does.
+fn miss(kernel: &mut Kernel, context: &TickContext<'_>) {
+    let code = context.memory.get(data(0));
+    let host = &mut kernel.host;
+    if code <= 0 || code != host.unanswered {
+        host.unanswered = code.max(0);
+        host.waits_since = (code > 0).then_some(context.now);
+    } else if host.waits_since.is_some_and(|since| context.now - since > PATIENCE) {
+        host.waits_since = None;
+        let text = format!("request {code} waits for a PC, and none is connected (`host.enabled = false`)");
+        kernel.tell(context.now, EventKind::Diagnostic(text));
+    }
+}
+
+/// Meets a request; what it stores comes before the answer.
+fn answer(kernel: &mut Kernel, context: &mut TickContext<'_>, code: i32) -> i32 {
+    let parameters: [i32; 3] = std::array::from_fn(|index| context.memory.get(data(index + 1)));
+    if let Some(text) = requests::shown(code, parameters[0]) {
+        say(kernel, context, text);
+    }
+    if let Some(&result) = kernel.host.answers.results.get(&code) {
+        say(kernel, context, format!("request {code} is answered {result}"));
+        return result;
+    }
+    let number = f32::from_bits(parameters[0] as u32);
+    match code {
+        1 => emergency_stop(context),
+        2 => set_job(context.memory, false),
+        3 if kernel.host.answers.has_job => set_job(context.memory, true),
+        5 if !(0.001..=1000.0).contains(&number) => return INVALID,
+        5 | 6 | 54 | 55 => set_override(kernel, context, code, number),
+        7..=12 => kernel.host.answers.dros[code as usize - 7] = f64::from(number),
+        15 => message_box(kernel, context, parameters),
+        16 | 17 => return variables(kernel, context.memory, code == 17, parameters),
+        18 => mdi(kernel, context, parameters[0]),
+        19 => return store_floats(context.memory, parameters[0], &kernel.host.answers.resolutions),
+        23 | 24 | 30..=35 => return tool(kernel, context.memory, code, parameters),
+        25 => return store_words(context.memory, parameters[0], &kernel.host.answers.setup),
+        26 | 27 => return store_doubles(context.memory, parameters[0], &kernel.host.answers.dros),
+        29 => input_box(kernel, context, parameters[0]),
+        3 | 4 | 13 | 14 | 20..=22 | 28 | 36..=39 | 52 => {}
+        40..=45 => {
+            let value = kernel.host.jog_overrides[code as usize - 40];
+            context.memory.set(data(1), value.to_bits() as i32);
+        }
+        46..=51 => kernel.host.jog_overrides[code as usize - 46] = number,
+        53 => return edit_cell(kernel, context.memory, parameters[0]),
+        _ => return INVALID,
+    }
+    DONE
+}
+
+fn say(kernel: &mut Kernel, context: &TickContext<'_>, text: String) {
+    kernel.tell(context.now, EventKind::Host(text));
+}
+
+/// Stops threads 2 to 7 and coordinated motion.
+fn emergency_stop(context: &mut TickContext<'_>) {
+    ThreadId::all().skip(1).for_each(|thread| context.threads.pause(thread));
+    context.memory.set(kmotiondef::variables::CS0_STOPPING_STATE, 0);
+    context.memory.set(COORD_SYSTEM0, GuestAddr::NULL);
+}
+
+/// Sets the feed (5) or rapid (54) override, or changes it by a factor (6, 55).
+fn set_override(kernel: &mut Kernel, context: &mut TickContext<'_>, code: i32, number: f32) {
+    let memory = &mut *context.memory;
+    let time = nominal_change_time(memory);
+    let (name, value) = match code {
+        5 => ("feed", number),
+        6 => ("feed", memory.get(CS0_LAST_FRO) * number),
+        54 => ("rapid", number),
+        _ => ("rapid", memory.get(CS0_LAST_RAPID_FRO) * number),
+    };
+    if name == "feed" {
+        rate::set_feed(memory, value, time);
+    } else {
+        rate::set_rapid(memory, value, time);
+    }
+    say(kernel, context, format!("{name} override {value}"));
+}
+
+/// Tells the board whether a job runs.
+fn set_job(memory: &mut GuestMemory, runs: bool) {
+    let status = memory.get(HOST_STATUS);
+    memory.set(HOST_STATUS, status & !1 | i32::from(runs));
+}
+
+/// A string in the gather buffer at a word offset.
+fn string(memory: &GuestMemory, offset: i32) -> String {
+    let address = memory.get(GATHER_BUFFER).offset((offset as u32).wrapping_mul(4));
+    let bytes = memory.read_c_string(address, 4 * STRING_WORDS).unwrap_or_default();
+    String::from_utf8_lossy(&bytes).into_owned()
+}
+
+/// Buttons of a message box.
+const BUTTONS: i32 = 0xf;
+
+/// Shows a box and presses the button that was named for it, or its first one that goes on.
+fn message_box(kernel: &mut Kernel, context: &mut TickContext<'_>, [offset, flags, _]: [i32; 3]) {
+    let text = string(context.memory, offset);
+    let default = match flags & BUTTONS {
+        2 => 5,
+        3 | 4 => 6,
+        5 => 4,
+        _ => 1,
+    };
+    let named = kernel.host.answers.buttons.next();
+    let answer = named.map_or(String::new(), |button| format!(" ({})", answers::button_name(button)));
+    say(kernel, context, format!("message box: {text}{answer}"));
+    context.memory.set(data(3), named.unwrap_or(default));
+}
+
+/// Shows a prompt and types the number that was named for it, or 0.
+fn input_box(kernel: &mut Kernel, context: &mut TickContext<'_>, offset: i32) {
+    let prompt = string(context.memory, offset);
+    let (answer, typed) = match kernel.host.answers.inputs.next() {
+        Some(None) => (" (cancel)".to_owned(), None),
+        Some(Some(number)) => (format!(" ({number})"), Some(number)),
+        None => (String::new(), Some(0.0)),
+    };
+    say(kernel, context, format!("input box: {prompt}{answer}"));
+    context.memory.set(data(2), typed.unwrap_or(0.0).to_bits().cast_signed());
+    context.memory.set(data(3), i32::from(typed.is_none()));
+}
+
+/// Shows a line of G code. Of what it says only assignments to #variables are done.
+fn mdi(kernel: &mut Kernel, context: &mut TickContext<'_>, offset: i32) {
+    let line = string(context.memory, offset);
+    for (variable, value) in assignments(&line) {
+        kernel.host.answers.variables.insert(variable, value);
+    }
+    let result = kernel.host.answers.mdi.next();
+    let answer = result.map_or(String::new(), |result| format!(" (result {result})"));
+    say(kernel, context, format!("MDI: {line}{answer}"));
+    context.memory.set(data(2), result.unwrap_or(0));
+}
+
+/// The assignments `#N=NUMBER` of a line of G code.
+fn assignments(line: &str) -> Vec<(i32, f64)> {
+    let mut found = Vec::new();
+    let mut rest = line;
+    while let Some(at) = rest.find('#') {
+        rest = &rest[at + 1..];
+        let Some((variable, value)) = rest.split_once('=') else { break };
+        let (number, _) = float_prefix(value.trim_start().as_bytes());
+        if let Ok(variable) = variable.trim().parse() {
+            found.push((variable, number));
+        }
+    }
+    found
+}
+
+/// Copies #variables to or from `UserData`.
+fn variables(
+    kernel: &mut Kernel,
+    memory: &mut GuestMemory,
+    sets: bool,
+    [first, count, index]: [i32; 3],
+) -> i32 {
+    let Some(place) = usize::try_from(count).ok().and_then(|count| doubles(index, count)) else {
+        return INVALID;
+    };
+    for (number, offset) in (first..first.saturating_add(count)).zip((0..).step_by(8)) {
+        let place = place.offset(offset);
+        if sets {
+            kernel.host.answers.variables.insert(number, memory.peek(place));
+        } else {
+            memory.poke(place, kernel.host.answers.variables.get(&number).copied().unwrap_or(0.0));
+        }
+    }
+    DONE
+}
+
+/// Gets or sets one entry of the tool table.
+fn tool(kernel: &mut Kernel, memory: &mut GuestMemory, code: i32, [tool, index, _]: [i32; 3]) -> i32 {
+    if !(0..TOOLS).contains(&tool) {
+        return BAD_TOOL;
+    }
+    let Some(place) = doubles(index, 1) else { return INVALID };
+    // Pairs of get and set: length 23, diameter 30, offsets 32 and 34.
+    let (kind, sets) = match code {
+        23 | 24 => (23, code == 24),
+        _ => (code & !1, code & 1 != 0),
+    };
+    if sets {
+        kernel.host.answers.tools.insert((kind, tool), memory.peek(place));
+    } else {
+        memory.poke(place, kernel.host.answers.tools.get(&(kind, tool)).copied().unwrap_or(0.0));
+    }
+    DONE
+}
+
+fn store_words(memory: &mut GuestMemory, index: i32, words: &[i32]) -> i32 {
+    let Some(place) = named(index, words.len()) else { return INVALID };
+    for (offset, word) in (0..).step_by(4).zip(words) {
+        memory.poke(place.offset(offset), *word);
+    }
+    DONE
+}
+
+fn store_floats(memory: &mut GuestMemory, index: i32, floats: &[f32]) -> i32 {
+    let words: Vec<i32> = floats.iter().map(|float| float.to_bits() as i32).collect();
+    store_words(memory, index, &words)
+}
+
+fn store_doubles(memory: &mut GuestMemory, index: i32, values: &[f64]) -> i32 {
+    let Some(place) = doubles(index, values.len()) else { return INVALID };
+    for (offset, value) in (0..).step_by(8).zip(values) {
+        memory.poke(place.offset(offset), *value);
+    }
+    DONE
+}
+
+/// The text of a screen cell: "0" where no other was named.
+fn edit_cell(kernel: &Kernel, memory: &mut GuestMemory, variable: i32) -> i32 {
+    let Some(place) = named(variable, 1) else { return INVALID };
+    let offset: u32 = memory.peek(place);
+    let address = memory.get(GATHER_BUFFER).offset(offset.wrapping_mul(4));
+    let text = kernel.host.answers.cells.get(&variable).map_or("0", String::as_str);
+    let stored = memory.write_bytes(address, &[text.as_bytes(), b"\0"].concat());
+    if stored.is_ok() { DONE } else { INVALID }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::Desk;
+
+    /// Makes a request and returns the answer, which takes at most 0.2 s.
+    fn ask(desk: &mut Desk, code: i32, parameters: &[i32]) -> i32 {
+        for (index, parameter) in parameters.iter().enumerate() {
+            desk.memory.set(data(index + 1), *parameter);
+        }
+        desk.memory.set(data(0), code);
+        desk.run(2222);
+        desk.memory.get(data(0))
+    }
+
+    #[test]
+    fn a_message_box_is_answered() {
+        let mut desk = Desk::new();
+        let buffer = desk.memory.get(GATHER_BUFFER);
+        desk.memory.poke_bytes(buffer.offset(400), b"go on?\0").expect("mapped");
+        for (flags, pressed) in [(0, 1), (1, 1), (2, 5), (3, 6), (4, 6), (5, 4)] {
+            assert_eq!(ask(&mut desk, 15, &[100, flags, 0]), DONE);
+            assert_eq!(desk.memory.get(data(3)), pressed);
+        }
+        let told: Vec<_> = desk.kernel.take_events();
+        assert_eq!(told[0].kind, EventKind::Host("message box: go on?".to_owned()));
+    }
+
+    #[test]
+    fn every_request_has_an_answer_that_lets_the_program_go_on() {
+        let mut desk = Desk::new();
+        for code in 1..=55 {
+            // An element of UserData, an index of doubles, a tool and a number: what the request takes of them is valid.
+            let first = match code {
+                5..=12 | 21 | 22 | 46..=51 | 54 | 55 => 1.0_f32.to_bits().cast_signed(),
+                _ => 10,
+            };
+            assert_eq!(ask(&mut desk, code, &[first, 1, 20]), DONE, "request {code}");
+            let shown =
+                desk.kernel.take_events().into_iter().any(|event| matches!(event.kind, EventKind::Host(_)));
+            assert!(shown, "request {code} is not shown");
+        }
+    }
+
+    #[test]
+    fn a_request_without_a_pc_is_told_once() {
+        let mut desk = Desk::new();
+        desk.kernel.host.connect(false);
+        assert_eq!(ask(&mut desk, 15, &[100, 0, 0]), 15);
+        desk.run(60_000);
+        desk.run(60_000);
+        let told: Vec<_> = desk.kernel.take_events().into_iter().map(|event| event.kind).collect();
+        let expect = "request 15 waits for a PC, and none is connected (`host.enabled = false`)".to_owned();
+        assert_eq!(told, [EventKind::Diagnostic(expect)]);
+    }
+
+    #[test]
+    fn requests_that_cannot_be_met_say_so() {
+        let mut desk = Desk::new();
+        assert_eq!(ask(&mut desk, 99, &[]), INVALID);
+        assert_eq!(ask(&mut desk, 23, &[100, 10]), BAD_TOOL);
+        assert_eq!(ask(&mut desk, 5, &[0]), INVALID);
+        assert_eq!(ask(&mut desk, 19, &[198]), INVALID);
+    }
+
+    #[test]
+    fn overrides_reach_the_board() {
+        let mut desk = Desk::new();
+        for (code, number, expect) in [(5, 0.5, (0.5, 1.0)), (6, 1.5, (0.75, 1.0)), (54, 0.25, (0.75, 0.25))]
+        {
+            assert_eq!(ask(&mut desk, code, &[f32::to_bits(number) as i32]), DONE);
+            let overrides = (desk.memory.get(CS0_LAST_FRO), desk.memory.get(CS0_LAST_RAPID_FRO));
+            assert_eq!(overrides, expect, "{code}");
+        }
+    }
+
+    #[test]
+    fn variables_and_tools_are_kept() {
+        let mut desk = Desk::new();
+        let place = doubles(5, 1).expect("inside");
+        desk.memory.poke(place, 2.5);
+        for (set, get, parameters) in [(17, 16, [500, 1, 5]), (24, 23, [7, 5, 0]), (31, 30, [7, 5, 0])] {
+            assert_eq!(ask(&mut desk, set, &parameters), DONE);
+            desk.memory.poke(place, 0.0);
+            assert_eq!(ask(&mut desk, get, &parameters), DONE);
+            assert_eq!(desk.memory.peek::<f64>(place), 2.5, "{get}");
+        }
+    }
+
+    #[test]
+    fn answers_can_be_named() {
+        let mut desk = Desk::new();
+        let mut answers = Answers::default();
+        for setting in
+            ["msgbox=no", "input=2.5", "mdi=-3", "request.14=-7", "cell.110=1.25", "request.13=never"]
+        {
+            answers.set(setting).expect(setting);
+        }
+        desk.kernel.host.answer_with(answers);
+        let buffer = desk.memory.get(GATHER_BUFFER);
+        desk.memory.poke_bytes(buffer.offset(400), b"#5=1.5 #6 = -2\0").expect("mapped");
+        assert_eq!(ask(&mut desk, 15, &[100, 4, 0]), DONE);
+        assert_eq!(desk.memory.get(data(3)), 7);
+        assert_eq!(ask(&mut desk, 29, &[100]), DONE);
+        assert_eq!(f32::from_bits(desk.memory.get(data(2)).cast_unsigned()), 2.5);
+        assert_eq!(ask(&mut desk, 18, &[100]), DONE);
+        assert_eq!(desk.memory.get(data(2)), -3);
+        assert_eq!(ask(&mut desk, 16, &[5, 2, 10]), DONE);
+        let variables =
+            [0, 8].map(|offset| desk.memory.peek::<f64>(doubles(10, 1).expect("inside").offset(offset)));
+        assert_eq!(variables, [1.5, -2.0]);
+        assert_eq!(ask(&mut desk, 14, &[3]), -7);
+        assert_eq!(ask(&mut desk, 53, &[110]), DONE);
+        assert_eq!(desk.memory.read_c_string(buffer, 10).expect("mapped"), b"1.25");
+        assert_eq!(ask(&mut desk, 13, &[1]), 13);
+    }
+}

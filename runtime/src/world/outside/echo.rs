@@ -1,0 +1,36 @@
+//! A device on the UART that sends back what it gets.
+
+use kmotiondef::Cycles;
+
+use crate::world::attached::{Attached, Outside, Settings};
+
+/// An echo.
+#[derive(Debug)]
+pub(crate) struct Echo;
+
+impl Echo {
+    /// It has no settings.
+    pub(crate) fn new(_: &mut Settings<'_>) -> Result<Self, String> {
+        Ok(Self)
+    }
+}
+
+impl Attached for Echo {
+    fn sent(&mut self, byte: u8, at: Cycles, outside: &mut Outside<'_>) {
+        outside.uart.arrive(&[byte], at);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::world::outside::testing::{Bench, us};
+
+    #[test]
+    fn what_is_sent_comes_back() {
+        let mut bench = Bench::new("echo");
+        bench.uart.set_divisor(8);
+        bench.uart.status(us(0));
+        bench.sent(b'x', 100);
+        assert_eq!(bench.uart.read(us(2000)), b'x');
+    }
+}

@@ -1,0 +1,77 @@
+//! An encoder whose two phases are outputs of the board: what a program or a step generator shows there turns the load
+//! of an axis, so that the axis' encoder counts it.
+//!
+//! Each edge is a count, four in a period. Both phases at once are no count but a mistake, as for the real counter.
+
+use kmotiondef::limits::N_CHANNELS;
+use kmotiondef::{AxisId, Bit};
+
+use crate::io::changes::BitChange;
+use crate::world::attached::{Attached, Outside, Settings};
+
+/// The phases and the axis.
+#[derive(Debug)]
+pub(crate) struct Quadrature {
+    a: Bit,
+    b: Bit,
+    axis: AxisId,
+    /// Units of the load for a count.
+    units: f64,
+    levels: [bool; 2],
+}
+
+impl Quadrature {
+    /// `a`, `b`, `axis`, `units`.
+    pub(crate) fn new(settings: &mut Settings<'_>) -> Result<Self, String> {
+        let (a, b) = (settings.bit("a")?, settings.bit("b")?);
+        let what = format!("an axis from 0 to {}", N_CHANNELS - 1);
+        let axis = settings.optional("axis", &what, |text| AxisId::new(text.parse().ok()?))?;
+        let axis = axis.or_else(|| AxisId::new(0)).ok_or("there is no axis")?;
+        Ok(Self { a, b, axis, units: settings.number("units", 1.0)?, levels: [false; 2] })
+    }
+}
+
+impl Attached for Quadrature {
+    fn edge(&mut self, change: BitChange, outside: &mut Outside<'_>) {
+        let [a, b] = self.levels;
+        let forward = if change.bit == self.a {
+            self.levels[0] = change.level;
+            change.level != b
+        } else if change.bit == self.b {
+            self.levels[1] = change.level;
+            change.level == a
+        } else {
+            return;
+        };
+        if self.levels != [a, b] {
+            outside.servo.push(self.axis, if forward { self.units } else { -self.units });
+        }
+    }
+
+    fn watches(&self, bit: Bit) -> bool {
+        bit == self.a || bit == self.b
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::world::outside::testing::Bench;
+
+    #[test]
+    fn each_edge_is_a_count_and_the_order_says_where_to() {
+        let mut bench = Bench::new("quadrature a=8 b=9 axis=2");
+        for (bit, level, expect) in [
+            (8, true, 1.0),
+            (9, true, 2.0),
+            (8, false, 3.0),
+            (9, false, 4.0),
+            (9, true, 3.0),
+            (8, true, 2.0),
+            (9, false, 1.0),
+            (8, false, 0.0),
+        ] {
+            bench.output(bit, level, 0);
+            assert_eq!(bench.servo.plants[2].load, expect, "{bit} {level}");
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! A bench for one device: pins, port and UART without a kernel.
+
+use kmotiondef::variables::ADC_BUFFER_IN;
+use kmotiondef::{Bit, Cycles};
+use vm::memory::GuestMemory;
+
+use crate::io::fpga::Fpga;
+use crate::io::kanalog::Kanalog;
+use crate::io::pins::Pins;
+use crate::io::uart::Uart;
+use crate::servo::Servo;
+use crate::views::Typed;
+use crate::world::attached::{Attached, DeviceSpec, Outside};
+
+/// A device and what it can reach.
+pub(crate) struct Bench {
+    pub(crate) device: Box<dyn Attached>,
+    pub(crate) pins: Pins,
+    pub(crate) kanalog: Kanalog,
+    pub(crate) uart: Uart,
+    pub(crate) fpga: Fpga,
+    pub(crate) servo: Servo,
+    memory: GuestMemory,
+}
+
+/// An instant.
+pub(crate) fn us(us: i64) -> Cycles {
+    Cycles::new(us * (Cycles::PER_SECOND.get() / 1_000_000))
+}
+
+impl Bench {
+    /// A device described as in a stimulus.
+    pub(crate) fn new(text: &str) -> Self {
+        let mut words = text.split(' ');
+        let name = words.next().expect("a name").to_owned();
+        let settings = words.map(|word| word.split_once('=').expect("a setting"));
+        let settings = settings.map(|(key, value)| (key.to_owned(), value.to_owned())).collect();
+        let device = DeviceSpec { name, settings }.build().unwrap_or_else(|error| panic!("{error}"));
+        let mut bench = Self {
+            device,
+            pins: Pins::default(),
+            kanalog: Kanalog::default(),
+            uart: Uart::default(),
+            fpga: Fpga::default(),
+            servo: Servo::default(),
+            memory: GuestMemory::new(),
+        };
+        bench.pins.changes.switch_on(&bench.memory);
+        bench
+    }
+
+    fn with<R>(&mut self, work: impl FnOnce(&mut dyn Attached, &mut Outside<'_>) -> R) -> R {
+        let mut outside = Outside {
+            pins: &mut self.pins,
+            kanalog: &mut self.kanalog,
+            uart: &mut self.uart,
+            fpga: &self.fpga,
+            servo: &mut self.servo,
+        };
+        work(&mut *self.device, &mut outside)
+    }
+
+    /// The board drives an output.
+    pub(crate) fn output(&mut self, bit: i32, level: bool, at_us: i64) {
+        let bit = Bit::new(bit).expect("a bit");
+        self.pins.set_output(bit, true, us(at_us));
+        self.pins.set_latch(bit, level, us(at_us));
+        while let Some(change) = self.pins.changes.next_unseen() {
+            self.with(|device, outside| device.edge(change, outside));
+        }
+    }
+
+    pub(crate) fn tick(&mut self, at_us: i64) {
+        self.with(|device, outside| device.tick(us(at_us), outside));
+    }
+
+    pub(crate) fn sent(&mut self, byte: u8, at_us: i64) {
+        self.with(|device, outside| device.sent(byte, us(at_us), outside));
+    }
+
+    pub(crate) fn level(&self, bit: i32) -> bool {
+        self.pins.level(Bit::new(bit).expect("a bit"))
+    }
+
+    /// The value of an analog input, −2048 to 2047.
+    pub(crate) fn adc(&mut self, channel: usize) -> i32 {
+        self.memory.set(kmotiondef::variables::KANALOG_PRESENT, 1);
+        self.kanalog.tick(&self.fpga, &mut self.memory);
+        self.memory.get(ADC_BUFFER_IN.element(channel)) - 2048
+    }
+}

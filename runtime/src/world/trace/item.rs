@@ -1,0 +1,218 @@
+//! Values that can be sampled, by name.
+
+use std::fmt;
+
+use kmotiondef::structs::{Chan, Persist};
+use kmotiondef::variables::{ADC_BUFFER_IN, DAC_BUFFER, LAST_PWM, PERSIST};
+use kmotiondef::{AxisId, Bit};
+use vm::memory::GuestMemory;
+
+use crate::firmware::io::bit_state;
+use crate::io::konnect::{Board, Port};
+use crate::kernel::Kernel;
+use crate::views::Typed;
+
+/// A kind of value.
+struct Kind {
+    name: &'static str,
+    /// How many there are, numbered from 0.
+    count: usize,
+    read: fn(&Kernel, &GuestMemory, usize) -> f64,
+}
+
+/// All kinds.
+const KINDS: &[Kind] = &[
+    // Where an axis is sent.
+    Kind { name: "dest", count: 8, read: |_, memory, index| memory.axis(axis(index), Chan::DEST) },
+    // Where it is.
+    Kind { name: "pos", count: 8, read: |_, memory, index| memory.axis(axis(index), Chan::POSITION) },
+    // What drives it.
+    Kind { name: "out", count: 8, read: |_, memory, index| memory.axis(axis(index), Chan::OUTPUT).into() },
+    // Where its load is, in machine coordinates.
+    Kind { name: "load", count: 8, read: |kernel, _, index| kernel.servo.plants[index].load },
+    // A bit.
+    Kind { name: "bit", count: Bit::MAX as usize + 1, read: bit },
+    // An analog input, -2048 to 2047.
+    Kind {
+        name: "adc",
+        count: 8,
+        read: |_, memory, index| f64::from(memory.get(ADC_BUFFER_IN.element(index)) - 2048),
+    },
+    // An analog output, -2048 to 2047.
+    Kind { name: "dac", count: 8, read: dac },
+    // The word sent to an amplifier.
+    Kind { name: "pwm", count: 16, read: |_, memory, index| memory.get(LAST_PWM.element(index)).into() },
+    // The duty of an I/O PWM from 0 to 1, and its frequency; 0 while it is off.
+    Kind {
+        name: "iopwm",
+        count: 8,
+        read: |kernel, _, index| kernel.fpga.pwm(index as u32).unwrap_or_default().0,
+    },
+    Kind {
+        name: "iopwmhz",
+        count: 8,
+        read: |kernel, _, index| kernel.fpga.pwm(index as u32).unwrap_or_default().1,
+    },
+    // Steps that a generator has made.
+    Kind { name: "step", count: 8, read: |kernel, _, index| kernel.stepgens.position(index) },
+    // The outputs of a Konnect board: 0 to 7 on JP6, 8 to 15 on JP4.
+    Kind { name: "konnect", count: 16, read: |kernel, _, index| konnect(kernel, index) },
+    // The analog output of a KStep, as part of its supply.
+    Kind {
+        name: "kstep_analog",
+        count: 1,
+        read: |kernel, _, _| kernel.fpga.kstep_output().level(kernel.tick_start),
+    },
+    // An element of `persist.UserData`.
+    Kind { name: "persist", count: 200, read: |_, memory, index| user_data(memory, index) },
+];
+
+/// Indexes are checked when a name is read.
+fn axis(index: usize) -> AxisId {
+    AxisId::all().nth(index).unwrap_or_else(|| AxisId::all().next_back().expect("there are axes"))
+}
+
+fn bit(kernel: &Kernel, memory: &GuestMemory, index: usize) -> f64 {
+    let bit = i32::try_from(index).ok().and_then(Bit::new);
+    bit.map_or(0.0, |bit| f64::from(u8::from(bit_state(kernel, memory, bit).0)))
+}
+
+fn dac(_: &Kernel, memory: &GuestMemory, index: usize) -> f64 {
+    f64::from((i32::from(memory.get(DAC_BUFFER.element(index))) & 0xfff) - 2048)
+}
+
+fn konnect(kernel: &Kernel, index: usize) -> f64 {
+    let port = if index < 8 { Port::Aux1 } else { Port::Aux0 };
+    kernel.konnects.outputs(Board { port, address: (index % 8) as u8 }).into()
+}
+
+fn user_data(memory: &GuestMemory, index: usize) -> f64 {
+    memory.get(PERSIST.field(Persist::USER_DATA).element(index)).into()
+}
+
+/// A value that can be sampled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Item {
+    kind: usize,
+    index: usize,
+}
+
+/// A name that is not one of an item.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("`{name}` is no item; there are {known}")]
+pub struct UnknownItem {
+    /// The name.
+    pub name: String,
+    /// Those that exist.
+    pub known: String,
+}
+
+impl Item {
+    /// The item of a name such as `dest0` or `bit46`.
+    ///
+    /// # Errors
+    /// A name that is not one.
+    pub fn new(name: &str) -> Result<Self, UnknownItem> {
+        // `persist.5` is how `--set` calls it.
+        let name = &name.replacen("persist.", "persist", 1);
+        let letters = name.trim_end_matches(|character: char| character.is_ascii_digit());
+        let kind = KINDS.iter().position(|kind| kind.name == letters);
+        // What there is only one of has no number.
+        let is_single = kind.is_some_and(|kind| KINDS[kind].count == 1) && letters.len() == name.len();
+        let index = if is_single { Some(0) } else { name[letters.len()..].parse().ok() };
+        if let (Some(kind), Some(index)) = (kind, index)
+            && index < KINDS[kind].count
+        {
+            return Ok(Self { kind, index });
+        }
+        let is_near = |other: &&Kind| kind.is_none_or(|kind| KINDS[kind].name == other.name);
+        let known: Vec<_> = KINDS
+            .iter()
+            .filter(is_near)
+            .map(|kind| match kind.count {
+                1 => kind.name.to_owned(),
+                count => format!("{}0 to {0}{}", kind.name, count - 1),
+            })
+            .collect();
+        Err(UnknownItem { name: name.clone(), known: known.join(", ") })
+    }
+
+    /// Whether there are items of this name with a number behind it.
+    #[must_use]
+    pub fn is_kind(name: &str) -> bool {
+        KINDS.iter().any(|kind| kind.name == name)
+    }
+
+    /// Where every axis is sent, where it is and what drives it.
+    #[must_use]
+    pub fn of_axes() -> Vec<Self> {
+        let all = (0..AxisId::all().count()).flat_map(|index| (0..3).map(move |kind| Self { kind, index }));
+        all.collect()
+    }
+
+    /// What kind of value it is: its name without the number.
+    #[must_use]
+    pub fn kind(self) -> &'static str {
+        KINDS[self.kind].name
+    }
+
+    /// Its number among those of its kind.
+    #[must_use]
+    pub const fn index(self) -> usize {
+        self.index
+    }
+
+    /// The unit of the value; empty for mere numbers.
+    #[must_use]
+    pub fn unit(self) -> &'static str {
+        match self.kind() {
+            "dest" | "pos" | "load" => "units",
+            "adc" | "dac" => "counts",
+            "step" => "steps",
+            "iopwmhz" => "Hz",
+            _ => "",
+        }
+    }
+
+    /// The axis it belongs to, if it is one of [`of_axes`](Self::of_axes).
+    #[must_use]
+    pub fn axis(self) -> Option<usize> {
+        (self.kind < 3).then_some(self.index)
+    }
+
+    /// The bit it is, if it is one.
+    #[must_use]
+    pub fn bit(self) -> Option<Bit> {
+        Bit::new(i32::try_from(self.index).ok()?).filter(|_| self.kind() == "bit")
+    }
+
+    pub(crate) fn read(self, kernel: &Kernel, memory: &GuestMemory) -> f64 {
+        (KINDS[self.kind].read)(kernel, memory, self.index)
+    }
+}
+
+impl fmt::Display for Item {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match KINDS[self.kind] {
+            Kind { name, count: 1, .. } => formatter.write_str(name),
+            Kind { name, .. } => write!(formatter, "{name}{}", self.index),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_read_and_written() {
+        for name in
+            ["dest0", "bit2047", "iopwm7", "iopwmhz0", "persist199", "step7", "konnect15", "kstep_analog"]
+        {
+            assert_eq!(Item::new(name).map(|item| item.to_string()).as_deref(), Ok(name));
+        }
+        for name in ["dest8", "dest", "0", "", "speed0", "bit2048", "bit-1", "é0", "kstep_analog1"] {
+            assert_eq!(Item::new(name).map_err(|error| error.name), Err(name.to_owned()));
+        }
+    }
+}
