@@ -1,0 +1,39 @@
+//! The instructions of the TMS320C67x+, the processor of the board.
+//!
+//! One table of 302 forms ([`for_each_form!`]) from which decoder, encoder, assembler,
+//! disassembler and the model of the pipeline are expanded. Three users: the engine that
+//! executes real images, the code generator that makes them, and `inspect -d`.
+//!
+//! - [`Inst`] is one valid instruction: [`Inst::decode`] from a word, [`Inst::new`],
+//!   [`Inst::pick`] and [`Inst::forms`] from operands, [`assemble`] from text.
+//! - [`Inst::unit`], [`Inst::reads`], [`Inst::writes`], [`Inst::delay_slots`],
+//!   [`Inst::cross_path`], [`Inst::data_path`]: what a scheduler asks.
+//!
+//! Map: `register` (registers, conditions, units), `kind` (fields, kinds of operands,
+//! timing), `mnemonic`, `table` (the rows), `operand`, `inst` (encode, decode), `model`
+//! (the scheduler's questions), `alias`, `text`, `assemble`.
+//!
+//! Invariants: nothing here executes anything or knows the board; the table is
+//! the one place where a form is described; an [`Inst`] is always valid.
+#![forbid(unsafe_code)]
+
+mod alias;
+mod assemble;
+mod inst;
+mod kind;
+mod mnemonic;
+mod model;
+mod operand;
+mod register;
+mod table;
+mod text;
+
+pub use assemble::{Line, SyntaxError, assemble};
+pub use inst::{BadOperands, BadWord, Inst, PARALLEL};
+pub use kind::{Field, Isa, Kind, Mode, OffsetKind, Stages, Timing, Update};
+pub use mnemonic::Mnemonic;
+pub use model::{Branch, Read, Write};
+pub use operand::{Mem, Offset, Operand};
+pub use register::{Control, Pair, Pred, PredReg, Reg, Side, Unit, UnitKind};
+pub use table::{Op, Row};
+pub use text::{FETCH_PACKET, target};
