@@ -8,7 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use cc67::limits::{ALL, grouped};
-use cc67::lints::Lint;
+use compiler::lints::Lint;
 use harness::{Scratch, files, run_in};
 use kmotiondef::firmware::{ABSENT, FIRMWARE_FUNCTIONS};
 use kmotiondef::variables::FIRMWARE_VARIABLES;
@@ -199,7 +199,7 @@ fn the_chapter_of_warnings_has_the_page_of_each() {
     let mut lints: Vec<_> = Lint::ALL.iter().collect();
     lints.sort_by_key(|lint| lint.name());
     for lint in lints {
-        let _ = write!(text, "\n{{{{#include ../../src/lints/pages/{}.md}}}}\n", lint.name());
+        let _ = write!(text, "\n{{{{#include ../../compiler/src/lints/pages/{}.md}}}}\n", lint.name());
     }
     check_list("warnings.md", &text);
 }

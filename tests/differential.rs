@@ -7,9 +7,9 @@ use std::path::Path;
 use std::process::Command;
 use std::thread;
 
-use cc67::diag::Severity;
-use cc67::passes::Level;
-use cc67::{Options, image};
+use compiler::diag::Severity;
+use compiler::passes::Level;
+use compiler::{Options, image};
 use harness::oracles::execute_everywhere;
 use harness::{Scratch, generate};
 use kmotiondef::{ThreadId, Ticks};
@@ -31,8 +31,8 @@ fn number(variable: &str, default: u64) -> u64 {
 /// The image of a program.
 fn compile(seed: u64, source: &str, level: Level) -> Vec<u8> {
     let options = Options { level, ..Options::default() };
-    let files = cc67::pp::Disk;
-    let mut compilation = cc67::compile(Path::new("generated.c"), source.into(), &options, &files);
+    let files = compiler::pp::Disk;
+    let mut compilation = compiler::compile(Path::new("generated.c"), source.into(), &options, &files);
     let linked = compilation.link(thread_1(), &options);
     let errors = || compilation.diagnostics().into_iter().filter(|found| found.severity == Severity::Error);
     let linked = linked.unwrap_or_else(|| panic!("seed {seed}: {:?}", errors().collect::<Vec<_>>()));

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use cc67::{Options, image, pp};
+use compiler::{Options, image, pp};
 use harness::{Scratch, root, run_in};
 use kmotiondef::{ThreadId, Ticks};
 use runtime::{Board, Config, Directory, EventKind};
@@ -22,7 +22,7 @@ fn board(source: &str, config: Config) -> Board {
     let source = format!("#include \"KMotionDef.h\"\nchar zbuf[1000];\n{source}\n").into_bytes();
     let options = Options::default();
     let thread = ThreadId::new(1).expect("1 is a thread");
-    let mut compilation = cc67::compile(Path::new("program.c"), source, &options, &pp::Disk);
+    let mut compilation = compiler::compile(Path::new("program.c"), source, &options, &pp::Disk);
     let linked = compilation.link(thread, &options).expect("the program is right");
     let mut board = Board::new(config);
     board.load(thread, &image::write(&linked).expect("it fits")).expect("it loads");

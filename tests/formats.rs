@@ -5,12 +5,12 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
-use cc67::download::Download;
-use cc67::firmware::{Firmware, FirmwareFile};
-use cc67::object::Object;
-use cc67::pp::Disk;
-use cc67::{Options, image};
 use coff::{Contents, Image, Line, StorageClass, SymbolType};
+use compiler::download::Download;
+use compiler::firmware::{Firmware, FirmwareFile};
+use compiler::object::Object;
+use compiler::pp::Disk;
+use compiler::{Options, image};
 use harness::{Scratch, files, root, vendor};
 use kmotiondef::{GuestAddr, ThreadId, map};
 use runtime::{Board, Config};
@@ -21,7 +21,7 @@ fn corpus() -> Vec<(String, Vec<u8>, Vec<u8>)> {
     let mut images = Vec::new();
     for path in files(&root().join("c-programs"), "c") {
         let text = fs::read(&path).expect("programs are readable");
-        let mut compilation = cc67::compile(&path, text, &options, &Disk);
+        let mut compilation = compiler::compile(&path, text, &options, &Disk);
         let Some(object) = &compilation.object else { continue };
         let object = object.write().expect("objects of the corpus fit");
         let Some(linked) = compilation.link(thread(), &options) else { continue };
@@ -190,19 +190,19 @@ fn a_firmware_file_is_read_and_resolved_against_in_two_milliseconds() {
     let bytes = vendor::board_firmware();
     let options = Options::default();
     let text = b"#include \"KMotionDef.h\"\nmain() { SetBit(1); printf(\"%d\\n\", persist.UserData[3]); }\n";
-    let mut compilation = cc67::compile(Path::new("a.c"), text.to_vec(), &options, &Disk);
+    let mut compilation = compiler::compile(Path::new("a.c"), text.to_vec(), &options, &Disk);
     let object = compilation.object.take().expect("it compiles");
     let mut best = f64::MAX;
     for _ in 0..20 {
         let start = Instant::now();
         let firmware = Firmware::File(FirmwareFile::read(&bytes).expect("it is a firmware file").into());
-        let options = cc67::link::Options {
+        let options = compiler::link::Options {
             thread: thread(),
             firmware: &firmware,
             gc: true,
-            addresses: cc67::link::SectionAddresses::default(),
+            addresses: compiler::link::SectionAddresses::default(),
         };
-        let linked = cc67::link::link(std::slice::from_ref(&object), &options).expect("it links");
+        let linked = compiler::link::link(std::slice::from_ref(&object), &options).expect("it links");
         best = best.min(start.elapsed().as_secs_f64());
         assert_eq!(linked.imports.len(), 3);
     }
@@ -222,7 +222,7 @@ fn contents(board: &Board) -> [&[u8]; 2] {
 fn a_download_that_is_replayed_leaves_the_memory_that_a_load_leaves() {
     for (name, bytes, _) in corpus() {
         let image = Image::read(&bytes).expect("the image is good");
-        let script = cc67::download::script(&image, thread());
+        let script = compiler::download::script(&image, thread());
         let download = Download::parse(&script).unwrap_or_else(|error| panic!("{name}: {error}"));
         assert_eq!(download.to_string(), script, "{name}");
         let (mut loaded, mut replayed): (Board, Board) =

@@ -6,9 +6,9 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use cc67::diag::Severity;
+use compiler::diag::Severity;
 
-use cc67::pp::Disk;
+use compiler::pp::Disk;
 use harness::csv::{self, Row};
 
 fn table(name: &str) -> Vec<Row> {
@@ -20,12 +20,12 @@ fn table(name: &str) -> Vec<Row> {
 /// The linker looks only at what `main` reaches.
 fn errors(checks: &str, body: &str) -> String {
     let text = format!("#include \"KMotionDef.h\"\n{checks}\nint main(void) {{ {body} }}\n");
-    let options = cc67::Options::default();
-    let mut compilation = cc67::compile(Path::new("checks.c"), text.into_bytes(), &options, &Disk);
+    let options = compiler::Options::default();
+    let mut compilation = compiler::compile(Path::new("checks.c"), text.into_bytes(), &options, &Disk);
     compilation.link(kmotiondef::ThreadId::new(1).expect("1 is a thread"), &options);
     let wrong = compilation.sink.diagnostics().iter().filter(|d| d.severity == Severity::Error);
     wrong
-        .map(|diagnostic| format!("{}\n", cc67::render::short::render(diagnostic, &compilation.sources)))
+        .map(|diagnostic| format!("{}\n", compiler::render::short::render(diagnostic, &compilation.sources)))
         .collect()
 }
 

@@ -4,7 +4,7 @@ use std::sync::mpsc;
 use std::thread;
 use std::time::Duration;
 
-use cc67::host::{Board, HostError, Lock};
+use cc67_host::{Board, HostError, Lock};
 use harness::Scratch;
 use kmotiondef::structs::MainStatus;
 

@@ -2,7 +2,7 @@
 
 use std::sync::mpsc;
 
-use cc67::host::Board;
+use cc67_host::Board;
 use harness::Scratch;
 use peak_alloc::PeakAlloc;
 

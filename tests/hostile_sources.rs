@@ -11,11 +11,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use cc67::diag::Severity;
-use cc67::pp::{Disk, MemoryFiles};
-use cc67::render::Format;
-use cc67::render::human::Color;
-use cc67::{Options, render};
+use compiler::diag::Severity;
+use compiler::pp::{Disk, MemoryFiles};
+use compiler::render::Format;
+use compiler::render::human::Color;
+use compiler::{Options, render};
 use harness::{Scratch, run_in};
 
 use inputs::Input;
@@ -43,7 +43,7 @@ fn complaint(input: &Input) -> Option<String> {
     let start = Instant::now();
     let files = MemoryFiles::new().with("hostile.c", input.text.clone());
     let options = Options::default();
-    let mut compilation = cc67::compile(Path::new("hostile.c"), input.text.clone(), &options, &files);
+    let mut compilation = compiler::compile(Path::new("hostile.c"), input.text.clone(), &options, &files);
     let thread = kmotiondef::ThreadId::new(1).expect("1 is a thread");
     let linked = compilation.link(thread, &options);
     let diagnostics: Vec<_> = compilation.diagnostics().into_iter().cloned().collect();
@@ -128,6 +128,6 @@ fn includes_of_what_is_no_file_are_refused() {
     let files = Disk;
     let path = scratch.path().join("again.c");
     let compilation =
-        cc67::compile(&path, b"#include \"sub/x.h\"\nmain() { }\n".to_vec(), &Options::default(), &files);
+        compiler::compile(&path, b"#include \"sub/x.h\"\nmain() { }\n".to_vec(), &Options::default(), &files);
     assert!(compilation.object.is_some());
 }

@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::Path;
 
-use cc67::{Options, image};
+use compiler::{Options, image};
 use kmotiondef::{ThreadId, Ticks};
 use peak_alloc::PeakAlloc;
 use runtime::{Board, Config, EventKind};
@@ -36,8 +36,8 @@ const PROGRAMS: [(&str, &str); 5] = [
 fn compile(name: &str, source: &str) -> Vec<u8> {
     let options = Options::default();
     let source = format!("#include \"KMotionDef.h\"\n{source}\n");
-    let files = cc67::pp::Disk;
-    let mut compilation = cc67::compile(Path::new(name), source.into(), &options, &files);
+    let files = compiler::pp::Disk;
+    let mut compilation = compiler::compile(Path::new(name), source.into(), &options, &files);
     let linked = compilation.link(thread(), &options);
     let linked = linked.unwrap_or_else(|| panic!("{name}: {:?}", compilation.diagnostics()));
     image::write(&linked).expect("an image of a small program can be written")

@@ -1,6 +1,6 @@
 //! Every warning has a page, and the programs of the page do what the page says.
 //!
-//! A page is `cc67/src/lints/pages/<name>.md`. A block of C marked `fires` is a program in
+//! A page is `cc67/compiler/src/lints/pages/<name>.md`. A block of C marked `fires` is a program in
 //! which this lint, and no other, is reported when it is switched on; a block marked `clean`
 //! one that compiles and links without a word. A block marked with a file name is a file
 //! beside all of them.
@@ -8,11 +8,11 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use cc67::diag::Severity;
-use cc67::lints::Lint;
-use cc67::lints::levels::Levels;
-use cc67::pp::MemoryFiles;
-use cc67::render::short;
+use compiler::diag::Severity;
+use compiler::lints::Lint;
+use compiler::lints::levels::Levels;
+use compiler::pp::MemoryFiles;
+use compiler::render::short;
 use kmotiondef::ThreadId;
 
 /// A block of C: its mark and its text.
@@ -42,8 +42,8 @@ fn compile(lint: Lint, text: &str, page: &[Block]) -> (Vec<String>, BTreeSet<&'s
     }
     let mut levels = Levels::default();
     levels.set(lint.name()).expect("the lint has a switch");
-    let options = cc67::Options::default();
-    let mut compilation = cc67::compile(Path::new("page.c"), text.as_bytes().to_vec(), &options, &files);
+    let options = compiler::Options::default();
+    let mut compilation = compiler::compile(Path::new("page.c"), text.as_bytes().to_vec(), &options, &files);
     let thread = ThreadId::new(1).expect("1 is a thread");
     assert!(
         compilation.link(thread, &options).is_some() || compilation.sink.has_errors(),
@@ -86,7 +86,7 @@ fn the_programs_of_every_page_do_what_it_says() {
 
 #[test]
 fn every_page_has_its_name_and_no_page_is_left_over() {
-    let folder = harness::root().join("cc67/src/lints/pages");
+    let folder = harness::root().join("cc67/compiler/src/lints/pages");
     for file in harness::files(&folder, "md") {
         let name = file.file_stem().expect("a file has a name").to_string_lossy().into_owned();
         assert!(Lint::named(&name).is_ok(), "{} is the page of no lint", file.display());

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use cc67::pp::Disk;
-use cc67::{Options, image};
 use coff::{Contents, FileFlags, Image, Relocation, Section, SectionFlags, Target};
+use compiler::pp::Disk;
+use compiler::{Options, image};
 use kmotiondef::map::{self, program_base};
 use kmotiondef::{ThreadId, Ticks};
 use runtime::{Board, Config, EventKind};
@@ -17,7 +17,7 @@ fn thread(number: i32) -> ThreadId {
 fn build(source: &str, number: i32) -> Vec<u8> {
     let options = Options::default();
     let source = format!("#include \"KMotionDef.h\"\n{source}");
-    let mut compilation = cc67::compile(Path::new("a.c"), source.into_bytes(), &options, &Disk);
+    let mut compilation = compiler::compile(Path::new("a.c"), source.into_bytes(), &options, &Disk);
     let linked = compilation.link(thread(number), &options).expect("the program links");
     image::write(&linked).expect("it fits")
 }

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use cc67::pp::MemoryFiles;
-use cc67::{Options, compile};
 use coff::{Contents, Image, Name};
+use compiler::pp::MemoryFiles;
+use compiler::{Options, compile};
 use kmotiondef::{ThreadId, Ticks};
 use runtime::{Board, Config, Event, EventKind, MachineFile};
 
@@ -24,7 +24,7 @@ fn image_of(source: &str) -> Vec<u8> {
     let mut compilation = compile(Path::new("a.c"), source.into(), &options, &MemoryFiles::new());
     let linked = compilation.link(first_thread(), &options);
     let linked = linked.unwrap_or_else(|| panic!("{:?}", compilation.diagnostics()));
-    cc67::image::write(&linked).expect("the image can be written")
+    compiler::image::write(&linked).expect("the image can be written")
 }
 
 fn load(board: &mut Board, image: &[u8]) {

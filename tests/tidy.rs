@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 /// The root of the workspace.
 fn root() -> &'static Path {
@@ -49,13 +50,16 @@ fn names_crate(code: &str, name: &str) -> bool {
 #[test]
 fn crates_depend_only_along_the_arrows() {
     let forbidden: &[(&str, &[&str], &[&str])] = &[
-        ("kmotiondef/src", &["coff", "vm", "runtime", "cc67"], &[]),
-        ("coff/src", &["kmotiondef", "vm", "runtime", "cc67"], &[]),
-        ("vm/src", &["coff", "runtime", "cc67"], &[]),
-        ("vm/c67x/src", &["kmotiondef", "coff", "vm", "runtime", "cc67"], &[]),
-        ("runtime/src", &["cc67"], &[]),
+        ("kmotiondef/src", &["coff", "vm", "runtime", "compiler", "cc67_host", "cc67"], &[]),
+        ("coff/src", &["kmotiondef", "vm", "runtime", "compiler", "cc67_host", "cc67"], &[]),
+        ("vm/src", &["coff", "runtime", "compiler", "cc67_host", "cc67"], &[]),
+        ("vm/c67x/src", &["kmotiondef", "coff", "vm", "runtime", "compiler", "cc67_host", "cc67"], &[]),
+        ("runtime/src", &["compiler", "cc67_host", "cc67"], &[]),
         ("runtime/src", &["coff"], &["runtime/src/board/loader.rs"]),
-        ("cc67/src", &["runtime"], &["cc67/src/main.rs", "cc67/src/cli/", "cc67/src/host"]),
+        ("cc67/compiler/src", &["runtime", "cc67_host", "cc67"], &[]),
+        ("cc67/host/src", &["cc67"], &[]),
+        // An executable that holds a program takes the options of `cc67 run`.
+        ("cc67/capi/src", &["cc67"], &["cc67/capi/src/stand_alone.rs"]),
     ];
     let mut broken = Vec::new();
     for (folder, names, except) in forbidden {
@@ -70,6 +74,60 @@ fn crates_depend_only_along_the_arrows() {
         }
     }
     assert!(broken.is_empty(), "forbidden arrows:\n{}", broken.join("\n"));
+}
+
+/// What a crate needs to be built, of ours and of others.
+fn needed_by(package: &str) -> Vec<String> {
+    let output = Command::new(env!("CARGO"))
+        .args(["tree", "--offline", "--locked", "--edges", "normal", "--prefix", "none", "--format", "{p}"])
+        .args(["--package", package])
+        .current_dir(root())
+        .output()
+        .expect("cargo starts");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8(output.stdout).expect("names of crates are ASCII");
+    let mut names: Vec<_> =
+        text.lines().filter_map(|line| line.split(' ').next().map(str::to_owned)).collect();
+    names.sort();
+    names.dedup();
+    names
+}
+
+#[test]
+fn who_embeds_a_board_builds_no_crate_of_terminals_pictures_web_or_command_lines() {
+    const OF_THE_COMMAND: &[&str] = &[
+        "ab_glyph",
+        "anstream",
+        "anstyle",
+        "axum",
+        "cc67",
+        "clap",
+        "clap_builder",
+        "clap_complete",
+        "clap_mangen",
+        "console",
+        "crossterm",
+        "env_logger",
+        "epaint_default_fonts",
+        "hyper",
+        "image",
+        "indicatif",
+        "inferno",
+        "plotters",
+        "png",
+        "ratatui",
+        "rustix",
+        "rustyline",
+        "similar",
+        "termcolor",
+        "tiny_http",
+        "tokio",
+        "tungstenite",
+    ];
+    let needed = needed_by("cc67-host");
+    assert!(needed.iter().any(|name| name == "cc67-runtime"), "{needed:?}");
+    let found: Vec<_> = needed.iter().filter(|name| OF_THE_COMMAND.contains(&name.as_str())).collect();
+    assert!(found.is_empty(), "cc67-host needs {found:?}");
 }
 
 #[test]
@@ -96,7 +154,8 @@ fn unsafe_code_exists_only_in_the_native_engine_and_the_c_interface() {
             code(&file).split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == "unsafe");
         assert!(!found, "{path} uses unsafe code");
     }
-    let safe = ["kmotiondef", "coff", "vm/c67x", "runtime", "cc67"].map(|name| format!("{name}/src/lib.rs"));
+    let safe = ["kmotiondef", "coff", "vm/c67x", "runtime", "cc67/compiler", "cc67/host", "cc67"]
+        .map(|name| format!("{name}/src/lib.rs"));
     for library in safe {
         let text = fs::read_to_string(root().join(&library)).expect("the library exists");
         assert!(text.contains("#![forbid(unsafe_code)]"), "{library} does not forbid unsafe code");
@@ -105,7 +164,9 @@ fn unsafe_code_exists_only_in_the_native_engine_and_the_c_interface() {
 
 #[test]
 fn every_library_states_its_invariants() {
-    for library in ["kmotiondef", "coff", "vm", "vm/c67x", "runtime", "cc67", "cc67/capi"] {
+    for library in
+        ["kmotiondef", "coff", "vm", "vm/c67x", "runtime", "cc67", "cc67/compiler", "cc67/host", "cc67/capi"]
+    {
         let path = root().join(library).join("src/lib.rs");
         let text = fs::read_to_string(path).expect("the library exists");
         assert!(text.contains("//! Invariant"), "{library}/src/lib.rs states no invariant");

@@ -21,7 +21,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use cc67::{Options, image, pp};
+use compiler::{Options, image, pp};
 use kmotiondef::variables::variable_named;
 use kmotiondef::{Bit, GuestAddr, ThreadId, Ticks};
 use runtime::commands::{COMMANDS, command_at};
@@ -92,7 +92,7 @@ impl Player {
         let thread = ThreadId::new(thread.parse().expect(text)).expect(text);
         let source = format!("#include \"KMotionDef.h\"\n{source}\n").into_bytes();
         let options = Options::default();
-        let mut compilation = cc67::compile(Path::new("program.c"), source, &options, &pp::Disk);
+        let mut compilation = compiler::compile(Path::new("program.c"), source, &options, &pp::Disk);
         let linked = compilation.link(thread, &options).expect(text);
         self.board.load(thread, &image::write(&linked).expect(text)).expect(text);
     }

@@ -9,9 +9,9 @@
 use std::hint::black_box;
 use std::path::Path;
 
-use cc67::pp::Disk;
-use cc67::{Options, firmware, image};
 use coff::Image;
+use compiler::pp::Disk;
+use compiler::{Options, firmware, image};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use kmotiondef::{ThreadId, Ticks};
 use runtime::{Board, Config, RunEnd};
@@ -29,7 +29,7 @@ fn thread() -> ThreadId {
 
 fn compile(path: &Path, text: Vec<u8>) -> Vec<u8> {
     let options = Options::default();
-    let linked = cc67::compile(path, text, &options, &Disk).link(thread(), &options);
+    let linked = compiler::compile(path, text, &options, &Disk).link(thread(), &options);
     image::write(&linked.expect("the program of a bench is correct")).expect("it fits")
 }
 

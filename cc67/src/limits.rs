@@ -10,15 +10,15 @@ use kmotiondef::ThreadId;
 use kmotiondef::limits::MAX_NSTRINGS;
 use kmotiondef::map::{PROGRAM_BASE, PROGRAM_SIZE, STACK_BASE, STACK_SIZE};
 
-use crate::bytecode::unit::MAX_FRAME;
 use crate::cli::{PC_FILE_BYTES, PICTURE_SAMPLES, SHOWN_REMARKS, STIMULUS_PLANS};
-use crate::diag::MAX_ERRORS;
-use crate::host::{CONSOLE_LINES, REPLY_BYTES};
-use crate::input::{DATA_BYTES, FILE_BYTES};
-use crate::parse;
-use crate::pp::limits as pp;
-use crate::sema::MAX_VALUES;
-use crate::ty::layout::MAX_OBJECT_SIZE;
+use cc67_host::{CONSOLE_LINES, REPLY_BYTES};
+use compiler::bytecode::unit::MAX_FRAME;
+use compiler::diag::MAX_ERRORS;
+use compiler::input::{DATA_BYTES, FILE_BYTES};
+use compiler::parse;
+use compiler::pp::limits as pp;
+use compiler::sema::MAX_VALUES;
+use compiler::ty::layout::MAX_OBJECT_SIZE;
 
 /// A limit.
 #[derive(Clone, Copy, Debug)]
@@ -85,7 +85,7 @@ pub const BOARD: &[Limit] = &[
     limit("files that a program has open for writing", 1, "`fopen` closes the one before"),
 ];
 
-/// What waits for a client of the board, see [`crate::host`].
+/// What waits for a client of the board, see [`cc67_host`].
 pub const CLIENTS: &[Limit] = &[
     limit("console lines that no client has taken", CONSOLE_LINES as u64, "the board's own queue fills"),
     limit(

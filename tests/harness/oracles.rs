@@ -7,13 +7,13 @@
 use std::path::Path;
 use std::sync::LazyLock;
 
-use cc67::firmware::FirmwareFile;
-use cc67::inspect::Inspection;
-use cc67::object::Object;
-use cc67::passes::Level;
-use cc67::pp::MemoryFiles;
-use cc67::{Options, image};
 use coff::Image;
+use compiler::firmware::FirmwareFile;
+use compiler::inspect::Inspection;
+use compiler::object::Object;
+use compiler::passes::Level;
+use compiler::pp::MemoryFiles;
+use compiler::{Options, image};
 use kmotiondef::{ThreadId, Ticks};
 use runtime::commands::COMMANDS;
 use runtime::loader::{LoadError, prepare};
@@ -104,7 +104,7 @@ pub fn execute_everywhere(image: &[u8], limit: Ticks) -> Result<Seen, LoadError>
 fn build(text: &[u8], level: Level) -> Option<Vec<u8>> {
     let options = Options { level, ..Options::default() };
     let files = MemoryFiles::new();
-    let mut compilation = cc67::compile(Path::new("input.c"), text.to_vec(), &options, &files);
+    let mut compilation = compiler::compile(Path::new("input.c"), text.to_vec(), &options, &files);
     let linked = compilation.link(thread_1(), &options);
     for diagnostic in compilation.diagnostics() {
         assert!(!diagnostic.message.is_empty());
@@ -265,10 +265,10 @@ pub fn valid_files() -> Vec<Vec<u8>> {
     let text = b"#include \"KMotionDef.h\"\nint table[3] = { 1, 2, 3 };\nstatic int n;\nint f(int x) { return x + table[1]; }\n\
                  main() { n = f(2); printf(\"%d %f\\n\", n, 1.5); }\n";
     let (options, files) = (Options::default(), MemoryFiles::new());
-    let mut compilation = cc67::compile(Path::new("a.c"), text.to_vec(), &options, &files);
+    let mut compilation = compiler::compile(Path::new("a.c"), text.to_vec(), &options, &files);
     let object = compilation.object.as_ref().expect("it compiles").write().expect("it fits");
     let linked = compilation.link(thread_1(), &options).expect("it links");
-    let firmware = cc67::firmware::export().expect("it fits");
+    let firmware = compiler::firmware::export().expect("it fits");
     vec![image::write(&linked).expect("it fits"), object, vendor::image(), firmware]
 }
 
@@ -291,14 +291,14 @@ pub fn read_file(bytes: &[u8]) -> bool {
     }
     let _ = FirmwareFile::read(bytes);
     if let Ok(object) = Object::read(bytes) {
-        let options = cc67::link::Options {
+        let options = compiler::link::Options {
             thread: thread_1(),
-            firmware: &cc67::firmware::BuiltIn,
+            firmware: &compiler::firmware::BuiltIn,
             gc: false,
-            addresses: cc67::link::SectionAddresses::default(),
+            addresses: compiler::link::SectionAddresses::default(),
         };
         // What links need not be a program that the machine accepts.
-        let _ = cc67::link::link(std::slice::from_ref(&object), &options);
+        let _ = compiler::link::link(std::slice::from_ref(&object), &options);
     }
     let prepared = prepare(bytes, thread_1(), |_| false);
     match &prepared {

@@ -13,14 +13,14 @@ use std::path::Path;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 
-use cc67::bytecode::unit;
-use cc67::diag::Sink;
-use cc67::firmware::BuiltIn;
-use cc67::names::Names;
-use cc67::passes::Level;
-use cc67::pp::{self, MemoryFiles};
-use cc67::source::{FileId, SourceMap};
-use cc67::{Options, parse, sema};
+use compiler::bytecode::unit;
+use compiler::diag::Sink;
+use compiler::firmware::BuiltIn;
+use compiler::names::Names;
+use compiler::passes::Level;
+use compiler::pp::{self, MemoryFiles};
+use compiler::source::{FileId, SourceMap};
+use compiler::{Options, parse, sema};
 
 /// A program of the size users write.
 const INIT_PROGRAM: &str = include_str!("../../../c-programs/motion/init3.c");
@@ -89,7 +89,8 @@ fn whole(c: &mut Criterion) {
         group.bench_function(BenchmarkId::new(name, lines), |b| {
             b.iter(|| {
                 let files = MemoryFiles::default();
-                let compilation = cc67::compile(Path::new("bench.c"), text.clone().into(), &options, &files);
+                let compilation =
+                    compiler::compile(Path::new("bench.c"), text.clone().into(), &options, &files);
                 assert!(compilation.object.is_some(), "the program of a bench is correct");
             });
         });

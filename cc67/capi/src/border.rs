@@ -4,7 +4,7 @@ use std::ffi::{CStr, c_char};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::slice;
 
-use cc67::host::{Board, HostError, fill};
+use cc67_host::{Board, HostError, fill};
 
 use crate::Client;
 

@@ -4,8 +4,8 @@ use std::ffi::{c_char, c_int};
 use std::path::{Path, PathBuf};
 use std::ptr;
 
-use cc67::Options;
-use cc67::host::{Board, fill};
+use cc67_host::{Board, fill};
+use compiler::Options;
 use runtime::{Config, Directory, MachineFile};
 
 use crate::border::{board, buffer, guarded_or, optional_text};

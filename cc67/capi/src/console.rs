@@ -2,7 +2,7 @@
 
 use std::ffi::{CString, c_char, c_int, c_void};
 
-use cc67::host::fill;
+use cc67_host::fill;
 
 use crate::border::{board, buffer, guarded, guarded_or};
 use crate::{Client, Outcome};

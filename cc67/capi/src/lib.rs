@@ -1,6 +1,6 @@
 //! The host interface for C programs: a library, `cc67board`, and its header, `include/cc67board.h`.
 //!
-//! The calls are those of [`cc67::host::Board`] under the same names with `cc67_` in front. A call says by its result
+//! The calls are those of [`cc67_host::Board`] under the same names with `cc67_` in front. A call says by its result
 //! whether it did what it is for; texts go into buffers of the caller, are cut to fit and always ended with a 0.
 //!
 //! Invariants:

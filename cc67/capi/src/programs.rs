@@ -3,7 +3,7 @@
 use std::ffi::{c_char, c_int};
 use std::path::Path;
 
-use cc67::host::fill;
+use cc67_host::fill;
 
 use crate::border::{board, buffer, guarded, text};
 use crate::{Client, Outcome};

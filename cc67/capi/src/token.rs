@@ -3,7 +3,7 @@
 use std::ffi::c_int;
 use std::time::Duration;
 
-use cc67::host::Lock;
+use cc67_host::Lock;
 
 use crate::Client;
 use crate::border::{board, guarded_or};

@@ -8,7 +8,7 @@ use kmotiondef::ThreadId;
 
 use super::options::CompilerOptions;
 use super::{Exit, terminal};
-use crate::pp::Disk;
+use compiler::pp::Disk;
 
 /// Arguments of `cc67 check`.
 #[derive(Debug, Args)]
@@ -27,7 +27,7 @@ pub(super) fn check(arguments: &Arguments) -> Result<Exit> {
     let mut has_errors = false;
     for path in &arguments.files {
         let text = super::run::read(path)?;
-        let mut compilation = crate::compile(path, text, &options, &Disk);
+        let mut compilation = compiler::compile(path, text, &options, &Disk);
         // Which thread it would run in makes no difference to what can be wrong.
         let thread = ThreadId::all().next().context("the board has threads")?;
         compilation.link(thread, &options);

@@ -6,8 +6,8 @@ use anyhow::Result;
 use clap::Args;
 
 use super::{Exit, inspect, output};
-use crate::compare::compare;
-use crate::inspect::Inspection;
+use compiler::compare::compare;
+use compiler::inspect::Inspection;
 
 /// Arguments of `cc67 diff`.
 #[derive(Debug, Args)]

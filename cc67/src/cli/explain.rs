@@ -6,7 +6,7 @@ use anyhow::Result;
 
 use super::{Exit, output};
 use crate::limits;
-use crate::lints::{Lint, Preset};
+use compiler::lints::{Lint, Preset};
 
 /// What lists all warnings; no lint has this name.
 const LIST: &str = "warnings";

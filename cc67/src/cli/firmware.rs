@@ -11,7 +11,7 @@ use kmotiondef::variables::FIRMWARE_VARIABLES;
 use serde_json::json;
 
 use super::{Exit, output};
-use crate::firmware;
+use compiler::firmware;
 
 /// Arguments of `cc67 firmware`.
 #[derive(Debug, Args)]

@@ -8,8 +8,8 @@ use clap::{Args, ValueEnum};
 use coff::{Image, dump};
 
 use super::{Exit, output};
-use crate::foreign;
-use crate::inspect::{Inspection, Order, Sources};
+use compiler::foreign;
+use compiler::inspect::{Inspection, Order, Sources};
 
 /// Arguments of `cc67 inspect`.
 #[derive(Debug, Args)]

@@ -6,12 +6,12 @@ use std::sync::Arc;
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
 
-use crate::firmware::{Firmware, FirmwareFile};
-use crate::link::SectionAddresses;
-use crate::lints::levels::Levels;
-use crate::passes::Level;
-use crate::render::Format;
-use crate::{Options, pp};
+use compiler::firmware::{Firmware, FirmwareFile};
+use compiler::link::SectionAddresses;
+use compiler::lints::levels::Levels;
+use compiler::passes::Level;
+use compiler::render::Format;
+use compiler::{Options, pp};
 
 /// How to compile.
 #[derive(Debug, Args)]

@@ -24,10 +24,10 @@ use super::screen::{Offered, Reader, Screen, Style};
 use super::setting::{self, Setting};
 use super::uart::UartOptions;
 use super::{Exit, output, pc, profile, stimulus, terminal, trace, units};
-use crate::lints::levels::Levels;
-use crate::reason::reason;
-use crate::render::Format;
-use crate::{Options, foreign, image, input};
+use compiler::lints::levels::Levels;
+use compiler::reason::reason;
+use compiler::render::Format;
+use compiler::{Options, foreign, image, input};
 
 /// Seconds of board time after which a run without `--for` ends.
 pub(super) const DEFAULT_LIMIT: f64 = 60.0;

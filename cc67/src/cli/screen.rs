@@ -13,7 +13,7 @@ use serde::Serialize;
 use super::repeats::Repeats;
 use super::run::TIMEBASE;
 use super::{Exit, terminal};
-use crate::host::remark;
+use cc67_host::remark;
 
 /// How a run is shown.
 #[derive(Clone, Copy, Debug, Default)]

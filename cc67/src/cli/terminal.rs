@@ -2,11 +2,11 @@
 
 use std::io::{self, IsTerminal, Write};
 
-use crate::Compilation;
-use crate::diag::Severity;
-use crate::lints::levels::Levels;
-use crate::render::human::Color;
-use crate::render::{self, Format};
+use compiler::Compilation;
+use compiler::diag::Severity;
+use compiler::lints::levels::Levels;
+use compiler::render::human::Color;
+use compiler::render::{self, Format};
 
 /// Prints a message about the request or its inputs as one line.
 pub(super) fn error(error: &anyhow::Error) {

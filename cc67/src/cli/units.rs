@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use anyhow::{Result, anyhow, bail};
 
 use super::run::read;
-use crate::object::{ReadError, is_object};
-use crate::pp::Disk;
-use crate::{Compilation, Options, foreign};
+use compiler::object::{ReadError, is_object};
+use compiler::pp::Disk;
+use compiler::{Compilation, Options, foreign};
 
 /// Compiles every source and reads every object.
 pub(super) fn compile(paths: &[PathBuf], options: &Options) -> Result<Vec<Compilation>> {
@@ -20,7 +20,7 @@ pub(super) fn unit(path: &Path, bytes: Vec<u8>, options: &Options) -> Result<Com
         if is_image_name(path) {
             bail!("{}: {}", path.display(), ReadError::Linked);
         }
-        return Ok(crate::compile(path, bytes, options, &Disk));
+        return Ok(compiler::compile(path, bytes, options, &Disk));
     }
     Compilation::from_object(path, &bytes).map_err(|error| match (&error, foreign::describe(&bytes)) {
         (ReadError::NotCoff(_), Some(what)) => {

@@ -13,9 +13,9 @@ use kmotiondef::ThreadId;
 
 use super::options::CompilerOptions;
 use super::{Exit, output, terminal, units};
-use crate::link::Linked;
-use crate::lints::levels::Levels;
-use crate::{Compilation, download, image, link_units, map};
+use compiler::link::Linked;
+use compiler::lints::levels::Levels;
+use compiler::{Compilation, download, image, link_units, map};
 
 /// Arguments of `cc67 build`.
 #[derive(Debug, Args)]

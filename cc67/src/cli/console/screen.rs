@@ -11,7 +11,7 @@ use runtime::{Event, EventKind};
 use rustyline::ExternalPrinter;
 
 use crate::cli::terminal;
-use crate::host::remark;
+use cc67_host::remark;
 
 /// The printer of a line editor.
 pub(super) type Printer = Box<dyn ExternalPrinter + Send>;

@@ -1,7 +1,7 @@
 //! `cc67 console --serve`: a board for programs of the PC, in the place of the vendor's server process.
 //!
 //! The vendor's client library talks to a process that owns the board, over a socket; that process is this one. Each
-//! connection is a client of the board ([`crate::host::Board`]) with the token and the connection of its own. The board
+//! connection is a client of the board ([`cc67_host::Board`]) with the token and the connection of its own. The board
 //! keeps pace with the clock; with `--fast` its time passes only in exchanges.
 
 mod message;
@@ -23,7 +23,7 @@ use super::super::run::{self, TIMEBASE};
 use super::super::setting::Setting;
 use super::super::{Exit, pc, terminal};
 use super::{Arguments, BEAT};
-use crate::host::{Board, HostError, Lock};
+use cc67_host::{Board, HostError, Lock};
 use message::{Call, Reply, Request};
 
 /// Console lines that go out before one reply at most.

@@ -6,7 +6,7 @@ use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, function_named};
 use runtime::commands::{COMMANDS, command_named};
 
 use crate::cli::run::seconds;
-use crate::suggest;
+use compiler::suggest;
 
 /// What a line of the console's own asks for.
 #[derive(Clone, Debug, PartialEq)]

@@ -23,14 +23,14 @@ use kmotiondef::{GuestAddr, ThreadId};
 use arguments::{Call, Request};
 
 use super::{Exit, output};
-use crate::diag::{Diagnostic, Severity};
-use crate::firmware::{Firmware, FirmwareFile};
-use crate::link::SectionAddresses;
-use crate::lints::levels::Levels;
-use crate::passes::Level;
-use crate::pp::{self, Disk};
-use crate::render::vendor;
-use crate::{Compilation, Options, image, input};
+use compiler::diag::{Diagnostic, Severity};
+use compiler::firmware::{Firmware, FirmwareFile};
+use compiler::link::SectionAddresses;
+use compiler::lints::levels::Levels;
+use compiler::passes::Level;
+use compiler::pp::{self, Disk};
+use compiler::render::vendor;
+use compiler::{Compilation, Options, image, input};
 
 /// The name under which programs expect the vendor's compiler.
 const NAME: &str = "tcc67";
@@ -87,7 +87,7 @@ fn compile(request: &Request) -> Result<(), String> {
         .map_err(|_| format!("tcc: file '{}' not found\n", request.source.display()))?;
     let firmware = request.firmware.as_deref().map(read_firmware).transpose()?;
     let options = options(request, firmware);
-    let mut compilation = crate::compile(&request.source, text, &options, &Disk);
+    let mut compilation = compiler::compile(&request.source, text, &options, &Disk);
     let Some(output) = &request.output else { return silent_without_errors(&compilation) };
     if request.firmware.is_none() {
         compilation.sink.report(Diagnostic::global_error(

@@ -16,8 +16,8 @@ use clap::Args;
 
 use super::run::cannot_read;
 use super::{Exit, output};
-use crate::input;
 use chart::Chart;
+use compiler::input;
 
 /// Arguments of `cc67 plot`.
 #[derive(Debug, Args)]

@@ -5,7 +5,7 @@ use similar::{ChangeTag, TextDiff};
 use super::case::Case;
 use super::execute::Verdict;
 use super::golden::Shown;
-use crate::render::human::Color;
+use compiler::render::human::Color;
 
 /// Lines around a difference.
 const CONTEXT: usize = 3;

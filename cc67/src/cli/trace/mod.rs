@@ -27,8 +27,8 @@ use runtime::{Event, EventKind};
 
 use super::plot::{self, Form};
 use super::{output, terminal};
-use crate::Options;
 use columns::Columns;
+use compiler::Options;
 use log::Log;
 pub(crate) use log::SAMPLES;
 use order::Order;

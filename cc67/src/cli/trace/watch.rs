@@ -11,12 +11,12 @@ use anyhow::{Result, bail};
 use kmotiondef::{GuestAddr, ThreadId};
 use runtime::trace::{Formula, Item, Quantity, View};
 
-use crate::Options;
-use crate::image::kind_of;
-use crate::inspect::{Inspection, Kind};
-use crate::object::SymbolKind;
-use crate::pp::Disk;
-use crate::watch::{self, Expression, Reader, Scope};
+use compiler::Options;
+use compiler::image::kind_of;
+use compiler::inspect::{Inspection, Kind};
+use compiler::object::SymbolKind;
+use compiler::pp::Disk;
+use compiler::watch::{self, Expression, Reader, Scope};
 
 /// How the compiler's message on an unknown name ends if no other is near.
 const NOT_DECLARED: &str = "is not declared";

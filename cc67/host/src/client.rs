@@ -9,8 +9,8 @@ use runtime::{Config, Event};
 
 use super::program::{build, read};
 use super::state::{EXCHANGE, State, Status, ticks};
-use super::{HostError, fill};
-use crate::Options;
+use crate::{HostError, fill};
+use compiler::Options;
 
 /// Seconds that [`Board::write_line_read_line`] waits for its reply.
 const REPLY_SECONDS: f64 = 3.0;
@@ -89,7 +89,7 @@ impl Board {
     /// A board with these settings.
     ///
     /// ```
-    /// use cc67::host::Board;
+    /// use cc67_host::Board;
     /// use runtime::{Config, Directory};
     ///
     /// let files = std::env::temp_dir();
@@ -107,7 +107,7 @@ impl Board {
     /// One more client of the same board.
     ///
     /// ```
-    /// use cc67::host::{Board, Lock};
+    /// use cc67_host::{Board, Lock};
     ///
     /// let mut first = Board::new();
     /// let mut second = first.another_client();
@@ -133,7 +133,7 @@ impl Board {
     /// Why not: what was in the thread is there still, and goes on running.
     ///
     /// ```
-    /// use cc67::host::Board;
+    /// use cc67_host::Board;
     ///
     /// let file = std::env::temp_dir().join("cc67-example-load.c");
     /// std::fs::write(&file, "#include \"KMotionDef.h\"\nmain() { persist.UserData[7] = 11; }")?;
@@ -158,7 +158,7 @@ impl Board {
     /// fit and always ended with a 0.
     ///
     /// ```
-    /// use cc67::host::Board;
+    /// use cc67_host::Board;
     ///
     /// let mut message = [0; 80];
     /// let result = Board::new().compile_and_load_coff_with_message("nosuch.c".as_ref(), 1, &mut message);
@@ -189,7 +189,7 @@ impl Board {
     /// Why not: what was in the thread is there still, and goes on running.
     ///
     /// ```
-    /// use cc67::host::Board;
+    /// use cc67_host::Board;
     ///
     /// assert!(Board::new().load_coff(1, "nosuch.out".as_ref()).is_err());
     /// ```
@@ -207,9 +207,9 @@ impl Board {
     /// [`HostError::NotConnected`].
     ///
     /// ```
-    /// let mut board = cc67::host::Board::new();
+    /// let mut board = cc67_host::Board::new();
     /// board.write_line("EnableAxis0;Jog0=1000")?;
-    /// # Ok::<(), cc67::host::HostError>(())
+    /// # Ok::<(), cc67_host::HostError>(())
     /// ```
     pub fn write_line(&mut self, line: &str) -> Result<(), HostError> {
         let mut state = self.state();
@@ -224,12 +224,12 @@ impl Board {
     /// [`HostError::NotConnected`].
     ///
     /// ```
-    /// use cc67::host::{Board, Readiness};
+    /// use cc67_host::{Board, Readiness};
     ///
     /// let mut board = Board::new();
     /// board.write_line_with_echo("Version")?;
     /// assert_eq!(board.check_for_ready()?, Readiness::Ready);
-    /// # Ok::<(), cc67::host::HostError>(())
+    /// # Ok::<(), cc67_host::HostError>(())
     /// ```
     pub fn write_line_with_echo(&mut self, line: &str) -> Result<(), HostError> {
         let mut state = self.state();
@@ -244,13 +244,13 @@ impl Board {
     /// [`HostError::Timeout`], [`HostError::NotConnected`].
     ///
     /// ```
-    /// let mut board = cc67::host::Board::new();
+    /// let mut board = cc67_host::Board::new();
     /// board.write_line("GetGatherHex 0 24")?;
     /// for _ in 0..3 {
     ///     assert_eq!(board.read_line_timeout(100)?.split_whitespace().count(), 8);
     /// }
     /// assert!(board.read_line_timeout(100).is_err());
-    /// # Ok::<(), cc67::host::HostError>(())
+    /// # Ok::<(), cc67_host::HostError>(())
     /// ```
     pub fn read_line_timeout(&mut self, milliseconds: u32) -> Result<String, HostError> {
         let mut state = self.state();
@@ -264,10 +264,10 @@ impl Board {
     /// [`HostError::Timeout`] when there is no reply within 3 s, [`HostError::NotConnected`].
     ///
     /// ```
-    /// let mut board = cc67::host::Board::new();
+    /// let mut board = cc67_host::Board::new();
     /// assert_eq!(board.write_line_read_line("Version")?, "KFLOP 4.34 Build 16:07:06 Aug 14 2018");
     /// assert!(board.write_line_read_line("Nonsense").is_err());
-    /// # Ok::<(), cc67::host::HostError>(())
+    /// # Ok::<(), cc67_host::HostError>(())
     /// ```
     pub fn write_line_read_line(&mut self, line: &str) -> Result<String, HostError> {
         let had_token = self.has_token;
@@ -295,7 +295,7 @@ impl Board {
     /// Asks for the token once; connects first if necessary.
     ///
     /// ```
-    /// use cc67::host::{Board, Lock};
+    /// use cc67_host::{Board, Lock};
     ///
     /// let mut board = Board::new();
     /// assert_eq!(board.kmotion_lock(), Lock::Locked);
@@ -320,7 +320,7 @@ impl Board {
     /// ```
     /// use std::time::Duration;
     ///
-    /// use cc67::host::{Board, Lock};
+    /// use cc67_host::{Board, Lock};
     ///
     /// let mut first = Board::new();
     /// let mut second = first.another_client();
@@ -358,7 +358,7 @@ impl Board {
     /// Gives the connection up, as after a failure; [`kmotion_lock`](Self::kmotion_lock) connects again.
     ///
     /// ```
-    /// use cc67::host::{Board, HostError, Lock};
+    /// use cc67_host::{Board, HostError, Lock};
     ///
     /// let mut board = Board::new();
     /// board.failed();
@@ -379,11 +379,11 @@ impl Board {
     /// while another client has the token.
     ///
     /// ```
-    /// let mut board = cc67::host::Board::new();
+    /// let mut board = cc67_host::Board::new();
     /// board.write_line("Echo hello")?;
     /// assert_eq!(board.service_console(), Some("HELLO".to_owned()));
     /// assert_eq!(board.service_console(), None);
-    /// # Ok::<(), cc67::host::HostError>(())
+    /// # Ok::<(), cc67_host::HostError>(())
     /// ```
     pub fn service_console(&mut self) -> Option<String> {
         let mut state = self.state();
@@ -400,12 +400,12 @@ impl Board {
     /// ```
     /// use std::sync::mpsc;
     ///
-    /// let mut board = cc67::host::Board::new();
+    /// let mut board = cc67_host::Board::new();
     /// let (sender, lines) = mpsc::channel();
     /// board.set_console_callback(move |line| sender.send(line.to_owned()).expect("it is awaited"));
     /// board.write_line("Echo hello")?;
     /// assert_eq!(lines.try_recv(), Ok("HELLO".to_owned()));
-    /// # Ok::<(), cc67::host::HostError>(())
+    /// # Ok::<(), cc67_host::HostError>(())
     /// ```
     pub fn set_console_callback(&mut self, callback: impl FnMut(&str) + Send + 'static) {
         self.state().set_callback(self.number, Box::new(callback));
@@ -414,12 +414,12 @@ impl Board {
     /// Takes the call-back of this client out: console lines wait for [`service_console`](Self::service_console) again.
     ///
     /// ```
-    /// let mut board = cc67::host::Board::new();
+    /// let mut board = cc67_host::Board::new();
     /// board.set_console_callback(|_| ());
     /// board.drop_console_callback();
     /// board.write_line("Echo hello")?;
     /// assert_eq!(board.service_console(), Some("HELLO".to_owned()));
-    /// # Ok::<(), cc67::host::HostError>(())
+    /// # Ok::<(), cc67_host::HostError>(())
     /// ```
     pub fn drop_console_callback(&mut self) {
         self.state().drop_callback(self.number);
@@ -431,11 +431,11 @@ impl Board {
     /// [`HostError::NotConnected`].
     ///
     /// ```
-    /// use cc67::host::{Board, Readiness};
+    /// use cc67_host::{Board, Readiness};
     ///
     /// let mut board = Board::new();
     /// assert_eq!(board.check_for_ready()?, Readiness::NoData);
-    /// # Ok::<(), cc67::host::HostError>(())
+    /// # Ok::<(), cc67_host::HostError>(())
     /// ```
     pub fn check_for_ready(&mut self) -> Result<Readiness, HostError> {
         let mut state = self.state();
@@ -464,7 +464,7 @@ impl Board {
     /// The identifiers of the boards that are connected: there is one.
     ///
     /// ```
-    /// assert_eq!(cc67::host::Board::new().list_locations().len(), 1);
+    /// assert_eq!(cc67_host::Board::new().list_locations().len(), 1);
     /// ```
     #[must_use]
     pub fn list_locations(&self) -> Vec<i32> {
@@ -480,11 +480,11 @@ impl Board {
     /// Lets so many seconds of board time pass.
     ///
     /// ```
-    /// let mut board = cc67::host::Board::new();
+    /// let mut board = cc67_host::Board::new();
     /// board.write_line("EnableAxis0;Move0=100")?;
     /// board.run_for(1.0);
     /// assert_eq!(board.write_line_read_line("Dest0")?, "100");
-    /// # Ok::<(), cc67::host::HostError>(())
+    /// # Ok::<(), cc67_host::HostError>(())
     /// ```
     pub fn run_for(&mut self, seconds: f64) {
         self.state().advance(ticks(seconds), &mut |_| false);
@@ -493,11 +493,11 @@ impl Board {
     /// Lets board time pass until `is_over` says so behind a tick, at most so many seconds; whether it said so.
     ///
     /// ```
-    /// let mut board = cc67::host::Board::new();
+    /// let mut board = cc67_host::Board::new();
     /// board.write_line("SetPersistDec 100 99")?;
     /// // The built-in PC refuses a request that it does not know.
     /// assert!(board.run_until(0.5, |board| board.user_data(100) == Some(-1)));
-    /// # Ok::<(), cc67::host::HostError>(())
+    /// # Ok::<(), cc67_host::HostError>(())
     /// ```
     pub fn run_until(&mut self, seconds: f64, mut is_over: impl FnMut(&mut runtime::Board) -> bool) -> bool {
         self.state().advance(ticks(seconds), &mut |state| is_over(&mut state.board))
@@ -508,11 +508,11 @@ impl Board {
     /// ```
     /// use kmotiondef::Bit;
     ///
-    /// let mut board = cc67::host::Board::new();
+    /// let mut board = cc67_host::Board::new();
     /// let bit = Bit::new(136).expect("there are 2048");
     /// board.with_board(|board| board.drive_input(bit, true));
     /// assert_eq!(board.write_line_read_line("ReadBit136")?, "1");
-    /// # Ok::<(), cc67::host::HostError>(())
+    /// # Ok::<(), cc67_host::HostError>(())
     /// ```
     pub fn with_board<R>(&mut self, work: impl FnOnce(&mut runtime::Board) -> R) -> R {
         work(&mut self.state().board)
@@ -521,10 +521,10 @@ impl Board {
     /// What the simulation had to say since the last time: traps, remarks, what the PC did for programs.
     ///
     /// ```
-    /// let mut board = cc67::host::Board::new();
+    /// let mut board = cc67_host::Board::new();
     /// board.write_line("Move0=5")?; // the axis is disabled
     /// assert_eq!(board.take_remarks().len(), 1);
-    /// # Ok::<(), cc67::host::HostError>(())
+    /// # Ok::<(), cc67_host::HostError>(())
     /// ```
     pub fn take_remarks(&mut self) -> Vec<Event> {
         self.state().take_remarks()
@@ -533,11 +533,11 @@ impl Board {
     /// The oldest of these remarks in words, as `cc67 run` shows it: a trap with its source line.
     ///
     /// ```
-    /// let mut board = cc67::host::Board::new();
+    /// let mut board = cc67_host::Board::new();
     /// board.write_line("Move0=5")?;
     /// assert_eq!(board.take_remark().as_deref(), Some("command: Move: axis 0 is disabled, nothing moves"));
     /// assert_eq!(board.take_remark(), None);
-    /// # Ok::<(), cc67::host::HostError>(())
+    /// # Ok::<(), cc67_host::HostError>(())
     /// ```
     pub fn take_remark(&mut self) -> Option<String> {
         self.state().take_remark()

@@ -7,15 +7,15 @@ use std::mem;
 use kmotiondef::{Cycles, Field, Plain, Scalar, ThreadId, Ticks};
 use runtime::{Config, Event, EventKind};
 
-use super::{HostError, remark};
-use crate::Options;
+use crate::{HostError, remark};
+use compiler::Options;
 
 /// Ticks that a line and its answer take on the wire, as recorded.
 pub(super) const EXCHANGE: u64 = 28;
 /// Console lines that wait for a client; then the board waits too.
-pub(crate) const CONSOLE_LINES: usize = 1000;
+pub const CONSOLE_LINES: usize = 1000;
 /// Bytes of replies that wait for a client; what comes then is lost.
-pub(crate) const REPLY_BYTES: usize = 1 << 20;
+pub const REPLY_BYTES: usize = 1 << 20;
 /// Remarks that are kept; older ones are dropped.
 const REMARK_LIMIT: usize = 1000;
 /// Seconds in a tick.
@@ -35,12 +35,12 @@ impl Status {
     /// A field of the record.
     ///
     /// ```
-    /// use cc67::host::Board;
+    /// use cc67_host::Board;
     /// use kmotiondef::structs::MainStatus;
     ///
     /// let status = Board::new().get_status()?;
     /// assert_eq!(status.get(MainStatus::THREAD_ACTIVE), 1);
-    /// # Ok::<(), cc67::host::HostError>(())
+    /// # Ok::<(), cc67_host::HostError>(())
     /// ```
     #[must_use]
     pub fn get<T: Scalar>(&self, field: Field<T>) -> T::Value {

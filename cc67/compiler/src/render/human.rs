@@ -10,12 +10,12 @@ use std::ops::Range;
 
 use codespan_reporting::diagnostic::{self as report, LabelStyle};
 use codespan_reporting::files::{Error, Files};
-use codespan_reporting::term::termcolor::{Ansi, NoColor, WriteColor};
-use codespan_reporting::term::{self, Config, Styles, StylesWriter};
+use codespan_reporting::term::{self, Config};
 
 use crate::diag::{Diagnostic, Severity};
 use crate::source::{FileId, SourceMap};
 
+use super::colors::Colored;
 use super::marks::{Mark, marks, notes};
 
 /// Whether the text is coloured.
@@ -65,17 +65,13 @@ impl<'a> Renderer<'a> {
 
     fn emit(&self, report: &report::Diagnostic<FileId>) -> Option<String> {
         match self.color {
-            Color::Never => self.write(report, NoColor::new(Vec::new())).map(NoColor::into_inner),
-            Color::Always => self.write(report, Ansi::new(Vec::new())).map(Ansi::into_inner),
+            Color::Never => term::emit_into_string(&self.config, self, report).ok(),
+            Color::Always => {
+                let mut colored = Colored::default();
+                term::emit_to_write_style(&mut colored, &self.config, self, report).ok()?;
+                String::from_utf8(colored.into_bytes()).ok()
+            }
         }
-        .and_then(|bytes| String::from_utf8(bytes).ok())
-    }
-
-    fn write<W: WriteColor>(&self, report: &report::Diagnostic<FileId>, mut writer: W) -> Option<W> {
-        let styles = Styles::default();
-        term::emit_to_write_style(&mut StylesWriter::new(&mut writer, &styles), &self.config, self, report)
-            .ok()?;
-        Some(writer)
     }
 
     /// The diagnostic in the words of the renderer.
@@ -209,7 +205,9 @@ warning[implicit-int]: no
   = help: what";
         check(&diagnostic, &sources, expect);
         let colored = Renderer::new(&sources, Color::Always).render(&diagnostic);
-        assert!(colored.contains("\u{1B}["));
+        let expect =
+            "\u{1B}[0m\u{1B}[1m\u{1B}[38;5;11mwarning[implicit-int]\u{1B}[0m\u{1B}[1m: no\u{1B}[0m\n";
+        assert!(colored.starts_with(expect), "{colored:?}");
     }
 
     #[test]

@@ -17,7 +17,7 @@ pub const DATA_BYTES: u64 = 512 << 20;
 ///
 /// # Errors
 /// What the system says, or that the file is too large.
-pub(crate) fn read(path: &Path) -> io::Result<Vec<u8>> {
+pub fn read(path: &Path) -> io::Result<Vec<u8>> {
     read_up_to(path, FILE_BYTES)
 }
 
@@ -25,7 +25,7 @@ pub(crate) fn read(path: &Path) -> io::Result<Vec<u8>> {
 ///
 /// # Errors
 /// What the system says, or that the file is too large.
-pub(crate) fn read_up_to(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+pub fn read_up_to(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     // One byte more than allowed shows that the file is too large without reading all of it.
     File::open(path)?.take(most + 1).read_to_end(&mut bytes)?;

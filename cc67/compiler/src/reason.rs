@@ -3,7 +3,7 @@
 use std::io;
 
 /// The reason alone: the number that the library adds says nothing to the user.
-pub(crate) fn reason(error: &io::Error) -> String {
+pub fn reason(error: &io::Error) -> String {
     let text = error.to_string();
     text.split(" (os error").next().unwrap_or_default().to_owned()
 }

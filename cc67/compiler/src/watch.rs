@@ -10,6 +10,7 @@ use std::path::Path;
 use kmotiondef::GuestAddr;
 
 use crate::diag::{Diagnostic, Severity, Sink};
+use crate::driver::{Options, on_large_stack};
 use crate::link::{FirmwareKind, FirmwareSymbols};
 use crate::lints::Lint;
 use crate::names::Names;
@@ -20,7 +21,7 @@ use crate::ty::{BitRange, TypeId, Types};
 use crate::typed::{
     Call, Callee, ExprId, ExprKind, Function, PlaceId, PlaceKind, StmtKind, SymbolId, UnaryOp, Unit,
 };
-use crate::{Options, lints, on_large_stack, parse, pp, sema};
+use crate::{lints, parse, pp, sema};
 
 /// The name of the function around an expression.
 const FUNCTION: &str = "__cc67_watch";

@@ -9,6 +9,7 @@
 //!
 //! All say the same, in the order of the program; only the vendor's format puts errors before warnings.
 
+mod colors;
 pub mod human;
 pub mod json;
 mod marks;

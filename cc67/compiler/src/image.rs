@@ -250,7 +250,8 @@ pub(crate) const fn base_type(kind: SymbolKind) -> SymbolType {
 }
 
 /// The kind of symbol that a type stands for: the reverse, as far as the format tells.
-pub(crate) fn kind_of(ty: SymbolType) -> SymbolKind {
+#[must_use]
+pub fn kind_of(ty: SymbolType) -> SymbolKind {
     match ty.base() {
         _ if ty == function_type() => SymbolKind::Function,
         BaseType::CHAR => SymbolKind::Char,

@@ -5,12 +5,12 @@ use std::path::Path;
 
 use kmotiondef::ThreadId;
 
-use super::HostError;
-use crate::diag::Severity;
-use crate::lints::levels::Levels;
-use crate::pp::Disk;
-use crate::render::vendor;
-use crate::{Options, image, input};
+use crate::HostError;
+use compiler::diag::Severity;
+use compiler::lints::levels::Levels;
+use compiler::pp::Disk;
+use compiler::render::vendor;
+use compiler::{Options, image, input};
 
 /// What the compiler says of a source with errors: lines of `file:line: message`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -30,7 +30,7 @@ pub(super) fn read(path: &Path) -> Result<Vec<u8>, HostError> {
 /// Compiles and links a source for a thread.
 pub(super) fn build(path: &Path, thread: ThreadId, options: &Options) -> Result<Vec<u8>, HostError> {
     let failed = |text: String| HostError::Compile(CompileError(text));
-    let mut compilation = crate::compile(path, read(path)?, options, &Disk);
+    let mut compilation = compiler::compile(path, read(path)?, options, &Disk);
     let linked = compilation.link(thread, options);
     let levels = Levels::default();
     let found = compilation.diagnostics().into_iter().filter_map(|diagnostic| levels.apply(diagnostic));

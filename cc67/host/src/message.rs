@@ -6,7 +6,7 @@
 ///
 /// ```
 /// let mut buffer = [0xff; 4];
-/// cc67::host::fill(&mut buffer, "errors");
+/// cc67_host::fill(&mut buffer, "errors");
 /// assert_eq!(&buffer, b"err\0");
 /// ```
 pub fn fill(buffer: &mut [u8], text: &str) {

@@ -7,31 +7,41 @@
 //! of it pass. So a test of a PC program is as deterministic as the board.
 //!
 //! ```
-//! use cc67::host::Board;
+//! use cc67_host::Board;
 //!
 //! let mut board = Board::new();
 //! board.write_line("SetPersistDec 5 42")?;
 //! assert_eq!(board.write_line_read_line("GetPersistDec 5")?, "42");
-//! # Ok::<(), cc67::host::HostError>(())
+//! # Ok::<(), cc67_host::HostError>(())
 //! ```
 //!
 //! Source: host-protocol.md section 7 of the specification.
+//!
+//! Invariants:
+//! - Who embeds a board builds no crate of terminals, pictures, web or command lines.
+//! - Board time passes in calls alone, by what was asked for: no call looks at a clock.
+
+#![forbid(unsafe_code)]
 
 mod client;
 mod message;
 mod program;
-pub(crate) mod remark;
+pub mod remark;
 mod state;
 
 pub use client::{Board, Lock, Readiness};
 pub use message::fill;
 pub use program::CompileError;
-pub use state::Status;
-pub(crate) use state::{CONSOLE_LINES, REPLY_BYTES};
+pub use state::{CONSOLE_LINES, REPLY_BYTES, Status};
 
 use std::path::PathBuf;
 
 use runtime::loader::LoadError;
+
+/// The programs in the book are tests, too.
+#[cfg(doctest)]
+#[doc = include_str!("../../book/src/embedding.md")]
+struct Book;
 
 /// Why a call did not do what it is for.
 #[derive(Debug, thiserror::Error)]

@@ -7,10 +7,10 @@
 use std::io;
 use std::path::Path;
 
+use crate::driver::{Options, compile_here};
 use crate::object::{Definition, Object};
 use crate::pp::Files;
 use crate::typed::Linkage;
-use crate::{Options, compile_here};
 
 /// A file of the library and the functions in it.
 struct Member {

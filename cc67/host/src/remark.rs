@@ -6,7 +6,7 @@ use runtime::{Event, EventKind};
 use vm::trap::{Trap, TrapKind};
 
 /// What an event says; `None` for console text, which is not ours to word.
-pub(crate) fn describe(event: &Event, programs: &[DebugInfo]) -> Option<String> {
+pub fn describe(event: &Event, programs: &[DebugInfo]) -> Option<String> {
     match &event.kind {
         EventKind::ConsoleLine(_)
         | EventKind::Reply(_)
@@ -33,14 +33,14 @@ pub(crate) fn describe(event: &Event, programs: &[DebugInfo]) -> Option<String> 
 }
 
 /// Who reads an input, and where: "thread 1 at home.c:12 in `main`".
-pub(crate) fn reader(thread: Option<ThreadId>, place: Option<CodeAddr>, programs: &[DebugInfo]) -> String {
+pub fn reader(thread: Option<ThreadId>, place: Option<CodeAddr>, programs: &[DebugInfo]) -> String {
     let who = thread.map_or("the call-back".to_owned(), |thread| format!("thread {thread}"));
     let place = place.and_then(|place| source(place, programs));
     place.map_or(who.clone(), |place| format!("{who} at {place}"))
 }
 
 /// One remark on inputs that nothing drives, and who read each of them first.
-pub(crate) fn undriven(inputs: &[(String, Bit)]) -> String {
+pub fn undriven(inputs: &[(String, Bit)]) -> String {
     if let [(reader, bit)] = inputs {
         return format!("{reader} reads bit {bit}, an input that nothing drives; it stays 0");
     }

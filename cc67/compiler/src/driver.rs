@@ -1,0 +1,212 @@
+//! From source texts to a linked program: the stages in their order.
+
+use std::hint::black_box;
+use std::panic::resume_unwind;
+use std::path::Path;
+use std::thread;
+
+use kmotiondef::ThreadId;
+
+use crate::diag::{Diagnostic, Sink};
+use crate::firmware::Firmware;
+use crate::includers::includers;
+use crate::link::{self, LinkErrorKind, Linked, SectionAddresses};
+use crate::names::Names;
+use crate::object::{self, Object};
+use crate::passes::Level;
+use crate::source::SourceMap;
+use crate::{binary, bytecode, entry, library, lints, parse, pp, sema};
+
+/// How to compile.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Include directories, macros, embedded headers.
+    pub preprocessor: pp::Options,
+    /// What to optimise.
+    pub level: Level,
+    /// The firmware that programs are for.
+    pub firmware: Firmware,
+    /// Whether the linker leaves out what `main` cannot reach.
+    pub gc_sections: bool,
+    /// Where sections go that do not go to the space of the thread.
+    pub addresses: SectionAddresses,
+}
+
+impl Default for Options {
+    /// The headers of the board, nothing defined, the standard optimisations.
+    fn default() -> Self {
+        let embedded = kmotiondef::headers::EMBEDDED;
+        Self {
+            preprocessor: pp::Options { embedded, ..pp::Options::default() },
+            level: Level::default(),
+            firmware: Firmware::default(),
+            gc_sections: true,
+            addresses: SectionAddresses::default(),
+        }
+    }
+}
+
+/// A compiled source file, its errors included; or an object that was compiled earlier.
+#[derive(Debug)]
+pub struct Compilation {
+    /// The name of the file, for messages.
+    pub name: String,
+    /// The files that were read.
+    pub sources: SourceMap,
+    /// What was found.
+    pub sink: Sink,
+    /// The object, if there were no errors.
+    pub object: Option<Object>,
+    /// For a file without `main`: the programs beside it that include it.
+    included_by: Vec<String>,
+}
+
+/// Stack of the thread that compiles: a sum of 30,000 terms is a tree of that depth.
+const STACK: usize = 512 << 20;
+
+/// Compiles one source file; `path` names it in messages and is where its includes are looked for.
+///
+/// # Panics
+/// If the system cannot start a thread.
+#[must_use]
+pub fn compile(path: &Path, text: Vec<u8>, options: &Options, files: &(dyn pp::Files + Sync)) -> Compilation {
+    on_large_stack(|| compile_here(path, text, options, files))
+}
+
+/// Runs on a stack that is large enough for any source text.
+pub(crate) fn on_large_stack<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    thread::scope(|scope| {
+        let handle = thread::Builder::new().stack_size(STACK).spawn_scoped(scope, || {
+            keep_memory_ready();
+            work()
+        });
+        match handle.expect("the system can start a thread").join() {
+            Ok(result) => result,
+            Err(panic) => resume_unwind(panic),
+        }
+    })
+}
+
+/// Memory that a usual compilation takes.
+const USUAL_MEMORY: usize = 4 << 20;
+
+/// Takes memory once and gives it back, so that the allocator keeps it for what comes.
+///
+/// A thread's heap in the C library of Linux begins with nothing and grows page by page, each time with a call
+/// of the system, together a tenth of the time of a small compilation. The first block is so large that it is
+/// memory of its own; giving it back teaches the allocator that blocks of this size come and go, so that the
+/// second grows the heap and stays in it. Nothing is touched, so that it costs no memory; other allocators
+/// lose two calls.
+fn keep_memory_ready() {
+    for _ in 0..2 {
+        // An allocation that nobody looks at would be optimised away.
+        drop(black_box(Vec::<u8>::with_capacity(USUAL_MEMORY)));
+    }
+}
+
+pub(crate) fn compile_here(
+    path: &Path,
+    text: Vec<u8>,
+    options: &Options,
+    files: &dyn pp::Files,
+) -> Compilation {
+    let (mut sources, mut names, mut sink) = (SourceMap::new(), Names::new(), Sink::new());
+    let name = path.to_string_lossy().into_owned();
+    if let Some(what) = binary::not_source(&text) {
+        sink.report(Diagnostic::global_error(format!("{} is not C source text but {what}", path.display())));
+        return Compilation { name, sources, sink, object: None, included_by: Vec::new() };
+    }
+    if text.len() > pp::limits::FILE_BYTES as usize {
+        let most = pp::limits::FILE_BYTES;
+        sink.report(Diagnostic::global_error(format!("{} is larger than {most} bytes", path.display())));
+        return Compilation { name, sources, sink, object: None, included_by: Vec::new() };
+    }
+    let main = sources.add_file(path.to_string_lossy(), Some(path), text, None);
+    let tokens = pp::preprocess(main, &options.preprocessor, files, &mut sources, &mut names, &mut sink);
+    let tree = parse::parse(&tokens, &sources, &names, &mut sink);
+    drop(tokens);
+    let unit = sema::analyze(&tree, &mut names, &sources, &options.firmware, &mut sink);
+    drop(tree);
+    lints::check(&unit, &names, &sources, &options.firmware, &mut sink);
+    let object =
+        (!sink.has_errors()).then(|| bytecode::unit::compile(&unit, &sources, options.level, &mut sink));
+    let object = object.filter(|_| !sink.has_errors());
+    let included_by = if unit.defines("main") { Vec::new() } else { includers(path, files) };
+    if sink.has_errors() && !included_by.is_empty() {
+        sink.report(entry::remark(&included_by));
+    }
+    Compilation { name, sources, sink, object, included_by }
+}
+
+impl Compilation {
+    /// Everything that was found, in the order of the program; what has no place comes last.
+    #[must_use]
+    pub fn diagnostics(&self) -> Vec<&Diagnostic> {
+        let mut diagnostics: Vec<_> = self.sink.diagnostics().iter().collect();
+        diagnostics.sort_by_key(|diagnostic| {
+            let order = diagnostic.span.map(|span| self.sources.reading_order(span));
+            (order.is_none(), order)
+        });
+        diagnostics
+    }
+
+    /// A unit that was compiled earlier, read from the bytes of an object file.
+    ///
+    /// # Errors
+    /// Why the bytes are no object.
+    pub fn from_object(path: &Path, bytes: &[u8]) -> Result<Self, object::ReadError> {
+        let object = Some(Object::read(bytes)?);
+        let name = path.to_string_lossy().into_owned();
+        Ok(Self { name, sources: SourceMap::new(), sink: Sink::new(), object, included_by: Vec::new() })
+    }
+
+    /// Links the object, with what it needs of the C library, for `thread`; what is missing joins the other diagnostics.
+    pub fn link(&mut self, thread: ThreadId, options: &Options) -> Option<Linked> {
+        link_units(std::slice::from_mut(self), thread, options)
+    }
+}
+
+/// Links units, with what they need of the C library, to one program for `thread`; `None` if one of
+/// them has errors.
+///
+/// What is missing joins the diagnostics of the unit that needs it, what concerns the whole
+/// program those of the first. The units' objects are used up.
+pub fn link_units(units: &mut [Compilation], thread: ThreadId, options: &Options) -> Option<Linked> {
+    if units.iter().any(|unit| unit.object.is_none()) {
+        return None;
+    }
+    let mut objects: Vec<Object> = units.iter_mut().filter_map(|unit| unit.object.take()).collect();
+    objects.extend(library::members_for(&objects));
+    let options = link::Options {
+        thread,
+        firmware: &options.firmware,
+        gc: options.gc_sections,
+        addresses: options.addresses,
+    };
+    match link::link(&objects, &options) {
+        Ok(linked) => {
+            let unit = units.first_mut()?;
+            for warning in &linked.warnings {
+                unit.sink.report(Diagnostic::global_warning(warning.to_string()));
+            }
+            Some(linked)
+        }
+        Err(errors) => {
+            for error in &errors {
+                let index = error.object.filter(|index| *index < units.len());
+                let unit = units.get_mut(index.unwrap_or(0))?;
+                let mut diagnostic = error.to_diagnostic();
+                // The places of library members are in no source that the user has.
+                diagnostic.span = diagnostic.span.filter(|_| index.is_some());
+                if let (LinkErrorKind::NoMain, Some(object)) = (&error.kind, objects.first()) {
+                    diagnostic = entry::advise(diagnostic, object, &unit.included_by);
+                }
+                if diagnostic.span.is_none() {
+                    diagnostic.message = format!("{}: {}", unit.name, diagnostic.message);
+                }
+                unit.sink.report(diagnostic);
+            }
+            None
+        }
+    }
+}
