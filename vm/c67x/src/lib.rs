@@ -8,10 +8,12 @@
 //!   [`Inst::pick`] and [`Inst::forms`] from operands, [`assemble`] from text.
 //! - [`Inst::unit`], [`Inst::reads`], [`Inst::writes`], [`Inst::delay_slots`],
 //!   [`Inst::cross_path`], [`Inst::data_path`]: what a scheduler asks.
+//! - [`schedule`] checks packets against the rules of the pipeline, independently of
+//!   whoever made them.
 //!
 //! Map: `register` (registers, conditions, units), `kind` (fields, kinds of operands,
 //! timing), `mnemonic`, `table` (the rows), `operand`, `inst` (encode, decode), `model`
-//! (the scheduler's questions), `alias`, `text`, `assemble`.
+//! (the scheduler's questions), `alias`, `text`, `assemble`, `schedule`.
 //!
 //! Invariants: nothing here executes anything or knows the board; the table is
 //! the one place where a form is described; an [`Inst`] is always valid.
@@ -25,6 +27,7 @@ mod mnemonic;
 mod model;
 mod operand;
 mod register;
+pub mod schedule;
 mod table;
 mod text;
 
