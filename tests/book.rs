@@ -8,7 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use cc67::limits::{ALL, grouped};
-use compiler::lints::Lint;
+use compiler::diag::Lint;
 use harness::{Scratch, files, run_in};
 use kmotiondef::firmware::{ABSENT, FIRMWARE_FUNCTIONS};
 use kmotiondef::variables::FIRMWARE_VARIABLES;

@@ -6,8 +6,8 @@ use std::process::Command;
 use std::time::Instant;
 
 use coff::{Contents, Image, Line, StorageClass, SymbolType};
-use compiler::download::Download;
 use compiler::firmware::{Firmware, FirmwareFile};
+use compiler::image::download::Download;
 use compiler::object::Object;
 use compiler::pp::Disk;
 use compiler::{Options, image};
@@ -222,7 +222,7 @@ fn contents(board: &Board) -> [&[u8]; 2] {
 fn a_download_that_is_replayed_leaves_the_memory_that_a_load_leaves() {
     for (name, bytes, _) in corpus() {
         let image = Image::read(&bytes).expect("the image is good");
-        let script = compiler::download::script(&image, thread());
+        let script = compiler::image::download::script(&image, thread());
         let download = Download::parse(&script).unwrap_or_else(|error| panic!("{name}: {error}"));
         assert_eq!(download.to_string(), script, "{name}");
         let (mut loaded, mut replayed): (Board, Board) =

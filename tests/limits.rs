@@ -1,7 +1,7 @@
 //! Every limit of the compiler that a source can reach: the message says its number.
 
 use cc67::limits::{COMPILER, Limit};
-use compiler::input::FILE_BYTES;
+use compiler::files::FILE_BYTES;
 use harness::{Output, Scratch, run_in};
 
 /// A source that goes beyond one limit.

@@ -8,9 +8,8 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use compiler::diag::Severity;
-use compiler::lints::Lint;
-use compiler::lints::levels::Levels;
+use compiler::diag::levels::Levels;
+use compiler::diag::{Lint, Severity};
 use compiler::pp::MemoryFiles;
 use compiler::render::short;
 use kmotiondef::ThreadId;

@@ -12,9 +12,9 @@ use kmotiondef::map::{PROGRAM_BASE, PROGRAM_SIZE, STACK_BASE, STACK_SIZE};
 
 use crate::cli::{PC_FILE_BYTES, PICTURE_SAMPLES, SHOWN_REMARKS, STIMULUS_PLANS};
 use cc67_host::{CONSOLE_LINES, REPLY_BYTES};
-use compiler::bytecode::unit::MAX_FRAME;
+use compiler::bytecode::MAX_FRAME;
 use compiler::diag::MAX_ERRORS;
-use compiler::input::{DATA_BYTES, FILE_BYTES};
+use compiler::files::{DATA_BYTES, FILE_BYTES};
 use compiler::parse;
 use compiler::pp::limits as pp;
 use compiler::sema::MAX_VALUES;

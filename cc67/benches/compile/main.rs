@@ -13,14 +13,13 @@ use std::path::Path;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 
-use compiler::bytecode::unit;
 use compiler::diag::Sink;
 use compiler::firmware::BuiltIn;
 use compiler::names::Names;
 use compiler::passes::Level;
 use compiler::pp::{self, MemoryFiles};
 use compiler::source::{FileId, SourceMap};
-use compiler::{Options, parse, sema};
+use compiler::{Options, driver, parse, sema};
 
 /// A program of the size users write.
 const INIT_PROGRAM: &str = include_str!("../../../c-programs/motion/init3.c");
@@ -73,7 +72,7 @@ fn stages(c: &mut Criterion) {
         });
         for (level, level_name) in [(Level::None, "O0"), (Level::Full, "O1")] {
             group.bench_function(format!("generate/{level_name}/{name}"), |b| {
-                b.iter(|| unit::compile(&typed, &sources, level, &mut Sink::new()));
+                b.iter(|| driver::generate(&typed, &sources, level, &mut Sink::new()));
             });
         }
         group.finish();

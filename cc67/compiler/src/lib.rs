@@ -22,38 +22,28 @@
 #![forbid(unsafe_code)]
 
 pub mod ast;
-mod binary;
 pub mod bytecode;
-pub mod compare;
 pub mod diag;
-pub mod download;
-mod driver;
-mod entry;
+pub mod driver;
+pub mod files;
 pub mod firmware;
-pub mod foreign;
-pub mod foreign_words;
 pub mod image;
-mod includers;
-pub mod input;
 pub mod inspect;
 pub mod ir;
-mod library;
 pub mod link;
 pub mod lints;
 pub mod lower;
-pub mod map;
 pub mod names;
 pub mod object;
 pub mod parse;
 pub mod passes;
 pub mod pp;
-pub mod reason;
 pub mod render;
 pub mod sema;
 pub mod source;
-pub mod suggest;
 pub mod ty;
 pub mod typed;
 pub mod watch;
+pub mod words;
 
 pub use driver::{Compilation, Options, compile, link_units};

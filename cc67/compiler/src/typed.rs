@@ -125,6 +125,15 @@ pub struct AddressWord {
     pub addend: i32,
 }
 
+/// Parameters that the source does not write.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Hidden {
+    /// For a variadic function, the last parameter: address of the variable arguments.
+    pub variable_arguments: Option<LocalId>,
+    /// For a structure result, the first parameter: where to store it.
+    pub result_pointer: Option<LocalId>,
+}
+
 /// A function with a body.
 #[derive(Debug)]
 pub struct Function {
@@ -134,10 +143,8 @@ pub struct Function {
     pub ty: FunctionType,
     /// Parameters in order. A structure parameter's local holds the caller's copy; see [`Local::by_pointer`].
     pub parameters: Vec<LocalId>,
-    /// For a variadic function, the hidden last parameter: address of the variable arguments.
-    pub variable_arguments: Option<LocalId>,
-    /// For a structure result, the hidden first parameter: where to store it.
-    pub result_pointer: Option<LocalId>,
+    /// What it is passed besides.
+    pub hidden: Hidden,
     /// Parameters, variables and temporaries.
     pub locals: PrimaryMap<LocalId, Local>,
     /// Expressions.

@@ -9,10 +9,10 @@ use std::path::Path;
 
 use kmotiondef::GuestAddr;
 
-use crate::diag::{Diagnostic, Severity, Sink};
-use crate::driver::{Options, on_large_stack};
-use crate::link::{FirmwareKind, FirmwareSymbols};
-use crate::lints::Lint;
+use crate::diag::{Diagnostic, Lint, Severity, Sink};
+use crate::driver::{Options, front, on_large_stack};
+use crate::firmware::{FirmwareKind, FirmwareSymbols};
+use crate::lints;
 use crate::names::Names;
 use crate::pp::Files;
 use crate::sema::constants::{self, Constant};
@@ -21,7 +21,6 @@ use crate::ty::{BitRange, TypeId, Types};
 use crate::typed::{
     Call, Callee, ExprId, ExprKind, Function, PlaceId, PlaceKind, StmtKind, SymbolId, UnaryOp, Unit,
 };
-use crate::{lints, parse, pp, sema};
 
 /// The name of the function around an expression.
 const FUNCTION: &str = "__cc67_watch";
@@ -102,10 +101,7 @@ fn compile_here(scope: Scope<'_>, expression: &str, items: &[&str]) -> Result<Ex
     let before = text.len() as u32;
     text.extend(format!("\ndouble {FUNCTION}(void) {{ return (\n{expression}\n); }}\n").bytes());
     let main = sources.add_file(scope.path.to_string_lossy(), Some(scope.path), text, None);
-    let options = &scope.options.preprocessor;
-    let tokens = pp::preprocess(main, options, scope.files, &mut sources, &mut names, &mut sink);
-    let tree = parse::parse(&tokens, &sources, &names, &mut sink);
-    let mut unit = sema::analyze(&tree, &mut names, &sources, &scope.options.firmware, &mut sink);
+    let mut unit = front(main, scope.options, scope.files, &mut sources, &mut names, &mut sink);
     let error = sink.diagnostics().iter().find(|diagnostic| diagnostic.severity == Severity::Error);
     if let Some(error) = error {
         return Err(in_one_line(error));

@@ -7,10 +7,10 @@ use kmotiondef::ThreadId;
 
 use crate::HostError;
 use compiler::diag::Severity;
-use compiler::lints::levels::Levels;
+use compiler::diag::levels::Levels;
 use compiler::pp::Disk;
 use compiler::render::vendor;
-use compiler::{Options, image, input};
+use compiler::{Options, files, image};
 
 /// What the compiler says of a source with errors: lines of `file:line: message`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -24,7 +24,7 @@ impl fmt::Display for CompileError {
 
 /// The bytes of a file.
 pub(super) fn read(path: &Path) -> Result<Vec<u8>, HostError> {
-    input::read(path).map_err(|error| HostError::Read { path: path.to_owned(), error })
+    files::read(path).map_err(|error| HostError::Read { path: path.to_owned(), error })
 }
 
 /// Compiles and links a source for a thread.

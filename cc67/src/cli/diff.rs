@@ -6,8 +6,8 @@ use anyhow::Result;
 use clap::Args;
 
 use super::{Exit, inspect, output};
-use compiler::compare::compare;
 use compiler::inspect::Inspection;
+use compiler::inspect::compare;
 
 /// Arguments of `cc67 diff`.
 #[derive(Debug, Args)]

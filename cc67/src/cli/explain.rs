@@ -6,7 +6,7 @@ use anyhow::Result;
 
 use super::{Exit, output};
 use crate::limits;
-use compiler::lints::{Lint, Preset};
+use compiler::diag::{Lint, Preset};
 
 /// What lists all warnings; no lint has this name.
 const LIST: &str = "warnings";

@@ -8,7 +8,7 @@ use clap::{Args, ValueEnum};
 use coff::{Image, dump};
 
 use super::{Exit, output};
-use compiler::foreign;
+use compiler::files;
 use compiler::inspect::{Inspection, Order, Sources};
 
 /// Arguments of `cc67 inspect`.
@@ -121,7 +121,7 @@ pub(super) fn inspect(arguments: &Arguments) -> Result<Exit> {
 /// Reads an image; of another file the message says what it is.
 pub(super) fn read_image(path: &Path) -> Result<Image> {
     let bytes = super::run::read(path)?;
-    Image::read(&bytes).map_err(|error| match foreign::describe(&bytes) {
+    Image::read(&bytes).map_err(|error| match files::describe(&bytes) {
         Some(what) => anyhow!("{} is {what}, not a TI COFF image", path.display()),
         None => anyhow!("{}: {error}", path.display()),
     })

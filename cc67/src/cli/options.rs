@@ -6,9 +6,9 @@ use std::sync::Arc;
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
 
+use compiler::diag::levels::Levels;
 use compiler::firmware::{Firmware, FirmwareFile};
 use compiler::link::SectionAddresses;
-use compiler::lints::levels::Levels;
 use compiler::passes::Level;
 use compiler::render::Format;
 use compiler::{Options, pp};

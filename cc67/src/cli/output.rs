@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Result, anyhow};
 
-use compiler::reason::reason;
+use compiler::files::reason;
 
 /// Writes a file and replaces what was there.
 pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<()> {

@@ -24,10 +24,10 @@ use super::screen::{Offered, Reader, Screen, Style};
 use super::setting::{self, Setting};
 use super::uart::UartOptions;
 use super::{Exit, output, pc, profile, stimulus, terminal, trace, units};
-use compiler::lints::levels::Levels;
-use compiler::reason::reason;
+use compiler::diag::levels::Levels;
+use compiler::files::reason;
 use compiler::render::Format;
-use compiler::{Options, foreign, image, input};
+use compiler::{Options, files, image};
 
 /// Seconds of board time after which a run without `--for` ends.
 pub(super) const DEFAULT_LIMIT: f64 = 60.0;
@@ -343,7 +343,7 @@ pub(super) fn images(programs: &[Program], compiler: &CompilerOptions) -> Result
 
 /// Reads a whole file; a message names it.
 pub(super) fn read(path: &Path) -> Result<Vec<u8>> {
-    input::read(path).map_err(|error| cannot_read(path, &error))
+    files::read(path).map_err(|error| cannot_read(path, &error))
 }
 
 /// The message about a file that cannot be read.
@@ -370,7 +370,7 @@ fn build(
 
 /// Why an image is not loaded; of another tool's file, what it is.
 pub(super) fn explain(program: &Program, image: &[u8], error: LoadError) -> anyhow::Error {
-    match (&error, foreign::describe(image)) {
+    match (&error, files::describe(image)) {
         (LoadError::NotAnImage(_), Some(what)) => {
             anyhow::anyhow!("{} is {what}, not an image of `cc67 build`", program.name())
         }

@@ -4,7 +4,7 @@ use std::io::{self, IsTerminal, Write};
 
 use compiler::Compilation;
 use compiler::diag::Severity;
-use compiler::lints::levels::Levels;
+use compiler::diag::levels::Levels;
 use compiler::render::human::Color;
 use compiler::render::{self, Format};
 

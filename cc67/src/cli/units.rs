@@ -7,7 +7,7 @@ use anyhow::{Result, anyhow, bail};
 use super::run::read;
 use compiler::object::{ReadError, is_object};
 use compiler::pp::Disk;
-use compiler::{Compilation, Options, foreign};
+use compiler::{Compilation, Options, files};
 
 /// Compiles every source and reads every object.
 pub(super) fn compile(paths: &[PathBuf], options: &Options) -> Result<Vec<Compilation>> {
@@ -22,7 +22,7 @@ pub(super) fn unit(path: &Path, bytes: Vec<u8>, options: &Options) -> Result<Com
         }
         return Ok(compiler::compile(path, bytes, options, &Disk));
     }
-    Compilation::from_object(path, &bytes).map_err(|error| match (&error, foreign::describe(&bytes)) {
+    Compilation::from_object(path, &bytes).map_err(|error| match (&error, files::describe(&bytes)) {
         (ReadError::NotCoff(_), Some(what)) => {
             anyhow!("{} is {what}, not an object of `cc67 build -c`", path.display())
         }

@@ -5,11 +5,12 @@
 use vm::op::{Op, VERSION, WORD};
 use vm::operand::{self, Classes, Count, Count32};
 
+use super::registers::register_class;
 use crate::ir::function::Signature;
 use crate::ir::inst::Class;
 
 /// Classes in a `types` word.
-const CLASSES: usize = 16;
+pub(super) const CLASSES: usize = 16;
 
 /// How many words there are for the given constants and signatures.
 pub(crate) fn words(pool: &[u64], signatures: &[Signature]) -> u32 {
@@ -29,10 +30,15 @@ pub(crate) fn write(pool: &[u64], signatures: &[Signature], text: &mut Vec<u8>) 
         let params = Count(signature.params.len() as u16);
         text.extend_from_slice(&Op::Sig { params, ret }.encode());
         for classes in signature.params.chunks(CLASSES) {
-            let bits = classes.iter().rev().fold(0, |bits, class| bits << 2 | *class as u32);
-            text.extend_from_slice(&Op::Types { classes: Classes(bits) }.encode());
+            let classes: Vec<_> = classes.iter().map(|class| register_class(*class)).collect();
+            text.extend_from_slice(&Op::Types { classes: Classes(bits(&classes)) }.encode());
         }
     }
+}
+
+/// At most sixteen classes, two bits each, the first in the lowest.
+pub(super) fn bits(classes: &[operand::Class]) -> u32 {
+    classes.iter().rev().fold(0, |bits, class| bits << 2 | *class as u32)
 }
 
 /// Reads them: constants, signatures, and how many words they take. `None` if they are not

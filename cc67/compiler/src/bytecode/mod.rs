@@ -2,16 +2,108 @@
 //!
 //! A function passes four stages: [`legalize`] leaves only instructions that the machine has,
 //! [`registers`] gives every value a register, [`select`] writes the words, [`meter`] inserts
-//! the charges. [`mod@unit`] puts functions, data and symbols together.
+//! the charges. [`Generator`] does so for all functions of a unit. What comes in is IR, what goes out is [`Text`],
+//! [`Relocation`]s and constants; [`references`] says what a program's instructions refer to.
 
 pub(crate) mod head;
 mod legalize;
 mod meter;
 mod operators;
 mod pool;
+pub(crate) mod references;
 mod registers;
 mod select;
-pub mod unit;
+pub(crate) mod text;
 
 #[cfg(test)]
 mod tests;
+
+pub use text::Text;
+pub(crate) use vm::op::WORD;
+
+use vm::verify::MAX_REGISTERS;
+
+use crate::diag::Diagnostic;
+use crate::ir::function::Function;
+use crate::ir::inst::SignatureId;
+use crate::source::Span;
+use crate::typed::SymbolId;
+use pool::ConstantPool;
+use text::Added;
+
+/// Bytes of guest frame that a function can have: 16 bits of units of eight bytes.
+pub const MAX_FRAME: u32 = u16::MAX as u32 * WORD as u32;
+
+/// A word of the text that the linker completes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Relocation {
+    /// Index of the word.
+    pub word: u32,
+    /// What is put there.
+    pub kind: RelocationKind,
+    /// Whose address.
+    pub symbol: SymbolId,
+}
+
+/// How a word is completed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RelocationKind {
+    /// The symbol's address is added to the last four bytes of the word.
+    Address,
+    /// The word calls the firmware; it calls a function of the program if the symbol is one.
+    Call(SignatureId),
+}
+
+/// A function in words.
+#[derive(Debug)]
+pub(crate) struct Generated {
+    /// Where the words are, and what belongs to them.
+    pub(crate) added: Added,
+    /// Bytes of its frame in guest memory.
+    pub(crate) frame: u32,
+}
+
+/// Writes the functions of a unit, one after the other.
+#[derive(Debug, Default)]
+pub(crate) struct Generator {
+    text: Text,
+    pool: ConstantPool,
+}
+
+impl Generator {
+    /// Takes one optimised function through all stages; `name` is for messages.
+    ///
+    /// # Errors
+    /// That the function is too large for the machine.
+    pub(crate) fn function(&mut self, mut ir: Function, name: &str) -> Result<Generated, Box<Diagnostic>> {
+        let frame = legalize::legalize(&mut ir);
+        let size =
+            frame.size.filter(|size| *size <= MAX_FRAME).ok_or_else(|| frame_too_large(ir.span, name))?;
+        let registers = registers::assign(&ir, &frame.prologue).ok_or_else(|| too_large(ir.span, name))?;
+        let mut code = select::select(&ir, &frame, &registers, &mut self.pool);
+        if code.is_too_large {
+            return Err(too_large(ir.span, name));
+        }
+        meter::insert_charges(&mut code);
+        Ok(Generated { added: self.text.append(ir.signature, &registers, size, code), frame: size })
+    }
+
+    /// The words of all functions, and the constants that they use.
+    pub(crate) fn finish(self) -> (Text, Vec<u64>) {
+        (self.text, self.pool.into_values())
+    }
+}
+
+fn frame_too_large(span: Span, name: &str) -> Box<Diagnostic> {
+    let error = Diagnostic::error(span, format!("the local variables of `{name}` are too large"))
+        .note(format!("a function can have {MAX_FRAME} bytes of them"))
+        .help("make large arrays `static` or global");
+    Box::new(error)
+}
+
+fn too_large(span: Span, name: &str) -> Box<Diagnostic> {
+    let error = Diagnostic::error(span, format!("function `{name}` is too large"))
+        .note(format!("it needs more than {MAX_REGISTERS} registers, signatures or table entries"))
+        .help("split it");
+    Box::new(error)
+}

@@ -1,8 +1,8 @@
 //! Writes the words of a function.
 //!
 //! The function is legal: one instruction becomes one word, apart from calls and table jumps. Blocks are written in the order of the layout; a jump to the next block is
-//! left out. Labels are numbers of words in the function until [`super::unit`] puts the
-//! function into the text.
+//! left out. Labels are numbers of words in the function until [`super::text`] takes the
+//! function in.
 
 use cranelift_entity::SecondaryMap;
 use vm::op::Op;
@@ -12,13 +12,13 @@ use super::legalize::Frame;
 use super::operators;
 use super::pool::ConstantPool;
 use super::registers::Registers;
+use super::{Relocation, RelocationKind};
 use crate::ir::function::{Function, table};
 use crate::ir::inst::{
     Address, Arguments, Base, BlockId, Callee, Class, Constant, InstKind, Operand, SignatureId, Terminator,
     ValueId,
 };
 use crate::ir::operators::{BinaryOp, CompareOp, ConvertOp, UnaryOp, Width};
-use crate::object::{Relocation, RelocationKind};
 use crate::source::Span;
 use crate::typed::SymbolId;
 

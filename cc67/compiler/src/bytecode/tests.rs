@@ -10,8 +10,9 @@ use vm::text::disassemble;
 use vm::trap::{Trap, TrapKind};
 use vm::verify::verify;
 
-use super::unit;
 use crate::diag::Sink;
+use crate::driver::generate;
+use crate::firmware::{FirmwareSymbol, FirmwareSymbols};
 use crate::link::{self, Linked};
 use crate::lower::testing;
 use crate::passes::Level;
@@ -22,8 +23,8 @@ struct Nothing {
     traps: Vec<String>,
 }
 
-impl link::FirmwareSymbols for Nothing {
-    fn find(&self, _: &str) -> Option<link::FirmwareSymbol> {
+impl FirmwareSymbols for Nothing {
+    fn find(&self, _: &str) -> Option<FirmwareSymbol> {
         None
     }
 
@@ -67,7 +68,7 @@ impl Firmware for Nothing {
 fn build(source: &str, level: Level) -> Linked {
     let (unit, sources) = testing::unit(source);
     let mut sink = Sink::new();
-    let object = unit::compile(&unit, &sources, level, &mut sink);
+    let object = generate(&unit, &sources, level, &mut sink);
     assert!(!sink.has_errors(), "{:?}", sink.diagnostics());
     let thread = ThreadId::new(1).expect("a thread");
     let options = link::Options {
@@ -83,12 +84,12 @@ fn build(source: &str, level: Level) -> Linked {
 fn run(source: &str) -> (Vec<u8>, Vec<String>) {
     let runs = [Level::None, Level::Full].map(|level| {
         let linked = build(source, level);
-        let program = verify(&linked.text, linked.text_address).expect("compiled code passes");
+        let program = verify(&linked.text.bytes, linked.text.address).expect("compiled code passes");
         let mut machine: Machine<Nothing, BytecodeEngine> =
             Machine::new(Nothing::default(), Config::default());
         let memory = machine.firmware_mut().1.memory;
-        memory.poke_bytes(linked.text_address, &linked.text).expect("fits");
-        memory.poke_bytes(linked.data_address, &linked.data).expect("fits");
+        memory.poke_bytes(linked.text.address, &linked.text.bytes).expect("fits");
+        memory.poke_bytes(linked.data.address, &linked.data.bytes).expect("fits");
         machine.load_program(linked.thread, program, linked.entry);
         machine.start(linked.thread).expect("loaded");
         machine.run_until(Ticks::new(1000));
@@ -113,7 +114,7 @@ fn check(source: &str, expected: &[i32]) {
 
 /// Compares the words of a program of one function.
 fn check_words(source: &str, expected: &str) {
-    let text = disassemble(&build(source, Level::Full).text);
+    let text = disassemble(&build(source, Level::Full).text.bytes);
     let words = text.lines().filter(|line| line.starts_with('@')).skip_while(|line| !line.contains("func"));
     let words: Vec<&str> = words.filter_map(|line| Some(line.split_once(": ")?.1)).collect();
     let expected: Vec<&str> = expected.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
@@ -263,7 +264,7 @@ fn lines_name_the_statement() {
 fn a_frame_that_the_machine_cannot_number_is_refused() {
     let (unit, sources) = testing::unit("int f(void) { char a[600000]; a[0] = 1; return a[0]; }");
     let mut sink = Sink::new();
-    let _ = unit::compile(&unit, &sources, Level::Full, &mut sink);
+    let _ = generate(&unit, &sources, Level::Full, &mut sink);
     let message = sink.diagnostics().first().map(|diagnostic| diagnostic.message.as_str());
     assert_eq!(message, Some("the local variables of `f` are too large"));
 }

@@ -6,7 +6,7 @@ use kmotiondef::hidden::is_hidden;
 use kmotiondef::structs::STRUCTURES;
 use kmotiondef::variables::{FIRMWARE_VARIABLES, variable_named};
 
-use crate::sema::{FirmwareNames, Prototype};
+use super::{FirmwareNames, Prototype};
 
 /// Firmware 4.34 from the built-in tables.
 #[derive(Clone, Copy, Debug, Default)]

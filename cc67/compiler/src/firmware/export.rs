@@ -73,8 +73,7 @@ fn symbols() -> Vec<Symbol> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::firmware::{BuiltIn, Firmware, FirmwareFile};
-    use crate::link::FirmwareSymbols;
+    use crate::firmware::{BuiltIn, Firmware, FirmwareFile, FirmwareSymbols};
 
     #[test]
     fn the_exported_file_offers_what_the_tables_offer() {

@@ -8,8 +8,7 @@ use std::collections::BTreeMap;
 use coff::{BaseType, Derivation, File, StorageClass, SymbolType};
 use kmotiondef::GuestAddr;
 
-use super::BuiltIn;
-use crate::link::{FirmwareKind, FirmwareSymbol, FirmwareSymbols};
+use super::{BuiltIn, FirmwareKind, FirmwareSymbol, FirmwareSymbols};
 
 /// Longest version text that is looked at.
 const MAX_VERSION: usize = 80;

@@ -8,18 +8,19 @@
 mod built_in;
 mod export;
 mod file;
+mod names;
+mod symbols;
 
 pub use built_in::BuiltIn;
 pub use export::export;
 pub use file::{FirmwareError, FirmwareFile};
+pub use names::{FirmwareNames, Prototype};
+pub use symbols::{FirmwareKind, FirmwareSymbol, FirmwareSymbols};
 
 use std::sync::Arc;
 
 use kmotiondef::firmware::Origin;
 use kmotiondef::limits::VERSION;
-
-use crate::link::{FirmwareSymbol, FirmwareSymbols};
-use crate::sema::{FirmwareNames, Prototype};
 
 /// Which firmware.
 #[derive(Clone, Debug, Default)]

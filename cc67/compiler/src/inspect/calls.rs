@@ -4,11 +4,11 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, function_at};
-use vm::op::{Op, WORD};
 use vm::operand::SigRef;
 use vm::program::Program;
 
 use super::Inspection;
+use crate::bytecode::references::{Reference, reference};
 
 /// A function and what it calls.
 #[derive(Debug)]
@@ -47,16 +47,17 @@ impl Calls {
                 through_pointers: BTreeSet::new(),
                 firmware: BTreeSet::new(),
             };
-            for op in program.ops().get(function.body.clone()).unwrap_or_default() {
-                match *op {
-                    Op::Call { func } => {
-                        node.calls.extend(program.functions().iter().position(|callee| callee.at == func));
+            for word in function.body.clone() {
+                match reference(program, word) {
+                    Reference::Call(address) => node.calls.extend(numbered(program, address)),
+                    Reference::Firmware(address) => {
+                        node.firmware.insert(firmware_name(inspection, address));
                     }
-                    Op::CallFw { addr, .. } => {
-                        node.firmware.insert(firmware_name(inspection, addr.0));
-                    }
-                    Op::CallPtr { sig, .. } => node.through_pointers.extend(candidates(program, sig, &taken)),
-                    _ => {}
+                    Reference::Pointer(sig) => node.through_pointers.extend(candidates(program, sig, &taken)),
+                    Reference::Number(_)
+                    | Reference::Float(_)
+                    | Reference::Single(_)
+                    | Reference::Nothing => {}
                 }
             }
             node
@@ -102,16 +103,24 @@ fn addresses_taken(inspection: &Inspection, program: &Program) -> BTreeSet<usize
     let data = inspection.image.sections.iter().filter(|section| section.name != *".text");
     let words =
         data.flat_map(|section| section.data().as_chunks::<4>().0).map(|word| u32::from_le_bytes(*word));
-    let immediates = program.ops().iter().filter_map(|op| match op {
-        Op::ConstI32 { imm, .. } => Some(imm.0.cast_unsigned()),
+    let immediates = (0..program.ops().len()).filter_map(|word| match reference(program, word) {
+        Reference::Number(number) => Some(number),
         _ => None,
     });
     let values: BTreeSet<u32> = words.chain(immediates).collect();
-    let base = program.base().get();
-    let address = |index: &usize| program.functions().get(*index).map(|f| base + f.at.0 * WORD as u32);
+    let address =
+        |index: &usize| program.functions().get(*index).map(|f| program.address_of(f.at.0 as usize));
     (0..program.functions().len())
-        .filter(|index| address(index).is_some_and(|at| values.contains(&at)))
+        .filter(|index| address(index).is_some_and(|at| values.contains(&at.get())))
         .collect()
+}
+
+/// The number of the function at an address.
+fn numbered(program: &Program, address: u32) -> Option<usize> {
+    program
+        .functions()
+        .iter()
+        .position(|function| program.address_of(function.at.0 as usize).get() == address)
 }
 
 /// Those of them that a call through a pointer with signature `sig` can mean.

@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use kmotiondef::variables::FIRMWARE_VARIABLES;
-use vm::op::{Op, WORD};
 use vm::program::Program;
 
 use super::Inspection;
 use super::calls::firmware_name;
+use crate::bytecode::references::{Reference, reference};
 
 /// Where the text of source files comes from; images know their names without folders.
 pub trait Sources {
@@ -59,7 +59,7 @@ impl Printer<'_> {
                 self.source(line.as_ref());
                 last = line;
             }
-            let note = self.note(op);
+            let note = self.note(word, || op.to_string());
             let separator = if note.is_empty() { "" } else { "  ; " };
             let _ = writeln!(self.out, "  {address:08x} @{word}: {op}{separator}{note}");
         }
@@ -79,25 +79,21 @@ impl Printer<'_> {
         let _ = writeln!(self.out, "{file}:{line}: {}", text.map_or("", |text| text.trim_end()));
     }
 
-    /// Names for the numbers of an instruction.
-    fn note(&self, op: &Op) -> String {
-        match *op {
-            Op::Call { func } => {
-                let address = self.program.base().get() + func.0 * WORD as u32;
-                self.inspection.function_name(address).unwrap_or_default().to_owned()
-            }
-            Op::CallFw { addr, .. } => firmware_name(self.inspection, addr.0),
-            Op::ConstI32 { imm, .. } => self.object(imm.0.cast_unsigned()),
-            Op::ConstF64 { pool, .. } => {
-                let bits = self.program.pool().get(pool.0 as usize).copied();
-                bits.map_or_else(String::new, |bits| f64::from_bits(bits).to_string())
-            }
-            Op::ConstF32 { bits, .. } => f32::from_bits(bits.0).to_string(),
+    /// Names for the numbers of the instruction with number `word`.
+    fn note(&self, word: usize, printed: impl FnOnce() -> String) -> String {
+        match reference(self.program, word) {
+            Reference::Call(address) => self.inspection.function_name(address).unwrap_or_default().to_owned(),
+            Reference::Firmware(address) => firmware_name(self.inspection, address),
+            Reference::Number(number) => self.object(number),
+            Reference::Float(number) => number.to_string(),
+            Reference::Single(number) => number.to_string(),
             // Loads and stores print the address that they use.
-            _ => op.to_string().rsplit_once(", 0x").map_or_else(String::new, |(_, address)| {
-                u32::from_str_radix(address, 16)
-                    .map_or_else(|_| String::new(), |address| self.object(address))
-            }),
+            Reference::Pointer(_) | Reference::Nothing => {
+                printed().rsplit_once(", 0x").map_or_else(String::new, |(_, address)| {
+                    u32::from_str_radix(address, 16)
+                        .map_or_else(|_| String::new(), |address| self.object(address))
+                })
+            }
         }
     }
 

@@ -5,12 +5,14 @@
 //! the DSP has everything but these three. The modules beside this one put parts of it into words.
 
 mod calls;
+mod compare;
 mod disassembly;
 mod json;
 mod lines;
 mod stack;
 mod symbols;
 
+pub use compare::compare;
 pub use disassembly::Sources;
 pub use lines::SourceLine;
 pub use symbols::{Entry, Kind, Order};

@@ -8,18 +8,17 @@
 //! its type. A pointer to a function is the address of its `func` word.
 
 mod error;
-mod firmware;
 mod names;
 mod place;
 mod reach;
 mod text;
 
 pub use error::{LinkError, LinkErrorKind, LinkWarning};
-pub use firmware::{FirmwareKind, FirmwareSymbol, FirmwareSymbols};
 
 use kmotiondef::map::program_base;
 use kmotiondef::{GuestAddr, ThreadId};
 
+use crate::firmware::FirmwareSymbols;
 use crate::object::{Object, SourceLine, SymbolKind};
 use crate::typed::Linkage;
 
@@ -52,18 +51,12 @@ pub struct SectionAddresses {
 pub struct Linked {
     /// The thread it is for.
     pub thread: ThreadId,
-    /// Where the text stands.
-    pub text_address: GuestAddr,
     /// The text.
-    pub text: Vec<u8>,
-    /// Where the initialised data stand.
-    pub data_address: GuestAddr,
+    pub text: LinkedSection,
     /// The initialised data.
-    pub data: Vec<u8>,
-    /// Where the uninitialised data stand.
-    pub bss_address: GuestAddr,
-    /// How many bytes of them there are.
-    pub bss_size: u32,
+    pub data: LinkedSection,
+    /// The uninitialised data.
+    pub bss: Uninitialized,
     /// Address of `main`.
     pub entry: GuestAddr,
     /// Version of the firmware that it is linked against.
@@ -80,6 +73,24 @@ pub struct Linked {
     pub imports: Vec<Import>,
     /// What deserves a warning.
     pub warnings: Vec<LinkWarning>,
+}
+
+/// A section with its bytes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LinkedSection {
+    /// Where it begins.
+    pub address: GuestAddr,
+    /// What it holds.
+    pub bytes: Vec<u8>,
+}
+
+/// A section that a load clears.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Uninitialized {
+    /// Where it begins.
+    pub address: GuestAddr,
+    /// How many bytes it has.
+    pub size: u32,
 }
 
 /// Where a symbol stands.
@@ -157,12 +168,9 @@ pub fn link(objects: &[Object], options: &Options<'_>) -> Result<Linked, Vec<Lin
     let addresses = text::Addresses { base, reached: &reached, placed: &placed };
     Ok(Linked {
         thread: options.thread,
-        text_address: base,
-        text: text::text(objects, &layout, &addresses)?,
-        data_address: placed.data_address,
-        data: text::data(objects, &addresses),
-        bss_address: placed.bss_address,
-        bss_size: placed.bss_size,
+        text: LinkedSection { address: base, bytes: text::text(objects, &layout, &addresses)? },
+        data: LinkedSection { address: placed.data_address, bytes: text::data(objects, &addresses) },
+        bss: Uninitialized { address: placed.bss_address, size: placed.bss_size },
         entry: placed.function(reached.main),
         version_stamp: options.firmware.version_stamp(),
         files: layout.files.clone(),

@@ -2,13 +2,13 @@
 
 use kmotiondef::GuestAddr;
 use kmotiondef::map::{PROGRAM_BASE, PROGRAM_SIZE, STACK_BASE};
-use vm::op::WORD;
 
 use super::error::{LinkError, LinkErrorKind, LinkWarning};
 use super::names::Names;
 use super::reach::Reached;
 use super::text::Layout;
 use super::{LinkedSymbol, Section, SectionAddresses};
+use crate::bytecode::WORD;
 use crate::object::{Object, Symbol};
 
 /// Sections start at multiples of so many bytes.

@@ -9,13 +9,13 @@ use cranelift_entity::SecondaryMap;
 use kmotiondef::GuestAddr;
 
 use super::error::{LinkError, LinkErrorKind};
-use super::firmware::{FirmwareKind, FirmwareSymbol};
 use super::names::{Defined, Names};
 use super::{Import, Options};
+use crate::firmware::{FirmwareKind, FirmwareSymbol};
 use crate::ir::function::Signature;
 use crate::object::Object;
-use crate::suggest::suggest;
 use crate::typed::SymbolId;
+use crate::words::suggest;
 
 /// What a symbol of an object turned out to be.
 #[derive(Clone, Debug, Default)]

@@ -2,12 +2,10 @@
 
 use kmotiondef::{GuestAddr, ThreadId};
 
-use super::{
-    FirmwareKind, FirmwareSymbol, FirmwareSymbols, LinkError, Linked, Options, Section, SectionAddresses,
-    link,
-};
-use crate::bytecode::unit;
+use super::{LinkError, Linked, Options, Section, SectionAddresses, link};
 use crate::diag::Sink;
+use crate::driver::generate;
+use crate::firmware::{FirmwareKind, FirmwareSymbol, FirmwareSymbols};
 use crate::ir::function::Signature;
 use crate::ir::inst::Class;
 use crate::lower::testing;
@@ -35,7 +33,7 @@ impl FirmwareSymbols for Fake {
 
 fn object(source: &str) -> Object {
     let (unit, sources) = testing::unit(source);
-    unit::compile(&unit, &sources, Level::Full, &mut Sink::new())
+    generate(&unit, &sources, Level::Full, &mut Sink::new())
 }
 
 fn try_link(sources: &[&str], thread: i32, gc: bool) -> Result<Linked, Vec<LinkError>> {
@@ -55,8 +53,8 @@ fn address(linked: &Linked, name: &str) -> u32 {
 
 /// The word in the data at the symbol `name`.
 fn word(linked: &Linked, name: &str) -> u32 {
-    let at = (address(linked, name) - linked.data_address.get()) as usize;
-    linked.data[at..].first_chunk().map_or(0, |bytes| u32::from_le_bytes(*bytes))
+    let at = (address(linked, name) - linked.data.address.get()) as usize;
+    linked.data.bytes[at..].first_chunk().map_or(0, |bytes| u32::from_le_bytes(*bytes))
 }
 
 fn check_errors(sources: &[&str], expected: &[&str]) {
@@ -68,13 +66,13 @@ fn check_errors(sources: &[&str], expected: &[&str]) {
 #[test]
 fn sections_follow_each_other_at_multiples_of_32() {
     let linked = linked(&["char c = 1; double d = 2; int b[3]; main() { return c + d + b[0]; }"]);
-    assert_eq!(linked.text_address, GuestAddr::new(0x8005_0000));
-    let text_end = linked.text_address.get() + linked.text.len() as u32;
-    assert_eq!(linked.data_address.get(), text_end.next_multiple_of(32));
-    assert_eq!(address(&linked, "d"), linked.data_address.get() + 8);
-    assert_eq!(linked.data.len(), 16);
-    assert_eq!(linked.bss_address.get(), linked.data_address.get() + 32);
-    assert_eq!(linked.bss_size, 12);
+    assert_eq!(linked.text.address, GuestAddr::new(0x8005_0000));
+    let text_end = linked.text.address.get() + linked.text.bytes.len() as u32;
+    assert_eq!(linked.data.address.get(), text_end.next_multiple_of(32));
+    assert_eq!(address(&linked, "d"), linked.data.address.get() + 8);
+    assert_eq!(linked.data.bytes.len(), 16);
+    assert_eq!(linked.bss.address.get(), linked.data.address.get() + 32);
+    assert_eq!(linked.bss.size, 12);
     let sections: Vec<Section> = linked.symbols.iter().map(|symbol| symbol.section).collect();
     assert_eq!(sections, [Section::Text, Section::Data, Section::Data, Section::Bss]);
 }
@@ -127,7 +125,7 @@ fn what_main_cannot_reach_is_left_out_on_request() {
 fn main_may_be_static_and_need_not_come_first() {
     let linked = linked(&["int f(void) { return 1; } static int main() { return f(); }"]);
     assert_eq!(linked.entry.get(), address(&linked, "main"));
-    assert!(linked.entry > linked.text_address);
+    assert!(linked.entry > linked.text.address);
 }
 
 #[test]
@@ -181,7 +179,7 @@ fn a_program_larger_than_its_space_enters_the_next_ones() {
 fn sizes_up_to_the_limit_pass_without_a_word() {
     let fits = |size: u32| try_link(&[&format!("char a[{size}]; main() {{ a[0] = 1; }}")], 1, true);
     let text = fits(1).expect("links");
-    let room = 0x1_0000 - (text.bss_address.get() - text.text_address.get());
+    let room = 0x1_0000 - (text.bss.address.get() - text.text.address.get());
     assert_eq!(fits(room).map(|linked| linked.warnings.len()), Ok(0));
     assert_eq!(fits(room + 1).map(|linked| linked.warnings.len()), Ok(1));
 }

@@ -3,18 +3,17 @@
 use std::collections::BTreeMap;
 
 use kmotiondef::GuestAddr;
-use vm::op::{Op, WORD};
-use vm::operand::{Addr, FuncRef, SigRef};
 
 use super::error::{LinkError, LinkErrorKind};
 use super::names::Defined;
 use super::place::Placed;
 use super::reach::{Reached, Target};
 use super::{LinkedFunction, LinkedLine};
-use crate::bytecode::head;
+use crate::bytecode::text::{Numbers, call, call_firmware};
+use crate::bytecode::{Relocation, RelocationKind, WORD, head};
 use crate::ir::function::{Signature, Signatures};
 use crate::ir::inst::SignatureId;
-use crate::object::{Function, Object, Relocation, RelocationKind, SourceLine};
+use crate::object::{Function, Object, SourceLine};
 
 /// The order of the text and the numbers that objects share in it.
 #[derive(Debug, Default)]
@@ -108,8 +107,8 @@ impl Layout {
     }
 
     /// The number of a signature that has one.
-    fn number(&self, signature: &Signature) -> SigRef {
-        SigRef(self.signatures.find(signature).map_or(0, |id| id.as_u32() as u16))
+    fn number(&self, signature: &Signature) -> u16 {
+        self.signatures.find(signature).map_or(0, |id| id.as_u32() as u16)
     }
 }
 
@@ -161,26 +160,16 @@ impl Writer<'_> {
         let unit = &self.objects[object];
         let relocations = function.relocations.start as usize..function.relocations.end as usize;
         let mut relocations = unit.relocations[relocations].iter().peekable();
-        let pool = &self.layout.pool_numbers[object];
-        let signatures = &self.layout.signature_numbers[object];
-        // Labels count from the beginning of the object's text.
-        let moved = word.wrapping_sub(function.words.start);
+        let numbers = Numbers {
+            // Labels count from the beginning of the object's text.
+            moved: word.wrapping_sub(function.words.start),
+            pool: &self.layout.pool_numbers[object],
+            signatures: &self.layout.signature_numbers[object],
+        };
         let start = self.text.len();
-        for (at, op) in (function.words.start..).zip(&unit.text[words(function)]) {
-            let mut op = *op;
-            match &mut op {
-                Op::Br { to } | Op::BrIf { to, .. } | Op::BrUnless { to, .. } => {
-                    to.0 = to.0.wrapping_add(moved);
-                }
-                Op::ConstI64 { pool: number, .. } | Op::ConstF64 { pool: number, .. } => {
-                    number.0 = pool[number.0 as usize];
-                }
-                Op::Func { sig, .. } | Op::CallPtr { sig, .. } | Op::CallFw { sig, .. } => {
-                    sig.0 = signatures[usize::from(sig.0)];
-                }
-                _ => {}
-            }
-            let mut bytes = op.encode();
+        for (at, mut bytes) in
+            (function.words.start..).zip(unit.text.linked(function.words.clone(), &numbers))
+        {
             if let Some(relocation) = relocations.next_if(|relocation| relocation.word == at) {
                 match relocation.kind {
                     RelocationKind::Address => {
@@ -188,7 +177,7 @@ impl Writer<'_> {
                         add_address(&mut bytes[4..], self.addresses.of(target));
                     }
                     RelocationKind::Call(signature) => match self.call(object, relocation, signature) {
-                        Ok(op) => bytes = op.encode(),
+                        Ok(word) => bytes = word,
                         Err(kind) => self.errors.push(fail(object, unit, function, relocation, kind)),
                     },
                 }
@@ -204,7 +193,7 @@ impl Writer<'_> {
         object: usize,
         relocation: &Relocation,
         signature: SignatureId,
-    ) -> Result<Op, LinkErrorKind> {
+    ) -> Result<[u8; WORD], LinkErrorKind> {
         let unit = &self.objects[object];
         let symbol = &unit.symbols[relocation.symbol];
         let called = unit.signatures.get(signature);
@@ -222,14 +211,12 @@ impl Writer<'_> {
                 let function = &self.objects[*unit].functions[*index as usize];
                 check(self.objects[*unit].signatures.get(function.signature))?;
                 let address = self.addresses.placed.function((*unit, *index));
-                let offset = address.get() - self.addresses.base.get();
-                Ok(Op::Call { func: FuncRef(offset / WORD as u32) })
+                Ok(call(address.get() - self.addresses.base.get()))
             }
             Target::Function(address, defined) => {
                 let defined = defined.as_ref().unwrap_or(called);
                 check(defined)?;
-                let addr = Addr(address.get());
-                Ok(Op::CallFw { sig: self.layout.number(defined), addr })
+                Ok(call_firmware(address.get(), self.layout.number(defined)))
             }
             _ => Err(LinkErrorKind::NotAFunction { name: symbol.name.clone() }),
         }
@@ -253,10 +240,6 @@ fn fail(
         kind,
         users: vec![format!("`{caller}` ({place})")],
     }
-}
-
-fn words(function: &Function) -> std::ops::Range<usize> {
-    function.words.start as usize..function.words.end as usize
 }
 
 /// A signature for messages.

@@ -3,10 +3,9 @@
 //! Only whole objects count: beyond a member array there is the next member, which programs reach on purpose. An
 //! index that changes is followed through the simplest loops, where every turn is known.
 
-use super::Lint;
 use super::program::Program;
 use super::walk::{Extent, Walk};
-use crate::diag::{Diagnostic, Sink};
+use crate::diag::{Diagnostic, Lint, Sink};
 use crate::ty::TypeId;
 use crate::typed::{
     BinaryOp, CompareOp, ExprId, ExprKind, Function, LocalId, LoopTest, PlaceId, PlaceKind, Stmt, StmtKind,

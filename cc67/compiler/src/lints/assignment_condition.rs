@@ -1,8 +1,7 @@
 //! `if (a = b)`, where `if ((a = b))` says that it is meant.
 
-use super::Lint;
 use crate::ast::{BinaryOperator, Expression, ExpressionKind};
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Lint};
 
 /// What is said of a condition that is an assignment.
 pub(crate) fn finding(condition: &Expression) -> Option<Diagnostic> {

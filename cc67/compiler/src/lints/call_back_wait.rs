@@ -2,10 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::Lint;
 use super::call_graph::CallGraph;
 use super::program::Program;
-use crate::diag::{Diagnostic, Sink};
+use crate::diag::{Diagnostic, Lint, Sink};
 use crate::typed::{Callee, ExprId, ExprKind, Function, PlaceId, PlaceKind, SymbolId};
 
 /// The firmware's pointer to the function that every servo interrupt calls.

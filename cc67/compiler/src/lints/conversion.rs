@@ -1,7 +1,6 @@
 //! Conversions that C makes by itself and that may lose something.
 
-use super::Lint;
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Lint};
 use crate::source::Span;
 use crate::ty::{TypeId, Types};
 

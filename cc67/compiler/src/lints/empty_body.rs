@@ -2,9 +2,8 @@
 //!
 //! `while (x) ;` is how programs for this board wait, and is never mentioned.
 
-use super::Lint;
 use crate::ast::{Expression, Statement, StatementKind};
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Lint};
 use crate::source::SourceMap;
 
 /// What is said of an `if` with this condition and body.

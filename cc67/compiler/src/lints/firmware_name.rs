@@ -2,9 +2,8 @@
 
 use kmotiondef::firmware::Origin;
 
-use super::Lint;
 use super::program::Program;
-use crate::diag::{Diagnostic, Sink};
+use crate::diag::{Diagnostic, Lint, Sink};
 use crate::typed::{Definition, Linkage, Symbol};
 
 /// Reports every definition that other units see and the firmware has as well.

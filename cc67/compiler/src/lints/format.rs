@@ -4,9 +4,8 @@
 //! `unsigned` is fine, `%d` for a `double` is not (`dialect.md` 5). A format that is not
 //! written in the call is not looked at.
 
-use super::Lint;
 use super::program::Program;
-use crate::diag::{Diagnostic, Sink};
+use crate::diag::{Diagnostic, Lint, Sink};
 use crate::source::Span;
 use crate::ty::{TypeId, Types};
 use crate::typed::{self, Call, Callee, Definition, ExprId, ExprKind, PlaceKind, Unit};

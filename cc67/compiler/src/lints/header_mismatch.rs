@@ -6,9 +6,8 @@
 use kmotiondef::limits::VERSION;
 use kmotiondef::structs::{STRUCTURES, Structure};
 
-use super::Lint;
 use super::program::Program;
-use crate::diag::{Diagnostic, Sink};
+use crate::diag::{Diagnostic, Lint, Sink};
 use crate::source::SourceFile;
 
 /// The headers that the compiler has itself.

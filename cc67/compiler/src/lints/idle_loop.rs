@@ -2,9 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use super::Lint;
 use super::program::Program;
-use crate::diag::{Diagnostic, Sink};
+use crate::diag::{Diagnostic, Lint, Sink};
 use crate::typed::{ExprId, ExprKind, Function, LocalId, PlaceId, PlaceKind, Stmt, StmtKind};
 
 /// Reports `for (;;) ;` and `while (n) ;`, where nothing changes `n`.

@@ -1,8 +1,7 @@
 //! Indentation that says something else than the grammar.
 
-use super::Lint;
 use crate::ast::{Statement, StatementKind};
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Lint};
 use crate::source::{ExpansionId, SourceMap, Span};
 
 /// What is said if `next` is indented like the body of the `if`, `for` or `while` before it.

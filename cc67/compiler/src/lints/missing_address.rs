@@ -1,7 +1,6 @@
 //! A variable where its address is needed: the `&` is missing.
 
-use super::Lint;
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Lint};
 use crate::source::{SourceMap, Span};
 
 /// What is said of an argument that is a variable of the type that the parameter points to.

@@ -1,8 +1,7 @@
 //! `while (!CheckDone) ;`: the name of a function where its result is meant.
 
-use super::Lint;
 use super::program::Program;
-use crate::diag::{Diagnostic, Sink};
+use crate::diag::{Diagnostic, Lint, Sink};
 use crate::ty::Type;
 use crate::typed::{ExprId, ExprKind, Function, PlaceKind, StmtKind, SymbolId, UnaryOp};
 

@@ -5,10 +5,9 @@
 
 use std::collections::BTreeSet;
 
-use super::Lint;
 use super::program::Program;
 use super::used_values;
-use crate::diag::{Diagnostic, Sink};
+use crate::diag::{Diagnostic, Lint, Sink};
 use crate::typed::{Stmt, StmtKind};
 
 /// Reports every function but `main` whose end can be reached.

@@ -4,9 +4,8 @@ use std::collections::BTreeSet;
 
 use kmotiondef::firmware::Origin;
 
-use super::Lint;
 use super::program::Program;
-use crate::diag::{Diagnostic, Sink};
+use crate::diag::{Diagnostic, Lint, Sink};
 use crate::typed::{Callee, Definition};
 
 /// Reports the first call of each such function.

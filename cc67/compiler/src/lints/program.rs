@@ -1,7 +1,7 @@
 //! What a lint looks at: the finished typed tree and the names of the board.
 
+use crate::firmware::FirmwareNames;
 use crate::names::Names;
-use crate::sema::FirmwareNames;
 use crate::source::SourceMap;
 use crate::ty::TypeId;
 use crate::typed::{Function, SymbolId, Unit};

@@ -2,10 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::Lint;
 use super::call_graph::CallGraph;
 use super::program::Program;
-use crate::diag::{Diagnostic, Sink};
+use crate::diag::{Diagnostic, Lint, Sink};
 use crate::source::Span;
 use crate::typed::SymbolId;
 

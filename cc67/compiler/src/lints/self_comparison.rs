@@ -1,8 +1,7 @@
 //! A floating-point value compared with itself.
 
-use super::Lint;
 use super::program::Program;
-use crate::diag::{Diagnostic, Sink};
+use crate::diag::{Diagnostic, Lint, Sink};
 use crate::typed::{CompareOp, ExprId, ExprKind, Function, PlaceKind};
 
 /// Reports `x == x` on variables.

@@ -1,7 +1,6 @@
 //! A signed and an unsigned value compared: a negative one counts as a very large one.
 
-use super::Lint;
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Lint};
 use crate::source::Span;
 
 /// What is said of such a comparison.

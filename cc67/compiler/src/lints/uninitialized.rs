@@ -7,10 +7,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::Lint;
 use super::flow::Flow;
 use super::program::Program;
-use crate::diag::{Diagnostic, Sink};
+use crate::diag::{Diagnostic, Lint, Sink};
 use crate::source::Span;
 use crate::typed::{
     Callee, ExprId, ExprKind, Function, LocalId, LoopTest, PlaceId, PlaceKind, Stmt, StmtKind, UnaryOp,
@@ -37,7 +36,7 @@ fn search(function: &Function, sink: &mut Sink) {
         doubtful: BTreeMap::new(),
         exits: Vec::new(),
     };
-    let hidden = function.variable_arguments.iter().chain(&function.result_pointer);
+    let hidden = function.hidden.variable_arguments.iter().chain(&function.hidden.result_pointer);
     function.parameters.iter().chain(hidden).for_each(|local| search.stored_in(*local));
     search.stmts(&function.body);
     for (local, span) in &search.doubtful {

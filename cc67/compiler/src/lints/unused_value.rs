@@ -1,8 +1,7 @@
 //! Statements that compute a value and drop it.
 
-use super::Lint;
 use crate::ast::{BinaryOperator, Expression, ExpressionKind, UnaryOperator};
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Lint};
 
 /// What is said of an expression statement whose value nobody sees; `is_function` if it only names one.
 pub(crate) fn finding(expression: &Expression, is_function: bool) -> Option<Diagnostic> {

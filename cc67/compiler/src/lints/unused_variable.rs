@@ -2,9 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use super::Lint;
 use super::program::Program;
-use crate::diag::{Diagnostic, Sink};
+use crate::diag::{Diagnostic, Lint, Sink};
 use crate::typed::PlaceKind;
 
 /// Reports every such variable; parameters are often there for the caller's sake.

@@ -1,8 +1,8 @@
 //! A `double` at an odd index of `persist.UserData`: the board loads it without the low
 //! address bits (`dialect.md` 1.5).
 
-use super::{Lint, user_data_index};
-use crate::diag::Diagnostic;
+use super::user_data_index;
+use crate::diag::{Diagnostic, Lint};
 use crate::source::Span;
 
 /// What is said of a `double` at a byte offset of `persist`.

@@ -2,8 +2,7 @@
 
 use kmotiondef::structs::Persist;
 
-use super::Lint;
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Lint};
 use crate::source::Span;
 
 /// Where `UserData` lies in `persist`: its first byte and the one behind its last.

@@ -1,8 +1,7 @@
 //! `void main`, which every KFLOP compiler accepts and no C standard knows.
 
-use super::Lint;
 use super::program::Program;
-use crate::diag::{Diagnostic, Sink};
+use crate::diag::{Diagnostic, Lint, Sink};
 
 /// Reports a `main` without a result.
 pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {

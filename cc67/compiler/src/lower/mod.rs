@@ -69,10 +69,7 @@ pub fn lower(
         builder,
         homes: PrimaryMap::with_capacity(function.locals.len()),
         writes: SecondaryMap::new(),
-        labels: SecondaryMap::new(),
-        breaks: Vec::new(),
-        continues: Vec::new(),
-        switches: Vec::new(),
+        jumps: Jumps::default(),
         outgoing: None,
         spine: Vec::new(),
         held: Vec::new(),
@@ -87,9 +84,9 @@ pub fn lower(
 /// The classes of a function's parameters, hidden ones included, and of its result.
 fn signature_of(unit: &Unit, function: &typed::Function) -> Signature {
     let class = |local: &LocalId| types::class(&unit.types, function.locals[*local].ty).unwrap_or(Class::I32);
-    let params = (function.result_pointer.iter())
+    let params = (function.hidden.result_pointer.iter())
         .chain(&function.parameters)
-        .chain(&function.variable_arguments)
+        .chain(&function.hidden.variable_arguments)
         .map(class)
         .collect();
     Signature { params, result: types::class(&unit.types, function.ty.result) }
@@ -124,6 +121,15 @@ struct Switch {
     default: BlockId,
 }
 
+/// Where the statements being lowered can jump to; the innermost is last.
+#[derive(Debug, Default)]
+struct Jumps {
+    labels: SecondaryMap<LabelId, PackedOption<BlockId>>,
+    breaks: Vec<BlockId>,
+    continues: Vec<BlockId>,
+    switches: Vec<Switch>,
+}
+
 /// The state of lowering one function.
 struct Lowering<'a> {
     unit: &'a Unit,
@@ -134,10 +140,7 @@ struct Lowering<'a> {
     homes: PrimaryMap<LocalId, Home>,
     /// How often the value of a local has been written so far.
     writes: SecondaryMap<ValueId, u32>,
-    labels: SecondaryMap<LabelId, PackedOption<BlockId>>,
-    breaks: Vec<BlockId>,
-    continues: Vec<BlockId>,
-    switches: Vec<Switch>,
+    jumps: Jumps,
     /// Where the variable arguments of calls are put.
     outgoing: Option<SlotId>,
     /// Stack of operator nodes whose left operand is being descended into.
@@ -160,11 +163,11 @@ impl Lowering<'_> {
             };
             self.homes.push(home);
         }
-        let hidden = function.result_pointer;
+        let hidden = function.hidden.result_pointer;
         for local in hidden.into_iter().chain(function.parameters.iter().copied()) {
             self.parameter(local);
         }
-        if let Some(local) = function.variable_arguments {
+        if let Some(local) = function.hidden.variable_arguments {
             self.parameter(local);
         }
     }
@@ -234,11 +237,11 @@ impl Lowering<'_> {
 
     /// The block of a label.
     fn label(&mut self, label: LabelId) -> BlockId {
-        if let Some(block) = self.labels[label].expand() {
+        if let Some(block) = self.jumps.labels[label].expand() {
             return block;
         }
         let block = self.builder.block();
-        self.labels[label] = block.into();
+        self.jumps.labels[label] = block.into();
         block
     }
 }

@@ -25,23 +25,23 @@ impl Lowering<'_> {
                 self.switch_statement(*value, cases, *has_default, body);
             }
             StmtKind::Case(number) => {
-                let cases = self.switches.last().map(|switch| &switch.cases);
+                let cases = self.jumps.switches.last().map(|switch| &switch.cases);
                 if let Some(block) = cases.and_then(|cases| cases.get(*number as usize)) {
                     self.builder.open(*block);
                 }
             }
             StmtKind::DefaultCase => {
-                if let Some(Switch { default, .. }) = self.switches.last() {
+                if let Some(Switch { default, .. }) = self.jumps.switches.last() {
                     self.builder.open(*default);
                 }
             }
             StmtKind::Break => {
-                if let Some(block) = self.breaks.last() {
+                if let Some(block) = self.jumps.breaks.last() {
                     self.builder.jump(*block);
                 }
             }
             StmtKind::Continue => {
-                if let Some(block) = self.continues.last() {
+                if let Some(block) = self.jumps.continues.last() {
                     self.builder.jump(*block);
                 }
             }
@@ -110,11 +110,11 @@ impl Lowering<'_> {
             }
         }
         self.builder.open(top);
-        self.breaks.push(end);
-        self.continues.push(next);
+        self.jumps.breaks.push(end);
+        self.jumps.continues.push(next);
         self.statements(body);
-        self.continues.pop();
-        self.breaks.pop();
+        self.jumps.continues.pop();
+        self.jumps.breaks.pop();
         self.builder.open(next);
         if let Some(step) = step {
             self.builder.set_span(self.function.exprs[step].span);

@@ -50,11 +50,11 @@ impl Lowering<'_> {
         };
         let entries = entries(cases, &blocks, search.is_unsigned);
         self.search(search, &entries);
-        self.switches.push(Switch { cases: blocks, default });
-        self.breaks.push(end);
+        self.jumps.switches.push(Switch { cases: blocks, default });
+        self.jumps.breaks.push(end);
         self.statements(body);
-        self.breaks.pop();
-        self.switches.pop();
+        self.jumps.breaks.pop();
+        self.jumps.switches.pop();
         self.builder.open(end);
     }
 

@@ -7,16 +7,21 @@
 //! `cc67 build -c` keeps an object in a file: COFF with our target and relocations, `write` and
 //! `read` say how. What it loses are the positions in the source text, files and lines remain.
 
+mod coff_words;
 mod read;
+mod unit;
 mod write;
 
+pub use coff_words::kind_of;
+pub(crate) use coff_words::{base_type, class, function_type, statement, to_u16};
 pub use read::{ReadError, is_object};
+pub(crate) use unit::{About, UnitBuilder};
 
 use std::ops::Range;
 
 use cranelift_entity::PrimaryMap;
-use vm::op::Op;
 
+use crate::bytecode::{Relocation, Text};
 use crate::ir::function::Signatures;
 use crate::ir::inst::SignatureId;
 use crate::source::Span;
@@ -34,7 +39,7 @@ pub struct Object {
     /// Constants of eight bytes, each once.
     pub pool: Vec<u64>,
     /// The words of all functions.
-    pub text: Vec<Op>,
+    pub text: Text,
     /// Words of the text that hold an address, ascending.
     pub relocations: Vec<Relocation>,
     /// Where source lines begin, ascending by word.
@@ -129,26 +134,6 @@ pub struct SourceLine {
     pub file: u32,
     /// Line, counted from 1; 0 if unknown.
     pub line: u32,
-}
-
-/// A word of the text that the linker completes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Relocation {
-    /// Index of the word.
-    pub word: u32,
-    /// What is put there.
-    pub kind: RelocationKind,
-    /// Whose address.
-    pub symbol: SymbolId,
-}
-
-/// How a word is completed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RelocationKind {
-    /// The symbol's address is added to the last four bytes of the word.
-    Address,
-    /// The word is a `call_fw`; it becomes a `call` if the symbol is a function of the program.
-    Call(SignatureId),
 }
 
 /// From this word on the code belongs to this line.

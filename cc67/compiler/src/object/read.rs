@@ -7,15 +7,10 @@ use std::ops::Range;
 
 use coff::{Contents, FileFlags, Image, Line as CoffLine, SectionNumber, StorageClass, Target};
 use cranelift_entity::EntityRef;
-use vm::op::{Op, WORD};
 
 use super::write::{ADDRESS, BSS, CALL, DATA, TEXT};
-use super::{
-    DataRelocation, Definition, Function, Initialized, Line, Object, Relocation, RelocationKind, SourceLine,
-    Symbol,
-};
-use crate::bytecode::head;
-use crate::image::kind_of;
+use super::{DataRelocation, Definition, Function, Initialized, Line, Object, SourceLine, Symbol, kind_of};
+use crate::bytecode::{Relocation, RelocationKind, Text, WORD, head};
 use crate::ir::inst::SignatureId;
 use crate::typed::{Linkage, SymbolId};
 
@@ -124,9 +119,7 @@ impl<'a> Reader<'a> {
             return Err(ReadError::Code);
         }
         let head = head as u32;
-        for word in words.iter().skip(head as usize) {
-            object.text.push(decode(*word, head, &object).ok_or(ReadError::Code)?);
-        }
+        object.text = Text::read(words, head, &object.pool, &signatures).ok_or(ReadError::Code)?;
         let (ids, functions, objects) = (Vec::new(), Vec::new(), Vec::new());
         Ok(Self { text, data, symbols: &image.symbols, object, head, ids, functions, objects })
     }
@@ -212,11 +205,10 @@ impl<'a> Reader<'a> {
     fn words(&self, bytes: Range<u32>) -> Option<Range<u32>> {
         let word = |at: u32| {
             let word = at.is_multiple_of(WORD as u32).then_some(at / WORD as u32)?.checked_sub(self.head)?;
-            (word as usize <= self.object.text.len()).then_some(word)
+            (word <= self.object.text.len()).then_some(word)
         };
         let words = word(bytes.start)?..word(bytes.end)?;
-        let text = self.object.text.get(words.start as usize..words.end as usize)?;
-        matches!(text.first(), Some(Op::Func { .. })).then_some(words)
+        (words.start < words.end && self.object.text.begins_function(words.start)).then_some(words)
     }
 
     /// Functions in the order of the text, with the relocations and lines of each.
@@ -233,24 +225,15 @@ impl<'a> Reader<'a> {
                 self.object.relocations.push(relocation);
             }
             let lines = self.lines(index, &words, self.object.symbols[symbol].place.file);
-            let Some(Op::Func { sig, frame, .. }) = self.object.text.get(words.start as usize).copied()
-            else {
-                return Err(ReadError::Code);
-            };
-            if self.object.text[words.start as usize + 1..words.end as usize]
-                .iter()
-                .any(|op| matches!(op, Op::Func { .. }))
-            {
-                return Err(ReadError::Code);
-            }
+            let (signature, frame) = self.object.text.function(&words).ok_or(ReadError::Code)?;
             self.object.symbols[symbol].definition = Definition::Function(self.object.functions.len() as u32);
             self.object.functions.push(Function {
                 symbol,
-                signature: SignatureId::from_u32(u32::from(sig.0)),
+                signature,
                 words,
                 relocations: first..self.object.relocations.len() as u32,
                 lines,
-                frame: u32::from(frame.0) * WORD as u32,
+                frame,
                 end,
             });
         }
@@ -319,23 +302,6 @@ impl<'a> Reader<'a> {
         }
         relocations.next().map_or(Ok(()), |left| Err(misplaced(".data", left.address)))
     }
-}
-
-/// A word of a function; `None` if it refers to what the object does not have.
-fn decode(word: [u8; WORD], head: u32, object: &Object) -> Option<Op> {
-    let mut op = Op::decode(word)?;
-    match &mut op {
-        Op::Br { to } | Op::BrIf { to, .. } | Op::BrUnless { to, .. } => to.0 = to.0.checked_sub(head)?,
-        Op::ConstI64 { pool, .. } | Op::ConstF64 { pool, .. } => {
-            object.pool.get(pool.0 as usize)?;
-        }
-        Op::Func { sig, .. } | Op::CallPtr { sig, .. } | Op::CallFw { sig, .. } => {
-            object.signatures.as_slice().get(usize::from(sig.0))?;
-        }
-        Op::Program { .. } | Op::Sig { .. } | Op::Call { .. } => return None,
-        _ => {}
-    }
-    Some(op)
 }
 
 fn wrong(symbol: &coff::Symbol) -> ReadError {

@@ -17,11 +17,9 @@ use coff::{
     Aux, Contents, Error, FileFlags, Image, Layout, Line, Name, Section, SectionFlags, SectionNumber,
     StorageClass, Symbol, SymbolType, Target,
 };
-use vm::op::{Op, WORD};
 
-use super::{Definition, Function, Object, RelocationKind, SourceLine};
-use crate::bytecode::head;
-use crate::image::{base_type, class, function_type, statement, to_u16};
+use super::{Definition, Function, Object, SourceLine, base_type, class, function_type, statement, to_u16};
+use crate::bytecode::{RelocationKind, WORD, head};
 use crate::typed::{Linkage, SymbolId};
 
 /// The symbol's address is added to the 32 bits.
@@ -216,15 +214,9 @@ impl<'a> Writer<'a> {
     }
 
     fn text(&self) -> Vec<u8> {
-        let mut text = Vec::with_capacity(self.byte(self.object.text.len() as u32) as usize);
+        let mut text = Vec::with_capacity(self.byte(self.object.text.len()) as usize);
         head::write(&self.object.pool, self.object.signatures.as_slice(), &mut text);
-        for op in &self.object.text {
-            let mut op = *op;
-            if let Op::Br { to } | Op::BrIf { to, .. } | Op::BrUnless { to, .. } = &mut op {
-                to.0 += self.head;
-            }
-            text.extend_from_slice(&op.encode());
-        }
+        self.object.text.write(self.head, &mut text);
         text
     }
 }

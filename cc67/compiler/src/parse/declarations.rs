@@ -32,12 +32,12 @@ impl Parser<'_> {
                 Ok(Some(item)) => unit.items.push(item),
                 Ok(None) => {}
                 Err(Reported) => {
-                    self.is_unwinding = false;
+                    self.recovery.is_unwinding = false;
                     self.skip_statement(0);
                 }
             }
             // Whatever cannot begin a declaration is left out, so that parsing always goes on.
-            if self.at == start && !self.is_stopped {
+            if self.at == start && !self.recovery.is_stopped {
                 self.at += 1;
             }
         }
@@ -54,7 +54,7 @@ impl Parser<'_> {
             (TokenKind::RightBrace, _) => {
                 self.at += 1;
                 // Behind statements outside of a function it ends what should be one.
-                if self.has_loose_statement {
+                if self.recovery.has_loose_statement {
                     return Ok(None);
                 }
                 return self.fail(Diagnostic::error(start.span, "`}` without `{`").at("closes nothing"));
@@ -103,7 +103,7 @@ impl Parser<'_> {
         let first = self.tokens.get(start).copied().unwrap_or(self.end);
         let column = self.sources.place(first.span).map_or(1, |place| place.column);
         let is_outer = first.flags.has(Flags::LINE_START) && column == 1;
-        if let Some(open) = self.open.iter().find(|token| token.kind == TokenKind::LeftBrace) {
+        if let Some(open) = self.recovery.open.iter().find(|token| token.kind == TokenKind::LeftBrace) {
             // The function's own tokens say nothing about what is open before it.
             let end = std::mem::replace(&mut self.at, start);
             let open = if is_outer { self.unclosed(*open) } else { *open };
@@ -113,9 +113,9 @@ impl Parser<'_> {
         if is_outer {
             self.report(diagnostic.help("is a `}` missing before it?"));
             // One error too many has left out the rest, which must not be taken up again.
-            if !self.is_stopped {
+            if !self.recovery.is_stopped {
                 self.at = start;
-                self.is_unwinding = true;
+                self.recovery.is_unwinding = true;
             }
         } else {
             self.report(diagnostic.note("functions cannot be nested"));
@@ -190,7 +190,7 @@ impl Parser<'_> {
         let span = self.since(start);
         // What was read is kept, even if its end is in doubt.
         if self.semicolon(span).is_err() {
-            let open = self.open.len();
+            let open = self.recovery.open.len();
             self.skip_statement(open);
         }
         Ok(Declared::Names(Declaration { specifiers, declarators, span }))
@@ -346,9 +346,9 @@ impl Parser<'_> {
         }
         let start = self.peek().span;
         let statements = self.nested(Self::block);
-        if self.is_unwinding {
-            self.is_unwinding = false;
-            self.open.clear();
+        if self.recovery.is_unwinding {
+            self.recovery.is_unwinding = false;
+            self.recovery.open.clear();
         }
         let kind = StatementKind::Block(statements?);
         Ok((old_style, Statement { kind, span: self.since(start) }))
@@ -396,11 +396,11 @@ impl Parser<'_> {
     }
 
     fn loose_statement(&mut self) -> Parsed<Option<Item>> {
-        if self.has_loose_statement {
+        if self.recovery.has_loose_statement {
             self.at += 1;
             return Err(Reported);
         }
-        self.has_loose_statement = true;
+        self.recovery.has_loose_statement = true;
         if self.kind() != TokenKind::Identifier {
             return self.fail_expected("a declaration");
         }

@@ -51,12 +51,12 @@ impl Parser<'_> {
 
     /// The operand behind a left-associative operator.
     fn right_operand(&mut self, binding: u8) -> Parsed<Expression> {
-        if self.operators >= OPERATORS {
+        if self.nesting.operators >= OPERATORS {
             return Err(self.too_deep());
         }
-        self.operators += 1;
+        self.nesting.operators += 1;
         let right = self.infix(binding + 1);
-        self.operators -= 1;
+        self.nesting.operators -= 1;
         right
     }
 

@@ -4,9 +4,9 @@ use std::collections::BTreeSet;
 
 use crate::ast::{Expression, ExpressionKind, Statement, StatementKind};
 use crate::diag::Diagnostic;
-use crate::foreign_words;
 use crate::names::{Name, word};
 use crate::pp::{Flags, TokenKind};
+use crate::words::foreign as foreign_words;
 
 use super::scopes::Meaning;
 use super::{Parsed, Parser};
@@ -25,7 +25,7 @@ pub(super) type Reported = BTreeSet<Language>;
 impl Parser<'_> {
     /// Reports a word of a language, once for each language.
     fn report_foreign(&mut self, language: Language, diagnostic: Diagnostic) {
-        if self.foreign.insert(language) {
+        if self.recovery.foreign.insert(language) {
             self.report(diagnostic);
         }
     }

@@ -3,8 +3,7 @@
 use std::ops::Range;
 
 use crate::ast::{Expression, ExpressionKind, StringLiteral};
-use crate::diag::Diagnostic;
-use crate::lints::Lint;
+use crate::diag::{Diagnostic, Lint};
 use crate::pp::number::{self, Number};
 use crate::pp::quoted::{self, ProblemKind};
 use crate::pp::{Flags, Token, TokenKind};

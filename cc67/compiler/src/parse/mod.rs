@@ -73,15 +73,10 @@ pub fn parse(tokens: &[Token], sources: &SourceMap, names: &Names, sink: &mut Si
         names,
         sink,
         scopes: Scopes::default(),
-        depth: 0,
-        operators: 0,
-        open: Vec::new(),
-        is_stopped: false,
-        is_unwinding: false,
-        has_loose_statement: false,
+        nesting: Nesting::default(),
+        recovery: Recovery::default(),
         is_branch: false,
         has_function: false,
-        foreign: foreign::Reported::new(),
         tags: BTreeSet::new(),
     };
     // The preprocessor may have found enough already.
@@ -106,10 +101,28 @@ struct Parser<'a> {
     names: &'a Names,
     sink: &'a mut Sink,
     scopes: Scopes,
+    nesting: Nesting,
+    recovery: Recovery,
+    /// The block that is read next, or is being read, stands behind `if (…)`.
+    is_branch: bool,
+    /// A function was defined.
+    has_function: bool,
+    /// The tags of structures, unions and enumerations.
+    tags: BTreeSet<(Name, &'static str)>,
+}
+
+/// How deep the parser is.
+#[derive(Debug, Default)]
+struct Nesting {
     /// Constructs within each other.
-    depth: usize,
+    constructs: usize,
     /// Binary operators whose right operand is being parsed.
     operators: usize,
+}
+
+/// What the parser must know to continue after errors, and not to report one mistake twice.
+#[derive(Debug, Default)]
+struct Recovery {
     /// Brackets and braces that are open.
     open: Vec<Token>,
     /// The rest of the tokens is not looked at, and errors about that are not reported.
@@ -118,14 +131,8 @@ struct Parser<'a> {
     is_unwinding: bool,
     /// A statement outside of all functions was reported.
     has_loose_statement: bool,
-    /// The block that is read next, or is being read, stands behind `if (…)`.
-    is_branch: bool,
-    /// A function was defined.
-    has_function: bool,
     /// Other languages whose words were reported.
     foreign: foreign::Reported,
-    /// The tags of structures, unions and enumerations.
-    tags: BTreeSet<(Name, &'static str)>,
 }
 
 impl Parser<'_> {
@@ -192,18 +199,18 @@ impl Parser<'_> {
     /// Reads an opening bracket that its partner must close.
     fn open(&mut self) -> Token {
         let token = self.next();
-        self.open.push(token);
+        self.recovery.open.push(token);
         token
     }
 
     /// Parses something one level further in.
     fn nested<T>(&mut self, parse: impl FnOnce(&mut Self) -> Parsed<T>) -> Parsed<T> {
-        if self.depth >= NESTING {
+        if self.nesting.constructs >= NESTING {
             return Err(self.too_deep());
         }
-        self.depth += 1;
+        self.nesting.constructs += 1;
         let result = parse(self);
-        self.depth -= 1;
+        self.nesting.constructs -= 1;
         result
     }
 

@@ -60,7 +60,7 @@ impl Parser<'_> {
             if self.take(TokenKind::Semicolon).is_some() {
                 continue;
             }
-            let (start, open) = (self.at, self.open.len());
+            let (start, open) = (self.at, self.recovery.open.len());
             match self.member_line() {
                 Ok(Some(line)) => members.push(line),
                 Ok(None) => {}

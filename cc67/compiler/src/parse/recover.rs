@@ -10,7 +10,7 @@ use super::{Parsed, Parser, Reported};
 impl Parser<'_> {
     /// Reports something; nothing after the parser stopped.
     pub(super) fn report(&mut self, diagnostic: Diagnostic) {
-        if self.is_stopped {
+        if self.recovery.is_stopped {
             return;
         }
         self.sink.report(diagnostic);
@@ -28,7 +28,7 @@ impl Parser<'_> {
 
     /// Gives up the rest of the program.
     pub(super) fn stop(&mut self) -> Reported {
-        self.is_stopped = true;
+        self.recovery.is_stopped = true;
         self.at = self.tokens.len();
         Reported
     }
@@ -97,7 +97,7 @@ impl Parser<'_> {
     /// Reads the bracket that closes the one opened last.
     pub(super) fn close(&mut self, kind: TokenKind) -> Parsed<Token> {
         if let Some(token) = self.take(kind) {
-            self.open.pop();
+            self.recovery.open.pop();
             return Ok(token);
         }
         let text = kind.punctuator().unwrap_or_default();
@@ -105,7 +105,7 @@ impl Parser<'_> {
         if found.kind == TokenKind::End {
             return Err(self.report_end(&format!("`{text}`")));
         }
-        let opener = self.open.pop().unwrap_or(found);
+        let opener = self.recovery.open.pop().unwrap_or(found);
         let advice = self.macro_advice(found);
         if found.kind == TokenKind::Semicolon
             && self.kind_at(1) == kind
@@ -123,7 +123,7 @@ impl Parser<'_> {
         {
             Ok(found)
         } else {
-            self.open.push(opener);
+            self.recovery.open.push(opener);
             Err(Reported)
         }
     }
@@ -188,7 +188,7 @@ impl Parser<'_> {
             return Ok(());
         }
         let found = self.peek();
-        if found.kind == TokenKind::End && !self.open.is_empty() {
+        if found.kind == TokenKind::End && !self.recovery.open.is_empty() {
             return Err(self.report_end("`;`"));
         }
         let place = self.end_of_last();
@@ -246,8 +246,8 @@ impl Parser<'_> {
         if self.end.flags.has(Flags::BROKEN) {
             return self.stop();
         }
-        let brace = self.open.iter().find(|token| token.kind == TokenKind::LeftBrace).copied();
-        let innermost = self.open.pop().filter(|token| token.kind != TokenKind::LeftBrace);
+        let brace = self.recovery.open.iter().find(|token| token.kind == TokenKind::LeftBrace).copied();
+        let innermost = self.recovery.open.pop().filter(|token| token.kind != TokenKind::LeftBrace);
         let diagnostic = match innermost.or(brace) {
             Some(opener) => {
                 let opener = self.unclosed(opener);
@@ -267,12 +267,12 @@ impl Parser<'_> {
     /// Goes to the end of a statement or declaration that could not be parsed. Brackets opened since there
     /// were `open` of them are taken to be those of the failed construct.
     pub(super) fn skip_statement(&mut self, open: usize) {
-        if self.is_stopped || self.is_unwinding {
-            self.open.truncate(open);
+        if self.recovery.is_stopped || self.recovery.is_unwinding {
+            self.recovery.open.truncate(open);
             return;
         }
-        let mut pending = self.open.len().saturating_sub(open);
-        self.open.truncate(open);
+        let mut pending = self.recovery.open.len().saturating_sub(open);
+        self.recovery.open.truncate(open);
         loop {
             let token = self.peek();
             match token.kind {
@@ -303,9 +303,9 @@ impl Parser<'_> {
 
     /// Goes behind the `)` of a condition that could not be parsed.
     pub(super) fn skip_to_close(&mut self, open: usize) {
-        let mut pending = self.open.len().saturating_sub(open);
-        self.open.truncate(open);
-        while pending > 0 && !self.is_stopped && !self.is_unwinding {
+        let mut pending = self.recovery.open.len().saturating_sub(open);
+        self.recovery.open.truncate(open);
+        while pending > 0 && !self.recovery.is_stopped && !self.recovery.is_unwinding {
             match self.kind() {
                 TokenKind::End | TokenKind::LeftBrace | TokenKind::RightBrace => return,
                 TokenKind::Semicolon if self.is_line_start_at(1) => return,

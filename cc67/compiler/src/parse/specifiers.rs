@@ -406,7 +406,7 @@ impl Parser<'_> {
         if self.kind() != TokenKind::LeftParen {
             return self.fail_expected("`(`");
         }
-        let base = self.open.len();
+        let base = self.recovery.open.len();
         loop {
             match self.kind() {
                 TokenKind::LeftParen => {
@@ -414,12 +414,12 @@ impl Parser<'_> {
                 }
                 TokenKind::RightParen => {
                     self.close(TokenKind::RightParen)?;
-                    if self.open.len() == base {
+                    if self.recovery.open.len() == base {
                         return Ok(());
                     }
                 }
                 TokenKind::End => return self.fail_expected("`)`"),
-                _ if self.open.len() == base + 2
+                _ if self.recovery.open.len() == base + 2
                     && matches!(self.name(), Some(word::ALIGNED | word::ALIGNED__)) =>
                 {
                     self.at += 1;

@@ -11,11 +11,11 @@ use super::{Parsed, Parser, Reported};
 impl Parser<'_> {
     /// `{ … }`: its statements.
     pub(super) fn block(&mut self) -> Parsed<Vec<Statement>> {
-        let depth = self.open.len();
+        let depth = self.recovery.open.len();
         self.open();
         self.scopes.enter();
         let mut statements = Vec::new();
-        while !matches!(self.kind(), TokenKind::RightBrace | TokenKind::End) && !self.is_unwinding {
+        while !matches!(self.kind(), TokenKind::RightBrace | TokenKind::End) && !self.recovery.is_unwinding {
             if self.is_branch && self.ends_before_else() {
                 self.scopes.leave();
                 return Ok(statements);
@@ -25,8 +25,8 @@ impl Parser<'_> {
             self.is_branch = is_branch;
         }
         self.scopes.leave();
-        if self.is_unwinding {
-            self.open.truncate(depth);
+        if self.recovery.is_unwinding {
+            self.recovery.open.truncate(depth);
             return Ok(statements);
         }
         self.close(TokenKind::RightBrace)?;
@@ -35,19 +35,19 @@ impl Parser<'_> {
 
     /// A statement or declaration; an error is reported and gone over.
     fn statement(&mut self) -> Statement {
-        let (start, index, open) = (self.peek().span, self.at, self.open.len());
+        let (start, index, open) = (self.peek().span, self.at, self.recovery.open.len());
         match self.nested(Self::any_statement) {
             Ok(statement) => statement,
             Err(Reported) => {
                 self.skip_statement(open);
                 if self.at == index
-                    && !self.is_stopped
-                    && !self.is_unwinding
+                    && !self.recovery.is_stopped
+                    && !self.recovery.is_unwinding
                     && self.kind() != TokenKind::RightBrace
                 {
                     self.at += 1;
                 }
-                let span = if self.is_unwinding { start } else { self.since(start) };
+                let span = if self.recovery.is_unwinding { start } else { self.since(start) };
                 let error = Expression { kind: ExpressionKind::Error, span };
                 Statement { kind: StatementKind::Expression(error), span }
             }
@@ -174,13 +174,13 @@ impl Parser<'_> {
         if start.kind != TokenKind::LeftParen {
             return self.bare_condition(keyword);
         }
-        let open = self.open.len();
+        let open = self.recovery.open.len();
         self.open();
         let condition =
             self.expression().and_then(|condition| self.close(TokenKind::RightParen).map(|_| condition));
         match condition {
             Ok(condition) => Ok(condition),
-            Err(Reported) if self.is_stopped || self.is_unwinding => Err(Reported),
+            Err(Reported) if self.recovery.is_stopped || self.recovery.is_unwinding => Err(Reported),
             Err(Reported) => {
                 self.skip_to_close(open);
                 Ok(Expression { kind: ExpressionKind::Error, span: self.since(start.span) })
@@ -237,13 +237,13 @@ impl Parser<'_> {
 
     /// Whether the block behind `if` ends before an `else`, its `}` forgotten; reports that.
     fn ends_before_else(&mut self) -> bool {
-        let Some(opener) = self.open.last().copied() else { return false };
+        let Some(opener) = self.recovery.open.last().copied() else { return false };
         if self.name() != Some(word::ELSE) || !self.stands_left_of_block(opener) {
             return false;
         }
         let diagnostic = Diagnostic::error(self.peek().span, "expected `}` before `else`");
         self.report(diagnostic.label(opener.span, "this `{` is open"));
-        self.open.pop();
+        self.recovery.open.pop();
         true
     }
 
@@ -270,13 +270,13 @@ impl Parser<'_> {
         if self.kind() != TokenKind::LeftParen {
             return self.fail_expected("`(` behind `for`");
         }
-        let open = self.open.len();
+        let open = self.recovery.open.len();
         let start = self.open().span;
         self.scopes.enter();
         let head = self.for_head();
         let head = match head {
             Ok(head) => Ok(head),
-            Err(Reported) if self.is_stopped || self.is_unwinding => Err(Reported),
+            Err(Reported) if self.recovery.is_stopped || self.recovery.is_unwinding => Err(Reported),
             Err(Reported) => {
                 self.skip_to_close(open);
                 let span = self.since(start);

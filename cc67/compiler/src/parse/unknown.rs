@@ -6,11 +6,11 @@
 
 use crate::ast::{Expression, ExpressionKind, Specifiers, TypeSpecifier};
 use crate::diag::Diagnostic;
-use crate::foreign_words;
 use crate::names::Name;
 use crate::pp::TokenKind;
 use crate::source::Span;
-use crate::suggest::suggest;
+use crate::words::foreign as foreign_words;
+use crate::words::suggest;
 
 use super::Parser;
 use super::scopes::Meaning;

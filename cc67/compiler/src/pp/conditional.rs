@@ -79,7 +79,7 @@ impl Preprocessor<'_> {
 
     /// Says which `#if`s a file leaves open; the vendor's compiler does not mind.
     pub(super) fn report_open_conditionals(&mut self, file: &OpenFile) {
-        if self.is_stopped {
+        if self.work.is_stopped {
             return;
         }
         for conditional in &file.conditionals {

@@ -2,8 +2,7 @@
 
 use cranelift_entity::EntityRef;
 
-use crate::diag::Diagnostic;
-use crate::lints::Lint;
+use crate::diag::{Diagnostic, Lint};
 use crate::names::{Name, word};
 
 use super::engine::Preprocessor;

@@ -3,7 +3,7 @@
 use crate::diag::Diagnostic;
 use crate::names::{Name, word};
 use crate::source::Span;
-use crate::suggest::suggest;
+use crate::words::suggest;
 
 use super::engine::Preprocessor;
 use super::token::{Token, TokenKind};

@@ -53,14 +53,20 @@ pub(super) struct Preprocessor<'a> {
     pub(super) open: Vec<OpenFile>,
     /// The directory of the main file.
     pub(super) main_directory: PathBuf,
-    /// Tokens that macros made so far.
+    /// The next value of `__COUNTER__`.
+    pub(super) counter: u32,
+    pub(super) work: Work,
+}
+
+/// What was done so far, and whether that is enough.
+#[derive(Debug, Default)]
+pub(super) struct Work {
+    /// Tokens that macros made.
     pub(super) expanded: usize,
     /// Macro calls within arguments being expanded.
     pub(super) nesting: usize,
     /// The macro call whose arguments are being collected.
     pub(super) collecting: Option<Span>,
-    /// The next value of `__COUNTER__`.
-    pub(super) counter: u32,
     /// A limit was exceeded: every source of tokens is at its end.
     pub(super) is_stopped: bool,
 }
@@ -83,11 +89,8 @@ impl<'a> Preprocessor<'a> {
             frames: Vec::new(),
             open: Vec::new(),
             main_directory: PathBuf::new(),
-            expanded: 0,
-            nesting: 0,
-            collecting: None,
             counter: 0,
-            is_stopped: false,
+            work: Work::default(),
         }
     }
 
@@ -100,12 +103,12 @@ impl<'a> Preprocessor<'a> {
         while let Some(file) = self.open.last() {
             end = file.lexer.end_span();
             self.expand_all(&mut output);
-            if output.len() > limits::TOKENS && !self.is_stopped {
+            if output.len() > limits::TOKENS && !self.work.is_stopped {
                 self.stop(end, format!("more than {} tokens after preprocessing", limits::TOKENS));
             }
             self.close_file();
         }
-        let broken = if self.is_stopped { Flags::BROKEN } else { Flags::NONE };
+        let broken = if self.work.is_stopped { Flags::BROKEN } else { Flags::NONE };
         output.push(Token::new(TokenKind::End, Flags::LINE_START.with(broken), end));
         output
     }
@@ -116,11 +119,11 @@ impl<'a> Preprocessor<'a> {
             let Some(file) = self.open.last_mut() else {
                 return Token::new(TokenKind::End, Flags::LINE_START, Span::new(0, 0));
             };
-            if self.sink.is_full() && !self.is_stopped {
+            if self.sink.is_full() && !self.work.is_stopped {
                 self.sink.report(Diagnostic::global_error(TOO_MANY_ERRORS));
-                self.is_stopped = true;
+                self.work.is_stopped = true;
             }
-            if self.is_stopped {
+            if self.work.is_stopped {
                 return Token::new(TokenKind::End, Flags::LINE_START, file.lexer.end_span());
             }
             let token = file.lexer.next(&mut Context { names: self.names, sink: self.sink });
@@ -144,10 +147,10 @@ impl<'a> Preprocessor<'a> {
 
     /// Reports an exceeded limit and ends all sources of tokens.
     pub(super) fn stop(&mut self, span: Span, message: String) {
-        if !self.is_stopped {
+        if !self.work.is_stopped {
             self.sink.report(Diagnostic::error(span, message).note("the rest of the program was not read"));
         }
-        self.is_stopped = true;
+        self.work.is_stopped = true;
     }
 
     fn close_file(&mut self) {

@@ -63,9 +63,9 @@ impl Preprocessor<'_> {
         let depth = self.frames.len();
         self.frames.push(Frame { tokens: Tokens::List(tokens), at: 0, end, active: None, is_closed: true });
         let mut output = Vec::new();
-        self.nesting += 1;
+        self.work.nesting += 1;
         self.expand_all(&mut output);
-        self.nesting -= 1;
+        self.work.nesting -= 1;
         self.frames.truncate(depth);
         output
     }
@@ -73,7 +73,7 @@ impl Preprocessor<'_> {
     /// The next token of the innermost frame, or of the file.
     pub(super) fn next_token(&mut self) -> Token {
         while let Some(frame) = self.frames.last_mut() {
-            if frame.at < frame.end && !self.is_stopped {
+            if frame.at < frame.end && !self.work.is_stopped {
                 let at = frame.at;
                 frame.at += 1;
                 match &frame.tokens {
@@ -174,12 +174,12 @@ impl Preprocessor<'_> {
 
     /// Counts tokens made by macros; false, with an error, when there are too many.
     pub(super) fn count(&mut self, tokens: usize, call: Span) -> bool {
-        self.expanded = self.expanded.saturating_add(tokens).saturating_add(1);
-        if self.expanded > limits::EXPANDED_TOKENS {
+        self.work.expanded = self.work.expanded.saturating_add(tokens).saturating_add(1);
+        if self.work.expanded > limits::EXPANDED_TOKENS {
             let message = format!("macros expand to more than {} tokens", limits::EXPANDED_TOKENS);
             self.stop(call, message);
         }
-        !self.is_stopped
+        !self.work.is_stopped
     }
 
     /// The token in the place of `__LINE__` and its kin.
@@ -217,7 +217,7 @@ pub(super) fn spacing(token: Token) -> Flags {
 impl Preprocessor<'_> {
     /// Expands the call of a function-like macro whose `(` is next.
     fn expand_call(&mut self, id: MacroId, name: Token) -> Option<Token> {
-        if self.nesting >= limits::NESTING {
+        if self.work.nesting >= limits::NESTING {
             let message = format!("macro calls nested deeper than {}", limits::NESTING);
             self.stop(name.span, message);
             return None;
@@ -238,7 +238,7 @@ impl Preprocessor<'_> {
 
     /// Reads `( … )`: the tokens, the range of each argument, and the closing parenthesis.
     fn collect_arguments(&mut self, name: Token) -> Option<(Vec<Token>, Vec<std::ops::Range<usize>>, Span)> {
-        let outer = self.collecting.replace(name.span);
+        let outer = self.work.collecting.replace(name.span);
         let open = self.next_token();
         let mut tokens = Vec::new();
         let mut arguments = Vec::new();
@@ -263,7 +263,7 @@ impl Preprocessor<'_> {
                 self.stop(name.span, format!("macro call longer than {} tokens", limits::EXPANDED_TOKENS));
             }
         };
-        self.collecting = outer;
+        self.work.collecting = outer;
         arguments.push(start..tokens.len());
         match close {
             Some(close) => Some((tokens, arguments, close)),
@@ -277,7 +277,7 @@ impl Preprocessor<'_> {
     /// Reports a call without `)`. What was read is read again as if there were no macro, so that the parser
     /// can say where the parenthesis is missing.
     fn unclosed_call(&mut self, name: Token, open: Token, tokens: Vec<Token>) {
-        if self.is_stopped {
+        if self.work.is_stopped {
             return;
         }
         let message = format!("macro call of `{}` is never closed", self.names.get(name.name));

@@ -10,9 +10,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::diag::Diagnostic;
-use crate::reason::reason;
+use crate::files::reason;
 use crate::source::{FileId, Span};
-use crate::suggest::suggest;
+use crate::words::suggest;
 
 use super::engine::Preprocessor;
 use super::lexer::header::HeaderName;
@@ -23,7 +23,7 @@ use super::{LAX, limits, standard};
 impl Preprocessor<'_> {
     /// Obeys `#include` with the rest of the line, and opens the file.
     pub(super) fn include(&mut self, span: Span) {
-        if let Some(call) = self.collecting {
+        if let Some(call) = self.work.collecting {
             self.sink.report(
                 Diagnostic::error(span, "`#include` within the arguments of a macro")
                     .label(call, "of this macro"),

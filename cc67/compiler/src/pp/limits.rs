@@ -3,6 +3,8 @@
 //! Every limit is far above what a program for the board needs, and stands as a number in the
 //! message about it. They keep hostile text from exhausting memory, time or the stack.
 
+use crate::files;
+
 /// Files within files.
 pub const INCLUDE_DEPTH: usize = 64;
 
@@ -10,7 +12,7 @@ pub const INCLUDE_DEPTH: usize = 64;
 pub const INCLUDES: usize = 20_000;
 
 /// Bytes of one file.
-pub const FILE_BYTES: u32 = 32 << 20;
+pub const FILE_BYTES: u32 = files::SOURCE_BYTES;
 
 /// Bytes of all files together, each inclusion counted.
 pub const TOTAL_BYTES: u32 = 64 << 20;

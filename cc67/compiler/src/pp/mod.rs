@@ -47,8 +47,7 @@ mod token;
 
 use std::path::PathBuf;
 
-use crate::diag::Sink;
-use crate::lints::Lint;
+use crate::diag::{Lint, Sink};
 use crate::names::Names;
 use crate::source::{FileId, SourceMap};
 

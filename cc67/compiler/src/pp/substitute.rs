@@ -43,7 +43,7 @@ impl Preprocessor<'_> {
         let mut arguments = Arguments { raw, ranges, expanded: vec![None; ranges.len()] };
         let mut output = Vec::with_capacity(body.len());
         let mut at = body.start;
-        while at < body.end && !self.is_stopped {
+        while at < body.end && !self.work.is_stopped {
             let Some(token) = self.macros.body_token(at) else { break };
             let next = self.macros.body_token(at + 1).filter(|_| at + 1 < body.end);
             if token.kind == TokenKind::Paste {
@@ -58,7 +58,7 @@ impl Preprocessor<'_> {
             let is_pasted = next.is_some_and(|next| next.kind == TokenKind::Paste);
             self.append(&mut output, token, is_pasted, &mut arguments, expansion);
             at += 1;
-            if self.expanded + output.len() > limits::EXPANDED_TOKENS {
+            if self.work.expanded + output.len() > limits::EXPANDED_TOKENS {
                 self.count(output.len(), self.sources.expansion(expansion).map_or(token.span, |it| it.call));
             }
         }

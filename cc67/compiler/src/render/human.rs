@@ -169,7 +169,7 @@ mod tests {
     use std::path::Path;
 
     use super::*;
-    use crate::lints::Lint;
+    use crate::diag::Lint;
     use crate::source::{Expansion, ExpansionId, Span};
 
     fn check(diagnostic: &Diagnostic, sources: &SourceMap, expect: &str) {

@@ -119,7 +119,7 @@ mod tests {
     use serde_json::{Value, json};
 
     use super::*;
-    use crate::lints::Lint;
+    use crate::diag::Lint;
     use crate::source::Span;
 
     #[test]

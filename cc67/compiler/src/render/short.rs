@@ -19,7 +19,7 @@ pub fn render(diagnostic: &Diagnostic, sources: &SourceMap) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lints::Lint;
+    use crate::diag::Lint;
     use crate::source::Span;
 
     #[test]

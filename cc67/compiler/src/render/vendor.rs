@@ -84,7 +84,7 @@ fn cut(text: &str) -> &str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lints::Lint;
+    use crate::diag::Lint;
     use crate::source::Span;
 
     fn check(diagnostics: &[Diagnostic], expect: &str) {

@@ -4,8 +4,8 @@ use kmotiondef::structs::STRUCTURES;
 
 use super::Sema;
 use crate::diag::Diagnostic;
-use crate::foreign_words::{self, Word};
 use crate::names::Name;
+use crate::words::foreign::{self as foreign_words, Word};
 
 /// What to do when the vendor's header seems to be missing.
 pub(super) const HEADER_HELP: &str = "is `KMotionDef.h` included?";
@@ -49,7 +49,7 @@ impl Sema<'_> {
         if let Some(owner) = owner {
             return say(move |it| it.help(format!("it is a member: write `{owner}{spelling}`")));
         }
-        if let Some((function, span)) = self.locals_elsewhere.get(&name).cloned() {
+        if let Some((function, span)) = self.noted.locals_elsewhere.get(&name).cloned() {
             return say(move |it| {
                 it.label(span, format!("this one exists in `{function}` only"))
                     .help("declare the variable before the functions that use it, outside of them")
@@ -62,7 +62,7 @@ impl Sema<'_> {
     }
 
     fn foreign_advice(&mut self, word: &'static Word) -> Advice {
-        let is_first = self.origins.insert(word.origin);
+        let is_first = self.noted.origins.insert(word.origin);
         // `true` of a program whose `bool` was reported needs no second error.
         let is_answered = matches!(word.spelling, "true" | "false")
             && self.sink.has_errors()

@@ -11,8 +11,8 @@ use crate::names::Name;
 use crate::source::Span;
 use crate::ty::{TypeId, Types};
 use crate::typed::{
-    BinaryOp, CompareOp, Expr, ExprId, ExprKind, Label, LabelId, Local, LocalId, Place, PlaceId, PlaceKind,
-    UnaryOp,
+    BinaryOp, CompareOp, Expr, ExprId, ExprKind, Hidden, Label, LabelId, Local, LocalId, Place, PlaceId,
+    PlaceKind, UnaryOp,
 };
 
 /// The parts of a function that are being built, and what its statements must know.
@@ -24,16 +24,22 @@ pub(super) struct Body {
     pub(super) result: TypeId,
     /// It is declared `void`, even if it returns a value.
     pub(super) is_void: bool,
-    /// Hidden parameter of a variadic function.
-    pub(super) variable_arguments: Option<LocalId>,
-    /// Hidden parameter of a function with a structure result.
-    pub(super) result_pointer: Option<LocalId>,
+    /// Parameters that the source does not write.
+    pub(super) hidden: Hidden,
     /// Parameters, variables and temporaries.
     pub(super) locals: PrimaryMap<LocalId, Local>,
     /// Expressions.
     pub(super) exprs: PrimaryMap<ExprId, Expr>,
     /// Places.
     pub(super) places: PrimaryMap<PlaceId, Place>,
+    pub(super) jumps: Jumps,
+    /// Undeclared names that were reported in this function.
+    pub(super) undeclared: BTreeSet<Name>,
+}
+
+/// Where statements of a function can go.
+#[derive(Debug, Default)]
+pub(super) struct Jumps {
     /// Labels.
     pub(super) labels: PrimaryMap<LabelId, Label>,
     /// The labels by name.
@@ -42,8 +48,6 @@ pub(super) struct Body {
     pub(super) loops: u32,
     /// The switches that are open, the innermost last.
     pub(super) switches: Vec<super::switches::Switch>,
-    /// Undeclared names that were reported in this function.
-    pub(super) undeclared: BTreeSet<Name>,
     /// A `case` outside of a `switch` was reported.
     pub(super) has_lost_case: bool,
 }
@@ -65,17 +69,12 @@ impl Body {
             name,
             result,
             is_void: result.is_void(),
-            variable_arguments: None,
-            result_pointer: None,
+            hidden: Hidden::default(),
             locals: PrimaryMap::new(),
             exprs: PrimaryMap::new(),
             places: PrimaryMap::new(),
-            labels: PrimaryMap::new(),
-            label_names: BTreeMap::new(),
-            loops: 0,
-            switches: Vec::new(),
+            jumps: Jumps::default(),
             undeclared: BTreeSet::new(),
-            has_lost_case: false,
         }
     }
 

@@ -15,7 +15,7 @@ impl Sema<'_> {
         let place = self.va_list(list);
         self.type_of(last)?;
         let place = place?;
-        let Some(arguments) = self.body.variable_arguments else {
+        let Some(arguments) = self.body.hidden.variable_arguments else {
             self.report(
                 Diagnostic::error(span, "`va_start` in a function without variable arguments")
                     .help("end the parameter list with `, ...`"),

@@ -3,8 +3,8 @@
 //! Which pairs are silent, warned about or refused: `dialect.md` 2.4.
 
 use super::Sema;
-use crate::diag::Diagnostic;
-use crate::lints::{Lint, conversion, missing_address, user_data_alignment, user_data_index};
+use crate::diag::{Diagnostic, Lint};
+use crate::lints::{conversion, missing_address, user_data_alignment, user_data_index};
 use crate::source::Span;
 use crate::ty::{FunctionType, ParameterTypes, QualifiedType, TypeId, Types, convert};
 use crate::typed::{ExprId, ExprKind, PlaceKind, SymbolId};

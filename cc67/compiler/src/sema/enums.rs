@@ -6,8 +6,7 @@
 use super::Sema;
 use super::scope::{Entity, Tag};
 use crate::ast::{EnumSpecifier, Enumerator, TypeSpecifier};
-use crate::diag::Diagnostic;
-use crate::lints::Lint;
+use crate::diag::{Diagnostic, Lint};
 use crate::source::Span;
 
 impl Sema<'_> {
@@ -33,7 +32,7 @@ impl Sema<'_> {
             self.declare_enumerator(enumerator, value);
         }
         if is_unsigned {
-            self.unsigned_enums.insert(self.enum_place(specifier));
+            self.noted.unsigned_enums.insert(self.enum_place(specifier));
         }
     }
 
@@ -47,13 +46,13 @@ impl Sema<'_> {
             },
             _ => return false,
         };
-        self.unsigned_enums.contains(&place)
+        self.noted.unsigned_enums.contains(&place)
     }
 
     /// A `typedef` of an enumeration is one too.
     pub(super) fn note_enum_typedef(&mut self, specifier: Option<&TypeSpecifier>, name: Span) {
         if specifier.is_some_and(|specifier| self.is_unsigned_enum(specifier)) {
-            self.unsigned_enums.insert(name);
+            self.noted.unsigned_enums.insert(name);
         }
     }
 

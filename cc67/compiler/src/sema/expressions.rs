@@ -8,13 +8,12 @@ use super::places::Located;
 use super::scope::Entity;
 use super::undeclared::is_sensible;
 use crate::ast::{Expression, ExpressionKind, TypeName, UnaryOperator};
-use crate::diag::Diagnostic;
-use crate::lints::Lint;
+use crate::diag::{Diagnostic, Lint};
 use crate::names::Name;
 use crate::source::Span;
-use crate::suggest::suggest;
 use crate::ty::{QualifiedType, RecordId, TypeId, Types};
 use crate::typed::{Callee, ExprId, ExprKind, PlaceKind, UnaryOp};
+use crate::words::suggest;
 
 impl Sema<'_> {
     /// The meaning of an expression; `None` if something is wrong with it.
@@ -236,7 +235,7 @@ impl Sema<'_> {
     }
 
     pub(super) fn no_member(&mut self, record: RecordId, ty: TypeId, member: Name, span: Span) {
-        if self.broken.contains(&record) {
+        if self.noted.broken.contains(&record) {
             return;
         }
         let spelled = self.spell(ty);

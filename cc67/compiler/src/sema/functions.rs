@@ -11,8 +11,7 @@ use super::scope::{Closed, Entity};
 use super::specifiers::ImplicitInt;
 use super::symbols::Definer;
 use crate::ast::{Derived, FunctionDefinition, Parameters, Statement, StatementKind, Storage};
-use crate::diag::Diagnostic;
-use crate::lints::Lint;
+use crate::diag::{Diagnostic, Lint};
 use crate::names::{Name, word};
 use crate::source::Span;
 use crate::ty::{FunctionType, ParameterTypes, QualifiedType, Type, TypeId, Types, convert};
@@ -196,12 +195,11 @@ impl Sema<'_> {
             symbol,
             ty,
             parameters: incoming,
-            variable_arguments: body.variable_arguments,
-            result_pointer: body.result_pointer,
+            hidden: body.hidden,
             locals: body.locals,
             exprs: body.exprs,
             places: body.places,
-            labels: body.labels,
+            labels: body.jumps.labels,
             body: statements,
             span,
             end,
@@ -219,7 +217,7 @@ impl Sema<'_> {
     ) -> Vec<LocalId> {
         if self.types.record_of(ty.result).is_some() {
             let pointer = self.types.pointer_to(ty.result);
-            self.body.result_pointer = Some(self.body.temporary(pointer, false, span));
+            self.body.hidden.result_pointer = Some(self.body.temporary(pointer, false, span));
         }
         let ParameterTypes::Prototype { types, is_variadic } = &ty.parameters else { return Vec::new() };
         let incoming = parameters
@@ -229,7 +227,7 @@ impl Sema<'_> {
             .collect();
         if *is_variadic {
             let pointer = self.types.pointer_to(Types::CHAR);
-            self.body.variable_arguments = Some(self.body.temporary(pointer, false, span));
+            self.body.hidden.variable_arguments = Some(self.body.temporary(pointer, false, span));
         }
         incoming
     }
@@ -266,6 +264,7 @@ impl Sema<'_> {
     fn check_labels(&mut self) {
         let missing: Vec<_> = self
             .body
+            .jumps
             .label_names
             .iter()
             .filter_map(|(name, state)| Some((*name, state.used.filter(|_| state.defined.is_none())?)))

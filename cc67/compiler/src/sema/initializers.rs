@@ -13,8 +13,7 @@ use super::places::Located;
 use crate::ast::{
     Expression, ExpressionKind, Initializer, InitializerItem, RecordKind, StringLiteral, TypeName,
 };
-use crate::diag::Diagnostic;
-use crate::lints::Lint;
+use crate::diag::{Diagnostic, Lint};
 use crate::source::Span;
 use crate::ty::{BitRange, QualifiedType, RecordId, Type, TypeId, Types};
 use crate::typed::{ExprId, ExprKind, LocalId, PlaceId, PlaceKind, StaticData};

@@ -5,8 +5,7 @@ use super::declarations::Declared;
 use super::scope::Entity;
 use super::specifiers::ImplicitInt;
 use crate::ast::{Declaration, Storage};
-use crate::diag::Diagnostic;
-use crate::lints::Lint;
+use crate::diag::{Diagnostic, Lint};
 use crate::names::Name;
 use crate::source::Span;
 use crate::ty::{QualifiedType, TypeId};
@@ -65,7 +64,7 @@ impl Sema<'_> {
         }
         let local = self.add_local(self.names.get(name).to_owned(), ty, span);
         self.body.locals[local].align = align;
-        self.locals_elsewhere.entry(name).or_insert_with(|| (self.body.name.clone(), span));
+        self.noted.locals_elsewhere.entry(name).or_insert_with(|| (self.body.name.clone(), span));
         self.scopes.bind(name, Entity::Local(local, ty), span);
         let Some(initializer) = initializer else { return };
         let Some((complete, effects)) = self.local_initializer(local, ty, initializer, span) else {

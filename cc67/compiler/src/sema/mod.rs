@@ -24,7 +24,6 @@ mod declarators;
 mod designators;
 mod enums;
 mod expressions;
-mod firmware_names;
 mod functions;
 mod initializers;
 mod literals;
@@ -44,18 +43,18 @@ mod symbols;
 mod tests;
 mod undeclared;
 
-pub use firmware_names::{FirmwareNames, Prototype};
 pub use initializers::MAX_VALUES;
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::ast;
 use crate::diag::{Diagnostic, Sink, TOO_MANY_ERRORS};
-use crate::foreign_words::Origin;
+use crate::firmware::FirmwareNames;
 use crate::names::{Name, Names};
 use crate::source::{SourceMap, Span};
 use crate::ty::{RecordId, TypeId, Types};
 use crate::typed::{Definition, Linkage, Unit};
+use crate::words::foreign::Origin;
 
 use body::Body;
 use functions::Pending;
@@ -83,11 +82,8 @@ pub fn analyze(
         scopes: Scopes::new(),
         body: Body::new(String::new(), Types::VOID),
         persist,
-        broken: BTreeSet::new(),
-        unsigned_enums: BTreeSet::new(),
         unevaluated: 0,
-        origins: BTreeSet::new(),
-        locals_elsewhere: BTreeMap::new(),
+        noted: Noted::default(),
     };
     let pending = sema.declare_items(unit);
     let functions: Vec<_> = pending.into_iter().filter_map(|pending| sema.define_function(pending)).collect();
@@ -108,12 +104,18 @@ struct Sema<'a> {
     body: Body,
     /// The name of the memory that threads and the PC share.
     persist: Name,
+    /// Depth of operands that are only looked at for their type.
+    unevaluated: u32,
+    noted: Noted,
+}
+
+/// What was noted for later messages.
+#[derive(Debug, Default)]
+struct Noted {
     /// Structures with a wrong definition: what is said of their members would be wrong too.
     broken: BTreeSet<RecordId>,
     /// Where enumerations without negative constants, and their typedefs, are declared.
     unsigned_enums: BTreeSet<Span>,
-    /// Depth of operands that are only looked at for their type.
-    unevaluated: u32,
     /// Where words come from that other languages have and C does not.
     origins: BTreeSet<Origin>,
     /// Variables of functions: the function, and where it declares them.

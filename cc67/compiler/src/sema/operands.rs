@@ -6,8 +6,7 @@
 
 use super::Sema;
 use super::places::Located;
-use crate::diag::Diagnostic;
-use crate::lints::Lint;
+use crate::diag::{Diagnostic, Lint};
 use crate::source::Span;
 use crate::ty::{QualifiedType, Type, TypeId, Types};
 use crate::typed::{Callee, ExprId, ExprKind, PlaceId, PlaceKind};

@@ -128,11 +128,11 @@ impl Sema<'_> {
             if builder.members().len() > MEMBERS {
                 let message = format!("more than {MEMBERS} members");
                 self.report(Diagnostic::error(line.span, message).at("the rest is left out"));
-                self.broken.insert(record);
+                self.noted.broken.insert(record);
                 break;
             }
             if self.member_line(&mut builder, line).is_none() {
-                self.broken.insert(record);
+                self.noted.broken.insert(record);
             }
         }
         builder.finish()

@@ -3,8 +3,7 @@
 use super::Sema;
 use super::scope::Entity;
 use crate::ast::{BasicType, Expression, Specifiers, TypeName, TypeSpecifier};
-use crate::diag::Diagnostic;
-use crate::lints::Lint;
+use crate::diag::{Diagnostic, Lint};
 use crate::names::{Name, word};
 use crate::source::Span;
 use crate::ty::{QualifiedType, TypeId, Types};

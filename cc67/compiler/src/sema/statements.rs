@@ -164,9 +164,9 @@ impl Sema<'_> {
 
     fn loop_body(&mut self, body: &Statement) -> Vec<Stmt> {
         // `break` means this loop: an outer switch is not reached from here, its cases are.
-        self.body.loops += 1;
+        self.body.jumps.loops += 1;
         let body = self.scoped(body);
-        self.body.loops -= 1;
+        self.body.jumps.loops -= 1;
         body
     }
 
@@ -210,12 +210,12 @@ impl Sema<'_> {
 
     fn leave_statement(&mut self, kind: StmtKind, span: Span, out: &mut Vec<Stmt>) {
         let is_break = matches!(kind, StmtKind::Break);
-        if self.body.loops > 0 || (is_break && !self.body.switches.is_empty()) {
+        if self.body.jumps.loops > 0 || (is_break && !self.body.jumps.switches.is_empty()) {
             out.push(Stmt { kind, span });
             return;
         }
         // A `case` outside of its `switch` has said all that there is to say.
-        if is_break && self.body.has_lost_case {
+        if is_break && self.body.jumps.has_lost_case {
             return;
         }
         let message = match is_break {
@@ -228,8 +228,8 @@ impl Sema<'_> {
     fn label(&mut self, name: Name, span: Span, place: fn(&mut LabelState) -> &mut Option<Span>) -> LabelId {
         let body = &mut self.body;
         let names = self.names;
-        let state = body.label_names.entry(name).or_insert_with(|| LabelState {
-            label: body.labels.push(Label { name: names.get(name).to_owned(), span, address: None }),
+        let state = body.jumps.label_names.entry(name).or_insert_with(|| LabelState {
+            label: body.jumps.labels.push(Label { name: names.get(name).to_owned(), span, address: None }),
             defined: None,
             used: None,
         });
@@ -238,12 +238,12 @@ impl Sema<'_> {
     }
 
     fn define_label(&mut self, name: Name, span: Span) -> LabelId {
-        if let Some(first) = self.body.label_names.get(&name).and_then(|state| state.defined) {
+        if let Some(first) = self.body.jumps.label_names.get(&name).and_then(|state| state.defined) {
             let message = format!("label `{}` is defined twice", self.spelling(name));
             self.report(Diagnostic::error(span, message).label(first, "first defined here"));
         }
         let label = self.label(name, span, |state| &mut state.defined);
-        self.body.labels[label].span = span;
+        self.body.jumps.labels[label].span = span;
         label
     }
 
@@ -254,8 +254,8 @@ impl Sema<'_> {
             return None;
         }
         let label = self.label(name, name_span, |state| &mut state.used);
-        let next = 1 + self.body.labels.values().filter(|label| label.address.is_some()).count() as u32;
-        let number = *self.body.labels[label].address.get_or_insert(next);
+        let next = 1 + self.body.jumps.labels.values().filter(|label| label.address.is_some()).count() as u32;
+        let number = *self.body.jumps.labels[label].address.get_or_insert(next);
         let pointer = self.types.pointer_to(Types::VOID);
         Some(self.body.int(i64::from(number), pointer, span))
     }
@@ -312,7 +312,7 @@ impl Sema<'_> {
         let (result, span) = (self.body.result, expression.span);
         let operand = self.operand(expression)?;
         let from = self.record_source(operand, result, Target::Return, span)?;
-        let pointer = self.body.load_local(self.body.result_pointer?, span);
+        let pointer = self.body.load_local(self.body.hidden.result_pointer?, span);
         let to = self.body.place(PlaceKind::Pointer(pointer, 0), result, span);
         Some(self.body.expr(ExprKind::Copy { to, from }, Types::VOID, span))
     }

@@ -3,8 +3,7 @@
 use super::Sema;
 use super::constants;
 use crate::ast::{Expression, Statement};
-use crate::diag::Diagnostic;
-use crate::lints::Lint;
+use crate::diag::{Diagnostic, Lint};
 use crate::source::Span;
 use crate::ty::{TypeId, Types};
 use crate::typed::{Case, Stmt, StmtKind};
@@ -54,12 +53,12 @@ impl Sema<'_> {
             self.placeholder(value.span)
         };
         ty = self.body.ty(chosen);
-        self.body.switches.push(Switch { ty, is_broken, cases: Vec::new(), default: None });
+        self.body.jumps.switches.push(Switch { ty, is_broken, cases: Vec::new(), default: None });
         let mut inner = Vec::new();
         self.scopes.enter();
         self.statement(body, &mut inner);
         self.scopes.leave();
-        let Some(Switch { cases, default, .. }) = self.body.switches.pop() else { return };
+        let Some(Switch { cases, default, .. }) = self.body.jumps.switches.pop() else { return };
         self.check_cases(&cases, ty.is_unsigned());
         let cases = cases.into_iter().map(|(case, _)| case).collect();
         let kind = StmtKind::Switch { value: chosen, cases, has_default: default.is_some(), body: inner };
@@ -74,15 +73,15 @@ impl Sema<'_> {
         span: Span,
         out: &mut Vec<Stmt>,
     ) {
-        let Some(ty) = self.body.switches.last().map(|switch| switch.ty) else {
-            self.body.has_lost_case = true;
+        let Some(ty) = self.body.jumps.switches.last().map(|switch| switch.ty) else {
+            self.body.jumps.has_lost_case = true;
             self.report(
                 Diagnostic::error(span, "`case` outside of a `switch`")
                     .help("is there a `}` too many before it?"),
             );
             return;
         };
-        if self.body.switches.last().is_some_and(|switch| switch.is_broken) {
+        if self.body.jumps.switches.last().is_some_and(|switch| switch.is_broken) {
             return;
         }
         let low = self.constant_integer(first, "the value of a `case`");
@@ -98,7 +97,7 @@ impl Sema<'_> {
             self.report(Diagnostic::error(label, "this range of cases is empty"));
             return;
         }
-        let Some(switch) = self.body.switches.last_mut() else { return };
+        let Some(switch) = self.body.jumps.switches.last_mut() else { return };
         let number = switch.cases.len() as u32;
         switch.cases.push((case, label));
         out.push(Stmt { kind: StmtKind::Case(number), span });
@@ -106,7 +105,7 @@ impl Sema<'_> {
 
     /// `default:`
     pub(super) fn default_label(&mut self, span: Span, out: &mut Vec<Stmt>) {
-        let Some(switch) = self.body.switches.last_mut() else {
+        let Some(switch) = self.body.jumps.switches.last_mut() else {
             self.report(Diagnostic::error(span, "`default` outside of a `switch`"));
             return;
         };

@@ -9,13 +9,12 @@ use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, Origin};
 use super::Sema;
 use super::advice::{Advice, HEADER_HELP};
 use super::scope::Entity;
-use crate::diag::Diagnostic;
-use crate::lints::Lint;
+use crate::diag::{Diagnostic, Lint};
 use crate::names::Name;
 use crate::source::Span;
-use crate::suggest::suggest;
 use crate::ty::{FunctionType, ParameterTypes, QualifiedType, Type, TypeId, Types};
 use crate::typed::{Callee, Linkage, SymbolId};
+use crate::words::suggest;
 
 impl Sema<'_> {
     /// A call of a name without declaration.

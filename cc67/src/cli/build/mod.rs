@@ -13,9 +13,10 @@ use kmotiondef::ThreadId;
 
 use super::options::CompilerOptions;
 use super::{Exit, output, terminal, units};
+use compiler::diag::levels::Levels;
+use compiler::image::{self, download, map};
 use compiler::link::Linked;
-use compiler::lints::levels::Levels;
-use compiler::{Compilation, download, image, link_units, map};
+use compiler::{Compilation, link_units};
 
 /// Arguments of `cc67 build`.
 #[derive(Debug, Args)]
@@ -150,7 +151,7 @@ impl Arguments {
                 Emit::Image => output::write(&program, &bytes)?,
                 Emit::Map => output::write(&names::beside(&program, "map"), map::render(linked).as_bytes())?,
                 Emit::Bytecode => {
-                    let text = vm::text::disassemble(&linked.text);
+                    let text = vm::text::disassemble(&linked.text.bytes);
                     output::write(&names::beside(&program, "txt"), text.as_bytes())?;
                 }
                 Emit::Download => {
@@ -190,9 +191,9 @@ fn sizes(linked: &Linked, warnings: usize) -> String {
         1 => "1 Warning".to_owned(),
         more => format!("{more} Warnings"),
     };
-    let (text, data) = (linked.text.len(), linked.data.len());
-    let total = linked.bss_address.get() + linked.bss_size - linked.text_address.get();
-    format!("No Errors, {warnings}, text={text}, bss={}, data={data}, total={total}", linked.bss_size)
+    let (text, data) = (linked.text.bytes.len(), linked.data.bytes.len());
+    let total = linked.bss.address.get() + linked.bss.size - linked.text.address.get();
+    format!("No Errors, {warnings}, text={text}, bss={}, data={data}, total={total}", linked.bss.size)
 }
 
 /// Whether a path has one of the given extensions, in any letter case.

@@ -14,7 +14,7 @@ use runtime::loader::prepare;
 use vm::native::{Parts, object};
 
 use super::super::output;
-use compiler::reason::reason;
+use compiler::files::reason;
 
 /// The simulator library's file.
 const LIBRARY: &str = if cfg!(windows) { "cc67board.lib" } else { "libcc67board.a" };

@@ -6,7 +6,7 @@ use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, function_named};
 use runtime::commands::{COMMANDS, command_named};
 
 use crate::cli::run::seconds;
-use compiler::suggest;
+use compiler::words::suggest;
 
 /// What a line of the console's own asks for.
 #[derive(Clone, Debug, PartialEq)]
@@ -114,7 +114,7 @@ pub(super) fn help(name: Option<&str>) -> String {
         text += &format!("{};\n    {}\n", function.prototype(), function.doc.trim());
     }
     if text.is_empty() {
-        let similar = suggest::suggest(name, topics());
+        let similar = suggest(name, topics());
         let hint = similar.map_or(String::new(), |similar| format!("; did you mean `{similar}`?"));
         text = format!("nothing is known of `{name}`{hint}\n");
     }

@@ -23,14 +23,14 @@ use kmotiondef::{GuestAddr, ThreadId};
 use arguments::{Call, Request};
 
 use super::{Exit, output};
+use compiler::diag::levels::Levels;
 use compiler::diag::{Diagnostic, Severity};
 use compiler::firmware::{Firmware, FirmwareFile};
 use compiler::link::SectionAddresses;
-use compiler::lints::levels::Levels;
 use compiler::passes::Level;
 use compiler::pp::{self, Disk};
 use compiler::render::vendor;
-use compiler::{Compilation, Options, image, input};
+use compiler::{Compilation, Options, files, image};
 
 /// The name under which programs expect the vendor's compiler.
 const NAME: &str = "tcc67";
@@ -83,7 +83,7 @@ fn print(text: &str) {
 
 /// Compiles, links and writes; the error is all that the compiler says.
 fn compile(request: &Request) -> Result<(), String> {
-    let text = input::read(&request.source)
+    let text = files::read(&request.source)
         .map_err(|_| format!("tcc: file '{}' not found\n", request.source.display()))?;
     let firmware = request.firmware.as_deref().map(read_firmware).transpose()?;
     let options = options(request, firmware);
@@ -106,7 +106,7 @@ fn compile(request: &Request) -> Result<(), String> {
 
 /// The firmware's symbols.
 fn read_firmware(path: &Path) -> Result<Firmware, String> {
-    let bytes = input::read(path).map_err(|_| format!("tcc: file '{}' not found\n", path.display()))?;
+    let bytes = files::read(path).map_err(|_| format!("tcc: file '{}' not found\n", path.display()))?;
     let file = FirmwareFile::read(&bytes).map_err(|error| format!("tcc: '{}': {error}\n", path.display()))?;
     Ok(Firmware::File(Arc::new(file)))
 }

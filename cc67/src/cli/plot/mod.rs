@@ -17,7 +17,7 @@ use clap::Args;
 use super::run::cannot_read;
 use super::{Exit, output};
 use chart::Chart;
-use compiler::input;
+use compiler::files;
 
 /// Arguments of `cc67 plot`.
 #[derive(Debug, Args)]
@@ -35,7 +35,7 @@ pub(super) fn plot(arguments: &Arguments) -> Result<Exit> {
     let Some(path) = &arguments.data else { return Ok(Exit::WrongInput) };
     let picture = arguments.output.clone().unwrap_or_else(|| path.with_extension("svg"));
     let form = Form::of(&picture)?;
-    let bytes = input::read_up_to(path, input::DATA_BYTES).map_err(|error| cannot_read(path, &error))?;
+    let bytes = files::read_up_to(path, files::DATA_BYTES).map_err(|error| cannot_read(path, &error))?;
     let text = String::from_utf8_lossy(&bytes).into_owned();
     let title = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let is_dump = path.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case("vcd"));

@@ -12,9 +12,9 @@ use kmotiondef::{GuestAddr, ThreadId};
 use runtime::trace::{Formula, Item, Quantity, View};
 
 use compiler::Options;
-use compiler::image::kind_of;
 use compiler::inspect::{Inspection, Kind};
 use compiler::object::SymbolKind;
+use compiler::object::kind_of;
 use compiler::pp::Disk;
 use compiler::watch::{self, Expression, Reader, Scope};
 

@@ -11,9 +11,10 @@ mod statements;
 
 use kmotiondef::CType;
 
-use super::{FirmwareNames, Prototype, analyze, print};
-use crate::diag::{Severity, Sink};
-use crate::lints::{Lint, Preset, check as run_lints};
+use super::{analyze, print};
+use crate::diag::{Lint, Preset, Severity, Sink};
+use crate::firmware::{FirmwareNames, Prototype};
+use crate::lints::check as run_lints;
 use crate::names::Names;
 use crate::parse::parse;
 use crate::pp::{MemoryFiles, Options, preprocess};

@@ -3,8 +3,7 @@
 //! A switch that names a lint wins over one that names a group, wherever it stands; among
 //! switches of one kind the last wins. `-w` silences everything.
 
-use crate::diag::{Diagnostic, Severity};
-use crate::lints::{Lint, Preset};
+use crate::diag::{Diagnostic, Lint, Preset, Severity};
 
 /// The level of every lint.
 #[derive(Clone, Debug, Default)]
@@ -49,7 +48,7 @@ impl Lint {
         let found = Self::ALL.iter().find(|lint| lint.name() == plain);
         found.copied().ok_or_else(|| UnknownLint {
             name: text.to_owned(),
-            suggestion: crate::suggest::suggest(plain, Self::ALL.iter().map(|lint| lint.name())),
+            suggestion: crate::words::suggest(plain, Self::ALL.iter().map(|lint| lint.name())),
         })
     }
 }

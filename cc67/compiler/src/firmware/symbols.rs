@@ -6,7 +6,7 @@ use kmotiondef::firmware::{ABSENT, FIRMWARE_FUNCTIONS, function_named};
 use kmotiondef::limits::VERSION_STAMP;
 use kmotiondef::variables::variable_named;
 
-use crate::firmware::BuiltIn;
+use super::{BuiltIn, FirmwareNames};
 use crate::ir::function::Signature;
 use crate::ir::inst::Class;
 
@@ -59,7 +59,7 @@ impl FirmwareSymbols for BuiltIn {
     }
 
     fn symbol_names(&self) -> Box<dyn Iterator<Item = &str> + '_> {
-        crate::sema::FirmwareNames::names(self)
+        FirmwareNames::names(self)
     }
 }
 

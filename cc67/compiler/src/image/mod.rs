@@ -9,7 +9,8 @@
 //! - static functions are symbols like others, and of the firmware's symbols only those that the
 //!   program refers to are listed.
 
-use std::num::NonZeroU16;
+pub mod download;
+pub mod map;
 
 use coff::raw::{BoundaryAux, FunctionAux};
 use coff::{
@@ -19,8 +20,7 @@ use coff::{
 use kmotiondef::GuestAddr;
 
 use crate::link::{Linked, LinkedFunction, LinkedSymbol, Section};
-use crate::object::SymbolKind;
-use crate::typed::Linkage;
+use crate::object::{base_type, class, function_type, statement, to_u16};
 
 /// Writes the image of a program.
 ///
@@ -71,12 +71,12 @@ fn bare(linked: &Linked) -> Image {
 fn header(linked: &Linked) -> Program {
     Program {
         version_stamp: linked.version_stamp,
-        text_size: linked.text.len() as u32,
-        data_size: linked.data.len() as u32,
-        bss_size: linked.bss_size,
+        text_size: linked.text.bytes.len() as u32,
+        data_size: linked.data.bytes.len() as u32,
+        bss_size: linked.bss.size,
         entry: linked.entry.get(),
-        text_start: linked.text_address.get(),
-        data_start: linked.data_address.get(),
+        text_start: linked.text.address.get(),
+        data_start: linked.data.address.get(),
     }
 }
 
@@ -93,9 +93,9 @@ fn sections(linked: &Linked) -> Vec<coff::Section> {
     };
     let text_flags = (SectionFlags::TEXT | SectionFlags::DATA).with_align(32);
     vec![
-        section(".text", linked.text_address, text_flags, Contents::Data(linked.text.clone())),
-        section(".data", linked.data_address, SectionFlags::DATA, Contents::Data(linked.data.clone())),
-        section(".bss", linked.bss_address, SectionFlags::BSS, Contents::Uninitialised(linked.bss_size)),
+        section(".text", linked.text.address, text_flags, Contents::Data(linked.text.bytes.clone())),
+        section(".data", linked.data.address, SectionFlags::DATA, Contents::Data(linked.data.bytes.clone())),
+        section(".bss", linked.bss.address, SectionFlags::BSS, Contents::Uninitialised(linked.bss.size)),
     ]
 }
 
@@ -196,12 +196,12 @@ impl Table {
 
     /// The limits of the sections, from which the vendor's tools compute sizes.
     fn markers(&mut self, linked: &Linked) {
-        let text = linked.text_address.get();
-        let text_end = text + linked.text.len() as u32;
-        let data = linked.data_address.get();
-        let data_end = data + linked.data.len() as u32;
-        let bss = linked.bss_address.get();
-        let bss_end = bss + linked.bss_size;
+        let text = linked.text.address.get();
+        let text_end = text + linked.text.bytes.len() as u32;
+        let data = linked.data.address.get();
+        let data_end = data + linked.data.bytes.len() as u32;
+        let bss = linked.bss.address.get();
+        let bss_end = bss + linked.bss.size;
         for (name, value) in [
             ("_etext", text_end),
             ("_edata", data_end),
@@ -217,52 +217,4 @@ impl Table {
             self.push(name, value, SectionNumber::ABSOLUTE, ty, StorageClass::EXTERNAL, &[]);
         }
     }
-}
-
-/// A line entry. The format counts lines in 16 bits; later ones cannot be recorded.
-pub(crate) fn statement(address: u32, line: u32) -> Option<Line> {
-    let line = u16::try_from(line).ok().and_then(NonZeroU16::new)?;
-    Some(Line::Statement { address, line })
-}
-
-/// The type that the format records for every function.
-pub(crate) const fn function_type() -> SymbolType {
-    SymbolType::new(BaseType::INT).derived(Derivation::Function)
-}
-
-pub(crate) const fn class(linkage: Linkage) -> StorageClass {
-    match linkage {
-        Linkage::External => StorageClass::EXTERNAL,
-        Linkage::Internal => StorageClass::STATIC,
-    }
-}
-
-/// The type that the format records for a kind of symbol.
-pub(crate) const fn base_type(kind: SymbolKind) -> SymbolType {
-    SymbolType::new(match kind {
-        SymbolKind::Function => return function_type(),
-        SymbolKind::Char => BaseType::CHAR,
-        SymbolKind::Short => BaseType::SHORT,
-        SymbolKind::Float => BaseType::FLOAT,
-        SymbolKind::Double => BaseType::DOUBLE,
-        SymbolKind::Int | SymbolKind::Other => BaseType::INT,
-    })
-}
-
-/// The kind of symbol that a type stands for: the reverse, as far as the format tells.
-#[must_use]
-pub fn kind_of(ty: SymbolType) -> SymbolKind {
-    match ty.base() {
-        _ if ty == function_type() => SymbolKind::Function,
-        BaseType::CHAR => SymbolKind::Char,
-        BaseType::SHORT => SymbolKind::Short,
-        BaseType::FLOAT => SymbolKind::Float,
-        BaseType::DOUBLE => SymbolKind::Double,
-        _ => SymbolKind::Int,
-    }
-}
-
-/// What fits 16 bits, else the largest number that does.
-pub(crate) fn to_u16(number: u32) -> u16 {
-    u16::try_from(number).unwrap_or(u16::MAX)
 }

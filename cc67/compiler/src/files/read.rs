@@ -4,11 +4,12 @@ use std::fs::File;
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
-use crate::pp::limits;
-
 /// Bytes of a source, an image, a machine file. A device that never ends, or a film with the wrong name, does not fill
 /// the memory.
-pub const FILE_BYTES: u64 = limits::FILE_BYTES as u64;
+pub const FILE_BYTES: u64 = SOURCE_BYTES as u64;
+
+/// The same for a source alone.
+pub const SOURCE_BYTES: u32 = 32 << 20;
 
 /// Bytes of saved data that are drawn.
 pub const DATA_BYTES: u64 = 512 << 20;

@@ -3,7 +3,12 @@
 //! Analysis goes on after a diagnostic; the sink collects. Rendering is a matter of the
 //! caller (`render` for people).
 
-use crate::lints::Lint;
+pub mod levels;
+mod lint;
+
+pub(crate) use lint::for_each_lint;
+pub use lint::{Lint, Preset};
+
 use crate::source::Span;
 
 /// How bad it is.

@@ -6,7 +6,7 @@
 use crate::diag::Diagnostic;
 use crate::object::{Definition, Object};
 use crate::source::Span;
-use crate::suggest::suggest;
+use crate::words::suggest;
 
 /// Programs that are named; more are counted.
 const NAMED: usize = 4;

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use coff::{Image, Section};
 
-use crate::inspect::{Entry, Inspection};
+use super::{Entry, Inspection};
 
 /// Most differing symbols that are listed.
 const LISTED: usize = 40;

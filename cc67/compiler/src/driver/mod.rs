@@ -1,4 +1,11 @@
 //! From source texts to a linked program: the stages in their order.
+//!
+//! [`front`] makes the typed tree of a text, [`generate`] an object of the tree; [`compile`] and [`link_units`] are
+//! what commands call. Expressions that are watched take the same [`front`].
+
+mod includers;
+mod library;
+mod no_main;
 
 use std::hint::black_box;
 use std::panic::resume_unwind;
@@ -7,15 +14,20 @@ use std::thread;
 
 use kmotiondef::ThreadId;
 
+use includers::includers;
+
+use crate::bytecode::Generator;
 use crate::diag::{Diagnostic, Sink};
 use crate::firmware::Firmware;
-use crate::includers::includers;
+use crate::ir::function::Function;
 use crate::link::{self, LinkErrorKind, Linked, SectionAddresses};
 use crate::names::Names;
-use crate::object::{self, Object};
-use crate::passes::Level;
-use crate::source::SourceMap;
-use crate::{binary, bytecode, entry, library, lints, parse, pp, sema};
+use crate::object::{self, About, Object, UnitBuilder};
+use crate::passes::inline::Candidates;
+use crate::passes::{self, Level};
+use crate::source::{FileId, SourceMap};
+use crate::typed::Unit;
+use crate::{files, lints, lower, parse, pp, sema};
 
 /// How to compile.
 #[derive(Clone, Debug)]
@@ -112,7 +124,7 @@ pub(crate) fn compile_here(
 ) -> Compilation {
     let (mut sources, mut names, mut sink) = (SourceMap::new(), Names::new(), Sink::new());
     let name = path.to_string_lossy().into_owned();
-    if let Some(what) = binary::not_source(&text) {
+    if let Some(what) = files::not_source(&text) {
         sink.report(Diagnostic::global_error(format!("{} is not C source text but {what}", path.display())));
         return Compilation { name, sources, sink, object: None, included_by: Vec::new() };
     }
@@ -122,20 +134,64 @@ pub(crate) fn compile_here(
         return Compilation { name, sources, sink, object: None, included_by: Vec::new() };
     }
     let main = sources.add_file(path.to_string_lossy(), Some(path), text, None);
-    let tokens = pp::preprocess(main, &options.preprocessor, files, &mut sources, &mut names, &mut sink);
-    let tree = parse::parse(&tokens, &sources, &names, &mut sink);
-    drop(tokens);
-    let unit = sema::analyze(&tree, &mut names, &sources, &options.firmware, &mut sink);
-    drop(tree);
+    let unit = front(main, options, files, &mut sources, &mut names, &mut sink);
     lints::check(&unit, &names, &sources, &options.firmware, &mut sink);
-    let object =
-        (!sink.has_errors()).then(|| bytecode::unit::compile(&unit, &sources, options.level, &mut sink));
+    let object = (!sink.has_errors()).then(|| generate(&unit, &sources, options.level, &mut sink));
     let object = object.filter(|_| !sink.has_errors());
     let included_by = if unit.defines("main") { Vec::new() } else { includers(path, files) };
     if sink.has_errors() && !included_by.is_empty() {
-        sink.report(entry::remark(&included_by));
+        sink.report(no_main::remark(&included_by));
     }
     Compilation { name, sources, sink, object, included_by }
+}
+
+/// The typed tree of the text with number `main`; complete even after errors.
+pub fn front(
+    main: FileId,
+    options: &Options,
+    files: &dyn pp::Files,
+    sources: &mut SourceMap,
+    names: &mut Names,
+    sink: &mut Sink,
+) -> Unit {
+    let tokens = pp::preprocess(main, &options.preprocessor, files, sources, names, sink);
+    let tree = parse::parse(&tokens, sources, names, sink);
+    drop(tokens);
+    sema::analyze(&tree, names, sources, &options.firmware, sink)
+}
+
+/// The object of a unit that has no errors.
+///
+/// Functions that are too large for the machine are reported to `sink`.
+#[must_use]
+pub fn generate(unit: &Unit, sources: &SourceMap, level: Level, sink: &mut Sink) -> Object {
+    let mut builder = UnitBuilder::new(unit, sources);
+    let mut generator = Generator::default();
+    let definitions = lower::Definitions::new(unit, builder.signatures());
+    let mut candidates = Candidates::default();
+    for function in &unit.functions {
+        let mut ir = lower::lower(unit, function, &definitions, builder.signatures());
+        optimize(&mut ir, level, &mut candidates, sources);
+        let about = About { symbol: ir.symbol, signature: ir.signature, end: ir.end };
+        match generator.function(ir, builder.name(about.symbol)) {
+            Ok(generated) => builder.function(about, generated),
+            Err(error) => sink.report(*error),
+        }
+    }
+    builder.finish(generator.finish())
+}
+
+/// Runs the passes over a function; small functions before it may become a part of it.
+fn optimize(ir: &mut Function, level: Level, candidates: &mut Candidates, sources: &SourceMap) {
+    passes::run(ir, level);
+    if level == Level::None {
+        return;
+    }
+    let file = sources.place(ir.span).map_or(0, |place| place.file.as_u32());
+    candidates.offer(ir, file);
+    if candidates.run(ir, file) {
+        passes::run(ir, level);
+    }
 }
 
 impl Compilation {
@@ -176,7 +232,7 @@ pub fn link_units(units: &mut [Compilation], thread: ThreadId, options: &Options
         return None;
     }
     let mut objects: Vec<Object> = units.iter_mut().filter_map(|unit| unit.object.take()).collect();
-    objects.extend(library::members_for(&objects));
+    objects.extend(library_members(&objects));
     let options = link::Options {
         thread,
         firmware: &options.firmware,
@@ -199,7 +255,7 @@ pub fn link_units(units: &mut [Compilation], thread: ThreadId, options: &Options
                 // The places of library members are in no source that the user has.
                 diagnostic.span = diagnostic.span.filter(|_| index.is_some());
                 if let (LinkErrorKind::NoMain, Some(object)) = (&error.kind, objects.first()) {
-                    diagnostic = entry::advise(diagnostic, object, &unit.included_by);
+                    diagnostic = no_main::advise(diagnostic, object, &unit.included_by);
                 }
                 if diagnostic.span.is_none() {
                     diagnostic.message = format!("{}: {}", unit.name, diagnostic.message);
@@ -207,6 +263,42 @@ pub fn link_units(units: &mut [Compilation], thread: ThreadId, options: &Options
                 unit.sink.report(diagnostic);
             }
             None
+        }
+    }
+}
+
+/// The members of the C library that `objects` use and do not define, compiled.
+fn library_members(objects: &[Object]) -> Vec<Object> {
+    let compiled = |member: &library::Member| compile_library(member).object;
+    library::needed_by(objects).filter_map(compiled).collect()
+}
+
+fn compile_library(member: &library::Member) -> Compilation {
+    let text = member.text.as_bytes().to_vec();
+    compile_here(Path::new(member.file), text, &Options::default(), &library::NoFiles)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diag::Lint;
+    use crate::object::Definition;
+
+    #[test]
+    fn every_member_of_the_library_compiles_without_a_word() {
+        for member in library::MEMBERS {
+            let compilation = compile_library(member);
+            let mut said = compilation.diagnostics();
+            // The names are the firmware's on purpose.
+            said.retain(|diagnostic| diagnostic.lint != Some(Lint::Portability));
+            assert!(said.is_empty(), "{}: {said:?}", member.file);
+            let object = compilation.object.expect("no errors");
+            for name in member.names {
+                let is_defined = |symbol: &object::Symbol| {
+                    symbol.name == *name && matches!(symbol.definition, Definition::Function(_))
+                };
+                assert!(object.symbols.values().any(is_defined), "{name}");
+            }
         }
     }
 }

@@ -7,26 +7,25 @@
 use std::io;
 use std::path::Path;
 
-use crate::driver::{Options, compile_here};
 use crate::object::{Definition, Object};
 use crate::pp::Files;
 use crate::typed::Linkage;
 
 /// A file of the library and the functions in it.
-struct Member {
-    names: &'static [&'static str],
-    file: &'static str,
-    text: &'static str,
+pub(super) struct Member {
+    pub(super) names: &'static [&'static str],
+    pub(super) file: &'static str,
+    pub(super) text: &'static str,
 }
 
-const MEMBERS: &[Member] = &[
+pub(super) const MEMBERS: &[Member] = &[
     Member { names: &["qsort"], file: "qsort.c", text: include_str!("library/qsort.c") },
     Member { names: &["bsearch"], file: "bsearch.c", text: include_str!("library/bsearch.c") },
     Member { names: &["atexit", "exit"], file: "atexit.c", text: include_str!("library/atexit.c") },
 ];
 
 /// The library needs no other files.
-struct NoFiles;
+pub(super) struct NoFiles;
 
 impl Files for NoFiles {
     fn read(&self, _: &Path) -> io::Result<Vec<u8>> {
@@ -38,9 +37,9 @@ impl Files for NoFiles {
     }
 }
 
-/// The members that `objects` use and do not define, compiled. The first name of a member asks for it.
-pub(crate) fn members_for(objects: &[Object]) -> Vec<Object> {
-    MEMBERS.iter().filter(|member| is_wanted(objects, member)).filter_map(compiled).collect()
+/// The members that `objects` use and do not define. The first name of a member asks for it.
+pub(super) fn needed_by(objects: &[Object]) -> impl Iterator<Item = &'static Member> + '_ {
+    MEMBERS.iter().filter(|member| is_wanted(objects, member))
 }
 
 fn is_wanted(objects: &[Object], member: &Member) -> bool {
@@ -59,34 +58,4 @@ fn is_wanted(objects: &[Object], member: &Member) -> bool {
         })
     };
     member.names.first().is_some_and(|name| uses(name)) && !member.names.iter().any(defines)
-}
-
-fn compiled(member: &Member) -> Option<Object> {
-    let text = member.text.as_bytes().to_vec();
-    compile_here(Path::new(member.file), text, &Options::default(), &NoFiles).object
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::lints::Lint;
-
-    #[test]
-    fn every_member_compiles_without_a_word() {
-        for member in MEMBERS {
-            let text = member.text.as_bytes().to_vec();
-            let compilation = compile_here(Path::new(member.file), text, &Options::default(), &NoFiles);
-            let mut said = compilation.diagnostics();
-            // The names are the firmware's on purpose.
-            said.retain(|diagnostic| diagnostic.lint != Some(Lint::Portability));
-            assert!(said.is_empty(), "{}: {said:?}", member.file);
-            let object = compilation.object.expect("no errors");
-            for name in member.names {
-                let is_defined = |symbol: &crate::object::Symbol| {
-                    symbol.name == *name && matches!(symbol.definition, Definition::Function(_))
-                };
-                assert!(object.symbols.values().any(is_defined), "{name}");
-            }
-        }
-    }
 }

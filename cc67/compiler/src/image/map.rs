@@ -22,9 +22,9 @@ fn write(out: &mut String, linked: &Linked) -> fmt::Result {
     writeln!(out, "program for thread {}, entry {}\n", linked.thread, linked.entry)?;
     writeln!(out, "section  address     bytes")?;
     for (name, address, size) in [
-        (".text", linked.text_address, linked.text.len()),
-        (".data", linked.data_address, linked.data.len()),
-        (".bss", linked.bss_address, linked.bss_size as usize),
+        (".text", linked.text.address, linked.text.bytes.len()),
+        (".data", linked.data.address, linked.data.bytes.len()),
+        (".bss", linked.bss.address, linked.bss.size as usize),
     ] {
         writeln!(out, "{name:8} {:08x} {size:8}", address.get())?;
     }

@@ -1,0 +1,40 @@
+//! What the instructions of a program refer to: functions, the firmware, constants.
+
+use vm::op::{Op, WORD};
+use vm::operand::SigRef;
+use vm::program::Program;
+
+/// What an instruction refers to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Reference {
+    /// It calls the program's function at this address.
+    Call(u32),
+    /// It calls the firmware's function at this address.
+    Firmware(u32),
+    /// It calls through a pointer, with this signature.
+    Pointer(SigRef),
+    /// A number, or an address that is used as a value.
+    Number(u32),
+    /// A floating-point constant.
+    Float(f64),
+    /// The same in single precision.
+    Single(f32),
+    /// Anything else.
+    Nothing,
+}
+
+/// What the instruction with number `word` refers to.
+pub(crate) fn reference(program: &Program, word: usize) -> Reference {
+    match program.ops().get(word) {
+        Some(Op::Call { func }) => Reference::Call(program.base().get() + func.0 * WORD as u32),
+        Some(Op::CallFw { addr, .. }) => Reference::Firmware(addr.0),
+        Some(Op::CallPtr { sig, .. }) => Reference::Pointer(*sig),
+        Some(Op::ConstI32 { imm, .. }) => Reference::Number(imm.0.cast_unsigned()),
+        Some(Op::ConstF64 { pool, .. }) => program
+            .pool()
+            .get(pool.0 as usize)
+            .map_or(Reference::Nothing, |bits| Reference::Float(f64::from_bits(*bits))),
+        Some(Op::ConstF32 { bits, .. }) => Reference::Single(f32::from_bits(bits.0)),
+        _ => Reference::Nothing,
+    }
+}

@@ -1,0 +1,175 @@
+//! The words of a unit: how they are kept, moved and completed.
+//!
+//! In a unit a label counts from the unit's first word, and constants and signatures have the unit's own numbers. A
+//! program shares both among its units ([`Numbers`]), and its words move. Who links or writes objects sees ranges of
+//! words and bytes, not instructions.
+
+use std::ops::Range;
+
+use vm::op::{Op, WORD};
+use vm::operand::{Addr, Classes, Count, FuncRef, SigRef};
+
+use super::registers::Registers;
+use super::select::Code;
+use super::{Relocation, head};
+use crate::ir::function::Signature;
+use crate::ir::inst::SignatureId;
+use crate::source::Span;
+
+/// The words of a unit's functions.
+#[derive(Clone, Debug, Default)]
+pub struct Text(Vec<Op>);
+
+/// A function as it was added to a text.
+#[derive(Debug)]
+pub(crate) struct Added {
+    /// Its words, the `func` word first.
+    pub(crate) words: Range<u32>,
+    /// Words that hold addresses, ascending.
+    pub(crate) relocations: Vec<Relocation>,
+    /// The first word of each run of words that belong to one statement.
+    pub(crate) spans: Vec<(u32, Span)>,
+}
+
+/// The numbers that a unit's words have in a program.
+pub(crate) struct Numbers<'a> {
+    /// By how many words the function moves.
+    pub(crate) moved: u32,
+    /// The program's number of each constant.
+    pub(crate) pool: &'a [u32],
+    /// The program's number of each signature.
+    pub(crate) signatures: &'a [u16],
+}
+
+impl Text {
+    /// How many words there are.
+    pub(crate) fn len(&self) -> u32 {
+        self.0.len() as u32
+    }
+
+    /// Appends a function of `frame` bytes.
+    pub(super) fn append(
+        &mut self,
+        signature: SignatureId,
+        registers: &Registers,
+        frame: u32,
+        code: Code,
+    ) -> Added {
+        let first = self.len();
+        let regs = Count(registers.classes.len() as u16);
+        let sig = SigRef(signature.as_u32() as u16);
+        self.0.push(Op::Func { sig, regs, frame: Count((frame / WORD as u32) as u16) });
+        for classes in registers.classes.chunks(head::CLASSES) {
+            self.0.push(Op::Types { classes: Classes(head::bits(classes)) });
+        }
+        let start = self.len();
+        self.0.extend(code.ops.into_iter().map(|op| moved(op, start)));
+        let moved = |relocation: Relocation| Relocation { word: relocation.word + start, ..relocation };
+        // The function's own line begins at its `func` word.
+        let place = |(index, (word, span)): (usize, (u32, Span))| {
+            (if index == 0 { first } else { start + word }, span)
+        };
+        Added {
+            words: first..self.len(),
+            relocations: code.relocations.into_iter().map(moved).collect(),
+            spans: code.spans.into_iter().enumerate().map(place).collect(),
+        }
+    }
+
+    /// The bytes of each of these words in a program.
+    pub(crate) fn linked<'a>(
+        &'a self,
+        words: Range<u32>,
+        numbers: &'a Numbers<'_>,
+    ) -> impl Iterator<Item = [u8; WORD]> + 'a {
+        let words = self.0.get(words.start as usize..words.end as usize).unwrap_or_default();
+        words.iter().map(|op| numbers.apply(*op).encode())
+    }
+
+    /// Appends the bytes of all words to `bytes`, for an object file that has `head` words before them.
+    pub(crate) fn write(&self, head: u32, bytes: &mut Vec<u8>) {
+        for op in &self.0 {
+            bytes.extend_from_slice(&moved(*op, head).encode());
+        }
+    }
+
+    /// Reads the words that follow `head` others in an object file; `None` if one of them is not an instruction, or
+    /// names a constant or signature that the unit does not have.
+    pub(crate) fn read(
+        words: &[[u8; WORD]],
+        head: u32,
+        pool: &[u64],
+        signatures: &[Signature],
+    ) -> Option<Self> {
+        let words = words.get(head as usize..)?;
+        words.iter().map(|word| decode(*word, head, pool, signatures)).collect::<Option<_>>().map(Self)
+    }
+
+    /// Signature and bytes of the frame of the function that these words are; `None` if they are not one function.
+    pub(crate) fn function(&self, words: &Range<u32>) -> Option<(SignatureId, u32)> {
+        let (first, rest) = self.0.get(words.start as usize..words.end as usize)?.split_first()?;
+        let Op::Func { sig, frame, .. } = first else { return None };
+        if rest.iter().any(|op| matches!(op, Op::Func { .. })) {
+            return None;
+        }
+        Some((SignatureId::from_u32(u32::from(sig.0)), u32::from(frame.0) * WORD as u32))
+    }
+
+    /// Whether a function begins at a word.
+    pub(crate) fn begins_function(&self, word: u32) -> bool {
+        matches!(self.0.get(word as usize), Some(Op::Func { .. }))
+    }
+}
+
+impl Numbers<'_> {
+    fn apply(&self, mut op: Op) -> Op {
+        match &mut op {
+            Op::Br { to } | Op::BrIf { to, .. } | Op::BrUnless { to, .. } => {
+                to.0 = to.0.wrapping_add(self.moved);
+            }
+            Op::ConstI64 { pool, .. } | Op::ConstF64 { pool, .. } => {
+                pool.0 = self.pool.get(pool.0 as usize).copied().unwrap_or(pool.0);
+            }
+            Op::Func { sig, .. } | Op::CallPtr { sig, .. } | Op::CallFw { sig, .. } => {
+                sig.0 = self.signatures.get(usize::from(sig.0)).copied().unwrap_or(sig.0);
+            }
+            _ => {}
+        }
+        op
+    }
+}
+
+/// The word that calls the program's function at a byte of the text.
+pub(crate) fn call(offset: u32) -> [u8; WORD] {
+    Op::Call { func: FuncRef(offset / WORD as u32) }.encode()
+}
+
+/// The word that calls the firmware's function at an address; `signature` is the program's number of its signature.
+pub(crate) fn call_firmware(address: u32, signature: u16) -> [u8; WORD] {
+    Op::CallFw { sig: SigRef(signature), addr: Addr(address) }.encode()
+}
+
+/// The instruction with its label moved.
+fn moved(mut op: Op, by: u32) -> Op {
+    if let Op::Br { to } | Op::BrIf { to, .. } | Op::BrUnless { to, .. } = &mut op {
+        to.0 += by;
+    }
+    op
+}
+
+/// A word of a function; `None` if it refers to what the unit does not have.
+fn decode(word: [u8; WORD], head: u32, pool: &[u64], signatures: &[Signature]) -> Option<Op> {
+    let mut op = Op::decode(word)?;
+    match &mut op {
+        Op::Br { to } | Op::BrIf { to, .. } | Op::BrUnless { to, .. } => to.0 = to.0.checked_sub(head)?,
+        Op::ConstI64 { pool: number, .. } | Op::ConstF64 { pool: number, .. } => {
+            pool.get(number.0 as usize)?;
+        }
+        Op::Func { sig, .. } | Op::CallPtr { sig, .. } | Op::CallFw { sig, .. } => {
+            signatures.get(usize::from(sig.0))?;
+        }
+        Op::Program { .. } | Op::Sig { .. } | Op::Call { .. } => return None,
+        _ => {}
+    }
+    Some(op)
+}

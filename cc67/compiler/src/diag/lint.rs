@@ -1,0 +1,174 @@
+//! The warnings: one list, each with a code, a switch and a default.
+//!
+//! A row of `for_each_lint!` is a lint; its name is the `-W` switch. One that needs a search of its own names it as
+//! its pass, a file of [`lints`](crate::lints).
+
+/// Which switch makes a lint speak.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Preset {
+    /// None: it names a defect, and seldom anything else.
+    On,
+    /// `-Wall`: it names what is often a mistake.
+    All,
+    /// `-Wextra`: it asks for more care than most programs need.
+    Extra,
+}
+
+/// Hands every row of the lint table to the macro `$m`.
+macro_rules! for_each_lint {
+    ($m:ident) => {
+        $m! {
+            /// A function is called that nothing declares, or that needs its declaration.
+            ImplicitDeclaration = "implicit-declaration", On;
+            /// A function is called above its definition, all of it integers and pointers.
+            LateDefinition = "late-definition", Extra;
+            /// Firmware 4.34 lacks a function, or keeps a name for itself.
+            Portability = "portability", Extra, pass portability;
+            /// A declaration names no type, where programs seldom mean `int`.
+            ImplicitInt = "implicit-int", On;
+            /// The types of the parameters stand behind the parentheses, as before 1989.
+            OldStyleDefinition = "old-style-definition", On;
+            /// `main` has parameters, which the board does not pass.
+            MainParameters = "main-parameters", On;
+            /// A macro is defined again with another body.
+            MacroRedefined = "macro-redefined", On;
+            /// The text is not quite C, but the vendor's compiler takes it.
+            LaxText = "lax-text", On;
+            /// A function, local, enumerator or firmware name is declared twice.
+            Redeclared = "redeclared", On, pass firmware_name;
+            /// A prototype differs from the definition.
+            PrototypeMismatch = "prototype-mismatch", On;
+            /// A call has more arguments than the definition takes.
+            ExtraArguments = "extra-arguments", On;
+            /// An integer and a pointer are mixed without a cast.
+            IntPointer = "int-pointer", On;
+            /// Pointers to types of different size or kind are mixed without a cast.
+            PointerMismatch = "pointer-mismatch", On;
+            /// A variable is passed where its address is needed: the `&` is missing.
+            MissingAddress = "missing-address", On;
+            /// An assignment is used as a condition.
+            AssignmentCondition = "assignment-condition", On;
+            /// The name of a function stands where its result is meant: the `()` is missing.
+            MissingCall = "missing-call", On, pass missing_call;
+            /// A statement computes a value and drops it.
+            UnusedValue = "unused-value", On;
+            /// An `if` ends in a `;` on its own line.
+            EmptyBody = "empty-body", On;
+            /// The value of a void function is used.
+            VoidValue = "void-value", On;
+            /// A function whose value is used may end without one.
+            MissingReturn = "missing-return", On, pass missing_return;
+            /// A function that returns a value may end without one, and no caller uses it.
+            FallsOffEnd = "falls-off-end", All;
+            /// An integer constant has the suffix `f`.
+            IntegerFloatSuffix = "integer-float-suffix", On;
+            /// A constant shift count lies outside of the value's width.
+            ShiftCount = "shift-count", On;
+            /// A format conversion does not fit its argument.
+            Format = "format", On, pass format;
+            /// A local is read before anything is stored in it.
+            Uninitialized = "uninitialized", On, pass uninitialized;
+            /// A local may be read before anything is stored in it.
+            MaybeUninitialized = "maybe-uninitialized", All;
+            /// A string is longer than the array it initialises.
+            LongString = "long-string", On;
+            /// A `const` object is changed.
+            ConstWrite = "const-write", On;
+            /// An array is read or written at an element that it does not have.
+            ArrayBounds = "array-bounds", On, pass array_bounds;
+            /// `persist.UserData` is indexed outside 0..199.
+            UserDataIndex = "user-data-index", On;
+            /// A `double` lies at an odd index of `persist.UserData`.
+            UserDataAlignment = "user-data-alignment", On;
+            /// A frame or a chain of calls is larger than the board's small stack.
+            StackSize = "stack-size", On, pass stack_size;
+            /// A function calls itself, so that the stack it needs is unknown.
+            Recursion = "recursion", Extra, pass recursion;
+            /// A floating-point value is compared with itself.
+            SelfComparison = "self-comparison", On, pass self_comparison;
+            /// An endless loop neither waits nor has an effect.
+            IdleLoop = "idle-loop", On, pass idle_loop;
+            /// A statement is indented as if the condition above it governed it.
+            MisleadingIndentation = "misleading-indentation", On;
+            /// A function that may wait is called in the call-back of the servo interrupt.
+            CallBackWait = "call-back-wait", On, pass call_back_wait;
+            /// A local copy of `KMotionDef.h` belongs to another firmware.
+            HeaderMismatch = "header-mismatch", On, pass header_mismatch;
+            /// A variable of a function is never used.
+            UnusedVariable = "unused-variable", All, pass unused_variable;
+            /// `main` is declared `void`.
+            VoidMain = "void-main", Extra, pass void_main;
+            /// A number is stored in a type that cannot hold all of it.
+            Conversion = "conversion", Extra;
+            /// A signed and an unsigned value are compared.
+            SignCompare = "sign-compare", Extra;
+            /// Standard C does not allow it, and the vendor's compiler accepts it.
+            Extension = "extension", On;
+        }
+    };
+}
+
+macro_rules! define_lints {
+    ($($(#[doc = $doc:literal])+ $variant:ident = $name:literal, $preset:ident $(, pass $pass:ident)?;)*) => {
+        /// A warning that a switch controls.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+        pub enum Lint {
+            $($(#[doc = $doc])+ $variant,)*
+        }
+
+        impl Lint {
+            /// Every lint in the order of the table.
+            pub const ALL: &'static [Self] = &[$(Self::$variant),*];
+
+            /// The name of its switch, without `-W`: what messages show and `--explain` takes.
+            #[must_use]
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $name,)*
+                }
+            }
+
+            /// What it reports, in one sentence.
+            #[must_use]
+            pub const fn summary(self) -> &'static str {
+                match self {
+                    $(Self::$variant => concat!($($doc),+).trim_ascii_start(),)*
+                }
+            }
+
+            /// The switch that it waits for.
+            #[must_use]
+            pub const fn preset(self) -> Preset {
+                match self {
+                    $(Self::$variant => Preset::$preset,)*
+                }
+            }
+
+            /// Its page in Markdown: why it matters, programs that fire it, their repair.
+            #[must_use]
+            pub const fn page(self) -> &'static str {
+                match self {
+                    $(Self::$variant => include_str!(concat!("../lints/pages/", $name, ".md")),)*
+                }
+            }
+        }
+    };
+}
+for_each_lint!(define_lints);
+pub(crate) use for_each_lint;
+
+impl Lint {
+    /// How to switch it on and off, as the end of its page.
+    #[must_use]
+    pub fn switches(self) -> String {
+        let name = self.name();
+        let default = match self.preset() {
+            Preset::On => "on",
+            Preset::All => "off; also switched on by `-Wall`",
+            Preset::Extra => "off; also switched on by `-Wextra`",
+        };
+        format!(
+            "## Switches\n\n`-W{name}` on, `-Wno-{name}` off, `-Werror={name}` on and an error. Default: {default}.\n"
+        )
+    }
+}

@@ -1,0 +1,56 @@
+//! What objects and images write alike: kinds of symbols, lines, numbers of 16 bits.
+
+use std::num::NonZeroU16;
+
+use coff::{BaseType, Derivation, Line, StorageClass, SymbolType};
+
+use super::SymbolKind;
+use crate::typed::Linkage;
+
+/// A line entry. The format counts lines in 16 bits; later ones cannot be recorded.
+pub(crate) fn statement(address: u32, line: u32) -> Option<Line> {
+    let line = u16::try_from(line).ok().and_then(NonZeroU16::new)?;
+    Some(Line::Statement { address, line })
+}
+
+/// The type that the format records for every function.
+pub(crate) const fn function_type() -> SymbolType {
+    SymbolType::new(BaseType::INT).derived(Derivation::Function)
+}
+
+pub(crate) const fn class(linkage: Linkage) -> StorageClass {
+    match linkage {
+        Linkage::External => StorageClass::EXTERNAL,
+        Linkage::Internal => StorageClass::STATIC,
+    }
+}
+
+/// The type that the format records for a kind of symbol.
+pub(crate) const fn base_type(kind: SymbolKind) -> SymbolType {
+    SymbolType::new(match kind {
+        SymbolKind::Function => return function_type(),
+        SymbolKind::Char => BaseType::CHAR,
+        SymbolKind::Short => BaseType::SHORT,
+        SymbolKind::Float => BaseType::FLOAT,
+        SymbolKind::Double => BaseType::DOUBLE,
+        SymbolKind::Int | SymbolKind::Other => BaseType::INT,
+    })
+}
+
+/// The kind of symbol that a type stands for: the reverse, as far as the format tells.
+#[must_use]
+pub fn kind_of(ty: SymbolType) -> SymbolKind {
+    match ty.base() {
+        _ if ty == function_type() => SymbolKind::Function,
+        BaseType::CHAR => SymbolKind::Char,
+        BaseType::SHORT => SymbolKind::Short,
+        BaseType::FLOAT => SymbolKind::Float,
+        BaseType::DOUBLE => SymbolKind::Double,
+        _ => SymbolKind::Int,
+    }
+}
+
+/// What fits 16 bits, else the largest number that does.
+pub(crate) fn to_u16(number: u32) -> u16 {
+    u16::try_from(number).unwrap_or(u16::MAX)
+}

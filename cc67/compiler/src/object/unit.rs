@@ -1,0 +1,184 @@
+//! A unit as an object: symbols, data, and functions as they are generated.
+//!
+//! The builder takes symbols and data of the typed tree over at once; functions follow one by one.
+
+use super::{
+    DataRelocation, Definition, Function, Initialized, Line, Object, SourceLine, Symbol, SymbolKind,
+};
+use crate::bytecode::{Generated, Text};
+use crate::ir::function::Signatures;
+use crate::ir::inst::SignatureId;
+use crate::source::{SourceMap, Span};
+use crate::ty::{Type, TypeId, Types};
+use crate::typed::{self, SymbolId, Unit};
+
+/// What is known of a function besides its words.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct About {
+    /// Its symbol.
+    pub(crate) symbol: SymbolId,
+    /// Its signature.
+    pub(crate) signature: SignatureId,
+    /// Its closing brace.
+    pub(crate) end: Span,
+}
+
+/// An object while functions are added to it.
+#[derive(Debug)]
+pub(crate) struct UnitBuilder<'a> {
+    unit: &'a Unit,
+    sources: &'a SourceMap,
+    object: Object,
+}
+
+impl<'a> UnitBuilder<'a> {
+    /// The object of a unit without its functions.
+    pub(crate) fn new(unit: &'a Unit, sources: &'a SourceMap) -> Self {
+        let files = sources.files().map(|(_, file)| file.name.clone()).collect();
+        let mut builder = Self { unit, sources, object: Object { files, ..Object::default() } };
+        builder.symbols();
+        builder.data();
+        builder
+    }
+
+    /// The signatures of functions and calls, to which lowering adds.
+    pub(crate) fn signatures(&mut self) -> &mut Signatures {
+        &mut self.object.signatures
+    }
+
+    /// The name of a symbol.
+    pub(crate) fn name(&self, symbol: SymbolId) -> &str {
+        &self.object.symbols[symbol].name
+    }
+
+    /// Adds a function that was generated.
+    pub(crate) fn function(&mut self, about: About, generated: Generated) {
+        let Generated { added, frame } = generated;
+        let file = self.object.symbols[about.symbol].place.file;
+        let end = self.place(about.end);
+        let (relocations, lines) = (self.object.relocations.len() as u32, self.object.lines.len() as u32);
+        self.object.relocations.extend(added.relocations);
+        self.lines(file, &added.spans);
+        let object = &mut self.object;
+        object.symbols[about.symbol].definition = Definition::Function(object.functions.len() as u32);
+        object.functions.push(Function {
+            symbol: about.symbol,
+            signature: about.signature,
+            words: added.words,
+            relocations: relocations..object.relocations.len() as u32,
+            lines: lines..object.lines.len() as u32,
+            frame,
+            end,
+        });
+    }
+
+    /// The object with the words of its functions and the constants that they use.
+    pub(crate) fn finish(mut self, (text, pool): (Text, Vec<u64>)) -> Object {
+        (self.object.text, self.object.pool) = (text, pool);
+        self.object
+    }
+
+    /// Takes over every symbol; functions and data are filled in later.
+    fn symbols(&mut self) {
+        for symbol in self.unit.symbols.values() {
+            let types = &self.unit.types;
+            let definition = match symbol.definition {
+                typed::Definition::Tentative => Definition::Tentative,
+                _ => Definition::None,
+            };
+            let kind = symbol_kind(types, symbol.ty);
+            let size = if kind == SymbolKind::Function { 0 } else { types.size_of(symbol.ty).unwrap_or(0) };
+            let place = self.place(symbol.span);
+            self.object.symbols.push(Symbol {
+                name: symbol.name.clone(),
+                linkage: symbol.linkage,
+                definition,
+                kind,
+                size,
+                align: types.align_of(symbol.ty).max(symbol.align).max(1),
+                span: Some(symbol.span),
+                place,
+                used_at: symbol.used_at,
+            });
+        }
+    }
+
+    /// Copies the initialised objects, in the order in which the source defines them.
+    fn data(&mut self) {
+        let unit = self.unit;
+        let mut initialized: Vec<_> = (unit.symbols.iter())
+            .filter_map(|(id, symbol)| match &symbol.definition {
+                typed::Definition::Data(data) => Some((self.sources.call_site(symbol.span).lo, id, data)),
+                _ => None,
+            })
+            .collect();
+        initialized.sort_by_key(|(position, ..)| *position);
+        let object = &mut self.object;
+        for (_, id, data) in initialized {
+            let (start, first) = (object.data.len(), object.data_relocations.len() as u32);
+            object.data.extend_from_slice(&data.bytes);
+            for address in &data.addresses {
+                let at = start + address.offset as usize;
+                if let Some(word) = object.data.get_mut(at..at + 4) {
+                    word.copy_from_slice(&address.addend.to_le_bytes());
+                    object
+                        .data_relocations
+                        .push(DataRelocation { offset: at as u32, symbol: address.symbol });
+                }
+            }
+            object.symbols[id].definition = Definition::Data(object.objects.len() as u32);
+            object.symbols[id].size = data.bytes.len() as u32;
+            object.objects.push(Initialized {
+                symbol: id,
+                bytes: start as u32..object.data.len() as u32,
+                relocations: first..object.data_relocations.len() as u32,
+            });
+        }
+    }
+
+    /// Records where the lines of a function of `file` begin.
+    fn lines(&mut self, file: u32, spans: &[(u32, Span)]) {
+        let mut last = None;
+        for (word, span) in spans {
+            let place = self.place_in(file, *span);
+            if last != Some(place) {
+                self.object.lines.push(Line { word: *word, place });
+                last = Some(place);
+            }
+        }
+    }
+
+    /// The line of `file` that `span` belongs to: what a function's body includes counts as the
+    /// line of the `#include`, because an image knows one file a function.
+    fn place_in(&self, file: u32, span: Span) -> SourceLine {
+        let mut at = span;
+        loop {
+            let place = self.place(at);
+            if place.file == file {
+                return place;
+            }
+            let included = self.sources.place(at).and_then(|at| self.sources.file(at.file).included_at);
+            let Some(include) = included else { return self.place(span) };
+            at = include;
+        }
+    }
+
+    fn place(&self, span: Span) -> SourceLine {
+        let place = self.sources.place(span);
+        place
+            .map_or(SourceLine::default(), |place| SourceLine { file: place.file.as_u32(), line: place.line })
+    }
+}
+
+/// The kind that the image's symbol table records for a type.
+fn symbol_kind(types: &Types, ty: TypeId) -> SymbolKind {
+    match types.get(ty) {
+        Type::Function(_) => SymbolKind::Function,
+        Type::Bool | Type::Char | Type::SignedChar | Type::UnsignedChar => SymbolKind::Char,
+        Type::Short | Type::UnsignedShort => SymbolKind::Short,
+        Type::Float => SymbolKind::Float,
+        Type::Double => SymbolKind::Double,
+        Type::Void | Type::Int | Type::Unsigned | Type::LongLong | Type::UnsignedLongLong => SymbolKind::Int,
+        Type::Pointer(_) | Type::Array(..) | Type::Record(_) => SymbolKind::Other,
+    }
+}
