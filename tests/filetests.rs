@@ -9,8 +9,6 @@ use std::process::ExitCode;
 use harness::filetest::FileTest;
 use libtest_mimic::{Arguments, Failed, Trial};
 
-const COMMAND: &str = env!("CARGO_BIN_EXE_cc67-under-test");
-
 /// Options that must not change a byte of what a program prints.
 const VARIANTS: &[&[&str]] = &[
     #[cfg(feature = "native")]
@@ -32,16 +30,16 @@ fn main() -> ExitCode {
 
 fn check(path: &Path) -> Result<(), Failed> {
     let test = FileTest::read(path);
-    let output = test.run(COMMAND, &[]);
+    let output = test.run(&[]);
     if let Some(complaint) = test.complaint(&output) {
         return Err(complaint.into());
     }
     if test.is_snapshot() {
         let name = path.file_stem().expect("a file has a name").to_string_lossy().into_owned();
-        insta::assert_snapshot!(name, output.stderr);
+        snapshots_in(test.folder()).bind(|| insta::assert_snapshot!(name, output.stderr));
     }
     for variant in VARIANTS.iter().filter(|_| test.is_executed()) {
-        let other = test.run(COMMAND, variant);
+        let other = test.run(variant);
         if other != output {
             let (path, variant) = (path.display(), variant.join(" "));
             return Err(
@@ -50,4 +48,12 @@ fn check(path: &Path) -> Result<(), Failed> {
         }
     }
     Ok(())
+}
+
+/// Snapshots have their place beside the program that they belong to.
+fn snapshots_in(folder: &Path) -> insta::Settings {
+    let mut settings = insta::Settings::clone_current();
+    settings.set_snapshot_path(folder);
+    settings.set_prepend_module_to_snapshot(false);
+    settings
 }

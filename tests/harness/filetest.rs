@@ -8,7 +8,7 @@
 //! | `prints: …` | the next line of stdout; together these lines are all of stdout |
 //! | `exit: n` | exit code, 0 if not stated |
 //! | `says: …` | stderr contains this |
-//! | `snapshot` | stderr as a whole is the snapshot of the file's name |
+//! | `snapshot` | stderr as a whole is the snapshot of the file's name, beside the file |
 //! | `byte: c 0d 0a` | the character `c` in the text stands for these bytes (hexadecimal, none possible) |
 //! | `no-final-newline` | the newline at the end of the file is cut off |
 //! | `uses: FILE` | the annotations of this included file count, too |
@@ -22,7 +22,7 @@ use std::borrow::Cow;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::{Output, Scratch, run_in};
+use crate::{Output, Scratch, cc67};
 
 /// A diagnostic at a line, expected or found.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -92,7 +92,12 @@ impl FileTest {
         }
     }
 
-    fn folder(&self) -> &Path {
+    /// The folder of the program.
+    ///
+    /// # Panics
+    /// Never: a file that was read is in a folder.
+    #[must_use]
+    pub fn folder(&self) -> &Path {
         self.path.parent().expect("a file has a folder")
     }
 
@@ -110,7 +115,7 @@ impl FileTest {
 
     /// Runs the program in its folder, so that messages name it without a path; `more` follows its own arguments.
     #[must_use]
-    pub fn run(&self, binary: &str, more: &[&str]) -> Output {
+    pub fn run(&self, more: &[&str]) -> Output {
         let mut arguments = self.arguments.clone();
         if !matches!(arguments.first().map(String::as_str), Some("run" | "check")) {
             arguments.insert(0, "run".to_owned());
@@ -118,12 +123,12 @@ impl FileTest {
         arguments.extend(more.iter().map(ToString::to_string));
         arguments.push(name_of(&self.path));
         match self.rewritten() {
-            None => run_in(binary, self.folder(), arguments),
+            None => cc67(self.folder(), arguments),
             Some(source) => {
                 let name = self.path.to_string_lossy().replace(|c: char| !c.is_ascii_alphanumeric(), "-");
                 let scratch = Scratch::new(&format!("{name}{}", more.concat()));
                 scratch.write(&name_of(&self.path), source);
-                run_in(binary, scratch.path(), arguments)
+                cc67(&scratch, arguments)
             }
         }
     }

@@ -13,6 +13,8 @@ use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::sync::LazyLock;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 /// The root of the workspace.
 #[must_use]
@@ -51,22 +53,64 @@ impl Output {
     }
 }
 
-/// Runs the command at `binary` in folder `folder`.
+/// The file of the command under test.
+///
+/// # Panics
+/// If it has not been built, which `cargo test` does before the tests of this package run.
+#[must_use]
+pub fn command() -> &'static str {
+    static COMMAND: LazyLock<String> = LazyLock::new(|| {
+        let named = std::env::var("CARGO_BIN_EXE_cc67-under-test");
+        let found = named.map_or_else(|_| beside_this_process(), PathBuf::from);
+        assert!(found.is_file(), "{} has not been built", found.display());
+        found.into_os_string().into_string().expect("the target folder has a name in UTF-8")
+    });
+    &COMMAND
+}
+
+/// Where Cargo puts commands: one folder above the tests.
+fn beside_this_process() -> PathBuf {
+    let test = std::env::current_exe().expect("a running process has a file");
+    let folder = test.parent().and_then(Path::parent).expect("tests are two folders below the target folder");
+    folder.join(format!("cc67-under-test{}", std::env::consts::EXE_SUFFIX))
+}
+
+/// Runs cc67 in a folder.
+///
+/// # Panics
+/// If the command does not start.
+#[must_use]
+pub fn cc67<A: AsRef<OsStr>>(folder: impl AsRef<Path>, arguments: impl IntoIterator<Item = A>) -> Output {
+    cc67_with_input(folder, arguments, "")
+}
+
+/// Runs cc67 in a folder, with a text on its standard input.
+///
+/// # Panics
+/// If the command does not start.
+#[must_use]
+pub fn cc67_with_input<A: AsRef<OsStr>>(
+    folder: impl AsRef<Path>,
+    arguments: impl IntoIterator<Item = A>,
+    input: &str,
+) -> Output {
+    execute(command(), folder.as_ref(), arguments, input)
+}
+
+/// Runs another command than cc67 in a folder.
+///
+/// # Panics
+/// If the command does not start.
 #[must_use]
 pub fn run_in<A: AsRef<OsStr>>(
     binary: &str,
     folder: &Path,
     arguments: impl IntoIterator<Item = A>,
 ) -> Output {
-    run_with_input(binary, folder, arguments, "")
+    execute(binary, folder, arguments, "")
 }
 
-/// Runs the command at `binary` in folder `folder`, with a text on its standard input.
-///
-/// # Panics
-/// If the command does not start.
-#[must_use]
-pub fn run_with_input<A: AsRef<OsStr>>(
+fn execute<A: AsRef<OsStr>>(
     binary: &str,
     folder: &Path,
     arguments: impl IntoIterator<Item = A>,
@@ -97,10 +141,15 @@ pub fn run_with_input<A: AsRef<OsStr>>(
 pub struct Scratch(PathBuf);
 
 impl Scratch {
-    /// Makes the folder; `name` must be unique among the tests.
+    /// Makes the folder; `name` tells a person who finds it which test it belongs to.
+    ///
+    /// # Panics
+    /// If there is no room for temporary files.
     #[must_use]
     pub fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("cc67-{}-{name}", std::process::id()));
+        static MADE: AtomicU32 = AtomicU32::new(0);
+        let number = MADE.fetch_add(1, Ordering::Relaxed);
+        let path = std::env::temp_dir().join(format!("cc67-{}-{number}-{name}", std::process::id()));
         fs::create_dir_all(&path).expect("the temporary folder is writable");
         Self(path)
     }
@@ -117,6 +166,12 @@ impl Scratch {
         fs::create_dir_all(path.parent().expect("a file has a folder")).expect("the folder is writable");
         fs::write(path, content).expect("the file is writable");
         self
+    }
+}
+
+impl AsRef<Path> for Scratch {
+    fn as_ref(&self) -> &Path {
+        &self.0
     }
 }
 

@@ -1,0 +1,9 @@
+//! The simulated board: its threads, devices, files and script commands, from programs and from the PC.
+
+mod c_interface;
+mod devices;
+mod disk_files;
+mod host;
+mod threads;
+mod transcripts;
+mod world;

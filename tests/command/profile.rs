@@ -1,0 +1,64 @@
+//! `cc67 run --profile`: the account is exact, and keeping it changes nothing.
+
+use std::fs;
+
+use harness::{Output, Scratch, cc67, files};
+
+const PROGRAM: &str = "\
+#include \"KMotionDef.h\"
+double table[10];
+void Fill(void)
+{
+    int i;
+    for (i = 0; i < 10; i++)
+        table[i] = sqrt(i);
+}
+main()
+{
+    Fill();
+    Delay_sec(0.5);
+    printf(\"%g\\n\", table[9]);
+}
+";
+
+fn run(scratch: &Scratch, arguments: &[&str]) -> Output {
+    fs::write(scratch.path().join("a.c"), PROGRAM).expect("files can be written");
+    cc67(scratch, ["run"].iter().chain(arguments))
+}
+
+#[test]
+fn the_table_names_functions_and_lines_with_their_board_time() {
+    let output = run(&Scratch::new("profile-table"), &["--profile", "a.c"]);
+    insta::assert_snapshot!(output.render());
+}
+
+#[test]
+fn the_flame_graph_has_the_functions() {
+    let scratch = Scratch::new("profile-flame");
+    let output = run(&scratch, &["--profile=a.svg", "a.c"]);
+    assert_eq!((output.code, output.stdout.as_str()), (0, "3\n"));
+    let picture = fs::read_to_string(scratch.path().join("a.svg")).expect("it was written");
+    for name in ["thread 1", "main:12", "Delay_sec", "(waiting)"] {
+        assert!(picture.contains(name), "{name} is not in the picture");
+    }
+    let again = Scratch::new("profile-flame-again");
+    run(&again, &["--profile=a.svg", "a.c"]);
+    assert_eq!(picture, fs::read_to_string(again.path().join("a.svg")).expect("it was written"));
+    let output = run(&scratch, &["--profile=a.png", "a.c"]);
+    assert_eq!(
+        output.render(),
+        "---- stderr\ncc67: a flame graph is an SVG picture: `--profile=NAME.svg`\n---- exit 2\n"
+    );
+}
+
+#[test]
+fn a_profile_changes_nothing_that_a_program_shows() {
+    for folder in ["threads", "gather", "motion"] {
+        for path in files(&harness::root().join("c-programs").join(folder), "c") {
+            let (folder, name) =
+                (path.parent().expect("a folder"), path.file_name().expect("a name").to_string_lossy());
+            let run = |option: &str| cc67(folder, ["run", "--for", "0.3", option, "--time", &name]);
+            assert_eq!(run("--profile").stdout, run("--no-shortcuts").stdout, "{name}");
+        }
+    }
+}

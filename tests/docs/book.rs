@@ -1,0 +1,266 @@
+//! The book: its programs do what it says, its links lead somewhere, its lists are those of the tables.
+//!
+//! Chapters that are lists are made from the tables; `CC67_WRITE_BOOK=1 cargo test --test docs` writes them anew.
+
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use cc67::limits::{ALL, grouped};
+use compiler::diag::Lint;
+use harness::{Scratch, cc67, files};
+use kmotiondef::firmware::{ABSENT, FIRMWARE_FUNCTIONS};
+use kmotiondef::variables::FIRMWARE_VARIABLES;
+use runtime::commands::COMMANDS;
+
+fn source() -> PathBuf {
+    harness::root().join("cc67/book/src")
+}
+
+fn read(name: &str) -> String {
+    fs::read_to_string(source().join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+}
+
+/// The fenced blocks of a chapter: what stands behind the fence, and the text.
+fn blocks(text: &str) -> Vec<(String, String)> {
+    let mut blocks = Vec::new();
+    let mut open: Option<(String, String)> = None;
+    for line in text.lines() {
+        match (line.strip_prefix("```"), &mut open) {
+            (Some(info), None) => open = Some((info.to_owned(), String::new())),
+            (Some(_), Some(_)) => blocks.extend(open.take()),
+            (None, Some((_, text))) => {
+                text.push_str(line);
+                text.push('\n');
+            }
+            (None, None) => {}
+        }
+    }
+    blocks
+}
+
+#[test]
+fn programs_do_what_the_book_says() {
+    let scratch = Scratch::new("book");
+    let path = scratch.path().join("program.c");
+    let mut count = 0;
+    for chapter in files(&source(), "md") {
+        let name = chapter.file_name().expect("a name").to_string_lossy().into_owned();
+        let all = blocks(&fs::read_to_string(&chapter).expect("chapters are UTF-8"));
+        for (index, (info, text)) in all.iter().enumerate() {
+            if info != "c" && info != "c run" {
+                continue;
+            }
+            fs::write(&path, text).expect("files can be written");
+            count += 1;
+            let check = cc67(&scratch, ["check", "program.c"]);
+            assert_eq!(check.code, 0, "{name}: {text}\n{}", check.stderr);
+            if info == "c run" {
+                let output = cc67(&scratch, ["run", "program.c"]);
+                let (kind, expect) = &all[index + 1];
+                assert_eq!(
+                    (kind.as_str(), output.stdout.as_str()),
+                    ("text", expect.as_str()),
+                    "{name}: {text}"
+                );
+            }
+        }
+    }
+    assert!(count >= 5, "only {count} programs");
+}
+
+/// The command lines of `cc67` in a text: the words of each, without what the shell makes of them.
+fn command_lines(text: &str) -> Vec<Vec<&str>> {
+    const BEGINNINGS: [&str; 3] = ["cc67 ", "target/release/cc67 ", "cargo run --release -- "];
+    let lines = text.lines().filter_map(|line| BEGINNINGS.iter().find_map(|start| line.strip_prefix(start)));
+    lines.map(|line| line.split('#').next().unwrap_or_default().split_whitespace().collect()).collect()
+}
+
+#[test]
+fn commands_and_options_in_the_book_exist() {
+    let mut count = 0;
+    let pages = files(&source(), "md").into_iter().chain([harness::root().join("README.md")]);
+    for page in pages {
+        let text = fs::read_to_string(&page).expect("pages are UTF-8");
+        let shell = blocks(&text).into_iter().filter(|(info, _)| info.starts_with("sh"));
+        let lines: Vec<_> = shell.map(|(_, text)| text).collect();
+        for words in lines.iter().flat_map(|text| command_lines(text)) {
+            let (command, options) = words.split_first().expect("a command");
+            if command.starts_with('-') {
+                continue;
+            }
+            let help = cc67(harness::root(), [command, "--help"]);
+            assert_eq!(help.code, 0, "{}: cc67 {words:?}", page.display());
+            for option in options.iter().filter(|word| word.starts_with("--")) {
+                let name = option.split('=').next().unwrap_or_default();
+                let is_known =
+                    help.stdout.split(|c: char| !(c.is_alphanumeric() || c == '-')).any(|word| word == name);
+                assert!(is_known, "{}: cc67 {command} has no {name}", page.display());
+            }
+            count += 1;
+        }
+    }
+    assert!(count >= 15, "only {count} commands");
+}
+
+/// What stands behind each `mark` up to `end`.
+fn behind<'a>(text: &'a str, mark: &str, end: char) -> Vec<&'a str> {
+    text.split(mark).skip(1).filter_map(|rest| rest.split(end).next()).collect()
+}
+
+/// A text without its fenced blocks, with what it includes.
+fn prose(path: &Path) -> String {
+    let text = fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    let mut prose = String::new();
+    let mut is_code = false;
+    for line in text.lines() {
+        is_code ^= line.starts_with("```");
+        match line.strip_prefix("{{#include ").and_then(|rest| rest.strip_suffix("}}")) {
+            Some(include) => prose.push_str(&self::prose(&path.with_file_name(include))),
+            None if !is_code => prose.push_str(line),
+            None => {}
+        }
+        prose.push('\n');
+    }
+    prose
+}
+
+/// The places that links to a page can name: its headings, as the book and code hosts spell them.
+fn anchors(prose: &str) -> BTreeSet<String> {
+    let headings = prose.lines().filter(|line| line.starts_with('#'));
+    let spell = |line: &str| {
+        let text = line.trim_start_matches('#').trim().to_lowercase();
+        let kept = text.chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'));
+        kept.map(|c| if c == ' ' { '-' } else { c }).collect()
+    };
+    headings.map(spell).collect()
+}
+
+/// Every link of a page leads to a file, and to a heading of it.
+fn check_links(page: &Path) {
+    let text = prose(page);
+    for link in behind(&text, "](", ')').into_iter().filter(|link| !link.contains("://")) {
+        let (file, place) = link.split_once('#').unwrap_or((link, ""));
+        let target = if file.is_empty() { page.to_owned() } else { page.with_file_name(file) };
+        assert!(target.exists(), "{} links to {link}, which is not there", page.display());
+        assert!(
+            place.is_empty() || anchors(&prose(&target)).contains(place),
+            "{} links to {link}: no such heading",
+            page.display()
+        );
+    }
+}
+
+#[test]
+fn links_lead_to_files_and_headings() {
+    for chapter in files(&source(), "md") {
+        check_links(&chapter);
+    }
+    for page in ["README.md", "c-programs/README.md", "vm/benches/README.md"] {
+        check_links(&harness::root().join(page));
+    }
+}
+
+#[test]
+fn every_chapter_is_in_the_summary() {
+    let summary = read("SUMMARY.md");
+    let listed: BTreeSet<_> = behind(&summary, "](", ')').into_iter().collect();
+    for chapter in files(&source(), "md") {
+        let name = chapter.file_name().expect("a name").to_string_lossy().into_owned();
+        assert!(name == "SUMMARY.md" || listed.contains(name.as_str()), "{name} is not in the summary");
+    }
+}
+
+#[test]
+fn headings_are_spelled_as_links_name_them() {
+    let anchors = anchors("# A `b` (c), d_e\ntext\n## F-g");
+    assert_eq!(anchors.into_iter().collect::<Vec<_>>(), ["a-b-c-d_e", "f-g"]);
+}
+
+/// A chapter is what the tables say.
+fn check_list(name: &str, text: &str) {
+    if std::env::var_os("CC67_WRITE_BOOK").is_some() {
+        fs::write(source().join(name), text).expect("the book can be written");
+    }
+    assert!(
+        read(name) == text,
+        "{name} is out of date: `CC67_WRITE_BOOK=1 cargo test --test docs` writes it"
+    );
+}
+
+#[test]
+fn the_chapter_of_warnings_has_the_page_of_each() {
+    let mut text = "# Warnings\n\nMessages name the warning in brackets; `-Wno-NAME` switches it off, `-Werror=NAME` makes it an \
+                    error,\nand `cc67 --explain NAME` shows its page. `-Wall` and `-Wextra` switch on more.\n"
+        .to_owned();
+    let mut lints: Vec<_> = Lint::ALL.iter().collect();
+    lints.sort_by_key(|lint| lint.name());
+    for lint in lints {
+        let _ = write!(text, "\n{{{{#include ../../compiler/src/lints/pages/{}.md}}}}\n", lint.name());
+    }
+    check_list("warnings.md", &text);
+}
+
+#[test]
+fn the_chapter_of_limits_has_each() {
+    let mut text = "# Limits\n\nEvery limit has a number, and what refuses to go beyond it says the number; `cc67 --explain limits` lists them.\n\
+                    Compiling takes at most a gigabyte of memory, whatever the source. A run takes at most half a gigabyte, however\n\
+                    long it is and whatever it prints, traces and draws; an ordinary one takes less than 20 megabytes, traced or not.\n"
+        .to_owned();
+    for (title, limits) in ALL {
+        let _ = write!(text, "\n## {title}\n\n| at most | of | beyond |\n|--:|---|---|\n");
+        for limit in limits {
+            let _ = writeln!(text, "| {} | {} | {} |", grouped(limit.number), limit.what, limit.beyond);
+        }
+    }
+    text.push_str("\nNames, string constants and lines are as long as their file allows.\n");
+    check_list("limits.md", &text);
+}
+
+#[test]
+fn the_chapter_of_functions_has_each() {
+    let mut text =
+        "# Firmware functions\n\nCalls cost processor time; what a function waits comes on top.\n".to_owned();
+    let shown = || FIRMWARE_FUNCTIONS.iter().filter(|function| !ABSENT.contains(&function.name));
+    let groups: BTreeSet<_> = shown().map(|function| function.group).collect();
+    for group in groups {
+        let _ = write!(text, "\n## {group}\n\n");
+        for function in shown().filter(|function| function.group == group) {
+            let cost = function.cost.get() as f64 / 200.0;
+            let (prototype, doc) = (function.prototype(), function.doc.trim().replace('\n', " "));
+            let _ = writeln!(text, "- `{prototype}` ({cost} µs)\n  {doc}");
+        }
+    }
+    check_list("functions.md", &text);
+}
+
+#[test]
+fn the_chapter_of_variables_has_each() {
+    let mut text =
+        "# Firmware variables\n\n| address | variable | what it means |\n|---|---|---|\n".to_owned();
+    for variable in FIRMWARE_VARIABLES {
+        let (declaration, doc) = (variable.ty.declare(variable.name), variable.doc.trim().replace('\n', " "));
+        let _ = writeln!(
+            text,
+            "| `{:08x}` | `{declaration}` | {} |",
+            variable.address.get(),
+            doc.replace('|', "\\|")
+        );
+    }
+    check_list("variables.md", &text);
+}
+
+#[test]
+fn the_chapter_of_console_commands_has_each() {
+    let mut text = "# Console commands\n\nWhat `cc67 console` sends to the board, and `command \"...\"` of a stimulus; \
+                    words are read in any case,\nand a line may hold several with `;` between them. The console's own \
+                    words, such as `run` and `wait`, are listed by its `help`.\n\n| command | what it does |\n|---|---|\n"
+        .to_owned();
+    let mut commands: Vec<_> = COMMANDS.iter().collect();
+    commands.sort_by_key(|command| command.name.to_lowercase());
+    for command in commands {
+        let _ = writeln!(text, "| `{}` | {} |", command.usage().replace('|', "\\|"), command.help);
+    }
+    check_list("commands.md", &text);
+}

@@ -1,0 +1,4 @@
+//! What people read: the book and the programs do what they say.
+
+mod book;
+mod programs;

@@ -1,0 +1,9 @@
+//! Images: how they are built, written, read, shown, loaded and made stand-alone programs.
+
+mod build;
+mod formats;
+mod inspect;
+mod loader;
+mod loading;
+#[cfg(feature = "native")]
+mod stand_alone;

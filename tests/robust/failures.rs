@@ -1,0 +1,238 @@
+//! What goes wrong outside: full disks, folders that cannot be written, readers that go away,
+//! names that are no text, and a command that is killed.
+//!
+//! One message, the right code, and never half a file under its final name.
+
+#![cfg(unix)]
+
+use std::ffi::OsStr;
+use std::fs;
+use std::io::{BufRead, BufReader};
+use std::os::unix::ffi::OsStrExt;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use harness::{Output, Scratch, cc67, run_in};
+
+/// Prints a few thousand lines and moves an axis, so that there is something to lose.
+const PROGRAM: &str = r#"#include "KMotionDef.h"
+main()
+{
+    int i;
+
+    ch0->InputMode = NO_INPUT_MODE;
+    ch0->OutputMode = STEP_DIR_MODE;
+    EnableAxisDest(0, 0);
+    MoveRel(0, 1000);
+    for (i = 0; i < 3000; i++)
+        printf("line %d\n", i);
+    while (!CheckDone(0))
+        ;
+    DisableAxis(0);
+}
+"#;
+
+/// Writes into the user's half of flash memory.
+const FLASHING: &str = r#"#include "KMotionDef.h"
+double table[2] = { 1.5, -2.5 };
+main()
+{
+    SetFlashBank(FLASH_USER);
+    ProgramFlash((char *)table, 8, FLASH_USER, "written\n");
+}
+"#;
+
+fn with_program(name: &str) -> Scratch {
+    let scratch = Scratch::new(name);
+    scratch.write("a.c", PROGRAM).write("flash.c", FLASHING);
+    scratch
+}
+
+/// Runs through a shell that changes the surroundings first; `"$@"` in `script` is the command.
+fn run_shell(folder: &Path, script: &str, arguments: &[&str]) -> Output {
+    let all = ["-c", script, "sh", harness::command()].into_iter().chain(arguments.iter().copied());
+    run_in("sh", folder, all)
+}
+
+/// One message, for people.
+#[track_caller]
+fn assert_one_message(output: &Output, code: i32, expect: &str) {
+    assert_eq!(output.code, code, "{output:?}");
+    assert!(output.stderr.contains(expect), "expected {expect:?} in:\n{}", output.stderr);
+    assert_eq!(output.stderr.lines().count(), 1, "{}", output.stderr);
+    for trace in ["panicked", "os error", ".rs:"] {
+        assert!(!output.stderr.contains(trace), "{}", output.stderr);
+    }
+}
+
+#[test]
+fn a_full_disk_is_one_message_and_leaves_the_old_file() {
+    // A limit on the size of files that does not kill makes a disk full after the first kilobyte.
+    const FULL: &str = "trap '' XFSZ; ulimit -f 1; exec \"$@\"";
+    let scratch = with_program("full-disk");
+    for (arguments, file) in [
+        (&["build", "-o", "out.out", "a.c"][..], "out.out"),
+        (&["run", "--trace", "out.vcd", "a.c"], "out.vcd"),
+        (&["run", "--trace", "out.json", "a.c"], "out.json"),
+        (&["run", "--plot", "out.svg", "a.c"], "out.svg"),
+        (&["firmware", "export", "out.fw"], "out.fw"),
+    ] {
+        scratch.write(file, "old");
+        let output = run_shell(scratch.path(), FULL, arguments);
+        assert_one_message(&output, 2, &format!("cannot write {file}: "));
+        assert_eq!(fs::read(scratch.path().join(file)).expect("it is still there"), b"old", "{file}");
+    }
+    let mut names: Vec<_> = fs::read_dir(scratch.path())
+        .expect("the folder is readable")
+        .map(|entry| entry.expect("it is readable").file_name())
+        .collect();
+    names.sort();
+    assert_eq!(
+        names,
+        ["a.c", "flash.c", "out.fw", "out.json", "out.out", "out.svg", "out.vcd"],
+        "nothing is left over"
+    );
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_full_standard_output_is_one_message() {
+    let scratch = with_program("full-output");
+    for arguments in [
+        &["run", "a.c"][..],
+        &["build", "a.c"],
+        &["firmware", "list"],
+        &["completions", "bash"],
+        &["--explain", "machine"],
+    ] {
+        let output = run_shell(scratch.path(), "exec \"$@\" >/dev/full", arguments);
+        assert_one_message(&output, 2, "cannot write to standard output: ");
+    }
+    // Nobody is left to be told; the code still is right.
+    let output = run_shell(scratch.path(), "exec \"$@\" 2>/dev/full", &["check", "nosuch.c"]);
+    assert_eq!(output.code, 2, "{output:?}");
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_is_one_message() {
+    let scratch = with_program("read-only");
+    // No user may create files in /dev/null, not even root, whom permissions do not stop.
+    for arguments in [
+        &["build", "-o", "/dev/null/a.out", "a.c"][..],
+        &["run", "--trace", "/dev/null/a.vcd", "a.c"],
+        &["run", "--plot", "/dev/null/a.svg", "a.c"],
+        &["run", "--uart-output", "/dev/null/a.txt", "a.c"],
+    ] {
+        let output = run_shell(scratch.path(), "exec \"$@\" >/dev/null", arguments);
+        assert_one_message(&output, 2, "cannot write /dev/null/a.");
+    }
+}
+
+#[test]
+fn a_reader_that_goes_away_is_no_failure() {
+    let scratch = with_program("head");
+    for arguments in [&["run", "a.c"][..], &["firmware", "list"], &["completions", "bash"]] {
+        let mut child = Command::new(harness::command())
+            .args(arguments)
+            .current_dir(scratch.path())
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the command under test starts");
+        let mut line = String::new();
+        let mut reader = BufReader::new(child.stdout.take().expect("it is piped"));
+        reader.read_line(&mut line).expect("it prints something");
+        drop(reader);
+        let output = child.wait_with_output().expect("it ends");
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success() && errors.is_empty(), "{arguments:?}: {} {errors}", output.status);
+    }
+}
+
+#[test]
+#[cfg(target_os = "linux")] // Elsewhere such names cannot exist.
+fn names_that_are_no_text_are_names_of_files() {
+    let scratch = Scratch::new("no-text");
+    let name = |bytes| OsStr::from_bytes(bytes);
+    let (source, image) = (name(b"caf\xe9.c"), name(b"caf\xe9.out"));
+    fs::write(scratch.path().join(source), "main() { }\n").expect("the folder is writable");
+    for arguments in [
+        vec![OsStr::new("check"), source],
+        vec![OsStr::new("run"), source],
+        vec![OsStr::new("build"), OsStr::new("-o"), image, source],
+        vec![OsStr::new("run"), image],
+        vec![OsStr::new("inspect"), image],
+    ] {
+        let output = cc67(&scratch, &arguments);
+        assert_eq!(output.code, 0, "{arguments:?}: {output:?}");
+        assert!(output.stderr.is_empty(), "{arguments:?}: {output:?}");
+    }
+    let output = cc67(&scratch, [OsStr::new("check"), name(b"nosuch\xe9.c")]);
+    assert_one_message(&output, 2, "cannot read nosuch\u{fffd}.c: ");
+}
+
+/// Starts the command, kills it after `delay` and reaps it.
+fn kill_after(folder: &Path, arguments: &[&str], delay: Duration) {
+    let mut child = Command::new(harness::command())
+        .args(arguments)
+        .current_dir(folder)
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the command under test starts");
+    thread::sleep(delay);
+    // It may have ended already.
+    let _ = child.kill();
+    child.wait().expect("it ends");
+}
+
+/// Kills the command that writes `file` at `times` moments spread over its run.
+///
+/// Whatever the moment, the file is what was there before or what the whole run writes.
+#[expect(clippy::disallowed_methods, reason = "the process is killed at moments of the host's time")]
+fn assert_whole(name: &str, arguments: &[&str], file: &str, before: &[u8], times: u32) {
+    let scratch = with_program(name);
+    let path = scratch.path().join(file);
+    let started = Instant::now();
+    let output = cc67(&scratch, arguments);
+    let duration = started.elapsed();
+    assert_eq!(output.code, 0, "{output:?}");
+    let whole = fs::read(&path).expect("the run writes it");
+    let (mut old, mut new) = (0, 0);
+    for round in 0..times {
+        fs::remove_file(&path).expect("it is there, whole or not yet replaced");
+        fs::write(&path, before).expect("the folder is writable");
+        // From the first instruction to a little beyond the end.
+        kill_after(scratch.path(), arguments, duration * (round * 5) / (times * 4));
+        let found = fs::read(&path).expect("there is always a file");
+        if found == whole {
+            new += 1;
+        } else {
+            assert!(found == before, "round {round}: {} bytes of {}", found.len(), whole.len());
+            old += 1;
+        }
+    }
+    println!("{name}: killed {times} times in {duration:?}: {old} old, {new} new");
+    assert!(old > 0, "no kill came before the end");
+}
+
+#[test]
+fn a_build_that_is_killed_leaves_the_old_image_or_the_new() {
+    assert_whole("kill-build", &["build", "-o", "a.out", "a.c"], "a.out", b"old", 40);
+}
+
+#[test]
+fn flash_memory_that_is_killed_while_it_is_kept_is_the_old_or_the_new() {
+    let erased = vec![0xFF; 2 << 20];
+    assert_whole("kill-flash", &["run", "--flash", "board.flash", "flash.c"], "board.flash", &erased, 40);
+}
+
+#[test]
+fn a_trace_that_is_killed_leaves_the_old_file_or_the_new() {
+    assert_whole("kill-vcd", &["run", "--trace", "a.vcd", "a.c"], "a.vcd", b"old", 20);
+    assert_whole("kill-json", &["run", "--trace", "a.json", "a.c"], "a.json", b"old", 20);
+}
