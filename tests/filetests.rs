@@ -1,12 +1,13 @@
 //! Runs every program of `filetests/`, each as a test of its own name, and holds it to what it states.
 //!
 //! The directives are described in `harness/filetest.rs`. Files in a folder `parts` are not tests:
-//! programs include them. With the feature `native` every program runs on both engines, which must agree.
+//! programs include them. A `.txt` file is a test of one stage of the compiler (`harness/stages.rs`). With the feature `native` every program runs on both engines, which must agree.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use harness::filetest::FileTest;
+use harness::stages::{self, StageTest};
 use libtest_mimic::{Arguments, Failed, Trial};
 
 /// Options that must not change a byte of what a program prints.
@@ -16,19 +17,37 @@ const VARIANTS: &[&[&str]] = &[
 ];
 
 fn main() -> ExitCode {
+    let is_bless = |word: &String| word == "--bless";
+    let is_blessed = std::env::args().any(|word| is_bless(&word));
+    let arguments = Arguments::from_iter(std::env::args().filter(|word| !is_bless(word)));
     let folder = harness::root().join("tests/filetests");
-    let trials = harness::files(&folder, "c")
-        .into_iter()
-        .filter(|path| !path.components().any(|part| part.as_os_str() == "parts"))
-        .map(|path| {
-            let name = path.strip_prefix(&folder).expect("it lies there").with_extension("");
-            Trial::test(name.to_string_lossy().replace('\\', "/"), move || check(&path))
-        })
-        .collect();
-    libtest_mimic::run(&Arguments::from_args(), trials).exit_code()
+    let name_of = |path: &Path| {
+        let name = path.strip_prefix(&folder).expect("it lies there").with_extension("");
+        name.to_string_lossy().replace('\\', "/")
+    };
+    let is_part = |path: &PathBuf| path.components().any(|part| part.as_os_str() == "parts");
+    let programs = harness::files(&folder, "c").into_iter().filter(|path| !is_part(path));
+    let mut trials: Vec<_> =
+        programs.map(|path| Trial::test(name_of(&path), move || check(&path, is_blessed))).collect();
+    trials.push(Trial::test("mistakes: at least 60 programs", {
+        let mistakes = harness::files(&folder.join("mistakes"), "c").len();
+        move || if mistakes < 60 { Err(format!("there are {mistakes}").into()) } else { Ok(()) }
+    }));
+    let tests = harness::files(&folder, "txt");
+    for (stage, least) in stages::folders() {
+        let count = tests.iter().filter(|path| path.starts_with(folder.join(&stage))).count();
+        trials.push(Trial::test(format!("{stage}: at least {least} tests"), move || {
+            if count < least { Err(format!("there are {count}").into()) } else { Ok(()) }
+        }));
+    }
+    for path in tests {
+        let test = StageTest::read(&folder, &path);
+        trials.push(Trial::test(name_of(&path), move || test.check(is_blessed).map_err(Failed::from)));
+    }
+    libtest_mimic::run(&arguments, trials).exit_code()
 }
 
-fn check(path: &Path) -> Result<(), Failed> {
+fn check(path: &Path, is_blessed: bool) -> Result<(), Failed> {
     let test = FileTest::read(path);
     let output = test.run(&[]);
     if let Some(complaint) = test.complaint(&output) {
@@ -47,7 +66,44 @@ fn check(path: &Path) -> Result<(), Failed> {
             );
         }
     }
+    check_code(&test)?;
+    check_cycles(&test, is_blessed)
+}
+
+/// What a program prints as code for the real processor, at both levels; what ends in a trap is for the other engines.
+fn check_code(test: &FileTest) -> Result<(), Failed> {
+    let Some(expected) = test.stdout_of_code() else { return Ok(()) };
+    for level in ["-O0", "-O1"] {
+        let output = test.run(&["-w", "--target", "c67x", level]);
+        if (output.code, output.stdout.as_str()) != (0, expected) {
+            let name = test.folder().display();
+            return Err(format!(
+                "{name}: as code at {level}, expected\n{}\nnot {}",
+                expected,
+                output.render()
+            )
+            .into());
+        }
+    }
     Ok(())
+}
+
+/// A program that is executed states exactly what it spends.
+fn check_cycles(test: &FileTest, is_blessed: bool) -> Result<(), Failed> {
+    let measured = if test.is_executed() { test.measured_cycles() } else { None };
+    match (measured, test.cycles()) {
+        (found, stated) if found == stated => Ok(()),
+        (Some(found), _) if is_blessed => {
+            test.state_cycles(found);
+            Ok(())
+        }
+        // A new program states nothing until `--bless` has written it.
+        (Some(_), None) => Ok(()),
+        (Some(found), Some(stated)) => {
+            Err(format!("{found} cycles are spent, not {stated} as stated").into())
+        }
+        (None, _) => Err("cycles are stated of a program that is not executed by itself".into()),
+    }
 }
 
 /// Snapshots have their place beside the program that they belong to.

@@ -86,6 +86,7 @@ void Try(char *What, double Tau)
     EnableAxisDest(0, 0.0);
     EnableAxisDest(1, 0.0);
     KLP = Tau > 0.0 ? exp(-TIMEBASE / Tau) : 0.0;
+    TauKLP = Tau;               // the path ends in a spline that takes a multiple of it
 
     LoadLine(0.0, SPEED * TIME);
     Record();

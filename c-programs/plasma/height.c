@@ -66,11 +66,11 @@ main()
 
         Active = Speed > 0.9 * FEED;
         Jog(Z, Active ? Correction(ArcVolts()) : 0.0);
-        if (Active != WasActive) printf("correction %s at X %.0f\n", Active ? "on" : "off", X0);
+        if (Active != WasActive) printf("correction %s at X %d\n", Active ? "on" : "off", (int)(X0 + 0.5));
         WasActive = Active;
         if (Now >= Report)
         {
-            printf("X %5.0f: %.1f V, Z %.0f\n", chan[X].Dest, ArcVolts(), chan[Z].Dest);
+            printf("X %5d: %.1f V, Z %.0f\n", (int)chan[X].Dest, ArcVolts(), chan[Z].Dest);
             Report += 1.0;
         }
     }

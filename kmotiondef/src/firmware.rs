@@ -53,7 +53,8 @@ pub struct FirmwareFunction {
     pub is_variadic: bool,
     /// What it returns.
     pub result: CType,
-    /// What a call costs, apart from waiting.
+    /// What a call costs, apart from waiting and from what depends on its arguments (costs.md section 2: the released
+    /// firmware, 44 cycles for each access to the FPGA).
     pub cost: Cycles,
     /// Where it comes from.
     pub origin: Origin,
@@ -168,379 +169,379 @@ macro_rules! for_each_firmware_fn {
         $m! {
             // ---- io: digital and analog inputs and outputs, FPGA outputs ------------------------------
             /// Makes a bit an output (`dir` nonzero) or an input (0). Bits 0 to 45 and SnapAmp GPIO only.
-            io::set_bit_direction = SetBitDirection(bit: i32, dir: i32), at 0x8002_4720, cost 200, header;
+            io::set_bit_direction = SetBitDirection(bit: i32, dir: i32), at 0x8002_4720, cost 136, header;
             /// 1 if the bit is an output, 0 if it is an input.
-            io::get_bit_direction = GetBitDirection(bit: i32) -> i32, at 0x8002_49B4, cost 200, header;
+            io::get_bit_direction = GetBitDirection(bit: i32) -> i32, at 0x8002_49B4, cost 40, header;
             /// Drives an output bit high; of an input it sets the latch that appears when it becomes an
             /// output.
-            io::set_bit = SetBit(bit: i32), at 0x1001_1D80, cost 40, header;
+            io::set_bit = SetBit(bit: i32), at 0x1001_1D80, cost 86, header;
             /// Drives an output bit low; of an input it clears the latch that appears when it becomes an
             /// output.
-            io::clear_bit = ClearBit(bit: i32), at 0x1001_1F88, cost 40, header;
+            io::clear_bit = ClearBit(bit: i32), at 0x1001_1F88, cost 87, header;
             /// Drives an output bit high if `state` is nonzero, else low.
-            io::set_state_bit = SetStateBit(bit: i32, state: i32), at 0x1001_21AC, cost 40, header;
+            io::set_state_bit = SetStateBit(bit: i32, state: i32), at 0x1001_21AC, cost 125, header;
             /// State of a bit, 0 or 1: an output's own state, an input's pin.
-            io::read_bit = ReadBit(bit: i32) -> i32, at 0x1001_2214, cost 40, header;
+            io::read_bit = ReadBit(bit: i32) -> i32, at 0x1001_2214, cost 78, header;
             /// Raw conversion of analog input `ch`, 0 to 4095; the macro ADC(ch) is the usual way.
-            io::read_adc = ReadADC(ch: i32) -> i32, at 0x8001_C3E0, cost 200, header;
+            io::read_adc = ReadADC(ch: i32) -> i32, at 0x8001_C3E0, cost 19, header;
             /// Drives PWM channel `ch` in locked antiphase, `v` within ±MAX_PWM_VALUE.
-            io::write_pwm = WritePWM(ch: i32, v: i32), at 0x1000_1CB4, cost 200, header;
+            io::write_pwm = WritePWM(ch: i32, v: i32), at 0x1000_1CB4, cost 101, header;
             /// Drives PWM channel `ch` in recirculate mode, `v` within ±MAX_PWMR_VALUE.
-            io::write_pwmr = WritePWMR(ch: i32, v: i32), at 0x1000_1B24, cost 200, header;
+            io::write_pwmr = WritePWMR(ch: i32, v: i32), at 0x1000_1B24, cost 97, header;
             /// Commands the current loop of PWM channel `ch` (SnapAmp), `v` within ±MAX_PWMC_VALUE.
-            io::write_pwmc = WritePWMC(ch: i32, v: i32), at 0x1000_1BD8, cost 200, header;
+            io::write_pwmc = WritePWMC(ch: i32, v: i32), at 0x1000_1BD8, cost 17, header;
 
             // ---- motion: single axes: enabling, independent moves, commutation ------------------------
             /// Turns an axis on where it stands: the destination becomes the measured position.
-            motion::enable_axis = EnableAxis(ch: i32), at 0x8001_1258, cost 200, header;
+            motion::enable_axis = EnableAxis(ch: i32), at 0x8001_1258, cost 241, header;
             /// Turns an axis on with destination `Dest` in position units, filters reset, no profile
             /// running.
-            motion::enable_axis_dest = EnableAxisDest(ch: i32, Dest: f64), at 0x8001_0E80, cost 200, header;
+            motion::enable_axis_dest = EnableAxisDest(ch: i32, Dest: f64), at 0x8001_0E80, cost 198, header;
             /// Turns an axis off: feedback stops, the output goes to zero.
-            motion::disable_axis = DisableAxis(ch: i32), at 0x1000_EA30, cost 200, header;
+            motion::disable_axis = DisableAxis(ch: i32), at 0x1000_EA30, cost 221, header;
             /// Makes the present place zero: measured position and destination become 0.
-            motion::zero = Zero(ch: i32), at 0x8001_0B14, cost 200, header;
+            motion::zero = Zero(ch: i32), at 0x8001_0B14, cost 542, header;
             /// Clears the filter delays, integrator and output of an axis; use before enabling or after new
             /// coefficients.
-            motion::reset_filters = ResetFilters(ch: i32), at 0x8001_1300, cost 200, header;
+            motion::reset_filters = ResetFilters(ch: i32), at 0x8001_1300, cost 63, header;
             /// Starts a move to position `x` under the axis' Vel, Accel and Jerk. Poll CheckDone.
-            motion::move_to = Move(ch: i32, x: f64), at 0x1000_C15C, cost 200, header;
+            motion::move_to = Move(ch: i32, x: f64), at 0x1000_C15C, cost 3420, header;
             /// Starts a move by `dx` from the present destination. Poll CheckDone.
-            motion::move_rel = MoveRel(ch: i32, dx: f64), at 0x1000_C1B0, cost 200, header;
+            motion::move_rel = MoveRel(ch: i32, dx: f64), at 0x1000_C1B0, cost 3423, header;
             /// Starts a move to position `x` with at most `MaxVel` units/s. Poll CheckDone.
-            motion::move_at_vel = MoveAtVel(chno: i32, x: f64, MaxVel: f32), at 0x1000_B868, cost 200, header;
+            motion::move_at_vel = MoveAtVel(chno: i32, x: f64, MaxVel: f32), at 0x1000_B868, cost 3420, header;
             /// Starts a move by `x` from the present destination with at most `MaxVel` units/s.
             motion::move_rel_at_vel = MoveRelAtVel(chno: i32, x: f64, MaxVel: f32),
-                at 0x1000_C104, cost 200, header;
+                at 0x1000_C104, cost 3450, header;
             /// Starts an exponential approach to `x` with time constant `Tau` seconds.
-            motion::move_exp = MoveExp(chno: i32, x: f64, Tau: f64), at 0x1000_C208, cost 200, header;
+            motion::move_exp = MoveExp(chno: i32, x: f64, Tau: f64), at 0x1000_C208, cost 475, header;
             /// Runs an axis at `vel` units/s, signed; 0 brings it to a stop under Accel and Jerk.
-            motion::jog = Jog(ch: i32, vel: f64), at 0x1000_C558, cost 200, header;
+            motion::jog = Jog(ch: i32, vel: f64), at 0x1000_C558, cost 1418, header;
             /// Starts independent moves of the coordinate system's six axes. Poll CheckDoneXYZABC.
             motion::move_xyzabc = MoveXYZABC(x: f64, y: f64, z: f64, a: f64, b: f64, c: f64),
-                at 0x8001_020C, cost 200, header;
+                at 0x8001_020C, cost 10426, header;
             /// 1 when no profile is running, 0 while one is, -1 when the axis is disabled.
-            motion::check_done = CheckDone(ch: i32) -> i32, at 0x1000_CA74, cost 200, header;
+            motion::check_done = CheckDone(ch: i32) -> i32, at 0x1000_CA74, cost 25, header;
             /// CheckDone over all axes of the coordinate system: 1 all finished, 0 some moving, -1 one
             /// disabled.
-            motion::check_done_xyzabc = CheckDoneXYZABC() -> i32, at 0x1000_CAC8, cost 200, header;
+            motion::check_done_xyzabc = CheckDoneXYZABC() -> i32, at 0x1000_CAC8, cost 313, header;
             /// Starts the profile prepared in the coefficient list of axis `ch`.
-            motion::start_move = StartMove(ch: i32), at 0x8002_13F4, cost 200, header;
+            motion::start_move = StartMove(ch: i32), at 0x8002_13F4, cost 22, header;
             /// Drops the running profile; the destination stays where it is.
-            motion::stop_motion = StopMotion(ch: *mut Chan), at 0x8002_12E0, cost 200, header;
+            motion::stop_motion = StopMotion(ch: *mut Chan), at 0x8002_12E0, cost 8, header;
             /// Computes the profile From..To with at most `MaxVel` into the list of `ch` from entry
             /// `CoeffOffset` on; stores the number of states in `*Nstates`.
             motion::setup_for_move = SetupForMove(
                 From: f64, To: f64, MaxVel: f32, ch: *mut Chan, CoeffOffset: i32,
                 NoJerkControlAtStart: i32, NoJerkControlAtEnd: i32, Start: i32, Nstates: *mut i32
-            ), at 0x1000_8A60, cost 200, header;
+            ), at 0x1000_8A60, cost 3844, header;
             /// Puts a hold at `x` for `time` seconds into entry `CoeffOffset` of the list of `ch`.
             motion::setup_for_motion_pause = SetupForMotionPause(
                 x: f64, ch: *mut Chan, CoeffOffset: i32, time: f64
-            ), at 0x8002_16C8, cost 200, header;
+            ), at 0x8002_16C8, cost 28, header;
             /// Puts the end of motion into entry `CoeffOffset` of the list of `ch`.
             motion::setup_for_motion_end = SetupForMotionEnd(ch: *mut Chan, CoeffOffset: i32),
-                at 0x8002_172C, cost 200, header;
+                at 0x8002_172C, cost 15, header;
             /// Applies a vector of `v` PWM counts at a commutation angle in cycles to the three-phase
             /// outputs of an axis.
             motion::write_3ph = Write3PH(ch0: *mut Chan, v: f32, angle_in_cycles: f64),
-                at 0x1000_22CC, cost 200, header;
+                at 0x1000_22CC, cost 326, header;
             /// Applies a vector of `v` PWM counts at a commutation angle in cycles to the four-phase
             /// outputs of an axis.
             motion::write_4ph = Write4PH(ch0: *mut Chan, v: f32, angle_in_cycles: f64),
-                at 0x1000_1D60, cost 200, header;
+                at 0x1000_1D60, cost 348, header;
             /// Computes the resolver angle from sine and cosine readings and updates the axis' Position.
             motion::do_resolver_input2 = DoResolverInput2(chx: *mut Chan, x: f32, y: f32),
-                at 0x1000_5C80, cost 200, header;
+                at 0x1000_5C80, cost 166, header;
 
             // ---- coord: coordinated motion: coordinate system, feed override, feed hold ---------------
             /// Assigns the axes used as x, y, z, a; -1 leaves one unused. b, c, u, v keep theirs.
             coord::define_coord_system = DefineCoordSystem(axisx: i32, axisy: i32, axisz: i32, axisa: i32),
-                at 0x8002_5920, cost 200, header;
+                at 0x8002_5920, cost 43, header;
             /// Assigns the axes used as x, y, z, a, b, c; -1 leaves one unused. u, v keep theirs.
             coord::define_coord_system6 = DefineCoordSystem6(
                 axisx: i32, axisy: i32, axisz: i32, axisa: i32, axisb: i32, axisc: i32
-            ), at 0x8002_59A8, cost 200, header;
+            ), at 0x8002_59A8, cost 61, header;
             /// Assigns the axes used as x, y, z, a, b, c, u, v; -1 leaves one unused.
             coord::define_coord_system8 = DefineCoordSystem8(
                 axisx: i32, axisy: i32, axisz: i32, axisa: i32, axisb: i32, axisc: i32, axisu: i32,
                 axisv: i32
-            ), at 0x8002_5A74, cost 200, header;
+            ), at 0x8002_5A74, cost 79, header;
             /// Buffered motion: 1 finished, 0 running, -1 an axis of the coordinate system is disabled.
-            coord::check_done_buf = CheckDoneBuf() -> i32, at 0x1000_CDAC, cost 200, header;
+            coord::check_done_buf = CheckDoneBuf() -> i32, at 0x1000_CDAC, cost 206, header;
             /// Feed hold: brings the coordinate system's axes to a controlled stop. See CS0_StoppingState.
-            coord::stop_coordinated_motion = StopCoordinatedMotion(), at 0x8001_C6C4, cost 200, header;
+            coord::stop_coordinated_motion = StopCoordinatedMotion(), at 0x8001_C6C4, cost 340, header;
             /// Releases a feed hold and continues the interrupted motion.
-            coord::resume_coordinated_motion = ResumeCoordinatedMotion(), at 0x1000_3904, cost 200, header;
+            coord::resume_coordinated_motion = ResumeCoordinatedMotion(), at 0x1000_3904, cost 37, header;
             /// Drops the feed hold without continuing the interrupted motion.
-            coord::clear_stop_immediately = ClearStopImmediately(), at 0x8001_DB78, cost 200, header;
+            coord::clear_stop_immediately = ClearStopImmediately(), at 0x8001_DB78, cost 15, header;
             /// Recomputes CS0_StoppingState; needed only while independent moves are being stopped.
-            coord::update_stopping_state = UpdateStoppingState(), at 0x8001_D464, cost 200, header;
+            coord::update_stopping_state = UpdateStoppingState(), at 0x8001_D464, cost 61, header;
             /// Seconds from full override to standstill, from the limits of all axes in the coordinate
             /// system.
             coord::get_nominal_fro_change_time = GetNominalFROChangeTime() -> f32,
-                at 0x1000_31F8, cost 200, header;
+                at 0x1000_31F8, cost 838, header;
             /// Ramps the feed override to `FRO` (1.0 real time, 0 stopped, negative backwards).
-            coord::set_fro = SetFRO(FRO: f32), at 0x1000_3610, cost 200, header;
+            coord::set_fro = SetFRO(FRO: f32), at 0x1000_3610, cost 1001, header;
             /// Ramps the rapid override to `FRO`.
-            coord::set_rapid_fro = SetRapidFRO(FRO: f32), at 0x1000_33A0, cost 200, header;
+            coord::set_rapid_fro = SetRapidFRO(FRO: f32), at 0x1000_33A0, cost 987, header;
             /// Ramps the feed override even during a feed hold and does not keep the value for the resume.
-            coord::set_fro_temp = SetFROTemp(FRO: f32), at 0x1000_35B4, cost 200, header;
+            coord::set_fro_temp = SetFROTemp(FRO: f32), at 0x1000_35B4, cost 987, header;
             /// SetFRO with `DecelTime` seconds for the whole way from 1.0 to 0.0.
-            coord::set_fro_w_rate = SetFROwRate(FRO: f32, DecelTime: f32), at 0x1000_34B0, cost 200, header;
+            coord::set_fro_w_rate = SetFROwRate(FRO: f32, DecelTime: f32), at 0x1000_34B0, cost 138, header;
             /// SetRapidFRO with `DecelTime` seconds for the whole way from 1.0 to 0.0.
             coord::set_rapid_fro_w_rate = SetRapidFROwRate(FRO: f32, DecelTime: f32),
-                at 0x1000_3100, cost 200, header;
+                at 0x1000_3100, cost 124, header;
             /// SetFROTemp with `DecelTime` seconds for the whole way from 1.0 to 0.0.
             coord::set_fro_w_rate_temp = SetFROwRateTemp(FRO: f32, DecelTime: f32),
-                at 0x1000_33FC, cost 200, header;
+                at 0x1000_33FC, cost 124, header;
             /// Call after writing ParametricCoeffs[ParametricIndex]: advances the index and accounts for
             /// the time.
-            coord::inc_parametric_index = IncParametricIndex(), at 0x8001_3D08, cost 200, header;
+            coord::inc_parametric_index = IncParametricIndex(), at 0x8001_3D08, cost 77, header;
 
             // ---- spindle: spindle measurement and threading -------------------------------------------
             /// Sets up spindle measurement: `Type` 0 none, 1 encoder; `Axis` the channel read; update time
             /// and `Tau` in seconds.
             spindle::configure_spindle = ConfigureSpindle(
                 Type: i32, Axis: i32, UpdateTimeSecs: f32, Tau: f32, CountsPerRev: f32
-            ), at 0x8001_D948, cost 200, header;
+            ), at 0x8001_D948, cost 441, header;
             /// Starts buffered motion slaved to the spindle, planned for `BaseSpeedRPS` revolutions/s.
-            spindle::trig_threading = TrigThreading(BaseSpeedRPS: f32), at 0x1000_2760, cost 200, header;
+            spindle::trig_threading = TrigThreading(BaseSpeedRPS: f32), at 0x1000_2760, cost 88, header;
 
             // ---- time: time and waiting ---------------------------------------------------------------
             /// Seconds since power-up.
-            time::time_sec = Time_sec() -> f64, at 0x1001_3400, cost 20, header;
+            time::time_sec = Time_sec() -> f64, at 0x1001_3400, cost 80, header;
             /// Waits until Time_sec() reaches `time_sec`; other threads keep running.
-            time::wait_until = WaitUntil(time_sec: f64), at 0x1000_26C4, cost 200, header;
+            time::wait_until = WaitUntil(time_sec: f64), at 0x1000_26C4, cost 106, header;
             /// Waits `sec` seconds; other threads keep running.
-            time::delay_sec = Delay_sec(sec: f64), at 0x1000_748C, cost 200, header;
+            time::delay_sec = Delay_sec(sec: f64), at 0x1000_748C, cost 201, header;
             /// Waits for the thread's next time slice and returns the time in seconds.
-            time::wait_next_time_slice = WaitNextTimeSlice() -> f64, at 0x1000_1180, cost 200, header;
+            time::wait_next_time_slice = WaitNextTimeSlice() -> f64, at 0x1000_1180, cost 113, header;
 
             // ---- thread: starting and stopping threads ------------------------------------------------
             /// Starts, or starts again, the program loaded for user thread 1 to 7.
-            thread::start_thread = StartThread(thread: i32), at 0x8002_50E0, cost 200, header;
+            thread::start_thread = StartThread(thread: i32), at 0x8002_50E0, cost 116, header;
             /// Stops scheduling user thread 1 to 7; a thread may name itself.
-            thread::pause_thread = PauseThread(thread: i32), at 0x8002_5218, cost 200, header;
+            thread::pause_thread = PauseThread(thread: i32), at 0x8002_5218, cost 89, header;
             /// Lets a paused thread go on where it stopped; 1 if no program is loaded there, else 0.
-            thread::resume_thread = ResumeThread(thread: i32) -> i32, at 0x8002_52B8, cost 200, header;
+            thread::resume_thread = ResumeThread(thread: i32) -> i32, at 0x8002_52B8, cost 38, header;
             /// Ends the calling thread, as a return from main does. Does not return.
             thread::thread_done = ThreadDone(), at 0x8002_51D4, cost 200, header;
 
             // ---- sync: locks and uninterruptible operations -------------------------------------------
             /// Takes `*mutex` for the calling thread; waits while another thread holds it.
-            sync::mutex_lock = MutexLock(mutex: *mut i32), at 0x1001_2F20, cost 200, header;
+            sync::mutex_lock = MutexLock(mutex: *mut i32), at 0x1001_2F20, cost 38, header;
             /// Stores 0 in `*mutex`, whoever holds it.
-            sync::mutex_unlock = MutexUnlock(mutex: *mut i32), at 0x1001_302C, cost 200, header;
+            sync::mutex_unlock = MutexUnlock(mutex: *mut i32), at 0x1001_302C, cost 15, header;
             /// `*p |= mask`, uninterruptible.
-            sync::atomic_set = AtomicSet(p: *mut i32, mask: i32), at 0x1001_2C90, cost 200, header;
+            sync::atomic_set = AtomicSet(p: *mut i32, mask: i32), at 0x1001_2C90, cost 7, header;
             /// `*p &= mask`, uninterruptible: the mask has ones at the bits to keep.
-            sync::atomic_clear = AtomicClear(p: *mut i32, mask: i32), at 0x1001_2CA8, cost 200, header;
+            sync::atomic_clear = AtomicClear(p: *mut i32, mask: i32), at 0x1001_2CA8, cost 7, header;
             /// Stores `value` if `*mutex` is 0; returns what was there (0: acquired). Uninterruptible.
             sync::test_and_set = TestAndSet(mutex: *mut i32, value: i32) -> i32,
-                at 0x1001_2A40, cost 200, header;
+                at 0x1001_2A40, cost 6, header;
 
             // ---- console: text to the console of the PC and to files on it ----------------------------
             /// Formats up to 128 characters for the console; returns the full length. Waits only while the
             /// queue is full.
-            console::printf = printf(format: *const Char; varargs) -> i32, at 0x8001_EA40, cost 200, header;
+            console::printf = printf(format: *const Char; varargs) -> i32, at 0x8001_EA40, cost 367, header;
             /// Formats into `s`, without a limit; returns the length.
             console::sprintf = sprintf(s: *mut Char, format: *const Char; varargs) -> i32,
-                at 0x8002_6FC0, cost 200, header;
+                at 0x8002_6FC0, cost 83, header;
             /// Converts the text of `_str` under a format; returns the number of items converted.
             console::sscanf = sscanf(_str: *const Char, _fmt: *const Char; varargs) -> i32,
-                at 0x8002_5FC0, cost 200, header;
+                at 0x8002_5FC0, cost 560, header;
             /// Queues a string for the console, line by line. Returns 0. Waits only while the queue is
             /// full.
-            console::print = Print(s: *mut Char) -> i32, at 0x1001_2510, cost 200, header;
+            console::print = Print(s: *mut Char) -> i32, at 0x1001_2510, cost 100, header;
             /// Formats one double for the console. Returns 0.
             console::print_float = PrintFloat(Format: *mut Char, v: f64) -> i32,
-                at 0x8001_F3F0, cost 200, header;
+                at 0x8001_F3F0, cost 367, header;
             /// Formats one int for the console. Returns 0.
-            console::print_int = PrintInt(Format: *mut Char, v: i32) -> i32, at 0x8001_F474, cost 200, header;
+            console::print_int = PrintInt(Format: *mut Char, v: i32) -> i32, at 0x8001_F474, cost 367, header;
             /// Opens a text file on the PC ("rt", "wt", "at"). Reading waits for the PC and gives NULL on
             /// failure; one file each way.
             console::fopen = fopen(path: *const Char, mode: *const Char) -> *mut File,
-                at 0x8001_EB74, cost 200, header;
+                at 0x8001_EB74, cost 1152, header;
             /// Closes a file on the PC. Returns 0.
-            console::fclose = fclose(f: *mut File) -> i32, at 0x8001_F358, cost 200, header;
+            console::fclose = fclose(f: *mut File) -> i32, at 0x8001_F358, cost 821, header;
             /// Formats up to 128 characters for a file on the PC. Returns 0.
             console::fprintf = fprintf(f: *mut File, format: *const Char; varargs) -> i32,
-                at 0x8001_EAD4, cost 200, header;
+                at 0x8001_EAD4, cost 770, header;
             /// Reads the next line, at most `n` characters, without its end. Waits for the PC; NULL at the
             /// end of the file.
             console::fgets = fgets(str: *mut Char, n: i32, file: *mut File) -> *mut Char,
-                at 0x8001_EDD0, cost 200, header;
+                at 0x8001_EDD0, cost 880, header;
             /// Reads a line of at most 128 characters and converts it; returns the number of items. Waits
             /// for the PC.
             console::fscanf = fscanf(f: *mut File, format: *const Char; varargs) -> i32,
-                at 0x8001_F20C, cost 200, header;
+                at 0x8001_F20C, cost 1700, header;
             /// 1 after a read or an opening has failed, else 0.
-            console::feof = feof(f: *mut File) -> i32, at 0x8001_F2D8, cost 200, header;
+            console::feof = feof(f: *mut File) -> i32, at 0x8001_F2D8, cost 52, header;
             /// Formats at most `_n` characters from the argument area at `_ap`.
             console::vsnprintf = vsnprintf(
                 _string: *mut Char, _n: SizeT, _format: *const Char, _ap: *mut Char
-            ) -> i32, at 0x8002_68E0, cost 200, firmware;
+            ) -> i32, at 0x8002_68E0, cost 84, firmware;
             /// Formats at most `n` characters into `s`; returns the full length.
             console::snprintf = snprintf(s: *mut Char, n: SizeT, format: *const Char; varargs) -> i32,
-                at 0x7000_0000, cost 200, library;
+                at 0x7000_0000, cost 84, library;
             /// Formats into `s` from the argument area at `ap`.
             console::vsprintf = vsprintf(s: *mut Char, format: *const Char, ap: *mut Char) -> i32,
-                at 0x7000_0008, cost 200, library;
+                at 0x7000_0008, cost 84, library;
             /// Formats for the console from the argument area at `ap`.
             console::vprintf = vprintf(format: *const Char, ap: *mut Char) -> i32,
-                at 0x7000_0010, cost 200, library;
+                at 0x7000_0010, cost 367, library;
             /// Sends a string and a newline to the console.
-            console::puts = puts(s: *const Char) -> i32, at 0x7000_0018, cost 200, library;
+            console::puts = puts(s: *const Char) -> i32, at 0x7000_0018, cost 367, library;
             /// Sends one character to the console.
-            console::putchar = putchar(c: i32) -> i32, at 0x7000_0020, cost 200, library;
+            console::putchar = putchar(c: i32) -> i32, at 0x7000_0020, cost 367, library;
 
             // ---- gather: the data recorder ------------------------------------------------------------
             /// Prepares recording of six doubles a tick of axis `c` for `n_Samples` ticks; TriggerGather
             /// starts it.
             gather::setup_gather_all_on_axis = SetupGatherAllOnAxis(c: i32, n_Samples: i32),
-                at 0x8002_1440, cost 200, header;
+                at 0x8002_1440, cost 102, header;
             /// Starts recording into gather_buffer. Poll CheckDoneGather.
-            gather::trigger_gather = TriggerGather(), at 0x8002_12A0, cost 200, header;
+            gather::trigger_gather = TriggerGather(), at 0x8002_12A0, cost 14, header;
             /// 1 when recording has reached its end, else 0.
-            gather::check_done_gather = CheckDoneGather() -> i32, at 0x8002_1950, cost 200, header;
+            gather::check_done_gather = CheckDoneGather() -> i32, at 0x8002_1950, cost 16, header;
 
             // ---- serial: the UART ---------------------------------------------------------------------
             /// Enables the UART pins and sets the divisor, one of the RS232_BAUD_ values. Takes about 2 ms.
-            serial::init_rs232 = InitRS232(baud: i32), at 0x8002_1760, cost 200, header;
+            serial::init_rs232 = InitRS232(baud: i32), at 0x8002_1760, cost 451, header;
             /// InitRS232, then empties both rings and connects the command interpreter (DoRS232Cmds = 1).
             /// Takes about 2 ms.
-            serial::enable_rs232_cmds = EnableRS232Cmds(baud: i32), at 0x8002_18C8, cost 200, header;
+            serial::enable_rs232_cmds = EnableRS232Cmds(baud: i32), at 0x8002_18C8, cost 490, header;
             /// Takes the next received character; waits while there is none.
             serial::rs232_get_char = RS232_GetChar() -> Char, at 0x1000_1254, cost 200, header;
             /// Sends a character; waits while the transmit ring is full.
-            serial::rs232_put_char = RS232_PutChar(c: Char), at 0x1000_12C0, cost 200, header;
+            serial::rs232_put_char = RS232_PutChar(c: Char), at 0x1000_12C0, cost 67, header;
 
             // ---- snapamp: registers of the SnapAmp option board ---------------------------------------
             /// Writes a 16-bit word to SnapAmp register `add` (SNAP0 or SNAP1 plus a SNAP_ number).
-            snapamp::write_snap_amp = WriteSnapAmp(add: i32, data: i32), at 0x1000_1AD0, cost 200, header;
+            snapamp::write_snap_amp = WriteSnapAmp(add: i32, data: i32), at 0x1000_1AD0, cost 207, header;
             /// Reads a 16-bit word from SnapAmp register `add` (SNAP0 or SNAP1 plus a SNAP_ number).
-            snapamp::read_snap_amp = ReadSnapAmp(add: i32) -> i32, at 0x1001_2BA0, cost 200, header;
+            snapamp::read_snap_amp = ReadSnapAmp(add: i32) -> i32, at 0x1001_2BA0, cost 150, header;
 
             // ---- konnect: konnect option boards on the AUX ports --------------------------------------
             /// Prepares the AUX port for Konnect boards and empties the list of boards served.
-            konnect::init_aux = InitAux(), at 0x8001_D908, cost 200, header;
+            konnect::init_aux = InitAux(), at 0x8001_D908, cost 6, header;
             /// Serves a Konnect board on AUX1 from now on: 16 outputs from `*OutputAddress`, 32 inputs to
             /// `*InputAddress`.
             konnect::add_konnect = AddKonnect(
                 BoardAddress: i32, OutputAddress: *mut i32, InputAddress: *mut i32
-            ), at 0x8001_DBE8, cost 200, header;
+            ), at 0x8001_DBE8, cost 33, header;
             /// AddKonnect for a board on AUX0.
             konnect::add_konnect_aux0 = AddKonnect_Aux0(
                 BoardAddress: i32, OutputAddress: *mut i32, InputAddress: *mut i32
-            ), at 0x1000_7F40, cost 200, header;
+            ), at 0x1000_7F40, cost 33, header;
 
             // ---- persist: flash memory ----------------------------------------------------------------
             /// Erases and writes `Length` 16-bit words of flash, printing progress after `message`. Waits;
             /// 0 = success.
             persist::program_flash = ProgramFlash(
                 src: *mut Volatile<Char>, Length: i32, dest: *mut Volatile<Char>, message: *mut Char
-            ) -> i32, at 0x8001_FFC0, cost 200, header;
+            ) -> i32, at 0x8001_FFC0, cost 56031, header;
             /// ProgramFlash without console output. Waits; 0 = success.
             persist::program_flash_no_messages = ProgramFlashNoMessages(
                 src0: *mut Volatile<Char>, Length: i32, dest0: *mut Volatile<Char>
-            ) -> i32, at 0x8002_0008, cost 200, header;
+            ) -> i32, at 0x8002_0008, cost 33333, header;
             /// Selects the flash bank that makes address `add` readable.
-            persist::set_flash_bank = SetFlashBank(add: *mut Volatile<u16>), at 0x1001_2CC0, cost 200, header;
+            persist::set_flash_bank = SetFlashBank(add: *mut Volatile<u16>), at 0x1001_2CC0, cost 217, header;
 
             // ---- math: mathematics. Angles are in radians unless cycles are named ---------------------
             /// Square root.
-            math::sqrt = sqrt(x: f64) -> f64, at 0x8002_5B80, cost 200, header;
+            math::sqrt = sqrt(x: f64) -> f64, at 0x8002_5B80, cost 379, header;
             /// e to the power `x`.
-            math::exp = exp(x: f64) -> f64, at 0x1000_F000, cost 200, header;
+            math::exp = exp(x: f64) -> f64, at 0x1000_F000, cost 214, header;
             /// Natural logarithm.
-            math::log = log(x: f64) -> f64, at 0x1000_F424, cost 200, header;
+            math::log = log(x: f64) -> f64, at 0x1000_F424, cost 283, header;
             /// Logarithm to base 10.
-            math::log10 = log10(x: f64) -> f64, at 0x1000_F3A4, cost 200, header;
+            math::log10 = log10(x: f64) -> f64, at 0x1000_F3A4, cost 284, header;
             /// `x` to the power `y`.
-            math::pow = pow(x: f64, y: f64) -> f64, at 0x8002_0940, cost 200, header;
+            math::pow = pow(x: f64, y: f64) -> f64, at 0x8002_0940, cost 1100, header;
             /// Sine.
-            math::sin = sin(x: f64) -> f64, at 0x1000_FABC, cost 200, header;
+            math::sin = sin(x: f64) -> f64, at 0x1000_FABC, cost 144, header;
             /// Cosine.
-            math::cos = cos(x: f64) -> f64, at 0x1000_FAA0, cost 200, header;
+            math::cos = cos(x: f64) -> f64, at 0x1000_FAA0, cost 148, header;
             /// Tangent.
-            math::tan = tan(x: f64) -> f64, at 0x8002_4360, cost 200, header;
+            math::tan = tan(x: f64) -> f64, at 0x8002_4360, cost 440, header;
             /// Arc sine.
-            math::asin = asin(x: f64) -> f64, at 0x8002_3F80, cost 200, header;
+            math::asin = asin(x: f64) -> f64, at 0x8002_3F80, cost 256, header;
             /// Arc cosine.
-            math::acos = acos(x: f64) -> f64, at 0x8002_3760, cost 200, header;
+            math::acos = acos(x: f64) -> f64, at 0x8002_3760, cost 271, header;
             /// Arc tangent.
-            math::atan = atan(x: f64) -> f64, at 0x8002_5680, cost 200, header;
+            math::atan = atan(x: f64) -> f64, at 0x8002_5680, cost 335, header;
             /// Arc tangent of `y / x` in all four quadrants.
-            math::atan2 = atan2(y: f64, x: f64) -> f64, at 0x8002_6D20, cost 200, header;
+            math::atan2 = atan2(y: f64, x: f64) -> f64, at 0x8002_6D20, cost 565, header;
             /// Absolute value.
-            math::fast_fabs = fast_fabs(y: f64) -> f64, at 0x1000_1A3C, cost 200, header;
+            math::fast_fabs = fast_fabs(y: f64) -> f64, at 0x1000_1A3C, cost 6, header;
             /// Square root.
-            math::sqrtf = sqrtf(x: f32) -> f32, at 0x1000_F820, cost 200, header;
+            math::sqrtf = sqrtf(x: f32) -> f32, at 0x1000_F820, cost 41, header;
             /// e to the power `x`.
-            math::expf = expf(x: f32) -> f32, at 0x1000_F1F4, cost 200, header;
+            math::expf = expf(x: f32) -> f32, at 0x1000_F1F4, cost 72, header;
             /// Natural logarithm.
-            math::logf = logf(x: f32) -> f32, at 0x1000_F640, cost 200, header;
+            math::logf = logf(x: f32) -> f32, at 0x1000_F640, cost 66, header;
             /// Logarithm to base 10.
-            math::log10f = log10f(x: f32) -> f32, at 0x1000_F620, cost 200, header;
+            math::log10f = log10f(x: f32) -> f32, at 0x1000_F620, cost 67, header;
             /// `x` to the power `y`.
-            math::powf = powf(x: f32, y: f32) -> f32, at 0x8002_1980, cost 200, header;
+            math::powf = powf(x: f32, y: f32) -> f32, at 0x8002_1980, cost 680, header;
             /// Sine.
-            math::sinf = sinf(x: f32) -> f32, at 0x1000_FC34, cost 200, header;
+            math::sinf = sinf(x: f32) -> f32, at 0x1000_FC34, cost 62, header;
             /// Cosine.
-            math::cosf = cosf(x: f32) -> f32, at 0x1000_FC20, cost 200, header;
+            math::cosf = cosf(x: f32) -> f32, at 0x1000_FC20, cost 66, header;
             /// Tangent.
-            math::tanf = tanf(x: f32) -> f32, at 0x8002_53C0, cost 200, header;
+            math::tanf = tanf(x: f32) -> f32, at 0x8002_53C0, cost 233, header;
             /// Arc sine.
-            math::asinf = asinf(x: f32) -> f32, at 0x8002_6580, cost 200, header;
+            math::asinf = asinf(x: f32) -> f32, at 0x8002_6580, cost 120, header;
             /// Arc cosine.
-            math::acosf = acosf(x: f32) -> f32, at 0x8002_63A0, cost 200, header;
+            math::acosf = acosf(x: f32) -> f32, at 0x8002_63A0, cost 117, header;
             /// Arc tangent.
-            math::atanf = atanf(x: f32) -> f32, at 0x1000_F974, cost 200, header;
+            math::atanf = atanf(x: f32) -> f32, at 0x1000_F974, cost 54, header;
             /// Arc tangent of `y / x` in all four quadrants.
-            math::atan2f = atan2f(y: f32, x: f32) -> f32, at 0x1000_F8C0, cost 200, header;
+            math::atan2f = atan2f(y: f32, x: f32) -> f32, at 0x1000_F8C0, cost 80, header;
             /// Absolute value.
-            math::fast_fabsf = fast_fabsf(y: f32) -> f32, at 0x1000_1A30, cost 200, header;
+            math::fast_fabsf = fast_fabsf(y: f32) -> f32, at 0x1000_1A30, cost 6, header;
             /// Sine of `x` cycles, 0 to 1; the second phase's sine goes to `*sin2`.
-            math::sine_3ph = Sine3PH(x: f32, sin2: *mut f32) -> f32, at 0x1001_3180, cost 200, firmware;
+            math::sine_3ph = Sine3PH(x: f32, sin2: *mut f32) -> f32, at 0x1001_3180, cost 27, firmware;
             /// Fractional part of `v`, with its sign.
-            math::fractionf = fractionf(v: f64) -> f32, at 0x1000_1970, cost 200, firmware;
+            math::fractionf = fractionf(v: f64) -> f32, at 0x1000_1970, cost 41, firmware;
             /// Fractional part of `x`; the whole part goes to `*ip`.
-            math::modf = modf(x: f64, ip: *mut f64) -> f64, at 0x8002_7B40, cost 200, firmware;
+            math::modf = modf(x: f64, ip: *mut f64) -> f64, at 0x8002_7B40, cost 50, firmware;
             /// Fractional part of `x`; the whole part goes to `*ip`.
-            math::modff = modff(x: f32, ip: *mut f32) -> f32, at 0x8002_7CA0, cost 200, firmware;
+            math::modff = modff(x: f32, ip: *mut f32) -> f32, at 0x8002_7CA0, cost 37, firmware;
             /// 2 to the power `x`.
-            math::exp2 = exp2(x: f64) -> f64, at 0x1000_EFC0, cost 200, firmware;
+            math::exp2 = exp2(x: f64) -> f64, at 0x1000_EFC0, cost 227, firmware;
             /// 2 to the power `x`.
-            math::exp2f = exp2f(x: f32) -> f32, at 0x1000_F188, cost 200, firmware;
+            math::exp2f = exp2f(x: f32) -> f32, at 0x1000_F188, cost 73, firmware;
             /// 10 to the power `x`.
-            math::exp10 = exp10(x: f64) -> f64, at 0x1000_EFE4, cost 200, firmware;
+            math::exp10 = exp10(x: f64) -> f64, at 0x1000_EFE4, cost 227, firmware;
             /// 10 to the power `x`.
-            math::exp10f = exp10f(x: f32) -> f32, at 0x1000_F1C0, cost 200, firmware;
+            math::exp10f = exp10f(x: f32) -> f32, at 0x1000_F1C0, cost 73, firmware;
             /// Logarithm to base 2.
-            math::log2 = log2(x: f64) -> f64, at 0x1000_F320, cost 200, firmware;
+            math::log2 = log2(x: f64) -> f64, at 0x1000_F320, cost 284, firmware;
             /// Logarithm to base 2.
-            math::log2f = log2f(x: f32) -> f32, at 0x1000_F600, cost 200, firmware;
+            math::log2f = log2f(x: f32) -> f32, at 0x1000_F600, cost 67, firmware;
             /// Splits `x` into a fraction in [0.5, 1) and a power of two.
-            math::frexp = frexp(x: f64, exp: *mut i32) -> f64, at 0x8002_7440, cost 200, firmware;
+            math::frexp = frexp(x: f64, exp: *mut i32) -> f64, at 0x8002_7440, cost 29, firmware;
             /// Splits `x` into a fraction in [0.5, 1) and a power of two.
-            math::frexpf = frexpf(x: f32, exp: *mut i32) -> f32, at 0x8002_7740, cost 200, firmware;
+            math::frexpf = frexpf(x: f32, exp: *mut i32) -> f32, at 0x8002_7740, cost 27, firmware;
             /// `x` times 2 to the power `n`.
-            math::ldexp = ldexp(x: f64, n: i32) -> f64, at 0x8002_6A60, cost 200, firmware;
+            math::ldexp = ldexp(x: f64, n: i32) -> f64, at 0x8002_6A60, cost 46, firmware;
             /// `x` times 2 to the power `n`.
-            math::ldexpf = ldexpf(x: f32, n: i32) -> f32, at 0x8002_7320, cost 200, firmware;
+            math::ldexpf = ldexpf(x: f32, n: i32) -> f32, at 0x8002_7320, cost 41, firmware;
             /// Signed quotient, as code of the vendor's compiler calls it.
-            math::divi = _divi(a: i32, b: i32) -> i32, at 0x8002_70E0, cost 200, firmware;
+            math::divi = _divi(a: i32, b: i32) -> i32, at 0x8002_70E0, cost 22, firmware;
             /// Unsigned quotient, as code of the vendor's compiler calls it.
-            math::divu = _divu(a: u32, b: u32) -> u32, at 0x8002_7900, cost 200, firmware;
+            math::divu = _divu(a: u32, b: u32) -> u32, at 0x8002_7900, cost 22, firmware;
             /// Signed remainder, as code of the vendor's compiler calls it.
-            math::remi = _remi(a: i32, b: i32) -> i32, at 0x8002_7560, cost 200, firmware;
+            math::remi = _remi(a: i32, b: i32) -> i32, at 0x8002_7560, cost 20, firmware;
             /// Unsigned remainder, as code of the vendor's compiler calls it.
-            math::remu = _remu(a: u32, b: u32) -> u32, at 0x8002_7C00, cost 200, firmware;
+            math::remu = _remu(a: u32, b: u32) -> u32, at 0x8002_7C00, cost 22, firmware;
             /// Quotient of floats, as code of the vendor's compiler calls it.
-            math::divf = _divf(a: f32, b: f32) -> f32, at 0x1000_EF60, cost 200, firmware;
+            math::divf = _divf(a: f32, b: f32) -> f32, at 0x1000_EF60, cost 30, firmware;
             /// Quotient of doubles, as code of the vendor's compiler calls it.
-            math::divd = _divd(a: f64, b: f64) -> f64, at 0x1000_F7A0, cost 200, firmware;
+            math::divd = _divd(a: f64, b: f64) -> f64, at 0x1000_F7A0, cost 84, firmware;
             /// Absolute value.
             math::fabs = fabs(x: f64) -> f64, at 0x7000_0028, cost 200, library;
             /// Absolute value.
@@ -589,20 +590,20 @@ macro_rules! for_each_firmware_fn {
             // ---- string: strings, blocks of memory, characters ----------------------------------------
             /// Copies `n` bytes; returns `dst`.
             string::memcpy = memcpy(dst: *mut Void, src: *const Void, n: SizeT) -> *mut Void,
-                at 0x1000_1844, cost 200, firmware;
+                at 0x1000_1844, cost 32, firmware;
             /// Fills `len` bytes; returns `dst`.
             string::memset = memset(dst: *mut Void, fill: i32, len: SizeT) -> *mut Void,
-                at 0x8002_7820, cost 200, firmware;
+                at 0x8002_7820, cost 41, firmware;
             /// Copies until `ch` has been copied or `cnt` bytes are done.
             string::memccpy = memccpy(dest: *mut Char, src: *const Char, ch: i32, cnt: i32) -> *mut Char,
-                at 0x8002_7DA0, cost 200, firmware;
+                at 0x8002_7DA0, cost 20, firmware;
             /// Length without the terminator.
-            string::strlen = strlen(string: *const Char) -> SizeT, at 0x8002_7EC0, cost 200, firmware;
+            string::strlen = strlen(string: *const Char) -> SizeT, at 0x8002_7EC0, cost 19, firmware;
             /// First place of `string2` in `string1`, or NULL.
             string::strstr = strstr(string1: *const Char, string2: *const Char) -> *mut Char,
-                at 0x8002_7D20, cost 200, firmware;
+                at 0x8002_7D20, cost 100, firmware;
             /// Nonzero for white space.
-            string::isspace = isspace(c: i32) -> i32, at 0x8002_7F00, cost 200, firmware;
+            string::isspace = isspace(c: i32) -> i32, at 0x8002_7F00, cost 14, firmware;
             /// Copies a string; returns `dst`.
             string::strcpy = strcpy(dst: *mut Char, src: *const Char) -> *mut Char,
                 at 0x7000_00D8, cost 200, library;
@@ -673,45 +674,45 @@ macro_rules! for_each_firmware_fn {
             // ---- stdlib: the rest of the C library: heap, numbers, sorting, ending --------------------
             /// Takes memory from the firmware's heap, about 99,000 bytes; 8-byte aligned, NULL when there
             /// is none.
-            stdlib::malloc = malloc(size: SizeT) -> *mut Void, at 0x8001_DE70, cost 200, firmware;
+            stdlib::malloc = malloc(size: SizeT) -> *mut Void, at 0x8001_DE70, cost 279, firmware;
             /// Takes cleared memory for `num` items of `size` bytes.
-            stdlib::calloc = calloc(num: SizeT, size: SizeT) -> *mut Void, at 0x8001_E998, cost 200, firmware;
+            stdlib::calloc = calloc(num: SizeT, size: SizeT) -> *mut Void, at 0x8001_E998, cost 300, firmware;
             /// Changes the size of a block; it may move.
             stdlib::realloc = realloc(packet: *mut Void, size: SizeT) -> *mut Void,
-                at 0x8001_E360, cost 200, firmware;
+                at 0x8001_E360, cost 1000, firmware;
             /// Takes memory at a multiple of `alignment`.
             stdlib::memalign = memalign(alignment: SizeT, size: SizeT) -> *mut Void,
-                at 0x8001_E710, cost 200, firmware;
+                at 0x8001_E710, cost 457, firmware;
             /// Gives a block back.
-            stdlib::free = free(packet: *mut Void), at 0x8001_DFFC, cost 200, firmware;
+            stdlib::free = free(packet: *mut Void), at 0x8001_DFFC, cost 459, firmware;
             /// Next pseudo-random number.
-            stdlib::rand = rand() -> i32, at 0x8002_6EF4, cost 200, firmware;
+            stdlib::rand = rand() -> i32, at 0x8002_6EF4, cost 157, firmware;
             /// Starts the pseudo-random sequence of `seed`.
-            stdlib::srand = srand(seed: u32), at 0x8002_6E80, cost 200, firmware;
+            stdlib::srand = srand(seed: u32), at 0x8002_6E80, cost 142, firmware;
             /// Text to int.
-            stdlib::atoi = atoi(st: *const Char) -> i32, at 0x8002_7660, cost 200, firmware;
+            stdlib::atoi = atoi(st: *const Char) -> i32, at 0x8002_7660, cost 53, firmware;
             /// Text to long in the given base; the end goes to `*endptr`.
             stdlib::strtol = strtol(st: *const Char, endptr: *mut *mut Char, base: i32) -> Long,
-                at 0x8002_29E0, cost 200, firmware;
+                at 0x8002_29E0, cost 300, firmware;
             /// Text to unsigned long in the given base; the end goes to `*endptr`.
             stdlib::strtoul = strtoul(st: *const Char, endptr: *mut *mut Char, base: i32) -> UnsignedLong,
-                at 0x8002_2E80, cost 200, firmware;
+                at 0x8002_2E80, cost 273, firmware;
             /// Text to double; the end goes to `*endptr`.
             stdlib::strtod = strtod(st: *const Char, endptr: *mut *mut Char) -> f64,
-                at 0x8002_2500, cost 200, firmware;
+                at 0x8002_2500, cost 164, firmware;
             /// Text to double; the end goes to `*endptr`.
             stdlib::strtold = strtold(st: *const Char, endptr: *mut *mut Char) -> f64,
-                at 0x8002_2020, cost 200, firmware;
+                at 0x8002_2020, cost 164, firmware;
             /// Integer to decimal text; returns the length.
-            stdlib::ltoa = ltoa(val: Long, buffer: *mut Char) -> i32, at 0x8002_7200, cost 200, firmware;
+            stdlib::ltoa = ltoa(val: Long, buffer: *mut Char) -> i32, at 0x8002_7200, cost 10663, firmware;
             /// Double to `ndigit` significant digits in a static buffer.
             stdlib::ecvt = ecvt(value: f64, ndigit: i32, decpt: *mut i32, sign: *mut i32) -> *mut Char,
-                at 0x8002_4AA0, cost 200, firmware;
+                at 0x8002_4AA0, cost 420, firmware;
             /// Double to digits with `ndigit` after the point in a static buffer.
             stdlib::fcvt = fcvt(value: f64, ndigit: i32, decpt: *mut i32, sign: *mut i32) -> *mut Char,
-                at 0x8002_4DC0, cost 200, firmware;
+                at 0x8002_4DC0, cost 460, firmware;
             /// Registers a function for exit.
-            stdlib::atexit = atexit(fun: fn() -> Void) -> i32, at 0x8002_5EDC, cost 200, firmware;
+            stdlib::atexit = atexit(fun: fn() -> Void) -> i32, at 0x8002_5EDC, cost 162, firmware;
             /// Ends the program; in a thread as ThreadDone does.
             stdlib::exit = exit(status: i32), at 0x8002_5DCC, cost 200, firmware;
             /// Ends the program; in a thread as ThreadDone does.

@@ -52,15 +52,15 @@ impl fmt::Display for GuestAddr {
     }
 }
 
-/// The guest address of a bytecode instruction: a multiple of 8 inside a program's text.
+/// The guest address of an instruction: of bytecode a multiple of 8, of the real processor of 4.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct CodeAddr(u32);
 
 impl CodeAddr {
-    /// Takes a guest address as one of code; `None` if it is not a multiple of 8.
+    /// Takes a guest address as one of code; `None` if it is not a multiple of 4.
     #[must_use]
     pub const fn new(address: u32) -> Option<Self> {
-        if address.is_multiple_of(8) { Some(Self(address)) } else { None }
+        if address.is_multiple_of(4) { Some(Self(address)) } else { None }
     }
 
     /// The number itself.
@@ -234,8 +234,8 @@ mod tests {
     }
 
     #[test]
-    fn code_addresses_are_multiples_of_eight() {
-        assert!(CodeAddr::new(0x8005_0004).is_none());
-        assert_eq!(CodeAddr::new(0x8005_0008).map(CodeAddr::get), Some(0x8005_0008));
+    fn code_addresses_are_multiples_of_four() {
+        assert!(CodeAddr::new(0x8005_0002).is_none());
+        assert_eq!(CodeAddr::new(0x8005_0004).map(CodeAddr::get), Some(0x8005_0004));
     }
 }

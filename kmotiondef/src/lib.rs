@@ -29,6 +29,7 @@ pub mod modes;
 mod place;
 pub mod start;
 pub mod structs;
+pub mod timing;
 pub mod variables;
 
 #[cfg(test)]

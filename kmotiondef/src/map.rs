@@ -65,6 +65,8 @@ pub const PROGRAM_LIMIT: u32 = 0x8010_0000;
 pub const STACK_BASE: u32 = 0x800C_0000;
 /// Bytes of one thread's stack. The board itself has 2048, see `BOARD_STACK_SIZE`.
 pub const STACK_SIZE: u32 = 0x8000;
+/// Start of the stack of thread 1 on the real board, in on-chip RAM; the other threads' follow.
+pub const BOARD_STACKS_BASE: u32 = 0x1001_3488;
 /// Bytes of one thread's stack on the real board.
 pub const BOARD_STACK_SIZE: u32 = 2048;
 

@@ -133,6 +133,94 @@ modes! {
     }
 }
 
+/// What goes to zero when an axis is switched off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AtRest {
+    /// Nothing: steps stay where they are.
+    Nothing,
+    /// The word of its first channel.
+    First,
+    /// The words of both of its channels.
+    Both,
+    /// The words of its first channel and of the one after it.
+    FirstAndNext,
+    /// Its analog output.
+    Analog,
+}
+
+/// What a mode of an output means for the servo.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OutputTraits {
+    /// Nothing is compensated: the output goes where it is told.
+    pub is_open_loop: bool,
+    /// It drives a step generator, which other axes may name too.
+    pub has_generator: bool,
+    /// It corrects the commanded place by its output, and slaves follow both.
+    pub corrects_command: bool,
+    /// Enabling keeps the destination, as the position says nothing of the motor.
+    pub keeps_dest: bool,
+    /// What goes to zero when the axis is switched off.
+    pub at_rest: AtRest,
+    /// Cycles of the servo interrupt for an enabled axis, as measured.
+    pub cycles: i64,
+}
+
+impl OutputTraits {
+    /// A closed loop without a step generator.
+    const LOOP: Self = Self {
+        is_open_loop: false,
+        has_generator: false,
+        corrects_command: false,
+        keeps_dest: false,
+        at_rest: AtRest::Nothing,
+        cycles: 0,
+    };
+}
+
+impl OutputMode {
+    /// What the mode means for the servo: one row a mode.
+    #[must_use]
+    pub const fn traits(self) -> OutputTraits {
+        const LOOP: OutputTraits = OutputTraits::LOOP;
+        match self {
+            Self::None => OutputTraits { cycles: 290, ..LOOP },
+            Self::Microstep => OutputTraits {
+                is_open_loop: true,
+                keeps_dest: true,
+                at_rest: AtRest::Both,
+                cycles: 282,
+                ..LOOP
+            },
+            Self::DcServo => OutputTraits { at_rest: AtRest::First, cycles: 299, ..LOOP },
+            Self::Brushless3Ph => OutputTraits { at_rest: AtRest::FirstAndNext, cycles: 429, ..LOOP },
+            Self::Brushless4Ph => OutputTraits { at_rest: AtRest::Both, cycles: 467, ..LOOP },
+            Self::DacServo => OutputTraits { at_rest: AtRest::Analog, cycles: 323, ..LOOP },
+            Self::StepDir => OutputTraits { is_open_loop: true, has_generator: true, cycles: 225, ..LOOP },
+            Self::ClosedLoopStepDir => {
+                OutputTraits { has_generator: true, corrects_command: true, cycles: 429, ..LOOP }
+            }
+            Self::ClosedLoopMicrostep => {
+                OutputTraits { corrects_command: true, at_rest: AtRest::Both, cycles: 489, ..LOOP }
+            }
+        }
+    }
+
+    /// Whether a number names a mode that drives a step generator.
+    #[must_use]
+    pub const fn has_generator(mode: Option<Self>) -> bool {
+        matches!(mode, Some(mode) if mode.traits().has_generator)
+    }
+
+    /// Whether nothing is compensated in a mode; a number without a meaning compensates nothing either.
+    #[must_use]
+    pub const fn is_open_loop(mode: Option<Self>) -> bool {
+        match mode {
+            Some(mode) => mode.traits().is_open_loop,
+            None => true,
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,17 +1,10 @@
-//! The kernel: the board's firmware and devices behind the machine's traits.
+//! The kernel: the board's parts behind the machine's traits, and the order of a tick.
 //!
-//! It keeps what guest memory does not hold: output latches, the console queue, step generators, what waiting calls
-//! have to remember. Everything a program can see in memory is only there.
-
-pub(crate) mod globals;
-mod world;
-
-use std::collections::BTreeSet;
-use std::sync::Arc;
+//! It composes the parts and says what comes after what; what each of them does is theirs.
 
 use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, function_at};
-use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::map::{FPGA, TIMER0};
+use kmotiondef::structs::Chan;
 use kmotiondef::variables::{
     CURRENT_THREAD, LAST_TIMER0, NEXT_AVAIL_IN, NEXT_AVAIL_OUT, SERVO_TICK, USER_CALL_BACK,
 };
@@ -22,135 +15,38 @@ use vm::memory::GuestMemory;
 use vm::scheduler::Turn;
 use vm::trap::{Trap, TrapKind};
 
-use crate::commands::{self, Downloads, Experiment, Link};
+use crate::commands::Scripts;
 use crate::firmware::dispatch::{HANDLERS, signatures};
-use crate::firmware::files::Reading;
-use crate::firmware::heap::Heap;
-use crate::firmware::serial::{self, SerialService};
-use crate::io::encoder::Encoders;
-use crate::io::flash::Banks;
-use crate::io::fpga::{Behind, Fpga};
-use crate::io::kanalog::{self, Kanalog};
+use crate::firmware::parts::Parts;
+use crate::firmware::{math, serial, waits};
+use crate::io::Io;
+use crate::io::bits::bit_state;
 use crate::io::konnect::Konnects;
-use crate::io::pins::Pins;
-use crate::io::snapamp::SnapAmps;
-use crate::io::stepgen::StepGenerators;
 use crate::io::timer;
-use crate::io::uart::Uart;
-use crate::kernel::globals::Globals;
-use crate::machine::plant::Mechanics;
-use crate::out::{Event, EventKind};
-use crate::pc::console::Console;
-use crate::pc::disk::{self, Disk};
+use crate::machine::Machine;
+use crate::machine::description::Condition;
+use crate::out::{Console, EventKind, Message, Speaker};
+use crate::pc::Pc;
 use crate::pc::files::HostFiles;
-use crate::pc::host::Host;
-use crate::servo::Servo;
+use crate::pc::host;
+use crate::servo::cache::Change;
+use crate::servo::{Servo, limits};
 use crate::views::Typed;
-use crate::world::attached::Attached;
-use crate::world::stimulus::{Assist, Player};
-use crate::world::trace::{Record, Recorder};
+use crate::world::Moment;
+use crate::world::stimulus::WAITING;
+use crate::world::trace::{Record, View};
 
-/// What a register access costs beyond the instruction: 200 ns, a timer 100 ns.
+/// What a register access costs beyond the instruction if time is not the board's: 200 ns, a timer 100 ns.
 const FPGA_CYCLES: Cycles = Cycles::new(40);
 const TIMER_CYCLES: Cycles = Cycles::new(20);
 
-/// What a waiting call remembers until it is made again.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Continuation {
-    /// Text that the console queue had no room for, and what the call returns.
-    Print {
-        /// The text.
-        rest: Vec<u8>,
-        /// The result.
-        result: i32,
-    },
-    /// The target of a motion, as it was when the call began.
-    Target(f64),
-    /// That a stop was begun, and the axes that are still to be stopped once those are known.
-    Stop(Option<Vec<AxisId>>),
-    /// The axes that are still to go on after a feedhold.
-    Resume(Vec<AxisId>),
-}
-
-/// What only the board as a whole can do, as it holds the programs.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum Request {
-    /// Make a program of what was downloaded into a thread that was started.
-    Load(ThreadId),
-    /// Save programs and settings in flash.
-    Flash,
-    /// Restart from flash.
-    Reboot,
-    /// Load a program that was offered and start it.
-    Run(ThreadId, Arc<str>),
-}
-
-/// The board's firmware.
-#[derive(Debug)]
+/// The board's firmware, and what is around the board.
+#[derive(Clone, Debug)]
 pub struct Kernel {
     signatures: Vec<Signature>,
-    continuations: [Option<Continuation>; ThreadId::MAX as usize + 1],
-    pub(crate) console: Console,
-    pub(crate) pins: Pins,
-    pub(crate) fpga: Fpga,
-    pub(crate) uart: Uart,
-    pub(crate) serial: SerialService,
-    pub(crate) snapamps: SnapAmps,
-    pub(crate) konnects: Konnects,
-    pub(crate) kanalog: Kanalog,
-    pub(crate) encoders: Encoders,
-    pub(crate) stepgens: StepGenerators,
-    /// Devices on pins.
-    attached: Vec<Box<dyn Attached>>,
-    /// Whether characters that the UART sends are told.
-    hears_uart: bool,
-    /// What the world does, if anything.
-    stimulus: Option<Box<Player>>,
-    /// The operator, if there is one.
-    pub(crate) assist: Option<Assist>,
-    /// What is recorded, if anything.
-    recorder: Option<Box<Recorder>>,
-    pub(crate) servo: Servo,
-    pub(crate) heap: Heap,
-    /// How much of flash is seen.
-    pub(crate) flash: Banks,
-    /// The PC's disk, and what the board remembers of its files.
-    pub(crate) disk: Disk,
-    pub(crate) reading: Reading,
-    pub(crate) globals: Globals,
-    /// Ticks that a motion call plans before its motion begins.
-    pub(crate) plan_ticks: u32,
-    pub(crate) host: Host,
-    /// The link to the PC over USB, and the one over the UART.
-    pub(crate) usb: Link,
-    pub(crate) uart_link: Link,
-    pub(crate) downloads: Downloads,
-    pub(crate) experiment: Option<Experiment>,
-    /// Whether the PC takes console lines; if not, they wait in the queue, and then programs do.
-    pub(crate) is_heard: bool,
-    /// Whether a script command is being executed.
-    pub(crate) is_commanding: bool,
-    requests: Vec<Request>,
-    /// State of `rand`.
-    pub(crate) random: u32,
-    /// Where `strtok` goes on.
-    pub(crate) token: GuestAddr,
-    /// When the present tick began.
-    pub(crate) tick_start: Cycles,
-    /// When the present slice began, and whose it is.
-    slice_start: Cycles,
-    turn: Turn,
-    /// Whether the last tick changed nothing and no thread has run since.
-    is_settled: bool,
-    pub(crate) mechanics: Mechanics,
-    /// Whether reading an input that nothing drives is worth a hint.
-    pub(crate) hints: bool,
-    /// Motion calls in a row that each came while the one before was planned, of each axis.
-    pub(crate) hurried_calls: [u8; N_CHANNELS],
-    hinted: BTreeSet<Bit>,
-    /// Whether it was said that nothing serves Kanalog.
-    told_kanalog: bool,
-    events: Vec<Event>,
+    kinds: Vec<CallKind>,
+    pub(crate) parts: Parts,
+    pub(crate) scripts: Scripts,
 }
 
 impl Kernel {
@@ -159,199 +55,102 @@ impl Kernel {
     pub fn new(files: Box<dyn HostFiles>) -> Self {
         Self {
             signatures: signatures(),
-            continuations: Default::default(),
-            console: Console::default(),
-            pins: Pins::default(),
-            fpga: Fpga::default(),
-            uart: Uart::default(),
-            serial: SerialService::default(),
-            snapamps: SnapAmps::default(),
-            konnects: Konnects::default(),
-            kanalog: Kanalog::default(),
-            encoders: Encoders::default(),
-            stepgens: StepGenerators::default(),
-            attached: Vec::new(),
-            hears_uart: false,
-            stimulus: None,
-            assist: None,
-            recorder: None,
-            turn: Turn::Primary,
-            servo: Servo::default(),
-            heap: Heap::default(),
-            flash: Banks::default(),
-            disk: Disk::new(files),
-            reading: Reading::default(),
-            globals: Globals::default(),
-            plan_ticks: 0,
-            host: Host::default(),
-            usb: Link::default(),
-            uart_link: Link::default(),
-            downloads: Downloads::default(),
-            experiment: None,
-            is_heard: true,
-            is_commanding: false,
-            requests: Vec::new(),
-            random: 1,
-            token: GuestAddr::NULL,
-            tick_start: Cycles::default(),
-            slice_start: Cycles::default(),
-            is_settled: false,
-            mechanics: Mechanics::default(),
-            hints: true,
-            hurried_calls: [0; N_CHANNELS],
-            hinted: BTreeSet::new(),
-            told_kanalog: false,
-            events: Vec::new(),
+            kinds: kinds(),
+            parts: Parts::new(Pc::new(files)),
+            scripts: Scripts::default(),
         }
-    }
-
-    /// Remembers something for the call that is made again when its wake comes true.
-    pub(crate) fn keep(&mut self, caller: &Caller<'_>, continuation: Continuation) {
-        self.continuations[slot(caller.thread)] = Some(continuation);
-    }
-
-    /// What the call remembered.
-    pub(crate) fn take(&mut self, caller: &Caller<'_>) -> Option<Continuation> {
-        self.continuations[slot(caller.thread)].take()
-    }
-
-    /// A remark of the simulation about a call.
-    pub(crate) fn diagnose(&mut self, caller: &Caller<'_>, text: String) {
-        let text = match caller.thread {
-            Some(thread) => format!("thread {thread}: {text}"),
-            None if self.is_commanding => format!("command: {text}"),
-            None => format!("call-back: {text}"),
-        };
-        self.tell(caller.now(), EventKind::Diagnostic(text));
-    }
-
-    /// A program reads an input that nothing drives.
-    pub(crate) fn undriven(&mut self, caller: &Caller<'_>, bit: Bit) {
-        if self.hints && self.hinted.insert(bit) {
-            let kind = EventKind::UndrivenInput { bit, thread: caller.thread, place: None };
-            self.tell(caller.now(), kind);
-        }
-    }
-
-    /// A program makes a pin of JP7 an output.
-    pub(crate) fn check_jp7(&mut self, caller: &Caller<'_>, bit: Bit) {
-        if kanalog::is_served(&self.fpga, caller.memory)
-            && !self.pins.is_output(bit)
-            && let Some(text) = self.fpga.note_jp7(bit)
-        {
-            self.diagnose(caller, text);
-        }
-    }
-
-    /// A program writes an output of Kanalog.
-    pub(crate) fn check_kanalog(&mut self, memory: &GuestMemory, bit: Bit, now: Cycles) {
-        if !self.told_kanalog && !kanalog::is_served(&self.fpga, memory) {
-            self.told_kanalog = true;
-            let text = format!(
-                "bit {bit} is an output of Kanalog, which nothing has switched on: it is stored, no more \
-                 (`board.kanalog = true` in the machine file)"
-            );
-            self.tell(now, EventKind::Detail(text));
-        }
-    }
-
-    /// Records an event.
-    pub(crate) fn tell(&mut self, at: Cycles, kind: EventKind) {
-        if let (EventKind::ConsoleLine(line), Some(player)) = (&kind, &mut self.stimulus) {
-            player.note_line(line, at);
-        }
-        self.events.push(Event { at, kind });
-    }
-
-    /// The events since the last time.
-    pub(crate) fn take_events(&mut self) -> Vec<Event> {
-        std::mem::take(&mut self.events)
-    }
-
-    /// Asks the board as a whole for something, to be done behind this tick.
-    pub(crate) fn ask(&mut self, request: Request) {
-        self.requests.push(request);
-    }
-
-    /// What was asked for since the last time.
-    pub(crate) fn take_requests(&mut self) -> Vec<Request> {
-        std::mem::take(&mut self.requests)
     }
 
     /// Everything that the firmware keeps is as at power-up; what lies outside of the board is left alone.
     pub(crate) fn restart(&mut self) {
-        self.continuations = Default::default();
-        self.console = Console::default();
-        self.reading = Reading::default();
-        self.disk.forget_answers();
-        self.serial = SerialService::default();
-        self.konnects = Konnects::default();
-        self.heap = Heap::default();
-        self.usb = Link::default();
-        self.uart_link = Link::default();
-        self.downloads = Downloads::default();
-        self.experiment = None;
-        self.random = 1;
-        self.token = GuestAddr::NULL;
-        self.disturb();
-    }
-
-    /// Sends all console text that waits, the unfinished line included.
-    pub(crate) fn flush_console(&mut self, now: Cycles) {
-        for line in self.console.drain() {
-            self.send_line(line, now);
-        }
-    }
-
-    /// Sends a console line; the PC keeps those for itself that are requests for files.
-    fn send_line(&mut self, line: Vec<u8>, now: Cycles) {
-        if !self.host.is_connected() || !disk::take(self, &line, now) {
-            self.tell(now, EventKind::ConsoleLine(line));
-        }
-    }
-
-    /// Exchanges inputs and outputs with one of the Konnects, if there are any; whether that was done.
-    fn exchange(&mut self, context: &mut TickContext<'_>) -> bool {
-        let has_any = self.konnects.has_any();
-        if has_any && let Some((board, outputs)) = self.konnects.tick(context.memory, context.tick) {
-            self.attached.iter_mut().for_each(|device| device.konnect(board, outputs, context.now));
-        }
-        has_any
-    }
-
-    /// Something outside has changed what the next tick may depend on.
-    pub(crate) fn disturb(&mut self) {
-        self.is_settled = false;
-        self.servo.still.interrupt();
-        self.servo.forget_plans();
+        let Self { parts, scripts, signatures: _, kinds: _ } = self;
+        parts.calls.restart();
+        parts.out.console = Console::default();
+        parts.out.forget_remarks(&["uart-overrun", "uart-commands", "line-in-parts", "percent-twice"]);
+        parts.io.konnects = Konnects::default();
+        parts.pc.restart();
+        *scripts = Scripts::default();
+        parts.disturb();
     }
 
     /// Whether text, motion, a recording or a request to the PC is still under way.
     pub(crate) fn is_busy(&self, memory: &GuestMemory) -> bool {
-        !self.console.is_idle()
+        let Parts { out, io, pc, world, calls, .. } = &self.parts;
+        !out.console.is_idle()
             || Servo::is_busy(memory)
-            || self.host.is_asked(memory)
-            || self.usb.is_busy()
-            || self.experiment.is_some()
-            || self.serial.is_busy(memory, &self.uart)
-            || self.stimulus.as_ref().is_some_and(|player| player.is_busy())
+            || pc.host.is_asked(memory)
+            || pc.usb.is_busy()
+            || self.scripts.has_experiment()
+            || calls.serial.is_busy(memory, &io.uart)
+            || world.is_busy(out)
     }
 
-    /// The registers and what stands behind them.
-    fn registers(&mut self, now: Cycles) -> (&mut Fpga, Behind<'_>) {
-        let behind = Behind {
-            pins: &mut self.pins,
-            uart: &mut self.uart,
-            kanalog: &self.kanalog,
-            encoders: &mut self.encoders,
-            stepgens: &mut self.stepgens,
-            now,
-        };
-        (&mut self.fpga, behind)
+    /// The run is over: what the stimulus expects then is checked.
+    pub(crate) fn finish(&mut self, context: &TickContext<'_>) {
+        let (world, mut stage) = self.parts.stage(context.now);
+        world.finish(&mut stage, context);
+    }
+
+    /// Follows what a program does: whether it only waits, and for what.
+    fn note_call(&mut self, number: usize, caller: &Caller<'_>) {
+        if caller.now() >= self.parts.calls.notices.due {
+            self.settle_notices(caller.now());
+        }
+        let CallKind { waits, names_axis } = self.kinds[number];
+        let calls = &mut self.parts.calls.waits;
+        match caller.thread {
+            Some(thread) if waits => calls.look(thread, FIRMWARE_FUNCTIONS[number].name, caller),
+            Some(thread) => calls.act(thread, caller.now()),
+            None => {}
+        }
+        if names_axis && let Some(axis) = AxisId::new(caller.arguments.get(0)) {
+            calls.touch(axis);
+        }
+        if let Some(assist) = &mut self.parts.world.assist {
+            assist.called(waits, caller.now());
+        }
+    }
+
+    /// Tells what only the end of a run makes certain.
+    pub(crate) fn sum_up(&mut self, context: &TickContext<'_>) {
+        self.settle_notices(context.now);
+        let Parts { out, machine, io, calls, .. } = &mut self.parts;
+        let held = String::from_utf8_lossy(out.console.held()).into_owned();
+        if !held.is_empty() {
+            out.remark(context.now, Message::UnfinishedLine { text: held });
+        }
+        for thread in ThreadId::all().filter(|thread| context.threads.state(*thread).is_active()) {
+            let reads = calls.waits.of(thread).calls.iter().filter(|call| call.function == "ReadBit");
+            for bit in reads.filter_map(|call| Bit::new(call.argument)) {
+                if let Some(message) = moves_away(machine, io, context.memory, bit) {
+                    out.remark_of(context.now, Speaker::Thread(thread), None, message);
+                }
+            }
+        }
+    }
+
+    /// Tells of levels that were written to pins which are inputs still.
+    fn settle_notices(&mut self, now: Cycles) {
+        let Parts { out, io, calls, .. } = &mut self.parts;
+        calls.notices.settle(out, now, |bit| io.pins.is_output(bit));
+    }
+
+    /// The limit switch of an axis that is watched and active.
+    pub(crate) fn active_limit(&self, memory: &GuestMemory, axis: AxisId) -> Option<Bit> {
+        limits::active_switch(&self.parts.io, memory, axis)
+    }
+
+    /// Records the last of `count` ticks that is to be recorded.
+    #[inline]
+    fn sample(&mut self, context: &TickContext<'_>, count: u64) {
+        let Parts { out, io, machine, world, clock, .. } = &mut self.parts;
+        if world.is_recording() {
+            world.sample(&View::new(machine, io, clock.tick_start, context.memory), out, context, count);
+        }
     }
 
     fn store_queue_indices(&self, memory: &mut GuestMemory) {
-        let (write, read) = self.console.indices();
+        let (write, read) = self.parts.out.console.indices();
         memory.untouched(|memory| {
             memory.set(NEXT_AVAIL_IN, write);
             memory.set(NEXT_AVAIL_OUT, read);
@@ -359,8 +158,47 @@ impl Kernel {
     }
 }
 
-fn slot(thread: Option<ThreadId>) -> usize {
-    thread.map_or(0, |thread| usize::from(thread.get()))
+/// A bit is waited for: whether the axis that would close its switch moves the other way.
+fn moves_away(machine: &Machine, io: &Io, memory: &GuestMemory, bit: Bit) -> Option<Message> {
+    let (axis, condition, active) = machine.mechanics.contact(bit)?;
+    let condition = condition?;
+    let load = machine.loads[axis].load;
+    let velocity = memory.axis(axis, Chan::LAST_VEL);
+    let is_moving = memory.axis(axis, Chan::ENABLE) != 0 && velocity != 0.0;
+    let goes_away = match condition {
+        Condition::AtMost(place) => load > place && velocity > 0.0,
+        Condition::AtLeast(place) => load < place && velocity < 0.0,
+        Condition::Between(from, to) => load > to && velocity > 0.0 || load < from && velocity < 0.0,
+    };
+    let is_closed = bit_state(io, memory, bit).0 == active;
+    let place = condition.to_string();
+    (is_moving && goes_away && !is_closed).then_some(Message::MovesAway { axis, bit, place, load })
+}
+
+/// What a firmware function is for whoever follows what programs do.
+#[derive(Clone, Copy, Debug)]
+struct CallKind {
+    /// Whether a program calls it while it waits.
+    waits: bool,
+    /// Whether it tells the axis that is its first argument to do something.
+    names_axis: bool,
+}
+
+/// The kinds of all functions, by number.
+fn kinds() -> Vec<CallKind> {
+    const AXES: &[&str] = &[
+        "EnableAxis",
+        "EnableAxisDest",
+        "Move",
+        "MoveRel",
+        "MoveAtVel",
+        "MoveRelAtVel",
+        "MoveExp",
+        "Jog",
+        "StartMove",
+    ];
+    let kind = |name| CallKind { waits: WAITING.contains(&name), names_axis: AXES.contains(&name) };
+    FIRMWARE_FUNCTIONS.iter().map(|row| kind(row.name)).collect()
 }
 
 /// The time variables of a tick.
@@ -380,24 +218,23 @@ impl Bus for Kernel {
         if addr < FPGA.base {
             return 0;
         }
-        let (fpga, behind) = self.registers(now);
-        fpga.read(behind, addr, size)
+        self.parts.read_register(addr, size, now)
     }
 
     fn write(&mut self, addr: GuestAddr, size: AccessSize, value: u32, now: Cycles) {
         if addr < FPGA.base {
-            self.tell(now, EventKind::Diagnostic(format!("write to {addr} has no effect")));
+            self.parts.out.remark(now, Message::NoEffect { address: addr });
             return;
         }
-        let (fpga, behind) = self.registers(now);
-        if let Some(remark) = fpga.write(behind, addr, size, value) {
-            self.tell(now, remark);
-        }
-        self.settle(now);
+        self.parts.write_register(addr, size, value, now);
     }
 
     fn access_cycles(&self, addr: GuestAddr) -> Cycles {
-        if addr >= FPGA.base { FPGA_CYCLES } else { TIMER_CYCLES }
+        match self.parts.timing.wait_states() {
+            Some(waits) => Cycles::new(waits.register.into()),
+            None if addr >= FPGA.base => FPGA_CYCLES,
+            None => TIMER_CYCLES,
+        }
     }
 }
 
@@ -406,7 +243,7 @@ impl Bus for Kernel {
 pub fn pure_function(address: GuestAddr) -> Option<Pure> {
     let row = &FIRMWARE_FUNCTIONS[function_at(address)?];
     let is_math = row.group == "math";
-    let function = is_math.then(|| crate::firmware::math::pure(row.rust_name)).flatten()?;
+    let function = is_math.then(|| math::pure(row.rust_name)).flatten()?;
     Some(Pure { cost: row.cost, function })
 }
 
@@ -417,21 +254,31 @@ impl Firmware for Kernel {
 
     fn call(&mut self, address: GuestAddr, caller: &mut Caller<'_>) -> Result<Outcome<Value>, TrapKind> {
         let number = function_at(address).ok_or(TrapKind::UnknownFirmwareFunction { addr: address })?;
-        if caller.woken.is_none() {
-            caller.spend(FIRMWARE_FUNCTIONS[number].cost);
+        let row = &FIRMWARE_FUNCTIONS[number];
+        match (caller.woken, self.parts.timing.wait_states()) {
+            (None, _) => caller.spend(row.cost),
+            (Some(wake), Some(waits)) => caller.spend(waits::after(row.rust_name, wake, waits)),
+            (Some(_), None) => {}
         }
-        if let Some(assist) = &mut self.assist {
-            assist.called(FIRMWARE_FUNCTIONS[number].name, caller.now());
-        }
-        HANDLERS[number](self, caller)
+        self.note_call(number, caller);
+        HANDLERS[number](&mut self.parts, caller)
     }
 
     fn pure(&self, address: GuestAddr) -> Option<Pure> {
         pure_function(address)
     }
 
+    fn is_variadic(&self, address: GuestAddr) -> bool {
+        function_at(address).is_some_and(|number| FIRMWARE_FUNCTIONS[number].is_variadic)
+    }
+
+    fn changed_registers(&self, address: GuestAddr) -> u64 {
+        let name = function_at(address).map_or("", |number| FIRMWARE_FUNCTIONS[number].name);
+        crate::firmware::changed::registers(name)
+    }
+
     fn begins(&mut self, thread: ThreadId, memory: &mut GuestMemory) {
-        self.globals.restore(thread, memory);
+        self.parts.calls.globals.restore(thread, memory);
     }
 
     fn callback(&self, memory: &GuestMemory) -> GuestAddr {
@@ -439,63 +286,73 @@ impl Firmware for Kernel {
     }
 
     fn tick(&mut self, context: &mut TickContext<'_>) {
-        self.tick_start = context.now;
+        let parts = &mut self.parts;
+        parts.clock.tick_start = context.now;
         let is_touched = context.memory.take_touched();
         store_time(context);
-        self.kanalog.tick(&self.fpga, context.memory);
-        if self.snapamps.is_present() {
-            self.snapamps.tick(context.memory);
+        parts.io.kanalog.tick(&parts.io.fpga, context.memory);
+        if parts.io.snapamps.is_present() {
+            parts.io.snapamps.tick(context.memory);
         }
-        let acted = self.play_tick(context) | self.assist_tick(context.now);
-        self.host.tick();
+        let moment = Moment { turn: parts.clock.turn, slice_start: parts.clock.slice_start };
+        let (world, mut stage) = parts.stage(context.now);
+        let acted = world.tick(&mut stage, context, moment);
+        parts.pc.host.tick();
         // What goes in here may be stored wherever a program has said.
-        let received = serial::tick(self, context) | self.exchange(context);
+        let received = serial::tick(parts, context) | parts.exchange(context);
         if acted || received || is_touched {
-            self.servo.forget_plans();
+            parts.servo.cache.invalidate(Change::Memory);
         }
-        let changed = crate::servo::tick(self, context, is_touched);
+        let changed = crate::servo::tick(&mut parts.servo_tick(), context.memory, is_touched);
         self.sample(context, 1);
         let calls_back = !context.memory.get(USER_CALL_BACK).is_null();
-        self.is_settled = !changed && !acted && !calls_back;
+        self.parts.servo.cache.settle(!changed && !acted && !calls_back);
     }
 
     fn servo_time(&self, memory: &GuestMemory) -> Cycles {
-        self.servo.duration(memory)
+        let cache = &self.parts.servo.cache;
+        match self.parts.timing.wait_states() {
+            Some(waits) => cache.interrupt(memory, waits),
+            None => cache.duration(memory),
+        }
     }
 
     fn switch_to(&mut self, turn: Turn, context: &mut TickContext<'_>) {
-        self.slice_start = context.now;
-        self.turn = turn;
+        self.parts.clock.slice_start = context.now;
+        self.parts.clock.turn = turn;
         context.memory.untouched(|memory| memory.set(CURRENT_THREAD, i32::from(turn.number())));
         if turn != Turn::Primary {
-            self.is_settled = false;
+            self.parts.servo.cache.invalidate(Change::Thread);
         }
     }
 
     fn primary_slice(&mut self, context: &mut TickContext<'_>) {
-        if self.is_heard
-            && !self.usb.is_in_command()
-            && let Some(line) = self.console.send()
+        let parts = &mut self.parts;
+        parts.out.console.print_servo_message();
+        if parts.pc.is_heard
+            && !self.scripts.is_in_command()
+            && let Some(line) = parts.out.console.send()
         {
-            self.send_line(line, context.now);
+            parts.send_line(line, context.now);
         }
-        disk::slice(self, context);
-        crate::servo::limits::slice(self, context.memory);
-        crate::pc::host::slice(self, context);
-        serial::slice(self, context);
-        if self.usb.is_busy() {
-            commands::slice(self, context, |kernel| &mut kernel.usb);
+        let Parts { pc, servo, out, .. } = parts;
+        for acts in [
+            pc.disk.slice(context),
+            limits::slice(servo, out, context.memory),
+            host::slice(&mut pc.host, out, context),
+        ] {
+            if acts {
+                servo.cache.invalidate(Change::Anything);
+            }
         }
-        if self.uart_link.is_busy() {
-            commands::slice(self, context, |kernel| &mut kernel.uart_link);
-        }
-        commands::advance(self, context);
+        serial::slice(parts, context);
+        self.scripts.slice(parts, context);
         self.store_queue_indices(context.memory);
     }
 
     fn slice_ran(&mut self, thread: ThreadId, start: Cycles, end: Cycles) {
-        if self.recorder.as_ref().is_some_and(|recorder| recorder.records_changes()) {
-            self.tell(start, EventKind::Trace(Record::Slice { thread, end }));
+        if self.parts.world.records_changes() {
+            self.parts.out.tell(start, EventKind::Trace(Record::Slice { thread, end }));
         }
     }
 
@@ -503,43 +360,44 @@ impl Firmware for Kernel {
         if trap.thread.is_none() {
             context.memory.set(USER_CALL_BACK, GuestAddr::NULL);
         }
-        self.tell(context.now, EventKind::Trap(trap.clone()));
+        self.parts.out.tell(context.now, EventKind::Trap(trap.clone()));
     }
 
     fn stack_exceeded(&mut self, thread: ThreadId, used: u32) {
-        let text = format!("thread {thread}: {used} bytes of stack used; the board has about 1900");
-        self.tell(self.slice_start, EventKind::Diagnostic(text));
+        let at = self.parts.clock.slice_start;
+        self.parts.out.remark_of(at, Speaker::Thread(thread), None, Message::StackUsed { used });
     }
 
     fn quiet_ticks(&self, memory: &GuestMemory) -> u64 {
-        let is_quiet = self.is_settled
-            && self.console.is_idle()
-            && !self.usb.is_busy()
-            && self.experiment.is_none()
-            && self.konnects.is_settled(memory)
-            && self.kanalog.is_settled(&self.fpga, memory)
-            && self.attached.iter().all(|device| device.is_settled())
-            && !self.uart.is_sending()
-            && !self.records_motion()
-            && !self.serial.is_busy(memory, &self.uart);
+        let Parts { out, io, machine, servo, pc, world, calls, clock, timing: _ } = &self.parts;
+        let now = clock.tick_start;
+        let is_quiet = servo.cache.is_settled()
+            && out.console.is_idle()
+            && !pc.usb.is_busy()
+            && !self.scripts.has_experiment()
+            && io.konnects.is_settled(memory)
+            && io.kanalog.is_settled(&io.fpga, memory)
+            && machine.is_settled()
+            && !io.uart.is_sending()
+            && !world.records_motion(io, now)
+            && !calls.serial.is_busy(memory, &io.uart);
         if !is_quiet {
             return 0;
         }
-        let now = self.tick_start;
-        let stimulus = self.stimulus.as_ref().map_or(u64::MAX, |player| player.quiet_ticks(now));
-        let assist = self.assist.as_ref().map_or(u64::MAX, |assist| assist.quiet_ticks(now));
-        self.host.quiet_ticks().min(stimulus).min(assist).min(self.disk.quiet_ticks(now))
+        pc.host.quiet_ticks().min(world.quiet_ticks(out, now)).min(pc.disk.quiet_ticks(now))
     }
 
     fn quiet_slices(&self, memory: &GuestMemory) -> u64 {
         // The words that Konnect boards exchange lie where the program has said; all else is in on-chip RAM.
-        if self.recorder.is_some() || self.konnects.has_any() { 0 } else { self.quiet_ticks(memory) }
+        let world = &self.parts.world;
+        let is_seen = world.is_recording() || world.is_watching() || self.parts.io.konnects.has_any();
+        if is_seen { 0 } else { self.quiet_ticks(memory) }
     }
 
     fn skip_ticks(&mut self, count: u64, context: &mut TickContext<'_>) {
-        self.tick_start = context.now;
+        self.parts.clock.tick_start = context.now;
         store_time(context);
-        self.host.skip(count);
+        self.parts.pc.host.skip(count);
         self.sample(context, count);
     }
 }

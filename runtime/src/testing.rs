@@ -3,6 +3,7 @@
 use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, function_named};
 use kmotiondef::map::PROGRAM_BASE;
 use kmotiondef::{Cycles, GuestAddr, ThreadId, Ticks};
+use vm::call::CallArguments;
 use vm::firmware::{Caller, Firmware, Outcome, TickContext, Value, Wake};
 use vm::memory::GuestMemory;
 use vm::scheduler::Turn;
@@ -10,7 +11,7 @@ use vm::thread::Threads;
 
 use crate::board::power_up;
 use crate::kernel::Kernel;
-use crate::out::EventKind;
+use crate::out::{EventKind, Severity};
 use crate::pc::files::NoFiles;
 
 /// A board that calls come to by hand, from thread 1.
@@ -57,7 +58,8 @@ impl Desk {
             slice: budget,
             budget: &mut budget,
             woken,
-            arguments,
+            arguments: CallArguments::from_slots(arguments),
+            at: None,
         };
         let outcome = self.kernel.call(FIRMWARE_FUNCTIONS[number].address, &mut caller);
         outcome.unwrap_or_else(|trap| panic!("{name}: {trap}"))
@@ -178,8 +180,10 @@ impl Desk {
 
     /// The remarks of the simulation since the last time anything was asked for.
     pub(crate) fn diagnostics(&mut self) -> Vec<String> {
-        let texts = self.kernel.take_events().into_iter().filter_map(|event| match event.kind {
-            EventKind::Diagnostic(text) => Some(text),
+        let texts = self.kernel.parts.out.take_events().into_iter().filter_map(|event| match event.kind {
+            EventKind::Remark(remark) if remark.message.severity() > Severity::Detail => {
+                Some(remark.to_string())
+            }
             _ => None,
         });
         texts.collect()
@@ -187,8 +191,8 @@ impl Desk {
 
     /// All console lines so far, the unfinished one included.
     pub(crate) fn printed(&mut self) -> Vec<String> {
-        self.kernel.flush_console(self.now);
-        let lines = self.kernel.take_events().into_iter().filter_map(|event| match event.kind {
+        self.kernel.parts.flush_console(self.now);
+        let lines = self.kernel.parts.out.take_events().into_iter().filter_map(|event| match event.kind {
             EventKind::ConsoleLine(line) => Some(String::from_utf8(line).expect("text")),
             _ => None,
         });

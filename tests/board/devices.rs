@@ -321,7 +321,8 @@ main()
     let options = ["--stim", stimulus, "--set", "board.konnect=[0]"];
     let (output, _) = run("konnect", program, &[], &options);
     assert_eq!((output.code, output.stdout.as_str()), (0, "8 0\n"));
-    let told = "cc67: thread 1: AddKonnect(1, …): the machine has no board with that address\n";
+    let told =
+        "cc67: thread 1 at a.c:7 in `main`: AddKonnect(1, …): the machine has no board with that address\n";
     assert_eq!(output.stderr, told);
 }
 
@@ -358,7 +359,7 @@ main()
 fn pins_that_kanalog_occupies_are_warned_of() {
     let program = "main() { FPGA(KAN_TRIG_REG) = 1; SetBitDirection(16, 1); SetBitDirection(5, 1); SetBitDirection(6, 1); }";
     let (output, _) = run("jp7", program, &[], &[]);
-    let told = "cc67: thread 1: bit 5 becomes an output, but Kanalog is connected to bits 0 to 15 of JP7\n";
+    let told = "cc67: thread 1 at a.c:2 in `main`: bit 5 becomes an output, but Kanalog is connected to bits 0 to 15 of JP7\n";
     assert_eq!((output.code, output.stderr.as_str()), (0, told));
 }
 
@@ -632,7 +633,8 @@ fn a_stimulus_moves_a_load_and_starts_and_stops_threads() {
 fn a_stimulus_that_plans_without_end_is_limited() {
     let stimulus = "every 90us toggle bit 24; when bit 24 changes after 1000s set bit 25";
     let (output, _) = run("plans", "main() { Delay_sec(10); }", &[], &["--stim", stimulus]);
-    let told = "cc67: the stimulus has more than 100000 things to do; later ones are left out\n";
+    let told = "cc67: the stimulus has more than 100000 things to do; later ones are left out\n\
+                cc67: never happened: --stim:1:27: when bit 24 changes\n";
     assert_eq!((output.code, output.stderr.as_str()), (0, told));
 }
 
@@ -657,7 +659,7 @@ fn a_switch_on_an_axis_that_drives_nothing_is_told_of() {
     let program = "#include \"KMotionDef.h\"\nmain() { EnableAxis(2); Jog(2, 100); Jog(2, 0); Jog(3, 1); }";
     let machine = "[[switch]]\nbit = 12\naxis = 2\nwhen = \"<= -4000\"\n";
     let (output, _) = run("unmoved", program, &[("s.toml", machine)], &["--machine", "s.toml"]);
-    let told = "cc67: thread 1: Jog: axis 2 drives nothing, its OutputMode is NO_OUTPUT_MODE: what the machine file \
+    let told = "cc67: thread 1 at a.c:3 in `main`: Jog: axis 2 drives nothing, its OutputMode is NO_OUTPUT_MODE: what the machine file \
                 connects to it stays as it is (is a program that sets the axes up to run first?)\n";
     assert_eq!(output.stderr.lines().next(), told.lines().next());
     assert_eq!(output.stderr.matches("drives nothing").count(), 1, "{}", output.stderr);

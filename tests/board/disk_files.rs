@@ -103,7 +103,7 @@ fn run(scratch: &Scratch, source: &str) -> (Vec<String>, Vec<String>) {
     let (mut lines, mut remarks) = (Vec::new(), Vec::new());
     board.run(Ticks::new(10 * LIMIT), &mut |event| match event.kind {
         EventKind::ConsoleLine(line) => lines.push(String::from_utf8(line).expect("text")),
-        EventKind::Diagnostic(text) => remarks.push(text),
+        EventKind::Remark(remark) => remarks.push(remark.to_string()),
         _ => {}
     });
     assert!(board.has_ended(), "{source}");

@@ -50,7 +50,7 @@ fn a_program_that_does_not_compile_leaves_the_one_that_runs() {
     assert_eq!(message[0], 0);
     assert_eq!(number(&mut board, "CheckThread2"), 0, "loading does not start");
     assert!(matches!(board.compile_and_load_coff(&good, 8), Err(HostError::Thread(8))));
-    assert!(matches!(board.load_coff(1, &good), Err(HostError::Load(_))), "a source is no image");
+    assert!(matches!(board.load_coff(1, &good), Err(HostError::Foreign { .. })), "a source is no image");
 }
 
 #[test]

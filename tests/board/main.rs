@@ -4,6 +4,8 @@ mod c_interface;
 mod devices;
 mod disk_files;
 mod host;
+mod session;
+mod snapshots;
 mod threads;
 mod transcripts;
 mod world;

@@ -26,7 +26,7 @@ use kmotiondef::variables::variable_named;
 use kmotiondef::{Bit, GuestAddr, ThreadId, Ticks};
 use runtime::commands::{COMMANDS, command_at};
 use runtime::trace::Item;
-use runtime::{Board, Config, Event, EventKind};
+use runtime::{Board, Config, Event, EventKind, Severity};
 
 /// Ticks that a line and its answer take on the wire, as recorded.
 const EXCHANGE: u64 = 28;
@@ -135,7 +135,10 @@ impl Player {
                 EventKind::Reply(line) => lines.push(text(line)),
                 EventKind::ConsoleLine(line) => lines.push(format!("| {}", text(line)).trim_end().to_owned()),
                 EventKind::UartSent(byte) => uart.push(byte),
-                EventKind::Diagnostic(text) | EventKind::Host(text) => lines.push(format!("cc67: {text}")),
+                EventKind::Remark(remark) if remark.message.severity() > Severity::Detail => {
+                    lines.push(format!("cc67: {remark}"));
+                }
+                EventKind::Host(text) => lines.push(format!("cc67: {text}")),
                 EventKind::Trap(trap) => lines.push(format!("cc67: trap: {}", trap.kind)),
                 _ => {}
             }

@@ -34,7 +34,7 @@ fn run(name: &str, program: &str, files: &[(&str, &[u8])], options: &[&str]) -> 
     for (name, bytes) in files {
         fs::write(scratch.path().join(name), bytes).expect("it is ours");
     }
-    let arguments = ["run"].iter().chain(options).chain(&["a.c"]);
+    let arguments = ["run", "--no-sidecar"].iter().chain(options).chain(&["a.c"]);
     (cc67(&scratch, arguments), scratch)
 }
 
@@ -211,15 +211,113 @@ main()
 }
 
 #[test]
+fn expectations_look_at_axes_variables_and_times() {
+    let program = "#include \"KMotionDef.h\"
+int Parts;
+main()
+{
+    ch0->InputMode = ENCODER_MODE;
+    ch0->OutputMode = STEP_DIR_MODE;
+    EnableAxisDest(0, 0);
+    SetBit(1050);
+    printf(\"start\\n\");
+    Move(0, 500);
+    while (!CheckDone(0)) ;
+    Parts = 3;
+    *(float *)&persist.UserData[20] = 1.25;
+    printf(\"moved\\n\");
+    ClearBit(1050);
+    DisableAxis(0);
+}
+";
+    for (stimulus, expect) in [
+        ("at end expect axis 0 position = 500 ± 1", ""),
+        ("at end expect axis 0 dest = 501", "axis 0 dest is 500, expected 501"),
+        ("at end expect axis 0 disabled; expect thread 1 ended; expect bit 1050 = 0", ""),
+        ("expect axis 0 enabled", "axis 0 is disabled, expected enabled"),
+        ("expect persist 20 = f:1.25", ""),
+        ("expect persist 20 = f:1.5 +- 0.1", "persist 20 is 1.25, expected 1.5 ± 0.1"),
+        ("expect Parts = 3", ""),
+        ("expect Parts > 3", "Parts is 3, expected > 3"),
+        ("expect \"ch0->Dest - 200\" = 300 ± 1", ""),
+        ("within 2s of printed \"start\" expect printed \"moved\"", ""),
+        (
+            "within 0.1s of printed \"start\" expect printed \"moved\"",
+            "no line contains \"moved\", expected one, within 0.1 s of printed \"start\" at ",
+        ),
+        (
+            "within 1s of printed \"go\" expect printed \"moved\"",
+            "printed \"go\" never happened, so nothing was checked",
+        ),
+        ("always while bit 1050 = 1 expect axis 0 enabled", ""),
+        ("always while bit 1050 = 1 expect axis 0 dest < 250", "axis 0 dest is 25"),
+        ("never printed \"boom\"", ""),
+        ("never printed \"move\"", "a line contains \"move\", expected none"),
+        ("never axis 0 dest > 501; never axis 0 velocity > 4001", ""),
+        ("never axis 0 dest > 100.5", ", expected never > 100.5"),
+        ("never axis 0 velocity > 10", "axis 0 velocity is "),
+    ] {
+        for engine in ["bytecode", "native"] {
+            let (output, _) = run("expects", program, &[], &["--engine", engine, "--stim", stimulus]);
+            let code = if expect.is_empty() { 0 } else { 5 };
+            assert_eq!(output.code, code, "{stimulus}: {}", output.stderr);
+            assert!(output.stderr.contains(expect), "{stimulus}: {}", output.stderr);
+            assert_eq!(
+                output.stderr.lines().count(),
+                usize::from(code != 0),
+                "{stimulus}: {}",
+                output.stderr
+            );
+        }
+    }
+    let (output, _) = run("expects", program, &[], &["--stim", "expect Prts = 3"]);
+    assert_eq!(output.code, 2, "{}", output.stderr);
+    assert!(output.stderr.starts_with("cc67: --stim:1:1: `Prts`: "), "{}", output.stderr);
+}
+
+#[test]
+fn one_program_runs_after_the_other() {
+    let first = "#include \"KMotionDef.h\"\nmain() { Delay_sec(0.01); printf(\"first\\n\"); }";
+    let second = ("second.c", &b"#include \"KMotionDef.h\"\nmain() { printf(\"second\\n\"); }"[..]);
+    for (stimulus, expect) in [
+        ("once thread 1 ends run thread 2 \"second.c\"", "first\nsecond\n"),
+        ("once thread 1 ends after 1s run thread 2 \"second.c\"", "first\nsecond\n"),
+        ("once printed \"first\" run thread 2 \"second.c\"", "first\nsecond\n"),
+        (
+            "once thread 1 ends after 1s bit 1050 = 1; once bit 1050 rises run thread 1 \"second.c\"",
+            "first\nsecond\n",
+        ),
+        // It cannot come about any more.
+        ("once thread 3 ends run thread 2 \"second.c\"", "first\n"),
+        ("once thread 3 ends run thread 2 \"second.c\"; every 1s toggle bit 1050", "first\n"),
+    ] {
+        let (output, _) = run("after", first, &[second], &["--stim", stimulus]);
+        assert_eq!((output.code, output.stdout.as_str()), (0, expect), "{stimulus}: {}", output.stderr);
+    }
+}
+
+#[test]
 fn an_expectation_that_is_not_met_fails_the_run() {
     for (stimulus, code, expect) in [
         ("expect bit 46 = 1", 0, ""),
-        ("expect bit 46 = 0", 5, "cc67: --stim:1:1: bit 46 is 1, expected 0\n"),
-        ("at 1ms expect printed \"done\"", 5, "cc67: --stim:1:1: no line contains \"done\"\n"),
+        ("expect bit 46 = 0", 5, "cc67: --stim:1:1: at 0.01035 s bit 46 is 1, expected 0\n"),
+        (
+            "at 1ms expect printed \"done\"",
+            5,
+            "cc67: --stim:1:1: at 0.00108 s no line contains \"done\", expected one\n",
+        ),
         ("at 99s expect printed \"done\"", 0, ""),
-        ("expect not printed \"on\"", 5, "cc67: --stim:1:1: a line contains \"on\"\n"),
+        (
+            "expect not printed \"on\"",
+            5,
+            "cc67: --stim:1:1: at 0.01035 s a line contains \"on\", expected none\n",
+        ),
         ("persist 7 = 5; expect persist 7 = 6", 5, "cc67: --stim:1:16: UserData[7] is 6, expected 5\n"),
-        ("expect thread 1 active", 5, "cc67: --stim:1:1: thread 1 is not active\n"),
+        (
+            "expect thread 1 active",
+            5,
+            "cc67: --stim:1:1: at 0.01035 s thread 1 is not active, expected active\n",
+        ),
     ] {
         let program = "#include \"KMotionDef.h\"
 main() { Delay_sec(0.01); persist.UserData[7]++; printf(\"done\\n\"); }";
@@ -273,7 +371,7 @@ main()
     assert_eq!(output.code, 0, "{}", output.stderr);
     let lines: Vec<_> = output.stdout.lines().collect();
     assert!(lines.len() == 2 && lines[0].starts_with("2.00") && lines[1].starts_with("4.10"), "{lines:?}");
-    assert!(output.stderr.contains("a.c:4 in `main`: bit 136 is 1 for 0.1 s"), "{}", output.stderr);
+    assert!(output.stderr.contains("a.c:4 in `main` waits: bit 136 is 1 for 0.1 s"), "{}", output.stderr);
 }
 
 #[test]

@@ -61,12 +61,13 @@ fn a_download_written_as_commands_runs() {
 }
 
 #[test]
-fn a_download_that_is_no_program_is_not_started() {
+fn a_download_that_is_no_program_stops_its_thread() {
     let script =
         "LoadData 80050000 4\n1 2 3 4\nEntryPoint1 80050000\nExecute1\nwait 0.01\nCheckThread1\nVersion\n";
     let output = console("console-junk", &[], &[], script);
     assert_eq!(output.stdout, "0\nKFLOP 4.34 Build 16:07:06 Aug 14 2018\n");
-    assert!(output.stderr.contains("thread 1 is not started"), "{}", output.stderr);
+    // Whatever is not bytecode is code of the processor, which runs on over the empty rest of its memory.
+    assert!(output.stderr.contains("thread 1 stopped"), "{}", output.stderr);
 }
 
 #[test]
@@ -162,7 +163,7 @@ fn ten_thousand_random_lines_leave_a_board_that_answers() {
             let limit = Ticks::new(board.tick().get() + 40);
             board.run_until(limit, &mut |event| {
                 stopped |=
-                    matches!(&event.kind, EventKind::Diagnostic(text) if text.contains("firmware stops"));
+                    matches!(&event.kind, EventKind::Remark(remark) if remark.message.code() == "firmware-stops");
                 false
             });
             if stopped {

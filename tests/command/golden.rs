@@ -54,8 +54,14 @@ fn traps_and_exit_codes_belong_to_what_is_expected() {
     let program =
         "#include \"KMotionDef.h\"\nmain()\n{\n    int *p = 0;\n    printf(\"before\\n\");\n    *p = 1;\n}\n";
     let scratch = folder("trap", &[("a.c", program)]);
+    let asked = test(&scratch, &["--bless", "a.c"]);
+    assert!(
+        asked.code == 1 && asked.stdout.starts_with("REFUSED  a: ") && asked.stdout.contains("---- exit 3"),
+        "{asked:?}"
+    );
+    assert!(!scratch.path().join("a.expected").exists());
     assert_eq!(
-        test(&scratch, &["--bless", "a.c"]).stdout,
+        test(&scratch, &["--bless", "--force", "a.c"]).stdout,
         "written  a.expected\n0 passed, 0 failed, 1 written\n"
     );
     let golden = fs::read_to_string(scratch.path().join("a.expected")).expect("it was written");
@@ -81,7 +87,8 @@ fn blessing_writes_what_changed_and_only_that() {
 fn the_first_line_says_how_a_program_is_run() {
     let wait =
         "// cc67: run --for 0.001\n#include \"KMotionDef.h\"\nmain() { for (;;) WaitNextTimeSlice(); }\n";
-    check(&[("a.c", wait), ("a.expected", "")], &["a.c"], 0, "1 passed, 0 failed\n", "head");
+    let ending = "---- notes\ncc67: at the end, after 0.001 s of board time:\n";
+    check(&[("a.c", wait), ("a.expected", ending)], &["a.c"], 0, "1 passed, 0 failed\n", "head");
     let main = "// cc67: run also 2:b.c\n#include \"KMotionDef.h\"\nmain() { persist.UserData[5] = 7; }\n";
     let other = "// cc67: part of a.c\n#include \"KMotionDef.h\"\nmain() { while (persist.UserData[5] != 7) ; printf(\"seven\\n\"); }\n";
     let files = [("a.c", main), ("a.expected", "seven\n"), ("b.c", other)];
@@ -129,20 +136,26 @@ fn tools_read_json_and_junit() {
     assert_eq!(report["tests"][0]["name"], "bad");
     assert_eq!(report["tests"][0]["shown"], "1\n2\n3\n");
     let junit = fs::read_to_string(scratch.path().join("report.xml")).expect("it was written");
+    // How long a test took differs.
+    let parts = junit.split(" time=\"").enumerate();
+    let untimed = parts.map(|(index, part)| match index {
+        0 => part.to_owned(),
+        _ => part.split_once('"').map_or(part, |(_, rest)| rest).to_owned(),
+    });
+    let junit: String = untimed.collect();
     insta::assert_snapshot!(junit, @r#"
     <?xml version="1.0" encoding="UTF-8"?>
     <testsuite name="cc67" tests="2" failures="1">
-      <testcase classname="" name="bad">
-        <failure message="differs">expected:
-    &lt;
-
-    shown:
-    1
-    2
-    3
+      <testcase classname="cc67" name="bad">
+        <failure message="differs">- expected, + shown
+      line 1
+      - &lt;
+      + 1
+      + 2
+      + 3
     </failure>
       </testcase>
-      <testcase classname="" name="good"/>
+      <testcase classname="cc67" name="good"/>
     </testsuite>
     "#);
 }

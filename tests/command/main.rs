@@ -1,13 +1,19 @@
 //! The command as people, scripts and editors meet it: what it prints, what it writes and how it exits.
 
+mod beside;
+mod board_options;
+mod boot;
 mod console;
 mod drop_in;
 mod golden;
 mod init;
 mod keyboard;
+#[cfg(feature = "live")]
+mod live;
 mod plots;
 mod profile;
 mod run;
 mod serve;
 mod shell;
 mod traces;
+mod trial;

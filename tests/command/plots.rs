@@ -245,7 +245,7 @@ const at = (name, part, more) => {
 const wheel = part => {
   const box = panels.getBoundingClientRect();
   const x = box.left + LEFT + part * (box.width - LEFT - RIGHT);
-  panels.dispatchEvent(new WheelEvent("wheel", { clientX: x, deltaY: -100, bubbles: true, cancelable: true }));
+  panels.dispatchEvent(new WheelEvent("wheel", { clientX: x, deltaY: -100, ctrlKey: true, bubbles: true, cancelable: true }));
 };
 at("mousemove", 0.5);
 say(document.querySelector(".heading span").textContent);

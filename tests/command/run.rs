@@ -332,6 +332,12 @@ fn a_run_as_json_is_an_object_a_line_and_a_summary() {
     let kinds: Vec<_> = lines.iter().map(|line| line["type"].as_str().expect("a type")).collect();
     assert_eq!(kinds, ["remark", "trap", "console", "end"]);
     assert_eq!(field(2, "text"), "say \"hi\"");
+    assert_eq!(field(0, "code"), "axis-disabled");
+    let explained = cc67(&scratch, ["--explain", "axis-disabled"]).stdout;
+    assert!(
+        explained.starts_with("# axis-disabled\n\nA motion call names an axis that is disabled.\n"),
+        "{explained}"
+    );
     assert_eq!(field(1, "thread"), 1);
     assert!(field(1, "text").as_str().expect("a text").contains("a.c:6 in `main`"), "{}", output.stdout);
     assert!(field(0, "seconds").as_f64().expect("a time") < field(2, "seconds").as_f64().expect("a time"));
@@ -359,24 +365,29 @@ fn the_summary_tells_why_a_run_ended() {
             end.starts_with(&format!("{{\"type\":\"end\",\"reason\":\"{reason}\",\"exit\":{exit},")),
             "{end}"
         );
-        assert!(end.ends_with(&format!("\"active\":{active}}}")), "{end}");
+        assert!(end.contains(&format!(",\"active\":{active},\"axes\":[],")), "{end}");
+        assert!(end.ends_with(",\"persist\":{}}"), "{end}");
     }
 }
 
 #[test]
 fn an_axis_that_jogs_on_is_named_when_the_run_is_broken_off() {
     let scratch = Scratch::new("jogs-on");
-    let source = "#include \"KMotionDef.h\"\nmain() { EnableAxisDest(2, 0); Jog(2, 100); }\n";
+    let source = "#include \"KMotionDef.h\"\nmain() { ch2->OutputMode = STEP_DIR_MODE; EnableAxisDest(2, 0); Jog(2, 100); }\n";
     scratch.write("jog.c", source);
     let output = cc67(&scratch, ["run", "jog.c"]);
     assert_eq!(output.code, 4, "{output:?}");
-    assert_eq!(
-        output.stderr,
-        "cc67: the programs have ended, but axis 2 still moves after 60 s of board time: what `Jog` begins, \
-         `Jog(2, 0)` or `DisableAxis(2)` ends; `--for SECONDS` ends the run at a time of your choice, with exit code 0\n"
+    assert!(
+        output.stderr.contains(
+            "cc67: the programs have ended, but axis 2 still moves after 60 s of board time: what `Jog` begins, \
+             `Jog(2, 0)` or `DisableAxis(2)` ends; `--for SECONDS` ends the run at a time of your choice, with exit code 0\n"
+        ),
+        "{output:?}"
     );
     let output = cc67(&scratch, ["run", "--for", "0.5", "jog.c"]);
-    assert_eq!((output.code, &*output.stderr), (0, ""));
+    assert_eq!(output.code, 0);
+    let told = "cc67: at the end, after 0.500 s of board time:\n  axis 2: enabled, Dest 48.225, Position 48, moves at 100 units/s";
+    assert!(output.stderr.contains(told), "{output:?}");
 }
 
 #[test]
@@ -425,8 +436,29 @@ fn a_remark_that_comes_again_and_again_is_shown_once() {
     let source = "#include \"KMotionDef.h\"\nmain()\n{\n  int i, bit = 5000 + persist.UserData[9];\n\
                   for (i = 0; i < 1000; i++) SetBit(bit);\n  SetBit(bit + 1);\n}\n";
     let output = run_source("repeats", source, &[]);
-    let remark = |bit| format!("thread 1: SetBit({bit}): there are bits 0 to 2047");
-    let expected =
-        format!("cc67: {}\ncc67: {}\ncc67: 999 times more: {}\n", remark(5000), remark(5001), remark(5000));
+    let remark =
+        |line, bit| format!("thread 1 at a.c:{line} in `main`: SetBit({bit}): there are bits 0 to 2047");
+    let expected = format!(
+        "cc67: {}\ncc67: {}\ncc67: 999 times more: {}\n",
+        remark(5, 5000),
+        remark(6, 5001),
+        remark(5, 5000)
+    );
     assert_eq!((output.code, output.stderr), (0, expected));
+}
+
+#[test]
+fn a_program_in_the_place_of_a_subcommand_and_a_misspelt_one_get_a_suggestion() {
+    let scratch = Scratch::new("suggestions");
+    scratch.write("first.c", "main() { }").write("notes", "");
+    for (word, expect) in [
+        ("first.c", "cc67: `first.c` is not a subcommand; to run it: `cc67 run first.c`\n"),
+        ("gone.C", "cc67: `gone.C` is not a subcommand; to run it: `cc67 run gone.C`\n"),
+        ("notes", "cc67: `notes` is not a subcommand; to run it: `cc67 run notes`\n"),
+        ("rnu", "cc67: `rnu` is not a subcommand; did you mean `run`?\n"),
+        ("chekc", "cc67: `chekc` is not a subcommand; did you mean `check`?\n"),
+    ] {
+        let output = cc67(&scratch, [word]);
+        assert_eq!((output.code, output.stderr.as_str()), (2, expect));
+    }
 }

@@ -7,10 +7,12 @@
 //! | `args: …` | arguments before the file's name (`check` instead of `run` as the first word is possible) |
 //! | `prints: …` | the next line of stdout; together these lines are all of stdout |
 //! | `exit: n` | exit code, 0 if not stated |
+//! | `cycles: n` | what the program spends, exactly, on every engine; its last line, which `--bless` writes |
 //! | `says: …` | stderr contains this |
 //! | `snapshot` | stderr as a whole is the snapshot of the file's name, beside the file |
 //! | `byte: c 0d 0a` | the character `c` in the text stands for these bytes (hexadecimal, none possible) |
 //! | `no-final-newline` | the newline at the end of the file is cut off |
+//! | `processor: WHY` | as code for the real processor the program does something else, for this reason |
 //! | `uses: FILE` | the annotations of this included file count, too |
 //!
 //! An annotation `//~ what` behind a line is a diagnostic expected there: the name of a warning's
@@ -22,7 +24,7 @@ use std::borrow::Cow;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::{Output, Scratch, cc67};
+use crate::{Output, Scratch, cc67, measure};
 
 /// A diagnostic at a line, expected or found.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -53,10 +55,12 @@ pub struct FileTest {
     arguments: Vec<String>,
     stdout: String,
     exit: i32,
+    cycles: Option<i64>,
     says: Vec<String>,
     is_snapshot: bool,
     bytes: Vec<(String, Vec<u8>)>,
     cuts_final_newline: bool,
+    differs_on_processor: bool,
     remarks: Vec<Remark>,
 }
 
@@ -80,9 +84,11 @@ impl FileTest {
             "args" => self.arguments = value.split_whitespace().map(str::to_owned).collect(),
             "prints" => self.stdout.push_str(&format!("{value}\n")),
             "exit" => self.exit = value.trim().parse().expect("`exit` takes a number"),
+            "cycles" => self.cycles = Some(value.trim().parse().expect("`cycles` takes a number")),
             "says" => self.says.push(value.to_owned()),
             "snapshot" => self.is_snapshot = true,
             "byte" => self.bytes.push(stand_in(value)),
+            "processor" => self.differs_on_processor = true,
             "no-final-newline" => self.cuts_final_newline = true,
             "uses" => {
                 let used = self.folder().join(value);
@@ -107,10 +113,62 @@ impl FileTest {
         self.is_snapshot
     }
 
+    /// What it is to print as code for the real processor; `None` if it does something else there, or ends in a trap,
+    /// which that has not.
+    #[must_use]
+    pub fn stdout_of_code(&self) -> Option<&str> {
+        let is_same = self.is_executed() && self.exit == 0 && !self.differs_on_processor;
+        is_same.then_some(&self.stdout)
+    }
+
     /// Whether the program is executed, not only checked.
     #[must_use]
     pub fn is_executed(&self) -> bool {
         self.arguments.first().is_none_or(|word| word != "check")
+    }
+
+    /// The cycles that the file states.
+    #[must_use]
+    pub fn cycles(&self) -> Option<i64> {
+        self.cycles
+    }
+
+    /// What the program spends on every engine, which must agree; `None` for programs that do not compile, or that
+    /// arguments make another run of.
+    ///
+    /// # Panics
+    /// If the engines differ.
+    #[must_use]
+    pub fn measured_cycles(&self) -> Option<i64> {
+        if !self.arguments.is_empty() {
+            return None;
+        }
+        let source = self.rewritten().unwrap_or_else(|| text_of(&self.path).into_bytes());
+        measure::cycles(&self.path, source)
+    }
+
+    /// Writes the directive `cycles` as the last line of the file, so that no other line moves.
+    ///
+    /// # Panics
+    /// If the file cannot be written.
+    pub fn state_cycles(&self, cycles: i64) {
+        let text = text_of(&self.path);
+        let line = format!("//@ cycles: {cycles}\n");
+        let mut is_stated = false;
+        let mut text: String = (text.split_inclusive('\n'))
+            .map(|old| {
+                if old.starts_with("//@ cycles:") {
+                    is_stated = true;
+                    line.as_str()
+                } else {
+                    old
+                }
+            })
+            .collect();
+        if !is_stated {
+            text = format!("{}\n{line}", text.trim_end_matches('\n'));
+        }
+        fs::write(&self.path, text).expect("the test is writable");
     }
 
     /// Runs the program in its folder, so that messages name it without a path; `more` follows its own arguments.

@@ -4,7 +4,9 @@ pub mod choices;
 pub mod csv;
 pub mod filetest;
 pub mod generate;
+mod measure;
 pub mod oracles;
+pub mod stages;
 pub mod usage;
 pub mod vendor;
 

@@ -521,7 +521,7 @@ pub fn commands(bytes: &[u8]) {
         let limit = Ticks::new(board.tick().get() + SHORT.get());
         board.run_until(limit, &mut |event| {
             has_stopped |=
-                matches!(&event.kind, EventKind::Diagnostic(text) if text.contains("firmware stops"));
+                matches!(&event.kind, EventKind::Remark(remark) if remark.message.code() == "firmware-stops");
             false
         });
         // What stops the released firmware stops this one too: such a board is switched off and on.

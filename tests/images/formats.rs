@@ -204,7 +204,7 @@ fn a_firmware_file_is_read_and_resolved_against_in_two_milliseconds() {
         };
         let linked = compiler::link::link(std::slice::from_ref(&object), &options).expect("it links");
         best = best.min(start.elapsed().as_secs_f64());
-        assert_eq!(linked.imports.len(), 3);
+        assert_eq!(linked.firmware.imports.len(), 3);
     }
     println!("firmware file of {} bytes: {:.3} ms", bytes.len(), best * 1e3);
     // Unoptimised code has some room; the promise is for a release build.

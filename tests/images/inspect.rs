@@ -31,7 +31,7 @@ main()
 fn built(name: &str) -> Scratch {
     let scratch = Scratch::new(name);
     scratch.write("p.c", PROGRAM);
-    succeed(&scratch, &["build", "p.c"]);
+    succeed(&scratch, &["build", "--target", "sim", "p.c"]);
     scratch
 }
 
@@ -84,7 +84,7 @@ fn json_has_sections_and_symbols_with_name_address_and_size() {
 fn recursion_has_no_worst_chain() {
     let scratch = Scratch::new("inspect-recursive");
     scratch.write("r.c", "int f(int n) { return n ? f(n - 1) : 0; }\nmain() { return f(3); }\n");
-    succeed(&scratch, &["build", "r.c"]);
+    succeed(&scratch, &["build", "--target", "sim", "r.c"]);
     let text = succeed(&scratch, &["inspect", "--stack", "r(1).out"]);
     assert!(text.contains("worst chain: unknown, the program is recursive"), "{text}");
 }
@@ -121,7 +121,7 @@ fn a_firmware_file_is_shown_with_its_28_sections() {
 fn images_of_two_versions_of_a_program_differ_by_name() {
     let scratch = built("diff");
     scratch.write("q.c", PROGRAM.replace("{ 1, 2, 3, 4 }", "{ 1, 2, 3, 5 }").replace("calls", "count"));
-    succeed(&scratch, &["build", "q.c", "-o", "q.out"]);
+    succeed(&scratch, &["build", "--target", "sim", "q.c", "-o", "q.out"]);
     assert_eq!(succeed(&scratch, &["diff", "p(1).out", "p(1).out"]), "");
     let output = cc67(&scratch, ["diff", "p(1).out", "q.out"]);
     assert_eq!(output.code, 1);

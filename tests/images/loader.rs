@@ -72,7 +72,6 @@ fn files_that_are_cut_or_foreign_are_refused() {
         refused_bytes(&whole[..length], "not a KFLOP image: ");
     }
     refused_bytes(b"\x7fELF and so on, long enough", "not a KFLOP image: not a COFF2 image");
-    refused(|image| image.target = Target::C6000, "machine code for the controller's DSP");
     refused(|image| image.target = Target(0x14c), "code for target 332");
 }
 
@@ -117,6 +116,28 @@ fn code_that_the_machine_cannot_run_is_refused() {
         "the code is refused: ",
     );
     refused(text(Vec::clear), "the code is refused: ");
+}
+
+/// A loader that does not look at the target would have the processor execute bytecode.
+#[test]
+fn a_processor_that_is_given_bytecode_returns_at_once() {
+    let mut image = Image::read(&build(COUNTER, 1)).expect("the image is good");
+    assert_eq!(image.program.expect("it has one").entry, section(&mut image, ".text").address);
+    image.target = Target::C6000;
+    let mut board: Board = Board::new(Config::default());
+    board.load(thread(1), &image.write().expect("it fits")).expect("it is taken for the processor's code");
+    assert_eq!(execute(&mut board), "");
+    assert!(!board.thread(thread(1)).is_active());
+}
+
+#[test]
+fn bytecode_that_a_processor_would_execute_is_refused() {
+    let strip = |image: &mut Image| {
+        if let Contents::Data(bytes) = &mut section(image, ".text").contents {
+            bytes.drain(..vm::guard::BYTES);
+        }
+    };
+    refused(strip, "the text begins with bytecode, where a real processor would begin to execute it");
 }
 
 #[test]

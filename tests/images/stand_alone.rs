@@ -24,7 +24,7 @@ fn has_linker() -> bool {
 }
 
 fn build(folder: &Path, arguments: &[&str]) -> Output {
-    cc67(folder, ["build", "--emit", "native"].iter().chain(arguments))
+    cc67(folder, ["build", "--target", "sim", "--emit", "native"].iter().chain(arguments))
 }
 
 /// Runs a source on the bytecode engine and as an executable of its own, with the same options.
@@ -34,8 +34,10 @@ fn check(name: &str, source: &str, options: &[&str]) -> Output {
     scratch.write("prog.c", source);
     let made = build(scratch.path(), &["prog.c"]);
     assert_eq!(made.code, 0, "{}", made.stderr);
-    let expect =
-        cc67(&scratch, ["run", "--time", "--engine", "bytecode"].iter().chain(options).chain(&["prog.c"]));
+    let expect = cc67(
+        &scratch,
+        ["run", "--time", "--no-sidecar", "--engine", "bytecode"].iter().chain(options).chain(&["prog.c"]),
+    );
     // What the compiler has to say was said when the executable was built.
     let said: Vec<_> = made.stderr.lines().collect();
     let rest = expect.stderr.lines().filter(|line| !said.contains(line)).map(|line| format!("{line}\n"));

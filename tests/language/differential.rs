@@ -1,5 +1,5 @@
 //! Generated programs: what they print, how long they take and what they leave in memory is the same on both
-//! engines, and what they print is the same at every level of optimisation and behind `gcc`, where that is installed.
+//! engines, and what they print is the same as code for the real processor, at every level of optimisation and behind `gcc`, where that is installed.
 //!
 //! An ordinary run takes a few programs. `CC67_PROGRAMS=20000` takes so many, `CC67_SEED=n` begins at another seed.
 
@@ -9,11 +9,13 @@ use std::thread;
 
 use compiler::diag::Severity;
 use compiler::passes::Level;
+use compiler::target::Target;
 use compiler::{Options, image};
-use harness::oracles::execute_everywhere;
+use harness::oracles::{Seen, execute, execute_everywhere};
 use harness::{Scratch, generate};
 use kmotiondef::{ThreadId, Ticks};
-use runtime::{EventKind, RunEnd};
+use runtime::{Config, EventKind, RunEnd};
+use vm::interp::BytecodeEngine;
 
 /// Programs of an ordinary run.
 const PROGRAMS: u64 = 40;
@@ -29,8 +31,8 @@ fn number(variable: &str, default: u64) -> u64 {
 }
 
 /// The image of a program.
-fn compile(seed: u64, source: &str, level: Level) -> Vec<u8> {
-    let options = Options { level, ..Options::default() };
+fn compile(seed: u64, source: &str, level: Level, target: Target) -> Vec<u8> {
+    let options = Options { level, target, ..Options::default() };
     let files = compiler::pp::Disk;
     let mut compilation = compiler::compile(Path::new("generated.c"), source.into(), &options, &files);
     let linked = compilation.link(thread_1(), &options);
@@ -45,7 +47,16 @@ fn thread_1() -> ThreadId {
 
 /// Runs an image on every engine there is, which must not differ in anything, and yields the console.
 fn run(seed: u64, image: &[u8]) -> String {
-    let seen = execute_everywhere(image, LIMIT).expect("what the compiler makes can be loaded");
+    console(seed, execute_everywhere(image, LIMIT).expect("what the compiler makes can be loaded"))
+}
+
+/// Runs code for the real processor.
+fn run_code(seed: u64, image: &[u8]) -> String {
+    let (seen, _) = execute::<BytecodeEngine>(image, LIMIT, Config::default()).expect("it can be loaded");
+    console(seed, seen)
+}
+
+fn console(seed: u64, seen: Seen) -> String {
     assert_eq!(seen.end, RunEnd::AllEnded, "seed {seed}: the program does not end");
     let mut text = String::new();
     for event in seen.events {
@@ -91,9 +102,13 @@ fn compare(seeds: &[u64]) -> usize {
         let expected = gcc(batch);
         for (index, seed) in batch.iter().enumerate() {
             let source = generate::program(*seed, "", "");
-            let optimised = run(*seed, &compile(*seed, &source, Level::Full));
-            let plain = run(*seed, &compile(*seed, &source, Level::None));
+            let optimised = run(*seed, &compile(*seed, &source, Level::Full, Target::Sim));
+            let plain = run(*seed, &compile(*seed, &source, Level::None, Target::Sim));
             assert_eq!(optimised, plain, "seed {seed}: optimised and not");
+            for level in [Level::Full, Level::None] {
+                let code = run_code(*seed, &compile(*seed, &source, level, Target::C67x));
+                assert_eq!(code, plain, "seed {seed}: code for the processor at {level:?}");
+            }
             if let Some(expected) = &expected {
                 assert_eq!(expected.get(index), Some(&plain), "seed {seed}: gcc and cc67");
                 compared += 1;

@@ -3,4 +3,6 @@
 mod dialect;
 mod differential;
 mod header;
+mod ir_text;
 mod lints;
+mod second_reader;

@@ -5,57 +5,10 @@ use kmotiondef::GuestAddr;
 use crate::bus::AccessSize;
 use crate::engine::Slice;
 use crate::firmware::Firmware;
+use crate::kind::Width;
 use crate::memory::{Scalar, is_on_bus};
 use crate::slot::Slot;
 use crate::trap::{Access, TrapKind};
-
-macro_rules! widths {
-    ($($(#[$doc:meta])* $width:ident;)*) => {
-        /// What a load or store moves.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-        #[repr(u8)]
-        pub(crate) enum Width {
-            $($(#[$doc])* $width,)*
-        }
-
-        impl Width {
-            /// All widths in the order of their numbers.
-            #[cfg(feature = "native")]
-            pub(crate) const ALL: &'static [Self] = &[$(Self::$width),*];
-        }
-    };
-}
-widths! {
-    /// 8 bits, sign-extended.
-    I8S;
-    /// 8 bits, zero-extended.
-    I8U;
-    /// 16 bits, sign-extended.
-    I16S;
-    /// 16 bits, zero-extended.
-    I16U;
-    /// 32 bits of an integer.
-    I32;
-    /// 64 bits of an integer.
-    I64;
-    /// A single.
-    F32;
-    /// A double.
-    F64;
-}
-
-#[cfg(feature = "native")]
-impl Width {
-    /// Number of bytes.
-    pub(crate) const fn bytes(self) -> u32 {
-        match self {
-            Self::I8S | Self::I8U => 1,
-            Self::I16S | Self::I16U => 2,
-            Self::I32 | Self::F32 => 4,
-            Self::I64 | Self::F64 => 8,
-        }
-    }
-}
 
 impl<F: Firmware + ?Sized> Slice<'_, F> {
     /// Loads a value from memory or from registers of a device.

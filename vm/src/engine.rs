@@ -1,17 +1,23 @@
 //! What runs a thread: from one stop to the next.
 //!
-//! An engine keeps a context (registers, call frames) for each thread and one for the
-//! call-back. It decides nothing about time: it obeys `charge` and returns.
+//! An engine keeps a context for each thread and one for the call-back: registers, call frames, the code that it runs
+//! and where it is in there. Nobody else knows what a context is made of, so that engines which have nothing in
+//! common but this trait run threads beside each other on one machine. An engine decides nothing about time: it obeys
+//! `charge` and returns.
+
+use std::fmt;
+use std::sync::Arc;
 
 use kmotiondef::map::{BOARD_STACK_SIZE, CALLBACK_STACK_BASE, STACK_SIZE, stack_base};
 use kmotiondef::{CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
 
-use crate::firmware::{Caller, Firmware, Wake};
+use crate::call::CallArguments;
+use crate::firmware::{Caller, Firmware, Outcome, Value};
 use crate::memory::GuestMemory;
-use crate::operand::FuncRef;
 use crate::program::Program;
 use crate::thread::Threads;
-use crate::trap::Trap;
+use crate::trap::{Trap, TrapKind};
+use crate::wake::Wake;
 
 /// Why an engine returned.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -21,6 +27,8 @@ pub enum Stop {
     Preempted,
     /// Only of a long slice: what comes next involves the board, so it belongs into an ordinary slice.
     NeedsBoard,
+    /// A debugger holds the context before its instruction; the slice goes on when the context is resumed.
+    Held,
     /// A firmware call waits; it is repeated when the wake comes true.
     Waiting(Wake),
     /// The program has returned from its entry function or called `ThreadDone`.
@@ -92,8 +100,6 @@ impl Stack {
 /// What an engine works with while it runs one context.
 #[derive(Debug)]
 pub struct Slice<'a, F: ?Sized> {
-    /// The program of the context.
-    pub program: &'a Program,
     /// Guest memory.
     pub memory: &'a mut GuestMemory,
     /// The seven threads.
@@ -124,7 +130,10 @@ impl<F: Firmware + ?Sized> Slice<'_, F> {
         self.start + (self.length - self.budget)
     }
 
-    /// Makes the firmware call of `address` for the context `id`.
+    /// Makes the firmware call of `address` for the context `id`, which is at the instruction `at`.
+    ///
+    /// After [`Outcome::Wait`] the engine stops the context in the call, and makes the same call with the same arguments
+    /// again when the context is resumed: the wake that came true is handed over here.
     ///
     /// # Errors
     /// The kind of trap that stops the context.
@@ -132,8 +141,9 @@ impl<F: Firmware + ?Sized> Slice<'_, F> {
         &mut self,
         id: ContextId,
         address: GuestAddr,
-        arguments: &[u64],
-    ) -> Result<crate::firmware::Outcome<crate::firmware::Value>, crate::trap::TrapKind> {
+        arguments: CallArguments<'_>,
+        at: CodeAddr,
+    ) -> Result<Outcome<Value>, TrapKind> {
         let mut caller = Caller {
             thread: id.thread(),
             memory: self.memory,
@@ -144,27 +154,52 @@ impl<F: Firmware + ?Sized> Slice<'_, F> {
             budget: &mut self.budget,
             woken: self.woken.take(),
             arguments,
+            at: Some(at),
         };
         self.firmware.call(address, &mut caller)
     }
 }
 
-/// Runs programs. Both engines spend the same cycles and stop at the same instructions.
-pub trait Engine: Default {
-    /// Gives `id` a fresh context that stands at the beginning of `function`.
+/// A snapshot that another engine has taken: threads that run as machine code go on where they were taken only.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the snapshot is of another board, whose native threads cannot go on here")]
+pub struct ForeignSnapshot;
+
+/// What the machine asks of every engine.
+pub trait Executor: Default {
+    /// What a thread is loaded with that runs on this engine.
+    type Code;
+
+    /// All contexts as they were at an instant between two slices.
+    type Snapshot: fmt::Debug;
+
+    /// Gives `id` a fresh context that is at the beginning of the function at `entry`.
     ///
-    /// A program is always run with the same firmware.
+    /// The code is always run with the same firmware.
+    ///
+    /// # Errors
+    /// [`TrapKind::BadCallTarget`] if there is no function; the context is as it was.
     fn start<F: Firmware + ?Sized>(
         &mut self,
         id: ContextId,
-        program: &Program,
-        function: FuncRef,
+        code: &Arc<Self::Code>,
+        entry: GuestAddr,
         stack: Stack,
         firmware: &F,
-    );
+    ) -> Result<(), TrapKind>;
 
     /// Runs `id` until it stops. A context that was never started has ended.
     fn resume<F: Firmware + ?Sized>(&mut self, id: ContextId, slice: &mut Slice<'_, F>) -> Stop;
+
+    /// All contexts as they are.
+    fn snapshot(&self) -> Self::Snapshot;
+
+    /// Makes all contexts what they were when `snapshot` was taken.
+    ///
+    /// # Errors
+    /// [`ForeignSnapshot`] if another engine has taken it and its contexts cannot run on this one; nothing has changed
+    /// then.
+    fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), ForeignSnapshot>;
 
     /// Whether `id` may be resumed with a [long slice](Slice::is_long).
     ///
@@ -177,6 +212,11 @@ pub trait Engine: Default {
     /// The most bytes of its stack that `id` has used since its start.
     fn stack_used(&self, id: ContextId) -> u32;
 
-    /// Where `id` stands: its instruction, then the calls that led there, innermost first.
-    fn backtrace(&self, id: ContextId, program: &Program) -> Vec<CodeAddr>;
+    /// Where `id` is: its instruction, then the calls that led there, innermost first.
+    fn backtrace(&self, id: ContextId) -> Vec<CodeAddr>;
 }
+
+/// An engine that runs [`Program`]s. All of them spend the same cycles and stop at the same instructions.
+pub trait Engine: Executor<Code = Program> {}
+
+impl<E: Executor<Code = Program>> Engine for E {}

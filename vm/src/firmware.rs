@@ -3,15 +3,18 @@
 //! The machine knows only this trait. The kernel implements it and finds the function by its
 //! guest address, as the linked program names it.
 
-use kmotiondef::{Cycles, GuestAddr, ThreadId, Ticks};
+use kmotiondef::{CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
 
 use crate::bus::Bus;
+use crate::call::CallArguments;
 use crate::memory::GuestMemory;
 use crate::operand::Class;
 use crate::scheduler::Turn;
 use crate::slot::Slot;
 use crate::thread::Threads;
 use crate::trap::{Trap, TrapKind};
+// Part of what a firmware function returns.
+pub use crate::wake::Wake;
 
 /// A value that crosses between a program and the firmware.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,18 +70,6 @@ pub enum Outcome<T> {
     End,
     /// The calling thread has paused itself; when it is resumed, the program goes on behind the call.
     Pause,
-}
-
-/// What a waiting thread waits for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Wake {
-    /// A point in time: the thread goes on at that instant if it falls into one of its slices, else at the
-    /// beginning of its next slice.
-    At(Cycles),
-    /// The beginning of its next slice.
-    NextSlice,
-    /// Something that only the firmware can judge; it is asked again at the beginning of each slice.
-    Retry,
 }
 
 /// The signature of a firmware function, as classes.
@@ -199,8 +190,10 @@ pub struct Caller<'a> {
     pub budget: &'a mut Cycles,
     /// The wake that made the machine repeat the call; `None` the first time.
     pub woken: Option<Wake>,
-    /// The register arguments, as raw slots.
-    pub arguments: &'a [u64],
+    /// The arguments.
+    pub arguments: CallArguments<'a>,
+    /// The instruction that calls; `None` for a call that no program makes.
+    pub at: Option<CodeAddr>,
 }
 
 impl Caller<'_> {
@@ -248,6 +241,20 @@ pub trait Firmware: Bus {
     fn pure(&self, address: GuestAddr) -> Option<Pure> {
         let _ = address;
         None
+    }
+
+    /// Whether the function at `address` takes a variable number of arguments.
+    fn is_variadic(&self, address: GuestAddr) -> bool {
+        let _ = address;
+        false
+    }
+
+    /// The registers of the real processor that a call of `address` may change, A0 in bit 0, B0 in bit 32.
+    ///
+    /// By the calling convention A0..=A9 and B0..=B9; of helpers that are called in the middle of an expression fewer.
+    fn changed_registers(&self, address: GuestAddr) -> u64 {
+        let _ = address;
+        0x0000_03FF_0000_03FF
     }
 
     /// The function to call at the beginning of this tick; null for none.

@@ -11,69 +11,200 @@ mod code;
 mod context;
 mod control;
 mod dispatch;
+mod holds;
 mod memory;
 mod sequences;
+
+use std::sync::Arc;
 
 use kmotiondef::{CodeAddr, Cycles, GuestAddr};
 
 use self::activation::{Exit, State};
-pub(crate) use self::code::Code;
-use self::context::Context;
-use crate::engine::{ContextId, Engine, Slice, Stack, Stop};
+use self::code::{Code, Encoded, Words};
+pub use self::context::FrameView;
+use self::context::{Context, Saved};
+use self::holds::Holds;
+pub use self::holds::{Hold, HoldReason};
+use crate::call::CallArguments;
+use crate::engine::{ContextId, Executor, ForeignSnapshot, Slice, Stack, Stop};
 use crate::firmware::{Firmware, Outcome};
-use crate::operand::{FuncRef, SigRef};
+use crate::memory::GuestMemory;
+use crate::operand::SigRef;
 use crate::program::Program;
+use crate::translations::Translations;
 use crate::trap::{Trap, TrapKind};
 
 /// Interprets programs.
 #[derive(Debug, Default)]
 pub struct BytecodeEngine {
-    contexts: [Option<Context>; ContextId::COUNT],
+    words: Translations<Arc<Encoded>>,
+    contexts: [Option<Running>; ContextId::COUNT],
+    holds: Holds,
 }
 
-impl Engine for BytecodeEngine {
+/// A context, and the code that it is in.
+#[derive(Debug)]
+struct Running {
+    code: Code,
+    context: Context,
+}
+
+impl BytecodeEngine {
+    /// The program that `id` runs.
+    pub(crate) fn program(&self, id: ContextId) -> Option<&Arc<Program>> {
+        self.contexts[id.index()].as_ref().map(|running| &running.code.program)
+    }
+}
+
+/// What a debugger asks of the engine. None of it changes what a program does, nor when.
+impl BytecodeEngine {
+    /// Holds contexts before these instructions, and before no others.
+    pub fn set_breakpoints(&mut self, addresses: impl IntoIterator<Item = CodeAddr>) {
+        self.holds.set_breakpoints(addresses);
+        self.refresh();
+    }
+
+    /// Holds a context after each instruction, the next one included; `None` none.
+    pub const fn set_stepping(&mut self, context: Option<ContextId>) {
+        self.holds.set_stepping(context);
+    }
+
+    /// Holds contexts after these bytes, addresses and how many, are not what they are now; and after no others.
+    pub fn set_watched(&mut self, memory: &GuestMemory, ranges: &[(GuestAddr, u32)]) {
+        self.holds.set_watched(memory, ranges);
+        self.refresh();
+    }
+
+    /// Which of what is watched has changed since that was last said.
+    pub fn take_change(&mut self, memory: &GuestMemory) -> Option<usize> {
+        self.holds.take_change(memory)
+    }
+
+    /// Which context was held last, and why; said once.
+    pub const fn take_hold(&mut self) -> Option<Hold> {
+        self.holds.hold.take()
+    }
+
+    /// The calls in progress of a context, innermost first.
+    #[must_use]
+    pub fn frames(&self, id: ContextId) -> Vec<FrameView> {
+        let Some(Running { code, context }) = &self.contexts[id.index()] else { return Vec::new() };
+        context.frames(|word| code.program.address_of(word))
+    }
+
+    /// Sets a register of a call in progress, the innermost of which is number 0; whether there is such a register.
+    pub fn set_register(&mut self, id: ContextId, frame: usize, register: u16, slot: u64) -> bool {
+        let running = self.contexts[id.index()].as_mut();
+        running.is_some_and(|running| running.context.set_in(frame, register, slot))
+    }
+
+    /// Gives all contexts the words at which they are to be held now.
+    fn refresh(&mut self) {
+        for Running { code, .. } in self.contexts.iter_mut().flatten() {
+            let plain = self.words.get(&code.program, |program| Arc::new(Encoded::new(program.ops())));
+            code.words = self.holds.words(&code.program, plain);
+        }
+    }
+}
+
+/// The contexts of a bytecode engine as they were at an instant.
+#[derive(Debug)]
+pub struct BytecodeSnapshot {
+    contexts: [Option<(Code, Saved)>; ContextId::COUNT],
+    passes: [bool; ContextId::COUNT],
+}
+
+impl Executor for BytecodeEngine {
+    type Code = Program;
+    type Snapshot = BytecodeSnapshot;
+
     fn start<F: Firmware + ?Sized>(
         &mut self,
         id: ContextId,
-        _program: &Program,
-        function: FuncRef,
+        program: &Arc<Program>,
+        entry: GuestAddr,
         stack: Stack,
         _firmware: &F,
-    ) {
-        self.contexts[id.index()].get_or_insert_with(Context::new).reset(function, stack);
+    ) -> Result<(), TrapKind> {
+        let function = program.function_at(entry).ok_or(TrapKind::BadCallTarget { addr: entry })?;
+        let words = self.words.get(program, |program| Arc::new(Encoded::new(program.ops())));
+        let words = self.holds.words(program, words);
+        self.holds.passes[id.index()] = false;
+        let code = Code { program: Arc::clone(program), words };
+        let place = &mut self.contexts[id.index()];
+        let mut context = place.take().map_or_else(Context::new, |running| running.context);
+        context.reset(function, stack);
+        *place = Some(Running { code, context });
+        Ok(())
     }
 
     fn resume<F: Firmware + ?Sized>(&mut self, id: ContextId, slice: &mut Slice<'_, F>) -> Stop {
-        let Some(context) = &mut self.contexts[id.index()] else {
+        let Some(Running { code, context }) = &mut self.contexts[id.index()] else {
             return Stop::Ended;
         };
-        run(id, context, slice).unwrap_or_else(|kind| {
-            Stop::Trapped(Trap { kind, at: slice.program.address_of(context.calls.pc), thread: id.thread() })
+        let stop = if self.holds.is_active() {
+            self.holds.resume(id, code, context, slice)
+        } else {
+            self.holds.passes[id.index()] = false;
+            enter(&code.program, context)
+                .and_then(|()| run(id, &code.program, code.words.words(), context, slice))
+        };
+        stop.unwrap_or_else(|kind| {
+            let at = code.program.address_of(context.calls.pc);
+            Stop::Trapped(Trap { kind, at, thread: id.thread() })
         })
     }
 
-    fn stack_used(&self, id: ContextId) -> u32 {
-        self.contexts[id.index()].as_ref().map_or(0, Context::stack_used)
+    fn snapshot(&self) -> BytecodeSnapshot {
+        let save = |running: &Running| (running.code.clone(), running.context.save());
+        BytecodeSnapshot {
+            contexts: std::array::from_fn(|index| self.contexts[index].as_ref().map(save)),
+            passes: self.holds.passes,
+        }
     }
 
-    fn backtrace(&self, id: ContextId, program: &Program) -> Vec<CodeAddr> {
-        let words = self.contexts[id.index()].as_ref().map(Context::backtrace).unwrap_or_default();
-        words.into_iter().map(|word| program.address_of(word)).collect()
+    fn restore(&mut self, snapshot: &BytecodeSnapshot) -> Result<(), ForeignSnapshot> {
+        for (place, saved) in self.contexts.iter_mut().zip(&snapshot.contexts) {
+            let old = place.take();
+            *place = saved.as_ref().map(|(code, saved)| {
+                let mut context = old.map_or_else(Context::new, |running| running.context);
+                context.put_back(saved);
+                Running { code: code.clone(), context }
+            });
+        }
+        self.holds.passes = snapshot.passes;
+        self.refresh();
+        Ok(())
+    }
+
+    fn stack_used(&self, id: ContextId) -> u32 {
+        self.contexts[id.index()].as_ref().map_or(0, |running| running.context.stack_used())
+    }
+
+    fn backtrace(&self, id: ContextId) -> Vec<CodeAddr> {
+        let Some(Running { code, context }) = &self.contexts[id.index()] else { return Vec::new() };
+        context.backtrace().into_iter().map(|word| code.program.address_of(word)).collect()
+    }
+}
+
+/// Enters the entry function of a context that was not run yet.
+fn enter(program: &Program, context: &mut Context) -> Result<(), TrapKind> {
+    match context.pending.take() {
+        Some(function) => context.enter(program, function),
+        None => Ok(()),
     }
 }
 
 /// Runs `context` until it stops; when it traps, its `pc` is the instruction that did it.
 fn run<F: Firmware + ?Sized>(
     id: ContextId,
+    program: &Program,
+    words: &Words,
     context: &mut Context,
     slice: &mut Slice<'_, F>,
 ) -> Result<Stop, TrapKind> {
-    let program = slice.program;
-    if let Some(function) = context.pending.take() {
-        context.enter(program, function)?;
-    }
     loop {
-        let exit = execute(context, slice);
+        let exit = execute(program, words, context, slice);
         match exit {
             Exit::Preempted => {
                 context.calls.pc += 1;
@@ -97,11 +228,13 @@ fn run<F: Firmware + ?Sized>(
                 context.calls.pc += 1;
             }
             Exit::Trap(kind) => return Err(kind),
+            Exit::Held => return Ok(Stop::Held),
             Exit::Call(function) => context.call(program, function)?,
             Exit::Ended => return Ok(Stop::Ended),
             Exit::CallFirmware(address, signature) => {
                 let missing = TrapKind::UnknownFirmwareFunction { addr: address };
-                if let Some(stop) = call_firmware(id, context, slice, address, signature, missing)? {
+                if let Some(stop) = call_firmware(id, program, context, slice, (address, signature), missing)?
+                {
                     return Ok(stop);
                 }
             }
@@ -113,7 +246,8 @@ fn run<F: Firmware + ?Sized>(
                     continue;
                 }
                 let missing = TrapKind::BadCallTarget { addr: address };
-                if let Some(stop) = call_firmware(id, context, slice, address, signature, missing)? {
+                if let Some(stop) = call_firmware(id, program, context, slice, (address, signature), missing)?
+                {
                     return Ok(stop);
                 }
             }
@@ -122,12 +256,16 @@ fn run<F: Firmware + ?Sized>(
 }
 
 /// Executes `context`, whose `pc` is then the instruction that ended that.
-fn execute<F: Firmware + ?Sized>(context: &mut Context, slice: &mut Slice<'_, F>) -> Exit {
-    let program = slice.program;
+fn execute<F: Firmware + ?Sized>(
+    program: &Program,
+    words: &Words,
+    context: &mut Context,
+    slice: &mut Slice<'_, F>,
+) -> Exit {
     let (calls, registers) = context.parts();
     let mut state =
         State { program, memory: slice.memory, budget: slice.budget.get(), registers, calls, exit: None };
-    let exit = dispatch::execute(&mut state, program.code.words(&program.ops));
+    let exit = dispatch::execute(&mut state, words);
     slice.budget = Cycles::new(state.budget);
     exit
 }
@@ -138,15 +276,16 @@ fn execute<F: Firmware + ?Sized>(context: &mut Context, slice: &mut Slice<'_, F>
 /// `missing` if there is no function at `address`, or what the call itself yields.
 fn call_firmware<F: Firmware + ?Sized>(
     id: ContextId,
+    program: &Program,
     context: &mut Context,
     slice: &mut Slice<'_, F>,
-    address: GuestAddr,
-    signature: SigRef,
+    (address, called): (GuestAddr, SigRef),
     missing: TrapKind,
 ) -> Result<Option<Stop>, TrapKind> {
-    let called = slice.program.signature(signature);
+    let called = program.signature(called);
     slice.firmware.signature(address).ok_or(missing)?.check_call(address, called)?;
-    let stop = match slice.call_firmware(id, address, context.arguments(called.params.len()))? {
+    let arguments = CallArguments::from_slots(context.arguments(called.params.len()));
+    let stop = match slice.call_firmware(id, address, arguments, program.address_of(context.calls.pc))? {
         Outcome::Done(value) => {
             context.calls.result = value.into_slot();
             None

@@ -4,25 +4,39 @@
 //! kernel's work, the choice of the next thread. What is left of the tick is that thread's
 //! slice. Rules: threads-and-time.md of the specification.
 
+mod engines;
+mod held;
 mod long;
+mod snapshot;
+
+use std::sync::Arc;
 
 use kmotiondef::map::BOARD_STACK_SIZE;
 use kmotiondef::{CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
 
+use self::engines::Engines;
+use self::held::Held;
+pub use self::snapshot::Snapshot;
+use crate::dsp::DspEngine;
 use crate::engine::{ContextId, Engine, Slice, Stop};
-use crate::firmware::{Firmware, TickContext, Wake};
+use crate::firmware::{Firmware, TickContext};
 use crate::interp::BytecodeEngine;
+use crate::loaded::Loaded;
 use crate::memory::GuestMemory;
 use crate::program::Program;
 use crate::scheduler::{self, ThreadSet, Turn};
 use crate::thread::{NotLoaded, Progress, ThreadState, Threads};
 use crate::trap::{Trap, TrapKind};
+use crate::wake::Wake;
 
 /// Bytes of the board's stacks that a program can use: each interrupt takes 128 of the 2048.
 const BOARD_STACK_USABLE: u32 = BOARD_STACK_SIZE - 128;
 
 /// How long a call-back may run before it counts as endless: the board would stand still.
 const CALLBACK_TICKS: i64 = 100;
+/// What a tick takes of the computer besides programs, in cycles of theirs that take it as long.
+const TICK_WORK: u64 = 500;
+
 const CALLBACK_LIMIT: Cycles = Cycles::new(CALLBACK_TICKS * Cycles::PER_TICK.get());
 
 /// Settings of a machine.
@@ -48,14 +62,17 @@ pub struct Machine<F, E = BytecodeEngine> {
     config: Config,
     memory: GuestMemory,
     threads: Threads,
-    programs: [Option<Program>; ThreadId::MAX as usize],
-    /// By thread, the most cycles that its program spends between two tests of the budget.
+    loaded: [Option<Loaded>; ThreadId::MAX as usize],
+    /// By thread, the most cycles that its code spends between two tests of the budget.
     longest_steps: [Cycles; ThreadId::MAX as usize],
-    engine: E,
+    engines: Engines<E>,
     firmware: F,
     tick: Ticks,
     turn: Turn,
     stack_reported: ThreadSet,
+    /// The tick in progress, if a debugger holds it.
+    held: Option<Held>,
+    work: u64,
 }
 
 /// The span of one tick that a thread may use.
@@ -70,27 +87,39 @@ struct Window {
 impl<F: Firmware, E: Engine> Machine<F, E> {
     /// A machine at power-up.
     pub fn new(firmware: F, config: Config) -> Self {
+        Self::with_engine(firmware, config, E::default())
+    }
+
+    /// A machine at power-up that runs bytecode on `engine`.
+    pub fn with_engine(firmware: F, config: Config, engine: E) -> Self {
         Self {
             config,
             memory: GuestMemory::new(),
             threads: Threads::new(),
-            programs: Default::default(),
+            loaded: Default::default(),
             longest_steps: Default::default(),
-            engine: E::default(),
+            engines: Engines { programs: engine, images: DspEngine::default() },
             firmware,
             tick: Ticks::default(),
             turn: Turn::Primary,
             stack_reported: ThreadSet::EMPTY,
+            held: None,
+            work: 0,
         }
     }
 
     /// Makes `thread` ready to run `program` from `entry`, in place of what it held.
     ///
     /// The program's bytes are in guest memory already; its text is protected from now on.
-    pub fn load_program(&mut self, thread: ThreadId, program: Program, entry: GuestAddr) {
-        self.memory.protect(thread, program.text());
-        self.longest_steps[thread.index()] = program.longest_step(&|function| self.firmware.pure(function));
-        self.programs[thread.index()] = Some(program);
+    pub fn load_program(&mut self, thread: ThreadId, program: impl Into<Arc<Program>>, entry: GuestAddr) {
+        self.load(thread, Loaded::Program(program.into()), entry);
+    }
+
+    /// The same for what any engine runs.
+    pub fn load(&mut self, thread: ThreadId, loaded: Loaded, entry: GuestAddr) {
+        self.memory.protect(thread, loaded.text());
+        self.longest_steps[thread.index()] = loaded.longest_step(&|function| self.firmware.pure(function));
+        self.loaded[thread.index()] = Some(loaded);
         self.stack_reported = self.stack_reported.without(thread);
         self.threads.set_entry(thread, entry);
     }
@@ -98,7 +127,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
     /// Makes `thread` empty.
     pub fn unload_program(&mut self, thread: ThreadId) {
         self.memory.unprotect(thread);
-        self.programs[thread.index()] = None;
+        self.loaded[thread.index()] = None;
         self.threads.clear(thread);
     }
 
@@ -110,24 +139,40 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         self.threads.start(thread)
     }
 
-    /// The program loaded in `thread`.
+    /// The program loaded in `thread`; `None` too for what is not bytecode.
     #[must_use]
     pub fn program(&self, thread: ThreadId) -> Option<&Program> {
-        self.programs[thread.index()].as_ref()
+        Some(self.loaded(thread)?.program()?)
+    }
+
+    /// What is loaded in `thread`.
+    #[must_use]
+    pub fn loaded(&self, thread: ThreadId) -> Option<&Loaded> {
+        self.loaded[thread.index()].as_ref()
     }
 
     /// Where `thread` stands: its instruction, then the calls that led there, innermost first.
     #[must_use]
     pub fn backtrace(&self, thread: ThreadId) -> Vec<CodeAddr> {
-        self.program(thread)
-            .map(|program| self.engine.backtrace(ContextId::of(thread), program))
-            .unwrap_or_default()
+        let id = ContextId::of(thread);
+        self.loaded(thread).map(|loaded| self.engines.backtrace(id, loaded)).unwrap_or_default()
     }
 
-    /// The engine.
+    /// The engine of bytecode.
     #[must_use]
     pub const fn engine(&self) -> &E {
-        &self.engine
+        &self.engines.programs
+    }
+
+    /// The engine of bytecode, to set where it holds.
+    pub const fn engine_mut(&mut self) -> &mut E {
+        &mut self.engines.programs
+    }
+
+    /// The engine of real images.
+    #[must_use]
+    pub const fn images(&self) -> &DspEngine {
+        &self.engines.images
     }
 
     /// Guest memory.
@@ -167,6 +212,12 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         )
     }
 
+    /// Whose turn the last tick was.
+    #[must_use]
+    pub const fn turn(&self) -> Turn {
+        self.turn
+    }
+
     /// Number of servo interrupts since power-up.
     #[must_use]
     pub const fn tick(&self) -> Ticks {
@@ -182,7 +233,12 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
 
     /// Runs to the end of the next tick in which something can happen, or of tick `limit`, whichever
     /// comes first.
+    ///
+    /// A tick that is [held](Self::held) is gone on with, whatever the limit.
     pub fn step(&mut self, limit: Ticks) {
+        if self.held.is_some() {
+            return self.run_tick();
+        }
         if self.config.shortcuts {
             self.skip_quiet_ticks(limit);
             if self.run_long_slice(limit) {
@@ -194,11 +250,21 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         }
     }
 
-    /// Runs one tick.
+    /// Runs one tick, or what is left of one that is [held](Self::held).
     pub fn run_tick(&mut self) {
+        if let Some(held) = self.held.take() {
+            return self.go_on(held);
+        }
         self.tick = self.tick.next();
+        self.work += TICK_WORK;
         let begin = start_of(self.tick);
-        let callback = self.run_callback(begin);
+        if let Some(spent) = self.run_callback(begin) {
+            self.after_callback(begin, spent);
+        }
+    }
+
+    /// What comes after the call-back in the tick that begins at `begin`.
+    fn after_callback(&mut self, begin: Cycles, callback: Cycles) {
         self.with_context(begin, |firmware, context| firmware.tick(context));
         self.turn = scheduler::next(self.threads.active(), self.turn);
         let end = end_of(self.tick);
@@ -220,49 +286,59 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         self.config.servo.unwrap_or_else(|| self.firmware.servo_time(&self.memory))
     }
 
-    /// Runs the call-back, if there is one, and returns what it spent.
-    fn run_callback(&mut self, begin: Cycles) -> Cycles {
+    /// Runs the call-back, if there is one, and returns what it spent; `None` if it is held.
+    fn run_callback(&mut self, begin: Cycles) -> Option<Cycles> {
         let address = self.firmware.callback(&self.memory);
         if address.is_null() {
-            return Cycles::default();
+            return Some(Cycles::default());
         }
-        let mut programs = self.programs.iter().flatten();
-        let found = programs.find_map(|program| Some((program, program.function_at(address)?)));
-        let Some((program, function)) = found else {
-            self.report_trap(
-                begin,
-                Trap { kind: TrapKind::BadCallTarget { addr: address }, at: code_at(address), thread: None },
-            );
-            return Cycles::default();
-        };
         let id = ContextId::CALLBACK;
-        self.engine.start(id, program, function, id.stack(self.config.strict_stack), &self.firmware);
+        let found = self.loaded.iter().flatten().find(|loaded| loaded.has_function(address));
+        let started = found.ok_or(TrapKind::BadCallTarget { addr: address }).and_then(|loaded| {
+            let stack = id.stack(self.config.strict_stack);
+            self.engines.start(id, loaded, address, stack, &self.firmware)
+        });
+        if let Err(kind) = started {
+            self.report_trap(begin, Trap { kind, at: code_at(address), thread: None });
+            return Some(Cycles::default());
+        }
+        self.resume_callback(address, begin, CALLBACK_LIMIT)
+    }
+
+    /// Runs the call-back at `address` until it returns; what it has spent, `None` if it is held.
+    fn resume_callback(&mut self, address: GuestAddr, begin: Cycles, budget: Cycles) -> Option<Cycles> {
+        let id = ContextId::CALLBACK;
+        let loaded = self.loaded.iter().flatten().find(|loaded| loaded.has_function(address))?;
         let mut slice = Slice {
-            program,
             memory: &mut self.memory,
             threads: &mut self.threads,
             firmware: &mut self.firmware,
             tick: self.tick,
             start: begin,
             length: CALLBACK_LIMIT,
-            budget: CALLBACK_LIMIT,
+            budget,
             woken: None,
             is_long: false,
         };
-        let stop = self.engine.resume(id, &mut slice);
-        let spent = slice.length - slice.budget;
+        let stop = self.engines.resume(id, loaded, &mut slice);
+        let (left, spent) = (slice.budget, slice.length - slice.budget);
+        self.work += (budget - left).get().unsigned_abs();
         let kind = match stop {
             Stop::Ended => {
                 self.with_context(begin, |firmware, context| firmware.callback_returned(context, spent));
-                return spent;
+                return Some(spent);
+            }
+            Stop::Held => {
+                self.held = Some(Held::Callback { address, begin, left });
+                return None;
             }
             Stop::Trapped(trap) => trap.kind,
             Stop::Waiting(_) | Stop::Paused => TrapKind::CallbackWaits,
             Stop::Preempted | Stop::NeedsBoard => TrapKind::CallbackEndless { limit: CALLBACK_TICKS },
         };
-        let at = self.engine.backtrace(id, program).first().copied().unwrap_or_else(|| code_at(address));
+        let at = self.engines.backtrace(id, loaded).first().copied().unwrap_or_else(|| code_at(address));
         self.report_trap(begin, Trap { kind, at, thread: None });
-        spent
+        Some(spent)
     }
 
     /// Gives `thread` the rest of the tick.
@@ -296,28 +372,25 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
     /// Gives `thread` a fresh context at its entry point.
     fn enter(&mut self, thread: ThreadId) -> Result<(), Trap> {
         let entry = self.threads.entry(thread);
-        let program = self.programs[thread.index()].as_ref();
-        let Some((program, function)) =
-            program.and_then(|program| Some((program, program.function_at(entry)?)))
-        else {
-            let kind = TrapKind::BadCallTarget { addr: entry };
-            return Err(Trap { kind, at: code_at(entry), thread: Some(thread) });
-        };
         let id = ContextId::of(thread);
-        self.engine.start(id, program, function, id.stack(self.config.strict_stack), &self.firmware);
+        let stack = id.stack(self.config.strict_stack);
+        let loaded = self.loaded[thread.index()].as_ref();
+        loaded
+            .ok_or(TrapKind::BadCallTarget { addr: entry })
+            .and_then(|loaded| self.engines.start(id, loaded, entry, stack, &self.firmware))
+            .map_err(|kind| Trap { kind, at: code_at(entry), thread: Some(thread) })?;
         self.firmware.begins(thread, &mut self.memory);
         Ok(())
     }
 
     /// Runs `thread` until it stops for this slice.
     fn run_thread(&mut self, thread: ThreadId, window: Window, budget: Cycles, woken: Option<Wake>) {
-        let Some(program) = self.programs[thread.index()].as_ref() else {
+        let Some(loaded) = self.loaded[thread.index()].as_ref() else {
             return;
         };
         let id = ContextId::of(thread);
         self.threads.set_running(Some(thread));
         let mut slice = Slice {
-            program,
             memory: &mut self.memory,
             threads: &mut self.threads,
             firmware: &mut self.firmware,
@@ -329,7 +402,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
             is_long: false,
         };
         let stop = loop {
-            let stop = self.engine.resume(id, &mut slice);
+            let stop = self.engines.resume(id, loaded, &mut slice);
             let Stop::Waiting(wake @ Wake::At(time)) = stop else {
                 break stop;
             };
@@ -340,10 +413,20 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
             slice.budget = (slice.budget - Cycles::new(1)).min(window.end - time);
             slice.woken = Some(wake);
         };
-        let left = slice.budget;
+        let (left, woken) = (slice.budget, slice.woken);
+        self.work += (budget - left).get().unsigned_abs();
         self.threads.set_running(None);
+        if stop == Stop::Held {
+            self.held = Some(Held::Slice { thread, window, left, woken });
+        }
         self.firmware.slice_ran(thread, window.end - budget, window.end - left);
-        self.stopped(thread, window.end, left, stop);
+        match (stop, woken) {
+            // Its call goes on waiting until the instruction is executed.
+            (Stop::Held, Some(wake)) => {
+                self.threads.set_state(thread, ThreadState::Active(Progress::Waiting(wake)));
+            }
+            (stop, _) => self.stopped(thread, window.end, left, stop),
+        }
     }
 
     /// Notes how `thread` has stopped in the slice that ends at `end`, with `left` of its budget.
@@ -351,7 +434,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         self.threads.set_debt(thread, (Cycles::default() - left).max(Cycles::default()));
         self.report_stack(thread);
         match stop {
-            Stop::Preempted | Stop::NeedsBoard => {
+            Stop::Preempted | Stop::NeedsBoard | Stop::Held => {
                 self.threads.set_state(thread, ThreadState::Active(Progress::Going));
             }
             Stop::Waiting(wake) => {
@@ -365,7 +448,8 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
 
     /// Tells the firmware when a thread's stack first holds more than the board's could.
     fn report_stack(&mut self, thread: ThreadId) {
-        let used = self.engine.stack_used(ContextId::of(thread));
+        let loaded = self.loaded[thread.index()].as_ref();
+        let used = loaded.map_or(0, |loaded| self.engines.stack_used(ContextId::of(thread), loaded));
         if used > BOARD_STACK_USABLE && !self.stack_reported.contains(thread) {
             self.stack_reported = self.stack_reported.with(thread);
             self.firmware.stack_exceeded(thread, used);
@@ -443,9 +527,9 @@ fn end_of(tick: Ticks) -> Cycles {
     start_of(tick) + Cycles::PER_TICK
 }
 
-/// An alleged address of code, made a multiple of 8.
+/// An alleged address of code, made a multiple of 4.
 fn code_at(addr: GuestAddr) -> CodeAddr {
-    CodeAddr::new(addr.get() & !7).expect("it is made a multiple of 8")
+    CodeAddr::new(addr.get() & !3).expect("it is made a multiple of 4")
 }
 
 #[cfg(test)]

@@ -18,6 +18,7 @@
 )]
 
 mod flash;
+pub mod snapshot;
 
 use std::ops::Range;
 
@@ -25,6 +26,7 @@ use kmotiondef::map::{FLASH, IRAM, REGIONS, RegionKind, SDRAM};
 use kmotiondef::{GuestAddr, ThreadId};
 
 use self::flash::Flash;
+use self::snapshot::Regions;
 use crate::protection::Protection;
 use crate::trap::{Access, TrapKind};
 
@@ -106,6 +108,8 @@ pub struct GuestMemory {
     protection: Protection,
     /// Whether on-chip RAM may have been written, see [`GuestMemory::take_touched`].
     is_touched: bool,
+    /// What the last snapshot has, for the next one to share.
+    last: Option<Regions>,
 }
 
 /// What a program can see; not who has written it.
@@ -136,6 +140,7 @@ impl GuestMemory {
             flash: Flash::default(),
             protection: Protection::default(),
             is_touched: true,
+            last: None,
         }
     }
 
@@ -172,8 +177,9 @@ impl GuestMemory {
     }
 
     /// Loads a value on behalf of a program if [`load`](Self::load) finds it in SDRAM or in on-chip RAM.
+    #[must_use]
     #[inline(always)]
-    pub(crate) fn load_ram<T: Scalar>(&self, addr: GuestAddr) -> Option<T> {
+    pub fn load_ram<T: Scalar>(&self, addr: GuestAddr) -> Option<T> {
         let address = addr.get();
         if address & (T::LOAD_ALIGN - 1) != 0 {
             return None;
@@ -207,9 +213,10 @@ impl GuestMemory {
         Err(self.store_refusal(addr, T::SIZE))
     }
 
-    /// Stores a value on behalf of a program as [`store`](Self::store), but only at a multiple of its size in RAM.
+    /// Stores a value on behalf of a program as [`store`](Self::store), but only at a multiple of its size in RAM;
+    /// `None` elsewhere.
     #[inline(always)]
-    pub(crate) fn store_ram<T: Scalar>(&mut self, addr: GuestAddr, value: T) -> Option<()> {
+    pub fn store_ram<T: Scalar>(&mut self, addr: GuestAddr, value: T) -> Option<()> {
         let address = addr.get();
         if address & (T::SIZE - 1) != 0 || self.protection.covers_aligned(address) {
             return None;

@@ -1,6 +1,8 @@
 //! Metering: where a `charge` belongs and what it must cover.
 //!
-//! The compiler's last pass inserts charges with this, the verifier checks them with it.
+//! The compiler's last pass inserts charges with this. The verifier demands less: what an image charges is its own
+//! affair, as it may have been made for the vendor's code and not for these words; but no function begins and no
+//! turn of a loop passes without a charge, so that every program comes to one ([`uncharged`]).
 //!
 //! The rule. The words of a function fall into **segments** that are executed from their
 //! beginning to their end. A segment begins
@@ -19,6 +21,7 @@
 
 use std::ops::Range;
 
+use crate::kind::{Name, OpKind};
 use crate::op::Op;
 use crate::operand::Label;
 
@@ -29,6 +32,22 @@ use crate::operand::Label;
 /// word named is the charge itself.
 #[must_use]
 pub fn charge_points(ops: &[Op], body: Range<usize>) -> Vec<(usize, u32)> {
+    segment_sums(ops, body, Op::cost)
+}
+
+/// The same for a body whose charges were put where its source states costs: each segment gets the sum of its own.
+#[must_use]
+pub fn stated_points(ops: &[Op], body: Range<usize>) -> Vec<(usize, u32)> {
+    segment_sums(ops, body, stated)
+}
+
+/// What an instruction charges.
+const fn stated(op: &Op) -> u32 {
+    if let Op::Charge { cycles } = op { cycles.0 } else { 0 }
+}
+
+/// The segments whose words cost something, and how much.
+fn segment_sums(ops: &[Op], body: Range<usize>, cost_of: impl Fn(&Op) -> u32) -> Vec<(usize, u32)> {
     let words = ops.get(body.clone()).unwrap_or_default();
     let roles = Roles::of(words, body.start);
     let mut points: Vec<(usize, u32)> = Vec::new();
@@ -39,47 +58,81 @@ pub fn charge_points(ops: &[Op], body: Range<usize>) -> Vec<(usize, u32)> {
         if let Some((_, cost)) = points.last_mut()
             && !roles.in_table[offset]
         {
-            *cost = cost.saturating_add(op.cost());
+            *cost = cost.saturating_add(cost_of(op));
         }
     }
     points.retain(|(_, cost)| *cost != 0);
     points
 }
 
-/// Whether `op` is a call, behind which a segment ends.
+/// The word of `body` where execution can begin, or come back to, without meeting a charge.
+#[must_use]
+pub fn uncharged(ops: &[Op], body: Range<usize>) -> Option<usize> {
+    let words = ops.get(body.clone()).unwrap_or_default();
+    if words.first().is_none_or(|op| stated(op) == 0) {
+        return Some(body.start);
+    }
+    let begins = Roles::of(words, body.start).begins;
+    // A segment that is met again while it is on the way stands in a circle.
+    let (mut on_way, mut done) = (vec![false; words.len()], vec![false; words.len()]);
+    for root in (0..words.len()).filter(|root| begins[*root]) {
+        if done[root] {
+            continue;
+        }
+        let mut way = vec![(root, successors(words, &begins, root, body.start))];
+        while let Some((segment, rest)) = way.last_mut() {
+            let segment = *segment;
+            on_way[segment] = true;
+            let Some(next) = rest.pop() else {
+                on_way[segment] = false;
+                done[segment] = true;
+                way.pop();
+                continue;
+            };
+            if on_way.get(next).copied().unwrap_or(false) {
+                return Some(body.start + next);
+            }
+            if done.get(next) == Some(&false) {
+                way.push((next, successors(words, &begins, next, body.start)));
+            }
+        }
+    }
+    None
+}
+
+/// The segments that follow the one at `first`; none if it is charged.
+fn successors(words: &[Op], begins: &[bool], first: usize, start: usize) -> Vec<usize> {
+    let mut found = Vec::new();
+    if stated(&words[first]) != 0 {
+        return found;
+    }
+    let behind = (first + 1..words.len()).find(|at| begins[*at]).unwrap_or(words.len());
+    for op in &words[first..behind] {
+        found.extend(branch_target(op).and_then(|to| (to.0 as usize).checked_sub(start)));
+    }
+    if words.get(behind - 1).is_some_and(|op| !op.kind().ends_path()) {
+        found.push(behind);
+    }
+    found.retain(|at| *at < words.len());
+    found
+}
+
+/// Whether `op` is a call, after which a segment ends.
 #[must_use]
 pub const fn is_call(op: &Op) -> bool {
-    matches!(op, Op::Call { .. } | Op::CallPtr { .. } | Op::CallFw { .. })
+    matches!(op.kind(), OpKind::Call)
 }
 
 /// Whether `op` takes the result of a call.
 #[must_use]
 pub const fn is_result(op: &Op) -> bool {
-    matches!(op, Op::ResultI32 { .. } | Op::ResultI64 { .. } | Op::ResultF32 { .. } | Op::ResultF64 { .. })
-}
-
-/// Whether `op` never goes on with the next word.
-#[must_use]
-pub const fn ends_path(op: &Op) -> bool {
-    matches!(
-        op,
-        Op::Br { .. }
-            | Op::Ret {}
-            | Op::RetI32 { .. }
-            | Op::RetI64 { .. }
-            | Op::RetF32 { .. }
-            | Op::RetF64 { .. }
-            | Op::Unreachable {}
-    )
+    matches!(op.kind(), OpKind::Result(_))
 }
 
 /// Where the branch `op` goes, if it is one with a label.
 #[must_use]
-pub const fn branch_target(op: &Op) -> Option<Label> {
-    match op {
-        Op::Br { to } | Op::BrIf { to, .. } | Op::BrUnless { to, .. } => Some(*to),
-        _ => None,
-    }
+pub fn branch_target(op: &Op) -> Option<Label> {
+    op.operand(Name::To)
 }
 
 /// What each word of a body is to the metering rule.
@@ -102,8 +155,7 @@ impl Roles {
                     roles.begin(branch_target(branch).and_then(|to| (to.0 as usize).checked_sub(start)));
                 }
             }
-            if ends_path(op) || branch_target(op).is_some() || is_call(op) || matches!(op, Op::BrTable { .. })
-            {
+            if ends_segment(op.kind()) {
                 roles.begin(Some(next));
             }
             offset = next;
@@ -118,16 +170,19 @@ impl Roles {
     }
 }
 
+/// Whether a segment begins after an instruction of this kind, with what belongs to it.
+const fn ends_segment(kind: OpKind) -> bool {
+    kind.ends_path() || matches!(kind, OpKind::Branch | OpKind::Table | OpKind::Call)
+}
+
 /// Number of words that belong to the one at `offset`: the branches of a table, the result of a call.
 fn group_length(words: &[Op], offset: usize) -> usize {
-    match words.get(offset) {
-        Some(Op::BrTable { n, .. }) => {
-            let branches = words.iter().skip(offset + 1).take(usize::from(n.0) + 1);
-            1 + branches.take_while(|op| matches!(op, Op::Br { .. })).count()
-        }
-        Some(op) if is_call(op) => 1 + usize::from(words.get(offset + 1).is_some_and(is_result)),
-        _ => 1,
+    let Some(op) = words.get(offset) else { return 1 };
+    if let Op::BrTable { n, .. } = op {
+        let branches = words.iter().skip(offset + 1).take(usize::from(n.0) + 1);
+        return 1 + branches.take_while(|op| op.kind() == OpKind::Jump).count();
     }
+    1 + usize::from(is_call(op) && words.get(offset + 1).is_some_and(is_result))
 }
 
 #[cfg(test)]

@@ -24,53 +24,96 @@ mod state;
 mod tests;
 mod translate;
 
+use std::rc::Rc;
 use std::sync::Arc;
 
-use kmotiondef::CodeAddr;
+use kmotiondef::{CodeAddr, GuestAddr};
 
 pub use self::compile::CompileError;
 pub use self::linked::{Description, Linked, LinkedError};
 pub use self::object::{PREFIX, Parts, START, object};
 
-pub(crate) use self::code::Compiled;
-use self::context::Context;
+use self::code::Code;
+use self::context::{Context, Saved};
 use self::fiber::Fiber;
 use self::protected::ProtectedBlocks;
-use crate::engine::{ContextId, Engine, Slice, Stack, Stop};
+use self::translate::PureFunctions;
+use crate::engine::{ContextId, Executor, ForeignSnapshot, Slice, Stack, Stop};
 use crate::firmware::Firmware;
-use crate::interp::BytecodeEngine;
-use crate::operand::FuncRef;
+use crate::interp::{BytecodeEngine, BytecodeSnapshot};
 use crate::program::Program;
-use crate::trap::Trap;
+use crate::translations::Translations;
+use crate::trap::{Trap, TrapKind};
 
 /// Runs programs as machine code.
 #[derive(Debug, Default)]
 pub struct NativeEngine {
     contexts: [Option<Context>; ContextId::COUNT],
+    /// The machine code of each program; `None` where it cannot be compiled.
+    code: Translations<Option<Arc<Code>>>,
+    /// A program whose machine code is part of this executable.
+    linked: Option<(Program, Arc<Code>)>,
     protected: ProtectedBlocks,
     /// Runs the contexts whose program cannot be compiled.
     bytecode: BytecodeEngine,
+    /// Tells this engine from all others: a suspended fiber can go on in the engine alone that it is of.
+    identity: Rc<()>,
 }
 
-impl Engine for NativeEngine {
+/// The contexts of a native engine as they were at an instant.
+#[derive(Debug)]
+pub struct NativeSnapshot {
+    contexts: [Option<Saved>; ContextId::COUNT],
+    bytecode: BytecodeSnapshot,
+    identity: Rc<()>,
+}
+
+impl NativeEngine {
+    /// An engine that runs the code of `linked` wherever a thread starts `program`, which is that of its image.
+    ///
+    /// # Errors
+    /// [`LinkedError::Program`] if the code is not that of the program, or calls functions that `pure` does not have.
+    pub fn with_linked(
+        linked: &Linked,
+        program: Program,
+        pure: PureFunctions<'_>,
+    ) -> Result<Self, LinkedError> {
+        let code = linked.code_for(&program, pure)?;
+        Ok(Self { linked: Some((program, code)), ..Self::default() })
+    }
+
+    /// The machine code of `program`.
+    fn code(&mut self, program: &Arc<Program>, pure: PureFunctions<'_>) -> Option<Arc<Code>> {
+        let linked = &self.linked;
+        self.code.get(program, |program| match linked {
+            Some((known, code)) if known == program => Some(Arc::clone(code)),
+            _ => Code::compile(program, pure).ok().map(Arc::new),
+        })
+    }
+}
+
+impl Executor for NativeEngine {
+    type Code = Program;
+    type Snapshot = NativeSnapshot;
+
     fn start<F: Firmware + ?Sized>(
         &mut self,
         id: ContextId,
-        program: &Program,
-        function: FuncRef,
+        program: &Arc<Program>,
+        entry: GuestAddr,
         stack: Stack,
         firmware: &F,
-    ) {
+    ) -> Result<(), TrapKind> {
+        let missing = TrapKind::BadCallTarget { addr: entry };
+        let function = program.function_at(entry).ok_or_else(|| missing.clone())?;
         let old = self.contexts[id.index()].take().map(Context::into_fiber);
-        let found = program.functions().binary_search_by_key(&function, |function| function.at);
-        if let (Some(code), Ok(index)) =
-            (program.compiled.code(program, &|address| firmware.pure(address)), found)
-        {
-            let fiber = Fiber::new(Arc::clone(code), index, stack, old);
-            self.contexts[id.index()] = Some(Context::new(fiber, function, stack));
-        } else {
-            self.bytecode.start(id, program, function, stack, firmware);
-        }
+        let Some(code) = self.code(program, &|address| firmware.pure(address)) else {
+            return self.bytecode.start(id, program, entry, stack, firmware);
+        };
+        let index = program.index_of(function).ok_or(missing)?;
+        let fiber = Fiber::new(code, index, stack, old);
+        self.contexts[id.index()] = Some(Context::new(fiber, Arc::clone(program), function, stack));
+        Ok(())
     }
 
     fn resume<F: Firmware + ?Sized>(&mut self, id: ContextId, slice: &mut Slice<'_, F>) -> Stop {
@@ -78,9 +121,30 @@ impl Engine for NativeEngine {
             return self.bytecode.resume(id, slice);
         };
         context.run(id, slice, &mut self.protected).unwrap_or_else(|kind| {
-            let trap = Trap { kind, at: slice.program.address_of(context.at()), thread: id.thread() };
+            let trap = Trap { kind, at: context.address(), thread: id.thread() };
             context.end(Stop::Trapped(trap))
         })
+    }
+
+    fn snapshot(&self) -> NativeSnapshot {
+        NativeSnapshot {
+            contexts: std::array::from_fn(|index| self.contexts[index].as_ref().map(Context::save)),
+            bytecode: self.bytecode.snapshot(),
+            identity: Rc::clone(&self.identity),
+        }
+    }
+
+    fn restore(&mut self, snapshot: &NativeSnapshot) -> Result<(), ForeignSnapshot> {
+        if !Rc::ptr_eq(&snapshot.identity, &self.identity) {
+            return Err(ForeignSnapshot);
+        }
+        self.bytecode.restore(&snapshot.bytecode)?;
+        for (place, saved) in self.contexts.iter_mut().zip(&snapshot.contexts) {
+            // First of all the fiber ends that may be on the same stack.
+            *place = None;
+            *place = saved.as_ref().map(Saved::context);
+        }
+        Ok(())
     }
 
     fn takes_long_slices(&self, id: ContextId) -> bool {
@@ -91,10 +155,7 @@ impl Engine for NativeEngine {
         self.contexts[id.index()].as_ref().map_or_else(|| self.bytecode.stack_used(id), Context::stack_used)
     }
 
-    fn backtrace(&self, id: ContextId, program: &Program) -> Vec<CodeAddr> {
-        let Some(context) = &self.contexts[id.index()] else {
-            return self.bytecode.backtrace(id, program);
-        };
-        context.calls(program).into_iter().map(|word| program.address_of(word)).collect()
+    fn backtrace(&self, id: ContextId) -> Vec<CodeAddr> {
+        self.contexts[id.index()].as_ref().map_or_else(|| self.bytecode.backtrace(id), Context::backtrace)
     }
 }

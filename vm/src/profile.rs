@@ -6,16 +6,16 @@
 //! Firmware functions and devices see the true budget, and the run is the same, cycle by cycle, as without a profile.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use kmotiondef::{CodeAddr, Cycles, GuestAddr};
 
 use crate::bus::{AccessSize, Bus};
-use crate::engine::{ContextId, Engine, Slice, Stack, Stop};
+use crate::engine::{ContextId, Executor, ForeignSnapshot, Slice, Stack, Stop};
 use crate::firmware::{Caller, Firmware, Outcome, Signature, TickContext, Value};
-use crate::interp::BytecodeEngine;
+use crate::interp::{BytecodeEngine, BytecodeSnapshot};
 use crate::memory::GuestMemory;
 use crate::op::Op;
-use crate::operand::FuncRef;
 use crate::program::Program;
 use crate::scheduler::Turn;
 use crate::trap::{Trap, TrapKind};
@@ -87,17 +87,16 @@ impl ProfilingEngine {
         &self.profile
     }
 
-    fn site(&self, context: ContextId, program: &Program) -> Site {
-        Site { context, calls: self.inner.backtrace(context, program), firmware: None }
+    fn site(&self, context: ContextId) -> Site {
+        Site { context, calls: self.inner.backtrace(context), firmware: None }
     }
 
     /// Runs up to the next charge, or to where the program stops before.
     fn run_segment<F: Firmware + ?Sized>(&mut self, id: ContextId, slice: &mut Slice<'_, F>) -> Stop {
-        let site = self.site(id, slice.program);
+        let site = self.site(id);
         let left = slice.budget;
         let mut metered = Metered { firmware: slice.firmware, length: slice.length, left, called: None };
         let mut part = Slice {
-            program: slice.program,
             memory: slice.memory,
             threads: slice.threads,
             firmware: &mut metered,
@@ -113,7 +112,7 @@ impl ProfilingEngine {
         slice.budget = left - spent;
         let (function, in_firmware) = metered.called.unzip();
         let in_firmware = in_firmware.unwrap_or_default();
-        let charged = self.charged(id, slice.program, &stop);
+        let charged = self.charged(id, &stop);
         // Device registers take time as well; it belongs to the segment that reads or writes them.
         self.profile.add(site.clone(), spent - in_firmware - charged, NOTHING);
         let call = Site { firmware: function, ..site };
@@ -121,34 +120,43 @@ impl ProfilingEngine {
             self.waits[id.index()] = Some((call.clone(), slice.now()));
         }
         self.profile.add(call, in_firmware, NOTHING);
-        self.profile.add(self.site(id, slice.program), charged, NOTHING);
+        self.profile.add(self.site(id), charged, NOTHING);
         stop
     }
 
     /// What the charge took that stopped a context.
-    fn charged(&self, id: ContextId, program: &Program, stop: &Stop) -> Cycles {
-        if !matches!(stop, Stop::Preempted) {
+    fn charged(&self, id: ContextId, stop: &Stop) -> Cycles {
+        let Some(program) = self.inner.program(id).filter(|_| matches!(stop, Stop::Preempted)) else {
             return NOTHING;
-        }
-        let next = self.inner.backtrace(id, program).first().and_then(|next| program.word_at(*next));
-        match next.and_then(|next| program.ops().get(next.checked_sub(1)?)) {
-            Some(Op::Charge { cycles }) => Cycles::new(i64::from(cycles.0)),
-            _ => NOTHING,
-        }
+        };
+        let next = self.inner.backtrace(id).first().and_then(|next| program.word_at(*next));
+        let before = next.and_then(|next| program.ops().get(next.checked_sub(1)?));
+        if let Some(Op::Charge { cycles }) = before { Cycles::new(i64::from(cycles.0)) } else { NOTHING }
     }
 }
 
-impl Engine for ProfilingEngine {
+/// A profiling engine as it was at an instant.
+#[derive(Debug)]
+pub struct ProfilingSnapshot {
+    inner: BytecodeSnapshot,
+    profile: Profile,
+    waits: [Option<(Site, Cycles)>; ContextId::COUNT],
+}
+
+impl Executor for ProfilingEngine {
+    type Code = Program;
+    type Snapshot = ProfilingSnapshot;
+
     fn start<F: Firmware + ?Sized>(
         &mut self,
         id: ContextId,
-        program: &Program,
-        function: FuncRef,
+        program: &Arc<Program>,
+        entry: GuestAddr,
         stack: Stack,
         firmware: &F,
-    ) {
+    ) -> Result<(), TrapKind> {
         self.waits[id.index()] = None;
-        self.inner.start(id, program, function, stack, firmware);
+        self.inner.start(id, program, entry, stack, firmware)
     }
 
     fn resume<F: Firmware + ?Sized>(&mut self, id: ContextId, slice: &mut Slice<'_, F>) -> Stop {
@@ -163,12 +171,24 @@ impl Engine for ProfilingEngine {
         }
     }
 
+    fn snapshot(&self) -> ProfilingSnapshot {
+        let (inner, profile, waits) = (self.inner.snapshot(), self.profile.clone(), self.waits.clone());
+        ProfilingSnapshot { inner, profile, waits }
+    }
+
+    fn restore(&mut self, snapshot: &ProfilingSnapshot) -> Result<(), ForeignSnapshot> {
+        self.inner.restore(&snapshot.inner)?;
+        self.profile.clone_from(&snapshot.profile);
+        self.waits.clone_from(&snapshot.waits);
+        Ok(())
+    }
+
     fn stack_used(&self, id: ContextId) -> u32 {
         self.inner.stack_used(id)
     }
 
-    fn backtrace(&self, id: ContextId, program: &Program) -> Vec<CodeAddr> {
-        self.inner.backtrace(id, program)
+    fn backtrace(&self, id: ContextId) -> Vec<CodeAddr> {
+        self.inner.backtrace(id)
     }
 }
 
@@ -216,6 +236,7 @@ impl<F: Firmware + ?Sized> Firmware for Metered<'_, F> {
             budget: &mut budget,
             woken: caller.woken,
             arguments: caller.arguments,
+            at: caller.at,
         };
         let outcome = self.firmware.call(address, &mut true_caller);
         caller.woken = true_caller.woken;

@@ -6,6 +6,7 @@ use kmotiondef::map::{PROGRAM_BASE, PROGRAM_LIMIT};
 use kmotiondef::{CodeAddr, Cycles, GuestAddr};
 
 use crate::firmware::{Pure, Signature};
+use crate::guard;
 use crate::op::{Op, WORD};
 use crate::operand::{Class, FuncRef, SigRef};
 
@@ -36,34 +37,44 @@ pub struct Function {
 /// A program that an engine can run without further checks.
 ///
 /// Made by [`verify`](crate::verify::verify) only. Instructions are addressed by the index of
-/// their word in the text.
+/// their word in the text. It is data and nothing else: what an engine makes of it is kept by the engine
+/// ([`Translations`](crate::translations::Translations)).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Program {
     pub(crate) base: u32,
+    /// Address of `main`, where the text begins with the words of [`guard`](crate::guard).
+    pub(crate) main: Option<GuestAddr>,
     /// One for each word of the text; [`Op::Unreachable`] stands for a word of the pool.
     pub(crate) ops: Vec<Op>,
     pub(crate) pool: Vec<u64>,
     pub(crate) signatures: Vec<Signature>,
     pub(crate) functions: Vec<Function>,
-    /// Its words for the interpreter, once it has been started on the bytecode engine.
-    pub(crate) code: crate::interp::Code,
-    /// Its machine code, once it has been started on the native engine.
-    #[cfg(feature = "native")]
-    pub(crate) compiled: crate::native::Compiled,
 }
 
 impl Program {
-    /// Where the text begins.
+    /// Where the first word of the bytecode is.
     #[must_use]
     pub const fn base(&self) -> GuestAddr {
         GuestAddr::new(self.base)
     }
 
-    /// The guest addresses of the text.
+    /// The guest addresses of the text, with the words before the bytecode.
     #[must_use]
     pub fn text(&self) -> Range<GuestAddr> {
         let bytes = (self.ops.len() * WORD) as u32;
-        self.base()..self.base().offset(bytes)
+        self.start()..self.base().offset(bytes)
+    }
+
+    /// Where the text begins.
+    const fn start(&self) -> GuestAddr {
+        let guard = if self.main.is_some() { guard::BYTES as u32 } else { 0 };
+        GuestAddr::new(self.base.wrapping_sub(guard))
+    }
+
+    /// The address of `main`, if the image says where it is.
+    #[must_use]
+    pub const fn main(&self) -> Option<GuestAddr> {
+        self.main
     }
 
     /// The instructions, by index of their word.
@@ -89,13 +100,11 @@ impl Program {
     pub(crate) fn longest_step(&self, pure: &dyn Fn(GuestAddr) -> Option<Pure>) -> Cycles {
         let (mut charge, mut call) = (Cycles::default(), Cycles::default());
         for op in &self.ops {
-            match op {
-                Op::Charge { cycles } => charge = charge.max(Cycles::new(cycles.0.into())),
-                Op::CallFw { addr, .. } => {
-                    let cost = pure(GuestAddr::new(addr.0)).map_or(Cycles::default(), |pure| pure.cost);
-                    call = call.max(cost);
-                }
-                _ => {}
+            if let Op::Charge { cycles } = op {
+                charge = charge.max(Cycles::new(cycles.0.into()));
+            } else if let Op::CallFw { addr, .. } = op {
+                let cost = pure(GuestAddr::new(addr.0)).map_or(Cycles::default(), |pure| pure.cost);
+                call = call.max(cost);
             }
         }
         charge + call
@@ -133,10 +142,12 @@ impl Program {
         (word < self.ops.len()).then_some(word)
     }
 
-    /// The function that starts at `address`.
+    /// The function that starts at `address`; `main` for the start of the text, the entry point of an image.
     #[must_use]
     pub fn function_at(&self, address: GuestAddr) -> Option<FuncRef> {
-        let word = self.word_at(CodeAddr::new(address.get())?)?;
+        let address = self.main.filter(|_| address == self.start()).unwrap_or(address);
+        let is_word = address.get().is_multiple_of(WORD as u32);
+        let word = self.word_at(CodeAddr::new(address.get()).filter(|_| is_word)?)?;
         matches!(self.ops.get(word), Some(Op::Func { .. })).then_some(FuncRef(word as u32))
     }
 
@@ -161,10 +172,16 @@ impl Program {
     /// Signature, number of registers, and units of 8 bytes of the frame of a function.
     #[inline]
     pub(crate) fn head_of(&self, function: FuncRef) -> (SigRef, u16, u16) {
-        match self.ops[function.0 as usize] {
-            Op::Func { sig, regs, frame } => (sig, regs.0, frame.0),
-            _ => unreachable!("a verified program refers to functions only"),
-        }
+        let Op::Func { sig, regs, frame } = self.ops[function.0 as usize] else {
+            unreachable!("a verified program refers to functions only")
+        };
+        (sig, regs.0, frame.0)
+    }
+
+    /// The place of a function among the functions; `None` for one that is not of this program.
+    #[must_use]
+    pub fn index_of(&self, function: FuncRef) -> Option<usize> {
+        self.functions.binary_search_by_key(&function, |function| function.at).ok()
     }
 
     /// The function whose body holds the word with the given index.

@@ -11,7 +11,6 @@ use crate::memory::GuestMemory;
 use crate::operand::Class;
 use crate::program::Program;
 use crate::scheduler::Turn;
-use crate::slot::Slot;
 use crate::text::assemble;
 use crate::trap::{Trap, TrapKind};
 use crate::verify::verify;
@@ -90,7 +89,7 @@ impl Function {
 }
 
 /// A firmware of a few functions that writes down what it sees.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Fake {
     signatures: [Signature; 4],
     pub(crate) log: Vec<String>,
@@ -156,7 +155,7 @@ impl Firmware for Fake {
     }
 
     fn call(&mut self, address: GuestAddr, caller: &mut Caller<'_>) -> Result<Outcome<Value>, TrapKind> {
-        let argument = caller.arguments.first().map_or(0, |slot| i32::from_slot(*slot));
+        let argument = caller.arguments.get::<i32>(0);
         let target = ThreadId::new(argument);
         let unit = Outcome::Done(Value::Unit);
         Ok(match Function::at(address).ok_or(TrapKind::UnknownFirmwareFunction { addr: address })? {
@@ -189,7 +188,7 @@ impl Firmware for Fake {
                 Outcome::Done(Value::I32(i32::from(!matches!(resumed, Some(Ok(()))))))
             }
             Function::Scale => {
-                Outcome::Done(Value::F64(f64::from(argument) * f64::from_slot(caller.arguments[1])))
+                Outcome::Done(Value::F64(f64::from(argument) * caller.arguments.get::<f64>(1)))
             }
             Function::Missing => return Err(TrapKind::NotModelled { name: "Missing" }),
         })

@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 use std::fmt::{self, Write as _};
 
 use crate::for_each_op;
+use crate::guard;
 use crate::op::{Op, WORD};
 use crate::operand::{
     Addr, Bits32, Classes, Count, Count32, FuncRef, Imm, Imm16, Label, Off, Operand, Pool, RegF32, RegF64,
@@ -44,7 +45,7 @@ pub enum AssembleErrorKind {
 }
 
 macro_rules! define_text {
-    ($($(#[$doc:meta])* $name:ident = $variant:ident { $($field:ident: $operand:ident),* }, cost $cost:expr;)*) => {
+    ($($(#[$doc:meta])* $name:ident = $variant:ident { $($field:ident: $operand:ident),* }, cost $cost:expr, $kind:ident $(($fact:ident))?;)*) => {
         impl fmt::Display for Op {
             fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 f.write_str(self.name())?;
@@ -86,10 +87,11 @@ fn print_operand<O: Operand>(
     Ok(", ")
 }
 
-/// The text of `bytes`, which need not be a valid program; bytes behind the last whole word are left away.
+/// The text of `bytes`, which need not be a valid program; bytes behind the last whole word are left away, and so are
+/// the words before the bytecode of an image.
 #[must_use]
 pub fn disassemble(bytes: &[u8]) -> String {
-    let words = bytes.as_chunks::<WORD>().0;
+    let words = guard::strip(bytes).as_chunks::<WORD>().0;
     let pool = match words.first().and_then(|word| Op::decode(*word)) {
         Some(Op::Program { pool, .. }) => pool.0 as usize,
         _ => 0,

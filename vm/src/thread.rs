@@ -7,9 +7,9 @@
 
 use kmotiondef::{Cycles, GuestAddr, ThreadId};
 
-use crate::firmware::Wake;
 use crate::scheduler::ThreadSet;
 use crate::trap::Trap;
+use crate::wake::Wake;
 
 /// Where an active or paused thread stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

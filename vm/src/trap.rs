@@ -3,9 +3,13 @@
 //! A trap stops one thread; the machine goes on. Firmware functions yield a [`TrapKind`],
 //! the engine adds the place and the thread.
 
+mod processor;
+
 use std::fmt;
 
 use kmotiondef::{CodeAddr, GuestAddr, ThreadId};
+
+pub use self::processor::Fault;
 
 /// Direction of a memory access.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -99,6 +103,9 @@ pub enum TrapKind {
     /// The compiler held this place to be out of reach; a `goto *` to no label leads to such a one.
     #[error("execution reached a place where no code is, as by `goto *` to what is no label")]
     Unreachable,
+    /// Code of the real processor that no compiler makes.
+    #[error(transparent)]
+    Processor(#[from] Fault),
 }
 
 /// A trap with its place.

@@ -23,6 +23,7 @@ use kmotiondef::GuestAddr;
 
 use self::body::check_body;
 use crate::firmware::Signature;
+use crate::guard;
 use crate::op::{Op, VERSION, WORD};
 use crate::operand::{Class, Classes, Count, FuncRef, SigRef};
 use crate::program::{Function, MAX_TEXT, Program};
@@ -55,6 +56,14 @@ pub enum VerifyErrorKind {
     /// The text does not begin with a `program` word.
     #[error("the text is not bytecode")]
     NotAProgram,
+    /// The text does not begin with the words that let a real processor return at once.
+    #[error(
+        "the text begins with bytecode, where a real processor would begin to execute it; build it again"
+    )]
+    Unguarded,
+    /// The text says that `main` is where no function is.
+    #[error("no function is at {0}, where `main` should be")]
+    Main(GuestAddr),
     /// The bytecode is of another version.
     #[error("the text is bytecode of version {0}, this machine runs version {VERSION}")]
     Version(u16),
@@ -115,17 +124,28 @@ pub enum VerifyErrorKind {
     /// The last instruction of a function goes on behind it.
     #[error("the function goes on behind its end")]
     FallsOff,
-    /// A segment is charged less than it costs.
-    #[error("the code from here on costs {cost} cycles and is charged {charged}")]
-    Charge {
-        /// What it costs.
-        cost: u32,
-        /// What it is charged.
-        charged: u32,
-    },
+    /// A function begins, or a loop turns, without a charge.
+    #[error("the code from here on can run for ever without being charged")]
+    Uncharged,
 }
 
-/// Verifies the bytes of a text that stands at `base`.
+/// Verifies the text of an image, which begins at `start` with the words of [`guard`].
+///
+/// # Errors
+/// The first thing that is wrong.
+pub fn verify_image(text: &[u8], start: GuestAddr) -> Result<Program, VerifyError> {
+    let fail = |kind| VerifyError { at: 0, kind };
+    let Some((main, code)) = guard::split(text) else {
+        let is_bare = read_head(text.as_chunks().0).is_ok();
+        return Err(fail(if is_bare { VerifyErrorKind::Unguarded } else { VerifyErrorKind::NotAProgram }));
+    };
+    let mut program = verify(code, guard::code_at(start))?;
+    program.function_at(main).ok_or_else(|| fail(VerifyErrorKind::Main(main)))?;
+    program.main = Some(main);
+    Ok(program)
+}
+
+/// Verifies the bytecode that stands at `base`.
 ///
 /// # Errors
 /// The first thing that is wrong.
@@ -143,13 +163,11 @@ pub fn verify(text: &[u8], base: GuestAddr) -> Result<Program, VerifyError> {
         .collect();
     let mut program = Program {
         base: base.get(),
+        main: None,
         ops: decode(words, pool_size)?,
         pool,
         signatures: Vec::new(),
         functions: Vec::new(),
-        code: crate::interp::Code::default(),
-        #[cfg(feature = "native")]
-        compiled: crate::native::Compiled::default(),
     };
     let mut reader = Reader { ops: &program.ops, at: 1 + pool_size };
     let signatures = reader.signatures()?;

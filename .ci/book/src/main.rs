@@ -68,7 +68,7 @@ impl Subscriber for Listener {
     fn exit(&self, _: &Id) {}
 }
 
-/// Puts the fields of an event behind each other.
+/// Joins the fields of an event.
 struct Words<'a>(&'a mut String);
 
 impl Visit for Words<'_> {
@@ -80,15 +80,7 @@ impl Visit for Words<'_> {
 /// Every link within the pages leads to a page or file, and to a place in it.
 fn check(pages: &Path) {
     let mut texts = BTreeMap::new();
-    for entry in fs::read_dir(pages).into_iter().flatten().flatten() {
-        let path = entry.path();
-        // The page of all chapters has the links of the others again.
-        let is_page = path.extension().is_some_and(|suffix| suffix == "html");
-        if is_page && path.file_name().is_some_and(|name| name != "print.html") {
-            let name = entry.file_name().to_string_lossy().into_owned();
-            texts.insert(name, fs::read_to_string(&path).unwrap_or_default());
-        }
-    }
+    read(pages, "", &mut texts);
     let places: BTreeMap<&str, BTreeSet<&str>> =
         texts.iter().map(|(name, text)| (name.as_str(), values(text, " id=\"").collect())).collect();
     let mut count = 0;
@@ -96,8 +88,8 @@ fn check(pages: &Path) {
         for link in values(text, " href=\"").filter(|link| !link.contains("://")) {
             count += 1;
             let (file, place) = link.split_once('#').unwrap_or((link, ""));
-            let file = if file.is_empty() { name } else { file };
-            let is_there = match places.get(file) {
+            let file = if file.is_empty() { name.clone() } else { beside(name, file) };
+            let is_there = match places.get(file.as_str()) {
                 Some(places) => place.is_empty() || places.contains(place),
                 None => pages.join(file).exists(),
             };
@@ -109,7 +101,38 @@ fn check(pages: &Path) {
     println!("{} pages, {count} links", texts.len());
 }
 
-/// What stands between each mark and the next quotation mark.
+/// Reads the pages of a folder and of those in it, by their names from the top.
+fn read(folder: &Path, prefix: &str, texts: &mut BTreeMap<String, String>) {
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let path = entry.path();
+        let name = format!("{prefix}{}", entry.file_name().to_string_lossy());
+        if path.is_dir() {
+            read(&path, &format!("{name}/"), texts);
+            continue;
+        }
+        // The page of all chapters has the links of the others again.
+        let is_page = path.extension().is_some_and(|suffix| suffix == "html");
+        if is_page && name != "print.html" && name != "toc.html" {
+            texts.insert(name, fs::read_to_string(&path).unwrap_or_default());
+        }
+    }
+}
+
+/// The name of a file that a page links to, from the top.
+fn beside(page: &str, link: &str) -> String {
+    let mut parts: Vec<&str> = page.split('/').collect();
+    parts.pop();
+    for part in link.split('/') {
+        match part {
+            "." | "" => {}
+            ".." => drop(parts.pop()),
+            name => parts.push(name),
+        }
+    }
+    parts.join("/")
+}
+
+/// The text between each mark and the next quotation mark.
 fn values<'a>(text: &'a str, mark: &'a str) -> impl Iterator<Item = &'a str> {
     text.split(mark).skip(1).filter_map(|rest| rest.split('"').next())
 }

@@ -20,6 +20,7 @@ use compiler::passes::Level;
 use compiler::pp::{self, MemoryFiles};
 use compiler::source::{FileId, SourceMap};
 use compiler::{Options, driver, parse, sema};
+use kmotiondef::timing::Timing;
 
 /// A program of the size users write.
 const INIT_PROGRAM: &str = include_str!("../../../c-programs/motion/init3.c");
@@ -72,7 +73,7 @@ fn stages(c: &mut Criterion) {
         });
         for (level, level_name) in [(Level::None, "O0"), (Level::Full, "O1")] {
             group.bench_function(format!("generate/{level_name}/{name}"), |b| {
-                b.iter(|| driver::generate(&typed, &sources, level, &mut Sink::new()));
+                b.iter(|| driver::generate(&typed, &sources, (level, Timing::default()), &mut Sink::new()));
             });
         }
         group.finish();

@@ -4,9 +4,7 @@ use std::ffi::{CStr, c_char};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::slice;
 
-use cc67_host::{Board, HostError, fill};
-
-use crate::Client;
+use cc67_host::{HostError, fill};
 
 /// What became of a call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,7 +33,14 @@ impl From<HostError> for Outcome {
             HostError::Timeout => Self::Timeout,
             HostError::InUse => Self::InUse,
             HostError::Thread(_) => Self::Argument,
-            HostError::Read { .. } | HostError::Compile(_) | HostError::Load(_) => Self::Failed,
+            HostError::Read { .. }
+            | HostError::Compile(_)
+            | HostError::Refused { .. }
+            | HostError::Foreign { .. }
+            | HostError::NotLoaded(_)
+            | HostError::Unmapped(_)
+            | HostError::Stimulus(_)
+            | HostError::Act(_) => Self::Failed,
         }
     }
 }
@@ -52,17 +57,6 @@ pub(crate) fn guarded(work: impl FnOnce() -> Result<(), Outcome>) -> Outcome {
 /// The same for a call that yields a value; `failure` stands for a panic.
 pub(crate) fn guarded_or<R>(failure: R, work: impl FnOnce() -> R) -> R {
     catch_unwind(AssertUnwindSafe(work)).unwrap_or(failure)
-}
-
-/// The board of a client.
-///
-/// # Safety
-/// Null, or what [`cc67_open`](crate::cc67_open) or [`cc67_another_client`](crate::cc67_another_client) has returned
-/// and nobody has closed; no other call uses it meanwhile.
-pub(crate) unsafe fn board<'a>(client: *mut Client) -> Result<&'a mut Board, Outcome> {
-    // SAFETY: the caller vouches for a client that is alive and that only this call uses.
-    let client = unsafe { client.as_mut() };
-    client.map(|client| &mut client.board).ok_or(Outcome::Argument)
 }
 
 /// A text of the caller.

@@ -8,22 +8,8 @@ use cc67_host::{Board, fill};
 use compiler::Options;
 use runtime::{Config, Directory, MachineFile};
 
-use crate::border::{board, buffer, guarded_or, optional_text};
-
-/// A client of a simulated board. One thread at a time may use it; clients of the same board may be used in
-/// different threads.
-#[derive(Debug)]
-pub struct Client {
-    pub(crate) board: Board,
-    /// How its programs are compiled.
-    pub(crate) options: Options,
-}
-
-impl Client {
-    fn into_pointer(self) -> *mut Self {
-        Box::into_raw(Box::new(self))
-    }
-}
+use crate::border::{buffer, guarded_or, optional_text};
+use crate::handle::{Client, board};
 
 /// Makes a board at power-up, and its first client. `files` is the folder of the files that programs open on the PC, or
 /// null for none; `machine` is a machine file, what is connected to the board, or null for nothing. Null on failure,

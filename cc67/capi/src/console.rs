@@ -4,7 +4,8 @@ use std::ffi::{CString, c_char, c_int, c_void};
 
 use cc67_host::fill;
 
-use crate::border::{board, buffer, guarded, guarded_or};
+use crate::border::{buffer, guarded, guarded_or};
+use crate::handle::board;
 use crate::{Client, Outcome};
 
 /// Receives a console line and what was registered with it. It must not use any client of the board, nor leave by

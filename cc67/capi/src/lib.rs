@@ -1,11 +1,20 @@
 //! The host interface for C programs: a library, `cc67board`, and its header, `include/cc67board.h`.
 //!
 //! The calls are those of [`cc67_host::Board`] under the same names with `cc67_` in front. A call says by its result
-//! whether it did what it is for; texts go into buffers of the caller, are cut to fit and always ended with a 0.
+//! whether it did what it is for; texts go into buffers of the caller, are cut to fit and always ended with a 0. A client
+//! is a pointer to a box that holds one client of a shared board; each function checks its pointers, calls the method of
+//! the same name, and turns its answer into a number.
+//!
+//! ```text
+//! client, console, lines, programs, time, token   the functions, by subject
+//! stand_alone                                     the start of executables of `--emit native`
+//! handle                                          the box behind a client's pointer
+//! border                                          pointers to references, panics and errors to results
+//! ```
 //!
 //! Invariants:
 //! - Unsafe code is here and in the machine's native engine only: pointers of the caller are looked at in [`border`]
-//!   and nowhere else. What a caller must keep to is the same for all calls, and stands in the header.
+//!   and [`handle`] and nowhere else. What a caller must keep to is the same for all calls and is in the header.
 //! - No panic leaves a call: it comes back as [`Outcome::Internal`].
 //! - A null pointer, a text that is not UTF-8 or a buffer without room is an answer, never undefined behaviour.
 //! - The header is made from these files; a test compares it.
@@ -15,6 +24,7 @@
 mod border;
 mod client;
 mod console;
+mod handle;
 mod lines;
 mod programs;
 #[cfg(feature = "native")]
@@ -23,8 +33,8 @@ mod time;
 mod token;
 
 pub use border::Outcome;
-pub use client::Client;
 pub use console::{LineCallback, cc67_service_console, cc67_set_console_callback, cc67_take_remark};
+pub use handle::Client;
 
 pub use client::{cc67_another_client, cc67_close, cc67_firmware_version, cc67_list_locations, cc67_open};
 pub use lines::{

@@ -2,7 +2,8 @@
 
 use std::ffi::{c_char, c_int, c_void};
 
-use crate::border::{board, buffer, guarded, guarded_or, put, text};
+use crate::border::{buffer, guarded, guarded_or, put, text};
+use crate::handle::board;
 use crate::{Client, Outcome};
 
 /// Sends a line of script commands and waits for no reply.

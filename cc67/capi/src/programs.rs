@@ -5,7 +5,8 @@ use std::path::Path;
 
 use cc67_host::fill;
 
-use crate::border::{board, buffer, guarded, text};
+use crate::border::{buffer, guarded, text};
+use crate::handle::board;
 use crate::{Client, Outcome};
 
 /// Adds a folder in which included files are searched, for what this client compiles from now on.

@@ -3,12 +3,11 @@
 use std::ffi::{c_int, c_void};
 
 use kmotiondef::Bit;
+use kmotiondef::limits::TIMEBASE;
 
-use crate::border::{board, guarded, guarded_or, store};
+use crate::border::{guarded, guarded_or, store};
+use crate::handle::board;
 use crate::{Client, Outcome};
-
-/// Seconds in a tick.
-const TIMEBASE: f64 = 90e-6;
 
 /// Says whether a run is over, by a number other than 0. It may use the client.
 pub type EndCallback = Option<unsafe extern "C" fn(client: *mut Client, user: *mut c_void) -> c_int>;
@@ -69,7 +68,7 @@ pub unsafe extern "C" fn cc67_user_data(client: *mut Client, element: c_int, val
     guarded(|| {
         let element = usize::try_from(element).map_err(|_| Outcome::Argument)?;
         // SAFETY: the caller vouches for the client.
-        let found = unsafe { board(client) }?.with_board(|board| board.user_data(element));
+        let found = unsafe { board(client) }?.with_session(|session| session.user_data(element));
         // SAFETY: the caller vouches for the place.
         unsafe { store(value, found.ok_or(Outcome::Argument)?) }
     })
@@ -84,7 +83,8 @@ pub unsafe extern "C" fn cc67_set_user_data(client: *mut Client, element: c_int,
     guarded(|| {
         let element = usize::try_from(element).map_err(|_| Outcome::Argument)?;
         // SAFETY: the caller vouches for the client.
-        let is_stored = unsafe { board(client) }?.with_board(|board| board.set_user_data(element, value));
+        let is_stored =
+            unsafe { board(client) }?.with_session(|session| session.set_user_data(element, value));
         if is_stored { Ok(()) } else { Err(Outcome::Argument) }
     })
 }
@@ -98,7 +98,7 @@ pub unsafe extern "C" fn cc67_drive_input(client: *mut Client, bit: c_int, level
     guarded(|| {
         let bit = Bit::new(bit).ok_or(Outcome::Argument)?;
         // SAFETY: the caller vouches for the client.
-        unsafe { board(client) }?.with_board(|board| board.drive_input(bit, level != 0));
-        Ok(())
+        let driven = unsafe { board(client) }?.with_session(|session| session.drive_input(bit, level != 0));
+        driven.map_err(|_| Outcome::Argument)
     })
 }

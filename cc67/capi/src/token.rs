@@ -6,7 +6,8 @@ use std::time::Duration;
 use cc67_host::Lock;
 
 use crate::Client;
-use crate::border::{board, guarded_or};
+use crate::border::guarded_or;
+use crate::handle::board;
 
 /// Asks for the token once; connects first if necessary: 0 this client has the board to itself, 1 another client has
 /// it, 2 there is no connection.

@@ -1,14 +1,38 @@
 //! C compiler and linker for KFLOP user programs.
 //!
+//! A text becomes tokens in [`pp`], which also reads what it includes, and [`parse`] makes of them a tree of the syntax,
+//! [`ast`]. [`sema`] gives every expression a type and writes out what C leaves implicit: the typed tree of
+//! [`typed`], over the types of [`ty`]; [`lints`] search that tree for mistakes. What is wrong is collected as
+//! diagnostics ([`diag`]), and analysis goes on. [`lower`] turns the typed tree of a function into [`ir`], basic blocks of
+//! three-address code for any target, which [`passes`] improve one after the other. A back end, [`bytecode`] for the
+//! simulated machine or `c67x` for the controller's processor, turns IR into words. [`object`] holds the words and data of a unit,
+//! [`link`] joins units, what they use of the C library, and the addresses of the [`firmware`] to one program, and
+//! [`image`] writes that as the file that a board loads. [`driver`] is the only place that knows the order of all this.
+//!
 //! ```text
-//! source ─ pp ─► tokens ─ parse ─► tree ─ sema ─► typed tree ─ lower, passes ─► IR ─ bytecode ─► object ─ link ─► image
+//! source ─ pp ─► tokens ─ parse ─► tree ─ sema ─► typed tree ─ lower, passes ─► IR ─┬ bytecode ─┬► object ─ link ─► image
+//!                                                   └ lints ─► diagnostics          └ c67x ─────┘
 //! ```
 //!
-//! [`compile`] goes all the way; each stage is a module that can be used by itself.
+//! | room | holds |
+//! |---|---|
+//! | [`watch`], [`debug`], [`stages`] | what is built on the driver: watched expressions, debug information; each stage alone, as text, for tests |
+//! | [`driver`] | [`compile`], [`link_units`], the C library, who includes a file without `main` |
+//! | [`image`], [`inspect`], [`render`] | images written and shown; diagnostics as people and tools read them |
+//! | [`link`], [`object`], [`target`] | units to a program; a unit's code and data, as a file, too; which processor |
+//! | [`bytecode`], `c67x` | the two back ends |
+//! | [`lower`], [`passes`] | typed tree to IR, IR to better IR |
+//! | [`sema`], [`lints`], [`firmware`] | types and meaning; searches for mistakes; what the firmware declares |
+//! | [`ir`], [`typed`], [`ty`] | the two forms in the middle, and the types of C; IR prints and parses |
+//! | [`parse`], [`pp`], [`ast`] | the front |
+//! | [`diag`], [`words`], [`names`], [`files`], [`source`], `index` | messages, spelling, interned names, places in texts, typed numbers |
+//!
+//! A room names only rooms of its own line or of lines below it (`tests/tidy/layers.rs`).
 //!
 //! Invariants:
 //! - No board is known here: the image is the interface to the machine.
 //! - Nothing outside [`bytecode`] knows the instructions of the machine, nothing outside
+//!   `c67x` those of the controller's processor, nothing outside
 //!   [`parse`] the grammar of C.
 //! - Analysis continues after a diagnostic; nothing is written for a program with errors.
 //! - No input makes the compiler panic: source text, options and images are checked.
@@ -23,11 +47,14 @@
 
 pub mod ast;
 pub mod bytecode;
+mod c67x;
+pub mod debug;
 pub mod diag;
 pub mod driver;
 pub mod files;
 pub mod firmware;
 pub mod image;
+mod index;
 pub mod inspect;
 pub mod ir;
 pub mod link;
@@ -41,6 +68,8 @@ pub mod pp;
 pub mod render;
 pub mod sema;
 pub mod source;
+pub mod stages;
+pub mod target;
 pub mod ty;
 pub mod typed;
 pub mod watch;

@@ -10,19 +10,11 @@
 //!
 //! Left to right is the order of evaluation everywhere.
 
-use cranelift_entity::{PrimaryMap, entity_impl};
+use cranelift_entity::PrimaryMap;
 
+use crate::index::index;
 use crate::source::Span;
 use crate::ty::{BitRange, FunctionType, TypeId, Types};
-
-macro_rules! index {
-    ($($(#[$doc:meta])* $name:ident, $prefix:literal;)*) => {$(
-        $(#[$doc])*
-        #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-        pub struct $name(u32);
-        entity_impl!($name, $prefix);
-    )*};
-}
 
 index! {
     /// A name with linkage, or an anonymous static object.

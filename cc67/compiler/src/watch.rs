@@ -14,12 +14,12 @@ use crate::driver::{Options, front, on_large_stack};
 use crate::firmware::{FirmwareKind, FirmwareSymbols};
 use crate::lints;
 use crate::names::Names;
-use crate::pp::Files;
+use crate::pp::{Disk, Files};
 use crate::sema::constants::{self, Constant};
 use crate::source::SourceMap;
 use crate::ty::{BitRange, TypeId, Types};
 use crate::typed::{
-    Call, Callee, ExprId, ExprKind, Function, PlaceId, PlaceKind, StmtKind, SymbolId, UnaryOp, Unit,
+    Call, Callee, ExprId, ExprKind, Function, LocalId, PlaceId, PlaceKind, StmtKind, SymbolId, UnaryOp, Unit,
 };
 
 /// The name of the function around an expression.
@@ -63,6 +63,21 @@ pub trait Reader {
 
     /// The item of this place in the list that the expression was compiled with.
     fn item(&self, index: usize) -> f64;
+
+    /// Where a local of a call in progress is; `None` if it is nowhere.
+    fn local(&self, local: LocalId) -> Option<Local> {
+        let _ = local;
+        None
+    }
+}
+
+/// Where a local of a call in progress is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Local {
+    /// In memory.
+    Memory(GuestAddr),
+    /// In a register, which holds these bits.
+    Slot(u64),
 }
 
 /// An expression that can be computed.
@@ -75,7 +90,7 @@ pub struct Expression {
 
 /// What a name stands for.
 #[derive(Clone, Copy, Debug)]
-enum Meaning {
+pub(crate) enum Meaning {
     Variable(GuestAddr),
     Item(usize),
     Function(Operation),
@@ -119,8 +134,15 @@ fn compile_here(scope: Scope<'_>, expression: &str, items: &[&str]) -> Result<Ex
     let Some(function) = function else { return Err("it is no expression".to_owned()) };
     let [statement] = function.body.as_slice() else { return Err("it is no expression".to_owned()) };
     let StmtKind::Return(Some(value)) = statement.kind else { return Err("it has no value".to_owned()) };
-    let mut check =
-        Check { unit: &unit, scope, items, function: &function, meanings: BTreeMap::new(), count: 0 };
+    let mut check = Check {
+        unit: &unit,
+        scope,
+        items,
+        function: &function,
+        meanings: BTreeMap::new(),
+        count: 0,
+        locals: false,
+    };
     check.expr(value)?;
     let meanings = check.meanings;
     match doubt {
@@ -129,7 +151,7 @@ fn compile_here(scope: Scope<'_>, expression: &str, items: &[&str]) -> Result<Ex
     }
 }
 
-fn in_one_line(diagnostic: &Diagnostic) -> String {
+pub(crate) fn in_one_line(diagnostic: &Diagnostic) -> String {
     let more = [Some(&diagnostic.at).filter(|text| !text.is_empty()), diagnostic.help.as_ref()];
     let more = more.into_iter().flatten().filter(|text| !diagnostic.message.contains(text.as_str()));
     more.fold(diagnostic.message.clone(), |line, text| line + "; " + text)
@@ -143,6 +165,23 @@ struct Check<'a> {
     function: &'a Function,
     meanings: BTreeMap<SymbolId, Meaning>,
     count: usize,
+    /// Whether it may name locals.
+    locals: bool,
+}
+
+/// What the names in an expression of a function stand for; it may name the function's locals.
+pub(crate) fn meanings(
+    unit: &Unit,
+    function: usize,
+    value: ExprId,
+    (symbols, options): (&BTreeMap<String, GuestAddr>, &Options),
+    items: &[&str],
+) -> Result<BTreeMap<SymbolId, Meaning>, String> {
+    let scope = Scope { path: Path::new(""), text: &[], symbols, options, files: &Disk };
+    let function = unit.functions.get(function).ok_or("it is no expression")?;
+    let mut check = Check { unit, scope, items, function, meanings: BTreeMap::new(), count: 0, locals: true };
+    check.expr(value)?;
+    Ok(check.meanings)
 }
 
 impl Check<'_> {
@@ -176,6 +215,7 @@ impl Check<'_> {
 
     fn place(&mut self, id: PlaceId) -> Result<(), String> {
         match self.function.places[id].kind {
+            PlaceKind::Local(..) if self.locals => Ok(()),
             PlaceKind::Local(..) => Err("it has variables of its own".to_owned()),
             PlaceKind::Symbol(symbol, offset) => {
                 let entry = &self.unit.symbols[symbol];
@@ -219,6 +259,25 @@ impl Check<'_> {
 }
 
 impl Expression {
+    /// The value of a function's expression; its names stand for these.
+    pub(crate) const fn new(
+        function: Function,
+        value: ExprId,
+        meanings: BTreeMap<SymbolId, Meaning>,
+    ) -> Self {
+        Self { function, value, meanings }
+    }
+
+    /// The function around it.
+    pub(crate) const fn function(&self) -> &Function {
+        &self.function
+    }
+
+    /// The value of an expression in it.
+    pub(crate) fn constant_of(&self, id: ExprId, reader: &dyn Reader) -> Option<Constant> {
+        self.constant(id, reader)
+    }
+
     /// The value now; not a number where it divides an integer by 0.
     #[must_use]
     pub fn value(&self, reader: &dyn Reader) -> f64 {
@@ -227,6 +286,33 @@ impl Expression {
             Some(Constant::Int(value)) => value as f64,
             None => f64::NAN,
         }
+    }
+
+    /// Where a value goes that is stored in it, and the bytes that are there then; `None` unless it is a place in
+    /// memory. The value becomes one of the place's type as by an assignment.
+    #[must_use]
+    pub fn store(&self, value: f64, reader: &dyn Reader) -> Option<(GuestAddr, Vec<u8>)> {
+        let place = self.stored_place()?;
+        let ty = self.function.places[place].ty;
+        let PlaceKind::Bits(unit, range) = self.function.places[place].kind else {
+            return Some((self.address(place, reader)?, bytes_of(value, ty)));
+        };
+        let address = self.address(unit, reader)?;
+        let mask = ((1_u64 << range.width) - 1) << range.shift;
+        let word = u64::from_le_bytes(reader.bytes(address));
+        let word = word & !mask | (value as i64).cast_unsigned() << range.shift & mask;
+        let size = size_of(self.function.places[unit].ty);
+        Some((address, word.to_le_bytes().into_iter().take(size).collect()))
+    }
+
+    /// The place that the expression is, below the conversion of what is read from it.
+    fn stored_place(&self) -> Option<PlaceId> {
+        let kind = |id: ExprId| &self.function.exprs[id].kind;
+        let read = match kind(self.value) {
+            ExprKind::Convert(inner) => kind(*inner),
+            other => other,
+        };
+        if let ExprKind::Load(place) = read { Some(*place) } else { None }
     }
 
     fn constant(&self, id: ExprId, reader: &dyn Reader) -> Option<Constant> {
@@ -275,6 +361,11 @@ impl Expression {
             let Constant::Int(word) = self.load(unit, reader)? else { return None };
             return Some(Constant::Int(bits(word, range, place.ty)));
         }
+        if let PlaceKind::Local(local, 0) = place.kind
+            && let Local::Slot(bits) = reader.local(local)?
+        {
+            return Some(read(place.ty, bits.to_le_bytes()));
+        }
         Some(read(place.ty, reader.bytes(self.address(id, reader)?)))
     }
 
@@ -288,14 +379,18 @@ impl Expression {
                 Constant::Int(address) => (address as u32, offset),
                 Constant::Float(_) => return None,
             },
-            PlaceKind::Local(..) | PlaceKind::Bits(..) => return None,
+            PlaceKind::Local(local, offset) => match reader.local(local)? {
+                Local::Memory(address) => (address.get(), offset.cast_signed()),
+                Local::Slot(_) => return None,
+            },
+            PlaceKind::Bits(..) => return None,
         };
         Some(GuestAddr::new(base.wrapping_add_signed(offset)))
     }
 }
 
 /// The value that the first of these bytes are in memory; pointers are unsigned.
-fn read(ty: TypeId, bytes: [u8; 8]) -> Constant {
+pub(crate) fn read(ty: TypeId, bytes: [u8; 8]) -> Constant {
     let all = i64::from_le_bytes(bytes);
     match ty {
         Types::DOUBLE => Constant::Float(f64::from_le_bytes(bytes)),
@@ -304,8 +399,28 @@ fn read(ty: TypeId, bytes: [u8; 8]) -> Constant {
     }
 }
 
+/// A value as memory holds it; what is no number goes there as 0.
+fn bytes_of(value: f64, ty: TypeId) -> Vec<u8> {
+    match ty {
+        Types::DOUBLE => value.to_le_bytes().into(),
+        Types::FLOAT => (value as f32).to_le_bytes().into(),
+        Types::BOOL => vec![u8::from(value != 0.0)],
+        _ => (value as i64).to_le_bytes().into_iter().take(size_of(ty)).collect(),
+    }
+}
+
+/// Bytes of a number or a pointer.
+pub(crate) fn size_of(ty: TypeId) -> usize {
+    match ty {
+        Types::BOOL | Types::CHAR | Types::SIGNED_CHAR | Types::UNSIGNED_CHAR => 1,
+        Types::SHORT | Types::UNSIGNED_SHORT => 2,
+        Types::LONG_LONG | Types::UNSIGNED_LONG_LONG | Types::DOUBLE => 8,
+        _ => 4,
+    }
+}
+
 /// A bit-field of a word of type `ty`.
-fn bits(word: i64, range: BitRange, ty: TypeId) -> i64 {
+pub(crate) fn bits(word: i64, range: BitRange, ty: TypeId) -> i64 {
     let above = 64 - u32::from(range.width);
     let raised = word << (above - u32::from(range.shift));
     match ty {
@@ -349,17 +464,19 @@ main() { int local; }
         }
     }
 
-    fn check(expression: &str, expect: Result<f64, &str>) {
+    fn symbols() -> BTreeMap<String, GuestAddr> {
         let symbols = [("count", 0x8005_0000), ("table", 0x8005_0008), ("fields", 0x8005_0020)];
-        let symbols = symbols.into_iter().map(|(name, at)| (name.to_owned(), GuestAddr::new(at))).collect();
-        let scope = Scope {
-            path: Path::new("a.c"),
-            text: PROGRAM.as_bytes(),
-            symbols: &symbols,
-            options: &Options::default(),
-            files: &Disk,
-        };
-        let value = compile(scope, expression, &["bit46"]).map(|compiled| compiled.value(&Pattern));
+        symbols.into_iter().map(|(name, at)| (name.to_owned(), GuestAddr::new(at))).collect()
+    }
+
+    fn scope<'a>(symbols: &'a BTreeMap<String, GuestAddr>, options: &'a Options) -> Scope<'a> {
+        Scope { path: Path::new("a.c"), text: PROGRAM.as_bytes(), symbols, options, files: &Disk }
+    }
+
+    fn check(expression: &str, expect: Result<f64, &str>) {
+        let symbols = symbols();
+        let value = compile(scope(&symbols, &Options::default()), expression, &["bit46"]);
+        let value = value.map(|compiled| compiled.value(&Pattern));
         assert_eq!(value, expect.map_err(str::to_owned), "{expression}");
     }
 
@@ -375,6 +492,25 @@ main() { int local; }
         check("bit46 ? fabs(-table[1]) : 0", Ok(2.5));
         check("chan[SPINDLE].Dest - chan[0].Position", Ok(0.0));
         check("*(int *)0x80050000", Ok(7.0));
+    }
+
+    #[test]
+    fn what_is_stored_has_the_type_of_its_place() {
+        for (expression, value, expect) in [
+            ("count", -2.9, Some((0x8005_0000, (-2_i32).to_le_bytes().to_vec()))),
+            ("table[1]", 0.5, Some((0x8005_0010, 0.5_f64.to_le_bytes().to_vec()))),
+            ("fields.high", 2.0, Some((0x8005_0020, vec![0b001_0011, 0, 0, 0]))),
+            ("*(short *)0x80050000", 70000.0, Some((0x8005_0000, 4464_i16.to_le_bytes().to_vec()))),
+            ("count + 1", 1.0, None),
+            ("(int)table[0]", 1.0, None),
+            ("bit46", 1.0, None),
+            ("7", 1.0, None),
+        ] {
+            let symbols = symbols();
+            let compiled = compile(scope(&symbols, &Options::default()), expression, &["bit46"]);
+            let stored = compiled.expect(expression).store(value, &Pattern);
+            assert_eq!(stored.map(|(at, bytes)| (at.get(), bytes)), expect, "{expression}");
+        }
     }
 
     #[test]

@@ -7,9 +7,9 @@ use std::time::Duration;
 use kmotiondef::ThreadId;
 use runtime::{Config, Event};
 
-use super::program::{build, read};
-use super::state::{EXCHANGE, State, Status, ticks};
-use crate::{HostError, fill};
+use crate::session::{EXCHANGE, ticks};
+use crate::state::{State, Status};
+use crate::{HostError, Session, Setup, UserProgram, fill};
 use compiler::Options;
 
 /// Seconds that [`Board::write_line_read_line`] waits for its reply.
@@ -98,7 +98,15 @@ impl Board {
     /// ```
     #[must_use]
     pub fn with(config: Config) -> Self {
-        let mut state = State::new(config);
+        let session = Setup { config, ..Setup::default() }.session();
+        Self::from_session(session.expect("nothing is loaded that could be refused"))
+    }
+
+    /// The first client of a board that is under control already. What clients do is not recorded: they may do it for
+    /// ever.
+    #[must_use]
+    pub fn from_session(session: Session) -> Self {
+        let mut state = State::new(session);
         let number = state.number();
         let shared = Shared { state: Mutex::new(state), released: Condvar::new() };
         Self { shared: Arc::new(shared), number, has_token: false }
@@ -124,7 +132,7 @@ impl Board {
 
     /// Sets how programs are compiled from now on: include directories, macros, firmware.
     pub fn set_options(&mut self, options: Options) {
-        self.state().options = options;
+        self.state().session.set_options(options);
     }
 
     /// Compiles a source, links it for a thread and loads it there; it does not start.
@@ -148,10 +156,10 @@ impl Board {
     pub fn compile_and_load_coff(&mut self, file: &Path, thread: i32) -> Result<(), HostError> {
         let id = ThreadId::new(thread).ok_or(HostError::Thread(thread))?;
         self.state().connected()?;
-        let options = self.state().options.clone();
+        let options = self.state().session.options().clone();
         // Other clients go on while this one compiles.
-        let image = build(file, id, &options)?;
-        Ok(self.state().board.load(id, &image)?)
+        let program = UserProgram::compile(file, id, &options)?;
+        self.state().session.load(program)
     }
 
     /// The same for callers with a buffer: 0, or else another number and the message in the buffer, which is cut to
@@ -195,10 +203,10 @@ impl Board {
     /// ```
     pub fn load_coff(&mut self, thread: i32, file: &Path) -> Result<(), HostError> {
         let id = ThreadId::new(thread).ok_or(HostError::Thread(thread))?;
-        let image = read(file)?;
+        let program = UserProgram::from_image(file, id)?;
         let mut state = self.state();
         state.connected()?;
-        Ok(state.board.load(id, &image)?)
+        state.session.load(program)
     }
 
     /// Sends a line of script commands and waits for no reply.
@@ -284,10 +292,10 @@ impl Board {
     fn exchange(&mut self, line: &str) -> Result<String, HostError> {
         let mut state = self.state();
         state.connected()?;
-        let begin = state.board.tick().get();
+        let begin = state.session.tick().get();
         state.send(&[b"\x1b\x01", line.as_bytes(), b"\r"].concat());
         let reply = state.read_line(ticks(REPLY_SECONDS)).ok_or(HostError::Timeout)?;
-        let spent = state.board.tick().get() - begin;
+        let spent = state.session.tick().get() - begin;
         state.advance(EXCHANGE.saturating_sub(spent), &mut |_| false);
         Ok(reply.trim_end_matches(['\r', '\n']).to_owned())
     }
@@ -496,26 +504,26 @@ impl Board {
     /// let mut board = cc67_host::Board::new();
     /// board.write_line("SetPersistDec 100 99")?;
     /// // The built-in PC refuses a request that it does not know.
-    /// assert!(board.run_until(0.5, |board| board.user_data(100) == Some(-1)));
+    /// assert!(board.run_until(0.5, |session| session.user_data(100) == Some(-1)));
     /// # Ok::<(), cc67_host::HostError>(())
     /// ```
-    pub fn run_until(&mut self, seconds: f64, mut is_over: impl FnMut(&mut runtime::Board) -> bool) -> bool {
-        self.state().advance(ticks(seconds), &mut |state| is_over(&mut state.board))
+    pub fn run_until(&mut self, seconds: f64, mut is_over: impl FnMut(&mut Session) -> bool) -> bool {
+        self.state().advance(ticks(seconds), &mut |state| is_over(&mut state.session))
     }
 
-    /// Does something with the board itself: look into memory, drive inputs.
+    /// Does something with the session itself: look into memory, drive inputs.
     ///
     /// ```
     /// use kmotiondef::Bit;
     ///
     /// let mut board = cc67_host::Board::new();
     /// let bit = Bit::new(136).expect("there are 2048");
-    /// board.with_board(|board| board.drive_input(bit, true));
+    /// board.with_session(|session| session.drive_input(bit, true))?;
     /// assert_eq!(board.write_line_read_line("ReadBit136")?, "1");
-    /// # Ok::<(), cc67_host::HostError>(())
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn with_board<R>(&mut self, work: impl FnOnce(&mut runtime::Board) -> R) -> R {
-        work(&mut self.state().board)
+    pub fn with_session<R>(&mut self, work: impl FnOnce(&mut Session) -> R) -> R {
+        work(&mut self.state().session)
     }
 
     /// What the simulation had to say since the last time: traps, remarks, what the PC did for programs.

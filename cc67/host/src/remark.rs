@@ -1,9 +1,32 @@
 //! Events of the board in words.
 
-use kmotiondef::{Bit, CodeAddr, ThreadId};
+use std::fmt;
+
+use kmotiondef::{Bit, CodeAddr};
 use runtime::debug::DebugInfo;
-use runtime::{Event, EventKind};
+use runtime::{Event, EventKind, Message, Remark, Severity, Speaker};
 use vm::trap::{Trap, TrapKind};
+
+/// A place in a source.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SourceCall {
+    /// The file.
+    pub file: String,
+    /// The line, from 1, if the image says so.
+    pub line: Option<u32>,
+    /// The function around it.
+    pub function: String,
+}
+
+impl fmt::Display for SourceCall {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.file)?;
+        if let Some(line) = self.line {
+            write!(f, ":{line}")?;
+        }
+        write!(f, " in `{}`", self.function)
+    }
+}
 
 /// What an event says; `None` for console text, which is not ours to word.
 pub fn describe(event: &Event, programs: &[DebugInfo]) -> Option<String> {
@@ -13,44 +36,60 @@ pub fn describe(event: &Event, programs: &[DebugInfo]) -> Option<String> {
         | EventKind::Echo(_)
         | EventKind::UartSent(_)
         | EventKind::Trace(_)
-        | EventKind::Detail(_)
         | EventKind::Loaded(..)
         | EventKind::Aborted => None,
-        EventKind::Diagnostic(text) | EventKind::Host(text) | EventKind::Unmet(text) => Some(text.clone()),
+        EventKind::Remark(remark) => {
+            (remark.message.severity() > Severity::Detail).then(|| words(remark, programs))
+        }
+        EventKind::Host(text) | EventKind::Unmet(text) => Some(text.clone()),
         EventKind::Trap(trap) => Some(describe_trap(trap, programs)),
-        EventKind::UndrivenInput { bit, thread, place } => {
-            let reader = reader(*thread, *place, programs);
-            Some(undriven(&[(reader, *bit)]))
-        }
-        EventKind::Assisted { bit, level, thread, place } => {
-            let who = thread.map_or("the call-back".to_owned(), |thread| format!("thread {thread}"));
-            let place =
-                place.and_then(|place| source(place, programs)).map_or(String::new(), |s| format!(" at {s}"));
-            let level = u8::from(*level);
-            Some(format!("{who} waits{place}: bit {bit} is {level} for 0.1 s (--assist)"))
-        }
     }
 }
 
-/// Who reads an input, and where: "thread 1 at home.c:12 in `main`".
-pub fn reader(thread: Option<ThreadId>, place: Option<CodeAddr>, programs: &[DebugInfo]) -> String {
-    let who = thread.map_or("the call-back".to_owned(), |thread| format!("thread {thread}"));
-    let place = place.and_then(|place| source(place, programs));
+/// A remark with who it is about and where: "thread 1 at home.c:12 in `main`: SetBit(3000): …".
+#[must_use]
+pub fn words(remark: &Remark, programs: &[DebugInfo]) -> String {
+    let who = who(remark, programs);
+    match &remark.message {
+        // A sentence about the reader.
+        message @ (Message::UndrivenInput { .. } | Message::Assisted { .. } | Message::MovesAway { .. }) => {
+            format!("{who} {message}")
+        }
+        message if who.is_empty() => message.to_string(),
+        message => format!("{who}: {message}"),
+    }
+}
+
+/// Who a remark is about, and where: "thread 1 at home.c:12 in `main`"; nothing for the board.
+#[must_use]
+pub fn who(remark: &Remark, programs: &[DebugInfo]) -> String {
+    let who = match remark.speaker {
+        Speaker::Board => String::new(),
+        Speaker::Thread(thread) => format!("thread {thread}"),
+        Speaker::CallBack => "the call-back".to_owned(),
+        Speaker::Command => "command".to_owned(),
+    };
+    let place = remark.place.and_then(|place| source(place, programs));
     place.map_or(who.clone(), |place| format!("{who} at {place}"))
 }
 
-/// One remark on inputs that nothing drives, and who read each of them first.
-pub fn undriven(inputs: &[(String, Bit)]) -> String {
-    if let [(reader, bit)] = inputs {
-        return format!("{reader} reads bit {bit}, an input that nothing drives; it stays 0");
+/// One remark on inputs that nothing drives, their levels, and who read each of them first.
+pub fn undriven(inputs: &[(String, Bit, u8)]) -> String {
+    if let [(reader, bit, level)] = inputs {
+        let message = Message::UndrivenInput { bit: *bit, level: *level };
+        return format!("{reader} {message}");
     }
-    let places = inputs.chunk_by(|(one, _), (other, _)| one == other).map(|group| {
-        let bits = group.iter().map(|(_, bit)| bit.to_string()).collect::<Vec<_>>().join(", ");
-        let reader = group.first().map_or("", |(reader, _)| reader);
+    let places = inputs.chunk_by(|(one, ..), (other, ..)| one == other).map(|group| {
+        let bits = group.iter().map(|(_, bit, _)| bit.to_string()).collect::<Vec<_>>().join(", ");
+        let reader = group.first().map_or("", |(reader, ..)| reader);
         format!("\n  {bits}: {reader}")
     });
+    let stay = match inputs {
+        [(.., first), rest @ ..] if rest.iter().all(|(.., level)| level == first) => first.to_string(),
+        _ => "as they are".to_owned(),
+    };
     format!(
-        "{} inputs are read that nothing drives; they stay 0:{}",
+        "{} inputs are read that nothing drives; they stay {stay}:{}",
         inputs.len(),
         places.collect::<String>()
     )
@@ -77,10 +116,16 @@ fn address(kind: &TrapKind) -> Option<kmotiondef::GuestAddr> {
 }
 
 /// File, line and function of a code address.
-fn source(address: CodeAddr, programs: &[DebugInfo]) -> Option<String> {
+#[must_use]
+pub fn place(address: CodeAddr, programs: &[DebugInfo]) -> Option<SourceCall> {
     let place = programs.iter().find_map(|debug| debug.place(address))?;
-    let line = place.line.map_or(String::new(), |line| format!(":{line}"));
-    Some(format!("{}{line} in `{}`", place.file, place.function))
+    let (file, function) = (place.file.to_owned(), place.function.to_owned());
+    Some(SourceCall { file, line: place.line, function })
+}
+
+/// The same in words.
+fn source(address: CodeAddr, programs: &[DebugInfo]) -> Option<String> {
+    place(address, programs).map(|place| place.to_string())
 }
 
 #[cfg(test)]
@@ -89,7 +134,7 @@ mod tests {
 
     #[test]
     fn inputs_that_nothing_drives_are_told_together() {
-        let read = |reader: &str, bit| (reader.to_owned(), Bit::new(bit).expect("a bit"));
+        let read = |reader: &str, bit| (reader.to_owned(), Bit::new(bit).expect("a bit"), 0);
         let (home, stop) = ("thread 1 at home.c:12 in `main`", "the call-back");
         assert_eq!(
             undriven(&[read(home, 20)]),

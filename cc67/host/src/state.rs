@@ -4,22 +4,18 @@ use std::collections::VecDeque;
 use std::fmt;
 use std::mem;
 
-use kmotiondef::{Cycles, Field, Plain, Scalar, ThreadId, Ticks};
-use runtime::{Config, Event, EventKind};
+use kmotiondef::{Cycles, Field, Plain, Scalar, Ticks};
+use runtime::{Event, EventKind, Message, Remark, Speaker};
 
-use crate::{HostError, remark};
-use compiler::Options;
+use crate::session::{EXCHANGE, ticks};
+use crate::{HostError, Session, remark};
 
-/// Ticks that a line and its answer take on the wire, as recorded.
-pub(super) const EXCHANGE: u64 = 28;
 /// Console lines that wait for a client; then the board waits too.
 pub const CONSOLE_LINES: usize = 1000;
 /// Bytes of replies that wait for a client; what comes then is lost.
 pub const REPLY_BYTES: usize = 1 << 20;
 /// Remarks that are kept; older ones are dropped.
 const REMARK_LIMIT: usize = 1000;
-/// Seconds in a tick.
-const TIMEBASE: f64 = 90e-6;
 
 /// What receives console lines.
 pub(super) type Callback = Box<dyn FnMut(&str) + Send>;
@@ -58,8 +54,7 @@ impl Status {
 
 /// The board, its link, and what came over it.
 pub(super) struct State {
-    pub(super) board: runtime::Board,
-    pub(super) options: Options,
+    pub(super) session: Session,
     pub(super) is_locked: bool,
     pub(super) is_connected: bool,
     /// Bytes of replies that are not read yet.
@@ -79,10 +74,10 @@ impl fmt::Debug for State {
 }
 
 impl State {
-    pub(super) fn new(config: Config) -> Self {
+    pub(super) fn new(mut session: Session) -> Self {
+        session.stop_recording();
         Self {
-            board: runtime::Board::new(config),
-            options: Options::default(),
+            session,
             is_locked: false,
             is_connected: true,
             incoming: VecDeque::new(),
@@ -116,8 +111,7 @@ impl State {
 
     /// The next of them in words.
     pub(super) fn take_remark(&mut self) -> Option<String> {
-        let programs: Vec<_> =
-            ThreadId::all().filter_map(|thread| self.board.debug(thread).cloned()).collect();
+        let programs: Vec<_> = self.session.debug().into_iter().map(|(_, debug)| debug).collect();
         std::iter::from_fn(|| self.remarks.pop_front()).find_map(|event| remark::describe(&event, &programs))
     }
 
@@ -136,13 +130,13 @@ impl State {
 
     /// Bytes for the board.
     pub(super) fn send(&mut self, bytes: &[u8]) {
-        self.board.receive(bytes);
+        self.session.receive(bytes);
     }
 
     /// Sends a line and lets the board take it.
     pub(super) fn send_line(&mut self, bytes: &[u8]) {
         self.send(bytes);
-        self.advance(ticks(1.0), &mut |state| !state.board.is_receiving());
+        self.advance(ticks(1.0), &mut |state| !state.session.board().is_receiving());
     }
 
     /// The next line of a reply, with its line end, if it comes within some ticks.
@@ -181,8 +175,8 @@ impl State {
         if is_over(self) {
             return true;
         }
-        let end = Ticks::new(self.board.tick().get().saturating_add(count));
-        while self.board.tick() < end {
+        let end = Ticks::new(self.session.tick().get().saturating_add(count));
+        while self.session.tick() < end {
             self.step(end);
             if is_over(self) {
                 return true;
@@ -193,9 +187,9 @@ impl State {
 
     /// Runs to the end of the next tick in which something happens, and takes what comes over the link.
     fn step(&mut self, end: Ticks) {
-        self.board.listen(self.callback.is_some() || self.console.len() < CONSOLE_LINES);
+        self.session.listen(self.callback.is_some() || self.console.len() < CONSOLE_LINES);
         let mut events = Vec::new();
-        self.board.advance(end, &mut |event| events.push(event));
+        self.session.step(end, &mut |event| events.push(event));
         for event in events {
             self.take(event);
         }
@@ -230,9 +224,9 @@ impl State {
     /// Says once that no client reads the replies.
     fn tell_loss(&mut self, at: Cycles) {
         if !std::mem::replace(&mut self.has_told_loss, true) {
-            let text =
-                format!("{REPLY_BYTES} bytes of replies wait, which nobody reads; what comes now is lost");
-            self.remark(Event { at, kind: EventKind::Diagnostic(text) });
+            let message = Message::RepliesLost { bytes: REPLY_BYTES };
+            let remark = Remark { message, speaker: Speaker::Board, place: None };
+            self.remark(Event { at, kind: EventKind::Remark(remark) });
         }
     }
 
@@ -247,9 +241,4 @@ impl State {
         }
         Some(Status(bytes))
     }
-}
-
-/// Ticks in some seconds.
-pub(super) fn ticks(seconds: f64) -> u64 {
-    (seconds / TIMEBASE).round() as u64
 }

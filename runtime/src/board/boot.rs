@@ -5,15 +5,15 @@ use kmotiondef::structs::Persist;
 use kmotiondef::variables::{HOST_STATUS, PERSIST};
 use kmotiondef::{GuestAddr, ThreadId};
 use vm::engine::Engine;
+use vm::loaded::Loaded as Code;
 use vm::memory::GuestMemory;
-use vm::program::Program;
-use vm::verify::verify;
 
 use super::{Board, Loaded};
+use crate::board::code;
 use crate::board::power_up::{self, Before};
 use crate::commands::FLASH_COMPLETE;
 use crate::io::flash;
-use crate::out::EventKind;
+use crate::out::Message;
 use crate::views::Typed;
 
 impl<E: Engine> Board<E> {
@@ -35,10 +35,10 @@ impl<E: Engine> Board<E> {
             }
         }
         let (kernel, context) = self.machine.firmware_mut();
-        let status = i32::from(kernel.host.has_job());
+        let status = i32::from(kernel.parts.pc.host.has_job());
         context.memory.set(HOST_STATUS, status);
         if is_strict {
-            kernel.flash.be_strict(context.memory);
+            kernel.parts.io.flash.be_strict(context.memory);
         }
     }
 
@@ -47,18 +47,18 @@ impl<E: Engine> Board<E> {
         let Some(text) = flash::text(self.memory(), thread) else { return };
         let length = text.end.get() - text.start.get();
         let bytes = self.memory().read_bytes(text.start, length).unwrap_or_default();
-        match verify(bytes, text.start) {
-            Ok(program) => {
+        match code::bare(bytes, text.start) {
+            Ok(code) => {
                 let entry = self.memory().get(PERSIST.field(Persist::ENTRY_POINTS).element(thread.index()));
-                self.hand_over(thread, program, GuestAddr::new(entry));
+                self.hand_over(thread, code, GuestAddr::new(entry));
                 let extent = text.start.get()..text.end.get();
-                let debug = self.flashed[thread.index()].clone().unwrap_or_default();
-                self.loaded[thread.index()] = Some(Loaded { debug, extent });
+                let debug = self.programs.flashed[thread.index()].clone().unwrap_or_default();
+                self.programs_mut().loaded[thread.index()] = Some(Loaded { debug, extent });
             }
             Err(error) => {
                 let (kernel, context) = self.machine.firmware_mut();
-                let text = format!("what was flashed for thread {thread} is no program: {error}");
-                kernel.tell(context.now, EventKind::Diagnostic(text));
+                let message = Message::NotFlashed { thread, error: error.to_string() };
+                kernel.parts.out.remark(context.now, message);
             }
         }
     }
@@ -66,23 +66,24 @@ impl<E: Engine> Board<E> {
     /// Saves programs and settings in flash.
     pub(super) fn save(&mut self) {
         let texts: Vec<_> =
-            ThreadId::all().map(|thread| self.machine.program(thread).map(Program::text)).collect();
+            ThreadId::all().map(|thread| self.machine.loaded(thread).map(Code::code)).collect();
         let (kernel, context) = self.machine.firmware_mut();
-        kernel.flash.with_chip(context.memory, |memory| {
+        kernel.parts.io.flash.with_chip(context.memory, |memory| {
             flash::save(memory, |thread| texts.get(thread.index()).cloned().flatten());
         });
-        self.flashed =
-            std::array::from_fn(|index| self.loaded[index].as_ref().map(|loaded| loaded.debug.clone()));
+        let programs = self.programs_mut();
+        let known = |loaded: &Option<Loaded>| loaded.as_ref().map(|loaded| loaded.debug.clone());
+        programs.flashed = programs.loaded.each_ref().map(known);
         let (kernel, _) = self.machine.firmware_mut();
-        kernel.console.message(FLASH_COMPLETE);
+        kernel.parts.out.console.message(FLASH_COMPLETE);
     }
 
     /// Starts anew from flash. Time goes on: it counts from the first power-up.
     pub(super) fn reboot(&mut self) {
         ThreadId::all().for_each(|thread| self.machine.unload_program(thread));
-        self.loaded = Default::default();
+        self.programs_mut().loaded = Default::default();
         let flash = self.flash().to_vec();
-        let is_strict = self.machine.firmware().flash.chip().is_some();
+        let is_strict = self.machine.firmware().parts.io.flash.chip().is_some();
         let memory = self.machine.memory_mut();
         *memory = GuestMemory::new();
         let stored = memory.poke_bytes(FLASH.base, &flash);
@@ -95,6 +96,6 @@ impl<E: Engine> Board<E> {
     #[must_use]
     pub fn flash(&self) -> &[u8] {
         let seen = || self.memory().read_bytes(FLASH.base, FLASH.size).unwrap_or_default();
-        self.machine.firmware().flash.chip().unwrap_or_else(seen)
+        self.machine.firmware().parts.io.flash.chip().unwrap_or_else(seen)
     }
 }

@@ -62,6 +62,11 @@ impl DebugInfo {
         Self { functions, lines, objects }
     }
 
+    /// Its named objects, by address.
+    pub(crate) fn objects(&self) -> &[ObjectInfo] {
+        &self.objects
+    }
+
     /// The source of the code at `address`.
     #[must_use]
     pub fn place(&self, address: CodeAddr) -> Option<SourcePlace<'_>> {

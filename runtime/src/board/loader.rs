@@ -8,17 +8,18 @@ use coff::{Contents, FileFlags, Image, Line, Section, SectionFlags, SectionNumbe
 use kmotiondef::limits::{VERSION, VERSION_STAMP};
 use kmotiondef::map::{PROGRAM_BASE, PROGRAM_SIZE, STACK_BASE, program_base};
 use kmotiondef::{GuestAddr, ThreadId};
-use vm::program::Program;
-use vm::verify::{VerifyError, verify};
+use vm::loaded::Loaded as Code;
+use vm::verify::VerifyError;
 
+use crate::board::code;
 use crate::board::debug::{DebugInfo, FunctionInfo, ObjectInfo};
 
 /// An image that can be loaded without failing.
 #[derive(Debug)]
 pub struct Prepared {
-    /// The verified code.
-    pub program: Program,
-    /// Where `main` begins.
+    /// The code: verified bytecode, or an image of the real processor.
+    pub code: Code,
+    /// Where a thread begins to execute it.
     pub entry: GuestAddr,
     /// What goes into memory.
     pub sections: Vec<Placed>,
@@ -61,9 +62,6 @@ pub enum LoadError {
     /// The bytes are not a TI COFF image.
     #[error("not a KFLOP image: {0}")]
     NotAnImage(coff::Error),
-    /// Machine code for the DSP.
-    #[error("machine code for the controller's DSP, which the simulated board does not execute")]
-    MachineCode,
     /// Code for something else.
     #[error("code for target {0}, not for the simulated board")]
     OtherTarget(Target),
@@ -138,17 +136,22 @@ pub fn prepare(
     let text = image.section(".text").ok_or(LoadError::Missing("section .text"))?;
     check_thread(text, thread)?;
     check_sections(&image, thread, holds)?;
-    let program = verify(text.data(), GuestAddr::new(text.address)).map_err(LoadError::Refused)?;
+    let base = GuestAddr::new(text.address);
+    let code = match image.target {
+        Target::C6000 => code::image(base, text.data().len() as u32),
+        _ => code::program(text.data(), base).map_err(LoadError::Refused)?,
+    };
     let entry = GuestAddr::new(header.entry);
-    program.function_at(entry).ok_or(LoadError::Entry(entry))?;
+    if !code.has_function(entry) {
+        return Err(LoadError::Entry(entry));
+    }
     let sections = image.sections.iter().filter(|section| is_loaded(section)).map(place).collect();
-    Ok(Prepared { program, entry, sections, debug: debug(&image) })
+    Ok(Prepared { code, entry, sections, debug: debug(&image) })
 }
 
 fn check_origin(image: &Image) -> Result<(), LoadError> {
     match image.target {
-        Target::CC67 => {}
-        Target::C6000 => return Err(LoadError::MachineCode),
+        Target::CC67 | Target::C6000 => {}
         other => return Err(LoadError::OtherTarget(other)),
     }
     let has_relocations = image.sections.iter().any(|section| !section.relocations.is_empty());
@@ -156,11 +159,21 @@ fn check_origin(image: &Image) -> Result<(), LoadError> {
         return Err(LoadError::NotLinked);
     }
     match image.program {
-        Some(header) if header.version_stamp != VERSION_STAMP => {
+        Some(header)
+            if states_firmware(image.target, header.version_stamp)
+                && header.version_stamp != VERSION_STAMP =>
+        {
             Err(LoadError::OtherFirmware { found: header.version_stamp })
         }
         _ => Ok(()),
     }
+}
+
+/// Whether the stamp of an image is the version of its firmware; those of other linkers are their own.
+fn states_firmware(target: Target, stamp: i16) -> bool {
+    /// What the vendor's compiler writes.
+    const VENDOR: i16 = 0x190;
+    target == Target::CC67 || (VENDOR + 1..1000).contains(&stamp)
 }
 
 /// A version stamp in words.

@@ -1,21 +1,31 @@
 //! The board as a program that embeds it sees it.
 
 mod boot;
+mod code;
+pub(crate) mod connect;
 pub mod debug;
 pub mod loader;
 pub mod machine_file;
 mod outside;
 pub(crate) mod power_up;
 mod programs;
+#[cfg(test)]
+mod recorded_programs;
+mod snapshot;
+pub mod standing;
+
+pub use snapshot::BoardSnapshot;
 
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
+use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::map::FLASH;
 use kmotiondef::structs::Persist;
+use kmotiondef::timing::Timing;
 use kmotiondef::variables::PERSIST;
-use kmotiondef::{Cycles, ThreadId, Ticks};
+use kmotiondef::{Cycles, GuestAddr, ThreadId, Ticks};
 use vm::engine::Engine;
 use vm::interp::BytecodeEngine;
 use vm::machine::{Config as MachineConfig, Machine};
@@ -25,9 +35,8 @@ use vm::thread::ThreadState;
 use crate::board::debug::DebugInfo;
 use crate::board::machine_file::{MachineFile, NS_PER_INSTRUCTION};
 use crate::io::flash::FLASH_SIZE;
-use crate::kernel::{Kernel, Request};
-use crate::machine::plant;
-use crate::out::{Event, EventKind};
+use crate::kernel::Kernel;
+use crate::out::{Event, EventKind, Remark, Request, Speaker};
 use crate::pc::Answers;
 use crate::pc::files::{HostFiles, NoFiles};
 use crate::views::Typed;
@@ -45,6 +54,8 @@ pub struct Config {
     pub files: Box<dyn HostFiles>,
     /// Byte put into uninitialised data at a load.
     pub bss_fill: u8,
+    /// Whose time is counted: of the servo interrupt and of registers. Programs bring theirs.
+    pub timing: Timing,
     /// What is connected to the board.
     pub machine_file: MachineFile,
     /// What flash memory holds, [`FLASH_SIZE`] bytes; `None` for a board whose flash was never written.
@@ -59,6 +70,7 @@ impl Default for Config {
             answers: None,
             files: Box::new(NoFiles),
             bss_fill: 0,
+            timing: Timing::default(),
             machine_file: MachineFile::default(),
             flash: None,
         }
@@ -78,54 +90,70 @@ pub enum RunEnd {
 }
 
 /// What the board knows of a loaded image.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Loaded {
     debug: DebugInfo,
     /// Addresses from its first to behind its last byte.
     extent: Range<u32>,
 }
 
-/// A simulated board.
-#[derive(Debug)]
-pub struct Board<E = BytecodeEngine> {
-    machine: Machine<Kernel, E>,
+/// What the board knows of programs.
+#[derive(Clone, Debug, Default)]
+struct Programs {
     loaded: [Option<Loaded>; ThreadId::MAX as usize],
     /// What is known of the programs in flash.
     flashed: [Option<DebugInfo>; ThreadId::MAX as usize],
     /// Images that a stimulus may load, by the thread they are linked for and what it calls them.
     offered: BTreeMap<(ThreadId, Arc<str>), Vec<u8>>,
+}
+
+/// A simulated board.
+#[derive(Debug)]
+pub struct Board<E = BytecodeEngine> {
+    machine: Machine<Kernel, E>,
+    /// Shared with snapshots.
+    programs: Arc<Programs>,
     bss_fill: u8,
     /// What an instruction takes, in units of what it takes on the board.
     price: f64,
+    /// What the machine file calls the axes.
+    names: [String; N_CHANNELS],
 }
 
 impl<E: Engine> Board<E> {
     /// A board at power-up.
     #[must_use]
     pub fn new(config: Config) -> Self {
+        Self::with_engine(config, E::default())
+    }
+
+    /// A board at power-up that runs programs on `engine`.
+    #[must_use]
+    pub fn with_engine(config: Config, engine: E) -> Self {
         let connected = &config.machine_file;
         let mut kernel = Kernel::new(config.files);
-        kernel.host.connect(config.host && connected.host);
-        kernel.host.answer_with(config.answers.unwrap_or_else(|| connected.answers.clone()));
-        plant::install(&mut kernel, connected);
-        let servo = connected.servo_us.map(|time| Cycles::new((time * CYCLES_PER_US) as i64));
+        kernel.parts.pc.host.connect(config.host && connected.pc.is_connected);
+        kernel.parts.pc.host.answer_with(config.answers.unwrap_or_else(|| connected.pc.answers.clone()));
+        kernel.parts.timing = config.timing;
+        connect::install(&mut kernel.parts, connected);
+        let servo = connected.cpu.servo_us.map(|time| Cycles::new((time * CYCLES_PER_US) as i64));
         let settings = MachineConfig {
             servo: config.machine.servo.or(servo),
-            strict_stack: config.machine.strict_stack || connected.strict_stack,
+            strict_stack: config.machine.strict_stack || connected.cpu.strict_stack,
             ..config.machine
         };
-        let machine = Machine::new(kernel, settings);
-        let bss_fill = if config.bss_fill == 0 { connected.bss_fill } else { config.bss_fill };
-        let (loaded, flashed, offered) = Default::default();
-        let price = connected.ns_per_instruction / NS_PER_INSTRUCTION;
-        let mut board = Self { machine, loaded, flashed, offered, bss_fill, price };
+        let machine = Machine::with_engine(kernel, settings, engine);
+        let bss_fill = if config.bss_fill == 0 { connected.cpu.bss_fill } else { config.bss_fill };
+        let price = connected.cpu.ns_per_instruction / NS_PER_INSTRUCTION;
+        let names = std::array::from_fn(|axis| connected.axes[axis].name.clone());
+        let mut board = Self { machine, programs: Arc::default(), bss_fill, price, names };
         if let Some(flash) = config.flash {
             let stored = board.machine.memory_mut().poke_bytes(FLASH.base, &flash);
             debug_assert!(stored.is_ok() && flash.len() == FLASH_SIZE, "flash has its size");
         }
-        board.power_up(connected.strict_flash);
+        board.power_up(connected.boards.strict_flash);
         let (kernel, context) = board.machine.firmware_mut();
-        plant::play(kernel, connected, context.memory);
+        connect::play(&mut kernel.parts, connected, context.memory);
         board
     }
 
@@ -154,16 +182,21 @@ impl<E: Engine> Board<E> {
 
     /// The run is over: sends the console text still held and checks the expectations of the stimulus.
     pub fn finish(&mut self, sink: &mut dyn FnMut(Event)) {
+        let (kernel, context) = self.machine.firmware_mut();
+        kernel.sum_up(&context);
         self.flush(sink);
-        let (kernel, mut context) = self.machine.firmware_mut();
-        kernel.finish(&mut context);
+        let (kernel, context) = self.machine.firmware_mut();
+        kernel.finish(&context);
         self.deliver(sink);
     }
 
     /// Runs to the end of the next tick in which something can happen, and does what was asked for there.
     fn step(&mut self, limit: Ticks) {
         self.machine.step(limit);
-        for request in self.machine.firmware_mut().0.take_requests() {
+        if self.machine.held().is_some() {
+            return;
+        }
+        for request in self.machine.firmware_mut().0.parts.out.take_requests() {
             match request {
                 Request::Load(thread) => self.adopt(thread),
                 Request::Flash => self.save(),
@@ -173,9 +206,10 @@ impl<E: Engine> Board<E> {
         }
     }
 
-    /// Runs to the end of the next tick in which something can happen, or of tick `limit`, whichever comes first.
+    /// Runs to the end of the next tick in which something can happen, or of tick `limit`, whichever comes first; a tick
+    /// that is held is gone on with in any case.
     pub fn advance(&mut self, limit: Ticks, sink: &mut dyn FnMut(Event)) {
-        if self.machine.tick() < limit {
+        if self.machine.tick() < limit || self.machine.held().is_some() {
             self.step(limit);
         }
         self.deliver(sink);
@@ -184,7 +218,7 @@ impl<E: Engine> Board<E> {
     /// Sends the console text that waits, the unfinished line included.
     pub fn flush(&mut self, sink: &mut dyn FnMut(Event)) {
         let (kernel, context) = self.machine.firmware_mut();
-        kernel.flush_console(context.now);
+        kernel.parts.flush_console(context.now);
         self.deliver(sink);
     }
 
@@ -212,9 +246,9 @@ impl<E: Engine> Board<E> {
 
     /// Hands over the events since the last time, with the program's place where that is known.
     fn deliver(&mut self, sink: &mut dyn FnMut(Event)) {
-        for mut event in self.machine.firmware_mut().0.take_events() {
-            if let EventKind::UndrivenInput { thread: Some(thread), place, .. }
-            | EventKind::Assisted { thread: Some(thread), place, .. } = &mut event.kind
+        for mut event in self.machine.firmware_mut().0.parts.out.take_events() {
+            if let EventKind::Remark(Remark { speaker: Speaker::Thread(thread), place, .. }) = &mut event.kind
+                && place.is_none()
             {
                 *place = self.machine.backtrace(*thread).first().copied();
             }
@@ -243,7 +277,7 @@ impl<E: Engine> Board<E> {
 
     /// Guest memory, to change it from outside.
     pub fn memory_mut(&mut self) -> &mut GuestMemory {
-        self.machine.firmware_mut().0.disturb();
+        self.machine.firmware_mut().0.parts.disturb();
         self.machine.memory_mut()
     }
 
@@ -253,9 +287,14 @@ impl<E: Engine> Board<E> {
         &self.machine
     }
 
+    /// The engine of bytecode, to set where it holds. None of that disturbs the board.
+    pub const fn engine_mut(&mut self) -> &mut E {
+        self.machine.engine_mut()
+    }
+
     /// The machine, to load programs and to watch it.
     pub fn machine_mut(&mut self) -> &mut Machine<Kernel, E> {
-        self.machine.firmware_mut().0.disturb();
+        self.machine.firmware_mut().0.parts.disturb();
         &mut self.machine
     }
 
@@ -282,9 +321,20 @@ impl<E: Engine> Board<E> {
     }
 }
 
+impl Board {
+    /// Holds programs after these bytes, addresses and how many, are not what they are now; and after no others.
+    pub fn set_watched(&mut self, ranges: &[(GuestAddr, u32)]) {
+        self.machine.set_watched(ranges);
+    }
+
+    /// Which of the watched bytes have changed since that was last said.
+    pub fn take_change(&mut self) -> Option<usize> {
+        self.machine.take_change()
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use kmotiondef::GuestAddr;
     use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, function_named};
     use kmotiondef::map::program_base;
     use kmotiondef::structs::Chan;

@@ -7,14 +7,17 @@ use kmotiondef::structs::Persist;
 use kmotiondef::variables::{PERSIST, USER_CALL_BACK};
 use kmotiondef::{CodeAddr, GuestAddr, ThreadId};
 use vm::engine::Engine;
+use vm::loaded::Loaded as Code;
 use vm::program::Program;
 use vm::thread::NotLoaded;
-use vm::verify::{VerifyError, verify};
+use vm::verify::VerifyError;
 
-use super::{Board, Loaded};
-use crate::board::debug::{DebugInfo, SourcePlace};
+use super::{Board, Loaded, Programs};
+use crate::board::code;
+use crate::board::debug::{DebugInfo, ObjectInfo, SourcePlace};
 use crate::board::loader::{Fill, LoadError, Placed, prepare};
-use crate::out::EventKind;
+use crate::firmware::calls::Named;
+use crate::out::{EventKind, Message};
 use crate::views::Typed;
 
 impl<E: Engine> Board<E> {
@@ -25,39 +28,48 @@ impl<E: Engine> Board<E> {
     pub fn load(&mut self, thread: ThreadId, image: &[u8]) -> Result<(), LoadError> {
         let prepared = prepare(image, thread, |other| self.is_taken(other, thread))?;
         self.machine.unload_program(thread);
-        self.machine.firmware_mut().0.downloads.forget(thread);
-        self.machine.firmware_mut().0.globals.forget(thread);
+        self.machine.firmware_mut().0.parts.pc.downloads.forget(thread);
+        self.machine.firmware_mut().0.parts.calls.globals.forget(thread);
         for section in &prepared.sections {
-            self.place(thread, section, &prepared.program);
+            self.place(thread, section, &prepared.code);
         }
         self.drop_callback(thread);
         self.drop_konnects(thread);
         let start = program_base(thread).get();
         let ends = prepared.sections.iter().map(|section| section.address.get() + section.size());
         let extent = start..ends.max().unwrap_or(start);
-        self.load_program(thread, prepared.program, prepared.entry);
-        self.loaded[thread.index()] = Some(Loaded { debug: prepared.debug, extent });
+        let named =
+            |object: &ObjectInfo| Named { name: object.name.clone(), start: object.start, size: object.size };
+        let objects = prepared.debug.objects().iter().map(named).collect();
+        self.machine.firmware_mut().0.parts.calls.notices.load(thread, objects);
+        self.load_code(thread, prepared.code, prepared.entry);
+        self.programs_mut().loaded[thread.index()] = Some(Loaded { debug: prepared.debug, extent });
         Ok(())
+    }
+
+    /// What is known of programs, to change it; snapshots keep what they have.
+    pub(super) fn programs_mut(&mut self) -> &mut Programs {
+        Arc::make_mut(&mut self.programs)
     }
 
     /// Whether a program other than that of `except` lies in the space of `thread`.
     pub(super) fn is_taken(&self, thread: ThreadId, except: ThreadId) -> bool {
         let start = program_base(thread).get();
         let others = ThreadId::all().filter(|&other| other != except);
-        let mut extents = others.filter_map(|other| self.loaded[other.index()].as_ref());
+        let mut extents = others.filter_map(|other| self.programs.loaded[other.index()].as_ref());
         extents.any(|loaded| loaded.extent.start < start + PROGRAM_SIZE && loaded.extent.end > start)
     }
 
     /// Puts a section into memory; the loader has checked that it fits.
-    pub(super) fn place(&mut self, thread: ThreadId, section: &Placed, program: &Program) {
+    pub(super) fn place(&mut self, thread: ThreadId, section: &Placed, code: &Code) {
         let bytes = match &section.contents {
             Fill::Bytes(bytes) => bytes.clone(),
             Fill::Uninitialised(size) => vec![self.bss_fill; *size as usize],
         };
         let placed = self.machine.memory_mut().poke_bytes(section.address, &bytes);
         debug_assert!(placed.is_ok(), "the loader checks that sections lie in memory");
-        if !program.text().contains(&section.address) {
-            self.machine.firmware_mut().0.globals.note(thread, section.address, &bytes);
+        if !code.text().contains(&section.address) {
+            self.machine.firmware_mut().0.parts.calls.globals.note(thread, section.address, &bytes);
         }
     }
 
@@ -68,10 +80,7 @@ impl<E: Engine> Board<E> {
         if (start..start + PROGRAM_SIZE).contains(&callback.get()) {
             let (kernel, context) = self.machine.firmware_mut();
             context.memory.set(USER_CALL_BACK, GuestAddr::NULL);
-            let text = format!(
-                "the call-back in the space of thread {thread} is taken out: its program is replaced"
-            );
-            kernel.tell(context.now, EventKind::Diagnostic(text));
+            kernel.parts.out.remark(context.now, Message::CallBackDropped { thread });
         }
     }
 
@@ -79,35 +88,44 @@ impl<E: Engine> Board<E> {
     pub(super) fn drop_konnects(&mut self, thread: ThreadId) {
         let start = program_base(thread).get();
         let (kernel, context) = self.machine.firmware_mut();
-        if kernel.konnects.drop_within(&(start..start + PROGRAM_SIZE)) {
-            let text = format!("Konnect service with words of thread {thread} ends: its program is replaced");
-            kernel.tell(context.now, EventKind::Diagnostic(text));
+        if kernel.parts.io.konnects.drop_within(&(start..start + PROGRAM_SIZE)) {
+            kernel.parts.out.remark(context.now, Message::KonnectDropped { thread });
         }
     }
 
     /// What is known of the image in `thread`.
     #[must_use]
     pub fn debug(&self, thread: ThreadId) -> Option<&DebugInfo> {
-        self.loaded[thread.index()].as_ref().map(|loaded| &loaded.debug)
+        self.programs.loaded[thread.index()].as_ref().map(|loaded| &loaded.debug)
     }
 
     /// The source of a code address, in whatever thread's program it lies.
     #[must_use]
     pub fn source(&self, address: CodeAddr) -> Option<SourcePlace<'_>> {
-        self.loaded.iter().flatten().find_map(|loaded| loaded.debug.place(address))
+        self.programs.loaded.iter().flatten().find_map(|loaded| loaded.debug.place(address))
     }
 
     /// Makes `thread` ready to run a program whose bytes are in guest memory.
     pub fn load_program(&mut self, thread: ThreadId, program: Program, entry: GuestAddr) {
-        let entry_points = PERSIST.field(Persist::ENTRY_POINTS);
-        self.machine.memory_mut().set(entry_points.element(thread.index()), entry.get());
-        self.hand_over(thread, program, entry);
+        self.load_code(thread, Code::Program(program.into()), entry);
     }
 
-    /// Gives the machine a program, at the price of instructions that the machine file says.
-    pub(super) fn hand_over(&mut self, thread: ThreadId, program: Program, entry: GuestAddr) {
-        let program = if self.price == 1.0 { program } else { program.priced(self.price) };
-        self.machine.load_program(thread, program, entry);
+    /// The same for code of any kind.
+    fn load_code(&mut self, thread: ThreadId, code: Code, entry: GuestAddr) {
+        let entry_points = PERSIST.field(Persist::ENTRY_POINTS);
+        self.machine.memory_mut().set(entry_points.element(thread.index()), entry.get());
+        self.hand_over(thread, code, entry);
+    }
+
+    /// Gives the machine code; that of bytecode costs what the machine file says, that of the processor its cycles.
+    pub(super) fn hand_over(&mut self, thread: ThreadId, code: Code, entry: GuestAddr) {
+        let code = match code {
+            Code::Program(program) if self.price != 1.0 => {
+                Code::Program(Arc::unwrap_or_clone(program).priced(self.price).into())
+            }
+            other => other,
+        };
+        self.machine.load(thread, code, entry);
     }
 
     /// Starts `thread` at its entry point.
@@ -124,51 +142,51 @@ impl<E: Engine> Board<E> {
     /// Why the image would be refused.
     pub fn offer(&mut self, thread: ThreadId, name: &str, image: Vec<u8>) -> Result<DebugInfo, LoadError> {
         let debug = prepare(&image, thread, |_| false)?.debug;
-        self.offered.insert((thread, name.into()), image);
+        self.programs_mut().offered.insert((thread, name.into()), image);
         Ok(debug)
     }
 
     /// Loads an image that was offered and starts it.
     pub(super) fn run_offered(&mut self, thread: ThreadId, name: &Arc<str>) {
-        let result = match self.offered.get(&(thread, name.clone())).cloned() {
+        let result = match self.programs.offered.get(&(thread, name.clone())).cloned() {
             Some(image) => self.load(thread, &image).map_err(|error| error.to_string()),
             None => Err("nobody has compiled it".to_owned()),
         };
         let started = result.and_then(|()| self.start(thread).map_err(|error| error.to_string()));
         let (kernel, context) = self.machine.firmware_mut();
-        kernel.tell(
-            context.now,
-            match started {
-                Ok(()) => EventKind::Loaded(thread, name.clone()),
-                Err(error) => EventKind::Diagnostic(format!("{name} is not run in thread {thread}: {error}")),
-            },
-        );
+        let out = &mut kernel.parts.out;
+        match started {
+            Ok(()) => out.tell(context.now, EventKind::Loaded(thread, name.clone())),
+            Err(error) => {
+                let name = name.to_string();
+                out.remark(context.now, Message::NotRun { name, thread, error });
+            }
+        }
     }
 
     /// Makes a program of what was downloaded into a thread that was started.
     pub(super) fn adopt(&mut self, thread: ThreadId) {
         let entry = self.machine.threads().entry(thread);
         let (kernel, _) = self.machine.firmware_mut();
-        let ends = kernel.downloads.ends(thread);
-        kernel.downloads.forget(thread);
+        let ends = kernel.parts.pc.downloads.ends(thread);
+        kernel.parts.pc.downloads.forget(thread);
         let error = match self.downloaded(thread, &ends) {
-            Ok(Some(program)) => {
-                self.loaded[thread.index()] = None;
-                self.machine.firmware_mut().0.globals.forget(thread);
-                self.hand_over(thread, program, entry);
+            Ok(Some(code)) => {
+                self.programs_mut().loaded[thread.index()] = None;
+                self.machine.firmware_mut().0.parts.calls.globals.forget(thread);
+                self.hand_over(thread, code, entry);
                 let started = self.machine.start(thread);
                 debug_assert!(started.is_ok(), "a program was loaded");
                 return;
             }
             // Only the entry point is new.
-            Ok(None) if self.machine.program(thread).is_some() => return,
+            Ok(None) if self.machine.loaded(thread).is_some() => return,
             Ok(None) => "nothing was downloaded to the beginning of its space".to_owned(),
             Err(error) => error.to_string(),
         };
         self.machine.unload_program(thread);
         let (kernel, context) = self.machine.firmware_mut();
-        let text = format!("thread {thread} is not started: {error}");
-        kernel.tell(context.now, EventKind::Diagnostic(text));
+        kernel.parts.out.remark(context.now, Message::NotStarted { thread, error });
     }
 
     /// The program whose text ends at one of some places; `None` if nothing was downloaded.
@@ -176,13 +194,13 @@ impl<E: Engine> Board<E> {
         &self,
         thread: ThreadId,
         ends: &[GuestAddr],
-    ) -> Result<Option<Program>, VerifyError> {
+    ) -> Result<Option<Code>, VerifyError> {
         let base = program_base(thread);
         let mut error = None;
         for end in ends {
             let text = self.memory().read_bytes(base, end.get() - base.get()).unwrap_or_default();
-            match verify(text, base) {
-                Ok(program) => return Ok(Some(program)),
+            match code::bare(text, base) {
+                Ok(code) => return Ok(Some(code)),
                 // What the longest stretch lacks is what the text lacks.
                 Err(wrong) => error = Some(wrong),
             }

@@ -3,6 +3,8 @@
 //! The board answers them as it answers every unknown word; the simulation adds a remark beside it. The words are
 //! those of the manual's command references that firmware 4.34 lacks, some of them only misprinted there, and G code.
 
+use crate::out::Message;
+
 /// Why the board does not know a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Why {
@@ -62,21 +64,19 @@ const WORDS: &[(&str, Why)] = &[
 const G_CODE: &[u8] = b"GMTSFN";
 
 /// What is to be said of a part, in upper case, that begins with no command.
-pub(super) fn explain(part: &[u8]) -> Option<String> {
+pub(super) fn explain(part: &[u8]) -> Option<Message> {
     let letters = part.iter().take_while(|byte| byte.is_ascii_alphabetic()).count();
     let word = std::str::from_utf8(&part[..letters]).ok()?;
     let is_number = part.get(letters).is_some_and(u8::is_ascii_digit);
     if letters == 1 && is_number && G_CODE.contains(&part[0]) {
-        return Some(
-            "G code is planned by the PC's application: the board has no command for it, nor has the simulated one"
-                .to_owned(),
-        );
+        return Some(Message::GCode {});
     }
     let (_, why) = WORDS.iter().find(|(known, _)| *known == word)?;
+    let word = word.to_owned();
     Some(match why {
-        Named(name) => format!("firmware 4.34 has no command {word}; its name there is {name}"),
-        Later => format!("{word} is a command of later firmware than 4.34, which the simulated board models"),
-        OtherBoard => format!("{word} is a command of the Kogna board; the simulated board is a KFLOP"),
+        Named(name) => Message::CommandNamed { word, name },
+        Later => Message::CommandLater { word },
+        OtherBoard => Message::CommandOtherBoard { word },
     })
 }
 
@@ -110,7 +110,10 @@ mod tests {
         ] {
             let found = explain(part.as_bytes());
             assert_eq!(found.is_some(), expect.is_some(), "{part}: {found:?}");
-            assert!(found.is_none_or(|text| text.contains(expect.unwrap_or_default())), "{part}");
+            assert!(
+                found.is_none_or(|message| message.to_string().contains(expect.unwrap_or_default())),
+                "{part}"
+            );
         }
     }
 }

@@ -68,23 +68,23 @@ pub(super) fn enabled(session: &mut Session<'_, '_>, values: &Values) -> Answer 
 }
 
 pub(super) fn enable(session: &mut Session<'_, '_>, values: &Values) -> Answer {
-    session.call(|kernel, caller| motion::enable_axis(kernel, caller, values.integer(0)));
+    session.call(|parts, caller| motion::enable_axis(parts, caller, values.integer(0)));
     Answer::Nothing
 }
 
 pub(super) fn enable_dest(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (axis, dest) = (values.integer(0), values.real(1));
-    session.call(|kernel, caller| motion::enable_axis_dest(kernel, caller, axis, dest));
+    session.call(|parts, caller| motion::enable_axis_dest(parts, caller, axis, dest));
     Answer::Nothing
 }
 
 pub(super) fn disable(session: &mut Session<'_, '_>, values: &Values) -> Answer {
-    session.call(|kernel, caller| motion::disable_axis(kernel, caller, values.integer(0)));
+    session.call(|parts, caller| motion::disable_axis(parts, caller, values.integer(0)));
     Answer::Nothing
 }
 
 pub(super) fn zero(session: &mut Session<'_, '_>, values: &Values) -> Answer {
-    session.call(|kernel, caller| motion::zero(kernel, caller, values.integer(0)));
+    session.call(|parts, caller| motion::zero(parts, caller, values.integer(0)));
     Answer::Nothing
 }
 

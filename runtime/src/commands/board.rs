@@ -6,8 +6,7 @@ use kmotiondef::variables::DO_RS232_CMDS;
 use super::arguments::Values;
 use super::session::{Answer, Session};
 use crate::firmware::serial;
-use crate::kernel::Request;
-use crate::out::EventKind;
+use crate::out::{Message, Request};
 use crate::views::Typed;
 
 /// What the board says when flash is written.
@@ -29,24 +28,23 @@ pub(super) fn echo(session: &mut Session<'_, '_>, _: &Values) -> Answer {
 }
 
 pub(super) fn reboot(session: &mut Session<'_, '_>, _: &Values) -> Answer {
-    session.kernel.ask(Request::Reboot);
+    session.parts.out.ask(Request::Reboot);
     Answer::Nothing
 }
 
 pub(super) fn flash(session: &mut Session<'_, '_>, _: &Values) -> Answer {
-    session.kernel.ask(Request::Flash);
+    session.parts.out.ask(Request::Flash);
     Answer::Nothing
 }
 
 pub(super) fn clear_flash_image(session: &mut Session<'_, '_>, _: &Values) -> Answer {
-    let text = "ClearFlashImage begins a new firmware: the simulated board has none to replace, and ignores what comes";
-    session.kernel.tell(session.context.now, EventKind::Diagnostic(text.to_owned()));
+    session.parts.out.remark(session.context.now, Message::NoFirmwareToReplace {});
     Answer::Nothing
 }
 
 /// A new firmware is taken and ignored; the answer is as if it were there.
 pub(super) fn program_flash_image(session: &mut Session<'_, '_>, _: &Values) -> Answer {
-    session.kernel.console.message(FLASH_COMPLETE);
+    session.parts.out.console.message(FLASH_COMPLETE);
     Answer::Nothing
 }
 
@@ -63,6 +61,6 @@ pub(super) fn rs232(session: &mut Session<'_, '_>, values: &Values) -> Answer {
         return Answer::Refused("Invalid Baud rate");
     }
     let divisor = UART_CLOCK / rate - 1;
-    session.call(|kernel, caller| serial::connect(kernel, caller, divisor));
+    session.call(|parts, caller| serial::connect(parts, caller, divisor));
     Answer::Nothing
 }

@@ -9,11 +9,13 @@ use vm::firmware::TickContext;
 use vm::memory::GuestMemory;
 
 use super::arguments::{Mistake, Reader};
-use crate::kernel::Kernel;
+use crate::pc::Downloads;
 use crate::views::Typed;
 
 /// Words on a line of gather data.
 pub(super) const WORDS_PER_LINE: usize = 8;
+/// Words of the gather buffer.
+pub(super) const GATHER_WORDS: i32 = 2_000_000;
 /// Bytes on a line of a disk file's text.
 const DISK_BYTES_PER_LINE: usize = 80;
 
@@ -85,9 +87,9 @@ impl Data {
     }
 
     /// What follows from the data being complete.
-    pub(super) fn finish(&self, kernel: &mut Kernel, context: &mut TickContext<'_>) {
+    pub(super) fn finish(&self, downloads: &mut Downloads, context: &mut TickContext<'_>) {
         match self.kind {
-            Kind::Program => kernel.downloads.record(self.start, self.place),
+            Kind::Program => downloads.record(self.start, self.place),
             Kind::Disk => {
                 context.memory.poke(self.place, 0_u8);
                 context.memory.set(READ_DISK_BUFFER_STATUS, 1);

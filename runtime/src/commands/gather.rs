@@ -15,10 +15,12 @@ use vm::firmware::TickContext;
 use vm::memory::GuestMemory;
 
 use super::arguments::Values;
-use super::data::{Data, Kind, WORDS_PER_LINE};
+use super::data::{Data, GATHER_WORDS, Kind, WORDS_PER_LINE};
+use super::memory::Experiment;
 use super::session::{Answer, Session};
-use crate::firmware::{gather, motion};
-use crate::kernel::Kernel;
+use crate::firmware::gather;
+use crate::firmware::parts::Parts;
+use crate::servo::{Servo, moves};
 use crate::views::{Typed, chan};
 
 /// Ticks before an experiment's motion: 0.02 s.
@@ -32,53 +34,41 @@ const NUMBERS_PER_LINE: usize = 24;
 /// Bytes of a double.
 const DOUBLE: u32 = 8;
 
-/// A recorded motion in progress.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Experiment {
-    axis: AxisId,
-    amount: f64,
-    jumps: bool,
-    /// Ticks at which the axis goes away and comes back.
-    legs: [u64; 2],
-    done: usize,
-}
-
-/// Begins the legs whose time has come. Says whether an experiment is in progress.
-pub(crate) fn advance(kernel: &mut Kernel, context: &mut TickContext<'_>) -> bool {
-    let Some(experiment) = kernel.experiment else { return false };
+/// Begins the legs of an experiment whose time has come; it is over after the last one.
+pub(crate) fn advance(running: &mut Option<Experiment>, parts: &mut Parts, context: &mut TickContext<'_>) {
+    let Some(experiment) = running else { return };
     let Some(&due) = experiment.legs.get(experiment.done) else {
-        kernel.experiment = None;
-        return false;
+        *running = None;
+        return;
     };
     if context.tick.get() >= due {
         let distance = if experiment.done == 0 { experiment.amount } else { -experiment.amount };
-        go(kernel, context, experiment.axis, distance, experiment.jumps);
-        kernel.experiment = Some(Experiment { done: experiment.done + 1, ..experiment });
-        kernel.disturb();
+        go(&mut parts.servo, context, experiment.axis, distance, experiment.jumps);
+        experiment.done += 1;
+        parts.disturb();
     }
-    true
 }
 
-fn go(kernel: &mut Kernel, context: &mut TickContext<'_>, axis: AxisId, distance: f64, jumps: bool) {
+fn go(servo: &mut Servo, context: &mut TickContext<'_>, axis: AxisId, distance: f64, jumps: bool) {
     let dest = context.memory.axis(axis, Chan::DEST) + distance;
     if jumps {
         context.memory.set_axis(axis, Chan::DEST, dest);
-        kernel.servo.axes[axis.index()] = crate::servo::AxisMemory::rest(dest);
-    } else if let Some(limits) = motion::limits(context.memory, axis, None) {
-        motion::start_move_to(context.memory, axis, dest, &limits, kmotiondef::modes::LastMotion::Move);
+        servo.jump(axis, dest);
+    } else if let Some(limits) = moves::limits(context.memory, axis, None) {
+        moves::start_move_to(context.memory, axis, dest, &limits, kmotiondef::modes::LastMotion::Move);
     }
 }
 
 fn experiment(session: &mut Session<'_, '_>, values: &Values, jumps: bool) -> Answer {
     let (axis, amount, samples) = (values.axis(), values.real(1), values.integer(2));
-    session.call(|kernel, caller| {
-        gather::setup_gather_all_on_axis(kernel, caller, i32::from(axis.get()), samples);
-        gather::trigger_gather(kernel, caller);
+    session.call(|parts, caller| {
+        gather::setup_gather_all_on_axis(parts, caller, i32::from(axis.get()), samples);
+        gather::trigger_gather(parts, caller);
     });
     let now = session.context.tick.get();
     let half = u64::from(samples.unsigned_abs()) / 2;
     let legs = [now + REST, now + half.max(REST)];
-    session.kernel.experiment = Some(Experiment { axis, amount, jumps, legs, done: 0 });
+    *session.experiment = Some(Experiment { axis, amount, jumps, legs, done: 0 });
     Answer::Nothing
 }
 
@@ -131,7 +121,7 @@ pub(super) fn set_decimal(session: &mut Session<'_, '_>, values: &Values) -> Ans
 
 /// Words that the buffer has from the first one named on, of those asked for.
 fn available(values: &Values) -> usize {
-    values.count(1).min(super::table::GATHER_WORDS as usize - values.count(0))
+    values.count(1).min(GATHER_WORDS as usize - values.count(0))
 }
 
 /// Words, eight on a line; those behind the end of the buffer are left out.
@@ -157,7 +147,7 @@ pub(super) fn read_disk_data(session: &mut Session<'_, '_>, values: &Values) -> 
         return Answer::Data(data);
     }
     if status == 1 {
-        data.finish(session.kernel, session.context);
+        data.finish(&mut session.parts.pc.downloads, session.context);
     } else {
         session.memory().set(kmotiondef::variables::READ_DISK_BUFFER_STATUS, status);
     }

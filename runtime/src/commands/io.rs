@@ -3,7 +3,7 @@
 use kmotiondef::GuestAddr;
 use kmotiondef::map::FPGA;
 use kmotiondef::variables::{DAC_BUFFER, VIRTUAL_BITS_EX};
-use vm::bus::{AccessSize, Bus};
+use vm::bus::AccessSize;
 
 use super::arguments::Values;
 use super::session::{Answer, Session};
@@ -18,40 +18,40 @@ const ZERO: i32 = 2048;
 const VIRTUAL_WORDS: usize = 32;
 
 pub(super) fn set_bit(session: &mut Session<'_, '_>, values: &Values) -> Answer {
-    session.call(|kernel, caller| io::set_bit(kernel, caller, values.integer(0)));
+    session.call(|parts, caller| io::set_bit(parts, caller, values.integer(0)));
     Answer::Nothing
 }
 
 pub(super) fn clear_bit(session: &mut Session<'_, '_>, values: &Values) -> Answer {
-    session.call(|kernel, caller| io::clear_bit(kernel, caller, values.integer(0)));
+    session.call(|parts, caller| io::clear_bit(parts, caller, values.integer(0)));
     Answer::Nothing
 }
 
 pub(super) fn set_state_bit(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (bit, state) = (values.integer(0), values.integer(1));
-    session.call(|kernel, caller| io::set_state_bit(kernel, caller, bit, state));
+    session.call(|parts, caller| io::set_state_bit(parts, caller, bit, state));
     Answer::Nothing
 }
 
 pub(super) fn led(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (bit, state) = (LED0 + values.integer(0), values.integer(1));
-    session.call(|kernel, caller| io::set_state_bit(kernel, caller, bit, state));
+    session.call(|parts, caller| io::set_state_bit(parts, caller, bit, state));
     Answer::Nothing
 }
 
 /// The level, without a remark about inputs that nothing drives: people look at them on purpose.
 pub(super) fn read_bit(session: &mut Session<'_, '_>, values: &Values) -> Answer {
-    i32::from(io::bit_state(session.kernel, session.context.memory, values.bit()).0).into()
+    i32::from(session.parts.level(session.context.memory, values.bit())).into()
 }
 
 pub(super) fn set_bit_direction(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (bit, direction) = (values.integer(0), values.integer(1));
-    session.call(|kernel, caller| io::set_bit_direction(kernel, caller, bit, direction));
+    session.call(|parts, caller| io::set_bit_direction(parts, caller, bit, direction));
     Answer::Nothing
 }
 
 pub(super) fn get_bit_direction(session: &mut Session<'_, '_>, values: &Values) -> Answer {
-    session.call(|kernel, caller| io::get_bit_direction(kernel, caller, values.integer(0))).into()
+    session.call(|parts, caller| io::get_bit_direction(parts, caller, values.integer(0))).into()
 }
 
 /// Words of the extended virtual bits on one line. The released firmware goes on reading behind the last word, and
@@ -69,7 +69,7 @@ pub(super) fn get_virtual_bits(session: &mut Session<'_, '_>, values: &Values) -
 }
 
 pub(super) fn adc(session: &mut Session<'_, '_>, values: &Values) -> Answer {
-    (session.call(|kernel, caller| io::read_adc(kernel, caller, values.integer(0))) - ZERO).into()
+    (session.call(|parts, caller| io::read_adc(parts, caller, values.integer(0))) - ZERO).into()
 }
 
 pub(super) fn dac(session: &mut Session<'_, '_>, values: &Values) -> Answer {
@@ -80,19 +80,19 @@ pub(super) fn dac(session: &mut Session<'_, '_>, values: &Values) -> Answer {
 
 pub(super) fn pwm(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (channel, value) = (values.integer(0), values.integer(1));
-    session.call(|kernel, caller| io::write_pwm(kernel, caller, channel, value));
+    session.call(|parts, caller| io::write_pwm(parts, caller, channel, value));
     Answer::Nothing
 }
 
 pub(super) fn pwmr(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (channel, value) = (values.integer(0), values.integer(1));
-    session.call(|kernel, caller| io::write_pwmr(kernel, caller, channel, value));
+    session.call(|parts, caller| io::write_pwmr(parts, caller, channel, value));
     Answer::Nothing
 }
 
 pub(super) fn pwmc(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (channel, value) = (values.integer(0), values.integer(1));
-    session.call(|kernel, caller| io::write_pwmc(kernel, caller, channel, value));
+    session.call(|parts, caller| io::write_pwmc(parts, caller, channel, value));
     Answer::Nothing
 }
 
@@ -105,7 +105,7 @@ fn register(number: i32) -> Option<GuestAddr> {
 fn write(session: &mut Session<'_, '_>, values: &Values, size: AccessSize) -> Answer {
     if let Some(address) = register(values.integer(0)) {
         let (value, now) = (values.integer(1).cast_unsigned(), session.context.now);
-        session.kernel.write(address, size, value, now);
+        session.parts.write_register(address, size, value, now);
     }
     Answer::Nothing
 }

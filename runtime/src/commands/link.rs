@@ -1,133 +1,66 @@
-//! The byte link between the PC and the board: lines in, replies out.
+//! The command loop: lines in, replies out.
 //!
-//! The primary thread takes one line in each of its slices. A line that begins with an escape is taken without echo;
-//! the byte behind the escape is thrown away. Any other line is echoed and followed by the board's name and `Ready`.
-//! 0x03 drops what is under way, wherever it comes. While a command waits for its data lines the board sends no
-//! console text. Rules: host-protocol.md sections 1 and 2.
+//! The primary thread takes one line in each of its slices. A line that was echoed is followed by the board's name and
+//! `Ready`. While a command waits for its data lines the board sends no console text. Rules: host-protocol.md sections 1
+//! and 2.
 
 use std::collections::VecDeque;
 
+use kmotiondef::limits::VERSION;
 use vm::firmware::TickContext;
 
-use super::arguments::{Message, Mistake, Reader, Values};
+use super::arguments::{Message as MistakeText, Mistake, Reader, Values};
 use super::data::Data;
-use super::path::Geometry;
-use super::{Answer, Command, Session, absent, find};
+use super::memory::{Experiment, Geometry};
+use super::session::{Answer, Session};
+use super::{Command, absent, find};
+use crate::firmware::parts::Parts;
 use crate::firmware::serial;
-use crate::kernel::Kernel;
-use crate::out::EventKind;
+use crate::out::{EventKind, Message};
+use crate::pc::{Arrival, ByteLink, END, ESCAPE, Pc};
 
-/// Drops the line and the command in progress.
-const ABORT: u8 = 0x03;
-/// Begins a line that is not echoed.
-const ESCAPE: u8 = 0x1B;
-/// Ends a line.
-const END: u8 = b'\r';
 /// Characters of a line; the last of them ends it.
 const LINE_LIMIT: usize = 2560;
 /// Characters of a data line.
 const DATA_LIMIT: usize = 256;
 
-/// Where in a line the link stands.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Intake {
-    /// Before its first byte.
-    #[default]
-    Start,
-    /// Behind the escape: the next byte is thrown away.
-    Escaped,
-    /// In its text.
-    Silent,
-    /// In the text of a line that is echoed.
-    Echoed,
-}
-
-/// One end of the link: the USB port, or the UART.
+/// What the command loop remembers of one end of the link: the USB port, or the UART.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Link {
-    input: VecDeque<u8>,
-    intake: Intake,
-    line: Vec<u8>,
     /// Commands of the line that are still to be executed.
     parts: VecDeque<Vec<u8>>,
     /// What the command in progress waits for.
     data: Option<Data>,
     /// Whether name and `Ready` are due when the line is done.
     prompts: bool,
-    /// Whether a command of the line has stopped the board's command loop, for good.
-    is_stopped: bool,
-    pub(super) geometry: Geometry,
+    geometry: Geometry,
 }
 
 impl Link {
-    /// Bytes arrive from the PC.
-    pub(crate) fn receive(&mut self, bytes: &[u8]) {
-        if !self.is_stopped {
-            self.input.extend(bytes);
-        }
-    }
-
-    /// Whether bytes wait to be taken.
-    pub(crate) fn is_busy(&self) -> bool {
-        !self.input.is_empty()
-    }
-
     /// Whether a command is in progress, so that no console text may be sent.
     pub(crate) const fn is_in_command(&self) -> bool {
         self.data.is_some()
     }
 
-    /// Takes bytes up to the end of a line; `None` when they run out before.
-    fn take_line(&mut self, out: &mut Vec<Output>) -> Option<Vec<u8>> {
-        let mut echo = Vec::new();
-        let line = loop {
-            let Some(byte) = self.input.pop_front() else { break None };
-            if byte == ABORT {
-                flush(&mut echo, out);
-                self.abort();
-                out.push(Output::Aborted);
-                continue;
+    /// Takes the next line; `None` when the bytes run out before its end.
+    fn take_line(&mut self, line: &mut ByteLink, out: &mut Vec<Output>) -> Option<Vec<u8>> {
+        loop {
+            let (mut echo, is_data) = (Vec::new(), self.data.is_some());
+            let arrival = line.next(if is_data { DATA_LIMIT } else { LINE_LIMIT }, &mut echo);
+            if !echo.is_empty() {
+                out.push(Output::Echo(echo));
             }
-            match self.intake {
-                Intake::Start if byte == ESCAPE => {
-                    self.intake = Intake::Escaped;
-                    continue;
+            match arrival? {
+                Arrival::Abort => {
+                    *self = Self { geometry: self.geometry, ..Self::default() };
+                    out.push(Output::Aborted);
                 }
-                Intake::Escaped => {
-                    self.intake = Intake::Silent;
-                    continue;
+                Arrival::Line(text, is_echoed) => {
+                    self.prompts |= is_echoed && !is_data;
+                    return Some(text);
                 }
-                Intake::Start => self.intake = Intake::Echoed,
-                Intake::Silent | Intake::Echoed => {}
             }
-            let is_echoed = self.intake == Intake::Echoed;
-            if is_echoed {
-                echo.push(byte);
-            }
-            let ends = byte == END;
-            if !ends {
-                self.line.push(byte);
-            }
-            let limit = if self.data.is_some() { DATA_LIMIT } else { LINE_LIMIT };
-            if ends || self.line.len() == limit {
-                echo.extend(is_echoed.then_some(b'\n'));
-                self.prompts |= is_echoed && self.data.is_none();
-                self.intake = Intake::Start;
-                break Some(std::mem::take(&mut self.line));
-            }
-        };
-        flush(&mut echo, out);
-        line
-    }
-
-    fn abort(&mut self) {
-        *self = Self { input: std::mem::take(&mut self.input), geometry: self.geometry, ..Self::default() };
-    }
-}
-
-fn flush(echo: &mut Vec<u8>, out: &mut Vec<Output>) {
-    if !echo.is_empty() {
-        out.push(Output::Echo(std::mem::take(echo)));
+        }
     }
 }
 
@@ -161,31 +94,44 @@ impl Output {
     }
 }
 
+/// What the board calls itself: its version up to the build.
+fn board_name() -> &'static str {
+    VERSION.split_once(" Build").map_or(VERSION, |(name, _)| name)
+}
+
+/// One end of the link, and the bytes on their way to it.
+type Side = fn(&mut Pc) -> &mut ByteLink;
+
 /// What the primary thread does for one end of the link in its slice: at most one line.
-pub(crate) fn slice(kernel: &mut Kernel, context: &mut TickContext<'_>, end: fn(&mut Kernel) -> &mut Link) {
-    let mut link = std::mem::take(end(kernel));
+pub(super) fn slice(
+    link: &mut Link,
+    side: Side,
+    experiment: &mut Option<Experiment>,
+    parts: &mut Parts,
+    context: &mut TickContext<'_>,
+) {
     let mut out = Vec::new();
-    if let Some(line) = link.take_line(&mut out) {
-        kernel.disturb();
-        let mut turn = Turn { kernel, context, link: &mut link, out: &mut out };
-        turn.line(&line);
+    if let Some(line) = link.take_line(side(&mut parts.pc), &mut out) {
+        parts.disturb();
+        Turn { parts, experiment, context, link, side, out: &mut out }.line(&line);
     }
-    *end(kernel) = link;
-    let to_uart = serial::has_commands(kernel, context.memory);
+    let to_uart = serial::has_commands(parts, context.memory);
     for output in out {
         if to_uart {
-            serial::write(kernel, context.memory, &output.into_wire());
+            serial::write(parts, context.memory, &output.into_wire());
         } else {
-            kernel.tell(context.now, output.into_event());
+            parts.out.tell(context.now, output.into_event());
         }
     }
 }
 
 /// One line being executed.
 struct Turn<'a, 'c> {
-    kernel: &'a mut Kernel,
+    parts: &'a mut Parts,
+    experiment: &'a mut Option<Experiment>,
     context: &'a mut TickContext<'c>,
     link: &'a mut Link,
+    side: Side,
     out: &'a mut Vec<Output>,
 }
 
@@ -204,8 +150,9 @@ impl Turn<'_, '_> {
                 self.part(&part);
             }
         }
-        if self.link.data.is_none() && std::mem::take(&mut self.link.prompts) && !self.link.is_stopped {
-            for line in ["KFLOP 4.34", "Ready"] {
+        let is_alive = !(self.side)(&mut self.parts.pc).is_dead();
+        if self.link.data.is_none() && std::mem::take(&mut self.link.prompts) && is_alive {
+            for line in [board_name(), "Ready"] {
                 self.out.push(Output::Reply(line.into()));
             }
         }
@@ -214,8 +161,7 @@ impl Turn<'_, '_> {
     fn data(&mut self, mut data: Data, line: &[u8]) {
         match data.line(self.context.memory, line) {
             Ok(()) if data.is_complete() => {
-                let kernel = &mut *self.kernel;
-                data.finish(kernel, self.context);
+                data.finish(&mut self.parts.pc.downloads, self.context);
             }
             Ok(()) => self.link.data = Some(data),
             Err(mistake) => self.mistake(line, &mistake),
@@ -225,10 +171,10 @@ impl Turn<'_, '_> {
     /// One command.
     fn part(&mut self, part: &[u8]) {
         let Some((command, length)) = find(part) else {
-            if let Some(text) = absent::explain(part) {
-                self.kernel.tell(self.context.now, EventKind::Diagnostic(text));
+            if let Some(message) = absent::explain(part) {
+                self.parts.out.remark(self.context.now, message);
             }
-            return self.mistake(part, &Mistake { column: 0, message: Message::InvalidCommand });
+            return self.mistake(part, &Mistake { column: 0, message: MistakeText::InvalidCommand });
         };
         match Values::read(command.arguments, &mut Reader::new(part, length)) {
             Ok(values) => self.execute(command, &values, part),
@@ -237,11 +183,16 @@ impl Turn<'_, '_> {
     }
 
     fn execute(&mut self, command: &Command, values: &Values, part: &[u8]) {
-        self.kernel.is_commanding = true;
-        let mut session =
-            Session { kernel: self.kernel, context: self.context, geometry: &mut self.link.geometry, part };
+        self.parts.out.is_commanding = true;
+        let mut session = Session {
+            parts: self.parts,
+            experiment: self.experiment,
+            context: self.context,
+            geometry: &mut self.link.geometry,
+            part,
+        };
         let answer = (command.run)(&mut session, values);
-        self.kernel.is_commanding = false;
+        self.parts.out.is_commanding = false;
         self.answer(command, answer);
     }
 
@@ -268,20 +219,16 @@ impl Turn<'_, '_> {
     /// The released firmware hangs here; so does the link, and the user is told.
     fn stop(&mut self, command: &Command) {
         self.link.parts.clear();
-        self.link.input.clear();
-        self.link.is_stopped = true;
-        let name = command.name;
-        let text = format!(
-            "the released firmware stops at this use of `{name}`: it answers nothing until it is restarted"
-        );
-        self.kernel.tell(self.context.now, EventKind::Diagnostic(text));
+        (self.side)(&mut self.parts.pc).die();
+        let message = Message::FirmwareStops { command: command.name };
+        self.parts.out.remark(self.context.now, message);
     }
 
     /// Three console lines; what was to come of the line is dropped.
     fn mistake(&mut self, text: &[u8], mistake: &Mistake) {
         let caret = [" ".repeat(mistake.column).into_bytes(), b"^".to_vec()].concat();
         let message = mistake.message.text().into_bytes();
-        let lines = if mistake.message == Message::Equals {
+        let lines = if mistake.message == MistakeText::Equals {
             [message, text.to_vec(), caret]
         } else {
             [text.to_vec(), caret, message]

@@ -15,6 +15,7 @@ mod data;
 mod gather;
 mod io;
 mod link;
+mod memory;
 mod motion;
 mod numbers;
 mod path;
@@ -30,12 +31,48 @@ pub use arguments::Argument;
 pub use table::COMMANDS;
 
 pub(crate) use board::FLASH_COMPLETE;
-pub(crate) use gather::{Experiment, advance};
-pub(crate) use link::{Link, slice};
-pub(crate) use programs::{Downloads, start};
+use vm::firmware::TickContext;
 
 use arguments::Values;
+use link::Link;
+use memory::Experiment;
 use session::{Answer, Session};
+
+use crate::firmware::parts::Parts;
+
+/// What the board remembers of script commands.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Scripts {
+    /// The command loops over USB and over the UART.
+    usb: Link,
+    uart: Link,
+    /// The recorded motion in progress, if there is one.
+    experiment: Option<Experiment>,
+}
+
+impl Scripts {
+    /// Whether a command over USB is in progress, so that no console text may be sent.
+    pub(crate) const fn is_in_command(&self) -> bool {
+        self.usb.is_in_command()
+    }
+
+    /// Whether a recorded motion is in progress.
+    pub(crate) const fn has_experiment(&self) -> bool {
+        self.experiment.is_some()
+    }
+
+    /// What the primary thread does for the PC's commands in its slice.
+    pub(crate) fn slice(&mut self, parts: &mut Parts, context: &mut TickContext<'_>) {
+        let Self { usb, uart, experiment } = self;
+        if parts.pc.usb.is_busy() {
+            link::slice(usb, |pc| &mut pc.usb, experiment, parts, context);
+        }
+        if parts.pc.uart.is_busy() {
+            link::slice(uart, |pc| &mut pc.uart, experiment, parts, context);
+        }
+        gather::advance(experiment, parts, context);
+    }
+}
 
 /// One script command.
 #[derive(Clone, Copy)]

@@ -15,41 +15,41 @@ pub(super) fn planned(outcome: Outcome<()>) -> Answer {
 
 pub(super) fn move_to(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (axis, x) = (values.integer(0), values.real(1));
-    planned(session.call(|kernel, caller| motion::move_to(kernel, caller, axis, x)))
+    planned(session.call(|parts, caller| motion::move_to(parts, caller, axis, x)))
 }
 
 pub(super) fn move_rel(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (axis, dx) = (values.integer(0), values.real(1));
-    planned(session.call(|kernel, caller| motion::move_rel(kernel, caller, axis, dx)))
+    planned(session.call(|parts, caller| motion::move_rel(parts, caller, axis, dx)))
 }
 
 pub(super) fn move_at_vel(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (axis, x, velocity) = (values.integer(0), values.real(1), values.single(2));
-    planned(session.call(|kernel, caller| motion::move_at_vel(kernel, caller, axis, x, velocity)))
+    planned(session.call(|parts, caller| motion::move_at_vel(parts, caller, axis, x, velocity)))
 }
 
 pub(super) fn move_rel_at_vel(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (axis, dx, velocity) = (values.integer(0), values.real(1), values.single(2));
-    planned(session.call(|kernel, caller| motion::move_rel_at_vel(kernel, caller, axis, dx, velocity)))
+    planned(session.call(|parts, caller| motion::move_rel_at_vel(parts, caller, axis, dx, velocity)))
 }
 
 pub(super) fn move_exp(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (axis, x, tau) = (values.integer(0), values.real(1), values.real(2));
-    planned(session.call(|kernel, caller| motion::move_exp(kernel, caller, axis, x, tau)))
+    planned(session.call(|parts, caller| motion::move_exp(parts, caller, axis, x, tau)))
 }
 
 pub(super) fn move_xyzabc(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let [x, y, z, a, b, c] = std::array::from_fn(|index| values.real(index));
-    planned(session.call(|kernel, caller| motion::move_xyzabc(kernel, caller, x, y, z, a, b, c)))
+    planned(session.call(|parts, caller| motion::move_xyzabc(parts, caller, x, y, z, a, b, c)))
 }
 
 pub(super) fn jog(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (axis, velocity) = (values.integer(0), values.real(1));
-    planned(session.call(|kernel, caller| motion::jog(kernel, caller, axis, velocity)))
+    planned(session.call(|parts, caller| motion::jog(parts, caller, axis, velocity)))
 }
 
 pub(super) fn check_done(session: &mut Session<'_, '_>, values: &Values) -> Answer {
-    session.call(|kernel, caller| motion::check_done(kernel, caller, values.integer(0))).into()
+    session.call(|parts, caller| motion::check_done(parts, caller, values.integer(0))).into()
 }
 
 pub(super) fn check_done_xyzabc(session: &mut Session<'_, '_>, _: &Values) -> Answer {
@@ -58,12 +58,12 @@ pub(super) fn check_done_xyzabc(session: &mut Session<'_, '_>, _: &Values) -> An
 
 pub(super) fn three_phase(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (axis, amplitude, angle) = (pointer(values.axis()), values.single(1), values.real(2));
-    session.call(|kernel, caller| motion::write_3ph(kernel, caller, axis, amplitude, angle));
+    session.call(|parts, caller| motion::write_3ph(parts, caller, axis, amplitude, angle));
     Answer::Nothing
 }
 
 pub(super) fn four_phase(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (axis, amplitude, angle) = (pointer(values.axis()), values.single(1), values.real(2));
-    session.call(|kernel, caller| motion::write_4ph(kernel, caller, axis, amplitude, angle));
+    session.call(|parts, caller| motion::write_4ph(parts, caller, axis, amplitude, angle));
     Answer::Nothing
 }

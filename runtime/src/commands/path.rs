@@ -7,22 +7,18 @@ use kmotiondef::structs::{Chan, Spindle};
 use kmotiondef::variables::{CS0_STOPPING_STATE, SPINDLE};
 
 use super::arguments::Values;
+use super::memory::Geometry;
 use super::motion::planned;
 use super::numbers::{fixed, time};
 use super::session::{Answer, Session};
 use crate::firmware::{coord, spindle};
-use crate::out::EventKind;
+use crate::out::Message;
 use crate::servo::coordinated::download::{self, Circle, Plane, Point, Timing};
 use crate::servo::coordinated::segment::Command;
 use crate::servo::coordinated::system::{LETTERS, letters};
 use crate::servo::coordinated::{buffer, rate, system};
+use crate::servo::hold;
 use crate::views::Typed;
-
-/// The latest line that was sent.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Geometry {
-    line: Option<(Point, Point)>,
-}
 
 /// Letters of the commands without U and V.
 const SIX: usize = 6;
@@ -45,9 +41,9 @@ fn point(first: usize, numbers: &[f32]) -> Point {
 }
 
 /// Reports what the buffer has to say.
-fn noted(session: &mut Session<'_, '_>, result: Result<(), String>) -> Answer {
-    if let Err(text) = result {
-        session.kernel.tell(session.context.now, EventKind::Diagnostic(text));
+fn noted(session: &mut Session<'_, '_>, result: Result<(), Message>) -> Answer {
+    if let Err(message) = result {
+        session.parts.out.remark(session.context.now, message);
     }
     Answer::Nothing
 }
@@ -179,7 +175,7 @@ fn system(session: &mut Session<'_, '_>, values: &Values, count: usize) -> Answe
         let axes: Vec<String> = axes.iter().take(count).map(ToString::to_string).collect();
         return axes.join(" ").into();
     }
-    session.call(|kernel, caller| coord::define(kernel, caller, &values.integers()));
+    session.call(|parts, caller| coord::define(parts, caller, &values.integers()));
     Answer::Nothing
 }
 
@@ -227,21 +223,20 @@ pub(super) fn stop_immediate(session: &mut Session<'_, '_>, values: &Values) -> 
 }
 
 pub(super) fn stop_state(session: &mut Session<'_, '_>, _: &Values) -> Answer {
-    coord::update_state(session.memory());
+    hold::update_state(session.memory());
     session.memory().get(CS0_STOPPING_STATE).into()
 }
 
 pub(super) fn configure_spindle(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (kind, axis) = (values.integer(0), values.integer(1));
     let [update, tau, counts] = [2, 3, 4].map(|index| values.single(index));
-    session
-        .call(|kernel, caller| spindle::configure_spindle(kernel, caller, kind, axis, update, tau, counts));
+    session.call(|parts, caller| spindle::configure_spindle(parts, caller, kind, axis, update, tau, counts));
     Answer::Nothing
 }
 
 pub(super) fn trigger_threading(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let speed = values.single(0);
-    session.call(|kernel, caller| spindle::trig_threading(kernel, caller, speed));
+    session.call(|parts, caller| spindle::trig_threading(parts, caller, speed));
     Answer::Nothing
 }
 

@@ -1,93 +1,18 @@
 //! Programs: downloading them word by word, and starting and stopping threads.
-//!
-//! A download is bytes in memory and an entry point; nothing says where the text of a program ends. [`Downloads`]
-//! keeps what was stored in one go, so that the board can find the text among it when the thread is started.
 
-use kmotiondef::map::{FLASH, PROGRAM_SIZE, REGIONS, RegionKind, program_base};
+use kmotiondef::GuestAddr;
+use kmotiondef::map::{FLASH, REGIONS, RegionKind};
 use kmotiondef::structs::Persist;
 use kmotiondef::variables::PERSIST;
-use kmotiondef::{GuestAddr, ThreadId};
-use vm::memory::GuestMemory;
-use vm::thread::Threads;
 
 use super::arguments::Values;
 use super::data::{Data, Kind};
 use super::session::{Answer, Session};
-use crate::kernel::{Kernel, Request};
+use crate::firmware::thread;
 use crate::views::Typed;
 
-/// What downloads have stored since the threads were last started.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Downloads {
-    /// First address, and the one behind the last.
-    stored: Vec<(GuestAddr, GuestAddr)>,
-}
-
-/// Stretches that are kept: no program needs as many.
-const MOST_STRETCHES: usize = 1000;
-
-impl Downloads {
-    /// Bytes were stored from `start` to before `end`.
-    pub(super) fn record(&mut self, start: GuestAddr, end: GuestAddr) {
-        self.stored.retain(|stretch| stretch.0 != start);
-        if self.stored.len() < MOST_STRETCHES {
-            self.stored.push((start, end));
-        }
-    }
-
-    /// Whether something was stored in the space of a thread.
-    pub(crate) fn has(&self, thread: ThreadId) -> bool {
-        let start = program_base(thread).get();
-        self.stored.iter().any(|(stored, _)| (start..start + PROGRAM_SIZE).contains(&stored.get()))
-    }
-
-    /// Where the text at the beginning of a thread's space may end: the stretches that follow each other from there.
-    pub(crate) fn ends(&self, thread: ThreadId) -> Vec<GuestAddr> {
-        let mut ends = Vec::new();
-        let mut place = program_base(thread);
-        while let Some((_, end)) = self.stored.iter().find(|(start, _)| *start == place) {
-            if *end == place {
-                break;
-            }
-            ends.push(*end);
-            place = *end;
-        }
-        ends
-    }
-
-    /// Forgets what was stored in the space of a thread.
-    pub(crate) fn forget(&mut self, thread: ThreadId) {
-        let start = program_base(thread).get();
-        self.stored.retain(|(stored, _)| !(start..start + PROGRAM_SIZE).contains(&stored.get()));
-    }
-}
-
-/// The entry point that a thread is started at.
-fn entry(memory: &GuestMemory, thread: ThreadId) -> GuestAddr {
-    GuestAddr::new(memory.get(PERSIST.field(Persist::ENTRY_POINTS).element(thread.index())))
-}
-
-/// Starts a thread at its entry point; the board first looks at what was downloaded. `false` if there is nothing.
-pub(crate) fn start(
-    kernel: &mut Kernel,
-    memory: &GuestMemory,
-    threads: &mut Threads,
-    thread: ThreadId,
-) -> bool {
-    let (base, entry) = (program_base(thread), entry(memory, thread));
-    let is_new = kernel.downloads.has(thread) || threads.entry(thread) != entry;
-    if is_new && memory.peek::<u32>(base) == 0 {
-        return false;
-    }
-    if is_new {
-        threads.set_entry(thread, entry);
-        kernel.ask(Request::Load(thread));
-    }
-    threads.start(thread).is_ok()
-}
-
 pub(super) fn execute(session: &mut Session<'_, '_>, values: &Values) -> Answer {
-    start(session.kernel, session.context.memory, session.context.threads, values.thread());
+    thread::start(session.parts, session.context.memory, session.context.threads, values.thread());
     Answer::Nothing
 }
 

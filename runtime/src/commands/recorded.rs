@@ -3,15 +3,13 @@
 use std::collections::BTreeSet;
 
 use kmotiondef::Bit;
+use kmotiondef::limits::TIMEBASE;
 use serde_json::Value as Json;
 
 use super::COMMANDS;
 use crate::out::EventKind;
 use crate::testing::Desk;
 use crate::text::vectors::rows;
-
-/// Seconds of a tick.
-const TIMEBASE: f64 = 90e-6;
 
 /// Answers that depend on when a line came, or on what is connected: only their form is compared.
 const BY_FORM: &[(&str, &str, &str)] = &[
@@ -60,11 +58,11 @@ impl Wire {
 
     /// Sends bytes and returns what comes back.
     fn send(&mut self, bytes: &[u8]) -> String {
-        self.desk.kernel.usb.receive(bytes);
-        while self.desk.kernel.usb.is_busy() {
+        self.desk.kernel.parts.pc.usb.receive(bytes);
+        while self.desk.kernel.parts.pc.usb.is_busy() {
             self.desk.run(2);
         }
-        self.desk.kernel.take_events().into_iter().map(wire).collect()
+        self.desk.kernel.parts.out.take_events().into_iter().map(wire).collect()
     }
 
     /// Sends a recorded line, or does what stands in its place in parentheses.
@@ -80,7 +78,7 @@ impl Wire {
             }
             ["bit", bit, level] => {
                 let bit = bit.parse().ok().and_then(Bit::new).expect("a bit");
-                self.desk.kernel.pins.drive(bit, level == "1", kmotiondef::Cycles::default());
+                self.desk.kernel.parts.io.pins.drive(bit, level == "1", kmotiondef::Cycles::default());
             }
             _ => panic!("{line}"),
         }

@@ -1,12 +1,13 @@
 //! What a command works with, and how it answers.
 
 use kmotiondef::Cycles;
+use vm::call::CallArguments;
 use vm::firmware::{Caller, TickContext};
 use vm::memory::GuestMemory;
 
 use super::data::Data;
-use super::path::Geometry;
-use crate::kernel::Kernel;
+use super::memory::{Experiment, Geometry};
+use crate::firmware::parts::Parts;
 
 /// The answer to a command.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -42,7 +43,9 @@ impl From<i32> for Answer {
 
 /// The board, for one command.
 pub(super) struct Session<'a, 'c> {
-    pub(super) kernel: &'a mut Kernel,
+    pub(super) parts: &'a mut Parts,
+    /// The recorded motion in progress, if there is one.
+    pub(super) experiment: &'a mut Option<Experiment>,
     pub(super) context: &'a mut TickContext<'c>,
     /// What the commands of coordinated motion remember.
     pub(super) geometry: &'a mut Geometry,
@@ -57,7 +60,7 @@ impl Session<'_, '_> {
     }
 
     /// Calls a firmware function as the primary thread, which never waits.
-    pub(super) fn call<R>(&mut self, function: impl FnOnce(&mut Kernel, &mut Caller<'_>) -> R) -> R {
+    pub(super) fn call<R>(&mut self, function: impl FnOnce(&mut Parts, &mut Caller<'_>) -> R) -> R {
         let mut budget = Cycles::PER_TICK;
         let mut caller = Caller {
             thread: None,
@@ -68,8 +71,9 @@ impl Session<'_, '_> {
             slice: budget,
             budget: &mut budget,
             woken: None,
-            arguments: &[],
+            arguments: CallArguments::NONE,
+            at: None,
         };
-        function(self.kernel, &mut caller)
+        function(self.parts, &mut caller)
     }
 }

@@ -15,8 +15,8 @@ use vm::memory::GuestMemory;
 
 use super::arguments::Values;
 use super::session::{Answer, Session};
-use crate::firmware::{coord, io};
-use crate::kernel::Kernel;
+use crate::firmware::parts::Parts;
+use crate::servo::hold;
 use crate::views::Typed;
 
 /// Version of the record, and its words.
@@ -43,13 +43,13 @@ impl Record {
 }
 
 /// The record of this instant.
-pub(crate) fn record(kernel: &Kernel, context: &TickContext<'_>) -> Vec<u8> {
+pub(crate) fn record(parts: &Parts, context: &TickContext<'_>) -> Vec<u8> {
     let memory = &*context.memory;
     let mut record = Record(vec![0; WORDS * 4]);
     record.set(MainStatus::VERSION_AND_SIZE, VERSION_AND_SIZE);
     analog(&mut record, context);
     axes(&mut record, context);
-    let states = |first, count| bits(kernel, memory, first, count);
+    let states = |first, count| bits(parts, memory, first, count);
     for index in 0..2 {
         record.set(MainStatus::BITS_STATE.element(index), states(32 * index as i32, 32));
         record.set(MainStatus::BITS_DIRECTION.element(index), memory.get(BIT_DIR_SHADOW.element(index)));
@@ -120,9 +120,8 @@ fn axes(record: &mut Record, context: &TickContext<'_>) {
 }
 
 /// The levels of some bits from one on.
-fn bits(kernel: &Kernel, memory: &GuestMemory, first: i32, count: i32) -> i32 {
-    let is_high =
-        |offset: &i32| Bit::new(first + offset).is_some_and(|bit| io::bit_state(kernel, memory, bit).0);
+fn bits(parts: &Parts, memory: &GuestMemory, first: i32, count: i32) -> i32 {
+    let is_high = |offset: &i32| Bit::new(first + offset).is_some_and(|bit| parts.level(memory, bit));
     (0..count).filter(is_high).fold(0, |word, offset| word | 1 << offset)
 }
 
@@ -141,8 +140,8 @@ pub(super) fn get(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     }
     let polls = session.memory().get(STATUS_REQUEST_COUNTER).wrapping_add(1);
     session.memory().set(STATUS_REQUEST_COUNTER, polls);
-    coord::update_state(session.memory());
-    let record = record(session.kernel, session.context);
+    hold::update_state(session.memory());
+    let record = record(session.parts, session.context);
     let words: Vec<String> = record
         .chunks(4)
         .map(|word| word.iter().rev().fold(String::new(), |text, byte| text + &format!("{byte:02X}")))

@@ -6,6 +6,7 @@
 use kmotiondef::structs::Chan;
 
 use super::Argument::{Assign, Equals, Hex, Integer, Limited, OptionalEquals, OptionalHex, Real};
+use super::data::GATHER_WORDS;
 use super::{Argument, Command, axes, board, gather, io, motion, path, persist, programs, status};
 use crate::servo::coordinated::download::Plane;
 
@@ -15,8 +16,6 @@ const BIT: Argument = Integer(0, 2047);
 const SWITCH: Argument = Integer(0, 1);
 const ANY: Argument = Integer(i32::MIN, i32::MAX);
 const ELEMENT: Argument = Integer(0, 199);
-/// Words of the gather buffer.
-pub(super) const GATHER_WORDS: i32 = 2_000_000;
 const WORD: Argument = Integer(0, GATHER_WORDS - 1);
 const SAMPLES: Argument = Integer(1, 40_000);
 /// Any magnitude that counts as one, with sign and without.

@@ -2,17 +2,18 @@
 //!
 //! Source: gather-persist-console.md section 4. Files on the PC are in [`super::files`].
 
-use kmotiondef::GuestAddr;
 use kmotiondef::limits::MAX_STRING;
+use kmotiondef::{Cycles, GuestAddr};
 use vm::firmware::{Caller, Outcome, Wake};
 use vm::memory::GuestMemory;
 use vm::trap::TrapKind;
 
+use super::calls::Continuation;
 pub(crate) use super::files::{fclose, feof, fgets, fopen, fprintf, fscanf};
+use super::parts::Parts;
 use super::string::text;
 use crate::firmware::dispatch::Varargs;
-use crate::kernel::{Continuation, Kernel};
-use crate::text::{Arguments, Scanned, Sink, format, scan};
+use crate::text::{Arguments, Scanned, Sink, format_counted, scan};
 
 /// Longest string a `%s` reads.
 const LONGEST: u32 = 0x10_0000;
@@ -75,8 +76,8 @@ impl Sink for GuestArguments<'_> {
             Scanned::Short(value) => self.memory.store(place, value),
             Scanned::Int(value) => self.memory.store(place, value),
             Scanned::Long(value) => {
-                self.memory.store(place, value as i32)?;
-                self.memory.store(place.offset(4), (value >> 32) as i32)
+                self.memory.store(place, value as u32)?;
+                self.memory.store(place.offset(4), (value >> 32) as u32)
             }
             Scanned::Float(value) => self.memory.store(place, value),
             Scanned::Double(value) => self.memory.store(place, value),
@@ -97,7 +98,10 @@ pub(crate) fn formatted(
     arguments: Varargs,
 ) -> Result<Vec<u8>, TrapKind> {
     let pattern = text(caller, pattern)?;
-    format(&pattern, &mut GuestArguments { memory: caller.memory, at: arguments.0.get() })
+    let mut arguments = GuestArguments { memory: caller.memory, at: arguments.0.get() };
+    let formatted = format_counted(&pattern, &mut arguments)?;
+    caller.spend(Cycles::new(formatted.cycles.into()));
+    Ok(formatted.text)
 }
 
 /// Converts `text` under a pattern into the places behind `...`.
@@ -107,7 +111,17 @@ pub(crate) fn converted(
     pattern: &[u8],
     places: Varargs,
 ) -> Result<i32, TrapKind> {
-    scan(text, pattern, &mut GuestArguments { memory: caller.memory, at: places.0.get() })
+    let found = scan(text, pattern, &mut GuestArguments { memory: caller.memory, at: places.0.get() })?;
+    caller.spend(Cycles::new(found.cycles.into()));
+    Ok(found.result)
+}
+
+/// What a character costs that goes to the console's queue (costs.md section 4).
+const QUEUED_CHARACTER: i64 = 133;
+
+/// Spends what it costs to put text in the console's queue.
+pub(crate) fn spend_queueing(caller: &mut Caller<'_>, text: &[u8]) {
+    caller.spend(Cycles::new(QUEUED_CHARACTER * text.len() as i64));
 }
 
 /// What one call may print: at most 128 characters, and nothing behind a zero byte.
@@ -117,57 +131,59 @@ pub(crate) fn cut(text: &[u8]) -> &[u8] {
 }
 
 /// Puts text on the console; the call waits while the queue is full.
-pub(crate) fn put(kernel: &mut Kernel, caller: &Caller<'_>, text: &[u8], result: i32) -> Outcome<i32> {
-    let rest = kernel.console.put(text).to_vec();
+pub(crate) fn put(parts: &mut Parts, caller: &Caller<'_>, text: &[u8], result: i32) -> Outcome<i32> {
+    let rest = parts.out.console.put(text).to_vec();
     if rest.is_empty() {
         return Outcome::Done(result);
     }
-    kernel.keep(caller, Continuation::Print { rest, result });
+    parts.calls.keep(caller, Continuation::Print { rest, result });
     Outcome::Wait(Wake::Retry)
 }
 
 /// Goes on with a call that waits for the queue.
-pub(crate) fn resumed(kernel: &mut Kernel, caller: &Caller<'_>) -> Option<Outcome<i32>> {
+pub(crate) fn resumed(parts: &mut Parts, caller: &Caller<'_>) -> Option<Outcome<i32>> {
     caller.woken?;
-    match kernel.take(caller) {
-        Some(Continuation::Print { rest, result }) => Some(put(kernel, caller, &rest, result)),
+    match parts.calls.take(caller) {
+        Some(Continuation::Print { rest, result }) => Some(put(parts, caller, &rest, result)),
         _ => Some(Outcome::Done(0)),
     }
 }
 
 pub(crate) fn printf(
-    kernel: &mut Kernel,
+    parts: &mut Parts,
     caller: &mut Caller<'_>,
     pattern: GuestAddr,
     arguments: Varargs,
 ) -> Result<Outcome<i32>, TrapKind> {
-    if let Some(outcome) = resumed(kernel, caller) {
+    if let Some(outcome) = resumed(parts, caller) {
         return Ok(outcome);
     }
     let text = formatted(caller, pattern, arguments)?;
-    Ok(put(kernel, caller, cut(&text), text.len() as i32))
+    spend_queueing(caller, cut(&text));
+    Ok(put(parts, caller, cut(&text), text.len() as i32))
 }
 
 pub(crate) fn vprintf(
-    kernel: &mut Kernel,
+    parts: &mut Parts,
     caller: &mut Caller<'_>,
     pattern: GuestAddr,
     arguments: GuestAddr,
 ) -> Result<Outcome<i32>, TrapKind> {
-    printf(kernel, caller, pattern, Varargs(arguments))
+    printf(parts, caller, pattern, Varargs(arguments))
 }
 
 /// Prints a string of any length.
 pub(crate) fn print(
-    kernel: &mut Kernel,
+    parts: &mut Parts,
     caller: &mut Caller<'_>,
     string: GuestAddr,
 ) -> Result<Outcome<i32>, TrapKind> {
-    if let Some(outcome) = resumed(kernel, caller) {
+    if let Some(outcome) = resumed(parts, caller) {
         return Ok(outcome);
     }
     let text = text(caller, string)?;
-    Ok(put(kernel, caller, &text, 0))
+    spend_queueing(caller, &text);
+    Ok(put(parts, caller, &text, 0))
 }
 
 /// The one value of `PrintFloat` and `PrintInt`.
@@ -197,55 +213,58 @@ impl Arguments for One {
 }
 
 fn print_one(
-    kernel: &mut Kernel,
+    parts: &mut Parts,
     caller: &mut Caller<'_>,
     pattern: GuestAddr,
     mut value: One,
 ) -> Result<Outcome<i32>, TrapKind> {
-    if let Some(outcome) = resumed(kernel, caller) {
+    if let Some(outcome) = resumed(parts, caller) {
         return Ok(outcome);
     }
     let pattern = text(caller, pattern)?;
-    let text = format(&pattern, &mut value)?;
-    Ok(put(kernel, caller, cut(&text), 0))
+    let formatted = format_counted(&pattern, &mut value)?;
+    caller.spend(Cycles::new(formatted.cycles.into()));
+    spend_queueing(caller, cut(&formatted.text));
+    Ok(put(parts, caller, cut(&formatted.text), 0))
 }
 
 pub(crate) fn print_float(
-    kernel: &mut Kernel,
+    parts: &mut Parts,
     caller: &mut Caller<'_>,
     pattern: GuestAddr,
     value: f64,
 ) -> Result<Outcome<i32>, TrapKind> {
-    print_one(kernel, caller, pattern, One { word: value as i32 as u32, double: value })
+    print_one(parts, caller, pattern, One { word: value as i32 as u32, double: value })
 }
 
 pub(crate) fn print_int(
-    kernel: &mut Kernel,
+    parts: &mut Parts,
     caller: &mut Caller<'_>,
     pattern: GuestAddr,
     value: i32,
 ) -> Result<Outcome<i32>, TrapKind> {
-    print_one(kernel, caller, pattern, One { word: value as u32, double: f64::from(value) })
+    print_one(parts, caller, pattern, One { word: value as u32, double: f64::from(value) })
 }
 
 pub(crate) fn puts(
-    kernel: &mut Kernel,
+    parts: &mut Parts,
     caller: &mut Caller<'_>,
     string: GuestAddr,
 ) -> Result<Outcome<i32>, TrapKind> {
-    if let Some(outcome) = resumed(kernel, caller) {
+    if let Some(outcome) = resumed(parts, caller) {
         return Ok(outcome);
     }
     let mut text = text(caller, string)?;
     text.push(b'\n');
-    Ok(put(kernel, caller, &text, text.len() as i32))
+    spend_queueing(caller, &text);
+    Ok(put(parts, caller, &text, text.len() as i32))
 }
 
-pub(crate) fn putchar(kernel: &mut Kernel, caller: &mut Caller<'_>, character: i32) -> Outcome<i32> {
-    if let Some(outcome) = resumed(kernel, caller) {
+pub(crate) fn putchar(parts: &mut Parts, caller: &mut Caller<'_>, character: i32) -> Outcome<i32> {
+    if let Some(outcome) = resumed(parts, caller) {
         return outcome;
     }
-    put(kernel, caller, &[character as u8], i32::from(character as u8))
+    put(parts, caller, &[character as u8], i32::from(character as u8))
 }
 
 /// Writes a formatted string to memory.
@@ -257,29 +276,30 @@ fn store(caller: &mut Caller<'_>, to: GuestAddr, mut text: Vec<u8>) -> Result<i3
 }
 
 pub(crate) fn sprintf(
-    _: &mut Kernel,
+    parts: &mut Parts,
     caller: &mut Caller<'_>,
     to: GuestAddr,
     pattern: GuestAddr,
     arguments: Varargs,
 ) -> Result<i32, TrapKind> {
     let text = formatted(caller, pattern, arguments)?;
+    parts.check_room(caller, "sprintf", to, text.len() + 1);
     store(caller, to, text)
 }
 
 pub(crate) fn vsprintf(
-    kernel: &mut Kernel,
+    parts: &mut Parts,
     caller: &mut Caller<'_>,
     to: GuestAddr,
     pattern: GuestAddr,
     arguments: GuestAddr,
 ) -> Result<i32, TrapKind> {
-    sprintf(kernel, caller, to, pattern, Varargs(arguments))
+    sprintf(parts, caller, to, pattern, Varargs(arguments))
 }
 
 /// At most `size` bytes with the terminator; returns the full length.
 pub(crate) fn snprintf(
-    _: &mut Kernel,
+    _: &mut Parts,
     caller: &mut Caller<'_>,
     to: GuestAddr,
     size: u32,
@@ -296,18 +316,18 @@ pub(crate) fn snprintf(
 }
 
 pub(crate) fn vsnprintf(
-    kernel: &mut Kernel,
+    parts: &mut Parts,
     caller: &mut Caller<'_>,
     to: GuestAddr,
     size: u32,
     pattern: GuestAddr,
     arguments: GuestAddr,
 ) -> Result<i32, TrapKind> {
-    snprintf(kernel, caller, to, size, pattern, Varargs(arguments))
+    snprintf(parts, caller, to, size, pattern, Varargs(arguments))
 }
 
 pub(crate) fn sscanf(
-    _: &mut Kernel,
+    _: &mut Parts,
     caller: &mut Caller<'_>,
     string: GuestAddr,
     pattern: GuestAddr,
@@ -349,7 +369,7 @@ mod tests {
             desk.call_i32("printf", &[pattern, 0]);
         }
         assert!(!desk.is_done("printf", &[pattern, 0]));
-        desk.kernel.console.send();
+        desk.kernel.parts.out.console.send();
         assert_eq!(desk.wake_i32("printf", &[pattern, 0]), 2);
         assert_eq!(desk.printed().len(), 255);
     }

@@ -1,26 +1,27 @@
 //! From a firmware address to the Rust function that answers, expanded from the table.
 //!
-//! A firmware function takes the kernel, the caller and its C arguments, and returns what it naturally returns:
+//! A firmware function takes the parts, the caller and its C arguments, and returns what it naturally returns:
 //! nothing, a number, a `Result` if it may trap, an `Outcome` if it may wait. A row of the table without a function,
 //! or a function whose arguments differ in number, is a compile error that names it.
 
 use kmotiondef::GuestAddr;
+use vm::call::CallArguments;
 use vm::firmware::{Caller, Outcome, Signature, Value};
 use vm::operand::Class;
 use vm::slot::Slot;
 use vm::trap::TrapKind;
 
+use super::parts::Parts;
 use crate::firmware::{
     console, coord, gather, io, konnect, math, motion, persist, serial, snapamp, spindle, stdlib, string,
     sync, thread, time,
 };
-use crate::kernel::Kernel;
 
 /// What a call came to.
 pub(crate) type Answer = Result<Outcome<Value>, TrapKind>;
 
 /// One firmware function behind one signature.
-pub(crate) type Handler = fn(&mut Kernel, &mut Caller<'_>) -> Answer;
+pub(crate) type Handler = fn(&mut Parts, &mut Caller<'_>) -> Answer;
 
 /// The address of the values behind `...`.
 #[derive(Clone, Copy, Debug)]
@@ -30,8 +31,8 @@ pub(crate) struct Varargs(pub(crate) GuestAddr);
 trait FromGuest {
     /// The class of register that carries it.
     const CLASS: Class;
-    /// The value in a register.
-    fn from_guest(slot: u64) -> Self;
+    /// The argument at a position.
+    fn from_guest(arguments: CallArguments<'_>, position: usize) -> Self;
 }
 
 macro_rules! slots {
@@ -39,8 +40,8 @@ macro_rules! slots {
         impl FromGuest for $ty {
             const CLASS: Class = <$ty as Slot>::CLASS;
 
-            fn from_guest(slot: u64) -> Self {
-                Slot::from_slot(slot)
+            fn from_guest(arguments: CallArguments<'_>, position: usize) -> Self {
+                arguments.get(position)
             }
         }
     )*};
@@ -50,16 +51,16 @@ slots!(i32, u32, f32, f64, GuestAddr);
 impl FromGuest for u8 {
     const CLASS: Class = Class::I32;
 
-    fn from_guest(slot: u64) -> Self {
-        slot as Self
+    fn from_guest(arguments: CallArguments<'_>, position: usize) -> Self {
+        arguments.get::<u32>(position) as Self
     }
 }
 
 impl FromGuest for Varargs {
     const CLASS: Class = Class::I32;
 
-    fn from_guest(slot: u64) -> Self {
-        Self(GuestAddr::from_slot(slot))
+    fn from_guest(arguments: CallArguments<'_>, position: usize) -> Self {
+        Self(arguments.get(position))
     }
 }
 
@@ -119,26 +120,26 @@ impl<T: IntoOutcome> IntoOutcome for Result<T, TrapKind> {
     }
 }
 
-/// A Rust function that takes `Parameters` behind kernel and caller.
+/// A Rust function that takes `Parameters` behind parts and caller.
 trait Function<Parameters> {
     /// The classes of its arguments.
     const PARAMETERS: &'static [Class];
     /// The class of its result.
     const RESULT: Option<Class>;
     /// Calls it with the caller's arguments.
-    fn invoke(self, kernel: &mut Kernel, caller: &mut Caller<'_>) -> Answer;
+    fn invoke(self, parts: &mut Parts, caller: &mut Caller<'_>) -> Answer;
 }
 
 impl<F, R> Function<()> for F
 where
-    F: Fn(&mut Kernel, &mut Caller<'_>) -> R,
+    F: Fn(&mut Parts, &mut Caller<'_>) -> R,
     R: IntoOutcome,
 {
     const PARAMETERS: &'static [Class] = &[];
     const RESULT: Option<Class> = R::CLASS;
 
-    fn invoke(self, kernel: &mut Kernel, caller: &mut Caller<'_>) -> Answer {
-        self(kernel, caller).into_outcome()
+    fn invoke(self, parts: &mut Parts, caller: &mut Caller<'_>) -> Answer {
+        self(parts, caller).into_outcome()
     }
 }
 
@@ -146,18 +147,18 @@ macro_rules! functions {
     ($(($($parameter:ident)*);)*) => {$(
         impl<F, R, $($parameter),*> Function<($($parameter,)*)> for F
         where
-            F: Fn(&mut Kernel, &mut Caller<'_>, $($parameter),*) -> R,
+            F: Fn(&mut Parts, &mut Caller<'_>, $($parameter),*) -> R,
             R: IntoOutcome,
             $($parameter: FromGuest,)*
         {
             const PARAMETERS: &'static [Class] = &[$($parameter::CLASS),*];
             const RESULT: Option<Class> = R::CLASS;
 
-            fn invoke(self, kernel: &mut Kernel, caller: &mut Caller<'_>) -> Answer {
-                let mut slots = caller.arguments.iter().copied();
-                let mut next = || slots.next().unwrap_or_default();
+            fn invoke(self, parts: &mut Parts, caller: &mut Caller<'_>) -> Answer {
+                let (arguments, mut positions) = (caller.arguments, 0..);
                 // The machine has checked their number against the signature.
-                self(kernel, caller, $($parameter::from_guest(next())),*).into_outcome()
+                self(parts, caller, $($parameter::from_guest(arguments, positions.next().unwrap_or(0))),*)
+                    .into_outcome()
             }
         }
     )*};
@@ -183,7 +184,7 @@ macro_rules! handlers {
     )*) => {
         /// One handler a function, by its number in the table.
         pub(crate) const HANDLERS: &[Handler] =
-            &[$(|kernel, caller| Function::invoke($group::$function, kernel, caller)),*];
+            &[$(|parts, caller| Function::invoke($group::$function, parts, caller)),*];
 
         /// The signatures of the functions, by number.
         pub(crate) fn signatures() -> Vec<Signature> {
@@ -223,5 +224,20 @@ mod tests {
             assert_eq!(rust.params, params, "{}", row.prototype());
             assert_eq!(rust.result, row.result.class().map(class), "{}", row.prototype());
         }
+    }
+
+    #[test]
+    fn every_call_costs_what_was_measured() {
+        let measured = crate::text::vectors::rows("costs.jsonl");
+        let mut compared = 0;
+        for row in FIRMWARE_FUNCTIONS {
+            let of_row = |line: &&serde_json::Value| line["kind"] == "function" && line["name"] == row.name;
+            let cost = measured.iter().find(of_row).and_then(|line| line["table_cost"].as_i64());
+            if let Some(cost) = cost {
+                assert_eq!(row.cost.get(), cost, "{}", row.name);
+                compared += 1;
+            }
+        }
+        assert!(compared > 150, "{compared}");
     }
 }

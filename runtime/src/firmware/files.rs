@@ -5,16 +5,18 @@
 //! `read_disk_buffer`, and each line that is taken asks for the next. `FILE` is an int and the board keeps no table: one
 //! handle stands for the file open for reading, one for the file open for writing.
 
-use kmotiondef::GuestAddr;
 use kmotiondef::limits::MAX_READ_DISK_LENGTH;
 use kmotiondef::variables::{READ_DISK_BUFFER, READ_DISK_BUFFER_STATUS};
+use kmotiondef::{Cycles, GuestAddr};
 use vm::firmware::{Caller, Outcome, Wake};
 use vm::trap::TrapKind;
 
-use super::console::{converted, cut, formatted, put, resumed};
+use super::calls::Continuation;
+use super::console::{converted, cut, formatted, put, resumed, spend_queueing};
+use super::parts::Parts;
 use super::string::text;
 use crate::firmware::dispatch::Varargs;
-use crate::kernel::{Continuation, Kernel};
+use crate::out::Message;
 use crate::pc::disk::{ARRIVED, ASKED, Request};
 use crate::text::{Arguments, format};
 use crate::views::Typed;
@@ -23,17 +25,6 @@ use crate::views::Typed;
 const READING: GuestAddr = GuestAddr::new(0x1001_A418);
 /// The handle of the file open for writing.
 const WRITING: GuestAddr = GuestAddr::new(0x1001_A41C);
-
-/// What the board remembers of its files.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Reading {
-    /// Whether the last opening or reading failed or came to the end, which `feof` tells.
-    has_failed: bool,
-    /// Whether it was said that lines written in parts have stray characters.
-    told_of_parts: bool,
-    /// Whether it was said that `%` is taken twice.
-    told_of_percent: bool,
-}
 
 /// Values for a text that is taken as a format once more: there are none.
 struct Nothing;
@@ -65,8 +56,8 @@ fn printed(request: Request, text: &[u8]) -> Result<Vec<u8>, TrapKind> {
 }
 
 /// Sends a request and returns `result` when the queue has taken it.
-fn send(kernel: &mut Kernel, caller: &Caller<'_>, request: Request, result: GuestAddr) -> Outcome<GuestAddr> {
-    let outcome = put(kernel, caller, &[request.code(), b'\n'], result.get().cast_signed());
+fn send(parts: &mut Parts, caller: &Caller<'_>, request: Request, result: GuestAddr) -> Outcome<GuestAddr> {
+    let outcome = put(parts, caller, &[request.code(), b'\n'], result.get().cast_signed());
     address(outcome)
 }
 
@@ -81,23 +72,23 @@ fn address(outcome: Outcome<i32>) -> Outcome<GuestAddr> {
 }
 
 /// What became of the line that was asked for last: `None` while it is on its way.
-fn arrival(kernel: &mut Kernel, caller: &Caller<'_>) -> Option<bool> {
+fn arrival(parts: &mut Parts, caller: &Caller<'_>) -> Option<bool> {
     let status = caller.memory.get(READ_DISK_BUFFER_STATUS);
     if status == ASKED {
         return None;
     }
-    kernel.reading.has_failed = status != ARRIVED;
+    parts.calls.reading.has_failed = status != ARRIVED;
     Some(status == ARRIVED)
 }
 
 pub(crate) fn fopen(
-    kernel: &mut Kernel,
+    parts: &mut Parts,
     caller: &mut Caller<'_>,
     path: GuestAddr,
     mode: GuestAddr,
 ) -> Result<Outcome<GuestAddr>, TrapKind> {
     if caller.woken.is_some() {
-        return Ok(opened(kernel, caller));
+        return Ok(opened(parts, caller));
     }
     let (path, mode) = (text(caller, path)?, text(caller, mode)?);
     let (request, handle) = match mode.first() {
@@ -110,32 +101,32 @@ pub(crate) fn fopen(
     if request == Request::Open {
         caller.memory.set(READ_DISK_BUFFER_STATUS, ASKED);
     }
-    let outcome = put(kernel, caller, &line, handle.get().cast_signed());
+    let outcome = put(parts, caller, &line, handle.get().cast_signed());
     // The answer comes later than the request goes.
     let waits = request == Request::Open && matches!(outcome, Outcome::Done(_));
     Ok(if waits { Outcome::Wait(Wake::Retry) } else { address(outcome) })
 }
 
 /// Goes on with an opening: the request is still to be sent, or its answer to come.
-fn opened(kernel: &mut Kernel, caller: &Caller<'_>) -> Outcome<GuestAddr> {
-    if let Some(Continuation::Print { rest, result }) = kernel.take(caller) {
-        let outcome = address(put(kernel, caller, &rest, result));
+fn opened(parts: &mut Parts, caller: &Caller<'_>) -> Outcome<GuestAddr> {
+    if let Some(Continuation::Print { rest, result }) = parts.calls.take(caller) {
+        let outcome = address(put(parts, caller, &rest, result));
         let waits = outcome == Outcome::Done(READING);
         return if waits { Outcome::Wait(Wake::Retry) } else { outcome };
     }
-    match arrival(kernel, caller) {
+    match arrival(parts, caller) {
         None => Outcome::Wait(Wake::Retry),
         Some(true) => Outcome::Done(READING),
         Some(false) => Outcome::Done(GuestAddr::NULL),
     }
 }
 
-pub(crate) fn fclose(kernel: &mut Kernel, caller: &mut Caller<'_>, file: GuestAddr) -> Outcome<i32> {
-    if let Some(outcome) = resumed(kernel, caller) {
+pub(crate) fn fclose(parts: &mut Parts, caller: &mut Caller<'_>, file: GuestAddr) -> Outcome<i32> {
+    if let Some(outcome) = resumed(parts, caller) {
         return outcome;
     }
     let request = if file == READING { Request::CloseReading } else { Request::CloseWriting };
-    put(kernel, caller, &[request.code(), b'\n'], 0)
+    put(parts, caller, &[request.code(), b'\n'], 0)
 }
 
 /// Whether there is a sign that another one does not follow.
@@ -151,38 +142,37 @@ fn has_conversion(text: &[u8]) -> bool {
 }
 
 /// Says once each what is odd about writing on the board.
-fn warn(kernel: &mut Kernel, caller: &Caller<'_>, text: &[u8]) {
-    if kernel.console.is_holding() && !std::mem::replace(&mut kernel.reading.told_of_parts, true) {
-        let text = "fprintf: the line before has not ended; as on the board, a stray character 2 stands where this \
-                    text begins, and a line begun by printf goes to the console. Write each line by one call";
-        kernel.diagnose(caller, text.to_owned());
+fn warn(parts: &mut Parts, caller: &Caller<'_>, text: &[u8]) {
+    if parts.out.console.is_holding() {
+        parts.out.diagnose(caller, Message::LineInParts {});
     }
-    if has_conversion(text) && !std::mem::replace(&mut kernel.reading.told_of_percent, true) {
-        let text = "fprintf: the text has a % in it, which the board takes as a conversion once more. Write %%%% for it";
-        kernel.diagnose(caller, text.to_owned());
+    if has_conversion(text) {
+        parts.out.diagnose(caller, Message::PercentTwice {});
     }
 }
 
 /// Writes formatted text: a line, or the part of one.
 pub(crate) fn fprintf(
-    kernel: &mut Kernel,
+    parts: &mut Parts,
     caller: &mut Caller<'_>,
     _file: GuestAddr,
     pattern: GuestAddr,
     arguments: Varargs,
 ) -> Result<Outcome<i32>, TrapKind> {
-    if let Some(outcome) = resumed(kernel, caller) {
+    if let Some(outcome) = resumed(parts, caller) {
         return Ok(outcome);
     }
     let text = formatted(caller, pattern, arguments)?;
     let line = printed(Request::Write, cut(&text))?;
-    warn(kernel, caller, &text);
-    Ok(put(kernel, caller, &line, 0))
+    spend_queueing(caller, cut(&text));
+    caller.spend(Cycles::new(55 * cut(&text).len() as i64));
+    warn(parts, caller, &text);
+    Ok(put(parts, caller, &line, 0))
 }
 
 /// The next line, up to `limit` characters; without a terminator when the line has as many or more.
 pub(crate) fn fgets(
-    kernel: &mut Kernel,
+    parts: &mut Parts,
     caller: &mut Caller<'_>,
     to: GuestAddr,
     limit: i32,
@@ -191,10 +181,10 @@ pub(crate) fn fgets(
     if file != READING {
         return Ok(Outcome::Done(GuestAddr::NULL));
     }
-    if let Some(outcome) = sent(kernel, caller) {
+    if let Some(outcome) = sent(parts, caller) {
         return Ok(address(outcome));
     }
-    match arrival(kernel, caller) {
+    match arrival(parts, caller) {
         None => return Ok(Outcome::Wait(Wake::Retry)),
         Some(false) => return Ok(Outcome::Done(GuestAddr::NULL)),
         Some(true) => {}
@@ -204,14 +194,14 @@ pub(crate) fn fgets(
     line.truncate(usize::try_from(limit).unwrap_or(0));
     caller.memory.write_bytes(to, &line)?;
     caller.memory.set(READ_DISK_BUFFER_STATUS, ASKED);
-    Ok(send(kernel, caller, Request::NextLine, to))
+    Ok(send(parts, caller, Request::NextLine, to))
 }
 
 /// Goes on with sending the request for the next line, if the call waits for that.
-fn sent(kernel: &mut Kernel, caller: &Caller<'_>) -> Option<Outcome<i32>> {
+fn sent(parts: &mut Parts, caller: &Caller<'_>) -> Option<Outcome<i32>> {
     caller.woken?;
-    match kernel.take(caller) {
-        Some(Continuation::Print { rest, result }) => Some(put(kernel, caller, &rest, result)),
+    match parts.calls.take(caller) {
+        Some(Continuation::Print { rest, result }) => Some(put(parts, caller, &rest, result)),
         _ => None,
     }
 }
@@ -223,7 +213,7 @@ fn buffered(caller: &Caller<'_>) -> Result<Vec<u8>, TrapKind> {
 
 /// Converts the next line, at most 128 characters of it. At the end of the file the last line is converted again.
 pub(crate) fn fscanf(
-    kernel: &mut Kernel,
+    parts: &mut Parts,
     caller: &mut Caller<'_>,
     file: GuestAddr,
     pattern: GuestAddr,
@@ -232,10 +222,10 @@ pub(crate) fn fscanf(
     if file != READING {
         return Ok(Outcome::Done(0));
     }
-    if let Some(outcome) = sent(kernel, caller) {
+    if let Some(outcome) = sent(parts, caller) {
         return Ok(outcome);
     }
-    let Some(is_there) = arrival(kernel, caller) else { return Ok(Outcome::Wait(Wake::Retry)) };
+    let Some(is_there) = arrival(parts, caller) else { return Ok(Outcome::Wait(Wake::Retry)) };
     let pattern = text(caller, pattern)?;
     let line = buffered(caller)?;
     let count = converted(caller, cut(&line), &pattern, places)?;
@@ -243,10 +233,10 @@ pub(crate) fn fscanf(
         return Ok(Outcome::Done(count));
     }
     caller.memory.set(READ_DISK_BUFFER_STATUS, ASKED);
-    Ok(put(kernel, caller, &[Request::NextLine.code(), b'\n'], count))
+    Ok(put(parts, caller, &[Request::NextLine.code(), b'\n'], count))
 }
 
 /// 1 after a failed read or opening.
-pub(crate) fn feof(kernel: &mut Kernel, _: &mut Caller<'_>, _file: GuestAddr) -> i32 {
-    i32::from(kernel.reading.has_failed)
+pub(crate) fn feof(parts: &mut Parts, _: &mut Caller<'_>, _file: GuestAddr) -> i32 {
+    i32::from(parts.calls.reading.has_failed)
 }

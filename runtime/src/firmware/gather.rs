@@ -6,7 +6,8 @@ use kmotiondef::variables::{GATHER, GATHER_BUFFER};
 use kmotiondef::{AxisId, GuestAddr};
 use vm::firmware::Caller;
 
-use crate::kernel::Kernel;
+use super::parts::Parts;
+use crate::out::Message;
 use crate::views::{Typed, chan};
 
 /// A place beyond any end: recording is idle.
@@ -15,14 +16,9 @@ const IDLE: GuestAddr = GuestAddr::new(0xFFFF_FFF8);
 const SAMPLE: u32 = 48;
 
 /// Records destination, position, output and three amplifier readings of an axis.
-pub(crate) fn setup_gather_all_on_axis(
-    kernel: &mut Kernel,
-    caller: &mut Caller<'_>,
-    axis: i32,
-    samples: i32,
-) {
+pub(crate) fn setup_gather_all_on_axis(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32, samples: i32) {
     let Some(axis) = AxisId::new(axis) else {
-        kernel.diagnose(caller, format!("SetupGatherAllOnAxis({axis}, …): there are axes 0 to 7"));
+        parts.out.diagnose(caller, Message::NoSuchAxis { function: "SetupGatherAllOnAxis", axis });
         return;
     };
     let chan = chan(axis);
@@ -49,13 +45,13 @@ pub(crate) fn setup_gather_all_on_axis(
 }
 
 /// Starts recording at the beginning of the buffer.
-pub(crate) fn trigger_gather(_: &mut Kernel, caller: &mut Caller<'_>) {
+pub(crate) fn trigger_gather(_: &mut Parts, caller: &mut Caller<'_>) {
     let start = caller.memory.get(GATHER_BUFFER);
     caller.memory.set(GATHER.field(Gather::BUFPTR), start);
 }
 
 /// 1 when recording has reached its end.
-pub(crate) fn check_done_gather(_: &mut Kernel, caller: &mut Caller<'_>) -> i32 {
+pub(crate) fn check_done_gather(_: &mut Parts, caller: &mut Caller<'_>) -> i32 {
     let memory = &*caller.memory;
     i32::from(memory.get(GATHER.field(Gather::BUFPTR)) >= memory.get(GATHER.field(Gather::ENDPTR)))
 }

@@ -1,215 +1,163 @@
 //! Digital and analog inputs and outputs. Source: io.md.
 
-use kmotiondef::bits::{BitKind, range_of};
+use kmotiondef::Bit;
+use kmotiondef::bits::{BitDirection, BitKind, range_of};
 use kmotiondef::limits::{MAX_PWM_VALUE, MAX_PWMC_VALUE, MAX_PWMR_VALUE};
-use kmotiondef::variables::{
-    ADC_BUFFER_IN, BIT_DIR_SHADOW, BIT_DIR_SHADOW_SNAP0, BIT_DIR_SHADOW_SNAP1, KSTEP_PRESENT, LAST_PWM,
-    VIRTUAL_BITS, VIRTUAL_BITS_EX,
-};
-use kmotiondef::{Bit, Cycles, Place};
+use kmotiondef::variables::{ADC_BUFFER_IN, KSTEP_PRESENT};
 use vm::firmware::Caller;
-use vm::memory::GuestMemory;
 
-use crate::kernel::Kernel;
+use super::parts::Parts;
+use crate::io::amplifiers::{antiphase, current, recirculate, store_pwm};
+use crate::io::fpga::kanalog_pins;
+use crate::io::{bits, kanalog};
+use crate::out::Message;
 use crate::views::Typed;
-
-/// The first virtual bit.
-const VIRTUAL: u16 = 48;
-/// The first extended virtual bit.
-const VIRTUAL_EX: u16 = 1024;
-/// The first pin of SnapAmp 0 and of SnapAmp 1.
-const SNAP: [u16; 2] = [64, 96];
-
-/// The word and mask that hold a bit kept in memory.
-fn memory_bit(bit: Bit, kind: BitKind) -> Option<(Place<i32>, i32)> {
-    match kind {
-        BitKind::Virtual => Some((VIRTUAL_BITS, 1 << (bit.get() - VIRTUAL))),
-        BitKind::VirtualEx => {
-            let number = bit.get() - VIRTUAL_EX;
-            Some((VIRTUAL_BITS_EX.element(usize::from(number / 32)), 1 << (number % 32)))
-        }
-        _ => None,
-    }
-}
-
-/// The word and mask that hold the direction of a SnapAmp's pin.
-fn snap_direction(bit: Bit) -> (Place<i32>, i32) {
-    if bit.get() < SNAP[1] {
-        (BIT_DIR_SHADOW_SNAP0, 1 << (bit.get() - SNAP[0]))
-    } else {
-        (BIT_DIR_SHADOW_SNAP1, 1 << (bit.get() - SNAP[1]))
-    }
-}
-
-/// Sets or clears `mask` in a word.
-fn change(memory: &mut GuestMemory, word: Place<i32>, mask: i32, set: bool) {
-    let value = memory.get(word);
-    memory.set(word, if set { value | mask } else { value & !mask });
-}
+use crate::world::stimulus::Asker;
 
 /// Checks a bit number that a program names.
-fn checked(kernel: &mut Kernel, caller: &Caller<'_>, function: &str, bit: i32) -> Option<Bit> {
+fn checked(parts: &mut Parts, caller: &Caller<'_>, function: &'static str, bit: i32) -> Option<Bit> {
     let checked = Bit::new(bit);
     if checked.is_none() {
-        kernel.diagnose(caller, format!("{function}({bit}): there are bits 0 to {}", Bit::MAX));
+        parts.out.diagnose(caller, Message::NoSuchBit { function, bit });
     }
     checked
 }
 
-pub(crate) fn set_bit_direction(kernel: &mut Kernel, caller: &mut Caller<'_>, bit: i32, direction: i32) {
-    let Some(bit) = checked(kernel, caller, "SetBitDirection", bit) else { return };
-    let output = direction != 0;
-    match range_of(bit).map(|range| range.kind) {
-        Some(BitKind::Pin) => {
-            if output {
-                kernel.check_jp7(caller, bit);
-            }
-            kernel.pins.set_output(bit, output, caller.now());
-            let word = BIT_DIR_SHADOW.element(bit.index() / 32);
-            change(caller.memory, word, 1 << (bit.get() % 32), output);
-        }
-        Some(BitKind::SnapGpio) => {
-            let (word, mask) = snap_direction(bit);
-            change(caller.memory, word, mask, output);
-        }
-        _ => {}
+pub(crate) fn set_bit_direction(parts: &mut Parts, caller: &mut Caller<'_>, bit: i32, direction: i32) {
+    let Some(bit) = checked(parts, caller, "SetBitDirection", bit) else { return };
+    let (is_output, now) = (direction != 0, caller.now());
+    if is_output && (parts.io.pins.is_declared(bit) || parts.machine.mechanics.contact(bit).is_some()) {
+        parts.out.diagnose(caller, Message::OutputAgainstInput { bit });
     }
-    kernel.settle(caller.now());
+    if is_output && range_of(bit).is_some_and(|range| range.kind == BitKind::Pin) {
+        check_jp7(parts, caller, bit);
+    }
+    bits::set_direction(&mut parts.io, caller.memory, bit, is_output, now);
+    parts.lines(now).settle();
+}
+
+/// A program makes a pin of JP7 an output.
+fn check_jp7(parts: &mut Parts, caller: &Caller<'_>, bit: Bit) {
+    let Parts { io, out, .. } = parts;
+    if kanalog::is_served(&io.fpga, caller.memory)
+        && !io.pins.is_output(bit)
+        && let Some(message) = kanalog_pins(bit)
+    {
+        out.diagnose(caller, message);
+    }
 }
 
 /// 1 for outputs. Outputs of option boards count as 0, as the board has it.
-pub(crate) fn get_bit_direction(kernel: &mut Kernel, caller: &mut Caller<'_>, bit: i32) -> i32 {
-    let Some(bit) = checked(kernel, caller, "GetBitDirection", bit) else { return 0 };
-    i32::from(match range_of(bit).map(|range| range.kind) {
-        Some(BitKind::Pin | BitKind::Led) => kernel.pins.is_output(bit),
-        Some(BitKind::Virtual) => true,
-        _ => false,
-    })
+pub(crate) fn get_bit_direction(parts: &mut Parts, caller: &mut Caller<'_>, bit: i32) -> i32 {
+    let Some(bit) = checked(parts, caller, "GetBitDirection", bit) else { return 0 };
+    i32::from(bits::is_output(&parts.io, bit))
 }
 
-pub(crate) fn set_bit(kernel: &mut Kernel, caller: &mut Caller<'_>, bit: i32) {
-    write(kernel, caller, "SetBit", bit, true);
+pub(crate) fn set_bit(parts: &mut Parts, caller: &mut Caller<'_>, bit: i32) {
+    write(parts, caller, "SetBit", bit, true);
 }
 
-pub(crate) fn clear_bit(kernel: &mut Kernel, caller: &mut Caller<'_>, bit: i32) {
-    write(kernel, caller, "ClearBit", bit, false);
+pub(crate) fn clear_bit(parts: &mut Parts, caller: &mut Caller<'_>, bit: i32) {
+    write(parts, caller, "ClearBit", bit, false);
 }
 
-pub(crate) fn set_state_bit(kernel: &mut Kernel, caller: &mut Caller<'_>, bit: i32, state: i32) {
-    write(kernel, caller, "SetStateBit", bit, state != 0);
+pub(crate) fn set_state_bit(parts: &mut Parts, caller: &mut Caller<'_>, bit: i32, state: i32) {
+    write(parts, caller, "SetStateBit", bit, state != 0);
 }
 
-fn write(kernel: &mut Kernel, caller: &mut Caller<'_>, function: &str, bit: i32, level: bool) {
-    if let Some(bit) = checked(kernel, caller, function, bit) {
+fn write(parts: &mut Parts, caller: &mut Caller<'_>, function: &'static str, bit: i32, level: bool) {
+    if let Some(bit) = checked(parts, caller, function, bit) {
+        check_written(parts, caller, function, bit);
         let now = caller.now();
-        write_bit(kernel, caller.memory, bit, level, now);
+        parts.lines(now).write(caller.memory, bit, level);
     }
 }
 
-/// Writes a bit; inputs and numbers that nothing answers ignore it.
-pub(crate) fn write_bit(kernel: &mut Kernel, memory: &mut GuestMemory, bit: Bit, level: bool, now: Cycles) {
-    let Some(kind) = range_of(bit).map(|range| range.kind) else { return };
-    match kind {
-        BitKind::Pin | BitKind::Led => kernel.pins.set_latch(bit, level, now),
-        BitKind::KanalogOptoOutput | BitKind::KanalogFet | BitKind::KanalogOutput => {
-            kernel.check_kanalog(memory, bit, now);
-            kernel.pins.write(bit, level, now);
+/// A program writes to a bit: whether that can have an effect.
+fn check_written(parts: &mut Parts, caller: &Caller<'_>, function: &'static str, bit: Bit) {
+    let Some(range) = range_of(bit) else {
+        return parts.out.diagnose(caller, Message::BitUnused { function, bit });
+    };
+    match range.direction {
+        BitDirection::Input => parts.out.diagnose(caller, Message::InputWritten { function, bit }),
+        BitDirection::Programmable if range.kind == BitKind::Pin && !parts.io.pins.is_output(bit) => {
+            parts.calls.notices.latch(caller, function, bit);
         }
-        BitKind::SnapGpio => kernel.pins.write(bit, level, now),
-        _ => {
-            if let Some((word, mask)) = memory_bit(bit, kind) {
-                change(memory, word, mask, level);
-                kernel.pins.changes.sweep(memory, now);
-            }
-        }
-    }
-    kernel.settle(now);
-}
-
-/// The state of a bit and whether it is an input from outside.
-pub(crate) fn bit_state(kernel: &Kernel, memory: &GuestMemory, bit: Bit) -> (bool, bool) {
-    let pins = &kernel.pins;
-    let Some(kind) = range_of(bit).map(|range| range.kind) else { return (false, false) };
-    match kind {
-        BitKind::Pin | BitKind::Led => (pins.level(bit), !pins.is_output(bit)),
-        BitKind::KanalogOptoOutput | BitKind::KanalogFet | BitKind::KanalogOutput => {
-            (pins.written(bit), false)
-        }
-        BitKind::SnapGpio => {
-            let (word, mask) = snap_direction(bit);
-            if memory.get(word) & mask != 0 { (pins.written(bit), false) } else { (pins.input(bit), true) }
-        }
-        // Nobody switches the banks of KStep's inputs through before it is said to be there.
-        BitKind::KstepInput if memory.get(KSTEP_PRESENT) == 0 => (false, false),
-        _ => match memory_bit(bit, kind) {
-            Some((word, mask)) => (memory.get(word) & mask != 0, false),
-            None => (pins.input(bit), true),
-        },
+        BitDirection::Programmable | BitDirection::Output | BitDirection::Memory => {}
     }
 }
 
-pub(crate) fn read_bit(kernel: &mut Kernel, caller: &mut Caller<'_>, bit: i32) -> i32 {
-    let Some(bit) = checked(kernel, caller, "ReadBit", bit) else { return 0 };
-    let (level, is_input) = bit_state(kernel, caller.memory, bit);
-    if is_input && !kernel.pins.is_driven(bit) {
-        kernel.undriven(caller, bit);
+/// A program reads a bit: whether it can ever change.
+fn check_read(parts: &mut Parts, caller: &Caller<'_>, bit: Bit) {
+    match range_of(bit).map(|range| range.kind) {
+        None => parts.out.diagnose(caller, Message::BitUnused { function: "ReadBit", bit }),
+        Some(BitKind::KstepInput) if caller.memory.get(KSTEP_PRESENT) == 0 => {
+            parts.out.diagnose(caller, Message::KstepAbsent { bit });
+        }
+        Some(BitKind::Pin) if parts.io.pins.is_generated(bit) && parts.io.stepgens.makes(bit) => {
+            parts.out.diagnose(caller, Message::StepPinRead { bit });
+        }
+        _ => {}
     }
-    if is_input && let Some(assist) = &mut kernel.assist {
-        assist.polled(bit, caller.thread);
+}
+
+pub(crate) fn read_bit(parts: &mut Parts, caller: &mut Caller<'_>, bit: i32) -> i32 {
+    let Some(bit) = checked(parts, caller, "ReadBit", bit) else { return 0 };
+    let (level, is_input) = bits::bit_state(&parts.io, caller.memory, bit);
+    if !is_input || range_of(bit).is_none() {
+        check_read(parts, caller, bit);
+        return i32::from(level);
+    }
+    if let Some(assist) = &mut parts.world.assist {
+        assist.polled(bit, Asker { thread: caller.thread, at: caller.at });
+    } else if !parts.io.pins.is_driven(bit) {
+        parts.out.diagnose(caller, Message::UndrivenInput { bit, level: level.into() });
     }
     i32::from(level)
 }
 
 /// The raw conversion of an analog input.
-pub(crate) fn read_adc(kernel: &mut Kernel, caller: &mut Caller<'_>, channel: i32) -> i32 {
+pub(crate) fn read_adc(parts: &mut Parts, caller: &mut Caller<'_>, channel: i32) -> i32 {
     let Some(channel) = usize::try_from(channel).ok().filter(|&channel| channel < 8) else {
-        kernel.diagnose(caller, format!("ReadADC({channel}): there are channels 0 to 7"));
+        parts.out.diagnose(caller, Message::NoSuchAdc { channel });
         return 0;
     };
     caller.memory.get(ADC_BUFFER_IN.element(channel))
 }
 
-/// Stores the word sent to a PWM channel.
-#[inline]
-pub(crate) fn store_pwm(memory: &mut GuestMemory, channel: i32, word: i32) {
-    if let Some(channel) = usize::try_from(channel).ok().filter(|&channel| channel < 16) {
-        memory.set(LAST_PWM.element(channel), word);
+/// A value for a PWM output: whether there is the channel, and it takes the value.
+fn check_pwm(
+    parts: &mut Parts,
+    caller: &Caller<'_>,
+    function: &'static str,
+    (channel, value): (i32, i32),
+    most: i32,
+) {
+    if !(0..16).contains(&channel) {
+        parts.out.diagnose(caller, Message::NoSuchPwm { function, channel });
+    } else if !(-most..=most).contains(&value) {
+        parts.out.diagnose(caller, Message::PwmRange { function, channel, value, most });
     }
 }
 
-/// The word of a locked-antiphase value.
-#[inline]
-pub(crate) fn antiphase(value: i32) -> i32 {
-    value.clamp(-MAX_PWM_VALUE, MAX_PWM_VALUE) + 1280
-}
-
-/// The word of a recirculate value.
-pub(crate) fn recirculate(value: i32) -> i32 {
-    let value = value.clamp(-MAX_PWMR_VALUE, MAX_PWMR_VALUE);
-    if value < 0 { 512 - value } else { value }
-}
-
-/// The word of a current-loop value.
-#[inline]
-pub(crate) fn current(value: i32) -> i32 {
-    value.clamp(-MAX_PWMC_VALUE, MAX_PWMC_VALUE) + 41_984
-}
-
-pub(crate) fn write_pwm(_: &mut Kernel, caller: &mut Caller<'_>, channel: i32, value: i32) {
+pub(crate) fn write_pwm(parts: &mut Parts, caller: &mut Caller<'_>, channel: i32, value: i32) {
+    check_pwm(parts, caller, "WritePWM", (channel, value), MAX_PWM_VALUE);
     store_pwm(caller.memory, channel, antiphase(value));
 }
 
-pub(crate) fn write_pwmr(_: &mut Kernel, caller: &mut Caller<'_>, channel: i32, value: i32) {
+pub(crate) fn write_pwmr(parts: &mut Parts, caller: &mut Caller<'_>, channel: i32, value: i32) {
+    check_pwm(parts, caller, "WritePWMR", (channel, value), MAX_PWMR_VALUE);
     store_pwm(caller.memory, channel, recirculate(value));
 }
 
-pub(crate) fn write_pwmc(_: &mut Kernel, caller: &mut Caller<'_>, channel: i32, value: i32) {
+pub(crate) fn write_pwmc(parts: &mut Parts, caller: &mut Caller<'_>, channel: i32, value: i32) {
+    check_pwm(parts, caller, "WritePWMC", (channel, value), MAX_PWMC_VALUE);
     store_pwm(caller.memory, channel, current(value));
 }
 
 #[cfg(test)]
 mod tests {
-    use kmotiondef::variables::KANALOG_PRESENT;
+    use kmotiondef::variables::{BIT_DIR_SHADOW, KANALOG_PRESENT, VIRTUAL_BITS};
 
     use super::*;
     use crate::out::EventKind;
@@ -263,19 +211,11 @@ mod tests {
         for (bit, output) in [(3, 1), (4, 0), (16, 1), (5, 1), (6, 1)] {
             desk.call("SetBitDirection", &[bit, output]);
         }
-        let told = desk.kernel.take_events();
+        let told = desk.kernel.parts.out.take_events();
         let [event] = &told[..] else { panic!("{told:?}") };
         assert!(
-            matches!(&event.kind, EventKind::Diagnostic(text) if text.contains("bit 5 becomes")),
+            matches!(&event.kind, EventKind::Remark(remark) if remark.to_string().contains("bit 5 becomes")),
             "{event:?}"
         );
-    }
-
-    #[test]
-    fn pwm_words_are_those_recorded() {
-        // `checks.jsonl`, row "LastPWM after the PWM commands".
-        assert_eq!((antiphase(100), antiphase(-100)), (1380, 1180));
-        assert_eq!((recirculate(100), recirculate(-100)), (100, 612));
-        assert_eq!((current(500), current(-500)), (42_484, 41_484));
     }
 }

@@ -4,41 +4,42 @@ use kmotiondef::GuestAddr;
 use vm::firmware::Caller;
 use vm::trap::TrapKind;
 
+use super::parts::Parts;
 use crate::io::konnect::{Board, Port, Service};
-use crate::kernel::Kernel;
+use crate::out::Message;
 
 /// Addresses on a port.
 const ADDRESSES: i32 = 8;
 
-pub(crate) fn init_aux(kernel: &mut Kernel, _: &mut Caller<'_>) {
-    kernel.konnects.clear();
+pub(crate) fn init_aux(parts: &mut Parts, _: &mut Caller<'_>) {
+    parts.io.konnects.clear();
 }
 
 pub(crate) fn add_konnect(
-    kernel: &mut Kernel,
+    parts: &mut Parts,
     caller: &mut Caller<'_>,
     address: i32,
     outputs: GuestAddr,
     inputs: GuestAddr,
 ) -> Result<(), TrapKind> {
-    add(kernel, caller, "AddKonnect", Port::Aux1, address, (outputs, inputs))
+    add(parts, caller, "AddKonnect", Port::Aux1, address, (outputs, inputs))
 }
 
 pub(crate) fn add_konnect_aux0(
-    kernel: &mut Kernel,
+    parts: &mut Parts,
     caller: &mut Caller<'_>,
     address: i32,
     outputs: GuestAddr,
     inputs: GuestAddr,
 ) -> Result<(), TrapKind> {
-    add(kernel, caller, "AddKonnect_Aux0", Port::Aux0, address, (outputs, inputs))
+    add(parts, caller, "AddKonnect_Aux0", Port::Aux0, address, (outputs, inputs))
 }
 
 /// Serves a board from now on; words that are not there are the caller's mistake, not that of a later tick.
 fn add(
-    kernel: &mut Kernel,
+    parts: &mut Parts,
     caller: &mut Caller<'_>,
-    function: &str,
+    function: &'static str,
     port: Port,
     address: i32,
     (outputs, inputs): (GuestAddr, GuestAddr),
@@ -46,18 +47,15 @@ fn add(
     caller.memory.load::<i32>(outputs)?;
     caller.memory.load::<i32>(inputs)?;
     if !(0..ADDRESSES).contains(&address) {
-        kernel.diagnose(caller, format!("{function}({address}, …): boards have addresses 0 to 7"));
+        parts.out.diagnose(caller, Message::KonnectAddress { function, address });
     }
     // The address goes out on three lines.
     let board = Board { port, address: (address & (ADDRESSES - 1)) as u8 };
-    if !kernel.konnects.is_present(board) {
-        kernel.diagnose(
-            caller,
-            format!("{function}({address}, …): the machine has no board with that address"),
-        );
+    if !parts.io.konnects.is_present(board) {
+        parts.out.diagnose(caller, Message::KonnectAbsent { function, address });
     }
-    if !kernel.konnects.add(Service { board, outputs, inputs }) {
-        kernel.console.message("Too many AddKonnects");
+    if !parts.io.konnects.add(Service { board, outputs, inputs }) {
+        parts.out.console.message("Too many AddKonnects");
     }
     Ok(())
 }
@@ -91,19 +89,20 @@ mod tests {
     fn a_board_that_is_not_there_is_told_and_gives_nothing() {
         let mut desk = Desk::new();
         let word: u64 = VIRTUAL_BITS.address().get().into();
-        desk.kernel.konnects.set_present(Port::Aux1, 0b01);
+        desk.kernel.parts.io.konnects.set_present(Port::Aux1, 0b01);
         for address in [0, 1] {
             let board = Board { port: Port::Aux1, address };
-            desk.kernel.konnects.drive(board, 5, true);
+            desk.kernel.parts.io.konnects.drive(board, 5, true);
             let inputs: u64 = VIRTUAL_BITS_EX.element(address.into()).address().get().into();
             desk.call("AddKonnect", &[address.into(), word, inputs]);
         }
         desk.memory.set(VIRTUAL_BITS, 3);
         desk.run(4);
         let inputs = [0, 1].map(|board| desk.memory.get(VIRTUAL_BITS_EX.element(board)));
-        let outputs = [0, 1].map(|address| desk.kernel.konnects.outputs(Board { port: Port::Aux1, address }));
+        let outputs =
+            [0, 1].map(|address| desk.kernel.parts.io.konnects.outputs(Board { port: Port::Aux1, address }));
         assert_eq!((inputs, outputs), ([32, 0], [3, 0]));
-        assert_eq!(desk.kernel.take_events().len(), 1);
+        assert_eq!(desk.kernel.parts.out.take_events().len(), 1);
     }
 
     #[test]

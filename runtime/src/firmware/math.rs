@@ -7,7 +7,7 @@ use vm::arith::{canonical_f32, canonical_f64};
 use vm::firmware::{Caller, PureFunction};
 use vm::trap::TrapKind;
 
-use crate::kernel::Kernel;
+use super::parts::Parts;
 
 /// A floating number, so that every NaN can be made that of all arithmetic: what `libm` makes differs between hosts.
 trait Number {
@@ -29,7 +29,7 @@ impl Number for f64 {
 macro_rules! functions {
     ($($(#[$doc:meta])+ $name:ident($($x:ident),+) -> $ty:ty = $value:expr;)*) => {
         $($(#[$doc])+
-        pub(crate) fn $name(_: &mut Kernel, _: &mut Caller<'_>, $($x: $ty),+) -> $ty {
+        pub(crate) fn $name(_: &mut Parts, _: &mut Caller<'_>, $($x: $ty),+) -> $ty {
             Number::canonical($value)
         })*
 
@@ -163,7 +163,7 @@ functions! {
 
 /// sin 2πx, and sin(2πx + 2π/3) into `*second`, for commutation.
 pub(crate) fn sine_3ph(
-    _: &mut Kernel,
+    _: &mut Parts,
     caller: &mut Caller<'_>,
     x: f32,
     second: GuestAddr,
@@ -174,13 +174,13 @@ pub(crate) fn sine_3ph(
 }
 
 /// The fraction of a number, with its sign.
-pub(crate) fn fractionf(_: &mut Kernel, _: &mut Caller<'_>, v: f64) -> f32 {
+pub(crate) fn fractionf(_: &mut Parts, _: &mut Caller<'_>, v: f64) -> f32 {
     (v - libm::trunc(v)) as f32
 }
 
 /// The fraction of a number; its whole part into `*whole`.
 pub(crate) fn modf(
-    _: &mut Kernel,
+    _: &mut Parts,
     caller: &mut Caller<'_>,
     x: f64,
     whole: GuestAddr,
@@ -192,7 +192,7 @@ pub(crate) fn modf(
 
 /// The fraction of a number; its whole part into `*whole`.
 pub(crate) fn modff(
-    _: &mut Kernel,
+    _: &mut Parts,
     caller: &mut Caller<'_>,
     x: f32,
     whole: GuestAddr,
@@ -204,7 +204,7 @@ pub(crate) fn modff(
 
 /// Mantissa in [0.5, 1); the exponent into `*exponent`.
 pub(crate) fn frexp(
-    _: &mut Kernel,
+    _: &mut Parts,
     caller: &mut Caller<'_>,
     x: f64,
     exponent: GuestAddr,
@@ -216,7 +216,7 @@ pub(crate) fn frexp(
 
 /// Mantissa in [0.5, 1); the exponent into `*exponent`.
 pub(crate) fn frexpf(
-    _: &mut Kernel,
+    _: &mut Parts,
     caller: &mut Caller<'_>,
     x: f32,
     exponent: GuestAddr,
@@ -227,43 +227,43 @@ pub(crate) fn frexpf(
 }
 
 /// x·2ⁿ.
-pub(crate) fn ldexp(_: &mut Kernel, _: &mut Caller<'_>, x: f64, n: i32) -> f64 {
+pub(crate) fn ldexp(_: &mut Parts, _: &mut Caller<'_>, x: f64, n: i32) -> f64 {
     libm::ldexp(x, n)
 }
 
 /// x·2ⁿ.
-pub(crate) fn ldexpf(_: &mut Kernel, _: &mut Caller<'_>, x: f32, n: i32) -> f32 {
+pub(crate) fn ldexpf(_: &mut Parts, _: &mut Caller<'_>, x: f32, n: i32) -> f32 {
     libm::ldexpf(x, n)
 }
 
 /// Quotient of two ints.
-pub(crate) fn divi(_: &mut Kernel, _: &mut Caller<'_>, a: i32, b: i32) -> Result<i32, TrapKind> {
+pub(crate) fn divi(_: &mut Parts, _: &mut Caller<'_>, a: i32, b: i32) -> Result<i32, TrapKind> {
     if b == 0 { Err(TrapKind::DivisionByZero) } else { Ok(a.wrapping_div(b)) }
 }
 
 /// Quotient of two unsigned ints.
-pub(crate) fn divu(_: &mut Kernel, _: &mut Caller<'_>, a: u32, b: u32) -> Result<u32, TrapKind> {
+pub(crate) fn divu(_: &mut Parts, _: &mut Caller<'_>, a: u32, b: u32) -> Result<u32, TrapKind> {
     a.checked_div(b).ok_or(TrapKind::DivisionByZero)
 }
 
 /// Remainder of two ints.
-pub(crate) fn remi(_: &mut Kernel, _: &mut Caller<'_>, a: i32, b: i32) -> Result<i32, TrapKind> {
+pub(crate) fn remi(_: &mut Parts, _: &mut Caller<'_>, a: i32, b: i32) -> Result<i32, TrapKind> {
     if b == 0 { Err(TrapKind::DivisionByZero) } else { Ok(a.wrapping_rem(b)) }
 }
 
 /// Remainder of two unsigned ints.
-pub(crate) fn remu(_: &mut Kernel, _: &mut Caller<'_>, a: u32, b: u32) -> Result<u32, TrapKind> {
+pub(crate) fn remu(_: &mut Parts, _: &mut Caller<'_>, a: u32, b: u32) -> Result<u32, TrapKind> {
     a.checked_rem(b).ok_or(TrapKind::DivisionByZero)
 }
 
-/// Quotient of two floats.
-pub(crate) fn divf(_: &mut Kernel, _: &mut Caller<'_>, a: f32, b: f32) -> f32 {
-    a / b
+/// Quotient of two floats; by zero the not-a-number with the sign of the dividend, as on the board.
+pub(crate) fn divf(_: &mut Parts, _: &mut Caller<'_>, a: f32, b: f32) -> f32 {
+    if b == 0.0 { f32::from_bits(if a < 0.0 { 0xFFFF_FFFF } else { 0x7FFF_FFFF }) } else { a / b }
 }
 
-/// Quotient of two doubles.
-pub(crate) fn divd(_: &mut Kernel, _: &mut Caller<'_>, a: f64, b: f64) -> f64 {
-    a / b
+/// Quotient of two doubles; by zero the not-a-number with the sign of the dividend, as on the board.
+pub(crate) fn divd(_: &mut Parts, _: &mut Caller<'_>, a: f64, b: f64) -> f64 {
+    if b == 0.0 { f64::from_bits(if a < 0.0 { u64::MAX } else { u64::MAX >> 1 }) } else { a / b }
 }
 
 #[cfg(test)]

@@ -1,15 +1,17 @@
 //! The firmware functions, one file a group, named as in the table.
 
+pub(crate) mod calls;
+pub(crate) mod changed;
 pub(crate) mod console;
 pub(crate) mod coord;
 pub(crate) mod dispatch;
 pub(crate) mod files;
 pub(crate) mod gather;
-pub(crate) mod heap;
 pub(crate) mod io;
 pub(crate) mod konnect;
 pub(crate) mod math;
 pub(crate) mod motion;
+pub(crate) mod parts;
 pub(crate) mod persist;
 pub(crate) mod serial;
 pub(crate) mod snapamp;
@@ -19,6 +21,7 @@ pub(crate) mod string;
 pub(crate) mod sync;
 pub(crate) mod thread;
 pub(crate) mod time;
+pub(crate) mod waits;
 
 use vm::trap::TrapKind;
 

@@ -4,9 +4,11 @@ use kmotiondef::{Cycles, GuestAddr};
 use vm::firmware::{Caller, Outcome, Wake};
 use vm::trap::TrapKind;
 
+use super::calls::Continuation;
+use super::parts::Parts;
 use super::string::text;
 use crate::io::flash;
-use crate::kernel::{Continuation, Kernel};
+use crate::out::Message;
 
 /// How long erasing and programming a block takes; other threads and the servo go on.
 const PROGRAMMING: Cycles = Cycles::PER_SECOND;
@@ -15,46 +17,46 @@ const REFUSED: i32 = 1;
 
 /// Erases a block of the users' flash and programs it with 16-bit words; then prints a message, if there is one.
 pub(crate) fn program_flash(
-    kernel: &mut Kernel,
+    parts: &mut Parts,
     caller: &mut Caller<'_>,
     from: GuestAddr,
     words: i32,
     to: GuestAddr,
     message: GuestAddr,
 ) -> Result<Outcome<i32>, TrapKind> {
-    if let Some(Continuation::Print { rest, result }) = kernel.take(caller) {
-        return Ok(print(kernel, caller, &rest, result));
+    if let Some(Continuation::Print { rest, result }) = parts.calls.take(caller) {
+        return Ok(print(parts, caller, &rest, result));
     }
     let message = if message.is_null() { Vec::new() } else { text(caller, message)? };
-    match program(kernel, caller, (from, words, to))? {
-        Outcome::Done(result) => Ok(print(kernel, caller, &message, result)),
+    match program(parts, caller, (from, words, to))? {
+        Outcome::Done(result) => Ok(print(parts, caller, &message, result)),
         waiting => Ok(waiting),
     }
 }
 
 /// Prints as much as the console has room for; the rest when there is some.
-fn print(kernel: &mut Kernel, caller: &mut Caller<'_>, message: &[u8], result: i32) -> Outcome<i32> {
-    let rest = kernel.console.put(message).to_vec();
+fn print(parts: &mut Parts, caller: &mut Caller<'_>, message: &[u8], result: i32) -> Outcome<i32> {
+    let rest = parts.out.console.put(message).to_vec();
     if rest.is_empty() || caller.thread.is_none() {
         return Outcome::Done(result);
     }
-    kernel.keep(caller, Continuation::Print { rest, result });
+    parts.calls.keep(caller, Continuation::Print { rest, result });
     Outcome::Wait(Wake::Retry)
 }
 
 /// The same without a message.
 pub(crate) fn program_flash_no_messages(
-    kernel: &mut Kernel,
+    parts: &mut Parts,
     caller: &mut Caller<'_>,
     from: GuestAddr,
     words: i32,
     to: GuestAddr,
 ) -> Result<Outcome<i32>, TrapKind> {
-    program(kernel, caller, (from, words, to))
+    program(parts, caller, (from, words, to))
 }
 
 fn program(
-    kernel: &mut Kernel,
+    parts: &mut Parts,
     caller: &mut Caller<'_>,
     (from, words, to): (GuestAddr, i32, GuestAddr),
 ) -> Result<Outcome<i32>, TrapKind> {
@@ -64,22 +66,19 @@ fn program(
     let done = match flash::length(words) {
         Some(length) => {
             let bytes = caller.memory.read_bytes(from, length)?.to_vec();
-            kernel.flash.with_chip(caller.memory, |memory| flash::program(memory, to, &bytes))
+            parts.io.flash.with_chip(caller.memory, |memory| flash::program(memory, to, &bytes))
         }
         None => false,
     };
     if !done {
-        let text = format!(
-            "ProgramFlash: {words} words at {to}: blocks of the users' flash begin at multiples of 0x10000 from 0x90100000 and hold 32768 words"
-        );
-        kernel.diagnose(caller, text);
+        parts.out.diagnose(caller, Message::NotABlock { words, to });
     }
     Ok(Outcome::Done(if done { 0 } else { REFUSED }))
 }
 
 /// Selects the bank that reads find, on a board that is strict about it; others show all of flash where it is.
-pub(crate) fn set_flash_bank(kernel: &mut Kernel, caller: &mut Caller<'_>, address: GuestAddr) {
-    kernel.flash.select(address, caller.memory);
+pub(crate) fn set_flash_bank(parts: &mut Parts, caller: &mut Caller<'_>, address: GuestAddr) {
+    parts.io.flash.select(address, caller.memory);
 }
 
 #[cfg(test)]
@@ -108,7 +107,7 @@ mod tests {
     #[test]
     fn a_strict_board_shows_the_selected_bank() {
         let mut desk = Desk::new();
-        desk.kernel.flash.be_strict(&mut desk.memory);
+        desk.kernel.parts.io.flash.be_strict(&mut desk.memory);
         let from = desk.put_words(0, &[0x0403_0201]);
         assert_eq!(desk.wake_i32("ProgramFlashNoMessages", &[from, 2, USER]), 0);
         assert_eq!(desk.bytes_at(USER as u32, 2), [0xff, 0xff]);

@@ -1,7 +1,5 @@
 //! The UART and its two rings in guest memory. Source: devices.md section 1.
 
-use std::collections::VecDeque;
-
 use kmotiondef::limits::RS232BUFSZ;
 use kmotiondef::variables::{
     DO_RS232_CMDS, P_RS232_REC_IN, P_RS232_REC_OUT, P_RS232_TX_IN, P_RS232_TX_OUT, RS232_REC_BUF,
@@ -13,9 +11,8 @@ use vm::memory::GuestMemory;
 use vm::trap::TrapKind;
 
 use super::io::set_bit_direction;
-use crate::io::uart::Uart;
-use crate::kernel::Kernel;
-use crate::out::EventKind;
+use super::parts::Parts;
+use crate::out::Message;
 use crate::views::Typed;
 
 /// How long setting up takes: 2 ms.
@@ -23,70 +20,59 @@ const SETUP: Cycles = Cycles::new(400_000);
 /// The transmitter's pin.
 const TRANSMIT_BIT: i32 = 45;
 
-/// The background service.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct SerialService {
-    is_on: bool,
-    /// Whether it was said that an overrun lost characters, and where replies go.
-    told_overrun: bool,
-    told_commands: bool,
-    /// Replies that the transmit ring has no room for yet.
-    replies: VecDeque<u8>,
-}
-
-pub(crate) fn init_rs232(kernel: &mut Kernel, caller: &mut Caller<'_>, divisor: i32) -> Outcome<()> {
+pub(crate) fn init_rs232(parts: &mut Parts, caller: &mut Caller<'_>, divisor: i32) -> Outcome<()> {
     if caller.woken.is_some() {
         return Outcome::Done(());
     }
-    set_up(kernel, caller, divisor);
+    set_up(parts, caller, divisor);
     Outcome::Wait(Wake::At(caller.now() + SETUP))
 }
 
-fn set_up(kernel: &mut Kernel, caller: &mut Caller<'_>, divisor: i32) {
-    set_bit_direction(kernel, caller, TRANSMIT_BIT, 1);
-    kernel.fpga.enable_uart_pins();
-    kernel.uart.set_divisor(divisor as u8);
+fn set_up(parts: &mut Parts, caller: &mut Caller<'_>, divisor: i32) {
+    set_bit_direction(parts, caller, TRANSMIT_BIT, 1);
+    parts.io.fpga.enable_uart_pins();
+    parts.io.uart.set_divisor(divisor as u8);
 }
 
-pub(crate) fn enable_rs232_cmds(kernel: &mut Kernel, caller: &mut Caller<'_>, divisor: i32) -> Outcome<()> {
-    let outcome = init_rs232(kernel, caller, divisor);
+pub(crate) fn enable_rs232_cmds(parts: &mut Parts, caller: &mut Caller<'_>, divisor: i32) -> Outcome<()> {
+    let outcome = init_rs232(parts, caller, divisor);
     if matches!(outcome, Outcome::Done(())) {
-        begin(kernel, caller.memory);
+        begin(parts, caller.memory);
     }
     outcome
 }
 
 /// `EnableRS232Cmds` as a script command, which does not wait.
-pub(crate) fn connect(kernel: &mut Kernel, caller: &mut Caller<'_>, divisor: i32) {
-    set_up(kernel, caller, divisor);
-    begin(kernel, caller.memory);
+pub(crate) fn connect(parts: &mut Parts, caller: &mut Caller<'_>, divisor: i32) {
+    set_up(parts, caller, divisor);
+    begin(parts, caller.memory);
 }
 
 /// Empties both rings and starts the service.
-fn begin(kernel: &mut Kernel, memory: &mut GuestMemory) {
+fn begin(parts: &mut Parts, memory: &mut GuestMemory) {
     memory.set(P_RS232_REC_IN, RS232_REC_BUF.address());
     memory.set(P_RS232_REC_OUT, RS232_REC_BUF.address());
     memory.set(P_RS232_TX_IN, RS232_TX_BUF.address());
     memory.set(P_RS232_TX_OUT, RS232_TX_BUF.address());
     memory.set(DO_RS232_CMDS, 1);
-    kernel.serial.is_on = true;
+    parts.calls.serial.is_on = true;
 }
 
 /// Whether script commands are taken from the UART and answered there.
 #[inline]
-pub(crate) fn has_commands(kernel: &Kernel, memory: &GuestMemory) -> bool {
-    kernel.serial.is_on && memory.get(DO_RS232_CMDS) != 0
+pub(crate) fn has_commands(parts: &Parts, memory: &GuestMemory) -> bool {
+    parts.calls.serial.is_on && memory.get(DO_RS232_CMDS) != 0
 }
 
 /// Sends the bytes of a reply.
-pub(crate) fn write(kernel: &mut Kernel, memory: &mut GuestMemory, bytes: &[u8]) {
-    kernel.serial.replies.extend(bytes);
-    fill(kernel, memory);
+pub(crate) fn write(parts: &mut Parts, memory: &mut GuestMemory, bytes: &[u8]) {
+    parts.calls.serial.replies.extend(bytes);
+    fill(parts, memory);
 }
 
 /// Puts as much of the replies into the transmit ring as it has room for.
-fn fill(kernel: &mut Kernel, memory: &mut GuestMemory) {
-    while let Some(&byte) = kernel.serial.replies.front() {
+fn fill(parts: &mut Parts, memory: &mut GuestMemory) {
+    while let Some(&byte) = parts.calls.serial.replies.front() {
         let place = memory.get(P_RS232_TX_IN);
         let after = next(place, RS232_TX_BUF.address());
         if after == memory.get(P_RS232_TX_OUT) {
@@ -94,11 +80,11 @@ fn fill(kernel: &mut Kernel, memory: &mut GuestMemory) {
         }
         memory.poke(place, byte);
         memory.set(P_RS232_TX_IN, after);
-        kernel.serial.replies.pop_front();
+        parts.calls.serial.replies.pop_front();
     }
 }
 
-pub(crate) fn rs232_get_char(_: &mut Kernel, caller: &mut Caller<'_>) -> Result<Outcome<i32>, TrapKind> {
+pub(crate) fn rs232_get_char(_: &mut Parts, caller: &mut Caller<'_>) -> Result<Outcome<i32>, TrapKind> {
     let out = caller.memory.get(P_RS232_REC_OUT);
     if out == caller.memory.get(P_RS232_REC_IN) {
         return Ok(Outcome::Wait(Wake::Retry));
@@ -109,7 +95,7 @@ pub(crate) fn rs232_get_char(_: &mut Kernel, caller: &mut Caller<'_>) -> Result<
 }
 
 pub(crate) fn rs232_put_char(
-    _: &mut Kernel,
+    _: &mut Parts,
     caller: &mut Caller<'_>,
     byte: u8,
 ) -> Result<Outcome<()>, TrapKind> {
@@ -129,52 +115,40 @@ fn next(place: GuestAddr, ring: GuestAddr) -> GuestAddr {
     if (index as usize) < RS232BUFSZ { ring.offset(index) } else { ring }
 }
 
-impl SerialService {
-    /// Whether characters are still to be sent or received.
-    pub(crate) fn is_busy(&self, memory: &GuestMemory, uart: &Uart) -> bool {
-        self.is_on
-            && (uart.is_receiving()
-                || !self.replies.is_empty()
-                || memory.get(P_RS232_TX_OUT) != memory.get(P_RS232_TX_IN))
-    }
-}
-
 /// The service of one tick: a character each way; whether there is any.
-pub(crate) fn tick(kernel: &mut Kernel, context: &mut TickContext<'_>) -> bool {
-    if !kernel.serial.is_busy(context.memory, &kernel.uart) {
+pub(crate) fn tick(parts: &mut Parts, context: &mut TickContext<'_>) -> bool {
+    if !parts.calls.serial.is_busy(context.memory, &parts.io.uart) {
         return false;
     }
-    receive(kernel, context);
+    receive(parts, context);
     let memory = &mut *context.memory;
     let out = memory.get(P_RS232_TX_OUT);
-    if out != memory.get(P_RS232_TX_IN) && kernel.uart.is_free(context.now) {
-        kernel.uart.send(memory.peek(out), context.now);
+    if out != memory.get(P_RS232_TX_IN) && parts.io.uart.is_free(context.now) {
+        parts.io.uart.send(memory.peek(out), context.now);
         memory.set(P_RS232_TX_OUT, next(out, RS232_TX_BUF.address()));
     }
     true
 }
 
 /// Puts a received character into its ring; a full ring begins anew, as its two pointers are equal then.
-fn receive(kernel: &mut Kernel, context: &mut TickContext<'_>) {
-    let Some(byte) = kernel.uart.receive(context.now) else { return };
+fn receive(parts: &mut Parts, context: &mut TickContext<'_>) {
+    let Some(byte) = parts.io.uart.receive(context.now) else { return };
     let place = context.memory.get(P_RS232_REC_IN);
     let after = next(place, RS232_REC_BUF.address());
     context.memory.poke(place, byte);
     context.memory.set(P_RS232_REC_IN, after);
-    if after == context.memory.get(P_RS232_REC_OUT) && !kernel.serial.told_overrun {
-        kernel.serial.told_overrun = true;
-        let text = format!("{RS232BUFSZ} characters received on the UART and not read: they are lost");
-        kernel.tell(context.now, EventKind::Diagnostic(text));
+    if after == context.memory.get(P_RS232_REC_OUT) {
+        parts.out.remark(context.now, Message::UartOverrun { size: RS232BUFSZ });
     }
 }
 
 /// What the primary thread does in its slice: it takes what was received as script commands.
 #[inline]
-pub(crate) fn slice(kernel: &mut Kernel, context: &mut TickContext<'_>) {
-    if !has_commands(kernel, context.memory) {
+pub(crate) fn slice(parts: &mut Parts, context: &mut TickContext<'_>) {
+    if !has_commands(parts, context.memory) {
         return;
     }
-    fill(kernel, context.memory);
+    fill(parts, context.memory);
     let received = context.memory.get(P_RS232_REC_IN);
     let mut out = context.memory.get(P_RS232_REC_OUT);
     if out == received {
@@ -186,18 +160,14 @@ pub(crate) fn slice(kernel: &mut Kernel, context: &mut TickContext<'_>) {
         out = next(out, RS232_REC_BUF.address());
     }
     context.memory.set(P_RS232_REC_OUT, received);
-    kernel.uart_link.receive(&bytes);
-    if !kernel.serial.told_commands {
-        kernel.serial.told_commands = true;
-        let text =
-            "characters received on the UART are taken as script commands; clear DoRS232Cmds to read them";
-        kernel.tell(context.now, EventKind::Diagnostic(text.to_owned()));
-    }
+    parts.pc.uart.receive(&bytes);
+    parts.out.remark(context.now, Message::UartCommands {});
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::out::EventKind;
     use crate::testing::Desk;
 
     /// A board whose service runs at 38400 baud for the program alone.
@@ -228,12 +198,12 @@ mod tests {
     fn received_characters_wait_in_their_ring() {
         let mut desk = desk();
         assert!(!desk.is_done("RS232_GetChar", &[]));
-        desk.kernel.uart.arrive(b"A\xff", Cycles::default());
+        desk.kernel.parts.io.uart.arrive(b"A\xff", Cycles::default());
         desk.run(10);
         assert_eq!(desk.call_i32("RS232_GetChar", &[]), 65);
         assert_eq!(desk.call_i32("RS232_GetChar", &[]), -1);
         assert!(!desk.is_done("RS232_GetChar", &[]));
-        assert!(!desk.kernel.serial.is_busy(&desk.memory, &desk.kernel.uart));
+        assert!(!desk.kernel.parts.calls.serial.is_busy(&desk.memory, &desk.kernel.parts.io.uart));
     }
 
     #[test]
@@ -241,11 +211,14 @@ mod tests {
         for (commands, word) in [(0, "lost"), (1, "DoRS232Cmds")] {
             let mut desk = desk();
             desk.memory.set(DO_RS232_CMDS, commands);
-            desk.kernel.uart.arrive(&[b'x'; 2100], Cycles::default());
+            desk.kernel.parts.io.uart.arrive(&[b'x'; 2100], Cycles::default());
             desk.run(6100);
-            let told: Vec<_> = desk.kernel.take_events();
+            let told: Vec<_> = desk.kernel.parts.out.take_events();
             let [event] = &told[..] else { panic!("{told:?}") };
-            assert!(matches!(&event.kind, EventKind::Diagnostic(text) if text.contains(word)), "{event:?}");
+            assert!(
+                matches!(&event.kind, EventKind::Remark(remark) if remark.to_string().contains(word)),
+                "{event:?}"
+            );
         }
     }
 

@@ -4,9 +4,9 @@ use kmotiondef::Bit;
 use kmotiondef::variables::{BIT_DIR_SHADOW_SNAP0, BIT_DIR_SHADOW_SNAP1};
 use vm::firmware::Caller;
 
-use super::io::{bit_state, write_bit};
+use super::parts::Parts;
 use crate::io::snapamp::{CLEAR, CLEAR_ERRORS, DIRECTION, ENCODERS, LEVELS, PINS, Register};
-use crate::kernel::Kernel;
+use crate::out::Message;
 use crate::views::Typed;
 
 /// General pins of a board, and the first of each board.
@@ -24,33 +24,33 @@ fn pins(board: usize) -> impl Iterator<Item = Bit> {
 }
 
 /// Levels of bits as a word, the first one lowest.
-fn levels(kernel: &Kernel, caller: &Caller<'_>, bits: impl Iterator<Item = Bit>) -> i32 {
-    let levels = bits.map(|bit| bit_state(kernel, caller.memory, bit).0).enumerate();
+fn levels(parts: &Parts, caller: &Caller<'_>, bits: impl Iterator<Item = Bit>) -> i32 {
+    let levels = bits.map(|bit| parts.level(caller.memory, bit)).enumerate();
     levels.fold(0, |word, (index, level)| word | i32::from(level) << index)
 }
 
 /// The register that a program names.
-fn checked(kernel: &mut Kernel, caller: &Caller<'_>, function: &str, address: i32) -> Option<Register> {
+fn checked(parts: &mut Parts, caller: &Caller<'_>, function: &'static str, address: i32) -> Option<Register> {
     let register = Register::new(address);
     if register.is_none() {
-        kernel.diagnose(caller, format!("{function}({address:#x}): there are registers 0x40 to 0x7f"));
+        parts.out.diagnose(caller, Message::NoSuchSnapRegister { function, address });
     }
     register
 }
 
-pub(crate) fn write_snap_amp(kernel: &mut Kernel, caller: &mut Caller<'_>, address: i32, data: i32) {
-    let Some(register) = checked(kernel, caller, "WriteSnapAmp", address) else { return };
+pub(crate) fn write_snap_amp(parts: &mut Parts, caller: &mut Caller<'_>, address: i32, data: i32) {
+    let Some(register) = checked(parts, caller, "WriteSnapAmp", address) else { return };
     let now = caller.now();
-    kernel.snapamps.write(register, data as u16, now);
+    parts.io.snapamps.write(register, data as u16, now);
     match register.number {
         PINS | CLEAR => {
             for (index, bit) in pins(register.board).enumerate() {
                 if data >> index & 1 != 0 {
-                    write_bit(kernel, caller.memory, bit, register.number == PINS, now);
+                    parts.lines(now).write(caller.memory, bit, register.number == PINS);
                 }
             }
         }
-        CLEAR_ERRORS => kernel.encoders.clear_snap_errors(register.board),
+        CLEAR_ERRORS => parts.io.encoders.clear_snap_errors(register.board),
         DIRECTION => {
             let shadow = [BIT_DIR_SHADOW_SNAP0, BIT_DIR_SHADOW_SNAP1][register.board];
             caller.memory.set(shadow, (data & ((1 << COUNT) - 1)) << SHADOW_SHIFT);
@@ -59,20 +59,20 @@ pub(crate) fn write_snap_amp(kernel: &mut Kernel, caller: &mut Caller<'_>, addre
     }
 }
 
-pub(crate) fn read_snap_amp(kernel: &mut Kernel, caller: &mut Caller<'_>, address: i32) -> i32 {
-    let Some(register) = checked(kernel, caller, "ReadSnapAmp", address) else { return 0 };
+pub(crate) fn read_snap_amp(parts: &mut Parts, caller: &mut Caller<'_>, address: i32) -> i32 {
+    let Some(register) = checked(parts, caller, "ReadSnapAmp", address) else { return 0 };
     let Register { board, number } = register;
     match number {
-        PINS => levels(kernel, caller, pins(board)),
+        PINS => levels(parts, caller, pins(board)),
         LEVELS => {
             let first = FIRST_DIFFERENTIAL[board];
             let inputs = (first..first + DIFFERENTIALS).filter_map(Bit::new);
-            levels(kernel, caller, inputs) << DIFFERENTIALS | i32::from(kernel.encoders.snap_levels(board))
+            levels(parts, caller, inputs) << DIFFERENTIALS | i32::from(parts.io.encoders.snap_levels(board))
         }
         number if ENCODERS.contains(&number) => {
-            kernel.encoders.snap_word(board, number - ENCODERS.start()).into()
+            parts.io.encoders.snap_word(board, number - ENCODERS.start()).into()
         }
-        _ => kernel.snapamps.read(register, caller.now()).into(),
+        _ => parts.io.snapamps.read(register, caller.now()).into(),
     }
 }
 
@@ -97,9 +97,9 @@ mod tests {
     #[test]
     fn encoders_and_inputs_have_their_registers() {
         let mut desk = Desk::new();
-        desk.kernel.encoders.count(13, -2, &mut desk.kernel.pins, Cycles::default());
-        desk.kernel.encoders.fail(13);
-        desk.kernel.pins.drive(Bit::new(96 + 3).expect("a bit"), true, Cycles::default());
+        desk.kernel.parts.io.encoders.count(13, -2, &mut desk.kernel.parts.io.pins, Cycles::default());
+        desk.kernel.parts.io.encoders.fail(13);
+        desk.kernel.parts.io.pins.drive(Bit::new(96 + 3).expect("a bit"), true, Cycles::default());
         assert_eq!(desk.call_i32("ReadSnapAmp", &[0x60 + 9]), 0x80fe);
         assert_eq!(desk.call_i32("ReadSnapAmp", &[0x60 + 16]), 0x080c);
         desk.call("WriteSnapAmp", &[0x60 + 8, 0]);

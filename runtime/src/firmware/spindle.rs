@@ -4,12 +4,13 @@ use kmotiondef::AxisId;
 use kmotiondef::variables::COORD_SYSTEM0;
 use vm::firmware::Caller;
 
-use crate::kernel::Kernel;
+use super::parts::Parts;
+use crate::out::Message;
 use crate::servo::spindle::{self, Setup};
 use crate::views::Typed;
 
 pub(crate) fn configure_spindle(
-    kernel: &mut Kernel,
+    parts: &mut Parts,
     caller: &mut Caller<'_>,
     kind: i32,
     axis: i32,
@@ -18,28 +19,26 @@ pub(crate) fn configure_spindle(
     counts: f32,
 ) {
     let Some(axis) = AxisId::new(axis) else {
-        kernel
-            .diagnose(caller, format!("ConfigureSpindle: axis {axis}; there are axes 0 to {}", AxisId::MAX));
+        parts.out.diagnose(caller, Message::NoSuchSpindleAxis { axis });
         return;
     };
     if counts == 0.0 || !counts.is_finite() {
-        kernel.diagnose(caller, format!("ConfigureSpindle: {counts} counts of a revolution measure nothing"));
+        parts.out.diagnose(caller, Message::NoSpindleCounts { counts });
     }
     spindle::configure(caller.memory, &Setup { has_encoder: kind == 1, axis, update_time, tau, counts });
 }
 
-pub(crate) fn trig_threading(kernel: &mut Kernel, caller: &mut Caller<'_>, base_speed: f32) {
+pub(crate) fn trig_threading(parts: &mut Parts, caller: &mut Caller<'_>, base_speed: f32) {
     if !spindle::is_measured(caller.memory) {
-        kernel.diagnose(caller, "TrigThreading: no spindle is configured, so nothing will move".into());
+        parts.out.diagnose(caller, Message::NoSpindle {});
     }
     if base_speed == 0.0 || !base_speed.is_finite() {
-        kernel
-            .diagnose(caller, format!("TrigThreading: {base_speed} revolutions a second are no base speed"));
+        parts.out.diagnose(caller, Message::NoBaseSpeed { speed: base_speed });
         return;
     }
     spindle::thread(caller.memory, base_speed);
     if caller.memory.get(COORD_SYSTEM0).is_null() {
-        kernel.diagnose(caller, "TrigThreading: the segment buffer is empty".into());
+        parts.out.diagnose(caller, Message::NothingToThread {});
     }
 }
 
@@ -74,6 +73,6 @@ mod tests {
         desk.call("ConfigureSpindle", &[1, 9, float(0.1), float(0.1), float(4096.0)]);
         desk.call("TrigThreading", &[float(0.0)]);
         desk.run(100);
-        assert_eq!(desk.kernel.take_events().len(), 3);
+        assert_eq!(desk.kernel.parts.out.take_events().len(), 3);
     }
 }

@@ -5,25 +5,26 @@ use vm::firmware::{Caller, Outcome};
 use vm::trap::TrapKind;
 
 use super::not_modelled;
+use super::parts::Parts;
 use super::string::text;
-use crate::kernel::Kernel;
+use crate::out::Message;
 use crate::text::{float_prefix, integer_prefix};
 
 /// Alignment of an ordinary block.
 const ALIGNMENT: u32 = 8;
 
-pub(crate) fn malloc(kernel: &mut Kernel, _: &mut Caller<'_>, size: u32) -> GuestAddr {
-    kernel.heap.take(size, ALIGNMENT).unwrap_or_default()
+pub(crate) fn malloc(parts: &mut Parts, _: &mut Caller<'_>, size: u32) -> GuestAddr {
+    parts.calls.heap.take(size, ALIGNMENT).unwrap_or_default()
 }
 
 pub(crate) fn calloc(
-    kernel: &mut Kernel,
+    parts: &mut Parts,
     caller: &mut Caller<'_>,
     count: u32,
     size: u32,
 ) -> Result<GuestAddr, TrapKind> {
     let Some((bytes, block)) =
-        count.checked_mul(size).and_then(|bytes| Some((bytes, kernel.heap.take(bytes, ALIGNMENT)?)))
+        count.checked_mul(size).and_then(|bytes| Some((bytes, parts.calls.heap.take(bytes, ALIGNMENT)?)))
     else {
         return Ok(GuestAddr::NULL);
     };
@@ -31,44 +32,44 @@ pub(crate) fn calloc(
     Ok(block)
 }
 
-pub(crate) fn memalign(kernel: &mut Kernel, _: &mut Caller<'_>, alignment: u32, size: u32) -> GuestAddr {
+pub(crate) fn memalign(parts: &mut Parts, _: &mut Caller<'_>, alignment: u32, size: u32) -> GuestAddr {
     if alignment.is_power_of_two() {
-        kernel.heap.take(size, alignment).unwrap_or_default()
+        parts.calls.heap.take(size, alignment).unwrap_or_default()
     } else {
         GuestAddr::NULL
     }
 }
 
 pub(crate) fn realloc(
-    kernel: &mut Kernel,
+    parts: &mut Parts,
     caller: &mut Caller<'_>,
     block: GuestAddr,
     size: u32,
 ) -> Result<GuestAddr, TrapKind> {
-    let Some(new) = kernel.heap.take(size, ALIGNMENT) else {
+    let Some(new) = parts.calls.heap.take(size, ALIGNMENT) else {
         return Ok(GuestAddr::NULL);
     };
-    if let Some(old_size) = kernel.heap.size(block) {
+    if let Some(old_size) = parts.calls.heap.size(block) {
         caller.memory.copy(new, block, old_size.min(size))?;
-        kernel.heap.give(block);
+        parts.calls.heap.give(block);
     }
     Ok(new)
 }
 
-pub(crate) fn free(kernel: &mut Kernel, caller: &mut Caller<'_>, block: GuestAddr) {
-    if !block.is_null() && !kernel.heap.give(block) {
-        kernel.diagnose(caller, format!("free({block}): no block of the heap starts there"));
+pub(crate) fn free(parts: &mut Parts, caller: &mut Caller<'_>, block: GuestAddr) {
+    if !block.is_null() && !parts.calls.heap.give(block) {
+        parts.out.diagnose(caller, Message::NotAllocated { block });
     }
 }
 
 /// The generator of the C standard's example; the board's is not known.
-pub(crate) fn rand(kernel: &mut Kernel, _: &mut Caller<'_>) -> i32 {
-    kernel.random = kernel.random.wrapping_mul(1_103_515_245).wrapping_add(12_345);
-    (kernel.random >> 16 & 0x7fff) as i32
+pub(crate) fn rand(parts: &mut Parts, _: &mut Caller<'_>) -> i32 {
+    parts.calls.random = parts.calls.random.wrapping_mul(1_103_515_245).wrapping_add(12_345);
+    (parts.calls.random >> 16 & 0x7fff) as i32
 }
 
-pub(crate) fn srand(kernel: &mut Kernel, _: &mut Caller<'_>, seed: u32) {
-    kernel.random = seed;
+pub(crate) fn srand(parts: &mut Parts, _: &mut Caller<'_>, seed: u32) {
+    parts.calls.random = seed;
 }
 
 /// Bytes of white space in front of a number.
@@ -99,20 +100,20 @@ fn store_end(caller: &mut Caller<'_>, place: GuestAddr, end: GuestAddr) -> Resul
     if place.is_null() { Ok(()) } else { caller.memory.store(place, end.get()) }
 }
 
-pub(crate) fn atoi(_: &mut Kernel, caller: &mut Caller<'_>, string: GuestAddr) -> Result<i32, TrapKind> {
+pub(crate) fn atoi(_: &mut Parts, caller: &mut Caller<'_>, string: GuestAddr) -> Result<i32, TrapKind> {
     Ok(integer(caller, string, 10)?.0 as i32)
 }
 
-pub(crate) fn atol(kernel: &mut Kernel, caller: &mut Caller<'_>, string: GuestAddr) -> Result<i32, TrapKind> {
-    atoi(kernel, caller, string)
+pub(crate) fn atol(parts: &mut Parts, caller: &mut Caller<'_>, string: GuestAddr) -> Result<i32, TrapKind> {
+    atoi(parts, caller, string)
 }
 
-pub(crate) fn atof(_: &mut Kernel, caller: &mut Caller<'_>, string: GuestAddr) -> Result<f64, TrapKind> {
+pub(crate) fn atof(_: &mut Parts, caller: &mut Caller<'_>, string: GuestAddr) -> Result<f64, TrapKind> {
     Ok(float(caller, string)?.0)
 }
 
 pub(crate) fn strtol(
-    _: &mut Kernel,
+    _: &mut Parts,
     caller: &mut Caller<'_>,
     string: GuestAddr,
     end: GuestAddr,
@@ -125,17 +126,17 @@ pub(crate) fn strtol(
 }
 
 pub(crate) fn strtoul(
-    kernel: &mut Kernel,
+    parts: &mut Parts,
     caller: &mut Caller<'_>,
     string: GuestAddr,
     end: GuestAddr,
     base: i32,
 ) -> Result<u32, TrapKind> {
-    Ok(strtol(kernel, caller, string, end, base)? as u32)
+    Ok(strtol(parts, caller, string, end, base)? as u32)
 }
 
 pub(crate) fn strtod(
-    _: &mut Kernel,
+    _: &mut Parts,
     caller: &mut Caller<'_>,
     string: GuestAddr,
     end: GuestAddr,
@@ -146,17 +147,17 @@ pub(crate) fn strtod(
 }
 
 pub(crate) fn strtold(
-    kernel: &mut Kernel,
+    parts: &mut Parts,
     caller: &mut Caller<'_>,
     string: GuestAddr,
     end: GuestAddr,
 ) -> Result<f64, TrapKind> {
-    strtod(kernel, caller, string, end)
+    strtod(parts, caller, string, end)
 }
 
 /// Decimal text of an integer; returns its length.
 pub(crate) fn ltoa(
-    _: &mut Kernel,
+    _: &mut Parts,
     caller: &mut Caller<'_>,
     value: i32,
     buffer: GuestAddr,
@@ -167,7 +168,7 @@ pub(crate) fn ltoa(
 }
 
 pub(crate) fn ecvt(
-    _: &mut Kernel,
+    _: &mut Parts,
     _: &mut Caller<'_>,
     _: f64,
     _: i32,
@@ -178,7 +179,7 @@ pub(crate) fn ecvt(
 }
 
 pub(crate) fn fcvt(
-    _: &mut Kernel,
+    _: &mut Parts,
     _: &mut Caller<'_>,
     _: f64,
     _: i32,
@@ -188,30 +189,30 @@ pub(crate) fn fcvt(
     not_modelled("fcvt")
 }
 
-pub(crate) fn atexit(_: &mut Kernel, _: &mut Caller<'_>, _: GuestAddr) -> Result<i32, TrapKind> {
+pub(crate) fn atexit(_: &mut Parts, _: &mut Caller<'_>, _: GuestAddr) -> Result<i32, TrapKind> {
     not_modelled("atexit")
 }
 
 /// Ends the calling thread.
-pub(crate) fn exit(_: &mut Kernel, _: &mut Caller<'_>, _: i32) -> Outcome<()> {
+pub(crate) fn exit(_: &mut Parts, _: &mut Caller<'_>, _: i32) -> Outcome<()> {
     Outcome::End
 }
 
 /// Ends the calling thread.
-pub(crate) fn abort(_: &mut Kernel, _: &mut Caller<'_>) -> Outcome<()> {
+pub(crate) fn abort(_: &mut Parts, _: &mut Caller<'_>) -> Outcome<()> {
     Outcome::End
 }
 
-pub(crate) fn abs(_: &mut Kernel, _: &mut Caller<'_>, x: i32) -> i32 {
+pub(crate) fn abs(_: &mut Parts, _: &mut Caller<'_>, x: i32) -> i32 {
     x.wrapping_abs()
 }
 
-pub(crate) fn labs(_: &mut Kernel, _: &mut Caller<'_>, x: i32) -> i32 {
+pub(crate) fn labs(_: &mut Parts, _: &mut Caller<'_>, x: i32) -> i32 {
     x.wrapping_abs()
 }
 
 pub(crate) fn qsort(
-    _: &mut Kernel,
+    _: &mut Parts,
     _: &mut Caller<'_>,
     _: GuestAddr,
     _: u32,
@@ -222,7 +223,7 @@ pub(crate) fn qsort(
 }
 
 pub(crate) fn bsearch(
-    _: &mut Kernel,
+    _: &mut Parts,
     _: &mut Caller<'_>,
     _: GuestAddr,
     _: GuestAddr,

@@ -7,7 +7,7 @@ use kmotiondef::{Cycles, GuestAddr};
 use vm::firmware::Caller;
 use vm::trap::TrapKind;
 
-use crate::kernel::Kernel;
+use super::parts::Parts;
 
 /// Longest string that is read: all of SDRAM.
 const LONGEST: u32 = 0x100_0000;
@@ -51,42 +51,49 @@ fn order<T: Ord>(a: &T, b: &T) -> i32 {
     a.cmp(b) as i32
 }
 
+/// What `memcpy` costs beyond its 32 cycles (costs.md section 4).
+fn copying(length: u32, is_alike: bool) -> Cycles {
+    let length = i64::from(length);
+    Cycles::new(match (length, is_alike) {
+        (..8, _) => 0,
+        (8..32, true) => 56 * (length / 8),
+        (_, true) => length * 7 / 4 - 6,
+        (_, false) => 7 * length,
+    })
+}
+
 pub(crate) fn memcpy(
-    _: &mut Kernel,
+    _: &mut Parts,
     caller: &mut Caller<'_>,
     to: GuestAddr,
     from: GuestAddr,
     length: u32,
 ) -> Place {
-    caller.spend(Cycles::new(i64::from(length)));
+    let is_alike = (to.get() ^ from.get()).is_multiple_of(4);
+    caller.spend(copying(length, is_alike));
     caller.memory.copy(to, from, length)?;
     Ok(to)
 }
 
 pub(crate) fn memmove(
-    kernel: &mut Kernel,
+    parts: &mut Parts,
     caller: &mut Caller<'_>,
     to: GuestAddr,
     from: GuestAddr,
     length: u32,
 ) -> Place {
-    memcpy(kernel, caller, to, from, length)
+    memcpy(parts, caller, to, from, length)
 }
 
-pub(crate) fn memset(
-    _: &mut Kernel,
-    caller: &mut Caller<'_>,
-    to: GuestAddr,
-    byte: i32,
-    length: u32,
-) -> Place {
-    caller.spend(Cycles::new(i64::from(length)));
+pub(crate) fn memset(_: &mut Parts, caller: &mut Caller<'_>, to: GuestAddr, byte: i32, length: u32) -> Place {
+    let length_cost = if length < 8 { 0 } else { 3 + i64::from(length) * 113 / 100 };
+    caller.spend(Cycles::new(length_cost));
     caller.memory.fill(to, byte as u8, length)?;
     Ok(to)
 }
 
 pub(crate) fn memccpy(
-    _: &mut Kernel,
+    _: &mut Parts,
     caller: &mut Caller<'_>,
     to: GuestAddr,
     from: GuestAddr,
@@ -104,7 +111,7 @@ pub(crate) fn memccpy(
 }
 
 pub(crate) fn memcmp(
-    _: &mut Kernel,
+    _: &mut Parts,
     caller: &mut Caller<'_>,
     a: GuestAddr,
     b: GuestAddr,
@@ -114,7 +121,7 @@ pub(crate) fn memcmp(
 }
 
 pub(crate) fn memchr(
-    _: &mut Kernel,
+    _: &mut Parts,
     caller: &mut Caller<'_>,
     start: GuestAddr,
     byte: i32,
@@ -124,18 +131,21 @@ pub(crate) fn memchr(
     Ok(found(start, block.iter().position(|&found| found == byte as u8)))
 }
 
-pub(crate) fn strlen(_: &mut Kernel, caller: &mut Caller<'_>, string: GuestAddr) -> Result<u32, TrapKind> {
-    Ok(text(caller, string)?.len() as u32)
+pub(crate) fn strlen(_: &mut Parts, caller: &mut Caller<'_>, string: GuestAddr) -> Result<u32, TrapKind> {
+    let length = text(caller, string)?.len();
+    caller.spend(Cycles::new(10 * length as i64));
+    Ok(length as u32)
 }
 
-pub(crate) fn strcpy(_: &mut Kernel, caller: &mut Caller<'_>, to: GuestAddr, from: GuestAddr) -> Place {
+pub(crate) fn strcpy(parts: &mut Parts, caller: &mut Caller<'_>, to: GuestAddr, from: GuestAddr) -> Place {
     let text = text(caller, from)?;
+    parts.check_room(caller, "strcpy", to, text.len() + 1);
     write_text(caller, to, text)?;
     Ok(to)
 }
 
 pub(crate) fn strncpy(
-    _: &mut Kernel,
+    _: &mut Parts,
     caller: &mut Caller<'_>,
     to: GuestAddr,
     from: GuestAddr,
@@ -149,14 +159,15 @@ pub(crate) fn strncpy(
     Ok(to)
 }
 
-pub(crate) fn strcat(_: &mut Kernel, caller: &mut Caller<'_>, to: GuestAddr, from: GuestAddr) -> Place {
+pub(crate) fn strcat(parts: &mut Parts, caller: &mut Caller<'_>, to: GuestAddr, from: GuestAddr) -> Place {
     let (end, text) = (text(caller, to)?.len() as u32, text(caller, from)?);
+    parts.check_room(caller, "strcat", to, end as usize + text.len() + 1);
     write_text(caller, to.offset(end), text)?;
     Ok(to)
 }
 
 pub(crate) fn strncat(
-    _: &mut Kernel,
+    _: &mut Parts,
     caller: &mut Caller<'_>,
     to: GuestAddr,
     from: GuestAddr,
@@ -169,7 +180,7 @@ pub(crate) fn strncat(
 }
 
 pub(crate) fn strcmp(
-    _: &mut Kernel,
+    _: &mut Parts,
     caller: &mut Caller<'_>,
     a: GuestAddr,
     b: GuestAddr,
@@ -178,7 +189,7 @@ pub(crate) fn strcmp(
 }
 
 pub(crate) fn strncmp(
-    _: &mut Kernel,
+    _: &mut Parts,
     caller: &mut Caller<'_>,
     a: GuestAddr,
     b: GuestAddr,
@@ -187,28 +198,30 @@ pub(crate) fn strncmp(
     Ok(order(&text_up_to(caller, a, limit)?, &text_up_to(caller, b, limit)?))
 }
 
-pub(crate) fn strchr(_: &mut Kernel, caller: &mut Caller<'_>, string: GuestAddr, byte: i32) -> Place {
+pub(crate) fn strchr(_: &mut Parts, caller: &mut Caller<'_>, string: GuestAddr, byte: i32) -> Place {
     let mut text = text(caller, string)?;
     text.push(0);
     Ok(found(string, text.iter().position(|&found| found == byte as u8)))
 }
 
-pub(crate) fn strrchr(_: &mut Kernel, caller: &mut Caller<'_>, string: GuestAddr, byte: i32) -> Place {
+pub(crate) fn strrchr(_: &mut Parts, caller: &mut Caller<'_>, string: GuestAddr, byte: i32) -> Place {
     let mut text = text(caller, string)?;
     text.push(0);
     Ok(found(string, text.iter().rposition(|&found| found == byte as u8)))
 }
 
-pub(crate) fn strstr(_: &mut Kernel, caller: &mut Caller<'_>, string: GuestAddr, wanted: GuestAddr) -> Place {
+pub(crate) fn strstr(_: &mut Parts, caller: &mut Caller<'_>, string: GuestAddr, wanted: GuestAddr) -> Place {
     let (string_text, wanted) = (text(caller, string)?, text(caller, wanted)?);
     if wanted.is_empty() {
         return Ok(string);
     }
-    Ok(found(string, string_text.windows(wanted.len()).position(|window| window == wanted)))
+    let place = string_text.windows(wanted.len()).position(|window| window == wanted);
+    caller.spend(Cycles::new(31 * place.unwrap_or(string_text.len()) as i64));
+    Ok(found(string, place))
 }
 
 pub(crate) fn strspn(
-    _: &mut Kernel,
+    _: &mut Parts,
     caller: &mut Caller<'_>,
     string: GuestAddr,
     set: GuestAddr,
@@ -218,7 +231,7 @@ pub(crate) fn strspn(
 }
 
 pub(crate) fn strcspn(
-    _: &mut Kernel,
+    _: &mut Parts,
     caller: &mut Caller<'_>,
     string: GuestAddr,
     set: GuestAddr,
@@ -227,30 +240,30 @@ pub(crate) fn strcspn(
     Ok(text.iter().take_while(|byte| !set.contains(byte)).count() as u32)
 }
 
-pub(crate) fn strpbrk(_: &mut Kernel, caller: &mut Caller<'_>, string: GuestAddr, set: GuestAddr) -> Place {
+pub(crate) fn strpbrk(_: &mut Parts, caller: &mut Caller<'_>, string: GuestAddr, set: GuestAddr) -> Place {
     let (text, set) = (text(caller, string)?, text(caller, set)?);
     Ok(found(string, text.iter().position(|byte| set.contains(byte))))
 }
 
 /// The next token; the place to go on is the board's, shared by all threads as the C library has it.
 pub(crate) fn strtok(
-    kernel: &mut Kernel,
+    parts: &mut Parts,
     caller: &mut Caller<'_>,
     string: GuestAddr,
     separators: GuestAddr,
 ) -> Place {
-    let start = if string.is_null() { kernel.token } else { string };
+    let start = if string.is_null() { parts.calls.token } else { string };
     if start.is_null() {
         return Ok(GuestAddr::NULL);
     }
     let (text, separators) = (text(caller, start)?, text(caller, separators)?);
     let Some(first) = text.iter().position(|byte| !separators.contains(byte)) else {
-        kernel.token = GuestAddr::NULL;
+        parts.calls.token = GuestAddr::NULL;
         return Ok(GuestAddr::NULL);
     };
     let length = text[first..].iter().take_while(|byte| !separators.contains(byte)).count();
     let end = start.offset((first + length) as u32);
-    kernel.token = if first + length == text.len() { GuestAddr::NULL } else { end.offset(1) };
+    parts.calls.token = if first + length == text.len() { GuestAddr::NULL } else { end.offset(1) };
     caller.memory.store(end, 0_u8)?;
     Ok(start.offset(first as u32))
 }
@@ -258,7 +271,7 @@ pub(crate) fn strtok(
 macro_rules! characters {
     ($($(#[$doc:meta])+ $name:ident = $test:expr;)*) => {$(
         $(#[$doc])+
-        pub(crate) fn $name(_: &mut Kernel, _: &mut Caller<'_>, character: i32) -> i32 {
+        pub(crate) fn $name(_: &mut Parts, _: &mut Caller<'_>, character: i32) -> i32 {
             let test: fn(&u8) -> bool = $test;
             u8::try_from(character).map_or(0, |byte| i32::from(test(&byte)))
         }
@@ -290,11 +303,11 @@ characters! {
     isgraph = u8::is_ascii_graphic;
 }
 
-pub(crate) fn toupper(_: &mut Kernel, _: &mut Caller<'_>, character: i32) -> i32 {
+pub(crate) fn toupper(_: &mut Parts, _: &mut Caller<'_>, character: i32) -> i32 {
     u8::try_from(character).map_or(character, |byte| i32::from(byte.to_ascii_uppercase()))
 }
 
-pub(crate) fn tolower(_: &mut Kernel, _: &mut Caller<'_>, character: i32) -> i32 {
+pub(crate) fn tolower(_: &mut Parts, _: &mut Caller<'_>, character: i32) -> i32 {
     u8::try_from(character).map_or(character, |byte| i32::from(byte.to_ascii_lowercase()))
 }
 

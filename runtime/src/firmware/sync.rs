@@ -4,13 +4,13 @@ use kmotiondef::{GuestAddr, ThreadId};
 use vm::firmware::{Caller, Outcome, Wake};
 use vm::trap::TrapKind;
 
-use crate::kernel::Kernel;
+use super::parts::Parts;
 
 /// Waits until a lock is free, then takes it.
 ///
 /// A lock holds its owner's thread number plus one. Anything that is no other thread's identity counts as free.
 pub(crate) fn mutex_lock(
-    _: &mut Kernel,
+    _: &mut Parts,
     caller: &mut Caller<'_>,
     mutex: GuestAddr,
 ) -> Result<Outcome<()>, TrapKind> {
@@ -24,17 +24,13 @@ pub(crate) fn mutex_lock(
 }
 
 /// Frees a lock, whoever owns it.
-pub(crate) fn mutex_unlock(
-    _: &mut Kernel,
-    caller: &mut Caller<'_>,
-    mutex: GuestAddr,
-) -> Result<(), TrapKind> {
+pub(crate) fn mutex_unlock(_: &mut Parts, caller: &mut Caller<'_>, mutex: GuestAddr) -> Result<(), TrapKind> {
     caller.memory.store(mutex, 0_i32)
 }
 
 /// `*place |= mask`.
 pub(crate) fn atomic_set(
-    _: &mut Kernel,
+    _: &mut Parts,
     caller: &mut Caller<'_>,
     place: GuestAddr,
     mask: i32,
@@ -45,7 +41,7 @@ pub(crate) fn atomic_set(
 
 /// `*place &= mask`: the mask holds ones at the bits to keep.
 pub(crate) fn atomic_clear(
-    _: &mut Kernel,
+    _: &mut Parts,
     caller: &mut Caller<'_>,
     place: GuestAddr,
     mask: i32,
@@ -56,7 +52,7 @@ pub(crate) fn atomic_clear(
 
 /// Stores `value` where 0 was; returns what was there.
 pub(crate) fn test_and_set(
-    _: &mut Kernel,
+    _: &mut Parts,
     caller: &mut Caller<'_>,
     mutex: GuestAddr,
     value: i32,

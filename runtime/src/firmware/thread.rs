@@ -1,51 +1,79 @@
 //! Starting and stopping threads. Source: threads-and-time.md section 2.
 
-use kmotiondef::ThreadId;
+use kmotiondef::map::program_base;
+use kmotiondef::structs::Persist;
+use kmotiondef::variables::PERSIST;
+use kmotiondef::{GuestAddr, ThreadId};
 use vm::firmware::{Caller, Outcome};
+use vm::memory::GuestMemory;
+use vm::thread::Threads;
 
-use crate::commands;
-use crate::kernel::Kernel;
+use super::parts::Parts;
+use crate::out::{Message, Request};
+use crate::views::Typed;
+
+/// The entry point that a thread is started at.
+fn entry(memory: &GuestMemory, thread: ThreadId) -> GuestAddr {
+    GuestAddr::new(memory.get(PERSIST.field(Persist::ENTRY_POINTS).element(thread.index())))
+}
+
+/// Starts a thread at its entry point; the board first looks at what was downloaded. `false` if there is nothing.
+pub(crate) fn start(
+    parts: &mut Parts,
+    memory: &GuestMemory,
+    threads: &mut Threads,
+    thread: ThreadId,
+) -> bool {
+    let (base, entry) = (program_base(thread), entry(memory, thread));
+    let is_new = parts.pc.downloads.has(thread) || threads.entry(thread) != entry;
+    if is_new && memory.peek::<u32>(base) == 0 {
+        return false;
+    }
+    if is_new {
+        threads.set_entry(thread, entry);
+        parts.out.ask(Request::Load(thread));
+    }
+    threads.start(thread).is_ok()
+}
 
 /// Starts the program of a thread; the caller's own number has no effect.
-pub(crate) fn start_thread(kernel: &mut Kernel, caller: &mut Caller<'_>, thread: i32) {
+pub(crate) fn start_thread(parts: &mut Parts, caller: &mut Caller<'_>, thread: i32) {
     match ThreadId::new(thread) {
         // The caller's number needs no start, which would look for a download there.
-        Some(id)
-            if caller.thread != Some(id) && !commands::start(kernel, caller.memory, caller.threads, id) =>
-        {
-            kernel.diagnose(caller, format!("StartThread({id}): no program is loaded in thread {id}"));
+        Some(id) if caller.thread != Some(id) && !start(parts, caller.memory, caller.threads, id) => {
+            parts.out.diagnose(caller, Message::ThreadEmpty { thread: id });
         }
         Some(_) => {}
-        None => invalid(kernel, caller, "StartThread", thread),
+        None => invalid(parts, caller, "StartThread", thread),
     }
 }
 
 /// Stops a thread where it is; a thread may name itself.
-pub(crate) fn pause_thread(kernel: &mut Kernel, caller: &mut Caller<'_>, thread: i32) -> Outcome<()> {
+pub(crate) fn pause_thread(parts: &mut Parts, caller: &mut Caller<'_>, thread: i32) -> Outcome<()> {
     match ThreadId::new(thread) {
         Some(id) if caller.thread == Some(id) => return Outcome::Pause,
         Some(id) => caller.threads.pause(id),
-        None => invalid(kernel, caller, "PauseThread", thread),
+        None => invalid(parts, caller, "PauseThread", thread),
     }
     Outcome::Done(())
 }
 
 /// Lets a paused thread continue: 0, or 1 when no program is loaded there.
-pub(crate) fn resume_thread(kernel: &mut Kernel, caller: &mut Caller<'_>, thread: i32) -> i32 {
+pub(crate) fn resume_thread(parts: &mut Parts, caller: &mut Caller<'_>, thread: i32) -> i32 {
     match ThreadId::new(thread) {
         Some(id) => i32::from(caller.threads.resume(id).is_err()),
         None => {
-            invalid(kernel, caller, "ResumeThread", thread);
+            invalid(parts, caller, "ResumeThread", thread);
             1
         }
     }
 }
 
 /// Ends the calling thread.
-pub(crate) fn thread_done(_: &mut Kernel, _: &mut Caller<'_>) -> Outcome<()> {
+pub(crate) fn thread_done(_: &mut Parts, _: &mut Caller<'_>) -> Outcome<()> {
     Outcome::End
 }
 
-fn invalid(kernel: &mut Kernel, caller: &Caller<'_>, function: &str, thread: i32) {
-    kernel.diagnose(caller, format!("{function}({thread}): there are threads 1 to 7"));
+fn invalid(parts: &mut Parts, caller: &Caller<'_>, function: &'static str, thread: i32) {
+    parts.out.diagnose(caller, Message::NoSuchThread { function, thread });
 }

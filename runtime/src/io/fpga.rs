@@ -5,8 +5,6 @@
 
 mod pwm;
 
-use std::collections::BTreeSet;
-
 use kmotiondef::map::FPGA;
 use kmotiondef::{Bit, Cycles, GuestAddr};
 use vm::bus::AccessSize;
@@ -17,7 +15,7 @@ use super::kstep::AnalogOutput;
 use super::pins::{PINS, Pins};
 use super::stepgen::StepGenerators;
 use super::uart::Uart;
-use crate::out::EventKind;
+use crate::out::Message;
 
 /// Bytes between two registers.
 const STRIDE: u32 = 4;
@@ -139,12 +137,6 @@ pub(crate) struct Behind<'a> {
 #[derive(Clone, Debug)]
 pub(crate) struct Fpga {
     bytes: Box<[u8]>,
-    /// Unknown registers that programs have used.
-    unknown: BTreeSet<u32>,
-    /// Whether a character was sent while the UART had no pins.
-    sent_nowhere: bool,
-    /// Whether it was said that Kanalog needs the pins of JP7.
-    told_jp7: bool,
     /// Until when the edges of watched PWM pins are told.
     told: Cycles,
     kstep: AnalogOutput,
@@ -156,14 +148,7 @@ impl Default for Fpga {
         for (register, value) in START {
             bytes[(register * STRIDE + LANE) as usize] = value;
         }
-        Self {
-            bytes,
-            unknown: BTreeSet::new(),
-            sent_nowhere: false,
-            told_jp7: false,
-            told: Cycles::default(),
-            kstep: AnalogOutput::default(),
-        }
+        Self { bytes, told: Cycles::default(), kstep: AnalogOutput::default() }
     }
 }
 
@@ -196,6 +181,11 @@ fn register(address: GuestAddr) -> (u32, Option<(Kind, u32)>) {
     (number, range.filter(|_| offset % STRIDE == LANE).map(|range| (range.kind, number - range.first)))
 }
 
+/// A remark on a pin that becomes an output while Kanalog is connected to JP7.
+pub(crate) fn kanalog_pins(bit: Bit) -> Option<Message> {
+    (bit.get() < JP7_PINS).then_some(Message::KanalogPins { bit })
+}
+
 impl Fpga {
     /// Reads a register.
     pub(crate) fn read(&mut self, behind: Behind<'_>, address: GuestAddr, size: AccessSize) -> u32 {
@@ -221,14 +211,14 @@ impl Fpga {
         }
     }
 
-    /// Writes a register; a remark comes back when that is in vain, the first time.
+    /// Writes a register; a remark comes back when that is in vain.
     pub(crate) fn write(
         &mut self,
         behind: Behind<'_>,
         address: GuestAddr,
         size: AccessSize,
         value: u32,
-    ) -> Option<EventKind> {
+    ) -> Option<Message> {
         let Behind { pins, uart, encoders, stepgens, now, kanalog: _ } = behind;
         let (number, kind) = register(address);
         let is_pwm = matches!(kind, Some((Kind::Pwm | Kind::Port, _)));
@@ -242,12 +232,11 @@ impl Fpga {
                 let new = value as u8 & !pins.direction_group(group);
                 pins.set_direction_group(group, value as u8, now);
                 let first = Bit::new((8 * group + new.trailing_zeros()) as i32).filter(|_| new != 0);
-                let remark = first.filter(|_| self.serves_kanalog()).and_then(|bit| self.note_jp7(bit));
-                return remark.map(EventKind::Diagnostic);
+                return first.filter(|_| self.serves_kanalog()).and_then(kanalog_pins);
             }
             Some((Kind::UartData, _)) => {
                 uart.send(value as u8, now);
-                return self.note_lost_character().map(EventKind::Diagnostic);
+                return (!self.has_uart_pins()).then_some(Message::UartUnconnected {});
             }
             Some((Kind::UartStatus, _)) => uart.set_divisor(value as u8),
             Some((Kind::EncoderErrors, _)) => encoders.clear_errors(),
@@ -277,15 +266,7 @@ impl Fpga {
             self.tell_pwm(pins, now);
             self.kstep.drive(self.moved_pwm(), now);
         }
-        (kind.is_none() && self.unknown.insert(number))
-            .then(|| format!("FPGA register {number:#x} is not known: it only stores what is written"))
-            .map(EventKind::Detail)
-    }
-
-    /// A remark on the first pin of JP7 that becomes an output while Kanalog is connected there.
-    pub(crate) fn note_jp7(&mut self, bit: Bit) -> Option<String> {
-        (bit.get() < JP7_PINS && !std::mem::replace(&mut self.told_jp7, true))
-            .then(|| format!("bit {bit} becomes an output, but Kanalog is connected to bits 0 to 15 of JP7"))
+        kind.is_none().then_some(Message::UnknownRegister { number })
     }
 
     /// Connects the UART to its pins.
@@ -303,12 +284,9 @@ impl Fpga {
         self.bytes.get((register * STRIDE + LANE) as usize).copied().unwrap_or_default()
     }
 
-    /// A remark on the first character sent without pins.
-    fn note_lost_character(&mut self) -> Option<String> {
-        let is_lost = self.bytes[PORT_BYTE] & (UART_ON | KANALOG_ON) == 0;
-        (is_lost && !std::mem::replace(&mut self.sent_nowhere, true)).then(|| {
-            "the UART is not connected to its pins: call InitRS232, or write 2 to KAN_TRIG_REG".to_owned()
-        })
+    /// Whether the UART is connected to pins.
+    fn has_uart_pins(&self) -> bool {
+        self.bytes[PORT_BYTE] & (UART_ON | KANALOG_ON) != 0
     }
 
     fn stored(&self, address: GuestAddr, size: AccessSize) -> u32 {
@@ -359,7 +337,7 @@ mod tests {
             fpga.read(behind, address(register), size)
         }
 
-        pub(super) fn write(&mut self, register: u32, size: AccessSize, value: u32) -> Option<EventKind> {
+        pub(super) fn write(&mut self, register: u32, size: AccessSize, value: u32) -> Option<Message> {
             let (fpga, behind) = self.parts();
             fpga.write(behind, address(register), size, value)
         }
@@ -400,13 +378,12 @@ mod tests {
     }
 
     #[test]
-    fn directions_of_pins_that_kanalog_needs_are_told_once() {
+    fn directions_of_pins_that_kanalog_needs_are_told() {
         let mut bench = Bench::default();
         bench.write(0xa0, AccessSize::Byte, 1);
         assert_eq!(bench.write(0x123, AccessSize::Byte, 0xff), None);
         let told = bench.write(0x121, AccessSize::Byte, 0x0c);
-        assert!(matches!(told, Some(EventKind::Diagnostic(text)) if text.contains("bit 10 becomes")));
-        assert_eq!(bench.write(0x120, AccessSize::Byte, 1), None);
+        assert!(told.is_some_and(|message| message.to_string().contains("bit 10 becomes")));
     }
 
     #[test]
@@ -433,12 +410,12 @@ mod tests {
     }
 
     #[test]
-    fn other_registers_store_and_an_unknown_one_is_told_once() {
+    fn other_registers_store_and_an_unknown_one_is_told() {
         let mut bench = Bench::default();
         assert_eq!(bench.write(0x06, AccessSize::Byte, 0x12), None);
         assert_eq!(bench.read(0x06, AccessSize::Byte), 0x12);
         assert!(bench.write(0x200, AccessSize::Half, 0x1234).is_some());
-        assert_eq!(bench.write(0x200, AccessSize::Half, 0x5678), None);
+        bench.write(0x200, AccessSize::Half, 0x5678);
         assert_eq!(bench.read(0x200, AccessSize::Half), 0x5678);
     }
 
@@ -447,7 +424,7 @@ mod tests {
         let mut bench = Bench::default();
         assert!(bench.write(0xc0, AccessSize::Byte, 65).is_some());
         assert_eq!(bench.read(0xc1, AccessSize::Byte), 0);
-        assert_eq!(bench.write(0xc0, AccessSize::Byte, 65), None);
+        bench.write(0xc0, AccessSize::Byte, 65);
         assert_eq!(bench.read(0xc1, AccessSize::Byte), 2);
         let mut bench = Bench::default();
         bench.fpga.enable_uart_pins();

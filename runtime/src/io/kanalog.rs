@@ -64,9 +64,22 @@ pub(crate) fn is_served(fpga: &Fpga, memory: &GuestMemory) -> bool {
     fpga.serves_kanalog() || memory.get(KANALOG_PRESENT) != 0
 }
 
+/// The conversion of an analog input, 0 to 4095, at a value in counts.
+pub(crate) fn conversion(counts: f64) -> i32 {
+    // A cast saturates, and NaN becomes 0.
+    (libm::round(counts) as i32).clamp(-2048, 2047) + 2048
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn conversions_stay_within_12_bits() {
+        for (counts, expect) in [(0.0, 2048), (-9e9, 0), (2047.4, 4095), (9e9, 4095), (f64::NAN, 2048)] {
+            assert_eq!(conversion(counts), expect, "{counts}");
+        }
+    }
 
     #[test]
     fn inputs_are_converted_while_the_port_serves_them() {

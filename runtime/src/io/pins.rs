@@ -204,6 +204,11 @@ impl Pins {
         }
     }
 
+    /// Whether something outside of the board drives a bit or is going to.
+    pub(crate) fn is_declared(&self, bit: Bit) -> bool {
+        self.driven.contains(bit)
+    }
+
     /// Whether anything drives an input.
     pub(crate) fn is_driven(&self, bit: Bit) -> bool {
         self.driven.contains(bit) || bit.get() < PINS && self.phases >> bit.get() & 1 != 0

@@ -7,6 +7,7 @@
 use kmotiondef::{AxisId, Bit, Cycles};
 
 use super::pins::Pins;
+use crate::out::Message;
 
 /// Generators.
 pub(crate) const GENERATORS: usize = 8;
@@ -65,8 +66,6 @@ pub(crate) struct StepGenerators {
     fastest: f64,
     /// Whether a program drives any.
     is_driven: bool,
-    /// Axes that have fallen behind, axis 0 lowest.
-    late: u8,
 }
 
 impl Default for StepGenerators {
@@ -77,7 +76,6 @@ impl Default for StepGenerators {
             settings: START,
             fastest: LIMIT,
             is_driven: false,
-            late: 0,
         }
     }
 }
@@ -123,8 +121,14 @@ impl StepGenerators {
         }
     }
 
+    /// Whether a generator that is in use makes its pulses on a pin.
+    pub(crate) fn makes(&self, bit: Bit) -> bool {
+        let in_use = |generator: &usize| self.generators[*generator].owner.is_some();
+        (0..self.generators.len()).filter(in_use).any(|generator| self.pins(generator).contains(&Some(bit)))
+    }
+
     /// The pins of a generator: step and direction.
-    fn pins(&self, generator: usize) -> [Option<Bit>; 2] {
+    pub(crate) fn pins(&self, generator: usize) -> [Option<Bit>; 2] {
         let moved = MOVED_PINS.get(generator).filter(|_| self.settings & MOVED != 0);
         let step = moved.copied().unwrap_or(STEP_PINS[generator]);
         [Bit::new(step), Bit::new(step + 1)]
@@ -258,18 +262,11 @@ impl StepGenerators {
         per_second * (Cycles::PER_TICK.get() as f64 / Cycles::PER_SECOND.get() as f64)
     }
 
-    /// What an axis that was to make more is told: once.
-    pub(crate) fn fall_behind(&mut self, axis: AxisId) -> Option<String> {
-        let is_known = self.late >> axis.get() & 1 != 0 || self.channels[axis.index()].is_none();
-        self.late |= 1 << axis.get();
+    /// What there is to say of an axis that was to make more.
+    pub(crate) fn fall_behind(&self, axis: AxisId) -> Option<Message> {
         let length = f64::from((self.settings & LENGTH).max(1)) / CLOCK * 1e6;
-        (!is_known).then(|| {
-            format!(
-                "axis {axis} is to make more than the {:.0} steps a second that pulses of {length:.2} µs leave room \
-                 for: it falls behind and catches up (STEP_PULSE_LENGTH_ADD)",
-                self.fastest
-            )
-        })
+        let has_generator = self.channels[axis.index()].is_some();
+        has_generator.then_some(Message::StepsTooFast { axis, fastest: self.fastest, length })
     }
 
     /// Whether a program drives any.
@@ -408,7 +405,8 @@ mod tests {
         }
         let told = [generators.fall_behind(axis), generators.fall_behind(axis)];
         assert!(
-            told[0].as_ref().is_some_and(|text| text.contains("260417 steps")) && told[1].is_none(),
+            told[0].as_ref().is_some_and(|message| message.to_string().contains("260417 steps"))
+                && told[0] == told[1],
             "{told:?}"
         );
     }

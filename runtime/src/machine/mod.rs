@@ -1,3 +1,178 @@
-//! The simulated mechanics that the board moves.
+//! The simulated machine that the board moves: loads of the axes, what they trip, devices on the board's lines.
+//!
+//! It is moved by what the board puts out, and knows only inputs and outputs and guest memory.
 
+pub(crate) mod attached;
+pub(crate) mod description;
+mod lines;
+mod mechanics;
+mod motor;
 pub(crate) mod plant;
+#[cfg(test)]
+mod tests;
+
+use std::ops::{Index, IndexMut};
+
+use kmotiondef::limits::N_CHANNELS;
+use kmotiondef::{AxisId, Bit, Cycles};
+use vm::memory::GuestMemory;
+
+pub use mechanics::Connected;
+
+pub(crate) use lines::Lines;
+pub(crate) use mechanics::Mechanics;
+pub(crate) use motor::Applied;
+pub(crate) use plant::{COUNTS_PER_TICK, Drive, Plant};
+
+use crate::io::Io;
+use crate::io::bits::bit_state;
+use crate::io::changes::BitChange;
+use crate::io::konnect::Board;
+use crate::io::pins::Pins;
+use crate::io::snapamp::SnapAmps;
+use crate::machine::attached::{Attached, Outside};
+use crate::out::{EventKind, Message, Out};
+
+/// Edges that devices may answer at one instant.
+const EDGES_AT_ONCE: usize = 10_000;
+
+/// Opto inputs of a SnapAmp, and the first of each board.
+const OPTOS: i32 = 8;
+const FIRST_OPTOS: [i32; 2] = [72, 104];
+
+/// The loads of the eight axes.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Loads {
+    plants: [Plant; N_CHANNELS],
+    /// Whether something else than the servo has moved one since the servo last asked.
+    is_pushed: bool,
+}
+
+impl Loads {
+    /// Something outside moves the load of an axis.
+    pub(crate) fn push(&mut self, axis: AxisId, units: f64) {
+        self[axis].push(units);
+        self.is_pushed = true;
+    }
+
+    /// Whether something outside has moved a load since the last time.
+    #[inline]
+    pub(crate) fn take_pushed(&mut self) -> bool {
+        std::mem::take(&mut self.is_pushed)
+    }
+}
+
+impl Index<AxisId> for Loads {
+    type Output = Plant;
+
+    #[inline(always)]
+    fn index(&self, axis: AxisId) -> &Plant {
+        &self.plants[axis.index()]
+    }
+}
+
+impl IndexMut<AxisId> for Loads {
+    #[inline(always)]
+    fn index_mut(&mut self, axis: AxisId) -> &mut Plant {
+        &mut self.plants[axis.index()]
+    }
+}
+
+/// What is behind the board's outputs.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Machine {
+    pub(crate) loads: Loads,
+    pub(crate) mechanics: Mechanics,
+    /// Devices on the board's lines.
+    attached: Vec<Box<dyn Attached>>,
+    /// Whether motors on the first four step generators need the enable signal of a KStep.
+    pub(crate) needs_enable: bool,
+}
+
+impl Machine {
+    /// Attaches a device and shows it what is high.
+    pub(crate) fn attach(
+        &mut self,
+        mut device: Box<dyn Attached>,
+        io: &mut Io,
+        out: &mut Out,
+        memory: &GuestMemory,
+        now: Cycles,
+    ) {
+        io.pins.changes.switch_on(memory);
+        Bit::all().filter(|&bit| device.watches(bit)).for_each(|bit| io.pins.watch(bit));
+        io.uart.listen();
+        let high = Bit::all().filter(|&bit| bit_state(io, memory, bit).0).collect::<Vec<_>>();
+        let (mut outside, _) = self.outside(io);
+        for bit in high {
+            device.edge(BitChange { at: now, bit, level: true }, &mut outside);
+        }
+        device.tick(now, &mut outside);
+        self.attached.push(device);
+        self.settle(io, out, now);
+    }
+
+    /// What devices reach, and the devices.
+    fn outside<'a>(&'a mut self, io: &'a mut Io) -> (Outside<'a>, &'a mut [Box<dyn Attached>]) {
+        let outside = Outside {
+            pins: &mut io.pins,
+            kanalog: &mut io.kanalog,
+            uart: &mut io.uart,
+            fpga: &io.fpga,
+            loads: &mut self.loads,
+        };
+        (outside, &mut self.attached)
+    }
+
+    /// Bits may have changed: devices that listen to them answer.
+    pub(crate) fn settle(&mut self, io: &mut Io, out: &mut Out, now: Cycles) {
+        if self.attached.is_empty() {
+            return;
+        }
+        // Devices that answer each other for ever do so at one instant: that is where it is broken off.
+        for _ in 0..EDGES_AT_ONCE {
+            let Some(change) = io.pins.changes.next_unseen() else { return };
+            let (mut outside, devices) = self.outside(io);
+            for device in devices {
+                device.edge(change, &mut outside);
+            }
+        }
+        self.attached.clear();
+        out.remark(now, Message::DevicesEndless {});
+    }
+
+    /// What devices do at the beginning of a tick; `hears_uart` says whether what the UART sends is told.
+    pub(crate) fn run_devices(&mut self, io: &mut Io, out: &mut Out, hears_uart: bool, now: Cycles) {
+        while let Some((at, byte)) = io.uart.take_sent(now) {
+            let (mut outside, devices) = self.outside(io);
+            for device in devices {
+                device.sent(byte, at, &mut outside);
+            }
+            if hears_uart {
+                out.tell(at, EventKind::UartSent(byte));
+            }
+        }
+        let (mut outside, devices) = self.outside(io);
+        for device in devices {
+            device.tick(now, &mut outside);
+        }
+        self.settle(io, out, now);
+    }
+
+    /// The outputs of a Konnect board have changed.
+    pub(crate) fn konnect(&mut self, board: Board, outputs: u16, at: Cycles) {
+        self.attached.iter_mut().for_each(|device| device.konnect(board, outputs, at));
+    }
+
+    /// Whether the devices do in the next tick what they did in the last one.
+    pub(crate) fn is_settled(&self) -> bool {
+        self.attached.iter().all(|device| device.is_settled())
+    }
+}
+
+/// Puts a SnapAmp on the bus. Its opto inputs read 1 while no current flows.
+pub(crate) fn connect_snapamp(snapamps: &mut SnapAmps, pins: &mut Pins, board: usize) {
+    snapamps.connect(board);
+    let Some(first) = FIRST_OPTOS.get(board) else { return };
+    (*first..first + OPTOS).filter_map(Bit::new).for_each(|bit| pins.idle_high(bit));
+}

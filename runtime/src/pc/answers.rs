@@ -125,7 +125,7 @@ impl Answers {
     /// What is wrong with it.
     pub fn set_next(&mut self, setting: &str) -> Result<(), AnswerError> {
         match setting.split('=').next().map(str::trim) {
-            Some("msgbox") => self.buttons.0.clear(),
+            Some("msgbox" | "message_box") => self.buttons.0.clear(),
             Some("input") => self.inputs.0.clear(),
             Some("mdi") => self.mdi.0.clear(),
             _ => {}
@@ -140,7 +140,9 @@ impl Answers {
     pub fn set(&mut self, setting: &str) -> Result<(), AnswerError> {
         let (key, value) =
             setting.split_once('=').ok_or_else(|| AnswerError::NotASetting(setting.to_owned()))?;
-        let (key, value) = (key.trim(), value.trim());
+        // `message_box` is what machine files say.
+        let key = if key.trim() == "message_box" { "msgbox" } else { key.trim() };
+        let value = value.trim();
         let bad = |expected| AnswerError::BadValue { key: key.to_owned(), value: value.to_owned(), expected };
         let real = || value.parse::<f64>().map_err(|_| bad("a number"));
         let whole = || value.parse::<i32>().map_err(|_| bad("a whole number"));

@@ -11,9 +11,8 @@ use kmotiondef::variables::{READ_DISK_BUFFER, READ_DISK_BUFFER_STATUS};
 use vm::firmware::TickContext;
 use vm::memory::GuestMemory;
 
-use crate::kernel::Kernel;
-use crate::out::EventKind;
-use crate::pc::files::HostFiles;
+use crate::out::{Message, Out};
+use crate::pc::files::{FileError, HostFiles};
 use crate::views::Typed;
 
 /// From a request to its answer: 20 ms, unless a machine file says otherwise.
@@ -78,31 +77,22 @@ enum Answer {
 }
 
 /// The disk, and what is open on it.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Disk {
     files: Box<dyn HostFiles>,
     /// What is still to be read.
-    reading: Option<Lines>,
+    reading: Option<TextLines>,
     writing: Option<String>,
     /// From a request to its answer.
     pub(crate) latency: Cycles,
     /// Answers on their way, and when they arrive.
     answers: VecDeque<(Cycles, Answer)>,
-    /// Whether it was said that no file is open for writing.
-    is_told: bool,
 }
 
 impl Disk {
     /// Nothing is open.
     pub(crate) fn new(files: Box<dyn HostFiles>) -> Self {
-        Self {
-            files,
-            reading: None,
-            writing: None,
-            latency: LATENCY,
-            answers: VecDeque::new(),
-            is_told: false,
-        }
+        Self { files, reading: None, writing: None, latency: LATENCY, answers: VecDeque::new() }
     }
 
     /// The board restarts: nothing is awaited any more.
@@ -119,13 +109,13 @@ impl Disk {
     }
 
     /// Does what a request says; a remark if it cannot.
-    fn serve(&mut self, request: Request, text: &str, now: Cycles) -> Option<String> {
+    fn serve(&mut self, request: Request, text: &str, now: Cycles) -> Option<Message> {
         match request {
             Request::Create | Request::Append => {
-                self.is_told = false;
                 let made = self.files.create(text, request == Request::Append);
                 self.writing = made.is_ok().then(|| text.to_owned());
-                made.err().map(|error| format!("the PC does not write {text}: {error}"))
+                made.err()
+                    .map(|error| Message::FileNotMade { name: text.to_owned(), error: error.to_string() })
             }
             Request::Write => self.write(text),
             Request::CloseWriting => {
@@ -135,9 +125,14 @@ impl Disk {
             Request::Open => {
                 let opened = self.files.read(text);
                 let error = opened.as_ref().err().cloned();
-                self.reading = opened.ok().map(Lines::new);
+                self.reading = opened.ok().map(TextLines::new);
                 self.answer(now);
-                error.map(|error| format!("the PC does not read {text}: {error}"))
+                error.map(|error| {
+                    let place = self.files.place_of(text).filter(|_| error == FileError::Missing);
+                    let error =
+                        place.map_or_else(|| error.to_string(), |place| format!("there is no file {place}"));
+                    Message::FileNotRead { name: text.to_owned(), error }
+                })
             }
             Request::NextLine => {
                 self.answer(now);
@@ -150,13 +145,10 @@ impl Disk {
         }
     }
 
-    fn write(&mut self, text: &str) -> Option<String> {
-        let Some(name) = &self.writing else {
-            let first = !std::mem::replace(&mut self.is_told, true);
-            return first.then(|| "a line is written, and no file is open for writing on the PC".to_owned());
-        };
+    fn write(&mut self, text: &str) -> Option<Message> {
+        let Some(name) = &self.writing else { return Some(Message::NoOpenFile {}) };
         let written = self.files.append(name, format!("{text}\n").as_bytes());
-        written.err().map(|error| format!("the PC cannot write {name}: {error}"))
+        written.err().map(|error| Message::FileNotWritten { name: name.clone(), error: error.to_string() })
     }
 
     /// Sends the next line, or says that there is none.
@@ -173,28 +165,30 @@ impl Disk {
         let is_due = self.answers.front().is_some_and(|(due, _)| *due <= now);
         if is_due { self.answers.pop_front().map(|(_, answer)| answer) } else { None }
     }
-}
 
-/// Takes a console line that is a request; whether it was one.
-pub(crate) fn take(kernel: &mut Kernel, line: &[u8], now: Cycles) -> bool {
-    let Some((request, text)) = Request::read(line) else { return false };
-    let text = String::from_utf8_lossy(text);
-    if let Some(remark) = kernel.disk.serve(request, &text, now) {
-        kernel.tell(now, EventKind::Diagnostic(remark));
+    /// Takes a console line that is a request; whether it was one.
+    pub(crate) fn take(&mut self, out: &mut Out, line: &[u8], now: Cycles) -> bool {
+        let Some((request, text)) = Request::read(line) else { return false };
+        let text = String::from_utf8_lossy(text);
+        if matches!(request, Request::Create | Request::Append) {
+            out.forget_remarks(&["no-open-file"]);
+        }
+        if let Some(message) = self.serve(request, &text, now) {
+            out.remark(now, message);
+        }
+        true
     }
-    true
-}
 
-/// Puts an answer that has arrived into the board's line buffer.
-#[inline]
-pub(crate) fn slice(kernel: &mut Kernel, context: &mut TickContext<'_>) {
-    if let Some(answer) = kernel.disk.arrived(context.now) {
+    /// Puts an answer that has arrived into the board's line buffer; whether there was one.
+    #[inline]
+    pub(crate) fn slice(&mut self, context: &mut TickContext<'_>) -> bool {
+        let Some(answer) = self.arrived(context.now) else { return false };
         match answer {
             Answer::Line(line) => deliver(context.memory, &line),
             Answer::End => context.memory.set(READ_DISK_BUFFER_STATUS, NO_MORE),
             Answer::Failure => context.memory.set(READ_DISK_BUFFER_STATUS, FAILED),
         }
-        kernel.disturb();
+        true
     }
 }
 
@@ -206,20 +200,20 @@ fn deliver(memory: &mut GuestMemory, line: &[u8]) {
 }
 
 /// The lines of a text without their ends; a last line without an end counts.
-#[derive(Debug)]
-struct Lines {
+#[derive(Clone, Debug)]
+struct TextLines {
     text: Vec<u8>,
     /// Where the next one begins.
     next: usize,
 }
 
-impl Lines {
+impl TextLines {
     fn new(text: Vec<u8>) -> Self {
         Self { text, next: 0 }
     }
 }
 
-impl Iterator for Lines {
+impl Iterator for TextLines {
     type Item = Vec<u8>;
 
     fn next(&mut self) -> Option<Vec<u8>> {
@@ -239,7 +233,7 @@ mod tests {
 
     #[test]
     fn a_last_line_without_end_is_a_line() {
-        let lines = |text: &[u8]| Lines::new(text.to_vec()).collect::<Vec<_>>();
+        let lines = |text: &[u8]| TextLines::new(text.to_vec()).collect::<Vec<_>>();
         assert_eq!(lines(b"a\r\n\r\nb"), [&b"a"[..], b"", b"b"]);
         assert_eq!(lines(b"a\n"), [b"a"]);
         assert_eq!(lines(b"\n"), [b""]);
@@ -248,7 +242,7 @@ mod tests {
 
     #[test]
     fn a_line_of_more_than_1024_characters_is_cut() {
-        assert_eq!(Lines::new(vec![b'x'; 2000]).collect::<Vec<_>>(), [vec![b'x'; 1024]]);
+        assert_eq!(TextLines::new(vec![b'x'; 2000]).collect::<Vec<_>>(), [vec![b'x'; 1024]]);
     }
 
     #[test]

@@ -60,6 +60,21 @@ pub trait HostFiles: fmt::Debug + Send {
     /// # Errors
     /// Why it cannot grow.
     fn append(&mut self, name: &str, bytes: &[u8]) -> Result<(), FileError>;
+
+    /// Where the file of this name is looked for, if that can be said.
+    fn place_of(&self, name: &str) -> Option<String> {
+        let _ = name;
+        None
+    }
+
+    /// Another handle of the same files.
+    fn handle(&self) -> Box<dyn HostFiles>;
+}
+
+impl Clone for Box<dyn HostFiles> {
+    fn clone(&self) -> Self {
+        self.handle()
+    }
 }
 
 /// A PC without files.
@@ -77,6 +92,10 @@ impl HostFiles for NoFiles {
 
     fn append(&mut self, _: &str, _: &[u8]) -> Result<(), FileError> {
         Err(FileError::NoFiles)
+    }
+
+    fn handle(&self) -> Box<dyn HostFiles> {
+        Box::new(*self)
     }
 }
 
@@ -182,6 +201,14 @@ impl HostFiles for Directory {
     fn append(&mut self, name: &str, bytes: &[u8]) -> Result<(), FileError> {
         let mut file = OpenOptions::new().append(true).open(self.place(name)?)?;
         Ok(file.write_all(bytes)?)
+    }
+
+    fn place_of(&self, name: &str) -> Option<String> {
+        Some(self.place(name).ok()?.to_string_lossy().replace('\\', "/"))
+    }
+
+    fn handle(&self) -> Box<dyn HostFiles> {
+        Box::new(self.clone())
     }
 }
 

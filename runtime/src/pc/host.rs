@@ -14,13 +14,11 @@ use vm::firmware::TickContext;
 use vm::memory::GuestMemory;
 
 use super::answers::{self, AnswerError, Answers};
-use super::requests;
-use crate::firmware::coord;
-use crate::kernel::Kernel;
-use crate::out::EventKind;
+use super::{gcode, requests};
+use crate::out::{EventKind, Message, Out};
 use crate::servo::coordinated::rate;
 use crate::servo::coordinated::system::nominal_change_time;
-use crate::text::float_prefix;
+use crate::servo::hold;
 use crate::views::Typed;
 
 /// Ticks between two polls: 0.1 s.
@@ -131,87 +129,87 @@ fn doubles(index: i32, count: usize) -> Option<GuestAddr> {
     named(index.checked_mul(2)?, count.checked_mul(2)?)
 }
 
-/// What the PC does while the primary thread has its slice.
-pub(crate) fn slice(kernel: &mut Kernel, context: &mut TickContext<'_>) {
-    if !kernel.host.is_connected {
-        return miss(kernel, context);
+/// What the PC does while the primary thread has its slice; whether it has stored an answer.
+pub(crate) fn slice(host: &mut Host, out: &mut Out, context: &mut TickContext<'_>) -> bool {
+    if !host.is_connected {
+        miss(host, out, context);
+        return false;
     }
-    if kernel.host.until_poll > 0 {
-        return;
+    if host.until_poll > 0 {
+        return false;
     }
-    kernel.host.until_poll = POLL_TICKS;
+    host.until_poll = POLL_TICKS;
     let polls = context.memory.get(STATUS_REQUEST_COUNTER).wrapping_add(1);
     context.memory.set(STATUS_REQUEST_COUNTER, polls);
-    coord::update_state(context.memory);
+    hold::update_state(context.memory);
     let code = context.memory.get(data(0));
     if code <= 0 {
-        kernel.host.unanswered = 0;
-    } else if kernel.host.answers.silent.contains(&code) {
-        if kernel.host.unanswered != code {
-            kernel.host.unanswered = code;
-            say(kernel, context, format!("request {code} is left without an answer"));
+        host.unanswered = 0;
+    } else if host.answers.silent.contains(&code) {
+        if host.unanswered != code {
+            host.unanswered = code;
+            say(out, context, format!("request {code} is left without an answer"));
         }
     } else {
-        let answer = answer(kernel, context, code);
+        let answer = answer(host, out, context, code);
         context.memory.set(data(0), answer);
-        kernel.disturb();
+        return true;
     }
+    false
 }
 
 /// Says of a request that waits for a PC which is not there that it does.
-fn miss(kernel: &mut Kernel, context: &TickContext<'_>) {
+fn miss(host: &mut Host, out: &mut Out, context: &TickContext<'_>) {
     let code = context.memory.get(data(0));
-    let host = &mut kernel.host;
     if code <= 0 || code != host.unanswered {
         host.unanswered = code.max(0);
         host.waits_since = (code > 0).then_some(context.now);
     } else if host.waits_since.is_some_and(|since| context.now - since > PATIENCE) {
         host.waits_since = None;
-        let text = format!("request {code} waits for a PC, and none is connected (`host.enabled = false`)");
-        kernel.tell(context.now, EventKind::Diagnostic(text));
+        out.remark(context.now, Message::NoPc { code });
     }
 }
 
 /// Meets a request; what it stores comes before the answer.
-fn answer(kernel: &mut Kernel, context: &mut TickContext<'_>, code: i32) -> i32 {
+fn answer(host: &mut Host, out: &mut Out, context: &mut TickContext<'_>, code: i32) -> i32 {
     let parameters: [i32; 3] = std::array::from_fn(|index| context.memory.get(data(index + 1)));
     if let Some(text) = requests::shown(code, parameters[0]) {
-        say(kernel, context, text);
+        say(out, context, text);
     }
-    if let Some(&result) = kernel.host.answers.results.get(&code) {
-        say(kernel, context, format!("request {code} is answered {result}"));
+    if let Some(&result) = host.answers.results.get(&code) {
+        say(out, context, format!("request {code} is answered {result}"));
         return result;
     }
     let number = f32::from_bits(parameters[0] as u32);
     match code {
         1 => emergency_stop(context),
         2 => set_job(context.memory, false),
-        3 if kernel.host.answers.has_job => set_job(context.memory, true),
+        3 if host.answers.has_job => set_job(context.memory, true),
         5 if !(0.001..=1000.0).contains(&number) => return INVALID,
-        5 | 6 | 54 | 55 => set_override(kernel, context, code, number),
-        7..=12 => kernel.host.answers.dros[code as usize - 7] = f64::from(number),
-        15 => message_box(kernel, context, parameters),
-        16 | 17 => return variables(kernel, context.memory, code == 17, parameters),
-        18 => mdi(kernel, context, parameters[0]),
-        19 => return store_floats(context.memory, parameters[0], &kernel.host.answers.resolutions),
-        23 | 24 | 30..=35 => return tool(kernel, context.memory, code, parameters),
-        25 => return store_words(context.memory, parameters[0], &kernel.host.answers.setup),
-        26 | 27 => return store_doubles(context.memory, parameters[0], &kernel.host.answers.dros),
-        29 => input_box(kernel, context, parameters[0]),
+        5 | 6 | 54 | 55 => set_override(out, context, code, number),
+        7..=12 => host.answers.dros[code as usize - 7] = f64::from(number),
+        15 => message_box(host, out, context, parameters),
+        16 | 17 => return variables(host, context.memory, code == 17, parameters),
+        18 => mdi(host, out, context, parameters[0]),
+        19 => return store_floats(context.memory, parameters[0], &host.answers.resolutions),
+        23 | 24 | 30..=35 => return tool(host, context.memory, code, parameters),
+        25 => return store_words(context.memory, parameters[0], &host.answers.setup),
+        26 | 27 => return store_doubles(context.memory, parameters[0], &host.answers.dros),
+        29 => input_box(host, out, context, parameters[0]),
         3 | 4 | 13 | 14 | 20..=22 | 28 | 36..=39 | 52 => {}
         40..=45 => {
-            let value = kernel.host.jog_overrides[code as usize - 40];
+            let value = host.jog_overrides[code as usize - 40];
             context.memory.set(data(1), value.to_bits() as i32);
         }
-        46..=51 => kernel.host.jog_overrides[code as usize - 46] = number,
-        53 => return edit_cell(kernel, context.memory, parameters[0]),
+        46..=51 => host.jog_overrides[code as usize - 46] = number,
+        53 => return edit_cell(host, context.memory, parameters[0]),
         _ => return INVALID,
     }
     DONE
 }
 
-fn say(kernel: &mut Kernel, context: &TickContext<'_>, text: String) {
-    kernel.tell(context.now, EventKind::Host(text));
+fn say(out: &mut Out, context: &TickContext<'_>, text: String) {
+    out.tell(context.now, EventKind::Host(text));
 }
 
 /// Stops threads 2 to 7 and coordinated motion.
@@ -222,7 +220,7 @@ fn emergency_stop(context: &mut TickContext<'_>) {
 }
 
 /// Sets the feed (5) or rapid (54) override, or changes it by a factor (6, 55).
-fn set_override(kernel: &mut Kernel, context: &mut TickContext<'_>, code: i32, number: f32) {
+fn set_override(out: &mut Out, context: &mut TickContext<'_>, code: i32, number: f32) {
     let memory = &mut *context.memory;
     let time = nominal_change_time(memory);
     let (name, value) = match code {
@@ -236,7 +234,7 @@ fn set_override(kernel: &mut Kernel, context: &mut TickContext<'_>, code: i32, n
     } else {
         rate::set_rapid(memory, value, time);
     }
-    say(kernel, context, format!("{name} override {value}"));
+    say(out, context, format!("{name} override {value}"));
 }
 
 /// Tells the board whether a job runs.
@@ -256,7 +254,7 @@ fn string(memory: &GuestMemory, offset: i32) -> String {
 const BUTTONS: i32 = 0xf;
 
 /// Shows a box and presses the button that was named for it, or its first one that goes on.
-fn message_box(kernel: &mut Kernel, context: &mut TickContext<'_>, [offset, flags, _]: [i32; 3]) {
+fn message_box(host: &mut Host, out: &mut Out, context: &mut TickContext<'_>, [offset, flags, _]: [i32; 3]) {
     let text = string(context.memory, offset);
     let default = match flags & BUTTONS {
         2 => 5,
@@ -264,75 +262,60 @@ fn message_box(kernel: &mut Kernel, context: &mut TickContext<'_>, [offset, flag
         5 => 4,
         _ => 1,
     };
-    let named = kernel.host.answers.buttons.next();
+    let named = host.answers.buttons.next();
     let answer = named.map_or(String::new(), |button| format!(" ({})", answers::button_name(button)));
-    say(kernel, context, format!("message box: {text}{answer}"));
+    say(out, context, format!("message box: {text}{answer}"));
     context.memory.set(data(3), named.unwrap_or(default));
 }
 
 /// Shows a prompt and types the number that was named for it, or 0.
-fn input_box(kernel: &mut Kernel, context: &mut TickContext<'_>, offset: i32) {
+fn input_box(host: &mut Host, out: &mut Out, context: &mut TickContext<'_>, offset: i32) {
     let prompt = string(context.memory, offset);
-    let (answer, typed) = match kernel.host.answers.inputs.next() {
+    let (answer, typed) = match host.answers.inputs.next() {
         Some(None) => (" (cancel)".to_owned(), None),
         Some(Some(number)) => (format!(" ({number})"), Some(number)),
         None => (String::new(), Some(0.0)),
     };
-    say(kernel, context, format!("input box: {prompt}{answer}"));
+    say(out, context, format!("input box: {prompt}{answer}"));
     context.memory.set(data(2), typed.unwrap_or(0.0).to_bits().cast_signed());
     context.memory.set(data(3), i32::from(typed.is_none()));
 }
 
-/// Shows a line of G code. Of what it says only assignments to #variables are done.
-fn mdi(kernel: &mut Kernel, context: &mut TickContext<'_>, offset: i32) {
+/// Shows a line of G code. Of what it says only assignments to #variables are done, all of them or none.
+fn mdi(host: &mut Host, out: &mut Out, context: &mut TickContext<'_>, offset: i32) {
     let line = string(context.memory, offset);
-    for (variable, value) in assignments(&line) {
-        kernel.host.answers.variables.insert(variable, value);
-    }
-    let result = kernel.host.answers.mdi.next();
+    let found = gcode::assignments(&line, &host.answers.variables);
+    let result = host.answers.mdi.next();
     let answer = result.map_or(String::new(), |result| format!(" (result {result})"));
-    say(kernel, context, format!("MDI: {line}{answer}"));
+    let trouble = match found {
+        Ok(assignments) => {
+            host.answers.variables.extend(assignments);
+            String::new()
+        }
+        Err(gcode::Unknown(text)) => format!(": {text}; no variable is changed"),
+    };
+    say(out, context, format!("MDI: {line}{answer}{trouble}"));
     context.memory.set(data(2), result.unwrap_or(0));
 }
 
-/// The assignments `#N=NUMBER` of a line of G code.
-fn assignments(line: &str) -> Vec<(i32, f64)> {
-    let mut found = Vec::new();
-    let mut rest = line;
-    while let Some(at) = rest.find('#') {
-        rest = &rest[at + 1..];
-        let Some((variable, value)) = rest.split_once('=') else { break };
-        let (number, _) = float_prefix(value.trim_start().as_bytes());
-        if let Ok(variable) = variable.trim().parse() {
-            found.push((variable, number));
-        }
-    }
-    found
-}
-
 /// Copies #variables to or from `UserData`.
-fn variables(
-    kernel: &mut Kernel,
-    memory: &mut GuestMemory,
-    sets: bool,
-    [first, count, index]: [i32; 3],
-) -> i32 {
+fn variables(host: &mut Host, memory: &mut GuestMemory, sets: bool, [first, count, index]: [i32; 3]) -> i32 {
     let Some(place) = usize::try_from(count).ok().and_then(|count| doubles(index, count)) else {
         return INVALID;
     };
     for (number, offset) in (first..first.saturating_add(count)).zip((0..).step_by(8)) {
         let place = place.offset(offset);
         if sets {
-            kernel.host.answers.variables.insert(number, memory.peek(place));
+            host.answers.variables.insert(number, memory.peek(place));
         } else {
-            memory.poke(place, kernel.host.answers.variables.get(&number).copied().unwrap_or(0.0));
+            memory.poke(place, host.answers.variables.get(&number).copied().unwrap_or(0.0));
         }
     }
     DONE
 }
 
 /// Gets or sets one entry of the tool table.
-fn tool(kernel: &mut Kernel, memory: &mut GuestMemory, code: i32, [tool, index, _]: [i32; 3]) -> i32 {
+fn tool(host: &mut Host, memory: &mut GuestMemory, code: i32, [tool, index, _]: [i32; 3]) -> i32 {
     if !(0..TOOLS).contains(&tool) {
         return BAD_TOOL;
     }
@@ -343,9 +326,9 @@ fn tool(kernel: &mut Kernel, memory: &mut GuestMemory, code: i32, [tool, index, 
         _ => (code & !1, code & 1 != 0),
     };
     if sets {
-        kernel.host.answers.tools.insert((kind, tool), memory.peek(place));
+        host.answers.tools.insert((kind, tool), memory.peek(place));
     } else {
-        memory.poke(place, kernel.host.answers.tools.get(&(kind, tool)).copied().unwrap_or(0.0));
+        memory.poke(place, host.answers.tools.get(&(kind, tool)).copied().unwrap_or(0.0));
     }
     DONE
 }
@@ -372,11 +355,11 @@ fn store_doubles(memory: &mut GuestMemory, index: i32, values: &[f64]) -> i32 {
 }
 
 /// The text of a screen cell: "0" where no other was named.
-fn edit_cell(kernel: &Kernel, memory: &mut GuestMemory, variable: i32) -> i32 {
+fn edit_cell(host: &Host, memory: &mut GuestMemory, variable: i32) -> i32 {
     let Some(place) = named(variable, 1) else { return INVALID };
     let offset: u32 = memory.peek(place);
     let address = memory.get(GATHER_BUFFER).offset(offset.wrapping_mul(4));
-    let text = kernel.host.answers.cells.get(&variable).map_or("0", String::as_str);
+    let text = host.answers.cells.get(&variable).map_or("0", String::as_str);
     let stored = memory.write_bytes(address, &[text.as_bytes(), b"\0"].concat());
     if stored.is_ok() { DONE } else { INVALID }
 }
@@ -405,7 +388,7 @@ mod tests {
             assert_eq!(ask(&mut desk, 15, &[100, flags, 0]), DONE);
             assert_eq!(desk.memory.get(data(3)), pressed);
         }
-        let told: Vec<_> = desk.kernel.take_events();
+        let told: Vec<_> = desk.kernel.parts.out.take_events();
         assert_eq!(told[0].kind, EventKind::Host("message box: go on?".to_owned()));
     }
 
@@ -419,8 +402,13 @@ mod tests {
                 _ => 10,
             };
             assert_eq!(ask(&mut desk, code, &[first, 1, 20]), DONE, "request {code}");
-            let shown =
-                desk.kernel.take_events().into_iter().any(|event| matches!(event.kind, EventKind::Host(_)));
+            let shown = desk
+                .kernel
+                .parts
+                .out
+                .take_events()
+                .into_iter()
+                .any(|event| matches!(event.kind, EventKind::Host(_)));
             assert!(shown, "request {code} is not shown");
         }
     }
@@ -428,13 +416,12 @@ mod tests {
     #[test]
     fn a_request_without_a_pc_is_told_once() {
         let mut desk = Desk::new();
-        desk.kernel.host.connect(false);
+        desk.kernel.parts.pc.host.connect(false);
         assert_eq!(ask(&mut desk, 15, &[100, 0, 0]), 15);
         desk.run(60_000);
         desk.run(60_000);
-        let told: Vec<_> = desk.kernel.take_events().into_iter().map(|event| event.kind).collect();
         let expect = "request 15 waits for a PC, and none is connected (`host.enabled = false`)".to_owned();
-        assert_eq!(told, [EventKind::Diagnostic(expect)]);
+        assert_eq!(desk.diagnostics(), [expect]);
     }
 
     #[test]
@@ -479,7 +466,7 @@ mod tests {
         {
             answers.set(setting).expect(setting);
         }
-        desk.kernel.host.answer_with(answers);
+        desk.kernel.parts.pc.host.answer_with(answers);
         let buffer = desk.memory.get(GATHER_BUFFER);
         desk.memory.poke_bytes(buffer.offset(400), b"#5=1.5 #6 = -2\0").expect("mapped");
         assert_eq!(ask(&mut desk, 15, &[100, 4, 0]), DONE);

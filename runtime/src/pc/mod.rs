@@ -1,10 +1,64 @@
-//! The PC that the board is connected to: its console, its disk, and what it answers to programs.
+//! The PC that the board is connected to: its disk, what it answers to programs, and the bytes it sends.
 
 mod answers;
-pub(crate) mod console;
 pub(crate) mod disk;
+mod downloads;
 pub(crate) mod files;
+mod gcode;
 pub(crate) mod host;
+mod link;
 mod requests;
 
 pub use answers::{AnswerError, Answers, HELP as ANSWERS_HELP};
+pub(crate) use downloads::Downloads;
+pub(crate) use link::{Arrival, ByteLink, END, ESCAPE};
+
+use kmotiondef::Cycles;
+
+use crate::out::{EventKind, Out};
+use crate::pc::disk::Disk;
+use crate::pc::files::HostFiles;
+use crate::pc::host::Host;
+
+/// The PC and what connects it to the board.
+#[derive(Clone, Debug)]
+pub(crate) struct Pc {
+    pub(crate) host: Host,
+    pub(crate) disk: Disk,
+    /// The link over USB, and the one over the UART.
+    pub(crate) usb: ByteLink,
+    pub(crate) uart: ByteLink,
+    /// What it has downloaded into threads.
+    pub(crate) downloads: Downloads,
+    /// Whether it takes console lines; if not, they wait in the queue, and then programs do.
+    pub(crate) is_heard: bool,
+}
+
+impl Pc {
+    /// A PC that keeps its files in `files`.
+    pub(crate) fn new(files: Box<dyn HostFiles>) -> Self {
+        Self {
+            host: Host::default(),
+            disk: Disk::new(files),
+            usb: ByteLink::default(),
+            uart: ByteLink::default(),
+            downloads: Downloads::default(),
+            is_heard: true,
+        }
+    }
+
+    /// A console line arrives. It keeps those for itself that are requests for files; the others are shown.
+    pub(crate) fn take_line(&mut self, out: &mut Out, line: Vec<u8>, now: Cycles) {
+        if !self.host.is_connected() || !self.disk.take(out, &line, now) {
+            out.tell(now, EventKind::ConsoleLine(line));
+        }
+    }
+
+    /// The board restarts: what it was sent and has not taken is lost.
+    pub(crate) fn restart(&mut self) {
+        self.disk.forget_answers();
+        self.usb = ByteLink::default();
+        self.uart = ByteLink::default();
+        self.downloads = Downloads::default();
+    }
+}

@@ -4,9 +4,9 @@
 //! the amount smaller; with an amount below 0 it is either above it or below 0, and flips between the two while the
 //! axis goes back. The board does so too.
 
+use kmotiondef::limits::TIMEBASE;
 use kmotiondef::structs::Chan;
 
-use super::TIMEBASE;
 use crate::views::AxisView;
 
 /// Advances the offset of an axis that has one by one tick.

@@ -5,9 +5,10 @@
 //! A move from rest ends on its target exactly. One planned in motion ends as on the board, with the place of its last
 //! tick: within the last bits of the singles that the board computes with, and of what is left for a tick.
 
+use kmotiondef::limits::TIMEBASE;
 use proptest::prelude::*;
 
-use super::profile::{FOREVER, Limits, Mode, Point, State, TIMEBASE, jog, move_from_rest, move_in_motion};
+use super::profile::{FOREVER, Limits, Mode, Point, State, jog, move_from_rest, move_in_motion};
 use super::trajectory::{Cursor, Step, step};
 
 /// Planning time of the board in front of a motion planned while another is under way.

@@ -3,10 +3,11 @@
 //! Source: axes-and-motion.md section 10. Memories are singles, as their fields are.
 
 use kmotiondef::Field;
+use kmotiondef::limits::TIMEBASE;
 use kmotiondef::structs::{Chan, Iir};
 
 use super::plan::{Filter, Gains};
-use super::{AxisMemory, TIMEBASE};
+use super::state::AxisMemory;
 use crate::views::AxisView;
 
 /// Limits `value` to ±`limit`, which is not below 0; what is no number stays so.

@@ -5,7 +5,7 @@
 //! output mode, for an axis without input; reading an encoder adds to that).
 
 use kmotiondef::limits::N_CHANNELS;
-use kmotiondef::modes::InputMode;
+use kmotiondef::modes::{InputMode, OutputMode};
 use kmotiondef::structs::Chan;
 use kmotiondef::variables::CHAN;
 use kmotiondef::{Cycles, GuestType};
@@ -15,8 +15,6 @@ use crate::views::field_of;
 
 /// Without an enabled axis.
 const IDLE: i64 = 2006;
-/// For an enabled axis, by output mode 0 to 8.
-const BY_OUTPUT_MODE: [i64; 9] = [290, 282, 299, 429, 467, 323, 225, 429, 489];
 /// For reading its encoder.
 const ENCODER: i64 = 44;
 
@@ -26,8 +24,9 @@ pub(crate) fn duration(memory: &GuestMemory) -> Cycles {
     let Some(all) = memory.block::<{ SIZE * N_CHANNELS }>(CHAN.address()) else { return Cycles::new(IDLE) };
     let enabled = all.as_chunks::<SIZE>().0.iter().filter(|chan| field_of(chan, Chan::ENABLE) != 0);
     let axes = enabled.map(|chan| {
-        let mode = usize::try_from(field_of(chan, Chan::OUTPUT_MODE)).unwrap_or_default();
-        let output = BY_OUTPUT_MODE.get(mode).copied().unwrap_or_default();
+        // As measured: a number below the modes costs what the first one does, one above them nothing.
+        let mode = OutputMode::new(field_of(chan, Chan::OUTPUT_MODE).max(0));
+        let output = mode.map_or(0, |mode| mode.traits().cycles);
         let reads_encoder = InputMode::new(field_of(chan, Chan::INPUT_MODE)) == Some(InputMode::Encoder);
         output + if reads_encoder { ENCODER } else { 0 }
     });

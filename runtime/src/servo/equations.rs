@@ -1,11 +1,11 @@
 //! The servo against the manual's own formulas: difference equations of PID and filters, the table of lead values.
 
+use kmotiondef::limits::TIMEBASE;
 use kmotiondef::modes::{InputMode, OutputMode};
 use kmotiondef::structs::{Chan, Iir};
 use kmotiondef::variables::LAST_PWM;
 use kmotiondef::{AxisId, Field};
 
-use super::TIMEBASE;
 use crate::testing::Desk;
 use crate::views::Typed;
 

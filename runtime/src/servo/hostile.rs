@@ -62,7 +62,7 @@ fn what_is_no_number_or_no_limit_moves_nothing_and_is_told() {
         desk.call_in_slices(name, &arguments);
         let told = desk.diagnostics();
         assert!(
-            matches!(&told[..], [text] if text.contains("is no number to go to, nothing moves")),
+            matches!(&told[..], [text] if text.contains("is not a valid position, nothing moves")),
             "{told:?}"
         );
         desk.run(10);

@@ -1,10 +1,11 @@
 //! Independent motion of an axis: its state list in guest memory, and one tick of it.
 
+use kmotiondef::limits::TIMEBASE;
 use kmotiondef::structs::{Chan, TripCoeff};
 use kmotiondef::{AxisId, GuestAddr, GuestType, Place};
 use vm::memory::GuestMemory;
 
-use super::profile::{LEAD, MAX_STATES, Mode, Point, State, TIMEBASE};
+use super::profile::{LEAD, MAX_STATES, Mode, Point, State};
 use super::trajectory::{Approach, Cursor, Step, point, step};
 use crate::views::{AxisView, Typed, field_of};
 

@@ -1,28 +1,24 @@
 //! The position of an axis from its input. Source: axes-and-motion.md section 9.
 
+use std::f32::consts::{PI, TAU};
+
 use kmotiondef::AxisId;
-use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::structs::Chan;
-use kmotiondef::variables::ADC_BUFFER_IN;
+use kmotiondef::variables::{ADC_BUFFER_IN, RESOLVER_FACTOR};
 use vm::memory::GuestMemory;
 
 use super::plan::Input;
-use crate::machine::plant::Plant;
+use crate::machine::Loads;
 use crate::views::{AxisView, Typed};
 
 /// Takes the position from an input that is no encoder.
-pub(crate) fn measure(
-    input: Input,
-    plants: &mut [Plant; N_CHANNELS],
-    memory: &mut GuestMemory,
-    axis: AxisId,
-) {
+pub(crate) fn measure(input: Input, loads: &mut Loads, memory: &mut GuestMemory, axis: AxisId) {
     match input {
         Input::None | Input::Encoder(_) => {}
-        Input::Adc => convert(plants, memory, axis),
+        Input::Adc => convert(loads, memory, axis),
         Input::Resolver => {
             let angle = resolver_angle(memory, axis);
-            crate::firmware::motion::turn_resolver(memory, axis, angle);
+            turn_resolver(memory, axis, angle);
         }
     }
 }
@@ -32,12 +28,12 @@ pub(crate) fn measure(
 #[inline(always)]
 pub(crate) fn count(
     input: &Input,
-    plants: &mut [Plant; N_CHANNELS],
+    loads: &mut Loads,
     chan: &mut AxisView<'_>,
     axis: AxisId,
 ) -> Option<(usize, i8)> {
     let Input::Encoder(encoder) = input else { return None };
-    let count = plants[encoder.turned_by.index()].encoder(encoder.turned_gain);
+    let count = loads[encoder.turned_by].encoder(encoder.turned_gain);
     let moved = count.wrapping_sub(chan.get(Chan::LAST_ENC));
     if moved == 0 {
         return None;
@@ -45,18 +41,18 @@ pub(crate) fn count(
     chan.set(Chan::LAST_ENC, count);
     let position = chan.get(Chan::POSITION) + encoder.gain * f64::from(moved);
     chan.set(Chan::POSITION, position);
-    plants[axis.index()].note_position(position);
+    loads[axis].note_position(position);
     Some((encoder.channel? as usize, count))
 }
 
 /// Takes the position from an analog input.
-fn convert(plants: &mut [Plant; N_CHANNELS], memory: &mut GuestMemory, axis: AxisId) {
+fn convert(loads: &mut Loads, memory: &mut GuestMemory, axis: AxisId) {
     let input = f64::from(converted(memory, memory.axis(axis, Chan::INPUT_CHAN0)));
     let mut chan = AxisView::of(memory, axis);
     let offset = f64::from(chan.get(Chan::INPUT_OFFSET0));
     let position = f64::from(chan.get(Chan::INPUT_GAIN0)) * input + offset;
     chan.set(Chan::POSITION, position);
-    plants[axis.index()].note_position(position);
+    loads[axis].note_position(position);
 }
 
 /// An analog input, −2048 to 2047; 0 for a channel that does not exist.
@@ -79,4 +75,18 @@ fn resolver_angle(memory: &GuestMemory, axis: AxisId) -> (f32, f32) {
         memory.axis(axis, Chan::INPUT_OFFSET1),
     );
     (x, y)
+}
+
+/// Adds the turn of a resolver since the last reading to the position.
+pub(crate) fn turn_resolver(memory: &mut GuestMemory, axis: AxisId, (x, y): (f32, f32)) {
+    let angle = libm::atan2f(y, x) + memory.axis(axis, Chan::THETA_CORRECTION);
+    let mut turned = angle - memory.axis(axis, Chan::LAST_THETA);
+    if turned > PI {
+        turned -= TAU;
+    } else if turned <= -PI {
+        turned += TAU;
+    }
+    memory.set_axis(axis, Chan::LAST_THETA, angle);
+    let position = memory.axis(axis, Chan::POSITION) + memory.get(RESOLVER_FACTOR) * f64::from(turned);
+    memory.set_axis(axis, Chan::POSITION, position);
 }

@@ -5,11 +5,15 @@ use kmotiondef::variables::CS0_STOPPING_STATE;
 use kmotiondef::{AxisId, Bit, Field};
 use vm::memory::GuestMemory;
 
-use super::plan::Plan;
-use super::switch_off;
-use crate::firmware::coord;
-use crate::firmware::io::bit_state;
-use crate::kernel::Kernel;
+use super::coordinated::system::is_member;
+use super::hold;
+use super::plan::AxisPlan;
+use super::state::{Servo, Tick};
+use super::stop::Tells;
+use super::switching::switch_off;
+use crate::io::Io;
+use crate::io::bits::bit_state;
+use crate::out::{Message, Out};
 use crate::views::{AxisView, Typed};
 
 /// `LimitSwitchOptions`: take the bit numbers from their own fields.
@@ -56,22 +60,16 @@ const ENDS: [End; 2] = [
     },
 ];
 
-/// Whether an axis watches a limit switch.
-pub(crate) fn watches_switches(chan: &AxisView<'_>) -> bool {
-    const WATCHED: i32 = 3;
-    chan.get(Chan::LIMIT_SWITCH_OPTIONS) & WATCHED != 0
-}
-
 /// Whether a limit switch is watched or a soft limit is passed: only then [`check`] can do anything.
 #[inline(always)]
-pub(crate) fn may_act(chan: &AxisView<'_>, plan: &Plan) -> bool {
+pub(crate) fn may_act(chan: &AxisView<'_>, plan: &AxisPlan) -> bool {
     let dest = chan.get(Chan::DEST);
     plan.watches_switches || dest > plan.soft_limit_pos || dest < plan.soft_limit_neg
 }
 
 /// Notes the following error of an axis in a closed loop; whether it is too large.
 #[inline(always)]
-pub(crate) fn follows_badly(chan: &mut AxisView<'_>, plan: &Plan, command: f64) -> bool {
+pub(crate) fn follows_badly(chan: &mut AxisView<'_>, plan: &AxisPlan, command: f64) -> bool {
     let error = f64::from((command - chan.get(Chan::POSITION)) as f32);
     chan.set(Chan::LAST_FOLLOWING_ERROR, error);
     error.abs() > plan.max_following_error
@@ -80,38 +78,68 @@ pub(crate) fn follows_badly(chan: &mut AxisView<'_>, plan: &Plan, command: f64) 
 /// Checks both ends of an enabled axis and, in a closed loop, whether it follows its command; whether it is enabled
 /// still.
 pub(crate) fn check(
-    kernel: &mut Kernel,
+    tick: &mut Tick<'_>,
     memory: &mut GuestMemory,
     axis: AxisId,
     command: Option<f64>,
 ) -> bool {
     for end in &ENDS {
-        check_switch(kernel, memory, axis, end);
-        check_soft(kernel, memory, axis, end);
+        check_switch(tick, memory, axis, end);
+        check_soft(tick, memory, axis, end);
     }
-    let plan = &kernel.servo.plans[axis.index()];
+    let plan = tick.servo.cache.plan(axis);
     if command.is_some_and(|command| follows_badly(&mut AxisView::of(memory, axis), plan, command)) {
-        kernel.console.message(&format!("Following Error Disabled Axis:{axis}"));
-        switch_off(kernel, memory, axis);
-        coord::abort_if_member(memory, axis);
+        if runs_away(memory, axis) {
+            tick.out.remark(tick.now, Message::RunsAway { axis });
+        }
+        tell(tick, &format!("Following Error Disabled Axis:{axis}"));
+        switch_off(tick.servo, tick.machine, memory, axis);
+        hold::abort_if_member(memory, axis);
     }
     memory.axis(axis, Chan::ENABLE) != 0
 }
 
+/// Whether an axis has gone further from its destination than it was told to: the error is larger than all motion.
+fn runs_away(memory: &GuestMemory, axis: AxisId) -> bool {
+    let error = memory.axis(axis, Chan::LAST_FOLLOWING_ERROR);
+    let (output, velocity) = (memory.axis(axis, Chan::OUTPUT), memory.axis(axis, Chan::LAST_VEL));
+    // An axis that is told to stand, or to go the other way, and is far from there, was driven by its own output.
+    let is_driven = output != 0.0 && (f64::from(output) > 0.0) == (error > 0.0);
+    let is_told = f64::from(velocity) * error > 0.0;
+    is_driven && !is_told
+}
+
+/// Says that an axis was disabled, unless another message waits for the primary thread.
+fn tell(tick: &mut Tick<'_>, text: &str) {
+    if !tick.servo.stop_request.is_asked() {
+        tick.out.console.servo_message(text);
+    }
+}
+
 /// Whether the switch of an end is watched and active.
-fn is_active(kernel: &Kernel, memory: &GuestMemory, axis: AxisId, end: &End) -> bool {
+fn is_active(tick: &Tick<'_>, memory: &GuestMemory, axis: AxisId, end: &End) -> bool {
+    active_bit(tick.io, memory, axis, end).is_some()
+}
+
+/// A limit switch of an axis that is watched and active.
+pub(crate) fn active_switch(io: &Io, memory: &GuestMemory, axis: AxisId) -> Option<Bit> {
+    ENDS.iter().find_map(|end| active_bit(io, memory, axis, end))
+}
+
+/// The switch of an end if it is watched and active.
+fn active_bit(io: &Io, memory: &GuestMemory, axis: AxisId, end: &End) -> Option<Bit> {
     let options = memory.axis(axis, Chan::LIMIT_SWITCH_OPTIONS);
     if options >> end.watch & 1 == 0 {
-        return false;
+        return None;
     }
     let number =
         if options & EXTENDED != 0 { memory.axis(axis, end.bit) } else { options >> end.packed_shift & 0xff };
     let is_active_low = options >> (end.watch + 2) & 1 != 0;
-    Bit::new(number).is_some_and(|bit| bit_state(kernel, memory, bit).0 != is_active_low)
+    Bit::new(number).filter(|&bit| bit_state(io, memory, bit).0 != is_active_low)
 }
 
-fn check_switch(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId, end: &End) {
-    if !is_active(kernel, memory, axis, end) {
+fn check_switch(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId, end: &End) {
+    if !is_active(tick, memory, axis, end) {
         return;
     }
     let action = match memory.axis(axis, Chan::LIMIT_SWITCH_OPTIONS) >> 4 & 0xf {
@@ -125,16 +153,17 @@ fn check_switch(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId, end
     }
     if action == Action::Stop {
         // Nothing stops an axis outside the coordinate system, and nothing says so.
-        if !coord::is_member(memory, axis) {
+        if !is_member(memory, axis) {
             return;
         }
-        return kernel.servo.stop_request.ask(format!("{} Limit Stop Axis:{axis}", end.name), Tells::Stop);
+        return tick.servo.stop_request.ask(format!("{} Limit Stop Axis:{axis}", end.name), Tells::Stop);
     }
-    kernel.console.message(&format!("{} Limit Disabled Axis:{axis}", end.name));
-    switch_off(kernel, memory, axis);
+    tell(tick, &format!("{} Limit Disabled Axis:{axis}", end.name));
+    switch_off(tick.servo, tick.machine, memory, axis);
+    hold::abort_if_member(memory, axis);
 }
 
-fn check_soft(kernel: &mut Kernel, memory: &GuestMemory, axis: AxisId, end: &End) {
+fn check_soft(tick: &mut Tick<'_>, memory: &GuestMemory, axis: AxisId, end: &End) {
     let direction = f64::from(end.direction);
     let beyond = (memory.axis(axis, Chan::DEST) - f64::from(memory.axis(axis, end.soft))) * direction > 0.0;
     let goes_there = memory.axis(axis, Chan::DIRECTION_OF_MOTION) == end.direction;
@@ -142,52 +171,27 @@ fn check_soft(kernel: &mut Kernel, memory: &GuestMemory, axis: AxisId, end: &End
         return;
     }
     let text = format!("{} Soft Limit FeedHold Axis:{axis}", end.name);
-    kernel.servo.stop_request.ask(text, Tells::Always);
+    tick.servo.stop_request.ask(text, Tells::Always);
 }
 
-/// When the stop at a limit is told.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Tells {
-    /// If something was stopped.
-    Stop,
-    /// Whenever it was tried: again and again of an axis outside the coordinate system, which nothing stops.
-    Always,
-}
-
-/// A feedhold that the servo asks the primary thread for.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct StopRequest {
-    asked: Option<(String, Tells)>,
-    /// Whether the primary thread has seen it: computing the stop takes it until its next slice.
-    is_seen: bool,
-}
-
-impl StopRequest {
-    /// Asks, unless a stop is being computed.
-    fn ask(&mut self, text: String, tells: Tells) {
-        self.asked.get_or_insert((text, tells));
+/// What the primary thread does for the limits in its slice; whether a stop was tried.
+pub(crate) fn slice(servo: &mut Servo, out: &mut Out, memory: &mut GuestMemory) -> bool {
+    if !servo.stop_request.is_asked() {
+        return false;
     }
-}
-
-/// What the primary thread does for the limits in its slice.
-pub(crate) fn slice(kernel: &mut Kernel, memory: &mut GuestMemory) {
-    let request = &mut kernel.servo.stop_request;
-    if request.asked.is_none() {
-        return;
+    if servo.stop_request.is_new() {
+        hold::prepare_stop(memory);
+        return false;
     }
-    if !request.is_seen {
-        request.is_seen = true;
-        return coord::prepare_stop(memory);
-    }
-    let asked = std::mem::take(request).asked;
+    let asked = servo.stop_request.take();
     if memory.get(CS0_STOPPING_STATE) != 0 {
-        return;
+        return false;
     }
-    let stops = coord::stop(kernel, memory);
+    let stops = hold::stop(servo, memory);
     if let Some((text, _)) = asked.filter(|(_, tells)| stops || *tells == Tells::Always) {
-        kernel.console.message(&text);
+        out.console.message(&text);
     }
-    kernel.disturb();
+    true
 }
 
 #[cfg(test)]
@@ -239,7 +243,7 @@ mod tests {
         desk.memory.set_axis(axis(), Chan::SOFT_LIMIT_POS, 5.0);
         desk.call_in_slices("Move", &[0, 100.0_f64.to_bits()]);
         desk.run(20_000);
-        assert!(!super::super::independent::has_motion(&desk.memory, axis()));
+        assert!(!crate::servo::independent::has_motion(&desk.memory, axis()));
         let dest = desk.memory.axis(axis(), Chan::DEST);
         assert!(dest > 5.0 && dest < 100.0, "{dest}");
         assert_eq!(desk.printed(), ["Pos Soft Limit FeedHold Axis:0"]);

@@ -11,10 +11,10 @@ use kmotiondef::variables::DAC_BUFFER;
 use kmotiondef::{AxisId, Field};
 use vm::memory::GuestMemory;
 
-use crate::firmware::io::{antiphase, current, recirculate, store_pwm};
-use crate::kernel::Kernel;
-use crate::machine::plant::{Applied, Drive};
-use crate::out::EventKind;
+use super::state::Tick;
+use crate::io::amplifiers::{antiphase, current, store_pwm};
+use crate::machine::{Applied, Drive};
+use crate::out::Message;
 use crate::views::{AxisView, Typed};
 
 /// The first PWM channel of a SnapAmp: its loops control current.
@@ -24,32 +24,32 @@ const VECTOR: u32 = 0x8000_0000;
 
 /// Puts out one tick of an enabled axis.
 #[inline(always)]
-pub(crate) fn drive(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId, command: f64, output: f32) {
-    let mode = kernel.servo.plans[axis.index()].mode;
+pub(crate) fn drive(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId, command: f64, output: f32) {
+    let mode = tick.servo.cache.plan(axis).mode;
     if mode == Some(OutputMode::DcServo) {
-        kernel.stepgens.release(axis, &mut kernel.pins, kernel.tick_start);
+        tick.io.stepgens.release(axis, &mut tick.io.pins, tick.now);
         let channel = AxisView::of(memory, axis).get(Chan::OUTPUT_CHAN0);
         store_pwm(memory, channel, pwm(channel, output as i32));
         let drive = match channel >= SNAP_AMP {
-            true if is_faulted(kernel, channel) => Drive::None,
+            true if is_faulted(tick, channel) => Drive::None,
             true => Drive::Loop(command, Applied::Current(limited(output, MAX_PWMC_VALUE))),
             false => Drive::Loop(command, Applied::Pwm(limited(output, MAX_PWM_VALUE))),
         };
-        kernel.servo.plants[axis.index()].drive = drive;
+        tick.machine.loads[axis].drive = drive;
     } else {
-        drive_otherwise(kernel, memory, axis, command, output);
+        drive_otherwise(tick, memory, axis, command, output);
     }
 }
 
 /// The same in any other mode than that of a brushed motor.
-fn drive_otherwise(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId, command: f64, output: f32) {
-    let mode = kernel.servo.plans[axis.index()].mode;
+fn drive_otherwise(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId, command: f64, output: f32) {
+    let mode = tick.servo.cache.plan(axis).mode;
     let chan = AxisView::of(memory, axis);
-    if matches!(mode, Some(OutputMode::StepDir | OutputMode::ClosedLoopStepDir)) {
+    if OutputMode::has_generator(mode) {
         let channel = chan.get(Chan::OUTPUT_CHAN0);
-        kernel.stepgens.claim(axis, channel, &mut kernel.pins, kernel.tick_start);
+        tick.io.stepgens.claim(axis, channel, &mut tick.io.pins, tick.now);
     } else {
-        kernel.stepgens.release(axis, &mut kernel.pins, kernel.tick_start);
+        tick.io.stepgens.release(axis, &mut tick.io.pins, tick.now);
     }
     let drive = match mode {
         None | Some(OutputMode::None | OutputMode::DcServo) => Drive::None,
@@ -70,16 +70,16 @@ fn drive_otherwise(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId, 
             Drive::Loop(command, applied)
         }
         Some(mode @ (OutputMode::Brushless3Ph | OutputMode::Brushless4Ph)) => {
-            let applied = turn(kernel, memory, axis, mode, output);
+            let applied = turn(tick, memory, axis, mode, output);
             applied.map_or(Drive::None, |applied| Drive::Loop(command, applied))
         }
     };
-    kernel.servo.plants[axis.index()].drive = drive;
+    tick.machine.loads[axis].drive = drive;
 }
 
 /// The bridges of a SnapAmp that has a fault are off.
-fn is_faulted(kernel: &mut Kernel, channel: i32) -> bool {
-    kernel.snapamps.is_present() && kernel.snapamps.is_off(channel, kernel.tick_start)
+fn is_faulted(tick: &mut Tick<'_>, channel: i32) -> bool {
+    tick.io.snapamps.is_present() && tick.io.snapamps.is_off(channel, tick.now)
 }
 
 /// An output within ±`limit`.
@@ -91,7 +91,7 @@ fn limited(output: f32, limit: i32) -> f64 {
 
 /// Puts out the vector of a brushless axis; `None` if its amplifier is off.
 fn turn(
-    kernel: &mut Kernel,
+    tick: &mut Tick<'_>,
     memory: &mut GuestMemory,
     axis: AxisId,
     mode: OutputMode,
@@ -99,24 +99,20 @@ fn turn(
 ) -> Option<Applied> {
     let chan = AxisView::of(memory, axis);
     let (angle, channel) = (phase(&chan), chan.get(Chan::OUTPUT_CHAN0));
-    check_commutation(kernel, axis, angle, chan.get(Chan::INV_DIST_PER_CYCLE));
+    check_commutation(tick, axis, angle, chan.get(Chan::INV_DIST_PER_CYCLE));
     if mode == OutputMode::Brushless3Ph {
         three_phase(memory, axis, output);
     } else {
         four_phase(memory, axis, output, angle);
     }
     let magnitude = f64::from(output.clamp(-MAXV, MAXV));
-    (!is_faulted(kernel, channel)).then_some(Applied::Vector(magnitude, angle))
+    (!is_faulted(tick, channel)).then_some(Applied::Vector(magnitude, angle))
 }
 
 /// Tells once of a brushless axis whose real motor would not follow as the simulated one does.
-fn check_commutation(kernel: &mut Kernel, axis: AxisId, angle: f64, cycles: f64) {
-    if kernel.servo.plants[axis.index()].would_not_turn(angle, cycles) {
-        let text = format!(
-            "axis {axis}: with this CommutationOffset a real brushless motor would not turn as it is told; the \
-             simulated one follows (model \"follow\")"
-        );
-        kernel.tell(kernel.tick_start, EventKind::Diagnostic(text));
+fn check_commutation(tick: &mut Tick<'_>, axis: AxisId, angle: f64, cycles: f64) {
+    if tick.machine.loads[axis].would_not_turn(angle, cycles) {
+        tick.out.remark(tick.now, Message::WouldNotTurn { axis });
     }
 }
 
@@ -140,7 +136,7 @@ fn analog(chan: &AxisView<'_>, output: f32) -> i32 {
 }
 
 /// Writes it.
-fn write_dac(memory: &mut GuestMemory, axis: AxisId, output: f32) {
+pub(super) fn write_dac(memory: &mut GuestMemory, axis: AxisId, output: f32) {
     let chan = AxisView::of(memory, axis);
     let (value, channel) = (analog(&chan, output), chan.get(Chan::OUTPUT_CHAN0));
     if let Some(channel) = usize::try_from(channel).ok().filter(|&channel| channel < 8) {
@@ -180,26 +176,5 @@ pub(crate) fn four_phase(memory: &mut GuestMemory, axis: AxisId, v: f32, angle: 
     for (value, channel) in [(libm::sin(angle), Chan::OUTPUT_CHAN0), (libm::cos(angle), Chan::OUTPUT_CHAN1)] {
         let channel = memory.axis(axis, channel);
         store_pwm(memory, channel, pwm(channel, libm::round(magnitude * value) as i32));
-    }
-}
-
-/// Disables an axis: its output goes to zero; profile, destination and filters stay as they are.
-pub(crate) fn switch_off(kernel: &mut Kernel, memory: &mut GuestMemory, axis: AxisId) {
-    memory.set_axis(axis, Chan::ENABLE, 0);
-    kernel.servo.still.interrupt();
-    kernel.servo.forget_plans();
-    kernel.servo.plants[axis.index()].drive = Drive::None;
-    let channels = [memory.axis(axis, Chan::OUTPUT_CHAN0), memory.axis(axis, Chan::OUTPUT_CHAN1)];
-    match OutputMode::new(memory.axis(axis, Chan::OUTPUT_MODE)) {
-        Some(OutputMode::DcServo) => store_pwm(memory, channels[0], recirculate(0)),
-        Some(OutputMode::Microstep | OutputMode::ClosedLoopMicrostep | OutputMode::Brushless4Ph) => {
-            channels.into_iter().for_each(|channel| store_pwm(memory, channel, recirculate(0)));
-        }
-        Some(OutputMode::Brushless3Ph) => {
-            let pair = [channels[0], channels[0].wrapping_add(1)];
-            pair.into_iter().for_each(|channel| store_pwm(memory, channel, recirculate(0)));
-        }
-        Some(OutputMode::DacServo) => write_dac(memory, axis, 0.0),
-        _ => {}
     }
 }

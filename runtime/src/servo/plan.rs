@@ -11,9 +11,7 @@ use kmotiondef::modes::{BacklashMode, InputMode, OutputMode};
 use kmotiondef::structs::{Chan, Iir};
 use vm::memory::GuestMemory;
 
-use super::duration::duration;
-use super::{Servo, limits};
-use crate::machine::plant::COUNTS_PER_TICK;
+use crate::machine::COUNTS_PER_TICK;
 use crate::views::AxisView;
 
 /// Where the position of an axis comes from.
@@ -70,7 +68,7 @@ pub(crate) struct Gains {
 
 /// What the settings of an axis come to. Of a disabled axis only the input counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Plan {
+pub(crate) struct AxisPlan {
     pub(crate) input: Input,
     pub(crate) mode: Option<OutputMode>,
     /// Whether nothing is compensated: steps and microsteps go where they are told.
@@ -87,17 +85,17 @@ pub(crate) struct Plan {
     pub(crate) gains: Gains,
 }
 
-impl Plan {
+impl AxisPlan {
     /// Whether what this axis does in a tick depends on what others do in it: on their motion, their load, or a step
     /// generator that both name.
-    fn is_coupled(&self, axis: AxisId) -> bool {
+    pub(super) fn is_coupled(&self, axis: AxisId) -> bool {
         self.is_slave
             || matches!(self.input, Input::Encoder(encoder) if encoder.turned_by != axis)
-            || matches!(self.mode, Some(OutputMode::StepDir | OutputMode::ClosedLoopStepDir))
+            || OutputMode::has_generator(self.mode)
     }
 
     /// What an axis has set.
-    fn of(memory: &mut GuestMemory, axis: AxisId) -> Self {
+    pub(super) fn of(memory: &mut GuestMemory, axis: AxisId) -> Self {
         let input = input(memory, axis);
         let chan = AxisView::of(memory, axis);
         if chan.get(Chan::ENABLE) == 0 {
@@ -107,9 +105,9 @@ impl Plan {
         Self {
             input,
             mode,
-            is_open_loop: matches!(mode, None | Some(OutputMode::Microstep | OutputMode::StepDir)),
+            is_open_loop: OutputMode::is_open_loop(mode),
             is_slave: chan.get(Chan::MASTER_AXIS) >= 0,
-            watches_switches: limits::watches_switches(&chan),
+            watches_switches: watches_switches(&chan),
             has_backlash: BacklashMode::new(chan.get(Chan::BACKLASH_MODE)) == Some(BacklashMode::Linear),
             soft_limit_neg: chan.get(Chan::SOFT_LIMIT_NEG).into(),
             soft_limit_pos: chan.get(Chan::SOFT_LIMIT_POS).into(),
@@ -118,6 +116,12 @@ impl Plan {
             gains: gains(&chan),
         }
     }
+}
+
+/// Whether an axis watches a limit switch.
+fn watches_switches(chan: &AxisView<'_>) -> bool {
+    const WATCHED: i32 = 3;
+    chan.get(Chan::LIMIT_SWITCH_OPTIONS) & WATCHED != 0
 }
 
 fn input(memory: &mut GuestMemory, axis: AxisId) -> Input {
@@ -172,36 +176,4 @@ fn filter(chan: &AxisView<'_>, iir: Field<Iir>) -> Filter {
     let others = a1.to_bits() | a2.to_bits() | b1.to_bits() | b2.to_bits();
     let is_plain = others == 0 && b0.to_bits() == 1.0_f32.to_bits();
     Filter { is_plain, a1: a1.into(), a2: a2.into(), b0: b0.into(), b1: b1.into(), b2: b2.into() }
-}
-
-impl Servo {
-    /// Somebody else may have written what they were made of.
-    pub(crate) const fn forget_plans(&mut self) {
-        self.has_plans = false;
-    }
-
-    /// Works the plans out, unless they are known.
-    pub(super) fn make_plans(&mut self, memory: &mut GuestMemory) {
-        if !self.has_plans {
-            for axis in AxisId::all() {
-                self.plans[axis.index()] = Plan::of(memory, axis);
-            }
-            self.is_coupled = AxisId::all().any(|axis| self.plans[axis.index()].is_coupled(axis));
-            self.duration = duration(memory);
-            self.has_plans = true;
-        }
-        debug_assert!(
-            self.plans_hold(memory) && self.duration == duration(memory),
-            "settings have changed unnoticed"
-        );
-    }
-
-    /// Whether the settings still come to what is known.
-    fn plans_hold(&self, memory: &mut GuestMemory) -> bool {
-        AxisId::all().zip(&self.plans).all(|(axis, plan)| {
-            let now = Plan::of(memory, axis);
-            // A setting that is no number equals itself in print only.
-            *plan == now || format!("{plan:?}") == format!("{now:?}")
-        })
-    }
 }

@@ -4,10 +4,10 @@
 //! intermediate results are singles, and its divisions are those of [`dsp`](super::dsp); they are so here too, because
 //! programs see the states, down to those of a few attoseconds that only rounding leaves.
 
+use kmotiondef::limits::TIMEBASE;
+
 use super::dsp::{divide, root};
 
-/// Seconds of one tick.
-pub(crate) const TIMEBASE: f64 = 0.000_09;
 /// Seconds at constant velocity in front of a profile planned in motion: the board's planning time.
 pub(crate) const LEAD: f64 = 0.0018;
 /// A state without end.

@@ -1,8 +1,9 @@
 //! Replays the recorded motions of the released firmware.
 
+use kmotiondef::limits::TIMEBASE;
 use serde_json::Value as Json;
 
-use super::profile::{FOREVER, Limits, Mode, Point, State, TIMEBASE, jog, move_from_rest, move_in_motion};
+use super::profile::{FOREVER, Limits, Mode, Point, State, jog, move_from_rest, move_in_motion};
 use super::trajectory::{Approach, Cursor, Step, point, step};
 use crate::text::vectors::rows;
 

@@ -137,7 +137,7 @@ fn check_encoder(row: &Json) {
         // A board without a SnapAmp has nothing behind channel 8. An encoder turns by counts of its own axis.
         if let Some(turned) = AxisId::new(channel as i32) {
             let unit = if turned == axis() { gain } else { 1.0 };
-            desk.kernel.servo.push(turned, f64::from(register.wrapping_sub(last)) * unit);
+            desk.kernel.parts.machine.loads.push(turned, f64::from(register.wrapping_sub(last)) * unit);
         }
         last = register;
         desk.run(1);
@@ -237,7 +237,7 @@ fn check_limit_switch(row: &Json) {
     let mut desk = Desk::new();
     poke(&mut desk, "InputMode", 4.0);
     // The recording jogs an axis of the coordinate system while nobody asks for the status.
-    desk.kernel.host.connect(false);
+    desk.kernel.parts.pc.host.connect(false);
     for (name, value) in row["parameters"].as_object().expect("parameters") {
         poke(&mut desk, name, number(value));
     }
@@ -290,7 +290,7 @@ fn command(desk: &mut Desk, text: &str) {
 fn protects(row: &Json, wait: u64) -> Result<(), String> {
     let mut desk = Desk::new();
     poke(&mut desk, "InputMode", 4.0);
-    desk.kernel.host.connect(false);
+    desk.kernel.parts.pc.host.connect(false);
     for (name, value) in row["parameters"].as_object().expect("parameters") {
         poke(&mut desk, name, number(value));
     }

@@ -6,7 +6,8 @@ use kmotiondef::modes::OutputMode;
 use kmotiondef::structs::Chan;
 use vm::memory::GuestMemory;
 
-use super::{Servo, independent};
+use super::independent;
+use super::state::Servo;
 use crate::views::Typed;
 
 /// Applies the changes of all masters in this tick, whatever caused them.
@@ -45,12 +46,11 @@ fn change(
 /// The change of the destination since the last tick; of a closed-loop stepper that of its output as well.
 fn own_change(servo: &Servo, memory: &GuestMemory, axis: AxisId) -> f64 {
     let change = memory.axis(axis, Chan::DEST) - servo.axes[axis.index()].dest;
-    match OutputMode::new(memory.axis(axis, Chan::OUTPUT_MODE)) {
-        Some(OutputMode::ClosedLoopStepDir | OutputMode::ClosedLoopMicrostep) => {
-            change + f64::from(memory.axis(axis, Chan::OUTPUT) - memory.axis(axis, Chan::PREV_OUTPUT))
-        }
-        _ => change,
+    let mode = OutputMode::new(memory.axis(axis, Chan::OUTPUT_MODE));
+    if mode.is_some_and(|mode| mode.traits().corrects_command) {
+        return change + f64::from(memory.axis(axis, Chan::OUTPUT) - memory.axis(axis, Chan::PREV_OUTPUT));
     }
+    change
 }
 
 #[cfg(test)]

@@ -4,12 +4,12 @@
 //! angle goes through a low-pass filter; the speed, multiplied by the filter's time constant, is added in front of it,
 //! so that a constant speed is followed without lag.
 
+use kmotiondef::limits::TIMEBASE;
 use kmotiondef::structs::{Chan, Spindle};
 use kmotiondef::variables::{COORD_SYSTEM0, CS0_TIME_BASE, SERVO_TICK, SPINDLE};
 use kmotiondef::{AxisId, Field, Scalar};
 use vm::memory::GuestMemory;
 
-use super::TIMEBASE;
 use super::coordinated::buffer;
 use crate::views::{Typed, chan};
 

@@ -46,7 +46,7 @@ impl Default for Stillness {
 impl Stillness {
     /// Whether the last tick changed nothing and nobody has written anything since. Unless `is_touched`, nobody has
     /// written to the axis structures, which are most of it.
-    pub(crate) fn lasts(&self, memory: &GuestMemory, is_touched: bool) -> bool {
+    pub(super) fn lasts(&self, memory: &GuestMemory, is_touched: bool) -> bool {
         debug_assert!(
             is_touched || !self.is_still || self.has_seen_axes(memory),
             "an axis has changed unnoticed"
@@ -58,25 +58,25 @@ impl Stillness {
     }
 
     /// A tick is computed: notes whether it begins with what the last one has left.
-    pub(crate) fn begin(&mut self, memory: &GuestMemory) {
+    pub(super) fn begin(&mut self, memory: &GuestMemory) {
         self.is_known = self.is_known && self.is_seen(memory);
         self.is_still = false;
         self.is_watching = false;
     }
 
     /// Something moves, or has been changed outside of memory.
-    pub(crate) const fn interrupt(&mut self) {
+    pub(super) const fn interrupt(&mut self) {
         self.is_known = false;
         self.is_still = false;
     }
 
     /// An axis depends on inputs that are not compared: every tick is computed.
-    pub(crate) const fn watch(&mut self) {
+    pub(super) const fn watch(&mut self) {
         self.is_watching = true;
     }
 
     /// The tick has moved nothing: whether it has changed nothing at all.
-    pub(crate) fn end(&mut self, memory: &GuestMemory) -> bool {
+    pub(super) fn end(&mut self, memory: &GuestMemory) -> bool {
         self.is_still = self.is_known && self.is_seen(memory);
         if !self.is_still {
             copy(memory, CHAN.address(), &mut self.chans);

@@ -3,8 +3,10 @@
 //! `t` counts the seconds inside the current state. A tick first enters the states that `t` has passed, then takes
 //! the position at `t`, and advances `t` last; so a motion planned in tick k leaves its start in tick k + 2.
 
+use kmotiondef::limits::TIMEBASE;
+
 use super::dsp::{divide, root};
-use super::profile::{Mode, Point, State, TIMEBASE};
+use super::profile::{Mode, Point, State};
 
 /// Where a motion stands in its list.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,9 +1,12 @@
 //! The formatter behind `printf` and its kin.
 //!
-//! The board's results, odd ones included, are what programs see: halves round up, `%#x` of 0 keeps its prefix,
-//! `%ld` prints a negative number as an unsigned one (`%lld` takes a `long long`, which the board has not), an unknown conversion prints nothing but its width. They are
-//! recorded in the vectors `printf.jsonl` and `printf-scanf.jsonl`, which the tests below replay.
+//! The board's results, odd ones included, are what programs see: halves round up, `%#06x` fills before its prefix,
+//! `%ld` takes 40 bits from two words, an unknown conversion prints nothing but its width
+//! (gather-persist-console.md section 4.1). They are recorded in the vectors `printf.jsonl`, `printf-scanf.jsonl` and
+//! `printf-edge.jsonl`, which the tests below replay. One thing is ours: `%lld` takes a `long long`, which the board's
+//! compiler has not.
 
+use super::cost;
 use super::decimal::{Keep, digits};
 
 /// Where the values of the conversions come from.
@@ -12,7 +15,7 @@ pub(crate) trait Arguments {
     type Error;
     /// The next 32-bit value.
     fn word(&mut self) -> Result<u32, Self::Error>;
-    /// The next 64-bit value.
+    /// The next 64-bit value; also the two words that the board takes for its 40-bit long.
     fn long_long(&mut self) -> Result<u64, Self::Error>;
     /// The next double.
     fn double(&mut self) -> Result<f64, Self::Error>;
@@ -38,10 +41,32 @@ struct Spec {
     long_long: bool,
 }
 
+/// A formatted text, and what the board would have spent on it.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Formatted {
+    /// The text.
+    pub(crate) text: Vec<u8>,
+    /// Cycles beyond those of a call with an empty format.
+    pub(crate) cycles: u32,
+}
+
+impl Formatted {
+    /// Counts what a part of the format costs.
+    fn spend(&mut self, cycles: u32) {
+        self.cycles = self.cycles.saturating_add(cycles);
+    }
+}
+
 /// Formats `arguments` under `format`.
 pub(crate) fn format<A: Arguments>(format: &[u8], arguments: &mut A) -> Result<Vec<u8>, A::Error> {
-    let mut out = Vec::with_capacity(format.len() + 16);
+    format_counted(format, arguments).map(|formatted| formatted.text)
+}
+
+/// Formats `arguments` under `format`, and counts what that costs on the board.
+pub(crate) fn format_counted<A: Arguments>(format: &[u8], arguments: &mut A) -> Result<Formatted, A::Error> {
+    let mut out = Formatted { text: Vec::with_capacity(format.len() + 16), cycles: 0 };
     let mut rest = format;
+    let mut plain = 0_u32;
     while let Some((&byte, tail)) = rest.split_first() {
         rest = tail;
         if byte == b'%' {
@@ -49,8 +74,12 @@ pub(crate) fn format<A: Arguments>(format: &[u8], arguments: &mut A) -> Result<V
             rest = tail;
             convert(&spec, letter, arguments, &mut out)?;
         } else {
-            out.push(byte);
+            out.text.push(byte);
+            plain += 1;
         }
+    }
+    if plain > 0 {
+        out.spend(cost::PLAIN_TEXT + plain * cost::PLAIN_CHARACTER);
     }
     Ok(out)
 }
@@ -110,18 +139,18 @@ fn number<'f, A: Arguments>(
     Ok(((count > 0).then_some(value), tail))
 }
 
-/// Reads one `h`, or any number of `l`, `L`.
-fn length<'f>(mut format: &'f [u8], spec: &mut Spec) -> &'f [u8] {
-    if let Some(tail) = format.strip_prefix(b"h") {
-        spec.short = true;
-        return tail;
-    }
-    while let Some(tail) = format.strip_prefix(b"l").or_else(|| format.strip_prefix(b"L")) {
-        spec.long_long = spec.long;
-        spec.long = true;
-        format = tail;
-    }
-    format
+/// Reads one `h`, `l`, `ll` or `L`.
+fn length<'f>(format: &'f [u8], spec: &mut Spec) -> &'f [u8] {
+    let (length, taken) = match format {
+        [b'h', ..] => (&mut spec.short, 1),
+        [b'l', b'l', ..] => (&mut spec.long_long, 2),
+        [b'l', ..] => (&mut spec.long, 1),
+        // A double is a double without it.
+        [b'L', ..] => return &format[1..],
+        _ => return format,
+    };
+    *length = true;
+    &format[taken..]
 }
 
 /// Performs one conversion.
@@ -129,28 +158,48 @@ fn convert<A: Arguments>(
     spec: &Spec,
     letter: u8,
     arguments: &mut A,
-    out: &mut Vec<u8>,
+    out: &mut Formatted,
 ) -> Result<(), A::Error> {
     match letter {
         b'd' | b'i' if spec.long_long => signed(spec, arguments.long_long()?.cast_signed(), out),
         b'u' | b'x' | b'X' | b'o' if spec.long_long => unsigned(spec, arguments.long_long()?, letter, out),
-        // With one `l` the board reads a wider register whose upper part is zero: never negative.
-        b'd' | b'i' if spec.long => signed(spec, arguments.word()?.into(), out),
+        b'd' | b'i' if spec.long => signed(spec, long(arguments)?, out),
+        b'u' | b'x' | b'X' | b'o' if spec.long => {
+            unsigned(spec, long(arguments)?.cast_unsigned() & LONG_MASK, letter, out);
+        }
         b'd' | b'i' => signed(spec, (arguments.word()? as i32).into(), out),
         b'u' | b'x' | b'X' | b'o' => unsigned(spec, arguments.word()?.into(), letter, out),
         b'p' => pad(spec, b"", format!("{:x}", arguments.word()?).as_bytes(), out),
-        b'c' => pad(&unzeroed(spec), b"", &[arguments.word()? as u8], out),
+        b'c' => {
+            out.spend(cost::CHARACTER);
+            pad(spec, blank(spec), &[arguments.word()? as u8], out);
+        }
         b's' => {
             let limit = spec.precision.unwrap_or(usize::MAX);
             let text = arguments.text(limit)?.unwrap_or_else(|| b"(null)".to_vec());
             let shown = text.len().min(limit);
+            out.spend(cost::text(shown as u32));
             pad(&unzeroed(spec), b"", &text[..shown], out);
         }
         b'f' | b'e' | b'E' | b'g' | b'G' => float(spec, arguments.double()?, letter, out),
-        b'%' => out.push(b'%'),
+        b'%' => {
+            out.spend(cost::PERCENT);
+            out.text.push(b'%');
+        }
+        // The end of the format.
+        0 => pad(&unzeroed(spec), sign(spec, false), b"", out),
         _ => pad(&unzeroed(spec), b"", b"", out),
     }
     Ok(())
+}
+
+/// The bits of the board's `long` in an eight-byte place.
+const LONG_MASK: u64 = (1 << 40) - 1;
+
+/// The board's `long`: 40 bits of two words. The words behind a last argument are whatever the caller has there.
+fn long<A: Arguments>(arguments: &mut A) -> Result<i64, A::Error> {
+    const UNUSED: u32 = u64::BITS - LONG_MASK.count_ones();
+    Ok((arguments.long_long()? << UNUSED).cast_signed() >> UNUSED)
 }
 
 /// The same conversion without zero filling.
@@ -169,12 +218,19 @@ fn sign(spec: &Spec, negative: bool) -> &'static [u8] {
 }
 
 /// `%d` and `%i`.
-fn signed(spec: &Spec, value: i64, out: &mut Vec<u8>) {
+fn signed(spec: &Spec, value: i64, out: &mut Formatted) {
     integer(spec, sign(spec, value < 0), &value.unsigned_abs().to_string(), out);
 }
 
+/// What stands before an unsigned number or a character: a blank, if there is the flag, whatever other flags say.
+fn blank(spec: &Spec) -> &'static [u8] {
+    if spec.space { b" " } else { b"" }
+}
+
 /// `%u`, `%x`, `%X` and `%o`; `h` keeps 16 bits.
-fn unsigned(spec: &Spec, value: u64, letter: u8, out: &mut Vec<u8>) {
+///
+/// Odd and kept: zeros that fill a width stand before the prefix, and `%#o` always has one more zero.
+fn unsigned(spec: &Spec, value: u64, letter: u8, out: &mut Formatted) {
     let value = if spec.short { value & 0xffff } else { value };
     let (prefix, text) = match letter {
         b'x' => ("0x", format!("{value:x}")),
@@ -182,36 +238,69 @@ fn unsigned(spec: &Spec, value: u64, letter: u8, out: &mut Vec<u8>) {
         b'o' => ("0", format!("{value:o}")),
         _ => ("", value.to_string()),
     };
-    let mut head = if spec.space && !spec.plus { b" ".to_vec() } else { Vec::new() };
-    if spec.alternate {
-        head.extend(prefix.bytes());
-    }
-    integer(spec, &head, &text, out);
+    let digits = precise(spec, &text);
+    let count = digits.len() as u32;
+    out.spend(if letter == b'u' { cost::decimal(count, false) } else { cost::hexadecimal(count) });
+    let prefix = if spec.alternate && !digits.is_empty() { prefix } else { "" };
+    pad(&filled(spec), blank(spec), format!("{prefix}{digits}").as_bytes(), out);
 }
 
-/// Digits of an integer behind their head, with the precision's zeros.
-fn integer(spec: &Spec, head: &[u8], text: &str, out: &mut Vec<u8>) {
-    let Some(precision) = spec.precision else {
-        return pad(spec, head, text.as_bytes(), out);
-    };
-    let text = if precision == 0 && text == "0" { "" } else { text };
-    let filled = format!("{text:0>precision$}");
-    pad(&unzeroed(spec), head, filled.as_bytes(), out);
+/// Digits of a signed integer behind their sign.
+fn integer(spec: &Spec, head: &[u8], text: &str, out: &mut Formatted) {
+    let digits = precise(spec, text);
+    out.spend(cost::decimal(digits.len() as u32, head == b"-"));
+    pad(&filled(spec), head, digits.as_bytes(), out);
 }
 
-/// `%f`, `%e` and `%g`. What is not finite prints like the largest number, without a sign.
-fn float(spec: &Spec, value: f64, letter: u8, out: &mut Vec<u8>) {
-    let negative = value.is_finite() && value < 0.0;
+/// Digits with the zeros that the precision asks for; 0 has none if it asks for none.
+fn precise(spec: &Spec, text: &str) -> String {
+    let precision = spec.precision.unwrap_or(1);
+    if precision == 0 && text == "0" { String::new() } else { format!("{text:0>precision$}") }
+}
+
+/// An integer with a precision is filled with blanks.
+fn filled(spec: &Spec) -> Spec {
+    if spec.precision.is_some() { unzeroed(spec) } else { *spec }
+}
+
+/// `%f`, `%e` and `%g`. What is not finite prints like 2 to the power of 1024, and that and zeros without a sign.
+fn float(spec: &Spec, value: f64, letter: u8, out: &mut Formatted) {
     let magnitude = value.abs();
+    let negative = value.is_finite() && value < 0.0 && magnitude >= f64::MIN_POSITIVE;
     let precision = spec.precision.unwrap_or(6);
     let text = match letter {
-        b'f' => digits(magnitude, Keep::Decimals(precision)).fixed(precision, spec.alternate),
+        b'f' => fixed(spec, magnitude, precision),
         b'e' | b'E' => {
-            digits(magnitude, Keep::Significant(precision + 1)).scientific(precision, spec.alternate, letter)
+            digits(magnitude, Keep::Scientific(precision + 1)).scientific(precision, spec.alternate, letter)
         }
         _ => general(spec, magnitude, precision.max(1), letter),
     };
+    out.spend(float_cycles(spec, magnitude, letter));
     pad(spec, sign(spec, negative), &text, out);
+}
+
+/// What a floating-point conversion costs: the board looks for the decimal exponent step by step.
+fn float_cycles(spec: &Spec, magnitude: f64, letter: u8) -> u32 {
+    let exponent = match magnitude {
+        magnitude if magnitude < f64::MIN_POSITIVE => 0,
+        magnitude if magnitude.is_finite() => libm::floor(libm::log10(magnitude)) as i32,
+        _ => f64::MAX_10_EXP,
+    };
+    let precision = spec.precision.map(|precision| precision as u32);
+    match letter {
+        b'f' => cost::fixed(precision, exponent),
+        b'e' | b'E' => cost::scientific(precision, exponent),
+        _ => cost::general(precision, exponent),
+    }
+}
+
+/// `%f`. Odd and kept: without decimals, values below 0.1 show their first decimal or nothing behind the point.
+fn fixed(spec: &Spec, magnitude: f64, precision: usize) -> Vec<u8> {
+    if precision > 0 || !(f64::MIN_POSITIVE..0.1).contains(&magnitude) {
+        return digits(magnitude, Keep::Decimals(precision)).fixed(precision, spec.alternate);
+    }
+    let first = digits(magnitude, Keep::Decimals(1));
+    first.fixed(usize::from(!first.digits.is_empty()), true)
 }
 
 /// `%g`: `%e` for exponents below −4 or from the precision on, else `%f`, without the zeros at the end.
@@ -222,14 +311,13 @@ fn general(spec: &Spec, magnitude: f64, precision: usize, letter: u8) -> Vec<u8>
         let shown = if spec.alternate { precision } else { significant(&found.digits) };
         return found.scientific(shown - 1, spec.alternate, letter - (b'g' - b'e'));
     }
-    let decimals = (precision as i32 - 1 - exponent) as usize;
     if exponent < -1 {
-        // Odd and kept: zeros at the end stay below 0.1, and a single significant digit gets lost.
-        let shown = if precision == 1 { decimals - 1 } else { decimals };
-        let mut text = found.fixed(decimals, spec.alternate);
-        text.truncate(text.len() - (decimals - shown));
-        return text;
+        // Odd and kept: zeros at the end stay below 0.1, and as many zeros as digits are wanted end the text.
+        let zeros = exponent.unsigned_abs() as usize - 1;
+        let decimals = if zeros >= precision { precision } else { zeros + precision };
+        return found.fixed(decimals, spec.alternate);
     }
+    let decimals = (precision as i32 - 1 - exponent) as usize;
     if spec.alternate {
         return found.fixed(decimals, true);
     }
@@ -243,25 +331,31 @@ fn significant(digits: &[u8]) -> usize {
 }
 
 /// Writes head and body in the field's width.
-fn pad(spec: &Spec, head: &[u8], body: &[u8], out: &mut Vec<u8>) {
+fn pad(spec: &Spec, head: &[u8], body: &[u8], out: &mut Formatted) {
     let fill = spec.width.saturating_sub(head.len() + body.len());
+    if spec.width > 0 {
+        out.spend(cost::width(fill as u32));
+    }
+    let flags = [spec.left, spec.plus, spec.space, spec.alternate, spec.zero];
+    out.spend(cost::FLAG * flags.into_iter().map(u32::from).sum::<u32>());
+    let text = &mut out.text;
     if spec.left {
-        out.extend_from_slice(head);
-        out.extend_from_slice(body);
-        out.extend(std::iter::repeat_n(b' ', fill));
+        text.extend_from_slice(head);
+        text.extend_from_slice(body);
+        text.extend(std::iter::repeat_n(b' ', fill));
     } else if spec.zero {
-        out.extend_from_slice(head);
-        out.extend(std::iter::repeat_n(b'0', fill));
-        out.extend_from_slice(body);
+        text.extend_from_slice(head);
+        text.extend(std::iter::repeat_n(b'0', fill));
+        text.extend_from_slice(body);
     } else {
-        out.extend(std::iter::repeat_n(b' ', fill));
-        out.extend_from_slice(head);
-        out.extend_from_slice(body);
+        text.extend(std::iter::repeat_n(b' ', fill));
+        text.extend_from_slice(head);
+        text.extend_from_slice(body);
     }
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use std::convert::Infallible;
 
     use serde_json::Value as Json;
@@ -269,35 +363,50 @@ mod tests {
     use super::*;
     use crate::text::vectors::{Argument, call, rows};
 
-    struct List(std::vec::IntoIter<Argument>);
+    struct List {
+        list: std::vec::IntoIter<Argument>,
+        /// How many words were taken.
+        taken: usize,
+    }
 
     impl Arguments for List {
         type Error = Infallible;
 
         fn word(&mut self) -> Result<u32, Infallible> {
-            Ok(match self.0.next() {
+            self.taken += 1;
+            Ok(match self.list.next() {
                 Some(Argument::Word(word)) => word,
                 _ => 0,
             })
         }
 
         fn long_long(&mut self) -> Result<u64, Infallible> {
-            Ok(match self.0.next() {
-                Some(Argument::Word(word)) => word.into(),
+            // From a place aligned to 8: the words before an odd place are skipped with it.
+            if self.taken % 2 == 1 {
+                self.word()?;
+            }
+            Ok(match self.list.next() {
+                Some(Argument::Word(low)) => {
+                    self.taken += 2;
+                    match self.list.next() {
+                        Some(Argument::Word(high)) => u64::from(high) << 32 | u64::from(low),
+                        _ => low.into(),
+                    }
+                }
                 Some(Argument::LongLong(value)) => value,
                 _ => 0,
             })
         }
 
         fn double(&mut self) -> Result<f64, Infallible> {
-            Ok(match self.0.next() {
+            Ok(match self.list.next() {
                 Some(Argument::Double(double)) => double,
                 _ => 0.0,
             })
         }
 
         fn text(&mut self, limit: usize) -> Result<Option<Vec<u8>>, Infallible> {
-            Ok(match self.0.next() {
+            Ok(match self.list.next() {
                 Some(Argument::Text(text)) => Some(text.into_iter().take(limit).collect()),
                 _ => None,
             })
@@ -305,8 +414,14 @@ mod tests {
     }
 
     fn printf(pattern: &[u8], list: Vec<Argument>) -> Vec<u8> {
-        let Ok(text) = format(pattern, &mut List(list.into_iter()));
+        let Ok(text) = format(pattern, &mut List { list: list.into_iter(), taken: 0 });
         text
+    }
+
+    /// The text of a call and what it costs.
+    pub(in crate::text) fn counted(pattern: &[u8], list: Vec<Argument>) -> Formatted {
+        let Ok(formatted) = format_counted(pattern, &mut List { list: list.into_iter(), taken: 0 });
+        formatted
     }
 
     /// So many characters of one call reach the console.
@@ -324,8 +439,8 @@ mod tests {
 
     #[test]
     fn the_board_prints_the_same() {
-        for row in rows("printf.jsonl").iter().chain(&rows("printf-scanf.jsonl")) {
-            check(row);
+        for file in ["printf.jsonl", "printf-scanf.jsonl", "printf-edge.jsonl"] {
+            rows(file).iter().for_each(check);
         }
     }
 

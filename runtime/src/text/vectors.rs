@@ -50,8 +50,9 @@ pub(crate) fn split(text: &str) -> Vec<String> {
 
 /// The bytes of a C string literal.
 pub(crate) fn unquote(literal: &str) -> Vec<u8> {
-    let inner = literal.trim().trim_start_matches('"').trim_end_matches('"');
-    inner.replace("\\t", "\t").replace("\\n", "\n").replace("\\033", "\x1b").into_bytes()
+    let inner = literal.trim().strip_prefix('"').and_then(|text| text.strip_suffix('"')).unwrap_or_default();
+    let inner = inner.replace("\\t", "\t").replace("\\n", "\n").replace("\\033", "\x1b");
+    inner.replace("\\\"", "\"").into_bytes()
 }
 
 /// The value of one argument.
@@ -59,7 +60,10 @@ fn argument(text: &str) -> Argument {
     match text.trim() {
         "(char*)0" => Argument::Null,
         "\"x\"==0" => Argument::Word(0),
-        "-2147483647-1" | "(int)1e20" | "(int)-1e20" | "(int)2147483648.0" => Argument::Word(0x8000_0000),
+        "'A'" => Argument::Word(u32::from(b'A')),
+        "-2147483647-1" | "(-2147483647-1)" | "(int)1e20" | "(int)-1e20" | "(int)2147483648.0" => {
+            Argument::Word(0x8000_0000)
+        }
         "(unsigned)3e9" => Argument::Word(3_000_000_000),
         "(float)16777217" => Argument::Double(16_777_216.0),
         "1.0/3.0" => Argument::Double(1.0 / 3.0),

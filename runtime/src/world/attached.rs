@@ -1,64 +1,12 @@
 //! Devices around the board: each a file of `outside/` and a row of [`DEVICES`].
 //!
-//! They hang on pins, on Konnect outputs or on the UART, and answer an edge at its very instant. When one is attached
-//! it is told every bit that is high, so that it can take all others for low. Without any, a tick costs nothing.
+//! A machine file or a stimulus describes one by its name and settings; `machine` keeps it while it is attached.
 
-use std::fmt::Debug;
-
-use kmotiondef::{Bit, Cycles};
+use kmotiondef::Bit;
 
 use super::outside;
-use crate::io::changes::BitChange;
-use crate::io::fpga::Fpga;
-use crate::io::kanalog::{ADC_CHANNELS, Kanalog};
-use crate::io::konnect::Board;
-use crate::io::pins::Pins;
-use crate::io::uart::Uart;
-use crate::servo::Servo;
-
-/// What a device can reach.
-#[derive(Debug)]
-pub(crate) struct Outside<'a> {
-    pub(crate) pins: &'a mut Pins,
-    pub(crate) kanalog: &'a mut Kanalog,
-    pub(crate) uart: &'a mut Uart,
-    pub(crate) fpga: &'a Fpga,
-    pub(crate) servo: &'a mut Servo,
-}
-
-/// A device around the board.
-pub(crate) trait Attached: Debug + Send {
-    /// A bit has changed.
-    fn edge(&mut self, change: BitChange, outside: &mut Outside<'_>) {
-        let _ = (change, outside);
-    }
-
-    /// The outputs of a Konnect board have changed.
-    fn konnect(&mut self, board: Board, outputs: u16, at: Cycles) {
-        let _ = (board, outputs, at);
-    }
-
-    /// The UART has sent a character.
-    fn sent(&mut self, byte: u8, at: Cycles, outside: &mut Outside<'_>) {
-        let _ = (byte, at, outside);
-    }
-
-    /// A tick begins.
-    fn tick(&mut self, now: Cycles, outside: &mut Outside<'_>) {
-        let _ = (now, outside);
-    }
-
-    /// Whether it takes every edge of a bit; else one level a tick is enough.
-    fn watches(&self, bit: Bit) -> bool {
-        let _ = bit;
-        false
-    }
-
-    /// Whether the next tick does what the last one did.
-    fn is_settled(&self) -> bool {
-        true
-    }
-}
+use crate::io::kanalog::ADC_CHANNELS;
+use crate::machine::attached::Attached;
 
 /// A device that has been described: its name and its settings, in words.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,6 +1,176 @@
-//! What is around the board: devices on its pins, a stimulus that drives them, an operator, and who records it all.
+//! What is around the board: a stimulus that drives its lines, an operator, and who records it all.
 
 pub(crate) mod attached;
 pub(crate) mod outside;
+mod stage;
 pub mod stimulus;
 pub mod trace;
+
+pub(crate) use stage::{Moment, Stage};
+
+use kmotiondef::Cycles;
+use vm::firmware::TickContext;
+use vm::memory::GuestMemory;
+use vm::scheduler::Turn;
+
+use crate::io::Io;
+use crate::io::changes::BitChange;
+use crate::out::{EventKind, Message, Out, Speaker};
+use crate::world::stimulus::{Assist, Player, Step, Stimulus};
+use crate::world::trace::{Item, Quantity, Record, Recorder, View};
+
+/// What acts on the board from outside, and what looks at it.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct World {
+    /// Whether characters that the UART sends are told.
+    hears_uart: bool,
+    /// What the world does, if anything.
+    stimulus: Option<Box<Player>>,
+    /// The operator, if there is one.
+    pub(crate) assist: Option<Assist>,
+    /// What is recorded, if anything.
+    recorder: Option<Box<Recorder>>,
+}
+
+impl World {
+    /// Acts as a stimulus says, beside what it does already.
+    pub(crate) fn play(&mut self, stimulus: Stimulus, stage: &mut Stage<'_>, memory: &mut GuestMemory) {
+        let player = self.stimulus.get_or_insert_with(|| Box::new(Player::new()));
+        stage.out.keep_lines();
+        player.extend(stimulus, stage, memory);
+        player.watched().for_each(|bit| stage.io.pins.watch(bit));
+        stage.io.pins.changes.switch_on(memory);
+    }
+
+    /// What it does at the beginning of a tick; whether that is anything.
+    pub(crate) fn tick(
+        &mut self,
+        stage: &mut Stage<'_>,
+        context: &mut TickContext<'_>,
+        moment: Moment,
+    ) -> bool {
+        self.play_tick(stage, context, moment) | self.assist_tick(stage)
+    }
+
+    fn play_tick(&mut self, stage: &mut Stage<'_>, context: &mut TickContext<'_>, moment: Moment) -> bool {
+        if !stage.io.pins.changes.is_on() && !self.hears_uart {
+            return false;
+        }
+        stage.io.pins.changes.sweep(context.memory, stage.now);
+        stage.io.fpga.tell_pwm(&mut stage.io.pins, stage.now);
+        stage.lines().settle();
+        stage.machine.run_devices(stage.io, stage.out, self.hears_uart, stage.now);
+        let changes = stage.io.pins.changes.take();
+        if self.records_changes() {
+            changes.iter().for_each(|change| tell_change(stage, moment, *change));
+        }
+        self.stimulus.as_mut().is_some_and(|player| player.tick(stage, context, &changes))
+    }
+
+    /// Plays an operator from now on.
+    pub(crate) fn assist(&mut self, now: Cycles) {
+        self.assist = Some(Assist::new(now));
+    }
+
+    fn assist_tick(&mut self, stage: &mut Stage<'_>) -> bool {
+        let Some(step) = self.assist.as_mut().and_then(|assist| assist.step(stage.now)) else { return false };
+        let (Step::Press(bit, _) | Step::Release(bit)) = step;
+        let level = !stage.io.pins.input(bit);
+        if let Step::Press(_, reader) = step {
+            let speaker = Speaker::from(reader.thread);
+            stage.out.remark_of(
+                stage.now,
+                speaker,
+                reader.at,
+                Message::Assisted { bit, level: level.into() },
+            );
+        }
+        stage.lines().drive(bit, level);
+        true
+    }
+
+    /// Records from now on.
+    pub(crate) fn record(&mut self, request: trace::Request, io: &mut Io, memory: &GuestMemory) {
+        if request.changes {
+            io.pins.changes.switch_on(memory);
+            self.hear_uart(io);
+            let items = request.quantities.iter().filter_map(Quantity::item);
+            items.filter_map(Item::bit).for_each(|bit| io.pins.watch(bit));
+        }
+        self.recorder = Some(Box::new(Recorder::new(request)));
+    }
+
+    /// Samples what is recorded at the last of `count` ticks up to `context` that is to be sampled.
+    #[inline]
+    pub(crate) fn sample(&mut self, view: &View<'_>, out: &mut Out, context: &TickContext<'_>, count: u64) {
+        let Some(recorder) = &mut self.recorder else { return };
+        if let Some(tick) = recorder.sampled_tick(context.tick, count)
+            && let Some(record) = recorder.sample(view)
+        {
+            let back = (context.tick.get() - tick.get()) as i64 * Cycles::PER_TICK.get();
+            out.tell(context.now - Cycles::new(back), EventKind::Trace(record));
+        }
+    }
+
+    /// Whether anything is recorded.
+    #[inline]
+    pub(crate) const fn is_recording(&self) -> bool {
+        self.recorder.is_some()
+    }
+
+    /// Whether levels and slices are recorded.
+    pub(crate) fn records_changes(&self) -> bool {
+        self.recorder.as_ref().is_some_and(|recorder| recorder.records_changes())
+    }
+
+    /// Whether what is recorded changes even when nothing happens.
+    pub(crate) fn records_motion(&self, io: &Io, tick_start: Cycles) -> bool {
+        io.fpga.is_telling(&io.pins)
+            || self.recorder.as_ref().is_some_and(|recorder| recorder.samples("kstep_analog"))
+                && !io.fpga.kstep_output().is_settled(tick_start)
+    }
+
+    /// Whether the stimulus still has something to do that the run must wait for.
+    pub(crate) fn is_busy(&self, out: &Out) -> bool {
+        let has_shown_lines = out.has_shown_lines();
+        self.stimulus.as_ref().is_some_and(|player| player.is_busy(has_shown_lines))
+    }
+
+    /// Whether the stimulus looks at something in every tick.
+    pub(crate) fn is_watching(&self) -> bool {
+        self.stimulus.as_ref().is_some_and(|player| player.is_watching())
+    }
+
+    /// How many of the ticks after the one that began at `now` have nothing to do.
+    pub(crate) fn quiet_ticks(&self, out: &Out, now: Cycles) -> u64 {
+        if !out.has_shown_lines() {
+            return 0;
+        }
+        let stimulus = self.stimulus.as_ref().map_or(u64::MAX, |player| player.quiet_ticks(now));
+        let assist = self.assist.as_ref().map_or(u64::MAX, |assist| assist.quiet_ticks(now));
+        stimulus.min(assist)
+    }
+
+    /// The run is over: what the stimulus expects then is checked.
+    pub(crate) fn finish(&mut self, stage: &mut Stage<'_>, context: &TickContext<'_>) {
+        if let Some(player) = &mut self.stimulus {
+            player.finish(stage, context);
+        }
+    }
+
+    /// Tells every character that the UART sends from now on.
+    pub(crate) fn hear_uart(&mut self, io: &mut Io) {
+        io.uart.listen();
+        self.hears_uart = true;
+    }
+}
+
+/// Tells a change of a bit, and the thread that had the processor then, unless a generator has made it.
+fn tell_change(stage: &mut Stage<'_>, moment: Moment, BitChange { at, bit, level }: BitChange) {
+    let is_generated = stage.io.pins.is_watched(bit) && stage.io.pins.is_generated(bit);
+    let thread = match moment.turn {
+        Turn::User(thread) if (moment.slice_start..stage.now).contains(&at) && !is_generated => Some(thread),
+        _ => None,
+    };
+    stage.out.tell(at, EventKind::Trace(Record::Bit { bit, level, thread }));
+}

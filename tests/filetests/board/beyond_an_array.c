@@ -6,3 +6,4 @@ main()
     int *p = (int *)0x91001000;
     return *p;
 }
+//@ cycles: 3

@@ -21,3 +21,4 @@ main()
     SetBit(128);
     printf("%d %d %d\n", ReadBit(128), ReadBit(5000), ReadBit(200));
 }
+//@ cycles: 27917

@@ -10,3 +10,4 @@ main()
     persist.UserData[0] = 5 / zero;
     printf("never\n");
 }
+//@ cycles: 1742

@@ -15,3 +15,4 @@ main()
     abort();
     printf("not here\n");
 }
+//@ cycles: 19943

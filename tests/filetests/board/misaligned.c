@@ -7,3 +7,4 @@ main()
     *d = 1.5;
     return *d;
 }
+//@ cycles: 7

@@ -41,3 +41,4 @@ main()
     printf("the integrator is %g\n", ch0->integrator);
     DisableAxis(0);
 }
+//@ cycles: 118322333

@@ -6,3 +6,4 @@ main()
     int *code = (int *)f;
     *code = 0;
 }
+//@ cycles: 4

@@ -7,3 +7,4 @@ main()
     if (x = 1) printf("%d\n", x);
 }
 //@ prints: 1
+//@ cycles: 2481

@@ -1,4 +1,5 @@
 //@ exit: 1
+//@ args: -Werror=lax-text
 //@ says: unknown escape `\u`
 //@ says: write `\\` for a backslash
 main()

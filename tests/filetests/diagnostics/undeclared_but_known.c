@@ -6,3 +6,4 @@ main()
 {
     printf("%d\n", strlen("hello"));
 }
+//@ cycles: 2561

@@ -1,4 +1,5 @@
 //@ exit: 1
+//@ args: -Werror=lax-text
 //@ snapshot
 #include "KMotionDef.h"
 

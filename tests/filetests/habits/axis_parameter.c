@@ -29,3 +29,4 @@ main()
         printf("%s: %g counts/mm, dest %g\n", a->name, a->counts, chan[a->axis].Dest);
     }
 }
+//@ cycles: 29098

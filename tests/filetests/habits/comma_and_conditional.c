@@ -11,3 +11,4 @@ main()
     a = b = 9;
     printf("%s %s %d %d\n", a & 1 ? "odd" : "even", (a + b) & 1 ? "odd" : "even", a, (i = 5, b));
 }
+//@ cycles: 22861

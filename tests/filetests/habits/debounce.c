@@ -36,3 +36,4 @@ main()
         if (result == 0) printf("released at %d\n", i + 1);
     }
 }
+//@ cycles: 9805

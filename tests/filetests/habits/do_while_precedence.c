@@ -19,3 +19,4 @@ main()
     while (result = Ask() > 0); //~ assignment-condition
     printf("waited %d times, result %d\n", waited, result);
 }
+//@ cycles: 8495

@@ -20,3 +20,4 @@ main()
     }
     ClearBit(ESTOP_BIT);
 }
+//@ cycles: 6845

@@ -14,3 +14,4 @@ main()
     if (Half == 0.5) printf("half is half\n");
     if (!Speed && Speed != 0) printf("wrong\n");
 }
+//@ cycles: 9104

@@ -34,3 +34,4 @@ main()
     }
     printf("%d of %d allowed\n", allowed, n);
 }
+//@ cycles: 14655

@@ -17,3 +17,4 @@ main()
     printf("%s\n", (char *)gather_buffer + TEXT_AT);
     printf("%d characters, first byte %x\n", *(int *)gather_buffer, *p);
 }
+//@ cycles: 16969

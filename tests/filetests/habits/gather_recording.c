@@ -20,3 +20,4 @@ main()
     }
     printf("sum %g\n", sum);
 }
+//@ cycles: 25533

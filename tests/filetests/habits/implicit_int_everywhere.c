@@ -24,3 +24,4 @@ main()
     for (count = 0; tap(1) < 3; count++) ;
     printf("%d taps, %d left, ratio %d\n", count + 1, left(limit, 3), limit / 3);
 }
+//@ cycles: 10032

@@ -11,3 +11,4 @@ main()
         printf("spindle off\n"); //~ misleading-indentation
     while (running) running--;
 }
+//@ cycles: 5308

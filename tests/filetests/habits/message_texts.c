@@ -4,7 +4,7 @@
 //@ prints: 3 -1.50 tail
 #include "KMotionDef.h"
 
-char s[80];
+char s[80]; //~ redeclared
 
 Upper(char *p)
 {
@@ -29,3 +29,4 @@ main()
     sscanf("3 -1.5 tail", "%d %lf %s", &n, &d, word);
     printf("%d %.2f %s\n", n, d, word);
 }
+//@ cycles: 22061

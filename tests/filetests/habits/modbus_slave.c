@@ -61,3 +61,4 @@ unsigned short CalcCrc(unsigned char *buffer, int n)
     }
     return crc;
 }
+//@ cycles: 29803

@@ -18,3 +18,4 @@ main()
     }
     printf("%d tools in %d turns\n", tools, turns);
 }
+//@ cycles: 7474

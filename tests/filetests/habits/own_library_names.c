@@ -3,7 +3,7 @@
 #include "KMotionDef.h"
 
 double y0 = 7, y1 = -1.5;
-int s = 9;
+int s = 9; //~ redeclared
 
 int floor(double x)
 {
@@ -26,3 +26,4 @@ main()
     int n = strncpy(name, "T05 END", 3);
     printf("%s %d %d y %.2f %.2f s %d\n", name, floor(-1.2), n, y0, y1, s);
 }
+//@ cycles: 16828

@@ -24,3 +24,4 @@ main()
     printf("%d words, %d letters\n", words, letters);
     printf("largest %d at %d\n", *best, best - numbers);
 }
+//@ cycles: 14487

@@ -15,3 +15,4 @@ int InitButton(int number, int bit, int config) //~ prototype-mismatch
     printf("button %d config %d\n", number, config);
     return config;
 }
+//@ cycles: 7179

@@ -16,3 +16,4 @@ int ReadScale(void) //~ prototype-mismatch
     for (i = 0; i < 23; i++) value = (value << 1) | 1;
     return value;
 }
+//@ cycles: 5028

@@ -20,3 +20,4 @@ main()
     printf("%X\n", c);
     if (!Received[In]) printf("end\n");
 }
+//@ cycles: 6576

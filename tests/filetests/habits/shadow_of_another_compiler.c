@@ -15,3 +15,4 @@ main()
     printf("old way\n");
 }
 #endif __TI_COMPILER_VERSION__
+//@ cycles: 1905

@@ -42,3 +42,4 @@ main()
     }
     printf("done after %d passes\n", Passes);
 }
+//@ cycles: 25244

@@ -29,3 +29,4 @@ main()
     printf("state %d then %d\n", ChangerState, NextStep());
     if (UNLOCK == 4) printf("unlock is %d here\n", UNLOCK);
 }
+//@ cycles: 17919

@@ -11,3 +11,4 @@ main()
     OldStart();
     Lamp(6);
 }
+//@ cycles: 8348

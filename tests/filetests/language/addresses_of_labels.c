@@ -38,3 +38,4 @@ main()
     interpret(program);
     printf("%d %d\n", choose(1), choose(0));
 }
+//@ cycles: 11495

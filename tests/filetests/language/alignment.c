@@ -24,3 +24,4 @@ main()
     printf("%d %d %d %d\n", (int)buffer & 63, (int)area & 7, (int)table & 127, (int)local & 31);
     printf("%d %d %d\n", __alignof__(struct line), __alignof__(buffer), __alignof__(filler + 0));
 }
+//@ cycles: 27467

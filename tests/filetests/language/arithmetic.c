@@ -21,3 +21,4 @@ main()
     u = 4294967295.0;
     printf("%u %u %d\n", u, (unsigned)3.99, (char)200);
 }
+//@ cycles: 53993

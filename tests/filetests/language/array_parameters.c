@@ -15,3 +15,4 @@ main()
     int list[3] = { 4, 2, 3 };
     printf("%d %d %d\n", sum(list, list), twice(list), half(2, 4));
 }
+//@ cycles: 6629

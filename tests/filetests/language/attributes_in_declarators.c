@@ -21,3 +21,4 @@ int main(void)
     printf("%d\n", (int)sizeof(int (__attribute__((aligned(4), unused)) __attribute__((unused)) *)(void)));
     return 0;
 }
+//@ cycles: 9825

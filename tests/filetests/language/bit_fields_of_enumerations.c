@@ -23,3 +23,4 @@ main()
     o.power = ON;
     printf("%d %d\n", o.state, o.power);
 }
+//@ cycles: 11919

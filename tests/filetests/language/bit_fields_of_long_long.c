@@ -23,3 +23,4 @@ main()
     start.high = start.high + 5;
     printf("%d %d %d\n", n.five, (int)start.high, (int)start.own);
 }
+//@ cycles: 33393

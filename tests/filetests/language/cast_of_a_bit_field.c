@@ -12,3 +12,4 @@ main()
     printf("%d %d %d\n", n % bits.low, n < bits.low, n < (unsigned)bits.low);
     printf("%d %d\n", (unsigned)bits.low - 8 < 0, bits.low - 8 < 0);
 }
+//@ cycles: 11365

@@ -9,3 +9,4 @@ main()
 {
     printf("%d %d\n", bits((union number)1.0f), bits((union number)7));
 }
+//@ cycles: 7080

@@ -20,3 +20,4 @@ main()
     printf("%d %d %d %d\n", still.from.x, still.from.y, still.to.x, corner->x);
     printf("%d %d %d %d\n", sizeof(list) / sizeof(list[0]), list[2], local.x, local.y);
 }
+//@ cycles: 26347

@@ -8,3 +8,4 @@ g() { return f(); }
 f() { return 2; }
 
 main() { printf("%d\n", g()); }
+//@ cycles: 2488

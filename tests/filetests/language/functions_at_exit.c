@@ -15,3 +15,4 @@ main()
     exit(0);
     printf("never\n");
 }
+//@ cycles: 4876

@@ -11,3 +11,4 @@ main()
 here:
     goto *to;
 }
+//@ cycles: 5

@@ -24,3 +24,4 @@ main()
     printf("%d %s\n", sizeof sparse - 4, names[1]);
     printf("%d %d %d %d\n", local[0], local[3], pair.a, pair.b);
 }
+//@ cycles: 43496

@@ -14,3 +14,4 @@ main()
     printf("%s %d\n", text, (int)(-7ll / 2));
     printf("%x %d %d\n", (int)(wide >> 32), sizeof(long long) / 2, wide > 1);
 }
+//@ cycles: 19474

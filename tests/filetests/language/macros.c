@@ -18,3 +18,4 @@ main()
     SHOW("no\n");
 #endif
 }
+//@ cycles: 11276

@@ -21,3 +21,4 @@ main()
 #endif
     printf("%d %d %d\n", fast, slow, defined);
 }
+//@ cycles: 6620

@@ -14,3 +14,4 @@ main()
     called = first;
     printf("%d %d\n", r, called(3, 4, 5));
 }
+//@ cycles: 4583

@@ -20,3 +20,4 @@ main()
     count(zero / zero);
     printf("%d\n", hit);
 }
+//@ cycles: 2563

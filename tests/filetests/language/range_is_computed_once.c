@@ -10,3 +10,4 @@ main()
     int list[5] = { [0 ... 2] = next(), [3 ... 4] = ++calls };
     printf("%d %d %d %d %d\n", list[0], list[1], list[2], list[3], list[4]);
 }
+//@ cycles: 10772

@@ -57,3 +57,4 @@ main()
     printf("%d %d %d\n", big == 3000000000ll, (_Bool)0.5, (_Bool)(d + 1.5));
     printf("%d\n", _Generic(d, int: 1, double: 2, default: 3));
 }
+//@ cycles: 42567

@@ -16,3 +16,4 @@ main()
     do ; while (!sizeof(enum { LEVEL = 5 }));
     printf("%d %d %d %d %d %d %d\n", a, b, c, d, e, f, LEVEL);
 }
+//@ cycles: 14898

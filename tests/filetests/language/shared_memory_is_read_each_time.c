@@ -14,3 +14,4 @@ main()
     }
     printf("%d\n", n);
 }
+//@ cycles: 2510

@@ -30,3 +30,4 @@ main()
     qsort(fruit, 3, sizeof(char *), by_name);
     printf("%s %s %s\n", fruit[0], fruit[1], fruit[2]);
 }
+//@ cycles: 28574

@@ -30,3 +30,4 @@ again:
         printf(i < 5 ? "%d " : "%d\n", i);
     }
 }
+//@ cycles: 27420

@@ -33,3 +33,4 @@ main()
            large(0x9000000000000000ULL), large(-1), large(0x9000000000000001ULL));
     printf("%d %d %d %d %d %d\n", near(-0x123456789LL), near(-1), near(0), near(3), near(0x123456789LL), near(-5));
 }
+//@ cycles: 25758

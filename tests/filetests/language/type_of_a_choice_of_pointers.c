@@ -13,3 +13,4 @@ main()
         KIND(n ? (int (*)[])0 : (int (*)[4])0),
         KIND(n ? (char *)0 : (void *)0));
 }
+//@ cycles: 8691

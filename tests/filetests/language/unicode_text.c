@@ -17,3 +17,4 @@ main()
     printf("%d %d %d %d %d\n", text[0] & 255, text[1] & 255, text[2] & 255, text[3] & 255, text[4] & 255);
     printf("%d %d %d %d %d\n", sizeof(u'a'), sizeof(U'a'), sizeof(L'a'), wide[0], L'A');
 }
+//@ cycles: 47486

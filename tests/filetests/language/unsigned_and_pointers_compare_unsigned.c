@@ -10,3 +10,4 @@ main()
     printf("%d %d %d\n", large < 1, minus < 1, minus < 2147483648);
     printf("%d\n", (double *)0xfffffffc > gather_buffer);
 }
+//@ cycles: 9099

@@ -9,3 +9,4 @@ main()
 {
     printf("%X\n", Next());
 }
+//@ cycles: 2707

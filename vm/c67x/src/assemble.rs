@@ -11,8 +11,8 @@ use crate::kind::Update;
 use crate::mnemonic::Mnemonic;
 use crate::operand::{Mem, Offset, Operand};
 use crate::register::{Control, Pair, Pred, PredReg, Reg, Side};
+use crate::spelling::FETCH_PACKET;
 use crate::table::Op;
-use crate::text::FETCH_PACKET;
 
 /// A line of assembler text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -13,7 +13,7 @@
 //!
 //! Map: `register` (registers, conditions, units), `kind` (fields, kinds of operands,
 //! timing), `mnemonic`, `table` (the rows), `operand`, `inst` (encode, decode), `model`
-//! (the scheduler's questions), `alias`, `text`, `assemble`, `schedule`.
+//! (the scheduler's questions), `convention` (registers of calls), `alias`, `spelling`, `assemble`, `text`, `schedule`.
 //!
 //! Invariants: nothing here executes anything or knows the board; the table is
 //! the one place where a form is described; an [`Inst`] is always valid.
@@ -21,6 +21,7 @@
 
 mod alias;
 mod assemble;
+pub mod convention;
 mod inst;
 mod kind;
 mod mnemonic;
@@ -28,6 +29,7 @@ mod model;
 mod operand;
 mod register;
 pub mod schedule;
+mod spelling;
 mod table;
 mod text;
 
@@ -38,5 +40,5 @@ pub use mnemonic::Mnemonic;
 pub use model::{Branch, Read, Write};
 pub use operand::{Mem, Offset, Operand};
 pub use register::{Control, Pair, Pred, PredReg, Reg, Side, Unit, UnitKind};
+pub use spelling::{FETCH_PACKET, target};
 pub use table::{Op, Row};
-pub use text::{FETCH_PACKET, target};

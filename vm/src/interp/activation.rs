@@ -8,7 +8,7 @@ use std::cell::Cell;
 use kmotiondef::GuestAddr;
 
 use super::context::{Calls, Window};
-use crate::access::Width;
+use crate::kind::Width;
 use crate::memory::GuestMemory;
 use crate::operand::{FuncRef, Label, RegF32, RegF64, RegI32, RegI64, SigRef};
 use crate::program::Program;
@@ -38,6 +38,8 @@ pub(super) enum Exit {
     Clear { to: GuestAddr, len: u16 },
     /// The program did the impossible.
     Trap(TrapKind),
+    /// A debugger holds the context before this word.
+    Held,
 }
 
 /// How the execution goes on behind an instruction.

@@ -4,12 +4,12 @@
 //! from memory by itself and need not ask which instruction it is.
 
 use std::fmt;
-use std::sync::OnceLock;
+use std::sync::Arc;
 
-use super::sequences;
+use super::sequences::{self, BREAK};
 use crate::op::{Op, WORD};
 use crate::operand::Operand;
-use crate::program::MAX_TEXT;
+use crate::program::{MAX_TEXT, Program};
 
 /// One instruction.
 pub(super) type Word = [u16; WORD / 2];
@@ -49,50 +49,64 @@ impl<'a> Operands<'a> {
     }
 }
 
-/// The words of a program, made when it is first interpreted; a copy makes its own.
-///
-/// They follow from the program, so two programs are equal whether or not they have them.
-#[derive(Default)]
-pub(crate) struct Code(OnceLock<Box<Words>>);
+/// The words of one program.
+#[derive(Clone)]
+pub(super) struct Encoded(Box<Words>);
 
-impl Code {
-    /// The words of the program that has `ops` and holds this.
-    pub(super) fn words(&self, ops: &[Op]) -> &Words {
-        self.0.get_or_init(|| encode(ops))
+impl Encoded {
+    /// Those of `ops`; verification refuses a text that is longer than the program area.
+    pub(super) fn new(ops: &[Op]) -> Self {
+        Self(encode(ops, &|_, _| false))
+    }
+
+    /// The same, where a debugger holds contexts at some words.
+    pub(super) fn held(ops: &[Op], is_held: &dyn Fn(usize, &Op) -> bool) -> Self {
+        Self(encode(ops, is_held))
+    }
+
+    /// The words.
+    pub(super) const fn words(&self) -> &Words {
+        &self.0
     }
 }
 
-/// The words of `ops`; verification refuses a text that is longer than the program area.
-fn encode(ops: &[Op]) -> Box<Words> {
+impl fmt::Debug for Encoded {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Encoded")
+    }
+}
+
+/// A program as the interpreter has it.
+#[derive(Clone, Debug)]
+pub(super) struct Code {
+    /// The program.
+    pub(super) program: Arc<Program>,
+    /// Its words.
+    pub(super) words: Arc<Encoded>,
+}
+
+/// The word of one instruction, which stands for itself alone.
+pub(super) fn plain_word(op: &Op) -> Word {
+    let bytes = op.encode();
+    std::array::from_fn(|index| u16::from_le_bytes([bytes[2 * index], bytes[2 * index + 1]]))
+}
+
+/// A text in which a context is held at every word.
+pub(super) fn all_held() -> Box<Words> {
+    vec![[BREAK; WORD / 2]; CAPACITY].into_boxed_slice().try_into().expect("it is of that length")
+}
+
+/// The words of instructions, of which those that are held have an opcode that stops a context.
+fn encode(ops: &[Op], is_held: &dyn Fn(usize, &Op) -> bool) -> Box<Words> {
     let mut words: Box<Words> =
         vec![[0; WORD / 2]; CAPACITY].into_boxed_slice().try_into().expect("it is of that length");
     for (word, op) in words.iter_mut().zip(ops) {
-        let bytes = op.encode();
-        *word = std::array::from_fn(|index| u16::from_le_bytes([bytes[2 * index], bytes[2 * index + 1]]));
+        *word = plain_word(op);
     }
-    let codes: Vec<u16> = words[..ops.len()].iter().map(|word| word[0]).collect();
+    let held = |(pc, op): (usize, &Op)| if is_held(pc, op) { BREAK } else { words[pc][0] };
+    let codes: Vec<u16> = ops.iter().enumerate().map(held).collect();
     for (pc, word) in words.iter_mut().enumerate().take(ops.len()) {
         word[0] = sequences::opcode(ops, &codes, pc);
     }
     words
 }
-
-impl Clone for Code {
-    fn clone(&self) -> Self {
-        Self::default()
-    }
-}
-
-impl fmt::Debug for Code {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_tuple("Code").field(&self.0.get().is_some()).finish()
-    }
-}
-
-impl PartialEq for Code {
-    fn eq(&self, _: &Self) -> bool {
-        true
-    }
-}
-
-impl Eq for Code {}

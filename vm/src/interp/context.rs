@@ -2,6 +2,8 @@
 
 use std::cell::Cell;
 
+use kmotiondef::{CodeAddr, GuestAddr};
+
 use crate::engine::Stack;
 use crate::operand::FuncRef;
 use crate::program::{Program, body_of};
@@ -35,8 +37,8 @@ struct Frame {
     stack_pointer: u32,
 }
 
-/// The calls of a context, and where it stands.
-#[derive(Debug)]
+/// The calls of a context, and where it is.
+#[derive(Clone, Debug)]
 pub(super) struct Calls {
     /// The calls around the current one, outermost first.
     frames: Vec<Frame>,
@@ -118,6 +120,17 @@ impl Calls {
     }
 }
 
+/// A call in progress, as a debugger sees it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FrameView {
+    /// The instruction that is executed next; in a caller, the call.
+    pub at: CodeAddr,
+    /// Address of the frame in guest memory.
+    pub frame: GuestAddr,
+    /// The registers.
+    pub registers: Vec<u64>,
+}
+
 /// What a context has besides guest memory.
 #[derive(Debug)]
 pub(super) struct Context {
@@ -128,7 +141,38 @@ pub(super) struct Context {
     pub(super) pending: Option<FuncRef>,
 }
 
+/// A context as it was at an instant.
+#[derive(Debug)]
+pub(super) struct Saved {
+    /// The registers of the calls in progress, and the arguments behind them; whatever comes then is written before it
+    /// is read.
+    registers: Vec<u64>,
+    calls: Calls,
+    pending: Option<FuncRef>,
+}
+
 impl Context {
+    /// The context as it is.
+    pub(super) fn save(&self) -> Saved {
+        let live = self.calls.current.base + usize::from(self.calls.current.registers) + MAX_PARAMETERS;
+        Saved {
+            registers: self.registers[..live.min(self.registers.len())].to_vec(),
+            calls: self.calls.clone(),
+            pending: self.pending,
+        }
+    }
+
+    /// Makes the context what it was.
+    pub(super) fn put_back(&mut self, saved: &Saved) {
+        let Saved { registers, calls, pending } = saved;
+        if self.registers.len() < registers.len() + WINDOW {
+            self.registers.resize(registers.len() + WINDOW, 0);
+        }
+        self.registers[..registers.len()].copy_from_slice(registers);
+        self.calls.clone_from(calls);
+        self.pending = *pending;
+    }
+
     pub(super) fn new() -> Self {
         Self {
             registers: vec![0; WINDOW],
@@ -196,6 +240,30 @@ impl Context {
     /// Sets a register of the current call.
     pub(super) fn set(&mut self, register: u16, slot: u64) {
         self.registers[self.calls.current.base + usize::from(register)] = slot;
+    }
+
+    /// The calls in progress, innermost first.
+    pub(super) fn frames(&self, address_of: impl Fn(usize) -> CodeAddr) -> Vec<FrameView> {
+        if self.pending.is_some() {
+            return Vec::new();
+        }
+        let callers = self.calls.frames.iter().rev().map(|frame| (frame.pc - 1, frame));
+        let all = std::iter::once((self.calls.pc, &self.calls.current)).chain(callers);
+        let view = |(pc, frame): (usize, &Frame)| FrameView {
+            at: address_of(pc),
+            frame: GuestAddr::new(frame.stack_pointer),
+            registers: self.registers[frame.base..frame.base + usize::from(frame.registers)].to_vec(),
+        };
+        all.map(view).collect()
+    }
+
+    /// Sets a register of the call `frame`, counted from the innermost; whether there is such a register.
+    pub(super) fn set_in(&mut self, frame: usize, register: u16, slot: u64) -> bool {
+        let Calls { frames, current, .. } = &self.calls;
+        let frame = if frame == 0 { Some(current) } else { frames.iter().rev().nth(frame - 1) };
+        let Some(frame) = frame.filter(|frame| register < frame.registers) else { return false };
+        self.registers[frame.base + usize::from(register)] = slot;
+        true
     }
 
     /// The arguments of the next call.

@@ -17,7 +17,7 @@
 use super::activation::{Activation, Exit, Flow, State};
 use super::code::{Word, Words, word_at};
 use super::context::Window;
-use super::sequences::for_each_sequence;
+use super::sequences::{BREAK, for_each_sequence};
 use crate::for_each_op;
 use crate::trap::TrapKind;
 
@@ -53,7 +53,7 @@ macro_rules! run {
 }
 
 macro_rules! define_steps {
-    ($($(#[$doc:meta])* $name:ident = $variant:ident { $($field:ident: $operand:ident),* }, cost $cost:expr;)*) => {
+    ($($(#[$doc:meta])* $name:ident = $variant:ident { $($field:ident: $operand:ident),* }, cost $cost:expr, $kind:ident $(($fact:ident))?;)*) => {
         /// The instructions with their operands taken from the word.
         mod step {
             use crate::operand::*;
@@ -107,8 +107,14 @@ static HANDLERS: [Handler; 256] = {
         handlers[code] = ROWS[code];
         code += 1;
     }
+    handlers[BREAK as usize] = held;
     handlers
 };
+
+/// What a word does at which a debugger holds the context.
+fn held<'m>(state: &mut State<'m>, window: &'m Window, _: &Words, pc: usize, _: &Word) {
+    leave(Activation { state, window, pc }, Exit::Held);
+}
 
 /// The handler of a word; `sequences.rs` sees to it that an opcode fits a byte.
 #[inline(always)]

@@ -3,7 +3,7 @@
 use kmotiondef::GuestAddr;
 
 use super::activation::{Activation, Exit, Flow};
-use crate::access::Width;
+use crate::kind::Width;
 use crate::operand::{Addr, Count, Imm, Off, RegF32, RegF64, RegI32, RegI64};
 use crate::slot::Slot;
 

@@ -9,7 +9,9 @@
 
 use std::ops::Range;
 
+use crate::kind::{Name, OpKind};
 use crate::op::{OPCODES, Op};
+use crate::operand::{FuncRef, Label};
 use crate::program::body_of;
 
 /// Hands rows `name: instruction instruction…;` to the macro `$m`, behind those given.
@@ -107,6 +109,9 @@ br_charge: br charge;
 }
 pub(super) use for_each_sequence;
 
+/// The opcode of a word at which a debugger holds a context; it begins no sequence.
+pub(super) const BREAK: u16 = 255;
+
 /// A row of the list: opcodes one behind the other.
 pub(super) type Sequence = &'static [u16];
 
@@ -118,7 +123,8 @@ macro_rules! define_list {
 }
 for_each_sequence! { define_list }
 
-const _: () = assert!(OPCODES as usize + SEQUENCES.len() <= 256, "an opcode fits a byte");
+const _: () =
+    assert!(OPCODES as usize + SEQUENCES.len() <= BREAK as usize, "an opcode fits a byte, and one is left");
 
 /// For each opcode, the rows among which are those of the sequences that begin with it.
 const GROUPS: [Range<usize>; OPCODES as usize] = {
@@ -137,7 +143,8 @@ const GROUPS: [Range<usize>; OPCODES as usize] = {
 
 /// The opcode to execute at the word `pc` of `ops`, whose opcodes are `codes`: that of a sequence, or its own.
 pub(super) fn opcode(ops: &[Op], codes: &[u16], pc: usize) -> u16 {
-    let found = GROUPS[usize::from(codes[pc])].clone().find(|row| stands_at(SEQUENCES[*row], ops, codes, pc));
+    let Some(group) = GROUPS.get(usize::from(codes[pc])) else { return codes[pc] };
+    let found = group.clone().find(|row| stands_at(SEQUENCES[*row], ops, codes, pc));
     found.map_or(codes[pc], |row| OPCODES + row as u16)
 }
 
@@ -147,15 +154,39 @@ fn stands_at(sequence: &[u16], ops: &[Op], codes: &[u16], pc: usize) -> bool {
     let goes_on = |next: usize| stands_at(then, ops, codes, next);
     codes.get(pc) == Some(first)
         && (then.is_empty()
-            || match ops[pc] {
-                Op::Br { to } => goes_on(to.0 as usize),
-                Op::BrIf { to, .. } | Op::BrUnless { to, .. } => goes_on(pc + 1) && goes_on(to.0 as usize),
-                Op::Call { func } => match ops.get(func.0 as usize) {
-                    Some(Op::Func { regs, .. }) => goes_on(body_of(func, regs.0)),
-                    _ => false,
-                },
-                _ => goes_on(pc + 1),
+            || match ops[pc].kind() {
+                OpKind::Jump => target(ops[pc]).is_some_and(goes_on),
+                OpKind::Branch => goes_on(pc + 1) && target(ops[pc]).is_some_and(goes_on),
+                OpKind::Call => callee(ops, ops[pc]).is_some_and(goes_on),
+                OpKind::Structure
+                | OpKind::Charge
+                | OpKind::Constant
+                | OpKind::Move
+                | OpKind::Address
+                | OpKind::Arithmetic
+                | OpKind::Negation
+                | OpKind::Conversion
+                | OpKind::Load(_)
+                | OpKind::Store(_)
+                | OpKind::Block
+                | OpKind::Table
+                | OpKind::Argument(_)
+                | OpKind::Result(_)
+                | OpKind::Return(_)
+                | OpKind::Stop => goes_on(pc + 1),
             })
+}
+
+/// The word that the branch `op` goes to.
+fn target(op: Op) -> Option<usize> {
+    op.operand(Name::To).map(|Label(to)| to as usize)
+}
+
+/// The first executable word of the function of the program that `op` calls.
+fn callee(ops: &[Op], op: Op) -> Option<usize> {
+    let func: FuncRef = op.operand(Name::Func)?;
+    let Op::Func { regs, .. } = ops.get(func.0 as usize)? else { return None };
+    Some(body_of(func, regs.0))
 }
 
 /// The opcode of the instruction called `name`.
@@ -179,7 +210,7 @@ const fn is_same(a: &[u8], b: &[u8]) -> bool {
 mod tests {
     use super::*;
     use crate::op::WORD;
-    use crate::operand::{Count, FuncRef, Label, RegI32, SigRef};
+    use crate::operand::{Count, RegI32, SigRef};
 
     /// The opcode at the first of `ops`.
     fn opcode_of_first(ops: &[Op]) -> u16 {

@@ -54,7 +54,8 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         }
         let thread = ThreadId::all().find(|thread| active.contains(*thread))?;
         let is_going = matches!(self.threads.state(thread), ThreadState::Active(Progress::Going));
-        if !is_going || !self.engine.takes_long_slices(ContextId::of(thread)) {
+        let loaded = self.loaded(thread)?;
+        if !is_going || !self.engines.takes_long_slices(ContextId::of(thread), loaded) {
             return None;
         }
         let ticks = limit.get().saturating_sub(self.tick.get()).min(self.firmware.quiet_slices(&self.memory));
@@ -70,11 +71,10 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
     /// Lets the thread compute; how it stopped, and what was spent with the debt.
     fn compute(&mut self, plan: &Plan) -> (Stop, Cycles) {
         let all = Cycles::new(plan.each.get() * plan.slices as i64);
-        let Some(program) = self.programs[plan.thread.index()].as_ref() else {
+        let Some(loaded) = self.loaded[plan.thread.index()].as_ref() else {
             return (Stop::NeedsBoard, plan.debt);
         };
         let mut slice = Slice {
-            program,
             memory: &mut self.memory,
             threads: &mut self.threads,
             firmware: &mut self.firmware,
@@ -85,7 +85,9 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
             woken: None,
             is_long: true,
         };
-        let stop = self.engine.resume(ContextId::of(plan.thread), &mut slice);
-        (stop, all - slice.budget)
+        let stop = self.engines.resume(ContextId::of(plan.thread), loaded, &mut slice);
+        let spent = all - slice.budget;
+        self.work += spent.get().unsigned_abs();
+        (stop, spent)
     }
 }

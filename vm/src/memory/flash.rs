@@ -6,7 +6,7 @@ use super::filled;
 pub(super) const SIZE: usize = 0x20_0000;
 
 /// What erased flash reads as.
-const ERASED_BYTE: u8 = 0xff;
+pub(super) const ERASED_BYTE: u8 = 0xff;
 
 /// Flash to which nothing was ever written; a board of a few milliseconds shall not have to fill two megabytes.
 static ERASED: [u8; SIZE] = [ERASED_BYTE; SIZE];
@@ -19,6 +19,11 @@ impl Flash {
     /// All bytes.
     pub(super) fn bytes(&self) -> &[u8; SIZE] {
         self.0.as_deref().unwrap_or(&ERASED)
+    }
+
+    /// Whether nothing was ever written.
+    pub(super) const fn is_erased(&self) -> bool {
+        self.0.is_none()
     }
 
     /// All bytes, to be changed.

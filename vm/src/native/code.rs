@@ -3,14 +3,12 @@
 
 use std::fmt;
 use std::mem::ManuallyDrop;
-use std::sync::{Arc, OnceLock};
 
 use cranelift_jit::{ArenaMemoryProvider, JITBuilder, JITModule};
 use cranelift_module::{FuncId, default_libcall_names};
 
 use super::compile::{CompileError, Job, Place, StackUse, compile, host_isa};
 use super::entry::Begin;
-use super::linked;
 use super::translate::{HostFunctions, PureFunctions};
 use crate::program::Program;
 
@@ -24,34 +22,6 @@ const RESERVE_PER_WORD: usize = 0x400;
 /// Most words of a function that is translated when it is started: the time that Cranelift takes grows with their square,
 /// and this many take it a second or two. Longer ones are tables written as statements, which run once.
 const MAX_WORDS: usize = 0x4000;
-
-/// The compiled form of a program, made when it is first started and shared by its copies.
-///
-/// It follows from the program, so two programs are equal whether or not they have one.
-#[derive(Clone, Default)]
-pub(crate) struct Compiled(OnceLock<Option<Arc<Code>>>);
-
-impl Compiled {
-    /// The machine code of `program`, which holds this; `None` where it cannot be compiled.
-    pub(super) fn code(&self, program: &Program, pure: PureFunctions<'_>) -> Option<&Arc<Code>> {
-        let code = || linked::code_of(program).or_else(|| Code::compile(program, pure).ok().map(Arc::new));
-        self.0.get_or_init(code).as_ref()
-    }
-}
-
-impl fmt::Debug for Compiled {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_tuple("Compiled").field(&self.0.get().map(Option::is_some)).finish()
-    }
-}
-
-impl PartialEq for Compiled {
-    fn eq(&self, _: &Self) -> bool {
-        true
-    }
-}
-
-impl Eq for Compiled {}
 
 /// How to call a function of a program through a pointer. An object file has a table of these.
 #[derive(Clone, Copy, Debug)]

@@ -1,11 +1,14 @@
 //! A context of the native engine: its fiber, where it stands, and what it needs to go on.
 
-use kmotiondef::{Cycles, GuestAddr};
+use std::sync::Arc;
 
-use super::fiber::{Answer, Fiber};
+use kmotiondef::{CodeAddr, Cycles, GuestAddr};
+
+use super::fiber::{Answer, Fiber, SavedFiber};
 use super::protected::ProtectedBlocks;
 use super::request::{Reason, Request};
 use super::state::BYTES_PER_CALL;
+use crate::call::ArgumentList;
 use crate::engine::{ContextId, Slice, Stack, Stop};
 use crate::firmware::{Firmware, Outcome};
 use crate::operand::{FuncRef, SigRef};
@@ -13,7 +16,7 @@ use crate::program::Program;
 use crate::trap::TrapKind;
 
 /// How a context goes on when it is resumed.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 enum Next {
     /// With the answer to its last request.
     Answer(Answer),
@@ -37,6 +40,7 @@ enum Step {
 #[derive(Debug)]
 pub(super) struct Context {
     fiber: Fiber,
+    program: Arc<Program>,
     stack: Stack,
     /// The instruction to execute next, or the one that stopped the context.
     at: usize,
@@ -45,21 +49,62 @@ pub(super) struct Context {
     next: Next,
     /// The ranges of program text that the state's windows are for.
     protected: Option<u64>,
-    /// Arguments of the firmware call being made.
-    arguments: Vec<u64>,
+    /// CallArguments of the firmware call being made.
+    arguments: ArgumentList,
+}
+
+/// A context as it was at an instant.
+#[derive(Debug)]
+pub(super) struct Saved {
+    fiber: SavedFiber,
+    program: Arc<Program>,
+    stack: Stack,
+    at: usize,
+    stack_pointer: u32,
+    next: Next,
+}
+
+impl Saved {
+    /// The context. There may be one at a time.
+    pub(super) fn context(&self) -> Context {
+        let Self { fiber, program, stack, at, stack_pointer, next } = self;
+        Context {
+            fiber: fiber.fiber(),
+            program: Arc::clone(program),
+            stack: *stack,
+            at: *at,
+            stack_pointer: *stack_pointer,
+            next: next.clone(),
+            protected: None,
+            arguments: ArgumentList::default(),
+        }
+    }
 }
 
 impl Context {
-    /// A context that has not begun; `fiber` will call `function`.
-    pub(super) fn new(fiber: Fiber, function: FuncRef, stack: Stack) -> Self {
+    /// The context as it is.
+    pub(super) fn save(&self) -> Saved {
+        Saved {
+            fiber: self.fiber.save(),
+            program: Arc::clone(&self.program),
+            stack: self.stack,
+            at: self.at,
+            stack_pointer: self.stack_pointer,
+            next: self.next.clone(),
+        }
+    }
+
+    /// A context that has not begun; `fiber` will call `function` of `program`.
+    pub(super) fn new(fiber: Fiber, program: Arc<Program>, function: FuncRef, stack: Stack) -> Self {
         Self {
             fiber,
+            program,
             stack,
             at: function.0 as usize,
             stack_pointer: stack.top,
             next: Next::Answer(Answer::Slot(0)),
             protected: None,
-            arguments: Vec::new(),
+            arguments: ArgumentList::default(),
         }
     }
 
@@ -68,9 +113,9 @@ impl Context {
         self.fiber
     }
 
-    /// The instruction at which the context stands.
-    pub(super) const fn at(&self) -> usize {
-        self.at
+    /// The instruction at which the context is.
+    pub(super) fn address(&self) -> CodeAddr {
+        self.program.address_of(self.at)
     }
 
     /// The most bytes of the stack in use since the start.
@@ -79,20 +124,20 @@ impl Context {
     }
 
     /// The current instruction and the calls that led there, innermost first.
-    pub(super) fn calls(&self, program: &Program) -> Vec<usize> {
-        let mut words = vec![self.at];
+    pub(super) fn backtrace(&self) -> Vec<CodeAddr> {
+        let mut calls = vec![self.address()];
         let (mut at, mut frame) = (self.at, self.stack_pointer);
         while frame < self.stack.top
-            && let Some(function) = program.function_around(at)
+            && let Some(function) = self.program.function_around(at)
         {
             frame = frame.saturating_add(function.frame + BYTES_PER_CALL);
             if frame >= self.stack.top {
                 break;
             }
             at = self.fiber.state().call_of(frame);
-            words.push(at);
+            calls.push(self.program.address_of(at));
         }
-        words
+        calls
     }
 
     /// Ends the context: whenever it is resumed, it stops with `stop`.
@@ -130,15 +175,15 @@ impl Context {
             };
             let state = self.fiber.state();
             state.budget.set(slice.budget.get());
-            state.is_long.set(slice.is_long.into());
+            state.signs.is_long.set(slice.is_long.into());
             protected.follow(slice.memory.protected_texts());
             if self.protected != Some(protected.version()) {
                 self.protected = Some(protected.version());
-                state.set_windows(protected.windows(slice.program.text().end.get()));
+                state.set_windows(protected.windows(self.program.text().end.get()));
             }
             let request = self.fiber.resume(slice.memory, protected, answer);
             slice.budget = Cycles::new(self.fiber.state().budget.get());
-            if self.fiber.state().touched.take() != 0 {
+            if self.fiber.state().signs.touched.take() != 0 {
                 slice.memory.touch();
             }
             let Some(request) = request else {
@@ -181,7 +226,7 @@ impl Context {
             }
             Reason::CallFirmware => return self.begin_firmware(id, slice, address, SigRef(request.b as u16)),
             Reason::CallPointer => {
-                return resolve(slice, address, SigRef(request.b as u16)).map(Step::Go);
+                return resolve(&self.program, slice, address, SigRef(request.b as u16)).map(Step::Go);
             }
             Reason::NeedsBoard => 0,
             Reason::StackOverflow => return Err(self.overflow(request)),
@@ -208,7 +253,7 @@ impl Context {
         address: GuestAddr,
         signature: SigRef,
     ) -> Result<Step, TrapKind> {
-        let stated = slice.program.signature(signature);
+        let stated = self.program.signature(signature);
         let Some(callee) = slice.firmware.signature(address) else {
             return Err(TrapKind::UnknownFirmwareFunction { addr: address });
         };
@@ -224,11 +269,10 @@ impl Context {
         address: GuestAddr,
         signature: SigRef,
     ) -> Result<Step, TrapKind> {
-        let count = slice.program.signature(signature).params.len();
-        let arguments = self.fiber.state().arguments.iter().take(count);
-        self.arguments.clear();
-        self.arguments.extend(arguments.map(std::cell::Cell::get));
-        Ok(match slice.call_firmware(id, address, &self.arguments)? {
+        let given = &self.fiber.state().exchange.arguments;
+        let parameters = &self.program.signature(signature).params;
+        let arguments = self.arguments.gather(parameters, |position, _| given[position].get());
+        Ok(match slice.call_firmware(id, address, arguments, self.program.address_of(self.at))? {
             Outcome::Done(value) => Step::Go(Answer::Slot(value.into_slot())),
             Outcome::Wait(wake) => Step::Stop(Stop::Waiting(wake), Next::CallFirmware(address, signature)),
             Outcome::End => Step::Stop(Stop::Ended, Next::Nothing(Stop::Ended)),
@@ -242,15 +286,16 @@ impl Context {
 
 /// What a call through the pointer `address` with `signature` calls.
 fn resolve<F: Firmware + ?Sized>(
+    program: &Program,
     slice: &Slice<'_, F>,
     address: GuestAddr,
     signature: SigRef,
 ) -> Result<Answer, TrapKind> {
-    let stated = slice.program.signature(signature);
-    if let Some(function) = slice.program.function_at(address) {
-        slice.program.signature_of(function).check_call(address, stated)?;
-        let found = slice.program.functions().binary_search_by_key(&function, |function| function.at);
-        return found.map(Answer::Function).map_err(|_| TrapKind::BadCallTarget { addr: address });
+    let stated = program.signature(signature);
+    if let Some(function) = program.function_at(address) {
+        program.signature_of(function).check_call(address, stated)?;
+        let found = program.index_of(function);
+        return found.map(Answer::Function).ok_or(TrapKind::BadCallTarget { addr: address });
     }
     let callee = slice.firmware.signature(address).ok_or(TrapKind::BadCallTarget { addr: address })?;
     callee.check_call(address, stated)?;

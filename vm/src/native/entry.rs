@@ -2,14 +2,11 @@
 #![expect(unsafe_code, reason = "calls compiled code, and is called by it with raw pointers")]
 
 use super::request::Request;
-use super::state::State;
+use super::state::{State, WaysOut};
 use crate::arith;
 
-/// How compiled code makes a request: state, code, instruction, stack pointer and two operands.
-pub(super) type Leave = unsafe extern "C" fn(*const State, u32, u32, u32, u64, u64) -> u64;
-
-/// A conversion that compiled code leaves to Rust.
-pub(super) type Convert = extern "C" fn(f64) -> i64;
+/// The functions of this file that compiled code calls.
+pub(super) const WAYS_OUT: WaysOut = WaysOut { leave, convert };
 
 /// What begins the outermost call: a piece of compiled code that calls the thunk at the second
 /// pointer on the stack that the state describes.
@@ -30,7 +27,7 @@ pub(super) unsafe fn enter(begin: Begin, thunk: *const u8, state: *const State) 
 ///
 /// # Safety
 /// Called by compiled code only: `state` is the pointer that it was entered with.
-pub(super) unsafe extern "C" fn leave(
+unsafe extern "C" fn leave(
     state: *const State,
     code: u32,
     at: u32,
@@ -42,11 +39,13 @@ pub(super) unsafe extern "C" fn leave(
     let state = unsafe { &*state };
     // SAFETY: the fiber's body sets the yielder, which lives on this fiber, before it enters compiled code.
     let yielder = unsafe { &*state.yielder.get() };
+    let here = 0_u8;
+    state.suspended_at.set((&raw const here).addr());
     // Nothing here or in compiled code needs `Drop`, so the fiber may be discarded while it is suspended.
     yielder.suspend(Request { code, at, stack_pointer, a, b })
 }
 
 /// Converts what compiled code cannot convert by one instruction.
-pub(super) extern "C" fn convert(value: f64) -> i64 {
+extern "C" fn convert(value: f64) -> i64 {
     arith::i64_from_f64_u(value)
 }

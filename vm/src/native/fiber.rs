@@ -2,26 +2,26 @@
 //!
 //! A fiber is never unwound. It runs until it has returned, or it is discarded where it stands;
 //! the only Rust frames on it are the body below and [`leave`](super::entry::leave), and neither
-//! owns anything.
+//! owns anything. So it can also be copied where it is suspended: the bytes on its stack and the state, which are put back
+//! to the same addresses when it is to go on from there once more.
 #![expect(unsafe_code, reason = "runs compiled code and discards fibers without unwinding them")]
 
-use std::fmt;
+use std::cell::Cell;
+use std::mem::{ManuallyDrop, MaybeUninit};
 use std::rc::Rc;
 use std::sync::Arc;
+use std::{fmt, ptr};
 
-use corosensei::stack::DefaultStack;
+use corosensei::stack::{DefaultStack, Stack as _, StackPointer};
 use corosensei::{Coroutine, CoroutineResult};
 
 use super::code::{Code, Entry};
 use super::entry;
 use super::protected::ProtectedBlocks;
-use super::request::{Reason, Request};
-use super::state::State;
+use super::request::{Reason, Request, Yielder};
+use super::state::{PutBack, State};
 use crate::engine::Stack;
 use crate::memory::GuestMemory;
-
-/// What suspends a fiber.
-pub(super) type Yielder = corosensei::Yielder<u64, Request>;
 
 /// The answer to a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,13 +32,88 @@ pub(super) enum Answer {
     Function(usize),
 }
 
+/// What a fiber is put into: a native stack, and the state of the context that runs on it. Compiled code knows both by
+/// their addresses, so a fiber and its copies are always in the same place; one of them at a time.
+struct Home {
+    stack: DefaultStack,
+    /// Bytes of the stack.
+    size: usize,
+    state: State,
+    is_taken: Cell<bool>,
+    #[cfg(windows)]
+    fields: Cell<corosensei::stack::StackTebFields>,
+}
+
+impl Home {
+    /// A place with a stack of so many bytes.
+    fn new(size: usize, guest: Stack) -> Rc<Self> {
+        let stack = DefaultStack::new(size).expect("the host has address space for a stack");
+        Rc::new(Self {
+            #[cfg(windows)]
+            fields: Cell::new(corosensei::stack::Stack::teb_fields(&stack)),
+            stack,
+            size,
+            state: State::new(guest, entry::WAYS_OUT),
+            is_taken: Cell::new(false),
+        })
+    }
+
+    /// Takes the place for a fiber.
+    fn take(&self) {
+        assert!(!self.is_taken.replace(true), "there is one fiber at a time in a place");
+    }
+}
+
+/// The stack of a place as a coroutine has it. It owns nothing: the fiber holds the place.
+struct View(*const Home);
+
+impl View {
+    fn place(&self) -> &Home {
+        // SAFETY: views are in coroutines, coroutines in fibers and their copies, and each of those holds the place.
+        unsafe { &*self.0 }
+    }
+}
+
+// SAFETY: the stack is one of corosensei's own.
+unsafe impl corosensei::stack::Stack for View {
+    fn base(&self) -> StackPointer {
+        self.place().stack.base()
+    }
+
+    fn limit(&self) -> StackPointer {
+        self.place().stack.limit()
+    }
+
+    #[cfg(windows)]
+    fn teb_fields(&self) -> corosensei::stack::StackTebFields {
+        self.place().fields.get()
+    }
+
+    #[cfg(windows)]
+    fn update_teb_fields(&mut self, stack_limit: usize, guaranteed_stack_bytes: usize) {
+        let fields = &self.place().fields;
+        fields.set(corosensei::stack::StackTebFields {
+            StackLimit: stack_limit,
+            GuaranteedStackBytes: guaranteed_stack_bytes,
+            ..fields.get()
+        });
+    }
+}
+
+/// What runs on the stack. It is never dropped but discarded, and may be copied bit by bit: like all that lies on the
+/// stack it owns nothing.
+type Running = ManuallyDrop<Coroutine<u64, Request, (), View>>;
+
 /// A native stack with one call of a program's function on it.
 pub(super) struct Fiber {
-    /// Taken out only to be discarded.
-    coroutine: Option<Coroutine<u64, Request, (), DefaultStack>>,
-    /// Bytes of its stack.
-    native_size: usize,
-    state: Rc<State>,
+    coroutine: Running,
+    place: Rc<Home>,
+    rest: Rest,
+}
+
+/// What a fiber has besides what runs on it.
+#[derive(Clone)]
+struct Rest {
     code: Arc<Code>,
     /// Where guest memory and the map of protected blocks are, as soon as it has begun.
     ram: Option<(*mut u8, *mut u8, *const u8)>,
@@ -48,39 +123,56 @@ pub(super) struct Fiber {
 
 impl fmt::Debug for Fiber {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Fiber").field("state", &self.state).finish_non_exhaustive()
+        f.debug_struct("Fiber").field("state", self.state()).finish_non_exhaustive()
     }
 }
 
 impl Fiber {
     /// A fiber that will call `function` of `code` on the guest stack `stack`; it has not begun.
     ///
-    /// `old` is discarded, and what it is made of used again where possible.
+    /// `old` is discarded, and its place used again if it is large enough.
     pub(super) fn new(code: Arc<Code>, function: usize, stack: Stack, old: Option<Self>) -> Self {
         let size = code.stack_size(stack.size());
-        let (state, kept) = match old {
-            Some(mut old) => (Rc::clone(&old.state), old.take_stack()),
-            None => (Rc::new(State::new(stack)), None),
-        };
+        let kept = old.map(|old| Rc::clone(&old.place)).filter(|place| place.size >= size);
+        let place = kept.unwrap_or_else(|| Home::new(size, stack));
+        place.take();
+        let state = &place.state;
         state.reset(stack);
-        let (native_stack, native_size) =
-            kept.filter(|(_, kept_size)| *kept_size >= size).unwrap_or_else(|| {
-                (DefaultStack::new(size).expect("the host has address space for a stack"), size)
-            });
         let Entry { thunk, pointer } = code.entry(function);
-        state.callee.set(pointer);
+        state.exchange.callee.set(pointer);
         let begin = code.begin();
-        let shared = Rc::as_ptr(&state);
+        let shared: *const State = state;
         let body = move |yielder: &Yielder, _: u64| {
-            // SAFETY: the fiber, of which this is the body, holds the state.
+            // SAFETY: the fiber, of which this is the body, holds the place, and with it the state.
             let state = unsafe { &*shared };
             state.yielder.set(yielder);
             // SAFETY: the entry is of the code that the fiber holds, together with the state;
             // `resume` sets the state's pointers each time before this runs.
             unsafe { entry::enter(begin, thunk, shared) };
         };
-        let coroutine = Some(Coroutine::with_stack(native_stack, body));
-        Self { coroutine, native_size, state, code, ram: None, resolving: false }
+        let coroutine = ManuallyDrop::new(Coroutine::with_stack(View(Rc::as_ptr(&place)), body));
+        Self { coroutine, place, rest: Rest { code, ram: None, resolving: false } }
+    }
+
+    /// The fiber as it is, to go on from here again.
+    pub(super) fn save(&self) -> SavedFiber {
+        let base = self.place.stack.base().get();
+        let lowest = if self.coroutine.done() {
+            base
+        } else if self.coroutine.started() {
+            self.state().suspended_at.get() - SUSPENSION
+        } else {
+            base - SUSPENSION
+        };
+        assert!(self.place.stack.limit().get() < lowest, "the stack has room for what suspends it");
+        let mut bytes = vec![MaybeUninit::uninit(); base - lowest].into_boxed_slice();
+        let top = ptr::with_exposed_provenance::<MaybeUninit<u8>>(lowest);
+        // SAFETY: these are the upper bytes of the stack, which is mapped, and nothing runs on it now.
+        unsafe { ptr::copy_nonoverlapping(top, bytes.as_mut_ptr(), bytes.len()) };
+        // SAFETY: the copy is never dropped; it is used after a fiber has been made of it, when this one is gone.
+        let coroutine = unsafe { ptr::read(&raw const self.coroutine) };
+        let (place, rest) = (Rc::clone(&self.place), self.rest.clone());
+        SavedFiber { coroutine, bytes, state: Box::new(self.state().clone()), place, rest }
     }
 
     /// Runs the fiber until its next request; `None` when the function has returned.
@@ -93,18 +185,21 @@ impl Fiber {
         answer: Answer,
     ) -> Option<Request> {
         let answer = self.encode(answer);
-        let coroutine = self.coroutine.as_mut().filter(|coroutine| !coroutine.done())?;
+        if self.coroutine.done() {
+            return None;
+        }
         // The borrows last until the fiber is suspended again, so the pointers are valid while it runs.
         let (sdram, iram) = memory.ram_mut();
         let ram = (sdram.as_mut_ptr(), iram.as_mut_ptr(), protected.marks().as_ptr());
         // Compiled code may keep the pointers over a request.
-        assert!(*self.ram.get_or_insert(ram) == ram, "a context stays in the memory that it began in");
-        self.state.sdram.set(ram.0);
-        self.state.iram.set(ram.1);
-        self.state.protected.set(ram.2);
-        match coroutine.resume(answer) {
+        assert!(*self.rest.ram.get_or_insert(ram) == ram, "a context stays in the memory that it began in");
+        let own = &self.place.state.ram;
+        own.sdram.set(ram.0);
+        own.iram.set(ram.1);
+        own.protected.set(ram.2);
+        match self.coroutine.resume(answer) {
             CoroutineResult::Yield(request) => {
-                self.resolving = request.reason() == Some(Reason::CallPointer);
+                self.rest.resolving = request.reason() == Some(Reason::CallPointer);
                 Some(request)
             }
             CoroutineResult::Return(()) => None,
@@ -116,11 +211,11 @@ impl Fiber {
     /// A call through a pointer takes the address of a thunk, and finds the function in the state; or it
     /// takes 0: this is where it is made certain.
     fn encode(&self, answer: Answer) -> u64 {
-        match (self.resolving, answer) {
+        match (self.rest.resolving, answer) {
             (false, Answer::Slot(slot)) => slot,
             (true, Answer::Function(function)) => {
-                let Entry { thunk, pointer } = self.code.entry(function);
-                self.state.callee.set(pointer);
+                let Entry { thunk, pointer } = self.rest.code.entry(function);
+                self.state().exchange.callee.set(pointer);
                 thunk.expose_provenance() as u64
             }
             (true, _) | (false, Answer::Function(_)) => 0,
@@ -129,21 +224,52 @@ impl Fiber {
 
     /// What the engine and compiled code share.
     pub(super) fn state(&self) -> &State {
-        &self.state
-    }
-
-    /// Discards what runs and yields the native stack, with its size, to use again.
-    fn take_stack(&mut self) -> Option<(DefaultStack, usize)> {
-        let mut coroutine = self.coroutine.take()?;
-        // SAFETY: nothing on the fiber needs `Drop`: the body, `enter` and `leave` own nothing, and
-        // compiled code knows no such thing.
-        unsafe { coroutine.force_reset() };
-        Some((coroutine.into_stack(), self.native_size))
+        &self.place.state
     }
 }
 
 impl Drop for Fiber {
     fn drop(&mut self) {
-        self.take_stack();
+        // SAFETY: the coroutine is not used again.
+        let mut coroutine = unsafe { ManuallyDrop::take(&mut self.coroutine) };
+        // SAFETY: nothing on the fiber needs `Drop`: the body, `enter` and `leave` own nothing, and
+        // compiled code knows no such thing.
+        unsafe { coroutine.force_reset() };
+        coroutine.into_stack();
+        self.place.is_taken.set(false);
+    }
+}
+
+/// Bytes of the stack between what `leave` has there and the end of what suspends a fiber; far more than it takes.
+/// A fiber that has not begun has not as many on its stack.
+const SUSPENSION: usize = 0x1000;
+
+/// A fiber as it was at an instant: all bytes that were on its stack, to be put back to the same place.
+pub(super) struct SavedFiber {
+    coroutine: Running,
+    bytes: Box<[MaybeUninit<u8>]>,
+    state: Box<State>,
+    place: Rc<Home>,
+    rest: Rest,
+}
+
+impl SavedFiber {
+    /// The fiber. The one that is in its place must be gone.
+    pub(super) fn fiber(&self) -> Fiber {
+        self.place.take();
+        let lowest = self.place.stack.base().get() - self.bytes.len();
+        let top = ptr::with_exposed_provenance_mut::<MaybeUninit<u8>>(lowest);
+        // SAFETY: that many bytes were there when they were copied, and the place is the fiber's alone.
+        unsafe { ptr::copy_nonoverlapping(self.bytes.as_ptr(), top, self.bytes.len()) };
+        self.place.state.put_back(&self.state);
+        // SAFETY: what the coroutine refers to is its stack, which is as it was when the copy was made.
+        let coroutine = unsafe { ptr::read(&raw const self.coroutine) };
+        Fiber { coroutine, place: Rc::clone(&self.place), rest: self.rest.clone() }
+    }
+}
+
+impl fmt::Debug for SavedFiber {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("SavedFiber").field("bytes", &self.bytes.len()).finish_non_exhaustive()
     }
 }

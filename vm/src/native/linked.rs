@@ -1,13 +1,13 @@
 //! A program whose machine code is part of this executable.
 //!
 //! `cc67 build --emit native` has made the code and the [`Description`] ([`object`](super::object)). The executable
-//! hands it over once, before it loads the image that comes with it; whenever a thread starts a program that equals
-//! the one in the image, that code runs instead of one that is translated now.
+//! makes an engine with it ([`NativeEngine::with_linked`](super::NativeEngine::with_linked)); whenever a thread starts a
+//! program on that engine which equals the one in the image, that code runs instead of one that is translated now.
 #![expect(unsafe_code, reason = "follows the pointers of an object file that was linked with this library")]
 
 use std::slice;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicPtr, Ordering};
-use std::sync::{Arc, OnceLock};
 
 use kmotiondef::{GuestAddr, ThreadId};
 
@@ -46,7 +46,7 @@ pub struct Description {
 const _: () = assert!(size_of::<*const u8>() == size_of::<u64>(), "Cranelift has code for 64-bit hosts only");
 
 macro_rules! count_ops {
-    ($($(#[$doc:meta])* $name:ident = $variant:ident { $($field:ident: $operand:ident),* }, cost $cost:expr;)*) => {
+    ($($(#[$doc:meta])* $name:ident = $variant:ident { $($field:ident: $operand:ident),* }, cost $cost:expr, $kind:ident $(($fact:ident))?;)*) => {
         /// The instructions there are.
         const OPS: &[&str] = &[$(stringify!($name)),*];
     };
@@ -66,8 +66,12 @@ const fn form() -> u64 {
         hash = (hash ^ version[index] as u64).wrapping_mul(0x100_0000_01b3);
         index += 1;
     }
-    let numbers =
-        [size_of::<State>(), std::mem::offset_of!(State, request), size_of::<Description>(), OPS.len()];
+    let numbers = [
+        size_of::<State>(),
+        std::mem::offset_of!(State, exchange.request),
+        size_of::<Description>(),
+        OPS.len(),
+    ];
     let mut index = 0;
     while index < numbers.len() {
         hash = (hash ^ numbers[index] as u64).wrapping_mul(0x100_0000_01b3);
@@ -95,9 +99,6 @@ pub struct Linked {
     code: Arc<Code>,
     host: Vec<(GuestAddr, &'static AtomicPtr<()>)>,
 }
-
-/// The one that is used.
-static LINKED: OnceLock<(Program, Arc<Code>)> = OnceLock::new();
 
 impl Linked {
     /// What `description` describes.
@@ -150,11 +151,12 @@ impl Linked {
         self.thread
     }
 
-    /// Has the code run wherever `program`, which is that of the image, runs on the native engine.
-    ///
-    /// # Errors
-    /// [`LinkedError::Program`] if the code is not that of the program, or calls functions that `pure` does not have.
-    pub fn install(&self, program: &Program, pure: PureFunctions<'_>) -> Result<(), LinkedError> {
+    /// The code of `program`, which is that of the image, with the functions of `pure` as it calls them.
+    pub(super) fn code_for(
+        &self,
+        program: &Program,
+        pure: PureFunctions<'_>,
+    ) -> Result<Arc<Code>, LinkedError> {
         if self.code.entries.len() != program.functions().len() {
             return Err(LinkedError::Program);
         }
@@ -163,14 +165,8 @@ impl Linked {
                 pure(*addr).and_then(|pure| pure.function.pointer()).ok_or(LinkedError::Program)?;
             place.store(function.cast_mut(), Ordering::Relaxed);
         }
-        LINKED.set((program.clone(), Arc::clone(&self.code))).map_err(|_| LinkedError::Program)
+        Ok(Arc::clone(&self.code))
     }
-}
-
-/// The code of `program` if this executable has it.
-pub(super) fn code_of(program: &Program) -> Option<Arc<Code>> {
-    let (known, code) = LINKED.get()?;
-    (known == program).then(|| Arc::clone(code))
 }
 
 /// A table of an object file.

@@ -6,7 +6,7 @@
 
 use kmotiondef::map::SDRAM;
 
-use crate::access::Width;
+use crate::kind::Width;
 
 /// A request as it leaves compiled code. The layout is that of C, because compiled code writes the fields.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,6 +23,9 @@ pub(super) struct Request {
     /// Second operand.
     pub(super) b: u64,
 }
+
+/// What suspends a fiber with a request, and yields the answer.
+pub(super) type Yielder = corosensei::Yielder<u64, Request>;
 
 macro_rules! codes {
     ($(#[$doc:meta])* $name:ident { $($(#[$row:meta])* $variant:ident,)* }) => {
@@ -126,9 +129,8 @@ mod tests {
     fn codes_are_read_as_they_were_written() {
         for reason in Reason::ALL {
             for width in Width::ALL {
-                let request =
-                    Request { code: reason.with_width(*width), at: 0, stack_pointer: 0, a: 0, b: 0 };
-                assert_eq!((request.reason(), request.width()), (Some(*reason), Some(*width)));
+                let request = Request { code: reason.with_width(width), at: 0, stack_pointer: 0, a: 0, b: 0 };
+                assert_eq!((request.reason(), request.width()), (Some(*reason), Some(width)));
             }
             assert_eq!(Reason::from_code(reason.code()), Some(*reason));
         }

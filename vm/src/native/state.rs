@@ -2,16 +2,15 @@
 //!
 //! Compiled code reaches every field by its offset from the pointer that is its first
 //! parameter. The engine reads and writes the same fields while the fiber is suspended.
-//! All of them are cells, so both sides may hold a shared reference for as long as they like.
+//! All of them are cells, so both sides may hold a shared reference for as long as they like. A snapshot copies
+//! them, and puts them back into the same state: compiled code knows its address.
 
 use std::cell::Cell;
 use std::ops::Range;
 
 use kmotiondef::map::STACK_SIZE;
 
-use super::entry::{self, Convert, Leave};
-use super::fiber::Yielder;
-use super::request::Request;
+use super::request::{Request, Yielder};
 use crate::engine::Stack;
 use crate::verify::MAX_PARAMETERS;
 
@@ -23,99 +22,183 @@ pub(super) const CALLS: usize = (STACK_SIZE / BYTES_PER_CALL) as usize;
 
 const _: () = assert!(CALLS.is_power_of_two());
 
-/// A stretch of SDRAM.
-#[derive(Debug, Default)]
-#[repr(C)]
-pub(super) struct Window {
-    /// Offset of its first byte in SDRAM.
-    pub(super) start: Cell<u32>,
-    /// Bytes of it.
-    pub(super) length: Cell<u32>,
-}
+/// How compiled code makes a request: state, code, instruction, stack pointer and two operands.
+pub(super) type Leave = unsafe extern "C" fn(*const State, u32, u32, u32, u64, u64) -> u64;
 
-/// The shared fields. The layout is that of C, because compiled code relies on it.
-#[derive(Debug)]
+/// A conversion that compiled code leaves to Rust.
+pub(super) type Convert = extern "C" fn(f64) -> i64;
+
+/// The functions that compiled code calls by pointers in the state.
+#[derive(Clone, Copy, Debug)]
 #[repr(C)]
-pub(super) struct State {
-    /// What is left of the slice; valid whenever the fiber is suspended.
-    pub(super) budget: Cell<i64>,
-    /// First byte of SDRAM; the same each time the fiber runs, like the two that follow.
-    pub(super) sdram: Cell<*mut u8>,
-    /// First byte of on-chip RAM.
-    pub(super) iram: Cell<*mut u8>,
-    /// One byte for each block of SDRAM, not 0 where a store must be checked.
-    pub(super) protected: Cell<*const u8>,
-    /// Stretches of SDRAM without program text; the first holds the program's own data, the second all stacks.
-    pub(super) windows: [Window; 2],
+pub(super) struct WaysOut {
     /// How compiled code makes a request.
     pub(super) leave: Leave,
     /// The conversion of a double to 64 bits modulo 2⁶⁴ where it does not simply fit.
     pub(super) convert: Convert,
-    /// Not 0 behind a store to on-chip RAM.
-    pub(super) touched: Cell<u32>,
-    /// Not 0 in a long slice.
-    pub(super) is_long: Cell<u32>,
-    /// What suspends the fiber, from its first instruction on.
-    pub(super) yielder: Cell<*const Yielder>,
-    /// The lowest address that the stack may reach.
-    pub(super) limit: Cell<u32>,
-    /// The lowest address that it has reached.
-    pub(super) lowest: Cell<u32>,
-    /// One past its highest address.
-    pub(super) top: Cell<u32>,
-    /// The return that was executed last.
-    pub(super) returned_at: Cell<u32>,
-    /// Where each call in progress stands, at the place of its caller's frame; see [`call_entry`].
-    pub(super) calls: [Cell<u32>; CALLS],
-    /// The last of the requests that are rare, and the answer to it.
-    pub(super) request: Cell<Request>,
-    pub(super) answer: Cell<u64>,
-    /// Where compiled code stores what a request has stored already.
-    pub(super) scratch: Cell<u64>,
-    /// The function that the next thunk calls.
-    pub(super) callee: Cell<*const u8>,
-    /// Arguments of a firmware call, and of a call through a pointer.
-    pub(super) arguments: [Cell<u64>; MAX_PARAMETERS],
+}
+
+/// Gives cells the values that they had when a copy of them was made.
+pub(super) trait PutBack {
+    /// Takes over all values of `saved`.
+    fn put_back(&self, saved: &Self);
+}
+
+impl<T: Copy> PutBack for Cell<T> {
+    fn put_back(&self, saved: &Self) {
+        self.set(saved.get());
+    }
+}
+
+impl<T: PutBack, const N: usize> PutBack for [T; N] {
+    fn put_back(&self, saved: &Self) {
+        self.iter().zip(saved).for_each(|(own, saved)| own.put_back(saved));
+    }
+}
+
+/// Structs of cells in the layout of C, because compiled code relies on it.
+macro_rules! shared {
+    ($($(#[$doc:meta])* $name:ident { $($(#[$row:meta])* $field:ident: $ty:ty,)* })*) => {$(
+        $(#[$doc])*
+        #[derive(Clone, Debug)]
+        #[repr(C)]
+        pub(super) struct $name {
+            $($(#[$row])* pub(super) $field: $ty,)*
+        }
+
+        impl PutBack for $name {
+            fn put_back(&self, saved: &Self) {
+                $(self.$field.put_back(&saved.$field);)*
+            }
+        }
+    )*};
+}
+shared! {
+    /// A stretch of SDRAM.
+    Window {
+        /// Offset of its first byte in SDRAM.
+        start: Cell<u32>,
+        /// Bytes of it.
+        length: Cell<u32>,
+    }
+
+    /// Where guest memory is, the same each time the fiber runs.
+    Ram {
+        /// First byte of SDRAM.
+        sdram: Cell<*mut u8>,
+        /// First byte of on-chip RAM.
+        iram: Cell<*mut u8>,
+        /// One byte for each block of SDRAM, not 0 where a store must be checked.
+        protected: Cell<*const u8>,
+        /// Stretches of SDRAM without program text; the first holds the program's own data, the second all stacks.
+        windows: [Window; 2],
+    }
+
+    /// What one side tells the other of the slice.
+    Signs {
+        /// Not 0 after a store to on-chip RAM.
+        touched: Cell<u32>,
+        /// Not 0 in a long slice.
+        is_long: Cell<u32>,
+    }
+
+    /// The guest stack.
+    Bounds {
+        /// The lowest address that it may reach.
+        limit: Cell<u32>,
+        /// The lowest address that it has reached.
+        lowest: Cell<u32>,
+        /// One past its highest address.
+        top: Cell<u32>,
+    }
+
+    /// What is handed over with requests and calls.
+    Exchange {
+        /// The last of the requests that are rare, and the answer to it.
+        request: Cell<Request>,
+        answer: Cell<u64>,
+        /// Where compiled code stores what a request has stored already.
+        scratch: Cell<u64>,
+        /// The function that the next thunk calls.
+        callee: Cell<*const u8>,
+        /// Arguments of a firmware call, and of a call through a pointer.
+        arguments: [Cell<u64>; MAX_PARAMETERS],
+    }
+
+    /// The state.
+    State {
+        /// What is left of the slice; valid whenever the fiber is suspended.
+        budget: Cell<i64>,
+        /// Guest memory.
+        ram: Ram,
+        /// What compiled code calls.
+        ways_out: WaysOut,
+        /// What the slice is, and what was done in it.
+        signs: Signs,
+        /// What suspends the fiber, from its first instruction on.
+        yielder: Cell<*const Yielder>,
+        /// The guest stack.
+        stack: Bounds,
+        /// The return that was executed last.
+        returned_at: Cell<u32>,
+        /// Where each call in progress is, at the place of its caller's frame; see [`call_entry`].
+        calls: [Cell<u32>; CALLS],
+        /// Requests and calls.
+        exchange: Exchange,
+        /// An address on the native stack near that at which the fiber is suspended.
+        suspended_at: Cell<usize>,
+    }
+}
+
+impl PutBack for WaysOut {
+    // They are the same in every state.
+    fn put_back(&self, _: &Self) {}
 }
 
 impl State {
     /// The state of a context that has not begun and will run on `stack`.
-    pub(super) fn new(stack: Stack) -> Self {
+    pub(super) fn new(stack: Stack, ways_out: WaysOut) -> Self {
+        let window = || Window { start: Cell::new(0), length: Cell::new(0) };
         Self {
             budget: Cell::new(0),
-            sdram: Cell::new(std::ptr::null_mut()),
-            iram: Cell::new(std::ptr::null_mut()),
-            protected: Cell::new(std::ptr::null()),
-            windows: Default::default(),
-            leave: entry::leave,
-            convert: entry::convert,
-            touched: Cell::new(0),
-            is_long: Cell::new(0),
+            ram: Ram {
+                sdram: Cell::new(std::ptr::null_mut()),
+                iram: Cell::new(std::ptr::null_mut()),
+                protected: Cell::new(std::ptr::null()),
+                windows: [window(), window()],
+            },
+            ways_out,
+            signs: Signs { touched: Cell::new(0), is_long: Cell::new(0) },
             yielder: Cell::new(std::ptr::null()),
-            limit: Cell::new(stack.limit),
-            lowest: Cell::new(stack.top),
-            top: Cell::new(stack.top),
+            stack: Bounds {
+                limit: Cell::new(stack.limit),
+                lowest: Cell::new(stack.top),
+                top: Cell::new(stack.top),
+            },
             returned_at: Cell::new(0),
             calls: [const { Cell::new(0) }; CALLS],
-            request: Cell::new(Request { code: 0, at: 0, stack_pointer: 0, a: 0, b: 0 }),
-            answer: Cell::new(0),
-            scratch: Cell::new(0),
-            callee: Cell::new(std::ptr::null()),
-            arguments: [const { Cell::new(0) }; MAX_PARAMETERS],
+            exchange: Exchange {
+                request: Cell::new(Request { code: 0, at: 0, stack_pointer: 0, a: 0, b: 0 }),
+                answer: Cell::new(0),
+                scratch: Cell::new(0),
+                callee: Cell::new(std::ptr::null()),
+                arguments: [const { Cell::new(0) }; MAX_PARAMETERS],
+            },
+            suspended_at: Cell::new(0),
         }
     }
 
     /// Makes the state that of a context which has not begun and will run on `stack`.
     pub(super) fn reset(&self, stack: Stack) {
-        self.limit.set(stack.limit);
-        self.lowest.set(stack.top);
-        self.top.set(stack.top);
-        self.arguments.iter().for_each(|argument| argument.set(0));
+        self.stack.limit.set(stack.limit);
+        self.stack.lowest.set(stack.top);
+        self.stack.top.set(stack.top);
+        self.exchange.arguments.iter().for_each(|argument| argument.set(0));
     }
 
     /// Sets where compiled code may store without asking, as offsets in SDRAM.
     pub(super) fn set_windows(&self, ranges: [Range<u32>; 2]) {
-        for (window, range) in self.windows.iter().zip(ranges) {
+        for (window, range) in self.ram.windows.iter().zip(ranges) {
             window.start.set(range.start);
             window.length.set(range.end - range.start);
         }
@@ -123,7 +206,7 @@ impl State {
 
     /// The most bytes of the stack in use since the reset.
     pub(super) fn stack_used(&self) -> u32 {
-        self.top.get() - self.lowest.get()
+        self.stack.top.get() - self.stack.lowest.get()
     }
 
     /// The call that the function with its frame at `stack_pointer` is making.

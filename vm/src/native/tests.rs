@@ -3,6 +3,9 @@
 mod generate;
 mod long_slices;
 mod loops;
+mod snapshots;
+
+use std::sync::Arc;
 
 use kmotiondef::{CodeAddr, Cycles, GuestAddr, Ticks};
 use proptest::prelude::*;
@@ -13,7 +16,6 @@ use crate::firmware::Wake;
 use crate::interp::BytecodeEngine;
 use crate::machine::{Config, Machine};
 use crate::memory::GuestMemory;
-use crate::operand::FuncRef;
 use crate::program::Program;
 use crate::testing::{CALLBACK, Fake, HEAD_WORDS, assert_same, machine_on, program, thread};
 use crate::thread::Threads;
@@ -29,6 +31,7 @@ fn id() -> ContextId {
 /// All that a context works on, with an engine of its own.
 struct World<E> {
     engine: E,
+    program: Arc<Program>,
     memory: GuestMemory,
     threads: Threads,
     firmware: Fake,
@@ -44,9 +47,10 @@ struct Seen {
 }
 
 impl<E: Engine> World<E> {
-    fn new(program: &Program) -> Self {
+    fn new(program: &Arc<Program>) -> Self {
         let mut world = Self {
             engine: E::default(),
+            program: Arc::clone(program),
             memory: GuestMemory::new(),
             threads: Threads::new(),
             firmware: Fake::new(),
@@ -58,14 +62,15 @@ impl<E: Engine> World<E> {
         world
     }
 
-    fn start(&mut self, program: &Program) {
-        let main = program.functions().last().map_or(FuncRef(0), |function| function.at);
-        self.engine.start(id(), program, main, id().stack(false), &self.firmware);
+    fn start(&mut self) {
+        let main = self.program.functions().last().expect("there is `main`").at;
+        let entry = self.program.address_of(main.0 as usize).as_guest_addr();
+        let started = self.engine.start(id(), &self.program, entry, id().stack(false), &self.firmware);
+        assert_eq!(started, Ok(()));
     }
 
-    fn resume(&mut self, program: &Program, budget: i64, woken: Option<Wake>) -> Seen {
+    fn resume(&mut self, budget: i64, woken: Option<Wake>) -> Seen {
         let mut slice = Slice {
-            program,
             memory: &mut self.memory,
             threads: &mut self.threads,
             firmware: &mut self.firmware,
@@ -81,25 +86,32 @@ impl<E: Engine> World<E> {
             stop,
             left: slice.budget.get(),
             stack_used: self.engine.stack_used(id()),
-            backtrace: self.engine.backtrace(id(), program),
+            backtrace: self.engine.backtrace(id()),
         }
+    }
+}
+
+impl World<NativeEngine> {
+    /// Whether the context runs as machine code.
+    fn is_compiled(&self) -> bool {
+        self.engine.contexts[id().index()].is_some()
     }
 }
 
 /// Runs the last of `functions` on both engines, a slice of each of `budgets` at a time, and yields how
 /// it stopped at last.
 fn lockstep(functions: &str, budgets: &[i64]) -> Stop {
-    let program = program(1, functions);
-    assert!(program.compiled.code(&program, &|_| None).is_some());
+    let program = Arc::new(program(1, functions));
     let mut bytecode = World::<BytecodeEngine>::new(&program);
     let mut native = World::<NativeEngine>::new(&program);
-    bytecode.start(&program);
-    native.start(&program);
+    bytecode.start();
+    native.start();
+    assert!(native.is_compiled());
     let mut woken = None;
     let mut last = Stop::Ended;
     for budget in budgets {
-        let seen = bytecode.resume(&program, *budget, woken);
-        assert_eq!(native.resume(&program, *budget, woken), seen, "{functions}");
+        let seen = bytecode.resume(*budget, woken);
+        assert_eq!(native.resume(*budget, woken), seen, "{functions}");
         assert_eq!(native.memory.take_touched(), bytecode.memory.take_touched(), "{functions}");
         woken = if let Stop::Waiting(wake) = seen.stop { Some(wake) } else { None };
         last = seen.stop;
@@ -142,11 +154,11 @@ fn a_loop_is_preempted_at_the_same_instruction_with_the_same_budget() {
 fn a_context_that_is_started_anew_forgets_its_fiber() {
     let main = "@main: func sig0, 2, 0\ntypes 0\n@up: charge 7\nadd_i32_imm r0, r0, 1\nstore_i32_at r0, 0x10000000\n\
                 br @up";
-    let program = program(1, &format!("{RECURSION}{main}"));
+    let program = Arc::new(program(1, &format!("{RECURSION}{main}")));
     let mut world = World::<NativeEngine>::new(&program);
     for _ in 0..50 {
-        world.start(&program);
-        assert_eq!(world.resume(&program, 69, None).stop, Stop::Preempted);
+        world.start();
+        assert_eq!(world.resume(69, None).stop, Stop::Preempted);
         assert_eq!(world.memory.peek::<i32>(GuestAddr::new(0x1000_0000)), 9);
     }
 }
@@ -157,11 +169,12 @@ fn stores_into_on_chip_ram_are_noticed_whatever_the_address_mode() {
     for (address, is_noticed) in [("0x10000040", true), ("0x80f00040", false)] {
         for store in stores.map(|store| store.replace("ADDRESS", address)) {
             let body = format!("const_i32 r1, {address}\nconst_i32 r2, 0x80f00000\n{store}");
-            let program = program(1, &format!("@main: func sig0, 3, 0\ntypes 0\ncharge 99\n{body}\nret"));
+            let main = format!("@main: func sig0, 3, 0\ntypes 0\ncharge 99\n{body}\nret");
+            let program = Arc::new(program(1, &main));
             let mut world = World::<NativeEngine>::new(&program);
             world.memory.take_touched();
-            world.start(&program);
-            assert_eq!(world.resume(&program, 999, None).stop, Stop::Ended);
+            world.start();
+            assert_eq!(world.resume(999, None).stop, Stop::Ended);
             assert_eq!(world.memory.take_touched(), is_noticed, "{store} at {address}");
         }
     }
@@ -187,11 +200,11 @@ fn a_program_beyond_the_limits_of_compilation_runs_as_bytecode() {
         "@main: func sig0, 1, 0\ntypes 0\ncharge 99999\nconst_i32 r0, -16377\n{steps}store_i32_at r0, 0x10000000\nret"
     );
     for main in [wide, long] {
-        let program = program(1, &main);
-        assert!(program.compiled.code(&program, &|_| None).is_none());
+        let program = Arc::new(program(1, &main));
         let mut world = World::<NativeEngine>::new(&program);
-        world.start(&program);
-        assert_eq!(world.resume(&program, 100_000, None).stop, Stop::Ended);
+        world.start();
+        assert!(!world.is_compiled());
+        assert_eq!(world.resume(100_000, None).stop, Stop::Ended);
         assert_eq!(world.memory.peek::<i32>(GuestAddr::new(0x1000_0000)), 7);
     }
 }

@@ -12,12 +12,14 @@
 //! The arms of the instructions stand in `arith.rs`, `memory.rs` and `control.rs`, one method an
 //! instruction, named as in the table.
 
+mod accesses;
 mod arith;
 mod candidates;
 mod control;
 mod fast;
 mod memory;
 mod nan;
+mod parts;
 mod strides;
 mod turns;
 
@@ -27,21 +29,22 @@ use std::mem::offset_of;
 
 use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::{
-    AbiParam, AliasRegion, AliasRegionData, Block, Endianness, FuncRef, Function as IrFunction, InstBuilder,
-    MemFlagsData, SigRef as IrSigRef, Signature, TrapCode, Type, Value, types,
+    AbiParam, AliasRegion, AliasRegionData, Block, Endianness, Function as IrFunction, InstBuilder,
+    MemFlagsData, Signature, TrapCode, Type, Value, types,
 };
 use cranelift_codegen::isa::CallConv;
-use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext, Variable};
+use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 use cranelift_module::{DataId, FuncId, Module};
 
 use kmotiondef::GuestAddr;
 
-use self::fast::{Fast, Way};
+use self::parts::{CallParts, Flags, FrameParts, Registers, Twice};
 use self::turns::Plan;
 use super::request::{Reason, Request};
 use super::state::{BYTES_PER_CALL, State};
 use crate::firmware::Pure;
 use crate::for_each_op;
+use crate::kind::{Name, OpKind};
 use crate::meter::branch_target;
 use crate::op::Op;
 use crate::operand::{Class, RegF32, RegF64, RegI32, RegI64};
@@ -144,7 +147,7 @@ pub(super) fn translate_request(
     builder.switch_to_block(block);
     let (state, flags) = (builder.block_params(block)[0], MemFlagsData::trusted());
     let mut field =
-        |ty, field| builder.ins().load(ty, flags, state, offset(offset_of!(State, request) + field));
+        |ty, field| builder.ins().load(ty, flags, state, offset(offset_of!(State, exchange.request) + field));
     let arguments = [
         state,
         field(types::I32, offset_of!(Request, code)),
@@ -153,11 +156,11 @@ pub(super) fn translate_request(
         field(types::I64, offset_of!(Request, a)),
         field(types::I64, offset_of!(Request, b)),
     ];
-    let leave = builder.ins().load(types::I64, flags, state, offset(offset_of!(State, leave)));
+    let leave = builder.ins().load(types::I64, flags, state, offset(offset_of!(State, ways_out.leave)));
     let signature = builder.import_signature(leave_signature(module.isa().default_call_conv()));
     let call = builder.ins().call_indirect(signature, leave, &arguments);
     let answer = builder.inst_results(call)[0];
-    builder.ins().store(flags, answer, state, offset(offset_of!(State, answer)));
+    builder.ins().store(flags, answer, state, offset(offset_of!(State, exchange.answer)));
     builder.ins().return_(&[]);
     builder.seal_all_blocks();
     builder.finalize(module.target_config());
@@ -211,7 +214,7 @@ pub(super) fn translate_begin(
     builder.switch_to_block(block);
     let (state, thunk) = (builder.block_params(block)[0], builder.block_params(block)[1]);
     let flags = MemFlagsData::trusted();
-    let top = builder.ins().load(types::I32, flags, state, offset(offset_of!(State, top)));
+    let top = builder.ins().load(types::I32, flags, state, offset(offset_of!(State, stack.top)));
     let budget = builder.ins().load(types::I64, flags, state, offset(offset_of!(State, budget)));
     let signature = builder.import_signature(thunk_signature());
     let call = builder.ins().call_indirect(signature, thunk, &[state, top, budget]);
@@ -239,10 +242,10 @@ pub(super) fn translate_thunk(
     let mut arguments = builder.block_params(block).to_vec();
     let (state, flags) = (arguments[0], MemFlagsData::trusted());
     for (index, class) in parameters.iter().enumerate() {
-        let place = offset(offset_of!(State, arguments) + index * size_of::<u64>());
+        let place = offset(offset_of!(State, exchange.arguments) + index * size_of::<u64>());
         arguments.push(builder.ins().load(type_of(*class), flags, state, place));
     }
-    let function = builder.ins().load(types::I64, flags, state, offset(offset_of!(State, callee)));
+    let function = builder.ins().load(types::I64, flags, state, offset(offset_of!(State, exchange.callee)));
     let signature = builder.import_signature(function_signature(parameters));
     let call = builder.ins().call_indirect(signature, function, &arguments);
     let results = builder.inst_results(call).to_vec();
@@ -288,40 +291,16 @@ struct Translator<'a, 'b> {
     builder: FunctionBuilder<'b>,
     module: &'a mut dyn Module,
     translation: Translation<'a>,
-    registers: Vec<Variable>,
-    budget: Variable,
-    /// The functions of the program that this one has called so far.
-    callees: BTreeMap<usize, FuncRef>,
-    request: FuncRef,
-    leave: IrSigRef,
+    registers: Registers,
+    calls: CallParts,
     /// Blocks at the words that branches go to or that follow a conditional one.
     blocks: BTreeMap<usize, Block>,
-    /// The loops that are translated in several turns at once, by their first word, and the one at hand.
-    plans: BTreeMap<usize, Plan>,
-    fast: Option<Fast>,
-    /// Whether what is translated is there for the rare case that fast turns cannot go on.
-    is_rare: bool,
-    /// What is still to be translated of the ways that the next branch takes.
-    ways: Vec<Way>,
-    /// Flags of accesses to the state and to guest memory, which never overlap.
-    state_flags: MemFlagsData,
-    guest_flags: MemFlagsData,
-    state: Value,
-    /// Address of this call's frame in guest memory.
-    stack_pointer: Value,
-    /// The entry of the table of calls that belongs to the frame.
-    call_entry: Value,
+    twice: Twice,
+    flags: Flags,
+    frame: FrameParts,
     /// The word being translated, and whether execution can reach it.
     at: usize,
     reachable: bool,
-    /// Arguments of the next call.
-    arguments: Vec<Value>,
-    /// Result of the call directly before, as a slot or as it is.
-    result: Option<Value>,
-    /// The floating registers in which any NaN stands for the one that arithmetic makes.
-    lax: Vec<bool>,
-    /// Results of this block's floating arithmetic in other registers, before their NaNs were made the same.
-    raw: BTreeMap<usize, Value>,
 }
 
 impl<'a, 'b> Translator<'a, 'b> {
@@ -345,32 +324,27 @@ impl<'a, 'b> Translator<'a, 'b> {
         let leave = builder.import_signature(leave_signature(module.isa().default_call_conv()));
         let state_flags = flags(&mut builder, 0, "state");
         let guest_flags = flags(&mut builder, 1, "guest memory");
+        let lax =
+            nan::lax_registers(translation.program, translation.function, parameters.len() - OWN_PARAMETERS);
         Self {
-            registers,
-            budget,
-            callees: BTreeMap::new(),
-            request,
-            leave,
+            registers: Registers { variables: registers, budget, lax, raw: BTreeMap::new() },
+            calls: CallParts {
+                callees: BTreeMap::new(),
+                request,
+                leave,
+                arguments: Vec::new(),
+                result: None,
+            },
             blocks: BTreeMap::new(),
-            plans: BTreeMap::new(),
-            fast: None,
-            is_rare: false,
-            ways: Vec::new(),
-            state_flags,
-            guest_flags,
-            state: parameters[0],
-            stack_pointer: parameters[1],
-            call_entry: parameters[0],
+            twice: Twice::default(),
+            flags: Flags { state: state_flags, guest: guest_flags },
+            frame: FrameParts {
+                state: parameters[0],
+                stack_pointer: parameters[1],
+                call_entry: parameters[0],
+            },
             at: translation.function.at.0 as usize,
             reachable: true,
-            arguments: Vec::new(),
-            result: None,
-            lax: nan::lax_registers(
-                translation.program,
-                translation.function,
-                parameters.len() - OWN_PARAMETERS,
-            ),
-            raw: BTreeMap::new(),
             builder,
             module,
             translation,
@@ -380,26 +354,26 @@ impl<'a, 'b> Translator<'a, 'b> {
     /// Takes the frame from the guest stack and sets the registers to 0.
     fn prologue(&mut self) {
         let bytes = i64::from(self.translation.function.frame + BYTES_PER_CALL);
-        let caller = self.stack_pointer;
+        let caller = self.frame.stack_pointer;
         let frame = self.builder.ins().iadd_imm_s(caller, -bytes);
         let (deeper, lower, body) =
             (self.builder.create_block(), self.builder.create_block(), self.builder.create_block());
         // Nothing to do as long as the stack has been deeper already.
-        let lowest = self.load_state(types::I32, offset_of!(State, lowest));
+        let lowest = self.load_state(types::I32, offset_of!(State, stack.lowest));
         self.branch_if_room(caller, lowest, bytes, body, deeper);
         self.enter_cold(deeper);
         self.end_long_slice();
         let overflow = self.builder.create_block();
-        let limit = self.load_state(types::I32, offset_of!(State, limit));
+        let limit = self.load_state(types::I32, offset_of!(State, stack.limit));
         self.branch_if_room(caller, limit, bytes, lower, overflow);
         self.enter_cold(overflow);
         let bytes = self.builder.ins().iconst(types::I64, bytes);
         self.trap(Reason::StackOverflow, bytes);
         self.enter_cold(lower);
-        self.store_state(frame, offset_of!(State, lowest));
+        self.store_state(frame, offset_of!(State, stack.lowest));
         self.builder.ins().jump(body, &[]);
         self.enter(body);
-        self.stack_pointer = frame;
+        self.frame.stack_pointer = frame;
         self.set_call_entry();
         self.clear_registers();
     }
@@ -414,18 +388,20 @@ impl<'a, 'b> Translator<'a, 'b> {
     fn set_call_entry(&mut self) {
         let size = size_of::<u32>() as u32;
         let mask = i64::from(super::state::CALLS as u32 * size - size);
-        let shifted =
-            self.builder.ins().ushr_imm_u(self.stack_pointer, i64::from((BYTES_PER_CALL / size).ilog2()));
+        let shifted = self
+            .builder
+            .ins()
+            .ushr_imm_u(self.frame.stack_pointer, i64::from((BYTES_PER_CALL / size).ilog2()));
         let masked = self.builder.ins().band_imm_u(shifted, mask);
         let entry = self.builder.ins().uextend(types::I64, masked);
-        self.call_entry = self.builder.ins().iadd(self.state, entry);
+        self.frame.call_entry = self.builder.ins().iadd(self.frame.state, entry);
     }
 
     fn clear_registers(&mut self) {
         let parameters = self.signature_parameters();
         let mut zeros = BTreeMap::new();
         for (register, class) in
-            self.registers.iter().zip(&self.translation.function.classes).skip(parameters)
+            self.registers.variables.iter().zip(&self.translation.function.classes).skip(parameters)
         {
             let zero = *zeros.entry(*class).or_insert_with(|| zero(&mut self.builder, *class));
             self.builder.def_var(*register, zero);
@@ -442,7 +418,7 @@ impl<'a, 'b> Translator<'a, 'b> {
         let mut body = self.translation.function.body.clone();
         self.find_blocks();
         while let Some(at) = body.next() {
-            let plan = self.plans.remove(&at);
+            let plan = self.twice.plans.remove(&at);
             let entry = plan.as_ref().map_or(at, Plan::entry);
             if let Some(block) = self.blocks.get(&entry).copied() {
                 self.begin(block);
@@ -474,7 +450,7 @@ impl<'a, 'b> Translator<'a, 'b> {
         }
         self.builder.switch_to_block(block);
         self.reachable = true;
-        self.raw.clear();
+        self.registers.raw.clear();
     }
 
     /// Makes a block for each word at which one begins.
@@ -483,31 +459,45 @@ impl<'a, 'b> Translator<'a, 'b> {
         for at in self.translation.function.body.clone() {
             let op = self.translation.program.ops()[at];
             begins.extend(branch_target(&op).map(|to| to.0 as usize));
-            if matches!(op, Op::BrIf { .. } | Op::BrUnless { .. }) {
+            if op.kind() == OpKind::Branch {
                 begins.insert(at + 1);
             }
         }
         let Translation { program, function, .. } = self.translation;
-        self.plans = turns::plans(program, function, &begins, &|op| self.cost_in_turns(op));
+        self.twice.plans = turns::plans(program, function, &begins, &|op| self.cost_in_turns(op));
         self.blocks = begins.into_iter().map(|at| (at, self.builder.create_block())).collect();
     }
 
     /// What an instruction takes besides its charge, `None` for one that fast turns of a loop cannot hold.
     fn cost_in_turns(&self, op: &Op) -> Option<u32> {
-        match *op {
-            Op::Call { .. }
-            | Op::CallPtr { .. }
-            | Op::BrTable { .. }
-            | Op::Copy { .. }
-            | Op::Clear { .. } => None,
-            Op::CallFw { sig, addr } => u32::try_from(self.pure_function(sig, addr)?.cost.get()).ok(),
-            _ => memory::is_in_sdram(op).then_some(0),
+        match op.kind() {
+            OpKind::Table | OpKind::Block => None,
+            OpKind::Call => {
+                let (sig, addr) = (op.operand(Name::Sig)?, op.operand(Name::Addr)?);
+                u32::try_from(self.pure_function(sig, addr)?.cost.get()).ok()
+            }
+            OpKind::Structure
+            | OpKind::Charge
+            | OpKind::Constant
+            | OpKind::Move
+            | OpKind::Address
+            | OpKind::Arithmetic
+            | OpKind::Negation
+            | OpKind::Conversion
+            | OpKind::Load(_)
+            | OpKind::Store(_)
+            | OpKind::Jump
+            | OpKind::Branch
+            | OpKind::Argument(_)
+            | OpKind::Result(_)
+            | OpKind::Return(_)
+            | OpKind::Stop => memory::is_in_sdram(op).then_some(0),
         }
     }
 
     /// Goes on in `block`, all of whose predecessors are known.
     fn enter(&mut self, block: Block) {
-        if self.is_rare {
+        if self.twice.is_rare {
             self.builder.set_cold_block(block);
         }
         self.builder.switch_to_block(block);
@@ -522,27 +512,27 @@ impl<'a, 'b> Translator<'a, 'b> {
 
     /// The value of a register; a NaN that arithmetic made is the one that it makes everywhere.
     fn get<R: Register>(&mut self, register: R) -> Value {
-        let value = self.builder.use_var(self.registers[register.index()]);
-        if self.lax[register.index()] { self.canonical(R::CLASS, value) } else { value }
+        let value = self.builder.use_var(self.registers.variables[register.index()]);
+        if self.registers.lax[register.index()] { self.canonical(R::CLASS, value) } else { value }
     }
 
     fn set<R: Register>(&mut self, register: R, value: Value) {
-        self.raw.remove(&register.index());
-        self.builder.def_var(self.registers[register.index()], value);
+        self.registers.raw.remove(&register.index());
+        self.builder.def_var(self.registers.variables[register.index()], value);
     }
 
     fn load_state(&mut self, ty: Type, field: usize) -> Value {
-        self.builder.ins().load(ty, self.state_flags, self.state, offset(field))
+        self.builder.ins().load(ty, self.flags.state, self.frame.state, offset(field))
     }
 
     /// Loads a pointer of the state that stays the same as long as the context lives.
     fn load_pointer(&mut self, field: usize) -> Value {
-        let flags = self.state_flags.with_readonly().with_can_move();
-        self.builder.ins().load(types::I64, flags, self.state, offset(field))
+        let flags = self.flags.state.with_readonly().with_can_move();
+        self.builder.ins().load(types::I64, flags, self.frame.state, offset(field))
     }
 
     fn store_state(&mut self, value: Value, field: usize) {
-        self.builder.ins().store(self.state_flags, value, self.state, offset(field));
+        self.builder.ins().store(self.flags.state, value, self.frame.state, offset(field));
     }
 
     /// A value of `class` as a register slot.
@@ -586,10 +576,10 @@ impl<'a, 'b> Translator<'a, 'b> {
             (a, offset_of!(Request, a)),
             (b, offset_of!(Request, b)),
         ] {
-            self.store_state(value, offset_of!(State, request) + field);
+            self.store_state(value, offset_of!(State, exchange.request) + field);
         }
-        self.builder.ins().call(self.request, &[self.state]);
-        let answer = self.load_state(types::I64, offset_of!(State, answer));
+        self.builder.ins().call(self.calls.request, &[self.frame.state]);
+        let answer = self.load_state(types::I64, offset_of!(State, exchange.answer));
         self.reload_budget();
         answer
     }
@@ -597,29 +587,29 @@ impl<'a, 'b> Translator<'a, 'b> {
     /// The same for a request that the program makes each time it comes here.
     fn usual_request(&mut self, code: u32, at: usize, a: Value, b: Value) -> Value {
         let arguments = self.request_arguments(code, at, a, b);
-        let leave = self.load_pointer(offset_of!(State, leave));
-        let call = self.builder.ins().call_indirect(self.leave, leave, &arguments);
+        let leave = self.load_pointer(offset_of!(State, ways_out.leave));
+        let call = self.builder.ins().call_indirect(self.calls.leave, leave, &arguments);
         self.reload_budget();
         self.builder.inst_results(call)[0]
     }
 
     /// What a request is made with; the budget goes to the state.
     fn request_arguments(&mut self, code: u32, at: usize, a: Value, b: Value) -> [Value; 6] {
-        let budget = self.builder.use_var(self.budget);
+        let budget = self.builder.use_var(self.registers.budget);
         self.store_state(budget, offset_of!(State, budget));
         let code = self.builder.ins().iconst(types::I32, i64::from(code));
         let at = self.builder.ins().iconst(types::I32, at as i64);
-        [self.state, code, at, self.stack_pointer, a, b]
+        [self.frame.state, code, at, self.frame.stack_pointer, a, b]
     }
 
     fn reload_budget(&mut self) {
         let budget = self.load_state(types::I64, offset_of!(State, budget));
-        self.builder.def_var(self.budget, budget);
+        self.builder.def_var(self.registers.budget, budget);
     }
 
     /// Ends the slice if it is a long one: what follows involves the board.
     fn end_long_slice(&mut self) {
-        let is_long = self.load_state(types::I32, offset_of!(State, is_long));
+        let is_long = self.load_state(types::I32, offset_of!(State, signs.is_long));
         let (long, go_on) = (self.builder.create_block(), self.builder.create_block());
         self.builder.ins().brif(is_long, long, &[], go_on, &[]);
         self.enter_cold(long);
@@ -631,9 +621,9 @@ impl<'a, 'b> Translator<'a, 'b> {
 
     /// Takes cycles from the budget.
     fn spend(&mut self, cycles: u32) {
-        let budget = self.builder.use_var(self.budget);
+        let budget = self.builder.use_var(self.registers.budget);
         let left = self.builder.ins().iadd_imm_s(budget, -i64::from(cycles));
-        self.builder.def_var(self.budget, left);
+        self.builder.def_var(self.registers.budget, left);
     }
 
     /// Ends the block with a request from which the context does not come back.
@@ -653,7 +643,7 @@ fn flags(builder: &mut FunctionBuilder<'_>, id: u32, name: &'static str) -> MemF
 }
 
 macro_rules! define_translation {
-    ($($(#[$doc:meta])* $name:ident = $variant:ident { $($field:ident: $operand:ident),* }, cost $cost:expr;)*) => {
+    ($($(#[$doc:meta])* $name:ident = $variant:ident { $($field:ident: $operand:ident),* }, cost $cost:expr, $kind:ident $(($fact:ident))?;)*) => {
         impl Translator<'_, '_> {
             /// Translates one instruction.
             fn op(&mut self, op: Op) {

@@ -3,7 +3,8 @@
 use super::{VerifyError, VerifyErrorKind, signature};
 use crate::firmware::Signature;
 use crate::for_each_op;
-use crate::meter::{self, charge_points};
+use crate::kind::{Name, OpKind};
+use crate::meter;
 use crate::op::Op;
 use crate::operand::{
     Addr, Bits32, Class, Classes, Count, Count32, FuncRef, Imm, Imm16, Label, Off, Operand, Pool, RegF32,
@@ -43,11 +44,28 @@ impl Body<'_> {
     fn check_groups(&mut self) -> Result<(), VerifyError> {
         let mut at = self.function.body.start;
         while at < self.function.body.end {
-            let length = match self.op(at) {
-                Op::BrTable { n, .. } => self.table(at, usize::from(n.0) + 1),
-                op if argument(&op).is_some() || meter::is_call(&op) => self.call(at),
-                op if meter::is_result(&op) => Err(VerifyError { at, kind: VerifyErrorKind::Result }),
-                _ => Ok(1),
+            let op = self.op(at);
+            let length = match op.kind() {
+                OpKind::Table => {
+                    self.table(at, op.operand(Name::Count).map_or(0, |Count(n)| usize::from(n) + 1))
+                }
+                OpKind::Argument(_) | OpKind::Call => self.call(at),
+                OpKind::Result(_) => Err(VerifyError { at, kind: VerifyErrorKind::Result }),
+                OpKind::Structure
+                | OpKind::Charge
+                | OpKind::Constant
+                | OpKind::Move
+                | OpKind::Address
+                | OpKind::Arithmetic
+                | OpKind::Negation
+                | OpKind::Conversion
+                | OpKind::Load(_)
+                | OpKind::Store(_)
+                | OpKind::Block
+                | OpKind::Jump
+                | OpKind::Branch
+                | OpKind::Return(_)
+                | OpKind::Stop => Ok(1),
             }?;
             for inner in at + 1..at + length {
                 self.mark_inner(inner);
@@ -66,7 +84,7 @@ impl Body<'_> {
 
     /// The length of the table at `at` with its `count` branches.
     fn table(&self, at: usize, count: usize) -> Result<usize, VerifyError> {
-        let complete = (at + 1..=at + count).all(|at| matches!(self.op(at), Op::Br { .. }));
+        let complete = (at + 1..=at + count).all(|at| self.op(at).kind() == OpKind::Jump);
         if complete { Ok(1 + count) } else { Err(VerifyError { at, kind: VerifyErrorKind::Table(count) }) }
     }
 
@@ -98,11 +116,12 @@ impl Body<'_> {
 
     /// The signature that the call `op` states.
     fn callee(&self, op: &Op) -> Result<&Signature, VerifyErrorKind> {
-        match *op {
-            Op::Call { func } => signature(self.program, self.function_signature(func)?),
-            Op::CallPtr { sig, .. } | Op::CallFw { sig, .. } => signature(self.program, sig),
-            _ => Err(VerifyErrorKind::Arguments),
+        if op.kind() != OpKind::Call {
+            return Err(VerifyErrorKind::Arguments);
         }
+        let stated = op.operand(Name::Func).map(|func| self.function_signature(func)).transpose()?;
+        let sig = stated.or_else(|| op.operand(Name::Sig)).ok_or(VerifyErrorKind::Arguments)?;
+        signature(self.program, sig)
     }
 
     fn function_signature(&self, func: FuncRef) -> Result<SigRef, VerifyErrorKind> {
@@ -117,64 +136,55 @@ impl Body<'_> {
         let check_return = |class: Option<Class>| {
             if class == expected { Ok(()) } else { Err(VerifyErrorKind::ReturnClass) }
         };
-        match op {
-            Op::Program { .. } | Op::Sig { .. } | Op::Types { .. } | Op::Func { .. } => {
-                Err(VerifyErrorKind::Misplaced(op.name()))
-            }
-            Op::Ret {} => check_return(None),
-            Op::RetI32 { .. } => check_return(Some(Class::I32)),
-            Op::RetI64 { .. } => check_return(Some(Class::I64)),
-            Op::RetF32 { .. } => check_return(Some(Class::F32)),
-            Op::RetF64 { .. } => check_return(Some(Class::F64)),
-            _ => Ok(()),
+        match op.kind() {
+            OpKind::Structure => Err(VerifyErrorKind::Misplaced(op.name())),
+            OpKind::Return(class) => check_return(class),
+            OpKind::Charge
+            | OpKind::Constant
+            | OpKind::Move
+            | OpKind::Address
+            | OpKind::Arithmetic
+            | OpKind::Negation
+            | OpKind::Conversion
+            | OpKind::Load(_)
+            | OpKind::Store(_)
+            | OpKind::Block
+            | OpKind::Jump
+            | OpKind::Branch
+            | OpKind::Table
+            | OpKind::Argument(_)
+            | OpKind::Call
+            | OpKind::Result(_)
+            | OpKind::Stop => Ok(()),
         }
     }
 
     /// Checks that the last word does not go on behind the function.
     fn check_end(&self) -> Result<(), VerifyError> {
         let at = self.function.body.end.saturating_sub(1);
-        if meter::ends_path(&self.op(at)) {
+        if self.op(at).kind().ends_path() {
             Ok(())
         } else {
             Err(VerifyError { at, kind: VerifyErrorKind::FallsOff })
         }
     }
 
-    /// Checks that every segment is charged what it costs.
+    /// Checks that the function and each of its loops come to a charge.
     fn check_charges(&self) -> Result<(), VerifyError> {
-        for (at, cost) in charge_points(&self.program.ops, self.function.body.clone()) {
-            let charged = match self.op(at) {
-                Op::Charge { cycles } => cycles.0,
-                _ => 0,
-            };
-            if charged < cost {
-                return Err(VerifyError { at, kind: VerifyErrorKind::Charge { cost, charged } });
-            }
-        }
-        Ok(())
+        let found = meter::uncharged(&self.program.ops, self.function.body.clone());
+        found.map_or(Ok(()), |at| Err(VerifyError { at, kind: VerifyErrorKind::Uncharged }))
     }
 }
 
 /// Class and index of an argument.
-const fn argument(op: &Op) -> Option<(Class, Count)> {
-    match *op {
-        Op::ArgI32 { index, .. } => Some((Class::I32, index)),
-        Op::ArgI64 { index, .. } => Some((Class::I64, index)),
-        Op::ArgF32 { index, .. } => Some((Class::F32, index)),
-        Op::ArgF64 { index, .. } => Some((Class::F64, index)),
-        _ => None,
-    }
+fn argument(op: &Op) -> Option<(Class, Count)> {
+    let OpKind::Argument(class) = op.kind() else { return None };
+    Some((class, op.operand(Name::Index)?))
 }
 
 /// Class of a result taken.
 const fn result(op: &Op) -> Option<Class> {
-    match op {
-        Op::ResultI32 { .. } => Some(Class::I32),
-        Op::ResultI64 { .. } => Some(Class::I64),
-        Op::ResultF32 { .. } => Some(Class::F32),
-        Op::ResultF64 { .. } => Some(Class::F64),
-        _ => None,
-    }
+    if let OpKind::Result(class) = op.kind() { Some(class) } else { None }
 }
 
 /// An operand that is checked by its type.
@@ -244,7 +254,7 @@ impl Checked for Label {
 }
 
 macro_rules! define_check {
-    ($($(#[$doc:meta])* $name:ident = $variant:ident { $($field:ident: $operand:ident),* }, cost $cost:expr;)*) => {
+    ($($(#[$doc:meta])* $name:ident = $variant:ident { $($field:ident: $operand:ident),* }, cost $cost:expr, $kind:ident $(($fact:ident))?;)*) => {
         /// Checks every operand of `op`.
         fn check_operands(op: Op, body: &Body<'_>) -> Result<(), VerifyErrorKind> {
             match op {

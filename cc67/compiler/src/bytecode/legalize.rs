@@ -11,6 +11,7 @@
 
 use cranelift_entity::{PrimaryMap, SecondaryMap};
 
+use super::operators;
 use crate::ir::function::{Function, table};
 use crate::ir::inst::{
     Address, Base, BlockId, Callee, Class, Constant, Inst, InstKind, Operand, SlotId, ValueId,
@@ -20,7 +21,7 @@ use crate::source::Span;
 
 /// The frame in guest memory.
 #[derive(Clone, Debug)]
-pub(super) struct Frame {
+pub(super) struct FrameLayout {
     /// Bytes, a multiple of 8; `None` if the objects do not fit an address space.
     pub(super) size: Option<u32>,
     /// Where each object stands.
@@ -39,7 +40,7 @@ const REMEMBERED: usize = 16;
 const MAX_EARLY: usize = 48;
 
 /// Rewrites the function.
-pub(super) fn legalize(function: &mut Function) -> Frame {
+pub(super) fn legalize(function: &mut Function) -> FrameLayout {
     let (offsets, size) = place_slots(function);
     let predecessors = function.predecessors();
     let base = function.values.push(Class::I32);
@@ -88,7 +89,7 @@ pub(super) fn legalize(function: &mut Function) -> Frame {
         let kind = InstKind::FrameAddress { dst: base, slot, offset };
         prologue.push(Inst { kind, span: function.span });
     }
-    Frame { size, offsets: legalizer.offsets, prologue }
+    FrameLayout { size, offsets: legalizer.offsets, prologue }
 }
 
 /// Which blocks, by their place in the layout, stand between a jump backwards and its target.
@@ -152,7 +153,13 @@ fn for_each_slot(kind: &InstKind, mut visit: impl FnMut(SlotId)) {
             visit_base(to);
             visit_base(from);
         }
-        _ => {}
+        InstKind::Copy { .. }
+        | InstKind::Unary { .. }
+        | InstKind::Binary { .. }
+        | InstKind::Compare { .. }
+        | InstKind::Convert { .. }
+        | InstKind::Call { .. }
+        | InstKind::Cost { .. } => {}
     }
 }
 
@@ -189,7 +196,7 @@ impl Legalizer {
 
     fn inst(&mut self, kind: InstKind) {
         let legal = match kind {
-            InstKind::Copy { .. } | InstKind::FrameAddress { .. } => kind,
+            InstKind::Copy { .. } | InstKind::FrameAddress { .. } | InstKind::Cost { .. } => kind,
             InstKind::Unary { op, dst, src } => self.unary(op, dst, src),
             InstKind::Binary { op, dst, a, b } => self.binary(op, dst, a, b),
             InstKind::Compare { op, dst, a, b } => {
@@ -225,7 +232,7 @@ impl Legalizer {
         let src = Operand::from(self.value(src));
         match (op, class) {
             (UnaryOp::Negate, Class::F32 | Class::F64) => InstKind::Unary { op, dst, src },
-            (UnaryOp::Negate, _) => {
+            (UnaryOp::Negate, Class::I32 | Class::I64) => {
                 let zero = self.value(class.zero().into());
                 InstKind::Binary { op: BinaryOp::Subtract, dst, a: zero.into(), b: src }
             }
@@ -239,27 +246,16 @@ impl Legalizer {
 
     fn binary(&mut self, op: BinaryOp, dst: ValueId, a: Operand, b: Operand) -> InstKind {
         let is_int = self.values[dst] == Class::I32;
-        let (a, b) = match a {
-            Operand::Constant(_) if op.is_commutative() => (b, a),
-            _ => (a, b),
-        };
+        let (mut op, mut a, mut b) = (op, a, b);
+        if op.is_commutative() && a.as_value().is_none() {
+            std::mem::swap(&mut a, &mut b);
+        }
         // `x - c` is `x + -c`, which has an immediate form.
-        let (op, b) = match (op, b.as_int()) {
-            (BinaryOp::Subtract, Some(value)) if is_int => {
-                (BinaryOp::Add, Operand::int(value.wrapping_neg()))
-            }
-            _ => (op, b),
-        };
+        if let (BinaryOp::Subtract, Some(value), true) = (op, b.as_int(), is_int) {
+            (op, b) = (BinaryOp::Add, Operand::int(value.wrapping_neg()));
+        }
         let a = Operand::from(self.value(a));
-        let has_immediate = matches!(
-            op,
-            BinaryOp::Add
-                | BinaryOp::Multiply
-                | BinaryOp::And
-                | BinaryOp::ShiftLeft
-                | BinaryOp::ShiftRight
-                | BinaryOp::ShiftRightUnsigned
-        );
+        let has_immediate = operators::immediate(op).is_some();
         let fits = b.as_int().is_some_and(|value| i16::try_from(value).is_ok());
         let b = if is_int && has_immediate && fits { b } else { self.value(b).into() };
         InstKind::Binary { op, dst, a, b }

@@ -5,41 +5,46 @@
 use vm::meter;
 use vm::op::Op;
 use vm::operand::Count32;
+use vm::patch;
 
 use super::select::Code;
 
 /// Puts a `charge` at the head of every segment and corrects labels, relocations and lines.
+///
+/// Charges that the source has stated give way to their sum at the head.
 pub(super) fn insert_charges(code: &mut Code) {
-    let points = meter::charge_points(&code.ops, 0..code.ops.len());
+    let all = 0..code.ops.len();
+    let points = if code.is_priced {
+        meter::stated_points(&code.ops, all)
+    } else {
+        meter::charge_points(&code.ops, all)
+    };
     let ops = std::mem::take(&mut code.ops);
-    // How many charges stand before each word, its own excluded.
-    let mut before = vec![0_u32; ops.len() + 1];
     code.ops.reserve_exact(ops.len() + points.len());
+    // Where each word goes, and where what is written for it begins: at the charge in front of it.
+    let (mut words, mut heads) = (Vec::with_capacity(ops.len()), Vec::with_capacity(ops.len() + 1));
     let mut points = points.into_iter().peekable();
-    let mut inserted = 0;
     for (index, op) in ops.into_iter().enumerate() {
-        before[index] = inserted;
+        heads.push(code.ops.len() as u32);
         if let Some((_, cycles)) = points.next_if(|(at, _)| *at == index) {
             code.ops.push(Op::Charge { cycles: Count32(cycles) });
-            inserted += 1;
         }
-        code.ops.push(op);
-    }
-    if let Some(last) = before.last_mut() {
-        *last = inserted;
-    }
-    // A label names the charge in front of its word, a relocation the word behind its charge.
-    let label = |at: u32| at + before.get(at as usize).copied().unwrap_or(inserted);
-    for op in &mut code.ops {
-        if let Op::Br { to } | Op::BrIf { to, .. } | Op::BrUnless { to, .. } = op {
-            to.0 = label(to.0);
+        words.push(code.ops.len() as u32);
+        if !matches!(op, Op::Charge { .. }) {
+            code.ops.push(op);
         }
     }
+    heads.push(code.ops.len() as u32);
+    let end = code.ops.len() as u32;
+    let head = |at: u32| heads.get(at as usize).copied().unwrap_or(end);
+    code.ops.iter_mut().for_each(|op| patch::labels(op, head));
     for relocation in &mut code.relocations {
-        let at = relocation.word as usize;
-        relocation.word += before.get(at + 1).copied().unwrap_or(inserted);
+        relocation.word = words.get(relocation.word as usize).copied().unwrap_or(end);
     }
     for (word, _) in &mut code.spans {
-        *word = label(*word);
+        *word = head(*word);
+    }
+    for word in &mut code.insts {
+        *word = head(*word);
     }
 }

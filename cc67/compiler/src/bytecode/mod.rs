@@ -14,15 +14,20 @@ pub(crate) mod references;
 mod registers;
 mod select;
 pub(crate) mod text;
+mod variables;
+
+pub(crate) mod show;
 
 #[cfg(test)]
 mod tests;
 
 pub use text::Text;
+pub use variables::{Location, VariablePlaces};
 pub(crate) use vm::op::WORD;
 
 use vm::verify::MAX_REGISTERS;
 
+use crate::c67x::text::FixupKind;
 use crate::diag::Diagnostic;
 use crate::ir::function::Function;
 use crate::ir::inst::SignatureId;
@@ -52,6 +57,8 @@ pub enum RelocationKind {
     Address,
     /// The word calls the firmware; it calls a function of the program if the symbol is one.
     Call(SignatureId),
+    /// A word of the controller's code.
+    Processor(FixupKind),
 }
 
 /// A function in words.
@@ -61,6 +68,8 @@ pub(crate) struct Generated {
     pub(crate) added: Added,
     /// Bytes of its frame in guest memory.
     pub(crate) frame: u32,
+    /// Where the source's locals are.
+    pub(crate) variables: Vec<VariablePlaces>,
 }
 
 /// Writes the functions of a unit, one after the other.
@@ -68,9 +77,15 @@ pub(crate) struct Generated {
 pub(crate) struct Generator {
     text: Text,
     pool: ConstantPool,
+    keeps_variables: bool,
 }
 
 impl Generator {
+    /// Whether variables of the source keep their registers to the end of their function.
+    pub(crate) const fn keeps_variables(&mut self, keeps: bool) {
+        self.keeps_variables = keeps;
+    }
+
     /// Takes one optimised function through all stages; `name` is for messages.
     ///
     /// # Errors
@@ -79,13 +94,23 @@ impl Generator {
         let frame = legalize::legalize(&mut ir);
         let size =
             frame.size.filter(|size| *size <= MAX_FRAME).ok_or_else(|| frame_too_large(ir.span, name))?;
-        let registers = registers::assign(&ir, &frame.prologue).ok_or_else(|| too_large(ir.span, name))?;
+        let kept = if self.keeps_variables { registers::assign(&ir, &frame.prologue, true) } else { None };
+        let registers = kept.or_else(|| registers::assign(&ir, &frame.prologue, false));
+        let registers = registers.ok_or_else(|| too_large(ir.span, name))?;
         let mut code = select::select(&ir, &frame, &registers, &mut self.pool);
         if code.is_too_large {
             return Err(too_large(ir.span, name));
         }
         meter::insert_charges(&mut code);
-        Ok(Generated { added: self.text.append(ir.signature, &registers, size, code), frame: size })
+        let places = std::mem::take(&mut code.insts);
+        let added = self.text.append(ir.signature, &registers, size, code);
+        let variables = variables::collect(&ir, &frame, &registers, &places, &added.words);
+        Ok(Generated { added, frame: size, variables })
+    }
+
+    /// The words of all functions so far.
+    pub(crate) const fn text(&self) -> &Text {
+        &self.text
     }
 
     /// The words of all functions, and the constants that they use.

@@ -1,9 +1,37 @@
 //! Which instruction an operator is, for each class of operands.
 
 use vm::op::Op;
-use vm::operand::{RegF32, RegF64, RegI32, RegI64};
+use vm::operand::{Imm16, RegF32, RegF64, RegI32, RegI64};
 
 use crate::ir::operators::{BinaryOp, CompareOp};
+
+/// What legal IR never asks for: the program stops there, where a wrong instruction would go on with a wrong result.
+pub(super) fn illegal() -> Op {
+    debug_assert!(false, "the IR is verified and legal");
+    Op::Unreachable {}
+}
+
+/// The instruction with a constant of 16 bits as its second operand.
+pub(super) type Immediate = fn(RegI32, RegI32, Imm16) -> Op;
+
+/// The immediate form of an operator on 32 bits, if there is one; of `x - c` that is `x + -c`.
+pub(super) fn immediate(op: BinaryOp) -> Option<Immediate> {
+    match op {
+        BinaryOp::Add => Some(|dst, a, imm| Op::AddI32Imm { dst, a, imm }),
+        BinaryOp::Multiply => Some(|dst, a, imm| Op::MulI32Imm { dst, a, imm }),
+        BinaryOp::And => Some(|dst, a, imm| Op::AndI32Imm { dst, a, imm }),
+        BinaryOp::ShiftLeft => Some(|dst, a, imm| Op::ShlI32Imm { dst, a, imm }),
+        BinaryOp::ShiftRight => Some(|dst, a, imm| Op::ShrI32SImm { dst, a, imm }),
+        BinaryOp::ShiftRightUnsigned => Some(|dst, a, imm| Op::ShrI32UImm { dst, a, imm }),
+        BinaryOp::Subtract
+        | BinaryOp::Divide
+        | BinaryOp::DivideUnsigned
+        | BinaryOp::Remainder
+        | BinaryOp::RemainderUnsigned
+        | BinaryOp::Or
+        | BinaryOp::Xor => None,
+    }
+}
 
 pub(super) fn binary_i32(op: BinaryOp, dst: RegI32, a: RegI32, b: RegI32) -> Op {
     match op {
@@ -26,6 +54,7 @@ pub(super) fn binary_i32(op: BinaryOp, dst: RegI32, a: RegI32, b: RegI32) -> Op 
 /// Every operator but the shifts.
 pub(super) fn binary_i64(op: BinaryOp, dst: RegI64, a: RegI64, b: RegI64) -> Op {
     match op {
+        BinaryOp::Add => Op::AddI64 { dst, a, b },
         BinaryOp::Subtract => Op::SubI64 { dst, a, b },
         BinaryOp::Multiply => Op::MulI64 { dst, a, b },
         BinaryOp::Divide => Op::DivI64S { dst, a, b },
@@ -35,35 +64,63 @@ pub(super) fn binary_i64(op: BinaryOp, dst: RegI64, a: RegI64, b: RegI64) -> Op 
         BinaryOp::And => Op::AndI64 { dst, a, b },
         BinaryOp::Or => Op::OrI64 { dst, a, b },
         BinaryOp::Xor => Op::XorI64 { dst, a, b },
-        _ => Op::AddI64 { dst, a, b },
+        BinaryOp::ShiftLeft | BinaryOp::ShiftRight | BinaryOp::ShiftRightUnsigned => illegal(),
     }
 }
 
 pub(super) fn shift_i64(op: BinaryOp, dst: RegI64, a: RegI64, b: RegI32) -> Op {
     match op {
+        BinaryOp::ShiftLeft => Op::ShlI64 { dst, a, b },
         BinaryOp::ShiftRight => Op::ShrI64S { dst, a, b },
         BinaryOp::ShiftRightUnsigned => Op::ShrI64U { dst, a, b },
-        _ => Op::ShlI64 { dst, a, b },
+        BinaryOp::Add
+        | BinaryOp::Subtract
+        | BinaryOp::Multiply
+        | BinaryOp::Divide
+        | BinaryOp::DivideUnsigned
+        | BinaryOp::Remainder
+        | BinaryOp::RemainderUnsigned
+        | BinaryOp::And
+        | BinaryOp::Or
+        | BinaryOp::Xor => illegal(),
     }
 }
 
 /// The operators that floats have.
 pub(super) fn binary_f32(op: BinaryOp, dst: RegF32, a: RegF32, b: RegF32) -> Op {
     match op {
+        BinaryOp::Add => Op::AddF32 { dst, a, b },
         BinaryOp::Subtract => Op::SubF32 { dst, a, b },
         BinaryOp::Multiply => Op::MulF32 { dst, a, b },
         BinaryOp::Divide => Op::DivF32 { dst, a, b },
-        _ => Op::AddF32 { dst, a, b },
+        BinaryOp::DivideUnsigned
+        | BinaryOp::Remainder
+        | BinaryOp::RemainderUnsigned
+        | BinaryOp::And
+        | BinaryOp::Or
+        | BinaryOp::Xor
+        | BinaryOp::ShiftLeft
+        | BinaryOp::ShiftRight
+        | BinaryOp::ShiftRightUnsigned => illegal(),
     }
 }
 
 /// The operators that floats have.
 pub(super) fn binary_f64(op: BinaryOp, dst: RegF64, a: RegF64, b: RegF64) -> Op {
     match op {
+        BinaryOp::Add => Op::AddF64 { dst, a, b },
         BinaryOp::Subtract => Op::SubF64 { dst, a, b },
         BinaryOp::Multiply => Op::MulF64 { dst, a, b },
         BinaryOp::Divide => Op::DivF64 { dst, a, b },
-        _ => Op::AddF64 { dst, a, b },
+        BinaryOp::DivideUnsigned
+        | BinaryOp::Remainder
+        | BinaryOp::RemainderUnsigned
+        | BinaryOp::And
+        | BinaryOp::Or
+        | BinaryOp::Xor
+        | BinaryOp::ShiftLeft
+        | BinaryOp::ShiftRight
+        | BinaryOp::ShiftRightUnsigned => illegal(),
     }
 }
 

@@ -17,7 +17,7 @@ use cranelift_entity::packed_option::PackedOption;
 use vm::operand::Class as RegisterClass;
 use vm::verify::MAX_REGISTERS;
 
-use crate::ir::function::{Function, table};
+use crate::ir::function::{Function, VariableHome, table};
 use crate::ir::inst::{BlockId, Class, Inst, Operand, ValueId};
 
 /// The registers of a function.
@@ -26,12 +26,20 @@ pub(super) struct Registers {
     numbers: SecondaryMap<ValueId, u16>,
     /// The class of each register.
     pub(super) classes: Vec<RegisterClass>,
+    /// The positions from and to which a value has its register to itself; both 0 if it has none.
+    spans: SecondaryMap<ValueId, (u32, u32)>,
 }
 
 impl Registers {
     /// The register of a value.
     pub(super) fn of(&self, value: ValueId) -> u16 {
         self.numbers[value]
+    }
+
+    /// The positions of instructions from and to which a value has its register to itself; an instruction has an even
+    /// one, counted from 2 by twos, and what it writes the odd one behind.
+    pub(super) fn span(&self, value: ValueId) -> Option<(u32, u32)> {
+        Some(self.spans[value]).filter(|(_, end)| *end != 0)
     }
 }
 
@@ -59,7 +67,9 @@ struct Interval {
 
 /// Gives every value of a legal function a register; those of `prologue` are written in front of the first block.
 /// `None` if there are more than the machine can number.
-pub(super) fn assign(function: &Function, prologue: &[Inst]) -> Option<Registers> {
+///
+/// Where variables are kept, those of the source have their registers in all of the function.
+pub(super) fn assign(function: &Function, prologue: &[Inst], keeps_variables: bool) -> Option<Registers> {
     let mut scan = Scan {
         intervals: table(function.values.len()),
         order: Vec::with_capacity(function.values.len()),
@@ -71,7 +81,19 @@ pub(super) fn assign(function: &Function, prologue: &[Inst]) -> Option<Registers
         // The first block may be the head of a loop, and these values are not written again in it.
         scan.mention(value, 0, entry.into(), Mention::Read);
     }
+    let kept = || {
+        function.variables.iter().filter(|_| keeps_variables).filter_map(|variable| match variable.home {
+            VariableHome::Value(value, _) | VariableHome::Pointer(value) => Some(value),
+            VariableHome::Slot(_) => None,
+        })
+    };
+    for value in kept() {
+        scan.mention(value, 0, entry.into(), Mention::Read);
+    }
     let loops = scan.function(function);
+    for value in kept() {
+        scan.mention(value, scan.position, entry.into(), Mention::Read);
+    }
     scan.stretch(&loops);
     scan.allocate(function)
 }
@@ -168,7 +190,15 @@ impl Scan {
 
     /// Hands out registers in the order in which intervals begin.
     fn allocate(mut self, function: &Function) -> Option<Registers> {
-        let mut registers = Registers { numbers: table(function.values.len()), classes: Vec::new() };
+        let mut registers = Registers {
+            numbers: table(function.values.len()),
+            classes: Vec::new(),
+            spans: SecondaryMap::new(),
+        };
+        for value in self.order.iter().filter(|_| !function.variables.is_empty()) {
+            let Interval { start, end, .. } = self.intervals[*value];
+            registers.spans[*value] = (start, end);
+        }
         let mut active: [BinaryHeap<Reverse<(u32, u16)>>; 4] = Default::default();
         for param in &function.params {
             let class = function.values[*param];

@@ -6,17 +6,20 @@
 
 use cranelift_entity::SecondaryMap;
 use vm::op::Op;
-use vm::operand::{Addr, Bits32, Count, Imm, Imm16, Label, Off, RegF32, RegF64, RegI32, RegI64, SigRef};
+use vm::operand::{
+    Addr, Bits32, Count, Count32, Imm, Imm16, Label, Off, RegF32, RegF64, RegI32, RegI64, SigRef,
+};
+use vm::patch;
 
-use super::legalize::Frame;
+use super::legalize::FrameLayout;
 use super::operators;
 use super::pool::ConstantPool;
 use super::registers::Registers;
 use super::{Relocation, RelocationKind};
 use crate::ir::function::{Function, table};
 use crate::ir::inst::{
-    Address, Arguments, Base, BlockId, Callee, Class, Constant, InstKind, Operand, SignatureId, Terminator,
-    ValueId,
+    Address, ArgumentRange, Base, BlockId, Callee, Class, Constant, InstKind, Operand, SignatureId,
+    Terminator, ValueId,
 };
 use crate::ir::operators::{BinaryOp, CompareOp, ConvertOp, UnaryOp, Width};
 use crate::source::Span;
@@ -31,14 +34,18 @@ pub(super) struct Code {
     pub(super) relocations: Vec<Relocation>,
     /// The first word of each run of words that belong to one statement.
     pub(super) spans: Vec<(u32, Span)>,
+    /// The first word of each instruction of the function, and of the end of each block.
+    pub(super) insts: Vec<u32>,
     /// A table or count is larger than an instruction can hold.
     pub(super) is_too_large: bool,
+    /// The source states what the function costs: its charges are where they were put, and no others.
+    pub(super) is_priced: bool,
 }
 
 /// Selects the instructions of a legal function.
 pub(super) fn select(
     function: &Function,
-    frame: &Frame,
+    frame: &FrameLayout,
     registers: &Registers,
     pool: &mut ConstantPool,
 ) -> Code {
@@ -58,7 +65,7 @@ pub(super) fn select(
 
 struct Selector<'a> {
     function: &'a Function,
-    frame: &'a Frame,
+    frame: &'a FrameLayout,
     registers: &'a Registers,
     pool: &'a mut ConstantPool,
     code: Code,
@@ -78,17 +85,17 @@ impl Selector<'_> {
             self.starts[id] = self.code.ops.len() as u32;
             let block = &function.blocks[id];
             for inst in &block.insts {
+                self.code.insts.push(self.code.ops.len() as u32);
                 self.at(inst.span);
                 self.inst(&inst.kind);
             }
+            self.code.insts.push(self.code.ops.len() as u32);
             self.at(block.span);
             self.terminator(&block.terminator, function.layout.get(index + 1).copied());
         }
         for at in &self.branches {
-            if let Some(Op::Br { to } | Op::BrIf { to, .. } | Op::BrUnless { to, .. }) =
-                self.code.ops.get_mut(*at as usize)
-            {
-                to.0 = self.starts[BlockId::from_u32(to.0)];
+            if let Some(op) = self.code.ops.get_mut(*at as usize) {
+                patch::labels(op, |block| self.starts[BlockId::from_u32(block)]);
             }
         }
     }
@@ -158,6 +165,10 @@ impl Selector<'_> {
             }
             InstKind::CopyMemory { to, from, len } => self.block(to, Some(from), len),
             InstKind::ClearMemory { to, len } => self.block(to, None, len),
+            InstKind::Cost { cycles } => {
+                self.code.is_priced = true;
+                self.push(Op::Charge { cycles: Count32(cycles) });
+            }
             InstKind::Call { callee, arguments, signature, dst } => {
                 self.call(callee, arguments, signature, dst.expand());
             }
@@ -197,23 +208,17 @@ impl Selector<'_> {
     }
 
     /// Only floats are left to negate.
-    fn unary(&mut self, _op: UnaryOp, dst: ValueId, src: ValueId) {
-        self.push(match self.class(dst) {
-            Class::F32 => Op::NegF32 { dst: self.single(dst), src: self.single(src) },
-            _ => Op::NegF64 { dst: self.double(dst), src: self.double(src) },
+    fn unary(&mut self, op: UnaryOp, dst: ValueId, src: ValueId) {
+        self.push(match (op, self.class(dst)) {
+            (UnaryOp::Negate, Class::F32) => Op::NegF32 { dst: self.single(dst), src: self.single(src) },
+            (UnaryOp::Negate, Class::F64) => Op::NegF64 { dst: self.double(dst), src: self.double(src) },
+            (UnaryOp::Negate, Class::I32 | Class::I64) | (UnaryOp::Complement, _) => operators::illegal(),
         });
     }
 
     fn binary_immediate(&mut self, op: BinaryOp, dst: ValueId, a: ValueId, imm: i32) {
         let (dst, a, imm) = (self.int(dst), self.int(a), Imm16(imm as i16));
-        self.push(match op {
-            BinaryOp::Multiply => Op::MulI32Imm { dst, a, imm },
-            BinaryOp::And => Op::AndI32Imm { dst, a, imm },
-            BinaryOp::ShiftLeft => Op::ShlI32Imm { dst, a, imm },
-            BinaryOp::ShiftRight => Op::ShrI32SImm { dst, a, imm },
-            BinaryOp::ShiftRightUnsigned => Op::ShrI32UImm { dst, a, imm },
-            _ => Op::AddI32Imm { dst, a, imm },
-        });
+        self.push(operators::immediate(op).map_or_else(operators::illegal, |form| form(dst, a, imm)));
     }
 
     fn binary(&mut self, op: BinaryOp, dst: ValueId, a: ValueId, b: ValueId) {
@@ -351,7 +356,13 @@ impl Selector<'_> {
         });
     }
 
-    fn call(&mut self, callee: Callee, arguments: Arguments, signature: SignatureId, dst: Option<ValueId>) {
+    fn call(
+        &mut self,
+        callee: Callee,
+        arguments: ArgumentRange,
+        signature: SignatureId,
+        dst: Option<ValueId>,
+    ) {
         for (index, argument) in self.function.arguments[arguments.range()].iter().enumerate() {
             let (value, index) = (self.value(*argument), Count(index as u16));
             self.push(match self.class(value) {

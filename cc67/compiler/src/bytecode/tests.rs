@@ -1,5 +1,6 @@
 //! Whole functions: words, registers, charges, and what they compute on the machine.
 
+use kmotiondef::timing::Timing;
 use kmotiondef::{Cycles, GuestAddr, ThreadId, Ticks};
 use vm::bus::{AccessSize, Bus};
 use vm::firmware::{Caller, Firmware, Outcome, Signature, TickContext, Value};
@@ -8,7 +9,7 @@ use vm::machine::{Config, Machine};
 use vm::memory::GuestMemory;
 use vm::text::disassemble;
 use vm::trap::{Trap, TrapKind};
-use vm::verify::verify;
+use vm::verify::verify_image;
 
 use crate::diag::Sink;
 use crate::driver::generate;
@@ -68,7 +69,7 @@ impl Firmware for Nothing {
 fn build(source: &str, level: Level) -> Linked {
     let (unit, sources) = testing::unit(source);
     let mut sink = Sink::new();
-    let object = generate(&unit, &sources, level, &mut sink);
+    let object = generate(&unit, &sources, (level, Timing::Fast), &mut sink);
     assert!(!sink.has_errors(), "{:?}", sink.diagnostics());
     let thread = ThreadId::new(1).expect("a thread");
     let options = link::Options {
@@ -84,7 +85,7 @@ fn build(source: &str, level: Level) -> Linked {
 fn run(source: &str) -> (Vec<u8>, Vec<String>) {
     let runs = [Level::None, Level::Full].map(|level| {
         let linked = build(source, level);
-        let program = verify(&linked.text.bytes, linked.text.address).expect("compiled code passes");
+        let program = verify_image(&linked.text.bytes, linked.text.address).expect("compiled code passes");
         let mut machine: Machine<Nothing, BytecodeEngine> =
             Machine::new(Nothing::default(), Config::default());
         let memory = machine.firmware_mut().1.memory;
@@ -152,9 +153,9 @@ fn a_loop_loads_its_constants_in_front_and_costs_one_branch_a_turn() {
         const_i32 r1, 100
         const_i32 r2, 0
         charge 8
-        load_f64_at d3, 0x800500a0
+        load_f64_at d3, 0x800500c0
         add_f64 d3, d3, d0
-        store_f64_at d3, 0x800500a0
+        store_f64_at d3, 0x800500c0
         add_i32_imm r2, r2, 1
         lt_i32_s r4, r2, r1
         br_if r4, @9
@@ -257,14 +258,14 @@ fn lines_name_the_statement() {
     let linked = build("int g;\nmain()\n{\n  g = 1;\n\n  while (g < 9)\n    g++;\n}\n", Level::None);
     let lines: Vec<u32> = linked.lines.iter().map(|line| line.place.line).collect();
     assert_eq!(lines, [2, 4, 6, 7, 6, 8]);
-    assert_eq!(linked.lines[0].address, linked.entry);
+    assert_eq!(linked.lines[0].address, linked.symbols[0].address);
 }
 
 #[test]
 fn a_frame_that_the_machine_cannot_number_is_refused() {
     let (unit, sources) = testing::unit("int f(void) { char a[600000]; a[0] = 1; return a[0]; }");
     let mut sink = Sink::new();
-    let _ = generate(&unit, &sources, Level::Full, &mut sink);
+    let _ = generate(&unit, &sources, (Level::Full, Timing::Fast), &mut sink);
     let message = sink.diagnostics().first().map(|diagnostic| diagnostic.message.as_str());
     assert_eq!(message, Some("the local variables of `f` are too large"));
 }

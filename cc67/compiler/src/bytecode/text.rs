@@ -7,7 +7,8 @@
 use std::ops::Range;
 
 use vm::op::{Op, WORD};
-use vm::operand::{Addr, Classes, Count, FuncRef, SigRef};
+use vm::operand::{Addr, Classes, Count, FuncRef, Label, Pool, SigRef};
+use vm::patch::{self, Patch};
 
 use super::registers::Registers;
 use super::select::Code;
@@ -45,6 +46,11 @@ impl Text {
     /// How many words there are.
     pub(crate) fn len(&self) -> u32 {
         self.0.len() as u32
+    }
+
+    /// The words of a range, each with its number.
+    pub(super) fn numbered(&self, words: &Range<u32>) -> impl Iterator<Item = (u32, &Op)> {
+        (words.clone()).zip(self.0.get(words.start as usize..words.end as usize).unwrap_or_default())
     }
 
     /// Appends a function of `frame` bytes.
@@ -123,19 +129,51 @@ impl Text {
 
 impl Numbers<'_> {
     fn apply(&self, mut op: Op) -> Op {
-        match &mut op {
-            Op::Br { to } | Op::BrIf { to, .. } | Op::BrUnless { to, .. } => {
-                to.0 = to.0.wrapping_add(self.moved);
-            }
-            Op::ConstI64 { pool, .. } | Op::ConstF64 { pool, .. } => {
-                pool.0 = self.pool.get(pool.0 as usize).copied().unwrap_or(pool.0);
-            }
-            Op::Func { sig, .. } | Op::CallPtr { sig, .. } | Op::CallFw { sig, .. } => {
-                sig.0 = self.signatures.get(usize::from(sig.0)).copied().unwrap_or(sig.0);
-            }
-            _ => {}
-        }
+        op.patch(&mut InProgram(self));
         op
+    }
+}
+
+/// Gives a unit's words their numbers in the program.
+struct InProgram<'a>(&'a Numbers<'a>);
+
+impl Patch for InProgram<'_> {
+    fn label(&mut self, label: &mut Label) {
+        label.0 = label.0.wrapping_add(self.0.moved);
+    }
+
+    fn constant(&mut self, pool: &mut Pool) {
+        pool.0 = self.0.pool.get(pool.0 as usize).copied().unwrap_or(pool.0);
+    }
+
+    fn signature(&mut self, sig: &mut SigRef) {
+        sig.0 = self.0.signatures.get(usize::from(sig.0)).copied().unwrap_or(sig.0);
+    }
+}
+
+/// Takes words out of an object file, whose first words are not the unit's, and looks up what they name.
+struct FromFile<'a> {
+    head: u32,
+    pool: &'a [u64],
+    signatures: &'a [Signature],
+    /// Whether something is named that the unit does not have.
+    is_wrong: bool,
+}
+
+impl Patch for FromFile<'_> {
+    fn label(&mut self, label: &mut Label) {
+        match label.0.checked_sub(self.head) {
+            Some(word) => label.0 = word,
+            None => self.is_wrong = true,
+        }
+    }
+
+    fn constant(&mut self, pool: &mut Pool) {
+        self.is_wrong |= self.pool.get(pool.0 as usize).is_none();
+    }
+
+    fn signature(&mut self, sig: &mut SigRef) {
+        self.is_wrong |= self.signatures.get(usize::from(sig.0)).is_none();
     }
 }
 
@@ -151,25 +189,18 @@ pub(crate) fn call_firmware(address: u32, signature: u16) -> [u8; WORD] {
 
 /// The instruction with its label moved.
 fn moved(mut op: Op, by: u32) -> Op {
-    if let Op::Br { to } | Op::BrIf { to, .. } | Op::BrUnless { to, .. } = &mut op {
-        to.0 += by;
-    }
+    patch::labels(&mut op, |word| word + by);
     op
 }
 
 /// A word of a function; `None` if it refers to what the unit does not have.
 fn decode(word: [u8; WORD], head: u32, pool: &[u64], signatures: &[Signature]) -> Option<Op> {
     let mut op = Op::decode(word)?;
-    match &mut op {
-        Op::Br { to } | Op::BrIf { to, .. } | Op::BrUnless { to, .. } => to.0 = to.0.checked_sub(head)?,
-        Op::ConstI64 { pool: number, .. } | Op::ConstF64 { pool: number, .. } => {
-            pool.get(number.0 as usize)?;
-        }
-        Op::Func { sig, .. } | Op::CallPtr { sig, .. } | Op::CallFw { sig, .. } => {
-            signatures.get(usize::from(sig.0))?;
-        }
-        Op::Program { .. } | Op::Sig { .. } | Op::Call { .. } => return None,
-        _ => {}
+    // These belong to the head of a file, and to programs that are linked.
+    if matches!(op, Op::Program { .. } | Op::Sig { .. } | Op::Call { .. }) {
+        return None;
     }
-    Some(op)
+    let mut file = FromFile { head, pool, signatures, is_wrong: false };
+    op.patch(&mut file);
+    (!file.is_wrong).then_some(op)
 }

@@ -22,7 +22,7 @@ macro_rules! for_each_lint {
             ImplicitDeclaration = "implicit-declaration", On;
             /// A function is called above its definition, all of it integers and pointers.
             LateDefinition = "late-definition", Extra;
-            /// Firmware 4.34 lacks a function, or keeps a name for itself.
+            /// Firmware 4.34 lacks a function, or has one of the C library that the program defines.
             Portability = "portability", Extra, pass portability;
             /// A declaration names no type, where programs seldom mean `int`.
             ImplicitInt = "implicit-int", On;
@@ -34,7 +34,7 @@ macro_rules! for_each_lint {
             MacroRedefined = "macro-redefined", On;
             /// The text is not quite C, but the vendor's compiler takes it.
             LaxText = "lax-text", On;
-            /// A function, local, enumerator or firmware name is declared twice.
+            /// A function, local or enumerator is declared twice, or a name of the firmware is defined.
             Redeclared = "redeclared", On, pass firmware_name;
             /// A prototype differs from the definition.
             PrototypeMismatch = "prototype-mismatch", On;
@@ -66,6 +66,8 @@ macro_rules! for_each_lint {
             ShiftCount = "shift-count", On;
             /// A format conversion does not fit its argument.
             Format = "format", On, pass format;
+            /// A format conversion does on the board what it does nowhere else.
+            BoardFormat = "board-format", All, pass board_format;
             /// A local is read before anything is stored in it.
             Uninitialized = "uninitialized", On, pass uninitialized;
             /// A local may be read before anything is stored in it.
@@ -100,6 +102,14 @@ macro_rules! for_each_lint {
             VoidMain = "void-main", Extra, pass void_main;
             /// A number is stored in a type that cannot hold all of it.
             Conversion = "conversion", Extra;
+            /// A constant with a fraction is stored in an integer.
+            LostFraction = "lost-fraction", On;
+            /// A division of integer constants loses its fraction before it is used as a floating-point number.
+            IntegerDivision = "integer-division", On;
+            /// An element of `persist.UserData` is used as a pointer where its address is meant: the `&` is missing.
+            UserDataPointer = "user-data-pointer", On, pass user_data_pointer;
+            /// A loop waits for a variable that nothing in the program changes.
+            EndlessWait = "endless-wait", On, pass endless_wait;
             /// A signed and an unsigned value are compared.
             SignCompare = "sign-compare", Extra;
             /// Standard C does not allow it, and the vendor's compiler accepts it.

@@ -1,9 +1,12 @@
-//! Functions of the C library that are C themselves, because they call functions of the program.
+//! The functions of the C library that are C themselves.
 //!
-//! The firmware cannot call back into a program, so these become a part of it: the linker asks
-//! for those that a program uses and does not define. They are compiled like any other source,
-//! cost what their instructions cost and can be preempted.
+//! What the firmware lacks becomes a part of the program: the linker asks for what a program uses and does not
+//! define. It is compiled like any other source, costs what its instructions cost and can be preempted.
+//!
+//! A file of the library is made of members, each a text of its own that begins behind a line `//@ name …`: the names
+//! that ask for it, and behind a `+` others that it defines.
 
+use std::collections::BTreeSet;
 use std::io;
 use std::path::Path;
 
@@ -11,18 +14,56 @@ use crate::object::{Definition, Object};
 use crate::pp::Files;
 use crate::typed::Linkage;
 
-/// A file of the library and the functions in it.
-pub(super) struct Member {
-    pub(super) names: &'static [&'static str],
-    pub(super) file: &'static str,
-    pub(super) text: &'static str,
+/// The files of the library.
+const FILES: &[(&str, &str)] = &[
+    ("string.c", include_str!("library/string.c")),
+    ("ctype.c", include_str!("library/ctype.c")),
+    ("stdlib.c", include_str!("library/stdlib.c")),
+    ("math.c", include_str!("library/math.c")),
+    ("qsort.c", include_str!("library/qsort.c")),
+    ("bsearch.c", include_str!("library/bsearch.c")),
+    ("atexit.c", include_str!("library/atexit.c")),
+    ("quotient64.c", include_str!("library/quotient64.c")),
+    ("quotient32.c", include_str!("library/quotient32.c")),
+    ("division64.c", include_str!("library/division64.c")),
+    ("fixed64.c", include_str!("library/fixed64.c")),
+    ("shift64.c", include_str!("library/shift64.c")),
+];
+
+/// A part of the library that is taken or left as a whole.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Member<'t> {
+    /// The file it stands in.
+    pub(super) file: &'t str,
+    /// What it defines, with blanks between; a `+` stands before the names that do not ask for it.
+    pub(super) names: &'t str,
+    /// Its source.
+    pub(super) text: &'t str,
 }
 
-pub(super) const MEMBERS: &[Member] = &[
-    Member { names: &["qsort"], file: "qsort.c", text: include_str!("library/qsort.c") },
-    Member { names: &["bsearch"], file: "bsearch.c", text: include_str!("library/bsearch.c") },
-    Member { names: &["atexit", "exit"], file: "atexit.c", text: include_str!("library/atexit.c") },
-];
+impl<'t> Member<'t> {
+    /// What it defines.
+    pub(super) fn names(&self) -> impl Iterator<Item = &'t str> + use<'t> {
+        self.names.split_whitespace().filter(|name| *name != "+")
+    }
+
+    /// The names that ask for it.
+    fn asked(&self) -> impl Iterator<Item = &'t str> + use<'t> {
+        self.names.split_whitespace().take_while(|name| *name != "+")
+    }
+}
+
+/// Every member.
+pub(super) fn members() -> impl Iterator<Item = Member<'static>> {
+    FILES.iter().flat_map(|&(file, text)| {
+        let parts = text.split("//@ ").skip(1);
+        parts.filter_map(move |part| part.split_once('\n')).map(move |(names, text)| Member {
+            file,
+            names,
+            text,
+        })
+    })
+}
 
 /// The library needs no other files.
 pub(super) struct NoFiles;
@@ -37,25 +78,35 @@ impl Files for NoFiles {
     }
 }
 
-/// The members that `objects` use and do not define. The first name of a member asks for it.
-pub(super) fn needed_by(objects: &[Object]) -> impl Iterator<Item = &'static Member> + '_ {
-    MEMBERS.iter().filter(|member| is_wanted(objects, member))
+/// Adds the members that `objects` use and do not define, and those that these use.
+pub(super) fn add_needed(objects: &mut Vec<Object>, compile: impl Fn(&Member<'_>) -> Option<Object>) {
+    let mut looked_at = 0;
+    while looked_at < objects.len() {
+        let needed = needed_by(objects.get(looked_at..).unwrap_or_default(), objects);
+        looked_at = objects.len();
+        objects.extend(needed.iter().filter_map(&compile));
+    }
 }
 
-fn is_wanted(objects: &[Object], member: &Member) -> bool {
-    let defines = |name: &&str| {
-        objects.iter().flat_map(|object| object.symbols.values()).any(|symbol| {
-            symbol.name == **name
-                && symbol.linkage == Linkage::External
-                && symbol.definition != Definition::None
-        })
-    };
-    let uses = |name: &str| {
-        objects.iter().any(|object| {
-            let text = object.relocations.iter().map(|relocation| relocation.symbol);
-            let data = object.data_relocations.iter().map(|relocation| relocation.symbol);
-            text.chain(data).any(|id| object.symbols.get(id).is_some_and(|symbol| symbol.name == name))
-        })
-    };
-    member.names.first().is_some_and(|name| uses(name)) && !member.names.iter().any(defines)
+/// The members that some of the objects use and none of all defines.
+fn needed_by(users: &[Object], all: &[Object]) -> Vec<Member<'static>> {
+    let used: BTreeSet<&str> = users.iter().flat_map(used_by).collect();
+    if used.is_empty() {
+        return Vec::new();
+    }
+    let symbols = all.iter().flat_map(|object| object.symbols.values());
+    let defined: BTreeSet<&str> = symbols
+        .filter(|symbol| symbol.linkage == Linkage::External && symbol.definition != Definition::None)
+        .map(|symbol| symbol.name.as_str())
+        .collect();
+    let is_used = |member: &Member<'_>| member.asked().any(|name| used.contains(name));
+    members().filter(|member| is_used(member) && !member.names().any(|name| defined.contains(name))).collect()
+}
+
+/// The names that an object leaves to others.
+fn used_by(object: &Object) -> impl Iterator<Item = &str> {
+    let text = object.relocations.iter().map(|relocation| relocation.symbol);
+    let data = object.data_relocations.iter().map(|relocation| relocation.symbol);
+    let symbols = text.chain(data).filter_map(|id| object.symbols.get(id));
+    symbols.filter(|symbol| symbol.definition == Definition::None).map(|symbol| symbol.name.as_str())
 }

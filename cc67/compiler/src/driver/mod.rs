@@ -13,6 +13,7 @@ use std::path::Path;
 use std::thread;
 
 use kmotiondef::ThreadId;
+use kmotiondef::timing::Timing;
 
 use includers::includers;
 
@@ -26,8 +27,9 @@ use crate::object::{self, About, Object, UnitBuilder};
 use crate::passes::inline::Candidates;
 use crate::passes::{self, Level};
 use crate::source::{FileId, SourceMap};
+use crate::target::Target;
 use crate::typed::Unit;
-use crate::{files, lints, lower, parse, pp, sema};
+use crate::{c67x, files, lints, lower, parse, pp, sema};
 
 /// How to compile.
 #[derive(Clone, Debug)]
@@ -36,6 +38,10 @@ pub struct Options {
     pub preprocessor: pp::Options,
     /// What to optimise.
     pub level: Level,
+    /// What the code is charged for, on the simulated board.
+    pub timing: Timing,
+    /// What the code is for.
+    pub target: Target,
     /// The firmware that programs are for.
     pub firmware: Firmware,
     /// Whether the linker leaves out what `main` cannot reach.
@@ -51,6 +57,8 @@ impl Default for Options {
         Self {
             preprocessor: pp::Options { embedded, ..pp::Options::default() },
             level: Level::default(),
+            timing: Timing::default(),
+            target: Target::default(),
             firmware: Firmware::default(),
             gc_sections: true,
             addresses: SectionAddresses::default(),
@@ -116,6 +124,23 @@ fn keep_memory_ready() {
     }
 }
 
+/// The typed tree and the names of a text, and what it compiles to.
+pub(crate) fn front_and_object(
+    path: &Path,
+    text: Vec<u8>,
+    options: &Options,
+    files: &dyn pp::Files,
+) -> (Unit, Compilation, Names) {
+    let (mut sources, mut names, mut sink) = (SourceMap::new(), Names::new(), Sink::new());
+    let main = sources.add_file(path.to_string_lossy(), Some(path), text, None);
+    let unit = front(main, options, files, &mut sources, &mut names, &mut sink);
+    let object = (!sink.has_errors() && options.target == Target::Sim)
+        .then(|| generate(&unit, &sources, (options.level, options.timing), &mut sink));
+    let object = object.filter(|_| !sink.has_errors());
+    let name = path.to_string_lossy().into_owned();
+    (unit, Compilation { name, sources, sink, object, included_by: Vec::new() }, names)
+}
+
 pub(crate) fn compile_here(
     path: &Path,
     text: Vec<u8>,
@@ -136,7 +161,10 @@ pub(crate) fn compile_here(
     let main = sources.add_file(path.to_string_lossy(), Some(path), text, None);
     let unit = front(main, options, files, &mut sources, &mut names, &mut sink);
     lints::check(&unit, &names, &sources, &options.firmware, &mut sink);
-    let object = (!sink.has_errors()).then(|| generate(&unit, &sources, options.level, &mut sink));
+    let object = (!sink.has_errors()).then(|| match options.target {
+        Target::Sim => generate(&unit, &sources, (options.level, options.timing), &mut sink),
+        Target::C67x => generate_code(&unit, &sources, options.level, &mut sink),
+    });
     let object = object.filter(|_| !sink.has_errors());
     let included_by = if unit.defines("main") { Vec::new() } else { includers(path, files) };
     if sink.has_errors() && !included_by.is_empty() {
@@ -157,28 +185,60 @@ pub fn front(
     let tokens = pp::preprocess(main, &options.preprocessor, files, sources, names, sink);
     let tree = parse::parse(&tokens, sources, names, sink);
     drop(tokens);
-    sema::analyze(&tree, names, sources, &options.firmware, sink)
+    sema::analyze_as(options.preprocessor.standard, &tree, names, sources, &options.firmware, sink)
 }
+
+/// How often the calls of a function in itself are replaced in the controller's code, which is to be small.
+const CODE_LEVELS: usize = 1;
 
 /// The object of a unit that has no errors.
 ///
 /// Functions that are too large for the machine are reported to `sink`.
 #[must_use]
-pub fn generate(unit: &Unit, sources: &SourceMap, level: Level, sink: &mut Sink) -> Object {
+pub fn generate(
+    unit: &Unit,
+    sources: &SourceMap,
+    (level, timing): (Level, Timing),
+    sink: &mut Sink,
+) -> Object {
     let mut builder = UnitBuilder::new(unit, sources);
     let mut generator = Generator::default();
     let definitions = lower::Definitions::new(unit, builder.signatures());
     let mut candidates = Candidates::default();
     for function in &unit.functions {
-        let mut ir = lower::lower(unit, function, &definitions, builder.signatures());
+        let mut ir = lower::lower(unit, function, &definitions, timing, builder.signatures());
         optimize(&mut ir, level, &mut candidates, sources);
         let about = About { symbol: ir.symbol, signature: ir.signature, end: ir.end };
+        generator.keeps_variables(level == Level::None);
         match generator.function(ir, builder.name(about.symbol)) {
             Ok(generated) => builder.function(about, generated),
             Err(error) => sink.report(*error),
         }
     }
     builder.finish(generator.finish())
+}
+
+/// The object of a unit that has no errors, for the controller's processor.
+///
+/// Functions that are too large for the processor are reported to `sink`.
+#[must_use]
+pub fn generate_code(unit: &Unit, sources: &SourceMap, level: Level, sink: &mut Sink) -> Object {
+    let mut builder = UnitBuilder::new(unit, sources);
+    let mut generator = c67x::Generator::new(builder.externs(), level);
+    let definitions = lower::Definitions::new(unit, builder.signatures());
+    let mut candidates = Candidates::new(CODE_LEVELS);
+    for function in &unit.functions {
+        let mut ir = lower::lower(unit, function, &definitions, Timing::Fast, builder.signatures());
+        optimize(&mut ir, level, &mut candidates, sources);
+        let about = About { symbol: ir.symbol, signature: ir.signature, end: ir.end };
+        let name = builder.name(about.symbol).to_owned();
+        match generator.function(&ir, builder.signatures(), &name) {
+            Ok(words) => builder.words(about, words),
+            Err(error) => sink.report(*error),
+        }
+    }
+    let (code, added) = generator.finish();
+    builder.finish_code(code, added)
 }
 
 /// Runs the passes over a function; small functions before it may become a part of it.
@@ -232,18 +292,15 @@ pub fn link_units(units: &mut [Compilation], thread: ThreadId, options: &Options
         return None;
     }
     let mut objects: Vec<Object> = units.iter_mut().filter_map(|unit| unit.object.take()).collect();
-    objects.extend(library_members(&objects));
-    let options = link::Options {
-        thread,
-        firmware: &options.firmware,
-        gc: options.gc_sections,
-        addresses: options.addresses,
-    };
+    let target = objects.first().map_or(options.target, Object::target);
+    library::add_needed(&mut objects, |member| compile_library(member, target, options.timing).object);
+    let firmware = &options.firmware;
+    let options = link::Options { thread, firmware, gc: options.gc_sections, addresses: options.addresses };
     match link::link(&objects, &options) {
         Ok(linked) => {
             let unit = units.first_mut()?;
             for warning in &linked.warnings {
-                unit.sink.report(Diagnostic::global_warning(warning.to_string()));
+                unit.sink.report(warning.to_diagnostic());
             }
             Some(linked)
         }
@@ -252,6 +309,9 @@ pub fn link_units(units: &mut [Compilation], thread: ThreadId, options: &Options
                 let index = error.object.filter(|index| *index < units.len());
                 let unit = units.get_mut(index.unwrap_or(0))?;
                 let mut diagnostic = error.to_diagnostic();
+                if let (LinkErrorKind::Undefined { .. }, Some(version)) = (&error.kind, firmware.version()) {
+                    diagnostic = diagnostic.note(format!("the firmware file is of `{version}`"));
+                }
                 // The places of library members are in no source that the user has.
                 diagnostic.span = diagnostic.span.filter(|_| index.is_some());
                 if let (LinkErrorKind::NoMain, Some(object)) = (&error.kind, objects.first()) {
@@ -267,15 +327,11 @@ pub fn link_units(units: &mut [Compilation], thread: ThreadId, options: &Options
     }
 }
 
-/// The members of the C library that `objects` use and do not define, compiled.
-fn library_members(objects: &[Object]) -> Vec<Object> {
-    let compiled = |member: &library::Member| compile_library(member).object;
-    library::needed_by(objects).filter_map(compiled).collect()
-}
-
-fn compile_library(member: &library::Member) -> Compilation {
+/// Compiles one member of the C library.
+fn compile_library(member: &library::Member<'_>, target: Target, timing: Timing) -> Compilation {
     let text = member.text.as_bytes().to_vec();
-    compile_here(Path::new(member.file), text, &Options::default(), &library::NoFiles)
+    let options = Options { target, timing, ..Options::default() };
+    compile_here(Path::new(member.file), text, &options, &library::NoFiles)
 }
 
 #[cfg(test)]
@@ -286,17 +342,17 @@ mod tests {
 
     #[test]
     fn every_member_of_the_library_compiles_without_a_word() {
-        for member in library::MEMBERS {
-            let compilation = compile_library(member);
+        for member in library::members() {
+            let compilation = compile_library(&member, Target::Sim, Timing::default());
             let mut said = compilation.diagnostics();
-            // The names are the firmware's on purpose.
-            said.retain(|diagnostic| diagnostic.lint != Some(Lint::Portability));
-            assert!(said.is_empty(), "{}: {said:?}", member.file);
+            // The names are the firmware's on purpose, and so is the test for what is not a number.
+            let on_purpose = [Some(Lint::Portability), Some(Lint::SelfComparison), Some(Lint::Redeclared)];
+            said.retain(|diagnostic| !on_purpose.contains(&diagnostic.lint));
+            assert!(said.is_empty(), "{}: {said:?}", member.names);
             let object = compilation.object.expect("no errors");
-            for name in member.names {
-                let is_defined = |symbol: &object::Symbol| {
-                    symbol.name == *name && matches!(symbol.definition, Definition::Function(_))
-                };
+            for name in member.names() {
+                let is_defined =
+                    |symbol: &object::Symbol| symbol.name == name && symbol.definition != Definition::None;
                 assert!(object.symbols.values().any(is_defined), "{name}");
             }
         }

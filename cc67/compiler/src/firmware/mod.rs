@@ -51,6 +51,15 @@ pub struct VersionMismatch {
 }
 
 impl Firmware {
+    /// The version that a firmware file states.
+    #[must_use]
+    pub fn version(&self) -> Option<&str> {
+        match self {
+            Self::BuiltIn => None,
+            Self::File(file) => file.version(),
+        }
+    }
+
     /// Compares the version with that of the simulated board, byte for byte as the vendor's host
     /// library does: a program that is linked for another firmware calls wrong addresses.
     ///

@@ -19,7 +19,7 @@ const PIECE: usize = 0x4000;
 pub struct Download {
     /// The thread that it goes into.
     pub thread: ThreadId,
-    /// Where `main` begins.
+    /// Where a thread begins to execute it.
     pub entry: GuestAddr,
     /// What is stored where, in the order of sending.
     pub writes: Vec<(GuestAddr, Vec<u8>)>,

@@ -35,10 +35,10 @@ fn write(out: &mut String, linked: &Linked) -> fmt::Result {
         }
         symbols.try_for_each(|symbol| write_symbol(out, linked, symbol))?;
     }
-    if !linked.imports.is_empty() {
+    if !linked.firmware.imports.is_empty() {
         writeln!(out, "\nof the firmware")?;
     }
-    for import in &linked.imports {
+    for import in &linked.firmware.imports {
         writeln!(out, "{:08x}          {}", import.address.get(), import.name)?;
     }
     let mut largest: Vec<_> = linked.symbols.iter().collect();

@@ -1,7 +1,8 @@
 //! From a linked program to its image: TI COFF2 as `coff.md` of the specification lays it out.
 //!
 //! Departures from what the vendor's compiler writes, each for a reason:
-//! - the target id is our own, so that no board executes bytecode (design.md D4);
+//! - the target id of bytecode is our own, and its text begins with words that let a processor return at once, so that
+//!   no board executes it whatever loads it (design.md D4);
 //! - `.bss` has a section header, so that a load clears it;
 //! - line entries are plain pairs of address and line (`coff.md` section 5);
 //! - the auxiliary entry of an object holds its size where that of a function has it, so that a
@@ -59,7 +60,10 @@ pub fn write_stripped(linked: &Linked) -> Result<Vec<u8>, Error> {
 /// The image without symbols and line numbers.
 fn bare(linked: &Linked) -> Image {
     Image {
-        target: Target::CC67,
+        target: match linked.target {
+            crate::target::Target::Sim => Target::CC67,
+            crate::target::Target::C67x => Target::C6000,
+        },
         timestamp: 0,
         flags: FileFlags::LINKED,
         program: Some(header(linked)),
@@ -70,7 +74,7 @@ fn bare(linked: &Linked) -> Image {
 
 fn header(linked: &Linked) -> Program {
     Program {
-        version_stamp: linked.version_stamp,
+        version_stamp: linked.firmware.version_stamp,
         text_size: linked.text.bytes.len() as u32,
         data_size: linked.data.bytes.len() as u32,
         bss_size: linked.bss.size,
@@ -180,7 +184,7 @@ impl Table {
                 &aux,
             );
         }
-        for import in &linked.imports {
+        for import in &linked.firmware.imports {
             let int = SymbolType::new(BaseType::INT);
             let ty = if import.is_function { int.derived(Derivation::Function) } else { int };
             self.push(

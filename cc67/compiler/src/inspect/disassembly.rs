@@ -25,7 +25,7 @@ impl Inspection {
             Err(reason) => return format!("no disassembly: {reason}\n"),
         };
         let mut printer =
-            Printer { inspection: self, program, sources, files: BTreeMap::new(), out: String::new() };
+            CodePrinter { inspection: self, program, sources, files: BTreeMap::new(), out: String::new() };
         for function in program.functions() {
             let start = function.at.0 as usize;
             let name = self.function_name(program.address_of(start).get()).unwrap_or("?");
@@ -37,7 +37,7 @@ impl Inspection {
     }
 }
 
-struct Printer<'a> {
+struct CodePrinter<'a> {
     inspection: &'a Inspection,
     program: &'a Program,
     sources: &'a dyn Sources,
@@ -46,7 +46,7 @@ struct Printer<'a> {
     out: String,
 }
 
-impl Printer<'_> {
+impl CodePrinter<'_> {
     fn function(&mut self, name: &str, words: std::ops::Range<usize>) {
         // Writing to a string cannot fail.
         let _ = writeln!(self.out, "{name}:");

@@ -22,7 +22,7 @@ use std::fmt::Write as _;
 use coff::{Image, Target, dump};
 use kmotiondef::GuestAddr;
 use vm::program::Program;
-use vm::verify::verify;
+use vm::verify::verify_image;
 
 use self::calls::Calls;
 
@@ -49,17 +49,31 @@ impl Inspection {
         Self { image, symbols, lines, program }
     }
 
+    /// Reads an image and takes it apart.
+    ///
+    /// # Errors
+    /// If the bytes are no image.
+    pub fn read(bytes: &[u8]) -> Result<Self, coff::Error> {
+        Image::read(bytes).map(Self::new)
+    }
+
     /// Headers and sections.
     #[must_use]
     pub fn headers(&self) -> String {
         let mut text = dump::headers(&self.image);
         if let Some(program) = &self.image.program
-            && let Some(entry) = self.at(program.entry)
+            && let Some(entry) = self.at(self.main().unwrap_or(program.entry))
         {
             // Writing to a string cannot fail.
             let _ = writeln!(text, "entry is `{}`", entry.name);
         }
         text + &dump::relocations(&self.image)
+    }
+
+    /// The address of `main`; an image of bytecode is entered before it.
+    fn main(&self) -> Option<u32> {
+        let program = self.program.as_ref().ok().and_then(Program::main);
+        program.map(GuestAddr::get).or_else(|| self.image.program.as_ref().map(|program| program.entry))
     }
 
     /// The function or object that `address` lies in.
@@ -105,5 +119,5 @@ fn program(image: &Image) -> Result<Program, String> {
         other => return Err(format!("code for target {other}")),
     }
     let text = image.section(".text").ok_or("there is no section .text")?;
-    verify(text.data(), GuestAddr::new(text.address)).map_err(|error| error.to_string())
+    verify_image(text.data(), GuestAddr::new(text.address)).map_err(|error| error.to_string())
 }

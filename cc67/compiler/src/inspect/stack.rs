@@ -31,8 +31,8 @@ pub(super) fn render(inspection: &Inspection, calls: &Calls) -> String {
         // Writing to a string cannot fail.
         let _ = writeln!(out, "{:8} {total:>9}  {}", node.frame, node.name);
     }
-    let entry = inspection.image.program.map_or(0, |program| program.entry);
-    let Some(main) = calls.nodes.iter().position(|node| node.address == entry) else { return out };
+    let entry = inspection.main();
+    let Some(main) = calls.nodes.iter().position(|node| Some(node.address) == entry) else { return out };
     let _ = match depths.get(main) {
         Some(Depth::Bytes(bytes, _)) => {
             writeln!(out, "worst chain: {} = {bytes} of {STACK_SIZE} bytes", chain(calls, &depths, main))

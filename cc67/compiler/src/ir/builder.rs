@@ -6,9 +6,9 @@
 
 use cranelift_entity::packed_option::PackedOption;
 
-use super::function::{Block, Function, Slot};
+use super::function::{Block, FrameSlot, Function};
 use super::inst::{
-    Address, Arguments, BlockId, Callee, Class, Inst, InstKind, Operand, SignatureId, SlotId, Terminator,
+    Address, ArgumentRange, BlockId, Callee, Class, Inst, InstKind, Operand, SignatureId, SlotId, Terminator,
     ValueId,
 };
 use super::operators::{BinaryOp, CompareOp, ConvertOp, UnaryOp, Width};
@@ -27,6 +27,10 @@ pub struct Builder {
     /// The function so far.
     pub function: Function,
     open: Option<BlockId>,
+    /// Index of the cost instruction of the open block, which grows as instructions follow.
+    cost: Option<usize>,
+    /// Blocks that are placed before others, with those.
+    ways: Vec<(BlockId, BlockId)>,
     span: Span,
 }
 
@@ -35,7 +39,7 @@ impl Builder {
     #[must_use]
     pub fn new(function: Function) -> Self {
         let span = function.span;
-        let mut builder = Self { function, open: None, span };
+        let mut builder = Self { function, open: None, cost: None, ways: Vec::new(), span };
         let entry = builder.block();
         builder.open(entry);
         builder
@@ -65,7 +69,7 @@ impl Builder {
 
     /// A new object in the frame.
     pub fn slot(&mut self, size: u32, align: u32) -> SlotId {
-        self.function.slots.push(Slot { size, align })
+        self.function.slots.push(FrameSlot { size, align })
     }
 
     /// A new block, to be opened later.
@@ -77,8 +81,24 @@ impl Builder {
     /// Opens a block; the one before, if still open, goes on there.
     pub fn open(&mut self, block: BlockId) {
         self.terminate(Terminator::Jump(block));
-        self.function.layout.push(block);
+        let layout = &mut self.function.layout;
+        layout.extend(self.ways.extract_if(.., |(to, _)| *to == block).map(|(_, way)| way));
+        layout.push(block);
         self.open = Some(block);
+        self.cost = None;
+    }
+
+    /// A block that only costs and goes on at `to`; it stands in front of it, if that is still to be opened.
+    pub fn way(&mut self, to: BlockId, cycles: u32) -> BlockId {
+        let span = self.span;
+        let insts = vec![Inst { kind: InstKind::Cost { cycles }, span }];
+        let way = self.function.blocks.push(Block { insts, terminator: Terminator::Jump(to), span });
+        if self.function.layout.contains(&to) {
+            self.function.layout.push(way);
+        } else {
+            self.ways.push((to, way));
+        }
+        way
     }
 
     /// Ends the open block.
@@ -112,12 +132,34 @@ impl Builder {
     pub fn insert_copy(&mut self, point: Point, dst: ValueId, src: Operand) {
         if let Some(block) = point.block.expand() {
             let inst = Inst { kind: InstKind::Copy { dst, src }, span: self.span };
-            self.function.blocks[block].insts.insert(point.index as usize, inst);
+            let index = point.index as usize;
+            self.function.blocks[block].insts.insert(index, inst);
+            if let Some(cost) = self.cost.as_mut().filter(|cost| self.open == Some(block) && index <= **cost)
+            {
+                *cost += 1;
+            }
         }
+    }
+
+    /// Adds to what the open block costs, from the last call in it on; fewer than 0 cycles take back what was added.
+    pub fn cost(&mut self, cycles: i32) {
+        let Some(block) = self.open.filter(|_| cycles != 0) else { return };
+        let insts = &mut self.function.blocks[block].insts;
+        let known = self.cost.and_then(|at| insts.get_mut(at));
+        if let Some(Inst { kind: InstKind::Cost { cycles: sum }, .. }) = known {
+            *sum = sum.saturating_add_signed(cycles);
+            return;
+        }
+        self.cost = Some(insts.len());
+        let kind = InstKind::Cost { cycles: 0_u32.saturating_add_signed(cycles) };
+        insts.push(Inst { kind, span: self.span });
     }
 
     /// Appends an instruction.
     pub fn push(&mut self, kind: InstKind) {
+        if let InstKind::Call { .. } = kind {
+            self.cost = None;
+        }
         if let Some(block) = self.open {
             self.function.blocks[block].insts.push(Inst { kind, span: self.span });
         }
@@ -171,7 +213,7 @@ impl Builder {
         let start = self.function.arguments.len();
         self.function.arguments.extend(arguments);
         let count = (self.function.arguments.len() - start) as u32;
-        let arguments = Arguments { start: start as u32, count };
+        let arguments = ArgumentRange { start: start as u32, count };
         self.push(InstKind::Call { callee, arguments, signature, dst: dst.into() });
     }
 }

@@ -6,7 +6,7 @@ use cranelift_entity::{EntityRef, PrimaryMap, SecondaryMap};
 
 use super::inst::{BlockId, Class, Inst, Operand, SignatureId, SlotId, Terminator, ValueId};
 use crate::source::Span;
-use crate::typed::SymbolId;
+use crate::typed::{LocalId, SymbolId};
 
 /// A map with room for the keys below `len`; one that grows key by key takes longer than most passes.
 #[must_use]
@@ -64,7 +64,7 @@ impl Signatures {
 
 /// An object in the frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Slot {
+pub struct FrameSlot {
     /// Bytes.
     pub size: u32,
     /// Alignment, at most 8.
@@ -82,6 +82,26 @@ pub struct Block {
     pub span: Span,
 }
 
+/// A local of the source, and where it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SourceVariable {
+    /// The local.
+    pub local: LocalId,
+    /// Where it is.
+    pub home: VariableHome,
+}
+
+/// Where a local is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum VariableHome {
+    /// In a value that was written so many times when the function was lowered.
+    Value(ValueId, u32),
+    /// In the frame.
+    Slot(SlotId),
+    /// Where a value points.
+    Pointer(ValueId),
+}
+
 /// A function.
 #[derive(Clone, Debug)]
 pub struct Function {
@@ -94,7 +114,9 @@ pub struct Function {
     /// The class of every value.
     pub values: PrimaryMap<ValueId, Class>,
     /// Objects in the frame.
-    pub slots: PrimaryMap<SlotId, Slot>,
+    pub slots: PrimaryMap<SlotId, FrameSlot>,
+    /// The object that holds the variable arguments of calls.
+    pub outgoing: Option<SlotId>,
     /// Every block, also those that `layout` has dropped.
     pub blocks: PrimaryMap<BlockId, Block>,
     /// The blocks that exist, in the order of the code; the first is the entry.
@@ -105,6 +127,8 @@ pub struct Function {
     pub span: Span,
     /// Its closing brace.
     pub end: Span,
+    /// Where the source's locals are.
+    pub variables: Vec<SourceVariable>,
 }
 
 impl Function {
@@ -117,12 +141,21 @@ impl Function {
             params: Vec::new(),
             values: PrimaryMap::new(),
             slots: PrimaryMap::new(),
+            outgoing: None,
             blocks: PrimaryMap::new(),
             layout: Vec::new(),
             arguments: Vec::new(),
             span,
             end,
+            variables: Vec::new(),
         }
+    }
+
+    /// How often a value is written.
+    #[must_use]
+    pub fn writes(&self, value: ValueId) -> u32 {
+        let insts = self.layout.iter().flat_map(|id| &self.blocks[*id].insts);
+        insts.filter(|inst| inst.kind.dst() == Some(value)).count() as u32
     }
 
     /// The class of an operand.

@@ -2,23 +2,12 @@
 //!
 //! Which class of value an instruction works on follows from its operands.
 
-use std::fmt;
-
-use cranelift_entity::entity_impl;
 use cranelift_entity::packed_option::PackedOption;
 
-use super::operators::{BinaryOp, CompareOp, ConvertOp, UnaryOp, Width};
+use super::operators::{BinaryOp, CompareOp, ConvertOp, UnaryOp, Width, named};
+use crate::index::index;
 use crate::source::Span;
 use crate::typed::SymbolId;
-
-macro_rules! index {
-    ($($(#[$doc:meta])* $name:ident, $prefix:literal;)*) => {$(
-        $(#[$doc])*
-        #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-        pub struct $name(u32);
-        entity_impl!($name, $prefix);
-    )*};
-}
 
 index! {
     /// A value: a virtual register of one class.
@@ -31,24 +20,28 @@ index! {
     SignatureId, "sig";
 }
 
-/// What a value can hold.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Class {
-    /// 32-bit integer or address.
-    I32,
-    /// 64-bit integer.
-    I64,
-    /// IEEE single.
-    F32,
-    /// IEEE double.
-    F64,
+named! {
+    /// What a value can hold.
+    Class {
+        /// 32-bit integer or address.
+        I32 = "i32";
+        /// 64-bit integer.
+        I64 = "i64";
+        /// IEEE single.
+        F32 = "f32";
+        /// IEEE double.
+        F64 = "f64";
+    }
 }
 
 impl Class {
     /// Whether it is one of the integer classes.
     #[must_use]
     pub const fn is_integer(self) -> bool {
-        matches!(self, Self::I32 | Self::I64)
+        match self {
+            Self::I32 | Self::I64 => true,
+            Self::F32 | Self::F64 => false,
+        }
     }
 
     /// Zero of this class.
@@ -60,17 +53,6 @@ impl Class {
             Self::F32 => Constant::F32(0),
             Self::F64 => Constant::F64(0),
         }
-    }
-}
-
-impl fmt::Display for Class {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::I32 => "i32",
-            Self::I64 => "i64",
-            Self::F32 => "f32",
-            Self::F64 => "f64",
-        })
     }
 }
 
@@ -91,6 +73,17 @@ pub enum Constant {
 }
 
 impl Constant {
+    /// The number `value` in a class; an integer is cut to the width of the class.
+    #[must_use]
+    pub const fn number(class: Class, value: i64) -> Self {
+        match class {
+            Class::I32 => Self::I32(value as i32),
+            Class::I64 => Self::I64(value),
+            Class::F32 => Self::F32((value as f32).to_bits()),
+            Class::F64 => Self::F64((value as f64).to_bits()),
+        }
+    }
+
     /// The class of the constant.
     #[must_use]
     pub const fn class(self) -> Class {
@@ -133,7 +126,7 @@ impl Operand {
     pub const fn as_int(self) -> Option<i32> {
         match self {
             Self::Constant(Constant::I32(value)) => Some(value),
-            _ => None,
+            Self::Value(_) | Self::Constant(_) => None,
         }
     }
 }
@@ -208,16 +201,16 @@ pub enum Callee {
     Pointer(Operand),
 }
 
-/// Arguments of a call: a range of the function's argument list.
+/// The arguments of a call: a range of the function's argument list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Arguments {
+pub struct ArgumentRange {
     /// Index of the first.
     pub start: u32,
     /// How many.
     pub count: u32,
 }
 
-impl Arguments {
+impl ArgumentRange {
     /// The range as indexes.
     #[must_use]
     pub const fn range(self) -> std::ops::Range<usize> {
@@ -332,11 +325,18 @@ pub enum InstKind {
         /// What is called.
         callee: Callee,
         /// The arguments, of the classes that the signature names.
-        arguments: Arguments,
+        arguments: ArgumentRange,
         /// The signature.
         signature: SignatureId,
         /// Written, if the result is wanted.
         dst: PackedOption<ValueId>,
+    },
+    /// Spends board time and does nothing else: what the vendor's code for the source takes.
+    ///
+    /// A function with one of these is charged for these alone, whatever its other instructions cost.
+    Cost {
+        /// Cycles of 5 ns.
+        cycles: u32,
     },
 }
 
@@ -353,7 +353,9 @@ impl InstKind {
             | Self::Load { dst, .. }
             | Self::FrameAddress { dst, .. } => Some(dst),
             Self::Call { dst, .. } => dst.expand(),
-            Self::Store { .. } | Self::CopyMemory { .. } | Self::ClearMemory { .. } => None,
+            Self::Store { .. } | Self::CopyMemory { .. } | Self::ClearMemory { .. } | Self::Cost { .. } => {
+                None
+            }
         }
     }
 
@@ -377,17 +379,20 @@ impl InstKind {
             }
             Self::ClearMemory { to, .. } => visit_base(to, &mut visit),
             Self::Call { callee: Callee::Pointer(target), .. } => visit(target),
-            Self::FrameAddress { .. } | Self::Call { callee: Callee::Symbol(_), .. } => {}
+            Self::FrameAddress { .. } | Self::Call { callee: Callee::Symbol(_), .. } | Self::Cost { .. } => {}
         }
     }
 
     /// The range of the function's argument list that is read.
     #[must_use]
-    pub const fn arguments(&self) -> Option<Arguments> {
-        match *self {
-            Self::Call { arguments, .. } => Some(arguments),
-            _ => None,
-        }
+    pub const fn arguments(&self) -> Option<ArgumentRange> {
+        if let Self::Call { arguments, .. } = *self { Some(arguments) } else { None }
+    }
+
+    /// The signature of a call.
+    #[must_use]
+    pub const fn signature(&self) -> Option<SignatureId> {
+        if let Self::Call { signature, .. } = *self { Some(signature) } else { None }
     }
 
     /// Whether the instruction does more than write its value: it must stay even if nobody reads that.
@@ -399,7 +404,8 @@ impl InstKind {
             | Self::Store { .. }
             | Self::CopyMemory { .. }
             | Self::ClearMemory { .. }
-            | Self::Call { .. } => true,
+            | Self::Call { .. }
+            | Self::Cost { .. } => true,
             Self::Binary { op, b, .. } => op.may_trap(class) && !is_nonzero(*b),
             Self::Copy { .. }
             | Self::Unary { .. }

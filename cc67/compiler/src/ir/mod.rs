@@ -10,8 +10,10 @@
 //! `copy_memory`, `clear_memory` and calls; no pass may drop, merge or move one of these.
 
 pub mod builder;
+mod classes;
 pub mod function;
 pub mod inst;
 pub mod operators;
+pub mod parse;
 pub mod text;
 pub mod verify;

@@ -1,130 +1,211 @@
 //! Operators, comparisons, conversions and widths of memory accesses.
 //!
 //! Operators name signedness where it matters, as the machine's instructions do. `>` and `>=`
-//! do not exist: whoever builds a comparison swaps its operands.
-
-use std::fmt;
+//! do not exist: whoever builds a comparison swaps its operands. What passes and back ends ask of an
+//! operator stands in its row.
 
 use super::inst::Class;
 
-macro_rules! operators {
-    ($(#[$doc:meta])* $type:ident { $($(#[$variant_doc:meta])* $variant:ident = $name:literal,)* }) => {
+/// An enum whose variants have names in the text form.
+macro_rules! named {
+    ($(#[$doc:meta])* $type:ident { $($(#[$variant_doc:meta])* $variant:ident = $name:literal;)* }) => {
         $(#[$doc])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum $type {
             $($(#[$variant_doc])* $variant,)*
         }
 
         impl $type {
+            /// Every one, in the order of the table.
+            pub const ALL: &[Self] = &[$(Self::$variant,)*];
+
             /// The name in the text form.
             #[must_use]
             pub const fn name(self) -> &'static str {
                 match self {
                     $(Self::$variant => $name,)*
+                }
+            }
+
+            /// The one with this name in the text form.
+            #[must_use]
+            pub fn from_name(name: &str) -> Option<Self> {
+                match name {
+                    $($name => Some(Self::$variant),)*
+                    _ => None,
+                }
+            }
+        }
+
+        impl std::fmt::Display for $type {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str(self.name())
+            }
+        }
+    };
+}
+pub(super) use named;
+
+named! {
+    /// Operators on one value.
+    UnaryOp {
+        /// `-a`, wrapping for integers
+        Negate = "neg";
+        /// `~a`, integers
+        Complement = "not";
+    }
+}
+
+impl UnaryOp {
+    /// Whether there is such an operator on values of a class.
+    #[must_use]
+    pub const fn works_on(self, class: Class) -> bool {
+        match self {
+            Self::Negate => true,
+            Self::Complement => class.is_integer(),
+        }
+    }
+}
+
+/// What the two operands of an operator are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Domain {
+    /// Both of the class of the result.
+    Any,
+    /// Both of the class of the result, which is an integer one.
+    Integer,
+    /// An integer of the class of the result, and a count of class `I32`.
+    Shift,
+}
+
+/// What a row says of an operator.
+#[derive(Clone, Copy, Debug)]
+struct Facts {
+    domain: Domain,
+    /// The operands can change places.
+    commutative: bool,
+    /// The second operand divides the first.
+    divides: bool,
+}
+
+macro_rules! binary_operators {
+    ($($(#[$doc:meta])* $variant:ident = $name:literal: $domain:ident $($fact:ident)*;)*) => {
+        named! {
+            /// Operators on two values of one class; a shift count is always `I32`.
+            BinaryOp { $($(#[$doc])* $variant = $name;)* }
+        }
+
+        impl BinaryOp {
+            const fn facts(self) -> Facts {
+                match self {
+                    $(Self::$variant => Facts {
+                        $($fact: true,)*
+                        ..Facts { domain: Domain::$domain, commutative: false, divides: false }
+                    },)*
                 }
             }
         }
     };
 }
 
-operators! {
-    /// Operators on one value.
-    UnaryOp {
-        /// `-a`, wrapping for integers
-        Negate = "neg",
-        /// `~a`, integers
-        Complement = "not",
-    }
-}
-
-operators! {
-    /// Operators on two values of one class; a shift count is always `I32`.
-    BinaryOp {
-        /// `a + b`
-        Add = "add",
-        /// `a - b`
-        Subtract = "sub",
-        /// `a * b`
-        Multiply = "mul",
-        /// `a / b`, floating or signed toward zero
-        Divide = "div",
-        /// `a / b`, unsigned
-        DivideUnsigned = "div_u",
-        /// `a % b` with the sign of `a`
-        Remainder = "rem",
-        /// `a % b`, unsigned
-        RemainderUnsigned = "rem_u",
-        /// `a & b`
-        And = "and",
-        /// `a | b`
-        Or = "or",
-        /// `a ^ b`
-        Xor = "xor",
-        /// `a << b`, the count modulo 64
-        ShiftLeft = "shl",
-        /// `a >> b`, arithmetic, the count modulo 64
-        ShiftRight = "shr",
-        /// `a >> b`, logical, the count modulo 64
-        ShiftRightUnsigned = "shr_u",
-    }
+binary_operators! {
+    /// `a + b`
+    Add = "add": Any commutative;
+    /// `a - b`
+    Subtract = "sub": Any;
+    /// `a * b`
+    Multiply = "mul": Any commutative;
+    /// `a / b`, floating or signed toward zero
+    Divide = "div": Any divides;
+    /// `a / b`, unsigned
+    DivideUnsigned = "div_u": Integer divides;
+    /// `a % b` with the sign of `a`
+    Remainder = "rem": Integer divides;
+    /// `a % b`, unsigned
+    RemainderUnsigned = "rem_u": Integer divides;
+    /// `a & b`
+    And = "and": Integer commutative;
+    /// `a | b`
+    Or = "or": Integer commutative;
+    /// `a ^ b`
+    Xor = "xor": Integer commutative;
+    /// `a << b`, the count modulo 64
+    ShiftLeft = "shl": Shift;
+    /// `a >> b`, arithmetic, the count modulo 64
+    ShiftRight = "shr": Shift;
+    /// `a >> b`, logical, the count modulo 64
+    ShiftRightUnsigned = "shr_u": Shift;
 }
 
 impl BinaryOp {
+    /// Whether there is such an operator on values of a class.
+    #[must_use]
+    pub const fn works_on(self, class: Class) -> bool {
+        match self.facts().domain {
+            Domain::Any => true,
+            Domain::Integer | Domain::Shift => class.is_integer(),
+        }
+    }
+
     /// Whether the second operand is a shift count.
     #[must_use]
     pub const fn is_shift(self) -> bool {
-        matches!(self, Self::ShiftLeft | Self::ShiftRight | Self::ShiftRightUnsigned)
+        match self.facts().domain {
+            Domain::Any | Domain::Integer => false,
+            Domain::Shift => true,
+        }
     }
 
     /// Whether the operands can change places.
     #[must_use]
     pub const fn is_commutative(self) -> bool {
-        matches!(self, Self::Add | Self::Multiply | Self::And | Self::Or | Self::Xor)
+        self.facts().commutative
     }
 
     /// Whether a zero divisor traps, so that the instruction must stay; floating division never does.
     #[must_use]
     pub const fn may_trap(self, class: Class) -> bool {
-        class.is_integer()
-            && matches!(self, Self::Divide | Self::DivideUnsigned | Self::Remainder | Self::RemainderUnsigned)
+        class.is_integer() && self.facts().divides
     }
 }
 
-operators! {
+named! {
     /// Comparisons; the result is `I32` 0 or 1, false for a NaN except `NotEqual`.
     CompareOp {
         /// `a == b`
-        Equal = "eq",
+        Equal = "eq";
         /// `a != b`
-        NotEqual = "ne",
+        NotEqual = "ne";
         /// `a < b`, floating or signed
-        Less = "lt",
+        Less = "lt";
         /// `a <= b`, floating or signed
-        LessEqual = "le",
+        LessEqual = "le";
         /// `a < b`, unsigned
-        LessUnsigned = "lt_u",
+        LessUnsigned = "lt_u";
         /// `a <= b`, unsigned
-        LessEqualUnsigned = "le_u",
+        LessEqualUnsigned = "le_u";
+    }
+}
+
+impl CompareOp {
+    /// Whether the operands can change places.
+    #[must_use]
+    pub const fn is_symmetric(self) -> bool {
+        match self {
+            Self::Equal | Self::NotEqual => true,
+            Self::Less | Self::LessEqual | Self::LessUnsigned | Self::LessEqualUnsigned => false,
+        }
     }
 }
 
 macro_rules! conversions {
     ($($(#[$doc:meta])* $variant:ident = $name:literal: $from:ident -> $to:ident;)*) => {
-        /// Conversions between classes, and the narrowing of integers within `I32`.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-        pub enum ConvertOp {
-            $($(#[$doc])* $variant,)*
+        named! {
+            /// Conversions between classes, and the narrowing of integers within `I32`.
+            ConvertOp { $($(#[$doc])* $variant = $name;)* }
         }
 
         impl ConvertOp {
-            /// The name in the text form.
-            #[must_use]
-            pub const fn name(self) -> &'static str {
-                match self {
-                    $(Self::$variant => $name,)*
-                }
-            }
-
             /// The class that is read.
             #[must_use]
             pub const fn from(self) -> Class {
@@ -193,25 +274,26 @@ conversions! {
     U64FromF64 = "i64_from_f64_u": F64 -> I64;
 }
 
-/// How many bytes a load or store moves and how a load widens them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Width {
-    /// A byte, sign-extended by a load.
-    I8,
-    /// A byte, zero-extended by a load.
-    U8,
-    /// Two bytes, sign-extended by a load.
-    I16,
-    /// Two bytes, zero-extended by a load.
-    U16,
-    /// A 32-bit integer.
-    I32,
-    /// A 64-bit integer.
-    I64,
-    /// A single.
-    F32,
-    /// A double.
-    F64,
+named! {
+    /// How many bytes a load or store moves and how a load widens them.
+    Width {
+        /// A byte, sign-extended by a load.
+        I8 = "i8";
+        /// A byte, zero-extended by a load.
+        U8 = "u8";
+        /// Two bytes, sign-extended by a load.
+        I16 = "i16";
+        /// Two bytes, zero-extended by a load.
+        U16 = "u16";
+        /// A 32-bit integer.
+        I32 = "i32";
+        /// A 64-bit integer.
+        I64 = "i64";
+        /// A single.
+        F32 = "f32";
+        /// A double.
+        F64 = "f64";
+    }
 }
 
 impl Width {
@@ -247,20 +329,5 @@ impl Width {
             Self::U16 => Some(ConvertOp::ZeroExtend16),
             Self::I32 | Self::I64 | Self::F32 | Self::F64 => None,
         }
-    }
-}
-
-impl fmt::Display for Width {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::I8 => "i8",
-            Self::U8 => "u8",
-            Self::I16 => "i16",
-            Self::U16 => "u16",
-            Self::I32 => "i32",
-            Self::I64 => "i64",
-            Self::F32 => "f32",
-            Self::F64 => "f64",
-        })
     }
 }

@@ -1,23 +1,45 @@
-//! The text form of a function, for `--emit ir` and for tests.
+//! The text form of a function, which [`super::parse`] reads back.
 //!
 //! ```text
+//! ; what follows a semicolon is a comment
 //! function clamp(v0: i32) -> i32
 //!   slot0: 16 bytes, align 8
+//!   v3: f64
 //! block0:
 //!   v1 = lt.i32 v0, 0
+//!   v2 = call.i32 limit(v0, &table + 4, 1.5)
+//!   store.f64 v3, [slot0 + 8]
 //!   branch v1, block1, block2
 //! ```
+//!
+//! An operator is followed by the class of its operands, a load or store by the width of what it moves, a call by the
+//! class of its result, wanted or not. Constants are `1` (`i32`), `1L` (`i64`), `1.0f` (`f32`), `1.0` (`f64`) and
+//! `&symbol + 4`; infinities and NaNs are their bits, `f64(0x7ff0000000000000)`. A symbol with the name of a value or
+//! slot has an `@` in front. A value whose class no instruction names ([`super::classes`]) is declared after the slots.
+//!
+//! Places in the source, and values and blocks that nothing mentions, are not part of the text.
 
 use std::fmt::{self, Write};
 
+use super::classes::Classes;
 use super::function::{Function, Signatures};
-use super::inst::{Address, Base, Callee, Class, Constant, InstKind, Operand, Terminator};
+use super::inst::{
+    Address, Base, Callee, Class, Constant, InstKind, Operand, SignatureId, Terminator, ValueId,
+};
 use crate::typed::SymbolId;
 
 /// How symbols are called in the text.
 pub trait SymbolNames {
     /// The name of a symbol.
     fn symbol_name(&self, symbol: SymbolId) -> &str;
+}
+
+/// Whether a name is that of a value or slot, so that a symbol of this name is marked in the text.
+pub(super) fn is_taken(name: &str) -> bool {
+    ["v", "slot"].iter().any(|prefix| {
+        let number = name.strip_prefix(prefix);
+        number.is_some_and(|digits| !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit()))
+    })
 }
 
 impl SymbolNames for cranelift_entity::PrimaryMap<SymbolId, crate::typed::Symbol> {
@@ -29,23 +51,25 @@ impl SymbolNames for cranelift_entity::PrimaryMap<SymbolId, crate::typed::Symbol
 /// Prints a function.
 #[must_use]
 pub fn print(function: &Function, signatures: &Signatures, names: &dyn SymbolNames) -> String {
-    let mut printer = Printer { function, signatures, names, out: String::new() };
+    let mut printer = FunctionPrinter { function, signatures, names, out: String::new() };
     // Writing to a string cannot fail.
     let _ = printer.function();
     printer.out
 }
 
-struct Printer<'a> {
+struct FunctionPrinter<'a> {
     function: &'a Function,
     signatures: &'a Signatures,
     names: &'a dyn SymbolNames,
     out: String,
 }
 
-impl Printer<'_> {
+impl FunctionPrinter<'_> {
     fn function(&mut self) -> fmt::Result {
         let function = self.function;
-        write!(self.out, "function {}(", self.names.symbol_name(function.symbol))?;
+        write!(self.out, "function ")?;
+        self.symbol(function.symbol)?;
+        write!(self.out, "(")?;
         for (index, param) in function.params.iter().enumerate() {
             let separator = if index == 0 { "" } else { ", " };
             write!(self.out, "{separator}{param}: {}", function.values[*param])?;
@@ -57,6 +81,9 @@ impl Printer<'_> {
         writeln!(self.out)?;
         for (id, slot) in &function.slots {
             writeln!(self.out, "  {id}: {} bytes, align {}", slot.size, slot.align)?;
+        }
+        for value in undeclared(function) {
+            writeln!(self.out, "  {value}: {}", function.values[value])?;
         }
         for id in &function.layout {
             let block = &function.blocks[*id];
@@ -110,8 +137,9 @@ impl Printer<'_> {
                 self.address(to)?;
                 write!(self.out, ", {len}")
             }
-            InstKind::Call { callee, arguments, .. } => {
-                self.call(callee, &self.function.arguments[arguments.range()])
+            InstKind::Cost { cycles } => write!(self.out, "cost {cycles}"),
+            InstKind::Call { callee, arguments, signature, .. } => {
+                self.call(callee, signature, &self.function.arguments[arguments.range()])
             }
         }
     }
@@ -138,24 +166,41 @@ impl Printer<'_> {
             Operand::Value(value) => write!(self.out, "{value}"),
             Operand::Constant(Constant::I32(value)) => write!(self.out, "{value}"),
             Operand::Constant(Constant::I64(value)) => write!(self.out, "{value}L"),
-            Operand::Constant(Constant::F32(bits)) => write!(self.out, "{:?}f", f32::from_bits(bits)),
-            Operand::Constant(Constant::F64(bits)) => write!(self.out, "{:?}", f64::from_bits(bits)),
+            Operand::Constant(Constant::F32(bits)) => match f32::from_bits(bits) {
+                value if value.is_finite() => write!(self.out, "{value:?}f"),
+                _ => write!(self.out, "f32({bits:#010x})"),
+            },
+            Operand::Constant(Constant::F64(bits)) => match f64::from_bits(bits) {
+                value if value.is_finite() => write!(self.out, "{value:?}"),
+                _ => write!(self.out, "f64({bits:#018x})"),
+            },
             Operand::Constant(Constant::Symbol(symbol, offset)) => {
-                write!(self.out, "&{}", self.names.symbol_name(symbol))?;
+                write!(self.out, "&")?;
+                self.symbol(symbol)?;
                 self.offset(offset)
             }
         }
     }
 
-    fn call(&mut self, callee: Callee, arguments: &[Operand]) -> fmt::Result {
+    fn symbol(&mut self, symbol: SymbolId) -> fmt::Result {
+        let name = self.names.symbol_name(symbol);
+        write!(self.out, "{}{name}", if is_taken(name) { "@" } else { "" })
+    }
+
+    fn call(&mut self, callee: Callee, signature: SignatureId, arguments: &[Operand]) -> fmt::Result {
+        match self.signatures.get(signature).result {
+            Some(class) => write!(self.out, "call.{class} ")?,
+            None => write!(self.out, "call ")?,
+        }
         match callee {
-            Callee::Symbol(symbol) => write!(self.out, "call {}(", self.names.symbol_name(symbol))?,
+            Callee::Symbol(symbol) => self.symbol(symbol)?,
             Callee::Pointer(target) => {
-                write!(self.out, "call [")?;
+                write!(self.out, "[")?;
                 self.operand(target)?;
-                write!(self.out, "](")?;
+                write!(self.out, "]")?;
             }
         }
+        write!(self.out, "(")?;
         self.operands(arguments)?;
         write!(self.out, ")")
     }
@@ -165,7 +210,10 @@ impl Printer<'_> {
             Base::Absolute => return write!(self.out, "[{:#010x}]", address.offset),
             Base::Value(value) => write!(self.out, "[{value}")?,
             Base::Slot(slot) => write!(self.out, "[{slot}")?,
-            Base::Symbol(symbol) => write!(self.out, "[{}", self.names.symbol_name(symbol))?,
+            Base::Symbol(symbol) => {
+                write!(self.out, "[")?;
+                self.symbol(symbol)?;
+            }
         }
         self.offset(address.offset)?;
         write!(self.out, "]")
@@ -190,8 +238,9 @@ impl Printer<'_> {
             Terminator::Table { index, targets, default } => {
                 write!(self.out, "  table ")?;
                 self.operand(*index)?;
+                write!(self.out, ", [")?;
                 for (at, target) in targets.iter().enumerate() {
-                    write!(self.out, "{}{target}", if at == 0 { ", [" } else { ", " })?;
+                    write!(self.out, "{}{target}", if at == 0 { "" } else { ", " })?;
                 }
                 write!(self.out, "], {default}")?;
             }
@@ -206,4 +255,37 @@ impl Printer<'_> {
         }
         writeln!(self.out)
     }
+}
+
+/// The values that are read and whose class no instruction says, in the order of their numbers.
+fn undeclared(function: &Function) -> Vec<ValueId> {
+    let mut classes = Classes::default();
+    let mut read = Vec::new();
+    for param in &function.params {
+        let _ = classes.say(*param, function.values[*param]);
+    }
+    for id in &function.layout {
+        let block = &function.blocks[*id];
+        for inst in &block.insts {
+            let mut kind = inst.kind;
+            kind.visit_operands(|operand| read.extend(operand.as_value()));
+            if let Some(arguments) = kind.arguments() {
+                let arguments = &function.arguments[arguments.range()];
+                read.extend(arguments.iter().filter_map(|argument| argument.as_value()));
+            }
+            match (kind, kind.dst()) {
+                (InstKind::Copy { dst, src: Operand::Value(src) }, _) => classes.copy(dst, src),
+                (_, Some(dst)) => {
+                    let _ = classes.say(dst, function.values[dst]);
+                }
+                (_, None) => {}
+            }
+        }
+        read.extend(block.terminator.operand().and_then(Operand::as_value));
+    }
+    classes.settle();
+    read.sort_unstable();
+    read.dedup();
+    read.retain(|value| classes.get(*value).is_none());
+    read
 }

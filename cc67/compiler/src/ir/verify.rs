@@ -3,10 +3,7 @@
 //! A finding is a defect of the compiler, never of the user's program.
 
 use super::function::{Function, Signatures};
-use super::inst::Base;
-use super::inst::{Address, BlockId, Callee, Class, InstKind, Operand, Terminator};
-use super::operators::BinaryOp;
-use super::operators::UnaryOp;
+use super::inst::{Address, Base, BlockId, Callee, Class, InstKind, Operand, Terminator};
 
 /// What is wrong, and where.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -49,12 +46,11 @@ impl Checker<'_> {
             InstKind::Copy { src, .. } => self.expect(src, dst),
             InstKind::Unary { op, src, .. } => {
                 self.expect(src, dst)?;
-                check(op == UnaryOp::Negate || self.class(src)?.is_integer(), "complement of a float")
+                check(op.works_on(self.class(src)?), "no such operator on the class")
             }
             InstKind::Binary { op, a, b, .. } => {
                 self.expect(a, dst)?;
-                let floating = [BinaryOp::Add, BinaryOp::Subtract, BinaryOp::Multiply, BinaryOp::Divide];
-                check(self.class(a)?.is_integer() || floating.contains(&op), "integer operator on floats")?;
+                check(op.works_on(self.class(a)?), "no such operator on the class")?;
                 self.expect(b, if op.is_shift() { Some(Class::I32) } else { dst })
             }
             InstKind::Compare { a, b, .. } => {
@@ -82,6 +78,7 @@ impl Checker<'_> {
                 self.address(from)
             }
             InstKind::ClearMemory { to, .. } => self.address(to),
+            InstKind::Cost { .. } => Ok(()),
             InstKind::Call { callee, arguments, signature, .. } => {
                 if let Callee::Pointer(target) = callee {
                     self.expect(target, Some(Class::I32))?;

@@ -67,6 +67,9 @@ pub enum LinkErrorKind {
         /// The largest symbols, `name (bytes)`.
         largest: Vec<String>,
     },
+    /// Objects for the simulated board and for the controller's processor.
+    #[error("its code is for another target than that of the first file")]
+    OtherTarget,
     /// More signatures than the bytecode can number.
     #[error("the program uses too many different function types")]
     TooManySignatures,
@@ -109,6 +112,7 @@ impl LinkError {
             }
             LinkErrorKind::NotAFunction { .. }
             | LinkErrorKind::CallMismatch { .. }
+            | LinkErrorKind::OtherTarget
             | LinkErrorKind::TooManySignatures => diagnostic,
         }
     }
@@ -140,7 +144,18 @@ pub enum LinkWarning {
         excess: u32,
         /// The threads whose space is entered.
         entered: Vec<u8>,
+        /// The largest symbols, `name (bytes)`.
+        largest: Vec<String>,
     },
+}
+
+impl LinkWarning {
+    /// The warning as it is shown.
+    pub(crate) fn to_diagnostic(&self) -> Diagnostic {
+        let Self::EntersOtherThreads { largest, .. } = self;
+        Diagnostic::global_warning(self.to_string())
+            .note(format!("the largest parts in bytes: {}", largest.join(", ")))
+    }
 }
 
 fn list(threads: &[u8]) -> String {

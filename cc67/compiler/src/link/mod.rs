@@ -10,6 +10,7 @@
 mod error;
 mod names;
 mod place;
+mod processor;
 mod reach;
 mod text;
 
@@ -51,16 +52,19 @@ pub struct SectionAddresses {
 pub struct Linked {
     /// The thread it is for.
     pub thread: ThreadId,
+    /// What its code is for.
+    pub target: crate::target::Target,
     /// The text.
     pub text: LinkedSection,
     /// The initialised data.
     pub data: LinkedSection,
     /// The uninitialised data.
     pub bss: Uninitialized,
-    /// Address of `main`.
+    /// Where a thread begins to execute it: `main`, or the words before bytecode, which lead the simulated board there
+    /// and let a processor return.
     pub entry: GuestAddr,
-    /// Version of the firmware that it is linked against.
-    pub version_stamp: i16,
+    /// What it needs of the firmware.
+    pub firmware: LinkedFirmware,
     /// Source files.
     pub files: Vec<String>,
     /// The program's symbols: functions, then objects, each in the order of their addresses.
@@ -69,10 +73,17 @@ pub struct Linked {
     pub functions: Vec<LinkedFunction>,
     /// Where source lines begin, ascending.
     pub lines: Vec<LinkedLine>,
-    /// The firmware's symbols that the program refers to.
-    pub imports: Vec<Import>,
     /// What deserves a warning.
     pub warnings: Vec<LinkWarning>,
+}
+
+/// The firmware that a program is linked against.
+#[derive(Clone, Debug)]
+pub struct LinkedFirmware {
+    /// Its version.
+    pub version_stamp: i16,
+    /// Its symbols that the program refers to.
+    pub imports: Vec<Import>,
 }
 
 /// A section with its bytes.
@@ -159,24 +170,29 @@ pub struct Import {
 /// # Errors
 /// Everything that keeps the program from being linked.
 pub fn link(objects: &[Object], options: &Options<'_>) -> Result<Linked, Vec<LinkError>> {
+    processor::check_targets(objects)?;
     let names = names::Names::collect(objects)?;
     let reached = reach::reach(objects, &names, options)?;
     let base = options.addresses.text.unwrap_or_else(|| program_base(options.thread));
-    let layout = text::Layout::new(objects, &reached)?;
-    let placed = place::place(objects, &names, &reached, &layout, base, &options.addresses);
+    let layout = text::Layout::new(objects, &reached, base)?;
+    let code = base.offset(layout.guard);
+    let placed = place::place(objects, &names, &reached, &layout, code, &options.addresses);
     let warnings = place::check_size(&placed, base)?;
-    let addresses = text::Addresses { base, reached: &reached, placed: &placed };
+    let addresses = text::Addresses { base: code, reached: &reached, placed: &placed };
     Ok(Linked {
         thread: options.thread,
+        target: processor::target(objects),
         text: LinkedSection { address: base, bytes: text::text(objects, &layout, &addresses)? },
         data: LinkedSection { address: placed.data_address, bytes: text::data(objects, &addresses) },
         bss: Uninitialized { address: placed.bss_address, size: placed.bss_size },
-        entry: placed.function(reached.main),
-        version_stamp: options.firmware.version_stamp(),
+        entry: if layout.guard > 0 { base } else { placed.function(reached.main) },
+        firmware: LinkedFirmware {
+            version_stamp: options.firmware.version_stamp(),
+            imports: reached.imports,
+        },
         files: layout.files.clone(),
         functions: text::functions(objects, &layout),
-        lines: text::lines(objects, &layout, base),
-        imports: reached.imports,
+        lines: text::lines(objects, &layout, code),
         symbols: placed.symbols,
         warnings,
     })

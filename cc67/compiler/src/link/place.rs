@@ -8,7 +8,6 @@ use super::names::Names;
 use super::reach::Reached;
 use super::text::Layout;
 use super::{LinkedSymbol, Section, SectionAddresses};
-use crate::bytecode::WORD;
 use crate::object::{Object, Symbol};
 
 /// Sections start at multiples of so many bytes.
@@ -48,7 +47,7 @@ pub(super) fn place(
     base: GuestAddr,
     addresses: &SectionAddresses,
 ) -> Placed {
-    let text_end = base.get().saturating_add(layout.words * WORD as u32);
+    let text_end = base.get().saturating_add(layout.words * layout.word_bytes);
     let data_address = addresses.data.unwrap_or_else(|| behind(text_end));
     let mut placed = Placed {
         data_address,
@@ -62,9 +61,9 @@ pub(super) fn place(
     };
     for (object, index, word) in &layout.functions {
         let function = &objects[*object].functions[*index as usize];
-        let address = base.offset(word * WORD as u32);
+        let address = base.offset(word * layout.word_bytes);
         placed.functions[*object][*index as usize] = address;
-        let size = (function.words.end - function.words.start) * WORD as u32;
+        let size = (function.words.end - function.words.start) * layout.word_bytes;
         let symbol = &objects[*object].symbols[function.symbol];
         placed.symbols.push(linked(symbol, address, size, Section::Text, layout, *object));
     }
@@ -147,11 +146,8 @@ pub(super) fn check_size(placed: &Placed, text: GuestAddr) -> Result<Vec<LinkWar
     }
     let end = placed.bss_address.get().saturating_add(placed.bss_size);
     if end > STACK_BASE {
-        let mut symbols: Vec<&LinkedSymbol> = placed.symbols.iter().collect();
-        symbols.sort_by_key(|symbol| std::cmp::Reverse(symbol.size));
-        let largest = symbols.iter().take(NAMED).map(|symbol| format!("{} ({})", symbol.name, symbol.size));
         let (excess, space) = (end - STACK_BASE, STACK_BASE - text.get());
-        let kind = LinkErrorKind::TooLarge { excess, space, largest: largest.collect() };
+        let kind = LinkErrorKind::TooLarge { excess, space, largest: largest(placed) };
         return Err(vec![LinkError::global(kind)]);
     }
     // The thread in whose space the text begins.
@@ -162,5 +158,13 @@ pub(super) fn check_size(placed: &Placed, text: GuestAddr) -> Result<Vec<LinkWar
     }
     let last = (end - 1 - PROGRAM_BASE) / PROGRAM_SIZE + 1;
     let entered = (own as u8 + 1..=last as u8).collect();
-    Ok(vec![LinkWarning::EntersOtherThreads { excess: end - own_end, entered }])
+    let excess = end - own_end;
+    Ok(vec![LinkWarning::EntersOtherThreads { excess, entered, largest: largest(placed) }])
+}
+
+/// The largest symbols, `name (bytes)`.
+fn largest(placed: &Placed) -> Vec<String> {
+    let mut symbols: Vec<&LinkedSymbol> = placed.symbols.iter().collect();
+    symbols.sort_by_key(|symbol| std::cmp::Reverse(symbol.size));
+    symbols.iter().take(NAMED).map(|symbol| format!("{} ({})", symbol.name, symbol.size)).collect()
 }

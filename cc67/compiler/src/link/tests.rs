@@ -1,5 +1,6 @@
 //! Names, placement, sizes and messages.
 
+use kmotiondef::timing::Timing;
 use kmotiondef::{GuestAddr, ThreadId};
 
 use super::{LinkError, Linked, Options, Section, SectionAddresses, link};
@@ -33,7 +34,7 @@ impl FirmwareSymbols for Fake {
 
 fn object(source: &str) -> Object {
     let (unit, sources) = testing::unit(source);
-    generate(&unit, &sources, Level::Full, &mut Sink::new())
+    generate(&unit, &sources, (Level::Full, Timing::Fast), &mut Sink::new())
 }
 
 fn try_link(sources: &[&str], thread: i32, gc: bool) -> Result<Linked, Vec<LinkError>> {
@@ -105,13 +106,13 @@ fn data_hold_addresses_of_objects_functions_and_the_firmware() {
     assert_eq!(word(&linked, "p"), address(&linked, "t") + 8);
     assert_eq!(word(&linked, "q"), address(&linked, "f"));
     assert_eq!(word(&linked, "r"), 0x1000_104c);
-    assert_eq!(linked.imports.len(), 1);
+    assert_eq!(linked.firmware.imports.len(), 1);
 }
 
 #[test]
 fn a_programs_own_definition_wins_over_the_firmwares() {
     let linked = linked(&["int persist = 5; void SetBit(int bit) { persist = bit; } main() { SetBit(1); }"]);
-    assert_eq!(linked.imports, []);
+    assert_eq!(linked.firmware.imports, []);
 }
 
 #[test]
@@ -124,8 +125,9 @@ fn what_main_cannot_reach_is_left_out_on_request() {
 #[test]
 fn main_may_be_static_and_need_not_come_first() {
     let linked = linked(&["int f(void) { return 1; } static int main() { return f(); }"]);
-    assert_eq!(linked.entry.get(), address(&linked, "main"));
-    assert!(linked.entry > linked.text.address);
+    let (main, _) = vm::guard::split(&linked.text.bytes).expect("the text is bytecode");
+    assert_eq!(main.get(), address(&linked, "main"));
+    assert_eq!(linked.entry, linked.text.address);
 }
 
 #[test]
@@ -161,6 +163,8 @@ fn a_program_larger_than_its_space_enters_the_next_ones() {
     let linked = try_link(&[source], 2, true).expect("links");
     let warning = linked.warnings.first().map(ToString::to_string).unwrap_or_default();
     assert!(warning.ends_with("enters the space of thread 3, 4, 5"), "{warning}");
+    let notes = linked.warnings.first().map(|warning| warning.to_diagnostic().notes).unwrap_or_default();
+    assert!(notes[0].starts_with("the largest parts in bytes: a (200000), main ("), "{notes:?}");
     let errors = try_link(&[source], 5, true).expect_err("does not fit");
     let message = errors[0].to_diagnostic();
     assert!(

@@ -3,10 +3,12 @@
 use std::collections::BTreeMap;
 
 use kmotiondef::GuestAddr;
+use vm::guard;
 
 use super::error::{LinkError, LinkErrorKind};
 use super::names::Defined;
 use super::place::Placed;
+use super::processor;
 use super::reach::{Reached, Target};
 use super::{LinkedFunction, LinkedLine};
 use crate::bytecode::text::{Numbers, call, call_firmware};
@@ -22,6 +24,12 @@ pub(super) struct Layout {
     pub(super) functions: Vec<(usize, u32, u32)>,
     /// Words of the text.
     pub(super) words: u32,
+    /// Bytes of a word.
+    pub(super) word_bytes: u32,
+    /// Bytes of the text before the first of these words.
+    pub(super) guard: u32,
+    /// Jumps to functions that a branch does not reach: the function's address, the number of the word.
+    pub(super) far: BTreeMap<u32, u32>,
     /// Source files, each once.
     pub(super) files: Vec<String>,
     file_numbers: Vec<Vec<u32>>,
@@ -32,9 +40,17 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    pub(super) fn new(objects: &[Object], reached: &Reached) -> Result<Self, Vec<LinkError>> {
-        let mut layout = Self::default();
+    pub(super) fn new(
+        objects: &[Object],
+        reached: &Reached,
+        base: GuestAddr,
+    ) -> Result<Self, Vec<LinkError>> {
+        let mut layout = Self { word_bytes: WORD as u32, guard: guard::BYTES as u32, ..Self::default() };
         layout.share_files(objects);
+        if objects.iter().any(|object| object.code.is_some()) {
+            layout.processor(objects, reached, base);
+            return Ok(layout);
+        }
         layout.share_pool(objects);
         layout.share_signatures(objects, reached)?;
         let mut word = head::words(&layout.pool, layout.signatures.as_slice());
@@ -114,13 +130,14 @@ impl Layout {
 
 /// Everything that knows an address.
 pub(super) struct Addresses<'a> {
+    /// Of the first word.
     pub(super) base: GuestAddr,
     pub(super) reached: &'a Reached,
     pub(super) placed: &'a Placed,
 }
 
 impl Addresses<'_> {
-    fn of(&self, target: &Target) -> GuestAddr {
+    pub(super) fn of(&self, target: &Target) -> GuestAddr {
         match *target {
             Target::Unknown => GuestAddr::NULL,
             Target::Function(address, _) | Target::Variable(address) => address,
@@ -137,8 +154,12 @@ pub(super) fn text(
     layout: &Layout,
     addresses: &Addresses<'_>,
 ) -> Result<Vec<u8>, Vec<LinkError>> {
+    if layout.word_bytes != WORD as u32 {
+        return Ok(processor::text(objects, layout, addresses));
+    }
     let mut writer = Writer { objects, layout, addresses, text: Vec::new(), errors: Vec::new() };
-    writer.text.reserve_exact(layout.words as usize * WORD);
+    writer.text.reserve_exact(guard::BYTES + layout.words as usize * WORD);
+    writer.text.extend(guard::words(addresses.placed.function(addresses.reached.main)));
     head::write(&layout.pool, layout.signatures.as_slice(), &mut writer.text);
     for (object, index, word) in &layout.functions {
         writer.function(*object, &objects[*object].functions[*index as usize], *word);
@@ -176,6 +197,8 @@ impl Writer<'_> {
                         let target = &self.addresses.reached.targets[object][relocation.symbol];
                         add_address(&mut bytes[4..], self.addresses.of(target));
                     }
+                    // Units for different targets are not linked together.
+                    RelocationKind::Processor(_) => {}
                     RelocationKind::Call(signature) => match self.call(object, relocation, signature) {
                         Ok(word) => bytes = word,
                         Err(kind) => self.errors.push(fail(object, unit, function, relocation, kind)),
@@ -184,7 +207,11 @@ impl Writer<'_> {
             }
             self.text.extend_from_slice(&bytes);
         }
-        debug_assert_eq!(start, word as usize * WORD, "functions stand where they were placed");
+        debug_assert_eq!(
+            start,
+            guard::BYTES + word as usize * WORD,
+            "functions stand where they were placed"
+        );
     }
 
     /// The call of a symbol.
@@ -301,7 +328,7 @@ pub(super) fn lines(objects: &[Object], layout: &Layout, base: GuestAddr) -> Vec
         let function = &unit.functions[*index as usize];
         let own = &unit.lines[function.lines.start as usize..function.lines.end as usize];
         lines.extend(own.iter().map(|line| LinkedLine {
-            address: base.offset((word + line.word - function.words.start) * WORD as u32),
+            address: base.offset((word + line.word - function.words.start) * layout.word_bytes),
             place: layout.place(*object, line.place),
         }));
     }

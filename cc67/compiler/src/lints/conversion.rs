@@ -22,3 +22,23 @@ pub(crate) fn finding(from: &str, to: &str, loss: &str, span: Span) -> Diagnosti
         .at(loss)
         .help(format!("write `({to})` if this is meant"))
 }
+
+/// What is said of a constant with a fraction that is stored in an integer.
+pub(crate) fn lost_fraction(number: f64, to: &str, span: Span) -> Diagnostic {
+    let whole = number.trunc();
+    Diagnostic::warning(Lint::LostFraction, span, format!("the fraction of {number} is lost in a value of type `{to}`"))
+        .at(format!("{whole} is stored"))
+        .help("store it in a `double` or a `float`; an element of `persist.UserData` holds one as `*(float *)&persist.UserData[…]`")
+}
+
+/// What is said of a quotient of integers that was cut off before it is used as a floating-point number.
+pub(crate) fn division(dividend: i64, divisor: i64, span: Span) -> Diagnostic {
+    let whole = dividend / divisor;
+    Diagnostic::warning(
+        Lint::IntegerDivision,
+        span,
+        format!("`{dividend}/{divisor}` is {whole}: a division of integers has no fraction"),
+    )
+    .at("used as a floating-point number")
+    .help(format!("write `{dividend}.0/{divisor}`"))
+}

@@ -21,7 +21,8 @@ pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
     }
 }
 
-/// What the header declares is a likely mistake; hidden names are a matter of portability.
+/// Names that the header declares or that the firmware keeps for itself the vendor's linker refuses; functions of the C
+/// library that a program brings along are a matter of portability.
 fn lint_for(program: &Program<'_>, symbol: &Symbol) -> Option<Lint> {
     if matches!(symbol.definition, Definition::None) || symbol.linkage == Linkage::Internal {
         return None;
@@ -30,7 +31,7 @@ fn lint_for(program: &Program<'_>, symbol: &Symbol) -> Option<Lint> {
         Some(Origin::Header) => Some(Lint::Redeclared),
         None if program.firmware.is_variable(&symbol.name) => Some(Lint::Redeclared),
         Some(Origin::Firmware) => Some(Lint::Portability),
-        None if program.firmware.is_hidden(&symbol.name) => Some(Lint::Portability),
+        None if program.firmware.is_hidden(&symbol.name) => Some(Lint::Redeclared),
         Some(Origin::Library) | None => None,
     }
 }

@@ -37,7 +37,7 @@ fn written(function: &typed::Function, value: ExprId) -> Argument {
 }
 
 /// The function that a call calls and the text of its format, if that is a string literal.
-fn literal_format<'p>(
+pub(super) fn literal_format<'p>(
     unit: &'p Unit,
     function: &typed::Function,
     call: &Call,
@@ -61,16 +61,16 @@ fn literal_format<'p>(
 
 /// A function that takes a format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Function {
+pub(super) struct Function {
     /// Which argument is the format, counted from 0.
-    format: usize,
+    pub(super) format: usize,
     /// It stores through its arguments instead of printing them.
-    is_scan: bool,
+    pub(super) is_scan: bool,
 }
 
 impl Function {
     /// The function of this name, if it takes a format and variable arguments.
-    fn by_name(name: &str) -> Option<Self> {
+    pub(super) fn by_name(name: &str) -> Option<Self> {
         let (format, is_scan) = match name {
             "printf" => (0, false),
             "fprintf" | "sprintf" => (1, false),

@@ -11,7 +11,9 @@ mod used_values;
 mod walk;
 
 mod array_bounds;
+mod board_format;
 mod call_back_wait;
+mod endless_wait;
 mod firmware_name;
 mod format;
 mod header_mismatch;
@@ -24,6 +26,7 @@ mod self_comparison;
 mod stack_size;
 mod uninitialized;
 mod unused_variable;
+mod user_data_pointer;
 mod void_main;
 
 pub(crate) mod assignment_condition;

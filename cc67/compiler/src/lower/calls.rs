@@ -23,6 +23,7 @@ impl Lowering<'_> {
             (typed::Callee::Pointer(_), Some(held)) => Callee::Pointer(self.release(held)),
             (typed::Callee::Pointer(_), None) => return Operand::int(0),
         };
+        self.price_call(call);
         let wanted = types::class(&self.unit.types, ty);
         let declared = Signature {
             params: arguments.iter().map(|argument| self.builder.function.class(*argument)).collect(),
@@ -41,6 +42,7 @@ impl Lowering<'_> {
             _ => None,
         };
         self.builder.call(callee, signature, arguments, dst);
+        self.price_result(wanted);
         match (dst, wanted) {
             (Some(dst), Some(wanted)) if result != Some(wanted) => {
                 let adapted = self.adapt(dst.into(), wanted);
@@ -109,6 +111,7 @@ impl Lowering<'_> {
         }
         let slot = self.builder.slot(0, 8);
         self.outgoing = Some(slot);
+        self.builder.function.outgoing = Some(slot);
         slot
     }
 
@@ -143,6 +146,8 @@ impl Lowering<'_> {
         let width = types::width(&self.unit.types, ty).unwrap_or(Width::I32);
         let size = width.bytes().max(4).cast_signed();
         let storage = self.place(list);
+        self.price_load(list);
+        self.cost(20);
         let mut at = self.read(storage, None);
         if size == 8 {
             let raised = self.binary_value(BinaryOp::Add, Class::I32, at, Operand::int(7));

@@ -1,41 +1,103 @@
 //! Conditions to branches.
 
-use super::{Lowering, types};
+use super::{Lowering, prices, types};
 use crate::ir::inst::{BlockId, Class, Operand};
 use crate::ir::operators::{CompareOp, Width};
 use crate::ty::Types;
 use crate::typed::{self, ExprId, ExprKind, UnaryOp};
 
+/// Which way of a condition the vendor's code jumps; on the other it goes on where it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Sense {
+    /// As in `if`, loops and `&&`.
+    JumpIfFalse,
+    /// As in `||`, `!` and at the end of `do`.
+    JumpIfTrue,
+}
+
+impl Sense {
+    /// The sense of whether false jumps.
+    pub(super) const fn of(jumps_if_false: bool) -> Self {
+        if jumps_if_false { Self::JumpIfFalse } else { Self::JumpIfTrue }
+    }
+}
+
 impl Lowering<'_> {
-    /// Goes to `then` if the expression is not zero, else to `otherwise`.
-    pub(super) fn branch(&mut self, condition: ExprId, then: BlockId, otherwise: BlockId) {
+    /// Goes to `then` if the expression is not zero, else to `otherwise`; `sense` is what the vendor's code does and
+    /// decides what the ways cost.
+    pub(super) fn branch(&mut self, condition: ExprId, sense: Sense, then: BlockId, otherwise: BlockId) {
         let expr = &self.function.exprs[condition];
         match expr.kind {
-            ExprKind::Int(value) => self.builder.jump(if value == 0 { otherwise } else { then }),
-            ExprKind::Unary(UnaryOp::Not, inner) => self.branch(inner, otherwise, then),
+            ExprKind::Int(value) => {
+                if (value == 0) == (sense == Sense::JumpIfFalse) {
+                    self.cost(prices::BRANCH);
+                }
+                self.builder.jump(if value == 0 { otherwise } else { then });
+            }
+            ExprKind::Unary(UnaryOp::Not, inner) if self.is_comparison(inner) => {
+                self.branch(inner, Sense::JumpIfFalse, otherwise, then);
+            }
+            ExprKind::Unary(UnaryOp::Not, inner) => {
+                let (then, otherwise) = self.turned(Sense::JumpIfTrue, sense, then, otherwise);
+                self.branch(inner, Sense::JumpIfFalse, otherwise, then);
+            }
             ExprKind::And(..) => {
-                self.chain(condition, |this, term, next| this.branch(term, next, otherwise), then, otherwise);
+                let (then, otherwise) = self.turned(Sense::JumpIfFalse, sense, then, otherwise);
+                let test = |this: &mut Self, term, next| {
+                    this.branch(term, Sense::JumpIfFalse, next, otherwise);
+                };
+                self.chain(condition, Sense::JumpIfFalse, test, then, otherwise);
             }
             ExprKind::Or(..) => {
-                self.chain(condition, |this, term, next| this.branch(term, then, next), then, otherwise);
+                let (then, otherwise) = self.turned(Sense::JumpIfTrue, sense, then, otherwise);
+                let test = |this: &mut Self, term, next| this.branch(term, Sense::JumpIfTrue, then, next);
+                self.chain(condition, Sense::JumpIfTrue, test, then, otherwise);
             }
             ExprKind::Comma(first, second) => {
                 self.effect(first);
-                self.branch(second, then, otherwise);
+                self.branch(second, sense, then, otherwise);
             }
             ExprKind::Compare(typed::CompareOp::Equal, a, b) if self.is_word_zero(b) => {
-                self.branch(a, otherwise, then);
+                self.price_zero_test();
+                self.branch(a, sense, otherwise, then);
             }
             ExprKind::Compare(typed::CompareOp::NotEqual, a, b) if self.is_word_zero(b) => {
-                self.branch(a, then, otherwise);
+                self.price_zero_test();
+                self.branch(a, sense, then, otherwise);
             }
             ExprKind::Convert(inner) if self.keeps_truth(inner, condition) => {
-                self.branch(inner, then, otherwise);
+                self.branch(inner, sense, then, otherwise);
             }
             _ => {
                 let value = self.value(condition);
+                self.price_test(condition);
                 let value = self.word_truth(value);
                 self.builder.branch(value, then, otherwise);
+            }
+        }
+    }
+
+    fn is_comparison(&self, id: ExprId) -> bool {
+        matches!(self.function.exprs[id].kind, ExprKind::Compare(..))
+    }
+
+    /// The ways of a condition that jumps in one sense where the other is wanted: the way on becomes a jump.
+    fn turned(
+        &mut self,
+        natural: Sense,
+        wanted: Sense,
+        then: BlockId,
+        otherwise: BlockId,
+    ) -> (BlockId, BlockId) {
+        match (natural, wanted) {
+            (Sense::JumpIfTrue, Sense::JumpIfFalse) => {
+                (then, self.costly_way(otherwise, prices::BRANCH as u32).unwrap_or(otherwise))
+            }
+            (Sense::JumpIfFalse, Sense::JumpIfTrue) => {
+                (self.costly_way(then, prices::BRANCH as u32).unwrap_or(then), otherwise)
+            }
+            (Sense::JumpIfFalse, Sense::JumpIfFalse) | (Sense::JumpIfTrue, Sense::JumpIfTrue) => {
+                (then, otherwise)
             }
         }
     }
@@ -45,6 +107,7 @@ impl Lowering<'_> {
     fn chain(
         &mut self,
         id: ExprId,
+        sense: Sense,
         test: impl Fn(&mut Self, ExprId, BlockId),
         then: BlockId,
         otherwise: BlockId,
@@ -73,7 +136,7 @@ impl Lowering<'_> {
             let Some(following) = self.spine.pop() else { break };
             term = following;
         }
-        self.branch(term, then, otherwise);
+        self.branch(term, sense, then, otherwise);
     }
 
     /// A word that is zero exactly if the value is.

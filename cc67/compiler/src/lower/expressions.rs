@@ -4,8 +4,9 @@
 //! wish; that value is written by the last instruction only, so that the expression may
 //! still read it.
 
+use super::conditions::Sense;
 use super::places::Storage;
-use super::{Lowering, types};
+use super::{Lowering, prices, types};
 use crate::ir::inst::{Address, Class, Constant, InstKind, Operand, ValueId};
 use crate::ir::operators::{BinaryOp, CompareOp, UnaryOp, Width};
 use crate::ty::TypeId;
@@ -23,25 +24,26 @@ impl Lowering<'_> {
         let expr = &self.function.exprs[id];
         match expr.kind {
             ExprKind::Int(value) => {
-                let constant = match self.class_or_int(expr.ty) {
-                    Class::I64 => Constant::I64(value),
-                    _ => Constant::I32(value as i32),
-                };
+                self.price_constant(self.class_or_int(expr.ty));
+                let constant = Constant::number(self.class_or_int(expr.ty), value);
                 self.place_in(constant.into(), into)
             }
             ExprKind::Float(value) => {
+                self.price_constant(self.class_or_int(expr.ty));
                 let constant = match self.class_or_int(expr.ty) {
                     Class::F32 => Constant::F32((value as f32).to_bits()),
-                    _ => Constant::F64(value.to_bits()),
+                    Class::F64 | Class::I32 | Class::I64 => Constant::F64(value.to_bits()),
                 };
                 self.place_in(constant.into(), into)
             }
             ExprKind::Load(place) => {
                 let storage = self.place(place);
+                self.price_load(place);
                 self.read(storage, into)
             }
             ExprKind::Address(place) => {
                 let address = self.address(place);
+                self.price_address(place);
                 self.address_value(address, into)
             }
             ExprKind::Assign(place, value) => self.assign(place, value, into),
@@ -64,6 +66,7 @@ impl Lowering<'_> {
                 }
                 let from = self.function.exprs[operand].ty;
                 let value = self.value(operand);
+                self.price_conversion(operand, self.class_or_int(expr.ty));
                 self.convert(value, from, expr.ty, into)
             }
             ExprKind::Call(ref call) => self.call(call, expr.ty, into),
@@ -87,17 +90,24 @@ impl Lowering<'_> {
                 self.effect(second);
             }
             ExprKind::Convert(operand) => self.effect(operand),
+            ExprKind::Call(_) => {
+                self.value(id);
+                if let Some(class) = types::class(&self.unit.types, expr.ty) {
+                    self.cost(-prices::result(class));
+                }
+            }
             ExprKind::And(..) | ExprKind::Or(..) => {
                 let end = self.builder.block();
-                self.branch(id, end, end);
+                self.branch(id, Sense::JumpIfFalse, end, end);
                 self.builder.open(end);
             }
             ExprKind::Conditional(condition, a, b) => {
                 let (then, otherwise, end) =
                     (self.builder.block(), self.builder.block(), self.builder.block());
-                self.branch(condition, then, otherwise);
+                self.branch(condition, Sense::JumpIfFalse, then, otherwise);
                 self.builder.open(then);
                 self.effect(a);
+                self.cost(prices::BRANCH);
                 self.builder.jump(end);
                 self.builder.open(otherwise);
                 self.effect(b);
@@ -131,11 +141,14 @@ impl Lowering<'_> {
         let storage = self.place(place);
         if let Storage::Value(dst) = storage {
             self.value_in(value, Some(dst));
+            self.price_assignment(place, value);
             self.written(dst);
             return self.place_in(dst.into(), into);
         }
         let held = self.hold_storage(storage);
-        let value = self.value(value);
+        let source = value;
+        let value = self.value(source);
+        self.price_assignment(place, source);
         let storage = self.release_storage(held);
         let stored = self.write(storage, value);
         self.place_in(stored, into)
@@ -154,6 +167,7 @@ impl Lowering<'_> {
         let storage = self.place(update.place);
         let held = self.hold_storage(storage);
         let operand = self.value(update.operand);
+        self.price_update(update);
         let storage = self.release_storage(held);
         let old = self.read(storage, None);
         let into = match storage {
@@ -169,6 +183,7 @@ impl Lowering<'_> {
         let storage = self.place(update.place);
         let held = self.hold_storage(storage);
         let operand = self.value(update.operand);
+        self.price_update(update);
         let storage = self.release_storage(held);
         let mut old = self.read(storage, None);
         if let Storage::Value(value) = storage {
@@ -199,9 +214,13 @@ impl Lowering<'_> {
 
     fn copy(&mut self, to: PlaceId, from: PlaceId) -> Operand {
         let (len, _) = types::layout(&self.unit.types, self.function.places[to].ty);
+        let (to_place, from_place) = (to, from);
         let to = self.address(to);
         let held = self.hold_storage(Storage::Memory(to, Width::I32));
         let from = self.address(from);
+        self.price_address(to_place);
+        self.price_address(from_place);
+        self.price_block(len, true);
         if let Storage::Memory(to, _) = self.release_storage(held) {
             self.builder.push(InstKind::CopyMemory { to, from, len });
         }
@@ -211,12 +230,15 @@ impl Lowering<'_> {
     fn clear(&mut self, place: PlaceId) -> Operand {
         let (len, _) = types::layout(&self.unit.types, self.function.places[place].ty);
         let to: Address = self.address(place);
+        self.price_address(place);
+        self.price_block(len, false);
         self.builder.push(InstKind::ClearMemory { to, len });
         Operand::int(0)
     }
 
     fn unary(&mut self, op: typed::UnaryOp, operand: ExprId, into: Option<ValueId>) -> Operand {
         let value = self.value(operand);
+        self.price_unary(operand, op);
         let class = self.builder.function.class(value);
         match op {
             typed::UnaryOp::Negate | typed::UnaryOp::Complement => {
@@ -245,9 +267,11 @@ impl Lowering<'_> {
         while self.spine.len() > bottom {
             let Some(node) = self.spine.pop() else { break };
             let expr = &self.function.exprs[node];
-            let ExprKind::Binary(op, _, b) = expr.kind else { break };
+            let ExprKind::Binary(op, a_expr, b) = expr.kind else { break };
             let held = self.hold(left);
             let right = self.value(b);
+            self.price_kept(a_expr, b);
+            self.price_binary(node);
             let a = self.release(held);
             let dst = self.destination(self.class_or_int(expr.ty), if node == id { into } else { None });
             let op = self.binary_op(op, expr.ty);
@@ -262,6 +286,10 @@ impl Lowering<'_> {
         let first = self.value(a);
         let held = self.hold(first);
         let second = self.value(b);
+        self.price_kept(a, b);
+        self.price_compare(a, b);
+        // A comparison as a value; a test takes it back.
+        self.cost(prices::MOVE);
         let first = self.release(held);
         let (op, is_swapped) = compare_op(op, is_unsigned);
         let dst = self.destination(Class::I32, into);
@@ -273,12 +301,16 @@ impl Lowering<'_> {
     /// The value 0 or 1 of a condition.
     fn truth(&mut self, id: ExprId, into: Option<ValueId>) -> Operand {
         let (yes, no, end) = (self.builder.block(), self.builder.block(), self.builder.block());
-        self.branch(id, yes, no);
+        let is_and = matches!(self.function.exprs[id].kind, ExprKind::And(..));
+        let [by_way, by_jump] = prices::TRUTH;
+        self.branch(id, Sense::of(is_and), yes, no);
         let dst = self.destination(Class::I32, into);
         self.builder.open(yes);
+        self.cost(if is_and { by_way } else { by_jump });
         self.builder.copy(dst, Operand::int(1));
         self.builder.jump(end);
         self.builder.open(no);
+        self.cost(if is_and { by_jump } else { by_way });
         self.builder.copy(dst, Operand::int(0));
         self.builder.open(end);
         dst.into()
@@ -294,9 +326,10 @@ impl Lowering<'_> {
     ) -> Operand {
         let Some(class) = types::class(&self.unit.types, ty) else {
             let (then, otherwise, end) = (self.builder.block(), self.builder.block(), self.builder.block());
-            self.branch(condition, then, otherwise);
+            self.branch(condition, Sense::JumpIfFalse, then, otherwise);
             self.builder.open(then);
             self.effect(a);
+            self.cost(prices::BRANCH);
             self.builder.jump(end);
             self.builder.open(otherwise);
             self.effect(b);
@@ -304,10 +337,11 @@ impl Lowering<'_> {
             return Operand::int(0);
         };
         let (then, otherwise, end) = (self.builder.block(), self.builder.block(), self.builder.block());
-        self.branch(condition, then, otherwise);
+        self.branch(condition, Sense::JumpIfFalse, then, otherwise);
         let dst = self.destination(class, into);
         self.builder.open(then);
         self.value_in(a, Some(dst));
+        self.cost(prices::BRANCH);
         self.builder.jump(end);
         self.builder.open(otherwise);
         self.value_in(b, Some(dst));

@@ -13,18 +13,23 @@ mod conditions;
 mod conversions;
 mod expressions;
 mod places;
+mod prices;
+mod pricing;
 mod statements;
 mod switches;
 mod types;
 
 use cranelift_entity::packed_option::PackedOption;
 use cranelift_entity::{PrimaryMap, SecondaryMap};
+use kmotiondef::timing::Timing;
 
+use crate::ir;
 use crate::ir::builder::{Builder, Point};
-use crate::ir::function::{Function, Signature, Signatures};
+use crate::ir::function::{Function, Signature, Signatures, SourceVariable};
 use crate::ir::inst::{Address, Base, BlockId, Class, InstKind, Operand, SignatureId, SlotId, ValueId};
 use crate::ir::operators::BinaryOp;
 use crate::typed::{self, ExprId, LabelId, LocalId, SymbolId, Unit};
+use pricing::Pricing;
 
 /// The signatures of the functions that a unit defines.
 #[derive(Debug, Default)]
@@ -51,12 +56,13 @@ impl Definitions {
     }
 }
 
-/// Lowers one function of a unit.
+/// Lowers one function of a unit; `timing` says what it is charged for.
 #[must_use]
 pub fn lower(
     unit: &Unit,
     function: &typed::Function,
     definitions: &Definitions,
+    timing: Timing,
     signatures: &mut Signatures,
 ) -> Function {
     let signature = signatures.intern(&signature_of(unit, function));
@@ -73,11 +79,14 @@ pub fn lower(
         outgoing: None,
         spine: Vec::new(),
         held: Vec::new(),
+        pricing: Pricing::new(function, timing),
     };
+    lowering.cost(prices::ENTRY);
     lowering.enter();
     lowering.statements(&function.body);
     lowering.builder.set_span(function.end);
     lowering.return_zero();
+    lowering.variables();
     lowering.builder.function
 }
 
@@ -147,9 +156,32 @@ struct Lowering<'a> {
     spine: Vec<ExprId>,
     /// Stack of arguments that wait for their call.
     held: Vec<Held>,
+    /// What charging needs, if the vendor's code is charged.
+    pricing: Option<Pricing>,
 }
 
 impl Lowering<'_> {
+    /// Says where the source's locals are.
+    fn variables(&mut self) {
+        let mut writes: SecondaryMap<ValueId, u32> = SecondaryMap::new();
+        let function = &mut self.builder.function;
+        for block in function.layout.iter().map(|id| &function.blocks[*id]) {
+            for dst in block.insts.iter().filter_map(|inst| inst.kind.dst()) {
+                writes[dst] += 1;
+            }
+        }
+        let named = self.homes.iter().filter(|(local, _)| !self.function.locals[*local].name.is_empty());
+        let variables = named.map(|(local, home)| {
+            let home = match *home {
+                Home::Value(value) => ir::function::VariableHome::Value(value, writes[value]),
+                Home::Slot(slot) => ir::function::VariableHome::Slot(slot),
+                Home::Pointer(value) => ir::function::VariableHome::Pointer(value),
+            };
+            SourceVariable { local, home }
+        });
+        function.variables = variables.collect();
+    }
+
     /// Gives every local its home and takes the arguments in.
     fn enter(&mut self) {
         let function = self.function;

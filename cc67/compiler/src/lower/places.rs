@@ -79,6 +79,9 @@ impl Lowering<'_> {
                 ExprKind::Convert(inner) if self.is_same_word(self.function.exprs[inner].ty) => {
                     pointer = inner;
                 }
+                ExprKind::Int(address) => {
+                    return Address::of(Operand::int(address as i32)).plus(offset);
+                }
                 _ => break,
             }
         }
@@ -86,7 +89,7 @@ impl Lowering<'_> {
     }
 
     /// Whether values of the type are 32-bit words that a pointer conversion leaves alone.
-    fn is_same_word(&self, ty: TypeId) -> bool {
+    pub(super) fn is_same_word(&self, ty: TypeId) -> bool {
         types::width(&self.unit.types, ty) == Some(Width::I32)
     }
 
@@ -191,10 +194,7 @@ impl Lowering<'_> {
     fn insert(&mut self, address: Address, value: Operand, field: Field) {
         let class = field.unit.class();
         let ones = u64::MAX.checked_shr(64 - u32::from(field.bits.width)).unwrap_or(0);
-        let constant = |bits: u64| match class {
-            Class::I64 => Operand::from(Constant::I64(bits.cast_signed())),
-            _ => Operand::int(bits as u32 as i32),
-        };
+        let constant = |bits: u64| Operand::from(Constant::number(class, bits.cast_signed()));
         let unit = self.builder.value(class);
         self.builder.load(unit, field.unit, address);
         let rest = constant(!(ones << field.bits.shift));
@@ -217,7 +217,7 @@ impl Lowering<'_> {
 /// Bits of an integer class.
 const fn total_bits(class: Class) -> i32 {
     match class {
-        Class::I64 => 64,
-        _ => 32,
+        Class::I64 | Class::F64 => 64,
+        Class::I32 | Class::F32 => 32,
     }
 }

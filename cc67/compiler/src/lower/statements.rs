@@ -1,6 +1,7 @@
 //! Statements to blocks.
 
-use super::{Lowering, Switch};
+use super::conditions::Sense;
+use super::{Lowering, Switch, prices};
 use crate::ir::inst::Terminator;
 use crate::typed::{ExprId, LoopTest, Stmt, StmtKind};
 
@@ -26,8 +27,10 @@ impl Lowering<'_> {
             }
             StmtKind::Case(number) => {
                 let cases = self.jumps.switches.last().map(|switch| &switch.cases);
-                if let Some(block) = cases.and_then(|cases| cases.get(*number as usize)) {
-                    self.builder.open(*block);
+                if let Some(block) = cases.and_then(|cases| cases.get(*number as usize)).copied() {
+                    // Whoever falls through jumps over the comparison with the case.
+                    self.cost(prices::BRANCH);
+                    self.builder.open(block);
                 }
             }
             StmtKind::DefaultCase => {
@@ -36,13 +39,15 @@ impl Lowering<'_> {
                 }
             }
             StmtKind::Break => {
-                if let Some(block) = self.jumps.breaks.last() {
-                    self.builder.jump(*block);
+                if let Some(block) = self.jumps.breaks.last().copied() {
+                    self.cost(prices::BRANCH);
+                    self.builder.jump(block);
                 }
             }
             StmtKind::Continue => {
-                if let Some(block) = self.jumps.continues.last() {
-                    self.builder.jump(*block);
+                if let Some(block) = self.jumps.continues.last().copied() {
+                    self.cost(prices::BRANCH);
+                    self.builder.jump(block);
                 }
             }
             StmtKind::Return(value) => self.return_statement(*value),
@@ -52,6 +57,7 @@ impl Lowering<'_> {
             }
             StmtKind::Goto(label) => {
                 let block = self.label(*label);
+                self.cost(prices::BRANCH);
                 self.builder.jump(block);
             }
             StmtKind::GotoAddress(address) => self.goto_address(*address),
@@ -61,6 +67,7 @@ impl Lowering<'_> {
     /// A table of the labels that have an address; anything else stops the thread.
     fn goto_address(&mut self, address: ExprId) {
         let index = self.value(address);
+        self.cost(prices::POINTER_BRANCH);
         let nowhere = self.builder.block();
         let function = self.function;
         let mut targets = vec![nowhere];
@@ -77,10 +84,11 @@ impl Lowering<'_> {
     fn if_statement(&mut self, condition: ExprId, then: &[Stmt], otherwise: &[Stmt]) {
         let (yes, end) = (self.builder.block(), self.builder.block());
         let no = if otherwise.is_empty() { end } else { self.builder.block() };
-        self.branch(condition, yes, no);
+        self.branch(condition, Sense::JumpIfFalse, yes, no);
         self.builder.open(yes);
         self.statements(then);
         if no != end {
+            self.cost(prices::BRANCH);
             self.builder.jump(end);
             self.builder.open(no);
             self.statements(otherwise);
@@ -102,23 +110,34 @@ impl Lowering<'_> {
         let mut bottom = None;
         if let (Some(condition), LoopTest::Before) = (condition, test) {
             if self.is_small(condition) {
-                self.branch(condition, top, end);
+                self.branch(condition, Sense::JumpIfFalse, top, end);
             } else {
                 let block = self.builder.block();
                 bottom = Some(block);
                 self.builder.jump(block);
             }
         }
+        if step.is_some() && condition.is_none() {
+            // The vendor's loops have their step in front of the body.
+            self.cost(prices::BRANCH);
+        }
         self.builder.open(top);
+        if step.is_some() {
+            self.cost(prices::BRANCH);
+        }
         self.jumps.breaks.push(end);
         self.jumps.continues.push(next);
         self.statements(body);
         self.jumps.continues.pop();
         self.jumps.breaks.pop();
+        if test == LoopTest::Before {
+            self.cost(prices::BRANCH);
+        }
         self.builder.open(next);
         if let Some(step) = step {
             self.builder.set_span(self.function.exprs[step].span);
             self.effect(step);
+            self.cost(prices::BRANCH);
         }
         if let Some(bottom) = bottom {
             self.builder.open(bottom);
@@ -127,7 +146,8 @@ impl Lowering<'_> {
         match condition {
             Some(condition) => {
                 self.builder.set_span(self.function.exprs[condition].span);
-                self.branch(condition, top, end);
+                let sense = Sense::of(test == LoopTest::Before);
+                self.branch(condition, sense, top, end);
             }
             None => self.builder.jump(top),
         }
@@ -138,7 +158,9 @@ impl Lowering<'_> {
         let class = self.signatures.get(self.builder.function.signature).result;
         match (value, class) {
             (Some(value), Some(class)) => {
-                let value = self.value(value);
+                let source = value;
+                let value = self.value(source);
+                self.price_return(Some(source));
                 let value = if self.builder.function.class(value) == class {
                     value
                 } else {
@@ -148,9 +170,13 @@ impl Lowering<'_> {
             }
             (Some(value), None) => {
                 self.effect(value);
+                self.price_return(None);
                 self.builder.terminate(Terminator::Return(None));
             }
-            (None, _) => self.return_zero(),
+            (None, _) => {
+                self.price_return(None);
+                self.return_zero();
+            }
         }
     }
 

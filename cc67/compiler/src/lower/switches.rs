@@ -1,6 +1,6 @@
 //! Switches: tables where the cases are dense, else a search by halves.
 
-use super::{Lowering, Switch, types};
+use super::{Lowering, Switch, prices, types};
 use crate::ir::inst::{BlockId, Class, Constant, Operand, Terminator};
 use crate::ir::operators::{BinaryOp, CompareOp};
 use crate::typed::{Case, ExprId, Stmt};
@@ -12,7 +12,7 @@ const FEW: usize = 3;
 
 /// One range of values and where it goes.
 #[derive(Clone, Copy, Debug)]
-struct Entry {
+struct CaseEntry {
     first: i128,
     last: i128,
     block: BlockId,
@@ -42,14 +42,18 @@ impl Lowering<'_> {
         let end = self.builder.block();
         let default = if has_default { self.builder.block() } else { end };
         let blocks: Vec<BlockId> = cases.iter().map(|_| self.builder.block()).collect();
+        self.cost(prices::BRANCH);
+        let targets = self.case_ways(&blocks, default);
+        let (blocks_found, default_found) = targets;
         let search = Search {
             value,
             class: self.builder.function.class(value),
             is_unsigned: types::is_unsigned(&self.unit.types, ty),
-            default,
+            default: default_found,
         };
-        let entries = entries(cases, &blocks, search.is_unsigned);
+        let entries = entries(cases, &blocks_found, search.is_unsigned);
         self.search(search, &entries);
+        self.open_case_ways(&blocks_found, &blocks, default_found, default);
         self.jumps.switches.push(Switch { cases: blocks, default });
         self.jumps.breaks.push(end);
         self.statements(body);
@@ -58,8 +62,38 @@ impl Lowering<'_> {
         self.builder.open(end);
     }
 
+    /// The blocks that cost what finding the cases costs the vendor's code: it compares with one after the other.
+    fn case_ways(&mut self, blocks: &[BlockId], default: BlockId) -> (Vec<BlockId>, BlockId) {
+        if self.pricing.is_none() {
+            return (blocks.to_vec(), default);
+        }
+        (blocks.iter().map(|_| self.builder.block()).collect(), self.builder.block())
+    }
+
+    /// Fills them, if there are any.
+    fn open_case_ways(
+        &mut self,
+        ways: &[BlockId],
+        blocks: &[BlockId],
+        default_way: BlockId,
+        default: BlockId,
+    ) {
+        if default_way == default {
+            return;
+        }
+        let all = ways.iter().zip(blocks).zip(1..);
+        for ((way, block), tried) in all {
+            self.builder.open(*way);
+            self.cost(prices::CASE * tried);
+            self.builder.jump(*block);
+        }
+        self.builder.open(default_way);
+        self.cost(prices::CASE * blocks.len() as i32);
+        self.builder.jump(default);
+    }
+
     /// Finds the entry of the value among `entries`, which ascend.
-    fn search(&mut self, search: Search, entries: &[Entry]) {
+    fn search(&mut self, search: Search, entries: &[CaseEntry]) {
         let (Some(low), Some(high)) = (entries.first(), entries.last()) else {
             self.builder.jump(search.default);
             return;
@@ -86,7 +120,7 @@ impl Lowering<'_> {
         }
     }
 
-    fn compare_each(&mut self, search: Search, entries: &[Entry]) {
+    fn compare_each(&mut self, search: Search, entries: &[CaseEntry]) {
         for (index, entry) in entries.iter().enumerate() {
             let is_last = index + 1 == entries.len();
             let next = if is_last { search.default } else { self.builder.block() };
@@ -106,7 +140,7 @@ impl Lowering<'_> {
         }
     }
 
-    fn table(&mut self, search: Search, entries: &[Entry], low: i128, span: usize) {
+    fn table(&mut self, search: Search, entries: &[CaseEntry], low: i128, span: usize) {
         let mut targets = vec![search.default; span];
         for entry in entries {
             let (from, to) = ((entry.first - low) as usize, (entry.last - low) as usize);
@@ -124,11 +158,11 @@ impl Lowering<'_> {
 }
 
 /// The cases in ascending order; empty ranges match nothing, overlapping ones have been refused.
-fn entries(cases: &[Case], blocks: &[BlockId], is_unsigned: bool) -> Vec<Entry> {
-    let mut entries: Vec<Entry> = (cases.iter().zip(blocks))
+fn entries(cases: &[Case], blocks: &[BlockId], is_unsigned: bool) -> Vec<CaseEntry> {
+    let mut entries: Vec<CaseEntry> = (cases.iter().zip(blocks))
         .map(|(case, block)| (case.values(is_unsigned), *block))
         .filter(|((first, last), _)| first <= last)
-        .map(|((first, last), block)| Entry { first, last, block, covered: 0 })
+        .map(|((first, last), block)| CaseEntry { first, last, block, covered: 0 })
         .collect();
     entries.sort_by_key(|entry| entry.first);
     let mut covered = 0;
@@ -140,8 +174,5 @@ fn entries(cases: &[Case], blocks: &[BlockId], is_unsigned: bool) -> Vec<Entry> 
 }
 
 fn constant(class: Class, value: i128) -> Operand {
-    match class {
-        Class::I64 => Operand::from(Constant::I64(value as i64)),
-        _ => Operand::int(value as i32),
-    }
+    Constant::number(class, value as i64).into()
 }

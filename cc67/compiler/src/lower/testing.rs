@@ -1,5 +1,7 @@
 //! What the tests of the back end share: C source to a typed unit and to IR.
 
+use kmotiondef::timing::Timing;
+
 use crate::diag::Sink;
 use crate::firmware::BuiltIn;
 use crate::ir::function::{Function, Signatures};
@@ -29,7 +31,7 @@ pub(crate) fn functions(unit: &Unit, level: Level) -> (Vec<Function>, Signatures
     let definitions = Definitions::new(unit, &mut signatures);
     let mut lowered = Vec::new();
     for function in &unit.functions {
-        let mut function = lower(unit, function, &definitions, &mut signatures);
+        let mut function = lower(unit, function, &definitions, Timing::Fast, &mut signatures);
         assert_eq!(verify::verify(&function, &signatures), Ok(()));
         passes::run(&mut function, level);
         assert_eq!(verify::verify(&function, &signatures), Ok(()));

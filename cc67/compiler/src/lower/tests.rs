@@ -1,5 +1,7 @@
 //! The shape of the code that C constructs become, unoptimised.
 
+mod recorded;
+
 use super::testing::check_ir;
 use crate::passes::Level;
 
@@ -106,7 +108,7 @@ fn variable_arguments_go_into_the_frame() {
           store.f64 v2, [slot0 + 8]
           store.i32 2, [slot0 + 16]
           v3 = address [slot0]
-          v4 = call p(v0, v3)
+          v4 = call.i32 p(v0, v3)
           return v4
         ",
     );
@@ -182,7 +184,7 @@ fn dense_cases_become_a_table_and_scattered_ones_a_search() {
 #[test]
 fn calls_fit_the_definition_whatever_they_were_declared_as() {
     let text = super::testing::ir("f() { return g(1.5); } int g(double d) { return d; }", Level::None);
-    assert!(text.contains("call g(1.5)"), "{text}");
+    assert!(text.contains("call.i32 g(1.5)"), "{text}");
 }
 
 #[test]

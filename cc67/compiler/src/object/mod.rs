@@ -21,10 +21,12 @@ use std::ops::Range;
 
 use cranelift_entity::PrimaryMap;
 
+pub use crate::bytecode::{Location, VariablePlaces};
 use crate::bytecode::{Relocation, Text};
 use crate::ir::function::Signatures;
 use crate::ir::inst::SignatureId;
 use crate::source::Span;
+use crate::target::Target;
 use crate::typed::{Linkage, SymbolId};
 
 /// The result of compiling one unit.
@@ -40,6 +42,8 @@ pub struct Object {
     pub pool: Vec<u64>,
     /// The words of all functions.
     pub text: Text,
+    /// The words of all functions for the controller's processor; the unit is for one target.
+    pub code: Option<Vec<u32>>,
     /// Words of the text that hold an address, ascending.
     pub relocations: Vec<Relocation>,
     /// Where source lines begin, ascending by word.
@@ -55,6 +59,12 @@ pub struct Object {
 }
 
 impl Object {
+    /// What its code is for.
+    #[must_use]
+    pub const fn target(&self) -> Target {
+        if self.code.is_some() { Target::C67x } else { Target::Sim }
+    }
+
     /// File and line in words; the file alone if the line is unknown.
     #[must_use]
     pub fn describe(&self, place: SourceLine) -> String {
@@ -162,6 +172,8 @@ pub struct Function {
     pub frame: u32,
     /// The line of its closing brace.
     pub end: SourceLine,
+    /// Where its locals are; unknown in an object that comes from a file.
+    pub variables: Vec<VariablePlaces>,
 }
 
 /// One initialised object.

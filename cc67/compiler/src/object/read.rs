@@ -8,9 +8,11 @@ use std::ops::Range;
 use coff::{Contents, FileFlags, Image, Line as CoffLine, SectionNumber, StorageClass, Target};
 use cranelift_entity::EntityRef;
 
-use super::write::{ADDRESS, BSS, CALL, DATA, TEXT};
+use super::write::{ADDRESS, BSS, CALL, CODE_WORD, DATA, HIGH, LOW, NEAR, OWN, TEXT};
 use super::{DataRelocation, Definition, Function, Initialized, Line, Object, SourceLine, Symbol, kind_of};
 use crate::bytecode::{Relocation, RelocationKind, Text, WORD, head};
+use crate::c67x::text::{FixupKind, constant};
+use crate::ir::function::Signature;
 use crate::ir::inst::SignatureId;
 use crate::typed::{Linkage, SymbolId};
 
@@ -52,7 +54,12 @@ pub enum ReadError {
 #[must_use]
 pub fn is_object(bytes: &[u8]) -> bool {
     coff::File::parse(bytes)
-        .is_ok_and(|file| file.target() == Target::CC67 && !file.flags().contains(FileFlags::EXECUTABLE))
+        .is_ok_and(|file| is_ours(file.target()) && !file.flags().contains(FileFlags::EXECUTABLE))
+}
+
+/// Whether objects are for a target.
+fn is_ours(target: Target) -> bool {
+    target == Target::CC67 || target == Target::C6000
 }
 
 impl Object {
@@ -62,13 +69,13 @@ impl Object {
     /// Why the bytes are none.
     pub fn read(bytes: &[u8]) -> Result<Self, ReadError> {
         let image = Image::read(bytes)?;
-        if image.target != Target::CC67 {
+        if !is_ours(image.target) {
             return Err(ReadError::OtherTarget(image.target));
         }
         if image.flags.contains(FileFlags::EXECUTABLE) {
             return Err(ReadError::Linked);
         }
-        let mut reader = Reader::new(&image)?;
+        let mut reader = ObjectReader::new(&image)?;
         reader.symbols()?;
         reader.functions()?;
         reader.data()?;
@@ -76,13 +83,15 @@ impl Object {
     }
 }
 
-struct Reader<'a> {
+struct ObjectReader<'a> {
     text: &'a coff::Section,
     data: &'a coff::Section,
     symbols: &'a [coff::Symbol],
     object: Object,
     /// Words in front of the first function.
     head: u32,
+    /// Bytes of a word.
+    word: u32,
     /// The unit's symbol at each index of the format.
     ids: Vec<Option<SymbolId>>,
     functions: Vec<Placed>,
@@ -98,7 +107,7 @@ struct Placed {
     end: SourceLine,
 }
 
-impl<'a> Reader<'a> {
+impl<'a> ObjectReader<'a> {
     fn new(image: &'a Image) -> Result<Self, ReadError> {
         let section = |number: SectionNumber, name: &'static str| {
             let section = image.sections.get(usize::from(number.0.unsigned_abs()) - 1);
@@ -107,6 +116,17 @@ impl<'a> Reader<'a> {
         let (text, data, bss) = (section(TEXT, ".text")?, section(DATA, ".data")?, section(BSS, ".bss")?);
         if !matches!(bss.contents, Contents::Uninitialised(_)) {
             return Err(ReadError::Missing(".bss"));
+        }
+        let (ids, functions, objects) = (Vec::new(), Vec::new(), Vec::new());
+        if image.target == Target::C6000 {
+            let (words, rest) = text.data().as_chunks();
+            if !rest.is_empty() {
+                return Err(ReadError::Code);
+            }
+            let code = words.iter().map(|word| u32::from_le_bytes(*word)).collect();
+            let object = Object { code: Some(code), data: data.data().to_vec(), ..Object::default() };
+            let (symbols, word) = (&image.symbols, CODE_WORD);
+            return Ok(Self { text, data, symbols, object, head: 0, word, ids, functions, objects });
         }
         let (words, rest) = text.data().as_chunks::<WORD>();
         let (pool, signatures, head) =
@@ -120,8 +140,8 @@ impl<'a> Reader<'a> {
         }
         let head = head as u32;
         object.text = Text::read(words, head, &object.pool, &signatures).ok_or(ReadError::Code)?;
-        let (ids, functions, objects) = (Vec::new(), Vec::new(), Vec::new());
-        Ok(Self { text, data, symbols: &image.symbols, object, head, ids, functions, objects })
+        let (symbols, word) = (&image.symbols, WORD as u32);
+        Ok(Self { text, data, symbols, object, head, word, ids, functions, objects })
     }
 
     fn symbols(&mut self) -> Result<(), ReadError> {
@@ -201,14 +221,29 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// Words of the unit's text.
+    fn length(&self) -> u32 {
+        self.object.code.as_ref().map_or(self.object.text.len(), |code| code.len() as u32)
+    }
+
+    /// Signature and frame of a function; code for the processor has neither.
+    fn head_of(&mut self, words: &Range<u32>) -> Option<(SignatureId, u32)> {
+        if self.object.code.is_some() {
+            let none = Signature { params: Vec::new(), result: None };
+            return Some((self.object.signatures.intern(&none), 0));
+        }
+        self.object.text.function(words)
+    }
+
     /// The words of a function in the unit's text, at addresses of the section.
     fn words(&self, bytes: Range<u32>) -> Option<Range<u32>> {
         let word = |at: u32| {
-            let word = at.is_multiple_of(WORD as u32).then_some(at / WORD as u32)?.checked_sub(self.head)?;
-            (word <= self.object.text.len()).then_some(word)
+            let word = at.is_multiple_of(self.word).then_some(at / self.word)?.checked_sub(self.head)?;
+            (word <= self.length()).then_some(word)
         };
         let words = word(bytes.start)?..word(bytes.end)?;
-        (words.start < words.end && self.object.text.begins_function(words.start)).then_some(words)
+        let begins = self.object.code.is_some() || self.object.text.begins_function(words.start);
+        (words.start < words.end && begins).then_some(words)
     }
 
     /// Functions in the order of the text, with the relocations and lines of each.
@@ -219,13 +254,13 @@ impl<'a> Reader<'a> {
         let mut relocations = relocations.into_iter().peekable();
         for Placed { words, symbol, index, end } in std::mem::take(&mut self.functions) {
             let first = self.object.relocations.len() as u32;
-            let limit = (self.head + words.end) * WORD as u32;
+            let limit = (self.head + words.end) * self.word;
             while let Some(relocation) = relocations.next_if(|next| next.address < limit) {
                 let relocation = self.relocation(&relocation, &words)?;
                 self.object.relocations.push(relocation);
             }
             let lines = self.lines(index, &words, self.object.symbols[symbol].place.file);
-            let (signature, frame) = self.object.text.function(&words).ok_or(ReadError::Code)?;
+            let (signature, frame) = self.head_of(&words).ok_or(ReadError::Code)?;
             self.object.symbols[symbol].definition = Definition::Function(self.object.functions.len() as u32);
             self.object.functions.push(Function {
                 symbol,
@@ -235,6 +270,7 @@ impl<'a> Reader<'a> {
                 lines,
                 frame,
                 end,
+                variables: Vec::new(),
             });
         }
         relocations.next().map_or(Ok(()), |left| Err(misplaced(".text", left.address)))
@@ -252,11 +288,28 @@ impl<'a> Reader<'a> {
                 }
                 (relocation.address, RelocationKind::Call(SignatureId::new(number)))
             }
-            _ => return Err(fail()),
+            kind => {
+                let own = self.fixup(relocation, kind).ok_or_else(fail)?;
+                (relocation.address, RelocationKind::Processor(own))
+            }
         };
-        let word = (at / WORD as u32).checked_sub(self.head).filter(|word| words.contains(word));
-        let word = word.filter(|_| at.is_multiple_of(WORD as u32)).ok_or_else(fail)?;
-        Ok(Relocation { word, kind, symbol })
+        let is_code = matches!(kind, RelocationKind::Processor(_));
+        let word = (at / self.word).checked_sub(self.head).filter(|word| words.contains(word));
+        let word = word.filter(|_| at.is_multiple_of(self.word) && is_code == self.object.code.is_some());
+        Ok(Relocation { word: word.ok_or_else(fail)?, kind, symbol })
+    }
+
+    /// How a word of code for the processor is completed.
+    fn fixup(&self, relocation: &coff::Relocation, kind: u16) -> Option<FixupKind> {
+        let word = *self.object.code.as_ref()?.get((relocation.address / CODE_WORD) as usize)?;
+        let (own, other) = (constant(word), u32::from(relocation.displacement));
+        Some(match kind {
+            LOW => FixupKind::Low((own | other << 16).cast_signed()),
+            HIGH => FixupKind::High((own << 16 | other).cast_signed()),
+            NEAR => FixupKind::Near,
+            OWN => FixupKind::Own(word.cast_signed()),
+            _ => return None,
+        })
     }
 
     fn referred(&self, index: u32) -> Option<SymbolId> {
@@ -269,7 +322,7 @@ impl<'a> Reader<'a> {
         let own = self.text.lines.iter().skip_while(|line| **line != CoffLine::Function(index)).skip(1);
         for line in own {
             let CoffLine::Statement { address, line } = line else { break };
-            let word = (address / WORD as u32).wrapping_sub(self.head);
+            let word = (address / self.word).wrapping_sub(self.head);
             if words.contains(&word) {
                 let place = SourceLine { file, line: u32::from(line.get()) };
                 self.object.lines.push(Line { word, place });

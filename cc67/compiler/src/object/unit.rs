@@ -5,12 +5,15 @@
 use super::{
     DataRelocation, Definition, Function, Initialized, Line, Object, SourceLine, Symbol, SymbolKind,
 };
-use crate::bytecode::{Generated, Text};
+use crate::bytecode::text::Added;
+use crate::bytecode::{Generated, Relocation, RelocationKind, Text};
+use crate::c67x::Externs;
+use crate::c67x::text::Words;
 use crate::ir::function::Signatures;
 use crate::ir::inst::SignatureId;
 use crate::source::{SourceMap, Span};
-use crate::ty::{Type, TypeId, Types};
-use crate::typed::{self, SymbolId, Unit};
+use crate::ty::{ParameterTypes, Type, TypeId, Types};
+use crate::typed::{self, Linkage, SymbolId, Unit};
 
 /// What is known of a function besides its words.
 #[derive(Clone, Copy, Debug)]
@@ -53,7 +56,7 @@ impl<'a> UnitBuilder<'a> {
 
     /// Adds a function that was generated.
     pub(crate) fn function(&mut self, about: About, generated: Generated) {
-        let Generated { added, frame } = generated;
+        let Generated { added, frame, variables } = generated;
         let file = self.object.symbols[about.symbol].place.file;
         let end = self.place(about.end);
         let (relocations, lines) = (self.object.relocations.len() as u32, self.object.lines.len() as u32);
@@ -69,7 +72,57 @@ impl<'a> UnitBuilder<'a> {
             lines: lines..object.lines.len() as u32,
             frame,
             end,
+            variables,
         });
+    }
+
+    /// The symbols as far as code cares, in their order.
+    pub(crate) fn externs(&self) -> Externs {
+        let mut externs = Externs::default();
+        for (id, symbol) in &self.object.symbols {
+            let ty = self.unit.symbols.get(id).map(|symbol| symbol.ty);
+            let is_variadic = ty.is_some_and(|ty| match self.unit.types.get(ty) {
+                Type::Function(function) => {
+                    matches!(function.parameters, ParameterTypes::Prototype { is_variadic: true, .. })
+                }
+                _ => false,
+            });
+            let is_external = symbol.linkage == Linkage::External;
+            externs.push(&symbol.name, symbol.align, is_variadic, is_external);
+        }
+        externs
+    }
+
+    /// Adds a function of the controller's code.
+    pub(crate) fn words(&mut self, about: About, words: Words) {
+        let Words { words, fixups, spans, frame } = words;
+        let start = words.start;
+        let relocations = fixups.into_iter().map(|fixup| Relocation {
+            word: start + fixup.word,
+            kind: RelocationKind::Processor(fixup.kind),
+            symbol: fixup.symbol.unwrap_or(about.symbol),
+        });
+        let added = Added { words, relocations: relocations.collect(), spans };
+        self.function(about, Generated { added, frame, variables: Vec::new() });
+    }
+
+    /// The object with the controller's code of its functions, and the names that this needs besides.
+    pub(crate) fn finish_code(mut self, code: Vec<u32>, added: Vec<&'static str>) -> Object {
+        for name in added {
+            self.object.symbols.push(Symbol {
+                name: name.to_owned(),
+                linkage: Linkage::External,
+                definition: Definition::None,
+                kind: SymbolKind::Function,
+                size: 0,
+                align: 1,
+                span: None,
+                place: SourceLine::default(),
+                used_at: None,
+            });
+        }
+        self.object.code = Some(code);
+        self.object
     }
 
     /// The object with the words of its functions and the constants that they use.

@@ -1,11 +1,15 @@
 //! An object to the bytes of a file.
 //!
 //! The layout is that of images (`coff.md` of the specification), with these additions:
-//! - `.text` begins with the unit's constants and signatures; addresses and labels count from
+//! - `.text` of bytecode begins with the unit's constants and signatures; addresses and labels count from
 //!   the beginning of the section;
+//! - the target is that of images: our own for bytecode, the processor's for its code;
 //! - relocations of kind [`ADDRESS`] add the symbol's address to the 32 bits at their address,
 //!   those of kind [`CALL`] complete the call instruction there, whose signature is their
 //!   displacement;
+//! - in code for the processor, [`LOW`] and [`HIGH`] put half of the symbol's address plus an offset into the constant
+//!   of an instruction, which holds that half of the offset, the displacement the other half; [`NEAR`] completes a
+//!   branch; [`OWN`] adds the function's address to the word;
 //! - the symbols behind the file symbols stand in the order of the unit's. A tentative external
 //!   object is undefined with its size as value, as common objects always are in COFF; a
 //!   `static` one lies in `.bss`;
@@ -20,12 +24,23 @@ use coff::{
 
 use super::{Definition, Function, Object, SourceLine, base_type, class, function_type, statement, to_u16};
 use crate::bytecode::{RelocationKind, WORD, head};
+use crate::c67x::text::{FixupKind, half};
 use crate::typed::{Linkage, SymbolId};
 
 /// The symbol's address is added to the 32 bits.
 pub(super) const ADDRESS: u16 = 1;
 /// A call instruction.
 pub(super) const CALL: u16 = 2;
+/// The low half of an address in an instruction.
+pub(super) const LOW: u16 = 3;
+/// The high half.
+pub(super) const HIGH: u16 = 4;
+/// The displacement of a branch.
+pub(super) const NEAR: u16 = 5;
+/// The address of the function.
+pub(super) const OWN: u16 = 6;
+/// Bytes of a word of code for the processor.
+pub(super) const CODE_WORD: u32 = 4;
 
 /// The section of code, counted from 1.
 pub(super) const TEXT: SectionNumber = SectionNumber(1);
@@ -63,6 +78,8 @@ struct Writer<'a> {
     object: &'a Object,
     /// Words in front of the first function.
     head: u32,
+    /// Bytes of a word.
+    word: u32,
     symbols: Vec<Symbol>,
     /// Entries so far, auxiliary ones included.
     entries: u32,
@@ -76,9 +93,14 @@ struct Writer<'a> {
 
 impl<'a> Writer<'a> {
     fn new(object: &'a Object) -> Self {
+        let (head, word) = match object.code {
+            Some(_) => (0, CODE_WORD),
+            None => (head::words(&object.pool, object.signatures.as_slice()), WORD as u32),
+        };
         Self {
             object,
-            head: head::words(&object.pool, object.signatures.as_slice()),
+            head,
+            word,
             symbols: Vec::new(),
             entries: 0,
             indexes: Vec::new(),
@@ -171,7 +193,7 @@ impl<'a> Writer<'a> {
 
     /// Where a word of the unit's text stands in the section.
     fn byte(&self, word: u32) -> u32 {
-        (self.head + word) * WORD as u32
+        (self.head + word) * self.word
     }
 
     fn image(self) -> Result<Image, Error> {
@@ -181,6 +203,12 @@ impl<'a> Writer<'a> {
             let (address, kind, displacement) = match relocation.kind {
                 RelocationKind::Address => (at + 4, ADDRESS, 0),
                 RelocationKind::Call(signature) => (at, CALL, to_u16(signature.as_u32())),
+                RelocationKind::Processor(kind) => match kind {
+                    FixupKind::Low(offset) => (at, LOW, (offset >> 16) as u16),
+                    FixupKind::High(offset) => (at, HIGH, offset as u16),
+                    FixupKind::Near => (at, NEAR, 0),
+                    FixupKind::Own(_) => (at, OWN, 0),
+                },
             };
             coff::Relocation { address, symbol: index(relocation.symbol), displacement, kind }
         });
@@ -196,7 +224,7 @@ impl<'a> Writer<'a> {
         let data = section(".data", SectionFlags::DATA, data, data_relocations.collect());
         let bss = section(".bss", SectionFlags::BSS, Contents::Uninitialised(self.bss), Vec::new());
         let mut image = Image {
-            target: Target::CC67,
+            target: if self.object.code.is_some() { Target::C6000 } else { Target::CC67 },
             timestamp: 0,
             flags: FileFlags::LITTLE_ENDIAN,
             program: None,
@@ -214,10 +242,32 @@ impl<'a> Writer<'a> {
     }
 
     fn text(&self) -> Vec<u8> {
+        if let Some(code) = &self.object.code {
+            return self.code(code);
+        }
         let mut text = Vec::with_capacity(self.byte(self.object.text.len()) as usize);
         head::write(&self.object.pool, self.object.signatures.as_slice(), &mut text);
         self.object.text.write(self.head, &mut text);
         text
+    }
+
+    /// The words of the controller's code, with the offsets of their relocations.
+    fn code(&self, code: &[u32]) -> Vec<u8> {
+        let mut words = code.to_vec();
+        for relocation in &self.object.relocations {
+            let (Some(word), RelocationKind::Processor(kind)) =
+                (words.get_mut(relocation.word as usize), relocation.kind)
+            else {
+                continue;
+            };
+            match kind {
+                FixupKind::Low(offset) => *word = half(*word, offset.cast_unsigned()),
+                FixupKind::High(offset) => *word = half(*word, offset.cast_unsigned() >> 16),
+                FixupKind::Near => {}
+                FixupKind::Own(offset) => *word = offset.cast_unsigned(),
+            }
+        }
+        words.iter().flat_map(|word| word.to_le_bytes()).collect()
     }
 }
 

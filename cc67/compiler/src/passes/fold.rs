@@ -116,7 +116,16 @@ impl Folder {
                 None => Known::Nothing,
             },
             InstKind::Compare { op: CompareOp::Equal, a, b, .. } if b.as_int() == Some(0) => Known::IsZero(a),
-            _ => Known::Nothing,
+            InstKind::Unary { .. }
+            | InstKind::Binary { .. }
+            | InstKind::Compare { .. }
+            | InstKind::Convert { .. }
+            | InstKind::Load { .. }
+            | InstKind::Store { .. }
+            | InstKind::CopyMemory { .. }
+            | InstKind::ClearMemory { .. }
+            | InstKind::Call { .. }
+            | InstKind::Cost { .. } => Known::Nothing,
         };
         let of = refers_to(known);
         // `i = i + 1` says nothing about the new `i`.
@@ -153,7 +162,14 @@ impl Folder {
                     Base::Absolute | Base::Symbol(_) => {}
                 }
             }
-            _ => {}
+            InstKind::Copy { .. }
+            | InstKind::Unary { .. }
+            | InstKind::Binary { .. }
+            | InstKind::Compare { .. }
+            | InstKind::Convert { .. }
+            | InstKind::FrameAddress { .. }
+            | InstKind::Call { .. }
+            | InstKind::Cost { .. } => {}
         }
     }
 
@@ -161,9 +177,9 @@ impl Folder {
         match address.base {
             Base::Value(value) => match self.known(value) {
                 Known::Address(known) => known.plus(address.offset),
-                _ => address,
+                Known::Nothing | Known::Operand(_) | Known::IsZero(_) => address,
             },
-            _ => address,
+            Base::Absolute | Base::Slot(_) | Base::Symbol(_) => address,
         }
     }
 
@@ -175,7 +191,14 @@ impl Folder {
             InstKind::Binary { op, a, b, .. } => strength::binary(op, a, b, function.values[dst]),
             InstKind::Compare { op, a, b, .. } => self.compare(op, a, b),
             InstKind::Convert { op, src, .. } => strength::convert(op, src),
-            _ => return,
+            InstKind::Copy { .. }
+            | InstKind::Load { .. }
+            | InstKind::Store { .. }
+            | InstKind::FrameAddress { .. }
+            | InstKind::CopyMemory { .. }
+            | InstKind::ClearMemory { .. }
+            | InstKind::Call { .. }
+            | InstKind::Cost { .. } => return,
         };
         match simplified {
             Simplified::No => {}
@@ -193,7 +216,10 @@ impl Folder {
             match op {
                 CompareOp::Equal => return Simplified::Compare(CompareOp::NotEqual, inner, Operand::int(0)),
                 CompareOp::NotEqual => return Simplified::Operand(a),
-                _ => {}
+                CompareOp::Less
+                | CompareOp::LessEqual
+                | CompareOp::LessUnsigned
+                | CompareOp::LessEqualUnsigned => {}
             }
         }
         strength::compare(op, a, b)

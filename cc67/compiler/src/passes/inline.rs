@@ -13,7 +13,7 @@ use cranelift_entity::SecondaryMap;
 
 use crate::ir::function::{Block, Function};
 use crate::ir::inst::{
-    Address, Arguments, Base, BlockId, Callee, Class, Inst, InstKind, Operand, Terminator, ValueId,
+    Address, ArgumentRange, Base, BlockId, Callee, Class, Inst, InstKind, Operand, Terminator, ValueId,
 };
 use crate::typed::SymbolId;
 
@@ -23,19 +23,33 @@ const SMALL: usize = 40;
 /// The most instructions of a function whose calls of itself are replaced.
 const SMALL_RECURSIVE: usize = 16;
 
-/// How often the calls of a function in itself are replaced.
+/// How often the calls of a function in itself are replaced, unless something else is asked for.
 const LEVELS: usize = 3;
 
 /// What a function may grow to.
 const LARGEST: usize = 1500;
 
 /// The functions that may be put in the place of their calls, each with the source file that it is in.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Candidates {
+    /// How often the calls of a function in itself are replaced.
+    levels: usize,
     functions: BTreeMap<SymbolId, (u32, Function)>,
 }
 
+impl Default for Candidates {
+    fn default() -> Self {
+        Self::new(LEVELS)
+    }
+}
+
 impl Candidates {
+    /// No candidates yet; the calls of a function in itself are replaced `levels` times.
+    #[must_use]
+    pub const fn new(levels: usize) -> Self {
+        Self { levels, functions: BTreeMap::new() }
+    }
+
     /// Offers an optimised function of the source file `file`.
     pub fn offer(&mut self, function: &Function, file: u32) {
         if size(function) <= SMALL && function.slots.is_empty() {
@@ -56,7 +70,7 @@ impl Candidates {
         };
         let mut is_changed = replace_calls(function, find);
         if let Some(own) = &own {
-            for _ in 0..LEVELS {
+            for _ in 0..self.levels {
                 if !replace_calls(function, |symbol| (symbol == itself).then_some(own)) {
                     break;
                 }
@@ -67,18 +81,21 @@ impl Candidates {
     }
 }
 
-/// Number of instructions, ends of blocks included.
+/// Number of instructions, ends of blocks included; costs are none.
 fn size(function: &Function) -> usize {
-    function.layout.iter().map(|id| function.blocks[*id].insts.len() + 1).sum()
+    let is_work = |inst: &&Inst| !matches!(inst.kind, InstKind::Cost { .. });
+    function.layout.iter().map(|id| function.blocks[*id].insts.iter().filter(is_work).count() + 1).sum()
 }
 
 /// The functions that are called by name, once for each call.
 fn callees(function: &Function) -> impl Iterator<Item = SymbolId> {
     let insts = function.layout.iter().flat_map(|id| &function.blocks[*id].insts);
-    insts.filter_map(|inst| match inst.kind {
-        InstKind::Call { callee: Callee::Symbol(symbol), .. } => Some(symbol),
-        _ => None,
-    })
+    insts.filter_map(|inst| called(&inst.kind))
+}
+
+/// The function that an instruction calls by name.
+const fn called(kind: &InstKind) -> Option<SymbolId> {
+    if let InstKind::Call { callee: Callee::Symbol(symbol), .. } = *kind { Some(symbol) } else { None }
 }
 
 /// Replaces every call for which `find` names a function, as it is now; returns whether there was one.
@@ -93,13 +110,11 @@ fn replace_calls<'a>(function: &mut Function, find: impl Fn(SymbolId) -> Option<
         layout.push(id);
         let mut block = id;
         for inst in std::mem::take(&mut function.blocks[id].insts) {
-            let callee = match inst.kind {
-                InstKind::Call { callee: Callee::Symbol(symbol), signature, .. } => {
-                    find(symbol).filter(|callee| callee.signature == signature)
-                }
-                _ => None,
-            };
-            let Some(callee) = callee.filter(|callee| total + size(callee) <= LARGEST) else {
+            let callee = called(&inst.kind).and_then(&find);
+            let callee = callee.filter(|callee| {
+                inst.kind.signature() == Some(callee.signature) && total + size(callee) <= LARGEST
+            });
+            let Some(callee) = callee else {
                 function.blocks[block].insts.push(inst);
                 continue;
             };
@@ -198,17 +213,17 @@ impl<'a> Copier<'a> {
     fn address(&self, address: Address) -> Address {
         match address.base {
             Base::Value(value) => Address { base: Base::Value(self.values[value]), ..address },
-            _ => address,
+            Base::Absolute | Base::Slot(_) | Base::Symbol(_) => address,
         }
     }
 
-    fn arguments(&mut self, arguments: Arguments) -> Arguments {
+    fn arguments(&mut self, arguments: ArgumentRange) -> ArgumentRange {
         let start = self.to.arguments.len() as u32;
         for index in arguments.range() {
             let argument = self.operand(self.from.arguments[index]);
             self.to.arguments.push(argument);
         }
-        Arguments { start, count: arguments.count }
+        ArgumentRange { start, count: arguments.count }
     }
 
     fn inst(&mut self, inst: Inst) -> Inst {
@@ -238,6 +253,7 @@ impl<'a> Copier<'a> {
                 InstKind::CopyMemory { to: self.address(to), from: self.address(from), len }
             }
             InstKind::ClearMemory { to, len } => InstKind::ClearMemory { to: self.address(to), len },
+            InstKind::Cost { cycles } => InstKind::Cost { cycles },
             InstKind::Call { callee, arguments, signature, dst } => {
                 let dst = dst.expand().map(of).into();
                 let callee = match callee {

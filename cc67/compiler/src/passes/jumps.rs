@@ -30,11 +30,10 @@ fn thread(function: &mut Function) {
         if is_any {
             terminator.visit_targets(|target| *target = resolve(&mut forwards, *target));
         }
-        match *terminator {
-            Terminator::Branch { then, otherwise, .. } if then == otherwise => {
-                *terminator = Terminator::Jump(then);
-            }
-            _ => {}
+        if let Terminator::Branch { then, otherwise, .. } = *terminator
+            && then == otherwise
+        {
+            *terminator = Terminator::Jump(then);
         }
         // A jump to a mere return is a return.
         if let Terminator::Jump(to) = function.blocks[id].terminator

@@ -14,6 +14,7 @@ pub mod reuse;
 mod strength;
 
 use crate::ir::function::Function;
+use inline::Candidates;
 
 /// How much is optimised.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -23,6 +24,29 @@ pub enum Level {
     /// Everything (`-O1`, `-O2`).
     #[default]
     Full,
+}
+
+/// A pass over the functions of a unit, in their order.
+pub type Pass = fn(&mut [Function]);
+
+/// Every pass by its name; [`run`] and the driver say when each has its turn.
+pub const ALL: &[(&str, Pass)] = &[
+    ("jumps", |unit| unit.iter_mut().for_each(jumps::run)),
+    ("fold", |unit| unit.iter_mut().for_each(|function| _ = fold::run(function))),
+    ("reuse", |unit| unit.iter_mut().for_each(|function| _ = reuse::run(function))),
+    ("loops", |unit| unit.iter_mut().for_each(|function| _ = loops::run(function))),
+    ("dead", |unit| unit.iter_mut().for_each(dead::run)),
+    ("divide", |unit| unit.iter_mut().for_each(divide::run)),
+    ("inline", inline_all),
+];
+
+/// Puts functions of the unit, taken as one file, in the place of their later calls.
+fn inline_all(unit: &mut [Function]) {
+    let mut candidates = Candidates::default();
+    for function in unit {
+        candidates.offer(function, 0);
+        candidates.run(function, 0);
+    }
 }
 
 /// Runs the optimisations of a level.

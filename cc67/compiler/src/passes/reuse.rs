@@ -47,14 +47,20 @@ pub fn run(function: &mut Function) -> bool {
 
 /// Whether the same instruction on the same values always gives the same; what traps has done so the first time.
 const fn is_expression(kind: &InstKind) -> bool {
-    matches!(
-        kind,
+    match kind {
         InstKind::Unary { .. }
-            | InstKind::Binary { .. }
-            | InstKind::Compare { .. }
-            | InstKind::Convert { .. }
-            | InstKind::FrameAddress { .. }
-    )
+        | InstKind::Binary { .. }
+        | InstKind::Compare { .. }
+        | InstKind::Convert { .. }
+        | InstKind::FrameAddress { .. } => true,
+        InstKind::Copy { .. }
+        | InstKind::Load { .. }
+        | InstKind::Store { .. }
+        | InstKind::CopyMemory { .. }
+        | InstKind::ClearMemory { .. }
+        | InstKind::Call { .. }
+        | InstKind::Cost { .. } => false,
+    }
 }
 
 /// The expression, written to `dst`.
@@ -65,7 +71,13 @@ const fn with_dst(kind: InstKind, to: ValueId) -> InstKind {
         InstKind::Compare { op, a, b, .. } => InstKind::Compare { op, dst: to, a, b },
         InstKind::Convert { op, src, .. } => InstKind::Convert { op, dst: to, src },
         InstKind::FrameAddress { slot, offset, .. } => InstKind::FrameAddress { dst: to, slot, offset },
-        other => other,
+        InstKind::Copy { .. }
+        | InstKind::Load { .. }
+        | InstKind::Store { .. }
+        | InstKind::CopyMemory { .. }
+        | InstKind::ClearMemory { .. }
+        | InstKind::Call { .. }
+        | InstKind::Cost { .. } => kind,
     }
 }
 

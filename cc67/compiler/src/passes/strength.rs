@@ -3,6 +3,8 @@
 //! Constants are computed by [`vm::arith`], as the machine does; what would trap is left
 //! alone.
 
+use std::ops::{Add, Div, Mul, Sub};
+
 use vm::arith;
 
 use crate::ir::inst::{Class, Constant, Operand};
@@ -58,31 +60,56 @@ fn same(op: BinaryOp, a: Operand, class: Class) -> Simplified {
     match op {
         BinaryOp::Subtract | BinaryOp::Xor => Simplified::Operand(class.zero().into()),
         BinaryOp::And | BinaryOp::Or => Simplified::Operand(a),
-        _ => Simplified::No,
+        BinaryOp::Add
+        | BinaryOp::Multiply
+        | BinaryOp::Divide
+        | BinaryOp::DivideUnsigned
+        | BinaryOp::Remainder
+        | BinaryOp::RemainderUnsigned
+        | BinaryOp::ShiftLeft
+        | BinaryOp::ShiftRight
+        | BinaryOp::ShiftRightUnsigned => Simplified::No,
     }
 }
 
 /// `a op constant`
 fn right_constant(op: BinaryOp, a: Operand, b: Operand) -> Simplified {
     let Operand::Constant(constant) = b else { return Simplified::No };
-    let number = match constant {
-        Constant::I32(value) => i64::from(value),
-        Constant::I64(value) => value,
+    let (number, is_long) = match constant {
+        Constant::I32(value) => (i64::from(value), false),
+        Constant::I64(value) => (value, true),
         Constant::F32(_) | Constant::F64(_) => return floating(op, a, constant),
         Constant::Symbol(..) => return Simplified::No,
     };
-    let is_long = matches!(constant, Constant::I64(_));
-    let zero = if op.is_shift() { None } else { Some(constant.class().zero()) };
-    match (op, number) {
-        _ if is_identity(op, number) => Simplified::Operand(a),
-        (BinaryOp::Multiply | BinaryOp::And, 0) | (BinaryOp::Remainder | BinaryOp::RemainderUnsigned, 1) => {
-            Simplified::from(zero)
-        }
-        (BinaryOp::Or, -1) => Simplified::Operand(b),
-        (BinaryOp::Subtract, _) if !is_long => {
-            Simplified::Binary(BinaryOp::Add, a, Operand::int((number as i32).wrapping_neg()))
-        }
-        _ => power_of_two(op, a, constant),
+    if is_identity(op, number) {
+        return Simplified::Operand(a);
+    }
+    if is_zero(op, number) {
+        return Simplified::Operand(constant.class().zero().into());
+    }
+    if op == BinaryOp::Or && number == -1 {
+        return Simplified::Operand(b);
+    }
+    if op == BinaryOp::Subtract && !is_long {
+        return Simplified::Binary(BinaryOp::Add, a, Operand::int((number as i32).wrapping_neg()));
+    }
+    power_of_two(op, a, constant)
+}
+
+/// Whether `a op number` is 0.
+const fn is_zero(op: BinaryOp, number: i64) -> bool {
+    match op {
+        BinaryOp::Multiply | BinaryOp::And => number == 0,
+        BinaryOp::Remainder | BinaryOp::RemainderUnsigned => number == 1,
+        BinaryOp::Add
+        | BinaryOp::Subtract
+        | BinaryOp::Divide
+        | BinaryOp::DivideUnsigned
+        | BinaryOp::Or
+        | BinaryOp::Xor
+        | BinaryOp::ShiftLeft
+        | BinaryOp::ShiftRight
+        | BinaryOp::ShiftRightUnsigned => false,
     }
 }
 
@@ -114,7 +141,16 @@ fn power_of_two(op: BinaryOp, a: Operand, constant: Constant) -> Simplified {
         BinaryOp::Multiply => Simplified::Binary(BinaryOp::ShiftLeft, a, shift),
         BinaryOp::DivideUnsigned => Simplified::Binary(BinaryOp::ShiftRightUnsigned, a, shift),
         BinaryOp::RemainderUnsigned => Simplified::Binary(BinaryOp::And, a, mask.into()),
-        _ => Simplified::No,
+        BinaryOp::Add
+        | BinaryOp::Subtract
+        | BinaryOp::Divide
+        | BinaryOp::Remainder
+        | BinaryOp::And
+        | BinaryOp::Or
+        | BinaryOp::Xor
+        | BinaryOp::ShiftLeft
+        | BinaryOp::ShiftRight
+        | BinaryOp::ShiftRightUnsigned => Simplified::No,
     }
 }
 
@@ -134,9 +170,9 @@ fn floating(op: BinaryOp, a: Operand, b: Constant) -> Simplified {
         }
         Constant::I32(_) | Constant::I64(_) | Constant::Symbol(..) => None,
     };
-    match (op, inverse) {
-        (BinaryOp::Divide, Some(inverse)) => Simplified::Binary(BinaryOp::Multiply, a, inverse.into()),
-        _ => Simplified::No,
+    match inverse {
+        Some(inverse) if op == BinaryOp::Divide => Simplified::Binary(BinaryOp::Multiply, a, inverse.into()),
+        Some(_) | None => Simplified::No,
     }
 }
 
@@ -153,37 +189,58 @@ fn binary_constant(op: BinaryOp, a: Constant, b: Constant) -> Option<Constant> {
             Some(Constant::Symbol(symbol, offset.wrapping_sub(bytes)))
         }
         (Constant::I64(a), Constant::I64(b)) => binary_i64(op, a, b).map(Constant::I64),
-        (Constant::I64(a), Constant::I32(count)) => match op {
-            BinaryOp::ShiftLeft => Some(arith::shl_i64(a, count)),
-            BinaryOp::ShiftRight => Some(arith::shr_i64_s(a, count)),
-            BinaryOp::ShiftRightUnsigned => Some(arith::shr_i64_u(a, count)),
-            _ => None,
-        }
-        .map(Constant::I64),
+        (Constant::I64(a), Constant::I32(count)) => shift_i64(op, a, count).map(Constant::I64),
         (Constant::F32(a), Constant::F32(b)) => {
-            let (a, b) = (f32::from_bits(a), f32::from_bits(b));
-            let value = match op {
-                BinaryOp::Add => a + b,
-                BinaryOp::Subtract => a - b,
-                BinaryOp::Multiply => a * b,
-                BinaryOp::Divide => a / b,
-                _ => return None,
-            };
+            let value = binary_float(op, f32::from_bits(a), f32::from_bits(b))?;
             // The bits of a NaN are the machine's business.
             (!value.is_nan()).then(|| Constant::F32(value.to_bits()))
         }
         (Constant::F64(a), Constant::F64(b)) => {
-            let (a, b) = (f64::from_bits(a), f64::from_bits(b));
-            let value = match op {
-                BinaryOp::Add => a + b,
-                BinaryOp::Subtract => a - b,
-                BinaryOp::Multiply => a * b,
-                BinaryOp::Divide => a / b,
-                _ => return None,
-            };
+            let value = binary_float(op, f64::from_bits(a), f64::from_bits(b))?;
             (!value.is_nan()).then(|| Constant::F64(value.to_bits()))
         }
         _ => None,
+    }
+}
+
+/// The operators that floats have.
+fn binary_float<T>(op: BinaryOp, a: T, b: T) -> Option<T>
+where
+    T: Add<Output = T> + Sub<Output = T> + Mul<Output = T> + Div<Output = T>,
+{
+    match op {
+        BinaryOp::Add => Some(a + b),
+        BinaryOp::Subtract => Some(a - b),
+        BinaryOp::Multiply => Some(a * b),
+        BinaryOp::Divide => Some(a / b),
+        BinaryOp::DivideUnsigned
+        | BinaryOp::Remainder
+        | BinaryOp::RemainderUnsigned
+        | BinaryOp::And
+        | BinaryOp::Or
+        | BinaryOp::Xor
+        | BinaryOp::ShiftLeft
+        | BinaryOp::ShiftRight
+        | BinaryOp::ShiftRightUnsigned => None,
+    }
+}
+
+/// The shifts of a 64-bit value.
+fn shift_i64(op: BinaryOp, a: i64, count: i32) -> Option<i64> {
+    match op {
+        BinaryOp::ShiftLeft => Some(arith::shl_i64(a, count)),
+        BinaryOp::ShiftRight => Some(arith::shr_i64_s(a, count)),
+        BinaryOp::ShiftRightUnsigned => Some(arith::shr_i64_u(a, count)),
+        BinaryOp::Add
+        | BinaryOp::Subtract
+        | BinaryOp::Multiply
+        | BinaryOp::Divide
+        | BinaryOp::DivideUnsigned
+        | BinaryOp::Remainder
+        | BinaryOp::RemainderUnsigned
+        | BinaryOp::And
+        | BinaryOp::Or
+        | BinaryOp::Xor => None,
     }
 }
 
@@ -223,9 +280,8 @@ fn binary_i64(op: BinaryOp, a: i64, b: i64) -> Option<i64> {
 
 pub(super) fn compare(op: CompareOp, a: Operand, b: Operand) -> Simplified {
     let (Operand::Constant(a), Operand::Constant(b)) = (a, b) else {
-        let is_symmetric = matches!(op, CompareOp::Equal | CompareOp::NotEqual);
         return match (a, b) {
-            (Operand::Constant(_), Operand::Value(_)) if is_symmetric => Simplified::Compare(op, b, a),
+            (Operand::Constant(_), Operand::Value(_)) if op.is_symmetric() => Simplified::Compare(op, b, a),
             _ => Simplified::No,
         };
     };
@@ -267,60 +323,42 @@ fn compare_floats(op: CompareOp, a: f64, b: f64) -> bool {
 
 pub(super) fn convert(op: ConvertOp, src: Operand) -> Simplified {
     let Operand::Constant(constant) = src else { return Simplified::No };
-    Simplified::from(match constant {
-        Constant::I32(value) => convert_i32(op, value),
-        Constant::I64(value) => convert_i64(op, value),
-        Constant::F32(bits) => convert_f32(op, f32::from_bits(bits)),
-        Constant::F64(bits) => convert_f64(op, f64::from_bits(bits)),
-        Constant::Symbol(..) => None,
-    })
+    Simplified::from(converted(op, constant))
 }
 
-fn convert_i32(op: ConvertOp, value: i32) -> Option<Constant> {
-    let unsigned = value.cast_unsigned();
-    Some(match op {
-        ConvertOp::SignExtend8 => Constant::I32(i32::from(value as i8)),
-        ConvertOp::ZeroExtend8 => Constant::I32(i32::from(value as u8)),
-        ConvertOp::SignExtend16 => Constant::I32(i32::from(value as i16)),
-        ConvertOp::ZeroExtend16 => Constant::I32(i32::from(value as u16)),
-        ConvertOp::I64FromI32 => Constant::I64(i64::from(value)),
-        ConvertOp::I64FromU32 => Constant::I64(i64::from(unsigned)),
-        ConvertOp::F32FromI32 => Constant::F32((value as f32).to_bits()),
-        ConvertOp::F32FromU32 => Constant::F32((unsigned as f32).to_bits()),
-        ConvertOp::F64FromI32 => Constant::F64(f64::from(value).to_bits()),
-        ConvertOp::F64FromU32 => Constant::F64(f64::from(unsigned).to_bits()),
-        _ => return None,
-    })
-}
-
-fn convert_i64(op: ConvertOp, value: i64) -> Option<Constant> {
-    let unsigned = value.cast_unsigned();
-    Some(match op {
-        ConvertOp::I32FromI64 => Constant::I32(value as i32),
-        ConvertOp::F32FromI64 => Constant::F32((value as f32).to_bits()),
-        ConvertOp::F32FromU64 => Constant::F32((unsigned as f32).to_bits()),
-        ConvertOp::F64FromI64 => Constant::F64((value as f64).to_bits()),
-        ConvertOp::F64FromU64 => Constant::F64((unsigned as f64).to_bits()),
-        _ => return None,
-    })
-}
-
-fn convert_f32(op: ConvertOp, value: f32) -> Option<Constant> {
+/// The constant that a conversion gives; none for the address of a symbol, and where it is a NaN.
+fn converted(op: ConvertOp, constant: Constant) -> Option<Constant> {
+    let int = || if let Constant::I32(value) = constant { Some(value) } else { None };
+    let unsigned = || int().map(i32::cast_unsigned);
+    let long = || if let Constant::I64(value) = constant { Some(value) } else { None };
+    let unsigned_long = || long().map(i64::cast_unsigned);
+    let single = || if let Constant::F32(bits) = constant { Some(f32::from_bits(bits)) } else { None };
+    let double = || if let Constant::F64(bits) = constant { Some(f64::from_bits(bits)) } else { None };
+    let f32 = |value: f32| Constant::F32(value.to_bits());
+    let f64 = |value: f64| Constant::F64(value.to_bits());
     match op {
-        ConvertOp::F64FromF32 if !value.is_nan() => Some(Constant::F64(f64::from(value).to_bits())),
-        ConvertOp::I32FromF32 => Some(Constant::I32(arith::i32_from_f64_s(f64::from(value)))),
-        ConvertOp::U32FromF32 => Some(Constant::I32(arith::i32_from_f64_u(f64::from(value)))),
-        _ => None,
-    }
-}
-
-fn convert_f64(op: ConvertOp, value: f64) -> Option<Constant> {
-    match op {
-        ConvertOp::F32FromF64 if !value.is_nan() => Some(Constant::F32((value as f32).to_bits())),
-        ConvertOp::I32FromF64 => Some(Constant::I32(arith::i32_from_f64_s(value))),
-        ConvertOp::U32FromF64 => Some(Constant::I32(arith::i32_from_f64_u(value))),
-        ConvertOp::I64FromF64 => Some(Constant::I64(arith::i64_from_f64_s(value))),
-        ConvertOp::U64FromF64 => Some(Constant::I64(arith::i64_from_f64_u(value))),
-        _ => None,
+        ConvertOp::SignExtend8 => int().map(|value| Constant::I32(i32::from(value as i8))),
+        ConvertOp::ZeroExtend8 => int().map(|value| Constant::I32(i32::from(value as u8))),
+        ConvertOp::SignExtend16 => int().map(|value| Constant::I32(i32::from(value as i16))),
+        ConvertOp::ZeroExtend16 => int().map(|value| Constant::I32(i32::from(value as u16))),
+        ConvertOp::I64FromI32 => int().map(|value| Constant::I64(i64::from(value))),
+        ConvertOp::I64FromU32 => unsigned().map(|value| Constant::I64(i64::from(value))),
+        ConvertOp::I32FromI64 => long().map(|value| Constant::I32(value as i32)),
+        ConvertOp::F32FromI32 => int().map(|value| f32(value as f32)),
+        ConvertOp::F32FromU32 => unsigned().map(|value| f32(value as f32)),
+        ConvertOp::F32FromI64 => long().map(|value| f32(value as f32)),
+        ConvertOp::F32FromU64 => unsigned_long().map(|value| f32(value as f32)),
+        ConvertOp::F64FromI32 => int().map(|value| f64(f64::from(value))),
+        ConvertOp::F64FromU32 => unsigned().map(|value| f64(f64::from(value))),
+        ConvertOp::F64FromI64 => long().map(|value| f64(value as f64)),
+        ConvertOp::F64FromU64 => unsigned_long().map(|value| f64(value as f64)),
+        ConvertOp::F64FromF32 => single().filter(|value| !value.is_nan()).map(|value| f64(f64::from(value))),
+        ConvertOp::F32FromF64 => double().filter(|value| !value.is_nan()).map(|value| f32(value as f32)),
+        ConvertOp::I32FromF32 => single().map(|value| Constant::I32(arith::i32_from_f64_s(f64::from(value)))),
+        ConvertOp::U32FromF32 => single().map(|value| Constant::I32(arith::i32_from_f64_u(f64::from(value)))),
+        ConvertOp::I32FromF64 => double().map(|value| Constant::I32(arith::i32_from_f64_s(value))),
+        ConvertOp::U32FromF64 => double().map(|value| Constant::I32(arith::i32_from_f64_u(value))),
+        ConvertOp::I64FromF64 => double().map(|value| Constant::I64(arith::i64_from_f64_s(value))),
+        ConvertOp::U64FromF64 => double().map(|value| Constant::I64(arith::i64_from_f64_u(value))),
     }
 }

@@ -112,7 +112,7 @@ fn values_that_nobody_reads_are_not_computed() {
         "
         function f(v0: i32) -> i32
         block0:
-          call g(v0)
+          call.i32 g(v0)
           return v0
         ",
     );

@@ -69,6 +69,46 @@ pub struct Options {
     pub undefines: Vec<String>,
     /// Headers that are there when no directory has them: name and text.
     pub embedded: &'static [(&'static str, &'static [u8])],
+    /// Which C the program is written in.
+    pub standard: Standard,
+}
+
+/// Which C a program is written in, where that makes a difference.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Standard {
+    /// As the vendor's compiler reads it: the rules of 1990 for constants.
+    #[default]
+    Vendor,
+    /// C of 1999: a decimal constant without `u` is never unsigned.
+    C99,
+    /// C of 2011.
+    C11,
+    /// C of 2017.
+    C17,
+}
+
+impl Standard {
+    /// The standard of this name, as GCC's `-std` takes it.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        Some(match name {
+            "vendor" | "ansi" | "c89" | "c90" | "gnu89" | "gnu90" => Self::Vendor,
+            "c99" | "c9x" | "gnu99" | "gnu9x" => Self::C99,
+            "c11" | "c1x" | "gnu11" | "gnu1x" => Self::C11,
+            "c17" | "c18" | "gnu17" | "gnu18" => Self::C17,
+            _ => return None,
+        })
+    }
+
+    /// What it predefines.
+    const fn macros(self) -> &'static str {
+        match self {
+            Self::Vendor => "",
+            Self::C99 => "#define __STDC_VERSION__ 199901L\n",
+            Self::C11 => "#define __STDC_VERSION__ 201112L\n",
+            Self::C17 => "#define __STDC_VERSION__ 201710L\n",
+        }
+    }
 }
 
 /// Preprocesses a file of `sources` with everything it includes; the last token is `End`.

@@ -18,6 +18,7 @@ const PREDEFINED: &str = "\
 #define __COUNTER__
 #define __DATE__ \"Jan  1 2000\"
 #define __TIME__ \"00:00:00\"
+#define __TIMESTAMP__ \"Sat Jan  1 00:00:00 2000\"
 #define __STDC__ 1
 #define __TINYC__ 1
 #define __CC67__ 1
@@ -27,10 +28,13 @@ const PREDEFINED: &str = "\
 #define _Pragma(text)
 ";
 
+/// What GCC defines about its types, and its names for functions of the C library.
+const GNU: &str = include_str!("predefined.h");
+
 impl Preprocessor<'_> {
     /// Defines the predefined macros and those of the command line.
     pub(super) fn define_predefined(&mut self) {
-        self.define_from("<predefined>", PREDEFINED.to_owned());
+        self.define_from("<predefined>", [PREDEFINED, GNU, self.options.standard.macros()].concat());
         let builtins = [
             (word::MACRO_FILE, Builtin::File),
             (word::MACRO_LINE, Builtin::Line),

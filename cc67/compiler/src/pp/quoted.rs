@@ -163,7 +163,7 @@ fn escape(text: &[u8], at: usize, encoding: Encoding, problems: &mut Vec<Problem
         _ => {
             let shown = if letter.is_ascii_graphic() { char::from(letter) } else { '?' };
             problems.push(Problem {
-                kind: ProblemKind::Error,
+                kind: ProblemKind::Warning,
                 message: format!("unknown escape `\\{shown}`"),
                 range: at..at + 2,
                 help: Some("write `\\\\` for a backslash".to_owned()),

@@ -10,14 +10,14 @@ use super::macros::MacroId;
 use super::token::{Flags, Token, TokenKind};
 
 /// The arguments of one call.
-struct Arguments<'a> {
+struct MacroArguments<'a> {
     raw: &'a [Token],
     ranges: &'a [Range<usize>],
     /// Each with its macros expanded, once that was needed.
     expanded: Vec<Option<Vec<Token>>>,
 }
 
-impl Arguments<'_> {
+impl MacroArguments<'_> {
     fn raw(&self, parameter: usize) -> &[Token] {
         self.ranges.get(parameter).and_then(|range| self.raw.get(range.clone())).unwrap_or(&[])
     }
@@ -40,7 +40,7 @@ impl Preprocessor<'_> {
         let body = definition.body.clone();
         let variadic =
             definition.parameters.as_ref().filter(|list| list.is_variadic).map(|list| list.names.len() - 1);
-        let mut arguments = Arguments { raw, ranges, expanded: vec![None; ranges.len()] };
+        let mut arguments = MacroArguments { raw, ranges, expanded: vec![None; ranges.len()] };
         let mut output = Vec::with_capacity(body.len());
         let mut at = body.start;
         while at < body.end && !self.work.is_stopped {
@@ -75,7 +75,7 @@ impl Preprocessor<'_> {
         output: &mut Vec<Token>,
         token: Token,
         is_pasted: bool,
-        arguments: &mut Arguments<'_>,
+        arguments: &mut MacroArguments<'_>,
         expansion: ExpansionId,
     ) {
         match token.kind {
@@ -107,7 +107,12 @@ impl Preprocessor<'_> {
         }
     }
 
-    fn append_expanded(&mut self, output: &mut Vec<Token>, parameter: usize, arguments: &mut Arguments<'_>) {
+    fn append_expanded(
+        &mut self,
+        output: &mut Vec<Token>,
+        parameter: usize,
+        arguments: &mut MacroArguments<'_>,
+    ) {
         let raw = arguments.raw(parameter);
         let is_macro =
             |token: &Token| token.kind == TokenKind::Identifier && self.macros.find(token.name).is_some();
@@ -133,7 +138,7 @@ impl Preprocessor<'_> {
         output: &mut Vec<Token>,
         operand: Token,
         is_rest: bool,
-        arguments: &mut Arguments<'_>,
+        arguments: &mut MacroArguments<'_>,
         expansion: ExpansionId,
     ) {
         let is_comma = output.last().is_some_and(|token| token.kind == TokenKind::Comma);

@@ -33,6 +33,8 @@ pub(super) struct Body {
     /// Places.
     pub(super) places: PrimaryMap<PlaceId, Place>,
     pub(super) jumps: Jumps,
+    /// Integer constants that a division cut off on the way, with the first such division.
+    pub(super) cut: BTreeMap<ExprId, (i64, i64)>,
     /// Undeclared names that were reported in this function.
     pub(super) undeclared: BTreeSet<Name>,
 }
@@ -74,6 +76,7 @@ impl Body {
             exprs: PrimaryMap::new(),
             places: PrimaryMap::new(),
             jumps: Jumps::default(),
+            cut: BTreeMap::new(),
             undeclared: BTreeSet::new(),
         }
     }
@@ -195,9 +198,27 @@ impl Body {
         let folded =
             self.as_constant(a).zip(self.as_constant(b)).and_then(|(a, b)| constants::binary(op, a, b, ty));
         match folded {
-            Some(constant) => self.constant(constant, ty, span),
+            Some(constant) => {
+                let cut = self.division_cut(op, a, b);
+                let value = self.constant(constant, ty, span);
+                self.cut.extend(cut.map(|cut| (value, cut)));
+                value
+            }
             None => self.expr(ExprKind::Binary(op, a, b), ty, span),
         }
+    }
+
+    /// The division of two integer constants that cuts a large part off, here or in an operand.
+    fn division_cut(&self, op: BinaryOp, a: ExprId, b: ExprId) -> Option<(i64, i64)> {
+        let own = match (op, self.as_int(a), self.as_int(b)) {
+            // More than a twentieth of the quotient is lost.
+            (BinaryOp::Divide, Some(x), Some(y)) if y != 0 => {
+                let lost = x.checked_rem(y)?.unsigned_abs();
+                (lost.saturating_mul(20) > x.unsigned_abs()).then_some((x, y))
+            }
+            _ => None,
+        };
+        own.or_else(|| self.cut.get(&a).or_else(|| self.cut.get(&b)).copied())
     }
 
     /// A comparison of operands of one type.

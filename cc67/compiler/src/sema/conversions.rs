@@ -3,6 +3,7 @@
 //! Which pairs are silent, warned about or refused: `dialect.md` 2.4.
 
 use super::Sema;
+use super::constants::Constant;
 use crate::diag::{Diagnostic, Lint};
 use crate::lints::{conversion, missing_address, user_data_alignment, user_data_index};
 use crate::source::Span;
@@ -62,6 +63,8 @@ impl Sema<'_> {
     pub(super) fn usual(&mut self, a: ExprId, b: ExprId, span: Span) -> (ExprId, ExprId) {
         let (a, b) = (self.promote(a, span), self.promote(b, span));
         let common = convert::common(self.body.ty(a), self.body.ty(b));
+        self.lint_division(a, common);
+        self.lint_division(b, common);
         (self.body.convert(a, common, span), self.body.convert(b, common, span))
     }
 
@@ -83,6 +86,7 @@ impl Sema<'_> {
         let from = self.body.ty(value);
         if from == to || (from.is_arithmetic() && to.is_arithmetic()) {
             self.lint_narrowing(value, to, span);
+            self.lint_division(value, to);
             return Some(self.body.convert(value, to, span));
         }
         match (self.types.is_pointer(from), self.types.is_pointer(to)) {
@@ -123,10 +127,32 @@ impl Sema<'_> {
     /// Warns about a number that may not fit where it is stored; constants are known.
     fn lint_narrowing(&mut self, value: ExprId, to: TypeId, span: Span) {
         let from = self.body.ty(value);
-        if let Some(loss) = conversion::loss(&self.types, from, to)
-            && self.body.as_constant(value).is_none()
+        let Some(loss) = conversion::loss(&self.types, from, to) else { return };
+        match self.body.as_constant(value) {
+            None => self.report(conversion::finding(&self.spell(from), &self.spell(to), loss, span)),
+            // What is computed, such as `0.5 / TIMEBASE`, is meant to be cut off.
+            Some(Constant::Float(number))
+                if to.is_integer() && number.fract() != 0.0 && self.is_written(value, number) =>
+            {
+                self.report(conversion::lost_fraction(number, &self.spell(to), span));
+            }
+            Some(_) => {}
+        }
+    }
+
+    /// Whether a constant stands in the source as a number.
+    fn is_written(&self, value: ExprId, number: f64) -> bool {
+        let text = String::from_utf8_lossy(self.sources.text(self.body.span(value))).into_owned();
+        text.trim_end_matches(['f', 'F']).parse() == Ok(number.abs())
+    }
+
+    /// Warns about a quotient of integer constants that lost its fraction before it became a floating-point number.
+    fn lint_division(&mut self, value: ExprId, to: TypeId) {
+        if to.is_floating()
+            && let Some((dividend, divisor)) = self.body.cut.remove(&value)
         {
-            self.report(conversion::finding(&self.spell(from), &self.spell(to), loss, span));
+            let span = self.body.span(value);
+            self.report(conversion::division(dividend, divisor, span));
         }
     }
 
@@ -169,7 +195,9 @@ impl Sema<'_> {
             return self.function_agreement(a, b);
         }
         if self.types.record_of(a).is_some() || self.types.record_of(b).is_some() {
-            return Agreement::Refuse;
+            // The bytes of a structure are looked at through a `char *`, if seldom on purpose.
+            let is_bytes = a.is_character() || b.is_character();
+            return if is_bytes { Agreement::Warn } else { Agreement::Refuse };
         }
         let is_one_size = self.types.size_of(a) == self.types.size_of(b);
         let is_integers = a.is_integer() && b.is_integer();

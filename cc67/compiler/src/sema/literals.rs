@@ -5,13 +5,14 @@ use super::constants::Constant;
 use super::operands::Operand;
 use super::places::Located;
 use crate::ast::{Encoding, FloatingLiteral, IntegerLiteral, StringLiteral};
+use crate::pp::Standard;
 use crate::source::Span;
 use crate::ty::{QualifiedType, Type, TypeId, Types};
 use crate::typed::{PlaceKind, StaticData};
 
 impl Sema<'_> {
     pub(super) fn integer_literal(&mut self, literal: IntegerLiteral, span: Span) -> Operand {
-        let ty = integer_type(literal);
+        let ty = integer_type(literal, self.standard);
         Operand::Value(self.body.int(literal.value.cast_signed(), ty, span))
     }
 
@@ -73,12 +74,14 @@ pub(super) const fn character_type(encoding: Encoding) -> TypeId {
     }
 }
 
-/// C90 with a 32-bit `long`, then `long long` (`dialect.md` 1.1): decimal 2147483648 is `unsigned`.
-fn integer_type(literal: IntegerLiteral) -> TypeId {
-    let IntegerLiteral { value, is_unsigned, is_long_long, is_decimal: _ } = literal;
+/// The vendor's way is C90 with a 32-bit `long`, then `long long` (`dialect.md` 1.1): decimal 2147483648 is `unsigned`.
+/// From C99 on a decimal constant without `u` is signed.
+fn integer_type(literal: IntegerLiteral, standard: Standard) -> TypeId {
+    let IntegerLiteral { value, is_unsigned, is_long_long, is_decimal } = literal;
+    let may_be_unsigned = is_unsigned || !is_decimal || standard == Standard::Vendor;
     match (is_long_long, is_unsigned) {
         (false, false) if i32::try_from(value).is_ok() => Types::INT,
-        (false, _) if u32::try_from(value).is_ok() => Types::UNSIGNED,
+        (false, _) if may_be_unsigned && u32::try_from(value).is_ok() => Types::UNSIGNED,
         (_, false) if i64::try_from(value).is_ok() => Types::LONG_LONG,
         _ => Types::UNSIGNED_LONG_LONG,
     }
@@ -92,7 +95,7 @@ mod tests {
     fn constants_take_the_first_type_that_holds_them() {
         let check = |value, is_unsigned, is_long_long, expect| {
             let literal = IntegerLiteral { value, is_decimal: true, is_unsigned, is_long_long };
-            assert_eq!(integer_type(literal), expect, "{literal:?}");
+            assert_eq!(integer_type(literal, Standard::Vendor), expect, "{literal:?}");
         };
         check(0x7fff_ffff, false, false, Types::INT);
         check(0x8000_0000, false, false, Types::UNSIGNED);
@@ -101,5 +104,16 @@ mod tests {
         check(1, true, false, Types::UNSIGNED);
         check(1, false, true, Types::LONG_LONG);
         check(1, true, true, Types::UNSIGNED_LONG_LONG);
+    }
+
+    #[test]
+    fn decimal_constants_of_c99_are_signed() {
+        let check = |is_decimal, is_unsigned, expect| {
+            let literal = IntegerLiteral { value: 0x8000_0000, is_decimal, is_unsigned, is_long_long: false };
+            assert_eq!(integer_type(literal, Standard::C99), expect, "{literal:?}");
+        };
+        check(true, false, Types::LONG_LONG);
+        check(true, true, Types::UNSIGNED);
+        check(false, false, Types::UNSIGNED);
     }
 }

@@ -51,6 +51,7 @@ use crate::ast;
 use crate::diag::{Diagnostic, Sink, TOO_MANY_ERRORS};
 use crate::firmware::FirmwareNames;
 use crate::names::{Name, Names};
+use crate::pp::Standard;
 use crate::source::{SourceMap, Span};
 use crate::ty::{RecordId, TypeId, Types};
 use crate::typed::{Definition, Linkage, Unit};
@@ -71,6 +72,18 @@ pub fn analyze(
     firmware: &dyn FirmwareNames,
     sink: &mut Sink,
 ) -> Unit {
+    analyze_as(Standard::default(), unit, names, sources, firmware, sink)
+}
+
+/// The same for a program that is written in a given C.
+pub fn analyze_as(
+    standard: Standard,
+    unit: &ast::TranslationUnit,
+    names: &mut Names,
+    sources: &SourceMap,
+    firmware: &dyn FirmwareNames,
+    sink: &mut Sink,
+) -> Unit {
     let persist = names.intern("persist");
     let mut sema = Sema {
         names,
@@ -82,6 +95,7 @@ pub fn analyze(
         scopes: Scopes::new(),
         body: Body::new(String::new(), Types::VOID),
         persist,
+        standard,
         unevaluated: 0,
         noted: Noted::default(),
     };
@@ -104,6 +118,8 @@ struct Sema<'a> {
     body: Body,
     /// The name of the memory that threads and the PC share.
     persist: Name,
+    /// Which C the program is written in.
+    standard: Standard,
     /// Depth of operands that are only looked at for their type.
     unevaluated: u32,
     noted: Noted,

@@ -10,15 +10,15 @@ pub(super) fn board(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
     keys!(table, |key, value| {
         "kanalog" => {
             let choices = [("auto", false), ("false", false), ("true", true)];
-            machine.has_kanalog = value.choice(&choices)?;
+            machine.boards.has_kanalog = value.choice(&choices)?;
         };
-        "kstep" => machine.has_kstep = value.flag()?;
-        "respect_enable" => machine.respect_enable = value.flag()?;
-        "konnect" => machine.konnects[1] = konnects(&value)?;
-        "konnect_aux0" => machine.konnects[0] = konnects(&value)?;
-        "snapamp" => machine.snapamps = value.whole(2)? as usize;
-        "flash" => machine.flash = file(&value)?;
-        "strict_flash" => machine.strict_flash = value.flag()?;
+        "kstep" => machine.boards.has_kstep = value.flag()?;
+        "respect_enable" => machine.boards.respect_enable = value.flag()?;
+        "konnect" => machine.boards.konnects[1] = konnects(&value)?;
+        "konnect_aux0" => machine.boards.konnects[0] = konnects(&value)?;
+        "snapamp" => machine.boards.snapamps = value.whole(2)? as usize;
+        "flash" => machine.boards.flash = file(&value)?;
+        "strict_flash" => machine.boards.strict_flash = value.flag()?;
     });
     Ok(())
 }
@@ -34,8 +34,8 @@ fn konnects(value: &Value<'_>) -> Read<u8> {
 
 pub(super) fn uart(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
     keys!(table, |key, value| {
-        "input" => machine.uart_input = file(&value)?;
-        "output" => machine.uart_output = file(&value)?;
+        "input" => machine.uart.input = file(&value)?;
+        "output" => machine.uart.output = file(&value)?;
     });
     Ok(())
 }

@@ -3,8 +3,8 @@
 //! Each key of an event is one statement of [`crate::world::stimulus`], which checks it; a mistake is told at the key's value.
 
 use super::MachineFileError;
-use super::read::{Key, Read, Table, Value, Wrong, keys};
-use crate::world::stimulus::{Place, Rule, Stimulus};
+use super::read::{Read, Table, Value, Wrong};
+use crate::world::stimulus::{Form, KEYS, Place, Rule, Stimulus};
 
 /// What messages about rules of a machine file call it.
 const SOURCE: &str = "machine file";
@@ -37,82 +37,93 @@ pub(super) fn rules(statements: Vec<Statement>, text: &str) -> Result<Vec<Rule>,
 }
 
 fn event(table: &Table<'_>) -> Read<Vec<Statement>> {
-    let mut moment = None;
+    let mut moment = String::new();
     let mut actions: Vec<Statement> = Vec::new();
-    keys!(table, |key, value| {
-        "at" => moment = Some(format!("at {}", value.not_negative()?));
-        "after" => moment = Some(format!("once {}", condition(value.text()?)));
-        "set_bit" => actions.extend(each(&value, |bit, level| format!("bit {bit} = {level}"))?);
-        "adc" => actions.extend(each(&value, |channel, counts| format!("adc {channel} = {counts}"))?);
-        "uart" => actions.push((value.offset(), format!("uart {}", quoted(value.text()?))));
-        "encoder" => actions.extend(each(&value, |axis, counts| format!("encoder {axis} moves {counts}"))?);
-        "disturb" => actions.push((value.offset(), disturb(&value.table()?)?));
-        "command" => actions.push((value.offset(), format!("command {}", quoted(value.text()?))));
-        "run" => actions.push((value.offset(), run(&value.table()?)?));
-        "persist" => actions.extend(each(&value, |index, number| format!("persist {index} = {number}"))?);
-        "kill" => actions.push((value.offset(), format!("kill {}", value.whole(7)?)));
-        "expect" => actions.extend(expect(&value.table()?)?);
-        "host" => actions.extend(answers(&value.table()?)?);
-        "encoder_error" => actions.push((value.offset(), format!("encoder {} fails", value.whole(15)?)));
-    });
-    let moment = moment.unwrap_or_default();
+    for (key, value) in table.entries() {
+        match key.text {
+            "at" => moment = format!("at {}", value.not_negative()?),
+            "after" => moment = format!("once {}", condition(value.text()?)),
+            name => match KEYS.iter().find(|(known, _)| *known == name) {
+                Some((_, form)) => write(*form, &value, &mut actions)?,
+                None => {
+                    let known: Vec<_> =
+                        ["at", "after"].into_iter().chain(KEYS.iter().map(|(key, _)| *key)).collect();
+                    return Err(key.is_unknown(&known));
+                }
+            },
+        }
+    }
     Ok(actions.into_iter().map(|(offset, action)| (offset, format!("{moment} {action}"))).collect())
 }
 
 /// A condition as statements have it: there the text that is printed stands in quotes.
 fn condition(text: &str) -> String {
     match text.strip_prefix("printed ") {
-        Some(printed) => format!("printed {}", quoted(printed)),
-        None => text.to_owned(),
+        Some(printed) if !printed.starts_with('"') => format!("printed {}", quoted(printed)),
+        _ => text.to_owned(),
     }
 }
 
-/// A statement for each key of a table of numbers.
-fn each(value: &Value<'_>, write: impl Fn(&str, f64) -> String) -> Read<Vec<Statement>> {
-    let table = value.table()?;
-    table.entries().map(|(key, value)| Ok((value.offset(), write(key.text, value.number()?)))).collect()
+/// Writes the statements of a key.
+fn write(form: Form, value: &Value<'_>, actions: &mut Vec<Statement>) -> Read<()> {
+    match form {
+        Form::One(template) => {
+            actions.push((value.offset(), template.replace("{value}", &literal(value))));
+        }
+        Form::Each(template) => {
+            for (key, value) in value.table()?.entries() {
+                let setting = quoted(&format!("{}={}", key.text, value.plain()));
+                let text = template.replace("{key}", key.text).replace("{value}", &literal(&value));
+                actions.push((value.offset(), text.replace("{setting}", &setting)));
+            }
+        }
+        Form::Fields(templates) => actions.push((value.offset(), fields(templates, &value.table()?)?)),
+        Form::Nested(..) | Form::Statement if value.text().is_ok() || value.array().is_ok() => {
+            let word = if let Form::Nested(word, _) = form { word } else { "" };
+            let texts = value.array().unwrap_or_else(|_| vec![value.clone()]);
+            for text in texts {
+                actions.push((text.offset(), format!("{word} {}", text.text()?)));
+            }
+        }
+        Form::Nested(_, forms) => {
+            for (key, value) in value.table()?.entries() {
+                let Some((_, form)) = forms.iter().find(|(known, _)| *known == key.text) else {
+                    return Err(key.is_unknown(&forms.iter().map(|(known, _)| *known).collect::<Vec<_>>()));
+                };
+                write(*form, &value, actions)?;
+            }
+        }
+        Form::Statement => return Err(value.is_wrong("a statement of a stimulus, or several")),
+    }
+    Ok(())
 }
 
-fn disturb(table: &Table<'_>) -> Read<String> {
-    let (mut axis, mut units) = (None, None);
-    keys!(table, |key, value| {
-        "axis" => axis = Some(value.axis()?);
-        "units" => units = Some(value.number()?);
-    });
-    let axis = axis.ok_or_else(|| table.is_missing("axis"))?;
-    Ok(format!("axis {axis} push {}", units.ok_or_else(|| table.is_missing("units"))?))
-}
-
-fn run(table: &Table<'_>) -> Read<String> {
-    let (mut thread, mut program) = (None, None);
-    keys!(table, |key, value| {
-        "thread" => thread = Some(value.whole(7)?);
-        "program" => program = Some(value.text()?);
-    });
-    let thread = thread.ok_or_else(|| table.is_missing("thread"))?;
-    Ok(match program {
-        Some(program) => format!("run thread {thread} {}", quoted(program)),
-        None => format!("start thread {thread}"),
-    })
-}
-
-/// Answers of the PC: the keys that it has for them, and `message_box`.
-fn answers(table: &Table<'_>) -> Read<Vec<Statement>> {
-    let setting = |(key, value): (Key<'_>, Value<'_>)| {
-        let key = if key.text == "message_box" { "msgbox" } else { key.text };
-        (value.offset(), format!("answer {}", quoted(&format!("{key}={}", value.plain()))))
+/// The first template all of whose names the table has.
+fn fields(templates: &[&str], table: &Table<'_>) -> Read<String> {
+    let names = |template: &str| -> Vec<String> {
+        template.split('{').skip(1).filter_map(|part| part.split('}').next().map(str::to_owned)).collect()
     };
-    Ok(table.entries().map(setting).collect())
+    let known: Vec<String> = templates.iter().flat_map(|template| names(template)).collect();
+    let known: Vec<&str> = known.iter().map(String::as_str).collect();
+    if let Some((key, _)) = table.entries().find(|(key, _)| !known.contains(&key.text)) {
+        return Err(key.is_unknown(&known));
+    }
+    let has = |name: &str| table.entries().find(|(key, _)| key.text == name).map(|(_, value)| value);
+    let complete = templates.iter().find(|template| names(template).iter().all(|name| has(name).is_some()));
+    let Some(template) = complete else {
+        let missing = known.iter().find(|name| has(name).is_none()).copied().unwrap_or_default();
+        return Err(table.is_missing(missing));
+    };
+    let mut text = (*template).to_owned();
+    for (key, value) in table.entries() {
+        text = text.replace(&format!("{{{}}}", key.text), &literal(&value));
+    }
+    Ok(text)
 }
 
-fn expect(table: &Table<'_>) -> Read<Vec<Statement>> {
-    let mut all = Vec::new();
-    keys!(table, |key, value| {
-        "bit" => all.extend(each(&value, |bit, level| format!("expect bit {bit} = {level}"))?);
-        "persist" => all.extend(each(&value, |index, number| format!("expect persist {index} = {number}"))?);
-        "printed" => all.push((value.offset(), format!("expect printed {}", quoted(value.text()?))));
-    });
-    Ok(all)
+/// A value as a statement has it.
+fn literal(value: &Value<'_>) -> String {
+    value.text().map_or_else(|_| value.plain(), quoted)
 }
 
 fn device(table: &Table<'_>) -> Read<Statement> {

@@ -8,23 +8,23 @@ use super::{Answers, MachineFile};
 
 pub(super) fn host(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
     keys!(table, |key, value| {
-        "enabled" => machine.host = value.flag()?;
-        "disk_root" => machine.disk_root = file(&value)?;
-        "disk_latency_s" => machine.disk_latency_s = value.not_negative()?;
-        "files" => machine.disk_files.extend(files(&value)?);
+        "enabled" => machine.pc.is_connected = value.flag()?;
+        "disk_root" => machine.pc.disk_root = file(&value)?;
+        "disk_latency_s" => machine.pc.disk_latency_s = value.not_negative()?;
+        "files" => machine.pc.disk_files.extend(files(&value)?);
         "message_box" => {
             for button in one_or_more(&value) {
-                answer(&mut machine.answers, &button, &format!("msgbox={}", button.plain()))?;
+                answer(&mut machine.pc.answers, &button, &format!("msgbox={}", button.plain()))?;
             }
         };
         "cells" => {
             for (key, text) in value.table()?.entries() {
-                answer(&mut machine.answers, &text, &format!("cell.{}={}", key.text, text.text()?))?;
+                answer(&mut machine.pc.answers, &text, &format!("cell.{}={}", key.text, text.text()?))?;
             }
         };
         "answers" => {
             for setting in one_or_more(&value) {
-                answer(&mut machine.answers, &setting, setting.text()?)?;
+                answer(&mut machine.pc.answers, &setting, setting.text()?)?;
             }
         };
     });

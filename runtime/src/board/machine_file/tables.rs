@@ -9,6 +9,7 @@ use super::{
     Probe, Spindle, SpindleDrive, Switch, Wire,
 };
 use super::{boards, events, pc};
+use crate::out::REMARKS;
 
 /// Changes a machine by what a text says.
 pub(super) fn apply(machine: &mut MachineFile, text: &str) -> Result<(), MachineFileError> {
@@ -26,20 +27,33 @@ pub(super) fn apply(machine: &mut MachineFile, text: &str) -> Result<(), Machine
 fn root(machine: &mut MachineFile, statements: &mut Vec<(usize, String)>, table: &Table<'_>) -> Read<()> {
     keys!(table, |key, value| {
         "axis" => axes(machine, &value.table()?)?;
-        "switch" => machine.switches.extend(each(&value, switch)?);
-        "probe" => machine.probes.extend(each(&value, probe)?);
-        "encoder" => machine.encoders.extend(each(&value, handwheel)?);
-        "adc" => machine.analog.extend(each(&value, analog)?);
+        "switch" => machine.connected.switches.extend(each(&value, switch)?);
+        "probe" => machine.connected.probes.extend(each(&value, probe)?);
+        "encoder" => machine.connected.encoders.extend(each(&value, handwheel)?);
+        "adc" => machine.connected.analog.extend(each(&value, analog)?);
         "wire" => machine.wires.extend(each(&value, wire)?);
         "event" => statements.extend(events::events(&value)?);
         "device" => statements.extend(events::devices(&value)?);
-        "spindle" => machine.spindle = Some(spindle(machine.spindle, &value.table()?)?);
+        "spindle" => machine.connected.spindle = Some(spindle(machine.connected.spindle, &value.table()?)?);
         "inputs" => inputs(machine, &value.table()?)?;
+        "remarks" => remarks(machine, &value.table()?)?;
         "cpu" => cpu(machine, &value.table()?)?;
         "host" => pc::host(machine, &value.table()?)?;
         "board" => boards::board(machine, &value.table()?)?;
         "uart" => boards::uart(machine, &value.table()?)?;
     });
+    Ok(())
+}
+
+/// `CODE = false` switches a remark off.
+fn remarks(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
+    for (key, value) in table.entries() {
+        let is_wanted = value.flag()?;
+        if machine.want_remark(key.text, is_wanted).is_none() {
+            let codes: Vec<_> = REMARKS.iter().map(|row| row.code).collect();
+            return Err(key.is_unknown(&codes));
+        }
+    }
     Ok(())
 }
 
@@ -78,8 +92,8 @@ fn axis(axis: &mut Axis, table: &Table<'_>) -> Read<()> {
         "ka" => axis.motor.ka = value.number()?;
         "tau_v_s" => axis.motor.tau_v_s = value.positive()?;
         "inertia" => axis.motor.inertia = value.positive()?;
-        "cycles_per_unit" => axis.cycles_per_unit = Some(not_zero(&value)?);
-        "rotor_phase" => axis.rotor_phase = value.number()?;
+        "cycles_per_unit" => axis.rotor.cycles_per_unit = Some(not_zero(&value)?);
+        "rotor_phase" => axis.rotor.phase = value.number()?;
         "index" => axis.index = Some(index(&value.table()?)?);
     });
     if axis.min > axis.max {
@@ -299,19 +313,19 @@ fn cpu(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
             if time >= 90.0 {
                 return Err(value.is_wrong("below the 90 µs of a tick"));
             }
-            machine.servo_us = Some(time);
+            machine.cpu.servo_us = Some(time);
         };
-        "bss_fill" => machine.bss_fill = value.whole(255)? as u8;
-        "strict_stack" => machine.strict_stack = value.flag()?;
+        "bss_fill" => machine.cpu.bss_fill = value.whole(255)? as u8;
+        "strict_stack" => machine.cpu.strict_stack = value.flag()?;
         "ns_per_instruction" => {
             let time = value.positive()?;
             if !(0.1..=1000.0).contains(&time) {
                 return Err(value.is_wrong("from 0.1 to 1000 nanoseconds"));
             }
-            machine.ns_per_instruction = time;
+            machine.cpu.ns_per_instruction = time;
         };
-        "plan_ticks" => machine.plan_ticks = value.whole(100_000)?;
-        "fresh_globals" => machine.fresh_globals = value.flag()?;
+        "plan_ticks" => machine.cpu.plan_ticks = value.whole(100_000)?;
+        "fresh_globals" => machine.cpu.fresh_globals = value.flag()?;
     });
     Ok(())
 }

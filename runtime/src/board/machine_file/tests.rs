@@ -1,5 +1,7 @@
 //! Machine files that are right, and the messages about those that are not.
 
+use kmotiondef::AxisId;
+
 use super::*;
 
 const FULL: &str = r#"
@@ -78,16 +80,19 @@ fn a_full_file_says_all_this() {
     assert_eq!((axis.motor.ku, axis.motor.inertia), (Some(2.5), 2.0));
     assert_eq!(axis.index.map(|index| index.every), Some(4096.0));
     assert_eq!(machine.axes[7].model, Model::None);
-    assert_eq!(machine.switches.len(), 2);
-    assert!(machine.switches[1].when == Condition::Between(1.0, 2.5) && !machine.switches[1].active);
-    assert_eq!(machine.probes[0].touches, Condition::AtMost(-5000.0));
-    assert_eq!(machine.encoders[0].moves[1], [3.0, -40.0, 0.2]);
+    assert_eq!(machine.connected.switches.len(), 2);
+    assert!(
+        machine.connected.switches[1].when == Condition::Between(1.0, 2.5)
+            && !machine.connected.switches[1].active
+    );
+    assert_eq!(machine.connected.probes[0].touches, Condition::AtMost(-5000.0));
+    assert_eq!(machine.connected.encoders[0].moves[1], [3.0, -40.0, 0.2]);
     assert_eq!(
-        machine.spindle.map(|spindle| spindle.drive),
+        machine.connected.spindle.map(|spindle| spindle.drive),
         Some(SpindleDrive::Axis(AxisId::new(7).expect("7")))
     );
     assert_eq!(machine.idle_high.len(), 4);
-    assert_eq!((machine.servo_us, machine.bss_fill, machine.hints), (Some(30.0), 0xA5, false));
+    assert_eq!((machine.cpu.servo_us, machine.cpu.bss_fill, machine.hints), (Some(30.0), 0xA5, false));
 }
 
 #[test]
@@ -102,7 +107,7 @@ fn a_key_is_set_alone() {
         machine.set(key, value).expect(key);
     }
     let axis = &machine.axes[0];
-    assert_eq!((axis.model, axis.motor.tau_s, machine.bss_fill), (Model::Motor, 0.5, 7));
+    assert_eq!((axis.model, axis.motor.tau_s, machine.cpu.bss_fill), (Model::Motor, 0.5, 7));
     assert!(machine.set("axis.0.model", "magic").is_err());
     assert_eq!(machine.axes[0].model, Model::Motor);
 }
@@ -130,18 +135,21 @@ cells = { 5 = "1.25" }
 answers = ["input=1.5", "dro.x=2"]
 "#;
     let mut machine = MachineFile::parse(text).unwrap_or_else(|error| panic!("{}: {error}", error.line));
-    assert!(machine.has_kstep && machine.respect_enable);
-    assert_eq!(machine.konnects, [0, 0b101]);
-    assert_eq!((machine.uart_input.as_deref(), machine.uart_output.as_deref()), (Some("in.txt"), None));
-    assert_eq!(machine.disk_files, [("c:\\Temp\\Log.txt".to_owned(), "log.txt".to_owned())]);
-    assert_eq!(machine.disk_latency_s, 0.05);
+    assert!(machine.boards.has_kstep && machine.boards.respect_enable);
+    assert_eq!(machine.boards.konnects, [0, 0b101]);
+    assert_eq!((machine.uart.input.as_deref(), machine.uart.output.as_deref()), (Some("in.txt"), None));
+    assert_eq!(machine.pc.disk_files, [("c:\\Temp\\Log.txt".to_owned(), "log.txt".to_owned())]);
+    assert_eq!(machine.pc.disk_latency_s, 0.05);
     let mut answers = Answers::default();
     for setting in ["msgbox=no", "msgbox=yes", "cell.5=1.25", "input=1.5", "dro.x=2"] {
         answers.set(setting).expect(setting);
     }
-    assert_eq!(machine.answers, answers);
+    assert_eq!(machine.pc.answers, answers);
     machine.beside(Path::new("machines"));
-    assert_eq!(machine.disk_root.as_deref().map(Path::new), Some(Path::new("machines").join("pc").as_path()));
+    assert_eq!(
+        machine.pc.disk_root.as_deref().map(Path::new),
+        Some(Path::new("machines").join("pc").as_path())
+    );
 }
 
 /// The message about a text, with line and column.
@@ -185,7 +193,7 @@ fn mistakes_are_named_with_their_place() {
         ("[axis.0\nname = 5", "1:8: unclosed table, expected `]`"),
         (
             "colour = 5",
-            "1:1: unknown key `colour`; there are axis, switch, probe, encoder, adc, wire, event, device, spindle, inputs, cpu, host, board, uart",
+            "1:1: unknown key `colour`; there are axis, switch, probe, encoder, adc, wire, event, device, spindle, inputs, remarks, cpu, host, board, uart",
         ),
     ] {
         assert_eq!(message(text), expect, "{text}");
@@ -224,7 +232,7 @@ word = \"0x10,0x20\"
     // Keys come in the order of their names.
     let expect = "at 2.5 adc 0 = 1500; at 2.5 command \"StopImmediate0\"; at 2.5 axis 1 push 50
 at 2.5 encoder 3 moves 25; at 2.5 kill 2; at 2.5 persist 10 = 7; at 2.5 run thread 3 \"jog.c\"
-at 2.5 answer \"input=1.5\"; at 2.5 answer \"msgbox=no\"; at 2.5 encoder 2 fails
+at 2.5 answer \"input=1.5\"; at 2.5 answer \"message_box=no\"; at 2.5 encoder 2 fails
 at 2.5 bit 24 = 1; at 2.5 uart \"G1 \\\"X\\\"\\r\"
 once printed \"go on\" expect bit 46 = 1; once printed \"go on\" expect printed \"done\"
 device echo; device spi clock=17 out=18 select=16 word=0x10,0x20
@@ -254,16 +262,13 @@ fn wrong_events_are_named_with_their_place() {
         ("[[event]]\nkil = 1", "2:1: unknown key `kil` in `event[0]`; did you mean `kill`?"),
         (
             "[[event]]\nrun = { thread = 8, program = \"jog.c\" }",
-            "2:18: `event[0].run.thread` must be a whole number, 0 to 7, not 8",
+            "2:7: expected a thread from 1 to 7, found `8`",
         ),
         (
             "[[event]]\nhost = { message_box = \"maybe\" }",
             "2:24: `maybe` is not what `msgbox` takes: a button, as `yes`",
         ),
-        (
-            "[[event]]\nencoder_error = 16",
-            "2:17: `event[0].encoder_error` must be a whole number, 0 to 15, not 16",
-        ),
+        ("[[event]]\nencoder_error = 16", "2:17: expected an encoder input from 0 to 15, found `16`"),
         ("[[device]]\nfrom = 3", "1:1: `device[0]` needs `type`"),
         ("[[device]]\ntype = \"wire\"\nfrom = 3", "1:1: device `wire` needs `to=…`"),
     ] {

@@ -15,14 +15,14 @@ use super::FLASH_SIZE;
 const BANK: usize = 0x8000;
 
 /// What the chip holds, and the bank that is seen.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Chip {
     bytes: Vec<u8>,
     bank: usize,
 }
 
 /// The selected bank; none where all of flash is seen.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Banks(Option<Chip>);
 
 impl Banks {

@@ -1,37 +1,43 @@
-//! The path on the board: its bits are the kernel's.
+//! The path on the board: its bits are the board's lines.
 
 use kmotiondef::Bit;
-use kmotiondef::variables::COORD_SYSTEM0;
+use kmotiondef::variables::{COORD_SYSTEM0, KLP, TAU_KLP};
 use vm::memory::GuestMemory;
 
 use super::Bits;
 use super::segment::SIZE;
-use crate::firmware::io::{bit_state, write_bit};
-use crate::kernel::Kernel;
-use crate::out::EventKind;
+use super::system;
+use crate::machine::Lines;
+use crate::out::Message;
+use crate::servo::state::Tick;
 use crate::views::Typed;
 
-impl Bits for Kernel {
+impl Bits for Lines<'_> {
     fn is_high(&mut self, memory: &GuestMemory, bit: Bit) -> bool {
-        bit_state(self, memory, bit).0
+        self.level(memory, bit)
     }
 
     fn drive(&mut self, memory: &mut GuestMemory, bit: Bit, high: bool) {
-        write_bit(self, memory, bit, high, self.tick_start);
+        self.write(memory, bit, high);
     }
 }
 
 /// One tick of the path. Says whether it has moved or will.
-pub(crate) fn tick(kernel: &mut Kernel, memory: &mut GuestMemory) -> bool {
+pub(crate) fn tick(tick: &mut Tick<'_>, memory: &mut GuestMemory) -> bool {
     let list = memory.get(COORD_SYSTEM0);
     if !list.is_null() && memory.block::<{ SIZE as usize }>(list).is_none() {
-        let text = format!("CoordSystem0 is {list}, where no segments lie; the path has ended");
-        kernel.tell(kernel.tick_start, EventKind::Diagnostic(text));
+        tick.out.remark(tick.now, Message::NoSegments { list });
     }
-    let mut coordinated = std::mem::take(&mut kernel.servo.coordinated);
-    let moves = coordinated.tick(memory, kernel);
-    kernel.servo.coordinated = coordinated;
-    moves
+    if !list.is_null() && system::is_disabled(memory) {
+        tick.out.remark(tick.now, Message::PathDisabled {});
+    }
+    let mut lines = Lines { machine: tick.machine, io: tick.io, out: tick.out, now: tick.now };
+    let goes_on = tick.servo.coordinated.tick(memory, &mut lines);
+    let has_ended = !list.is_null() && memory.get(COORD_SYSTEM0).is_null();
+    if has_ended && memory.get(KLP) > 0.0 && memory.get(TAU_KLP) == 0.0 {
+        tick.out.remark(tick.now, Message::KlpWithoutTau {});
+    }
+    goes_on
 }
 
 #[cfg(test)]
@@ -40,7 +46,7 @@ mod tests {
     use kmotiondef::modes::TrajectoryMode;
     use kmotiondef::structs::{Chan, ParametricCoeff, TripCircleLinear};
     use kmotiondef::variables::{
-        CS0_FLUSHED, CS0_STOPPING_STATE, LAST_COORD_SYSTEM0, PARAMETRIC_COEFFS, VIRTUAL_BITS_EX,
+        CHAN, CS0_FLUSHED, CS0_STOPPING_STATE, LAST_COORD_SYSTEM0, PARAMETRIC_COEFFS, VIRTUAL_BITS_EX,
     };
 
     use super::super::segment::{Command, Entry};
@@ -135,12 +141,24 @@ mod tests {
     }
 
     #[test]
-    fn a_disabled_axis_ends_the_path() {
+    fn disabling_or_zeroing_an_axis_ends_the_path() {
+        for function in ["DisableAxis", "Zero"] {
+            let mut desk = desk();
+            desk.run(100);
+            desk.call(function, &[1]);
+            assert!(desk.memory.get(COORD_SYSTEM0).is_null());
+            assert!(desk.memory.get(LAST_COORD_SYSTEM0).is_null());
+        }
+    }
+
+    #[test]
+    fn a_path_runs_to_its_end_whatever_is_written_to_enable() {
         let mut desk = desk();
         desk.run(100);
-        desk.call("DisableAxis", &[1]);
-        desk.run(1);
-        assert!(desk.memory.get(COORD_SYSTEM0).is_null());
+        desk.memory.set(CHAN.element(0).field(Chan::ENABLE), 0);
         assert_eq!(desk.call_i32("CheckDoneBuf", &[]), -1);
+        desk.run(20_000);
+        assert!(desk.memory.get(COORD_SYSTEM0).is_null());
+        assert!((dest(&desk) - 200.0).abs() < 0.1, "{}", dest(&desk));
     }
 }

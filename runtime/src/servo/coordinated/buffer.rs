@@ -12,6 +12,7 @@ use vm::memory::GuestMemory;
 
 use super::segment::{Entry, Kind, SIZE};
 use super::{rate, system};
+use crate::out::Message;
 use crate::views::Typed;
 
 /// What `ExecTime` says instead of a time of 0 when nothing is executing.
@@ -62,7 +63,7 @@ pub(crate) fn open(memory: &mut GuestMemory) {
 ///
 /// # Errors
 /// The path being executed has been overwritten: the result says so.
-pub(crate) fn advance(memory: &mut GuestMemory) -> Result<(), String> {
+pub(crate) fn advance(memory: &mut GuestMemory) -> Result<(), Message> {
     let filled = next_written(memory);
     add(memory, CS0_TIME_DOWNLOADED, filled.duration(memory));
     let mut index = memory.get(PARAMETRIC_INDEX).wrapping_add(1);
@@ -77,9 +78,7 @@ pub(crate) fn advance(memory: &mut GuestMemory) -> Result<(), String> {
     }
     next.end_path(memory);
     if next.address() == memory.get(COORD_SYSTEM0) {
-        return Err(
-            "coordinated motion: the buffer is full and the segment being executed is overwritten".into()
-        );
+        return Err(Message::PathOverwritten {});
     }
     Ok(())
 }
@@ -138,7 +137,7 @@ mod tests {
     }
 
     /// Adds a line that takes so long.
-    fn add_line(memory: &mut GuestMemory, seconds: f64) -> Result<(), String> {
+    fn add_line(memory: &mut GuestMemory, seconds: f64) -> Result<(), Message> {
         let entry = next_written(memory);
         memory.set(entry.field(ParametricCoeff::TRAJECTORY_MODE), TrajectoryMode::Linear.get() as i8);
         memory.set(entry.field(ParametricCoeff::T), seconds);

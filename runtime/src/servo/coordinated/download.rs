@@ -12,6 +12,7 @@ use vm::memory::GuestMemory;
 use super::buffer;
 use super::segment::{Command, Entry};
 use super::system::{self, LETTERS};
+use crate::out::Message;
 use crate::views::Typed;
 
 /// Where the eight letters are.
@@ -96,7 +97,7 @@ pub(crate) fn line(
     begin: &Point,
     end: &Point,
     timing: &Timing,
-) -> Result<(), String> {
+) -> Result<(), Message> {
     let letters = [0, 1, 2, 3, 4, 5, 6, 7];
     let Some(entry) = stretch(memory, TrajectoryMode::Linear, letters, timing) else { return Ok(()) };
     for (coefficients, letter) in [ParametricCoeff::COORD_X, ParametricCoeff::COORD_Y].into_iter().zip(0..) {
@@ -117,7 +118,7 @@ pub(crate) fn arc(
     begin: &Point,
     end: &Point,
     timing: &Timing,
-) -> Result<(), String> {
+) -> Result<(), Message> {
     let [cosine, sine, rest] = circle.plane.letters();
     let letters = [cosine, sine, rest, 3, 4, 5, 6, 7];
     let Some(entry) = stretch(memory, TrajectoryMode::Circular, letters, timing) else { return Ok(()) };
@@ -135,7 +136,7 @@ pub(crate) fn arc(
 ///
 /// # Errors
 /// As [`buffer::advance`].
-pub(crate) fn command(memory: &mut GuestMemory, command: Command) -> Result<(), String> {
+pub(crate) fn command(memory: &mut GuestMemory, command: Command) -> Result<(), Message> {
     let entry = buffer::next_written(memory);
     let (number, bit) = command.encoded();
     set_mode(memory, entry, TrajectoryMode::Special);

@@ -16,7 +16,7 @@ const LEAST_STOPPING_TIME: f32 = 1e-6;
 
 /// How far a feedhold has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum State {
+pub(crate) enum HoldState {
     /// None.
     Running,
     /// A path is decelerating.
@@ -29,7 +29,7 @@ pub(crate) enum State {
     AxesStopped,
 }
 
-impl State {
+impl HoldState {
     /// The state in guest memory; a number without a meaning is none.
     pub(crate) fn of(memory: &GuestMemory) -> Self {
         match memory.get(CS0_STOPPING_STATE) {
@@ -67,7 +67,7 @@ pub(crate) fn stop(memory: &mut GuestMemory) -> bool {
         let time = memory.get(CS0_DECEL_TIME).max(LEAST_STOPPING_TIME);
         memory.set(CS0_DECEL_TIME, time);
         rate::aim(memory, 0.0, time);
-        memory.set(CS0_STOPPING_STATE, State::StoppingPath.number());
+        memory.set(CS0_STOPPING_STATE, HoldState::StoppingPath.number());
     }
     executing
 }
@@ -76,7 +76,7 @@ pub(crate) fn stop(memory: &mut GuestMemory) -> bool {
 pub(crate) fn resume(memory: &mut GuestMemory) -> bool {
     let held = is_path_held(memory);
     if held {
-        memory.set(CS0_STOPPING_STATE, State::Running.number());
+        memory.set(CS0_STOPPING_STATE, HoldState::Running.number());
         rate::aim(memory, rate::current_override(memory), system::nominal_change_time(memory));
     }
     held
@@ -86,7 +86,7 @@ pub(crate) fn resume(memory: &mut GuestMemory) -> bool {
 pub(crate) fn clear(memory: &mut GuestMemory) -> bool {
     let held = is_path_held(memory);
     if held {
-        memory.set(CS0_STOPPING_STATE, State::Running.number());
+        memory.set(CS0_STOPPING_STATE, HoldState::Running.number());
         memory.set(COORD_SYSTEM0, GuestAddr::NULL);
         memory.set(CS0_TIME_BASE_DESIRED, 0.0);
         memory.set(CS0_TIME_BASE_DELTA, 0.0);
@@ -95,5 +95,5 @@ pub(crate) fn clear(memory: &mut GuestMemory) -> bool {
 }
 
 fn is_path_held(memory: &GuestMemory) -> bool {
-    matches!(State::of(memory), State::StoppingPath | State::PathStopped)
+    matches!(HoldState::of(memory), HoldState::StoppingPath | HoldState::PathStopped)
 }

@@ -8,10 +8,10 @@ use kmotiondef::variables::{
 };
 use vm::memory::GuestMemory;
 
-use super::feedhold::State;
+use super::feedhold::HoldState;
 use super::segment::{Command, Entry, Kind};
 use super::smoothing::{self, Spline};
-use super::{Bits, Coordinated, buffer, rate, system};
+use super::{Bits, Coordinated, buffer, rate};
 use crate::servo::spindle;
 use crate::views::Typed;
 
@@ -48,10 +48,6 @@ impl Coordinated {
         self.spline.take_if(|spline| !spline.ends_at(current));
         if current.is_null() {
             return;
-        }
-        if system::is_disabled(memory) {
-            self.spline = None;
-            return abort(memory);
         }
         if self.spline.is_some() {
             return self.follow_spline(memory);
@@ -101,7 +97,7 @@ impl Coordinated {
 
 /// Whether a path is executing and not held.
 pub(crate) fn is_under_way(memory: &GuestMemory) -> bool {
-    !memory.get(COORD_SYSTEM0).is_null() && State::of(memory) != State::PathStopped
+    !memory.get(COORD_SYSTEM0).is_null() && HoldState::of(memory) != HoldState::PathStopped
 }
 
 /// What changes from tick to tick while a path is under way.
@@ -113,6 +109,12 @@ fn clock(memory: &GuestMemory) -> (GuestAddr, [f64; 3], i32) {
 /// Drops the path at once; its times and its axes stay as they are.
 pub(crate) fn abort(memory: &mut GuestMemory) {
     memory.set(COORD_SYSTEM0, GuestAddr::NULL);
+}
+
+/// Drops the path at once, and what `ExecBuf` would begin: nothing runs until the buffer is opened again.
+pub(crate) fn drop_all(memory: &mut GuestMemory) {
+    abort(memory);
+    memory.set(LAST_COORD_SYSTEM0, GuestAddr::NULL);
 }
 
 /// Moves the time base towards the override, unless the spindle drives the path.

@@ -10,7 +10,7 @@ use kmotiondef::variables::{
 };
 use vm::memory::GuestMemory;
 
-use super::feedhold::State;
+use super::feedhold::HoldState;
 use crate::views::Typed;
 
 /// The square of a tick's length, s².
@@ -46,7 +46,7 @@ pub(crate) fn aim(memory: &mut GuestMemory, fro: f32, time: f32) {
 }
 
 fn aim_unless_held(memory: &mut GuestMemory, fro: f32, time: f32) {
-    if State::of(memory) == State::Running {
+    if HoldState::of(memory) == HoldState::Running {
         aim(memory, fro, time);
     }
 }
@@ -74,7 +74,7 @@ fn jump(memory: &mut GuestMemory) {
 pub(crate) fn set_doing_rapid(memory: &mut GuestMemory, doing: bool) {
     memory.set(CS0_DOING_RAPID, i32::from(doing));
     // A hold in progress is stronger: the resume finds the override.
-    if State::of(memory) == State::Running {
+    if HoldState::of(memory) == HoldState::Running {
         jump(memory);
     }
 }
@@ -94,8 +94,8 @@ pub(crate) fn ramp(memory: &mut GuestMemory) {
         aim
     };
     memory.set(CS0_TIME_BASE, next);
-    if State::of(memory) == State::StoppingPath && next == 0.0 {
-        memory.set(CS0_STOPPING_STATE, State::PathStopped.number());
+    if HoldState::of(memory) == HoldState::StoppingPath && next == 0.0 {
+        memory.set(CS0_STOPPING_STATE, HoldState::PathStopped.number());
     }
 }
 
@@ -122,7 +122,7 @@ mod tests {
         set_rapid(&mut memory, 0.25, 1.0);
         assert_eq!(memory.get(CS0_LAST_RAPID_FRO), 0.25);
         assert_eq!(memory.get(CS0_TIME_BASE_DESIRED), TIMEBASE);
-        memory.set(CS0_STOPPING_STATE, State::PathStopped.number());
+        memory.set(CS0_STOPPING_STATE, HoldState::PathStopped.number());
         set_feed(&mut memory, 0.5, 1.0);
         assert_eq!(memory.get(CS0_LAST_FRO), 0.5);
         assert_eq!(memory.get(CS0_TIME_BASE_DESIRED), TIMEBASE);

@@ -89,7 +89,7 @@ impl Rig {
     fn new() -> Self {
         let mut desk = Desk::new();
         // Nobody asked for the status while the recordings were made.
-        desk.kernel.host.connect(false);
+        desk.kernel.parts.pc.host.connect(false);
         system::assign(&mut desk.memory, &[0, 1, -1, -1]);
         for axis in AxisId::all().take(3) {
             desk.memory.set_axis(axis, Chan::VEL, 1000.0);

@@ -2,10 +2,11 @@
 
 use kmotiondef::Cycles;
 
-use crate::world::attached::{Attached, Outside, Settings};
+use crate::machine::attached::{Attached, Outside};
+use crate::world::attached::Settings;
 
 /// An echo.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Echo;
 
 impl Echo {

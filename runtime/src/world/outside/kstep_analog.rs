@@ -2,14 +2,15 @@
 
 use kmotiondef::Cycles;
 
-use crate::world::attached::{Attached, Outside, Settings};
-use crate::world::stimulus::conversion;
+use crate::io::kanalog::conversion;
+use crate::machine::attached::{Attached, Outside};
+use crate::world::attached::Settings;
 
 /// Counts of an analog input in a volt.
 const COUNTS_PER_VOLT: f64 = 204.8;
 
 /// The input, and the supply of the output.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct KStepAnalog {
     adc: usize,
     supply: f64,

@@ -7,10 +7,11 @@ use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::{AxisId, Bit};
 
 use crate::io::changes::BitChange;
-use crate::world::attached::{Attached, Outside, Settings};
+use crate::machine::attached::{Attached, Outside};
+use crate::world::attached::Settings;
 
 /// The phases and the axis.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Quadrature {
     a: Bit,
     b: Bit,
@@ -44,7 +45,7 @@ impl Attached for Quadrature {
             return;
         };
         if self.levels != [a, b] {
-            outside.servo.push(self.axis, if forward { self.units } else { -self.units });
+            outside.loads.push(self.axis, if forward { self.units } else { -self.units });
         }
     }
 
@@ -55,6 +56,8 @@ impl Attached for Quadrature {
 
 #[cfg(test)]
 mod tests {
+    use kmotiondef::AxisId;
+
     use crate::world::outside::testing::Bench;
 
     #[test]
@@ -71,7 +74,7 @@ mod tests {
             (8, false, 0.0),
         ] {
             bench.output(bit, level, 0);
-            assert_eq!(bench.servo.plants[2].load, expect, "{bit} {level}");
+            assert_eq!(bench.loads[AxisId::new(2).expect("an axis")].load, expect, "{bit} {level}");
         }
     }
 }

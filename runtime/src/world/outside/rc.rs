@@ -7,9 +7,10 @@
 use kmotiondef::{Bit, Cycles};
 
 use crate::io::changes::BitChange;
+use crate::io::kanalog::conversion;
 use crate::io::konnect::{Board, Port};
-use crate::world::attached::{Attached, Outside, Settings};
-use crate::world::stimulus::conversion;
+use crate::machine::attached::{Attached, Outside};
+use crate::world::attached::Settings;
 
 /// Counts of an analog input in a volt.
 const COUNTS_PER_VOLT: f64 = 204.8;
@@ -22,7 +23,7 @@ enum Driver {
 }
 
 /// A low pass.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Filter {
     driver: Driver,
     adc: usize,

@@ -7,14 +7,15 @@
 use kmotiondef::{AxisId, Bit, Cycles};
 
 use crate::io::changes::BitChange;
-use crate::world::attached::{Attached, Outside, Settings};
-use crate::world::stimulus::conversion;
+use crate::io::kanalog::conversion;
+use crate::machine::attached::{Attached, Outside};
+use crate::world::attached::Settings;
 
 /// Time constant of the smoothing in seconds.
 const CONSTANT: f64 = 50e-6;
 
 /// A resolver.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Resolver {
     drive: Bit,
     sine: usize,
@@ -70,7 +71,7 @@ impl Attached for Resolver {
 
     fn tick(&mut self, now: Cycles, outside: &mut Outside<'_>) {
         self.advance(now);
-        let angle = outside.servo.plants[self.axis.index()].load / self.turn * std::f64::consts::TAU;
+        let angle = outside.loads[self.axis].load / self.turn * std::f64::consts::TAU;
         let level = self.amplitude * self.field;
         outside.kanalog.drive(self.sine, conversion(level * libm::sin(angle)));
         outside.kanalog.drive(self.cosine, conversion(level * libm::cos(angle)));
@@ -83,12 +84,14 @@ impl Attached for Resolver {
 
 #[cfg(test)]
 mod tests {
+    use kmotiondef::AxisId;
+
     use crate::world::outside::testing::Bench;
 
     #[test]
     fn windings_show_the_angle_of_the_load() {
         let mut bench = Bench::new("resolver drive=30 sine=0 cosine=1 amplitude=1000");
-        bench.servo.plants[0].push(125.0);
+        bench.loads[AxisId::new(0).expect("an axis")].push(125.0);
         for (level, at, expect) in [(true, 1000, 707), (false, 2000, -707)] {
             bench.output(30, level, at);
             bench.tick(at + 500);

@@ -7,13 +7,14 @@
 use kmotiondef::Bit;
 
 use crate::io::changes::BitChange;
-use crate::world::attached::{Attached, Outside, Settings};
+use crate::machine::attached::{Attached, Outside};
+use crate::world::attached::Settings;
 
 /// Bits of a word that does not say it.
 const BITS: f64 = 16.0;
 
 /// A slave.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Spi {
     select: Bit,
     clock: Bit,

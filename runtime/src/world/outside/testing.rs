@@ -8,9 +8,10 @@ use crate::io::fpga::Fpga;
 use crate::io::kanalog::Kanalog;
 use crate::io::pins::Pins;
 use crate::io::uart::Uart;
-use crate::servo::Servo;
+use crate::machine::Loads;
+use crate::machine::attached::{Attached, Outside};
 use crate::views::Typed;
-use crate::world::attached::{Attached, DeviceSpec, Outside};
+use crate::world::attached::DeviceSpec;
 
 /// A device and what it can reach.
 pub(crate) struct Bench {
@@ -19,7 +20,7 @@ pub(crate) struct Bench {
     pub(crate) kanalog: Kanalog,
     pub(crate) uart: Uart,
     pub(crate) fpga: Fpga,
-    pub(crate) servo: Servo,
+    pub(crate) loads: Loads,
     memory: GuestMemory,
 }
 
@@ -42,7 +43,7 @@ impl Bench {
             kanalog: Kanalog::default(),
             uart: Uart::default(),
             fpga: Fpga::default(),
-            servo: Servo::default(),
+            loads: Loads::default(),
             memory: GuestMemory::new(),
         };
         bench.pins.changes.switch_on(&bench.memory);
@@ -55,7 +56,7 @@ impl Bench {
             kanalog: &mut self.kanalog,
             uart: &mut self.uart,
             fpga: &self.fpga,
-            servo: &mut self.servo,
+            loads: &mut self.loads,
         };
         work(&mut *self.device, &mut outside)
     }

@@ -4,12 +4,13 @@ use std::collections::VecDeque;
 
 use kmotiondef::{Bit, Cycles};
 
-use crate::board::machine_file;
 use crate::io::changes::BitChange;
-use crate::world::attached::{Attached, Outside, Settings};
+use crate::machine::attached::{Attached, Outside};
+use crate::machine::description;
+use crate::world::attached::Settings;
 
 /// A wire.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Wire {
     from: Bit,
     to: Bit,
@@ -22,8 +23,8 @@ pub(crate) struct Wire {
 
 impl Wire {
     /// The wire of a machine file.
-    pub(crate) fn of(wire: &machine_file::Wire) -> Self {
-        let machine_file::Wire { from, to, invert, delay_s } = *wire;
+    pub(crate) fn of(wire: &description::Wire) -> Self {
+        let description::Wire { from, to, invert, delay_s } = *wire;
         Self::between(from, to, invert, delay_s)
     }
 

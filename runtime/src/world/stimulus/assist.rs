@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 
-use kmotiondef::{Bit, Cycles, ThreadId};
+use kmotiondef::{Bit, CodeAddr, Cycles, ThreadId};
 
 /// How long programs wait before anything is done: 2 s.
 const PATIENCE: Cycles = Cycles::new(2 * Cycles::PER_SECOND.get());
@@ -13,7 +13,7 @@ const PATIENCE: Cycles = Cycles::new(2 * Cycles::PER_SECOND.get());
 const PRESSED: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 10);
 
 /// Functions that a program calls while it waits.
-const WAITING: &[&str] = &[
+pub(crate) const WAITING: &[&str] = &[
     "ReadBit",
     "Delay_sec",
     "WaitNextTimeSlice",
@@ -26,11 +26,20 @@ const WAITING: &[&str] = &[
     "MutexLock",
 ];
 
+/// Who reads an input.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Asker {
+    /// The thread; `None` for the call-back.
+    pub(crate) thread: Option<ThreadId>,
+    /// The instruction that reads.
+    pub(crate) at: Option<CodeAddr>,
+}
+
 /// What the operator does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Step {
-    /// Gives an input the other level; the thread that last read it.
-    Press(Bit, Option<ThreadId>),
+    /// Gives an input the other level; who has read it last.
+    Press(Bit, Asker),
     /// Gives it back the level it had.
     Release(Bit),
 }
@@ -39,7 +48,7 @@ pub(crate) enum Step {
 #[derive(Clone, Debug)]
 pub(crate) struct Assist {
     /// Inputs that were read since the programs last did something, and by whom.
-    polled: BTreeMap<Bit, Option<ThreadId>>,
+    polled: BTreeMap<Bit, Asker>,
     /// When something is done next.
     next: Cycles,
     pressed: Option<Bit>,
@@ -54,9 +63,9 @@ impl Assist {
         Self { polled: BTreeMap::new(), next: now + PATIENCE, pressed: None, has_helped: false, last: None }
     }
 
-    /// A program has called a function.
-    pub(crate) fn called(&mut self, name: &str, now: Cycles) {
-        if !WAITING.contains(&name) {
+    /// A program has called a function, perhaps one of those that programs call while they wait.
+    pub(crate) fn called(&mut self, waits: bool, now: Cycles) {
+        if !waits {
             self.polled.clear();
             self.has_helped = true;
             if self.pressed.is_none() {
@@ -66,8 +75,8 @@ impl Assist {
     }
 
     /// A program has read an input.
-    pub(crate) fn polled(&mut self, bit: Bit, thread: Option<ThreadId>) {
-        self.polled.insert(bit, thread);
+    pub(crate) fn polled(&mut self, bit: Bit, reader: Asker) {
+        self.polled.insert(bit, reader);
     }
 
     /// What is due at the beginning of a tick.
@@ -83,10 +92,10 @@ impl Assist {
             }
             return Some(Step::Release(bit));
         }
-        let inputs = || self.polled.iter().map(|(bit, thread)| (*bit, *thread));
-        let (bit, thread) = inputs().find(|(bit, _)| Some(*bit) > self.last).or_else(|| inputs().next())?;
+        let inputs = || self.polled.iter().map(|(bit, reader)| (*bit, *reader));
+        let (bit, reader) = inputs().find(|(bit, _)| Some(*bit) > self.last).or_else(|| inputs().next())?;
         (self.last, self.pressed, self.has_helped) = (Some(bit), Some(bit), false);
-        Some(Step::Press(bit, thread))
+        Some(Step::Press(bit, reader))
     }
 
     /// How many of the ticks behind the one that began at `now` have nothing to do.
@@ -100,6 +109,8 @@ impl Assist {
 mod tests {
     use super::*;
 
+    const ASKER: Asker = Asker { thread: None, at: None };
+
     fn ms(ms: i64) -> Cycles {
         Cycles::new(ms * Cycles::PER_SECOND.get() / 1000)
     }
@@ -108,21 +119,21 @@ mod tests {
     fn inputs_are_pressed_in_turn_after_two_seconds_of_waiting() {
         let bit = |number| Bit::new(number).expect("a bit");
         let mut assist = Assist::new(ms(0));
-        assist.called("Jog", ms(500));
-        assist.polled(bit(10), None);
-        assist.polled(bit(136), None);
-        assist.called("ReadBit", ms(1000));
+        assist.called(false, ms(500));
+        assist.polled(bit(10), ASKER);
+        assist.polled(bit(136), ASKER);
+        assist.called(true, ms(1000));
         for (at, expect) in [
             (2499, None),
-            (2500, Some(Step::Press(bit(10), None))),
+            (2500, Some(Step::Press(bit(10), ASKER))),
             (2600, Some(Step::Release(bit(10)))),
-            (2700, Some(Step::Press(bit(136), None))),
+            (2700, Some(Step::Press(bit(136), ASKER))),
             (2800, Some(Step::Release(bit(136)))),
-            (2900, Some(Step::Press(bit(10), None))),
+            (2900, Some(Step::Press(bit(10), ASKER))),
         ] {
             assert_eq!(assist.step(ms(at)), expect, "{at}");
         }
-        assist.called("Move", ms(2950));
+        assist.called(false, ms(2950));
         assert_eq!(assist.step(ms(3000)), Some(Step::Release(bit(10))));
         assert_eq!(assist.step(ms(4999)), None);
     }

@@ -12,6 +12,8 @@
 //! adc 3 = sine mean 0 amplitude 1000 hz 2
 //! at 1s axis 0 push 100
 //! at end expect printed "done"
+//! within 0.5s of printed "start" expect axis 0 enabled
+//! never axis 0 dest > 501
 //! device spi select=16 clock=17 out=18 word=0x0190
 //! ```
 //!
@@ -19,27 +21,38 @@
 //! order of the text; so a run stays a function of its inputs. Source: plant.md section 8.
 
 mod action;
+mod acts;
 mod assist;
+mod expectation;
+mod monitor;
+mod plans;
 mod player;
+mod reader;
+mod relation;
+mod scene;
 mod text;
 mod tokens;
 mod trigger;
 mod wave;
 
-pub use action::{Action, Expectation};
-pub use player::MOST_PLANNED;
+pub use action::{Action, usages};
+pub use expectation::{Expectation, Expression, Predicate, Sense, Stored, Subject};
+pub use plans::MOST_PLANNED;
+pub use relation::Relation;
 pub use text::StimulusError;
 pub use trigger::{Condition, Edge, Trigger};
 pub use wave::Wave;
 
-pub(crate) use assist::{Assist, Step};
+pub(crate) use action::{Form, KEYS};
+pub(crate) use assist::{Asker, Assist, Step, WAITING};
 pub(crate) use player::Player;
-pub(crate) use wave::conversion;
 
 use std::fmt;
 use std::sync::Arc;
 
 use kmotiondef::ThreadId;
+
+use crate::world::trace::Formula;
 
 /// Where a statement stands.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -96,6 +109,32 @@ impl Stimulus {
             Action::Run(thread, name) => Some((*thread, name)),
             _ => None,
         })
+    }
+
+    /// Hands the expressions in its expectations to somebody who knows the programs, and keeps what computes them.
+    ///
+    /// # Errors
+    /// The first one that is wrong, and where.
+    pub fn resolve(
+        &mut self,
+        mut find: impl FnMut(&str) -> Result<Arc<dyn Formula>, String>,
+    ) -> Result<(), StimulusError> {
+        for Rule { place, trigger, action } in &mut self.rules {
+            let expected = match action {
+                Action::Expect(expectation) => expectation.expression(),
+                _ => None,
+            };
+            let condition = match trigger {
+                Trigger::Always { while_met: Some(expectation) } => expectation.expression(),
+                _ => None,
+            };
+            for expression in expected.into_iter().chain(condition) {
+                let found = find(&expression.text);
+                let found = found.map_err(|message| StimulusError { place: place.clone(), message })?;
+                expression.formula = Some(found);
+            }
+        }
+        Ok(())
     }
 
     /// Whether it does nothing.

@@ -1,75 +1,33 @@
 //! Plays a stimulus: what is due is done, and what the board does is watched for.
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::VecDeque;
 
-use kmotiondef::bits::{BitDirection, range_of};
-use kmotiondef::structs::{Chan, Persist};
-use kmotiondef::variables::{KANALOG_PRESENT, PERSIST, SNAP_AMP_PRESENT};
-use kmotiondef::{AxisId, Bit, Cycles, ThreadId};
+use kmotiondef::{Bit, Cycles, ThreadId};
 use vm::firmware::TickContext;
 use vm::memory::GuestMemory;
 use vm::scheduler::ThreadSet;
 
-use super::wave::conversion;
-use super::{Action, Condition, Expectation, Rule, Stimulus, Trigger, Wave};
-use crate::firmware::io::{bit_state, write_bit};
+use super::acts::lines::drive;
+use super::monitor::Progress;
+use super::plans::{Due, MOST_PLANNED, Plans};
+use super::scene::Scene;
+use super::{Condition, Rule, Stimulus, Trigger};
 use crate::io::changes::BitChange;
-use crate::io::kanalog::ADC_CHANNELS;
-use crate::kernel::{Kernel, Request};
-use crate::machine::plant::COUNTS_PER_TICK;
-use crate::out::EventKind;
-use crate::views::Typed;
-
-/// Inputs of Kanalog.
-const KANALOG_INPUTS: std::ops::RangeInclusive<u16> = 128..=143;
-
-/// Settings of devices that name one of its analog inputs.
-const KANALOG_SETTINGS: &[&str] = &["adc", "sine", "cosine"];
-
-/// What is due at an instant.
-#[derive(Clone, Copy, Debug)]
-enum Due {
-    /// A rule.
-    Rule(usize),
-    /// A pulse ends: the level before it.
-    Level(Bit, bool),
-}
-
-/// The most that may be planned at a time.
-pub const MOST_PLANNED: usize = 100_000;
-
-/// An encoder on its way.
-#[derive(Clone, Copy, Debug)]
-struct Turning {
-    axis: AxisId,
-    counts: f64,
-    begun: Cycles,
-    over: Cycles,
-    /// Counts already turned.
-    turned: f64,
-}
+use crate::out::{Message, Out};
+use crate::world::Stage;
 
 /// A stimulus under way.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Player {
-    rules: Vec<Rule>,
-    /// What is due, by time and then in the order it became so.
-    due: BTreeMap<(Cycles, u64), Due>,
-    count: u64,
-    waves: [Option<(Wave, Cycles)>; ADC_CHANNELS],
-    turning: Vec<Turning>,
-    /// When each rule that waited for something was due last. At one instant it happens once, so that rules which
-    /// make each other happen do not multiply.
-    last_due: Vec<Option<Cycles>>,
-    /// Whether it was said that too much was planned.
-    has_told_surplus: bool,
-    /// Expectations of a printed text that has been printed.
-    said: Vec<bool>,
-    /// Console lines that no statement has been compared with yet.
-    lines: VecDeque<(Cycles, String)>,
+    pub(super) rules: Vec<Rule>,
+    /// What is known of each so far.
+    pub(super) progress: Vec<Progress>,
+    pub(super) plans: Plans,
+    /// Console lines that no statement has been compared with yet, and how many statements there were when each came.
+    lines: VecDeque<(Cycles, String, usize)>,
     active: ThreadSet,
-    /// The analog value each input was last given.
-    converted: [i32; ADC_CHANNELS],
+    /// Whether nothing was seen at the last tick that a statement could wait for: no thread is active any more.
+    is_idle: bool,
 }
 
 impl Player {
@@ -77,119 +35,112 @@ impl Player {
     pub(crate) fn new() -> Self {
         Self {
             rules: Vec::new(),
-            due: BTreeMap::new(),
-            count: 0,
-            waves: [None; ADC_CHANNELS],
-            turning: Vec::new(),
-            last_due: Vec::new(),
-            has_told_surplus: false,
-            said: Vec::new(),
+            progress: Vec::new(),
+            plans: Plans::default(),
             lines: VecDeque::new(),
             active: ThreadSet::EMPTY,
-            converted: [-1; ADC_CHANNELS],
+            is_idle: false,
+        }
+    }
+
+    /// Takes the console lines that were sent since the last time.
+    fn hear(&mut self, out: &mut Out) {
+        while let Some((at, line)) = out.next_line() {
+            self.note_line(&line, at);
         }
     }
 
     /// Gets ready for more; an option board that something happens to was found at power-up.
-    pub(crate) fn extend(&mut self, stimulus: Stimulus, kernel: &mut Kernel, memory: &mut GuestMemory) {
+    pub(crate) fn extend(&mut self, stimulus: Stimulus, stage: &mut Stage<'_>, memory: &mut GuestMemory) {
+        // What was printed before does not count for the new rules.
+        self.hear(stage.out);
         for rule in stimulus.rules {
-            announce(&rule.action, kernel, memory);
+            rule.action.announce(stage, memory);
             let index = self.rules.len();
             match rule.trigger {
-                Trigger::At(time) | Trigger::Every { from: time, .. } => self.plan(time, Due::Rule(index)),
-                Trigger::When { .. } | Trigger::End => {}
+                Trigger::At(time) | Trigger::Every { from: time, .. } => {
+                    self.plans.add(time, Due::Rule(index));
+                }
+                Trigger::When { .. } | Trigger::Within { .. } | Trigger::Always { .. } | Trigger::End => {}
             }
             self.rules.push(rule);
-            self.last_due.push(None);
-            self.said.push(false);
+            self.progress.push(Progress::default());
         }
     }
 
     /// Bits whose changes statements wait for.
     pub(crate) fn watched(&self) -> impl Iterator<Item = Bit> {
-        self.rules.iter().filter_map(|rule| match &rule.trigger {
-            Trigger::When { condition: Condition::Bit(bit, _), .. } => Some(*bit),
-            _ => None,
+        self.rules.iter().filter_map(|rule| match rule.trigger.condition()? {
+            Condition::Bit(bit, _) => Some(*bit),
+            Condition::Printed(_) | Condition::Starts(_) | Condition::Ends(_) => None,
         })
     }
 
-    fn plan(&mut self, at: Cycles, due: Due) {
-        self.due.insert((at, self.count), due);
-        self.count += 1;
-    }
-
     /// The PC has received a line.
-    pub(crate) fn note_line(&mut self, line: &[u8], at: Cycles) {
+    fn note_line(&mut self, line: &[u8], at: Cycles) {
         let line = String::from_utf8_lossy(line).into_owned();
-        for (rule, said) in self.rules.iter().zip(&mut self.said) {
-            if let Action::Expect(Expectation::Printed(text, _)) = &rule.action {
-                *said |= line.contains(text.as_str());
-            }
-        }
-        self.lines.push_back((at, line));
+        self.lines.push_back((at, line, self.rules.len()));
     }
 
     /// Whether a thread is still to be started or a command to be sent, so that the run must go on.
-    pub(crate) fn is_busy(&self) -> bool {
-        self.due.values().any(|due| match due {
+    ///
+    /// Lines that were sent after the last tick have not been compared with anything.
+    pub(crate) fn is_busy(&self, has_shown_lines: bool) -> bool {
+        let awaits = self.awaits();
+        let is_due = self.plans.all().any(|due| match due {
             Due::Rule(index) => {
-                matches!(self.rules[*index].action, Action::Start(_) | Action::Run(..) | Action::Command(_))
+                let rule = &self.rules[index];
+                let is_endless = matches!(rule.trigger, Trigger::Every { .. });
+                (awaits && !is_endless) || rule.action.keeps_the_run()
             }
-            Due::Level(..) => false,
+            Due::Level(..) | Due::Check => false,
+        });
+        is_due || (awaits && !(self.is_idle && has_shown_lines))
+    }
+
+    /// Whether a statement still waits for the first time of something in order to begin something.
+    fn awaits(&self) -> bool {
+        self.rules.iter().zip(&self.progress).any(|(rule, progress)| {
+            let is_once = matches!(rule.trigger, Trigger::When { is_once: true, .. });
+            is_once && !progress.happened && rule.action.keeps_the_run()
         })
     }
 
     /// How many of the ticks behind the one that began at `now` have nothing to do.
     pub(crate) fn quiet_ticks(&self, now: Cycles) -> u64 {
-        let moves = self.waves.iter().flatten().any(|(wave, begun)| !wave.is_over(now - *begun));
-        if moves || !self.turning.is_empty() || !self.lines.is_empty() {
-            return 0;
-        }
-        let Some((&(at, _), _)) = self.due.first_key_value() else { return u64::MAX };
-        let tick = Cycles::PER_TICK.get();
-        let first = at.get().saturating_add(tick - 1) / tick;
-        u64::try_from(first - now.get() / tick - 1).unwrap_or(0)
+        let is_ending = self.active.is_empty() && !self.is_idle && self.awaits();
+        if is_ending || !self.lines.is_empty() { 0 } else { self.plans.quiet_ticks(now) }
     }
 
     /// What the world does at the beginning of a tick; whether it did anything.
     pub(crate) fn tick(
         &mut self,
-        kernel: &mut Kernel,
+        stage: &mut Stage<'_>,
         context: &mut TickContext<'_>,
         changes: &[BitChange],
     ) -> bool {
+        self.hear(stage.out);
+        self.is_idle = changes.is_empty() && self.lines.is_empty() && context.threads.active().is_empty();
         self.watch_bits(changes);
         self.watch_lines();
         self.watch_threads(context);
-        self.limit(kernel, context.now);
+        if self.plans.limit() {
+            stage.out.remark(context.now, Message::TooMuchPlanned { most: MOST_PLANNED });
+        }
         let mut acted = false;
-        while let Some(entry) = self.due.first_entry()
-            && entry.key().0 <= context.now
-        {
+        while let Some(due) = self.plans.take(context.now) {
             acted = true;
-            match entry.remove() {
-                Due::Level(bit, level) => drive(kernel, context, bit, level),
-                Due::Rule(index) => self.act(kernel, context, index),
+            match due {
+                Due::Level(bit, level) => drive(stage, context, bit, level),
+                Due::Rule(index) => self.act(stage, context, index),
+                Due::Check => {}
             }
         }
-        self.turn_encoders(kernel, context);
-        self.run_waves(kernel, context);
-        acted || !self.turning.is_empty()
-    }
-
-    /// Leaves out what is farthest in the future if too much is planned.
-    fn limit(&mut self, kernel: &mut Kernel, now: Cycles) {
-        if self.due.len() <= MOST_PLANNED {
-            return;
-        }
-        while self.due.len() > MOST_PLANNED {
-            self.due.pop_last();
-        }
-        if !std::mem::replace(&mut self.has_told_surplus, true) {
-            let text =
-                format!("the stimulus has more than {MOST_PLANNED} things to do; later ones are left out");
-            kernel.tell(now, EventKind::Diagnostic(text));
-        }
+        self.is_idle &= !acted;
+        self.watch(stage, context);
+        let turns = self.plans.is_turning();
+        self.plans.run(stage, context);
+        acted || turns
     }
 
     fn watch_bits(&mut self, changes: &[BitChange]) {
@@ -201,7 +152,8 @@ impl Player {
     }
 
     fn watch_lines(&mut self) {
-        while let Some((at, line)) = self.lines.pop_front() {
+        while let Some((at, line, known)) = self.lines.pop_front() {
+            self.note_text(&line, at, known);
             self.happened(
                 at,
                 |condition| matches!(condition, Condition::Printed(text) if line.contains(text.as_str())),
@@ -227,214 +179,63 @@ impl Player {
 
     /// Something has happened at `at`: plans the rules that waited for it.
     fn happened(&mut self, at: Cycles, fits: impl Fn(&Condition) -> bool) {
+        self.begin_waiting(at, &fits);
         for index in 0..self.rules.len() {
             let Trigger::When { condition, after, is_once } = &self.rules[index].trigger else { continue };
             let time = at + *after;
-            let was_due = self.last_due[index];
+            let was_due = self.progress[index].last_due;
             if fits(condition) && !(*is_once && was_due.is_some()) && was_due != Some(time) {
-                self.last_due[index] = Some(time);
-                self.plan(time, Due::Rule(index));
+                self.progress[index].last_due = Some(time);
+                self.plans.add(time, Due::Rule(index));
             }
         }
     }
 
-    fn act(&mut self, kernel: &mut Kernel, context: &mut TickContext<'_>, index: usize) {
+    fn act(&mut self, stage: &mut Stage<'_>, context: &mut TickContext<'_>, index: usize) {
         let now = context.now;
         if let Trigger::Every { period, from, until } = self.rules[index].trigger {
             // Counted from the first, so that rounding to ticks does not add up.
             let next = from + Cycles::new(((now - from).get() / period.get() + 1) * period.get());
             if until.is_none_or(|until| next <= until) {
-                self.plan(next, Due::Rule(index));
+                self.plans.add(next, Due::Rule(index));
             }
         }
-        match self.rules[index].action.clone() {
-            Action::Set(bit, level) => drive(kernel, context, bit, level),
-            Action::Toggle(bit) => {
-                let level = level(kernel, context.memory, bit);
-                drive(kernel, context, bit, !level);
-            }
-            Action::Pulse(bit, duration) => {
-                let level = level(kernel, context.memory, bit);
-                drive(kernel, context, bit, !level);
-                self.plan(now + duration, Due::Level(bit, level));
-            }
-            Action::Adc(channel, wave) => self.waves[channel] = Some((wave, now)),
-            Action::Push(axis, units) => self.push(kernel, context, axis, units),
-            Action::EncoderError(channel) => kernel.encoders.fail(channel),
-            Action::Turn(axis, counts, over) => {
-                self.turning.push(Turning { axis, counts, begun: now, over, turned: 0.0 });
-            }
-            Action::Uart(bytes) => kernel.uart.arrive(&bytes, now),
-            Action::Persist(index, value) => {
-                context.memory.set(PERSIST.field(Persist::USER_DATA).element(index), value);
-            }
-            Action::Start(thread) => {
-                if context.threads.start(thread).is_err() {
-                    let text = format!("{}: thread {thread} holds no program", self.rules[index].place);
-                    kernel.tell(now, EventKind::Diagnostic(text));
-                }
-            }
-            Action::Run(thread, name) => kernel.ask(Request::Run(thread, name)),
-            Action::Answer(setting) => {
-                let taken = kernel.host.answer_next(&setting);
-                debug_assert!(taken.is_ok(), "it was checked when it was read");
-            }
-            // No echo is wanted.
-            Action::Command(line) => kernel.usb.receive(format!("\u{1b}.{line}\r").as_bytes()),
-            Action::Kill(thread) => context.threads.pause(thread),
-            Action::Konnect(board, input, level) => kernel.konnects.drive(board, input, level),
-            Action::SnapAmp(board, side, quantity, value) => {
-                kernel.snapamps.set(board, side, quantity, value, now);
-            }
-            Action::Attach(device) => {
-                if let Ok(device) = device.build() {
-                    kernel.attach(device, context.memory, now);
-                }
-            }
-            Action::Expect(_) => self.check(kernel, context, index),
+        self.progress[index].happened = true;
+        let Rule { place, action, .. } = self.rules[index].clone();
+        let place = place.to_string();
+        let mut scene = Scene { plans: &mut self.plans, stage, context, place: &place, is_checked: false };
+        action.act(&mut scene);
+        if scene.is_checked {
+            self.check(stage, context, index);
         }
     }
 
-    /// Tells what is not as expected.
-    fn check(&self, kernel: &mut Kernel, context: &TickContext<'_>, index: usize) {
-        let rule = &self.rules[index];
-        let Action::Expect(expectation) = &rule.action else { return };
-        if let Some(text) = self.unmet(kernel, context, index, expectation) {
-            kernel.tell(context.now, EventKind::Unmet(format!("{}: {text}", rule.place)));
-        }
-    }
-
-    /// What is not as it should be with the expectation of a rule.
-    fn unmet(
-        &self,
-        kernel: &Kernel,
-        context: &TickContext<'_>,
-        index: usize,
-        expectation: &Expectation,
-    ) -> Option<String> {
-        match expectation {
-            Expectation::Bit(bit, expected) => {
-                let level = bit_state(kernel, context.memory, *bit).0;
-                (level != *expected)
-                    .then(|| format!("bit {bit} is {}, expected {}", u8::from(level), u8::from(*expected)))
-            }
-            Expectation::Printed(text, expected) => {
-                let is_printed = self.said[index];
-                (is_printed != *expected).then(|| {
-                    let what = if *expected { "no line contains" } else { "a line contains" };
-                    format!("{what} \"{text}\"")
-                })
-            }
-            Expectation::Persist(word, expected) => {
-                let value = context.memory.get(PERSIST.field(Persist::USER_DATA).element(*word));
-                (value != *expected).then(|| format!("UserData[{word}] is {value}, expected {expected}"))
-            }
-            Expectation::Active(thread, expected) => {
-                let is_active = context.threads.state(*thread).is_active();
-                (is_active != *expected).then(|| {
-                    let state = if is_active { "active" } else { "not active" };
-                    format!("thread {thread} is {state}")
-                })
-            }
-        }
+    /// The statements that have done nothing.
+    fn never_happened(&self) -> Vec<String> {
+        let idle = self.rules.iter().zip(&self.progress).filter(|(_, progress)| !progress.happened);
+        idle.map(|(rule, _)| format!("{}: {}", rule.place, rule.trigger)).collect()
     }
 
     /// The run is over: checks what is expected then, or later than it lasted.
-    pub(crate) fn finish(&mut self, kernel: &mut Kernel, context: &TickContext<'_>) {
-        let late: Vec<usize> = std::mem::take(&mut self.due)
-            .into_values()
-            .filter_map(|due| match due {
-                Due::Rule(index) => Some(index),
-                Due::Level(..) => None,
-            })
-            .collect();
-        let at_end = (0..self.rules.len()).filter(|&index| self.rules[index].trigger == Trigger::End);
-        for index in late.into_iter().chain(at_end) {
-            self.check(kernel, context, index);
+    pub(crate) fn finish(&mut self, stage: &mut Stage<'_>, context: &TickContext<'_>) {
+        stage.io.pins.changes.sweep(context.memory, stage.now);
+        self.hear(stage.out);
+        self.watch_bits(&stage.io.pins.changes.take());
+        self.watch_lines();
+        self.watch_threads(context);
+        let late = self.plans.take_all().filter_map(|due| match due {
+            Due::Rule(index) => Some(index),
+            Due::Level(..) | Due::Check => None,
+        });
+        let mut checked: Vec<usize> = late.collect();
+        checked.extend((0..self.rules.len()).filter(|&index| self.rules[index].trigger == Trigger::End));
+        for index in checked {
+            self.check(stage, context, index);
         }
-    }
-
-    /// Moves a load at once, or as fast as an encoder can be read.
-    fn push(&mut self, kernel: &mut Kernel, context: &TickContext<'_>, axis: AxisId, units: f64) {
-        let gain = f64::from(context.memory.axis(axis, Chan::INPUT_GAIN0));
-        let ticks = (units / gain / COUNTS_PER_TICK).abs().ceil();
-        if gain == 0.0 || ticks <= 1.0 {
-            return kernel.servo.push(axis, units);
+        self.finish_watching(stage, context);
+        let statements = self.never_happened();
+        if !statements.is_empty() {
+            stage.out.remark(context.now, Message::NeverHappened { statements: statements.join("; ") });
         }
-        let over = Cycles::new((ticks as i64).saturating_mul(Cycles::PER_TICK.get()));
-        self.turning.push(Turning { axis, counts: units / gain, begun: context.now, over, turned: 0.0 });
-    }
-
-    fn turn_encoders(&mut self, kernel: &mut Kernel, context: &TickContext<'_>) {
-        for turning in &mut self.turning {
-            let elapsed = context.now - turning.begun;
-            let part =
-                if elapsed < turning.over { elapsed.get() as f64 / turning.over.get() as f64 } else { 1.0 };
-            let step = turning.counts * part - turning.turned;
-            turning.turned += step;
-            let gain = f64::from(context.memory.axis(turning.axis, Chan::INPUT_GAIN0));
-            kernel.servo.push(turning.axis, step * gain);
-        }
-        self.turning.retain(|turning| context.now - turning.begun < turning.over);
-    }
-
-    fn run_waves(&mut self, kernel: &mut Kernel, context: &TickContext<'_>) {
-        for channel in 0..ADC_CHANNELS {
-            let Some((wave, begun)) = &self.waves[channel] else { continue };
-            let load = |axis: AxisId| kernel.servo.plants[axis.index()].load;
-            let value = conversion(wave.value(context.now - *begun, load));
-            if self.converted[channel] != value {
-                self.converted[channel] = value;
-                kernel.kanalog.drive(channel, value);
-            }
-        }
-    }
-}
-
-/// What will be driven is no accident, and an option board that something happens to is there.
-fn announce(action: &Action, kernel: &mut Kernel, memory: &mut GuestMemory) {
-    if needs_kanalog(action) {
-        memory.set(KANALOG_PRESENT, 1);
-    }
-    match action {
-        Action::SnapAmp(board, ..) => {
-            crate::machine::plant::connect_snapamp(kernel, *board);
-            memory.set(SNAP_AMP_PRESENT, 1);
-        }
-        Action::Set(bit, _) | Action::Toggle(bit) | Action::Pulse(bit, _) => kernel.pins.declare(*bit),
-        _ => {}
-    }
-}
-
-/// Whether an action is only possible with a Kanalog.
-fn needs_kanalog(action: &Action) -> bool {
-    match action {
-        Action::Adc(..) => true,
-        Action::Attach(device) => {
-            device.settings.iter().any(|(key, _)| KANALOG_SETTINGS.contains(&key.as_str()))
-        }
-        Action::Set(bit, _) | Action::Toggle(bit) | Action::Pulse(bit, _) => {
-            KANALOG_INPUTS.contains(&bit.get())
-        }
-        _ => false,
-    }
-}
-
-/// Whether a bit lives in guest memory.
-fn is_memory(bit: Bit) -> bool {
-    range_of(bit).is_some_and(|range| range.direction == BitDirection::Memory)
-}
-
-/// The level that the world gives a bit.
-fn level(kernel: &Kernel, memory: &GuestMemory, bit: Bit) -> bool {
-    if is_memory(bit) { bit_state(kernel, memory, bit).0 } else { kernel.pins.input(bit) }
-}
-
-fn drive(kernel: &mut Kernel, context: &mut TickContext<'_>, bit: Bit, level: bool) {
-    if is_memory(bit) {
-        write_bit(kernel, context.memory, bit, level, context.now);
-    } else {
-        kernel.pins.drive(bit, level, context.now);
-        kernel.settle(context.now);
     }
 }

@@ -7,8 +7,8 @@ pub(super) enum TokenKind {
     Word(String),
     /// Characters between quotation marks, escapes resolved.
     Text(Vec<u8>),
-    /// `=`
-    Equals,
+    /// `=`, another sign between two numbers, or `±`.
+    Sign(&'static str),
     /// `;`, which separates statements.
     Semicolon,
 }
@@ -33,32 +33,59 @@ pub(super) fn tokens(line: &str) -> Result<Vec<Token>, Mistake> {
         let column = at + 1;
         let kind = match character {
             '#' => break,
-            '=' => single(&mut at, TokenKind::Equals),
-            ';' => single(&mut at, TokenKind::Semicolon),
+            ';' => {
+                at += 1;
+                TokenKind::Semicolon
+            }
             '"' => TokenKind::Text(text(&characters, &mut at)?),
             character if character.is_whitespace() => {
                 at += 1;
                 continue;
             }
-            _ => TokenKind::Word(word(&characters, &mut at)),
+            _ => match sign(&characters, &mut at) {
+                Some(sign) => TokenKind::Sign(sign),
+                None => TokenKind::Word(word(&characters, &mut at)),
+            },
         };
         tokens.push(Token { kind, column });
     }
     Ok(tokens)
 }
 
-fn single(at: &mut usize, kind: TokenKind) -> TokenKind {
-    *at += 1;
-    kind
+/// How signs are written, the longer ones first, and what each is.
+const SIGNS: &[(&str, &str)] = &[
+    ("<=", "<="),
+    (">=", ">="),
+    ("!=", "!="),
+    ("==", "="),
+    ("+-", "±"),
+    ("=", "="),
+    ("<", "<"),
+    (">", ">"),
+    ("±", "±"),
+];
+
+/// The sign that begins here.
+fn sign(characters: &[char], at: &mut usize) -> Option<&'static str> {
+    let rest = characters.get(*at..).unwrap_or_default();
+    let begins = |written: &str| written.chars().eq(rest.iter().copied().take(written.chars().count()));
+    let (written, sign) = SIGNS.iter().find(|(written, _)| begins(written))?;
+    *at += written.chars().count();
+    Some(sign)
 }
 
+/// A word goes on to a space or a sign; `->` is a part of it.
 fn word(characters: &[char], at: &mut usize) -> String {
-    let rest = characters.iter().skip(*at);
-    let is_part =
-        |character: &&char| !character.is_whitespace() && !matches!(character, '=' | ';' | '#' | '"');
-    let word: String = rest.take_while(is_part).collect();
-    *at += word.chars().count();
-    word
+    let start = *at;
+    while let Some(&character) = characters.get(*at) {
+        let is_arrow = character == '>' && *at > start && characters.get(*at - 1) == Some(&'-');
+        let is_end = character.is_whitespace() || matches!(character, ';' | '#' | '"');
+        if is_end || (!is_arrow && *at > start && sign(characters, &mut at.clone()).is_some()) {
+            break;
+        }
+        *at += 1;
+    }
+    characters.get(start..*at).unwrap_or_default().iter().collect()
 }
 
 /// The bytes of a text; `at` goes behind it.

@@ -1,6 +1,10 @@
 //! When a statement acts.
 
+use std::fmt;
+
 use kmotiondef::{Bit, Cycles, ThreadId};
+
+use super::expectation::Expectation;
 
 /// Which change of a level counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,7 +42,7 @@ pub enum Condition {
 }
 
 /// When a statement acts.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Trigger {
     /// At an instant.
     At(Cycles),
@@ -62,4 +66,54 @@ pub enum Trigger {
     },
     /// When the run is over.
     End,
+    /// Checked all the time from a condition on, until it is met: at most for so long.
+    Within {
+        /// How long.
+        limit: Cycles,
+        /// From what on, each time.
+        condition: Condition,
+    },
+    /// Checked in every tick, or in those in which something else is so.
+    Always {
+        /// What else, if anything.
+        while_met: Option<Expectation>,
+    },
+}
+
+impl fmt::Display for Condition {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Bit(bit, Edge::Rises) => write!(f, "bit {bit} rises"),
+            Self::Bit(bit, Edge::Falls) => write!(f, "bit {bit} falls"),
+            Self::Bit(bit, Edge::Changes) => write!(f, "bit {bit} changes"),
+            Self::Printed(text) => write!(f, "printed \"{text}\""),
+            Self::Starts(thread) => write!(f, "thread {thread} starts"),
+            Self::Ends(thread) => write!(f, "thread {thread} ends"),
+        }
+    }
+}
+
+impl fmt::Display for Trigger {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let seconds = |time: &Cycles| time.get() as f64 / Cycles::PER_SECOND.get() as f64;
+        match self {
+            Self::At(time) => write!(f, "at {} s", seconds(time)),
+            Self::Every { period, .. } => write!(f, "every {} s", seconds(period)),
+            Self::When { condition, is_once: true, .. } => write!(f, "once {condition}"),
+            Self::When { condition, .. } => write!(f, "when {condition}"),
+            Self::End => f.write_str("at end"),
+            Self::Within { limit, condition } => write!(f, "within {} s of {condition}", seconds(limit)),
+            Self::Always { .. } => f.write_str("always while …"),
+        }
+    }
+}
+
+impl Trigger {
+    /// What it waits for, if it does.
+    pub(super) const fn condition(&self) -> Option<&Condition> {
+        match self {
+            Self::When { condition, .. } | Self::Within { condition, .. } => Some(condition),
+            Self::At(_) | Self::Every { .. } | Self::End | Self::Always { .. } => None,
+        }
+    }
 }

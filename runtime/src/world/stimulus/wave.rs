@@ -76,12 +76,6 @@ impl Wave {
     }
 }
 
-/// The conversion of an analog input, 0 to 4095, at a value in counts.
-pub(crate) fn conversion(counts: f64) -> i32 {
-    // A cast saturates, and NaN becomes 0.
-    (libm::round(counts) as i32).clamp(-2048, 2047) + 2048
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -101,13 +95,6 @@ mod tests {
             (sine, 10, 110.0),
         ] {
             assert_eq!(wave.value(ms(at), |_| 0.0), expect, "{wave:?} {at}");
-        }
-    }
-
-    #[test]
-    fn conversions_stay_within_12_bits() {
-        for (counts, expect) in [(0.0, 2048), (-9e9, 0), (2047.4, 4095), (9e9, 4095), (f64::NAN, 2048)] {
-            assert_eq!(conversion(counts), expect, "{counts}");
         }
     }
 }

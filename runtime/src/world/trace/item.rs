@@ -5,66 +5,100 @@ use std::fmt;
 use kmotiondef::structs::{Chan, Persist};
 use kmotiondef::variables::{ADC_BUFFER_IN, DAC_BUFFER, LAST_PWM, PERSIST};
 use kmotiondef::{AxisId, Bit};
-use vm::memory::GuestMemory;
 
-use crate::firmware::io::bit_state;
+use super::{Formula, View};
+use crate::io::bits::bit_state;
 use crate::io::konnect::{Board, Port};
-use crate::kernel::Kernel;
 use crate::views::Typed;
 
-/// A kind of value.
+/// A kind of value: a row of the table of kinds, which is all there is to be said of it.
 struct Kind {
     name: &'static str,
     /// How many there are, numbered from 0.
     count: usize,
-    read: fn(&Kernel, &GuestMemory, usize) -> f64,
+    /// The unit; empty for mere numbers.
+    unit: &'static str,
+    /// Whether it is a part of what `axisN` names.
+    is_of_axes: bool,
+    read: fn(&View<'_>, usize) -> f64,
 }
+
+/// A kind that is numbered by axis and not a part of what `axisN` names.
+const OTHER: Kind = Kind { name: "", count: 8, unit: "", is_of_axes: false, read: |_, _| 0.0 };
 
 /// All kinds.
 const KINDS: &[Kind] = &[
     // Where an axis is sent.
-    Kind { name: "dest", count: 8, read: |_, memory, index| memory.axis(axis(index), Chan::DEST) },
+    Kind {
+        name: "dest",
+        unit: "units",
+        is_of_axes: true,
+        read: |view, index| view.memory.axis(axis(index), Chan::DEST),
+        ..OTHER
+    },
     // Where it is.
-    Kind { name: "pos", count: 8, read: |_, memory, index| memory.axis(axis(index), Chan::POSITION) },
+    Kind {
+        name: "pos",
+        unit: "units",
+        is_of_axes: true,
+        read: |view, index| view.memory.axis(axis(index), Chan::POSITION),
+        ..OTHER
+    },
     // What drives it.
-    Kind { name: "out", count: 8, read: |_, memory, index| memory.axis(axis(index), Chan::OUTPUT).into() },
+    Kind {
+        name: "out",
+        is_of_axes: true,
+        read: |view, index| view.memory.axis(axis(index), Chan::OUTPUT).into(),
+        ..OTHER
+    },
+    // How fast it is sent there.
+    Kind {
+        name: "vel",
+        unit: "units/s",
+        read: |view, index| view.memory.axis(axis(index), Chan::LAST_VEL).into(),
+        ..OTHER
+    },
     // Where its load is, in machine coordinates.
-    Kind { name: "load", count: 8, read: |kernel, _, index| kernel.servo.plants[index].load },
+    Kind { name: "load", unit: "units", read: |view, index| view.machine.loads[axis(index)].load, ..OTHER },
     // A bit.
-    Kind { name: "bit", count: Bit::MAX as usize + 1, read: bit },
+    Kind { name: "bit", count: Bit::MAX as usize + 1, read: bit, ..OTHER },
     // An analog input, -2048 to 2047.
     Kind {
         name: "adc",
-        count: 8,
-        read: |_, memory, index| f64::from(memory.get(ADC_BUFFER_IN.element(index)) - 2048),
+        unit: "counts",
+        read: |view, index| f64::from(view.memory.get(ADC_BUFFER_IN.element(index)) - 2048),
+        ..OTHER
     },
     // An analog output, -2048 to 2047.
-    Kind { name: "dac", count: 8, read: dac },
+    Kind { name: "dac", unit: "counts", read: dac, ..OTHER },
     // The word sent to an amplifier.
-    Kind { name: "pwm", count: 16, read: |_, memory, index| memory.get(LAST_PWM.element(index)).into() },
-    // The duty of an I/O PWM from 0 to 1, and its frequency; 0 while it is off.
     Kind {
-        name: "iopwm",
-        count: 8,
-        read: |kernel, _, index| kernel.fpga.pwm(index as u32).unwrap_or_default().0,
+        name: "pwm",
+        count: 16,
+        read: |view, index| view.memory.get(LAST_PWM.element(index)).into(),
+        ..OTHER
     },
+    // The duty of an I/O PWM from 0 to 1, and its frequency; 0 while it is off.
+    Kind { name: "iopwm", read: |view, index| view.io.fpga.pwm(index as u32).unwrap_or_default().0, ..OTHER },
     Kind {
         name: "iopwmhz",
-        count: 8,
-        read: |kernel, _, index| kernel.fpga.pwm(index as u32).unwrap_or_default().1,
+        unit: "Hz",
+        read: |view, index| view.io.fpga.pwm(index as u32).unwrap_or_default().1,
+        ..OTHER
     },
     // Steps that a generator has made.
-    Kind { name: "step", count: 8, read: |kernel, _, index| kernel.stepgens.position(index) },
+    Kind { name: "step", unit: "steps", read: |view, index| view.io.stepgens.position(index), ..OTHER },
     // The outputs of a Konnect board: 0 to 7 on JP6, 8 to 15 on JP4.
-    Kind { name: "konnect", count: 16, read: |kernel, _, index| konnect(kernel, index) },
+    Kind { name: "konnect", count: 16, read: konnect, ..OTHER },
     // The analog output of a KStep, as part of its supply.
     Kind {
         name: "kstep_analog",
         count: 1,
-        read: |kernel, _, _| kernel.fpga.kstep_output().level(kernel.tick_start),
+        read: |view, _| view.io.fpga.kstep_output().level(view.tick_start),
+        ..OTHER
     },
     // An element of `persist.UserData`.
-    Kind { name: "persist", count: 200, read: |_, memory, index| user_data(memory, index) },
+    Kind { name: "persist", count: 200, read: user_data, ..OTHER },
 ];
 
 /// Indexes are checked when a name is read.
@@ -72,22 +106,22 @@ fn axis(index: usize) -> AxisId {
     AxisId::all().nth(index).unwrap_or_else(|| AxisId::all().next_back().expect("there are axes"))
 }
 
-fn bit(kernel: &Kernel, memory: &GuestMemory, index: usize) -> f64 {
+fn bit(view: &View<'_>, index: usize) -> f64 {
     let bit = i32::try_from(index).ok().and_then(Bit::new);
-    bit.map_or(0.0, |bit| f64::from(u8::from(bit_state(kernel, memory, bit).0)))
+    bit.map_or(0.0, |bit| f64::from(u8::from(bit_state(view.io, view.memory, bit).0)))
 }
 
-fn dac(_: &Kernel, memory: &GuestMemory, index: usize) -> f64 {
-    f64::from((i32::from(memory.get(DAC_BUFFER.element(index))) & 0xfff) - 2048)
+fn dac(view: &View<'_>, index: usize) -> f64 {
+    f64::from((i32::from(view.memory.get(DAC_BUFFER.element(index))) & 0xfff) - 2048)
 }
 
-fn konnect(kernel: &Kernel, index: usize) -> f64 {
+fn konnect(view: &View<'_>, index: usize) -> f64 {
     let port = if index < 8 { Port::Aux1 } else { Port::Aux0 };
-    kernel.konnects.outputs(Board { port, address: (index % 8) as u8 }).into()
+    view.io.konnects.outputs(Board { port, address: (index % 8) as u8 }).into()
 }
 
-fn user_data(memory: &GuestMemory, index: usize) -> f64 {
-    memory.get(PERSIST.field(Persist::USER_DATA).element(index)).into()
+fn user_data(view: &View<'_>, index: usize) -> f64 {
+    view.memory.get(PERSIST.field(Persist::USER_DATA).element(index)).into()
 }
 
 /// A value that can be sampled.
@@ -146,8 +180,14 @@ impl Item {
     /// Where every axis is sent, where it is and what drives it.
     #[must_use]
     pub fn of_axes() -> Vec<Self> {
-        let all = (0..AxisId::all().count()).flat_map(|index| (0..3).map(move |kind| Self { kind, index }));
-        all.collect()
+        AxisId::all().flat_map(Self::of_axis).collect()
+    }
+
+    /// All that `axisN` names.
+    #[must_use]
+    pub fn of_axis(axis: AxisId) -> Vec<Self> {
+        let kinds = KINDS.iter().enumerate().filter(|(_, kind)| kind.is_of_axes);
+        kinds.map(|(kind, _)| Self { kind, index: axis.index() }).collect()
     }
 
     /// What kind of value it is: its name without the number.
@@ -165,19 +205,13 @@ impl Item {
     /// The unit of the value; empty for mere numbers.
     #[must_use]
     pub fn unit(self) -> &'static str {
-        match self.kind() {
-            "dest" | "pos" | "load" => "units",
-            "adc" | "dac" => "counts",
-            "step" => "steps",
-            "iopwmhz" => "Hz",
-            _ => "",
-        }
+        KINDS[self.kind].unit
     }
 
     /// The axis it belongs to, if it is one of [`of_axes`](Self::of_axes).
     #[must_use]
     pub fn axis(self) -> Option<usize> {
-        (self.kind < 3).then_some(self.index)
+        KINDS[self.kind].is_of_axes.then_some(self.index)
     }
 
     /// The bit it is, if it is one.
@@ -186,8 +220,14 @@ impl Item {
         Bit::new(i32::try_from(self.index).ok()?).filter(|_| self.kind() == "bit")
     }
 
-    pub(crate) fn read(self, kernel: &Kernel, memory: &GuestMemory) -> f64 {
-        (KINDS[self.kind].read)(kernel, memory, self.index)
+    pub(crate) fn read(self, view: &View<'_>) -> f64 {
+        (KINDS[self.kind].read)(view, self.index)
+    }
+}
+
+impl Formula for Item {
+    fn value(&self, view: &View<'_>) -> f64 {
+        self.read(view)
     }
 }
 

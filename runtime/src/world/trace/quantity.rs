@@ -3,10 +3,12 @@
 use std::fmt;
 use std::sync::Arc;
 
+use kmotiondef::Cycles;
 use vm::memory::GuestMemory;
 
 use super::Item;
-use crate::kernel::Kernel;
+use crate::io::Io;
+use crate::machine::Machine;
 
 /// A value that is sampled.
 #[derive(Clone, Debug)]
@@ -23,19 +25,32 @@ pub trait Formula: fmt::Debug + Send + Sync {
     fn value(&self, view: &View<'_>) -> f64;
 }
 
-/// The board as a formula sees it.
+/// The board as somebody sees it who only looks.
 #[derive(Debug)]
 pub struct View<'a> {
-    kernel: &'a Kernel,
+    pub(super) machine: &'a Machine,
+    pub(super) io: &'a Io,
+    /// When the present tick began.
+    pub(super) tick_start: Cycles,
     /// What programs see.
     pub memory: &'a GuestMemory,
 }
 
-impl View<'_> {
+impl<'a> View<'a> {
+    /// The board in the tick that began at `tick_start`.
+    pub(crate) const fn new(
+        machine: &'a Machine,
+        io: &'a Io,
+        tick_start: Cycles,
+        memory: &'a GuestMemory,
+    ) -> Self {
+        Self { machine, io, tick_start, memory }
+    }
+
     /// The value of an item.
     #[must_use]
     pub fn item(&self, item: Item) -> f64 {
-        item.read(self.kernel, self.memory)
+        item.read(self)
     }
 }
 
@@ -49,10 +64,10 @@ impl Quantity {
         }
     }
 
-    pub(crate) fn read(&self, kernel: &Kernel, memory: &GuestMemory) -> f64 {
+    pub(crate) fn read(&self, view: &View<'_>) -> f64 {
         match self {
-            Self::Item(item) => item.read(kernel, memory),
-            Self::Formula(_, formula) => formula.value(&View { kernel, memory }),
+            Self::Item(item) => item.read(view),
+            Self::Formula(_, formula) => formula.value(view),
         }
     }
 }

@@ -2,14 +2,12 @@
 
 use kmotiondef::structs::Chan;
 use kmotiondef::{AxisId, Ticks};
-use vm::memory::GuestMemory;
 
-use super::{Quantity, Record, Request};
-use crate::kernel::Kernel;
+use super::{Quantity, Record, Request, View};
 use crate::views::Typed;
 
 /// A recording under way.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Recorder {
     request: Request,
     /// The values as bits, so that what is no number is equal to itself, and the enabled axes.
@@ -38,12 +36,11 @@ impl Recorder {
     }
 
     /// The values, if some of them have changed since the last time.
-    pub(crate) fn sample(&mut self, kernel: &Kernel, memory: &GuestMemory) -> Option<Record> {
-        let values: Vec<f64> =
-            self.request.quantities.iter().map(|quantity| quantity.read(kernel, memory)).collect();
+    pub(crate) fn sample(&mut self, view: &View<'_>) -> Option<Record> {
+        let values: Vec<f64> = self.request.quantities.iter().map(|quantity| quantity.read(view)).collect();
         let enabled = AxisId::all()
             .rev()
-            .fold(0, |word, axis| word << 1 | u8::from(memory.axis(axis, Chan::ENABLE) != 0));
+            .fold(0, |word, axis| word << 1 | u8::from(view.memory.axis(axis, Chan::ENABLE) != 0));
         let sample = Some((values.iter().map(|value| value.to_bits()).collect(), enabled));
         if sample == self.last {
             return None;

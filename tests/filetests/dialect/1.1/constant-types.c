@@ -12,3 +12,4 @@ main()
     printf("%d %d %d %d %d %d\n", minus < 2147483648, minus < 0x80000000, -2147483648 > 0,
            sizeof 0xffffffff, sizeof 0x100000000, 4294967296 > 0);
 }
+//@ cycles: 12828

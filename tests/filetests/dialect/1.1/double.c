@@ -3,10 +3,11 @@
 
 _Static_assert(sizeof(double) == 8 && _Alignof(double) == 8, "double");
 
-struct { char c; double d; } s = { 0, 1.0 };
+struct { char c; double d; } s = { 0, 1.0 }; //~ redeclared
 
 main()
 {
     int *halves = (int *)&s.d;
     printf("%d %d %x %x\n", sizeof s.d, (char *)&s.d - &s.c, halves[0], halves[1]);
 }
+//@ cycles: 10370

@@ -11,3 +11,4 @@ main()
     side = 12345;
     printf("%d %d %d %d\n", sizeof(enum Side), before, side, (enum Side)-2 < RIGHT);
 }
+//@ cycles: 9969

@@ -10,3 +10,4 @@ main()
     float infinite = 1 / zero;
     printf("%d %x %x %x\n", sizeof a, *(int *)&a, *(int *)&b, *(int *)&infinite);
 }
+//@ cycles: 13798

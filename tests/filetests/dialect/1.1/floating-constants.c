@@ -7,3 +7,4 @@ main()
 {
     printf("%d %d %d %d\n", sizeof 1.5, sizeof 1.5f, 0.1f == 0.1, 0.5f == 0.5);
 }
+//@ cycles: 8690

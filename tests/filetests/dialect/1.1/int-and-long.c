@@ -14,3 +14,4 @@ main()
 {
     printf("%d %d %d %d %d\n", sizeof a, sizeof d, sizeof b, sizeof c, *p);
 }
+//@ cycles: 10759

@@ -3,7 +3,7 @@
 
 _Static_assert(sizeof(long double) == 8, "long double");
 
-struct { char c; long double d; } s;
+struct { char c; long double d; } s; //~ redeclared
 long double a = 1.25L;
 
 main()
@@ -12,3 +12,4 @@ main()
     a *= 2;
     printf("%d %d %d %f\n", sizeof a, (char *)&s.d - &s.c, s.d == 0.1, a);
 }
+//@ cycles: 11161

@@ -13,3 +13,4 @@ main()
     printf("%d %d %d %x %d\n", sizeof &value, sizeof again, again == nothing, *(char *)&value,
            address >= 0x80050000 && address < 0x80060000);
 }
+//@ cycles: 10994

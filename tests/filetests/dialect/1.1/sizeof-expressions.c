@@ -10,3 +10,4 @@ main()
 {
     printf("%d %d %d %d %d %d\n", sizeof "abc", sizeof 'a', sizeof(1 == 1), sizeof 1.0f, sizeof 1.0, parameter(0));
 }
+//@ cycles: 12827

@@ -11,3 +11,4 @@ main()
     size_t unsigned_size = 4;
     printf("%d %d\n", i < sizeof a, i < unsigned_size ? 1 : i);
 }
+//@ cycles: 4711

@@ -10,3 +10,4 @@ main()
     p = p + 1;
     printf("%d %d %d\n", sizeof(void), sizeof f, (char *)p - (char *)list);
 }
+//@ cycles: 6622

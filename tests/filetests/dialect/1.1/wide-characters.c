@@ -9,3 +9,4 @@ main()
 {
     printf("%d %d %d %d %d\n", sizeof text, sizeof L'a', text[0], L"ab"[1], text[2]);
 }
+//@ cycles: 11598

@@ -14,3 +14,4 @@ main()
     printf("%x %x %x %x\n", bytes[0], bytes[1], bytes[2], bytes[3]);
     printf("%d %d %d %d %d\n", sizeof a, sizeof d, sizeof(struct B), d.s, d.u);
 }
+//@ cycles: 19534

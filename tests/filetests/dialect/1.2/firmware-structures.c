@@ -7,3 +7,4 @@ main()
 {
     printf("%d %d %d\n", sizeof(CHAN), sizeof chan, (char *)ch1 - (char *)ch0);
 }
+//@ cycles: 8576

@@ -11,3 +11,4 @@ main()
     struct Z *z = (struct Z *)gather_buffer;
     printf("%d %d %d %d\n", sizeof *f, sizeof *z, (char *)f->rest - (char *)f, (char *)z->rest - (char *)z);
 }
+//@ cycles: 8695

@@ -10,3 +10,4 @@ main()
     printf("%d %d %d\n", (char *)&second > &first && (char *)&third > (char *)&second,
            (char *)&second - &first, (char *)&third - &first);
 }
+//@ cycles: 6632

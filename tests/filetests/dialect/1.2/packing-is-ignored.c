@@ -10,3 +10,4 @@ main()
 {
     printf("%d %d\n", sizeof(struct P), sizeof(struct Q));
 }
+//@ cycles: 4830

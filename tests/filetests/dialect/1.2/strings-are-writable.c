@@ -8,3 +8,4 @@ main()
     a[0] = 'X';
     printf("%s %s %d\n", a, b, a == b);
 }
+//@ cycles: 6388

@@ -19,3 +19,4 @@ main()
     at = (char *)&b;
     printf("%d %d %d %d\n", sizeof b, (char *)&b.c - at, (char *)&b.s - at, (char *)&b.e - at);
 }
+//@ cycles: 17941

@@ -6,7 +6,7 @@ struct S { char c; union U u; };
 _Static_assert(sizeof(union U) == 16 && _Alignof(union U) == 8 && sizeof(struct S) == 24, "union");
 
 union U u;
-struct S s;
+struct S s; //~ redeclared
 
 main()
 {
@@ -14,3 +14,4 @@ main()
     u.i[1] = 0x40000000;
     printf("%d %d %f\n", sizeof u, (char *)&s.u - &s.c, u.d);
 }
+//@ cycles: 9362

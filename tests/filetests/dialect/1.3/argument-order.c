@@ -11,3 +11,4 @@ main()
     printf("%d %d %d\n", next(), next(), next());
     show(next(), next(), next(), next());
 }
+//@ cycles: 15334

@@ -19,3 +19,4 @@ main()
     int all = sum(TEN(ARGUMENT, 0), TEN(ARGUMENT, 1), TEN(ARGUMENT, 2), TEN(ARGUMENT, 3), TEN(ARGUMENT, 4), TEN(ARGUMENT, 5));
     printf("%d %d\n", all, largest);
 }
+//@ cycles: 5861

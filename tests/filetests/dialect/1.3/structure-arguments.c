@@ -10,3 +10,4 @@ main()
     printf("%d ", change(p));
     printf("%d\n", p.x);
 }
+//@ cycles: 4970

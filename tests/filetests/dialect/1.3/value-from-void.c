@@ -9,3 +9,4 @@ main()
     int n = first(); //~ void-value
     printf("%d %d\n", n, second()); //~ void-value
 }
+//@ cycles: 5117

@@ -11,3 +11,4 @@ main()
     c += 100;
     printf("%d %d %d %d\n", i, j, k, c);
 }
+//@ cycles: 9409

@@ -8,3 +8,5 @@ main()
 {
     printf("%d %d %d\n", small > 0, single > 0, small / 2 < small);
 }
+//@ processor: denormal numbers count as zero
+//@ cycles: 6634

@@ -11,3 +11,4 @@ main()
     persist.UserData[0] = 5 / zero;
     printf("after\n");
 }
+//@ cycles: 1742

@@ -8,3 +8,4 @@ main()
 {
     persist.UserData[0] = 5 % zero;
 }
+//@ cycles: 22

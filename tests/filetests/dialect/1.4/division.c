@@ -17,3 +17,4 @@ main()
     printf("%d %d %d %d %d %d\n", A, B, C, D, E, F);
     printf("%u %u\n", large / 2, large % 2);
 }
+//@ cycles: 47562

@@ -12,3 +12,4 @@ main()
     printf("%d %d %d %d %d\n", one / zero > 1e308, -one / zero < -1e308, 1.0f / single_zero > 1e38f, n == zero / zero, n != zero);
     printf("%d %d %d\n", infinite == one / zero, !(nan < 0), !(nan >= 0));
 }
+//@ cycles: 17543

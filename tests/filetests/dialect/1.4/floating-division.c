@@ -20,3 +20,4 @@ main()
     show(third, single_third);
     printf("%d %d\n", one / ten == 0.1, (double)(int)(three / ten * 1e9) == 3e8);
 }
+//@ cycles: 28094

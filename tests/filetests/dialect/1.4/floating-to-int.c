@@ -5,7 +5,7 @@
 
 double a = 3.99, b = -3.99, big = 1e10, zero = 0;
 float f = 3e9f;
-static int ca = 3.99, cb = (int)-3.99, cbig = (int)1e10, cminus = (int)-1e10, cnan = (int)(0.0 / 0.0);
+static int ca = 3.99, cb = (int)-3.99, cbig = (int)1e10, cminus = (int)-1e10, cnan = (int)(0.0 / 0.0); //~ lost-fraction
 enum { A = (int)3.99, B = (int)-3.99, BIG = (int)3e9f };
 
 main()
@@ -14,3 +14,4 @@ main()
     printf("%d %d %d %d %d\n", ca, cb, cbig, cminus, cnan);
     printf("%d %d %d\n", A, B, BIG);
 }
+//@ cycles: 46546

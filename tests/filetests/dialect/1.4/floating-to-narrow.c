@@ -12,3 +12,4 @@ main()
     printf("%d %d %d %d\n", (char)d, (char)big, (short)sum, (unsigned char)u);
     printf("%d %d %d %d\n", ca, cbig, cs, cu);
 }
+//@ cycles: 21935

@@ -12,3 +12,4 @@ main()
     printf("%u %u %u %u %u\n", (unsigned)large, (unsigned)small, (unsigned)minus, (unsigned)beyond, (unsigned)f);
     printf("%u %u %u %u %u\n", a, b, c, d, e);
 }
+//@ cycles: 36593

@@ -9,3 +9,4 @@ main()
 {
     printf("%d %d %d %d %d %d\n", least / minus, least % minus, quotient, remainder, QUOTIENT, REMAINDER);
 }
+//@ cycles: 20877

@@ -11,3 +11,4 @@ main()
     printf("%d %d %d %d %d %d\n", n < one, n > one, n <= one, n >= one, n == one, n != one);
     printf("%d %d %d %d %d %d\n", a, b, c, d, e, f);
 }
+//@ cycles: 25695

@@ -10,3 +10,4 @@ main()
 {
     printf("%d %d %d %d %d\n", !d, !zero, !small, folded, NOT);
 }
+//@ cycles: 10768

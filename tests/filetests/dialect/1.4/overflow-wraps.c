@@ -16,3 +16,4 @@ main()
     case 2147483647 + 1: printf("%d\n", SUM == sum && PRODUCT == product);
     }
 }
+//@ cycles: 40367

@@ -8,3 +8,4 @@ main()
 {
     printf("%d %d %d %d\n", &numbers[3] - numbers, numbers - &numbers[3], &list[2] - list, list - &list[2]);
 }
+//@ cycles: 9056

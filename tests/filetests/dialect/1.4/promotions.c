@@ -2,7 +2,7 @@
 #include "KMotionDef.h"
 
 unsigned char a = 200, b = 200;
-short s = -1;
+short s = -1; //~ redeclared
 struct { unsigned u : 9; } bits = { 300 };
 static int constant = (unsigned char)200 + (unsigned char)200;
 enum { FOLDED = (unsigned char)200 + (unsigned char)200, MIXED = -1 < 1u };
@@ -13,3 +13,4 @@ main()
     unsigned one = 1;
     printf("%d %d %d %d %d\n", a + b, s, (a + b == constant) & (constant == FOLDED), n < one | MIXED, bits.u);
 }
+//@ cycles: 12048

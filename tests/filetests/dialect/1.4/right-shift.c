@@ -15,3 +15,4 @@ main()
     printf("%d %x %d %x\n", a, b, c, d);
     printf("%d %x\n", A, B);
 }
+//@ cycles: 27781

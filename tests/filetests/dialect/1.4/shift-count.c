@@ -26,3 +26,4 @@ main()
     printf("%d %d %d %d %d %d %d\n", a, b, c, d, e, f, g);
     printf("%d %d %d %d\n", A, B, C, D);
 }
+//@ cycles: 39295

@@ -12,3 +12,4 @@ main()
     printf("%d %d %d %d %d %d\n", c1, c2, c3, c4, c5, c6);
     printf("%d %d %d %d\n", (a < b) + (a > b), !!b, 1.5 > 2.5, 1.5 <= 2.5);
 }
+//@ cycles: 34364

@@ -13,3 +13,4 @@ main()
     printf("%d %d %d\n", a, b, c);
     printf("%d %d\n", (double *)0xfffffffc > gather_buffer, (char *)0x80000000 > (char *)1);
 }
+//@ cycles: 19863

@@ -11,3 +11,4 @@ main()
     after = TIMER0;
     printf("%d %d %d\n", before != after, (double *)gather_buffer < end, flash != 0);
 }
+//@ cycles: 6873

@@ -12,3 +12,4 @@ main()
     limit = 7; //~ const-write
     printf("%d\n", limit);
 }
+//@ cycles: 4961

@@ -10,3 +10,4 @@ main()
     printf("stored %x\n", persist.UserData[12]);
     printf("%f\n", *d);
 }
+//@ cycles: 5494

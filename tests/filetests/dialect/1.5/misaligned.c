@@ -7,3 +7,4 @@ main()
     int *p = (int *)((char *)gather_buffer + 2);
     *p = 5;
 }
+//@ cycles: 6

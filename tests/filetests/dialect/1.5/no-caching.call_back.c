@@ -12,3 +12,4 @@ main()
     UserCallBack = 0;
     printf("seen\n");
 }
+//@ cycles: 8017859

@@ -15,3 +15,4 @@ main()
     c = count;
     printf("%d %d %d\n", a, b, c);
 }
+//@ cycles: 6631

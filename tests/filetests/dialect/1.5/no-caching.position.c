@@ -13,3 +13,4 @@ main()
     printf("moving\n");
     Jog(2, 0);
 }
+//@ cycles: 176179

@@ -9,3 +9,4 @@ main()
     while (p[n]) n++;
     printf("%s %d\n", (char *)gather_buffer + 100, n);
 }
+//@ cycles: 4631

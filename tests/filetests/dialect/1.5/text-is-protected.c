@@ -8,3 +8,4 @@ main()
 {
     *(int *)f = 0;
 }
+//@ cycles: 4

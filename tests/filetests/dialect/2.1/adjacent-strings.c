@@ -5,3 +5,4 @@ char text[] = "one" " "
     "two";
 
 main() { printf("%s %d\n", text, sizeof text); }
+//@ cycles: 5104

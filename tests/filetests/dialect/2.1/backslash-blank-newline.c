@@ -6,3 +6,4 @@
 //~^^ lax-text: backslash
 
 main() { printf("%d\n", SUM); }
+//@ cycles: 2760

@@ -11,3 +11,4 @@ ng_name = SUM(5, 7);
     printf("%d a\
 b\n", long_name);
 }
+//@ cycles: 3321

@@ -2,3 +2,4 @@
 main() { printf("5\n"); }
 //@ byte: ␂ ef bb bf
 //@ prints: 5
+//@ cycles: 783

@@ -11,3 +11,4 @@ main()
     unsigned char *p = (unsigned char *)text;
     printf("%d %x %x %x %x\n", sizeof text - 1, p[0], p[1], p[2], p[3]);
 }
+//@ cycles: 11665

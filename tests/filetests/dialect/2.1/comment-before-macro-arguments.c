@@ -3,3 +3,4 @@
 #define SQUARE(x) ((x) * (x))
 
 main() { printf("%d\n", SQUARE /* of three */ (3)); }
+//@ cycles: 2481

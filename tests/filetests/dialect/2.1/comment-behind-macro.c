@@ -4,3 +4,4 @@
 #define PUMP 48 /* coolant */
 
 main() { printf("%d %d\n", LAMP, PUMP); }
+//@ cycles: 5109

@@ -7,3 +7,4 @@ main()
 //~^ note: backslash
     printf("%d\n", a);
 }
+//@ cycles: 2481

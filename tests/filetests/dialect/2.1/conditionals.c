@@ -30,3 +30,4 @@ main()
     printf("e\n");
 #endif
 }
+//@ cycles: 3903

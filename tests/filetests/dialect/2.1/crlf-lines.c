@@ -9,3 +9,4 @@ main()
 {␍
     printf("%d %s\n", FIVE, JOINED);
 }␍
+//@ cycles: 4936

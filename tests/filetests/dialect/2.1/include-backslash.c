@@ -3,3 +3,4 @@
 #include "parts\where.h"
 
 main() { printf("%s\n", WHERE); }
+//@ cycles: 2866

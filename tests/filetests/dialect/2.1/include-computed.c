@@ -6,3 +6,4 @@
 #include QUOTED
 
 main() { printf("%s\n", WHERE); }
+//@ cycles: 2866

@@ -4,3 +4,4 @@
 //~^ lax-text: missing `"`
 
 main() { printf("5\n"); }
+//@ cycles: 783

@@ -4,3 +4,4 @@
 //~^ note: parts/where.h
 
 main() { printf("%s\n", WHERE); }
+//@ cycles: 2866

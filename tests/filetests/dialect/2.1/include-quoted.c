@@ -3,3 +3,4 @@
 #include "parts/where.h"
 
 main() { printf("%s %s\n", WHERE, NESTED); }
+//@ cycles: 5321

@@ -3,3 +3,4 @@
 #include "parts/square.c";
 
 main() { printf("%d\n", square(3)); }
+//@ cycles: 2491

@@ -5,3 +5,4 @@ main()
 {
     printf("%d %d\n", 2000f / 3, sizeof 2000f); //~ integer-float-suffix //~ integer-float-suffix
 }
+//@ cycles: 5109

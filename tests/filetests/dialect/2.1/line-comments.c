@@ -6,3 +6,4 @@ main() // here
 { // and here
     printf("5 //text\n"); /* a // in it */ // ///
 }
+//@ cycles: 2092

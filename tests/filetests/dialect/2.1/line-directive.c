@@ -7,3 +7,4 @@ main()
 #line 100 "part.c"
     printf("%d %s\n", __LINE__, __FILE__);
 }
+//@ cycles: 5494

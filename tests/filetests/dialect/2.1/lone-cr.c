@@ -7,3 +7,4 @@ main()
 {␍
     printf("%d %d\n",␍a, __LINE__);␍
 }
+//@ cycles: 4551

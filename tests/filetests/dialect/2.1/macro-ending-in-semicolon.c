@@ -7,3 +7,4 @@ main()
     int a = FIVE
     printf("%d\n", a);
 }
+//@ cycles: 2481

@@ -10,3 +10,4 @@ main()
 #define A 6 //~ macro-redefined: A
     printf("%d %d\n", A, B);
 }
+//@ cycles: 7027

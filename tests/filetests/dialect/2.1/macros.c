@@ -5,3 +5,4 @@
 #define TWICE(f, x) f(x)
 
 main() { printf("%d %d %d\n", SEVEN, SQUARE(3 + 1), TWICE(SQUARE, 4)); }
+//@ cycles: 7178

@@ -3,3 +3,4 @@
 #if 1 //~ lax-text: #endif
 
 main() { printf("5\n"); }
+//@ cycles: 783

@@ -4,3 +4,4 @@
 /* outer /* inner */ //~ lax-text: comment
 
 main() { printf("5\n"); }
+//@ cycles: 783

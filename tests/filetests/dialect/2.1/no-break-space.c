@@ -7,3 +7,4 @@ main()
     int␠a = 5; //~ lax-text: no-break space
     printf("%d\n", a);
 }
+//@ cycles: 2481

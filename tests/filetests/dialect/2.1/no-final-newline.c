@@ -3,3 +3,4 @@
 #include "KMotionDef.h"
 
 main() { printf("end\n"); } // the end
+//@ cycles: 1157

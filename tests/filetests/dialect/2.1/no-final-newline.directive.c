@@ -4,3 +4,4 @@
 
 main() { printf("end\n"); }
 #define LAST 5
+//@ cycles: 1157

@@ -5,3 +5,4 @@
 //~^ note: once_upon_a_time
 
 main() { printf("5\n"); }
+//@ cycles: 783

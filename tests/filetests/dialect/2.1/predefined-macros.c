@@ -12,3 +12,4 @@ __PTRDIFF_TYPE__ b;
 __WCHAR_TYPE__ c;
 
 main() { printf("%d %d %d %d %d %s\n", __STDC__, __TINYC__, sizeof a, sizeof b, sizeof c, CC67); }
+//@ cycles: 12709

@@ -8,3 +8,4 @@ This isn't C, and it's "not closed.
 #pragma TI_COMPILER don't mind
 
 main() { printf("5\n"); }
+//@ cycles: 783

@@ -8,3 +8,4 @@ main()
 second\n");
 //~^^ lax-text: string
 }
+//@ cycles: 2840

@@ -5,3 +5,4 @@
 int a = JOIN(1, +) 2; //~ lax-text: pasting `1` and `+`
 
 main() { printf("%d\n", a); }
+//@ cycles: 2481

@@ -13,3 +13,4 @@ main()
     NAMED("named ");
     NAMED("%d\n", 4);
 }
+//@ cycles: 13733

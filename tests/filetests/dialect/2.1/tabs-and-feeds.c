@@ -12,3 +12,4 @@
 ␉␋printf("%d\n",␉SEVEN␌);
 }
 ␌
+//@ cycles: 2481

@@ -9,3 +9,4 @@ main()
     printf("5\n");
 #endif X
 }
+//@ cycles: 783

@@ -6,3 +6,4 @@ main()
     char *text = "??=";
     printf("??/ ??( %d\n", text[2] == '=' && text[0] == '?' ? 2 : 0);
 }
+//@ cycles: 3986

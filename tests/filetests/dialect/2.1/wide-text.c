@@ -4,3 +4,4 @@
 int text[] = L"a", one = L'b';
 
 main() { printf("%d %d %d\n", sizeof text, text[0], one); }
+//@ cycles: 7179

@@ -7,3 +7,4 @@ short c;
 long d;
 
 main() { printf("%d %d %d %d\n", a > 0, b, sizeof c, sizeof d); }
+//@ cycles: 8852

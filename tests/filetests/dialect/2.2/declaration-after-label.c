@@ -14,3 +14,4 @@ next:
     int b = 4;
     printf("%d %d\n", n, b);
 }
+//@ cycles: 4551

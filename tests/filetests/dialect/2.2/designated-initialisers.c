@@ -14,3 +14,4 @@ main()
     printf("%d %d %d %d %d\n", sparse[0], sparse[1], sparse[2], sparse[3], sparse[4]);
     printf("%d %d %d %d %d %d\n", gnu.x, gnu.y, range[0], range[2], range[3] + none[1], p->y);
 }
+//@ cycles: 23593

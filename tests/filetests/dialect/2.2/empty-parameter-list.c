@@ -10,3 +10,4 @@ main()
 }
 
 int later(int n) { return n + 2; }
+//@ cycles: 6629

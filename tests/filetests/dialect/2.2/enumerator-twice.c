@@ -6,3 +6,4 @@ int before() { return MOVING; }
 enum Second { IDLE = 1, MOVING = 5 }; //~ redeclared: MOVING
 
 main() { printf("%d %d %d %d\n", IDLE, before(), MOVING, IDLE); }
+//@ cycles: 8690

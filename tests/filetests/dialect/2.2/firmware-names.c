@@ -2,10 +2,11 @@
 #include "KMotionDef.h"
 
 void SetBit(int bit) { printf("own %d ", bit); } //~ redeclared: SetBit
-int s = 7;
+int s = 7; //~ redeclared
 
 main()
 {
     SetBit(3);
     printf("%d\n", s);
 }
+//@ cycles: 5714

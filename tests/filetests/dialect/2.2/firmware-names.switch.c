@@ -2,7 +2,7 @@
 //@ prints: 7 8
 #include "KMotionDef.h"
 
-int s = 7; //~ portability: `s`
+int s = 7; //~ redeclared: `s`
 static int bb = 8;
 
 main() { printf("%d %d\n", s, bb); }

@@ -12,3 +12,4 @@ main()
     z->list[3] = 8;
     printf("%d %d\n", z->list[2], f->list[3]);
 }
+//@ cycles: 4557

@@ -7,3 +7,4 @@ main()
     for (int i = 0; i < 5; i++) sum += i;
     printf("%d %d\n", sum, i);
 }
+//@ cycles: 4852

@@ -6,3 +6,4 @@ g() { return f(); }
 f() { return 2; } //~ redeclared: defined twice
 
 main() { printf("%d %d\n", g(), f()); }
+//@ cycles: 4558

@@ -8,3 +8,4 @@ int eight(void) { return 8; }
 int unused __attribute__((unused));
 
 main() { printf("%d %d\n", seven(), eight()); }
+//@ cycles: 4551

@@ -5,3 +5,4 @@ add(int a, int b) { return a + b; }
 static sign(double x) { return x < 0 ? -1 : 1; }
 
 main() { printf("%d %d\n", add(3, 4), sign(-2.5)); }
+//@ cycles: 4711

@@ -9,3 +9,4 @@ int w = 7;
 f(const n) { return n; } //~ implicit-int
 
 main() { printf("%d %d %d %d %d\n", x, y, z, w, f(3)); }
+//@ cycles: 10761

@@ -10,3 +10,4 @@ main()
     auto e = 5;
     printf("%d %d %d %d %d\n", a, b, c, d, e);
 }
+//@ cycles: 10763

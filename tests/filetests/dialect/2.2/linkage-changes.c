@@ -9,3 +9,4 @@ static int f();
 int f() { return 7; }
 
 main() { printf("%d %d %d\n", a, b, f()); }
+//@ cycles: 6621

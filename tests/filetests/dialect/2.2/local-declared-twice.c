@@ -8,3 +8,4 @@ main()
     int a = 2; //~ redeclared: a
     printf("%d\n", a);
 }
+//@ cycles: 4957

@@ -8,3 +8,4 @@ f(int n)
 }
 
 main() { printf("%d\n", f(3)); }
+//@ cycles: 2481

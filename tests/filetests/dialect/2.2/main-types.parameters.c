@@ -6,3 +6,4 @@ int main(int count, char **words) //~ main-parameters
     printf("%d %d\n", count, words != 0);
     return 0;
 }
+//@ cycles: 4550

@@ -4,3 +4,4 @@
 count() { static int n = 0; return ++n; }
 
 main() { printf("%d %d %d\n", count(), count(), count()); }
+//@ cycles: 6627

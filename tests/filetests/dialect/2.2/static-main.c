@@ -1,3 +1,4 @@
 //@ prints: 5
 #include "KMotionDef.h"
 static main() { printf("5\n"); } //~ extension: main
+//@ cycles: 783

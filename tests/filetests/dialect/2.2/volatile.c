@@ -11,3 +11,4 @@ main()
     *(int *)&shared = 5;
     printf("%d %d %d\n", before, shared * a, b);
 }
+//@ cycles: 6623

@@ -6,3 +6,4 @@ int add();
 main() { printf("%d\n", add(3, 4)); }
 
 int add(int a, int b) { return a + b; }
+//@ cycles: 2492

@@ -13,3 +13,4 @@ main()
     p = table[0].run;
     printf("%d\n", (**p)(5, 7));
 }
+//@ cycles: 11668

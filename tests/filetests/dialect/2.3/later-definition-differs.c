@@ -11,3 +11,4 @@ main()
 
 f(float a, float b) { printf("%f ", b); }
 double half(double x) { return x / 2; }
+//@ cycles: 10478

@@ -11,3 +11,4 @@ main()
     int *p = pointer((int)&value); //~ int-pointer
     printf("%d %d\n", n, *p);
 }
+//@ cycles: 4552

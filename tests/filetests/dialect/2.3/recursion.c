@@ -8,3 +8,4 @@ int odd(int n) { return n ? even(n - 1) : 0; }
 int fibonacci(int n) { return n < 2 ? n : fibonacci(n - 1) + fibonacci(n - 2); }
 
 main() { printf("%d %d\n", factorial(10) * even(20), fibonacci(10)); }
+//@ cycles: 8161

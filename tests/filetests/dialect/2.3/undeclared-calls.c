@@ -13,3 +13,4 @@ add(int a, int b) { return a + b; }
 char *at(char *p, int n) { return p + n; }
 unsigned short narrow(int n) { return n; }
 void nothing(int n) { }
+//@ cycles: 6837

@@ -4,3 +4,4 @@
 int second(int, int b) { return b; }
 
 main() { printf("%d\n", second(3, 4)); }
+//@ cycles: 2481

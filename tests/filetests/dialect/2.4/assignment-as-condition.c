@@ -8,3 +8,4 @@ main()
     do { n--; } while (result = n > 0); //~ assignment-condition
     if ((x = 3)) printf("%d\n", x);
 }
+//@ cycles: 4968

@@ -10,3 +10,4 @@ main()
     int one = 1;
     printf("%d %d\n", P100(P100(P100(P100(P100(P100(one)))))), S700);
 }
+//@ cycles: 5109

@@ -13,3 +13,4 @@ main()
     if (d || zero) printf("yes ");
     printf("%d\n", list[one]); //~ extension
 }
+//@ cycles: 5789

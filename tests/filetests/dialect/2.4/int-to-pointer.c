@@ -9,3 +9,4 @@ main()
     q = address; //~ int-pointer
     printf("%d %d\n", p == 0, q != 0);
 }
+//@ cycles: 4552

@@ -10,3 +10,4 @@ main()
     printf("%d%06d %d %d %d\n", (int)(product / 1000000), (int)(product % 1000000), (int)(minus / 2), (int)(minus % 2),
            wide > 1 && (double)wide == 9223372036854775808.0);
 }
+//@ cycles: 13649

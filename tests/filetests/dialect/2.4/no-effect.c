@@ -9,3 +9,4 @@ main()
     DisableAxis; //~ unused-value
     printf("%d\n", x);
 }
+//@ cycles: 2481

@@ -10,3 +10,4 @@ main()
     b = main; //~ int-pointer
     printf("%d %d\n", a != 0, b != 0);
 }
+//@ cycles: 4553

@@ -14,3 +14,4 @@ main()
     p = &d; //~ pointer-mismatch
     printf("%x %d %d\n", p[1], *u == *v, *c == 5);
 }
+//@ cycles: 8321

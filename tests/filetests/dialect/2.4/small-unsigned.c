@@ -2,7 +2,7 @@
 #include "KMotionDef.h"
 
 unsigned char a = 200, b = 100, c;
-unsigned short s;
+unsigned short s; //~ redeclared
 
 main()
 {
@@ -13,3 +13,4 @@ main()
     c--;
     printf("%d\n", c);
 }
+//@ cycles: 13694

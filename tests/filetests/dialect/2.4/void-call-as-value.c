@@ -8,3 +8,4 @@ main()
 {
     printf("%X %d\n", with(), without()); //~ void-value //~ void-value
 }
+//@ cycles: 4776

@@ -9,3 +9,4 @@ again:
     i *= 2;
     if (i <= 8) goto again;
 }
+//@ cycles: 9930

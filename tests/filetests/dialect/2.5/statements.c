@@ -25,3 +25,4 @@ main()
     }
     if (n < 0) printf("wrong\n"); else printf("%d\n", -1);
 }
+//@ cycles: 10386

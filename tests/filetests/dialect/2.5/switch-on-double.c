@@ -9,3 +9,4 @@ main()
     default: printf("wrong\n");
     }
 }
+//@ cycles: 1157

@@ -30,3 +30,4 @@ end:
     goto last;
 last:
 }
+//@ cycles: 7146

@@ -2,3 +2,4 @@
 #include "helper-without-main.c"
 
 main() { printf("%d\n", helper()); }
+//@ cycles: 2488

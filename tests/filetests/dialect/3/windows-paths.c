@@ -5,3 +5,4 @@
 //~^ note: where.h
 
 main() { printf("%d %s\n", square(3), WHERE); }
+//@ cycles: 4946

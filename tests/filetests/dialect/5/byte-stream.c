@@ -10,3 +10,4 @@ main()
     printf("three\n\nfo");
     printf("ur\n");
 }
+//@ cycles: 5554

@@ -9,3 +9,4 @@ main()
     printf("[%s] [%5s] [%.2s]\n", "abc", "abc", "abc");
     printf(text);
 }
+//@ cycles: 9736

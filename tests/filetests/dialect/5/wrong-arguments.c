@@ -12,3 +12,4 @@ main()
     sprintf(text, "%d", 1, 2); //~ format
     printf("goes on\n");
 }
+//@ cycles: 11379

@@ -4,3 +4,4 @@
 char table[60000];
 
 main() { printf("%d\n", sizeof table); }
+//@ cycles: 3597

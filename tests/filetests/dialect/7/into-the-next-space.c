@@ -5,3 +5,4 @@
 char table[80000];
 
 main() { table[79999] = 1; printf("%d\n", sizeof table); }
+//@ cycles: 3599

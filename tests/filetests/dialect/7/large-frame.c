@@ -9,3 +9,4 @@ large() //~ stack-size
 }
 
 main() { printf("%d\n", large()); }
+//@ cycles: 2491

@@ -13,3 +13,4 @@ main()
     UserCallBack = 0;
     printf("end\n");
 }
+//@ cycles: 1285

@@ -9,3 +9,4 @@ main()
         b = 2; //~ misleading-indentation
     printf("%d %d\n", a, b);
 }
+//@ cycles: 4551

@@ -7,9 +7,10 @@ helper(int a, int b) { a = b; }
 
 void main()
 {
-    int n = 3.7, never;
+    int n = 3.7, never; //~ lost-fraction
     char c = 300;
     unsigned u = 1;
     helper(n, c);
     printf("%d %d %d\n", n, c, n > u);
 }
+//@ cycles: 6899

@@ -4,3 +4,4 @@
 double speed = 1.5;
 
 main() { printf("%d\n", speed != speed); } //~ self-comparison
+//@ cycles: 2484

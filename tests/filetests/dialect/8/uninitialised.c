@@ -9,3 +9,4 @@ main()
     persist.UserData[0] = sure; //~ uninitialized: sure
     printf("%d\n", sum);
 }
+//@ cycles: 2486

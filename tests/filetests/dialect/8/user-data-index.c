@@ -9,3 +9,4 @@ main()
     if (i > 5) *(double *)&persist.UserData[151] = 2.5; //~ user-data-alignment
     printf("%d\n", persist.UserData[199]);
 }
+//@ cycles: 3045

@@ -4,3 +4,4 @@
 void f() { return 65; }
 
 main() { printf("%X\n", f()); } //~ void-value
+//@ cycles: 2707

@@ -6,3 +6,4 @@ g() { return f(); }
 f() { return 2; } //~ redeclared
 
 main() { printf("%d\n", g()); }
+//@ cycles: 2488

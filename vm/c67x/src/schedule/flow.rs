@@ -12,7 +12,7 @@ use crate::inst::Inst;
 use crate::mnemonic::Mnemonic;
 use crate::model::Branch;
 use crate::register::{Pred, Reg, Side, Unit, UnitKind};
-use crate::text::target;
+use crate::spelling::target;
 
 /// States after which code counts as too complex.
 const MOST_STATES: usize = 200_000;

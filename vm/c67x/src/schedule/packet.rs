@@ -5,7 +5,7 @@ use crate::inst::Inst;
 use crate::kind::{Field, Update};
 use crate::operand::Operand;
 use crate::register::{Reg, Side, Unit};
-use crate::text::FETCH_PACKET;
+use crate::spelling::FETCH_PACKET;
 
 /// Operands that may read one register in one cycle.
 const READS: usize = 4;

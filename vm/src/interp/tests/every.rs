@@ -1,9 +1,11 @@
 //! Every handler, very often in one slice: one that does not go on by a jump would use up the host's stack.
 
+use std::sync::Arc;
+
 use kmotiondef::map::program_base;
 use kmotiondef::{Cycles, Ticks};
 
-use crate::engine::{ContextId, Engine, Slice, Stop};
+use crate::engine::{ContextId, Executor, Slice, Stop};
 use crate::interp::BytecodeEngine;
 use crate::interp::sequences::SEQUENCES;
 use crate::memory::GuestMemory;
@@ -116,14 +118,15 @@ fn everything() -> String {
 /// Runs the program in one slice; how it stopped.
 fn run_everything() -> Stop {
     let text = assemble(&everything()).expect("the text is correct");
-    let program = verify(&text, program_base(thread(1))).expect("the program is correct");
+    let program = Arc::new(verify(&text, program_base(thread(1))).expect("the program is correct"));
     let main = program.functions().last().expect("there is `main`").at;
+    let entry = program.address_of(main.0 as usize).as_guest_addr();
     let id = ContextId::of(thread(1));
     let (mut engine, mut firmware) = (BytecodeEngine::default(), Fake::new());
-    engine.start(id, &program, main, id.stack(false), &firmware);
+    let started = engine.start(id, &program, entry, id.stack(false), &firmware);
+    assert_eq!(started, Ok(()));
     let length = Cycles::new(i64::from(TURNS) * 1_000_000);
     let mut slice = Slice {
-        program: &program,
         memory: &mut GuestMemory::new(),
         threads: &mut Threads::new(),
         firmware: &mut firmware,

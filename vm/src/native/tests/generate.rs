@@ -131,7 +131,7 @@ generate! {
 }
 
 macro_rules! define_generators {
-    ($($(#[$doc:meta])* $name:ident = $variant:ident { $($field:ident: $operand:ident),* }, cost $cost:expr;)*) => {
+    ($($(#[$doc:meta])* $name:ident = $variant:ident { $($field:ident: $operand:ident),* }, cost $cost:expr, $kind:ident $(($fact:ident))?;)*) => {
         type Generator = fn(&mut Random) -> Op;
 
         /// Names and generators of all instructions.

@@ -238,31 +238,32 @@ impl Translator<'_, '_> {
 
     /// The value of a floating register, any NaN standing for that NaN of the register.
     fn get_raw<R: Register>(&mut self, register: R) -> Value {
-        let held = || self.builder.use_var(self.registers[register.index()]);
-        self.raw.get(&register.index()).copied().unwrap_or_else(held)
+        let held = || self.builder.use_var(self.registers.variables[register.index()]);
+        self.registers.raw.get(&register.index()).copied().unwrap_or_else(held)
     }
 
     /// Sets a floating register to what an operation has made.
     fn set_arithmetic<R: Register>(&mut self, dst: R, raw: Value) {
-        if self.lax[dst.index()] {
+        if self.registers.lax[dst.index()] {
             return self.set(dst, raw);
         }
         let value = self.canonical(R::CLASS, raw);
         self.set(dst, value);
-        self.raw.insert(dst.index(), raw);
+        self.registers.raw.insert(dst.index(), raw);
     }
 
     /// Copies a floating register, the processor's NaN with it where both may hold that.
     fn copy_float<R: Register>(&mut self, dst: R, src: R) {
-        let value = if self.lax[dst.index()] { self.get_raw(src) } else { self.get(src) };
+        let value = if self.registers.lax[dst.index()] { self.get_raw(src) } else { self.get(src) };
         self.set(dst, value);
     }
 
     /// The value with the one NaN that operations make in place of any NaN.
     pub(super) fn canonical(&mut self, class: Class, value: Value) -> Value {
-        let nan = match class {
-            Class::F32 => self.builder.ins().f32const(Ieee32::with_bits(canonical_f32(f32::NAN).to_bits())),
-            _ => self.builder.ins().f64const(Ieee64::with_bits(canonical_f64(f64::NAN).to_bits())),
+        let nan = if class == Class::F32 {
+            self.builder.ins().f32const(Ieee32::with_bits(canonical_f32(f32::NAN).to_bits()))
+        } else {
+            self.builder.ins().f64const(Ieee64::with_bits(canonical_f64(f64::NAN).to_bits()))
         };
         let is_nan = self.builder.ins().fcmp(FloatCC::Unordered, value, value);
         self.builder.ins().select(is_nan, nan, value)
@@ -363,7 +364,7 @@ impl Translator<'_, '_> {
         signature.params = vec![AbiParam::new(types::F64)];
         signature.returns = vec![AbiParam::new(types::I64)];
         let signature = self.builder.import_signature(signature);
-        let convert = self.load_state(types::I64, offset_of!(State, convert));
+        let convert = self.load_state(types::I64, offset_of!(State, ways_out.convert));
         let call = self.builder.ins().call_indirect(signature, convert, &[value]);
         let number = self.builder.inst_results(call)[0];
         self.builder.ins().jump(behind, &[number.into()]);

@@ -3,10 +3,14 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::{Range, RangeInclusive};
 
-use super::turns::{MAX_WORDS, accessed};
+use super::accesses::accessed;
+use crate::kind::OpKind;
 use crate::meter::{self, branch_target};
 use crate::op::Op;
 use crate::program::{Function, Program};
+
+/// The most words that are translated twice at once.
+pub(super) const MAX_WORDS: usize = 160;
 
 /// The loops that hold no other, each with the word at which it is entered.
 ///
@@ -22,7 +26,7 @@ pub(super) fn innermost_loops(program: &Program, function: &Function) -> Vec<(Ra
     }
     let entered = |words: RangeInclusive<usize>| {
         let falls_in = function.body.contains(&(words.start() - 1))
-            && !meter::ends_path(&program.ops()[words.start() - 1]);
+            && !program.ops()[words.start() - 1].kind().ends_path();
         let inside = ends.range(words.clone()).count();
         let jumps = branches.iter().filter(|(at, to)| !words.contains(at) && words.contains(to));
         let mut entries = jumps.map(|(_, to)| *to).chain(falls_in.then_some(*words.start()));
@@ -111,7 +115,7 @@ pub(super) fn straight_stretches(
     let (mut first, mut last, mut accesses) = (function.body.start, 0, 0);
     for at in function.body.clone() {
         let op = program.ops()[at];
-        let ends = ends_stretch(&op) || cost(&op) != Some(0);
+        let ends = !op.kind().is_straight() || cost(&op) != Some(0);
         if ends || begins.contains(&at) {
             // What follows the last access is not translated twice.
             if accesses > 1 {
@@ -126,13 +130,7 @@ pub(super) fn straight_stretches(
     stretches
 }
 
-/// Whether an instruction is none of those that simply go on with the next.
-const fn ends_stretch(op: &Op) -> bool {
-    let is_jump = matches!(op, Op::BrIf { .. } | Op::BrUnless { .. } | Op::Charge { .. });
-    is_argument(op) || is_jump || meter::is_result(op) || meter::ends_path(op)
-}
-
-/// Whether an instruction passes an argument to the call behind it.
+/// Whether an instruction passes an argument to the call after it.
 const fn is_argument(op: &Op) -> bool {
-    matches!(op, Op::ArgI32 { .. } | Op::ArgI64 { .. } | Op::ArgF32 { .. } | Op::ArgF64 { .. })
+    matches!(op.kind(), OpKind::Argument(_))
 }

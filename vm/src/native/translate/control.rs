@@ -41,11 +41,11 @@ macro_rules! for_each_class {
         impl Translator<'_, '_> {$(
             pub(super) fn $arg(&mut self, src: $register, _: Count) {
                 let value = self.get(src);
-                self.arguments.push(value);
+                self.calls.arguments.push(value);
             }
 
             pub(super) fn $result(&mut self, dst: $register) {
-                let slot = self.result.unwrap_or_else(|| unreachable!("a result of a verified program"));
+                let slot = self.calls.result.unwrap_or_else(|| unreachable!("a result of a verified program"));
                 let value = self.unslot(Class::$class, slot);
                 self.set(dst, value);
             }
@@ -71,7 +71,7 @@ impl Translator<'_, '_> {
             return;
         }
         self.spend(cycles.0);
-        let left = self.builder.use_var(self.budget);
+        let left = self.builder.use_var(self.registers.budget);
         let overdrawn = self.builder.ins().icmp_imm_s(IntCC::SignedLessThan, left, 0);
         let (stop, go_on) = (self.builder.create_block(), self.builder.create_block());
         self.builder.ins().brif(overdrawn, stop, &[], go_on, &[]);
@@ -142,16 +142,16 @@ impl Translator<'_, '_> {
 
         self.enter(own);
         self.note_call();
-        self.arguments.clear();
+        self.calls.arguments.clear();
         let arguments = self.take_call_arguments();
         let signature = self.builder.import_signature(thunk_signature());
         let call = self.builder.ins().call_indirect(signature, thunk, &arguments);
         self.take_results(call);
-        let slot = self.result.unwrap_or(address);
+        let slot = self.calls.result.unwrap_or(address);
         self.builder.ins().jump(behind, &[slot.into()]);
 
         self.enter(behind);
-        self.result = Some(result);
+        self.calls.result = Some(result);
     }
 
     pub(super) fn call_fw(&mut self, sig: SigRef, addr: Addr) {
@@ -159,11 +159,11 @@ impl Translator<'_, '_> {
             return self.call_pure(pure, addr);
         }
         self.store_arguments(sig);
-        self.arguments.clear();
+        self.calls.arguments.clear();
         let address = self.builder.ins().iconst(types::I64, i64::from(addr.0));
         let signature = self.builder.ins().iconst(types::I64, i64::from(sig.0));
         let slot = self.usual_request(Reason::CallFirmware.code(), self.at, address, signature);
-        self.result = Some(slot);
+        self.calls.result = Some(slot);
     }
 
     /// The firmware function at `addr`, if it only computes and is called as it is.
@@ -181,7 +181,7 @@ impl Translator<'_, '_> {
         if !self.defer(cycles) {
             self.spend(cycles);
         }
-        let arguments = std::mem::take(&mut self.arguments);
+        let arguments = std::mem::take(&mut self.calls.arguments);
         let value = match pure.function.pointer() {
             Some(pointer) => self.call_host(pure.function, pointer, addr, &arguments),
             None => {
@@ -189,7 +189,7 @@ impl Translator<'_, '_> {
                 self.canonical(pure.function.result(), root)
             }
         };
-        self.result = Some(value);
+        self.calls.result = Some(value);
     }
 
     /// Calls the host's function at `pointer`, which is the firmware's at `addr`.
@@ -238,37 +238,37 @@ impl Translator<'_, '_> {
             .unwrap_or_else(|_| unreachable!("a function reference of a verified program"));
         let id = self.translation.functions[index];
         let (module, builder) = (&mut *self.module, &mut self.builder);
-        *self.callees.entry(index).or_insert_with(|| module.declare_func_in_func(id, builder.func))
+        *self.calls.callees.entry(index).or_insert_with(|| module.declare_func_in_func(id, builder.func))
     }
 
     /// Writes down where this function stands while its callee runs.
     fn note_call(&mut self) {
         let at = self.builder.ins().iconst(types::I32, self.at as i64);
         let field = super::offset(offset_of!(State, calls));
-        self.builder.ins().store(self.state_flags, at, self.call_entry, field);
+        self.builder.ins().store(self.flags.state, at, self.frame.call_entry, field);
     }
 
     /// The arguments of a call within the program.
     fn take_call_arguments(&mut self) -> Vec<Value> {
-        let budget = self.builder.use_var(self.budget);
-        let mut arguments = vec![self.state, self.stack_pointer, budget];
-        arguments.append(&mut self.arguments);
+        let budget = self.builder.use_var(self.registers.budget);
+        let mut arguments = vec![self.frame.state, self.frame.stack_pointer, budget];
+        arguments.append(&mut self.calls.arguments);
         arguments
     }
 
     /// Takes over what a function of the program returned.
     fn take_results(&mut self, call: cranelift_codegen::ir::Inst) {
         let (budget, slot) = (self.builder.inst_results(call)[0], self.builder.inst_results(call)[1]);
-        self.builder.def_var(self.budget, budget);
-        self.result = Some(slot);
+        self.builder.def_var(self.registers.budget, budget);
+        self.calls.result = Some(slot);
     }
 
     /// Puts the arguments of a call with signature `sig` into the state.
     fn store_arguments(&mut self, sig: SigRef) {
         let parameters = &self.translation.program.signatures()[usize::from(sig.0)].params;
-        for (index, (class, value)) in parameters.iter().zip(self.arguments.clone()).enumerate() {
+        for (index, (class, value)) in parameters.iter().zip(self.calls.arguments.clone()).enumerate() {
             let slot = self.slot(*class, value);
-            self.store_state(slot, offset_of!(State, arguments) + index * size_of::<u64>());
+            self.store_state(slot, offset_of!(State, exchange.arguments) + index * size_of::<u64>());
         }
     }
 
@@ -276,7 +276,7 @@ impl Translator<'_, '_> {
         self.settle();
         let at = self.builder.ins().iconst(types::I32, self.at as i64);
         self.store_state(at, offset_of!(State, returned_at));
-        let budget = self.builder.use_var(self.budget);
+        let budget = self.builder.use_var(self.registers.budget);
         self.builder.ins().return_(&[budget, slot]);
         self.reachable = false;
     }

@@ -14,9 +14,10 @@ use kmotiondef::map::SDRAM;
 
 use super::super::state::{State, Window};
 use super::Translator;
+use super::accesses::Root;
 use super::strides::Stride;
-use super::turns::{Group, Place, Plan, Root};
-use crate::access::Width;
+use super::turns::{Group, Place, Plan};
+use crate::kind::Width;
 use crate::operand::RegI32;
 
 /// The fast turns while they are translated.
@@ -52,13 +53,13 @@ impl Translator<'_, '_> {
         if !is_tested {
             self.builder.ins().jump(fast, &[]);
         } else {
-            let budget = self.builder.use_var(self.budget);
+            let budget = self.builder.use_var(self.registers.budget);
             let covered =
                 self.builder.ins().icmp_imm_s(IntCC::SignedGreaterThanOrEqual, budget, i64::from(plan.cost));
             self.builder.ins().brif(covered, fast, &[], ordinary, &[]);
         }
         self.reachable = false;
-        self.fast = Some(self.fast_blocks(plan, fast));
+        self.twice.fast = Some(self.fast_blocks(plan, fast));
         for turn in 0..turns.max(1) {
             for at in &order {
                 self.fast_word(turn, *at);
@@ -70,13 +71,13 @@ impl Translator<'_, '_> {
         if self.reachable {
             self.settle();
         }
-        let bails = self.fast.take().map(|fast| fast.bails).unwrap_or_default();
+        let bails = self.twice.fast.take().map(|fast| fast.bails).unwrap_or_default();
         let behind = self.reachable.then(|| self.builder.create_block());
         if let Some(behind) = behind {
             self.builder.ins().jump(behind, &[]);
             self.reachable = false;
         }
-        self.is_rare = true;
+        self.twice.is_rare = true;
         for at in words {
             if at == entry && is_tested {
                 if self.reachable {
@@ -92,7 +93,7 @@ impl Translator<'_, '_> {
             }
             self.word(at);
         }
-        self.is_rare = false;
+        self.twice.is_rare = false;
         if let Some(behind) = behind {
             self.begin(behind);
         }
@@ -115,13 +116,13 @@ impl Translator<'_, '_> {
 
     /// Translates one word of one turn.
     fn fast_word(&mut self, turn: usize, at: usize) {
-        let Some(fast) = &mut self.fast else { return };
+        let Some(fast) = &mut self.twice.fast else { return };
         if let Some(block) = fast.blocks.get(&(turn, at)).copied() {
             if self.reachable {
                 self.go_to(at);
             }
             self.begin(block);
-            if let Some(fast) = &mut self.fast {
+            if let Some(fast) = &mut self.twice.fast {
                 fast.spent = fast.plan.entries.get(&(turn, at)).copied().unwrap_or(0);
                 fast.checked = fast.arriving.remove(&(turn, at)).unwrap_or_default();
                 fast.turn = turn;
@@ -132,12 +133,12 @@ impl Translator<'_, '_> {
 
     /// Adds to what has been charged; `false` outside of fast turns, where that must be taken at once.
     pub(super) fn defer(&mut self, cycles: u32) -> bool {
-        self.fast.as_mut().map(|fast| fast.spent += cycles).is_some()
+        self.twice.fast.as_mut().map(|fast| fast.spent += cycles).is_some()
     }
 
     /// Makes the budget exact where the fast turns are left for good.
     pub(super) fn settle(&mut self) {
-        if let Some(fast) = &mut self.fast {
+        if let Some(fast) = &mut self.twice.fast {
             let cycles = take(&mut fast.spent);
             self.spend(cycles);
         }
@@ -153,7 +154,7 @@ impl Translator<'_, '_> {
 
     /// The block to branch to in order to get to the word `to`; [`finish_edges`](Self::finish_edges) must follow.
     pub(super) fn edge(&mut self, to: usize) -> Block {
-        let Some(fast) = &mut self.fast else { return self.blocks[&to] };
+        let Some(fast) = &mut self.twice.fast else { return self.blocks[&to] };
         let (block, kept, is_rare) = match fast.plan.target(fast.turn, to) {
             Some(place) => {
                 let checked = &fast.checked;
@@ -172,7 +173,7 @@ impl Translator<'_, '_> {
     ///
     /// [`finish_edges`](Self::finish_edges) must follow.
     pub(super) fn bail(&mut self) -> Option<Block> {
-        let fast = self.fast.as_mut()?;
+        let fast = self.twice.fast.as_mut()?;
         let cycles = fast.spent;
         let block = *fast.bails.entry(self.at).or_insert_with(|| self.builder.create_block());
         Some(self.way(block, cycles, true))
@@ -183,13 +184,13 @@ impl Translator<'_, '_> {
             return to;
         }
         let block = self.builder.create_block();
-        self.ways.push(Way { block, to, cycles, is_rare });
+        self.twice.ways.push(Way { block, to, cycles, is_rare });
         block
     }
 
     /// Translates the ways that the branch just written takes.
     pub(super) fn finish_edges(&mut self) {
-        for Way { block, to, cycles, is_rare } in take(&mut self.ways) {
+        for Way { block, to, cycles, is_rare } in take(&mut self.twice.ways) {
             if is_rare {
                 self.builder.set_cold_block(block);
             }
@@ -216,7 +217,7 @@ impl Translator<'_, '_> {
         width: Width,
         is_store: bool,
     ) -> Option<(Value, i32)> {
-        let fast = self.fast.as_ref()?;
+        let fast = self.twice.fast.as_ref()?;
         let access = *fast.plan.accesses.get(&(fast.turn, self.at))?;
         let shared = fast.plan.groups.get(&access.root).copied();
         let shared = shared.filter(|group| group.covers(access.at, width, is_store));
@@ -237,10 +238,10 @@ impl Translator<'_, '_> {
             let place = self.builder.ins().iadd_imm_s(base, i64::from(distance));
             self.check(place, group, stride.filter(|stride| stride.later > 0));
             let place = self.builder.ins().uextend(types::I64, place);
-            let sdram = self.load_pointer(offset_of!(State, sdram));
+            let sdram = self.load_pointer(offset_of!(State, ram.sdram));
             self.builder.ins().iadd(sdram, place)
         };
-        if let (Some(_), Some(fast)) = (shared, &mut self.fast) {
+        if let (Some(_), Some(fast)) = (shared, &mut self.twice.fast) {
             fast.checked.insert(access.root, pointer);
         }
         Some((pointer, access.at - group.first))
@@ -303,7 +304,7 @@ impl Translator<'_, '_> {
         let Some(bail) = self.bail() else { return };
         let (second, inside) = (self.builder.create_block(), self.builder.create_block());
         for (window, otherwise) in [(0, second), (1, bail)] {
-            let field = offset_of!(State, windows) + window * size_of::<Window>();
+            let field = offset_of!(State, ram.windows) + window * size_of::<Window>();
             let start = self.load_state(types::I32, field + offset_of!(Window, start));
             let length = self.load_state(types::I32, field + offset_of!(Window, length));
             let from = self.builder.ins().isub(place, start);

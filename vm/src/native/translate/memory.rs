@@ -14,7 +14,7 @@ use super::super::protected::BLOCK_BITS;
 use super::super::request::Reason;
 use super::super::state::State;
 use super::{Register, Translator, offset};
-use crate::access::Width;
+use crate::kind::{Name, Width};
 use crate::op::Op;
 use crate::operand::{Addr, Class, Count, Imm, Off, RegF32, RegF64, RegI32, RegI64};
 
@@ -67,7 +67,7 @@ const _: () = assert!(IRAM.size.is_power_of_two() && IRAM.base.get().is_multiple
 
 impl Translator<'_, '_> {
     pub(super) fn frame_addr(&mut self, dst: RegI32, offset: Imm) {
-        let address = self.builder.ins().iadd_imm_s(self.stack_pointer, i64::from(offset.0));
+        let address = self.builder.ins().iadd_imm_s(self.frame.stack_pointer, i64::from(offset.0));
         self.set(dst, address);
     }
 
@@ -112,7 +112,7 @@ impl Translator<'_, '_> {
         let address = self.builder.ins().uextend(types::I64, address);
         let none = self.builder.ins().iconst(types::I64, 0);
         self.request(Reason::Load.with_width(width), self.at, address, none);
-        self.go_on_in_state(offset_of!(State, answer), behind);
+        self.go_on_in_state(offset_of!(State, exchange.answer), behind);
 
         let pointer = self.enter_access(behind);
         let value = self.load_guest(pointer, 0, width);
@@ -122,7 +122,7 @@ impl Translator<'_, '_> {
     fn load_at<R: Register>(&mut self, dst: R, addr: Addr, width: Width) {
         let value = match ram_field(addr, width) {
             Some((field, place)) => {
-                if field == offset_of!(State, iram) {
+                if field == offset_of!(State, ram.iram) {
                     self.end_long_slice();
                 }
                 let base = self.load_pointer(field);
@@ -152,9 +152,9 @@ impl Translator<'_, '_> {
         let offset_in_sdram = self.builder.ins().uextend(types::I64, place);
         let block = self.builder.ins().ushr_imm_u(place, i64::from(BLOCK_BITS));
         let block = self.builder.ins().uextend(types::I64, block);
-        let marks = self.load_pointer(offset_of!(State, protected));
+        let marks = self.load_pointer(offset_of!(State, ram.protected));
         let mark = self.builder.ins().iadd(marks, block);
-        let mark = self.builder.ins().uload8(types::I32, self.state_flags, mark, 0);
+        let mark = self.builder.ins().uload8(types::I32, self.flags.state, mark, 0);
         self.builder.ins().brif(mark, slow, &[], behind, &[offset_in_sdram.into()]);
 
         self.elsewhere(place, width, true, [elsewhere, slow, behind]);
@@ -162,7 +162,7 @@ impl Translator<'_, '_> {
         self.enter_cold(slow);
         let address = self.toggle_base(SDRAM, place);
         self.request_store(R::CLASS, value, address, width);
-        self.go_on_in_state(offset_of!(State, scratch), behind);
+        self.go_on_in_state(offset_of!(State, exchange.scratch), behind);
 
         let pointer = self.enter_access(behind);
         self.store_guest(value, pointer, 0, width);
@@ -175,16 +175,16 @@ impl Translator<'_, '_> {
             return self.request_store(R::CLASS, value, address, width);
         };
         if !(PROGRAM_BASE..PROGRAM_LIMIT).contains(&addr.0) {
-            if field == offset_of!(State, iram) {
+            if field == offset_of!(State, ram.iram) {
                 self.end_long_slice();
                 self.touch();
             }
             let base = self.load_pointer(field);
             return self.store_guest(value, base, place, width);
         }
-        let marks = self.load_pointer(offset_of!(State, protected));
-        let mark = self.builder.ins().uload8(types::I32, self.state_flags, marks, place >> BLOCK_BITS);
-        if self.fast.is_some() {
+        let marks = self.load_pointer(offset_of!(State, ram.protected));
+        let mark = self.builder.ins().uload8(types::I32, self.flags.state, marks, place >> BLOCK_BITS);
+        if self.twice.fast.is_some() {
             self.bail_if(mark);
             let base = self.load_pointer(field);
             return self.store_guest(value, base, place, width);
@@ -195,7 +195,7 @@ impl Translator<'_, '_> {
 
         self.enter_cold(slow);
         self.request_store(R::CLASS, value, address, width);
-        self.go_on_in_state(offset_of!(State, scratch), behind);
+        self.go_on_in_state(offset_of!(State, exchange.scratch), behind);
 
         let pointer = self.enter_access(behind);
         self.store_guest(value, pointer, 0, width);
@@ -215,7 +215,7 @@ impl Translator<'_, '_> {
     /// Goes on with the access; yields where it is to be made.
     fn enter_access(&mut self, behind: Block) -> Value {
         self.enter(behind);
-        let base = self.load_pointer(offset_of!(State, sdram));
+        let base = self.load_pointer(offset_of!(State, ram.sdram));
         let place = self.builder.block_params(behind)[0];
         self.builder.ins().iadd(base, place)
     }
@@ -240,7 +240,7 @@ impl Translator<'_, '_> {
         if is_store {
             self.touch();
         }
-        let base = self.load_state(types::I64, offset_of!(State, iram));
+        let base = self.load_state(types::I64, offset_of!(State, ram.iram));
         let place = self.builder.ins().uextend(types::I64, place);
         let pointer = self.builder.ins().iadd(base, place);
         self.go_on_at(pointer, behind);
@@ -250,17 +250,17 @@ impl Translator<'_, '_> {
     /// Says that on-chip RAM is written.
     fn touch(&mut self) {
         let yes = self.builder.ins().iconst(types::I32, 1);
-        self.store_state(yes, offset_of!(State, touched));
+        self.store_state(yes, offset_of!(State, signs.touched));
     }
 
     /// Goes on with the access in a field of the state: the request has done what was to be done.
     fn go_on_in_state(&mut self, field: usize, behind: Block) {
-        let pointer = self.builder.ins().iadd_imm_s(self.state, i64::from(offset(field)));
+        let pointer = self.builder.ins().iadd_imm_s(self.frame.state, i64::from(offset(field)));
         self.go_on_at(pointer, behind);
     }
 
     fn go_on_at(&mut self, pointer: Value, behind: Block) {
-        let base = self.load_state(types::I64, offset_of!(State, sdram));
+        let base = self.load_state(types::I64, offset_of!(State, ram.sdram));
         let place = self.builder.ins().isub(pointer, base);
         self.builder.ins().jump(behind, &[place.into()]);
     }
@@ -280,7 +280,7 @@ impl Translator<'_, '_> {
     }
 
     fn load_guest(&mut self, pointer: Value, place: i32, width: Width) -> Value {
-        let flags = self.guest_flags;
+        let flags = self.flags.guest;
         match width {
             Width::I8S => self.builder.ins().sload8(types::I32, flags, pointer, place),
             Width::I8U => self.builder.ins().uload8(types::I32, flags, pointer, place),
@@ -294,7 +294,7 @@ impl Translator<'_, '_> {
     }
 
     fn store_guest(&mut self, value: Value, pointer: Value, place: i32, width: Width) {
-        let flags = self.guest_flags;
+        let flags = self.flags.guest;
         match width {
             Width::I8S | Width::I8U => self.builder.ins().istore8(flags, value, pointer, place),
             Width::I16S | Width::I16U => self.builder.ins().istore16(flags, value, pointer, place),
@@ -320,20 +320,8 @@ impl Translator<'_, '_> {
 
 /// Whether an instruction either uses no constant address or one in SDRAM.
 pub(super) fn is_in_sdram(op: &Op) -> bool {
-    let access = match *op {
-        Op::LoadI8SAt { addr, .. } | Op::LoadI8UAt { addr, .. } | Op::StoreI8At { addr, .. } => {
-            (addr, Width::I8U)
-        }
-        Op::LoadI16SAt { addr, .. } | Op::LoadI16UAt { addr, .. } | Op::StoreI16At { addr, .. } => {
-            (addr, Width::I16U)
-        }
-        Op::LoadI32At { addr, .. } | Op::StoreI32At { addr, .. } => (addr, Width::I32),
-        Op::LoadF32At { addr, .. } | Op::StoreF32At { addr, .. } => (addr, Width::F32),
-        Op::LoadI64At { addr, .. } | Op::StoreI64At { addr, .. } => (addr, Width::I64),
-        Op::LoadF64At { addr, .. } | Op::StoreF64At { addr, .. } => (addr, Width::F64),
-        _ => return true,
-    };
-    ram_field(access.0, access.1).is_some_and(|(field, _)| field == offset_of!(State, sdram))
+    let (Some(width), Some(addr)) = (op.kind().width(), op.operand::<Addr>(Name::Addr)) else { return true };
+    ram_field(addr, width).is_some_and(|(field, _)| field == offset_of!(State, ram.sdram))
 }
 
 /// Where an aligned access of the constant address `addr` goes, if that is RAM: the field of the
@@ -343,6 +331,6 @@ fn ram_field(addr: Addr, width: Width) -> Option<(usize, i32)> {
         let place = addr.0.wrapping_sub(region.base.get());
         (place.is_multiple_of(width.bytes()) && place < region.size).then(|| offset(place as usize))
     };
-    let sdram = place_in(SDRAM).map(|place| (offset_of!(State, sdram), place));
-    sdram.or_else(|| place_in(IRAM).map(|place| (offset_of!(State, iram), place)))
+    let sdram = place_in(SDRAM).map(|place| (offset_of!(State, ram.sdram), place));
+    sdram.or_else(|| place_in(IRAM).map(|place| (offset_of!(State, ram.iram), place)))
 }

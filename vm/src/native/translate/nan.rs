@@ -9,9 +9,9 @@
 //! ever assigned: any NaN in it then stands for the one NaN of arithmetic. A register that is
 //! also loaded from memory may hold a NaN whose bits belong to the program, and keeps it.
 
-use crate::for_each_op;
+use crate::kind::{Name, OpKind};
 use crate::op::Op;
-use crate::operand::{Class, Operand, RegF32, RegF64};
+use crate::operand::{Bits32, Class, Pool, RegF32, RegF64};
 use crate::program::{Function, Program};
 
 /// For each register of a function, whether a NaN in it stands for the one that arithmetic makes.
@@ -21,7 +21,7 @@ pub(super) fn lax_registers(program: &Program, function: &Function, parameters: 
     lax.iter_mut().take(parameters).for_each(|parameter| *parameter = false);
     let mut moves = Vec::new();
     for op in &program.ops()[function.body.clone()] {
-        let Some(destination) = float_destination(op) else { continue };
+        let Some(destination) = register(op, Name::Dst) else { continue };
         match source(op, program) {
             Source::Arithmetic => {}
             Source::Register(source) => moves.push((destination, source)),
@@ -48,52 +48,38 @@ enum Source {
 }
 
 fn source(op: &Op, program: &Program) -> Source {
-    match op {
-        Op::ConstF32 { bits, .. } if !f32::from_bits(bits.0).is_nan() => Source::Arithmetic,
-        Op::ConstF64 { pool, .. } if !f64::from_bits(program.pool()[pool.0 as usize]).is_nan() => {
-            Source::Arithmetic
-        }
-        Op::AddF32 { .. }
-        | Op::SubF32 { .. }
-        | Op::MulF32 { .. }
-        | Op::DivF32 { .. }
-        | Op::AddF64 { .. }
-        | Op::SubF64 { .. }
-        | Op::MulF64 { .. }
-        | Op::DivF64 { .. }
-        | Op::F32FromF64 { .. }
-        | Op::F64FromF32 { .. }
-        | Op::F32FromI32S { .. }
-        | Op::F32FromI32U { .. }
-        | Op::F32FromI64S { .. }
-        | Op::F32FromI64U { .. }
-        | Op::F64FromI32S { .. }
-        | Op::F64FromI32U { .. }
-        | Op::F64FromI64S { .. }
-        | Op::F64FromI64U { .. } => Source::Arithmetic,
-        Op::MovF32 { src, .. } => Source::Register(src.index()),
-        Op::MovF64 { src, .. } => Source::Register(src.index()),
-        _ => Source::Bits,
+    match op.kind() {
+        OpKind::Arithmetic | OpKind::Conversion => Source::Arithmetic,
+        OpKind::Constant if !is_nan(op, program) => Source::Arithmetic,
+        OpKind::Move => register(op, Name::Src).map_or(Source::Bits, Source::Register),
+        OpKind::Structure
+        | OpKind::Charge
+        | OpKind::Constant
+        | OpKind::Address
+        | OpKind::Negation
+        | OpKind::Load(_)
+        | OpKind::Store(_)
+        | OpKind::Block
+        | OpKind::Jump
+        | OpKind::Branch
+        | OpKind::Table
+        | OpKind::Argument(_)
+        | OpKind::Call
+        | OpKind::Result(_)
+        | OpKind::Return(_)
+        | OpKind::Stop => Source::Bits,
     }
 }
 
-macro_rules! define_destination {
-    ($($(#[$doc:meta])* $name:ident = $variant:ident { $($field:ident: $operand:ident),* }, cost $cost:expr;)*) => {
-        /// The floating register to which an instruction assigns.
-        fn float_destination(op: &Op) -> Option<usize> {
-            match *op {
-                $(Op::$variant { $($field),* } => {
-                    let destinations: &[Option<usize>] = &[$(destination(stringify!($field), $field)),*];
-                    destinations.iter().copied().flatten().next()
-                })*
-            }
-        }
-    };
+/// Whether a constant is not a number.
+fn is_nan(op: &Op, program: &Program) -> bool {
+    let single = op.operand(Name::Bits).is_some_and(|Bits32(bits)| f32::from_bits(bits).is_nan());
+    single
+        || op.operand(Name::Pool).is_some_and(|Pool(at)| f64::from_bits(program.pool()[at as usize]).is_nan())
 }
-for_each_op!(define_destination);
 
-/// The number of the register that an operand is, if it is a floating one that receives a value.
-fn destination<O: Operand>(field: &str, operand: O) -> Option<usize> {
-    let is_float = O::CLASS == RegF32::CLASS || O::CLASS == RegF64::CLASS;
-    (field == "dst" && is_float).then(|| operand.to_bits() as usize)
+/// The number of the floating register that an operand is.
+fn register(op: &Op, name: Name) -> Option<usize> {
+    let double = || op.operand::<RegF64>(name).map(RegF64::index);
+    op.operand::<RegF32>(name).map(RegF32::index).or_else(double)
 }

@@ -4,7 +4,7 @@
 
 use std::collections::BTreeMap;
 
-use super::turns::Root;
+use super::accesses::Root;
 use crate::operand::RegI32;
 
 /// A root among those at equal distances.

@@ -15,17 +15,16 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
 
-use super::candidates::{innermost_loops, regions, straight_stretches};
+use super::accesses::{Accessed, Root, accessed};
+use super::candidates::{MAX_WORDS, innermost_loops, regions, straight_stretches};
 use super::strides::{Strides, common_step};
-use crate::access::Width;
-use crate::for_each_op;
+use crate::kind::{Name, OpKind, Width};
 use crate::meter;
 use crate::op::Op;
-use crate::operand::{Class, Off, Operand, RegI32};
+use crate::operand::RegI32;
 use crate::program::{Function, Program};
 
-/// The most words of a loop that is translated twice, and of all its fast turns together.
-pub(super) const MAX_WORDS: usize = 160;
+/// The most words of all fast turns of a loop together.
 const MAX_WORDS_OF_TURNS: usize = 128;
 
 /// The most turns that run at once, and those of a loop of so few words that its test and its jump weigh more.
@@ -38,9 +37,6 @@ const SMALL: usize = 8;
 /// How far from its root an access is followed, and of how many others a root is made at most.
 const MAX_DISTANCE: u32 = 1 << 16;
 const MAX_TERMS: usize = 12;
-
-/// A value that the plan follows.
-pub(super) type Root = u32;
 
 /// A place in the fast turns: the turn, and the word.
 pub(super) type Place = (usize, usize);
@@ -245,10 +241,13 @@ impl<'a> Planner<'a> {
     fn exits(&self) -> usize {
         let words = &self.plan.words;
         let leaves = |to: usize| usize::from(!words.contains(&to));
-        let of = |at: usize| match self.program.ops()[at] {
-            Op::Br { to } => leaves(to.0 as usize),
-            Op::BrIf { to, .. } | Op::BrUnless { to, .. } => leaves(to.0 as usize) + leaves(at + 1),
-            ref op => usize::from(meter::ends_path(op)),
+        let of = |at: usize| {
+            let op = &self.program.ops()[at];
+            match meter::branch_target(op) {
+                Some(to) if op.kind().ends_path() => leaves(to.0 as usize),
+                Some(to) => leaves(to.0 as usize) + leaves(at + 1),
+                None => usize::from(op.kind().ends_path()),
+            }
         };
         words.clone().map(of).sum()
     }
@@ -260,22 +259,18 @@ impl<'a> Planner<'a> {
         if let Some(access) = accessed(&op) {
             self.note(turn, at, access, &known);
         }
-        match op {
-            Op::Charge { cycles } => known.spent += cycles.0,
-            Op::Br { to } => {
-                self.leave(turn, to.0 as usize, known);
-                return None;
+        if let Op::Charge { cycles } = op {
+            known.spent += cycles.0;
+        }
+        if let Some(to) = meter::branch_target(&op) {
+            if op.kind() == OpKind::Branch {
+                self.leave(turn, at + 1, known.clone());
             }
-            Op::BrIf { to, .. } | Op::BrUnless { to, .. } => {
-                self.leave(turn, to.0 as usize, known.clone());
-                self.leave(turn, at + 1, known);
-                return None;
-            }
-            _ => {
-                if let Some(dst) = int_destination(&op) {
-                    known.symbols[dst] = self.result(&op, &known.symbols);
-                }
-            }
+            self.leave(turn, to.0 as usize, known);
+            return None;
+        }
+        if let Some(dst) = int_destination(&op) {
+            known.symbols[dst] = self.result(&op, &known.symbols);
         }
         Some(known)
     }
@@ -285,20 +280,25 @@ impl<'a> Planner<'a> {
     /// Equal sums and products of roots are the same root, and a constant in a factor is one in the product.
     fn result(&mut self, op: &Op, symbols: &[Symbol]) -> Symbol {
         let of = |register: RegI32| symbols[register.index()];
-        let (root, distance) = match *op {
-            Op::MovI32 { src, .. } => of(src),
-            Op::AddI32Imm { a, imm, .. } => (of(a).0, of(a).1.wrapping_add(imm.0.into())),
-            Op::MulI32Imm { a, imm, .. } => self.product(of(a), imm.0.into()),
-            Op::ShlI32Imm { a, imm, .. } if (0..16).contains(&imm.0) => self.product(of(a), 1 << imm.0),
-            Op::AddI32 { a, b, .. } => {
-                let ((a, from), (b, by)) = (of(a), of(b));
-                (self.sum(a, b), from.wrapping_add(by))
-            }
-            Op::SubI32 { a, b, .. } => {
-                let ((a, from), (b, by)) = (of(a), of(b));
-                (self.made(Made::Difference(a, b)), from.wrapping_sub(by))
-            }
-            _ => self.root(),
+        // What is not followed makes a value of its own, which is right for every instruction.
+        let (root, distance) = if let Op::MovI32 { src, .. } = *op {
+            of(src)
+        } else if let Op::AddI32Imm { a, imm, .. } = *op {
+            (of(a).0, of(a).1.wrapping_add(imm.0.into()))
+        } else if let Op::MulI32Imm { a, imm, .. } = *op {
+            self.product(of(a), imm.0.into())
+        } else if let Op::ShlI32Imm { a, imm, .. } = *op
+            && (0..16).contains(&imm.0)
+        {
+            self.product(of(a), 1 << imm.0)
+        } else if let Op::AddI32 { a, b, .. } = *op {
+            let ((a, from), (b, by)) = (of(a), of(b));
+            (self.sum(a, b), from.wrapping_add(by))
+        } else if let Op::SubI32 { a, b, .. } = *op {
+            let ((a, from), (b, by)) = (of(a), of(b));
+            (self.made(Made::Difference(a, b)), from.wrapping_sub(by))
+        } else {
+            self.root()
         };
         if distance.unsigned_abs() < MAX_DISTANCE { (root, distance) } else { self.root() }
     }
@@ -443,46 +443,7 @@ impl Group {
     }
 }
 
-/// Base register, displacement and width of an access, and whether it is a store.
-pub(super) type Accessed = (RegI32, Off, Width, bool);
-
-/// The access that an instruction makes through a register.
-pub(super) const fn accessed(op: &Op) -> Option<Accessed> {
-    Some(match *op {
-        Op::LoadI8S { base, off, .. } => (base, off, Width::I8S, false),
-        Op::LoadI8U { base, off, .. } => (base, off, Width::I8U, false),
-        Op::LoadI16S { base, off, .. } => (base, off, Width::I16S, false),
-        Op::LoadI16U { base, off, .. } => (base, off, Width::I16U, false),
-        Op::LoadI32 { base, off, .. } => (base, off, Width::I32, false),
-        Op::LoadI64 { base, off, .. } => (base, off, Width::I64, false),
-        Op::LoadF32 { base, off, .. } => (base, off, Width::F32, false),
-        Op::LoadF64 { base, off, .. } => (base, off, Width::F64, false),
-        Op::StoreI8 { base, off, .. } => (base, off, Width::I8U, true),
-        Op::StoreI16 { base, off, .. } => (base, off, Width::I16U, true),
-        Op::StoreI32 { base, off, .. } => (base, off, Width::I32, true),
-        Op::StoreI64 { base, off, .. } => (base, off, Width::I64, true),
-        Op::StoreF32 { base, off, .. } => (base, off, Width::F32, true),
-        Op::StoreF64 { base, off, .. } => (base, off, Width::F64, true),
-        _ => return None,
-    })
-}
-
-macro_rules! define_int_destination {
-    ($($(#[$doc:meta])* $name:ident = $variant:ident { $($field:ident: $operand:ident),* }, cost $cost:expr;)*) => {
-        /// The integer register to which an instruction assigns.
-        fn int_destination(op: &Op) -> Option<usize> {
-            match *op {
-                $(Op::$variant { $($field),* } => {
-                    let destinations: &[Option<usize>] = &[$(int_register(stringify!($field), $field)),*];
-                    destinations.iter().copied().flatten().next()
-                })*
-            }
-        }
-    };
-}
-for_each_op!(define_int_destination);
-
-/// The number of the register that an operand is, if it is one for integers that receives a value.
-fn int_register<O: Operand>(field: &str, operand: O) -> Option<usize> {
-    (field == "dst" && O::CLASS == Some(Class::I32)).then(|| operand.to_bits() as usize)
+/// The integer register to which an instruction assigns.
+fn int_destination(op: &Op) -> Option<usize> {
+    op.operand(Name::Dst).map(RegI32::index)
 }

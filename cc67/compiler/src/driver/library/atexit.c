@@ -1,6 +1,7 @@
 // What `exit` calls before the thread ends, the last registered first. A return from `main` is no `exit`: the
 // image stays alive behind it.
 
+//@ atexit + exit
 void ThreadDone(void);
 
 static void (*registered[32])(void);

@@ -1,5 +1,6 @@
 // Halves the range that may hold the key.
 
+//@ bsearch
 void *bsearch(const void *key, const void *base, unsigned count, unsigned size,
               int (*compare)(const void *, const void *))
 {

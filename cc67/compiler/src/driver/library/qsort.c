@@ -1,5 +1,6 @@
 // Heap sort: no recursion and no more memory, for a stack of two kilobytes.
 
+//@ qsort
 static void exchange(char *a, char *b, unsigned size)
 {
     while (size-- > 0) {

@@ -69,17 +69,24 @@ impl Worker<'_> {
     fn counters(&self, stretch: Stretch) -> BTreeMap<ValueId, i32> {
         let blocks = &self.function.layout[stretch.first..=stretch.last];
         (blocks.iter().flat_map(|id| &self.function.blocks[*id].insts))
-            .filter_map(|inst| match inst.kind {
-                InstKind::Binary { op, dst, a: Operand::Value(a), b }
-                    if a == dst && self.writes_inside[dst] == 1 =>
-                {
-                    match op {
-                        BinaryOp::Add => Some((dst, b.as_int()?)),
-                        BinaryOp::Subtract => Some((dst, b.as_int()?.wrapping_neg())),
-                        _ => None,
-                    }
-                }
-                _ => None,
+            .filter_map(|inst| {
+                let InstKind::Binary { op, dst, a: Operand::Value(a), b } = inst.kind else { return None };
+                let step = match op {
+                    BinaryOp::Add => b.as_int()?,
+                    BinaryOp::Subtract => b.as_int()?.wrapping_neg(),
+                    BinaryOp::Multiply
+                    | BinaryOp::Divide
+                    | BinaryOp::DivideUnsigned
+                    | BinaryOp::Remainder
+                    | BinaryOp::RemainderUnsigned
+                    | BinaryOp::And
+                    | BinaryOp::Or
+                    | BinaryOp::Xor
+                    | BinaryOp::ShiftLeft
+                    | BinaryOp::ShiftRight
+                    | BinaryOp::ShiftRightUnsigned => return None,
+                };
+                (a == dst && self.writes_inside[dst] == 1).then_some((dst, step))
             })
             .collect()
     }
@@ -102,30 +109,47 @@ impl Worker<'_> {
                     let counter = counters.contains_key(&value).then_some((value, 1, 0));
                     counter.or_else(|| linear.get(&value).map(|sum| (sum.counter, sum.scale, sum.cost)))
                 };
-                let found = match (op, known(a), known(b)) {
-                    (BinaryOp::Multiply, Some((counter, scale, cost)), None) => {
-                        b.as_int().map(|factor| (counter, scale.wrapping_mul(factor), cost + 2))
-                    }
-                    (BinaryOp::ShiftLeft, Some((counter, scale, cost)), None) => {
-                        let count = b.as_int().filter(|count| (0..32).contains(count));
-                        count.map(|count| (counter, scale.wrapping_shl(count.cast_unsigned()), cost + 1))
-                    }
-                    (BinaryOp::Add | BinaryOp::Subtract, Some((counter, scale, cost)), None)
-                        if self.is_invariant(b) =>
-                    {
-                        Some((counter, scale, cost + 1))
-                    }
-                    (BinaryOp::Add, None, Some((counter, scale, cost))) if self.is_invariant(a) => {
-                        Some((counter, scale, cost + 1))
-                    }
-                    _ => None,
+                let (grows, other) = match (known(a), known(b)) {
+                    (Some(grows), None) => (grows, b),
+                    (None, Some(grows)) if op == BinaryOp::Add => (grows, a),
+                    (None | Some(_), None | Some(_)) => continue,
                 };
-                if let Some((counter, scale, cost)) = found {
+                if let Some((counter, scale, cost)) = self.combined(op, grows, other) {
                     linear.insert(dst, Linear { counter, scale, cost, kind: inst.kind });
                 }
             }
         }
         linear
+    }
+
+    /// A value that grows evenly, given as its counter, scale and cost, combined with another operand.
+    fn combined(
+        &self,
+        op: BinaryOp,
+        (counter, scale, cost): (ValueId, i32, u32),
+        other: Operand,
+    ) -> Option<(ValueId, i32, u32)> {
+        match op {
+            BinaryOp::Multiply => {
+                other.as_int().map(|factor| (counter, scale.wrapping_mul(factor), cost + 2))
+            }
+            BinaryOp::ShiftLeft => {
+                let count = other.as_int().filter(|count| (0..32).contains(count));
+                count.map(|count| (counter, scale.wrapping_shl(count.cast_unsigned()), cost + 1))
+            }
+            BinaryOp::Add | BinaryOp::Subtract => {
+                self.is_invariant(other).then_some((counter, scale, cost + 1))
+            }
+            BinaryOp::Divide
+            | BinaryOp::DivideUnsigned
+            | BinaryOp::Remainder
+            | BinaryOp::RemainderUnsigned
+            | BinaryOp::And
+            | BinaryOp::Or
+            | BinaryOp::Xor
+            | BinaryOp::ShiftRight
+            | BinaryOp::ShiftRightUnsigned => None,
+        }
     }
 
     /// The linear values that something else than another linear value reads.

@@ -12,7 +12,10 @@ fn static_scalars_are_bytes() {
     data("int a = 0x01020304;", "int a = 04 03 02 01;");
     data("char a = -1; short b = 258;", "char a = ff;\nshort b = 02 01;");
     data("float a = 1; double b = 0.5f;", "float a = 00 00 80 3f;\ndouble b = 00 00 00 00 00 00 e0 3f;");
-    data("unsigned char a = 3.9; int b = { 5 };", "unsigned char a = 03;\nint b = 05 00 00 00;");
+    data(
+        "unsigned char a = (unsigned char)3.9; int b = { 5 };",
+        "unsigned char a = 03;\nint b = 05 00 00 00;",
+    );
     data("long long a = -2;", "long long a = fe ff ff ff ff ff ff ff;");
 }
 

@@ -1,0 +1,53 @@
+//! What this folder makes of a function, as text for a person and for tests.
+
+use std::fmt::Write as _;
+
+use super::legalize;
+use super::{Generated, Relocation, RelocationKind, Text};
+use crate::ir::function::{Block, Function, Signatures};
+use crate::ir::inst::Terminator;
+use crate::ir::text::{self, SymbolNames};
+
+/// A function whose instructions the machine has: its frame as a comment, what is computed once as a block of its own
+/// in front of the first.
+pub(crate) fn legalized(mut function: Function, signatures: &Signatures, names: &dyn SymbolNames) -> String {
+    let frame = legalize::legalize(&mut function);
+    if let (false, Some(&entry)) = (frame.prologue.is_empty(), function.layout.first()) {
+        let (terminator, span) = (Terminator::Jump(entry), function.span);
+        let block = function.blocks.push(Block { insts: frame.prologue, terminator, span });
+        function.layout.insert(0, block);
+    }
+    let mut shown = match frame.size {
+        Some(0) => String::new(),
+        Some(size) => format!("; frame of {size} bytes"),
+        None => "; frame larger than an address space".to_owned(),
+    };
+    let slots = if frame.size == Some(0) { 0 } else { function.slots.len() };
+    for slot in function.slots.keys().take(slots) {
+        // Writing to a string cannot fail.
+        let _ = write!(shown, ", {slot} at {}", frame.offsets[slot]);
+    }
+    if !shown.is_empty() {
+        shown.push('\n');
+    }
+    shown + &text::print(&function, signatures, names)
+}
+
+/// The words of a function; what the linker completes is named after them.
+pub(crate) fn words(text: &Text, generated: &Generated, names: &dyn SymbolNames) -> String {
+    let mut shown = String::new();
+    for (number, op) in text.numbered(&generated.added.words) {
+        let _ = write!(shown, "@{number}: {op}");
+        let relocation = generated.added.relocations.iter().find(|relocation| relocation.word == number);
+        if let Some(Relocation { kind, symbol, .. }) = relocation {
+            let what = match kind {
+                RelocationKind::Address => "+ &",
+                RelocationKind::Call(_) => "calls ",
+                RelocationKind::Processor(_) => "for the processor ",
+            };
+            let _ = write!(shown, " ; {what}{}", names.symbol_name(*symbol));
+        }
+        shown.push('\n');
+    }
+    shown
+}

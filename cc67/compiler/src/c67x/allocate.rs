@@ -1,0 +1,199 @@
+//! Gives every virtual register one of the processor's, by linear scan.
+//!
+//! Intervals are served in the order of their beginnings. A register that is needed across a call must be one that
+//! calls keep. Where none is free, the interval that is mentioned least for its length moves to memory, and all
+//! begins again. Of the free registers the one that has been free longest is taken, so that the scheduler finds few
+//! instructions that wait for a register alone.
+
+use c67x::Reg;
+use cranelift_entity::SecondaryMap;
+
+use super::abi;
+use super::code::{Code, VReg};
+use super::live::{self, Interval, Liveness};
+use super::{sides, spill};
+
+/// The registers of a function.
+#[derive(Debug)]
+pub(super) struct Assignment {
+    regs: SecondaryMap<VReg, u8>,
+    /// The kept registers that the function uses.
+    pub(super) kept: u64,
+    is_used: SecondaryMap<VReg, bool>,
+}
+
+impl Assignment {
+    /// The register; of a pair the even one.
+    pub(super) fn of(&self, reg: VReg) -> Reg {
+        Reg::from_index(usize::from(self.regs[reg])).unwrap_or(abi::RESULT)
+    }
+
+    /// Whether it has one: what nothing mentions has none.
+    pub(super) fn is_used(&self, reg: VReg) -> bool {
+        self.is_used[reg]
+    }
+}
+
+/// How often registers are moved to memory and all begins again.
+const ROUNDS: usize = 24;
+
+/// Allocates; `None` if the function does not fit the processor.
+pub(super) fn allocate(code: &mut Code) -> Option<Assignment> {
+    for _ in 0..ROUNDS {
+        let liveness = live::analyze(code);
+        let mut scan = Scan::new(code, &liveness);
+        scan.run(&live::in_order(code, &liveness))?;
+        if scan.moved.is_empty() {
+            let kept = scan.used & abi::KEPT;
+            let mut is_used = SecondaryMap::with_capacity(code.regs.len());
+            for reg in code.regs.keys() {
+                is_used[reg] = liveness.intervals[reg].is_used;
+            }
+            return Some(Assignment { regs: scan.regs, kept, is_used });
+        }
+        let moved = scan.moved;
+        spill::to_memory(code, &moved);
+    }
+    None
+}
+
+struct Scan<'a> {
+    code: &'a Code,
+    liveness: &'a Liveness,
+    regs: SecondaryMap<VReg, u8>,
+    /// The last position at which each register is taken.
+    taken: [u32; Reg::COUNT],
+    holder: [Option<VReg>; Reg::COUNT],
+    used: u64,
+    moved: Vec<VReg>,
+}
+
+impl<'a> Scan<'a> {
+    fn new(code: &'a Code, liveness: &'a Liveness) -> Self {
+        let mut regs = SecondaryMap::with_default(abi::RESULT.index() as u8);
+        regs.resize(code.regs.len());
+        Self {
+            code,
+            liveness,
+            regs,
+            taken: [0; Reg::COUNT],
+            holder: [None; Reg::COUNT],
+            used: 0,
+            moved: Vec::new(),
+        }
+    }
+
+    fn run(&mut self, order: &[VReg]) -> Option<()> {
+        for reg in order {
+            let interval = self.liveness.intervals[*reg];
+            let allowed = sides::file(&self.code.regs[*reg]) & !self.changed(interval);
+            match self.free(*reg, allowed, interval.start) {
+                Some(found) => self.take(*reg, found, interval.end),
+                None => self.evict(*reg, interval, allowed)?,
+            }
+        }
+        Some(())
+    }
+
+    /// The registers that calls inside an interval change.
+    fn changed(&self, interval: Interval) -> u64 {
+        let calls = &self.liveness.calls;
+        let first = calls.partition_point(|(at, _)| *at < interval.start);
+        let inside = calls[first..].iter().take_while(|(at, _)| *at < interval.end);
+        inside.fold(0, |set, (_, number)| set | self.code.calls[*number as usize].changes)
+    }
+
+    /// The registers that a virtual one takes if it is at `reg`.
+    fn whole(&self, reg: VReg, at: Reg) -> u64 {
+        if self.code.regs[reg].is_pair { abi::bit(at) | abi::bit(at.pair().high()) } else { abi::bit(at) }
+    }
+
+    /// The best free register.
+    fn free(&self, reg: VReg, allowed: u64, start: u32) -> Option<Reg> {
+        let info = &self.code.regs[reg];
+        let is_free = |at: Reg| {
+            let whole = self.whole(reg, at);
+            (!info.is_pair || at.number().is_multiple_of(2))
+                && whole & !allowed == 0
+                && abi::registers(whole).all(|one| self.taken[one.index()] < start)
+        };
+        if let Some(hint) = info.hint.filter(|hint| is_free(*hint)) {
+            return Some(hint);
+        }
+        let key = |at: &Reg| {
+            let whole = self.whole(reg, *at);
+            let is_new = whole & abi::KEPT & !self.used != 0;
+            let is_rare = !info.is_condition && whole & abi::CONDITIONS != 0;
+            (is_new, is_rare, self.taken[at.index()], at.index())
+        };
+        abi::registers(allowed).filter(|at| is_free(*at)).min_by_key(key)
+    }
+
+    fn take(&mut self, reg: VReg, at: Reg, end: u32) {
+        self.regs[reg] = at.index() as u8;
+        for one in abi::registers(self.whole(reg, at)) {
+            self.taken[one.index()] = end;
+            self.holder[one.index()] = Some(reg);
+            self.used |= abi::bit(one);
+        }
+    }
+
+    /// Makes room, or moves the register itself to memory.
+    fn evict(&mut self, reg: VReg, interval: Interval, allowed: u64) -> Option<()> {
+        let info = &self.code.regs[reg];
+        let own = if info.is_short { f32::INFINITY } else { self.cost(reg) };
+        let mut best: Option<(f32, Reg)> = None;
+        for at in abi::registers(allowed).filter(|at| !info.is_pair || at.number().is_multiple_of(2)) {
+            let whole = self.whole(reg, at);
+            if whole & !allowed != 0 {
+                continue;
+            }
+            let holders = abi::registers(whole).filter(|one| self.taken[one.index()] >= interval.start);
+            let cost = holders.fold(0.0, |cost, one| {
+                cost + self.holder[one.index()].map_or(f32::INFINITY, |holder| self.cost(holder))
+            });
+            if best.is_none_or(|(least, _)| cost < least) {
+                best = Some((cost, at));
+            }
+        }
+        match best {
+            Some((cost, at)) if cost < own => {
+                for one in abi::registers(self.whole(reg, at)) {
+                    if self.taken[one.index()] >= interval.start
+                        && let Some(holder) = self.holder[one.index()]
+                        && !self.moved.contains(&holder)
+                    {
+                        self.moved.push(holder);
+                        // The other half of an evicted pair is free too.
+                        for half in abi::registers(self.whole(holder, self.at(holder))) {
+                            self.taken[half.index()] = interval.start - 1;
+                        }
+                    }
+                }
+                self.take(reg, at, interval.end);
+                Some(())
+            }
+            _ if !info.is_short => {
+                self.moved.push(reg);
+                Some(())
+            }
+            _ => None,
+        }
+    }
+
+    fn at(&self, reg: VReg) -> Reg {
+        Reg::from_index(usize::from(self.regs[reg])).unwrap_or(abi::RESULT)
+    }
+
+    /// What it costs to keep a register in memory, by length of its interval.
+    fn cost(&self, reg: VReg) -> f32 {
+        let info = &self.code.regs[reg];
+        if info.is_short {
+            return f32::INFINITY;
+        }
+        let interval = self.liveness.intervals[reg];
+        let length = (interval.end - interval.start + 1) as f32;
+        let factor = if info.constant.is_some() { 0.4 } else { 1.0 };
+        factor * interval.weight / length
+    }
+}

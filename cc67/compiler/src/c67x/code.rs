@@ -1,0 +1,309 @@
+//! The function while it becomes machine code: instructions over virtual registers.
+//!
+//! A virtual register is a word or a pair (a double, a 64-bit integer) and belongs to one of the two register files.
+//! Like the IR's values it may be written many times. An instruction names its operands by the fields of the
+//! instruction table, not by their order in the text; which unit executes it is decided when it is scheduled.
+
+use c67x::{Reg, Side};
+use cranelift_entity::{PrimaryMap, entity_impl};
+
+use super::forms::Kind;
+use crate::ir::inst::SlotId;
+use crate::source::Span;
+use crate::typed::SymbolId;
+
+/// A virtual register.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub(super) struct VReg(u32);
+entity_impl!(VReg, "r");
+
+/// What is known of a virtual register.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Info {
+    /// A pair of registers.
+    pub(super) is_pair: bool,
+    /// Its file, once that is decided.
+    pub(super) side: Option<Side>,
+    /// It is tested as a condition, which six registers can be.
+    pub(super) is_condition: bool,
+    /// The register it would best be.
+    pub(super) hint: Option<Reg>,
+    /// It was made by the allocator for one instruction: it is never moved to memory.
+    pub(super) is_short: bool,
+    /// Its only value, a constant that is made again rather than kept in memory.
+    pub(super) constant: Option<Value>,
+}
+
+/// A number that is known at the latest when the program is linked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Value {
+    /// A number.
+    Number(i32),
+    /// The address of a symbol, and an offset.
+    Symbol(SymbolId, i32),
+    /// The address of a block.
+    Block(u32),
+    /// The address of a table of addresses after the code.
+    Table(u32),
+}
+
+/// An operand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Arg {
+    /// Not there.
+    None,
+    /// A register, or a pair.
+    Reg(VReg),
+    /// The even register of a pair.
+    Low(VReg),
+    /// The odd register of a pair.
+    High(VReg),
+    /// A constant.
+    Value(Value),
+}
+
+impl Arg {
+    /// The number `value`.
+    pub(super) const fn number(value: i32) -> Self {
+        Self::Value(Value::Number(value))
+    }
+
+    /// The virtual register.
+    pub(super) const fn reg(self) -> Option<VReg> {
+        match self {
+            Self::Reg(reg) | Self::Low(reg) | Self::High(reg) => Some(reg),
+            Self::None | Self::Value(_) => None,
+        }
+    }
+}
+
+impl From<VReg> for Arg {
+    fn from(reg: VReg) -> Self {
+        Self::Reg(reg)
+    }
+}
+
+/// What an address counts from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Base {
+    /// A register.
+    Reg(VReg),
+    /// An object in the frame.
+    Slot(SlotId),
+    /// A word of the frame that the allocator took, by number.
+    Spill(u32),
+    /// The stack pointer.
+    Stack,
+}
+
+/// An address: base plus bytes, or base plus a register times the size of the access.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Place {
+    pub(super) base: Base,
+    /// Bytes, if there is no index.
+    pub(super) offset: i32,
+    /// A register that counts elements.
+    pub(super) index: Option<VReg>,
+    /// Elements that are added to the base after the access.
+    pub(super) step: i32,
+}
+
+impl Place {
+    pub(super) const fn new(base: Base, offset: i32) -> Self {
+        Self { base, offset, index: None, step: 0 }
+    }
+}
+
+/// The condition of an instruction: the register, and whether it must be 0.
+pub(super) type Condition = Option<(VReg, bool)>;
+
+/// One instruction.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Inst {
+    pub(super) kind: Kind,
+    pub(super) dst: Arg,
+    pub(super) src1: Arg,
+    pub(super) src2: Arg,
+    /// The constants of a bit field.
+    pub(super) field: (u8, u8),
+    /// The address of a load or store, or of which an address is made.
+    pub(super) place: Option<Place>,
+    pub(super) condition: Condition,
+    /// A number of a call or table.
+    pub(super) number: u32,
+    /// The statement it belongs to.
+    pub(super) span: Span,
+}
+
+impl Inst {
+    /// An instruction with two sources.
+    pub(super) const fn new(kind: Kind, dst: Arg, src1: Arg, src2: Arg, span: Span) -> Self {
+        Self { kind, dst, src1, src2, field: (0, 0), place: None, condition: None, number: 0, span }
+    }
+
+    /// Whether the old content of the destination matters.
+    pub(super) fn keeps_destination(&self) -> bool {
+        self.condition.is_some() || matches!(self.kind, Kind::Mvkh)
+    }
+
+    /// Hands every virtual register that is read to `visit`, those of a call excepted.
+    pub(super) fn visit_reads(&self, mut visit: impl FnMut(VReg)) {
+        for arg in [self.src1, self.src2] {
+            if let Some(reg) = arg.reg() {
+                visit(reg);
+            }
+        }
+        if let Some(place) = self.place {
+            if let Base::Reg(reg) = place.base {
+                visit(reg);
+            }
+            if let Some(reg) = place.index {
+                visit(reg);
+            }
+        }
+        if let Some((reg, _)) = self.condition {
+            visit(reg);
+        }
+        if self.keeps_destination()
+            && let Some(reg) = self.dst.reg()
+        {
+            visit(reg);
+        }
+    }
+
+    /// The register that is written; and whether nothing of its old content remains.
+    pub(super) fn written(&self) -> Option<(VReg, bool)> {
+        match self.dst {
+            Arg::Reg(reg) => Some((reg, !self.keeps_destination())),
+            Arg::Low(reg) | Arg::High(reg) => Some((reg, false)),
+            Arg::None | Arg::Value(_) => None,
+        }
+    }
+
+    /// The register that a load or store steps on.
+    pub(super) fn stepped(&self) -> Option<VReg> {
+        match self.place {
+            Some(Place { base: Base::Reg(reg), step, .. }) if step != 0 => Some(reg),
+            _ => None,
+        }
+    }
+
+    /// Hands every operand that names a virtual register to `visit`, to be changed.
+    pub(super) fn visit_all(&mut self, mut visit: impl FnMut(&mut VReg)) {
+        for arg in [&mut self.dst, &mut self.src1, &mut self.src2] {
+            if let Arg::Reg(reg) | Arg::Low(reg) | Arg::High(reg) = arg {
+                visit(reg);
+            }
+        }
+        if let Some(place) = &mut self.place {
+            if let Base::Reg(reg) = &mut place.base {
+                visit(reg);
+            }
+            if let Some(reg) = &mut place.index {
+                visit(reg);
+            }
+        }
+        if let Some((reg, _)) = &mut self.condition {
+            visit(reg);
+        }
+    }
+}
+
+/// What a call calls.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Target {
+    /// A function by name.
+    Symbol(SymbolId),
+    /// The address in a register: the argument for [`super::abi::TARGET`].
+    Register,
+}
+
+/// A call.
+#[derive(Clone, Debug)]
+pub(super) struct Call {
+    pub(super) target: Target,
+    /// The registers that it takes, and where they must be (of a pair the even register).
+    pub(super) arguments: Vec<(VReg, Reg)>,
+    /// The registers that it changes, a bit each.
+    pub(super) changes: u64,
+}
+
+/// How a block ends.
+#[derive(Clone, Debug)]
+pub(super) enum End {
+    /// Goes on at a block.
+    Jump(u32),
+    /// Goes to `then` if the register is not 0 (`negated`: if it is 0), else to `otherwise`.
+    Branch { condition: VReg, negated: bool, then: u32, otherwise: u32 },
+    /// Goes to the address in a register, one of `targets`.
+    Table { address: VReg, targets: Vec<u32> },
+    /// Leaves the function with the result in its register.
+    Return(Option<VReg>),
+    /// Cannot be reached.
+    Unreachable,
+}
+
+impl End {
+    /// The blocks it may go to.
+    pub(super) fn targets(&self) -> impl Iterator<Item = u32> + '_ {
+        let (two, many): ([Option<u32>; 2], &[u32]) = match self {
+            Self::Jump(to) => ([Some(*to), None], &[]),
+            Self::Branch { then, otherwise, .. } => ([Some(*then), Some(*otherwise)], &[]),
+            Self::Table { targets, .. } => ([None, None], targets),
+            Self::Return(_) | Self::Unreachable => ([None, None], &[]),
+        };
+        two.into_iter().flatten().chain(many.iter().copied())
+    }
+
+    /// The register that is read.
+    pub(super) fn read(&self) -> Option<VReg> {
+        match self {
+            Self::Branch { condition: reg, .. } | Self::Table { address: reg, .. } => Some(*reg),
+            Self::Return(reg) => *reg,
+            Self::Jump(_) | Self::Unreachable => None,
+        }
+    }
+
+    /// The same, to be changed.
+    pub(super) fn read_mut(&mut self) -> Option<&mut VReg> {
+        match self {
+            Self::Branch { condition: reg, .. } | Self::Table { address: reg, .. } => Some(reg),
+            Self::Return(reg) => reg.as_mut(),
+            Self::Jump(_) | Self::Unreachable => None,
+        }
+    }
+}
+
+/// A block.
+#[derive(Clone, Debug)]
+pub(super) struct Block {
+    pub(super) insts: Vec<Inst>,
+    pub(super) end: End,
+    /// How many loops it is in.
+    pub(super) depth: u32,
+    pub(super) span: Span,
+}
+
+/// A function.
+#[derive(Debug)]
+pub(super) struct Code {
+    /// In the order of the code; a block's number is its place.
+    pub(super) blocks: Vec<Block>,
+    pub(super) regs: PrimaryMap<VReg, Info>,
+    pub(super) calls: Vec<Call>,
+    /// The parameters and the registers they come in (of a pair the even one).
+    pub(super) params: Vec<(VReg, Reg)>,
+    /// Tables of block addresses after the code.
+    pub(super) tables: Vec<Vec<u32>>,
+    /// Words of the frame that the allocator took.
+    pub(super) spills: u32,
+    /// Whether the word above the stack pointer is used by calls with variable arguments.
+    pub(super) has_variable_calls: bool,
+}
+
+impl Code {
+    /// A new register like `info` says.
+    pub(super) fn reg(&mut self, info: Info) -> VReg {
+        self.regs.push(info)
+    }
+}

@@ -1,0 +1,352 @@
+//! From virtual registers to regions of steps.
+//!
+//! A region is what is scheduled as one: a block, or a part of it up to a call. Calls become moves of their arguments
+//! and a branch with the return address in B3; the beginning and the ends of the function get what the frame needs.
+
+use c67x::{Pred, Reg};
+use cranelift_entity::SecondaryMap;
+
+use super::abi;
+use super::allocate::Assignment;
+use super::code::{Arg, Base, Call, Code, End, Inst, Place, Target, Value};
+use super::forms::Kind;
+use super::frame::{self, Frame};
+use super::moves;
+use super::step::{Access, Final, Finalizer, Operands, Step, pred, step};
+use crate::ir::function::{Function, table};
+use crate::ir::inst::SlotId;
+use crate::source::Span;
+
+/// What is scheduled as one.
+#[derive(Debug)]
+pub(super) struct Region {
+    /// Its label: a block's number, or one after them for where a call returns to.
+    pub(super) label: u32,
+    pub(super) steps: Vec<Step>,
+    /// The branches at its end, none if execution continues in the next region.
+    pub(super) branches: Vec<Step>,
+    pub(super) span: Span,
+}
+
+/// A function whose registers are those of the processor.
+#[derive(Debug)]
+pub(super) struct Expanded {
+    pub(super) regions: Vec<Region>,
+    /// Bytes of its frame.
+    pub(super) frame: u32,
+}
+
+/// Why a function cannot be expanded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum TooLarge {
+    /// The objects of its frame.
+    Frame,
+    /// An instruction that no form can express.
+    Code,
+}
+
+/// Expands the function.
+pub(super) fn expand(
+    function: &Function,
+    code: &Code,
+    assignment: &Assignment,
+) -> Result<Expanded, TooLarge> {
+    let calls = !code.calls.is_empty();
+    let mut saved: Vec<Reg> = abi::registers(assignment.kept).collect();
+    if calls {
+        saved.push(abi::LINK);
+    }
+    let frame = frame::lay_out(function, code, saved.len() as u32).ok_or(TooLarge::Frame)?;
+    let escaping = escaping(function, code);
+    let mut expander = Expander {
+        finalizer: Finalizer { code, assignment, frame: &frame, escaping: &escaping },
+        code,
+        frame: &frame,
+        saved,
+        regions: Vec::with_capacity(code.blocks.len()),
+        steps: Vec::new(),
+        label: 0,
+        returns: code.blocks.len() as u32,
+        span: function.span,
+        is_wrong: false,
+    };
+    expander.run();
+    if expander.is_wrong {
+        return Err(TooLarge::Code);
+    }
+    let regions = expander.regions;
+    Ok(Expanded { regions, frame: frame.size })
+}
+
+/// The objects of the frame whose address is taken.
+fn escaping(function: &Function, code: &Code) -> SecondaryMap<SlotId, bool> {
+    let mut escaping = table(function.slots.len());
+    if let Some(outgoing) = function.outgoing {
+        escaping[outgoing] = true;
+    }
+    for inst in code.blocks.iter().flat_map(|block| &block.insts) {
+        if let (Kind::FrameAddress, Some(Place { base: Base::Slot(slot), .. })) = (inst.kind, inst.place) {
+            escaping[slot] = true;
+        }
+    }
+    escaping
+}
+
+struct Expander<'a> {
+    finalizer: Finalizer<'a>,
+    code: &'a Code,
+    frame: &'a Frame,
+    saved: Vec<Reg>,
+    regions: Vec<Region>,
+    steps: Vec<Step>,
+    label: u32,
+    /// The label of the next place that a call returns to.
+    returns: u32,
+    span: Span,
+    is_wrong: bool,
+}
+
+impl Expander<'_> {
+    fn run(&mut self) {
+        let code = self.code;
+        for (number, block) in (0..).zip(&code.blocks) {
+            self.label = number;
+            if number == 0 {
+                self.enter();
+            }
+            for inst in &block.insts {
+                self.span = inst.span;
+                self.inst(inst);
+            }
+            self.span = block.span;
+            self.end(&block.end, number + 1);
+        }
+    }
+
+    /// Ends the region.
+    fn close(&mut self, branches: Vec<Step>) {
+        let steps = std::mem::take(&mut self.steps);
+        self.regions.push(Region { label: self.label, steps, branches, span: self.span });
+    }
+
+    fn emit(&mut self, kind: Kind, operands: &Operands, access: Access) {
+        match step(kind, operands, access, self.span) {
+            Some(step) => self.steps.push(step),
+            None => {
+                debug_assert!(false, "no form of {kind:?} takes {operands:?}");
+                self.is_wrong = true;
+            }
+        }
+    }
+
+    fn plain(&mut self, kind: Kind, dst: Final, src1: Final, src2: Final) {
+        let operands = Operands { dst, src1, src2, mem: None, field: (0, 0), pred: Pred::Always };
+        self.emit(kind, &operands, Access::None);
+    }
+
+    fn move_word(&mut self, to: Reg, from: Reg) {
+        let zero = Final::Value(Value::Number(0));
+        self.plain(Kind::Move, Final::Reg(to), zero, Final::Reg(from));
+    }
+
+    /// A word of the frame that holds a saved register.
+    fn saved_word(&mut self, kind: Kind, reg: Reg, index: u32) {
+        let at = (self.frame.saved + 4 * index).cast_signed();
+        let place = Place::new(Base::Stack, at);
+        let Some(mem) = self.finalizer.mem(place, 4) else { return };
+        let (dst, src2) =
+            if kind.is_store() { (Final::None, Final::Reg(reg)) } else { (Final::Reg(reg), Final::None) };
+        let operands =
+            Operands { dst, src1: Final::None, src2, mem: Some(mem), field: (0, 0), pred: Pred::Always };
+        self.emit(kind, &operands, Access::Own { is_store: kind.is_store(), at, size: 4 });
+    }
+
+    /// `B15 += bytes`
+    fn move_stack(&mut self, bytes: i32) {
+        let stack = Final::Reg(abi::STACK);
+        self.plain(Kind::Addk, stack, Final::Value(Value::Number(bytes)), Final::None);
+    }
+
+    /// What happens before the first block.
+    fn enter(&mut self) {
+        if self.frame.size > 0 {
+            self.move_stack(-self.frame.size.cast_signed());
+        }
+        for (index, reg) in (0..).zip(self.saved.clone()) {
+            self.saved_word(Kind::StoreWord, reg, index);
+        }
+        let mut list = Vec::new();
+        for (reg, at) in &self.code.params {
+            // What is never read has no register of its own.
+            if self.finalizer.assignment.is_used(*reg) {
+                self.words(self.finalizer.assignment.of(*reg), *at, self.code.regs[*reg].is_pair, &mut list);
+            }
+        }
+        self.moves(&list);
+    }
+
+    /// The moves of one value, a word each.
+    fn words(&self, to: Reg, from: Reg, is_pair: bool, list: &mut Vec<(Reg, Reg)>) {
+        list.push((to, from));
+        if is_pair {
+            list.push((to.pair().high(), from.pair().high()));
+        }
+    }
+
+    fn moves(&mut self, list: &[(Reg, Reg)]) {
+        for (to, from) in moves::in_order(list, abi::CHANGED & !abi::bit(abi::LINK)) {
+            self.move_word(to, from);
+        }
+    }
+
+    fn inst(&mut self, inst: &Inst) {
+        match (inst.kind, inst.place) {
+            (Kind::Begin, _) => {}
+            (Kind::Call, _) => self.call(&self.code.calls[inst.number as usize], inst.dst.reg()),
+            (Kind::FrameAddress, Some(place)) => {
+                let dst = self.finalizer.arg(inst.dst);
+                let offset = self.finalizer.offset(place);
+                self.plain(Kind::Mvk, dst, Final::Value(Value::Number(offset)), Final::None);
+                self.plain(Kind::Add, dst, dst, Final::Reg(abi::STACK));
+            }
+            (Kind::LoadPair, Some(place)) if !self.reaches_pair(place) => self.load_halves(inst, place),
+            _ => self.ordinary(inst),
+        }
+    }
+
+    /// Whether a load of a pair can have this address: those of the frame reach 31 pairs.
+    fn reaches_pair(&self, place: Place) -> bool {
+        if matches!(place.base, Base::Reg(_)) {
+            return true;
+        }
+        let offset = self.finalizer.offset(place);
+        offset % 8 == 0 && (0..32).contains(&(offset / 8))
+    }
+
+    fn load_halves(&mut self, inst: &Inst, place: Place) {
+        let Arg::Reg(dst) = inst.dst else { return };
+        for (dst, offset) in [(Arg::Low(dst), 0), (Arg::High(dst), 4)] {
+            let place = Place { offset: place.offset + offset, ..place };
+            self.ordinary(&Inst { kind: Kind::LoadWord, dst, place: Some(place), ..*inst });
+        }
+    }
+
+    fn ordinary(&mut self, inst: &Inst) {
+        let pred = match inst.condition {
+            None => Some(Pred::Always),
+            Some((reg, negated)) => pred(self.finalizer.assignment.of(reg), negated),
+        };
+        let Some(pred) = pred else {
+            self.is_wrong = true;
+            return;
+        };
+        let mut access = Access::None;
+        let mut mem = None;
+        if let (Some(place), Some(bytes)) = (inst.place, inst.kind.bytes()) {
+            mem = self.finalizer.mem(place, bytes);
+            if let Some(mem) = mem {
+                access = self.finalizer.access(inst.kind, place, mem);
+            }
+        }
+        let dst = self.finalizer.arg(inst.dst);
+        let src2 = self.finalizer.arg(inst.src2);
+        if inst.kind == Kind::Move && dst == src2 {
+            return;
+        }
+        let operands =
+            Operands { dst, src1: self.finalizer.arg(inst.src1), src2, mem, field: inst.field, pred };
+        self.emit(inst.kind, &operands, access);
+    }
+
+    fn call(&mut self, call: &Call, result: Option<super::code::VReg>) {
+        let mut list = Vec::new();
+        for (reg, at) in &call.arguments {
+            self.words(*at, self.finalizer.assignment.of(*reg), self.code.regs[*reg].is_pair, &mut list);
+        }
+        self.moves(&list);
+        let label = self.returns;
+        self.returns += 1;
+        let link = Final::Reg(abi::LINK);
+        let back = Final::Value(Value::Block(label));
+        self.plain(Kind::Mvk, link, back, Final::None);
+        self.plain(Kind::Mvkh, link, back, Final::None);
+        let target = match call.target {
+            Target::Symbol(symbol) => Final::Value(Value::Symbol(symbol, 0)),
+            Target::Register => Final::Reg(abi::TARGET),
+        };
+        let branch = self.branch(target, Pred::Always);
+        self.close(branch.into_iter().collect());
+        self.label = label;
+        if let Some(result) = result.filter(|result| self.finalizer.assignment.is_used(*result)) {
+            let mut list = Vec::new();
+            let to = self.finalizer.assignment.of(result);
+            self.words(to, abi::RESULT, self.code.regs[result].is_pair, &mut list);
+            self.moves(&list);
+        }
+    }
+
+    fn branch(&mut self, target: Final, pred: Pred) -> Option<Step> {
+        let operands = match target {
+            Final::Value(_) => {
+                Operands { dst: Final::None, src1: target, src2: Final::None, mem: None, field: (0, 0), pred }
+            }
+            _ => {
+                Operands { dst: Final::None, src1: Final::None, src2: target, mem: None, field: (0, 0), pred }
+            }
+        };
+        let step = step(Kind::Branch, &operands, Access::None, self.span);
+        self.is_wrong |= step.is_none();
+        step
+    }
+
+    fn jump(&mut self, block: u32, pred: Pred) -> Option<Step> {
+        self.branch(Final::Value(Value::Block(block)), pred)
+    }
+
+    fn end(&mut self, end: &End, next: u32) {
+        let branches = match *end {
+            End::Jump(to) if to == next => Vec::new(),
+            End::Jump(to) => self.jump(to, Pred::Always).into_iter().collect(),
+            End::Branch { condition, negated, then, otherwise } => {
+                let at = self.finalizer.assignment.of(condition);
+                let (Some(yes), Some(no)) = (pred(at, negated), pred(at, !negated)) else {
+                    self.is_wrong = true;
+                    return;
+                };
+                let mut branches = Vec::new();
+                if then != next {
+                    branches.extend(self.jump(then, yes));
+                }
+                if otherwise != next {
+                    branches.extend(self.jump(otherwise, no));
+                }
+                branches
+            }
+            End::Table { address, .. } => {
+                let at = self.finalizer.assignment.of(address);
+                self.branch(Final::Reg(at), Pred::Always).into_iter().collect()
+            }
+            End::Return(value) => self.leave(value),
+            // Execution that comes here by mistake leaves the function.
+            End::Unreachable => self.leave(None),
+        };
+        self.close(branches);
+    }
+
+    /// The end of the function.
+    fn leave(&mut self, value: Option<super::code::VReg>) -> Vec<Step> {
+        if let Some(value) = value {
+            let mut list = Vec::new();
+            let from = self.finalizer.assignment.of(value);
+            self.words(abi::RESULT, from, self.code.regs[value].is_pair, &mut list);
+            self.moves(&list);
+        }
+        for (index, reg) in (0..).zip(self.saved.clone()) {
+            self.saved_word(Kind::LoadWord, reg, index);
+        }
+        if self.frame.size > 0 {
+            self.move_stack(self.frame.size.cast_signed());
+        }
+        self.branch(Final::Reg(abi::LINK), Pred::Always).into_iter().collect()
+    }
+}

@@ -1,0 +1,229 @@
+//! What a step of a region must wait for.
+//!
+//! An edge says how many cycles after one step another may issue at the earliest. Registers: a result is read when it
+//! has landed, never while it is in flight, because an interrupt would make it land early (`c67x.md` 2.5); results of
+//! one register land in order. Memory: accesses that others may see keep their order; loads may share a cycle.
+
+use c67x::{Inst, Reg};
+
+use super::abi;
+use super::step::{Access, Step};
+
+/// An edge to a step, with its cycles.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Edge {
+    pub(super) to: u32,
+    pub(super) cycles: u8,
+}
+
+/// The edges of a region; branches are the last nodes.
+#[derive(Debug)]
+pub(super) struct Graph {
+    pub(super) after: Vec<Vec<Edge>>,
+    /// How many edges lead to each step.
+    pub(super) before: Vec<u32>,
+    /// Cycles from the issue of each step to the end of the region, at least.
+    pub(super) height: Vec<u32>,
+}
+
+/// Cycles from a step's issue until all its results have landed; at least 1.
+pub(super) fn landing(inst: &Inst) -> u32 {
+    inst.writes().map(|write| u32::from(write.stage)).max().unwrap_or(1).max(1)
+}
+
+/// Builds the graph of a region.
+pub(super) fn build(steps: &[Step], branches: &[Step]) -> Graph {
+    let count = steps.len() + branches.len();
+    let mut builder = Builder {
+        graph: Graph { after: vec![Vec::new(); count], before: vec![0; count], height: vec![0; count] },
+        writers: vec![Vec::new(); Reg::COUNT],
+        readers: vec![Vec::new(); Reg::COUNT],
+        shared_store: None,
+        is_joined: false,
+        shared_loads: Vec::new(),
+        own: Vec::new(),
+        versions: [0; Reg::COUNT],
+        accesses: Vec::new(),
+    };
+    for (index, step) in steps.iter().chain(branches).enumerate() {
+        let Some(inst) = step.forms.first() else { continue };
+        builder.registers(index as u32, inst);
+        builder.memory(index as u32, step);
+        builder.stack(index as u32, inst);
+        for write in inst.writes() {
+            builder.versions[write.reg.index()] += 1;
+        }
+    }
+    let mut graph = builder.graph;
+    for index in (0..count).rev() {
+        let own = match steps.get(index) {
+            Some(step) => step.forms.first().map_or(1, landing),
+            None => BRANCH,
+        };
+        let below = graph.after[index]
+            .iter()
+            .map(|edge| u32::from(edge.cycles) + graph.height[edge.to as usize])
+            .max();
+        graph.height[index] = own.max(below.unwrap_or(0));
+    }
+    graph
+}
+
+/// Cycles from a branch to its target.
+pub(super) const BRANCH: u32 = 6;
+
+/// A step that reads a register, and the last stage in which it does.
+#[derive(Clone, Copy)]
+struct Reader {
+    step: u32,
+    last: u8,
+}
+
+/// A step that writes a register, and the stage.
+#[derive(Clone, Copy)]
+struct Writer {
+    step: u32,
+    stage: u8,
+}
+
+struct Builder {
+    graph: Graph,
+    /// Since the last result that replaced all others.
+    writers: Vec<Vec<Writer>>,
+    readers: Vec<Vec<Reader>>,
+    shared_store: Option<u32>,
+    /// Whether the last such store may share the cycle of the one before.
+    is_joined: bool,
+    shared_loads: Vec<u32>,
+    own: Vec<u32>,
+    /// How often each register was written.
+    versions: [u32; Reg::COUNT],
+    /// The accesses so far: step, what it does, the version of its base.
+    accesses: Vec<(u32, Access, u32)>,
+}
+
+impl Builder {
+    fn edge(&mut self, from: u32, to: u32, cycles: u8) {
+        if from == to {
+            return;
+        }
+        let edges = &mut self.graph.after[from as usize];
+        if let Some(known) = edges.iter_mut().find(|edge| edge.to == to) {
+            known.cycles = known.cycles.max(cycles);
+            return;
+        }
+        edges.push(Edge { to, cycles });
+        self.graph.before[to as usize] += 1;
+    }
+
+    fn registers(&mut self, step: u32, inst: &Inst) {
+        let condition = inst.pred().reg();
+        let reads = inst.reads().map(|read| (read.reg, read.first, read.last));
+        for (reg, first, last) in reads.chain(condition.map(|reg| (reg, 1, 1))) {
+            for index in 0..self.writers[reg.index()].len() {
+                let Writer { step: writer, stage } = self.writers[reg.index()][index];
+                self.edge(writer, step, (stage + 1).saturating_sub(first).max(1));
+            }
+            self.readers[reg.index()].push(Reader { step, last });
+        }
+        for write in inst.writes() {
+            let at = write.reg.index();
+            for index in 0..self.readers[at].len() {
+                let Reader { step: reader, last } = self.readers[at][index];
+                self.edge(reader, step, last.saturating_sub(write.stage));
+            }
+            for index in 0..self.writers[at].len() {
+                let Writer { step: writer, stage } = self.writers[at][index];
+                self.edge(writer, step, (stage + 1).saturating_sub(write.stage));
+            }
+            if condition.is_none() {
+                self.writers[at].clear();
+                self.readers[at].clear();
+            }
+            self.writers[at].push(Writer { step, stage: write.stage });
+        }
+    }
+
+    /// Accesses keep their order as far as somebody could tell.
+    fn memory(&mut self, step: u32, what: &Step) {
+        let version = match what.access {
+            Access::None => return,
+            Access::Own { .. } => 0,
+            Access::Shared { base, .. } => self.versions[base.index()],
+        };
+        match what.access {
+            Access::None => {}
+            Access::Own { is_store, .. } => {
+                for index in 0..self.own.len() {
+                    let before = self.own[index];
+                    let (_, access, _) = self.accesses[before as usize];
+                    if overlaps(access, what.access) {
+                        let was_store = matches!(access, Access::Own { is_store: true, .. });
+                        let from = self.accesses[before as usize].0;
+                        if was_store || is_store {
+                            self.edge(from, step, 1);
+                        }
+                    }
+                }
+                self.own.push(self.accesses.len() as u32);
+            }
+            Access::Shared { is_store, .. } => self.shared(step, what.access, version, is_store),
+        }
+        self.accesses.push((step, what.access, version));
+    }
+
+    fn shared(&mut self, step: u32, access: Access, version: u32, is_store: bool) {
+        let number = self.accesses.len() as u32;
+        if let Some(store) = self.shared_store {
+            let (from, other, at) = self.accesses[store as usize];
+            // Two stores may share a cycle; a third could meet the first.
+            let joins = is_store && !self.is_joined && are_apart((other, at), (access, version));
+            self.is_joined = joins;
+            self.edge(from, step, u8::from(!joins));
+        }
+        if is_store {
+            for load in std::mem::take(&mut self.shared_loads) {
+                let (from, other, at) = self.accesses[load as usize];
+                self.edge(from, step, u8::from(!are_apart((other, at), (access, version))));
+            }
+            self.shared_store = Some(number);
+        } else {
+            if let Some(load) = self.shared_loads.last() {
+                let from = self.accesses[*load as usize].0;
+                self.edge(from, step, 0);
+            }
+            self.shared_loads.push(number);
+        }
+    }
+
+    /// What lies above the stack pointer is the function's only until that is raised.
+    fn stack(&mut self, step: u32, inst: &Inst) {
+        if inst.writes().any(|write| write.reg == abi::STACK) {
+            for index in 0..self.accesses.len() {
+                let from = self.accesses[index].0;
+                self.edge(from, step, 0);
+            }
+        }
+    }
+}
+
+/// Whether two accesses of the frame touch the same bytes.
+fn overlaps(a: Access, b: Access) -> bool {
+    match (a, b) {
+        (Access::Own { at: a, size: x, .. }, Access::Own { at: b, size: y, .. }) => {
+            a < b + y.cast_signed() && b < a + x.cast_signed()
+        }
+        _ => false,
+    }
+}
+
+/// Whether two accesses, each with the version of its base, certainly touch different bytes.
+fn are_apart(a: (Access, u32), b: (Access, u32)) -> bool {
+    match (a, b) {
+        (
+            (Access::Shared { base: a, at: Some(x), size: m, .. }, v),
+            (Access::Shared { base: b, at: Some(y), size: n, .. }, w),
+        ) => a == b && v == w && (x + m.cast_signed() <= y || y + n.cast_signed() <= x),
+        _ => false,
+    }
+}

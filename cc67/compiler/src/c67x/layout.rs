@@ -1,0 +1,197 @@
+//! Packets into words: fetch packets, labels, displacements.
+//!
+//! A function begins at a multiple of 32 bytes. No packet crosses such a boundary: the packet before gets parallel
+//! `NOP`s, which cost no cycle.
+
+use c67x::{FETCH_PACKET, Inst, Op, Operand, Side};
+
+use super::code::Value;
+use super::schedule::{Issued, Scheduled};
+use super::text::{Fixup, FixupKind};
+use crate::source::Span;
+
+/// Words of a fetch packet.
+const FETCH: u32 = FETCH_PACKET / 4;
+
+/// The longest `NOP`.
+const LONGEST: u32 = 9;
+
+/// A function in words.
+#[derive(Debug, Default)]
+pub(super) struct Laid {
+    pub(super) words: Vec<u32>,
+    /// How many of the words are code; tables of addresses follow.
+    pub(super) code: u32,
+    pub(super) fixups: Vec<Fixup>,
+    /// The first word of each run of words that belong to one statement.
+    pub(super) spans: Vec<(u32, Span)>,
+    /// Where execution comes from outside: the function, and where calls return to.
+    pub(super) entries: Vec<u32>,
+}
+
+/// Lays out the regions in the order of the code; labels from `blocks` on are those of returns.
+pub(super) fn lay_out(regions: &[Scheduled], tables: &[Vec<u32>], blocks: u32, span: Span) -> Laid {
+    let labels = regions.iter().map(|region| region.label).max().unwrap_or(0) + 1;
+    let mut layout = Layout {
+        laid: Laid { spans: vec![(0, span)], ..Laid::default() },
+        labels: vec![0; labels as usize],
+        open: Vec::new(),
+        targets: tables.concat(),
+        tables: Vec::new(),
+    };
+    for region in regions {
+        // The packet before may yet get NOPs when this one begins, so the label waits for the first packet.
+        layout.region(region, blocks);
+    }
+    layout.tables(tables);
+    layout.complete();
+    layout.laid
+}
+
+struct Layout {
+    laid: Laid,
+    /// The word of each label.
+    labels: Vec<u32>,
+    /// Words that need a label or a symbol.
+    open: Vec<(u32, Value)>,
+    /// Blocks that tables name.
+    targets: Vec<u32>,
+    /// The word of each table.
+    tables: Vec<u32>,
+}
+
+impl Layout {
+    fn at(&self) -> u32 {
+        self.laid.words.len() as u32
+    }
+
+    fn region(&mut self, region: &Scheduled, blocks: u32) {
+        let mut label = Some(region.label);
+        let mut cycle = 0;
+        let mut index = 0;
+        while cycle < region.cycles {
+            let count = region.insts[index..].iter().take_while(|issued| issued.cycle == cycle).count();
+            let packet = &region.insts[index..index + count];
+            index += count;
+            if packet.is_empty() {
+                let next = region.insts.get(index).map_or(region.cycles, |issued| issued.cycle);
+                let gap = (next - cycle).min(LONGEST);
+                self.begin(1, &mut label, blocks, region.span);
+                self.laid.words.push(Inst::nop(gap).encode(false));
+                cycle += gap;
+                continue;
+            }
+            // A call belongs to its own line, whatever shares its packet.
+            let branch = packet.iter().find(|issued| issued.inst.branch().is_some());
+            let first = branch.or(packet.first()).map_or(region.span, |issued| issued.span);
+            self.begin(count as u32, &mut label, blocks, first);
+            self.packet(packet);
+            cycle += 1;
+        }
+        if let Some(label) = label {
+            // An empty region: its label is that of the next.
+            self.labels[label as usize] = self.at() | PENDING;
+        }
+    }
+
+    /// Makes room for a packet and gives it what labels wait.
+    fn begin(&mut self, words: u32, label: &mut Option<u32>, blocks: u32, span: Span) {
+        let used = self.at() % FETCH;
+        if used + words > FETCH {
+            self.pad();
+        }
+        let at = self.at();
+        if let Some(label) = label.take() {
+            self.labels[label as usize] = at | PENDING;
+        }
+        for (number, own) in (0..).zip(&mut self.labels).filter(|(_, own)| **own & PENDING != 0) {
+            *own = at;
+            if number >= blocks || at == 0 || self.targets.contains(&number) {
+                self.laid.entries.push(at);
+            }
+        }
+        if self.laid.spans.last().is_none_or(|(_, last)| *last != span) {
+            match self.laid.spans.last_mut() {
+                Some((word, last)) if *word == at => *last = span,
+                _ => self.laid.spans.push((at, span)),
+            }
+        }
+    }
+
+    /// Fills the fetch packet with `NOP`s that belong to the last packet.
+    fn pad(&mut self) {
+        while !self.at().is_multiple_of(FETCH) {
+            if let Some(word) = self.laid.words.last_mut() {
+                *word |= c67x::PARALLEL;
+            }
+            self.laid.words.push(Inst::nop(1).encode(false));
+        }
+    }
+
+    fn packet(&mut self, packet: &[Issued]) {
+        let last = packet.len() - 1;
+        for (index, issued) in packet.iter().enumerate() {
+            if let Some(value) = issued.value.filter(|value| !matches!(value, Value::Number(_))) {
+                self.open.push((self.at(), value));
+            }
+            self.laid.words.push(issued.inst.encode(index < last));
+        }
+    }
+
+    /// Puts the tables of addresses after the code.
+    fn tables(&mut self, tables: &[Vec<u32>]) {
+        self.laid.code = self.at();
+        for table in tables {
+            self.tables.push(self.at());
+            for label in table {
+                let at = self.at();
+                let offset = self.labels[*label as usize] * 4;
+                self.laid.fixups.push(Fixup {
+                    word: at,
+                    kind: FixupKind::Own(offset.cast_signed()),
+                    symbol: None,
+                });
+                self.laid.words.push(0);
+            }
+        }
+    }
+
+    /// Completes what depends on labels; the rest is left to the linker.
+    fn complete(&mut self) {
+        for (word, value) in std::mem::take(&mut self.open) {
+            let Ok(inst) = Inst::decode(self.laid.words[word as usize]) else { continue };
+            let own = match value {
+                Value::Block(label) => Some(self.labels[label as usize]),
+                Value::Table(table) => Some(self.tables[table as usize]),
+                Value::Number(_) | Value::Symbol(..) => None,
+            };
+            if let (Op::BDisp, Some(target)) = (inst.op(), own) {
+                self.displace(word, inst, target);
+                continue;
+            }
+            let (symbol, offset) = match value {
+                Value::Symbol(symbol, offset) => (Some(symbol), offset),
+                _ => (None, (own.unwrap_or(0) * 4).cast_signed()),
+            };
+            let kind = match inst.op() {
+                Op::Mvk => FixupKind::Low(offset),
+                Op::Mvkh => FixupKind::High(offset),
+                _ => FixupKind::Near,
+            };
+            self.laid.fixups.push(Fixup { word, kind, symbol });
+        }
+        self.laid.fixups.sort_by_key(|fixup| fixup.word);
+    }
+
+    fn displace(&mut self, word: u32, inst: Inst, target: u32) {
+        let bytes = (target * 4).wrapping_sub(word / FETCH * FETCH_PACKET).cast_signed();
+        let side = inst.unit().map_or(Side::B, |unit| unit.side);
+        let parallel = self.laid.words[word as usize] & c67x::PARALLEL != 0;
+        if let Ok(inst) = Inst::new(Op::BDisp, side, inst.pred(), &[Operand::Target(bytes)]) {
+            self.laid.words[word as usize] = inst.encode(parallel);
+        }
+    }
+}
+
+/// Marks a label whose region is empty: it stands where the next packet begins.
+const PENDING: u32 = 1 << 31;

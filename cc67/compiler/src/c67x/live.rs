@@ -1,0 +1,215 @@
+//! From where to where every virtual register is needed.
+//!
+//! Positions count instructions in the order of the code: instruction i reads at 2i and writes at 2i + 1; the
+//! parameters are written at 1. An interval reaches from the first write to the last read, and over every block that
+//! the register lives through. Only registers that more than one block mentions take part in the data flow.
+
+use cranelift_entity::{EntityRef, SecondaryMap};
+
+use super::code::{Code, VReg};
+use super::forms::Kind;
+
+/// Where a register is needed.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Interval {
+    pub(super) start: u32,
+    pub(super) end: u32,
+    /// How often it is mentioned, in loops more.
+    pub(super) weight: f32,
+    pub(super) is_used: bool,
+}
+
+/// What is known of all registers.
+#[derive(Debug)]
+pub(super) struct Liveness {
+    pub(super) intervals: SecondaryMap<VReg, Interval>,
+    /// Position and number of each call.
+    pub(super) calls: Vec<(u32, u32)>,
+}
+
+/// Finds out.
+pub(super) fn analyze(code: &Code) -> Liveness {
+    let mut scan = Scan {
+        intervals: SecondaryMap::with_capacity(code.regs.len()),
+        block: SecondaryMap::with_capacity(code.regs.len()),
+        globals: Vec::new(),
+        number: SecondaryMap::with_capacity(code.regs.len()),
+    };
+    scan.intervals.resize(code.regs.len());
+    scan.block.resize(code.regs.len());
+    scan.number.resize(code.regs.len());
+    let (bounds, calls) = scan.mentions(code);
+    scan.flow(code, &bounds);
+    Liveness { intervals: scan.intervals, calls }
+}
+
+/// Positions, two and two.
+type Pairs = Vec<(u32, u32)>;
+
+struct Scan {
+    intervals: SecondaryMap<VReg, Interval>,
+    /// One more than the block that mentions a register.
+    block: SecondaryMap<VReg, u32>,
+    /// The registers that several blocks mention, or that are read before they are written.
+    globals: Vec<VReg>,
+    /// One more than the place of a register in `globals`.
+    number: SecondaryMap<VReg, u32>,
+}
+
+/// The registers that a block reads first, and those that it writes first.
+struct Sets {
+    read: Vec<u64>,
+    written: Vec<u64>,
+}
+
+impl Scan {
+    fn mention(&mut self, reg: VReg, position: u32, block: u32, weight: f32, is_read: bool) {
+        let interval = &mut self.intervals[reg];
+        interval.weight += weight;
+        if interval.is_used {
+            interval.end = interval.end.max(position);
+            interval.start = interval.start.min(position);
+        } else {
+            *interval = Interval { start: position, end: position, weight, is_used: true };
+            self.block[reg] = block + 1;
+        }
+        let is_first_read = is_read && interval.start == position;
+        if (self.block[reg] != block + 1 || is_first_read) && self.number[reg] == 0 {
+            self.globals.push(reg);
+            self.number[reg] = self.globals.len() as u32;
+        }
+    }
+
+    /// Walks the code; the positions of each block's beginning and end, and of the calls.
+    fn mentions(&mut self, code: &Code) -> (Pairs, Pairs) {
+        let mut bounds = Vec::with_capacity(code.blocks.len());
+        let mut calls = Vec::new();
+        for (reg, _) in &code.params {
+            self.mention(*reg, 1, 0, 1.0, false);
+        }
+        let mut at = 2;
+        for (number, block) in (0..).zip(&code.blocks) {
+            let start = at;
+            let weight = 8_f32.powi(block.depth.min(5).cast_signed());
+            for inst in &block.insts {
+                inst.visit_reads(|reg| self.mention(reg, at, number, weight, true));
+                if inst.kind == Kind::Call {
+                    calls.push((at, inst.number));
+                    for (reg, _) in &code.calls[inst.number as usize].arguments {
+                        self.mention(*reg, at, number, weight, true);
+                    }
+                }
+                if let Some((reg, _)) = inst.written() {
+                    self.mention(reg, at + 1, number, weight, false);
+                }
+                if let Some(reg) = inst.stepped() {
+                    self.mention(reg, at + 1, number, weight, false);
+                }
+                at += 2;
+            }
+            if let Some(reg) = block.end.read() {
+                self.mention(reg, at, number, weight, true);
+            }
+            at += 2;
+            bounds.push((start, at - 1));
+        }
+        (bounds, calls)
+    }
+
+    /// Spreads intervals over the blocks that their registers live through.
+    fn flow(&mut self, code: &Code, bounds: &[(u32, u32)]) {
+        if self.globals.is_empty() || code.blocks.len() < 2 && !loops_to_itself(code) {
+            return;
+        }
+        let words = self.globals.len().div_ceil(64);
+        let sets: Vec<Sets> = code.blocks.iter().map(|block| self.sets(code, block, words)).collect();
+        let mut entering = vec![0_u64; words * code.blocks.len()];
+        let mut leaving = vec![0_u64; words];
+        let mut is_changed = true;
+        while is_changed {
+            is_changed = false;
+            for (number, block) in code.blocks.iter().enumerate().rev() {
+                leave(&mut leaving, &entering, block, words);
+                let own = &mut entering[number * words..(number + 1) * words];
+                for (index, own) in own.iter_mut().enumerate() {
+                    let new = sets[number].read[index] | leaving[index] & !sets[number].written[index];
+                    is_changed |= *own != new;
+                    *own = new;
+                }
+            }
+        }
+        for (number, (block, (start, end))) in code.blocks.iter().zip(bounds).enumerate() {
+            self.spread(&entering[number * words..(number + 1) * words], *start - 1);
+            leave(&mut leaving, &entering, block, words);
+            self.spread(&leaving, *end);
+        }
+    }
+
+    fn spread(&mut self, set: &[u64], position: u32) {
+        for (word, bits) in set.iter().enumerate() {
+            let mut bits = *bits;
+            while bits != 0 {
+                let index = word * 64 + bits.trailing_zeros() as usize;
+                bits &= bits - 1;
+                let interval = &mut self.intervals[self.globals[index]];
+                interval.start = interval.start.min(position);
+                interval.end = interval.end.max(position);
+            }
+        }
+    }
+
+    fn sets(&self, code: &Code, block: &super::code::Block, words: usize) -> Sets {
+        let mut sets = Sets { read: vec![0; words], written: vec![0; words] };
+        let read = |sets: &mut Sets, reg: VReg| {
+            if let Some((word, bit)) = self.bit(reg)
+                && sets.written[word] & bit == 0
+            {
+                sets.read[word] |= bit;
+            }
+        };
+        for inst in &block.insts {
+            inst.visit_reads(|reg| read(&mut sets, reg));
+            if inst.kind == Kind::Call {
+                for (reg, _) in &code.calls[inst.number as usize].arguments {
+                    read(&mut sets, *reg);
+                }
+            }
+            if let Some((reg, true)) = inst.written()
+                && let Some((word, bit)) = self.bit(reg)
+            {
+                sets.written[word] |= bit;
+            }
+        }
+        if let Some(reg) = block.end.read() {
+            read(&mut sets, reg);
+        }
+        sets
+    }
+
+    fn bit(&self, reg: VReg) -> Option<(usize, u64)> {
+        let index = (self.number[reg] as usize).checked_sub(1)?;
+        Some((index / 64, 1 << (index % 64)))
+    }
+}
+
+/// What lives at the end of a block.
+fn leave(leaving: &mut [u64], entering: &[u64], block: &super::code::Block, words: usize) {
+    leaving.fill(0);
+    for target in block.end.targets() {
+        let start = target as usize * words;
+        for (own, next) in leaving.iter_mut().zip(&entering[start..start + words]) {
+            *own |= next;
+        }
+    }
+}
+
+fn loops_to_itself(code: &Code) -> bool {
+    code.blocks.iter().any(|block| block.end.targets().next().is_some())
+}
+
+/// The registers in the order in which their intervals begin.
+pub(super) fn in_order(code: &Code, liveness: &Liveness) -> Vec<VReg> {
+    let mut order: Vec<VReg> = code.regs.keys().filter(|reg| liveness.intervals[*reg].is_used).collect();
+    order.sort_by_key(|reg| (liveness.intervals[*reg].start, reg.index()));
+    order
+}

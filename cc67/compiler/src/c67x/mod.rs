@@ -1,0 +1,138 @@
+//! IR to the real processor's code: the folder that knows execute packets.
+//!
+//! A function passes these stages, a file each:
+//!
+//! 1. [`select`]: IR to instructions over virtual registers ([`code`]); [`forms`] says which forms of the table can do
+//!    what an instruction asks for.
+//! 2. [`predicate`]: short branches become conditions. [`sides`]: every register gets one of the two files; copies where an instruction reaches only one.
+//! 3. [`live`], [`allocate`], [`spill`]: registers of the processor, those that survive a thread switch.
+//! 4. [`frame`], [`moves`], [`expand`]: calls, the stack, the beginning and the ends; regions of [`step`]s.
+//! 5. [`graph`], [`resources`], [`schedule`]: packets.
+//! 6. [`layout`]: words, on fetch packets, with what the linker completes ([`text`]).
+//!
+//! Rules that all stages keep (`c67x.md`):
+//! - no register is read while a result for it is in flight: an interrupt would make it land early;
+//! - accesses to memory that others can see keep their order;
+//! - at the end of a region nothing is in flight, so calls, returns and jumps are safe whatever follows;
+//! - nothing that the program needs is at B15 or below, and B15 is a multiple of 8.
+
+mod abi;
+mod allocate;
+mod code;
+mod expand;
+mod externs;
+mod forms;
+mod frame;
+mod graph;
+mod layout;
+mod live;
+mod moves;
+mod predicate;
+mod resources;
+mod schedule;
+mod select;
+mod sides;
+mod spill;
+mod step;
+pub(crate) mod text;
+
+#[cfg(test)]
+mod tests;
+
+pub(crate) use externs::Externs;
+
+use crate::diag::Diagnostic;
+use crate::ir::function::{Function, Signatures};
+use crate::passes::Level;
+use crate::source::Span;
+use expand::TooLarge;
+use schedule::Order;
+use text::Words;
+
+/// Writes the functions of a unit, one after the other.
+#[derive(Debug)]
+pub(crate) struct Generator {
+    words: Vec<u32>,
+    externs: Externs,
+    level: Level,
+}
+
+/// Functions begin at multiples of this many words: a fetch packet.
+pub(crate) const ALIGN: u32 = 8;
+
+impl Generator {
+    /// A generator for a unit with these symbols.
+    pub(crate) fn new(externs: Externs, level: Level) -> Self {
+        Self { words: Vec::new(), externs, level }
+    }
+
+    /// Takes one optimised function through all stages; `name` is for messages.
+    ///
+    /// # Errors
+    /// That the function is too large for the processor.
+    pub(crate) fn function(
+        &mut self,
+        ir: &Function,
+        signatures: &Signatures,
+        name: &str,
+    ) -> Result<Words, Box<Diagnostic>> {
+        let context = select::Context { function: ir, signatures, externs: &mut self.externs };
+        let mut code = select::select(context);
+        if self.level != Level::None {
+            predicate::run(&mut code);
+        }
+        sides::assign(&mut code);
+        let assignment = allocate::allocate(&mut code).ok_or_else(|| too_large(ir.span, name))?;
+        let expanded = expand::expand(ir, &code, &assignment).map_err(|why| match why {
+            TooLarge::Frame => frame_too_large(ir.span, name),
+            TooLarge::Code => too_large(ir.span, name),
+        })?;
+        let order = if self.level == Level::None { Order::Source } else { Order::Early };
+        let regions: Vec<_> =
+            expanded.regions.into_iter().map(|region| schedule::schedule(region, order)).collect();
+        let laid = layout::lay_out(&regions, &code.tables, code.blocks.len() as u32, ir.span);
+        #[cfg(debug_assertions)]
+        verify(&laid, name);
+        // The words between functions are never executed.
+        let start = (self.words.len() as u32).next_multiple_of(ALIGN);
+        self.words.resize(start as usize, 0);
+        self.words.extend(&laid.words);
+        let end = self.words.len() as u32;
+        let spans = laid.spans.into_iter().map(|(word, span)| (start + word, span)).collect();
+        Ok(Words { words: start..end, fixups: laid.fixups, spans, frame: expanded.frame })
+    }
+
+    /// The words of all functions, and the names that they need besides those of the unit.
+    pub(crate) fn finish(self) -> (Vec<u32>, Vec<&'static str>) {
+        (self.words, self.externs.into_added())
+    }
+}
+
+/// Checks the schedule with the rules that the processor's own crate has, which knows nothing of this one.
+#[cfg(debug_assertions)]
+fn verify(laid: &layout::Laid, name: &str) {
+    let code = &laid.words[..laid.code as usize];
+    let Ok(packets) = c67x::schedule::packets(code) else {
+        panic!("{name}: a word that is no instruction");
+    };
+    let entries: Vec<u32> = laid.entries.iter().map(|word| word * 4).collect();
+    // Branches that the linker completes leave the code: a displacement of 0 would be followed.
+    let found = c67x::schedule::check(0, &packets, &entries);
+    assert!(
+        found.is_empty(),
+        "{name}: {}",
+        found.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
+    );
+}
+
+fn frame_too_large(span: Span, name: &str) -> Box<Diagnostic> {
+    let error = Diagnostic::error(span, format!("the local variables of `{name}` are too large"))
+        .note(format!("a function can have {} bytes of them", frame::MAX_FRAME))
+        .help("make large arrays `static` or global");
+    Box::new(error)
+}
+
+fn too_large(span: Span, name: &str) -> Box<Diagnostic> {
+    let error = Diagnostic::error(span, format!("function `{name}` is too large")).help("split it");
+    Box::new(error)
+}

@@ -1,0 +1,122 @@
+//! What every cycle of a region has room for (`c67x.md` 2.3, 2.4).
+
+use c67x::{Inst, Mnemonic, Reg, Side, UnitKind};
+
+/// One cycle.
+#[derive(Clone, Copy, Debug, Default)]
+struct Cycle {
+    /// Units that are taken, a bit each.
+    units: u8,
+    /// Cross paths, a bit a side.
+    crosses: u8,
+    /// Data paths.
+    paths: u8,
+    /// Units that write a result.
+    ports: u8,
+    /// Instructions.
+    count: u8,
+}
+
+/// The cycles of a region, or of one turn of a loop, whose cycles repeat.
+#[derive(Debug, Default)]
+pub(super) struct Resources {
+    cycles: Vec<Cycle>,
+    /// The long products: unit, name, cycle.
+    products: Vec<(u8, Mnemonic, u32)>,
+    /// Registers that are read in a cycle: cycle, register.
+    reads: Vec<(u32, Reg)>,
+}
+
+/// Cycles that must lie between different long products of one unit.
+const PRODUCTS: u32 = 8;
+
+/// The most operands that may read one register in one cycle.
+const READS: usize = 4;
+
+impl Resources {
+    fn at(&mut self, cycle: u32) -> &mut Cycle {
+        let index = cycle as usize;
+        if index >= self.cycles.len() {
+            self.cycles.resize(index + 12, Cycle::default());
+        }
+        &mut self.cycles[index]
+    }
+
+    /// Whether an instruction can issue in a cycle.
+    pub(super) fn fits(&mut self, inst: &Inst, cycle: u32) -> bool {
+        let Some(unit) = inst.unit() else { return true };
+        let bit = 1 << unit.index();
+        let own = *self.at(cycle);
+        if own.count >= 8 || inst.data_path().is_some_and(|side| own.paths & path(side) != 0) {
+            return false;
+        }
+        let cross = inst.cross_path().map_or(0, path);
+        for held in 0..u32::from(inst.unit_cycles()) {
+            let later = self.at(cycle + held);
+            if later.units & bit != 0 || later.crosses & cross != 0 {
+                return false;
+            }
+        }
+        if unit.kind != UnitKind::D {
+            for write in inst.writes() {
+                if self.at(cycle + u32::from(write.stage)).ports & bit != 0 {
+                    return false;
+                }
+            }
+        }
+        self.products_fit(inst, cycle) && self.reads_fit(inst, cycle)
+    }
+
+    fn products_fit(&self, inst: &Inst, cycle: u32) -> bool {
+        let name = inst.mnemonic();
+        if !is_product(name) {
+            return true;
+        }
+        let Some(unit) = inst.unit() else { return true };
+        // The firmware has a single product seven cycles after one of doubles, and the other way after one.
+        let near = |(on, other, at): &(u8, Mnemonic, u32)| {
+            let (first, apart) = if *at <= cycle { (*other, cycle - at) } else { (name, at - cycle) };
+            *on == unit.index() as u8 && *other != name && first != Mnemonic::Mpysp && apart < PRODUCTS
+        };
+        !self.products.iter().any(near)
+    }
+
+    fn reads_fit(&self, inst: &Inst, cycle: u32) -> bool {
+        inst.reads().all(|read| {
+            let own = inst.reads().filter(|other| other.reg == read.reg).count();
+            let others = self.reads.iter().rev().take(32);
+            others.filter(|(at, reg)| *at == cycle && *reg == read.reg).count() + own <= READS
+        })
+    }
+
+    /// Takes what an instruction needs.
+    pub(super) fn take(&mut self, inst: &Inst, cycle: u32) {
+        let Some(unit) = inst.unit() else { return };
+        let bit = 1 << unit.index();
+        self.at(cycle).count += 1;
+        self.at(cycle).paths |= inst.data_path().map_or(0, path);
+        let cross = inst.cross_path().map_or(0, path);
+        for held in 0..u32::from(inst.unit_cycles()) {
+            let later = self.at(cycle + held);
+            later.units |= bit;
+            later.crosses |= cross;
+        }
+        if unit.kind != UnitKind::D {
+            for write in inst.writes() {
+                self.at(cycle + u32::from(write.stage)).ports |= bit;
+            }
+        }
+        if is_product(inst.mnemonic()) {
+            self.products.push((unit.index() as u8, inst.mnemonic(), cycle));
+        }
+        self.reads.extend(inst.reads().map(|read| (cycle, read.reg)));
+    }
+}
+
+const fn path(side: Side) -> u8 {
+    1 << side.bit()
+}
+
+const fn is_product(name: Mnemonic) -> bool {
+    matches!(name, Mnemonic::Mpyi | Mnemonic::Mpyid | Mnemonic::Mpydp | Mnemonic::Mpysp)
+}

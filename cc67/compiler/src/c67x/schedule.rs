@@ -1,0 +1,163 @@
+//! Steps into packets: what can happen at the same time, does.
+//!
+//! Cycle by cycle the steps whose operands have landed are issued, those first that most depends on. The branch issues
+//! so that its five slots end where the last result lands; what is left of them is `NOP`. At the end of a region
+//! nothing is in flight.
+
+use c67x::Inst;
+
+use super::code::Value;
+use super::expand::Region;
+use super::graph::{self, BRANCH, Graph};
+use super::resources::Resources;
+use super::step::Step;
+use crate::source::Span;
+
+/// An instruction with its cycle.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Issued {
+    pub(super) cycle: u32,
+    pub(super) inst: Inst,
+    pub(super) value: Option<Value>,
+    pub(super) span: Span,
+}
+
+/// A region whose instructions have their cycles.
+#[derive(Debug)]
+pub(super) struct Scheduled {
+    pub(super) label: u32,
+    /// Ascending by cycle.
+    pub(super) insts: Vec<Issued>,
+    /// Cycles of the region.
+    pub(super) cycles: u32,
+    pub(super) span: Span,
+}
+
+/// How a region is scheduled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Order {
+    /// One instruction a cycle, in the order of the source.
+    Source,
+    /// As early as possible.
+    Early,
+}
+
+/// Schedules a region.
+pub(super) fn schedule(region: Region, order: Order) -> Scheduled {
+    let Region { label, steps, branches, span } = region;
+    let graph = graph::build(&steps, &branches);
+    let mut list = List {
+        earliest: vec![0; steps.len() + branches.len()],
+        waiting: graph.before.clone(),
+        resources: Resources::default(),
+        issued: Vec::with_capacity(steps.len() + branches.len()),
+        graph: &graph,
+        order,
+    };
+    let end = list.steps(&steps);
+    let cycles = list.branches(&steps, &branches, end);
+    let mut insts = list.issued;
+    insts.sort_by_key(|issued| issued.cycle);
+    Scheduled { label, insts, cycles, span }
+}
+
+struct List<'a> {
+    graph: &'a Graph,
+    earliest: Vec<u32>,
+    waiting: Vec<u32>,
+    resources: Resources,
+    issued: Vec<Issued>,
+    order: Order,
+}
+
+impl List<'_> {
+    /// Issues all steps but the branches; the cycle in which the last result has landed.
+    fn steps(&mut self, steps: &[Step]) -> u32 {
+        let mut ready: Vec<u32> =
+            (0..steps.len() as u32).filter(|step| self.waiting[*step as usize] == 0).collect();
+        let (mut cycle, mut end, mut left) = (0, 0, steps.len());
+        while left > 0 {
+            match self.order {
+                Order::Source => ready.sort_unstable(),
+                Order::Early => ready.sort_unstable_by_key(|step| {
+                    (std::cmp::Reverse(self.graph.height[*step as usize]), *step)
+                }),
+            }
+            let mut index = 0;
+            let mut taken = false;
+            while index < ready.len() {
+                let step = ready[index];
+                let own = &steps[step as usize];
+                let may = self.earliest[step as usize] <= cycle && !(taken && self.order == Order::Source);
+                let form = if may { self.form(own, cycle) } else { None };
+                let Some(inst) = form else {
+                    if self.order == Order::Source {
+                        break;
+                    }
+                    index += 1;
+                    continue;
+                };
+                ready.remove(index);
+                left -= 1;
+                taken = true;
+                end = end.max(cycle + graph::landing(&inst));
+                self.issue(own, inst, cycle);
+                self.release(step, cycle, steps.len(), &mut ready);
+            }
+            cycle += 1;
+        }
+        end
+    }
+
+    /// The form that can issue in a cycle.
+    fn form(&mut self, step: &Step, cycle: u32) -> Option<Inst> {
+        step.forms.iter().copied().find(|inst| self.resources.fits(inst, cycle))
+    }
+
+    fn issue(&mut self, step: &Step, inst: Inst, cycle: u32) {
+        self.resources.take(&inst, cycle);
+        self.issued.push(Issued { cycle, inst, value: step.value, span: step.span });
+    }
+
+    /// What waited for a step may be ready now.
+    fn release(&mut self, step: u32, cycle: u32, steps: usize, ready: &mut Vec<u32>) {
+        for edge in &self.graph.after[step as usize] {
+            let to = edge.to as usize;
+            self.earliest[to] = self.earliest[to].max(cycle + u32::from(edge.cycles));
+            self.waiting[to] -= 1;
+            if self.waiting[to] == 0 && to < steps {
+                // Steps that may share the cycle are looked at later in it.
+                ready.push(edge.to);
+            }
+        }
+    }
+
+    /// Places the branches; the length of the region.
+    fn branches(&mut self, steps: &[Step], branches: &[Step], end: u32) -> u32 {
+        let mut cycles = end;
+        let mut from = end.saturating_sub(BRANCH);
+        for (index, branch) in branches.iter().enumerate() {
+            let mut cycle = self.earliest[steps.len() + index].max(from);
+            let inst = loop {
+                let sides = branch.forms.iter().copied();
+                if let Some(inst) =
+                    sides.chain(other_side(branch)).find(|inst| self.resources.fits(inst, cycle))
+                {
+                    break inst;
+                }
+                cycle += 1;
+            };
+            self.issue(branch, inst, cycle);
+            from = cycle;
+            cycles = cycles.max(cycle + BRANCH);
+        }
+        cycles
+    }
+}
+
+/// A branch with a displacement on the unit of side A.
+fn other_side(branch: &Step) -> Option<Inst> {
+    let inst = branch.forms.first()?;
+    let operands: Vec<c67x::Operand> = inst.operands().collect();
+    Inst::new(inst.op(), c67x::Side::A, inst.pred(), &operands).ok()
+}

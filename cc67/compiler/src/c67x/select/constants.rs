@@ -1,0 +1,91 @@
+//! Constants in registers.
+
+use super::Selector;
+use crate::c67x::code::{Arg, Info, Inst, VReg, Value};
+use crate::c67x::forms::Kind;
+use crate::ir::inst::{Constant, Operand};
+
+/// How many constants are made in front of the first block.
+const MAX_EARLY: usize = 40;
+
+impl Selector<'_> {
+    /// A register that holds a constant.
+    pub(super) fn constant(&mut self, constant: Constant) -> VReg {
+        match constant {
+            Constant::I32(value) => self.known(Value::Number(value)),
+            Constant::F32(bits) => self.known(Value::Number(bits.cast_signed())),
+            Constant::Symbol(symbol, offset) => self.known(Value::Symbol(symbol, offset)),
+            Constant::I64(value) => self.wide_constant(value.cast_unsigned()),
+            Constant::F64(bits) => self.wide_constant(bits),
+        }
+    }
+
+    /// A register that holds a word that is known, shared with who else needs it.
+    pub(super) fn known(&mut self, value: Value) -> VReg {
+        let known = self.constants.iter().chain(&self.early.constants).find(|(known, _)| *known == value);
+        if let Some((_, reg)) = known {
+            return *reg;
+        }
+        let reg = self.code.reg(Info { constant: Some(value), ..Info::default() });
+        let insts = make(reg.into(), value, self.span);
+        if self.depth > 0 && self.early.constants.len() < MAX_EARLY {
+            self.early.insts.extend(insts);
+            self.early.constants.push((value, reg));
+        } else {
+            self.out.extend(insts);
+            self.constants.push((value, reg));
+        }
+        reg
+    }
+
+    fn wide_constant(&mut self, bits: u64) -> VReg {
+        let reg = self.pair();
+        if self.depth > 0 && self.early.insts.len() < MAX_EARLY {
+            // Made once, in front of everything.
+            let here = std::mem::take(&mut self.out);
+            self.wide_in(reg, bits);
+            let insts = std::mem::replace(&mut self.out, here);
+            self.early.insts.extend(insts);
+        } else {
+            self.wide_in(reg, bits);
+        }
+        reg
+    }
+
+    fn wide_in(&mut self, dst: VReg, bits: u64) {
+        self.begin(dst);
+        let (low, high) = (bits as u32, (bits >> 32) as u32);
+        let span = self.span;
+        self.out.extend(make(Arg::Low(dst), Value::Number(low.cast_signed()), span));
+        self.out.extend(make(Arg::High(dst), Value::Number(high.cast_signed()), span));
+    }
+
+    /// Makes a constant in a register.
+    pub(super) fn constant_in(&mut self, dst: VReg, constant: Constant) {
+        let value = match constant {
+            Constant::I32(value) => Value::Number(value),
+            Constant::F32(bits) => Value::Number(bits.cast_signed()),
+            Constant::Symbol(symbol, offset) => Value::Symbol(symbol, offset),
+            Constant::I64(value) => return self.wide_in(dst, value.cast_unsigned()),
+            Constant::F64(bits) => return self.wide_in(dst, bits),
+        };
+        let span = self.span;
+        self.out.extend(make(dst.into(), value, span));
+    }
+
+    /// An operand of class `I32` as a source that may be a constant in the range.
+    pub(super) fn small(&mut self, operand: Operand, range: std::ops::RangeInclusive<i32>) -> Arg {
+        match operand.as_int() {
+            Some(value) if range.contains(&value) => Arg::number(value),
+            _ => self.operand(operand).into(),
+        }
+    }
+}
+
+/// The instructions that make a word that is known.
+pub(in crate::c67x) fn make(dst: Arg, value: Value, span: crate::source::Span) -> impl Iterator<Item = Inst> {
+    let is_short = matches!(value, Value::Number(number) if i16::try_from(number).is_ok());
+    let low = Inst::new(Kind::Mvk, dst, Arg::Value(value), Arg::None, span);
+    let high = Inst::new(Kind::Mvkh, dst, Arg::Value(value), Arg::None, span);
+    std::iter::once(low).chain((!is_short).then_some(high))
+}

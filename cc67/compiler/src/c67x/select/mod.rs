@@ -1,0 +1,353 @@
+//! IR to instructions over virtual registers.
+//!
+//! Every IR value has one virtual register. Constants that no instruction can hold are made where they are needed;
+//! inside a loop they are made in front of the first block, and the allocator makes them again where it has no
+//! register for them.
+
+mod call;
+mod constants;
+mod convert;
+mod float;
+mod integer;
+mod memory;
+mod terminate;
+mod wide;
+
+pub(super) use constants::make;
+
+use cranelift_entity::{PrimaryMap, SecondaryMap};
+
+use super::abi;
+use super::code::{Arg, Block, Code, Condition, End, Info, Inst, VReg, Value};
+use super::externs::Externs;
+use super::forms::Kind;
+use crate::ir::function::{Function, Signatures, table};
+use crate::ir::inst::{BlockId, Class, InstKind, Operand, ValueId};
+use crate::source::Span;
+
+/// What selection needs besides the function.
+pub(super) struct Context<'a> {
+    pub(super) function: &'a Function,
+    pub(super) signatures: &'a Signatures,
+    pub(super) externs: &'a mut Externs,
+}
+
+/// The instructions of a function.
+pub(super) fn select(context: Context<'_>) -> Code {
+    let function = context.function;
+    let mut numbers: SecondaryMap<BlockId, u32> = table(function.blocks.len());
+    for (number, id) in (0..).zip(&function.layout) {
+        numbers[*id] = number;
+    }
+    let mut selector = Selector {
+        function,
+        signatures: context.signatures,
+        externs: context.externs,
+        values: SecondaryMap::new(),
+        uses: count_uses(function),
+        numbers,
+        code: Code {
+            blocks: Vec::with_capacity(function.layout.len()),
+            regs: PrimaryMap::with_capacity(function.values.len()),
+            calls: Vec::new(),
+            params: Vec::new(),
+            tables: Vec::new(),
+            spills: 0,
+            has_variable_calls: false,
+        },
+        early: Early::default(),
+        constants: Vec::new(),
+        out: Vec::new(),
+        span: function.span,
+        depth: 0,
+    };
+    selector.values.resize(function.values.len());
+    selector.run();
+    selector.code
+}
+
+/// How often each value is read.
+fn count_uses(function: &Function) -> SecondaryMap<ValueId, u32> {
+    let mut uses: SecondaryMap<ValueId, u32> = table(function.values.len());
+    let mut count = |operand: Operand| {
+        if let Operand::Value(value) = operand {
+            uses[value] += 1;
+        }
+    };
+    for id in &function.layout {
+        let block = &function.blocks[*id];
+        for inst in &block.insts {
+            let mut kind = inst.kind;
+            kind.visit_operands(|operand| count(*operand));
+            if let Some(arguments) = kind.arguments() {
+                function.arguments[arguments.range()].iter().for_each(|operand| count(*operand));
+            }
+        }
+        if let Some(operand) = block.terminator.operand() {
+            count(operand);
+        }
+    }
+    uses
+}
+
+/// What is done in front of the first block.
+#[derive(Default)]
+struct Early {
+    insts: Vec<Inst>,
+    /// Constants that are in registers from there on.
+    constants: Vec<(Value, VReg)>,
+}
+
+pub(super) struct Selector<'a> {
+    function: &'a Function,
+    signatures: &'a Signatures,
+    externs: &'a mut Externs,
+    values: SecondaryMap<ValueId, Option<VReg>>,
+    uses: SecondaryMap<ValueId, u32>,
+    numbers: SecondaryMap<BlockId, u32>,
+    code: Code,
+    early: Early,
+    /// Constants that are in registers in this block.
+    constants: Vec<(Value, VReg)>,
+    out: Vec<Inst>,
+    span: Span,
+    depth: u32,
+}
+
+impl Selector<'_> {
+    fn run(&mut self) {
+        let function = self.function;
+        self.parameters();
+        let depths = depths(function);
+        for (id, depth) in function.layout.iter().zip(depths) {
+            self.depth = depth;
+            self.constants.clear();
+            let block = &function.blocks[*id];
+            let fused = terminate::fused_compare(function, block, &self.uses);
+            let count = block.insts.len() - usize::from(fused.is_some());
+            for inst in block.insts.iter().take(count) {
+                self.span = inst.span;
+                self.inst(&inst.kind);
+            }
+            self.span = block.span;
+            let end = self.terminator(&block.terminator, fused);
+            let insts = std::mem::take(&mut self.out);
+            self.code.blocks.push(Block { insts, end, depth, span: block.span });
+        }
+        self.enter();
+    }
+
+    /// Puts what is done early in front of the first block; a block that is jumped to gets one before it.
+    fn enter(&mut self) {
+        let early = std::mem::take(&mut self.early.insts);
+        let is_target = self.code.blocks.iter().any(|block| block.end.targets().any(|to| to == 0));
+        if !is_target {
+            if let Some(first) = self.code.blocks.first_mut() {
+                first.insts.splice(0..0, early);
+            }
+            return;
+        }
+        let up = |to: &mut u32| *to += 1;
+        for block in &mut self.code.blocks {
+            match &mut block.end {
+                End::Jump(to) => up(to),
+                End::Branch { then, otherwise, .. } => {
+                    up(then);
+                    up(otherwise);
+                }
+                End::Table { targets, .. } => targets.iter_mut().for_each(up),
+                End::Return(_) | End::Unreachable => {}
+            }
+        }
+        self.code.tables.iter_mut().flatten().for_each(up);
+        let span = self.function.span;
+        self.code.blocks.insert(0, Block { insts: early, end: End::Jump(1), depth: 0, span });
+    }
+
+    fn parameters(&mut self) {
+        let params = &self.function.params;
+        for (param, at) in params.iter().zip(abi::ARGUMENTS) {
+            let reg = self.value(*param);
+            self.code.regs[reg].hint = Some(at);
+            self.code.params.push((reg, at));
+        }
+        if params.len() > abi::ARGUMENTS.len() {
+            let rest = self.word();
+            self.code.regs[rest].hint = Some(abi::REST);
+            self.code.params.push((rest, abi::REST));
+            for (index, param) in (0..).zip(&params[abi::ARGUMENTS.len()..]) {
+                let reg = self.value(*param);
+                let place = self.beyond(rest, index * 8);
+                self.load_value(reg, self.function.values[*param], place);
+            }
+            let loads = std::mem::take(&mut self.out);
+            self.early.insts.extend(loads);
+        }
+    }
+
+    /// The register of a value.
+    fn value(&mut self, value: ValueId) -> VReg {
+        if let Some(reg) = self.values[value] {
+            return reg;
+        }
+        let is_pair = matches!(self.function.values[value], Class::I64 | Class::F64);
+        let reg = self.code.reg(Info { is_pair, ..Info::default() });
+        self.values[value] = Some(reg);
+        reg
+    }
+
+    /// A new register for a word.
+    fn word(&mut self) -> VReg {
+        self.code.reg(Info::default())
+    }
+
+    /// A new register for a pair.
+    fn pair(&mut self) -> VReg {
+        self.code.reg(Info { is_pair: true, ..Info::default() })
+    }
+
+    /// A new register that is tested.
+    fn condition(&mut self) -> VReg {
+        self.code.reg(Info { is_condition: true, ..Info::default() })
+    }
+
+    fn push(&mut self, kind: Kind, dst: impl Into<Arg>, src1: impl Into<Arg>, src2: impl Into<Arg>) {
+        self.out.push(Inst::new(kind, dst.into(), src1.into(), src2.into(), self.span));
+    }
+
+    /// An instruction whose result is a new word.
+    fn make(&mut self, kind: Kind, src1: impl Into<Arg>, src2: impl Into<Arg>) -> VReg {
+        let dst = self.word();
+        self.push(kind, dst, src1, src2);
+        dst
+    }
+
+    /// An instruction with one source.
+    fn unary(&mut self, kind: Kind, dst: impl Into<Arg>, src: impl Into<Arg>) {
+        self.push(kind, dst, Arg::None, src);
+    }
+
+    /// An instruction that takes or makes a field of bits.
+    fn field(&mut self, kind: Kind, dst: impl Into<Arg>, src: impl Into<Arg>, field: (u8, u8)) {
+        let mut inst = Inst::new(kind, dst.into(), Arg::None, src.into(), self.span);
+        inst.field = field;
+        self.out.push(inst);
+    }
+
+    /// The last instruction happens under a condition alone.
+    fn only_if(&mut self, condition: Condition) {
+        if let Some(last) = self.out.last_mut() {
+            last.condition = condition;
+        }
+    }
+
+    /// `dst = src`, of a word.
+    fn copy_word(&mut self, dst: impl Into<Arg>, src: impl Into<Arg>) {
+        self.push(Kind::Move, dst, Arg::number(0), src);
+    }
+
+    /// `dst = src`, of a pair.
+    fn copy_pair(&mut self, dst: VReg, src: VReg) {
+        self.begin(dst);
+        self.copy_word(Arg::Low(dst), Arg::Low(src));
+        self.copy_word(Arg::High(dst), Arg::High(src));
+    }
+
+    /// Both halves of a pair will be written one by one.
+    fn begin(&mut self, dst: VReg) {
+        self.push(Kind::Begin, dst, Arg::None, Arg::None);
+    }
+
+    /// The register that holds an operand.
+    fn operand(&mut self, operand: Operand) -> VReg {
+        match operand {
+            Operand::Value(value) => self.value(value),
+            Operand::Constant(constant) => self.constant(constant),
+        }
+    }
+
+    fn class(&self, value: ValueId) -> Class {
+        self.function.values[value]
+    }
+
+    fn inst(&mut self, kind: &InstKind) {
+        match *kind {
+            InstKind::Copy { dst, src: Operand::Constant(constant) } => {
+                let dst = self.value(dst);
+                self.constant_in(dst, constant);
+            }
+            InstKind::Copy { dst, src: Operand::Value(src) } => {
+                let (is_pair, dst, src) = (is_pair(self.class(dst)), self.value(dst), self.value(src));
+                if is_pair {
+                    self.copy_pair(dst, src);
+                } else {
+                    self.copy_word(dst, src);
+                }
+            }
+            InstKind::Unary { op, dst, src } => self.unary_op(op, dst, src),
+            InstKind::Binary { op, dst, a, b } => match self.class(dst) {
+                Class::I32 => self.binary_i32(op, dst, a, b),
+                Class::I64 => self.binary_i64(op, dst, a, b),
+                class @ (Class::F32 | Class::F64) => self.binary_float(class, op, dst, a, b),
+            },
+            InstKind::Compare { op, dst, a, b } => {
+                let dst = self.value(dst);
+                let is_inverted = self.compare(op, dst, a, b);
+                if is_inverted {
+                    self.push(Kind::Xor, dst, Arg::number(1), dst);
+                }
+            }
+            InstKind::Convert { op, dst, src } => self.convert(op, dst, src),
+            InstKind::Load { dst, width, address } => self.load(dst, width, address),
+            InstKind::Store { src, width, address } => self.store(src, width, address),
+            InstKind::FrameAddress { dst, slot, offset } => {
+                let dst = self.value(dst);
+                self.frame_address(dst, slot, offset);
+            }
+            InstKind::CopyMemory { to, from, len } => self.copy_memory(to, from, len),
+            InstKind::ClearMemory { to, len } => self.clear_memory(to, len),
+            // The processor takes its own time.
+            InstKind::Cost { .. } => {}
+            InstKind::Call { callee, arguments, signature, dst } => {
+                self.call(callee, arguments, signature, dst.expand());
+            }
+        }
+    }
+}
+
+/// Whether values of a class are in pairs.
+const fn is_pair(class: Class) -> bool {
+    matches!(class, Class::I64 | Class::F64)
+}
+
+/// How many loops each block of the layout is in: stretches from the target of a jump backwards to the jump.
+fn depths(function: &Function) -> Vec<u32> {
+    let mut places: SecondaryMap<BlockId, u32> = table(function.blocks.len());
+    for (index, id) in function.layout.iter().enumerate() {
+        places[*id] = index as u32;
+    }
+    // The last jump back to each block: several of them make one loop.
+    let mut ends = vec![None; function.layout.len()];
+    for (index, id) in function.layout.iter().enumerate() {
+        for target in function.blocks[*id].terminator.targets().map(|to| places[to] as usize) {
+            if target <= index {
+                ends[target] = Some(index);
+            }
+        }
+    }
+    let mut changes = vec![0_i32; function.layout.len() + 1];
+    for (start, end) in ends.iter().enumerate() {
+        if let Some(end) = end {
+            changes[start] += 1;
+            changes[end + 1] -= 1;
+        }
+    }
+    let mut depth = 0;
+    let blocks = changes.iter().take(function.layout.len());
+    blocks
+        .map(|change| {
+            depth += change;
+            depth.unsigned_abs()
+        })
+        .collect()
+}

@@ -1,0 +1,171 @@
+//! Gives every virtual register one of the two files, and copies what an instruction cannot reach.
+//!
+//! An instruction executes on the side of its result, a load or store on that of its base. One source may come from
+//! the other side over the cross path, where its form has one. Registers are placed in the order of the code, where
+//! few operands cross and both sides have as much to do.
+
+use c67x::Side;
+
+use super::abi;
+use super::code::{Arg, Base, Code, Info, Inst, VReg};
+use super::forms::{Crossing, Kind};
+
+/// What a source on the other side costs, in instructions of imbalance.
+const CROSS: i32 = 3;
+/// The same where it takes a copy.
+const COPY: i32 = 6;
+/// What a side costs on which a register does not stay where it is wanted.
+const HINT: i32 = 4;
+
+/// Places all registers and inserts copies.
+pub(super) fn assign(code: &mut Code) {
+    for (reg, at) in &code.params {
+        code.regs[*reg].side = Some(at.side());
+    }
+    for block in &code.blocks {
+        let mut load = [0_i32; 2];
+        for inst in &block.insts {
+            place(&mut code.regs, inst, &mut load);
+        }
+    }
+    for info in code.regs.values_mut() {
+        info.side.get_or_insert(Side::A);
+    }
+    let mut copier = Copier { regs: &mut code.regs, copies: Vec::new(), out: Vec::new() };
+    for block in &mut code.blocks {
+        copier.copies.clear();
+        for inst in std::mem::take(&mut block.insts) {
+            copier.inst(inst);
+        }
+        block.insts = std::mem::take(&mut copier.out);
+    }
+}
+
+type Regs = cranelift_entity::PrimaryMap<VReg, Info>;
+
+/// Chooses the side of an instruction's result if it has none yet.
+fn place(regs: &mut Regs, inst: &Inst, load: &mut [i32; 2]) {
+    let is_nothing = matches!(inst.kind, Kind::Begin | Kind::Call);
+    let side = match (inst.dst.reg(), inst.place) {
+        (_, Some(place)) if inst.kind.bytes().is_some() => {
+            if let Some(dst) = inst.dst.reg() {
+                let info = &mut regs[dst];
+                let wanted = info.hint.map_or(lighter(load), |reg| reg.side());
+                info.side.get_or_insert(wanted);
+            }
+            match place.base {
+                Base::Reg(base) => *regs[base].side.get_or_insert(Side::A),
+                Base::Slot(_) | Base::Spill(_) | Base::Stack => Side::B,
+            }
+        }
+        (Some(dst), _) => match regs[dst].side {
+            Some(side) => side,
+            None => {
+                let side = best(regs, inst, dst, *load);
+                regs[dst].side = Some(side);
+                side
+            }
+        },
+        (None, _) => Side::A,
+    };
+    if !is_nothing {
+        load[side.bit() as usize] += 1;
+    }
+}
+
+fn lighter(load: &[i32; 2]) -> Side {
+    if load[1] < load[0] { Side::B } else { Side::A }
+}
+
+fn best(regs: &Regs, inst: &Inst, dst: VReg, load: [i32; 2]) -> Side {
+    let cost = |side: Side| {
+        let own = load[side.bit() as usize];
+        let other = load[side.other().bit() as usize];
+        let mut cost = (own - other).clamp(-4, 4);
+        for arg in [inst.src1, inst.src2] {
+            let Some(source) = arg.reg() else { continue };
+            if regs[source].side.is_some_and(|source| source != side) {
+                cost += if inst.kind.crossing() == Crossing::Neither { COPY } else { CROSS };
+            }
+        }
+        if regs[dst].hint.is_some_and(|reg| reg.side() != side) {
+            cost += HINT;
+        }
+        cost
+    };
+    if cost(Side::B) < cost(Side::A) { Side::B } else { Side::A }
+}
+
+/// Inserts copies.
+struct Copier<'a> {
+    regs: &'a mut Regs,
+    /// Copies that hold in this block: of what, the copy.
+    copies: Vec<(Arg, VReg)>,
+    out: Vec<Inst>,
+}
+
+impl Copier<'_> {
+    fn side(&self, reg: VReg) -> Side {
+        self.regs[reg].side.unwrap_or(Side::A)
+    }
+
+    fn crosses(&self, arg: Arg, side: Side) -> bool {
+        arg.reg().is_some_and(|reg| self.side(reg) != side)
+    }
+
+    fn inst(&mut self, mut inst: Inst) {
+        if inst.kind.bytes().is_some() {
+            if let Some(place) = &mut inst.place
+                && let (Base::Reg(base), Some(index)) = (place.base, place.index)
+            {
+                let side = self.side(base);
+                if let Some(copy) = self.reach(Arg::Reg(index), side, inst.span).reg() {
+                    place.index = Some(copy);
+                }
+            }
+        } else if let Some(dst) = inst.dst.reg().filter(|_| !matches!(inst.kind, Kind::Begin | Kind::Call)) {
+            let side = self.side(dst);
+            let both = self.crosses(inst.src1, side) && self.crosses(inst.src2, side);
+            match inst.kind.crossing() {
+                Crossing::One if !both => {}
+                Crossing::One | Crossing::Second => inst.src1 = self.reach(inst.src1, side, inst.span),
+                Crossing::Neither => {
+                    inst.src1 = self.reach(inst.src1, side, inst.span);
+                    inst.src2 = self.reach(inst.src2, side, inst.span);
+                }
+            }
+        }
+        for written in [inst.written().map(|(reg, _)| reg), inst.stepped()].into_iter().flatten() {
+            self.copies.retain(|(of, copy)| of.reg() != Some(written) && *copy != written);
+        }
+        self.out.push(inst);
+    }
+
+    /// The operand on this side.
+    fn reach(&mut self, arg: Arg, side: Side, span: crate::source::Span) -> Arg {
+        let Some(reg) = arg.reg().filter(|reg| self.side(*reg) != side) else { return arg };
+        let known = self.copies.iter().find(|(of, copy)| *of == arg && self.side(*copy) == side);
+        if let Some((_, copy)) = known {
+            return Arg::Reg(*copy);
+        }
+        let is_pair = matches!(arg, Arg::Reg(_)) && self.regs[reg].is_pair;
+        let copy = self.regs.push(Info { is_pair, side: Some(side), ..Info::default() });
+        let copy_word = |dst, src| Inst::new(Kind::Move, dst, Arg::number(0), src, span);
+        if is_pair {
+            self.out.push(Inst::new(Kind::Begin, copy.into(), Arg::None, Arg::None, span));
+            self.out.push(copy_word(Arg::Low(copy), Arg::Low(reg)));
+            self.out.push(copy_word(Arg::High(copy), Arg::High(reg)));
+        } else {
+            self.out.push(copy_word(copy.into(), arg));
+        }
+        self.copies.push((arg, copy));
+        Arg::Reg(copy)
+    }
+}
+
+/// The file that a register may be in.
+pub(super) fn file(info: &Info) -> u64 {
+    let side = info.side.unwrap_or(Side::A);
+    let file = abi::file(side) & abi::USABLE;
+    if info.is_condition { file & abi::CONDITIONS } else { file }
+}

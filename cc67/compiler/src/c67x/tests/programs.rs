@@ -1,0 +1,60 @@
+//! The recorded programs of the specification: the same console and result, and the cycles beside the vendor's.
+
+use serde_json::Value;
+
+use super::{build, machine};
+use crate::passes::Level;
+
+const PROGRAMS: &str = include_str!("programs.jsonl");
+
+/// What differs from the vendor's compiler on purpose: its division is not correctly rounded, and comparisons with
+/// a NaN are wrong. And what the firmware of these tests does not have: time, and its own `%g`.
+const OTHERWISE: &[&str] = &["specials", "convert", "printfmt", "timeslice", "delay"];
+
+/// Runs every program; the table, and the geometric means of cycles and of bytes.
+fn all(level: Level) -> (String, f64, f64) {
+    let (mut table, mut cycles, mut bytes, mut count) = (String::new(), 0.0, 0.0, 0);
+    let mut wrong = Vec::new();
+    for line in PROGRAMS.lines() {
+        let program: Value = serde_json::from_str(line).expect("a line of JSON");
+        let id = program["id"].as_str().expect("a name");
+        let linked = build(program["source"].as_str().expect("a source"), level);
+        let run = machine::run(&linked);
+        let expected = program["console"].as_str().expect("a text");
+        let result = program["main_result"].as_i64().expect("a number");
+        if (run.console != expected || i64::from(run.result) != result) && !OTHERWISE.contains(&id) {
+            wrong.push(format!("{id}: {:?} {}, not {expected:?} {result}", run.console, run.result));
+        }
+        let vendor = program["user_cycles"].as_f64().expect("a number");
+        let load = program["load"].as_array().expect("sections");
+        let words: usize = load.iter().filter_map(|section| section["words"].as_array()).map(Vec::len).sum();
+        let (speed, size) = (run.cycles as f64 / vendor, linked.text.bytes.len() as f64 / (4 * words) as f64);
+        cycles += libm::log(speed);
+        bytes += libm::log(size);
+        count += 1;
+        table += &format!(
+            "{id:12} {:8} of {vendor:8} {speed:6.3}   {:5} bytes {size:6.3}\n",
+            run.cycles,
+            linked.text.bytes.len()
+        );
+    }
+    let count = f64::from(count);
+    let (cycles, bytes) = (libm::exp(cycles / count), libm::exp(bytes / count));
+    table += &format!("geometric mean: cycles {cycles:.3}, bytes {bytes:.3}\n");
+    assert!(wrong.is_empty(), "{table}\n{}", wrong.join("\n"));
+    (table, cycles, bytes)
+}
+
+#[test]
+fn recorded_programs_give_what_was_recorded() {
+    let (table, cycles, bytes) = all(Level::Full);
+    println!("{table}");
+    // The aim is 0.18 and 0.33.
+    assert!(cycles <= 0.19 && bytes <= 0.39, "slower or larger than it was:\n{table}");
+}
+
+#[test]
+fn recorded_programs_give_the_same_without_optimisation() {
+    let (table, ..) = all(Level::None);
+    println!("{table}");
+}

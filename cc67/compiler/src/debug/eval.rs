@@ -1,0 +1,325 @@
+//! Expressions where a program stands: C, with the locals of the function around.
+//!
+//! An expression is compiled as a statement at the end of the innermost block around a line, so that every name in it
+//! means what it means there. It is computed from the board's memory and the registers of a call; it only reads.
+
+use std::collections::BTreeMap;
+
+use kmotiondef::GuestAddr;
+
+use super::scope;
+use super::value::{Data, DebugValue, Displayed};
+use super::{LocalModel, Model};
+use crate::diag::{Severity, Sink};
+use crate::driver::{front, on_large_stack};
+use crate::inspect::Kind;
+use crate::names::Names;
+use crate::pp::Disk;
+use crate::sema::constants::{self, Constant};
+use crate::source::SourceMap;
+use crate::ty::{Type, TypeId, Types};
+use crate::typed::{ExprId, ExprKind, LocalId, PlaceKind, StmtKind, Unit};
+use crate::watch::{self, Expression};
+
+/// Where a local of a call in progress is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LocalPlace {
+    /// In memory.
+    Memory(GuestAddr),
+    /// In a register, which holds these bits.
+    Slot(u64),
+}
+
+/// What expressions and values are read from.
+pub trait DebugReader {
+    /// The eight bytes from an address on; 0 outside the memory.
+    fn bytes(&self, address: GuestAddr) -> [u8; 8];
+
+    /// The item of this place in the list that the expression was compiled with.
+    fn item(&self, index: usize) -> f64;
+
+    /// Where a local is; `None` if it is optimised out.
+    fn local(&self, local: &LocalModel) -> Option<LocalPlace>;
+}
+
+/// An expression that was compiled for a place in a program.
+#[derive(Debug)]
+pub struct Probe {
+    unit: Unit,
+    names: Names,
+    expression: Expression,
+    value: ExprId,
+    /// The value is the address of what was asked for.
+    is_address: bool,
+    locals: BTreeMap<LocalId, LocalModel>,
+}
+
+/// The text inserted before and after an expression.
+const BEFORE: &str = "\n;{ ";
+const BEHIND: &str = "\n; }\n";
+
+impl Model {
+    /// Compiles an expression at a line of a function; without one, outside of all functions. `items` are further names
+    /// in it, of type `double`.
+    ///
+    /// # Errors
+    /// What is wrong with it, in one line.
+    ///
+    /// # Panics
+    /// If the system cannot start a thread.
+    pub fn probe(
+        &self,
+        place: Option<(&str, u32)>,
+        expression: &str,
+        items: &[&str],
+    ) -> Result<Probe, String> {
+        on_large_stack(|| {
+            let whole = self.probe_as(place, &format!("&(\n{expression}\n)"), items, true);
+            whole.or_else(|_| self.probe_as(place, &format!("(\n{expression}\n)"), items, false))
+        })
+    }
+
+    fn probe_as(
+        &self,
+        place: Option<(&str, u32)>,
+        expression: &str,
+        items: &[&str],
+        is_address: bool,
+    ) -> Result<Probe, String> {
+        let items_text: String = items.iter().map(|item| format!("extern double {item}; ")).collect();
+        let inserted = format!("{BEFORE}{items_text}{expression}{BEHIND}");
+        let mut text = self.text.clone();
+        let inside = place.and_then(|(function, line)| self.place_in(function, line));
+        let (from, name, inside) = match inside {
+            Some((at, name)) => {
+                text.splice(at..at, inserted.bytes());
+                (at, name, true)
+            }
+            None => {
+                let name = "__cc67_probe";
+                let from = text.len();
+                text.extend(format!("\nvoid {name}(void) {{{inserted}}}\n").bytes());
+                (from, name.to_owned(), false)
+            }
+        };
+        let until = if inside { from + inserted.len() } else { text.len() };
+        self.compile(text, from as u32..until as u32, &name, items, is_address)
+    }
+
+    /// Where to insert an expression that is about a line of a function.
+    fn place_in(&self, function: &str, line: u32) -> Option<(usize, String)> {
+        let function = self.functions.iter().find(|known| known.name == function)?;
+        let head = scope::begin_of_line(&self.text, function.lines.start);
+        let body = scope::begin_of_body(&self.text, head)?;
+        let from = scope::begin_of_line(&self.text, line).max(body);
+        let end = scope::end_of_block(&self.text, from)?;
+        Some((end, function.name.clone()))
+    }
+
+    fn compile(
+        &self,
+        text: Vec<u8>,
+        inserted: std::ops::Range<u32>,
+        name: &str,
+        items: &[&str],
+        is_address: bool,
+    ) -> Result<Probe, String> {
+        let (mut sources, mut names, mut sink) = (SourceMap::new(), Names::new(), Sink::new());
+        let main = sources.add_file(self.path.to_string_lossy(), Some(&self.path), text, None);
+        let mut unit = front(main, &self.options, &Disk, &mut sources, &mut names, &mut sink);
+        let error = sink.diagnostics().iter().find(|diagnostic| diagnostic.severity == Severity::Error);
+        if let Some(error) = error {
+            return Err(watch::in_one_line(error));
+        }
+        let start = sources.file(main).start;
+        let range = start + inserted.start..start + inserted.end;
+        let index = unit.functions.iter().position(|function| unit.symbols[function.symbol].name == name);
+        let index = index.ok_or("it is no expression")?;
+        let function = &unit.functions[index];
+        let mut found = None;
+        function.each_stmt(&mut |stmt| {
+            if let StmtKind::Expr(id) = stmt.kind
+                && range.contains(&sources.call_site(stmt.span).lo)
+            {
+                found.get_or_insert(id);
+            }
+        });
+        let mut value = found.ok_or("it is no expression")?;
+        while let ExprKind::Convert(inner) = function.exprs[value].kind {
+            if function.exprs[value].ty != Types::VOID {
+                break;
+            }
+            value = inner;
+        }
+        let locals = self.locals_of(name, function, &sources, start);
+        let symbols = self.image.symbols.iter().filter(|entry| entry.kind == Kind::Object);
+        let symbols = symbols.map(|entry| (entry.name.clone(), GuestAddr::new(entry.address))).collect();
+        let meanings = watch::meanings(&unit, index, value, (&symbols, &self.options), items)?;
+        let function = unit.functions.swap_remove(index);
+        let expression = Expression::new(function, value, meanings);
+        Ok(Probe { unit, names, expression, value, is_address, locals })
+    }
+
+    /// The locals of the compilation with an expression as those of the program.
+    fn locals_of(
+        &self,
+        name: &str,
+        function: &crate::typed::Function,
+        sources: &SourceMap,
+        start: u32,
+    ) -> BTreeMap<LocalId, LocalModel> {
+        let Some(known) = self.function_named(name) else { return BTreeMap::new() };
+        let mut locals = BTreeMap::new();
+        for (id, local) in &function.locals {
+            let declared = sources.call_site(local.span).lo.wrapping_sub(start);
+            let same =
+                known.locals.iter().find(|known| known.name == local.name && known.declared == declared);
+            if let Some(same) = same {
+                locals.insert(id, same.clone());
+            }
+        }
+        locals
+    }
+
+    /// The value of a local, if it has one at present.
+    #[must_use]
+    pub fn local<'a>(
+        &'a self,
+        local: &LocalModel,
+        reader: &'a dyn DebugReader,
+    ) -> Option<(DebugValue, Displayed<'a>)> {
+        let place = reader.local(local)?;
+        let shown = Displayed { types: &self.unit.types, names: &self.names, reader };
+        Some((DebugValue::of(local.type_id, place), shown))
+    }
+
+    /// The value of a variable outside of functions.
+    #[must_use]
+    pub fn global<'a>(
+        &'a self,
+        name: &str,
+        address: u32,
+        reader: &'a dyn DebugReader,
+    ) -> Option<(DebugValue, Displayed<'a>)> {
+        let symbol = self.unit.symbols.values().find(|symbol| symbol.name == name)?;
+        let shown = Displayed { types: &self.unit.types, names: &self.names, reader };
+        Some((DebugValue { ty: symbol.ty, data: Data::Memory(GuestAddr::new(address)) }, shown))
+    }
+}
+
+/// A reader as an expression wants it.
+struct Inner<'a> {
+    reader: &'a dyn DebugReader,
+    locals: &'a BTreeMap<LocalId, LocalModel>,
+}
+
+impl watch::Reader for Inner<'_> {
+    fn bytes(&self, address: GuestAddr) -> [u8; 8] {
+        self.reader.bytes(address)
+    }
+
+    fn item(&self, index: usize) -> f64 {
+        self.reader.item(index)
+    }
+
+    fn local(&self, local: LocalId) -> Option<watch::Local> {
+        Some(match self.reader.local(self.locals.get(&local)?)? {
+            LocalPlace::Memory(address) => watch::Local::Memory(address),
+            LocalPlace::Slot(bits) => watch::Local::Slot(bits),
+        })
+    }
+}
+
+impl Probe {
+    /// The present value.
+    ///
+    /// # Errors
+    /// That a local is optimised out, or that an integer is divided by 0.
+    pub fn value(&self, reader: &dyn DebugReader) -> Result<DebugValue, String> {
+        let inner = Inner { reader, locals: &self.locals };
+        let function = self.expression.function();
+        let ty = function.exprs[self.value].ty;
+        if !self.is_address {
+            let constant = self.expression.constant_of(self.value, &inner).ok_or_else(|| self.why(reader))?;
+            return Ok(DebugValue { ty, data: Data::Constant(constant) });
+        }
+        let pointee = match self.unit.types.get(ty) {
+            Type::Pointer(to) => to.ty,
+            _ => ty,
+        };
+        if let ExprKind::Address(place) = function.exprs[self.value].kind
+            && let PlaceKind::Local(local, 0) = function.places[place].kind
+        {
+            let local = self.locals.get(&local).ok_or_else(|| self.why(reader))?;
+            return Ok(DebugValue::of(
+                pointee,
+                reader.local(local).ok_or_else(|| optimised_out(&local.name))?,
+            ));
+        }
+        match self.expression.constant_of(self.value, &inner) {
+            Some(Constant::Int(address)) => {
+                Ok(DebugValue { ty: pointee, data: Data::Memory(GuestAddr::new(address as u32)) })
+            }
+            _ => Err(self.why(reader)),
+        }
+    }
+
+    /// The local that the expression names, for another value of it.
+    #[must_use]
+    pub fn as_local(&self) -> Option<&LocalModel> {
+        let function = self.expression.function();
+        let ExprKind::Address(place) = function.exprs[self.value].kind else { return None };
+        match function.places[place].kind {
+            PlaceKind::Local(local, 0) if self.is_address => self.locals.get(&local),
+            _ => None,
+        }
+    }
+
+    /// Types and names, to show the value.
+    #[must_use]
+    pub fn shown<'a>(&'a self, reader: &'a dyn DebugReader) -> Displayed<'a> {
+        Displayed { types: &self.unit.types, names: &self.names, reader }
+    }
+
+    /// A number as memory would hold it in this place; `None` for a structure or an array.
+    #[must_use]
+    pub fn bytes_of(&self, place: &DebugValue, number: f64, reader: &dyn DebugReader) -> Option<Vec<u8>> {
+        let shown = self.shown(reader);
+        shown.constant(place)?;
+        if let Data::Field(..) = place.data {
+            return None;
+        }
+        Some(encode(place.ty, number))
+    }
+
+    fn why(&self, reader: &dyn DebugReader) -> String {
+        let missing =
+            self.locals.values().find(|local| self.names_local(local) && reader.local(local).is_none());
+        missing
+            .map_or_else(|| "it has no value: it divides by 0".to_owned(), |local| optimised_out(&local.name))
+    }
+
+    /// Whether the expression mentions a local.
+    fn names_local(&self, local: &LocalModel) -> bool {
+        let function = self.expression.function();
+        function.places.values().any(|place| match place.kind {
+            PlaceKind::Local(id, _) => {
+                self.locals.get(&id).is_some_and(|known| known.declared == local.declared)
+            }
+            _ => false,
+        })
+    }
+}
+
+fn optimised_out(name: &str) -> String {
+    format!("`{name}` is optimised out here; with -O0 it is there")
+}
+
+/// A number as memory holds it.
+fn encode(ty: TypeId, number: f64) -> Vec<u8> {
+    match constants::convert(Constant::Float(number), Types::DOUBLE, ty) {
+        Constant::Int(value) => value.to_le_bytes().into_iter().take(watch::size_of(ty)).collect(),
+        Constant::Float(value) if ty == Types::FLOAT => (value as f32).to_le_bytes().into(),
+        Constant::Float(value) => value.to_le_bytes().into(),
+    }
+}

@@ -1,0 +1,358 @@
+//! Debug information: where everything that a source names is while its program runs, and of which type.
+//!
+//! A compilation is a function of its source and options, so what is known of a program beyond its image is found by
+//! compiling the source again: types, scopes, and for every local in which register or where in the frame it is at each
+//! instruction. [`Model::of`] compares the image that comes out with the one that is there, byte for byte; where they
+//! differ the information would be of another program, and there is none.
+
+mod eval;
+mod scope;
+mod value;
+
+pub use eval::{DebugReader, LocalPlace, Probe};
+pub use value::{Child, DebugValue, Displayed};
+
+use std::fmt::Write as _;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use kmotiondef::ThreadId;
+
+use crate::driver::{Options, front_and_object, on_large_stack};
+use crate::image;
+use crate::inspect::{Inspection, Kind};
+use crate::link::Linked;
+use crate::names::Names;
+use crate::object::VariablePlaces;
+use crate::passes::Level;
+use crate::pp::Files;
+use crate::source::SourceMap;
+use crate::typed::Unit;
+
+pub use crate::object::Location;
+
+/// What is known of one program for a debugger.
+#[derive(Debug)]
+pub struct Model {
+    /// The source file.
+    pub path: PathBuf,
+    /// Functions in the order of their addresses.
+    pub functions: Vec<FunctionModel>,
+    text: Vec<u8>,
+    unit: Unit,
+    names: Names,
+    options: Options,
+    image: Inspection,
+}
+
+/// A function.
+#[derive(Debug)]
+pub struct FunctionModel {
+    /// Its name.
+    pub name: String,
+    /// Its code.
+    pub addresses: Range<u32>,
+    /// The file of its definition.
+    pub file: String,
+    /// The line of its name, and that of its closing brace.
+    pub lines: Range<u32>,
+    /// The addresses at which a line begins, ascending, each with the line; the first is behind what enters the function.
+    pub statements: Vec<(u32, u32)>,
+    /// Parameters and variables in the order of their declarations.
+    pub locals: Vec<LocalModel>,
+}
+
+/// A parameter or variable of a function.
+#[derive(Clone, Debug)]
+pub struct LocalModel {
+    /// Its name.
+    pub name: String,
+    /// Its type as C spells it.
+    pub ty: String,
+    /// The lines in which its name means it.
+    pub lines: Range<u32>,
+    /// Where it is, and for which addresses that holds; elsewhere it is optimised out.
+    pub places: Vec<(Range<u32>, Location)>,
+    /// Where it is declared in the source.
+    pub(crate) declared: u32,
+    type_id: crate::ty::TypeId,
+}
+
+impl LocalModel {
+    /// Where it is when the instruction at an address is next; `None` if it is optimised out there.
+    #[must_use]
+    pub fn at(&self, address: u32) -> Option<Location> {
+        self.places.iter().find(|(range, _)| range.contains(&address)).map(|(_, location)| *location)
+    }
+}
+
+impl Model {
+    /// What is known of the program that `text` became, an image for `thread`.
+    ///
+    /// # Errors
+    /// Why there is no information: the source does not compile, or makes another image.
+    ///
+    /// # Panics
+    /// If the system cannot start a thread.
+    pub fn of(
+        path: &Path,
+        text: Vec<u8>,
+        options: &Options,
+        files: &(dyn Files + Sync),
+        thread: ThreadId,
+        program: &[u8],
+    ) -> Result<Self, String> {
+        on_large_stack(|| Self::here(path, text, options, files, thread, program))
+    }
+
+    fn here(
+        path: &Path,
+        text: Vec<u8>,
+        options: &Options,
+        files: &(dyn Files + Sync),
+        thread: ThreadId,
+        program: &[u8],
+    ) -> Result<Self, String> {
+        let (unit, mut compilation, names) = front_and_object(path, text.clone(), options, files);
+        let object = compilation.object.clone().ok_or("the source has errors")?;
+        let linked: Option<Linked> = compilation.link(thread, options);
+        let made = linked.and_then(|linked| image::write(&linked).ok()).ok_or("the source does not link")?;
+        if made != program {
+            return Err("the source, as it is compiled here, makes another image".to_owned());
+        }
+        let image = Inspection::read(program).map_err(|error| error.to_string())?;
+        let mut model = Self {
+            path: path.to_owned(),
+            functions: Vec::new(),
+            text,
+            unit,
+            names,
+            options: options.clone(),
+            image,
+        };
+        model.functions = model.functions_of(&object, &compilation.sources);
+        Ok(model)
+    }
+
+    fn functions_of(&self, object: &crate::object::Object, sources: &SourceMap) -> Vec<FunctionModel> {
+        let mut functions = Vec::new();
+        for function in &object.functions {
+            let symbol = &object.symbols[function.symbol];
+            let entry = self
+                .image
+                .symbols
+                .iter()
+                .find(|entry| entry.kind == Kind::Function && entry.name == symbol.name);
+            let Some(index) = self.unit.functions.iter().position(|known| known.symbol == function.symbol)
+            else {
+                continue;
+            };
+            let lines = symbol.place.line..function.end.line.max(symbol.place.line);
+            let Some(entry) = entry else {
+                functions.push(self.without_code(symbol.name.clone(), lines));
+                continue;
+            };
+            let size = (function.words.end - function.words.start) * 8;
+            let addresses = entry.address..entry.address + size;
+            let address = |word: u32| entry.address + (word - function.words.start) * 8;
+            let local =
+                |variable: &VariablePlaces| self.local_model(index, variable, sources, &lines, &address);
+            functions.push(FunctionModel {
+                name: symbol.name.clone(),
+                statements: self.statements(&addresses, &lines),
+                addresses,
+                file: object.files.get(symbol.place.file as usize).cloned().unwrap_or_default(),
+                locals: function.variables.iter().filter_map(local).collect(),
+                lines: lines.clone(),
+            });
+        }
+        functions.sort_by_key(|function| function.addresses.start);
+        functions
+    }
+
+    /// A function that has no code of its own: all its calls have become parts of their callers, where its lines are.
+    fn without_code(&self, name: String, lines: Range<u32>) -> FunctionModel {
+        let file = self.path.to_string_lossy().into_owned();
+        FunctionModel { name, addresses: 0..0, file, lines, statements: Vec::new(), locals: Vec::new() }
+    }
+
+    /// Where the statements of a function begin; the first follows the words that enter it.
+    fn statements(&self, addresses: &Range<u32>, lines: &Range<u32>) -> Vec<(u32, u32)> {
+        let program = self.image.program.as_ref().ok();
+        let body = program.and_then(|program| {
+            let at = program.function_at(kmotiondef::GuestAddr::new(addresses.start))?;
+            let function = program.functions().get(program.index_of(at)?)?;
+            Some(program.address_of(function.body.start).get())
+        });
+        let mut statements: Vec<_> = (self.image.lines.iter())
+            .filter(|line| addresses.contains(&line.address))
+            .map(|line| (line.address.max(body.unwrap_or(line.address)), line.line))
+            .collect();
+        // What enters the function is on the line of its name.
+        if let [(_, first), (_, second), ..] = statements.as_slice()
+            && *first == lines.start
+            && second != first
+        {
+            statements.remove(0);
+        }
+        statements
+    }
+
+    fn local_model(
+        &self,
+        index: usize,
+        variable: &VariablePlaces,
+        sources: &SourceMap,
+        lines: &Range<u32>,
+        address: &dyn Fn(u32) -> u32,
+    ) -> Option<LocalModel> {
+        let local = self.unit.functions[index].locals.get(variable.local)?;
+        if local.name.is_empty() {
+            return None;
+        }
+        let site = sources.call_site(local.span);
+        let line = sources.place(local.span).map_or(lines.start, |place| place.line);
+        let until = scope::end_of_block(&self.text, site.lo as usize)
+            .map_or(lines.end, |end| scope::line_of(&self.text, end).min(lines.end));
+        let is_parameter = self.unit.functions[index].parameters.contains(&variable.local);
+        let until = if is_parameter { lines.end } else { until };
+        Some(LocalModel {
+            name: local.name.clone(),
+            ty: self.unit.types.spell(&self.names, local.ty),
+            lines: line..until + 1,
+            places: (variable.places.iter())
+                .map(|(words, location)| (address(words.start)..address(words.end), *location))
+                .collect(),
+            declared: site.lo,
+            type_id: local.ty,
+        })
+    }
+
+    /// The function that an address lies in.
+    #[must_use]
+    pub fn function_at(&self, address: u32) -> Option<&FunctionModel> {
+        self.functions.iter().find(|function| function.addresses.contains(&address))
+    }
+
+    /// The function of a name.
+    #[must_use]
+    pub fn function_named(&self, name: &str) -> Option<&FunctionModel> {
+        self.functions.iter().find(|function| function.name == name)
+    }
+
+    /// The line that the instruction at an address belongs to.
+    #[must_use]
+    pub fn line_at(&self, address: u32) -> Option<u32> {
+        self.image.line_at(address).map(|line| line.line)
+    }
+
+    /// What the image says of itself.
+    #[must_use]
+    pub const fn image(&self) -> &Inspection {
+        &self.image
+    }
+
+    /// The source text.
+    #[must_use]
+    pub fn text(&self) -> &[u8] {
+        &self.text
+    }
+
+    /// Variables of the program outside of functions, as the source names them: name, type, address.
+    #[must_use]
+    pub fn globals(&self) -> Vec<(String, String, u32)> {
+        let mut globals = Vec::new();
+        for entry in self.image.symbols.iter().filter(|entry| entry.kind == Kind::Object) {
+            let symbol =
+                self.unit.symbols.values().find(|symbol| symbol.name == entry.name && !symbol.is_anonymous());
+            if let Some(symbol) = symbol {
+                let ty = self.unit.types.spell(&self.names, symbol.ty);
+                globals.push((entry.name.clone(), ty, entry.address));
+            }
+        }
+        globals
+    }
+
+    /// All of it as a table.
+    #[must_use]
+    pub fn table(&self) -> String {
+        let mut out = String::new();
+        for (name, ty, address) in self.globals() {
+            // Writing to a string cannot fail.
+            let _ = writeln!(out, "{address:08x} {name}: {ty}");
+        }
+        for function in &self.functions {
+            let Range { start, end } = &function.addresses;
+            let (first, last) = (function.lines.start, function.lines.end);
+            let _ = writeln!(
+                out,
+                "{start:08x}-{end:08x} {}() in {} lines {first}-{last}",
+                function.name, function.file
+            );
+            for local in &function.locals {
+                let _ = writeln!(
+                    out,
+                    "  {}: {}, lines {}-{}",
+                    local.name,
+                    local.ty,
+                    local.lines.start,
+                    local.lines.end.saturating_sub(1)
+                );
+                if local.places.is_empty() {
+                    let _ = writeln!(out, "    optimised out");
+                }
+                for (range, location) in &local.places {
+                    let _ = writeln!(out, "    {:08x}-{:08x} {location}", range.start, range.end);
+                }
+            }
+        }
+        out
+    }
+}
+
+/// Debug information of an image file, of the source beside it.
+///
+/// The image has to be what one of the usual sets of options makes of it: those given, or the same at another level.
+///
+/// # Errors
+/// Why there is none.
+pub fn of_image(path: &Path, program: &[u8], options: &Options) -> Result<Model, String> {
+    let source = source_of(path, program)?;
+    let text =
+        crate::files::read(&source).map_err(|error| format!("cannot read {}: {error}", source.display()))?;
+    let thread = thread_of(program).ok_or("the image is of no thread")?;
+    let levels = [(Level::Full, true), (Level::None, false), (Level::None, true), (Level::Full, false)];
+    let others = levels.map(|(level, gc_sections)| Options { level, gc_sections, ..options.clone() });
+    let mut first = None;
+    for options in std::iter::once(options.clone()).chain(others) {
+        // The name of the file is part of the image: as it was written, or as it is found.
+        for name in [PathBuf::from(source.file_name().unwrap_or_default()), source.clone()] {
+            match Model::of(&name, text.clone(), &options, &crate::pp::Disk, thread, program) {
+                Ok(model) => return Ok(Model { path: source, ..model }),
+                Err(error) => _ = first.get_or_insert(error),
+            }
+        }
+    }
+    Err(first.unwrap_or_default())
+}
+
+/// The source that an image says it was made of: where it says, or beside the image.
+///
+/// # Errors
+/// That it is not there.
+pub fn source_of(path: &Path, program: &[u8]) -> Result<PathBuf, String> {
+    let image = Inspection::read(program).map_err(|error| error.to_string())?;
+    let main = image.symbols.iter().find(|entry| entry.kind == Kind::Function && entry.name == "main");
+    let file =
+        main.and_then(|entry| entry.file.clone()).ok_or("the image does not say which source it is of")?;
+    let beside = path.parent().unwrap_or(Path::new("")).join(&file);
+    let found = [beside, PathBuf::from(&file)].into_iter().find(|path| path.is_file());
+    found.ok_or_else(|| format!("its source {file} is not beside it"))
+}
+
+/// The thread that an image is linked for.
+fn thread_of(program: &[u8]) -> Option<ThreadId> {
+    let image = Inspection::read(program).ok()?.image;
+    let text = image.section(".text")?.address;
+    ThreadId::all().find(|thread| kmotiondef::map::program_base(*thread).get() == text)
+}

@@ -1,0 +1,260 @@
+//! Values with their types: what they are in words, and what they consist of.
+
+use kmotiondef::GuestAddr;
+
+use super::eval::{DebugReader, LocalPlace};
+use crate::names::Names;
+use crate::sema::constants::Constant;
+use crate::ty::{BitRange, QualifiedType, Type, TypeId, Types};
+use crate::watch;
+
+/// Most elements and members of a value that are shown in one line, and most characters of a string.
+const ELEMENTS: u32 = 32;
+const CHARACTERS: u32 = 200;
+
+/// How deep structures in structures are shown in one line.
+const DEPTH: u32 = 3;
+
+/// A value of the program.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DebugValue {
+    /// Its type.
+    pub(super) ty: TypeId,
+    /// Where it is, or what.
+    pub(super) data: Data,
+}
+
+/// Where a value is, or what.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Data {
+    /// In memory.
+    Memory(GuestAddr),
+    /// Some bits of a word in memory.
+    Field(GuestAddr, BitRange),
+    /// The bits of a register.
+    Slot(u64),
+    /// Computed.
+    Constant(Constant),
+}
+
+impl DebugValue {
+    /// A variable.
+    pub(super) const fn of(ty: TypeId, place: LocalPlace) -> Self {
+        let data = match place {
+            LocalPlace::Memory(address) => Data::Memory(address),
+            LocalPlace::Slot(bits) => Data::Slot(bits),
+        };
+        Self { ty, data }
+    }
+
+    /// Where it is in memory.
+    #[must_use]
+    pub const fn address(&self) -> Option<GuestAddr> {
+        match self.data {
+            Data::Memory(address) | Data::Field(address, _) => Some(address),
+            Data::Slot(_) | Data::Constant(_) => None,
+        }
+    }
+}
+
+/// A part of a value: a member, an element, what a pointer points at.
+#[derive(Clone, Debug)]
+pub struct Child {
+    /// Its name within the whole: `x`, `[3]`, `*p`.
+    pub name: String,
+    /// How C names it.
+    pub expression: String,
+    /// What it is.
+    pub value: DebugValue,
+}
+
+/// Types, their names, and the memory that values are read from.
+#[derive(Clone, Copy)]
+pub struct Displayed<'a> {
+    pub(super) types: &'a Types,
+    pub(super) names: &'a Names,
+    pub(super) reader: &'a dyn DebugReader,
+}
+
+impl Displayed<'_> {
+    /// The type as C spells it.
+    #[must_use]
+    pub fn type_of(&self, value: &DebugValue) -> String {
+        self.types.spell(self.names, value.ty)
+    }
+
+    /// Bytes of the value.
+    #[must_use]
+    pub fn size_of(&self, value: &DebugValue) -> u32 {
+        self.types.size_of(value.ty).unwrap_or(4)
+    }
+
+    /// The number, for what is one.
+    #[must_use]
+    pub fn number(&self, value: &DebugValue) -> Option<f64> {
+        match self.constant(value)? {
+            Constant::Int(value) => Some(value as f64),
+            Constant::Float(value) => Some(value),
+        }
+    }
+
+    /// The value in one line.
+    #[must_use]
+    pub fn text(&self, value: &DebugValue) -> String {
+        self.text_at(value, 0)
+    }
+
+    /// How many parts the value has.
+    #[must_use]
+    pub fn count(&self, value: &DebugValue) -> u32 {
+        match self.types.get(value.ty) {
+            Type::Array(_, length) => length.unwrap_or(0),
+            Type::Record(record) => {
+                self.types.record(*record).layout.as_ref().map_or(0, |layout| layout.members.len() as u32)
+            }
+            Type::Pointer(to) => u32::from(self.types.size_of(to.ty).is_some()),
+            _ => 0,
+        }
+    }
+
+    /// The parts of the value from number `first` on; `expression` is how C names the whole.
+    #[must_use]
+    pub fn children(&self, value: &DebugValue, expression: &str, first: u32, count: u32) -> Vec<Child> {
+        let total = self.count(value);
+        let range = first.min(total)..first.saturating_add(count).min(total);
+        range.filter_map(|index| self.child(value, expression, index)).collect()
+    }
+
+    fn child(&self, value: &DebugValue, expression: &str, index: u32) -> Option<Child> {
+        match self.types.get(value.ty) {
+            Type::Array(element, _) => {
+                let name = format!("[{index}]");
+                let value = self.element(value, *element, index)?;
+                Some(Child { expression: format!("{expression}{name}"), name, value })
+            }
+            Type::Record(record) => {
+                let member = *self.types.record(*record).layout.as_ref()?.members.get(index as usize)?;
+                let base = value.address()?;
+                let address = base.offset(member.offset);
+                let data = member.bits.map_or(Data::Memory(address), |bits| Data::Field(address, bits));
+                let name = member.name.map_or_else(String::new, |name| self.names.get(name).to_owned());
+                let value = DebugValue { ty: member.ty.ty, data };
+                Some(Child { expression: format!("({expression}).{name}"), name, value })
+            }
+            Type::Pointer(to) => {
+                let Constant::Int(address) = self.constant(value)? else { return None };
+                let value = DebugValue { ty: to.ty, data: Data::Memory(GuestAddr::new(address as u32)) };
+                Some(Child { name: format!("*{expression}"), expression: format!("*({expression})"), value })
+            }
+            _ => None,
+        }
+    }
+
+    fn element(&self, value: &DebugValue, element: QualifiedType, index: u32) -> Option<DebugValue> {
+        let size = self.types.size_of(element.ty)?;
+        let address = value.address()?.offset(index.wrapping_mul(size));
+        Some(DebugValue { ty: element.ty, data: Data::Memory(address) })
+    }
+
+    pub(super) fn constant(&self, value: &DebugValue) -> Option<Constant> {
+        if matches!(
+            self.types.get(value.ty),
+            Type::Array(..) | Type::Record(_) | Type::Function(_) | Type::Void
+        ) {
+            return None;
+        }
+        Some(match value.data {
+            Data::Memory(address) => watch::read(value.ty, self.reader.bytes(address)),
+            Data::Slot(bits) => watch::read(value.ty, bits.to_le_bytes()),
+            Data::Field(address, range) => {
+                let word = i64::from_le_bytes(self.reader.bytes(address));
+                Constant::Int(watch::bits(word, range, value.ty))
+            }
+            Data::Constant(constant) => constant,
+        })
+    }
+
+    fn text_at(&self, value: &DebugValue, depth: u32) -> String {
+        match self.types.get(value.ty) {
+            Type::Void => "void".to_owned(),
+            Type::Function(_) => "a function".to_owned(),
+            Type::Array(element, length) => self.array(value, *element, length.unwrap_or(0), depth),
+            Type::Record(_) => {
+                if depth == DEPTH {
+                    return "{...}".to_owned();
+                }
+                let children = self.children(value, "", 0, ELEMENTS);
+                let mut parts: Vec<_> = (children.iter())
+                    .map(|child| format!("{} = {}", child.name, self.text_at(&child.value, depth + 1)))
+                    .collect();
+                if self.count(value) > ELEMENTS {
+                    parts.push("...".to_owned());
+                }
+                format!("{{{}}}", parts.join(", "))
+            }
+            Type::Pointer(to) => self.pointer(value, to.ty),
+            ty => self.scalar(ty, value),
+        }
+    }
+
+    fn array(&self, value: &DebugValue, element: QualifiedType, length: u32, depth: u32) -> String {
+        if matches!(self.types.get(element.ty), Type::Char)
+            && let Some(address) = value.address()
+        {
+            return self.string(address, length);
+        }
+        if depth == DEPTH {
+            return "{...}".to_owned();
+        }
+        let parts = (0..length.min(ELEMENTS)).filter_map(|index| self.element(value, element, index));
+        let mut parts: Vec<_> = parts.map(|element| self.text_at(&element, depth + 1)).collect();
+        if length > ELEMENTS {
+            parts.push("...".to_owned());
+        }
+        format!("{{{}}}", parts.join(", "))
+    }
+
+    fn pointer(&self, value: &DebugValue, to: TypeId) -> String {
+        let Some(Constant::Int(address)) = self.constant(value) else { return "?".to_owned() };
+        let address = address as u32;
+        let text = format!("{address:#x}");
+        match self.types.get(to) {
+            Type::Char if address != 0 => {
+                format!("{text} {}", self.string(GuestAddr::new(address), CHARACTERS))
+            }
+            _ => text,
+        }
+    }
+
+    fn string(&self, address: GuestAddr, most: u32) -> String {
+        let mut text = String::from("\"");
+        for offset in 0..most.min(CHARACTERS) {
+            match self.reader.bytes(address.offset(offset))[0] {
+                0 => break,
+                byte @ (b'"' | b'\\') => text.extend(['\\', char::from(byte)]),
+                b'\n' => text.push_str("\\n"),
+                b'\r' => text.push_str("\\r"),
+                b'\t' => text.push_str("\\t"),
+                byte @ b' '..=b'~' => text.push(char::from(byte)),
+                byte => text.push_str(&format!("\\x{byte:02x}")),
+            }
+        }
+        text + "\""
+    }
+
+    fn scalar(&self, ty: &Type, value: &DebugValue) -> String {
+        match (self.constant(value), ty) {
+            (Some(Constant::Int(value)), Type::Char | Type::SignedChar | Type::UnsignedChar) => {
+                match u8::try_from(value) {
+                    Ok(byte @ b' '..=b'~') => format!("{value} '{}'", char::from(byte)),
+                    _ => value.to_string(),
+                }
+            }
+            (Some(Constant::Int(value)), Type::UnsignedLongLong) => value.cast_unsigned().to_string(),
+            (Some(Constant::Int(value)), _) => value.to_string(),
+            (Some(Constant::Float(value)), Type::Float) => (value as f32).to_string(),
+            (Some(Constant::Float(value)), _) => value.to_string(),
+            (None, _) => "?".to_owned(),
+        }
+    }
+}

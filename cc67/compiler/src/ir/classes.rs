@@ -1,0 +1,54 @@
+//! What the text of a function says of the classes of its values.
+//!
+//! A parameter list names classes, and so does every instruction that writes a value, but for a copy: that has the
+//! class of its source. What nothing says is declared in front of the first block: the class of a value that is read
+//! and never written, or that is only a copy of such values.
+
+use super::inst::{Class, ValueId};
+use cranelift_entity::SecondaryMap;
+
+/// Collects what a text says.
+#[derive(Debug, Default)]
+pub(super) struct Classes {
+    known: SecondaryMap<ValueId, Option<Class>>,
+    /// Values and what they are copies of.
+    copies: Vec<(ValueId, ValueId)>,
+}
+
+impl Classes {
+    /// A value has a class; the class that was said of it before, if that is another one.
+    pub(super) fn say(&mut self, value: ValueId, class: Class) -> Result<(), Class> {
+        match self.known[value].replace(class) {
+            Some(before) if before != class => Err(before),
+            _ => Ok(()),
+        }
+    }
+
+    /// A value has the class of another.
+    pub(super) fn copy(&mut self, dst: ValueId, src: ValueId) {
+        self.copies.push((dst, src));
+    }
+
+    /// Carries classes along the copies.
+    pub(super) fn settle(&mut self) {
+        let mut is_changed = true;
+        while is_changed {
+            is_changed = false;
+            let known = &mut self.known;
+            self.copies.retain(|&(dst, src)| match (known[dst], known[src]) {
+                (Some(_), _) => false,
+                (None, Some(class)) => {
+                    known[dst] = Some(class);
+                    is_changed = true;
+                    false
+                }
+                (None, None) => true,
+            });
+        }
+    }
+
+    /// The class of a value, if the text says it.
+    pub(super) fn get(&self, value: ValueId) -> Option<Class> {
+        self.known[value]
+    }
+}

@@ -1,0 +1,599 @@
+//! Charges what the vendor's code takes, where the typed tree is lowered.
+//!
+//! The vendor's compiler makes the same code for a construct wherever it stands, so the costs follow the source and not
+//! the instructions that we make of it: what optimisation does later changes none. The rules are those of
+//! `spec/costs.md` section 6; a few smaller ones, marked here, follow from its recorded programs.
+
+use cranelift_entity::SecondaryMap;
+use kmotiondef::timing::{Timing, WaitStates};
+
+use super::prices;
+use super::{Lowering, types};
+use crate::firmware::{BuiltIn, FirmwareSymbols};
+use crate::ir::function::table;
+use crate::ir::inst::{BlockId, Class};
+use crate::typed::{self, BinaryOp, ExprId, ExprKind, LocalId, PlaceId, PlaceKind, SymbolId, UnaryOp};
+
+/// Where SDRAM begins: what lies below is inside of the processor.
+const SDRAM: u32 = 0x8000_0000;
+
+/// What is known for charging a function.
+pub(super) struct Pricing {
+    waits: WaitStates,
+    /// Whether an expression calls or divides, which leaves no register as it was.
+    calls: SecondaryMap<ExprId, bool>,
+}
+
+impl Pricing {
+    /// What there is to know of `function`; nothing if time is not the vendor's.
+    pub(super) fn new(function: &typed::Function, timing: Timing) -> Option<Self> {
+        let waits = timing.wait_states()?;
+        let mut calls = table(function.exprs.len());
+        // Operands are numbered before what they are operands of.
+        for (id, expr) in &function.exprs {
+            calls[id] = calls_itself(&expr.kind) || operands(function, id).any(|operand| calls[operand]);
+        }
+        Some(Self { waits, calls })
+    }
+}
+
+/// Whether the expression by itself calls.
+fn calls_itself(kind: &ExprKind) -> bool {
+    let divides = |op: BinaryOp| matches!(op, BinaryOp::Divide | BinaryOp::Remainder);
+    match kind {
+        ExprKind::Call(_) | ExprKind::Copy { .. } | ExprKind::Clear(_) | ExprKind::Statements(..) => true,
+        ExprKind::Binary(op, ..) => divides(*op),
+        ExprKind::Update(update) => divides(update.op),
+        ExprKind::Int(_)
+        | ExprKind::Float(_)
+        | ExprKind::Load(_)
+        | ExprKind::Address(_)
+        | ExprKind::Assign(..)
+        | ExprKind::Unary(..)
+        | ExprKind::Compare(..)
+        | ExprKind::And(..)
+        | ExprKind::Or(..)
+        | ExprKind::Conditional(..)
+        | ExprKind::Comma(..)
+        | ExprKind::Convert(_)
+        | ExprKind::VaArg(_) => false,
+    }
+}
+
+/// The expressions that an expression evaluates directly; those of what calls do not matter.
+fn operands(function: &typed::Function, id: ExprId) -> impl Iterator<Item = ExprId> {
+    let pointer = |place: PlaceId| match function.places[place].kind {
+        PlaceKind::Pointer(pointer, _) => Some(pointer),
+        PlaceKind::Local(..) | PlaceKind::Symbol(..) | PlaceKind::Bits(..) => None,
+    };
+    let found: [Option<ExprId>; 3] = match function.exprs[id].kind {
+        ExprKind::Load(place) | ExprKind::Address(place) | ExprKind::VaArg(place) => {
+            [pointer(place), None, None]
+        }
+        ExprKind::Assign(place, value) => [pointer(place), Some(value), None],
+        ExprKind::Update(ref update) => [pointer(update.place), Some(update.operand), None],
+        ExprKind::Unary(_, a) | ExprKind::Convert(a) => [Some(a), None, None],
+        ExprKind::Binary(_, a, b)
+        | ExprKind::Compare(_, a, b)
+        | ExprKind::And(a, b)
+        | ExprKind::Or(a, b)
+        | ExprKind::Comma(a, b) => [Some(a), Some(b), None],
+        ExprKind::Conditional(a, b, c) => [Some(a), Some(b), Some(c)],
+        ExprKind::Int(_)
+        | ExprKind::Float(_)
+        | ExprKind::Call(_)
+        | ExprKind::Copy { .. }
+        | ExprKind::Clear(_)
+        | ExprKind::Statements(..) => [None; 3],
+    };
+    found.into_iter().flatten()
+}
+
+/// Whether multiplying by a number is a shift.
+const fn is_power(factor: i64) -> bool {
+    factor > 1 && factor & (factor - 1) == 0
+}
+
+/// How the vendor's code reaches a place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Reach {
+    /// It is named: a local, or any place at a constant address.
+    Local,
+    /// The same for a global, or a number; whether it waits for memory.
+    Global { waits: bool },
+    /// Through an address that takes `fixed` cycles, besides the expressions in it.
+    Through { fixed: i32, waits: bool },
+}
+
+/// What an operand is to the registers of the vendor's code.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Nature {
+    /// A constant or a named variable: it is loaded when it is needed.
+    Simple,
+    /// It is loaded through an address that is in a register.
+    Element,
+    /// The result of a call.
+    Result,
+    /// Anything else: it is in a register.
+    Computed,
+}
+
+impl Lowering<'_> {
+    /// Charges cycles.
+    pub(super) fn cost(&mut self, cycles: i32) {
+        if self.pricing.is_some() {
+            self.builder.cost(cycles);
+        }
+    }
+
+    /// Charges the wait for words of SDRAM.
+    fn wait(&mut self, words: i32) {
+        let waits = self.pricing.as_ref().map_or(0, |pricing| pricing.waits.sdram);
+        self.cost(words.saturating_mul(waits.cast_signed()));
+    }
+
+    /// A block that goes on at `to` and costs `cycles` before, if anything is charged.
+    pub(super) fn costly_way(&mut self, to: BlockId, cycles: u32) -> Option<BlockId> {
+        self.pricing.as_ref()?;
+        Some(self.builder.way(to, cycles))
+    }
+
+    fn calls(&self, id: ExprId) -> bool {
+        self.pricing.as_ref().is_some_and(|pricing| pricing.calls[id])
+    }
+
+    fn class_of(&self, id: ExprId) -> Class {
+        self.class_or_int(self.function.exprs[id].ty)
+    }
+
+    /// Charges a constant.
+    pub(super) fn price_constant(&mut self, class: Class) {
+        self.cost(prices::constant(class));
+        self.wait(prices::constant_words(class));
+    }
+
+    /// Whether a symbol lies where access waits.
+    fn symbol_waits(&self, symbol: SymbolId) -> bool {
+        let symbol = &self.unit.symbols[symbol];
+        !matches!(symbol.definition, typed::Definition::None)
+            || BuiltIn.find(&symbol.name).is_none_or(|found| found.address.get() >= SDRAM)
+    }
+
+    fn reach_local(&self, local: LocalId, offset: u32, steps: i32) -> Reach {
+        let steps = prices::STEP * (steps + i32::from(offset != 0));
+        if self.function.locals[local].by_pointer {
+            let fixed = 7 + steps;
+            return Reach::Through { fixed, waits: false };
+        }
+        match steps {
+            0 => Reach::Local,
+            _ => Reach::Through { fixed: prices::LOCAL_ADDRESS + steps, waits: false },
+        }
+    }
+
+    /// How a place is reached; follows it as [`Lowering::address`] does.
+    fn reach(&self, place: PlaceId) -> Reach {
+        let (mut place, mut steps) = (place, 0);
+        loop {
+            let pointer = match self.function.places[place].kind {
+                PlaceKind::Local(local, offset) => return self.reach_local(local, offset, steps),
+                PlaceKind::Symbol(symbol, _) => return Reach::Global { waits: self.symbol_waits(symbol) },
+                PlaceKind::Bits(unit, _) => {
+                    place = unit;
+                    continue;
+                }
+                PlaceKind::Pointer(pointer, offset) => {
+                    steps += i32::from(offset != 0);
+                    pointer
+                }
+            };
+            let (base, more) = self.without_steps(pointer);
+            steps += more;
+            match self.function.exprs[base].kind {
+                ExprKind::Address(inner) => place = inner,
+                ExprKind::Int(_) => return Reach::Global { waits: false },
+                _ => {
+                    let fixed = prices::STEP * steps;
+                    return Reach::Through { fixed, waits: self.pointee_waits(base) };
+                }
+            }
+        }
+    }
+
+    /// What a pointer is without constants added to it, and how many these were.
+    fn without_steps(&self, pointer: ExprId) -> (ExprId, i32) {
+        let (mut pointer, mut steps) = (pointer, 0);
+        loop {
+            match self.function.exprs[pointer].kind {
+                ExprKind::Binary(BinaryOp::Add, base, step) if self.is_int(step) => {
+                    pointer = base;
+                    steps += 1;
+                }
+                ExprKind::Convert(inner) if self.is_same_word(self.function.exprs[inner].ty) => {
+                    pointer = inner;
+                }
+                _ => return (pointer, steps),
+            }
+        }
+    }
+
+    fn is_int(&self, id: ExprId) -> bool {
+        matches!(self.function.exprs[id].kind, ExprKind::Int(_))
+    }
+
+    /// Whether what a pointer points to lies where access waits, as far as the expression says.
+    fn pointee_waits(&self, pointer: ExprId) -> bool {
+        let mut pointer = pointer;
+        loop {
+            match self.function.exprs[pointer].kind {
+                ExprKind::Binary(_, base, _) | ExprKind::Convert(base) => pointer = base,
+                ExprKind::Address(place) if matches!(self.reach(place), Reach::Local) => return false,
+                ExprKind::Address(place) | ExprKind::Load(place) => {
+                    return match self.function.places[place].kind {
+                        PlaceKind::Symbol(symbol, _) => self.symbol_waits(symbol),
+                        PlaceKind::Local(..) | PlaceKind::Pointer(..) | PlaceKind::Bits(..) => true,
+                    };
+                }
+                _ => return true,
+            }
+        }
+    }
+
+    /// Charges a load of a place, besides the expressions in its address.
+    pub(super) fn price_load(&mut self, place: PlaceId) {
+        if self.pricing.is_none() {
+            return;
+        }
+        let class = self.class_or_int(self.function.places[place].ty);
+        let waits = match self.reach(place) {
+            Reach::Local => {
+                self.cost(prices::either(class, 7, 8));
+                false
+            }
+            Reach::Global { waits } => {
+                self.cost(prices::either(class, 7, 8));
+                waits
+            }
+            Reach::Through { fixed, waits } => {
+                self.cost(fixed + prices::either(class, 5, 6));
+                waits
+            }
+        };
+        self.wait(if waits { prices::words(class) } else { 0 });
+        if let PlaceKind::Bits(..) = self.function.places[place].kind {
+            self.cost(2 * prices::STEP);
+        }
+    }
+
+    /// Charges the address of a place that is read or written more than once, besides the expressions in it.
+    fn price_reach(&mut self, place: PlaceId) {
+        if let Reach::Through { fixed, .. } = self.reach(place) {
+            self.cost(fixed);
+        }
+    }
+
+    /// Charges the address of a place as a value.
+    pub(super) fn price_address(&mut self, place: PlaceId) {
+        if self.pricing.is_none() {
+            return;
+        }
+        self.cost(match self.reach(place) {
+            Reach::Local => prices::LOCAL_ADDRESS,
+            Reach::Global { .. } => prices::GLOBAL_ADDRESS,
+            Reach::Through { fixed, .. } => fixed,
+        });
+    }
+
+    /// Charges the store of a place whose address has been charged.
+    fn price_store(&mut self, place: PlaceId) {
+        let class = self.class_or_int(self.function.places[place].ty);
+        let waits = match self.reach(place) {
+            Reach::Local => {
+                self.cost(prices::either(class, 3, 5));
+                false
+            }
+            Reach::Global { waits } => {
+                self.cost(prices::either(class, 3, 4));
+                waits
+            }
+            Reach::Through { waits, .. } => {
+                self.cost(prices::either(class, 1, 2));
+                waits
+            }
+        };
+        self.wait(if waits { prices::words(class) } else { 0 });
+        if let PlaceKind::Bits(..) = self.function.places[place].kind {
+            self.cost(7 + 5 * prices::STEP);
+        }
+    }
+
+    fn is_through(&self, place: PlaceId) -> bool {
+        matches!(self.reach(place), Reach::Through { .. })
+    }
+
+    /// Charges an assignment, its value apart.
+    pub(super) fn price_assignment(&mut self, place: PlaceId, value: ExprId) {
+        if self.pricing.is_none() {
+            return;
+        }
+        if self.is_through(place) {
+            self.price_reach(place);
+            let class = self.class_of(value);
+            if self.calls(value) {
+                self.cost(prices::SAVE_ADDRESS);
+            } else if class == Class::F32 && self.nature(value) == Nature::Computed {
+                self.cost(prices::CROWDED_SINGLE);
+            }
+            // As recorded: `a[i] = 16 - i` into doubles takes one cycle more than `a[i] = i`.
+            let is_converted = matches!(self.function.exprs[value].kind,
+                ExprKind::Convert(inner) if class == Class::F64 && self.nature(inner) == Nature::Computed);
+            self.cost(i32::from(is_converted) * prices::MOVE);
+        }
+        self.price_store(place);
+    }
+
+    /// Charges `place = place op operand`, its operand apart.
+    pub(super) fn price_update(&mut self, update: &typed::Update) {
+        if self.pricing.is_none() {
+            return;
+        }
+        let place = update.place;
+        let ty = self.function.places[place].ty;
+        let (stored, computed) = (self.class_or_int(ty), self.class_or_int(update.computed));
+        self.price_load(place);
+        if self.is_through(place) && self.calls(update.operand) {
+            self.cost(prices::SAVE_ADDRESS);
+        }
+        self.cost(prices::convert(stored, computed) + prices::convert(computed, stored));
+        if update.result == typed::UpdateResult::Old {
+            self.cost(prices::KEEP_OLD);
+        }
+        let is_element = self.nature(update.operand) == Nature::Element;
+        self.cost(match computed {
+            Class::F64 if is_element => prices::CROWDED,
+            Class::F32 if is_element => prices::CROWDED_SINGLE,
+            Class::I32 | Class::I64 | Class::F32 | Class::F64 => 0,
+        });
+        self.price_operator(update.op, computed, update.operand);
+        self.price_store(place);
+    }
+
+    /// Charges an operator with this right side, and takes back what a constant cost that leaves nothing to do.
+    fn price_operator(&mut self, op: BinaryOp, class: Class, b: ExprId) {
+        let constant = match self.function.exprs[b].kind {
+            ExprKind::Int(value) if class == Class::I32 => Some(value),
+            _ => None,
+        };
+        let is_idle = match constant {
+            Some(0) => matches!(
+                op,
+                BinaryOp::Add
+                    | BinaryOp::Subtract
+                    | BinaryOp::Or
+                    | BinaryOp::Xor
+                    | BinaryOp::ShiftLeft
+                    | BinaryOp::ShiftRight
+            ),
+            Some(1) => matches!(op, BinaryOp::Multiply | BinaryOp::Divide),
+            Some(_) | None => false,
+        };
+        let is_shift = op == BinaryOp::Multiply && constant.is_some_and(is_power);
+        self.cost(if is_idle {
+            -prices::constant(class)
+        } else if is_shift {
+            prices::binary(BinaryOp::ShiftLeft, class)
+        } else {
+            prices::binary(op, class)
+        });
+    }
+
+    /// Charges what keeping the left side costs while the right one is evaluated.
+    pub(super) fn price_kept(&mut self, a: ExprId, b: ExprId) {
+        if !self.calls(b) {
+            return;
+        }
+        self.cost(match self.nature(a) {
+            Nature::Simple => 0,
+            Nature::Element => prices::SAVE_ADDRESS,
+            // A result is saved from where it is, without being taken first.
+            Nature::Result => prices::save(self.class_of(a)) - prices::result(self.class_of(a)),
+            Nature::Computed => prices::save(self.class_of(a)),
+        });
+    }
+
+    /// Charges a binary operator, its operands apart.
+    pub(super) fn price_binary(&mut self, id: ExprId) {
+        if self.pricing.is_none() {
+            return;
+        }
+        let ExprKind::Binary(op, a, b) = self.function.exprs[id].kind else { return };
+        let ty = self.function.exprs[id].ty;
+        let class = self.class_or_int(ty);
+        let (left, right) = (self.nature(a), self.nature(b));
+        let both = left != Nature::Simple && left != Nature::Element && right == Nature::Computed;
+        self.cost(match class {
+            Class::F64 if right == Nature::Element => prices::CROWDED,
+            Class::F64 if both && !self.calls(b) => prices::CROWDED,
+            Class::F32 if right == Nature::Element => prices::CROWDED_SINGLE,
+            Class::I32 | Class::I64 | Class::F32 | Class::F64 => 0,
+        });
+        // As recorded: the dividend is moved to the argument's register, an index to where it is scaled.
+        let divides = matches!(op, BinaryOp::Divide | BinaryOp::Remainder);
+        let is_index = self.unit.types.is_pointer(ty) && self.is_shifted_sum(b);
+        let is_moved = class == Class::I32 && if divides { left == Nature::Computed } else { is_index };
+        self.cost(i32::from(is_moved) * prices::MOVE);
+        self.price_operator(op, class, b);
+    }
+
+    /// Whether an index is computed and scaled by a shift.
+    fn is_shifted_sum(&self, bytes: ExprId) -> bool {
+        let ExprKind::Binary(BinaryOp::Multiply, index, scale) = self.function.exprs[bytes].kind else {
+            return false;
+        };
+        matches!(self.function.exprs[scale].kind, ExprKind::Int(scale) if is_power(scale))
+            && self.nature(index) == Nature::Computed
+    }
+
+    /// Charges a unary operator but `!`, its operand apart.
+    pub(super) fn price_unary(&mut self, operand: ExprId, op: UnaryOp) {
+        let class = self.class_of(operand);
+        match (op, class) {
+            (UnaryOp::Negate | UnaryOp::Complement, Class::I32 | Class::I64) => self.cost(prices::STEP),
+            // 0 minus the value.
+            (UnaryOp::Negate | UnaryOp::Complement, Class::F32 | Class::F64) => {
+                self.price_constant(class);
+                self.cost(prices::binary(BinaryOp::Subtract, class));
+            }
+            (UnaryOp::Not, _) => {
+                let is_comparison = matches!(self.function.exprs[operand].kind, ExprKind::Compare(..));
+                self.cost(if is_comparison { 0 } else { prices::BRANCH + prices::TRUTH[0] });
+            }
+        }
+    }
+
+    /// Charges a comparison, its operands apart.
+    pub(super) fn price_compare(&mut self, a: ExprId, b: ExprId) {
+        if self.pricing.is_none() {
+            return;
+        }
+        let class = self.class_of(a);
+        let (left, right) = (self.nature(a), self.nature(b));
+        let elements = [left, right].into_iter().filter(|nature| *nature == Nature::Element).count();
+        let both = left != Nature::Simple && right == Nature::Computed && elements == 0;
+        self.cost(match class {
+            Class::F64 if elements > 0 => prices::CROWDED_COMPARE[elements - 1],
+            Class::F64 if both => prices::CROWDED,
+            Class::I32 | Class::I64 | Class::F32 if both => prices::MOVE,
+            Class::I32 | Class::I64 | Class::F32 | Class::F64 => 0,
+        });
+        self.cost(prices::compare(class));
+    }
+
+    /// Charges the test of a value that decides a branch.
+    pub(super) fn price_test(&mut self, condition: ExprId) {
+        if self.pricing.is_none() {
+            return;
+        }
+        let class = self.class_of(condition);
+        match &self.function.exprs[condition].kind {
+            // The comparison itself decides; it is no value.
+            ExprKind::Compare(..) => self.cost(-prices::MOVE),
+            // As recorded: `while (i--)` takes a cycle more.
+            ExprKind::Update(update) if update.result == typed::UpdateResult::Old => self.cost(prices::MOVE),
+            _ => {}
+        }
+        if class != Class::I32 {
+            self.price_constant(class);
+            self.cost(prices::compare(class));
+        }
+        self.cost(prices::BRANCH);
+    }
+
+    /// Charges the comparison with 0 in front of a test, which is made without one.
+    pub(super) fn price_zero_test(&mut self) {
+        self.cost(prices::constant(Class::I32) + prices::compare(Class::I32));
+    }
+
+    /// Charges a conversion.
+    pub(super) fn price_conversion(&mut self, operand: ExprId, to: Class) {
+        if self.pricing.is_none() {
+            return;
+        }
+        let from = self.class_of(operand);
+        if self.is_int(operand) && from == Class::I32 {
+            // The constant is converted, not the value.
+            self.cost(-prices::constant(from));
+            self.price_constant(to);
+            return;
+        }
+        self.cost(prices::convert(from, to));
+    }
+
+    /// Charges the passing of the arguments of a call, their values apart, and the branch of the call.
+    pub(super) fn price_call(&mut self, call: &typed::Call) {
+        if self.pricing.is_none() {
+            return;
+        }
+        let is_firmware = match call.callee {
+            typed::Callee::Symbol(symbol) => {
+                let symbol = &self.unit.symbols[symbol];
+                matches!(symbol.definition, typed::Definition::None) && BuiltIn.find(&symbol.name).is_some()
+            }
+            typed::Callee::Pointer(_) => {
+                self.cost(prices::POINTER_BRANCH - prices::BRANCH);
+                false
+            }
+        };
+        self.cost(prices::BRANCH);
+        let variable = call.variable.as_deref().unwrap_or(&[]);
+        // What is computed waits for what is called for a later argument.
+        let all: Vec<ExprId> = call.arguments.iter().chain(variable).copied().collect();
+        let last = all.iter().rposition(|argument| self.calls(*argument)).unwrap_or(0);
+        for (position, argument) in all.into_iter().enumerate() {
+            let class = self.class_of(argument);
+            let is_kept = matches!(self.nature(argument), Nature::Computed | Nature::Result);
+            self.cost(if is_kept && position < last { prices::save(class) } else { 0 });
+            self.cost(prices::argument(class, is_firmware));
+            self.price_moved(argument);
+        }
+        if call.variable.is_some() {
+            self.cost(prices::VARIABLE_ARGUMENTS + variable.len() as i32);
+        }
+    }
+
+    /// Charges the way of a value to where an argument or result is expected.
+    fn price_moved(&mut self, value: ExprId) {
+        let class = self.class_of(value);
+        let is_comparison = matches!(self.function.exprs[value].kind, ExprKind::Compare(..));
+        self.cost(match self.nature(value) {
+            Nature::Simple | Nature::Element => 0,
+            Nature::Result => -prices::result(class),
+            Nature::Computed if is_comparison => 0,
+            Nature::Computed => prices::either(class, prices::MOVE, 2 * prices::MOVE),
+        });
+    }
+
+    /// Charges taking the result of a call.
+    pub(super) fn price_result(&mut self, class: Option<Class>) {
+        if let Some(class) = class {
+            self.cost(prices::result(class));
+        }
+    }
+
+    /// Charges a `return`, its value apart.
+    pub(super) fn price_return(&mut self, value: Option<ExprId>) {
+        if self.pricing.is_none() {
+            return;
+        }
+        if let Some(value) = value {
+            self.price_moved(value);
+        }
+        self.cost(prices::BRANCH);
+    }
+
+    /// Charges the copy or the clearing of an object, its addresses apart.
+    pub(super) fn price_block(&mut self, bytes: u32, is_copy: bool) {
+        self.cost(if is_copy { prices::copy(bytes) } else { prices::clear(bytes) });
+        let words = (bytes / 4).cast_signed();
+        self.wait(if is_copy { 2 * words } else { words });
+    }
+
+    fn nature(&self, id: ExprId) -> Nature {
+        match self.function.exprs[id].kind {
+            ExprKind::Int(_) | ExprKind::Float(_) => Nature::Simple,
+            ExprKind::Load(place) if self.is_through(place) => Nature::Element,
+            ExprKind::Load(_) => Nature::Simple,
+            ExprKind::Address(place) if self.is_through(place) => Nature::Computed,
+            ExprKind::Address(_) => Nature::Simple,
+            ExprKind::Convert(inner) if self.is_free(inner, id) => self.nature(inner),
+            ExprKind::Call(_) => Nature::Result,
+            _ => Nature::Computed,
+        }
+    }
+
+    /// Whether a conversion takes nothing.
+    fn is_free(&self, from: ExprId, to: ExprId) -> bool {
+        types::class(&self.unit.types, self.function.exprs[to].ty).is_some()
+            && (self.is_int(from) || self.class_of(from) == self.class_of(to))
+    }
+}

@@ -1,0 +1,101 @@
+#ifndef _MATH_H
+#define _MATH_H
+#define HUGE_VAL 1e400
+#define HUGE_VALF ((float)1e400)
+#define INFINITY ((float)1e400)
+#define NAN (INFINITY - INFINITY)
+#define FP_NAN 0
+#define FP_INFINITE 1
+#define FP_ZERO 2
+#define FP_SUBNORMAL 3
+#define FP_NORMAL 4
+#define M_E 2.7182818284590452354
+#define M_LOG2E 1.4426950408889634074
+#define M_LOG10E 0.43429448190325182765
+#define M_LN2 0.69314718055994530942
+#define M_LN10 2.30258509299404568402
+#define M_PI 3.14159265358979323846
+#define M_PI_2 1.57079632679489661923
+#define M_PI_4 0.78539816339744830962
+#define M_1_PI 0.31830988618379067154
+#define M_2_PI 0.63661977236758134308
+#define M_SQRT2 1.41421356237309504880
+#define M_SQRT1_2 0.70710678118654752440
+typedef float float_t;
+typedef double double_t;
+int __float_class(double x);
+int __float_sign(double x);
+#define fpclassify(x) __float_class(x)
+#define isnan(x) (__float_class(x) == FP_NAN)
+#define isinf(x) (__float_class(x) == FP_INFINITE)
+#define isfinite(x) (__float_class(x) >= FP_ZERO)
+#define isnormal(x) (__float_class(x) == FP_NORMAL)
+#define signbit(x) __float_sign(x)
+double sqrt(double x);
+float sqrtf(float x);
+double exp(double x);
+float expf(float x);
+double exp2(double x);
+float exp2f(float x);
+double exp10(double x);
+float exp10f(float x);
+double log(double x);
+float logf(float x);
+double log2(double x);
+float log2f(float x);
+double log10(double x);
+float log10f(float x);
+double sin(double x);
+float sinf(float x);
+double cos(double x);
+float cosf(float x);
+double tan(double x);
+float tanf(float x);
+double asin(double x);
+float asinf(float x);
+double acos(double x);
+float acosf(float x);
+double atan(double x);
+float atanf(float x);
+double sinh(double x);
+float sinhf(float x);
+double cosh(double x);
+float coshf(float x);
+double tanh(double x);
+float tanhf(float x);
+double fabs(double x);
+float fabsf(float x);
+double floor(double x);
+float floorf(float x);
+double ceil(double x);
+float ceilf(float x);
+double round(double x);
+float roundf(float x);
+double trunc(double x);
+float truncf(float x);
+double pow(double x, double y);
+float powf(float x, float y);
+double atan2(double x, double y);
+float atan2f(float x, float y);
+double fmod(double x, double y);
+float fmodf(float x, float y);
+double hypot(double x, double y);
+float hypotf(float x, float y);
+double copysign(double x, double y);
+float copysignf(float x, float y);
+double fmin(double x, double y);
+float fminf(float x, float y);
+double fmax(double x, double y);
+float fmaxf(float x, float y);
+double cbrt(double x);
+double rint(double x);
+double nearbyint(double x);
+long lrint(double x);
+long lround(double x);
+double modf(double x, double *whole);
+float modff(float x, float *whole);
+double frexp(double x, int *exponent);
+float frexpf(float x, int *exponent);
+double ldexp(double x, int exponent);
+float ldexpf(float x, int exponent);
+#endif

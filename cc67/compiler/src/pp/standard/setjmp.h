@@ -1,0 +1,7 @@
+// The board has no setjmp: a program that calls it does not link.
+#ifndef _SETJMP_H
+#define _SETJMP_H
+typedef int jmp_buf[16];
+int setjmp(jmp_buf place);
+void longjmp(jmp_buf place, int value);
+#endif

@@ -1,0 +1,11 @@
+//! What programs are compiled for.
+
+/// Who executes the code.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Target {
+    /// The simulated board's engines: bytecode.
+    #[default]
+    Sim,
+    /// The controller's processor, a TMS320C67x+.
+    C67x,
+}

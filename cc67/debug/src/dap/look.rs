@@ -1,0 +1,335 @@
+//! Threads, calls, variables, memory: what a client looks at while the board stands.
+
+use std::io::Write;
+
+use kmotiondef::ThreadId;
+use serde_json::{Value, json};
+use vm::engine::ContextId;
+
+use super::{CALLBACK, Reply, Server, number_of, wire};
+use crate::debugger::{DebugError, Debugger, Reason, ShownVariable};
+use crate::shell::{disassembly, state};
+
+/// Frames of one thread; the number of a frame says which thread it is of.
+const FRAMES: i64 = 100_000;
+
+/// Most parts that are listed at once.
+const PARTS: u32 = 10_000;
+
+/// What a variable reference stands for.
+#[derive(Clone, Debug)]
+pub(super) enum Handle {
+    /// The locals of a call.
+    Locals(i64),
+    /// The variables of the program.
+    Globals(i64),
+    /// What belongs to the board.
+    Board(i64),
+    /// `persist.UserData`, each element in its readings.
+    Persist(i64),
+    /// The parts of an expression where a call stands.
+    Parts(i64, String),
+}
+
+impl Handle {
+    const fn frame(&self) -> i64 {
+        match self {
+            Self::Locals(frame)
+            | Self::Globals(frame)
+            | Self::Board(frame)
+            | Self::Persist(frame)
+            | Self::Parts(frame, _) => *frame,
+        }
+    }
+}
+
+/// A file as clients see it.
+pub(super) fn source(path: &str) -> Value {
+    let full = std::path::Path::new(path)
+        .canonicalize()
+        .map_or_else(|_| path.to_owned(), |full| full.to_string_lossy().into_owned());
+    json!({ "name": crate::debugger::file_name(path), "path": full })
+}
+
+/// The address in a memory reference.
+pub(super) fn address_of(text: &str) -> Result<u32, DebugError> {
+    let digits = text.trim_start_matches("0x").trim_start_matches("0X");
+    u32::from_str_radix(digits, 16).map_err(|_| format!("`{text}` is no address").into())
+}
+
+fn context_of(number: i64) -> Option<ContextId> {
+    if number == CALLBACK {
+        return Some(ContextId::CALLBACK);
+    }
+    i32::try_from(number).ok().and_then(ThreadId::new).map(ContextId::of)
+}
+
+impl<W: Write> Server<'_, W> {
+    pub(super) fn threads(&mut self) -> Reply {
+        let debugger = self.debugger()?;
+        let mut threads = Vec::new();
+        for thread in ThreadId::all() {
+            if let Some(state) = state(debugger, thread) {
+                let program = debugger.session().programs().iter().find(|program| program.thread == thread);
+                let name = program.map_or_else(String::new, |program| {
+                    format!(" {}", crate::debugger::file_name(&program.name()))
+                });
+                threads
+                    .push(json!({ "id": thread.get(), "name": format!("thread {thread}{name} ({state})") }));
+            }
+        }
+        if debugger.session().held().is_some_and(|(context, _)| context == ContextId::CALLBACK) {
+            threads.push(json!({ "id": CALLBACK, "name": "call-back in the servo interrupt" }));
+        }
+        Ok(json!({ "threads": threads }))
+    }
+
+    pub(super) fn stack_trace(&mut self, arguments: &Value) -> Reply {
+        let number = arguments["threadId"].as_i64().unwrap_or(0);
+        let context = context_of(number).ok_or("there is no such thread")?;
+        let debugger = self.debugger()?;
+        let frames = debugger.frames(context);
+        let start = arguments["startFrame"].as_u64().unwrap_or(0) as usize;
+        let levels =
+            arguments["levels"].as_u64().filter(|levels| *levels > 0).unwrap_or(FRAMES as u64) as usize;
+        let shown = frames.iter().enumerate().skip(start).take(levels).map(|(index, frame)| {
+            let id = number * FRAMES + index as i64;
+            let mut shown = json!({
+                "id": id, "name": frame.address.to_string(), "line": 0, "column": 0,
+                "instructionPointerReference": format!("{:#010x}", frame.address.get()),
+            });
+            if let Some(place) = &frame.place {
+                shown["name"] = json!(place.function);
+                shown["line"] = json!(place.line);
+                shown["column"] = json!(1);
+                shown["source"] = source(&place.file);
+            }
+            shown
+        });
+        Ok(json!({ "stackFrames": shown.collect::<Vec<_>>(), "totalFrames": frames.len() }))
+    }
+
+    /// Looks at a call by its number.
+    fn select(&mut self, frame: i64) -> Result<&mut Debugger, DebugError> {
+        let debugger = self.debugger()?;
+        if let Some(thread) = context_of(frame / FRAMES).and_then(ContextId::thread) {
+            debugger.select(thread, (frame % FRAMES) as usize)?;
+        }
+        Ok(debugger)
+    }
+
+    fn handle(&mut self, handle: Handle) -> usize {
+        self.handles.push(handle);
+        self.handles.len()
+    }
+
+    pub(super) fn scopes(&mut self, arguments: &Value) -> Reply {
+        let frame = arguments["frameId"].as_i64().unwrap_or(0);
+        self.select(frame)?;
+        let rows = [
+            ("Locals", Handle::Locals(frame), "locals", false),
+            ("Variables of the program", Handle::Globals(frame), "globals", false),
+            ("Board", Handle::Board(frame), "registers", true),
+            ("persist.UserData", Handle::Persist(frame), "registers", true),
+        ];
+        let scopes = rows.map(|(name, handle, hint, expensive)| {
+            json!({ "name": name, "variablesReference": self.handle(handle), "presentationHint": hint, "expensive": expensive })
+        });
+        Ok(json!({ "scopes": scopes }))
+    }
+
+    fn shown(&mut self, frame: i64, variable: &ShownVariable) -> Value {
+        let reference = if variable.parts > 0 {
+            self.handle(Handle::Parts(frame, variable.expression.clone()))
+        } else {
+            0
+        };
+        let mut shown = json!({
+            "name": variable.name, "value": variable.text, "type": variable.ty, "variablesReference": reference,
+            "evaluateName": variable.expression,
+        });
+        if variable.name.starts_with('[') || variable.ty.ends_with(']') {
+            shown["indexedVariables"] = json!(if variable.ty.ends_with(']') { variable.parts } else { 0 });
+        }
+        if let Some(address) = variable.address {
+            shown["memoryReference"] = json!(format!("{address:#010x}"));
+        }
+        shown
+    }
+
+    fn listed(&mut self, handle: &Handle, first: u32, count: u32) -> Result<Vec<ShownVariable>, DebugError> {
+        let debugger = self.select(handle.frame())?;
+        Ok(match handle {
+            Handle::Locals(_) => debugger.locals(),
+            Handle::Globals(_) => debugger.globals(),
+            Handle::Board(_) => {
+                let names = ["chan", "persist", "VirtualBits", "CS0_TimeDownTo", "gather_buffer"];
+                names.iter().filter_map(|name| debugger.evaluate(name).ok()).collect()
+            }
+            Handle::Persist(_) => (first..first.saturating_add(count).min(200))
+                .filter_map(|index| reading(debugger, index))
+                .collect(),
+            Handle::Parts(_, expression) => debugger.parts(expression, first, count)?,
+        })
+    }
+
+    pub(super) fn variables(&mut self, arguments: &Value) -> Reply {
+        let reference = arguments["variablesReference"].as_u64().unwrap_or(0) as usize;
+        let handle = reference.checked_sub(1).and_then(|index| self.handles.get(index)).cloned();
+        let handle = handle.ok_or("the reference is of an earlier stop")?;
+        let first = arguments["start"].as_u64().unwrap_or(0) as u32;
+        let count =
+            arguments["count"].as_u64().filter(|count| *count > 0).map_or(PARTS, |count| count as u32);
+        let listed = self.listed(&handle, first, count)?;
+        let shown: Vec<_> = listed.iter().map(|variable| self.shown(handle.frame(), variable)).collect();
+        Ok(json!({ "variables": shown }))
+    }
+
+    pub(super) fn evaluate(&mut self, arguments: &Value) -> Reply {
+        let text = arguments["expression"].as_str().unwrap_or_default().trim().to_owned();
+        let frame = arguments["frameId"].as_i64();
+        if let Some(frame) = frame {
+            self.select(frame)?;
+        }
+        let assignment = (arguments["context"] == "repl").then(|| text.split_once('=')).flatten();
+        let assignment =
+            assignment.filter(|(place, value)| !value.starts_with('=') && !place.ends_with(['!', '<', '>']));
+        let variable = match assignment {
+            Some((place, value)) => self.debugger()?.set(place.trim(), value.trim())?,
+            None => self.debugger()?.evaluate(&text)?,
+        };
+        let number = frame.unwrap_or_else(|| {
+            self.debugger.as_ref().map_or(0, |debugger| number_of(debugger.context()) * FRAMES)
+        });
+        let shown = self.shown(number, &variable);
+        let mut body = json!({
+            "result": variable.text, "type": variable.ty, "variablesReference": shown["variablesReference"],
+        });
+        if let Some(address) = variable.address {
+            body["memoryReference"] = json!(format!("{address:#010x}"));
+        }
+        Ok(body)
+    }
+
+    pub(super) fn set_variable(&mut self, arguments: &Value) -> Reply {
+        let reference = arguments["variablesReference"].as_u64().unwrap_or(0) as usize;
+        let handle = reference.checked_sub(1).and_then(|index| self.handles.get(index)).cloned();
+        let handle = handle.ok_or("the reference is of an earlier stop")?;
+        let name = arguments["name"].as_str().unwrap_or_default();
+        let listed = self.listed(&handle, 0, PARTS)?;
+        let found = listed.into_iter().find(|variable| variable.name == name);
+        let expression = found.ok_or_else(|| format!("there is no `{name}` here"))?.expression;
+        let value = arguments["value"].as_str().unwrap_or_default();
+        let variable = self.select(handle.frame())?.set(&expression, value)?;
+        Ok(json!({ "value": variable.text, "type": variable.ty }))
+    }
+
+    pub(super) fn set_expression(&mut self, arguments: &Value) -> Reply {
+        if let Some(frame) = arguments["frameId"].as_i64() {
+            self.select(frame)?;
+        }
+        let expression = arguments["expression"].as_str().unwrap_or_default();
+        let variable = self.debugger()?.set(expression, arguments["value"].as_str().unwrap_or_default())?;
+        Ok(json!({ "value": variable.text, "type": variable.ty }))
+    }
+
+    pub(super) fn data_breakpoint_info(&mut self, arguments: &Value) -> Reply {
+        let name = arguments["name"].as_str().unwrap_or_default().to_owned();
+        let reference = arguments["variablesReference"].as_u64().unwrap_or(0) as usize;
+        let handle = reference.checked_sub(1).and_then(|index| self.handles.get(index)).cloned();
+        let (frame, expression) = match handle {
+            Some(handle) => {
+                let listed = self.listed(&handle, 0, PARTS)?;
+                let found = listed.into_iter().find(|variable| variable.name == name);
+                (handle.frame(), found.ok_or_else(|| format!("there is no `{name}` here"))?.expression)
+            }
+            None => (arguments["frameId"].as_i64().unwrap_or(0), name),
+        };
+        if frame > 0 {
+            self.select(frame)?;
+        }
+        match self.debugger()?.evaluate(&expression) {
+            Ok(_) => Ok(json!({
+                "dataId": format!("{}|{}|{expression}", frame / FRAMES, frame % FRAMES),
+                "description": expression, "accessTypes": ["write"], "canPersist": false,
+            })),
+            Err(error) => Ok(json!({ "dataId": null, "description": error.to_string() })),
+        }
+    }
+
+    pub(super) fn completions(&mut self, arguments: &Value) -> Reply {
+        let text = arguments["text"].as_str().unwrap_or_default();
+        let word =
+            text.rsplit(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).next().unwrap_or("").to_owned();
+        let debugger = self.debugger()?;
+        let mut names: Vec<_> =
+            debugger.locals().into_iter().chain(debugger.globals()).map(|one| one.name).collect();
+        names.retain(|name| name.starts_with(&word));
+        let targets: Vec<_> = names.into_iter().map(|name| json!({ "label": name })).collect();
+        Ok(json!({ "targets": targets }))
+    }
+
+    pub(super) fn disassemble(&mut self, arguments: &Value) -> Reply {
+        let base = address_of(arguments["memoryReference"].as_str().unwrap_or_default())?;
+        let base = base.wrapping_add_signed(arguments["offset"].as_i64().unwrap_or(0) as i32);
+        let first =
+            base.wrapping_add_signed((arguments["instructionOffset"].as_i64().unwrap_or(0) * 8) as i32);
+        let count = arguments["instructionCount"].as_u64().unwrap_or(0).min(10_000) as u32;
+        let debugger = self.debugger()?;
+        let instructions: Vec<_> = (0..count)
+            .map(|index| {
+                let at = (first & !7).wrapping_add(8 * index);
+                let found = disassembly(debugger, at, 1).pop();
+                let mut shown = json!({
+                    "address": format!("{at:#010x}"),
+                    "instruction": found.map_or_else(|| "(no code)".to_owned(), |(_, text)| text),
+                });
+                if let Some(place) = debugger.place(at) {
+                    shown["line"] = json!(place.line);
+                    shown["location"] = source(&place.file);
+                }
+                shown
+            })
+            .collect();
+        Ok(json!({ "instructions": instructions }))
+    }
+
+    pub(super) fn read_memory(&mut self, arguments: &Value) -> Reply {
+        let base = address_of(arguments["memoryReference"].as_str().unwrap_or_default())?;
+        let address = base.wrapping_add_signed(arguments["offset"].as_i64().unwrap_or(0) as i32);
+        let count = arguments["count"].as_u64().unwrap_or(0).min(1 << 20) as u32;
+        let bytes = self.debugger()?.bytes(address, count);
+        Ok(json!({ "address": format!("{address:#010x}"), "data": wire::encode(&bytes) }))
+    }
+
+    pub(super) fn write_memory(&mut self, arguments: &Value) -> Reply {
+        let base = address_of(arguments["memoryReference"].as_str().unwrap_or_default())?;
+        let address = base.wrapping_add_signed(arguments["offset"].as_i64().unwrap_or(0) as i32);
+        let bytes =
+            wire::decode(arguments["data"].as_str().unwrap_or_default()).ok_or("the data are no base64")?;
+        self.debugger()?.store(address, &bytes)?;
+        Ok(json!({ "bytesWritten": bytes.len() }))
+    }
+
+    pub(super) fn exception_info(&mut self) -> Reply {
+        let (id, text) = match &self.debugger()?.stop().reason {
+            Reason::Trap(text) => ("trap", text.clone()),
+            Reason::Remark(text) => ("remark", text.clone()),
+            _ => return Err("no trap and no remark has stopped the board".into()),
+        };
+        Ok(json!({ "exceptionId": id, "description": text, "breakMode": "always" }))
+    }
+}
+
+/// An element of `persist.UserData` as an integer, and as what programs store there: a float in one, a double in two.
+fn reading(debugger: &Debugger, index: u32) -> Option<ShownVariable> {
+    let expression = format!("persist.UserData[{index}]");
+    let element = debugger.evaluate(&expression).ok()?;
+    let bytes = debugger.bytes(element.address?, 8);
+    let whole = u64::from_le_bytes(bytes.try_into().ok()?);
+    let float = f32::from_bits(whole as u32);
+    let double =
+        if index.is_multiple_of(2) { format!(", double {:?}", f64::from_bits(whole)) } else { String::new() };
+    let text = format!("{}, float {float:?}{double}", element.text);
+    Some(ShownVariable { name: format!("persist.{index}"), text, ..element })
+}

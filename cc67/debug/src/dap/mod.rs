@@ -1,0 +1,343 @@
+//! The Debug Adapter Protocol: a debugger for editors.
+//!
+//! A client sends requests, each of which has one response; the board's life comes as events. The protocol is served
+//! over any two streams. Requests are read by a thread of their own, so that one can interrupt a run; everything else
+//! happens in order.
+//!
+//! Source: <https://microsoft.github.io/debug-adapter-protocol/specification>.
+
+mod breakpoints;
+mod launch;
+mod look;
+mod wire;
+
+pub use launch::Launch;
+
+use std::io::{self, BufRead, Write};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, channel};
+use std::thread;
+
+use cc67_host::remark;
+use runtime::{Event, EventKind};
+use serde_json::{Value, json};
+use vm::engine::ContextId;
+
+use crate::debugger::{DebugError, Debugger, Reason, Stop};
+use look::Handle;
+use wire::ClientWire;
+
+/// The number by which clients know the call-back, behind those of the threads.
+const CALLBACK: i64 = 8;
+
+/// A response, or the message of one that failed.
+type Reply = Result<Value, DebugError>;
+
+/// What makes a debugger of what a client asks for.
+pub type Launcher<'a> = &'a mut dyn FnMut(&Launch) -> Result<Debugger, String>;
+
+/// Serves one client until it disconnects or vanishes.
+///
+/// # Errors
+/// The client cannot be written to.
+pub fn serve(
+    input: impl BufRead + Send + 'static,
+    output: impl Write,
+    launcher: Launcher<'_>,
+) -> io::Result<()> {
+    let interrupt = Arc::new(AtomicBool::new(false));
+    let requests = read(input, Arc::clone(&interrupt));
+    let mut server = Server {
+        wire: ClientWire::new(output),
+        launcher,
+        interrupt,
+        debugger: None,
+        asked: Launch::default(),
+        handles: Vec::new(),
+        set: Vec::new(),
+        has_trapped: false,
+        is_over: false,
+    };
+    while let Ok(request) = requests.recv() {
+        server.answer(&request)?;
+        if server.is_over {
+            break;
+        }
+    }
+    Ok(())
+}
+
+/// Reads requests; one that is to stop a run interrupts it at once, as does the end of them.
+fn read(mut input: impl BufRead + Send + 'static, interrupt: Arc<AtomicBool>) -> Receiver<Value> {
+    let (sender, receiver) = channel();
+    thread::spawn(move || {
+        while let Some(request) = wire::read(&mut input) {
+            let command = request.get("command").and_then(Value::as_str).unwrap_or_default();
+            if matches!(command, "pause" | "disconnect" | "terminate" | "restart") {
+                interrupt.store(true, Ordering::Relaxed);
+            }
+            if sender.send(request).is_err() {
+                return;
+            }
+        }
+        interrupt.store(true, Ordering::Relaxed);
+    });
+    receiver
+}
+
+/// The state of a conversation.
+struct Server<'a, W> {
+    wire: ClientWire<W>,
+    launcher: Launcher<'a>,
+    interrupt: Arc<AtomicBool>,
+    debugger: Option<Debugger>,
+    asked: Launch,
+    /// What the variable references of the present stop stand for.
+    handles: Vec<Handle>,
+    /// The breakpoints that the client has set, by what it calls the set they are in.
+    set: Vec<(String, u32)>,
+    has_trapped: bool,
+    is_over: bool,
+}
+
+/// What a client lets the board do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Move {
+    On,
+    Into,
+    Over,
+    Out,
+    Instruction,
+    Back,
+    BackInstruction,
+    BackOn,
+    Again,
+}
+
+impl<W: Write> Server<'_, W> {
+    fn answer(&mut self, request: &Value) -> io::Result<()> {
+        let command = request["command"].as_str().unwrap_or_default().to_owned();
+        let arguments = &request["arguments"];
+        if let Some(kind) = self.move_of(&command, arguments) {
+            return self.do_move(request, kind);
+        }
+        let reply = self.reply(&command, arguments);
+        let is_ok = reply.is_ok();
+        self.wire.respond(request, reply)?;
+        match command.as_str() {
+            "launch" if is_ok => self.wire.event("initialized", json!({})),
+            "configurationDone" if is_ok => self.begin(),
+            "disconnect" | "terminate" => {
+                self.is_over = command == "disconnect";
+                if self.is_over { Ok(()) } else { self.wire.event("terminated", json!({})) }
+            }
+            "setVariable" | "setExpression" | "writeMemory" | "evaluate" => self.tell_messages(),
+            "pause" => {
+                // A run was interrupted already; a board that stands stays.
+                self.interrupt.store(false, Ordering::Relaxed);
+                Ok(())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn move_of(&self, command: &str, arguments: &Value) -> Option<Move> {
+        let is_instruction = arguments["granularity"] == "instruction";
+        Some(match command {
+            "continue" => Move::On,
+            "next" | "stepIn" if is_instruction => Move::Instruction,
+            "next" => Move::Over,
+            "stepIn" => Move::Into,
+            "stepOut" => Move::Out,
+            "stepBack" if is_instruction => Move::BackInstruction,
+            "stepBack" => Move::Back,
+            "reverseContinue" => Move::BackOn,
+            "restart" => Move::Again,
+            _ => return None,
+        })
+    }
+
+    /// The response to a request that lets no time pass.
+    fn reply(&mut self, command: &str, arguments: &Value) -> Reply {
+        match command {
+            "initialize" => Ok(launch::capabilities()),
+            "launch" => self.launch(arguments),
+            "attach" => Err("cc67 debugs what it launches; use \"request\": \"launch\"".into()),
+            "configurationDone" | "pause" | "disconnect" | "terminate" => Ok(json!({})),
+            "setBreakpoints" => self.set_breakpoints(arguments),
+            "setFunctionBreakpoints" => self.set_function_breakpoints(arguments),
+            "setInstructionBreakpoints" => self.set_instruction_breakpoints(arguments),
+            "setDataBreakpoints" => self.set_data_breakpoints(arguments),
+            "setExceptionBreakpoints" => self.set_exception_breakpoints(arguments),
+            "dataBreakpointInfo" => self.data_breakpoint_info(arguments),
+            "breakpointLocations" => self.breakpoint_locations(arguments),
+            "threads" => self.threads(),
+            "stackTrace" => self.stack_trace(arguments),
+            "scopes" => self.scopes(arguments),
+            "variables" => self.variables(arguments),
+            "evaluate" => self.evaluate(arguments),
+            "setVariable" => self.set_variable(arguments),
+            "setExpression" => self.set_expression(arguments),
+            "completions" => self.completions(arguments),
+            "disassemble" => self.disassemble(arguments),
+            "readMemory" => self.read_memory(arguments),
+            "writeMemory" => self.write_memory(arguments),
+            "exceptionInfo" => self.exception_info(),
+            "loadedSources" => Ok(json!({ "sources": [] })),
+            _ => Err(format!("cc67 does not know the request `{command}`").into()),
+        }
+    }
+
+    fn launch(&mut self, arguments: &Value) -> Reply {
+        self.asked = Launch(arguments.clone());
+        let mut debugger = (self.launcher)(&self.asked)?;
+        debugger.interrupted_by(Arc::clone(&self.interrupt));
+        self.debugger = Some(debugger);
+        Ok(json!({}))
+    }
+
+    fn debugger(&mut self) -> Result<&mut Debugger, DebugError> {
+        self.debugger.as_mut().ok_or_else(|| "nothing is launched yet".into())
+    }
+
+    /// The client has said all: the board runs, or stands at its beginning.
+    fn begin(&mut self) -> io::Result<()> {
+        if self.asked.0["stopOnEntry"] == true {
+            let stop = self.debugger.as_ref().map(|debugger| debugger.stop().clone());
+            return stop.map_or(Ok(()), |stop| self.tell_stop(&stop));
+        }
+        let result = self.run(Move::On)?;
+        self.tell_result(result)
+    }
+
+    fn do_move(&mut self, request: &Value, kind: Move) -> io::Result<()> {
+        if kind == Move::Again {
+            self.interrupt.store(false, Ordering::Relaxed);
+        }
+        let thread = request["arguments"]["threadId"].as_i64();
+        let chosen = self.debugger().and_then(|debugger| {
+            let thread =
+                thread.and_then(|number| i32::try_from(number).ok()).and_then(kmotiondef::ThreadId::new);
+            match thread {
+                Some(thread) if debugger.thread() != thread => debugger.select(thread, 0),
+                Some(thread) => debugger.select(thread, 0),
+                None => Ok(()),
+            }
+        });
+        if let Err(error) = chosen {
+            return self.wire.respond(request, Err(error));
+        }
+        self.wire.respond(request, Ok(json!({ "allThreadsContinued": true })))?;
+        let result = self.run(kind)?;
+        self.tell_result(result)
+    }
+
+    fn tell_result(&mut self, result: Result<Stop, DebugError>) -> io::Result<()> {
+        match result {
+            Ok(stop) => self.tell_stop(&stop),
+            Err(error) => {
+                self.wire.output("console", &format!("{error}\n"))?;
+                let Some(stop) = self.debugger.as_ref().map(|debugger| debugger.stop().clone()) else {
+                    return Ok(());
+                };
+                self.tell_stop(&Stop { reason: Reason::Step, ..stop })
+            }
+        }
+    }
+
+    /// Lets the board go; console lines are told at once.
+    fn run(&mut self, kind: Move) -> io::Result<Result<Stop, DebugError>> {
+        self.handles.clear();
+        let Some(debugger) = &mut self.debugger else { return Ok(Err("nothing is launched yet".into())) };
+        let infos: Vec<_> = debugger.session().debug().into_iter().map(|(_, info)| info).collect();
+        let (wire, mut failed, mut has_trapped) = (&mut self.wire, None, false);
+        let mut tell = |event: &Event| {
+            has_trapped |= matches!(event.kind, EventKind::Trap(_));
+            let told = match &event.kind {
+                EventKind::ConsoleLine(line) => {
+                    wire.output("stdout", &format!("{}\n", String::from_utf8_lossy(line)))
+                }
+                _ => match remark::describe(event, &infos) {
+                    Some(text) => wire.output("console", &format!("{text}\n")),
+                    None => Ok(()),
+                },
+            };
+            failed = failed.take().or(told.err());
+        };
+        let result = match kind {
+            Move::On => Ok(debugger.go_on(&mut tell)),
+            Move::Into => debugger.step(&mut tell),
+            Move::Over => debugger.next(&mut tell),
+            Move::Out => debugger.finish(&mut tell),
+            Move::Instruction => debugger.step_instruction(&mut tell),
+            Move::Back => debugger.reverse_next(),
+            Move::BackInstruction => Ok(debugger.reverse_step_instruction()),
+            Move::BackOn => Ok(debugger.reverse_continue()),
+            Move::Again => debugger.restart().map(|_| debugger.go_on(&mut tell)),
+        };
+        self.has_trapped |= has_trapped;
+        match failed {
+            Some(error) => Err(error),
+            None => Ok(result),
+        }
+    }
+
+    fn tell_messages(&mut self) -> io::Result<()> {
+        while let Some(message) = self.debugger.as_mut().and_then(Debugger::take_message) {
+            self.wire.output("console", &format!("{message}\n"))?;
+        }
+        Ok(())
+    }
+
+    fn tell_stop(&mut self, stop: &Stop) -> io::Result<()> {
+        self.tell_messages()?;
+        let Some(debugger) = &self.debugger else { return Ok(()) };
+        if stop.reason == Reason::AllEnded && self.asked.0["stopAtEnd"] != true {
+            let code = if self.has_trapped { 3 } else { 0 };
+            self.wire.event("exited", json!({ "exitCode": code }))?;
+            return self.wire.event("terminated", json!({}));
+        }
+        let thread = match stop.context {
+            Some(context) => number_of(context),
+            None => number_of(debugger.context()),
+        };
+        let seconds = crate::shell::seconds(stop.at);
+        let (reason, text) = match &stop.reason {
+            Reason::Begin => ("entry", String::new()),
+            Reason::Breakpoint(_) => ("breakpoint", String::new()),
+            Reason::Changed { expression, old, new, by, .. } => {
+                ("data breakpoint", format!("{expression}: {old} → {new}, written by {by}"))
+            }
+            Reason::Step | Reason::Time => ("step", String::new()),
+            Reason::Trap(text) | Reason::Remark(text) => ("exception", text.clone()),
+            Reason::Interrupted => ("pause", String::new()),
+            Reason::BeginOfHistory => ("step", "the beginning of the recorded past".to_owned()),
+            Reason::AllEnded => ("pause", "all threads have ended".to_owned()),
+            Reason::Started(thread) => ("pause", format!("thread {thread} begins")),
+            Reason::Ended(thread) => ("pause", format!("thread {thread} has ended")),
+            Reason::Console(text) | Reason::Bit(text) => ("pause", text.clone()),
+        };
+        let mut body = json!({
+            "reason": reason,
+            "threadId": thread,
+            "allThreadsStopped": true,
+            "description": format!("Paused on {reason} at {seconds:.6} s of board time"),
+        });
+        if !text.is_empty() {
+            body["text"] = json!(text);
+        }
+        if let Reason::Breakpoint(ids) = &stop.reason {
+            body["hitBreakpointIds"] = json!(ids);
+        }
+        if let Reason::Changed { id, .. } = &stop.reason {
+            body["hitBreakpointIds"] = json!([id]);
+        }
+        self.wire.event("stopped", body)
+    }
+}
+
+/// The number by which clients know a context.
+fn number_of(context: ContextId) -> i64 {
+    context.thread().map_or(CALLBACK, |thread| i64::from(thread.get()))
+}

@@ -1,0 +1,558 @@
+//! The debugger: a session, its programs, breakpoints, and where it stands.
+
+mod run;
+mod travel;
+mod values;
+
+pub use values::ShownVariable;
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use cc67_host::{History, Session, Timeline};
+use compiler::debug::Probe;
+use kmotiondef::{CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
+use runtime::Event;
+use vm::engine::ContextId;
+use vm::interp::{BytecodeEngine, FrameView};
+
+use crate::programs::{Programs, Statement};
+
+/// Why a request is refused.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct DebugError(pub(crate) String);
+
+impl From<String> for DebugError {
+    fn from(text: String) -> Self {
+        Self(text)
+    }
+}
+
+impl From<&str> for DebugError {
+    fn from(text: &str) -> Self {
+        Self(text.to_owned())
+    }
+}
+
+/// Where something stands in a source.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CodePlace {
+    /// The thread whose program it is of.
+    pub thread: ThreadId,
+    /// The function.
+    pub function: String,
+    /// The path of the file.
+    pub file: String,
+    /// The line.
+    pub line: u32,
+    /// The code is in another function, of which the call has become a part.
+    pub is_inlined: bool,
+}
+
+/// A call in progress.
+#[derive(Clone, Debug)]
+pub struct StackFrame {
+    /// The instruction that is executed next; in a caller, the call.
+    pub address: CodeAddr,
+    /// Where that is in the source, if that is known.
+    pub place: Option<CodePlace>,
+    pub(crate) view: FrameView,
+}
+
+/// What a breakpoint is about.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum BreakpointKind {
+    /// Instructions: where to stop in words, and their addresses.
+    Code(String, Vec<u32>),
+    /// A change of an expression's value.
+    Watch(String),
+}
+
+/// A breakpoint.
+#[derive(Debug)]
+pub struct Breakpoint {
+    /// Its number, counted from 1.
+    pub id: u32,
+    /// What it is about.
+    pub kind: BreakpointKind,
+    /// Stops only where this is not 0, an expression of the program.
+    pub condition: Option<String>,
+    /// Passes so often before it stops.
+    pub ignore: u64,
+    /// Prints this in place of stopping; `{expression}` is its value.
+    pub log: Option<String>,
+    /// It is deleted when it stops.
+    pub is_temporary: bool,
+    /// It is in effect.
+    pub is_enabled: bool,
+    /// How often it was met.
+    pub hits: u64,
+    watched: Option<WatchedExpression>,
+}
+
+/// A watched expression.
+#[derive(Debug)]
+struct WatchedExpression {
+    probe: Probe,
+    frame: Option<(ContextId, usize)>,
+    ranges: Vec<(GuestAddr, u32)>,
+    last: String,
+}
+
+/// Why the board stands.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Reason {
+    /// It was not run yet.
+    Begin,
+    /// At breakpoints, by their numbers.
+    Breakpoint(Vec<u32>),
+    /// A watched expression has another value.
+    Changed {
+        /// Number of the breakpoint.
+        id: u32,
+        /// The expression.
+        expression: String,
+        /// Its value before.
+        old: String,
+        /// Its value now.
+        new: String,
+        /// Who did it.
+        by: String,
+    },
+    /// A step is over.
+    Step,
+    /// A thread was stopped by a trap.
+    Trap(String),
+    /// The board has made a remark.
+    Remark(String),
+    /// A thread begins.
+    Started(ThreadId),
+    /// A thread has ended.
+    Ended(ThreadId),
+    /// A console line contains the text that was waited for.
+    Console(String),
+    /// An input or output has another level.
+    Bit(String),
+    /// The time that was asked for.
+    Time,
+    /// All threads have ended.
+    AllEnded,
+    /// Somebody interrupted it.
+    Interrupted,
+    /// The beginning of the recorded past.
+    BeginOfHistory,
+}
+
+/// Where the board stands, and why.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Stop {
+    /// Why.
+    pub reason: Reason,
+    /// Whose program is about to go on, if it is one's.
+    pub context: Option<ContextId>,
+    /// Board time.
+    pub at: Cycles,
+}
+
+/// An instant between two instructions, which no other has in common.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Position {
+    pub(crate) tick: Ticks,
+    pub(crate) held: Option<(ContextId, Cycles, CodeAddr)>,
+}
+
+/// What else stops the board.
+#[derive(Clone, Debug, Default)]
+pub struct Catches {
+    /// Traps; they stop unless this says otherwise.
+    pub no_traps: bool,
+    /// Remarks.
+    pub remarks: bool,
+    /// Begins and ends of threads.
+    pub starts: bool,
+    /// The same for ends.
+    pub ends: bool,
+    /// Console lines that contain one of these.
+    pub texts: Vec<String>,
+    /// Inputs and outputs, by number.
+    pub bits: Vec<i32>,
+}
+
+/// A debugger of one board.
+#[derive(Debug)]
+pub struct Debugger {
+    session: Session,
+    timeline: Timeline<BytecodeEngine>,
+    programs: Programs,
+    breakpoints: Vec<Breakpoint>,
+    next_id: u32,
+    /// What else stops.
+    pub catches: Catches,
+    /// Where a run ends.
+    pub limit: Ticks,
+    thread: ThreadId,
+    frame: usize,
+    stop: Stop,
+    /// Messages of log points and the like that nobody has taken yet.
+    messages: VecDeque<String>,
+    /// Ends a run from elsewhere.
+    interrupt: Arc<AtomicBool>,
+}
+
+impl Debugger {
+    /// A debugger of a board that stands where it is.
+    #[must_use]
+    pub fn new(mut session: Session, limit: Ticks) -> Self {
+        let timeline = Timeline::new(&mut session);
+        let mut programs = Programs::default();
+        programs.update(&session);
+        let first = session.programs().iter().find(|program| program.starts).map(|program| program.thread);
+        let thread = first.or_else(|| ThreadId::all().next()).expect("there are threads");
+        let stop = Stop { reason: Reason::Begin, context: None, at: session.now() };
+        Self {
+            session,
+            timeline,
+            programs,
+            breakpoints: Vec::new(),
+            next_id: 1,
+            catches: Catches::default(),
+            limit,
+            thread,
+            frame: 0,
+            stop,
+            messages: VecDeque::new(),
+            interrupt: Arc::default(),
+        }
+    }
+
+    /// The board under control, to look at.
+    #[must_use]
+    pub const fn session(&self) -> &Session {
+        &self.session
+    }
+
+    /// What is known of the programs.
+    #[must_use]
+    pub const fn programs(&self) -> &Programs {
+        &self.programs
+    }
+
+    /// Where the board stands, and why.
+    #[must_use]
+    pub const fn stop(&self) -> &Stop {
+        &self.stop
+    }
+
+    /// The thread that is looked at.
+    #[must_use]
+    pub const fn thread(&self) -> ThreadId {
+        self.thread
+    }
+
+    /// Which of its calls is looked at, counted from the innermost.
+    #[must_use]
+    pub const fn frame(&self) -> usize {
+        self.frame
+    }
+
+    /// The breakpoints.
+    #[must_use]
+    pub fn breakpoints(&self) -> &[Breakpoint] {
+        &self.breakpoints
+    }
+
+    /// Ends a run whenever this is set.
+    pub fn interrupted_by(&mut self, flag: Arc<AtomicBool>) {
+        self.interrupt = flag;
+    }
+
+    /// A message that nobody has taken yet.
+    pub fn take_message(&mut self) -> Option<String> {
+        self.messages.pop_front()
+    }
+
+    /// Bytes of memory that the recorded past takes beside the board, and how many snapshots it has.
+    #[must_use]
+    pub fn history(&self) -> (usize, usize) {
+        (self.timeline.bytes(), self.timeline.len())
+    }
+
+    /// Looks at a thread, or at another call.
+    ///
+    /// # Errors
+    /// There is no such call.
+    pub fn select(&mut self, thread: ThreadId, frame: usize) -> Result<(), DebugError> {
+        if frame > 0 && frame >= self.frames(ContextId::of(thread)).len() {
+            return Err(format!("thread {thread} has no frame {frame}").into());
+        }
+        (self.thread, self.frame) = (thread, frame);
+        Ok(())
+    }
+
+    /// The calls in progress of a context, innermost first.
+    #[must_use]
+    pub fn frames(&self, context: ContextId) -> Vec<StackFrame> {
+        let is_live = context.thread().is_none_or(|thread| {
+            !matches!(
+                self.session.thread(thread),
+                vm::thread::ThreadState::Empty
+                    | vm::thread::ThreadState::Ready
+                    | vm::thread::ThreadState::Active(vm::thread::Progress::Fresh)
+            )
+        });
+        let is_live = is_live
+            && (context.thread().is_some() || self.session.held().is_some_and(|(held, _)| held == context));
+        if !is_live {
+            return Vec::new();
+        }
+        let frame = |view: FrameView| StackFrame { address: view.at, place: self.place(view.at.get()), view };
+        self.session.frames(context).into_iter().map(frame).collect()
+    }
+
+    /// Where an instruction is in its source.
+    #[must_use]
+    pub fn place(&self, address: u32) -> Option<CodePlace> {
+        let (thread, model, function) = self.programs.at(address)?;
+        let line = model.line_at(address)?;
+        let same = std::path::Path::new(&function.file).file_name() == model.path.file_name();
+        let file = if same {
+            model.path.clone()
+        } else {
+            model.path.parent().unwrap_or(std::path::Path::new("")).join(&function.file)
+        };
+        // Code of a function that has taken a call's place belongs to that function.
+        let is_own = (function.lines.start..=function.lines.end).contains(&line);
+        let inlined =
+            model.functions.iter().find(|other| (other.lines.start..=other.lines.end).contains(&line));
+        let named = if is_own { function } else { inlined.unwrap_or(function) };
+        Some(CodePlace {
+            thread,
+            function: named.name.clone(),
+            file: file.to_string_lossy().into_owned(),
+            line,
+            is_inlined: named.name != function.name,
+        })
+    }
+
+    /// Sets a breakpoint at `FILE:LINE`, `LINE`, `FUNCTION` or `*ADDRESS`, of the program in one thread or of all that have it;
+    /// its number, and what there is to say.
+    ///
+    /// # Errors
+    /// There is no code, or the condition does not compile.
+    pub fn break_at(
+        &mut self,
+        place: &str,
+        thread: Option<ThreadId>,
+        condition: Option<&str>,
+    ) -> Result<(u32, String), DebugError> {
+        let (found, note) = self.resolve(place.trim(), thread)?;
+        if let Some(condition) = condition {
+            for one in &found {
+                self.condition_at(one, condition)?;
+            }
+        }
+        let first = &found[0];
+        let where_ = if first.line == 0 {
+            format!("{:#010x}", first.address)
+        } else {
+            let place = self.place(first.address);
+            place.map_or_else(
+                || format!("{:#010x}", first.address),
+                |place| format!("{}, {}:{}", first.function, file_name(&place.file), first.line),
+            )
+        };
+        let addresses = found.iter().map(|one| one.address).collect();
+        let id = self.add(BreakpointKind::Code(where_.clone(), addresses), condition);
+        let mut threads: Vec<_> = found.iter().map(|one| one.thread.to_string()).collect();
+        threads.dedup();
+        let text = format!("Breakpoint {id} at {where_} (thread {}){note}", threads.join(", "));
+        Ok((id, text))
+    }
+
+    /// Stops when the value of an expression changes; its number, and what there is to say.
+    ///
+    /// # Errors
+    /// What is wrong with the expression.
+    pub fn watch(&mut self, expression: &str, condition: Option<&str>) -> Result<(u32, String), DebugError> {
+        let watched = self.watched(expression)?;
+        if let Some(condition) = condition {
+            self.probe(condition)?;
+        }
+        let id = self.add(BreakpointKind::Watch(expression.to_owned()), condition);
+        if let Some(added) = self.breakpoints.last_mut() {
+            added.watched = Some(watched);
+        }
+        Ok((id, format!("Watchpoint {id}: {expression}")))
+    }
+
+    /// Deletes a breakpoint; whether there was one of that number.
+    pub fn delete(&mut self, id: u32) -> bool {
+        let count = self.breakpoints.len();
+        self.breakpoints.retain(|breakpoint| breakpoint.id != id);
+        self.breakpoints.len() < count
+    }
+
+    /// A breakpoint, to change it.
+    pub fn breakpoint_mut(&mut self, id: u32) -> Option<&mut Breakpoint> {
+        self.breakpoints.iter_mut().find(|breakpoint| breakpoint.id == id)
+    }
+
+    /// Gives a breakpoint a condition, or takes it away.
+    ///
+    /// # Errors
+    /// There is no such breakpoint, or the condition does not compile.
+    pub fn set_condition(&mut self, id: u32, condition: Option<&str>) -> Result<(), DebugError> {
+        let found = self.breakpoints.iter().find(|breakpoint| breakpoint.id == id);
+        let kind = found
+            .map(|breakpoint| breakpoint.kind.clone())
+            .ok_or_else(|| format!("No breakpoint number {id}."))?;
+        if let Some(condition) = condition {
+            match &kind {
+                BreakpointKind::Code(_, addresses) => {
+                    for address in addresses {
+                        self.probe_at(*address, condition)?;
+                    }
+                }
+                BreakpointKind::Watch(_) => _ = self.probe(condition)?,
+            }
+        }
+        if let Some(breakpoint) = self.breakpoint_mut(id) {
+            breakpoint.condition = condition.map(str::to_owned);
+        }
+        Ok(())
+    }
+
+    fn add(&mut self, kind: BreakpointKind, condition: Option<&str>) -> u32 {
+        let id = self.next_id;
+        self.next_id += 1;
+        self.breakpoints.push(Breakpoint {
+            id,
+            kind,
+            condition: condition.map(str::to_owned),
+            ignore: 0,
+            log: None,
+            is_temporary: false,
+            is_enabled: true,
+            hits: 0,
+            watched: None,
+        });
+        id
+    }
+
+    /// What a person means by a place, and what there is to say of it.
+    pub(crate) fn resolve(
+        &self,
+        place: &str,
+        thread: Option<ThreadId>,
+    ) -> Result<(Vec<Statement>, String), DebugError> {
+        if let Some(address) = place.strip_prefix('*') {
+            let value = self.number(address)?;
+            let address = value as u32 & !7;
+            let found = self.programs.at(address);
+            let (thread, _, function) = found.ok_or_else(|| format!("no code at {address:#x}"))?;
+            let line = self.place(address).map_or(0, |place| place.line);
+            return Ok((
+                vec![Statement { thread, address, line, function: function.name.clone() }],
+                String::new(),
+            ));
+        }
+        let (file, rest) = place.rsplit_once(':').map_or((None, place), |(file, rest)| (Some(file), rest));
+        if let Ok(line) = rest.parse::<u32>() {
+            let present = || self.present().map(|place| place.file).filter(|_| file.is_none());
+            let own = present();
+            let file = file.or(own.as_deref());
+            let thread = thread.or_else(|| file.is_none().then_some(self.thread));
+            let (found, taken) = self.programs.at_line(file, line, thread);
+            if found.is_empty() {
+                let why = self.programs.unknown().next();
+                let text = format!(
+                    "No code at line {line} or below{}",
+                    why.map_or_else(String::new, |why| format!("; {why}"))
+                );
+                return Err(text.into());
+            }
+            let note = if taken == line {
+                String::new()
+            } else {
+                format!("; line {line} has no code, {taken} is the next with some")
+            };
+            return Ok((found, note));
+        }
+        let found = self.programs.at_function(rest, thread);
+        if found.is_empty() {
+            let why = self.programs.unknown().next();
+            return Err(why.unwrap_or_else(|| format!("Function \"{rest}\" not defined.")).into());
+        }
+        Ok((found, String::new()))
+    }
+
+    fn condition_at(&self, at: &Statement, condition: &str) -> Result<(), DebugError> {
+        self.probe_at(at.address, condition).map(|_| ())
+    }
+
+    /// Where the call that is looked at stands.
+    #[must_use]
+    pub fn present(&self) -> Option<CodePlace> {
+        self.frames(self.context()).into_iter().nth(self.frame)?.place
+    }
+
+    /// The context that is looked at: the thread's, or the call-back's if the board stands there.
+    #[must_use]
+    pub fn context(&self) -> ContextId {
+        match self.stop.context {
+            Some(context) if context == ContextId::CALLBACK => context,
+            _ => ContextId::of(self.thread),
+        }
+    }
+
+    pub(crate) fn position(&self) -> Position {
+        let held = self
+            .session
+            .held()
+            .and_then(|(context, at)| Some((context, at, self.session.frames(context).first()?.at)));
+        Position { tick: self.session.tick(), held }
+    }
+
+    /// Board time.
+    #[must_use]
+    pub fn now(&self) -> Cycles {
+        self.session.held().map_or_else(|| self.session.now(), |(_, at)| at)
+    }
+
+    fn stopped(&mut self, reason: Reason, context: Option<ContextId>) -> Stop {
+        self.programs.update(&self.session);
+        let context = context.or_else(|| self.session.held().map(|(context, _)| context));
+        if let Some(thread) = context.and_then(ContextId::thread) {
+            self.thread = thread;
+        }
+        self.frame = 0;
+        self.stop = Stop { reason, context, at: self.now() };
+        self.stop.clone()
+    }
+
+    /// Tells the timeline that a person has changed something; says so if that makes another history.
+    pub(crate) fn changed(&mut self) {
+        let history = if self.session.held().is_some() {
+            self.timeline.branch(&mut self.session)
+        } else {
+            self.timeline.keep(&mut self.session)
+        };
+        if history != History::Same {
+            let seconds = self.now().get() as f64 / Cycles::PER_SECOND.get() as f64;
+            self.messages.push_back(format!(
+                "A new line of history begins here, at {seconds:.6} s; what came later is forgotten."
+            ));
+        }
+        self.refresh_watches();
+    }
+}
+
+/// The last part of a path.
+pub(crate) fn file_name(path: &str) -> &str {
+    path.rsplit(['/', '\\']).next().unwrap_or(path)
+}
+
+/// What receives events while the board runs.
+pub(crate) type Events<'a> = &'a mut dyn FnMut(&Event);

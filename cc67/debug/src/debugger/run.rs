@@ -1,0 +1,436 @@
+//! Forward: to a breakpoint, by steps of one thread while the others go on, to a time.
+
+use std::sync::atomic::Ordering;
+
+use kmotiondef::{Bit, CodeAddr, GuestAddr, ThreadId, Ticks};
+use runtime::{Event, EventKind};
+use vm::engine::ContextId;
+use vm::interp::{Hold, HoldReason};
+
+use super::{BreakpointKind, DebugError, Debugger, Events, Reason, Stop, file_name};
+
+/// Bytes of an instruction.
+const WORD: u32 = 8;
+
+/// What ends a run besides breakpoints.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Goal {
+    /// Nothing.
+    None,
+    /// The next line of a context: from which line and depth it comes, and whether calls are followed.
+    Line { context: ContextId, line: u32, function: String, depth: usize, into: bool },
+    /// A call with fewer calls around it, at one of these addresses.
+    Above { context: ContextId, depth: usize, at: Vec<u32> },
+    /// One of these addresses.
+    Address(Vec<u32>),
+    /// One instruction.
+    Instruction(ContextId),
+    /// The end of a tick.
+    Tick(Ticks),
+}
+
+impl Debugger {
+    /// Goes on to the next stop.
+    pub fn go_on(&mut self, events: Events<'_>) -> Stop {
+        self.run(&Goal::None, events)
+    }
+
+    /// Goes on to the next line of the thread that is looked at, into the functions that it calls.
+    ///
+    /// # Errors
+    /// The thread runs nothing, or nothing is known of its program.
+    pub fn step(&mut self, events: Events<'_>) -> Result<Stop, DebugError> {
+        let goal = self.line_goal(true)?;
+        Ok(self.run(&goal, events))
+    }
+
+    /// Goes on to the next line of the function, or of its caller.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step).
+    pub fn next(&mut self, events: Events<'_>) -> Result<Stop, DebugError> {
+        let goal = self.line_goal(false)?;
+        Ok(self.run(&goal, events))
+    }
+
+    /// Goes on until the function that is looked at has returned.
+    ///
+    /// # Errors
+    /// It is the outermost.
+    pub fn finish(&mut self, events: Events<'_>) -> Result<Stop, DebugError> {
+        let context = self.context();
+        let frames = self.frames(context);
+        let caller = frames.get(self.frame + 1);
+        let caller = caller.ok_or("\"finish\" not meaningful in the outermost frame.")?;
+        let at = vec![caller.address.get() + WORD];
+        let goal = Goal::Above { context, depth: frames.len() - self.frame - 1, at };
+        Ok(self.run(&goal, events))
+    }
+
+    /// Executes one instruction of the thread that is looked at.
+    ///
+    /// # Errors
+    /// The thread is not active.
+    pub fn step_instruction(&mut self, events: Events<'_>) -> Result<Stop, DebugError> {
+        self.must_be_active()?;
+        Ok(self.run(&Goal::Instruction(self.context()), events))
+    }
+
+    /// Goes on to a place: `FILE:LINE`, `LINE`, `FUNCTION` or `*ADDRESS`.
+    ///
+    /// # Errors
+    /// There is no code.
+    pub fn until(&mut self, place: &str, events: Events<'_>) -> Result<Stop, DebugError> {
+        let (found, note) = self.resolve(place, None)?;
+        if !note.is_empty() {
+            self.messages.push_back(note.trim_start_matches("; ").to_owned());
+        }
+        Ok(self.run(&Goal::Address(found.iter().map(|one| one.address).collect()), events))
+    }
+
+    /// Goes on to the end of a tick.
+    pub fn run_to(&mut self, tick: Ticks, events: Events<'_>) -> Stop {
+        self.run(&Goal::Tick(tick), events)
+    }
+
+    /// Goes on to the end of the tick in progress, or of the next one.
+    pub fn step_tick(&mut self, events: Events<'_>) -> Stop {
+        let tick = self.session.tick();
+        let tick = if self.session.held().is_some() { tick } else { tick.next() };
+        self.run(&Goal::Tick(tick), events)
+    }
+
+    /// Goes on to the end of the next tick in which the thread that is looked at has the processor.
+    pub fn step_slice(&mut self, events: Events<'_>) -> Stop {
+        loop {
+            let stop = self.step_tick(events);
+            let is_its = self.session.board().machine().turn() == vm::scheduler::Turn::User(self.thread);
+            if stop.reason != Reason::Time || is_its || self.session.tick() >= self.limit {
+                return stop;
+            }
+        }
+    }
+
+    fn must_be_active(&self) -> Result<(), DebugError> {
+        let thread = self.thread;
+        let is_active = self.session.thread(thread).is_active() || self.context() == ContextId::CALLBACK;
+        if is_active { Ok(()) } else { Err(format!("Thread {thread} is not active.").into()) }
+    }
+
+    fn line_goal(&self, into: bool) -> Result<Goal, DebugError> {
+        self.must_be_active()?;
+        self.programs.of(self.thread)?;
+        let context = self.context();
+        let frames = self.frames(context);
+        let place = frames.first().and_then(|frame| frame.place.clone());
+        let (line, function) = place.map_or((0, String::new()), |place| (place.line, place.function));
+        Ok(Goal::Line { context, line, function, depth: frames.len(), into })
+    }
+
+    /// Where contexts are held for breakpoints and a goal.
+    pub(super) fn arm(&mut self, goal: &Goal, also: Option<CodeAddr>) {
+        let mut addresses: Vec<u32> = also.map(CodeAddr::get).into_iter().collect();
+        let mut ranges: Vec<(GuestAddr, u32)> = Vec::new();
+        for breakpoint in self.breakpoints.iter().filter(|breakpoint| breakpoint.is_enabled) {
+            if let BreakpointKind::Code(_, at) = &breakpoint.kind {
+                addresses.extend(at);
+            }
+            let Some(watched) = &breakpoint.watched else { continue };
+            ranges.extend(&watched.ranges);
+            if watched.ranges.is_empty() {
+                // A register is looked at before every line.
+                addresses.extend(self.statements());
+            }
+        }
+        match goal {
+            Goal::Line { .. } => addresses.extend(self.statements()),
+            Goal::Above { at, .. } | Goal::Address(at) => addresses.extend(at),
+            Goal::None | Goal::Instruction(_) | Goal::Tick(_) => {}
+        }
+        self.session.set_breakpoints(addresses.into_iter().filter_map(CodeAddr::new));
+        self.session.set_watched(&ranges);
+        self.session.set_stepping(if let Goal::Instruction(context) = goal { Some(*context) } else { None });
+    }
+
+    /// Nothing is held any more.
+    pub(super) fn disarm(&mut self) {
+        self.session.set_breakpoints([]);
+        self.session.set_watched(&[]);
+        self.session.set_stepping(None);
+    }
+
+    /// The statements of all programs.
+    fn statements(&self) -> Vec<u32> {
+        let threads: Vec<_> = self.programs.all().map(|(thread, _)| thread).collect();
+        let of = |thread| self.programs.statements(thread, None).into_iter().map(|one| one.address);
+        threads.into_iter().flat_map(of).collect()
+    }
+
+    fn run(&mut self, goal: &Goal, events: Events<'_>) -> Stop {
+        self.refresh_watches();
+        self.arm(goal, None);
+        let stop = self.run_armed(goal, events);
+        self.disarm();
+        stop
+    }
+
+    fn run_armed(&mut self, goal: &Goal, events: Events<'_>) -> Stop {
+        let limit = if let Goal::Tick(tick) = goal { *tick } else { self.limit };
+        let mut infos: Vec<_> = self.session.debug().into_iter().map(|(_, info)| info).collect();
+        let catches = self.catches.clone();
+        loop {
+            if self.interrupt.swap(false, Ordering::Relaxed) {
+                return self.stopped(Reason::Interrupted, None);
+            }
+            let before = self.active();
+            let bits = self.bits();
+            self.timeline.redo(&mut self.session);
+            let mut caught = None;
+            let step = self.timeline.next_input().map_or(limit, |next| next.min(limit));
+            let mut programs_changed = false;
+            self.session.step(step, &mut |event| {
+                programs_changed |= matches!(event.kind, EventKind::Loaded(..));
+                if caught.is_none() {
+                    caught = catch(&event, &catches, &infos);
+                }
+                events(&event);
+            });
+            if programs_changed {
+                self.programs.update(&self.session);
+                infos = self.session.debug().into_iter().map(|(_, info)| info).collect();
+            }
+            let _ = self.timeline.keep(&mut self.session);
+            if let Some(hold) = self.session.take_hold() {
+                if let Some(reason) = self.judge(hold, goal, true) {
+                    return self.stopped(reason, Some(hold.context));
+                }
+                continue;
+            }
+            if let Some((reason, thread)) = caught {
+                return self.stopped(reason, thread.map(ContextId::of));
+            }
+            if let Some(reason) = self.between_ticks(goal, before, &bits) {
+                let context = if let Reason::Started(thread) | Reason::Ended(thread) = &reason {
+                    Some(ContextId::of(*thread))
+                } else {
+                    None
+                };
+                return self.stopped(reason, context);
+            }
+            if self.session.tick() >= limit {
+                return self.stopped(Reason::Time, None);
+            }
+            if self.session.has_ended() && !matches!(goal, Goal::Tick(_)) {
+                self.session.finish(&mut |event| events(&event));
+                return self.stopped(Reason::AllEnded, None);
+            }
+        }
+    }
+
+    fn active(&self) -> Vec<ThreadId> {
+        ThreadId::all().filter(|thread| self.session.thread(*thread).is_active()).collect()
+    }
+
+    fn bits(&self) -> Vec<bool> {
+        self.catches.bits.iter().map(|bit| Bit::new(*bit).is_some_and(|bit| self.session.bit(bit))).collect()
+    }
+
+    /// What is to stop at the end of a tick.
+    fn between_ticks(&mut self, goal: &Goal, before: Vec<ThreadId>, bits: &[bool]) -> Option<Reason> {
+        if let Some(index) = self.session.take_change()
+            && let Some(reason) = self.judge_change(index, "the servo or the firmware".to_owned(), true)
+        {
+            return Some(reason);
+        }
+        let now = self.active();
+        let mut ended = before.iter().filter(|thread| !now.contains(thread));
+        let stepped = match goal {
+            Goal::Line { context, .. } | Goal::Above { context, .. } | Goal::Instruction(context) => {
+                context.thread()
+            }
+            _ => None,
+        };
+        let is_meant = |thread: &&ThreadId| self.catches.ends || stepped == Some(**thread);
+        if let Some(thread) = ended.find(is_meant) {
+            return Some(Reason::Ended(*thread));
+        }
+        if self.catches.starts
+            && let Some(thread) = now.iter().find(|thread| !before.contains(thread))
+        {
+            return Some(Reason::Started(*thread));
+        }
+        let changed = self.bits().iter().zip(bits).position(|(now, before)| now != before)?;
+        let level = u8::from(self.bits()[changed]);
+        Some(Reason::Bit(format!("bit {} is {level}", self.catches.bits[changed])))
+    }
+
+    /// Whether a context that is held has to stop there, and why; `counts` for a run that is not a search of the past.
+    pub(super) fn judge(&mut self, hold: Hold, goal: &Goal, counts: bool) -> Option<Reason> {
+        match hold.reason {
+            HoldReason::Step => (*goal == Goal::Instruction(hold.context)).then_some(Reason::Step),
+            HoldReason::Changed { index, by } => {
+                let by = by.map_or_else(
+                    || "the servo or the firmware".to_owned(),
+                    |at| self.writer(hold.context, at),
+                );
+                self.judge_change(index, by, counts)
+            }
+            HoldReason::Breakpoint => {
+                let at = self.session.frames(hold.context).first()?.at.get();
+                self.judge_registers(hold.context, counts)
+                    .or_else(|| self.judge_breakpoints(hold.context, at, counts))
+                    .or_else(|| self.is_reached(goal, hold.context, at).then_some(Reason::Step))
+            }
+        }
+    }
+
+    fn writer(&self, context: ContextId, at: CodeAddr) -> String {
+        let who =
+            context.thread().map_or_else(|| "the call-back".to_owned(), |thread| format!("thread {thread}"));
+        match self.place(at.get()) {
+            Some(place) => format!("{who}, {} at {}:{}", place.function, file_name(&place.file), place.line),
+            None => format!("{who} at {at}"),
+        }
+    }
+
+    /// A watched range has changed.
+    fn judge_change(&mut self, range: usize, by: String, counts: bool) -> Option<Reason> {
+        let mut ranges = 0;
+        let found =
+            self.breakpoints.iter().filter(|breakpoint| breakpoint.is_enabled).position(|breakpoint| {
+                ranges += breakpoint.watched.as_ref().map_or(0, |watched| watched.ranges.len());
+                range < ranges
+            })?;
+        let id = self.breakpoints.iter().filter(|breakpoint| breakpoint.is_enabled).nth(found)?.id;
+        self.judge_watch(id, by, counts)
+    }
+
+    fn judge_registers(&mut self, context: ContextId, counts: bool) -> Option<Reason> {
+        let watching = |watched: &super::WatchedExpression| {
+            watched.ranges.is_empty() && watched.frame.is_some_and(|(of, _)| of == context)
+        };
+        let ids: Vec<_> = (self.breakpoints.iter())
+            .filter(|breakpoint| breakpoint.is_enabled && breakpoint.watched.as_ref().is_some_and(watching))
+            .map(|breakpoint| breakpoint.id)
+            .collect();
+        let by =
+            context.thread().map_or_else(|| "the call-back".to_owned(), |thread| format!("thread {thread}"));
+        ids.into_iter().find_map(|id| self.judge_watch(id, by.clone(), counts))
+    }
+
+    fn judge_watch(&mut self, id: u32, by: String, counts: bool) -> Option<Reason> {
+        let index = self.breakpoints.iter().position(|breakpoint| breakpoint.id == id)?;
+        let watched = self.breakpoints[index].watched.as_ref()?;
+        let new = self.watched_text(watched)?;
+        if new == watched.last {
+            return None;
+        }
+        let BreakpointKind::Watch(expression) = self.breakpoints[index].kind.clone() else { return None };
+        let old = self.breakpoints[index]
+            .watched
+            .as_mut()
+            .map(|watched| std::mem::replace(&mut watched.last, new.clone()))?;
+        let context = self.session.held().map_or_else(|| self.context(), |(context, _)| context);
+        if !self.is_to_stop(index, context, counts) {
+            return None;
+        }
+        Some(Reason::Changed { id, expression, old, new, by })
+    }
+
+    fn judge_breakpoints(&mut self, context: ContextId, at: u32, counts: bool) -> Option<Reason> {
+        let is_here = |kind: &BreakpointKind| matches!(kind, BreakpointKind::Code(_, addresses) if addresses.contains(&at));
+        let here: Vec<_> = (0..self.breakpoints.len())
+            .filter(|index| self.breakpoints[*index].is_enabled && is_here(&self.breakpoints[*index].kind))
+            .collect();
+        let mut ids = Vec::new();
+        for index in here {
+            if self.is_to_stop(index, context, counts) {
+                ids.push(self.breakpoints[index].id);
+            }
+        }
+        if counts {
+            self.breakpoints.retain(|breakpoint| !(breakpoint.is_temporary && ids.contains(&breakpoint.id)));
+        }
+        (!ids.is_empty()).then_some(Reason::Breakpoint(ids))
+    }
+
+    /// Whether a breakpoint that is met stops: its condition holds, it was passed as often as wanted, it is no log point.
+    fn is_to_stop(&mut self, index: usize, context: ContextId, counts: bool) -> bool {
+        if let Some(condition) = self.breakpoints[index].condition.clone() {
+            match self.holds(context, &condition) {
+                Ok(holds) => {
+                    if !holds {
+                        return false;
+                    }
+                }
+                Err(error) => {
+                    let id = self.breakpoints[index].id;
+                    self.messages.push_back(format!("condition of breakpoint {id}: {error}"));
+                }
+            }
+        }
+        if let Some(log) = self.breakpoints[index].log.clone() {
+            if counts {
+                self.breakpoints[index].hits += 1;
+                let (thread, frame, stop) = (self.thread, self.frame, self.stop.clone());
+                (self.thread, self.frame) = (context.thread().unwrap_or(thread), 0);
+                self.stop.context = Some(context);
+                let text = self.filled(&log);
+                self.messages.push_back(text);
+                (self.thread, self.frame, self.stop) = (thread, frame, stop);
+            }
+            return false;
+        }
+        if !counts {
+            return true;
+        }
+        let breakpoint = &mut self.breakpoints[index];
+        breakpoint.hits += 1;
+        if breakpoint.ignore > 0 {
+            breakpoint.ignore -= 1;
+            return false;
+        }
+        true
+    }
+
+    fn is_reached(&self, goal: &Goal, context: ContextId, at: u32) -> bool {
+        let depth = || self.session.frames(context).len();
+        match goal {
+            Goal::Line { context: of, line, function, depth: from, into } => {
+                let Some(place) = self.place(at).filter(|_| *of == context) else { return false };
+                let now = depth();
+                // A function that has become a part of this one is a call all the same.
+                let is_followed = *into || !place.is_inlined || place.function == *function;
+                now < *from || (now == *from && place.line != *line && is_followed) || (now > *from && *into)
+            }
+            Goal::Above { context: of, depth: wanted, at: addresses } => {
+                *of == context && addresses.contains(&at) && depth() <= *wanted
+            }
+            Goal::Address(addresses) => addresses.contains(&at),
+            Goal::None | Goal::Instruction(_) | Goal::Tick(_) => false,
+        }
+    }
+}
+
+/// Whether an event is to stop the board, and whose it is.
+pub(super) fn catch(
+    event: &Event,
+    catches: &super::Catches,
+    infos: &[runtime::debug::DebugInfo],
+) -> Option<(Reason, Option<ThreadId>)> {
+    match &event.kind {
+        EventKind::Trap(trap) if !catches.no_traps => {
+            let text = cc67_host::remark::describe(event, infos).unwrap_or_else(|| trap.to_string());
+            Some((Reason::Trap(text), trap.thread))
+        }
+        EventKind::Remark(_) if catches.remarks => {
+            Some((Reason::Remark(cc67_host::remark::describe(event, infos)?), None))
+        }
+        EventKind::ConsoleLine(line) => {
+            let line = String::from_utf8_lossy(line);
+            let is_meant = catches.texts.iter().any(|text| line.contains(text.as_str()));
+            is_meant.then(|| (Reason::Console(line.into_owned()), None))
+        }
+        _ => None,
+    }
+}

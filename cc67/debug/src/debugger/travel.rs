@@ -1,0 +1,309 @@
+//! Backwards: the past is executed again from a snapshot, and the last stop before the present is the one.
+//!
+//! What is searched is the stretch from one snapshot to the next, the latest first. Stops are counted on a first way;
+//! on a second one the session goes to the one that is wanted. Steps have so many stops that only the last ticks are
+//! searched at first, then more.
+
+use std::sync::atomic::Ordering;
+
+use kmotiondef::Ticks;
+use vm::engine::ContextId;
+
+use super::run::{Goal, catch};
+use super::{CodePlace, DebugError, Debugger, Position, Reason, Stop};
+
+/// Ticks that are searched for a step at first, and how many times as many then.
+const WINDOW: u64 = 2;
+const WIDER: u64 = 6;
+
+/// What is wanted of the past.
+#[derive(Clone, Debug)]
+enum Wanted {
+    /// The last stop of a breakpoint or the like.
+    Stop,
+    /// The beginning of the last line with at most so many calls around it.
+    Line { context: ContextId, depth: usize, function: Option<String> },
+    /// The call of a function.
+    Call { context: ContextId, depth: usize, at: u32 },
+    /// The last instruction.
+    Instruction(ContextId),
+}
+
+impl Wanted {
+    /// The goal of the run that finds it.
+    fn goal(&self) -> Goal {
+        match self {
+            Self::Stop => Goal::None,
+            Self::Line { context, .. } => {
+                Goal::Line { context: *context, line: 0, function: String::new(), depth: 0, into: true }
+            }
+            Self::Call { at, .. } => Goal::Address(vec![*at]),
+            Self::Instruction(context) => Goal::Instruction(*context),
+        }
+    }
+
+    /// Whether user breakpoints count.
+    const fn is_stop(&self) -> bool {
+        matches!(self, Self::Stop)
+    }
+}
+
+/// What was found on the first way: which hold it is, counted from 1, and whether more of the past is needed to be sure.
+#[derive(Clone, Copy, Debug, Default)]
+struct Found {
+    number: u64,
+    is_first: bool,
+}
+
+impl Debugger {
+    /// Goes back to the last breakpoint, change of a watched expression or trap.
+    pub fn reverse_continue(&mut self) -> Stop {
+        self.back(&Wanted::Stop)
+    }
+
+    /// Goes back to the beginning of the last line of the thread that is looked at, into functions that it called.
+    ///
+    /// # Errors
+    /// Nothing is known of the thread's program.
+    pub fn reverse_step(&mut self) -> Result<Stop, DebugError> {
+        self.programs.of(self.thread)?;
+        Ok(self.back(&Wanted::Line { context: self.context(), depth: usize::MAX, function: None }))
+    }
+
+    /// The same, over functions that it called.
+    ///
+    /// # Errors
+    /// As [`reverse_step`](Self::reverse_step).
+    pub fn reverse_next(&mut self) -> Result<Stop, DebugError> {
+        self.programs.of(self.thread)?;
+        let depth = self.frames(self.context()).len();
+        let depth = if depth == 0 { usize::MAX } else { depth };
+        let function = self.present().map(|place| place.function);
+        Ok(self.back(&Wanted::Line { context: self.context(), depth, function }))
+    }
+
+    /// Goes back to the call of the function.
+    ///
+    /// # Errors
+    /// It is the outermost.
+    pub fn reverse_finish(&mut self) -> Result<Stop, DebugError> {
+        let context = self.context();
+        let frames = self.frames(context);
+        let caller = frames.get(self.frame + 1).ok_or("\"finish\" not meaningful in the outermost frame.")?;
+        let wanted = Wanted::Call { context, depth: frames.len() - self.frame - 1, at: caller.address.get() };
+        Ok(self.back(&wanted))
+    }
+
+    /// Goes back by one instruction of the thread.
+    pub fn reverse_step_instruction(&mut self) -> Stop {
+        self.back(&Wanted::Instruction(self.context()))
+    }
+
+    /// Goes back, or forward in the known past, to the end of a tick.
+    ///
+    /// # Errors
+    /// It lies before the beginning.
+    pub fn go_to(&mut self, tick: Ticks) -> Result<Stop, DebugError> {
+        self.disarm();
+        self.timeline.go_to(&mut self.session, tick).map_err(|error| error.to_string())?;
+        Ok(self.stopped(Reason::Time, None))
+    }
+
+    /// Begins again.
+    ///
+    /// # Errors
+    /// The snapshots are of another board.
+    pub fn restart(&mut self) -> Result<Stop, DebugError> {
+        self.disarm();
+        self.timeline.restore(&mut self.session, 0).map_err(|error| error.to_string())?;
+        Ok(self.stopped(Reason::Begin, None))
+    }
+
+    fn back(&mut self, wanted: &Wanted) -> Stop {
+        let here = self.position();
+        let mut bound = here;
+        let marks = self.timeline.len();
+        for index in (0..marks).rev() {
+            if self.timeline.restore(&mut self.session, index).is_err() {
+                break;
+            }
+            let begin = self.position();
+            if !is_before(&begin, &bound) {
+                continue;
+            }
+            if let Some(reason) = self.search(index, &begin, &bound, wanted) {
+                self.disarm();
+                self.refresh_watches();
+                return self.stopped(reason, None);
+            }
+            if self.interrupt.swap(false, Ordering::Relaxed) {
+                self.disarm();
+                return self.stopped(Reason::Interrupted, None);
+            }
+            bound = begin;
+        }
+        self.disarm();
+        if self.timeline.restore(&mut self.session, 0).is_err() {
+            self.messages.push_back("the beginning of the past cannot be reached".to_owned());
+        }
+        self.stopped(Reason::BeginOfHistory, None)
+    }
+
+    /// Searches one stretch of the past; the session is where it was found then.
+    fn search(
+        &mut self,
+        index: usize,
+        begin: &Position,
+        bound: &Position,
+        wanted: &Wanted,
+    ) -> Option<Reason> {
+        let mut window = if wanted.is_stop() { u64::MAX } else { WINDOW };
+        loop {
+            let from = Ticks::new(bound.tick.get().saturating_sub(window)).max(begin.tick);
+            let is_all = from == begin.tick;
+            let found = self.way(index, from, bound, wanted, None).0;
+            if found.number > 0 && (is_all || !found.is_first) {
+                return self.way(index, from, bound, wanted, Some(found.number)).1;
+            }
+            if is_all {
+                return None;
+            }
+            window = window.saturating_mul(WIDER);
+        }
+    }
+
+    /// Executes a stretch again, held from the end of tick `from` on; to the hold of a number, or else to its end.
+    fn way(
+        &mut self,
+        index: usize,
+        from: Ticks,
+        bound: &Position,
+        wanted: &Wanted,
+        number: Option<u64>,
+    ) -> (Found, Option<Reason>) {
+        self.disarm();
+        if self.timeline.restore(&mut self.session, index).is_err() {
+            return (Found::default(), None);
+        }
+        if from > self.session.tick() {
+            self.timeline.replay(&mut self.session, from);
+        }
+        self.refresh_watches();
+        let goal = wanted.goal();
+        let disabled = self.set_enabled(wanted.is_stop());
+        self.arm(&goal, bound.held.map(|(_, _, at)| at));
+        let result = self.way_armed(bound, wanted, &goal, number);
+        self.restore_enabled(&disabled);
+        result
+    }
+
+    fn way_armed(
+        &mut self,
+        bound: &Position,
+        wanted: &Wanted,
+        goal: &Goal,
+        number: Option<u64>,
+    ) -> (Found, Option<Reason>) {
+        let (mut found, mut count, mut last) = (Found::default(), 0, None);
+        let catches = self.catches.clone();
+        let infos: Vec<_> = self.session.debug().into_iter().map(|(_, info)| info).collect();
+        loop {
+            let is_at_end = self.session.held().is_none() && self.session.tick() >= bound.tick;
+            if is_at_end || self.session.tick() > bound.tick {
+                return (found, None);
+            }
+            self.timeline.redo(&mut self.session);
+            let limit = self.timeline.next_input().map_or(bound.tick, |next| next.min(bound.tick));
+            let mut caught = None;
+            self.session.step(limit, &mut |event| {
+                if caught.is_none() && wanted.is_stop() {
+                    caught = catch(&event, &catches, &infos);
+                }
+            });
+            let hold = self.session.take_hold();
+            if hold.is_some() && self.position() == *bound {
+                return (found, None);
+            }
+            let is_over = self.session.held().is_none() && self.session.tick() >= bound.tick;
+            let reason = match (hold, wanted) {
+                (Some(hold), Wanted::Stop) => self.judge(hold, goal, false),
+                (Some(hold), Wanted::Instruction(context)) => {
+                    (hold.context == *context).then_some(Reason::Step)
+                }
+                (Some(hold), Wanted::Line { context, depth, function }) if hold.context == *context => {
+                    let frames = self.session.frames(hold.context);
+                    let here = frames
+                        .first()
+                        .and_then(|frame| Some((self.place(frame.at.get())?.line, frames.len())));
+                    let place = frames.first().and_then(|frame| self.place(frame.at.get()));
+                    let is_own = |place: &CodePlace| {
+                        !place.is_inlined
+                            || function.as_ref().is_none_or(|function| *function == place.function)
+                    };
+                    let is_meant = frames.len() <= *depth
+                        && place.as_ref().is_some_and(is_own)
+                        && frames.first().is_some_and(|frame| self.is_statement(frame.at.get()));
+                    let is_new = is_meant && here.is_some() && here != last;
+                    if is_meant {
+                        last = here;
+                    }
+                    is_new.then_some(Reason::Step)
+                }
+                (Some(hold), Wanted::Call { context, depth, at }) => {
+                    let frames = self.session.frames(hold.context);
+                    let is_it = hold.context == *context
+                        && frames.len() == *depth
+                        && frames.first().is_some_and(|frame| frame.at.get() == *at);
+                    is_it.then_some(Reason::Step)
+                }
+                (Some(_), _) => None,
+                // What happens in the very last tick is where one stands already.
+                (None, _) => caught.filter(|_| !is_over).map(|(reason, _)| reason),
+            };
+            if let Some(reason) = reason {
+                count += 1;
+                found =
+                    Found { number: count, is_first: count == 1 && matches!(wanted, Wanted::Line { .. }) };
+                if number == Some(count) {
+                    return (found, Some(reason));
+                }
+            }
+        }
+    }
+
+    fn is_statement(&self, address: u32) -> bool {
+        self.programs.at(address).is_some_and(|(_, _, function)| {
+            function.statements.iter().any(|(statement, _)| *statement == address)
+        })
+    }
+
+    /// Breakpoints are in effect or not; those that were.
+    fn set_enabled(&mut self, are: bool) -> Vec<u32> {
+        let enabled: Vec<_> = self
+            .breakpoints
+            .iter()
+            .filter(|breakpoint| breakpoint.is_enabled)
+            .map(|breakpoint| breakpoint.id)
+            .collect();
+        if !are {
+            self.breakpoints.iter_mut().for_each(|breakpoint| breakpoint.is_enabled = false);
+        }
+        enabled
+    }
+
+    fn restore_enabled(&mut self, enabled: &[u32]) {
+        for breakpoint in &mut self.breakpoints {
+            breakpoint.is_enabled = enabled.contains(&breakpoint.id);
+        }
+    }
+}
+
+/// Whether one position lies before another.
+fn is_before(one: &Position, other: &Position) -> bool {
+    match (one.held, other.held) {
+        (None, None) => one.tick < other.tick,
+        (None, Some(_)) => one.tick < other.tick,
+        (Some(_), None) => one.tick <= other.tick,
+        (Some((_, at, _)), Some((_, other, _))) => at < other,
+    }
+}

@@ -1,0 +1,152 @@
+//! What is known of the programs in the threads.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+
+use cc67_host::{Session, UserProgram};
+use compiler::debug::{FunctionModel, Model};
+use compiler::files;
+use compiler::pp::Disk;
+use kmotiondef::ThreadId;
+
+/// The debug information of the programs in the threads, or why there is none.
+#[derive(Debug, Default)]
+pub struct Programs {
+    known: BTreeMap<ThreadId, (UserProgram, Result<Arc<Model>, String>)>,
+}
+
+/// A statement: the thread whose program it is of, its address and line.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Statement {
+    pub(crate) thread: ThreadId,
+    pub(crate) address: u32,
+    pub(crate) line: u32,
+    pub(crate) function: String,
+}
+
+impl Programs {
+    /// Brings it up to what is loaded.
+    pub fn update(&mut self, session: &Session) {
+        self.known.retain(|thread, _| session.programs().iter().any(|program| program.thread == *thread));
+        for program in session.programs() {
+            if self.known.get(&program.thread).is_none_or(|(known, _)| known.image != program.image) {
+                let model = model(program, session).map(Arc::new);
+                self.known.insert(program.thread, (program.clone(), model));
+            }
+        }
+    }
+
+    /// What is known of the program in a thread.
+    ///
+    /// # Errors
+    /// Why nothing is.
+    pub fn of(&self, thread: ThreadId) -> Result<&Arc<Model>, String> {
+        match self.known.get(&thread) {
+            Some((_, Ok(model))) => Ok(model),
+            Some((program, Err(why))) => Err(format!("no debug information of {}: {why}", program.name())),
+            None => Err(format!("no program is loaded in thread {thread}")),
+        }
+    }
+
+    /// The program that has code at an address.
+    #[must_use]
+    pub fn at(&self, address: u32) -> Option<(ThreadId, &Arc<Model>, &FunctionModel)> {
+        self.all().find_map(|(thread, model)| Some((thread, model, model.function_at(address)?)))
+    }
+
+    /// All that are known.
+    pub fn all(&self) -> impl Iterator<Item = (ThreadId, &Arc<Model>)> {
+        self.known.iter().filter_map(|(thread, (_, model))| Some((*thread, model.as_ref().ok()?)))
+    }
+
+    /// Why nothing is known of some.
+    pub fn unknown(&self) -> impl Iterator<Item = String> {
+        self.known.keys().filter_map(|thread| self.of(*thread).err())
+    }
+
+    /// The statements of a program, or of one of its functions.
+    pub(crate) fn statements(&self, thread: ThreadId, function: Option<&str>) -> Vec<Statement> {
+        let Ok(model) = self.of(thread) else { return Vec::new() };
+        let functions = model.functions.iter().filter(|known| function.is_none_or(|name| known.name == name));
+        functions
+            .flat_map(|known| {
+                known.statements.iter().map(|(address, line)| Statement {
+                    thread,
+                    address: *address,
+                    line: *line,
+                    function: known.name.clone(),
+                })
+            })
+            .collect()
+    }
+
+    /// Where to stop for a line of a file: in each function that has the line, its first statement; without code on it,
+    /// the same for the next line that has some. The second is the line that was taken.
+    pub(crate) fn at_line(
+        &self,
+        file: Option<&str>,
+        line: u32,
+        thread: Option<ThreadId>,
+    ) -> (Vec<Statement>, u32) {
+        let mut all: Vec<Statement> = Vec::new();
+        for (number, model) in self.all().filter(|(number, _)| thread.is_none_or(|thread| thread == *number))
+        {
+            let is_meant = |function: &FunctionModel| {
+                file.is_none_or(|file| is_same_file(file, &function.file, &model.path))
+            };
+            let functions: Vec<_> = model.functions.iter().filter(|function| is_meant(function)).collect();
+            for function in functions {
+                all.extend(self.statements(number, Some(&function.name)));
+            }
+        }
+        let Some(taken) = all.iter().map(|one| one.line).filter(|known| *known >= line).min() else {
+            return (Vec::new(), line);
+        };
+        all.retain(|one| one.line == taken);
+        all.sort_by_key(|one| one.address);
+        all.dedup_by(|later, first| later.thread == first.thread && later.function == first.function);
+        (all, taken)
+    }
+
+    /// Where a function begins, behind what enters it.
+    pub(crate) fn at_function(&self, name: &str, thread: Option<ThreadId>) -> Vec<Statement> {
+        let mut found = Vec::new();
+        for (number, model) in self.all().filter(|(number, _)| thread.is_none_or(|thread| thread == *number))
+        {
+            let Some(function) = model.function_named(name) else { continue };
+            found.extend(self.statements(number, Some(name)).into_iter().next());
+            // Where its calls have become parts of their callers it begins with its first line.
+            let inside = self.statements(number, None).into_iter().filter(|one| {
+                one.function != name && (function.lines.start..=function.lines.end).contains(&one.line)
+            });
+            let mut inside: Vec<_> = inside.collect();
+            let first = inside.iter().map(|one| one.line).min();
+            inside.retain(|one| Some(one.line) == first);
+            found.extend(inside);
+        }
+        found
+    }
+}
+
+/// Whether a person means a file of a program by `wanted`: its path, or the end of it.
+fn is_same_file(wanted: &str, file: &str, program: &Path) -> bool {
+    let wanted = Path::new(wanted);
+    let full = program.parent().unwrap_or(Path::new("")).join(file);
+    Path::new(file).ends_with(wanted)
+        || full.ends_with(wanted)
+        || program.ends_with(wanted)
+        || wanted.canonicalize().is_ok_and(|wanted| {
+            full.canonicalize().is_ok_and(|full| full == wanted)
+                || (Path::new(file).file_name() == program.file_name()
+                    && program.canonicalize().is_ok_and(|program| program == wanted))
+        })
+}
+
+fn model(program: &UserProgram, session: &Session) -> Result<Model, String> {
+    if program.is_image {
+        return compiler::debug::of_image(&program.path, &program.image, session.options());
+    }
+    let text = files::read(&program.path).map_err(|error| format!("cannot read it: {error}"))?;
+    Model::of(&program.path, text, session.options(), &Disk, program.thread, &program.image)
+}

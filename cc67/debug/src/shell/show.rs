@@ -1,0 +1,351 @@
+//! Looking: values, memory, calls, threads, source.
+
+use std::fmt::Write as _;
+
+use kmotiondef::limits::TIMEBASE;
+use kmotiondef::{Cycles, ThreadId};
+use vm::engine::ContextId;
+use vm::thread::{Progress, ThreadState};
+
+use super::{COMMANDS, Shell, breakpoints, context};
+use crate::debugger::{CodePlace, DebugError, Debugger, Reason, Stop, file_name};
+
+/// Lines that `list` shows.
+const LINES: u32 = 10;
+
+impl Shell {
+    pub(super) fn values(&mut self, name: &str, rest: &str) -> Result<String, DebugError> {
+        let (format, rest) = match rest.strip_prefix('/') {
+            Some(more) => more.split_once(char::is_whitespace).unwrap_or((more, "")),
+            None => ("", rest),
+        };
+        let rest = rest.trim();
+        match name {
+            "print" => self.print(format, rest),
+            "ptype" => Ok(format!("type = {}\n", self.debugger.evaluate(rest)?.ty)),
+            "x" => self.memory(format, rest),
+            _ => self.set(rest),
+        }
+    }
+
+    fn print(&mut self, format: &str, expression: &str) -> Result<String, DebugError> {
+        if let Some((place, value)) = split_assignment(expression) {
+            self.debugger.set(place, value)?;
+        }
+        let expression = split_assignment(expression).map_or(expression, |(place, _)| place);
+        let text = match format {
+            "" => self.debugger.evaluate(expression)?.text,
+            _ => number_as(self.debugger.number(expression)?, format)?,
+        };
+        self.values += 1;
+        Ok(format!("${} = {text}\n", self.values))
+    }
+
+    fn set(&mut self, rest: &str) -> Result<String, DebugError> {
+        let rest = rest.strip_prefix("variable ").or_else(|| rest.strip_prefix("var ")).unwrap_or(rest);
+        let (place, value) = split_assignment(rest).ok_or("set var NAME = EXPRESSION")?;
+        self.debugger.set(place, value)?;
+        Ok(String::new())
+    }
+
+    fn memory(&self, format: &str, expression: &str) -> Result<String, DebugError> {
+        let digits: String = format.chars().take_while(char::is_ascii_digit).collect();
+        let count: u32 = digits.parse().unwrap_or(1).min(4096);
+        let letters = format.get(digits.len()..).unwrap_or("");
+        let kind = letters.chars().find(|c| "xduofsci".contains(*c)).unwrap_or('x');
+        let size: u32 = match letters.chars().find(|c| "bhwg".contains(*c)) {
+            Some('b') => 1,
+            Some('h') => 2,
+            Some('g') => 8,
+            _ if kind == 'c' => 1,
+            _ => 4,
+        };
+        let value = self.debugger.evaluate(expression)?;
+        let address = match value.address.filter(|_| value.ty.ends_with(']')) {
+            Some(address) => address,
+            None => self.debugger.number(expression)? as i64 as u32,
+        };
+        if kind == 'i' {
+            return Ok(self.instructions(address, count));
+        }
+        let mut out = String::new();
+        if kind == 's' {
+            let bytes = self.debugger.bytes(address, 256);
+            let text: Vec<u8> = bytes.into_iter().take_while(|byte| *byte != 0).collect();
+            return Ok(format!("{address:#010x}: {:?}\n", String::from_utf8_lossy(&text)));
+        }
+        let row = 16 / size.max(4);
+        for index in 0..count {
+            let at = address.wrapping_add(index * size);
+            if index % row == 0 {
+                let _ = write!(out, "{}{at:#010x}:", if index == 0 { "" } else { "\n" });
+            }
+            let mut bytes = [0; 8];
+            bytes[..size as usize].copy_from_slice(&self.debugger.bytes(at, size));
+            let whole = u64::from_le_bytes(bytes);
+            let signed = (whole as i64) << (64 - 8 * size) >> (64 - 8 * size);
+            let _ = match (kind, size) {
+                ('d', _) => write!(out, "\t{signed}"),
+                ('u', _) => write!(out, "\t{whole}"),
+                ('c', _) => write!(out, "\t{signed} {:?}", char::from(whole as u8)),
+                ('f', 8) => write!(out, "\t{}", f64::from_bits(whole)),
+                ('f', _) => write!(out, "\t{}", f32::from_bits(whole as u32)),
+                _ => write!(out, "\t{whole:#0width$x}", width = 2 + 2 * size as usize),
+            };
+        }
+        Ok(out + "\n")
+    }
+
+    fn instructions(&self, address: u32, count: u32) -> String {
+        let mut out = String::new();
+        let here = self
+            .debugger
+            .frames(self.debugger.context())
+            .get(self.debugger.frame())
+            .map(|frame| frame.address.get());
+        for line in disassembly(&self.debugger, address, count) {
+            let mark = if here == Some(line.0) { "=>" } else { "  " };
+            let _ = writeln!(out, "{mark} {:#010x}: {}", line.0, line.1);
+        }
+        out
+    }
+
+    pub(super) fn look(&mut self, name: &str, rest: &str) -> Result<String, DebugError> {
+        match name {
+            "info" => self.info(rest),
+            "backtrace" => Ok(backtrace(&self.debugger)),
+            "frame" | "up" | "down" => {
+                let frame = self.debugger.frame();
+                let wanted = match name {
+                    "up" => frame + 1,
+                    "down" => {
+                        frame.checked_sub(1).ok_or("Bottom (innermost) frame selected; you can't go down.")?
+                    }
+                    _ if rest.is_empty() => frame,
+                    _ => rest.parse().map_err(|_| format!("`{rest}` is not the number of a frame"))?,
+                };
+                self.debugger.select(self.debugger.thread(), wanted)?;
+                Ok(frame_line(&self.debugger, wanted))
+            }
+            "thread" => {
+                if !rest.is_empty() {
+                    let thread = rest.parse().ok().and_then(ThreadId::new);
+                    let thread = thread.ok_or_else(|| format!("Invalid thread ID: {rest}"))?;
+                    self.debugger.select(thread, 0)?;
+                }
+                let text = frame_line(&self.debugger, 0);
+                Ok(format!("[Current thread is {}]\n{text}", self.debugger.thread()))
+            }
+            "list" => self.list(rest),
+            "disassemble" => {
+                let at =
+                    self.debugger.frames(self.debugger.context()).first().map(|frame| frame.address.get());
+                let at = at.ok_or("No frame selected.")?;
+                let found = self.debugger.programs().at(at).ok_or("No function contains it.")?;
+                let range = found.2.addresses.clone();
+                Ok(self.instructions(range.start, (range.end - range.start) / 8))
+            }
+            _ => {
+                let lines = COMMANDS.iter().map(|(name, short, text)| {
+                    let names = std::iter::once(name).chain(*short).copied().collect::<Vec<_>>().join(", ");
+                    format!("{names:<24} {text}\n")
+                });
+                Ok(lines.collect())
+            }
+        }
+    }
+
+    fn info(&self, what: &str) -> Result<String, DebugError> {
+        let variables = |all: Vec<crate::debugger::ShownVariable>, none: &str| {
+            let text: String = all.iter().map(|one| format!("{} = {}\n", one.name, one.text)).collect();
+            if text.is_empty() { format!("{none}\n") } else { text }
+        };
+        let is = |name: &str| !what.is_empty() && name.starts_with(what);
+        Ok(match what {
+            _ if is("threads") => threads(&self.debugger),
+            _ if is("breakpoints") || is("watchpoints") => breakpoints(&self.debugger),
+            _ if is("locals") || is("args") => variables(self.debugger.locals(), "No locals."),
+            _ if is("variables") => variables(self.debugger.globals(), "No variables."),
+            _ if is("frame") => frame_line(&self.debugger, self.debugger.frame()),
+            _ if is("line") => match self.debugger.present() {
+                Some(place) => format!("Line {} of \"{}\"\n", place.line, file_name(&place.file)),
+                None => "No line number information.\n".to_owned(),
+            },
+            _ if is("history") => {
+                let (bytes, snapshots) = self.debugger.history();
+                let seconds = seconds(self.debugger.now());
+                format!(
+                    "{snapshots} snapshots, {} KiB of memory in them; the present is {seconds:.6} s\n",
+                    bytes / 1024
+                )
+            }
+            _ => return Err("info threads|breakpoints|locals|variables|line|frame|history".into()),
+        })
+    }
+
+    fn list(&mut self, rest: &str) -> Result<String, DebugError> {
+        let thread = self.debugger.thread();
+        if !rest.is_empty() {
+            let (found, _) = self.debugger.resolve(rest, Some(thread))?;
+            self.listed = found.first().map_or(1, |one| one.line).saturating_sub(LINES / 2);
+        }
+        let model = self.debugger.programs().of(thread)?;
+        let text = String::from_utf8_lossy(model.text()).into_owned();
+        let first = self.listed.max(1);
+        let lines = text.lines().enumerate().skip(first as usize - 1).take(LINES as usize);
+        let out: String = lines.map(|(index, line)| format!("{}\t{}\n", index + 1, line)).collect();
+        self.listed = first + LINES;
+        if out.is_empty() { Err("Line number out of range.".into()) } else { Ok(out) }
+    }
+}
+
+/// Board time in seconds.
+pub(crate) fn seconds(at: Cycles) -> f64 {
+    at.get() as f64 / Cycles::PER_SECOND.get() as f64
+}
+
+/// `place = value`; comparisons are none.
+fn split_assignment(text: &str) -> Option<(&str, &str)> {
+    let (place, value) = text.split_once('=')?;
+    let is_comparison = value.starts_with('=') || place.ends_with(['=', '!', '<', '>']);
+    (!is_comparison).then(|| (place.trim(), value.trim()))
+}
+
+fn number_as(number: f64, format: &str) -> Result<String, DebugError> {
+    let whole = number as i64;
+    Ok(match format {
+        "x" if whole < 0 => format!("{:#x}", whole as i32),
+        "x" => format!("{whole:#x}"),
+        "t" => format!("{:b}", whole as i32),
+        "o" => format!("{whole:#o}"),
+        "d" => whole.to_string(),
+        "u" => (whole as u32).to_string(),
+        "c" => format!("{whole} {:?}", char::from(whole as u8)),
+        "f" => number.to_string(),
+        _ => return Err(format!("Undefined output format \"{format}\".").into()),
+    })
+}
+
+/// The instructions from an address on, each with its address.
+pub(crate) fn disassembly(debugger: &Debugger, address: u32, count: u32) -> Vec<(u32, String)> {
+    let mut lines = Vec::new();
+    for index in 0..count {
+        let at = (address & !7).wrapping_add(8 * index);
+        let machine = debugger.session().board().machine();
+        let found = ThreadId::all().filter_map(|thread| machine.program(thread)).find_map(|program| {
+            let word = program.word_at(kmotiondef::CodeAddr::new(at)?)?;
+            Some(program.ops()[word].to_string())
+        });
+        let Some(text) = found else { break };
+        lines.push((at, text));
+    }
+    lines
+}
+
+/// Why the board stands, and where.
+pub(super) fn stop(debugger: &Debugger, stop: &Stop) -> String {
+    let at = format!("{:.6} s", seconds(stop.at));
+    let who = match stop.context.map(ContextId::thread) {
+        Some(Some(thread)) => format!("thread {thread}, {at}"),
+        Some(None) => format!("call-back, {at}"),
+        None => at,
+    };
+    let place = debugger.present();
+    let head = match &stop.reason {
+        Reason::Breakpoint(ids) => {
+            let ids = ids.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+            format!("Breakpoint {ids}, ")
+        }
+        Reason::Changed { id, expression, old, new, by } => {
+            format!(
+                "Watchpoint {id}: {expression}\n\nOld value = {old}\nNew value = {new}\nWritten by {by}\n"
+            )
+        }
+        Reason::Trap(text) => format!("Trap: {text}\n"),
+        Reason::Remark(text) => format!("Remark: {text}\n"),
+        Reason::Started(thread) => format!("Thread {thread} begins.\n"),
+        Reason::Ended(thread) => format!("Thread {thread} has ended.\n"),
+        Reason::Console(text) => format!("Console: {text}\n"),
+        Reason::Bit(text) => format!("Catchpoint: {text}\n"),
+        Reason::AllEnded => {
+            return format!("[All threads have ended, {at}]\n", at = who.rsplit(", ").next().unwrap_or(""));
+        }
+        Reason::Interrupted => "Interrupted\n".to_owned(),
+        Reason::BeginOfHistory => "No more reverse-execution history.\n".to_owned(),
+        Reason::Begin | Reason::Step | Reason::Time => String::new(),
+    };
+    let Some(place) = place.filter(|_| stop.context.is_some()) else { return format!("{head}[{who}]\n") };
+    format!(
+        "{head}{} at {}:{} [{who}]\n{}",
+        place.function,
+        file_name(&place.file),
+        place.line,
+        source_line(debugger, &place)
+    )
+}
+
+fn source_line(debugger: &Debugger, place: &CodePlace) -> String {
+    let text = debugger.programs().of(place.thread).ok().filter(|model| {
+        model.path.file_name().and_then(|name| name.to_str()) == Some(file_name(&place.file))
+    });
+    let text = text.map(|model| String::from_utf8_lossy(model.text()).into_owned());
+    let line = text.as_deref().and_then(|text| text.lines().nth(place.line as usize - 1));
+    line.map_or_else(String::new, |line| format!("{}\t{line}\n", place.line))
+}
+
+fn backtrace(debugger: &Debugger) -> String {
+    let frames = debugger.frames(debugger.context());
+    if frames.is_empty() {
+        return "No stack.\n".to_owned();
+    }
+    (0..frames.len()).map(|index| frame_text(debugger, index)).collect()
+}
+
+fn frame_text(debugger: &Debugger, index: usize) -> String {
+    let frames = debugger.frames(debugger.context());
+    let Some(frame) = frames.get(index) else { return "No stack.\n".to_owned() };
+    match &frame.place {
+        Some(place) => {
+            format!("#{index}  {} () at {}:{}\n", place.function, file_name(&place.file), place.line)
+        }
+        None => format!("#{index}  {}\n", frame.address),
+    }
+}
+
+fn frame_line(debugger: &Debugger, index: usize) -> String {
+    let place = debugger.frames(debugger.context()).into_iter().nth(index).and_then(|frame| frame.place);
+    let source = place.map_or_else(String::new, |place| source_line(debugger, &place));
+    frame_text(debugger, index) + &source
+}
+
+/// What a thread is doing, in words.
+pub(crate) fn state(debugger: &Debugger, thread: ThreadId) -> Option<String> {
+    Some(match debugger.session().thread(thread) {
+        ThreadState::Empty => return None,
+        ThreadState::Ready => "not active".to_owned(),
+        ThreadState::Active(Progress::Waiting(_)) => "waiting".to_owned(),
+        ThreadState::Active(_) => "running".to_owned(),
+        ThreadState::Paused(_) => "paused".to_owned(),
+        ThreadState::Faulted(trap) => format!("stopped: {}", trap.kind),
+    })
+}
+
+fn threads(debugger: &Debugger) -> String {
+    let mut out = String::from("  Id   State       Frame\n");
+    for thread in ThreadId::all() {
+        let Some(state) = state(debugger, thread) else { continue };
+        let mark = if thread == debugger.thread() { '*' } else { ' ' };
+        let frame = debugger.frames(context(thread)).into_iter().next().and_then(|frame| frame.place);
+        let frame = frame.map_or_else(String::new, |place| {
+            format!("{} () at {}:{}", place.function, file_name(&place.file), place.line)
+        });
+        let _ = writeln!(out, "{mark} {:<4} {state:<11} {frame}", thread.to_string());
+    }
+    let _ = writeln!(
+        out,
+        "  tick {}, {:.6} s",
+        debugger.session().tick().get(),
+        debugger.session().tick().get() as f64 * TIMEBASE
+    );
+    out
+}

@@ -1,0 +1,80 @@
+//! Why a call did not do what it is for.
+
+use std::fmt;
+use std::path::PathBuf;
+
+use kmotiondef::{GuestAddr, ThreadId};
+use runtime::loader::LoadError;
+use runtime::stimulus::StimulusError;
+
+/// Why a call did not do what it is for.
+#[derive(Debug, thiserror::Error)]
+pub enum HostError {
+    /// The connection was given up, by [`Board::failed`](crate::Board::failed) or [`Board::disconnect`](crate::Board::disconnect).
+    #[error("not connected to the board")]
+    NotConnected,
+    /// No reply came in time.
+    #[error("the board did not answer in time")]
+    Timeout,
+    /// Another client holds the token.
+    #[error("another client has the board to itself")]
+    InUse,
+    /// There is no such thread.
+    #[error("there is no thread {0}; there are 1 to 7")]
+    Thread(i32),
+    /// A file cannot be read.
+    #[error("cannot read {}: {error}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Why not.
+        error: std::io::Error,
+    },
+    /// The source has errors; the text is what the compiler says.
+    #[error("{0}")]
+    Compile(CompileError),
+    /// The image is refused.
+    #[error("{program}: {error}")]
+    Refused {
+        /// The file of the program.
+        program: String,
+        /// Why.
+        error: LoadError,
+    },
+    /// The file is another tool's.
+    #[error("{program} is {what}, not an image of `cc67 build`")]
+    Foreign {
+        /// The file.
+        program: String,
+        /// What it is.
+        what: String,
+    },
+    /// A thread has no program that could be started.
+    #[error("no program is loaded in thread {0}")]
+    NotLoaded(ThreadId),
+    /// An expression of the stimulus is wrong.
+    #[error(transparent)]
+    Stimulus(#[from] StimulusError),
+    /// There is no memory at an address.
+    #[error("there is no memory at {0}")]
+    Unmapped(GuestAddr),
+    /// What was to be done to the board is not possible.
+    #[error("{0}")]
+    Act(String),
+}
+
+/// What the compiler says of a source with errors: lines of `file:line: message`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CompileError(String);
+
+impl CompileError {
+    pub(crate) const fn new(text: String) -> Self {
+        Self(text)
+    }
+}
+
+impl fmt::Display for CompileError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.0.trim_end())
+    }
+}

@@ -1,0 +1,232 @@
+//! What is done by hand: the owner of a session as the world around the board, and as its PC.
+//!
+//! Whatever a person does is a statement of a stimulus at the beginning of the next tick. So it is done by what plays
+//! stimuli, and what was done is a stimulus: the same setup with that text does it all again, tick for tick. What no
+//! statement says is done as well, and the recording says that it lacks it.
+
+use std::fmt::Write as _;
+
+use kmotiondef::structs::Persist;
+use kmotiondef::variables::PERSIST;
+use kmotiondef::{Bit, Cycles, ThreadId, Ticks};
+use runtime::stimulus::{Stimulus, StimulusError};
+use vm::engine::Engine;
+
+use super::setup::resolve;
+use super::{Input, Session};
+use crate::HostError;
+
+/// What messages call the text of a statement.
+const SOURCE: &str = "by hand";
+
+/// What was done by hand in a session.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Recording {
+    text: String,
+    is_incomplete: bool,
+    is_off: bool,
+}
+
+impl Recording {
+    /// All of it as a stimulus, a statement a line; what no statement says is a comment.
+    #[must_use]
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// Whether the text is all that was done, so that a run with it is the same.
+    #[must_use]
+    pub const fn is_complete(&self) -> bool {
+        !self.is_incomplete
+    }
+
+    /// Whether no account is kept.
+    pub(super) const fn is_off(&self) -> bool {
+        self.is_off
+    }
+
+    /// Adds a statement without its moment.
+    fn add(&mut self, tick: Ticks, action: &str) {
+        if self.is_off {
+            self.is_incomplete = true;
+        } else {
+            // Writing to a string cannot fail.
+            let _ = writeln!(self.text, "{}", statement(tick, action));
+        }
+    }
+
+    /// Adds that an element of `persist.UserData` was stored.
+    pub(super) fn stored(&mut self, tick: Ticks, index: usize, value: i32) {
+        self.add(tick, &format!("persist {index} = {value}"));
+    }
+
+    /// Adds what no statement says.
+    pub(super) fn cannot(&mut self, tick: Ticks, what: &str) {
+        self.is_incomplete = true;
+        if !self.is_off {
+            let _ = writeln!(self.text, "# {}: no statement does this", statement(tick, what));
+        }
+    }
+}
+
+/// A statement at the beginning of the tick after this one.
+fn statement(tick: Ticks, action: &str) -> String {
+    let us = Cycles::PER_TICK.get() / (Cycles::PER_SECOND.get() / 1_000_000);
+    format!("at {}us {action}", (tick.get() + 1).saturating_mul(us.unsigned_abs()))
+}
+
+/// Bytes between quotation marks, as statements have them.
+fn quoted(bytes: &[u8]) -> String {
+    let mut text = String::from("\"");
+    for &byte in bytes {
+        match byte {
+            b'"' | b'\\' => text.extend(['\\', char::from(byte)]),
+            b' '..=b'~' => text.push(char::from(byte)),
+            _ => {
+                let _ = write!(text, "\\x{byte:02x}");
+            }
+        }
+    }
+    text + "\""
+}
+
+impl<E: Engine> Session<E> {
+    /// What was done by hand so far.
+    #[must_use]
+    pub const fn recording(&self) -> &Recording {
+        &self.recording
+    }
+
+    /// Keeps no account of what is done by hand from now on, for a session without end.
+    pub const fn stop_recording(&mut self) {
+        self.recording.is_off = true;
+    }
+
+    /// Does what a statement of a stimulus says, such as `bit 136 = 1`, `adc 3 = 1500`, `pulse bit 137 for 50ms` or
+    /// `encoder 0 moves 400 in 1s`, at the beginning of the next tick. The statement has no moment of its own.
+    ///
+    /// # Errors
+    /// What is wrong with it, and at which character; nothing happens then.
+    ///
+    /// ```
+    /// let mut session = cc67_host::Setup::default().session()?;
+    /// session.act("bit 136 = 1")?;
+    /// session.step_tick(&mut |_| ());
+    /// session.act("persist 7 = 11")?;
+    /// session.step_tick(&mut |_| ());
+    /// assert_eq!(session.user_data(7), Some(11));
+    /// assert_eq!(session.recording().text(), "at 90us bit 136 = 1\nat 180us persist 7 = 11\n");
+    /// assert!(session.act("bit 46 = 1").is_err());        // an output
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn act(&mut self, action: &str) -> Result<(), StimulusError> {
+        let tick = self.tick();
+        let mut stimulus = Stimulus::parse(&statement(tick, action), SOURCE)?;
+        resolve(&mut stimulus, &self.programs, &self.options)?;
+        self.board.play(stimulus);
+        self.recording.add(tick, action);
+        self.note(Input::Act(action.to_owned()));
+        Ok(())
+    }
+
+    /// Drives an input from outside at once.
+    ///
+    /// # Errors
+    /// What is wrong with the bit: only the board drives an output.
+    pub fn drive_input(&mut self, bit: Bit, level: bool) -> Result<(), StimulusError> {
+        let action = format!("bit {bit} = {}", u8::from(level));
+        Stimulus::parse(&action, SOURCE)?;
+        self.board.drive_input(bit, level);
+        self.recording.add(self.board.tick(), &action);
+        self.note(Input::Drive(bit, level));
+        Ok(())
+    }
+
+    /// Stores an element of `persist.UserData` at once; `false` beyond the last.
+    pub fn set_user_data(&mut self, index: usize, value: i32) -> bool {
+        let is_inside = self.board.set_user_data(index, value);
+        if is_inside {
+            self.recording.stored(self.board.tick(), index, value);
+            let address = PERSIST.field(Persist::USER_DATA).element(index).address();
+            self.note(Input::Store(address, value.to_le_bytes().into()));
+        }
+        is_inside
+    }
+
+    /// Sends a line of script commands, or a data line that a command waits for; the board takes it as time passes.
+    pub fn command(&mut self, line: &[u8]) {
+        let line: Vec<u8> = line.iter().copied().filter(|byte| *byte != b'\r').collect();
+        self.receive(&[b"\x1b\x01", &line[..], b"\r"].concat());
+    }
+
+    /// Sends bytes over the USB link as they are: lines, ended by CR; one that begins with 0x1B and another byte is not
+    /// echoed.
+    pub fn receive(&mut self, bytes: &[u8]) {
+        self.board.receive(bytes);
+        let tick = self.board.tick();
+        match bytes {
+            [0x1b, _, line @ .., b'\r'] if !line.contains(&b'\r') && line.is_ascii() => {
+                self.recording.add(tick, &format!("command {}", quoted(line)));
+            }
+            _ => self.recording.cannot(tick, &format!("send the bytes {}", quoted(bytes))),
+        }
+        self.note(Input::Receive(bytes.to_vec()));
+    }
+
+    /// Puts characters on the line to the serial port; they arrive one after the other at its rate.
+    pub fn send_to_uart(&mut self, bytes: &[u8]) {
+        self.board.send_to_uart(bytes);
+        self.recording.add(self.board.tick(), &format!("uart {}", quoted(bytes)));
+        self.note(Input::Uart(bytes.to_vec()));
+    }
+
+    /// Starts a thread at its entry point, also if it is active.
+    ///
+    /// # Errors
+    /// [`HostError::NotLoaded`].
+    pub fn start(&mut self, thread: ThreadId) -> Result<(), HostError> {
+        self.board.start(thread).map_err(|_| HostError::NotLoaded(thread))?;
+        self.recording.add(self.board.tick(), &format!("start {thread}"));
+        self.note(Input::Start(thread));
+        Ok(())
+    }
+
+    /// Stops a thread where it is.
+    pub fn stop(&mut self, thread: ThreadId) {
+        self.board.kill([thread]);
+        self.recording.add(self.board.tick(), &format!("stop {thread}"));
+        self.note(Input::Stop(thread));
+    }
+
+    /// Says whether the PC takes console lines. If not, they wait in the board's queue, and once that is full, so do the
+    /// programs that print.
+    pub fn listen(&mut self, listens: bool) {
+        self.board.listen(listens);
+        if self.journal.listens() != listens {
+            self.note(Input::Listen(listens));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_are_quoted_so_that_statements_have_them_back() {
+        let all: Vec<u8> = (0..128).collect();
+        let stimulus = Stimulus::parse(&format!("uart {}", quoted(&all)), SOURCE).expect("it is right");
+        let action = stimulus.rules.into_iter().next().expect("a statement").action;
+        assert_eq!(action, runtime::stimulus::Action::Uart(all));
+    }
+
+    #[test]
+    fn the_moment_of_a_statement_is_the_beginning_of_the_next_tick() {
+        for tick in [0, 1, 4999, 1_000_000_007] {
+            let text = statement(Ticks::new(tick), "persist 1 = 2");
+            let rule = Stimulus::parse(&text, SOURCE).expect("it is right").rules.remove(0);
+            let begin = Cycles::new((tick as i64 + 1) * Cycles::PER_TICK.get());
+            assert_eq!(rule.trigger, runtime::stimulus::Trigger::At(begin), "{text}");
+        }
+    }
+}

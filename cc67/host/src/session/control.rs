@@ -1,0 +1,163 @@
+//! How far time goes: to a tick, to an end, to a condition, or a step.
+//!
+//! Every call takes the receiver of what happens meanwhile. A step of the board goes to the next tick in which something
+//! can happen; nothing is seen in between, as there is nothing to see.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use kmotiondef::{ThreadId, Ticks};
+use runtime::{Event, EventKind};
+use vm::engine::Engine;
+use vm::scheduler::Turn;
+
+use super::until::Heard;
+use super::{EXCHANGE, Session, Until};
+
+/// Why a run came back.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[must_use]
+pub enum End {
+    /// No thread is active, and nothing moves, records, prints or waits for the PC.
+    AllEnded,
+    /// The limit is reached.
+    Limit,
+    /// Somebody [interrupted](Interrupter::interrupt) it.
+    Interrupted,
+}
+
+/// Ends a [run](Session::run) from another thread, or from a signal handler, after the tick in progress.
+#[derive(Clone, Debug, Default)]
+pub struct Interrupter(Arc<AtomicBool>);
+
+impl Interrupter {
+    /// Ends the run that is under way, or else the next one at once.
+    pub fn interrupt(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+
+    fn take(&self) -> bool {
+        self.0.load(Ordering::Relaxed) && self.0.swap(false, Ordering::Relaxed)
+    }
+}
+
+/// What receives the events of a call.
+type EventSink<'a> = &'a mut dyn FnMut(Event);
+
+impl<E: Engine> Session<E> {
+    /// What ends a [run](Self::run) from elsewhere.
+    #[must_use]
+    pub fn interrupter(&self) -> Interrupter {
+        self.interrupter.clone()
+    }
+
+    /// Runs until everything has ended, or to the end of tick `limit`. The run may continue afterwards, or be
+    /// [finished](Self::finish).
+    pub fn run(&mut self, limit: Ticks, events: EventSink<'_>) -> End {
+        loop {
+            if self.has_ended() {
+                return End::AllEnded;
+            }
+            if self.tick() >= limit {
+                return End::Limit;
+            }
+            if self.interrupter.take() {
+                return End::Interrupted;
+            }
+            self.step(limit, events);
+        }
+    }
+
+    /// Runs to the end of tick `limit`, also when everything has ended.
+    pub fn advance(&mut self, limit: Ticks, events: EventSink<'_>) {
+        while self.tick() < limit {
+            self.step(limit, events);
+        }
+    }
+
+    /// Runs until a condition is met, at most to the end of tick `limit`; whether it is. One that is met already takes
+    /// no time.
+    ///
+    /// An [expression](Until::True) is evaluated after every tick.
+    pub fn run_until(&mut self, condition: &Until, limit: Ticks, events: EventSink<'_>) -> bool {
+        let mut heard = Heard::default();
+        while !condition.is_met(self, &heard) {
+            if self.tick() >= limit {
+                return false;
+            }
+            heard = Heard::default();
+            let next = if condition.needs_every_tick() { self.tick().next() } else { limit };
+            self.step(next.min(limit), &mut |event| {
+                condition.hear(&event, &mut heard);
+                events(event);
+            });
+        }
+        true
+    }
+
+    /// Runs one tick.
+    pub fn step_tick(&mut self, events: EventSink<'_>) {
+        self.step(self.tick().next(), events);
+    }
+
+    /// Runs to the end of the next tick in which a user thread has the processor, at most to the end of tick `limit`;
+    /// which thread it was. A thread that has the processor but waits there counts, too.
+    pub fn step_slice(&mut self, limit: Ticks, events: EventSink<'_>) -> Option<ThreadId> {
+        while self.tick() < limit {
+            self.step_tick(events);
+            if let Turn::User(thread) = self.board.machine().turn() {
+                return Some(thread);
+            }
+        }
+        None
+    }
+
+    /// Runs to the end of the next slice of a thread, at most to the end of tick `limit`; whether it had one.
+    pub fn step_thread(&mut self, thread: ThreadId, limit: Ticks, events: EventSink<'_>) -> bool {
+        while let Some(other) = self.step_slice(limit, events) {
+            if other == thread {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Runs to the end of the next tick in which something can happen, or of tick `limit`, whichever comes first.
+    pub fn step(&mut self, limit: Ticks, events: EventSink<'_>) {
+        let limit = self.signals.next_sample(self.tick(), limit);
+        let mut loaded = Vec::new();
+        self.board.advance(limit, &mut |event| {
+            if let EventKind::Loaded(thread, name) = &event.kind {
+                loaded.push((*thread, name.clone()));
+            }
+            events(event);
+        });
+        for (thread, name) in loaded {
+            let offered =
+                self.offered.iter().find(|(known, _)| known.thread == thread && known.name() == *name);
+            if let Some(program) = offered.map(|(program, _)| program.clone()) {
+                self.note_program(program);
+            }
+        }
+        self.sample();
+    }
+
+    /// The run is over: sends the console text still held, and checks what the stimulus expects at the end.
+    pub fn finish(&mut self, events: EventSink<'_>) {
+        self.board.finish(events);
+    }
+
+    /// Sends a line of script commands, or a data line that a command waits for, and lets pass the time that it and its
+    /// answer take on the wire.
+    pub fn exchange(&mut self, line: &[u8], events: EventSink<'_>) {
+        let is_data = self.board.is_in_command();
+        let begin = self.tick().get();
+        self.command(line);
+        while self.board.is_receiving() {
+            self.step_tick(events);
+        }
+        if !is_data && !self.board.is_in_command() {
+            self.advance(Ticks::new(begin + EXCHANGE), events);
+        }
+    }
+}

@@ -1,0 +1,197 @@
+//! What a debugger asks of a session: to be held between two instructions, and the calls in progress.
+
+use kmotiondef::{CodeAddr, Cycles, GuestAddr};
+use runtime::trace::Item;
+use vm::engine::{ContextId, Engine};
+use vm::interp::{FrameView, Hold};
+
+use super::{Session, UserProgram};
+
+impl<E: Engine> Session<E> {
+    /// Whose program holds the tick in progress, and the instant; `None` between two ticks.
+    ///
+    /// Whatever lets time pass goes on with that tick first.
+    #[must_use]
+    pub fn held(&self) -> Option<(ContextId, Cycles)> {
+        self.board.machine().held()
+    }
+}
+
+impl Session {
+    /// The programs in the threads.
+    #[must_use]
+    pub fn programs(&self) -> &[UserProgram] {
+        &self.programs
+    }
+
+    /// What names an item of the board in an expression, such as `bit46`: its value.
+    #[must_use]
+    pub fn item(&self, name: &str) -> Option<f64> {
+        Item::new(name).ok().map(|item| self.board.value(item))
+    }
+
+    /// An expression as the compiler reads it: `persist.5` is an element of `persist.UserData`.
+    #[must_use]
+    pub fn spelled(expression: &str) -> String {
+        super::expression::with_user_data(expression)
+    }
+
+    /// Holds programs before these instructions, and before no others. What a program does, and when, stays the same.
+    pub fn set_breakpoints(&mut self, addresses: impl IntoIterator<Item = CodeAddr>) {
+        self.board.engine_mut().set_breakpoints(addresses);
+    }
+
+    /// Holds a context after each instruction, the next one included; `None` none.
+    pub const fn set_stepping(&mut self, context: Option<ContextId>) {
+        self.board.engine_mut().set_stepping(context);
+    }
+
+    /// Holds programs after these bytes, addresses and how many, are not what they are now; and after no others.
+    pub fn set_watched(&mut self, ranges: &[(GuestAddr, u32)]) {
+        self.board.set_watched(ranges);
+    }
+
+    /// Which of the watched bytes have changed between two instructions; said once.
+    pub fn take_change(&mut self) -> Option<usize> {
+        self.board.take_change()
+    }
+
+    /// Which context was held last, and why; said once.
+    pub const fn take_hold(&mut self) -> Option<Hold> {
+        self.board.engine_mut().take_hold()
+    }
+
+    /// The calls in progress of a context, innermost first.
+    #[must_use]
+    pub fn frames(&self, id: ContextId) -> Vec<FrameView> {
+        self.board.machine().engine().frames(id)
+    }
+
+    /// Sets a register of a call in progress, the innermost of which is number 0; whether there is such a register.
+    ///
+    /// No journal has it: a [timeline](super::Timeline) is told by [`branch`](super::Timeline::branch).
+    pub fn set_register(&mut self, id: ContextId, frame: usize, register: u16, slot: u64) -> bool {
+        self.board.engine_mut().set_register(id, frame, register, slot)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use kmotiondef::{ThreadId, Ticks};
+    use runtime::Event;
+    use vm::interp::HoldReason;
+
+    use super::*;
+    use crate::{Setup, UserProgram};
+
+    const TWO: &str = r#"
+        #include "KMotionDef.h"
+        int shared, calls;
+        void tick(void) { ++calls; }
+        int twice(int n) { int i, sum = 0; for (i = 0; i < n; ++i) sum += 2; return sum; }
+        main()
+        {
+            int i;
+            UserCallBack = tick;
+            for (i = 0; i < 20; ++i)
+            {
+                shared = twice(i);
+                if (i % 4 == 0) Delay_sec(0.0003);
+                if (i % 5 == 0) printf("%d\n", shared);
+            }
+            UserCallBack = 0;
+        }
+    "#;
+
+    fn session(name: &str) -> Session {
+        let file = std::env::temp_dir().join(format!("cc67-held-{name}-{}.c", std::process::id()));
+        std::fs::write(&file, TWO).expect("a file");
+        let mut setup = Setup::default();
+        for number in [1, 2] {
+            let thread = ThreadId::new(number).expect("there are 7");
+            let program = UserProgram::compile(&file, thread, &setup.options).expect("it is right");
+            setup.programs.push(program.started());
+        }
+        setup.session().expect("a board")
+    }
+
+    /// All events of a run to a tick, and the memory then; `after` is called wherever a program is held.
+    fn run(mut session: Session, mut after: impl FnMut(&mut Session)) -> (Vec<Event>, Session) {
+        let mut events = Vec::new();
+        while session.tick() < Ticks::new(300) || session.held().is_some() {
+            session.step(Ticks::new(300), &mut |event| events.push(event));
+            after(&mut session);
+        }
+        (events, session)
+    }
+
+    fn assert_same(one: &(Vec<Event>, Session), other: &(Vec<Event>, Session)) {
+        assert_eq!(one.0, other.0);
+        assert!(one.1.board().memory() == other.1.board().memory(), "memory differs");
+    }
+
+    #[test]
+    fn a_run_that_is_held_everywhere_is_the_same_run() {
+        let plain = run(session("all"), |_| ());
+        assert!(plain.0.len() > 4, "{:?}", plain.0);
+        let mut held = session("all");
+        let all =
+            ThreadId::all().filter_map(|thread| held.board().machine().program(thread)).flat_map(|program| {
+                program.functions().iter().flat_map(|function| {
+                    function.body.clone().map(|word| program.address_of(word)).collect::<Vec<_>>()
+                })
+            });
+        let all: Vec<_> = all.collect();
+        held.set_breakpoints(all);
+        let mut seen = BTreeSet::new();
+        let held = run(held, |session| {
+            if let Some(Hold { context, reason: HoldReason::Breakpoint }) = session.take_hold() {
+                seen.insert((context, session.frames(context)[0].at));
+            }
+        });
+        assert_same(&plain, &held);
+        assert!(seen.iter().any(|(context, _)| *context == ContextId::CALLBACK) && seen.len() > 40);
+
+        let mut stepped = session("all");
+        let two = ContextId::of(ThreadId::new(2).expect("there are 7"));
+        stepped.set_stepping(Some(two));
+        let mut steps = 0;
+        let stepped = run(stepped, |session| {
+            let hold = session.take_hold();
+            assert!(hold.is_none_or(|hold| hold == Hold { context: two, reason: HoldReason::Step }));
+            steps += usize::from(hold.is_some());
+            if hold.is_some() {
+                // Where it is held, a snapshot is as good as the session.
+                let snapshot = session.snapshot();
+                session.restore(&snapshot).expect("it is of this session");
+                session.set_stepping(Some(two));
+            }
+        });
+        assert_same(&plain, &stepped);
+        assert!(steps > 1000, "{steps}");
+    }
+
+    #[test]
+    fn whoever_writes_is_known() {
+        let plain = run(session("who"), |_| ());
+        let mut watched = session("who");
+        let address = watched.board().debug(ThreadId::new(1).expect("there are 7")).and_then(|_| {
+            let inspection = compiler::inspect::Inspection::read(&watched.programs[0].image).ok()?;
+            let entry = inspection.symbols.iter().find(|entry| entry.name == "shared")?;
+            Some(GuestAddr::new(entry.address))
+        });
+        watched.set_watched(&[(address.expect("it is a variable"), 4)]);
+        let mut values = Vec::new();
+        let watched = run(watched, |session| {
+            if let Some(Hold { reason: HoldReason::Changed { by: Some(_), index: 0 }, .. }) =
+                session.take_hold()
+            {
+                values.push(session.read("1:shared").expect("it is a variable"));
+            }
+        });
+        assert_same(&plain, &watched);
+        assert_eq!(values, (1..20).map(|i| f64::from(2 * i)).collect::<Vec<_>>());
+    }
+}

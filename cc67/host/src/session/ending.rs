@@ -1,0 +1,228 @@
+//! How a run ended: which threads have not, where they are and what they wait for; what the axes do.
+
+use std::fmt;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use kmotiondef::{AxisId, Bit, CodeAddr, Cycles, ThreadId};
+use runtime::standing::{Awaited, Source, Standing, StandingAxis, StandingThread};
+use vm::engine::Engine;
+
+use super::Session;
+use super::condition::WaitCondition;
+use crate::remark::SourceCall;
+
+/// Threads that have not ended, and the axes that programs have used.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Ending {
+    /// The threads.
+    pub threads: Vec<EndingThread>,
+    /// The axes.
+    pub axes: Vec<EndingAxis>,
+}
+
+/// A thread that has not ended.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EndingThread {
+    /// Its number.
+    pub thread: ThreadId,
+    /// `computing`, `waiting`, `paused` or `idle`.
+    pub state: &'static str,
+    /// Where it is, then the calls that led there, innermost first.
+    pub calls: Vec<SourceCall>,
+    /// What it waits for, one text each.
+    pub waits_for: Vec<String>,
+    /// When it last did anything but look and wait, in seconds of board time.
+    pub since: f64,
+}
+
+/// An axis that programs have used.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EndingAxis {
+    /// Its number.
+    pub axis: AxisId,
+    /// What the machine file calls it; empty for nothing.
+    pub name: String,
+    /// Whether it is enabled.
+    pub enabled: bool,
+    /// Its commanded position.
+    pub dest: f64,
+    /// Its measured position.
+    pub position: f64,
+    /// How fast the command moves, units a second.
+    pub velocity: f64,
+    /// Why it does not move, or what it does.
+    pub why: Vec<String>,
+}
+
+impl Ending {
+    /// Whether no thread is left but those that were paused.
+    #[must_use]
+    pub fn has_all_ended(&self) -> bool {
+        self.threads.iter().all(|thread| thread.state == "paused")
+    }
+}
+
+impl fmt::Display for Ending {
+    /// A line for each thread and for each axis, indented.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, line) in self.lines().iter().enumerate() {
+            write!(f, "{}  {line}", if index == 0 { "" } else { "\n" })?;
+        }
+        Ok(())
+    }
+}
+
+impl Ending {
+    /// The same as lines.
+    #[must_use]
+    pub fn lines(&self) -> Vec<String> {
+        let threads = self.threads.iter().map(ToString::to_string);
+        threads.chain(self.axes.iter().map(ToString::to_string)).collect()
+    }
+}
+
+impl fmt::Display for EndingThread {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "thread {}", self.thread)?;
+        for (index, call) in self.calls.iter().enumerate() {
+            write!(f, "{}{call}", if index == 0 { " at " } else { ", called at " })?;
+        }
+        match &*self.waits_for {
+            [] => write!(f, " is {}", self.state)?,
+            all if self.state == "paused" => write!(f, " is paused; it waited for {}", all.join(", "))?,
+            all => write!(f, " waits for {}", all.join(", "))?,
+        }
+        if self.state == "waiting" { write!(f, ", since {:.3} s", self.since) } else { Ok(()) }
+    }
+}
+
+impl fmt::Display for EndingAxis {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "axis {}", self.axis)?;
+        if !self.name.is_empty() {
+            write!(f, " ({})", self.name)?;
+        }
+        let state = if self.enabled { "enabled" } else { "disabled" };
+        write!(f, ": {state}, Dest {}, Position {}", number(self.dest), number(self.position))?;
+        if self.velocity != 0.0 {
+            write!(f, ", moves at {} units/s", number(self.velocity))?;
+        }
+        let why: Vec<_> = self.why.iter().filter(|_| self.enabled).map(String::as_str).collect();
+        if why.is_empty() { Ok(()) } else { write!(f, ": {}", why.join(", ")) }
+    }
+}
+
+/// A number with at most three decimals.
+fn number(value: f64) -> String {
+    let text = format!("{value:.3}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
+
+impl<E: Engine> Session<E> {
+    /// How things are now: which threads have not ended and what they wait for, what the axes do.
+    #[must_use]
+    pub fn ending(&self) -> Ending {
+        let threads = self.board.standing_threads().into_iter().map(|thread| self.ending_thread(thread));
+        Ending {
+            threads: threads.collect(),
+            axes: self.board.standing_axes().into_iter().map(ending_axis).collect(),
+        }
+    }
+
+    fn ending_thread(&self, standing: StandingThread) -> EndingThread {
+        let StandingThread { thread, state, calls, since, awaited } = standing;
+        let calls: Vec<_> = calls.into_iter().filter_map(|at| self.source_call(at)).collect();
+        let mut waits_for: Vec<_> = awaited.iter().map(awaited_words).collect();
+        if waits_for.is_empty() && matches!(state, Standing::Slice | Standing::Computing) {
+            waits_for.extend(calls.first().and_then(|call| self.condition(thread, call)));
+        }
+        let state_word = match state {
+            Standing::Paused => "paused",
+            Standing::Idle => "idle: it was resumed before it was started",
+            Standing::Computing if waits_for.is_empty() => "computing",
+            Standing::Computing | Standing::Until(_) | Standing::Slice | Standing::Call => "waiting",
+        };
+        if waits_for.is_empty() {
+            waits_for.extend(plain_wait(state));
+        }
+        EndingThread { thread, state: state_word, calls, waits_for, since: seconds(since) }
+    }
+
+    /// The source of an instruction.
+    fn source_call(&self, at: CodeAddr) -> Option<SourceCall> {
+        let place = self.board.source(at)?;
+        let (file, function) = (place.file.to_owned(), place.function.to_owned());
+        Some(SourceCall { file, line: place.line, function })
+    }
+
+    /// The condition of the loop at a place, as far as the sources show one.
+    fn condition(&self, thread: ThreadId, call: &SourceCall) -> Option<String> {
+        let program = self.programs.iter().find(|program| program.thread == thread)?;
+        let text = source_text(&program.path, &call.file)?;
+        let condition = WaitCondition::around(&text, call.line?)?;
+        let Some(name) = condition.operand() else { return Some(format!("`{}`", condition.text())) };
+        let value = self.watch(&format!("{thread}:{name}")).map(|watch| watch.value(&self.board));
+        let value = value.map_or(String::new(), |value| format!(": it is {}", number(value)));
+        let main = source_text(&program.path, &program.name()).unwrap_or_default();
+        let is_written = [&text, &main].iter().any(|text| WaitCondition::writes(text, name));
+        let nobody = if is_written { "" } else { ", which nobody writes" };
+        Some(format!("`{name}`{nobody}{value} (`{}`)", condition.text()))
+    }
+}
+
+/// The text of a source file that an image names, which may be relative to the program.
+fn source_text(program: &Path, file: &str) -> Option<String> {
+    let beside = program.parent().unwrap_or(Path::new("")).join(file);
+    let candidates = [PathBuf::from(file), beside, program.to_owned()];
+    let same_name = |path: &PathBuf| path.file_name() == Path::new(file).file_name();
+    let bytes = candidates.iter().filter(|path| same_name(path)).find_map(|path| fs::read(path).ok())?;
+    Some(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+/// What a thread waits for that looks at nothing.
+fn plain_wait(state: Standing) -> Option<String> {
+    match state {
+        Standing::Until(time) => Some(format!("{:.3} s", seconds(time))),
+        Standing::Slice => Some("its next slice".to_owned()),
+        Standing::Call => Some("the board: a lock, room for its text, or the PC".to_owned()),
+        Standing::Computing | Standing::Paused | Standing::Idle => None,
+    }
+}
+
+fn awaited_words(awaited: &Awaited) -> String {
+    match awaited {
+        Awaited::Bit(bit, level, source) => bit_words(*bit, u8::from(*level), source),
+        Awaited::Motion(axis, -1) => format!("axis {axis}, which is disabled: CheckDone({axis}) is -1"),
+        Awaited::Motion(axis, 0) => format!("the end of the motion of axis {axis}"),
+        Awaited::Motion(axis, _) => format!("axis {axis}, which has ended its motion"),
+        Awaited::Path => "the end of the path".to_owned(),
+        Awaited::Recording => "the end of the recording".to_owned(),
+        Awaited::Lock => "a lock".to_owned(),
+    }
+}
+
+fn bit_words(bit: Bit, level: u8, source: &Source) -> String {
+    match source {
+        Source::Nothing => format!("bit {bit}, an input that nothing drives: it is {level}"),
+        Source::Contact(axis, place, active, load) => {
+            let (load, active) = (number(*load), u8::from(*active));
+            format!("bit {bit}, which is {level}: its switch is {active} {place}, axis {axis} is at {load}")
+        }
+        Source::Outside => format!("bit {bit}, which is {level}"),
+        Source::Output => format!("bit {bit}, an output of the board: it is {level}"),
+        Source::Memory => format!("bit {bit}, which only programs set: it is {level}"),
+        Source::NoKstep => format!("bit {bit} of a KStep, which reads 0 until KStepPresent is set"),
+    }
+}
+
+fn ending_axis(standing: StandingAxis) -> EndingAxis {
+    let StandingAxis { axis, name, is_enabled: enabled, dest, position, velocity, reasons } = standing;
+    let why = reasons.iter().map(ToString::to_string).collect();
+    EndingAxis { axis, name, enabled, dest, position, velocity, why }
+}
+
+fn seconds(at: Cycles) -> f64 {
+    at.get() as f64 / Cycles::PER_SECOND.get() as f64
+}

@@ -1,0 +1,421 @@
+//! Expressions in the words of the programs: C, read from the board's memory and written to it.
+//!
+//! `axis0` is all that belongs to an axis, `bit46` and its kin are items of the board; everything else is C in
+//! the words of the programs that are loaded. `2:count` is the `count` of the program in thread 2. To look at an
+//! expression changes nothing and takes no time.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::path::Path;
+use std::sync::Arc;
+
+use compiler::Options;
+use compiler::files;
+use compiler::inspect::{Inspection, Kind};
+use compiler::object::{SymbolKind, kind_of};
+use compiler::pp::Disk;
+use compiler::watch::{self, Expression, Reader, Scope};
+use kmotiondef::limits::N_USER_DATA_VARS;
+use kmotiondef::structs::Persist;
+use kmotiondef::variables::PERSIST;
+use kmotiondef::{AxisId, GuestAddr, ThreadId};
+use runtime::Board;
+use runtime::trace::{Formula, Item, Quantity, UnknownItem, View};
+use vm::engine::Engine;
+
+use super::{Input, Session, UserProgram};
+
+/// How the compiler's message on an unknown name ends if no other is near.
+const NOT_DECLARED: &str = "is not declared";
+
+/// What is known without a declaration.
+const KNOWN: &str = ", nor is it an item of the board, such as axis0, bit46, persist.5, adc0";
+
+/// Most characters of an expression.
+const MOST: usize = 500;
+
+/// Why something cannot be watched.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum WatchError {
+    /// The number of an item is too high.
+    #[error(transparent)]
+    Item(#[from] UnknownItem),
+    /// There is nothing between two commas.
+    #[error("an expression is missing, such as axis0,bit46,persist.5")]
+    Missing,
+    /// It is too long to be one.
+    #[error("an expression may have {MOST} characters")]
+    TooLong,
+    /// The compiler refuses it.
+    #[error("`{expression}`: {message}")]
+    Wrong {
+        /// The expression.
+        expression: String,
+        /// What is wrong with it.
+        message: String,
+    },
+    /// It has a value, but no place where another one can be stored.
+    #[error("`{0}` is not a variable, so nothing can be stored in it")]
+    NoPlace(String),
+}
+
+/// Something that can be looked at: an item of the board, or an expression in the words of a program.
+///
+/// It belongs to the programs that were loaded when it was [made](Session::watch): where another one is loaded, it
+/// reads what is there then.
+#[derive(Clone, Debug)]
+pub struct Watch(Watched);
+
+#[derive(Clone, Debug)]
+enum Watched {
+    Item(Item),
+    Compiled(String, Arc<Compiled>),
+}
+
+impl Watch {
+    /// The present value on a board.
+    pub(super) fn value<E: Engine>(&self, board: &Board<E>) -> f64 {
+        match &self.0 {
+            Watched::Item(item) => board.value(*item),
+            Watched::Compiled(_, compiled) => {
+                compiled.expression.value(&OnBoard { board, items: &compiled.items })
+            }
+        }
+    }
+
+    /// The same for what records the board as it runs.
+    fn into_quantity(self) -> Quantity {
+        match self.0 {
+            Watched::Item(item) => item.into(),
+            Watched::Compiled(text, compiled) => Quantity::Formula(text, compiled),
+        }
+    }
+}
+
+impl fmt::Display for Watch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.0 {
+            Watched::Item(item) => item.fmt(f),
+            Watched::Compiled(text, _) => f.write_str(text),
+        }
+    }
+}
+
+impl<E: Engine> Session<E> {
+    /// Prepares an item or an expression to be looked at, once or again and again.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn watch(&self, text: &str) -> Result<Watch, WatchError> {
+        match Item::new(text) {
+            Ok(item) => Ok(Watch(Watched::Item(item))),
+            // A number that is too high is not the name of a variable.
+            Err(error) if Item::is_kind(text.trim_end_matches(|c: char| c.is_ascii_digit())) => {
+                Err(error.into())
+            }
+            Err(_) => formula(text, &self.programs, &self.options),
+        }
+    }
+
+    /// What a list names, commas in between, for a [recording](Self::record): `axis0` is all of an axis.
+    ///
+    /// # Errors
+    /// What is wrong with one of them.
+    pub fn quantities(&self, list: &str) -> Result<Vec<Quantity>, WatchError> {
+        let mut quantities = Vec::new();
+        for name in expressions(list) {
+            if let Some(number) = name.strip_prefix("axis").filter(|number| is_number(number)) {
+                let axis =
+                    Item::new(&format!("dest{number}"))?.axis().and_then(|axis| AxisId::new(axis as i32));
+                quantities.extend(axis.into_iter().flat_map(Item::of_axis).map(Quantity::from));
+                continue;
+            }
+            quantities.push(self.watch(name)?.into_quantity());
+        }
+        Ok(quantities)
+    }
+
+    /// The present value of what is watched; not a number where it divides an integer by 0.
+    #[must_use]
+    pub fn value(&self, watch: &Watch) -> f64 {
+        watch.value(&self.board)
+    }
+
+    /// The present value of an item or an expression.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn read(&self, text: &str) -> Result<f64, WatchError> {
+        Ok(self.value(&self.watch(text)?))
+    }
+
+    /// Stores a value in a variable, a field, an element or what a pointer points at, as an assignment in C would.
+    ///
+    /// # Errors
+    /// What is wrong with the expression, or that it is no place.
+    pub fn write(&mut self, text: &str, value: f64) -> Result<(), WatchError> {
+        let no_place = || WatchError::NoPlace(text.to_owned());
+        let Watch(Watched::Compiled(_, compiled)) = self.watch(&with_user_data(text))? else {
+            return Err(no_place());
+        };
+        let reader = OnBoard { board: &self.board, items: &compiled.items };
+        let (address, bytes) = compiled.expression.store(value, &reader).ok_or_else(no_place)?;
+        self.board.memory_mut().poke_bytes(address, &bytes).map_err(|_| no_place())?;
+        let tick = self.board.tick();
+        match (user_data_at(address), <[u8; 4]>::try_from(&bytes[..])) {
+            (Some(index), Ok(word)) => self.recording.stored(tick, index, i32::from_le_bytes(word)),
+            _ => self.recording.cannot(tick, &format!("write {value} to {text}")),
+        }
+        self.note(Input::Store(address, bytes));
+        Ok(())
+    }
+
+    /// Records from now on what is asked for; the records come as events.
+    pub fn record(&mut self, request: runtime::trace::Request) {
+        self.board.record(request);
+    }
+}
+
+/// The element of `persist.UserData` at an address.
+pub(super) fn user_data_at(address: GuestAddr) -> Option<usize> {
+    let base = PERSIST.field(Persist::USER_DATA).address().get();
+    let offset = usize::try_from(address.get().checked_sub(base)?).ok()?;
+    Some(offset / 4).filter(|index| offset.is_multiple_of(4) && *index < N_USER_DATA_VARS)
+}
+
+fn is_number(text: &str) -> bool {
+    !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit())
+}
+
+/// The expressions of a list, commas in between; those within brackets belong to an expression.
+///
+/// ```
+/// assert_eq!(cc67_host::session::expressions("dest0, max(a, b)"), ["dest0", "max(a, b)"]);
+/// ```
+#[must_use]
+pub fn expressions(list: &str) -> Vec<&str> {
+    let mut depth = 0_usize;
+    let parts = list.split(|character| {
+        match character {
+            '(' | '[' => depth += 1,
+            ')' | ']' => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        character == ',' && depth == 0
+    });
+    parts.map(str::trim).collect()
+}
+
+/// An expression in the words of the first program that understands it, or of the one in the thread that it names;
+/// without a program, in those of the board's header.
+fn formula(text: &str, programs: &[UserProgram], options: &Options) -> Result<Watch, WatchError> {
+    if text.is_empty() {
+        return Err(WatchError::Missing);
+    }
+    if text.len() > MOST {
+        return Err(WatchError::TooLong);
+    }
+    let thread = text.split_once(':').and_then(|(number, _)| number.parse().ok()).and_then(ThreadId::new);
+    let expression =
+        if thread.is_some() { text.split_once(':').map_or(text, |(_, rest)| rest) } else { text };
+    let expression = with_user_data(expression);
+    let mut first_error = None;
+    let mut words: Vec<_> = programs
+        .iter()
+        .filter(|program| thread.is_none_or(|thread| thread == program.thread))
+        .map(Vocabulary::of_program)
+        .collect();
+    if words.is_empty() && thread.is_none() {
+        words.push(Ok(Vocabulary::of_board()));
+    }
+    for words in words {
+        match words.and_then(|words| words.compile(&expression, options)) {
+            Ok(compiled) => return Ok(Watch(Watched::Compiled(text.to_owned(), Arc::new(compiled)))),
+            Err(error) => {
+                first_error.get_or_insert(error);
+            }
+        }
+    }
+    let error = first_error.unwrap_or_else(|| "there is no program in that thread".to_owned());
+    // With nothing near there is nothing else to say.
+    let is_strange = error.ends_with(NOT_DECLARED);
+    let message = error + if is_strange { KNOWN } else { "" };
+    Err(WatchError::Wrong { expression: text.to_owned(), message })
+}
+
+/// What computes an expression of a stimulus, in the words of its programs.
+pub(super) fn for_stimulus(
+    text: &str,
+    programs: &[UserProgram],
+    options: &Options,
+) -> Result<Arc<dyn Formula>, String> {
+    match formula(text, programs, options) {
+        Ok(Watch(Watched::Compiled(_, compiled))) => Ok(compiled),
+        Ok(Watch(Watched::Item(item))) => Ok(Arc::new(item)),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+/// `persist.5` is how `--set` calls an element.
+pub(super) fn with_user_data(text: &str) -> String {
+    let mut parts = text.split("persist.");
+    let mut whole = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let digits = part.len() - part.trim_start_matches(|c: char| c.is_ascii_digit()).len();
+        let (index, rest) = part.split_at(digits);
+        match index {
+            "" => whole.push_str("persist."),
+            _ => whole.push_str(&format!("persist.UserData[{index}]")),
+        }
+        whole.push_str(rest);
+    }
+    whole
+}
+
+/// An expression of a program, with the items that it names.
+#[derive(Debug)]
+struct Compiled {
+    expression: Expression,
+    items: Vec<Item>,
+}
+
+/// What expressions may name.
+struct Vocabulary<'a> {
+    /// The file beside which includes are looked for.
+    path: &'a Path,
+    /// Declarations.
+    text: Vec<u8>,
+    /// Where the variables are.
+    symbols: BTreeMap<String, GuestAddr>,
+}
+
+impl<'a> Vocabulary<'a> {
+    /// Those of a program: its source, and where its image has the variables.
+    fn of_program(program: &'a UserProgram) -> Result<Self, String> {
+        let inspection = Inspection::read(&program.image).map_err(|error| error.to_string())?;
+        let objects = inspection.symbols.iter().filter(|entry| entry.kind == Kind::Object);
+        let symbols = objects.map(|entry| (entry.name.clone(), GuestAddr::new(entry.address))).collect();
+        let path = program.path.as_path();
+        let text = match program.is_image {
+            true => declarations(&inspection).into_bytes(),
+            false => files::read(path)
+                .map_err(|error| format!("cannot read {}: {}", path.display(), files::reason(&error)))?,
+        };
+        Ok(Self { path, text, symbols })
+    }
+
+    /// Those of the board, for want of a program.
+    fn of_board() -> Self {
+        let text = b"#include \"KMotionDef.h\"\n".to_vec();
+        Self { path: Path::new("board"), text, symbols: BTreeMap::new() }
+    }
+
+    fn compile(&self, text: &str, options: &Options) -> Result<Compiled, String> {
+        let symbols = &self.symbols;
+        let scope = Scope { path: self.path, text: &self.text, symbols, options, files: &Disk };
+        let first = match watch::compile(scope, text, &[]) {
+            Ok(expression) => return Ok(Compiled { expression, items: Vec::new() }),
+            Err(error) => error,
+        };
+        // A name of the program goes before that of an item; so items are tried second.
+        let mut names: Vec<&str> =
+            words(text).filter(|word| !symbols.contains_key(*word) && Item::new(word).is_ok()).collect();
+        names.sort_unstable();
+        names.dedup();
+        if names.is_empty() {
+            return Err(first);
+        }
+        let expression = watch::compile(scope, text, &names)?;
+        Ok(Compiled {
+            expression,
+            items: names.into_iter().filter_map(|name| Item::new(name).ok()).collect(),
+        })
+    }
+}
+
+/// The variables of an image whose types it records: not structures and pointers.
+fn declarations(inspection: &Inspection) -> String {
+    let mut text = "#include \"KMotionDef.h\"\n".to_owned();
+    let objects = inspection.symbols.iter().filter(|entry| entry.kind == Kind::Object);
+    for entry in objects.filter(|entry| words(&entry.name).eq([entry.name.as_str()])) {
+        let symbol =
+            inspection.image.symbols.iter().find(|symbol| symbol.name.as_bytes() == entry.name.as_bytes());
+        let (ty, size) = match symbol.map(|symbol| kind_of(symbol.ty)) {
+            Some(SymbolKind::Char) => ("char", 1),
+            Some(SymbolKind::Short) => ("short", 2),
+            Some(SymbolKind::Float) => ("float", 4),
+            Some(SymbolKind::Double) => ("double", 8),
+            _ => ("int", 4),
+        };
+        let count = entry.size.unwrap_or(size) / size;
+        let array = if count > 1 { format!("[{count}]") } else { String::new() };
+        text.push_str(&format!("extern {ty} {}{array};\n", entry.name));
+    }
+    text
+}
+
+/// What looks like a name.
+fn words(text: &str) -> impl Iterator<Item = &str> {
+    text.split(|character: char| !(character.is_ascii_alphanumeric() || character == '_'))
+}
+
+impl Formula for Compiled {
+    fn value(&self, view: &View<'_>) -> f64 {
+        self.expression.value(&InView { view, items: &self.items })
+    }
+}
+
+/// The eight bytes from an address on; what lies at the end of a region has fewer.
+fn eight(memory: &vm::memory::GuestMemory, address: GuestAddr) -> [u8; 8] {
+    std::array::from_fn(|offset| memory.peek::<u8>(address.offset(offset as u32)))
+}
+
+/// A board between two steps, as an expression reads it.
+struct OnBoard<'a, E> {
+    board: &'a Board<E>,
+    items: &'a [Item],
+}
+
+impl<E: Engine> Reader for OnBoard<'_, E> {
+    fn bytes(&self, address: GuestAddr) -> [u8; 8] {
+        eight(self.board.memory(), address)
+    }
+
+    fn item(&self, index: usize) -> f64 {
+        self.items.get(index).map_or(0.0, |item| self.board.value(*item))
+    }
+}
+
+/// A board that is recorded, as an expression reads it.
+struct InView<'a> {
+    view: &'a View<'a>,
+    items: &'a [Item],
+}
+
+impl Reader for InView<'_> {
+    fn bytes(&self, address: GuestAddr) -> [u8; 8] {
+        eight(self.view.memory, address)
+    }
+
+    fn item(&self, index: usize) -> f64 {
+        self.items.get(index).map_or(0.0, |item| self.view.item(*item))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn commas_within_brackets_do_not_part_a_list() {
+        assert_eq!(expressions("a, f(b, c) ,x[1,2]"), ["a", "f(b, c)", "x[1,2]"]);
+    }
+
+    #[test]
+    fn elements_of_user_data_have_a_short_form() {
+        assert_eq!(
+            with_user_data("persist.5 + persist.UserData[6]"),
+            "persist.UserData[5] + persist.UserData[6]"
+        );
+    }
+}

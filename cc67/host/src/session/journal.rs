@@ -1,0 +1,112 @@
+//! What was done to a session, each with the tick after which it was done, so that it can be done again.
+
+use std::sync::Arc;
+
+use kmotiondef::{Bit, GuestAddr, ThreadId, Ticks};
+use vm::engine::Engine;
+
+use super::{Session, UserProgram};
+use crate::HostError;
+
+/// Something that the owner of a session does to the board.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Input {
+    /// A statement of a stimulus, without its moment.
+    Act(String),
+    /// An input is driven from outside.
+    Drive(Bit, bool),
+    /// Bytes are stored from an address on.
+    Store(GuestAddr, Vec<u8>),
+    /// Bytes come over the USB link.
+    Receive(Vec<u8>),
+    /// Characters are put on the line to the serial port.
+    Uart(Vec<u8>),
+    /// A thread is started.
+    Start(ThreadId),
+    /// A thread is stopped.
+    Stop(ThreadId),
+    /// Whether the PC takes console lines.
+    Listen(bool),
+    /// A program is loaded.
+    Load(Box<UserProgram>),
+}
+
+/// Everything that was done to a session since its beginning, shared with its snapshots.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Journal {
+    entries: Arc<Vec<(Ticks, Input)>>,
+    is_deaf: bool,
+}
+
+impl Journal {
+    /// Adds what was done after a tick.
+    pub(super) fn note(&mut self, tick: Ticks, input: Input) {
+        if let Input::Listen(listens) = input {
+            self.is_deaf = !listens;
+        }
+        Arc::make_mut(&mut self.entries).push((tick, input));
+    }
+
+    /// Whether the PC takes console lines.
+    pub(super) const fn listens(&self) -> bool {
+        !self.is_deaf
+    }
+
+    /// All of it, in order.
+    pub(super) fn entries(&self) -> &[(Ticks, Input)] {
+        &self.entries
+    }
+}
+
+impl<E: Engine> Session<E> {
+    /// Everything that was done to this session since its beginning, each with the tick after which it was done.
+    #[must_use]
+    pub fn journal(&self) -> &[(Ticks, Input)] {
+        self.journal.entries()
+    }
+
+    /// Does what the journal of a session says, now.
+    ///
+    /// # Errors
+    /// Why it cannot be done here: a bit that is no input, a thread without a program, a program that is refused.
+    pub fn redo(&mut self, input: &Input) -> Result<(), HostError> {
+        match input {
+            Input::Act(action) => self.act(action).map_err(|error| HostError::Act(error.to_string()))?,
+            Input::Drive(bit, level) => {
+                self.drive_input(*bit, *level).map_err(|error| HostError::Act(error.to_string()))?;
+            }
+            Input::Store(address, bytes) => self.store(*address, bytes)?,
+            Input::Receive(bytes) => self.receive(bytes),
+            Input::Uart(bytes) => self.send_to_uart(bytes),
+            Input::Start(thread) => self.start(*thread)?,
+            Input::Stop(thread) => self.stop(*thread),
+            Input::Listen(listens) => self.listen(*listens),
+            Input::Load(program) => self.load(UserProgram::clone(program))?,
+        }
+        Ok(())
+    }
+
+    /// Stores bytes from an address on.
+    ///
+    /// # Errors
+    /// [`HostError::Unmapped`].
+    pub fn store(&mut self, address: GuestAddr, bytes: &[u8]) -> Result<(), HostError> {
+        let stored = self.board.memory_mut().poke_bytes(address, bytes);
+        stored.map_err(|_| HostError::Unmapped(address))?;
+        let tick = self.tick();
+        match (super::expression::user_data_at(address), <[u8; 4]>::try_from(bytes)) {
+            (Some(index), Ok(word)) => self.recording.stored(tick, index, i32::from_le_bytes(word)),
+            _ => self.recording.cannot(tick, &format!("store {} bytes at {address}", bytes.len())),
+        }
+        self.note(Input::Store(address, bytes.to_vec()));
+        Ok(())
+    }
+
+    /// Adds to the journal what was done just now; a session that keeps no account of it has none.
+    pub(super) fn note(&mut self, input: Input) {
+        if self.recording.is_off() {
+            return;
+        }
+        self.journal.note(self.board.tick(), input);
+    }
+}

@@ -1,0 +1,237 @@
+//! The session: a board under control.
+//!
+//! A [`Setup`] says what board it is and which programs it runs; a [`Session`] is that board with somebody in charge of
+//! it. Its owner decides how far time goes ([`advance`](Session::advance), [`run`](Session::run),
+//! [`run_until`](Session::run_until), [`step_thread`](Session::step_thread)), looks at it and changes it in the words of
+//! its programs ([`read`](Session::read), [`write`](Session::write)), follows signals
+//! ([`subscribe`](Session::subscribe)), acts as the world around the board ([`act`](Session::act)), and goes back to an
+//! instant ([`snapshot`](Session::snapshot), [`restore`](Session::restore)).
+//!
+//! ```
+//! use cc67_host::{Until, Session, Setup, UserProgram};
+//! use kmotiondef::{ThreadId, Ticks};
+//!
+//! // A program that counts a switch, and when it is pressed for the third time, says so.
+//! let file = std::env::temp_dir().join("cc67-example-session.c");
+//! std::fs::write(&file, r#"
+//!     #include "KMotionDef.h"
+//!     int count;
+//!     main()
+//!     {
+//!         int now, last = 0;
+//!         while (count < 3)
+//!         {
+//!             now = ReadBit(136);
+//!             if (now && !last) ++count;
+//!             last = now;
+//!             WaitNextTimeSlice();
+//!         }
+//!         printf("three\n");
+//!     }
+//! "#)?;
+//!
+//! let thread = ThreadId::new(1).expect("there are 7");
+//! let mut setup = Setup::default();
+//! setup.programs.push(UserProgram::compile(&file, thread, &setup.options)?.started());
+//! let mut session = setup.session()?;
+//!
+//! // Whatever the board says comes as events; here only console lines are kept.
+//! let mut lines = Vec::new();
+//! let mut hear = |event: runtime::Event| {
+//!     if let runtime::EventKind::ConsoleLine(line) = event.kind {
+//!         lines.push(String::from_utf8_lossy(&line).into_owned());
+//!     }
+//! };
+//!
+//! // Press the switch, and wait until the program has seen it: at most a second of board time.
+//! session.act("bit 136 = 1")?;
+//! let second = |session: &Session| session.tick_after(1.0);
+//! let seen = Until::True(session.watch("count == 1")?);
+//! assert!(session.run_until(&seen, second(&session), &mut hear));
+//!
+//! // Spare the program one of three, and press once more.
+//! session.write("count", 2.0)?;
+//! session.act("bit 136 = 0")?;
+//! session.advance(Ticks::new(session.tick().get() + 5), &mut hear);
+//! session.act("bit 136 = 1")?;
+//! session.run(second(&session), &mut hear);
+//! assert_eq!(session.read("count")?, 3.0);
+//! assert_eq!(lines, ["three"]);
+//!
+//! // What was done by hand is a stimulus, with which `cc67 run --stim` does it again.
+//! assert!(session.recording().text().starts_with("at 90us bit 136 = 1\n"));
+//! # std::fs::remove_file(&file)?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Time is board time, and passes only in calls that say so. An event carries its instant; between two events of a
+//! call the board has moved on. A session is deterministic: the same setup and the same calls at the same ticks give the
+//! same events and the same memory, on either engine.
+
+mod by_hand;
+mod condition;
+mod control;
+mod debug;
+mod ending;
+mod expression;
+mod journal;
+mod setup;
+mod signals;
+mod snapshot;
+mod timeline;
+mod until;
+mod user_program;
+
+pub use by_hand::Recording;
+pub use control::{End, Interrupter};
+pub use ending::{Ending, EndingAxis, EndingThread};
+pub use expression::{Watch, WatchError, expressions};
+pub use journal::Input;
+pub use setup::Setup;
+pub use signals::SubscriptionId;
+pub use snapshot::Snapshot;
+pub use timeline::{History, Timeline, TimelineError};
+pub use until::Until;
+pub use user_program::UserProgram;
+
+use std::sync::Arc;
+
+use compiler::Options;
+use kmotiondef::{Bit, Cycles, ThreadId, Ticks};
+use runtime::Board;
+use runtime::debug::DebugInfo;
+use vm::engine::Engine;
+use vm::interp::BytecodeEngine;
+use vm::thread::ThreadState;
+
+use crate::HostError;
+use journal::Journal;
+use signals::Signals;
+
+/// Ticks that a line and its answer take on the wire, as recorded.
+pub const EXCHANGE: u64 = 28;
+
+/// A board under control, see the [module](self).
+#[derive(Debug)]
+pub struct Session<E = BytecodeEngine> {
+    board: Board<E>,
+    /// How programs and expressions are compiled.
+    options: Options,
+    /// The programs in the threads: expressions are in their words.
+    programs: Arc<Vec<UserProgram>>,
+    /// Those that a stimulus may load, with what is known of each.
+    offered: Vec<(UserProgram, DebugInfo)>,
+    signals: Signals,
+    recording: Recording,
+    journal: Journal,
+    interrupter: Interrupter,
+}
+
+/// What the session is, and what the board shows at the present instant.
+impl<E: Engine> Session<E> {
+    /// The board, to look at.
+    #[must_use]
+    pub const fn board(&self) -> &Board<E> {
+        &self.board
+    }
+
+    /// Number of the last tick that is over.
+    #[must_use]
+    pub const fn tick(&self) -> Ticks {
+        self.board.tick()
+    }
+
+    /// The present instant: the end of that tick.
+    #[must_use]
+    pub fn now(&self) -> Cycles {
+        self.board.now()
+    }
+
+    /// The tick `seconds` of board time from now.
+    ///
+    /// ```
+    /// let session = cc67_host::Setup::default().session()?;
+    /// assert_eq!(session.tick_after(0.9).get(), 10_000);
+    /// # Ok::<(), cc67_host::HostError>(())
+    /// ```
+    #[must_use]
+    pub fn tick_after(&self, seconds: f64) -> Ticks {
+        Ticks::new(self.tick().get().saturating_add(ticks(seconds)))
+    }
+
+    /// The state of a thread.
+    #[must_use]
+    pub fn thread(&self, thread: ThreadId) -> &ThreadState {
+        self.board.thread(thread)
+    }
+
+    /// Whether no thread is active and nothing is under way that a program has begun.
+    #[must_use]
+    pub fn has_ended(&self) -> bool {
+        self.board.has_ended()
+    }
+
+    /// The level of a bit.
+    #[must_use]
+    pub fn bit(&self, bit: Bit) -> bool {
+        self.board.bit(bit)
+    }
+
+    /// An element of `persist.UserData`; `None` beyond the last.
+    #[must_use]
+    pub fn user_data(&self, index: usize) -> Option<i32> {
+        self.board.user_data(index)
+    }
+
+    /// What is known of the programs that are loaded, each with its thread.
+    #[must_use]
+    pub fn debug(&self) -> Vec<(ThreadId, DebugInfo)> {
+        let known = |thread| Some((thread, self.board.debug(thread).cloned()?));
+        ThreadId::all().filter_map(known).collect()
+    }
+
+    /// What is known of the programs that a stimulus may load, each with its thread and the name it goes by.
+    #[must_use]
+    pub fn offered(&self) -> Vec<(ThreadId, String, DebugInfo)> {
+        let row =
+            |(program, debug): &(UserProgram, DebugInfo)| (program.thread, program.name(), debug.clone());
+        self.offered.iter().map(row).collect()
+    }
+
+    /// Sets how programs and expressions are compiled from now on.
+    pub fn set_options(&mut self, options: Options) {
+        self.options = options;
+    }
+
+    /// How programs and expressions are compiled.
+    #[must_use]
+    pub const fn options(&self) -> &Options {
+        &self.options
+    }
+
+    /// Loads a program into its thread, which is stopped first, and starts it if it [is to](UserProgram::started).
+    ///
+    /// # Errors
+    /// Why it is refused; the program in the thread stays and continues.
+    pub fn load(&mut self, program: UserProgram) -> Result<(), HostError> {
+        self.board.load(program.thread, &program.image).map_err(|error| program.refused(error))?;
+        let (thread, starts) = (program.thread, program.starts);
+        self.recording.cannot(self.board.tick(), &format!("load {} into thread {thread}", program.name()));
+        self.note(Input::Load(Box::new(UserProgram { starts: false, ..program.clone() })));
+        self.note_program(program);
+        if starts { self.start(thread) } else { Ok(()) }
+    }
+
+    /// A thread has another program: expressions are in its words.
+    fn note_program(&mut self, program: UserProgram) {
+        let programs = Arc::make_mut(&mut self.programs);
+        programs.retain(|other| other.thread != program.thread);
+        programs.push(program);
+        programs.sort_by_key(|program| program.thread);
+    }
+}
+
+/// Ticks in some seconds.
+pub(crate) fn ticks(seconds: f64) -> u64 {
+    (seconds / kmotiondef::limits::TIMEBASE).round() as u64
+}

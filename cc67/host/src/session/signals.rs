@@ -1,0 +1,111 @@
+//! Signals: values that are followed at a rate.
+//!
+//! A subscription is sampled after every tick that is a multiple of its interval, whether its values have changed or
+//! not. Sampling changes nothing on the board.
+
+use std::fmt;
+
+use kmotiondef::Ticks;
+use vm::engine::Engine;
+
+use super::{Session, Watch};
+
+/// Names a subscription of a session.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct SubscriptionId(u64);
+
+/// What receives samples: the tick, and the values in the order of the subscription.
+type Receiver = Box<dyn FnMut(Ticks, &[f64]) + Send>;
+
+struct Subscription {
+    id: SubscriptionId,
+    watched: Vec<Watch>,
+    every: u64,
+    receiver: Receiver,
+}
+
+/// The subscriptions of a session.
+#[derive(Default)]
+pub(super) struct Signals {
+    subscriptions: Vec<Subscription>,
+    /// How many there have been.
+    count: u64,
+    /// The tick that was looked at last.
+    last: Ticks,
+}
+
+impl fmt::Debug for Signals {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Signals").field("count", &self.subscriptions.len()).finish_non_exhaustive()
+    }
+}
+
+impl Signals {
+    /// How far the board may go before something is sampled.
+    pub(super) fn next_sample(&self, tick: Ticks, limit: Ticks) -> Ticks {
+        let next = |subscription: &Subscription| (tick.get() / subscription.every + 1) * subscription.every;
+        let next = self.subscriptions.iter().map(next).min();
+        next.map_or(limit, |next| Ticks::new(next).min(limit))
+    }
+
+    /// The board went to another tick without having run: what is due then is sampled when it runs on.
+    pub(super) const fn went_to(&mut self, tick: Ticks) {
+        self.last = tick;
+    }
+}
+
+impl<E: Engine> Session<E> {
+    /// Hands the values of expressions to a receiver every `every` ticks, from the next multiple on; the
+    /// receiver is called in whatever call lets time pass.
+    ///
+    /// ```
+    /// use std::sync::mpsc;
+    ///
+    /// use cc67_host::Setup;
+    ///
+    /// let mut session = Setup::default().session()?;
+    /// session.act(r#"command "EnableAxis0;Jog0=1000""#)?;
+    /// let (sender, samples) = mpsc::channel();
+    /// let dest = session.watch("chan[0].Dest")?;
+    /// session.subscribe(vec![dest], 100, move |tick, values| sender.send((tick.get(), values[0])).expect("it is awaited"));
+    /// session.advance(session.tick_after(0.05), &mut |_| ());
+    /// let samples: Vec<_> = samples.try_iter().collect();
+    /// assert_eq!(samples.iter().map(|(tick, _)| *tick).collect::<Vec<_>>(), [100, 200, 300, 400, 500]);
+    /// assert!(samples.is_sorted_by(|(_, a), (_, b)| a < b));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn subscribe(
+        &mut self,
+        watched: Vec<Watch>,
+        every: u64,
+        receiver: impl FnMut(Ticks, &[f64]) + Send + 'static,
+    ) -> SubscriptionId {
+        self.signals.count += 1;
+        let id = SubscriptionId(self.signals.count);
+        self.signals.last = self.tick();
+        let receiver = Box::new(receiver);
+        self.signals.subscriptions.push(Subscription { id, watched, every: every.max(1), receiver });
+        id
+    }
+
+    /// Ends a subscription.
+    pub fn unsubscribe(&mut self, id: SubscriptionId) {
+        self.signals.subscriptions.retain(|subscription| subscription.id != id);
+    }
+
+    /// Hands over what is due at the present tick.
+    pub(super) fn sample(&mut self) {
+        let tick = self.tick();
+        if self.signals.subscriptions.is_empty() || self.signals.last == tick {
+            return;
+        }
+        self.signals.last = tick;
+        for subscription in &mut self.signals.subscriptions {
+            if tick.get().is_multiple_of(subscription.every) {
+                let values: Vec<f64> =
+                    subscription.watched.iter().map(|watch| watch.value(&self.board)).collect();
+                (subscription.receiver)(tick, &values);
+            }
+        }
+    }
+}

@@ -1,0 +1,340 @@
+//! A timeline: a session's past, to go back to any tick of it and forward again.
+//!
+//! Snapshots are kept every so much work of the computer; what lies between two of them is executed again, with what
+//! was done by hand done again at its tick. Older snapshots are kept at larger distances, so that their number does not
+//! grow with the length of a session. Whoever does something else in the past than was done there begins a new line of
+//! history: what came later is forgotten.
+
+use kmotiondef::Ticks;
+use runtime::Event;
+use vm::engine::{Engine, ForeignSnapshot};
+
+use super::{Input, Session, Snapshot};
+
+/// Work between two snapshots: some hundredths of a second of a usual computer.
+const INTERVAL: u64 = 20_000_000;
+
+/// Into how many parts the snapshots of a replay cut an interval.
+const PARTS: u64 = 8;
+
+/// Most snapshots; each has a few hundred KiB besides pages of memory that differ.
+const MOST: usize = 256;
+
+/// Why a session cannot be taken to a tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum TimelineError {
+    /// The timeline begins later.
+    #[error("the timeline begins at tick {}", .0.get())]
+    TooEarly(Ticks),
+    /// The snapshots are of another session.
+    #[error(transparent)]
+    Foreign(#[from] ForeignSnapshot),
+}
+
+/// Whether the present belongs to the history that was known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[must_use]
+pub enum History {
+    /// It does.
+    Same,
+    /// Something else was done than then: a new line begins, and what came after this tick is forgotten.
+    New(Ticks),
+}
+
+/// A snapshot, and how much work it is from the beginning of the line.
+#[derive(Debug)]
+struct Mark<E: Engine> {
+    snapshot: Snapshot<E>,
+    place: u64,
+    /// Nothing before it leads to it by the journal alone.
+    is_needed: bool,
+}
+
+/// The past of one session.
+///
+/// ```
+/// use cc67_host::{Setup, Timeline};
+///
+/// let mut session = Setup::default().session()?;
+/// let mut timeline = Timeline::new(&mut session);
+/// session.act(r#"command "EnableAxis0;Jog0=1000""#)?;
+/// timeline.advance(&mut session, kmotiondef::Ticks::new(10_000), &mut |_| ());
+/// let then = session.read("chan[0].Dest")?;
+/// timeline.go_to(&mut session, kmotiondef::Ticks::new(2_000))?;
+/// assert!(session.read("chan[0].Dest")? < then);
+/// timeline.go_to(&mut session, kmotiondef::Ticks::new(10_000))?;
+/// assert_eq!(session.read("chan[0].Dest")?, then);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct Timeline<E: Engine> {
+    /// In the order of time; there is one at least.
+    marks: Vec<Mark<E>>,
+    /// What was done on this line.
+    journal: Vec<(Ticks, Input)>,
+    /// How much of the journal the session has behind it.
+    done: usize,
+    end: Ticks,
+    /// The session's work, and its place on the line, when it was last put somewhere.
+    base: (u64, u64),
+}
+
+impl<E: Engine> Timeline<E> {
+    /// A timeline that begins now.
+    pub fn new(session: &mut Session<E>) -> Self {
+        let journal = session.journal().to_vec();
+        let (work, end) = (session.board().machine().work(), session.tick());
+        let first = Mark { snapshot: session.snapshot(), place: 0, is_needed: true };
+        Self { marks: vec![first], done: journal.len(), journal, end, base: (work, 0) }
+    }
+
+    /// The first tick that it can go to.
+    #[must_use]
+    pub fn begin(&self) -> Ticks {
+        self.marks.first().map_or(self.end, |mark| mark.snapshot.tick())
+    }
+
+    /// The last tick that the session has been at on this line.
+    #[must_use]
+    pub const fn end(&self) -> Ticks {
+        self.end
+    }
+
+    /// The ticks of the snapshots, ascending: those that are reached without executing anything.
+    pub fn snapshots(&self) -> impl DoubleEndedIterator<Item = Ticks> + '_ {
+        self.marks.iter().map(|mark| mark.snapshot.tick())
+    }
+
+    /// Bytes of guest memory that the snapshots hold.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        let pairs = self.marks.iter().zip(self.marks.iter().skip(1));
+        pairs.map(|(one, next)| next.snapshot.bytes_beyond(&one.snapshot)).sum()
+    }
+
+    /// Lets time pass to the end of tick `limit`, also when everything has ended.
+    pub fn advance(
+        &mut self,
+        session: &mut Session<E>,
+        limit: Ticks,
+        events: &mut dyn FnMut(Event),
+    ) -> History {
+        let mut history = self.keep(session);
+        while session.tick() < limit {
+            session.step(limit, events);
+            if let new @ History::New(_) = self.keep(session) {
+                history = new;
+            }
+        }
+        history
+    }
+
+    /// Takes up what has happened to the session since the last call: to be called after whatever lets time pass or does
+    /// something, at least every some hundredths of a second. Takes a snapshot if one is due.
+    pub fn keep(&mut self, session: &mut Session<E>) -> History {
+        let history = self.note(session);
+        self.end = self.end.max(session.tick());
+        if session.held().is_none() {
+            self.mark_after(session, INTERVAL);
+        }
+        history
+    }
+
+    /// The same after something that no journal has, such as another value of a register: a snapshot is taken in any
+    /// case, and what came later is forgotten.
+    pub fn branch(&mut self, session: &mut Session<E>) -> History {
+        let noted = self.note(session);
+        let place = self.place(session);
+        let (tick, is_past) = (session.tick(), self.end > session.tick() || self.is_known(place));
+        self.forget(place);
+        self.journal.truncate(self.done);
+        self.end = tick;
+        self.marks.push(Mark { snapshot: session.snapshot(), place, is_needed: true });
+        if is_past || noted != History::Same { History::New(tick) } else { History::Same }
+    }
+
+    /// Takes the session to the end of a tick, back or forward, with what was done there.
+    ///
+    /// # Errors
+    /// [`TimelineError::TooEarly`] before the first snapshot.
+    pub fn go_to(&mut self, session: &mut Session<E>, tick: Ticks) -> Result<(), TimelineError> {
+        let _ = self.keep(session);
+        let index = self.marks.iter().rposition(|mark| mark.snapshot.tick() <= tick);
+        let index = index.ok_or_else(|| TimelineError::TooEarly(self.begin()))?;
+        self.restore(session, index)?;
+        self.replay(session, tick);
+        Ok(())
+    }
+
+    /// Puts the session where a snapshot was taken.
+    ///
+    /// # Errors
+    /// [`ForeignSnapshot`].
+    pub fn restore(&mut self, session: &mut Session<E>, index: usize) -> Result<(), ForeignSnapshot> {
+        let Some(mark) = self.marks.get(index) else { return Ok(()) };
+        session.restore(&mark.snapshot)?;
+        self.base = (session.board().machine().work(), mark.place);
+        self.done = session.journal().len();
+        Ok(())
+    }
+
+    /// Lets the session go on to the end of a tick, and does on the way what was done there.
+    pub fn replay(&mut self, session: &mut Session<E>, tick: Ticks) {
+        loop {
+            self.redo(session);
+            if session.tick() >= tick && session.held().is_none() {
+                return;
+            }
+            let next = self.next_input().map_or(tick, |next| next.min(tick));
+            session.step(next, &mut |_| ());
+            if session.held().is_none() {
+                self.mark_after(session, INTERVAL / PARTS);
+            }
+        }
+    }
+
+    /// The tick after which something is done on the line ahead; a session that goes on stops there to do it again.
+    #[must_use]
+    pub fn next_input(&self) -> Option<Ticks> {
+        self.journal.get(self.done).map(|(tick, _)| *tick)
+    }
+
+    /// Does what was done after the present tick; nothing while one is held.
+    pub fn redo(&mut self, session: &mut Session<E>) {
+        if session.held().is_some() {
+            return;
+        }
+        while let Some((_, input)) = self.journal.get(self.done).filter(|(tick, _)| *tick == session.tick()) {
+            let done = session.redo(input);
+            debug_assert!(done.is_ok(), "it could be done before: {done:?}");
+            self.done += 1;
+        }
+    }
+
+    /// How many snapshots there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.marks.len()
+    }
+
+    /// Never: there is one at least.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.marks.is_empty()
+    }
+
+    /// Compares what was done with what was done before.
+    fn note(&mut self, session: &Session<E>) -> History {
+        let mut history = History::Same;
+        for entry in session.journal().get(self.done..).unwrap_or_default() {
+            if self.journal.get(self.done) != Some(entry) {
+                let is_past = self.done < self.journal.len() || self.end > entry.0;
+                if is_past {
+                    history = History::New(entry.0);
+                    self.journal.truncate(self.done);
+                    self.marks.retain(|mark| mark.snapshot.tick() <= entry.0);
+                    self.end = entry.0;
+                }
+                self.journal.push(entry.clone());
+            }
+            self.done += 1;
+        }
+        history
+    }
+
+    /// Where the session is on the line.
+    fn place(&self, session: &Session<E>) -> u64 {
+        self.base.1 + (session.board().machine().work() - self.base.0)
+    }
+
+    /// Whether the line goes on after a place.
+    fn is_known(&self, place: u64) -> bool {
+        self.marks.last().is_some_and(|mark| mark.place > place)
+    }
+
+    fn forget(&mut self, place: u64) {
+        self.marks.retain(|mark| mark.place <= place);
+    }
+
+    /// Takes a snapshot if the one before is so much work away.
+    fn mark_after(&mut self, session: &mut Session<E>, distance: u64) {
+        let place = self.place(session);
+        let next = self.marks.partition_point(|mark| mark.place <= place);
+        let is_far = |mark: &Mark<E>| mark.place.abs_diff(place) >= distance;
+        let before = next.checked_sub(1).and_then(|index| self.marks.get(index));
+        if before.is_none_or(is_far) && self.marks.get(next).is_none_or(is_far) {
+            self.marks.insert(next, Mark { snapshot: session.snapshot(), place, is_needed: false });
+            self.thin();
+        }
+    }
+
+    /// Drops the snapshot that is missed least: the one that makes the smallest gap for its age.
+    fn thin(&mut self) {
+        if self.marks.len() <= MOST {
+            return;
+        }
+        let last = self.marks.last().map_or(0, |mark| mark.place);
+        let cost = |index: usize| {
+            let [before, mark, after] = [index - 1, index, index + 1].map(|index| self.marks[index].place);
+            (after - before) as f64 / (last - mark + INTERVAL) as f64
+        };
+        let inner = (1..self.marks.len() - 1).filter(|index| !self.marks[*index].is_needed);
+        let least = inner.min_by(|a, b| cost(*a).total_cmp(&cost(*b)));
+        if let Some(index) = least {
+            self.marks.remove(index);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Setup;
+
+    /// A board on which things are done by hand for a while.
+    fn played() -> (Session, Timeline<vm::interp::BytecodeEngine>, Vec<(u64, f64)>) {
+        let mut session = Setup::default().session().expect("a board");
+        let mut timeline = Timeline::new(&mut session);
+        let mut known = Vec::new();
+        for part in 0..8_u64 {
+            let action = format!("command \"EnableAxis0;Jog0={}\"", 1000 * (part + 1));
+            session.act(&action).expect("it is right");
+            assert_eq!(
+                timeline.advance(&mut session, Ticks::new(3000 * part + 1234), &mut |_| ()),
+                History::Same
+            );
+            known.push((session.tick().get(), session.read("chan[0].Dest").expect("it is a variable")));
+            assert!(session.set_user_data(5, part as i32));
+        }
+        let _ = timeline.keep(&mut session);
+        (session, timeline, known)
+    }
+
+    #[test]
+    fn the_past_is_as_it_was_in_whatever_order_one_goes_there() {
+        let (mut session, mut timeline, known) = played();
+        for index in [3, 1, 7, 0, 5, 6, 2, 4, 7] {
+            let (tick, dest) = known[index];
+            timeline.go_to(&mut session, Ticks::new(tick)).expect("it is of this session");
+            assert_eq!((session.tick().get(), session.read("chan[0].Dest")), (tick, Ok(dest)));
+            assert_eq!(session.user_data(5), Some(index as i32));
+        }
+        assert_eq!(timeline.go_to(&mut session, Ticks::new(0)), Ok(()));
+    }
+
+    #[test]
+    fn another_past_is_another_history() {
+        let (mut session, mut timeline, known) = played();
+        let (tick, _) = known[3];
+        timeline.go_to(&mut session, Ticks::new(tick)).expect("it is of this session");
+        assert_eq!(timeline.end().get(), known[7].0);
+        session.act("command \"Jog0=-50\"").expect("it is right");
+        assert_eq!(timeline.keep(&mut session), History::New(Ticks::new(tick)));
+        assert_eq!(timeline.end().get(), tick);
+        let _ = timeline.advance(&mut session, Ticks::new(tick + 5000), &mut |_| ());
+        let dest = session.read("chan[0].Dest");
+        timeline.go_to(&mut session, Ticks::new(known[1].0)).expect("it is of this session");
+        timeline.go_to(&mut session, Ticks::new(tick + 5000)).expect("it is of this session");
+        assert_eq!(session.read("chan[0].Dest"), dest);
+    }
+}

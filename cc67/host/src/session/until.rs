@@ -1,0 +1,71 @@
+//! What a run may be waiting for.
+
+use kmotiondef::ThreadId;
+use runtime::{Event, EventKind};
+use vm::engine::Engine;
+
+use super::{Session, Watch};
+
+/// Something that comes true on a board.
+#[derive(Clone, Debug)]
+pub enum Until {
+    /// An expression is not 0.
+    True(Watch),
+    /// A thread is active, or is not any more.
+    Active(ThreadId, bool),
+    /// A console line that contains the text is printed, from now on.
+    Printed(String),
+    /// A thread or the call-back is stopped by a trap, from now on.
+    Trapped,
+    /// One of several.
+    Any(Vec<Until>),
+}
+
+/// What happened in a step that conditions are about.
+#[derive(Debug, Default)]
+pub(super) struct Heard {
+    lines: Vec<Vec<u8>>,
+    is_trapped: bool,
+}
+
+impl Until {
+    /// Whether a step of several ticks might go past the moment in which it is met.
+    pub(super) fn needs_every_tick(&self) -> bool {
+        match self {
+            Self::True(_) => true,
+            Self::Active(..) | Self::Printed(_) | Self::Trapped => false,
+            Self::Any(all) => all.iter().any(Self::needs_every_tick),
+        }
+    }
+
+    /// Takes up an event.
+    pub(super) fn hear(&self, event: &Event, heard: &mut Heard) {
+        match &event.kind {
+            EventKind::ConsoleLine(line) if self.listens() => heard.lines.push(line.clone()),
+            EventKind::Trap(_) => heard.is_trapped = true,
+            _ => {}
+        }
+    }
+
+    /// Whether console lines matter.
+    fn listens(&self) -> bool {
+        match self {
+            Self::Printed(_) => true,
+            Self::True(_) | Self::Active(..) | Self::Trapped => false,
+            Self::Any(all) => all.iter().any(Self::listens),
+        }
+    }
+
+    /// Whether it is met.
+    pub(super) fn is_met<E: Engine>(&self, session: &Session<E>, heard: &Heard) -> bool {
+        match self {
+            Self::True(watch) => session.value(watch) != 0.0,
+            Self::Active(thread, is_active) => session.thread(*thread).is_active() == *is_active,
+            Self::Printed(text) => {
+                heard.lines.iter().any(|line| String::from_utf8_lossy(line).contains(text.as_str()))
+            }
+            Self::Trapped => heard.is_trapped,
+            Self::Any(all) => all.iter().any(|one| one.is_met(session, heard)),
+        }
+    }
+}

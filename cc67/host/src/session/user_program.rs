@@ -1,0 +1,87 @@
+//! User programs: from a file to an image for a thread, with the compiler's answer as the vendor's tools show it.
+
+use std::path::{Path, PathBuf};
+
+use compiler::diag::Severity;
+use compiler::diag::levels::Levels;
+use compiler::pp::Disk;
+use compiler::render::vendor;
+use compiler::{Options, files, image};
+use kmotiondef::ThreadId;
+use runtime::loader::LoadError;
+
+use crate::error::{CompileError, HostError};
+
+/// A program for a thread.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UserProgram {
+    /// The thread it is linked for.
+    pub thread: ThreadId,
+    /// The file it was made of: a source, or the image itself.
+    pub path: PathBuf,
+    /// Whether that is an image rather than a source.
+    pub is_image: bool,
+    /// The linked program.
+    pub image: Vec<u8>,
+    /// Whether it runs as soon as it is loaded.
+    pub starts: bool,
+}
+
+impl UserProgram {
+    /// Compiles a source and links it for a thread.
+    ///
+    /// # Errors
+    /// The file cannot be read, or what the compiler says.
+    pub fn compile(path: &Path, thread: ThreadId, options: &Options) -> Result<Self, HostError> {
+        let image = build(path, thread, options)?;
+        Ok(Self { thread, path: path.to_owned(), is_image: false, image, starts: false })
+    }
+
+    /// Reads an image, as `cc67 build` writes it.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn from_image(path: &Path, thread: ThreadId) -> Result<Self, HostError> {
+        Ok(Self { thread, path: path.to_owned(), is_image: true, image: read(path)?, starts: false })
+    }
+
+    /// The same program, to be started when it is loaded.
+    #[must_use]
+    pub fn started(self) -> Self {
+        Self { starts: true, ..self }
+    }
+
+    /// The file's name for messages, and for a stimulus that loads it.
+    #[must_use]
+    pub fn name(&self) -> String {
+        self.path.display().to_string()
+    }
+
+    /// Why it is not loaded; of another tool's file, what it is.
+    pub(crate) fn refused(&self, error: LoadError) -> HostError {
+        match (&error, files::describe(&self.image)) {
+            (LoadError::NotAnImage(_), Some(what)) => HostError::Foreign { program: self.name(), what },
+            _ => HostError::Refused { program: self.name(), error },
+        }
+    }
+}
+
+/// The bytes of a file.
+fn read(path: &Path) -> Result<Vec<u8>, HostError> {
+    files::read(path).map_err(|error| HostError::Read { path: path.to_owned(), error })
+}
+
+/// Compiles and links a source for a thread.
+fn build(path: &Path, thread: ThreadId, options: &Options) -> Result<Vec<u8>, HostError> {
+    let failed = |text: String| HostError::Compile(CompileError::new(text));
+    let mut compilation = compiler::compile(path, read(path)?, options, &Disk);
+    let linked = compilation.link(thread, options);
+    let levels = Levels::default();
+    let found = compilation.diagnostics().into_iter().filter_map(|diagnostic| levels.apply(diagnostic));
+    let errors: Vec<_> = found.filter(|diagnostic| diagnostic.severity == Severity::Error).collect();
+    if !errors.is_empty() {
+        return Err(failed(vendor::render(&errors, &compilation.sources)));
+    }
+    let linked = linked.ok_or_else(|| failed(format!("{} cannot be linked", path.display())))?;
+    image::write(&linked).map_err(|error| failed(format!("{}: {error}", path.display())))
+}

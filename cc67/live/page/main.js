@@ -1,0 +1,42 @@
+// The page: every panel in its place, then the link to the board.
+
+import { mountAxes } from "./axes.js";
+import { mountClock } from "./clock.js";
+import { mountConsole } from "./console.js";
+import { mountIo } from "./io.js";
+import { Link } from "./link.js";
+import { mountPath } from "./path.js";
+import { mountScope } from "./scope.js";
+import { mountSource, Sources } from "./source.js";
+import { mountTabs } from "./tabs.js";
+import { mountThreads } from "./threads.js";
+import { mountTimeline } from "./timeline.js";
+
+const at = (id) => document.getElementById(id);
+const link = new Link(new URLSearchParams(location.search).get("token") ?? "");
+const sources = new Sources();
+
+mountTabs(at("tabs"), at("panels"));
+mountClock(at("bar"), link);
+mountAxes(at("axes"), link);
+mountScope(at("scope"), link);
+mountPath(at("path"), link);
+mountIo(at("io"), link);
+const open = mountSource(at("source"), link, sources);
+mountThreads(at("threads"), link, sources, open);
+mountConsole(at("console"), link, open);
+mountTimeline(at("timeline"), link);
+
+const notice = at("notice");
+let hides = 0;
+function tell(text, seconds) {
+  clearTimeout(hides);
+  notice.textContent = text;
+  notice.hidden = !text;
+  if (seconds) hides = setTimeout(() => tell(""), seconds * 1000);
+}
+link.on("state", (isThere) => tell(isThere ? "" : "The board is gone. Trying again …"));
+link.on("saved", ({ text }) => tell(text, 12));
+link.on("problem", ({ text }) => tell(text, 8));
+
+link.connect();

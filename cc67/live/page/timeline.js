@@ -1,0 +1,51 @@
+// The timeline: drag back to a moment of the run, look, and go on from there; begin again; save what was done as a test.
+
+import { attribute, el, say } from "./dom.js";
+
+export function mountTimeline(section, link) {
+  const slider = el("input", { type: "range", min: "0", max: "1", value: "1", step: "1", "aria-label": "Timeline", title: "Drag back to a moment of the run" });
+  const at = el("output", { className: "mono" });
+  const latest = el("button", { type: "button", disabled: true, onclick: () => link.ask("goto", { tick: end }) }, "Latest");
+  const state = el("span", { className: "quiet", role: "status" });
+  const name = el("input", { type: "text", "aria-label": "Test name", placeholder: "name of the test", pattern: "[A-Za-z0-9_\\-]+", required: true, size: 16 });
+  const form = el("form", { className: "save" }, name, el("button", { type: "submit" }, "Save as test"));
+  form.addEventListener("submit", (event) => {
+    event.preventDefault();
+    link.ask("save", { name: name.value });
+  });
+  section.append(el("div", { className: "row" },
+    section.querySelector("h2"), slider, at, latest,
+    el("button", { type: "button", title: "Switch the board off and on: begin again", onclick: () => link.ask("restart") }, "Restart"), state, form));
+  let end = 0, wanted = null, asked = null, held = false;
+
+  /** One question at a time: the next is where the slider is by then. */
+  function ask() {
+    if (wanted === null || asked !== null) return;
+    asked = wanted;
+    wanted = null;
+    link.ask("goto", { tick: asked });
+  }
+
+  slider.addEventListener("pointerdown", () => { held = true; });
+  addEventListener("pointerup", () => { held = false; });
+  slider.addEventListener("input", () => {
+    wanted = slider.valueAsNumber;
+    ask();
+  });
+  link.on("frame", (frame) => {
+    end = frame.end;
+    if (asked !== null) {
+      if (frame.tick === asked || !frame.past) asked = null;
+      ask();
+    }
+    attribute(slider, "max", frame.end);
+    if (!held && wanted === null && asked === null && slider.valueAsNumber !== frame.tick) slider.value = String(frame.tick);
+    attribute(slider, "aria-valuetext", `${(frame.tick * 90e-6).toFixed(3)} seconds`);
+    say(at, `${(frame.tick * 90e-6).toFixed(3)} / ${(frame.end * 90e-6).toFixed(3)} s`);
+    latest.disabled = !frame.past;
+    say(state, frame.past ? "looking back: what you do now goes on from here" : "");
+    section.classList.toggle("past", frame.past);
+  });
+  link.on("state", () => { asked = null; });
+  link.on("problem", () => { asked = null; });
+}

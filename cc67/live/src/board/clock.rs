@@ -1,0 +1,91 @@
+//! The clock of a board that is shown: how far it has to be, at a speed that can be changed.
+
+use std::time::{Duration, Instant};
+
+use kmotiondef::Ticks;
+use kmotiondef::limits::TIMEBASE;
+
+/// The slowest and the fastest speed, in seconds of board time a second.
+pub(super) const SPEEDS: (f64, f64) = (0.01, 100.0);
+/// A board that is further behind than this does not catch up.
+const PATIENCE: f64 = 0.25;
+/// Over how long the speed is measured.
+const MEASURE: f64 = 0.5;
+
+/// The present moment.
+#[expect(
+    clippy::disallowed_methods,
+    reason = "the clock paces the board; what happens on it does not depend on it"
+)]
+pub(super) fn now() -> Instant {
+    Instant::now()
+}
+
+/// A clock.
+#[derive(Debug)]
+pub(super) struct Clock {
+    speed: f64,
+    is_running: bool,
+    /// A moment, and the tick that was due then.
+    since: (Instant, Ticks),
+    /// When the speed was measured last, where the board was, and what it was.
+    measured: (Instant, Ticks, f64),
+}
+
+impl Clock {
+    /// A clock at a tick.
+    pub(super) fn new(tick: Ticks, speed: f64, is_running: bool) -> Self {
+        let moment = now();
+        let speed = speed.clamp(SPEEDS.0, SPEEDS.1);
+        Self { speed, is_running, since: (moment, tick), measured: (moment, tick, 0.0) }
+    }
+
+    /// What it is set to.
+    pub(super) const fn speed(&self) -> f64 {
+        self.speed
+    }
+
+    /// Whether it runs.
+    pub(super) const fn is_running(&self) -> bool {
+        self.is_running
+    }
+
+    /// Lets it run from a tick on.
+    pub(super) fn run(&mut self, tick: Ticks, speed: Option<f64>) {
+        if let Some(speed) = speed.filter(|speed| speed.is_finite()) {
+            self.speed = speed.clamp(SPEEDS.0, SPEEDS.1);
+        }
+        self.is_running = true;
+        self.since = (now(), tick);
+    }
+
+    /// Stops it.
+    pub(super) fn pause(&mut self) {
+        self.is_running = false;
+    }
+
+    /// The tick that is due while the board is at `tick`. A board that cannot keep up is not chased.
+    pub(super) fn due(&mut self, tick: Ticks) -> Ticks {
+        if !self.is_running {
+            return tick;
+        }
+        let elapsed = self.since.0.elapsed().as_secs_f64();
+        let due = self.since.1.get() + (elapsed * self.speed / TIMEBASE) as u64;
+        let behind = due.saturating_sub(tick.get()) as f64 * TIMEBASE;
+        if behind > PATIENCE * self.speed.max(1.0) {
+            self.since = (now(), tick);
+            return tick.next();
+        }
+        Ticks::new(due.max(tick.get()))
+    }
+
+    /// The speed of the last while.
+    pub(super) fn measured(&mut self, tick: Ticks) -> f64 {
+        let elapsed = self.measured.0.elapsed();
+        if elapsed >= Duration::from_secs_f64(MEASURE) {
+            let passed = tick.get().saturating_sub(self.measured.1.get()) as f64 * TIMEBASE;
+            self.measured = (now(), tick, passed / elapsed.as_secs_f64());
+        }
+        self.measured.2
+    }
+}

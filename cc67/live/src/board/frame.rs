@@ -1,0 +1,126 @@
+//! A frame: what the board shows at an instant, in as few bytes as that takes.
+//!
+//! Numbers are little endian. `page/frame.js` reads what is written here:
+//!
+//! | from | what |
+//! |---|---|
+//! | 0 | version, flags (1 running, 2 in the past, 4 programs ended), as u32 |
+//! | 8 | tick, last tick of the run, speed asked for, speed measured, as f64 |
+//! | 40 | generation of the signals, numbers in a row, rows, spare, as u32 |
+//! | 56 | eight axes of 72 bytes: Dest, Position, load, output, velocity, soft limits, Vel as f64; enable, input mode, output mode, limits reached, spare as u8 |
+//! | 632 | levels of the 2048 bits; then directions of the first 64, 1 for an output |
+//! | 896 | eight analog inputs, eight analog outputs, as i16 |
+//! | 928 | the 200 words of `persist.UserData` |
+//! | 1728 | rows of samples: tick and values as f64 |
+
+use cc67_host::Session;
+use kmotiondef::structs::{Chan, Persist};
+use kmotiondef::variables::{ADC_BUFFER_IN, BIT_DIR_SHADOW, CHAN, DAC_BUFFER, PERSIST};
+use kmotiondef::{AxisId, Bit, Field, GuestAddr, Ticks};
+use runtime::trace::Item;
+use vm::engine::Engine;
+use vm::memory::GuestMemory;
+
+use super::samples::Samples;
+
+/// What the layout is called.
+const VERSION: u32 = 1;
+/// Where the samples begin.
+const SAMPLES: usize = 1728;
+/// Bits that have a direction.
+const PINS: u16 = 64;
+
+/// What a frame says beside what the board shows.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Moment {
+    /// Whether the clock runs.
+    pub(super) is_running: bool,
+    /// Whether the board is shown as it was, and went on from there.
+    pub(super) is_past: bool,
+    /// The last tick of the run.
+    pub(super) end: Ticks,
+    /// Speed asked for, and measured.
+    pub(super) speed: [f64; 2],
+}
+
+/// A frame of a board, with the samples from a row on; and the row after them.
+pub(super) fn frame<E: Engine>(
+    session: &Session<E>,
+    moment: Moment,
+    samples: &Samples,
+    next_row: u64,
+) -> (Vec<u8>, u64) {
+    let mut out = Vec::with_capacity(SAMPLES + 4096);
+    let flags = [moment.is_running, moment.is_past, session.has_ended()];
+    let flags = flags.iter().rev().fold(0, |all, flag| all << 1 | u32::from(*flag));
+    out.extend([VERSION, flags].iter().flat_map(|word| word.to_le_bytes()));
+    let ticks = [session.tick(), moment.end].map(|tick| tick.get() as f64);
+    out.extend(ticks.iter().chain(&moment.speed).flat_map(|number| number.to_le_bytes()));
+    let counts_at = out.len();
+    out.extend([0; 16]);
+    AxisId::all().for_each(|axis| write_axis(session, axis, &mut out));
+    write_bits(session, &mut out);
+    write_analog(session.board().memory(), &mut out);
+    let data = PERSIST.field(Persist::USER_DATA);
+    let words = (0..kmotiondef::limits::N_USER_DATA_VARS).map(|index| data.element(index).address());
+    out.extend(words.flat_map(|address| session.board().memory().peek::<u32>(address).to_le_bytes()));
+    debug_assert_eq!(out.len(), SAMPLES, "the table above");
+    let (rows, next) = samples.write(next_row, &mut out);
+    let counts = [samples.generation, samples.names().len() as u32 + 1, rows, 0];
+    let counts: Vec<u8> = counts.iter().flat_map(|word| word.to_le_bytes()).collect();
+    out.splice(counts_at..counts_at + counts.len(), counts);
+    (out, next)
+}
+
+/// A field of an axis' structure.
+fn place<T>(axis: AxisId, field: Field<T>) -> GuestAddr {
+    CHAN.element(axis.index()).field(field).address()
+}
+
+fn double(memory: &GuestMemory, address: GuestAddr) -> f64 {
+    f64::from_bits(memory.peek(address))
+}
+
+fn float(memory: &GuestMemory, address: GuestAddr) -> f64 {
+    f64::from(f32::from_bits(memory.peek(address)))
+}
+
+fn write_axis<E: Engine>(session: &Session<E>, axis: AxisId, out: &mut Vec<u8>) {
+    let memory = session.board().memory();
+    let load = Item::new(&format!("load{axis}")).map_or(0.0, |item| session.board().value(item));
+    let int = |field: Field<i32>| memory.peek::<u32>(place(axis, field)).cast_signed();
+    let numbers = [
+        double(memory, place(axis, Chan::DEST)),
+        double(memory, place(axis, Chan::POSITION)),
+        load,
+        float(memory, place(axis, Chan::OUTPUT)),
+        float(memory, place(axis, Chan::LAST_VEL)),
+        float(memory, place(axis, Chan::SOFT_LIMIT_NEG)),
+        float(memory, place(axis, Chan::SOFT_LIMIT_POS)),
+        float(memory, place(axis, Chan::VEL)),
+    ];
+    out.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
+    let reached = u8::from(numbers[0] <= numbers[5]) | u8::from(numbers[0] >= numbers[6]) << 1;
+    let modes = [int(Chan::INPUT_MODE), int(Chan::OUTPUT_MODE)].map(|mode| mode.clamp(0, 255) as u8);
+    let enable = u8::from(int(Chan::ENABLE) != 0);
+    out.extend([enable, modes[0], modes[1], reached, 0, 0, 0, 0]);
+}
+
+fn write_bits<E: Engine>(session: &Session<E>, out: &mut Vec<u8>) {
+    let from = out.len();
+    out.resize(from + usize::from(Bit::MAX / 8) + 1, 0);
+    for bit in Bit::all().filter(|bit| session.bit(*bit)) {
+        if let Some(byte) = out.get_mut(from + bit.index() / 8) {
+            *byte |= 1 << (bit.index() % 8);
+        }
+    }
+    let directions = (0..usize::from(PINS / 32)).map(|word| BIT_DIR_SHADOW.element(word).address());
+    out.extend(directions.flat_map(|word| session.board().memory().peek::<u32>(word).to_le_bytes()));
+}
+
+fn write_analog(memory: &GuestMemory, out: &mut Vec<u8>) {
+    let inputs = (0..8).map(|index| memory.peek::<u32>(ADC_BUFFER_IN.element(index).address()) as i32 - 2048);
+    let outputs = (0..8).map(|index| memory.peek::<u16>(DAC_BUFFER.element(index).address()) & 0xfff);
+    let outputs = outputs.map(|word| i32::from(word) - 2048);
+    out.extend(inputs.chain(outputs).flat_map(|number| (number as i16).to_le_bytes()));
+}

@@ -1,0 +1,128 @@
+//! What was said: by the board, about it, and to it. The last few thousand entries are kept for pages that come later.
+
+use std::collections::VecDeque;
+
+use cc67_host::{Session, remark};
+use kmotiondef::{CodeAddr, Cycles, Ticks};
+use runtime::{Event, EventKind};
+use serde::Serialize;
+use vm::engine::Engine;
+
+/// Entries that are kept.
+const KEPT: usize = 5000;
+
+/// Who says something.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum Voice {
+    /// A program prints.
+    Console,
+    /// The board answers.
+    Reply,
+    /// A person at a page sends.
+    Command,
+    /// The simulation remarks on something.
+    Remark,
+    /// A thread is stopped.
+    Trap,
+}
+
+/// An entry.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct LogEntry {
+    /// When, in ticks.
+    tick: u64,
+    /// The same in seconds, to a fraction of a tick.
+    seconds: f64,
+    voice: Voice,
+    text: String,
+    /// Where in the source.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    file: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    line: Option<u32>,
+}
+
+/// What was said.
+#[derive(Debug, Default)]
+pub(super) struct Log {
+    entries: VecDeque<LogEntry>,
+    /// How many of the last ones no page has.
+    fresh: usize,
+}
+
+impl Log {
+    /// Adds what a person says.
+    pub(super) fn say(&mut self, tick: Ticks, voice: Voice, text: String) {
+        let seconds = tick.get() as f64 * kmotiondef::limits::TIMEBASE;
+        self.add(LogEntry { tick: tick.get(), seconds, voice, text, file: None, line: None });
+    }
+
+    /// Adds an event that somebody may want to read.
+    pub(super) fn note<E: Engine>(&mut self, session: &Session<E>, event: &Event) {
+        let tick = u64::try_from(event.at.get() / Cycles::PER_TICK.get()).unwrap_or_default();
+        let (voice, text, place) = match &event.kind {
+            EventKind::ConsoleLine(line) => (Voice::Console, text(line), None),
+            EventKind::Reply(line) => (Voice::Reply, text(line), None),
+            EventKind::Trap(trap) => (Voice::Trap, words(session, event), Some(trap.at)),
+            EventKind::Remark(remark) => (Voice::Remark, words(session, event), remark.place),
+            EventKind::Host(_) | EventKind::Unmet(_) => (Voice::Remark, words(session, event), None),
+            EventKind::Echo(_)
+            | EventKind::Aborted
+            | EventKind::Loaded(..)
+            | EventKind::Trace(_)
+            | EventKind::UartSent(_) => return,
+        };
+        // What is a mere detail has no words.
+        if text.is_empty() && !matches!(voice, Voice::Console | Voice::Reply) {
+            return;
+        }
+        let place = place.and_then(|place: CodeAddr| session.board().source(place));
+        let file = place.map(|place| place.file.to_owned());
+        let line = place.and_then(|place| place.line);
+        let seconds = event.at.get() as f64 / Cycles::PER_SECOND.get() as f64;
+        self.add(LogEntry { tick, seconds, voice, text, file, line });
+    }
+
+    fn add(&mut self, entry: LogEntry) {
+        if self.entries.len() == KEPT {
+            self.entries.pop_front();
+        }
+        self.entries.push_back(entry);
+        self.fresh = (self.fresh + 1).min(self.entries.len());
+    }
+
+    /// Drops what is later than a tick.
+    pub(super) fn cut(&mut self, tick: Ticks) {
+        self.entries.retain(|entry| entry.tick <= tick.get());
+        self.fresh = self.fresh.min(self.entries.len());
+    }
+
+    /// What programs have printed until a tick, as `cc67 run --time` shows it; `None` if some of it is not kept.
+    pub(super) fn console(&self, until: Ticks) -> Option<String> {
+        let is_printed = |entry: &&LogEntry| entry.voice == Voice::Console && entry.tick <= until.get();
+        let printed = self.entries.iter().filter(is_printed);
+        let lines = printed.map(|entry| format!("{:.6} {}\n", entry.seconds, entry.text)).collect();
+        (self.entries.len() < KEPT).then_some(lines)
+    }
+
+    /// Everything, for a page that has just come.
+    pub(super) fn all(&self) -> Vec<&LogEntry> {
+        self.entries.iter().collect()
+    }
+
+    /// The entries since the last time.
+    pub(super) fn take_fresh(&mut self) -> Vec<&LogEntry> {
+        let fresh = std::mem::take(&mut self.fresh);
+        self.entries.iter().skip(self.entries.len() - fresh).collect()
+    }
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+fn words<E: Engine>(session: &Session<E>, event: &Event) -> String {
+    let programs: Vec<_> = session.debug().into_iter().map(|(_, debug)| debug).collect();
+    remark::describe(event, &programs).unwrap_or_default()
+}

@@ -1,0 +1,158 @@
+//! The signals of the scope: the values of the last minutes, a row a sample.
+
+use std::sync::{Arc, Mutex};
+
+use cc67_host::session::{SubscriptionId, expressions};
+use cc67_host::{Session, Watch, WatchError};
+use kmotiondef::Ticks;
+use vm::engine::Engine;
+
+use crate::desk::locked;
+
+/// Numbers that are kept, over all signals: 32 MiB.
+const KEPT: usize = 4 << 20;
+/// Most signals.
+const SIGNALS: usize = 128;
+/// Rows that go into one frame.
+const ROWS_AT_ONCE: usize = 4096;
+/// Ticks from one sample to the next at the pace of the real board: 0.9 ms.
+const EVERY: f64 = 10.0;
+
+/// Rows of samples, and how they are called.
+#[derive(Debug, Default)]
+struct Rows {
+    /// A tick, then a value of each signal; row after row.
+    numbers: Vec<f64>,
+    /// Rows that were dropped before the first one.
+    dropped: u64,
+    /// The last tick.
+    last: Option<Ticks>,
+    width: usize,
+}
+
+impl Rows {
+    fn add(&mut self, tick: Ticks, values: &[f64]) {
+        if self.last.is_some_and(|last| tick <= last) {
+            // The board has been here before, and it was the same.
+            return;
+        }
+        self.last = Some(tick);
+        self.numbers.push(tick.get() as f64);
+        self.numbers.extend(values);
+        if self.numbers.len() > KEPT {
+            // Half at a time, so that each number is moved once.
+            let rows = self.count() / 2;
+            self.numbers.drain(..rows * self.width);
+            self.dropped += rows as u64;
+        }
+    }
+
+    /// Drops what is later than a tick.
+    fn cut(&mut self, tick: Ticks) {
+        let limit = tick.get() as f64;
+        let is_later = |row: &[f64]| row.first().is_some_and(|at| *at > limit);
+        let later = self.numbers.rchunks(self.width.max(1)).take_while(|row| is_later(row)).count();
+        self.numbers.truncate(self.numbers.len() - later * self.width);
+        self.last = self.last.min(Some(tick));
+    }
+
+    fn count(&self) -> usize {
+        self.numbers.len() / self.width.max(1)
+    }
+}
+
+/// The signals that are followed.
+#[derive(Debug, Default)]
+pub(super) struct Samples {
+    names: Vec<String>,
+    list: String,
+    every: u64,
+    subscription: Option<SubscriptionId>,
+    rows: Arc<Mutex<Rows>>,
+    /// Counts the lists, so that rows of another one are not taken for this one's.
+    pub(super) generation: u32,
+}
+
+impl Samples {
+    /// Follows the signals of a list.
+    pub(super) fn follow<E: Engine>(
+        &mut self,
+        session: &mut Session<E>,
+        list: &str,
+        speed: f64,
+    ) -> Result<(), WatchError> {
+        let names: Vec<_> = expressions(list).into_iter().flat_map(parts).collect();
+        let watched = names.iter().map(|name| session.watch(name)).collect::<Result<Vec<_>, _>>()?;
+        let watched: Vec<_> = watched.into_iter().take(SIGNALS).collect();
+        self.names = watched.iter().map(ToString::to_string).collect();
+        list.clone_into(&mut self.list);
+        self.generation += 1;
+        self.rows = Arc::new(Mutex::new(Rows { width: watched.len() + 1, ..Rows::default() }));
+        self.subscribe(session, watched, speed);
+        Ok(())
+    }
+
+    /// Samples less often when time goes faster, so that as many come in a second.
+    pub(super) fn at_speed<E: Engine>(&mut self, session: &mut Session<E>, speed: f64) {
+        if every(speed) != self.every {
+            let watched = self.names.iter().filter_map(|name| session.watch(name).ok()).collect::<Vec<_>>();
+            if watched.len() == self.names.len() {
+                self.subscribe(session, watched, speed);
+            }
+        }
+    }
+
+    fn subscribe<E: Engine>(&mut self, session: &mut Session<E>, watched: Vec<Watch>, speed: f64) {
+        if let Some(subscription) = self.subscription.take() {
+            session.unsubscribe(subscription);
+        }
+        self.every = every(speed);
+        if watched.is_empty() {
+            return;
+        }
+        let rows = Arc::clone(&self.rows);
+        let receive = move |tick: Ticks, values: &[f64]| locked(&rows).add(tick, values);
+        self.subscription = Some(session.subscribe(watched, self.every, receive));
+    }
+
+    /// Drops what is later than a tick; the number of rows there have been then.
+    pub(super) fn cut(&self, tick: Ticks) -> u64 {
+        let mut rows = locked(&self.rows);
+        rows.cut(tick);
+        rows.dropped + rows.count() as u64
+    }
+
+    /// The names of the signals.
+    pub(super) fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// The list they are of.
+    pub(super) fn list(&self) -> &str {
+        &self.list
+    }
+
+    /// Adds the rows from `next` on to a frame, as many as go into one; how many they are, and which comes next.
+    pub(super) fn write(&self, next: u64, out: &mut Vec<u8>) -> (u32, u64) {
+        let rows = locked(&self.rows);
+        let first = next.max(rows.dropped);
+        let skip = ((first - rows.dropped) as usize).min(rows.count());
+        let count = (rows.count() - skip).min(ROWS_AT_ONCE);
+        let numbers = rows.numbers.iter().skip(skip * rows.width).take(count * rows.width);
+        out.extend(numbers.flat_map(|number| number.to_le_bytes()));
+        (count as u32, first + count as u64)
+    }
+}
+
+/// What a name of a list stands for: `axis0` is where an axis is sent, where it is and what drives it.
+fn parts(name: &str) -> Vec<String> {
+    match name.strip_prefix("axis").filter(|number| number.parse::<u8>().is_ok()) {
+        Some(number) => ["dest", "pos", "out"].map(|kind| format!("{kind}{number}")).to_vec(),
+        None => vec![name.to_owned()],
+    }
+}
+
+/// Ticks from one sample to the next.
+fn every(speed: f64) -> u64 {
+    (EVERY * speed.max(1.0)).round() as u64
+}

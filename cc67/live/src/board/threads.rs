@@ -1,0 +1,72 @@
+//! What each thread does, at which line, and what it waits for.
+
+use cc67_host::Session;
+use kmotiondef::{Cycles, ThreadId};
+use serde::Serialize;
+use vm::engine::Engine;
+use vm::thread::{Progress, ThreadState};
+use vm::wake::Wake;
+
+/// A thread as a page shows it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct ThreadRow {
+    thread: u8,
+    /// What it does, in one word: `empty`, `ready`, `running`, `waiting`, `paused`, `trapped`.
+    state: &'static str,
+    /// What it waits for.
+    waits: String,
+    /// The calls it is in, the innermost first.
+    stack: Vec<CallRow>,
+}
+
+/// A call.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct CallRow {
+    function: String,
+    file: String,
+    line: Option<u32>,
+}
+
+/// Calls that are shown of a thread.
+const CALLS: usize = 16;
+
+/// All threads.
+pub(super) fn rows<E: Engine>(session: &Session<E>) -> Vec<ThreadRow> {
+    ThreadId::all().map(|thread| row(session, thread)).collect()
+}
+
+fn row<E: Engine>(session: &Session<E>, thread: ThreadId) -> ThreadRow {
+    let (state, waits) = match session.thread(thread) {
+        ThreadState::Empty => ("empty", String::new()),
+        ThreadState::Ready => ("ready", String::new()),
+        ThreadState::Active(Progress::Waiting(wake)) => ("waiting", wait(*wake)),
+        ThreadState::Active(Progress::Fresh) => ("running", "its first slice".to_owned()),
+        ThreadState::Active(Progress::Going) => ("running", String::new()),
+        ThreadState::Active(Progress::Idle) => {
+            ("waiting", "nothing: it was resumed after its end".to_owned())
+        }
+        ThreadState::Paused(_) => ("paused", "another thread to resume it".to_owned()),
+        ThreadState::Faulted(trap) => ("trapped", trap.kind.to_string()),
+    };
+    let places: Vec<_> = match session.thread(thread) {
+        ThreadState::Faulted(trap) => vec![trap.at],
+        ThreadState::Active(_) | ThreadState::Paused(_) => session.board().machine().backtrace(thread),
+        ThreadState::Empty | ThreadState::Ready => Vec::new(),
+    };
+    let call = |place: &_| {
+        let place = session.board().source(*place)?;
+        let (function, file) = (place.function.to_owned(), place.file.to_owned());
+        Some(CallRow { function, file, line: place.line })
+    };
+    let stack = places.iter().take(CALLS).filter_map(call).collect();
+    ThreadRow { thread: thread.get(), state, waits, stack }
+}
+
+/// What a wake is, in words.
+fn wait(wake: Wake) -> String {
+    match wake {
+        Wake::At(at) => format!("{:.3} s", at.get() as f64 / Cycles::PER_SECOND.get() as f64),
+        Wake::NextSlice => "its next slice".to_owned(),
+        Wake::Retry => "the firmware".to_owned(),
+    }
+}

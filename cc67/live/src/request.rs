@@ -1,0 +1,99 @@
+//! What a page may ask for: one JSON object a message.
+
+use serde::Deserialize;
+
+/// A request of a page.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(tag = "do", rename_all = "lowercase", deny_unknown_fields)]
+pub(crate) enum PageRequest {
+    /// Send so many frames a second, at most 60; 0 for none.
+    Rate {
+        /// Frames a second.
+        frames: f64,
+    },
+    /// Let the board run at this many seconds of board time a second.
+    Run {
+        /// 0.01 to 100; as before if absent.
+        speed: Option<f64>,
+    },
+    /// Stop the clock.
+    Pause {},
+    /// One tick.
+    Tick {},
+    /// To the end of the next slice of a user thread.
+    Slice {},
+    /// Do what a statement of a stimulus says.
+    Act {
+        /// The statement, without its moment.
+        text: String,
+    },
+    /// Send a line of script commands, as the PC does.
+    Command {
+        /// The line.
+        line: String,
+    },
+    /// Start a thread.
+    Start {
+        /// 1 to 7.
+        thread: i32,
+    },
+    /// Stop a thread.
+    Stop {
+        /// 1 to 7.
+        thread: i32,
+    },
+    /// Compile what has changed, load and start it.
+    Reload {},
+    /// Follow these signals.
+    Watch {
+        /// The list, commas in between.
+        list: String,
+    },
+    /// Show the board as it was at a tick; what is done then goes on from there.
+    Goto {
+        /// The tick.
+        tick: u64,
+    },
+    /// Begin again.
+    Restart {},
+    /// Save what was done by hand as a test.
+    Save {
+        /// Its name.
+        name: String,
+    },
+    /// Store a value in a variable.
+    Write {
+        /// The variable, in the words of a program.
+        expression: String,
+        /// The value.
+        value: f64,
+    },
+}
+
+/// Most characters of a request.
+pub(crate) const LONGEST: usize = 16 << 10;
+
+impl PageRequest {
+    /// Reads one.
+    pub(crate) fn parse(text: &str) -> Result<Self, serde_json::Error> {
+        serde_json::from_str(text)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_request_is_an_object_with_its_word() {
+        let parsed = PageRequest::parse(r#"{"do":"act","text":"bit 136 = 1"}"#).expect("it is one");
+        assert_eq!(parsed, PageRequest::Act { text: "bit 136 = 1".to_owned() });
+        assert_eq!(
+            PageRequest::parse(r#"{"do":"run"}"#).expect("speed may be absent"),
+            PageRequest::Run { speed: None }
+        );
+        for wrong in ["", "{}", "[]", r#"{"do":"fly"}"#, r#"{"do":"tick","more":1}"#, r#"{"do":"start"}"#] {
+            assert!(PageRequest::parse(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,54 @@
+//! The files of the page, which are part of the binary.
+
+/// A file.
+#[derive(Debug)]
+pub(super) struct File {
+    path: &'static str,
+    /// What kind it is, for the browser.
+    pub(super) mime: &'static str,
+    /// What it holds.
+    pub(super) text: &'static str,
+}
+
+const HTML: &str = "text/html; charset=utf-8";
+const CSS: &str = "text/css; charset=utf-8";
+const SCRIPT: &str = "text/javascript; charset=utf-8";
+const SVG: &str = "image/svg+xml";
+
+macro_rules! files {
+    ($($path:literal = $mime:ident $name:literal;)*) => {
+        /// All of them.
+        const FILES: &[File] =
+            &[$(File { path: $path, mime: $mime, text: include_str!(concat!("../../page/", $name)) }),*];
+    };
+}
+
+files! {
+    "/" = HTML "index.html";
+    "/favicon.svg" = SVG "favicon.svg";
+    "/style.css" = CSS "style.css";
+    "/panels.css" = CSS "panels.css";
+    "/main.js" = SCRIPT "main.js";
+    "/link.js" = SCRIPT "link.js";
+    "/frame.js" = SCRIPT "frame.js";
+    "/dom.js" = SCRIPT "dom.js";
+    "/theme.js" = SCRIPT "theme.js";
+    "/clock.js" = SCRIPT "clock.js";
+    "/axes.js" = SCRIPT "axes.js";
+    "/io.js" = SCRIPT "io.js";
+    "/console.js" = SCRIPT "console.js";
+    "/threads.js" = SCRIPT "threads.js";
+    "/scope.js" = SCRIPT "scope.js";
+    "/plot.js" = SCRIPT "plot.js";
+    "/history.js" = SCRIPT "history.js";
+    "/export.js" = SCRIPT "export.js";
+    "/path.js" = SCRIPT "path.js";
+    "/timeline.js" = SCRIPT "timeline.js";
+    "/source.js" = SCRIPT "source.js";
+    "/tabs.js" = SCRIPT "tabs.js";
+}
+
+/// The file at a path.
+pub(super) fn find(path: &str) -> Option<&'static File> {
+    FILES.iter().find(|file| file.path == path)
+}

@@ -1,0 +1,131 @@
+//! Who is let in: the token has to be right, and the request must not come from another site's page.
+//!
+//! A browser sends any page's requests to any address, this one too. So a request is refused unless its `Host` is the
+//! address that the server listens on (which a site that renames itself cannot fake), and unless its `Origin`, if it has
+//! one, is the same. The files of the page are no secret; the page itself and the socket need the token.
+
+use std::net::{IpAddr, SocketAddr};
+
+use super::http::Head;
+
+/// What a client has to show.
+#[derive(Debug)]
+pub(super) struct Gate {
+    address: SocketAddr,
+    token: String,
+}
+
+/// Why a client is not let in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Refusal {
+    /// It asks for another host.
+    Host,
+    /// Its page is of another site.
+    Origin,
+    /// The token is wrong, or there is none.
+    Token,
+}
+
+impl Refusal {
+    /// In words.
+    pub(super) const fn why(self) -> &'static str {
+        match self {
+            Self::Host => "a request for another host was refused",
+            Self::Origin => "a request from another site's page was refused",
+            Self::Token => "a request with a wrong token was refused",
+        }
+    }
+}
+
+impl Gate {
+    /// A gate for the address that is listened on, with a token of its own.
+    pub(super) fn new(address: SocketAddr) -> Result<Self, getrandom::Error> {
+        let mut bytes = [0; 16];
+        getrandom::fill(&mut bytes)?;
+        let token = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
+        Ok(Self { address, token })
+    }
+
+    /// The address of the page.
+    pub(super) fn url(&self) -> String {
+        let mut address = self.address;
+        if address.ip().is_unspecified() {
+            // All addresses of this computer: its own is one of them.
+            address.set_ip(match address.ip() {
+                IpAddr::V4(_) => IpAddr::from([127, 0, 0, 1]),
+                IpAddr::V6(_) => std::net::Ipv6Addr::LOCALHOST.into(),
+            });
+        }
+        format!("http://{address}/?token={}", self.token)
+    }
+
+    /// Whether a request is answered.
+    pub(super) fn check(&self, head: &Head) -> Result<(), Refusal> {
+        let host = head.header("host").unwrap_or_default();
+        if !self.is_ours(host) {
+            return Err(Refusal::Host);
+        }
+        if let Some(origin) = head.header("origin")
+            && origin.strip_prefix("http://") != Some(host)
+        {
+            return Err(Refusal::Origin);
+        }
+        let needs_token = matches!(head.path(), "/" | "/socket");
+        let token = head.query("token").unwrap_or_default();
+        if needs_token && !is_same(token.as_bytes(), self.token.as_bytes()) {
+            return Err(Refusal::Token);
+        }
+        Ok(())
+    }
+
+    /// Whether a host is this server. One that listens for other computers cannot know what they call it, but that it
+    /// is a number keeps renamed sites out.
+    fn is_ours(&self, host: &str) -> bool {
+        let port = self.address.port();
+        let name = host.strip_suffix(&format!(":{port}")).unwrap_or(if port == 80 { host } else { "" });
+        let address = name.trim_start_matches('[').trim_end_matches(']').parse::<IpAddr>();
+        match address {
+            Ok(address) if self.address.ip().is_loopback() => address.is_loopback(),
+            Ok(_) => true,
+            Err(_) => name == "localhost",
+        }
+    }
+}
+
+/// Compares in a time that does not depend on where they differ.
+fn is_same(one: &[u8], other: &[u8]) -> bool {
+    one.len() == other.len() && one.iter().zip(other).fold(0, |sum, (a, b)| sum | (a ^ b)) == 0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What a gate says to a request; `TOKEN` is the right one.
+    fn check(path: &str, headers: &str) -> Result<(), Refusal> {
+        let gate = Gate::new("127.0.0.1:8067".parse().expect("an address")).expect("random numbers");
+        let path = path.replace("TOKEN", &gate.token);
+        let text = format!("GET {path} HTTP/1.1\r\n{headers}\r\n");
+        gate.check(&Head::parse(text.as_bytes()).expect("it is HTTP"))
+    }
+
+    #[test]
+    fn only_the_page_itself_is_let_in() {
+        let host = "Host: 127.0.0.1:8067\r\n";
+        assert_eq!(check("/?token=TOKEN", host), Ok(()));
+        assert_eq!(check("/socket?x=1&token=TOKEN", host), Ok(()));
+        assert_eq!(check("/main.js", host), Ok(()));
+        assert_eq!(check("/", host), Err(Refusal::Token));
+        assert_eq!(check("/?token=", host), Err(Refusal::Token));
+        assert_eq!(check("/socket?token=0123", host), Err(Refusal::Token));
+        assert_eq!(check("/?token=TOKEN", ""), Err(Refusal::Host));
+        assert_eq!(check("/?token=TOKEN", "Host: evil.example:8067\r\n"), Err(Refusal::Host));
+        assert_eq!(check("/?token=TOKEN", "Host: 127.0.0.1\r\n"), Err(Refusal::Host));
+        assert_eq!(check("/?token=TOKEN", "Host: localhost:8067\r\n"), Ok(()));
+        let from = |origin: &str| check("/socket?token=TOKEN", &format!("{host}Origin: {origin}\r\n"));
+        assert_eq!(from("http://127.0.0.1:8067"), Ok(()));
+        assert_eq!(from("http://evil.example"), Err(Refusal::Origin));
+        assert_eq!(from("null"), Err(Refusal::Origin));
+        assert_eq!(from("https://127.0.0.1:8067"), Err(Refusal::Origin));
+    }
+}

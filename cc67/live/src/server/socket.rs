@@ -1,0 +1,123 @@
+//! A socket of a page: requests come in as text, messages go out as text and frames as bytes.
+//!
+//! One thread does both: it waits a few milliseconds for what comes, then sends what waits.
+
+use std::io::{self, Write};
+use std::net::TcpStream;
+use std::sync::Arc;
+use std::time::Duration;
+
+use tungstenite::error::Error;
+use tungstenite::handshake::derive_accept_key;
+use tungstenite::protocol::{Role, WebSocketConfig};
+use tungstenite::{Bytes, Message, Utf8Bytes, WebSocket};
+
+use crate::desk::{Desk, Incoming, Mailbox, Outgoing, PageId};
+use crate::request::{LONGEST, PageRequest};
+
+/// How long it waits for what comes before it sends what waits.
+const TURN: Duration = Duration::from_millis(5);
+/// Messages that are read before something is sent.
+const MESSAGES_AT_ONCE: usize = 32;
+
+/// Serves a page until it is gone.
+pub(super) fn serve(mut stream: TcpStream, key: &str, desk: &Arc<Desk>) -> io::Result<()> {
+    let accept = derive_accept_key(key.as_bytes());
+    let head = format!(
+        "HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Accept: {accept}\r\n\r\n"
+    );
+    stream.write_all(head.as_bytes())?;
+    stream.set_read_timeout(Some(TURN))?;
+    let config = WebSocketConfig::default().max_message_size(Some(LONGEST)).max_frame_size(Some(LONGEST));
+    let socket = WebSocket::from_raw_socket(stream, Role::Server, Some(config));
+    let (page, mailbox) = (desk.number(), Arc::new(Mailbox::default()));
+    if desk.hand_in(Incoming::Join(page, Arc::clone(&mailbox))) {
+        let mut connection = Connection { socket, desk, page, mailbox: &mailbox };
+        if let Err(why) = connection.run() {
+            connection.leave(&why);
+        }
+        desk.hand_in(Incoming::Leave(page));
+    }
+    Ok(())
+}
+
+/// A page that is connected.
+struct Connection<'a> {
+    socket: WebSocket<TcpStream>,
+    desk: &'a Desk,
+    page: PageId,
+    mailbox: &'a Mailbox,
+}
+
+/// Why a connection ends.
+enum Gone {
+    /// It is closed, or lost.
+    Closed,
+    /// The client breaks the rules.
+    Broken(String),
+}
+
+impl From<Error> for Gone {
+    fn from(error: Error) -> Self {
+        match error {
+            Error::Protocol(_) | Error::Capacity(_) | Error::Utf8(_) => Self::Broken(error.to_string()),
+            _ => Self::Closed,
+        }
+    }
+}
+
+impl Connection<'_> {
+    fn run(&mut self) -> Result<(), Gone> {
+        while !self.mailbox.is_closed() {
+            self.receive()?;
+            while let Some(outgoing) = self.mailbox.take() {
+                let message = match outgoing {
+                    Outgoing::Message(text) => Message::Text(Utf8Bytes::from(&*text)),
+                    Outgoing::Frame(bytes) => Message::Binary(Bytes::from(bytes)),
+                };
+                self.socket.write(message)?;
+            }
+            self.socket.flush()?;
+        }
+        Ok(())
+    }
+
+    /// Takes what has come.
+    fn receive(&mut self) -> Result<(), Gone> {
+        for _ in 0..MESSAGES_AT_ONCE {
+            let message = match self.socket.read() {
+                Ok(message) => message,
+                Err(Error::Io(error)) if is_timeout(&error) => return Ok(()),
+                Err(error) => return Err(error.into()),
+            };
+            match message {
+                Message::Text(text) => {
+                    let request =
+                        PageRequest::parse(&text).map_err(|error| Gone::Broken(error.to_string()))?;
+                    if !self.desk.hand_in(Incoming::Ask(self.page, request)) {
+                        return Err(Gone::Closed);
+                    }
+                }
+                Message::Binary(_) => {
+                    return Err(Gone::Broken("binary messages only go to pages".to_owned()));
+                }
+                Message::Ping(_) | Message::Pong(_) | Message::Close(_) | Message::Frame(_) => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// Says good-bye to a client, and says what it has done.
+    fn leave(&mut self, why: &Gone) {
+        if let Gone::Broken(what) = why {
+            self.desk.log("a page sent what is not a request and was disconnected", what);
+        }
+        // It may be gone already.
+        let _ = self.socket.close(None);
+        let _ = self.socket.flush();
+    }
+}
+
+fn is_timeout(error: &io::Error) -> bool {
+    matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut)
+}

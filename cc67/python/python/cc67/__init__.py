@@ -1,0 +1,77 @@
+"""C programs for KFLOP motion controllers, compiled and run on a simulated board.
+
+    import cc67
+
+    program = cc67.compile("square.c")          # CompileError has the diagnostics
+    board = cc67.Board(programs=[program])
+    board.run()                                 # or run_for, run_until, step
+    print(board.console)
+
+Times are seconds of board time since power-up, positions are in the units of the axis, analog values in counts.
+"""
+
+from __future__ import annotations
+
+from importlib.metadata import PackageNotFoundError, version
+
+from ._board import Board, Condition, Snapshot, ended, printed, started
+from ._diagnostics import Diagnostic, Span
+from ._errors import (
+    CompileError,
+    Error,
+    ExpectationError,
+    InputError,
+    LoadError,
+    NotBuiltError,
+    ThreadError,
+    TrapError,
+    UnknownNameError,
+)
+from ._image import Image, cycles, inspect
+from ._parts import Adc, Axes, Axis, Bits, Console, Dac, Persist
+from ._program import Program, compile, load
+from ._sweep import merge, sweep
+from ._table import Table
+from ._trace import Trace
+
+try:
+    __version__ = version("cc67")
+except PackageNotFoundError:  # The sources, without having been installed.
+    __version__ = "0"
+
+__all__ = [
+    "Adc",
+    "Axes",
+    "Axis",
+    "Bits",
+    "Board",
+    "CompileError",
+    "Condition",
+    "Console",
+    "Dac",
+    "Diagnostic",
+    "Error",
+    "ExpectationError",
+    "Image",
+    "InputError",
+    "LoadError",
+    "NotBuiltError",
+    "Persist",
+    "Program",
+    "Snapshot",
+    "Span",
+    "Table",
+    "ThreadError",
+    "Trace",
+    "TrapError",
+    "UnknownNameError",
+    "compile",
+    "cycles",
+    "ended",
+    "inspect",
+    "load",
+    "merge",
+    "printed",
+    "started",
+    "sweep",
+]

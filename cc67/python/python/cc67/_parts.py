@@ -1,0 +1,362 @@
+"""The parts of a board that have numbers or names: bits, analog channels, axes, `persist`."""
+
+from __future__ import annotations
+
+import operator
+import struct
+from typing import TYPE_CHECKING, Iterator, SupportsIndex
+
+from . import _native
+from ._errors import InputError, UnknownNameError, unknown
+
+if TYPE_CHECKING:
+    from ._board import Board
+
+__all__ = ["Adc", "Axes", "Axis", "Bits", "Console", "Dac", "Persist", "PersistDoubles", "PersistFloats"]
+
+_FIELDS = dict(_native.Board.field_names())
+_NAMES = {
+    "dest": "Dest",
+    "position": "Position",
+    "velocity": "Vel",
+    "acceleration": "Accel",
+    "jerk": "Jerk",
+    "following_error": "LastFollowingError",
+    "max_following_error": "MaxFollowingError",
+    "output": "Output",
+}
+
+
+def _index(number: SupportsIndex, what: str, count: int) -> int:
+    """A number of a part as Python's indexes go, but from 0 only."""
+    try:
+        value = operator.index(number)
+    except TypeError:
+        raise TypeError(f"{what} has a number, not {number!r}") from None
+    if not 0 <= value < count:
+        raise IndexError(f"there is no {what} {value}; there are 0 to {count - 1}")
+    return value
+
+
+def _number(value: float, what: str) -> float:
+    """A value as a number."""
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise TypeError(f"{what} is a number, not {value!r}") from None
+
+
+class Console(list[str]):
+    """The console lines that the programs printed since power-up, without line ends.
+
+    A list of lines, and `text in console` says whether a line contains the text. `times` has the board time of each
+    line in seconds since power-up, `text` all lines as one text.
+    """
+
+    def __init__(self, lines: list[tuple[float, str]]) -> None:
+        super().__init__(text for _, text in lines)
+        self.times = [time for time, _ in lines]
+
+    @property
+    def text(self) -> str:
+        """All lines, each with its line end."""
+        return "".join(f"{line}\n" for line in self)
+
+    def __contains__(self, text: object) -> bool:
+        return isinstance(text, str) and any(text in line for line in self)
+
+    def __str__(self) -> str:
+        return self.text
+
+
+class Bits:
+    """The input and output bits, 0 to 2047: `board.bits[46]` is a level.
+
+    An assignment drives an input, as a switch would. An output is the board's to drive: use
+    `board.command("SetBit46")`.
+    """
+
+    def __init__(self, board: Board) -> None:
+        self._board = board
+
+    def __getitem__(self, number: SupportsIndex) -> bool:
+        return self._board._native.bit(_index(number, "bit", 2048))
+
+    def __setitem__(self, number: SupportsIndex, level: bool) -> None:
+        if level not in (0, 1):
+            raise TypeError(f"a bit is True or False, not {level!r}")
+        self._board._native.drive(_index(number, "bit", 2048), bool(level))
+
+    def __len__(self) -> int:
+        return 2048
+
+
+class Adc:
+    """The analog inputs 0 to 7, in counts from -2048 to 2047 for -10 V to 10 V.
+
+    An assignment takes effect with the next servo tick, 90 µs of board time later; so does what is read.
+    """
+
+    def __init__(self, board: Board) -> None:
+        self._board = board
+
+    def __getitem__(self, number: SupportsIndex) -> int:
+        return int(self._board._native.read(f"adc{_index(number, 'analog input', 8)}"))
+
+    def __setitem__(self, number: SupportsIndex, counts: float) -> None:
+        value = _number(counts, "the value of an analog input")
+        if not -2048 <= value <= 2047:
+            raise InputError(f"an analog input is -2048 to 2047 counts, not {counts!r}")
+        self._board._native.act(f"adc {_index(number, 'analog input', 8)} = {round(value)}")
+
+    def __len__(self) -> int:
+        return 8
+
+
+class Dac:
+    """The analog outputs 0 to 7, in counts from -2048 to 2047; only the board changes them."""
+
+    def __init__(self, board: Board) -> None:
+        self._board = board
+
+    def __getitem__(self, number: SupportsIndex) -> int:
+        return int(self._board._native.read(f"dac{_index(number, 'analog output', 8)}"))
+
+    def __len__(self) -> int:
+        return 8
+
+
+class Axis:
+    """An axis of the board, 0 to 7.
+
+    All that the board's structure `chan[n]` holds is an attribute of its name in C too: `axis.Vel`, `axis.P`,
+    `axis.OutputMode`; `dir(axis)` lists them. An assignment stores at once, as a program would.
+
+    Attributes:
+        index: its number.
+        name: its name in the machine file, or "".
+        units: its unit in the machine file, or "".
+    """
+
+    index: int
+    name: str
+    units: str
+    _board: Board
+
+    def __init__(self, board: Board, index: int, name: str, units: str) -> None:
+        for key, value in (("_board", board), ("index", index), ("name", name), ("units", units)):
+            object.__setattr__(self, key, value)
+
+    @property
+    def dest(self) -> float:
+        """Where the axis is sent, in its position units (`chan[n].Dest`)."""
+        return self._field("Dest")
+
+    @dest.setter
+    def dest(self, value: float) -> None:
+        self._store("Dest", value)
+
+    @property
+    def position(self) -> float:
+        """Where it is measured to be, in its position units (`chan[n].Position`)."""
+        return self._field("Position")
+
+    @position.setter
+    def position(self, value: float) -> None:
+        self._store("Position", value)
+
+    @property
+    def enabled(self) -> bool:
+        """Whether its servo is active (`chan[n].Enable`). An assignment is the command EnableAxis or DisableAxis."""
+        return self._field("Enable") != 0
+
+    @enabled.setter
+    def enabled(self, value: bool) -> None:
+        self.enable() if value else self.disable()
+
+    @property
+    def following_error(self) -> float:
+        """Destination less position at the last servo tick, in position units (`chan[n].LastFollowingError`)."""
+        return self._field("LastFollowingError")
+
+    @property
+    def velocity(self) -> float:
+        """The velocity that its moves may have, in units/s (`chan[n].Vel`)."""
+        return self._field("Vel")
+
+    @velocity.setter
+    def velocity(self, value: float) -> None:
+        self._store("Vel", value)
+
+    @property
+    def acceleration(self) -> float:
+        """The acceleration that its moves may have, in units/s² (`chan[n].Accel`)."""
+        return self._field("Accel")
+
+    @acceleration.setter
+    def acceleration(self, value: float) -> None:
+        self._store("Accel", value)
+
+    @property
+    def jerk(self) -> float:
+        """The jerk that its moves may have, in units/s³ (`chan[n].Jerk`)."""
+        return self._field("Jerk")
+
+    @jerk.setter
+    def jerk(self, value: float) -> None:
+        self._store("Jerk", value)
+
+    @property
+    def output(self) -> float:
+        """What drives it, in the counts of its output mode (`chan[n].Output`)."""
+        return self._field("Output")
+
+    @property
+    def load(self) -> float:
+        """Where the simulated load is, in machine coordinates and position units."""
+        return self._board._native.read(f"load{self.index}")
+
+    @property
+    def done(self) -> bool:
+        """Whether its last motion is over: what the script command CheckDone answers."""
+        return self._board.command(f"CheckDone{self.index}").strip() == "1"
+
+    def enable(self) -> None:
+        """Switches its servo on where it is: the script command EnableAxis."""
+        self._board.command(f"EnableAxis{self.index}")
+
+    def disable(self) -> None:
+        """Switches its servo off: the script command DisableAxis."""
+        self._board.command(f"DisableAxis{self.index}")
+
+    def move(self, dest: float) -> None:
+        """Begins a move to a destination in position units: the script command Move."""
+        self._board.command(f"Move{self.index}={_number(dest, 'a destination'):.10g}")
+
+    def jog(self, velocity: float) -> None:
+        """Goes on with a velocity in units/s: the script command Jog."""
+        self._board.command(f"Jog{self.index}={_number(velocity, 'a velocity'):.10g}")
+
+    def _field(self, name: str) -> float:
+        value = self._board._native.field(self.index, name)
+        if value is None:
+            raise unknown("field of an axis", name, [*_NAMES, *_FIELDS])
+        return value
+
+    def _store(self, field: str, value: float) -> None:
+        self._board._native.write(f"chan[{self.index}].{field}", _number(value, f"{field} of an axis"))
+
+    def __getattr__(self, name: str) -> float:
+        if name.startswith("_") or name not in _FIELDS:
+            known = [*_NAMES, "enabled", "load", "done", *_FIELDS]
+            raise AttributeError(str(unknown("attribute of an axis", name, known)))
+        return self._field(name)
+
+    def __setattr__(self, name: str, value: float) -> None:
+        if isinstance(getattr(type(self), name, None), property):
+            object.__setattr__(self, name, value)
+        elif name in _FIELDS:
+            self._store(name, value)
+        else:
+            raise AttributeError(str(unknown("attribute of an axis", name, [*_NAMES, "enabled", *_FIELDS])))
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *_FIELDS]
+
+    def __repr__(self) -> str:
+        name = f" {self.name!r}" if self.name else ""
+        return f"<cc67.Axis {self.index}{name}: dest {self.dest:g}, position {self.position:g}>"
+
+
+class Axes:
+    """The eight axes: `board.axes[0]`, or by the name in the machine file, `board.axes["Slide"]`."""
+
+    def __init__(self, board: Board) -> None:
+        names = board._native.axes
+        self._axes = [Axis(board, index, name, units) for index, (name, units) in enumerate(names)]
+
+    def __getitem__(self, which: SupportsIndex | str) -> Axis:
+        if isinstance(which, str):
+            found = [axis for axis in self._axes if axis.name and axis.name == which]
+            if not found:
+                names = [axis.name for axis in self._axes if axis.name]
+                if not names:
+                    raise UnknownNameError(f"there is no axis {which!r}; the machine file names none")
+                raise unknown("axis", which, names)
+            return found[0]
+        return self._axes[_index(which, "axis", 8)]
+
+    def __len__(self) -> int:
+        return len(self._axes)
+
+    def __iter__(self) -> Iterator[Axis]:
+        return iter(self._axes)
+
+
+class PersistFloats:
+    """The elements of `persist.UserData` as 32-bit floats: `board.persist.float[5] = 1.25`."""
+
+    def __init__(self, persist: Persist) -> None:
+        self._persist = persist
+
+    def __getitem__(self, index: SupportsIndex) -> float:
+        (value,) = struct.unpack("<f", struct.pack("<i", self._persist[index]))
+        return float(value)
+
+    def __setitem__(self, index: SupportsIndex, value: float) -> None:
+        try:
+            word = struct.pack("<f", _number(value, "an element of persist.float"))
+        except OverflowError:
+            raise InputError(f"{value!r} does not fit a 32-bit float") from None
+        self._persist[index] = struct.unpack("<i", word)[0]
+
+
+class PersistDoubles:
+    """Two elements of `persist.UserData` as a double: `board.persist.double[10]` is elements 10 and 11."""
+
+    def __init__(self, persist: Persist) -> None:
+        self._persist = persist
+
+    def __getitem__(self, index: SupportsIndex) -> float:
+        first = _index(index, "double of persist", 199)
+        (value,) = struct.unpack("<d", struct.pack("<ii", self._persist[first], self._persist[first + 1]))
+        return float(value)
+
+    def __setitem__(self, index: SupportsIndex, value: float) -> None:
+        first = _index(index, "double of persist", 199)
+        low, high = struct.unpack("<ii", struct.pack("<d", _number(value, "an element of persist.double")))
+        self._persist[first] = low
+        self._persist[first + 1] = high
+
+
+class Persist:
+    """The board's `persist.UserData`, elements 0 to 199, as 32-bit integers.
+
+    `persist.float[n]` reads and writes an element as a float, `persist.double[n]` the elements n and n + 1 as a double.
+    """
+
+    def __init__(self, board: Board) -> None:
+        self._board = board
+        self.float = PersistFloats(self)
+        self.double = PersistDoubles(self)
+
+    def __getitem__(self, index: SupportsIndex) -> int:
+        value = self._board._native.user_data(_index(index, "element of persist", 200))
+        assert value is not None, "the index is checked"
+        return value
+
+    def __setitem__(self, index: SupportsIndex, value: int) -> None:
+        element = _index(index, "element of persist", 200)
+        if isinstance(value, bool):
+            value = int(value)
+        try:
+            word = operator.index(value)
+        except TypeError:
+            hint = f"; persist.float[{element}] and persist.double[{element}] take others"
+            raise TypeError(f"an element of persist is an integer, not {value!r}{hint}") from None
+        if not -(2**31) <= word < 2**32:
+            raise InputError(f"{word} does not fit the 32 bits of an element of persist")
+        self._board._native.set_user_data(element, word - 2**32 if word >= 2**31 else word)
+
+    def __len__(self) -> int:
+        return 200

@@ -1,0 +1,214 @@
+"""Programs: compiled once, linked for whatever thread they are given to."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any, Iterable, Mapping, Sequence, TypedDict, Union
+
+from . import _native
+from ._diagnostics import Diagnostic, from_json
+from ._errors import CompileError, InputError, unknown
+
+__all__ = ["PathLike", "Program", "compile", "load"]
+
+PathLike = Union[str, "os.PathLike[str]"]
+
+
+class _Request(TypedDict):
+    """How to compile, as the native half takes it."""
+
+    include: list[str]
+    define: list[tuple[str, str]]
+    undefine: list[str]
+    optimize: int
+    warnings: list[str]
+    std: str
+    firmware: str | None
+
+
+class Program:
+    """A compiled program.
+
+    Made by `compile` or `load`. It can be given to any thread of any number of boards, and to other processes: it
+    pickles without its sources. Expressions (`Board.read`) need the source file where the board is.
+
+    Attributes:
+        path: the first file that it was made of.
+        thread: the thread that it is for, 1 to 7, or None for any.
+        diagnostics: warnings and notes of the compiler.
+    """
+
+    def __init__(
+        self,
+        native: _native.Program,
+        path: Path,
+        thread: int | None,
+        diagnostics: Sequence[Diagnostic],
+        request: _Request | None,
+        files: Sequence[Path] = (),
+    ) -> None:
+        self._native = native
+        self._files = list(files)
+        self.path = path
+        self.thread = thread
+        self.diagnostics = list(diagnostics)
+        self._request = request
+
+    def image(self, thread: int | None = None) -> bytes:
+        """The program linked for a thread, 1 to 7, as a TI COFF image: what `cc67 build --target sim` writes."""
+        return bytes(self._native.image(thread or self.thread or 1))
+
+    def __repr__(self) -> str:
+        thread = "" if self.thread is None else f", thread={self.thread}"
+        return f"<cc67.Program {str(self.path)!r}{thread}>"
+
+    def __getstate__(self) -> dict[str, Any]:
+        objects = self._native.objects()
+        return {
+            "path": self.path,
+            "thread": self.thread,
+            "diagnostics": self.diagnostics,
+            "request": self._request,
+            "files": self._files,
+            "objects": objects,
+            "image": bytes(self._native.image(self.thread or 1)) if objects is None else None,
+        }
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.path = state["path"]
+        self.thread = state["thread"]
+        self.diagnostics = state["diagnostics"]
+        self._request = state["request"]
+        self._files = state["files"]
+        if state["objects"] is None:
+            self._native = _native.Program.from_image(str(self.path), state["image"])
+        else:
+            self._native = _native.Program.from_objects(str(self.path), state["objects"], state["request"])
+
+
+def compile(
+    files: PathLike | Iterable[PathLike],
+    *,
+    thread: int | None = None,
+    include: Iterable[PathLike] = (),
+    define: Mapping[str, object] | Iterable[str] = (),
+    undefine: Iterable[str] = (),
+    optimize: int = 1,
+    warnings: Iterable[str] = (),
+    std: str = "vendor",
+    firmware: PathLike | None = None,
+) -> Program:
+    """Compiles a C program for the board.
+
+    Args:
+        files: one source, or several sources and objects (.o) which together make the program.
+        thread: the thread that it is for, 1 to 7; by default the board decides.
+        include: folders in which included files are searched, as `-I`.
+        define: macros with their values, `{"SPEED": 20}`, or names, as `-D`. `True` and None define a macro as 1.
+        undefine: predefined macros to undefine, as `-U`.
+        optimize: 0 nothing, 1 and 2 what makes programs faster, as `-O`.
+        warnings: switches without `-W`: "error", "no-format", "error=format", "extra".
+        std: how constants are read: "vendor", "c90", "c99", "c11", "c17".
+        firmware: a firmware file whose symbols are used in place of the built-in ones of firmware 4.34.
+
+    Returns:
+        The program; its warnings are in `Program.diagnostics`.
+
+    Raises:
+        CompileError: the program has errors; `diagnostics` holds all of them.
+        OSError: a file cannot be read.
+        InputError: an option is wrong.
+
+    Example:
+        >>> program = cc67.compile("home.c", define={"FAST": 1})
+        >>> board = cc67.Board(programs=[program])
+    """
+    paths = _paths(files)
+    if not paths:
+        raise InputError("there is no file to compile")
+    if thread is not None:
+        _check_thread(thread)
+    request: _Request = {
+        "include": [os.fspath(folder) for folder in _several(include, "include")],
+        "define": _macros(define),
+        "undefine": list(_several(undefine, "undefine")),
+        "optimize": optimize,
+        "warnings": _switches(warnings),
+        "std": std,
+        "firmware": None if firmware is None else os.fspath(firmware),
+    }
+    if optimize not in (0, 1, 2):
+        raise InputError(f"optimize must be 0, 1 or 2, not {optimize!r}")
+    native, found = _native.compile([str(path) for path in paths], request, thread or 1)
+    diagnostics = [from_json(text) for text in found]
+    if native is None:
+        raise CompileError(diagnostics)
+    return Program(native, paths[0], thread, diagnostics, request, paths)
+
+
+def load(image: PathLike, *, thread: int | None = None) -> Program:
+    """An image as `cc67 build` writes it, `NAME(N).out`.
+
+    Args:
+        image: the file.
+        thread: the thread that it was linked for, 1 to 7; by default the number in its name, else 1.
+
+    Raises:
+        OSError: the file cannot be read. Whether it is an image, a board finds out when it loads it.
+    """
+    path = Path(image)
+    if thread is None:
+        head, _, tail = path.stem.rpartition("(")
+        thread = int(tail[:-1]) if head and tail.endswith(")") and tail[:-1].isdigit() else 1
+    _check_thread(thread)
+    return Program(_native.Program.from_image(str(path), path.read_bytes()), path, thread, [], None)
+
+
+def _check_thread(thread: int) -> None:
+    if isinstance(thread, bool) or not isinstance(thread, int):
+        raise TypeError(f"a thread is a number from 1 to 7, not {thread!r}")
+    if not 1 <= thread <= 7:
+        raise InputError(f"there is no thread {thread}; there are 1 to 7")
+
+
+def _paths(files: PathLike | Iterable[PathLike]) -> list[Path]:
+    if isinstance(files, (str, os.PathLike)):
+        return [Path(files)]
+    if isinstance(files, bytes) or not isinstance(files, Iterable):
+        raise TypeError(f"files must be a path or several, not {type(files).__name__}")
+    return [Path(file) for file in files]
+
+
+def _several(items: Any, name: str) -> list[Any]:
+    if isinstance(items, (str, bytes)):
+        raise TypeError(f"{name} must be a list, not the text {items!r}")
+    return list(items)
+
+
+def _macros(define: Mapping[str, object] | Iterable[str]) -> list[tuple[str, str]]:
+    if isinstance(define, Mapping):
+        return [(str(name), _macro_value(value)) for name, value in define.items()]
+    pairs = []
+    for text in _several(define, "define"):
+        name, equals, value = str(text).partition("=")
+        pairs.append((name, value if equals else "1"))
+    return pairs
+
+
+def _macro_value(value: object) -> str:
+    if value is None or value is True:
+        return "1"
+    return "0" if value is False else str(value)
+
+
+def _switches(warnings: Iterable[str]) -> list[str]:
+    switches = _several(warnings, "warnings")
+    known = {"all", "extra", "error", *_native.lints()}
+    for switch in switches:
+        name = str(switch).removeprefix("error=").removeprefix("no-")
+        if name not in known:
+            raise unknown("warning", name, known)
+    return switches
+
+

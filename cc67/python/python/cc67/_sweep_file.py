@@ -1,0 +1,142 @@
+"""`cc67 sweep FILE.toml`: a sweep that is written down.
+
+    program = "move.c"                  # or several, for threads 1, 2, …
+    machine = "mill.toml"
+    stim = "at 0.1s bit 136 = 1"        # a text, a file, or several
+    until = "count == 3"                # what ends a run: an expression, or seconds; else the end of the programs
+    timeout = 10.0                      # seconds of board time that this may take
+
+    [measure]                           # expressions, taken at the end; `time` is the board time in seconds
+    dest = "ch0->Dest"
+    took = "time"
+
+    [grid]                              # all combinations, the last name changing fastest
+    "axis.0.inertia" = [0.5, 1, 2]
+    "axis.0.friction" = { from = 0, to = 10, steps = 11 }
+
+    [set]                               # what all runs have in common
+    "persist.5" = 3
+
+`[[sample]]` tables in place of `[grid]` are the inputs of each run. Names of files are relative to the file's folder.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from pathlib import Path
+from typing import Any, Mapping
+
+from ._errors import CompileError, Error, InputError, unknown
+from ._sweep import merge, sweep
+from ._table import Table
+
+__all__ = ["main"]
+
+_KEYS = ("program", "machine", "stim", "until", "timeout", "measure", "grid", "sample", "set", "engine")
+
+
+def main(arguments: list[str]) -> int:
+    """Runs the command; the exit code: 0, 1 if a run failed, 2 for wrong usage or input."""
+    parser = argparse.ArgumentParser("cc67 sweep", description="Many runs over parameters, as a table")
+    parser.add_argument("file", nargs="+", metavar="FILE", help="the sweep (.toml); with --merge its logs")
+    parser.add_argument("-o", "--output", metavar="TABLE", help=".csv, .json or .parquet; else the table is printed")
+    parser.add_argument("--log", metavar="FILE", help="takes each result at once, to go on with; else FILE.sweep")
+    parser.add_argument("--workers", type=int, metavar="N", help="how many at a time; else one for each processor")
+    parser.add_argument("--executor", choices=["threads", "processes"], default="threads", help="what executes the runs")
+    parser.add_argument("--shard", metavar="I/N", help="only part I of N, for a job array")
+    parser.add_argument("--merge", action="store_true", help="join the logs of all shards to one table")
+    given = parser.parse_args(arguments)
+    try:
+        table = merge(*given.file) if given.merge else _run(given)
+        if given.output:
+            table.save(given.output)
+        else:
+            sys.stdout.write(table.csv())
+    except CompileError as error:
+        print(error, file=sys.stderr)
+        return 1
+    except (Error, OSError, TypeError) as error:
+        print(f"cc67: {error}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print("cc67: interrupted; the same command goes on from here", file=sys.stderr)
+        return 130
+    failed = len(table.failures)
+    if failed:
+        print(f"cc67: {failed} of {len(table)} runs failed; `error` in the table says why", file=sys.stderr)
+    return 1 if failed else 0
+
+
+def _run(given: argparse.Namespace) -> Table:
+    if len(given.file) != 1:
+        raise InputError("a sweep is one file; several are for --merge")
+    path = Path(given.file[0])
+    request = _read(path)
+    for key in request:
+        if key not in _KEYS:
+            raise unknown(f"key in {path}:", key, _KEYS)
+    for key in ("program", "measure"):
+        if key not in request:
+            raise InputError(f"{path} has no `{key}`")
+    if ("grid" in request) == ("sample" in request):
+        raise InputError(f"{path} needs either [grid] or [[sample]]")
+    folder = path.parent
+    programs = request["program"]
+    programs = [folder / each for each in ([programs] if isinstance(programs, str) else programs)]
+    board: dict[str, Any] = {key: request[key] for key in ("set", "engine") if key in request}
+    if "machine" in request:
+        board["machine"] = folder / request["machine"]
+    if "stim" in request:
+        board["stim"] = [_stim(folder, each) for each in _list(request["stim"])]
+    until = request.get("until")
+    shard = f".{given.shard.replace('/', '-')}" if given.shard else ""
+    return sweep(
+        programs,
+        _grid(path, request["grid"]) if "grid" in request else request["sample"],
+        request["measure"],
+        executor=given.executor,
+        workers=given.workers,
+        log=given.log or path.with_suffix(f"{shard}.sweep"),
+        shard=given.shard,
+        until=float(until) if isinstance(until, (int, float)) else until,
+        timeout=float(request.get("timeout", 60.0)),
+        **board,
+    )
+
+
+def _read(path: Path) -> dict[str, Any]:
+    from importlib import import_module
+
+    toml = import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
+    try:
+        request: dict[str, Any] = toml.loads(path.read_text(encoding="utf-8"))
+    except ValueError as error:
+        raise InputError(f"{path}: {error}") from None
+    return request
+
+
+def _list(value: Any) -> list[Any]:
+    return list(value) if isinstance(value, list) else [value]
+
+
+def _stim(folder: Path, text: str) -> str:
+    path = folder / text
+    return os.fspath(path) if path.exists() else text
+
+
+def _grid(path: Path, grid: Mapping[str, Any]) -> dict[str, list[Any]]:
+    """The values of each name: a list, or `{ from, to, steps }`."""
+    flat: dict[str, list[Any]] = {}
+    for name, values in grid.items():
+        if isinstance(values, Mapping):
+            try:
+                first, last, steps = float(values["from"]), float(values["to"]), int(values["steps"])
+            except (KeyError, TypeError, ValueError):
+                raise InputError(f"{path}: the values of {name!r} are a list or {{ from, to, steps }}") from None
+            if steps < 2:
+                raise InputError(f"{path}: {name!r} needs at least 2 steps")
+            values = [first + (last - first) * step / (steps - 1) for step in range(steps)]
+        flat[name] = _list(values)
+    return flat

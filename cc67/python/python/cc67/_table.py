@@ -1,0 +1,132 @@
+"""Tables of results."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Iterable, Iterator, Mapping, Sequence, overload
+
+from ._errors import InputError, NotBuiltError, unknown
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+__all__ = ["Row", "Table"]
+
+Row = dict[str, Any]
+
+
+class Table(Sequence[Row]):
+    """The results of many runs: a row for each, in the order of the inputs, whatever order they ended in.
+
+    A row has the inputs, the outputs, and `error`: None, or what the run failed with. `table["overshoot"]` is a column,
+    `table[3]` a row.
+    """
+
+    def __init__(self, rows: Iterable[Mapping[str, Any]], inputs: Iterable[str] = ()) -> None:
+        self.rows = [dict(row) for row in rows]
+        self.inputs = list(inputs)
+        names = dict.fromkeys(name for row in self.rows for name in row)
+        names.pop("error", None)
+        self.columns = [*self.inputs, *(name for name in names if name not in self.inputs), "error"]
+
+    @property
+    def failures(self) -> Table:
+        """The rows of runs that failed, with their inputs."""
+        return Table([row for row in self.rows if row.get("error")], self.inputs)
+
+    @property
+    def good(self) -> Table:
+        """The rows of runs that did not fail."""
+        return Table([row for row in self.rows if not row.get("error")], self.inputs)
+
+    @overload
+    def __getitem__(self, which: int) -> Row: ...
+    @overload
+    def __getitem__(self, which: slice) -> Table: ...
+    @overload
+    def __getitem__(self, which: str) -> list[Any]: ...
+    def __getitem__(self, which: int | slice | str) -> Row | Table | list[Any]:
+        if isinstance(which, str):
+            if which not in self.columns:
+                raise unknown("column", which, self.columns)
+            return [row.get(which) for row in self.rows]
+        if isinstance(which, slice):
+            return Table(self.rows[which], self.inputs)
+        return self.rows[which]
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def __iter__(self) -> Iterator[Row]:
+        return iter(self.rows)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Table) and self.csv() == other.csv()
+
+    def __repr__(self) -> str:
+        failed = len(self.failures)
+        return f"<cc67.Table of {len(self)} rows: {', '.join(self.columns)}{f'; {failed} failed' if failed else ''}>"
+
+    def array(self, *names: str) -> NDArray[np.float64]:
+        """Columns as a NumPy array of doubles, a row a run; what a failed run lacks is not a number."""
+        import numpy as np
+
+        columns = [self[name] for name in names or [name for name in self.columns if name != "error"]]
+        return np.array([[_float(value) for value in column] for column in columns], dtype=np.float64).T
+
+    def csv(self) -> str:
+        """The table as comma-separated values."""
+        import io
+
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(self.columns)
+        writer.writerows([_cell(row.get(name)) for name in self.columns] for row in self.rows)
+        return text.getvalue()
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes the table: .csv, .json (an object a line), or .parquet, which needs pyarrow."""
+        path = Path(path)
+        suffix = path.suffix.lower()
+        temporary = path.with_name(path.name + ".part")
+        if suffix == ".csv":
+            temporary.write_text(self.csv(), encoding="utf-8", newline="")
+        elif suffix in (".json", ".jsonl"):
+            lines = (json.dumps({name: row.get(name) for name in self.columns}) + "\n" for row in self.rows)
+            temporary.write_text("".join(lines), encoding="utf-8")
+        elif suffix == ".parquet":
+            self._save_parquet(temporary)
+        else:
+            raise InputError(f"a table is .csv, .json or .parquet, not {path}")
+        temporary.replace(path)
+
+    def _save_parquet(self, path: Path) -> None:
+        from importlib import import_module
+
+        try:
+            arrow, parquet = import_module("pyarrow"), import_module("pyarrow.parquet")
+        except ImportError:
+            raise NotBuiltError("a table as .parquet needs pyarrow: pip install cc67[parquet]") from None
+        parquet.write_table(arrow.table({name: self[name] for name in self.columns}), path)
+
+    def pandas(self) -> Any:
+        """The table as a pandas.DataFrame."""
+        from importlib import import_module
+
+        return import_module("pandas").DataFrame(self.rows, columns=self.columns)
+
+
+def _float(value: Any) -> float:
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        return float("nan")
+
+
+def _cell(value: Any) -> Any:
+    """A value as a table of text has it: doubles with all their digits."""
+    return "" if value is None else value

@@ -1,0 +1,75 @@
+"""Values over time."""
+
+from __future__ import annotations
+
+import csv
+import os
+from typing import TYPE_CHECKING, Any, Iterator, Mapping, Union
+
+from ._errors import unknown
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+__all__ = ["Trace"]
+
+
+class Trace(Mapping[str, "Array"]):
+    """Values over time as NumPy arrays of doubles: `trace["dest0"]`, with their instants in `trace.time`.
+
+    Attributes:
+        time: seconds of board time since power-up, the end of each sampled tick.
+        units: the unit of each item, "" where none is known.
+    """
+
+    def __init__(self, time: Array, columns: Mapping[str, Array], units: Mapping[str, str] | None = None) -> None:
+        self.time = time
+        self._columns = dict(columns)
+        self.units = dict(units or {})
+
+    def __getitem__(self, name: str) -> Array:
+        try:
+            return self._columns[name]
+        except KeyError:
+            raise unknown("item in the trace", name, self._columns) from None
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._columns)
+
+    def __len__(self) -> int:
+        return len(self._columns)
+
+    def __repr__(self) -> str:
+        return f"<cc67.Trace of {', '.join(self._columns)}: {len(self.time)} samples>"
+
+    def save(self, path: Union[str, "os.PathLike[str]"], first: str = "time") -> None:
+        """Writes a table (CSV): the time in seconds, then a column an item. `cc67 plot` draws it."""
+        with open(path, "w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file, lineterminator="\n")
+            writer.writerow([first, *self._columns])
+            rows = zip(self.time.tolist(), *(column.tolist() for column in self._columns.values()))
+            writer.writerows([f"{value:.10g}" for value in row] for row in rows)
+
+    def plot(self, axes: Any = None) -> Any:
+        """Draws the items over time with Matplotlib, on `axes` or a new picture; returns the Matplotlib axes."""
+        if axes is None:
+            from importlib import import_module
+
+            pyplot = import_module("matplotlib.pyplot")
+
+            _, axes = pyplot.subplots()
+        for name, column in self._columns.items():
+            unit = self.units.get(name)
+            axes.plot(self.time, column, label=f"{name} ({unit})" if unit else name)
+        axes.set_xlabel("board time (s)")
+        axes.legend()
+        return axes
+
+    def picture(self, path: Union[str, "os.PathLike[str]"]) -> None:
+        """Draws the items as `cc67 plot` does: .svg, .png, or .html for a page with zoom and cursor."""
+        from ._command import draw
+
+        draw(self, os.fspath(path))

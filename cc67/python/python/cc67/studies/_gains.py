@@ -1,0 +1,130 @@
+"""Search for gains within limits."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from importlib import import_module
+from typing import Any, Callable, Mapping
+
+from .._errors import InputError, NotBuiltError
+
+__all__ = ["GainSearch", "search_gains"]
+
+Cost = Callable[[dict[str, float]], float]
+
+
+@dataclass(frozen=True)
+class GainSearch:
+    """What a search found.
+
+    Attributes:
+        gains: the best ones.
+        cost: what they cost.
+        tried: all gains that were tried with what they cost, in order.
+    """
+
+    gains: dict[str, float]
+    cost: float
+    tried: list[tuple[dict[str, float], float]]
+
+
+def search_gains(
+    cost: Cost,
+    limits: Mapping[str, tuple[float, float]],
+    start: Mapping[str, float] | None = None,
+    *,
+    method: str = "compass",
+    evaluations: int = 200,
+    tolerance: float = 1e-3,
+    **options: Any,
+) -> GainSearch:
+    """Searches the gains that cost least.
+
+    Args:
+        cost: what gains cost, less is better; it makes a board, sets the gains and measures. A gain that is impossible
+            costs `float("inf")`.
+        limits: lower and upper bound of each gain by its name.
+        start: where to begin; else in the middle.
+        method: "compass", which needs nothing else; or a method of `scipy.optimize.minimize` with bounds, such as
+            "Nelder-Mead" or "Powell"; or "differential_evolution".
+        evaluations: how often `cost` is called at most (SciPy may finish a step that is under way).
+        tolerance: how small steps become, as a part of the limits.
+        **options: for SciPy's function.
+    """
+    for name, (low, high) in limits.items():
+        if not low < high:
+            raise InputError(f"the limits of {name!r} are a lower and an upper one, not {low!r} and {high!r}")
+    if not limits:
+        raise InputError("there are no gains to search")
+    names = list(limits)
+    tried: list[tuple[dict[str, float], float]] = []
+
+    def value(point: Any) -> float:
+        """At a point of the cube from 0 to 1."""
+        gains = {}
+        for name, part in zip(names, point):
+            low, high = limits[name]
+            gains[name] = low + (high - low) * min(1.0, max(0.0, float(part)))
+        found = float(cost(gains))
+        # An optimiser cannot go on from what is not a number.
+        tried.append((gains, found if found == found else float("inf")))
+        return tried[-1][1]
+
+    first = [_part(limits[name], start[name]) if start and name in start else 0.5 for name in names]
+    if method == "compass":
+        _compass(value, first, evaluations, tolerance)
+    else:
+        _scipy(value, first, method, evaluations, tolerance, options)
+    gains, best = min(tried, key=lambda each: each[1])
+    return GainSearch(gains, best, tried)
+
+
+def _part(limits: tuple[float, float], value: float) -> float:
+    low, high = limits
+    if not low <= value <= high:
+        raise InputError(f"the start {value!r} is outside of its limits {low!r} and {high!r}")
+    return (value - low) / (high - low)
+
+
+def _compass(value: Callable[[list[float]], float], point: list[float], evaluations: int, tolerance: float) -> None:
+    """Goes to a better neighbour along an axis; where there is none, steps are halved."""
+    best, step, left = value(point), 0.25, evaluations - 1
+    while step >= tolerance and left > 0:
+        for index in range(len(point)):
+            for sign in (1, -1):
+                near = [*point]
+                near[index] = min(1.0, max(0.0, near[index] + sign * step))
+                if near == point or left == 0:
+                    continue
+                left -= 1
+                found = value(near)
+                if found < best:
+                    best, point = found, near
+                    break
+            else:
+                continue
+            break
+        else:
+            step /= 2
+
+
+def _scipy(
+    value: Callable[[Any], float],
+    first: list[float],
+    method: str,
+    evaluations: int,
+    tolerance: float,
+    options: dict[str, Any],
+) -> None:
+    try:
+        optimize = import_module("scipy.optimize")
+    except ImportError:
+        raise NotBuiltError(f"the method {method!r} needs SciPy: pip install cc67[studies]") from None
+    bounds = [(0.0, 1.0)] * len(first)
+    if method == "differential_evolution":
+        population = max(5, options.pop("popsize", 8))
+        rounds = max(1, evaluations // (population * len(first)) - 1)
+        optimize.differential_evolution(value, bounds, maxiter=rounds, popsize=population, x0=first, seed=0, **options)
+        return
+    limit = {"maxfev": evaluations} if method.lower() in ("nelder-mead", "powell") else {"maxiter": evaluations}
+    optimize.minimize(value, first, method=method, bounds=bounds, tol=tolerance, options={**limit, **options})

@@ -1,0 +1,49 @@
+//! The fields of an axis by their names in C.
+
+use kmotiondef::ctype::CType;
+use kmotiondef::limits::N_CHANNELS;
+use kmotiondef::structs::{Chan, StructureField};
+use kmotiondef::variables::CHAN;
+use vm::memory::GuestMemory;
+
+/// The value of a field of an axis; `None` for another name, or a field that is not one number.
+pub(crate) fn field(memory: &GuestMemory, axis: usize, name: &str) -> Option<f64> {
+    if axis >= N_CHANNELS {
+        return None;
+    }
+    let field = number(name)?;
+    let address = CHAN.element(axis).address().offset(field.offset);
+    Some(match field.ty {
+        CType::Double => memory.peek::<f64>(address),
+        CType::Float => memory.peek::<f32>(address).into(),
+        CType::Short => memory.peek::<i16>(address).into(),
+        CType::UnsignedShort => memory.peek::<u16>(address).into(),
+        CType::Char | CType::SignedChar => memory.peek::<i8>(address).into(),
+        CType::UnsignedChar => memory.peek::<u8>(address).into(),
+        CType::UnsignedInt | CType::UnsignedLong => memory.peek::<u32>(address).into(),
+        CType::Void | CType::Int | CType::Long | CType::Named(_) => memory.peek::<i32>(address).into(),
+        _ => return None,
+    })
+}
+
+/// The field of that name, if it is a number.
+fn number(name: &str) -> Option<&'static StructureField> {
+    Chan::STRUCTURE.fields.iter().find(|field| field.name == name && size(field.ty) == Some(field.size))
+}
+
+/// The bytes of a type that is a number.
+const fn size(ty: CType) -> Option<u32> {
+    match ty {
+        CType::Double => Some(8),
+        CType::Float | CType::Int | CType::UnsignedInt | CType::Long | CType::UnsignedLong => Some(4),
+        CType::Short | CType::UnsignedShort => Some(2),
+        CType::Char | CType::SignedChar | CType::UnsignedChar => Some(1),
+        _ => None,
+    }
+}
+
+/// The names of all fields that are numbers, with what each means.
+pub(crate) fn field_names() -> Vec<(&'static str, &'static str)> {
+    let fields = Chan::STRUCTURE.fields.iter().filter(|field| number(field.name).is_some());
+    fields.map(|field| (field.name, field.doc)).collect()
+}

@@ -1,0 +1,97 @@
+//! What a board has said since power-up: console lines, remarks, traps, expectations that were not met.
+
+use cc67_host::remark;
+use kmotiondef::Cycles;
+use runtime::debug::DebugInfo;
+use runtime::{Event, EventKind};
+
+/// A line with its instant.
+#[derive(Clone, Debug)]
+pub(crate) struct Said {
+    /// Seconds of board time since power-up.
+    pub(crate) time: f64,
+    /// The text, without its line end.
+    pub(crate) text: String,
+}
+
+/// What is wrong with a run.
+#[derive(Clone, Debug)]
+pub(crate) enum Fault {
+    /// A thread was stopped.
+    Trap {
+        /// What happened and where, in words.
+        text: String,
+        /// Seconds of board time.
+        time: f64,
+        /// The thread; `None` for the call-back.
+        thread: Option<u8>,
+        /// File, line and function, as far as known.
+        place: Option<(String, Option<u32>, String)>,
+    },
+    /// Something that the stimulus expects is not so.
+    Unmet {
+        /// What.
+        text: String,
+    },
+}
+
+/// All of it.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Log {
+    /// Lines that programs printed.
+    pub(crate) console: Vec<Said>,
+    /// Lines of the reply to the present command.
+    pub(crate) replies: Vec<String>,
+    /// Remarks of the simulation.
+    pub(crate) remarks: Vec<Said>,
+    /// Characters that the serial port sent, if anybody listens.
+    pub(crate) uart: Vec<u8>,
+    /// Traps and expectations that were not met.
+    pub(crate) faults: Vec<Fault>,
+    /// How many of them were reported.
+    reported: usize,
+}
+
+impl Log {
+    /// Takes up events; `programs` knows the places of the programs.
+    pub(crate) fn take(&mut self, events: Vec<Event>, programs: impl FnOnce() -> Vec<DebugInfo>) {
+        let mut programs = Some(programs);
+        let mut known: Vec<DebugInfo> = Vec::new();
+        for event in events {
+            let time = event.at.get() as f64 / Cycles::PER_SECOND.get() as f64;
+            match &event.kind {
+                EventKind::ConsoleLine(line) => self.console.push(Said { time, text: text(line) }),
+                EventKind::Reply(line) => self.replies.push(text(line)),
+                EventKind::UartSent(byte) => self.uart.push(*byte),
+                EventKind::Echo(_) | EventKind::Aborted | EventKind::Trace(_) | EventKind::Loaded(..) => {}
+                EventKind::Unmet(what) => self.faults.push(Fault::Unmet { text: what.clone() }),
+                EventKind::Trap(trap) => {
+                    known = programs.take().map_or(known, |programs| programs());
+                    let text = remark::describe(&event, &known).unwrap_or_default();
+                    let place = known.iter().find_map(|debug| debug.place(trap.at));
+                    let place =
+                        place.map(|place| (place.file.to_string(), place.line, place.function.to_string()));
+                    let thread = trap.thread.map(kmotiondef::ThreadId::get);
+                    self.faults.push(Fault::Trap { text, time, thread, place });
+                }
+                // Whatever else happens is a remark, if it has words.
+                _ => {
+                    known = programs.take().map_or(known, |programs| programs());
+                    let line = remark::describe(&event, &known).map(|text| Said { time, text });
+                    self.remarks.extend(line);
+                }
+            }
+        }
+    }
+
+    /// The next fault that was not reported.
+    pub(crate) fn take_fault(&mut self) -> Option<Fault> {
+        let fault = self.faults.get(self.reported)?.clone();
+        self.reported += 1;
+        Some(fault)
+    }
+}
+
+fn text(line: &[u8]) -> String {
+    String::from_utf8_lossy(line).into_owned()
+}

@@ -1,0 +1,358 @@
+//! A session on any engine behind one set of calls, and what its board has said so far.
+
+mod fields;
+mod log;
+
+use std::collections::BTreeMap;
+
+use cc67_host::{HostError, Session, Snapshot, Until, UserProgram, Watch, WatchError};
+use kmotiondef::{Bit, ThreadId, Ticks};
+use runtime::stimulus::StimulusError;
+use runtime::{Event, EventKind};
+use vm::engine::Engine;
+
+pub(crate) use fields::{field, field_names};
+pub(crate) use log::{Fault, Log, Said};
+
+use crate::trace::{Columns, Recorder};
+
+/// Steps of a board in a portion of a run: some milliseconds, after which Python looks at signals.
+const STEPS: usize = 4000;
+
+/// Ticks of a portion in which a condition is looked at.
+const TICKS: u64 = 4000;
+
+/// What a portion of a run came to.
+pub(crate) struct Portion {
+    /// Whether the run is over.
+    pub(crate) is_over: bool,
+    /// What the run was to wait for has come true, or all has ended.
+    pub(crate) is_met: bool,
+    /// What stopped it.
+    pub(crate) fault: Option<Fault>,
+}
+
+/// A board under control, whichever engine it has.
+pub(crate) trait Control: 'static {
+    /// Number of the last tick that is over.
+    fn tick(&self) -> u64;
+    /// A portion of a run to the end of a tick.
+    fn advance(&mut self, limit: u64) -> Portion;
+    /// A portion of a run until all has ended.
+    fn run(&mut self, limit: u64) -> Portion;
+    /// A portion of a run until a condition is met.
+    fn run_until(&mut self, condition: &Until, limit: u64) -> Portion;
+    /// The run is over: what is held comes out, expectations are looked at.
+    fn finish(&mut self) -> Portion;
+    /// Runs to the end of the next slice of a thread.
+    fn step_thread(&mut self, thread: ThreadId, limit: u64) -> Portion;
+    /// Whether nothing is active and nothing is under way.
+    fn has_ended(&self) -> bool;
+    /// Sends a line, lets pass the time that it takes, and returns the lines of the reply.
+    fn exchange(&mut self, line: &[u8]) -> (Vec<String>, Option<Fault>);
+    /// Does what a statement of a stimulus says.
+    fn act(&mut self, action: &str) -> Result<(), StimulusError>;
+    /// Drives an input.
+    fn drive(&mut self, bit: Bit, level: bool) -> Result<(), StimulusError>;
+    /// The level of a bit.
+    fn bit(&self, bit: Bit) -> bool;
+    /// What is to be looked at, prepared.
+    fn watch(&mut self, text: &str) -> Result<Watch, WatchError>;
+    /// The value of an item or an expression.
+    fn read(&mut self, text: &str) -> Result<f64, WatchError>;
+    /// Stores a value.
+    fn write(&mut self, text: &str, value: f64) -> Result<(), WatchError>;
+    /// A field of an axis, by its name in C.
+    fn field(&self, axis: usize, name: &str) -> Option<f64>;
+    /// An element of `persist.UserData`.
+    fn user_data(&self, index: usize) -> Option<i32>;
+    /// Stores an element of `persist.UserData`.
+    fn set_user_data(&mut self, index: usize, value: i32) -> bool;
+    /// Whether a thread is active.
+    fn is_active(&self, thread: ThreadId) -> bool;
+    /// Loads a program.
+    fn load(&mut self, program: UserProgram) -> Result<(), HostError>;
+    /// Starts a thread.
+    fn start(&mut self, thread: ThreadId) -> Result<(), HostError>;
+    /// Stops a thread.
+    fn stop(&mut self, thread: ThreadId);
+    /// Sends characters to the serial port.
+    fn send_to_uart(&mut self, bytes: &[u8]);
+    /// Keeps the present instant under a number.
+    fn snapshot(&mut self, number: u64);
+    /// Goes back to an instant; `false` for an unknown number.
+    fn restore(&mut self, number: u64) -> bool;
+    /// Forgets an instant.
+    fn forget(&mut self, number: u64);
+    /// Begins a trace.
+    fn begin_trace(&mut self, items: &[String], every: u64, samples: usize) -> Result<(), WatchError>;
+    /// A portion of the trace.
+    fn trace(&mut self) -> Portion;
+    /// The trace as far as it is.
+    fn end_trace(&mut self) -> Option<Columns>;
+    /// What the board has said.
+    fn log(&self) -> &Log;
+    /// Whether a trap or an expectation that is not met ends a run.
+    fn stop_at_faults(&mut self, stops: bool);
+    /// What was done by hand, as a stimulus, and whether that is all.
+    fn recording(&self) -> (String, bool);
+}
+
+/// A session with what its board has said.
+pub(crate) struct Rig<E: Engine> {
+    session: Session<E>,
+    log: Log,
+    stops_at_faults: bool,
+    recorder: Option<Recorder>,
+    snapshots: BTreeMap<u64, (Snapshot<E>, Log)>,
+    /// Expressions that were read before, with the programs that are loaded now.
+    watches: BTreeMap<String, Watch>,
+}
+
+/// Expressions that are kept.
+const MOST_WATCHES: usize = 1000;
+
+impl<E: Engine> Rig<E> {
+    /// A session whose board has said nothing yet.
+    pub(crate) fn new(session: Session<E>) -> Self {
+        Self {
+            session,
+            log: Log::default(),
+            stops_at_faults: true,
+            recorder: None,
+            snapshots: BTreeMap::new(),
+            watches: BTreeMap::new(),
+        }
+    }
+
+    /// Lets time pass, and takes up what the board says.
+    fn pass<R>(&mut self, work: impl FnOnce(&mut Session<E>, &mut dyn FnMut(Event)) -> R) -> R {
+        let mut events = Vec::new();
+        let result = work(&mut self.session, &mut |event| events.push(event));
+        if !events.is_empty() {
+            self.hear(events);
+        }
+        result
+    }
+
+    fn hear(&mut self, events: Vec<Event>) {
+        let is_load = |event: &Event| matches!(event.kind, EventKind::Loaded(..));
+        if events.iter().any(is_load) {
+            self.watches.clear();
+        }
+        let session = &self.session;
+        self.log.take(events, || session.debug().into_iter().map(|(_, debug)| debug).collect());
+    }
+
+    /// What stops a run now, if something does.
+    fn fault(&mut self) -> Option<Fault> {
+        if self.stops_at_faults { self.log.take_fault() } else { None }
+    }
+
+    /// Steps until `is_over` says so or the portion is used up.
+    fn portion(&mut self, limit: Ticks, is_over: impl Fn(&Session<E>) -> bool) -> Portion {
+        let mut events = Vec::new();
+        for _ in 0..STEPS {
+            let is_met = is_over(&self.session);
+            if is_met || self.session.tick() >= limit {
+                return Portion { is_over: true, is_met, fault: None };
+            }
+            self.session.step(limit, &mut |event| events.push(event));
+            // In most steps nothing is said.
+            if !events.is_empty() {
+                self.hear(std::mem::take(&mut events));
+                if let Some(fault) = self.fault() {
+                    return Portion { is_over: true, is_met: false, fault: Some(fault) };
+                }
+            }
+        }
+        Portion { is_over: false, is_met: false, fault: None }
+    }
+
+    fn over(&mut self, is_met: bool) -> Portion {
+        Portion { is_over: true, is_met, fault: self.fault() }
+    }
+}
+
+impl<E: Engine + 'static> Control for Rig<E> {
+    fn tick(&self) -> u64 {
+        self.session.tick().get()
+    }
+
+    fn advance(&mut self, limit: u64) -> Portion {
+        self.portion(Ticks::new(limit), |_| false)
+    }
+
+    fn run(&mut self, limit: u64) -> Portion {
+        self.portion(Ticks::new(limit), Session::has_ended)
+    }
+
+    fn run_until(&mut self, condition: &Until, limit: u64) -> Portion {
+        let stops = self.stops_at_faults;
+        let either =
+            Until::Any(if stops { vec![condition.clone(), Until::Trapped] } else { vec![condition.clone()] });
+        let end = self.tick().saturating_add(TICKS).min(limit);
+        let is_met = self.pass(|session, events| session.run_until(&either, Ticks::new(end), events));
+        let fault = self.fault();
+        Portion {
+            is_over: is_met || fault.is_some() || end >= limit,
+            is_met: is_met && fault.is_none(),
+            fault,
+        }
+    }
+
+    fn finish(&mut self) -> Portion {
+        self.pass(|session, events| session.finish(events));
+        self.over(true)
+    }
+
+    fn step_thread(&mut self, thread: ThreadId, limit: u64) -> Portion {
+        let end = self.tick().saturating_add(TICKS).min(limit);
+        let is_met = self.pass(|session, events| session.step_thread(thread, Ticks::new(end), events));
+        let fault = self.fault();
+        Portion { is_over: is_met || fault.is_some() || end >= limit, is_met, fault }
+    }
+
+    fn has_ended(&self) -> bool {
+        self.session.has_ended()
+    }
+
+    fn exchange(&mut self, line: &[u8]) -> (Vec<String>, Option<Fault>) {
+        self.log.replies.clear();
+        self.pass(|session, events| session.exchange(line, events));
+        (std::mem::take(&mut self.log.replies), self.fault())
+    }
+
+    fn act(&mut self, action: &str) -> Result<(), StimulusError> {
+        self.session.act(action)
+    }
+
+    fn drive(&mut self, bit: Bit, level: bool) -> Result<(), StimulusError> {
+        self.session.drive_input(bit, level)
+    }
+
+    fn bit(&self, bit: Bit) -> bool {
+        self.session.bit(bit)
+    }
+
+    fn watch(&mut self, text: &str) -> Result<Watch, WatchError> {
+        if let Some(watch) = self.watches.get(text) {
+            return Ok(watch.clone());
+        }
+        let watch = self.session.watch(text)?;
+        if self.watches.len() == MOST_WATCHES {
+            self.watches.clear();
+        }
+        self.watches.insert(text.to_owned(), watch.clone());
+        Ok(watch)
+    }
+
+    fn read(&mut self, text: &str) -> Result<f64, WatchError> {
+        let watch = self.watch(text)?;
+        Ok(self.session.value(&watch))
+    }
+
+    fn write(&mut self, text: &str, value: f64) -> Result<(), WatchError> {
+        self.session.write(text, value)
+    }
+
+    fn field(&self, axis: usize, name: &str) -> Option<f64> {
+        field(self.session.board().memory(), axis, name)
+    }
+
+    fn user_data(&self, index: usize) -> Option<i32> {
+        self.session.user_data(index)
+    }
+
+    fn set_user_data(&mut self, index: usize, value: i32) -> bool {
+        self.session.set_user_data(index, value)
+    }
+
+    fn is_active(&self, thread: ThreadId) -> bool {
+        self.session.thread(thread).is_active()
+    }
+
+    fn load(&mut self, program: UserProgram) -> Result<(), HostError> {
+        self.watches.clear();
+        self.session.load(program)
+    }
+
+    fn start(&mut self, thread: ThreadId) -> Result<(), HostError> {
+        self.session.start(thread)
+    }
+
+    fn stop(&mut self, thread: ThreadId) {
+        self.session.stop(thread);
+    }
+
+    fn send_to_uart(&mut self, bytes: &[u8]) {
+        self.session.send_to_uart(bytes);
+    }
+
+    fn snapshot(&mut self, number: u64) {
+        let snapshot = self.session.snapshot();
+        self.snapshots.insert(number, (snapshot, self.log.clone()));
+    }
+
+    fn restore(&mut self, number: u64) -> bool {
+        let Some((snapshot, log)) = self.snapshots.get(&number) else { return false };
+        let is_done = self.session.restore(snapshot).is_ok();
+        if is_done {
+            self.log.clone_from(log);
+            self.watches.clear();
+        }
+        is_done
+    }
+
+    fn forget(&mut self, number: u64) {
+        self.snapshots.remove(&number);
+    }
+
+    fn begin_trace(&mut self, items: &[String], every: u64, samples: usize) -> Result<(), WatchError> {
+        self.recorder = Some(Recorder::new(&self.session, items, every, samples)?);
+        Ok(())
+    }
+
+    fn trace(&mut self) -> Portion {
+        let Some(mut recorder) = self.recorder.take() else { return self.over(false) };
+        let mut portion = Portion { is_over: false, is_met: false, fault: None };
+        let mut events = Vec::new();
+        for _ in 0..STEPS {
+            let Some(next) = recorder.next(self.session.tick()) else {
+                portion.is_over = true;
+                break;
+            };
+            self.session.step(next, &mut |event| events.push(event));
+            if self.session.tick() == next {
+                recorder.sample(&self.session);
+            }
+            if !events.is_empty() {
+                self.hear(std::mem::take(&mut events));
+                portion.fault = self.fault();
+                if portion.fault.is_some() {
+                    portion.is_over = true;
+                    break;
+                }
+            }
+        }
+        self.recorder = Some(recorder);
+        portion
+    }
+
+    fn end_trace(&mut self) -> Option<Columns> {
+        self.recorder.take().map(Recorder::finish)
+    }
+
+    fn log(&self) -> &Log {
+        &self.log
+    }
+
+    fn stop_at_faults(&mut self, stops: bool) {
+        self.stops_at_faults = stops;
+    }
+
+    fn recording(&self) -> (String, bool) {
+        let recording = self.session.recording();
+        (recording.text().to_owned(), recording.is_complete())
+    }
+}

@@ -1,0 +1,246 @@
+//! Sources to a program that can be linked for any thread.
+//!
+//! A source is compiled once; what is kept are the objects, as `cc67 build -c` writes them. So a program can be given to
+//! other processes and machines, where it is linked for the thread that it gets.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use cc67_host::UserProgram;
+use compiler::diag::levels::Levels;
+use compiler::diag::{Lint, Severity};
+use compiler::firmware::{Firmware, FirmwareFile};
+use compiler::object::{ReadError, is_object};
+use compiler::passes::Level;
+use compiler::pp::{Disk, Standard};
+use compiler::render::human::Color;
+use compiler::render::{self, Format};
+use compiler::{Compilation, Options, files, image, link_units, pp};
+use kmotiondef::ThreadId;
+use pyo3::prelude::*;
+
+use crate::errors::{LoadError, input, unreadable};
+
+/// How to compile, as Python says it.
+#[derive(Clone, Debug, FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct CompileArguments {
+    include: Vec<PathBuf>,
+    define: Vec<(String, String)>,
+    undefine: Vec<String>,
+    optimize: u8,
+    warnings: Vec<String>,
+    std: String,
+    firmware: Option<PathBuf>,
+}
+
+impl CompileArguments {
+    fn options(&self) -> PyResult<Options> {
+        let names = self.define.iter().map(|(name, _)| name).chain(&self.undefine);
+        if let Some(name) = names.into_iter().find(|name| !is_macro_name(name)) {
+            return Err(input(format!("`{name}` is not a macro name")));
+        }
+        let standard = Standard::named(&self.std)
+            .ok_or_else(|| input(format!("std must be c90, c99, c11, c17 or vendor, not {:?}", self.std)))?;
+        Ok(Options {
+            preprocessor: pp::Options {
+                include_dirs: self.include.clone(),
+                defines: self.define.clone(),
+                undefines: self.undefine.clone(),
+                standard,
+                ..Options::default().preprocessor
+            },
+            level: if self.optimize == 0 { Level::None } else { Level::Full },
+            firmware: self.firmware()?,
+            gc_sections: self.optimize > 0,
+            ..Options::default()
+        })
+    }
+
+    fn firmware(&self) -> PyResult<Firmware> {
+        let Some(path) = &self.firmware else { return Ok(Firmware::BuiltIn) };
+        let file = FirmwareFile::read(&read(path)?);
+        let file = file.map_err(|error| input(format!("{}: {error}", path.display())))?;
+        Ok(Firmware::File(Arc::new(file)))
+    }
+
+    fn levels(&self) -> PyResult<Levels> {
+        let mut levels = Levels::default();
+        for switch in &self.warnings {
+            levels.set(switch).map_err(input)?;
+        }
+        Ok(levels)
+    }
+}
+
+fn is_macro_name(name: &str) -> bool {
+    let is_letter = |c: char| c.is_ascii_alphabetic() || c == '_';
+    name.starts_with(is_letter) && name.chars().all(|c| is_letter(c) || c.is_ascii_digit())
+}
+
+/// The bytes of a file.
+pub(crate) fn read(path: &Path) -> PyResult<Vec<u8>> {
+    files::read(path).map_err(|error| unreadable(path, &error))
+}
+
+/// A program, to be linked for a thread.
+#[pyclass(frozen, name = "Program")]
+#[derive(Debug)]
+pub(crate) struct LinkableProgram {
+    path: PathBuf,
+    content: Content,
+    pub(crate) options: Options,
+}
+
+/// What a program is made of.
+#[derive(Clone, Debug)]
+enum Content {
+    /// Names and bytes of objects.
+    Objects(Vec<(String, Vec<u8>)>),
+    /// An image, which is linked for a thread already.
+    Image(Vec<u8>),
+}
+
+impl LinkableProgram {
+    /// The program for a thread.
+    pub(crate) fn for_thread(&self, thread: ThreadId) -> PyResult<UserProgram> {
+        Ok(UserProgram {
+            thread,
+            path: self.path.clone(),
+            is_image: matches!(self.content, Content::Image(_)),
+            image: self.linked(thread)?,
+            starts: false,
+        })
+    }
+
+    fn linked(&self, thread: ThreadId) -> PyResult<Vec<u8>> {
+        let objects = match &self.content {
+            Content::Image(bytes) => return Ok(bytes.clone()),
+            Content::Objects(objects) => objects,
+        };
+        let unit = |(name, bytes): &(String, Vec<u8>)| {
+            Compilation::from_object(Path::new(name), bytes)
+                .map_err(|error| input(format!("{name}: {error}")))
+        };
+        let mut units = objects.iter().map(unit).collect::<PyResult<Vec<_>>>()?;
+        let linked = link_units(&mut units, thread, &self.options);
+        let linked = linked.ok_or_else(|| LoadError::new_err(what_is_wrong(&units, thread)))?;
+        image::write(&linked).map_err(|error| LoadError::new_err(error.to_string()))
+    }
+}
+
+fn what_is_wrong(units: &[Compilation], thread: ThreadId) -> String {
+    let text: String = units
+        .iter()
+        .map(|unit| {
+            render::render(&owned(unit, &Levels::default()), &unit.sources, Format::Human, Color::Never)
+        })
+        .collect();
+    format!("the program cannot be linked for thread {thread}\n{text}")
+}
+
+#[pymethods]
+impl LinkableProgram {
+    /// A program of an image, as `cc67 build` writes it.
+    #[staticmethod]
+    fn from_image(path: PathBuf, bytes: Vec<u8>) -> Self {
+        Self { path, content: Content::Image(bytes), options: Options::default() }
+    }
+
+    /// A program of objects that were compiled earlier.
+    #[staticmethod]
+    fn from_objects(
+        path: PathBuf,
+        objects: Vec<(String, Vec<u8>)>,
+        request: CompileArguments,
+    ) -> PyResult<Self> {
+        Ok(Self { path, content: Content::Objects(objects), options: request.options()? })
+    }
+
+    /// Names and bytes of the objects; `None` for an image.
+    fn objects(&self) -> Option<Vec<(String, Vec<u8>)>> {
+        match &self.content {
+            Content::Objects(objects) => Some(objects.clone()),
+            Content::Image(_) => None,
+        }
+    }
+
+    /// The image for a thread, 1 to 7.
+    fn image(&self, py: Python<'_>, number: i32) -> PyResult<Vec<u8>> {
+        let thread = thread(number)?;
+        py.detach(|| self.linked(thread))
+    }
+}
+
+/// A thread of that number.
+pub(crate) fn thread(number: i32) -> PyResult<ThreadId> {
+    ThreadId::new(number)
+        .ok_or_else(|| input(format!("there is no thread {number}; there are 1 to {}", ThreadId::MAX)))
+}
+
+/// Compiles sources and reads objects, which together make one program, and links it once to see whether that works:
+/// the program, if it has no errors, and the diagnostics, one JSON object each.
+#[pyfunction]
+pub(crate) fn compile(
+    py: Python<'_>,
+    paths: Vec<PathBuf>,
+    request: CompileArguments,
+    number: i32,
+) -> PyResult<(Option<LinkableProgram>, Vec<String>)> {
+    let (options, levels, thread) = (request.options()?, request.levels()?, thread(number)?);
+    let Some(path) = paths.first().cloned() else { return Err(input("there is no file to compile")) };
+    let sources = paths.into_iter().map(|path| Ok((read(&path)?, path))).collect::<PyResult<Vec<_>>>()?;
+    py.detach(|| {
+        let mut units = Vec::new();
+        for (bytes, path) in sources {
+            units.push(unit(&path, bytes, &options)?);
+        }
+        let write = |unit: &Compilation| {
+            let object = unit.object.as_ref()?;
+            Some(object.write().map(|bytes| (unit.name.clone(), bytes)))
+        };
+        let objects: Option<Result<Vec<_>, _>> = units.iter().map(write).collect();
+        let objects = objects.transpose().map_err(input)?;
+        let is_linked = link_units(&mut units, thread, &options).is_some();
+        let mut found = Vec::new();
+        let mut has_errors = false;
+        for unit in &units {
+            let diagnostics = owned(unit, &levels);
+            has_errors |= diagnostics.iter().any(|diagnostic| diagnostic.severity == Severity::Error);
+            let text = render::render(&diagnostics, &unit.sources, Format::Json, Color::Never);
+            found.extend(text.lines().map(str::to_owned));
+        }
+        let objects = objects.filter(|_| is_linked && !has_errors);
+        let program = objects.map(|objects| LinkableProgram {
+            path,
+            content: Content::Objects(objects),
+            options: options.clone(),
+        });
+        Ok((program, found))
+    })
+}
+
+/// The unit of one file; its content decides whether it is an object.
+fn unit(path: &Path, bytes: Vec<u8>, options: &Options) -> PyResult<Compilation> {
+    let has_suffix = |suffixes: &[&str]| {
+        path.extension().is_some_and(|suffix| suffixes.iter().any(|known| suffix.eq_ignore_ascii_case(known)))
+    };
+    if !has_suffix(&["o", "obj"]) && !is_object(&bytes) {
+        if has_suffix(&["out"]) {
+            return Err(input(format!("{}: {}", path.display(), ReadError::Linked)));
+        }
+        return Ok(compiler::compile(path, bytes, options, &Disk));
+    }
+    Compilation::from_object(path, &bytes).map_err(|error| input(format!("{}: {error}", path.display())))
+}
+
+/// The diagnostics that are shown.
+fn owned(unit: &Compilation, levels: &Levels) -> Vec<compiler::diag::Diagnostic> {
+    unit.diagnostics().into_iter().filter_map(|diagnostic| levels.apply(diagnostic)).collect()
+}
+
+/// The names of all warnings.
+#[pyfunction]
+pub(crate) fn lints() -> Vec<&'static str> {
+    Lint::ALL.iter().map(|lint| lint.name()).collect()
+}

@@ -1,0 +1,363 @@
+"""A board: time, conditions, console, commands, parts."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from conftest import COUNT, MOVE, WAIT, Write
+
+import cc67
+
+MACHINE = """
+[axis.0]
+name = "Slide"
+units = "mm"
+[[switch]]
+bit = 136
+axis = 0
+when = ">= 1000"
+"""
+
+
+def test_a_program_runs_to_its_end_as_with_the_command(write: Write) -> None:
+    board = cc67.Board(programs=[cc67.compile(write(MOVE))])
+    assert board.run() is True
+    assert board.console == ["at 2000 after 2.30 s"]
+    assert "after 2.30" in board.console and board.console.text == "at 2000 after 2.30 s\n"
+    assert board.ended and board.time == pytest.approx(2.3, abs=0.01)
+
+
+@pytest.mark.parametrize("engine", ["native", "bytecode"])
+def test_both_engines_do_the_same(write: Write, engine: str) -> None:
+    board = cc67.Board(programs=[write(MOVE)], engine=engine)
+    board.run_for(1.0)
+    assert board.tick == 11111
+    assert board.axes[0].dest == 795.0480000000001 or board.axes[0].dest > 0
+    board.run()
+    assert board.console == ["at 2000 after 2.30 s"] and board.console.times[0] == pytest.approx(2.3, abs=0.01)
+
+
+def test_time_passes_only_where_it_is_asked_for(write: Write) -> None:
+    board = cc67.Board(programs=[write(WAIT)])
+    assert board.time == 0.0
+    board.run_for(0.9)
+    assert board.tick == 10000 and board.time == pytest.approx(0.9)
+    board.step()
+    board.step(9)
+    assert board.tick == 10010
+    assert board.step_thread(1) is True
+
+
+def test_a_run_that_does_not_end_says_so(write: Write) -> None:
+    board = cc67.Board(programs=[write(WAIT)])
+    assert board.run(timeout=2.0) is False
+    assert board.time == pytest.approx(2.0, abs=1e-4) and not board.ended
+
+
+def test_run_until_takes_an_expression(write: Write) -> None:
+    board = cc67.Board(programs=[write(COUNT)])
+    assert board.run_until("count == 1", timeout=0.1) is False
+    assert board.time == pytest.approx(0.1, abs=1e-4)
+    board.bits[136] = True
+    assert board.run_until("count == 1", 0.1) is True
+    assert board.time < 0.11
+    assert board.run_until("count == 1", 0.1) is True, "what is met already takes no time"
+
+
+def test_run_until_takes_events(write: Write) -> None:
+    board = cc67.Board(programs=[write(MOVE)])
+    assert board.run_until(cc67.printed("at 2000"), timeout=5.0)
+    assert board.run_until(cc67.ended(1), timeout=0.1)
+    board.start(1)
+    assert board.run_until(cc67.started(1), timeout=0.1)
+
+
+def test_run_until_takes_a_function(write: Write) -> None:
+    board = cc67.Board(programs=[write(MOVE)])
+    assert board.run_until(lambda b: b.axes[0].dest > 10, timeout=5.0)
+    assert 10 < board.axes[0].dest < 12
+    assert not board.run_until(lambda b: False, timeout=0.01)
+
+
+def test_what_a_function_raises_ends_the_run(write: Write) -> None:
+    board = cc67.Board(programs=[write(MOVE)])
+
+    def wrong(board: cc67.Board) -> bool:
+        raise ZeroDivisionError("mine")
+
+    with pytest.raises(ZeroDivisionError, match="mine"):
+        board.run_until(wrong, timeout=1.0)
+    board.run()
+    assert board.console == ["at 2000 after 2.30 s"]
+
+
+def test_expressions_are_read_and_written(write: Write) -> None:
+    board = cc67.Board(programs=[write(COUNT)])
+    board.write("count", 2)
+    board.write("row[3]", 7)
+    board.bits[136] = True
+    board.run()
+    assert board.read("count") == 3 and board.read("half") == 1.5 and board.read("row[3] + 1") == 8
+    assert board.read("1:count") == 3 and board.read("ch0->Vel") > 0 and board.read("bit136") == 1
+
+
+def test_a_wrong_expression_names_what_was_meant(write: Write) -> None:
+    board = cc67.Board(programs=[write(COUNT)])
+    with pytest.raises(cc67.InputError, match="count"):
+        board.read("cuont")
+    with pytest.raises(cc67.InputError, match="not a variable"):
+        board.write("count + 1", 2)
+    with pytest.raises(TypeError):
+        board.write("count", "2")  # type: ignore[arg-type]
+    with pytest.raises(TypeError):
+        board.read(5)  # type: ignore[arg-type]
+
+
+def test_commands_return_their_reply() -> None:
+    board = cc67.Board()
+    assert board.command("SetPersistDec 10 1200") == ""
+    assert board.command("GetPersistDec 10") == "1200"
+    assert board.command("Version").startswith("KFLOP 4.34")
+    assert board.time > 0
+    with pytest.raises(cc67.InputError):
+        board.command("a\nb")
+    with pytest.raises(TypeError):
+        board.command(5)  # type: ignore[arg-type]
+
+
+def test_bits_are_levels_and_inputs_are_driven() -> None:
+    board = cc67.Board()
+    levels = [board.bits[136]]
+    board.bits[136] = True
+    levels.append(board.bits[136])
+    board.command("SetBit46")
+    levels.append(board.bits[46])
+    assert levels == [False, True, True]
+    with pytest.raises(cc67.InputError, match="output"):
+        board.bits[46] = False
+    for wrong in (-1, 2048):
+        with pytest.raises(IndexError, match="0 to 2047"):
+            board.bits[wrong]
+    with pytest.raises(TypeError):
+        board.bits["x"]  # type: ignore[index]
+    with pytest.raises(TypeError):
+        board.bits[136] = "on"  # type: ignore[assignment]
+
+
+def test_analog_inputs_are_counts() -> None:
+    board = cc67.Board(machine={"board.kanalog": True})
+    board.adc[3] = 1500
+    board.run_for(0.01)
+    assert board.adc[3] == 1500
+    with pytest.raises(cc67.InputError, match="-2048 to 2047"):
+        board.adc[3] = 5000
+    with pytest.raises(IndexError):
+        board.adc[8]
+
+
+def test_persist_has_integers_floats_and_doubles() -> None:
+    board = cc67.Board(set={"persist.5": 3, "persist.float.6": 1.5, "persist.double.10": -0.1})
+    assert (board.persist[5], board.persist.float[6], board.persist.double[10]) == (3, 1.5, -0.1)
+    board.persist[7] = -1
+    assert board.persist[7] == -1
+    board.persist[7] = 0xFFFFFFFF
+    assert board.persist[7] == -1
+    board.persist.float[8] = 1.23
+    assert board.persist[8] == 0x3F9D70A4
+    assert board.command("GetPersistHex 8").lower().endswith("3f9d70a4")
+    board.persist.double[198] = 1e300
+    assert board.persist.double[198] == 1e300
+    with pytest.raises(IndexError, match="0 to 199"):
+        board.persist[200]
+    with pytest.raises(IndexError):
+        board.persist.double[199] = 1.0
+    with pytest.raises(TypeError, match=r"persist.float\[5\]"):
+        board.persist[5] = 1.5  # type: ignore[assignment]
+    with pytest.raises(cc67.InputError, match="32 bits"):
+        board.persist[5] = 1 << 40
+    with pytest.raises(cc67.InputError):
+        board.persist.float[5] = 1e300
+
+
+def test_axes_have_numbers_and_names(write: Write) -> None:
+    board = cc67.Board(programs=[write(MOVE)], machine=MACHINE)
+    axis = board.axes["Slide"]
+    assert axis is board.axes[0] and axis.units == "mm" and not axis.enabled
+    board.run()
+    assert axis.dest == 2000 and axis.position == pytest.approx(2000, abs=1) and axis.enabled
+    assert axis.Vel == 1000 and axis.velocity == 1000 and axis.done
+    assert board.bits[136] is True, "the switch of the machine file"
+    axis.Vel = 500
+    axis.enabled = False
+    assert board.read("ch0->Vel") == 500 and not axis.enabled
+    assert len(board.axes) == 8 and [each.index for each in board.axes] == list(range(8))
+
+
+def test_an_unknown_axis_or_field_names_what_was_meant() -> None:
+    board = cc67.Board(machine=MACHINE)
+    with pytest.raises(KeyError, match="did you mean 'Slide'"):
+        board.axes["slid"]
+    with pytest.raises(AttributeError, match="did you mean 'position'"):
+        board.axes[0].postion
+    with pytest.raises(AttributeError, match="did you mean 'dest'"):
+        board.axes[0].dset = 5
+    with pytest.raises(IndexError):
+        board.axes[8]
+    with pytest.raises(KeyError, match="names none"):
+        cc67.Board().axes["Slide"]
+
+
+def test_axes_are_moved_by_hand() -> None:
+    board = cc67.Board()
+    axis = board.axes[2]
+    axis.enabled = True
+    axis.move(100)
+    board.run()
+    assert axis.dest == 100 and axis.done
+    axis.jog(50)
+    board.run_for(1.0)
+    axis.jog(0)
+    assert axis.dest > 130
+
+
+def test_a_machine_file_may_be_a_file_a_text_or_keys(tmp_path: Path) -> None:
+    path = tmp_path / "mill.toml"
+    path.write_text(MACHINE)
+    machines: list[Any] = [path, str(path), MACHINE, {"axis.0.name": "Slide"}]
+    for machine in machines:
+        assert cc67.Board(machine=machine).axes["Slide"].index == 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"machine": "[axis.0]\nmodle = 5\n"}, "machine:2:1: .*did you mean `model`"),
+        ({"machine": {"axis.0.modle": "motor"}}, "did you mean `model`"),
+        ({"set": {"persist.200": 1}}, "outside"),
+        ({"set": {"persist.5": 1.5}}, "f:FLOAT"),
+        ({"set": ["persist.5"]}, "no `=`"),
+        ({"stim": "at 1s bit 46 = 1"}, "46"),
+        ({"stim": "at 1s bti 136 = 1"}, "bit"),
+        ({"answers": {"msgbocks": "no"}}, "msgbox"),
+        ({"engine": "quantum"}, "native"),
+        ({"on_fault": "ignore"}, "keep"),
+    ],
+)
+def test_wrong_options_name_the_place(arguments: dict[str, object], message: str) -> None:
+    with pytest.raises(cc67.InputError, match=message):
+        cc67.Board(**arguments)  # type: ignore[arg-type]
+
+
+def test_programs_go_to_threads(write: Write) -> None:
+    one = write('#include "KMotionDef.h"\nmain() { persist.UserData[CurrentThread] = 1; }', "one.c")
+    program = cc67.compile(one)
+    board = cc67.Board(programs={3: program, 5: cc67.compile(one)})
+    board.run()
+    assert [n for n in range(8) if board.persist[n]] == [3, 5] and sorted(board.programs) == [3, 5]
+    board = cc67.Board(programs=[program, program])
+    board.run()
+    assert [n for n in range(8) if board.persist[n]] == [1, 2]
+    with pytest.raises(cc67.InputError, match="two programs for thread 2"):
+        cc67.Board(programs=[cc67.compile(one, thread=2), cc67.compile(one, thread=2)])
+    with pytest.raises(cc67.InputError, match="7 user threads"):
+        cc67.Board(programs=[program] * 8)
+    with pytest.raises(TypeError, match="a cc67.Program or a file"):
+        cc67.Board(programs=[5])  # type: ignore[list-item]
+
+
+def test_programs_are_loaded_started_and_stopped(write: Write) -> None:
+    board = cc67.Board(load={2: write(WAIT)})
+    assert not board.active(2)
+    board.start(2)
+    board.run_for(0.01)
+    assert board.active(2)
+    board.stop(2)
+    board.run_for(0.01)
+    assert not board.active(2)
+    board.load(write(MOVE), thread=4, start=True)
+    board.run()
+    assert board.console == ["at 2000 after 2.32 s"]
+    with pytest.raises(cc67.LoadError, match="no program"):
+        board.start(7)
+
+
+def test_an_image_is_refused_with_a_reason(tmp_path: Path) -> None:
+    path = tmp_path / "wrong(1).out"
+    path.write_bytes(b"\x7fELF" + bytes(100))
+    with pytest.raises(cc67.LoadError, match="ELF"):
+        cc67.Board(programs=[path])
+
+
+def test_a_stimulus_is_played(write: Write) -> None:
+    board = cc67.Board(programs=[write(COUNT)], stim=["every 100ms from 1s until 3s pulse bit 136 for 50ms"])
+    board.run()
+    assert board.console == ["three"] and 1.1 < board.time < 1.3
+
+
+def test_what_is_done_by_hand_is_a_stimulus(write: Write) -> None:
+    path = write(COUNT)
+    board = cc67.Board(programs=[path])
+    for _ in range(3):
+        board.act("pulse bit 136 for 20ms")
+        board.run_for(0.05)
+    board.run()
+    again = cc67.Board(programs=[path], stim=board.recording)
+    again.run()
+    assert again.console.times == board.console.times and board.console == ["three"]
+
+
+def test_a_snapshot_is_gone_back_to(write: Write) -> None:
+    for engine in ("native", "bytecode"):
+        board = cc67.Board(programs=[write(MOVE)], engine=engine)
+        board.run_for(1.0)
+        then = board.snapshot()
+        dest = board.axes[0].dest
+        ways = []
+        for _ in range(2):
+            board.restore(then)
+            assert board.time == then.time and board.axes[0].dest == dest and board.console == []
+            board.run()
+            ways.append((board.console.times, board.time, board.axes[0].dest))
+        assert ways[0] == ways[1]
+
+
+def test_a_snapshot_of_another_board_is_refused() -> None:
+    then = cc67.Board().snapshot()
+    with pytest.raises(cc67.Error, match="another board"):
+        cc67.Board().restore(then)
+    with pytest.raises(TypeError):
+        cc67.Board().restore(5)  # type: ignore[arg-type]
+
+
+def test_the_serial_port_is_heard(write: Write) -> None:
+    path = write('#include "KMotionDef.h"\nmain() { EnableRS232Cmds(RS232_BAUD_115200); RS232_PutChar(\'h\'); RS232_PutChar(\'i\'); }')
+    board = cc67.Board(programs=[path])
+    board.run()
+    board.run_for(0.1)
+    assert board.uart == b"hi"
+
+
+def test_remarks_are_kept(write: Write) -> None:
+    board = cc67.Board(programs=[write('#include "KMotionDef.h"\nmain() { ReadBit(137); }')])
+    board.run()
+    assert any("bit 137" in remark for remark in board.remarks)
+
+
+@pytest.mark.parametrize("seconds", [-1, float("nan"), float("inf"), 1e13])
+def test_impossible_times_are_refused(seconds: float) -> None:
+    with pytest.raises(cc67.InputError, match="seconds"):
+        cc67.Board().run_for(seconds)
+
+
+def test_wrong_types_are_type_errors() -> None:
+    board = cc67.Board()
+    with pytest.raises(TypeError):
+        board.run_for("1")  # type: ignore[arg-type]
+    with pytest.raises(TypeError):
+        board.run_until(5, 1)  # type: ignore[arg-type]
+    with pytest.raises(TypeError):
+        board.step(1.5)  # type: ignore[arg-type]
+    with pytest.raises(cc67.InputError, match="back"):
+        board.step(-1)

@@ -1,0 +1,194 @@
+"""Sweeps: the same table on whatever executor, and after being killed."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+from conftest import WAIT, Write
+from sweep_measures import MOVE, SPIN, VARIATIONS, double, fails_at_three, following
+
+import cc67
+
+def test_a_grid_is_all_combinations_in_order(write: Write) -> None:
+    table = cc67.sweep(write(SPIN), {"persist.5": range(3), "persist.6": [7, 8]}, double)
+    assert [(row["persist.5"], row["persist.6"], row["double"]) for row in table] == [
+        (0, 7, 0),
+        (0, 8, 0),
+        (1, 7, 2),
+        (1, 8, 2),
+        (2, 7, 4),
+        (2, 8, 4),
+    ]
+    assert table.columns == ["persist.5", "persist.6", "double", "time", "error"] and len(table.failures) == 0
+    assert table["double"] == [0, 0, 2, 2, 4, 4] and table.array("double").shape == (6, 1)
+
+
+def test_samples_measures_and_their_forms(write: Write) -> None:
+    path = write(SPIN)
+    samples = [{"persist.5": 4}, {"persist.5": 5, "seed": 1}]
+    table = cc67.sweep(path, samples, lambda board: (board.run(), board.persist[20]))
+    assert table["value1"] == [8, 10] and table["seed"] == [None, 1]
+    table = cc67.sweep(cc67.compile(path), samples, {"twice": "persist.20", "took": "time"})
+    assert table["twice"] == [8, 10] and table["took"][0] == pytest.approx(0.05, abs=0.01)
+
+
+def test_macros_are_compiled_in_once(write: Write) -> None:
+    path = write('#include "KMotionDef.h"\nmain() { persist.UserData[0] = SPEED * 2 + ReadBit(136); }')
+    program = cc67.compile(path, define={"SPEED": 0, "OTHER": 3})
+    grid = {"macro.SPEED": [1, 2], "bit.136": [0, 1]}
+    assert cc67.sweep(program, grid, {"value": "persist.0"})["value"] == [2, 3, 4, 5]
+
+
+def test_failures_are_kept_with_their_inputs(write: Write) -> None:
+    table = cc67.sweep(write(SPIN), {"persist.5": range(5)}, fails_at_three)
+    assert len(table) == 5 and len(table.good) == 4
+    (failure,) = table.failures
+    assert failure["persist.5"] == 3 and failure["error"] == "ValueError: three is too many"
+
+
+def test_a_program_that_does_not_end_is_a_failure(write: Write) -> None:
+    table = cc67.sweep(write(WAIT), {"persist.5": [1]}, {"x": "persist.5"}, timeout=0.5)
+    assert "not ended after 0.5 s" in table[0]["error"]
+    table = cc67.sweep(write(WAIT), {"persist.5": [1]}, {"x": "persist.5", "t": "time"}, until=0.09)
+    assert table[0]["x"] == 1 and table[0]["t"] == pytest.approx(0.09)
+
+
+def test_executors_give_the_same_table(write: Write) -> None:
+    program = cc67.compile(write(MOVE))
+    one = cc67.sweep(program, VARIATIONS, following, workers=1)
+    assert len(one) == 100 and len(one.failures) == 0 and len(set(one["lag"])) > 10
+    assert cc67.sweep(program, VARIATIONS, following, workers=2) == one
+    assert cc67.sweep(program, VARIATIONS, following, executor="processes", workers=1) == one
+    assert cc67.sweep(program, VARIATIONS, following, executor="processes", workers=2) == one
+    with ProcessPoolExecutor(2) as pool:
+        assert cc67.sweep(program, VARIATIONS, following, executor=pool) == one
+    with ThreadPoolExecutor(2) as threads:
+        assert cc67.sweep(program, VARIATIONS, following, executor=threads, engine="bytecode") == one
+
+
+KILLED = """
+import sys
+sys.path.insert(0, {tests!r})
+import cc67, sweep_measures
+if __name__ == "__main__":
+    table = cc67.sweep({program!r}, sweep_measures.VARIATIONS, sweep_measures.following, log={log!r},
+                       executor={executor!r}, workers=2)
+    table.save({out!r})
+"""
+
+
+@pytest.mark.parametrize("executor", ["threads", "processes"])
+def test_a_sweep_that_was_killed_goes_on(write: Write, tmp_path: Path, executor: str) -> None:
+    program, log, out = write(MOVE), tmp_path / "sweep.log", tmp_path / "table.csv"
+    script = tmp_path / "script.py"
+    names = {"tests": str(Path(__file__).parent), "program": str(program), "log": str(log), "out": str(out)}
+    script.write_text(KILLED.format(executor=executor, **names))
+    process = subprocess.Popen([sys.executable, str(script)], start_new_session=True)
+    while process.poll() is None and not (log.exists() and log.read_text().count("\n") > 20):
+        time.sleep(0.005)
+    os.killpg(process.pid, signal.SIGKILL)
+    process.wait()
+    done = len(log.read_text().splitlines())
+    assert 20 < done and not out.exists(), "it was killed in the middle"
+    with open(log, "a") as file:
+        file.write('{"run": 99, "inp')
+    subprocess.run([sys.executable, str(script)], check=True)
+    assert len(log.read_text().splitlines()) == 101
+    assert out.read_text() == cc67.sweep(program, VARIATIONS, following).csv()
+
+
+def test_the_log_of_another_sweep_is_refused(write: Write, tmp_path: Path) -> None:
+    path, log = write(SPIN), tmp_path / "sweep.log"
+    cc67.sweep(path, {"persist.5": [1, 2]}, double, log=log)
+    with pytest.raises(cc67.InputError, match="another sweep"):
+        cc67.sweep(path, {"persist.5": [1, 3]}, double, log=log)
+    (tmp_path / "text").write_text("not a log\n")
+    with pytest.raises(cc67.InputError, match="not the log"):
+        cc67.sweep(path, {"persist.5": [1, 2]}, double, log=tmp_path / "text")
+
+
+def test_shards_are_merged(write: Write, tmp_path: Path) -> None:
+    path = write(SPIN)
+    grid = {"persist.5": range(7)}
+    logs = [tmp_path / f"{number}.log" for number in (1, 2, 3)]
+    parts = [cc67.sweep(path, grid, double, log=log, shard=f"{n}/3") for n, log in enumerate(logs, 1)]
+    assert [len(part) for part in parts] == [3, 2, 2]
+    assert cc67.merge(*logs) == cc67.sweep(path, grid, double)
+    with pytest.raises(cc67.InputError, match="shard"):
+        cc67.sweep(path, grid, double, shard="4/3")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "message"),
+    [
+        ({"grid": 5}, TypeError, "grid"),
+        ({"grid": {"persist.5": 5}}, TypeError, "list"),
+        ({"grid": {"persist.5": [object()]}}, TypeError, "number or a text"),
+        ({"measure": 5}, TypeError, "measure"),
+        ({"executor": "quantum"}, TypeError, "threads"),
+        ({"machin": "x.toml"}, cc67.UnknownNameError, "did you mean 'machine'"),
+        ({"executor": "processes", "measure": lambda board: 1}, TypeError, "functions of a module"),
+    ],
+)
+def test_wrong_sweeps_are_exceptions(
+    write: Write, arguments: dict[str, object], error: type[Exception], message: str
+) -> None:
+    given = {"grid": {"persist.5": [1]}, "measure": double, **arguments}
+    with pytest.raises(error, match=message):
+        cc67.sweep(write(SPIN), **given)  # type: ignore[arg-type]
+
+
+def test_tables_are_saved(write: Write, tmp_path: Path) -> None:
+    table = cc67.sweep(write(SPIN), {"persist.5": range(3)}, fails_at_three)
+    table.save(tmp_path / "table.csv")
+    assert (tmp_path / "table.csv").read_text() == "persist.5,value,error\n0,0.0,\n1,2.0,\n2,4.0,\n"
+    table.save(tmp_path / "table.json")
+    assert json.loads((tmp_path / "table.json").read_text().splitlines()[2])["value"] == 4.0
+    with pytest.raises(cc67.InputError, match=".parquet"):
+        table.save(tmp_path / "table.xls")
+    try:
+        import pyarrow.parquet as parquet  # type: ignore[import-untyped, import-not-found, unused-ignore]
+    except ImportError:
+        with pytest.raises(cc67.NotBuiltError, match="pyarrow"):
+            table.save(tmp_path / "table.parquet")
+    else:
+        table.save(tmp_path / "table.parquet")
+        assert parquet.read_table(tmp_path / "table.parquet").column("value").to_pylist() == [0.0, 2.0, 4.0]
+
+
+SWEEP = """
+program = "spin.c"
+[measure]
+double = "persist.20"
+took = "time"
+[grid]
+"persist.5" = [1, 2]
+"axis.0.lag_s" = { from = 0.001, to = 0.002, steps = 3 }
+"""
+
+
+def test_a_sweep_is_written_down(write: Write, tmp_path: Path) -> None:
+    from cc67._command import run
+
+    write(SPIN, "spin.c")
+    file = tmp_path / "spin.toml"
+    file.write_text(SWEEP)
+    result = run(["sweep", str(file), "-o", str(tmp_path / "table.csv"), "--workers", "2"])
+    assert result.returncode == 0, result.stderr
+    rows = (tmp_path / "table.csv").read_text().splitlines()
+    assert rows[0] == "persist.5,axis.0.lag_s,double,took,error" and len(rows) == 7 and rows[4].startswith("2,0.001,4.0,")
+    for shard in ("1/2", "2/2"):
+        assert run(["sweep", str(file), "--shard", shard]).returncode == 0
+    logs = [str(tmp_path / f"spin.{shard}.sweep") for shard in ("1-2", "2-2")]
+    assert run(["sweep", "--merge", *logs]).stdout.splitlines() == rows
+    file.write_text(SWEEP.replace("[grid]", "[gird]"))
+    result = run(["sweep", str(file)])
+    assert result.returncode == 2 and "did you mean 'grid'" in result.stderr

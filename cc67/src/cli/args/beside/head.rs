@@ -1,0 +1,95 @@
+//! The first line of a program: `// cc67: run OPTION … also N:FILE …`, with words as a shell parts them.
+
+use std::path::Path;
+
+use anyhow::{Context, Result, bail};
+
+use super::words::split;
+use crate::cli::io::input::read;
+
+/// What the first line of a program begins with that says how it is run.
+const HEAD: &str = "// cc67: ";
+
+/// What the first line of a program says.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) enum Head {
+    /// `// cc67: run OPTION … also N:FILE …`
+    Run { options: Vec<String>, also: Vec<String> },
+    /// `// cc67: part of FILE`: it only makes sense in that program's test.
+    Part,
+    /// Nothing.
+    None,
+}
+
+impl Head {
+    /// What the first line of a file says.
+    ///
+    /// # Errors
+    /// It is not understood, or cannot be read.
+    pub(crate) fn of(path: &Path) -> Result<Self> {
+        let text = read(path)?;
+        let line = text.split(|byte| *byte == b'\n').next().unwrap_or_default();
+        let line = String::from_utf8_lossy(line);
+        Self::parse(line.trim_end()).with_context(|| format!("{}, line 1", path.display()))
+    }
+
+    /// What a line says.
+    ///
+    /// # Errors
+    /// It is not understood.
+    pub(crate) fn parse(line: &str) -> Result<Self> {
+        let Some(line) = line.strip_prefix(HEAD) else { return Ok(Self::None) };
+        let mut words = split(line)?.into_iter();
+        match words.next().as_deref() {
+            Some("part") => return Ok(Self::Part),
+            Some("run") => {}
+            _ => {
+                bail!("`{line}` does not say how a test is run; write `run` with options, or `part of FILE`")
+            }
+        }
+        let (mut options, mut also) = (Vec::new(), Vec::new());
+        while let Some(word) = words.next() {
+            if word != "also" {
+                options.push(word);
+                continue;
+            }
+            let Some(program) = words.next() else { bail!("no program behind `also`") };
+            also.push(program);
+        }
+        Ok(Self::Run { options, also })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check(line: &str, expect: &str) {
+        let text = match Head::parse(line) {
+            Ok(Head::Run { options, also }) => format!("run {options:?} also {also:?}"),
+            Ok(other) => format!("{other:?}"),
+            Err(error) => error.to_string(),
+        };
+        assert_eq!(text, expect);
+    }
+
+    #[test]
+    fn the_first_line_says_how_a_test_is_run() {
+        check("// blink.c - blinks", "None");
+        check("// cc67: run", "run [] also []");
+        check(
+            "// cc67: run --for 2 also 2:a.c --time also 3:b.c",
+            r#"run ["--for", "2", "--time"] also ["2:a.c", "3:b.c"]"#,
+        );
+        check(
+            "// cc67: run --stim \"at 1s bit 8 = 1\" also '2:a b.c'",
+            r#"run ["--stim", "at 1s bit 8 = 1"] also ["2:a b.c"]"#,
+        );
+        check("// cc67: part of relay.c", "Part");
+        check("// cc67: run also", "no program behind `also`");
+        check(
+            "// cc67: --for 2",
+            "`--for 2` does not say how a test is run; write `run` with options, or `part of FILE`",
+        );
+    }
+}

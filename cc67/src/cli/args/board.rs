@@ -1,0 +1,108 @@
+//! What board it is: what is connected to it, what it begins with, what executes its programs.
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+
+use anyhow::Result;
+use clap::Args;
+use compiler::words::suggest;
+use runtime::{Directory, MachineFile, REMARKS};
+
+use super::engine::EngineName;
+use super::pc::PcArguments;
+use super::uart::UartArguments;
+use crate::cli::io::input::read;
+
+/// The options of a board, of every command that has one.
+#[derive(Debug, Args)]
+pub(crate) struct BoardArguments {
+    /// Load a program without starting it, for another one to start
+    #[arg(long, value_name = "N:FILE")]
+    pub(crate) load: Vec<OsString>,
+    /// Start value `persist.N=VALUE`, an integer, 0x… , f:1.5 a float, d:1.5 a double; or a key of the machine file
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// What is connected to the board: motors, switches, probes, encoders; a TOML file
+    #[arg(long, value_name = "FILE")]
+    pub(crate) machine: Option<PathBuf>,
+    /// Folder of the files that programs open on the PC; `cc67-files` if neither this nor the machine file names one
+    #[arg(long, value_name = "DIR")]
+    files: Option<PathBuf>,
+    /// What the world does and when: a file of statements, or statements such as "t=0.5 bit 136=1"
+    #[arg(long, alias = "stimulus", value_name = "FILE|TEXT")]
+    pub(crate) stim: Vec<String>,
+    /// Switch a remark of the board off, or on again: `-R no-CODE`, `-R CODE`; `--explain remarks` lists the codes
+    #[arg(short = 'R', value_name = "no-CODE")]
+    remarks: Vec<String>,
+    /// Play an operator: programs that only wait on inputs get the other level of one input after the other
+    #[arg(long)]
+    pub(crate) assist: bool,
+    /// Simulate every tick and every wait; the results are the same
+    #[arg(long)]
+    pub(crate) no_shortcuts: bool,
+    /// What executes the programs
+    #[arg(long, value_enum, default_value_t)]
+    pub(crate) engine: EngineName,
+    /// Run the programs on your own firmware file, executed, in place of the modelled firmware
+    #[arg(long, value_name = "FILE")]
+    pub(crate) boot: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) uart: UartArguments,
+    #[command(flatten)]
+    pub(crate) pc: PcArguments,
+}
+
+impl BoardArguments {
+    /// The first option given that a board with the user's own firmware does not know.
+    pub(crate) fn left_out_by_boot(&self) -> Option<&'static str> {
+        let own = [
+            (self.set.iter().any(|text| !text.starts_with("persist.")), "--set of a key of the machine file"),
+            (self.machine.is_some(), "--machine"),
+            (self.files.is_some(), "--files"),
+            (!self.stim.is_empty(), "--stim"),
+            (self.assist, "--assist"),
+            (self.engine != EngineName::default(), "--engine"),
+            (self.uart.is_given(), "--uart"),
+        ];
+        let given = own.into_iter().find(|(is_given, _)| *is_given).map(|(_, name)| name);
+        given.or_else(|| self.pc.first_given())
+    }
+
+    /// What is connected to the board, and which of its remarks are wanted.
+    pub(crate) fn machine_file(&self) -> Result<MachineFile> {
+        let mut machine = self.described()?;
+        for switch in &self.remarks {
+            let (code, is_wanted) =
+                switch.strip_prefix("no-").map_or((&**switch, true), |code| (code, false));
+            // Codes of remarks may begin with this, too.
+            let known = machine.want_remark(switch, true).or_else(|| machine.want_remark(code, is_wanted));
+            if known.is_none() {
+                let near = suggest(code, REMARKS.iter().map(|row| row.code));
+                let near = near.map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+                anyhow::bail!(
+                    "`-R {switch}`: no such remark: `{code}`{near} (`--explain remarks` lists all)"
+                );
+            }
+        }
+        Ok(machine)
+    }
+
+    /// What the machine file describes.
+    fn described(&self) -> Result<MachineFile> {
+        let Some(path) = self.machine.as_deref() else { return Ok(MachineFile::default()) };
+        let bytes = read(path)?;
+        let Ok(text) = String::from_utf8(bytes) else { anyhow::bail!("{} is not text", path.display()) };
+        let mut machine = MachineFile::parse(&text).map_err(|error| {
+            anyhow::anyhow!("{}:{}:{}: {error}", path.display(), error.line, error.column)
+        })?;
+        machine.beside(path.parent().unwrap_or(Path::new("")));
+        Ok(machine)
+    }
+
+    /// Where the PC's files are: in the folder that is named here, in that of the machine file, or in the usual one.
+    pub(crate) fn files(&self, machine: &MachineFile) -> Box<Directory> {
+        let folder = self.files.as_deref().or(machine.pc.disk_root.as_deref().map(Path::new));
+        let folder = folder.unwrap_or(Path::new("cc67-files"));
+        Box::new(Directory::new(folder).with_names(machine.pc.disk_files.clone()))
+    }
+}

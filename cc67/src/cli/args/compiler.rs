@@ -1,0 +1,202 @@
+//! Options that all commands which compile have in common.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use anyhow::{Context, Result, bail};
+use clap::{Args, ValueEnum};
+
+use compiler::diag::levels::Levels;
+use compiler::firmware::{Firmware, FirmwareFile};
+use compiler::link::SectionAddresses;
+use compiler::passes::Level;
+use compiler::pp::Standard;
+use compiler::render::Format;
+use compiler::target::Target;
+use compiler::{Options, pp};
+use kmotiondef::timing::{Timing, WaitStates};
+
+use crate::cli::io::input::read;
+
+/// How to compile.
+#[derive(Debug, Args)]
+pub(crate) struct CompilerArguments {
+    /// Search DIR for included files
+    #[arg(short = 'I', value_name = "DIR")]
+    include_dirs: Vec<PathBuf>,
+    /// Define a macro, as 1 without a value
+    #[arg(short = 'D', value_name = "NAME[=VALUE]")]
+    defines: Vec<String>,
+    /// Undefine a predefined macro
+    #[arg(short = 'U', value_name = "NAME")]
+    undefines: Vec<String>,
+    /// Read constants as a C standard does: c99, c11, c17, or as the vendor's compiler
+    #[arg(long, value_name = "STANDARD", default_value = "vendor", value_parser = standard)]
+    std: Standard,
+    /// Optimisation: 0 none, 1 and 2 what makes programs faster
+    #[arg(short = 'O', value_name = "LEVEL", default_value = "1", value_parser = clap::value_parser!(u8).range(0..=2))]
+    optimization: u8,
+    /// Whose code the board's time is counted for: vendor, as long as on the board; fast, a cycle or two for each
+    /// instruction; cc67, the code that cc67 makes for the controller (not built yet)
+    #[arg(long, value_name = "CODE", default_value = "vendor", value_parser = timing)]
+    timing: Timing,
+    /// What memory makes the processor wait: none, io44 (registers, as the firmware sets them), io44_sd20 (and 20 for
+    /// 32 bits of SDRAM), or the cycles for SDRAM
+    #[arg(long, value_name = "WAITS", value_parser = wait_states)]
+    wait_states: Option<WaitStates>,
+    /// Switch a warning on (NAME), off (no-NAME), make it an error (error=NAME), or all of them (all, extra, error)
+    #[arg(short = 'W', value_name = "WARNING")]
+    warnings: Vec<String>,
+    /// Show no warnings
+    #[arg(short = 'w')]
+    silent: bool,
+    /// What the code is for: `c67x`, the controller's processor, or `sim`, the simulated board's engines alone
+    #[arg(long, value_name = "TARGET", value_enum)]
+    target: Option<TargetName>,
+    /// Link against the symbols of a firmware file in place of firmware 4.34's
+    #[arg(long, value_name = "FILE")]
+    firmware: Option<PathBuf>,
+    /// Leave out functions and objects that `main` cannot reach, at -O0 too
+    #[arg(long, overrides_with = "no_gc_sections")]
+    gc_sections: bool,
+    /// Keep them
+    #[arg(long, overrides_with = "gc_sections")]
+    no_gc_sections: bool,
+    /// Form of the diagnostics
+    #[arg(long, value_name = "FORMAT", value_enum, default_value_t = FormatName::Human)]
+    message_format: FormatName,
+}
+
+/// Targets by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum TargetName {
+    /// The controller's processor; the simulated board executes its code too. The default of `build`
+    C67x,
+    /// The engines of the simulated board: bytecode. The default of commands that run programs
+    Sim,
+}
+
+/// Forms of diagnostics by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum FormatName {
+    /// Source lines, ranges, suggestions
+    Human,
+    /// One line each, as editors read it
+    Short,
+    /// One JSON object a line
+    Json,
+    /// As the controller's own compiler writes them; nothing without an error
+    Vendor,
+}
+
+impl CompilerArguments {
+    /// The same for the compiler.
+    pub(crate) fn resolve(&self) -> Result<Options> {
+        let defines = self.defines.iter().map(|text| define(text)).collect::<Result<_>>()?;
+        for name in &self.undefines {
+            check_macro_name(name)?;
+        }
+        Ok(Options {
+            preprocessor: pp::Options {
+                include_dirs: self.include_dirs.clone(),
+                defines,
+                undefines: self.undefines.clone(),
+                embedded: kmotiondef::headers::EMBEDDED,
+                standard: self.std,
+            },
+            target: self.target().unwrap_or_default(),
+            level: if self.optimization == 0 { Level::None } else { Level::Full },
+            timing: self.timing(),
+            firmware: self.firmware()?,
+            gc_sections: self.gc_sections || (self.optimization > 0 && !self.no_gc_sections),
+            addresses: SectionAddresses::default(),
+        })
+    }
+
+    /// Whose code the board's time is counted for, and with which memory.
+    pub(crate) fn timing(&self) -> Timing {
+        match (self.timing, self.wait_states) {
+            (Timing::Vendor(_), Some(waits)) => Timing::Vendor(waits),
+            (timing, _) => timing,
+        }
+    }
+
+    /// What the code is for, if the command line says so.
+    pub(crate) fn target(&self) -> Option<Target> {
+        self.target.map(|target| match target {
+            TargetName::C67x => Target::C67x,
+            TargetName::Sim => Target::Sim,
+        })
+    }
+
+    /// The firmware to link against.
+    fn firmware(&self) -> Result<Firmware> {
+        let Some(path) = &self.firmware else { return Ok(Firmware::BuiltIn) };
+        let file = FirmwareFile::read(&read(path)?);
+        let file = file.with_context(|| format!("`--firmware {}`", path.display()))?;
+        Ok(Firmware::File(Arc::new(file)))
+    }
+
+    /// The form of the diagnostics.
+    pub(crate) fn format(&self) -> Format {
+        match self.message_format {
+            FormatName::Human => Format::Human,
+            FormatName::Short => Format::Short,
+            FormatName::Json => Format::Json,
+            FormatName::Vendor => Format::Vendor,
+        }
+    }
+
+    /// Which warnings are shown.
+    pub(crate) fn levels(&self) -> Result<Levels> {
+        let mut levels = Levels::default();
+        if self.silent {
+            levels.silence();
+        }
+        for switch in &self.warnings {
+            levels.set(switch).with_context(|| format!("option `-W{switch}`"))?;
+        }
+        Ok(levels)
+    }
+}
+
+/// The standard of `--std`.
+fn standard(name: &str) -> Result<Standard, String> {
+    Standard::named(name).ok_or_else(|| "expected c90, c99, c11, c17 or vendor".to_owned())
+}
+
+/// The timing of `--timing`.
+fn timing(name: &str) -> Result<Timing, String> {
+    match name {
+        "vendor" => Ok(Timing::VENDOR),
+        "fast" => Ok(Timing::Fast),
+        "cc67" => {
+            Err("the times of cc67's own code are not built yet; `cc67 build` and `cc67 run FILE.out` \
+                       execute that code in its own cycles"
+                .to_owned())
+        }
+        _ => Err("expected vendor, fast or cc67".to_owned()),
+    }
+}
+
+/// The wait states of `--wait-states`.
+fn wait_states(name: &str) -> Result<WaitStates, String> {
+    WaitStates::named(name).ok_or_else(|| "expected none, io44, io44_sd20 or a number of cycles".to_owned())
+}
+
+/// Splits `NAME=VALUE`.
+fn define(text: &str) -> Result<(String, String)> {
+    let (name, value) = text.split_once('=').unwrap_or((text, "1"));
+    check_macro_name(name)?;
+    Ok((name.to_owned(), value.to_owned()))
+}
+
+fn check_macro_name(name: &str) -> Result<()> {
+    let mut characters = name.chars();
+    let is_name = characters.next().is_some_and(|c| c.is_ascii_alphabetic() || c == '_')
+        && characters.all(|c| c.is_ascii_alphanumeric() || c == '_');
+    if !is_name {
+        bail!("`{name}` is not a macro name");
+    }
+    Ok(())
+}

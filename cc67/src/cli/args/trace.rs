@@ -1,0 +1,39 @@
+//! What of a run is recorded, and into which files.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+/// What to trace.
+#[derive(Debug, Args)]
+pub(crate) struct TraceArguments {
+    /// Write what happens to FILE: .vcd for waveform viewers, .json for Perfetto, else a table (CSV)
+    #[arg(long, value_name = "FILE")]
+    pub(crate) trace: Vec<PathBuf>,
+    /// Write every change of a bit with its nanosecond and thread to FILE (CSV)
+    #[arg(long, value_name = "FILE")]
+    pub(crate) trace_bits: Option<PathBuf>,
+    /// Draw what moved: .svg, .png, or .html for a page with zoom and cursor
+    #[arg(long, value_name = "FILE")]
+    pub(crate) plot: Vec<PathBuf>,
+    /// What is traced and drawn: axis0,bit46,persist.5,adc2, variables and expressions such as "ch0->Dest - home"; else
+    /// the axes that are enabled
+    #[arg(long, visible_alias = "watch", value_name = "LIST")]
+    pub(crate) trace_items: Option<String>,
+    /// Sample every N servo ticks
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
+    pub(crate) trace_every: u64,
+}
+
+impl TraceArguments {
+    /// The first of these options that is given.
+    pub(crate) fn first_given(&self) -> Option<&'static str> {
+        let given = [
+            (!self.trace.is_empty(), "--trace"),
+            (self.trace_bits.is_some(), "--trace-bits"),
+            (!self.plot.is_empty(), "--plot"),
+            (self.trace_items.is_some(), "--trace-items"),
+        ];
+        given.into_iter().find(|(is_given, _)| *is_given).map(|(_, name)| name)
+    }
+}

@@ -1,0 +1,38 @@
+//! What the serial port of the board is connected to: `--uart` and its kin.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use runtime::MachineFile;
+
+/// What the serial port is connected to.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct UartArguments {
+    /// Characters that the serial port receives, from when the program first looks for them
+    #[arg(long, value_name = "FILE", conflicts_with = "uart")]
+    pub(crate) uart_input: Option<PathBuf>,
+    /// Write what the serial port sends to FILE
+    #[arg(long, value_name = "FILE")]
+    pub(crate) uart_output: Option<PathBuf>,
+    /// Connect the serial port to the outside, in real time: pty, tcp:PORT (waits for a client on this computer), run:COMMAND
+    #[arg(long, value_name = "PEER")]
+    pub(crate) uart: Option<String>,
+}
+
+impl UartArguments {
+    /// Whether one of them is given.
+    pub(crate) fn is_given(&self) -> bool {
+        self.uart_input.is_some() || self.uart_output.is_some() || self.uart.is_some()
+    }
+
+    /// These, and where they say nothing the files of a machine file.
+    pub(crate) fn or_those_of(&self, machine: &MachineFile) -> Self {
+        let file = |name: &Option<String>| name.as_ref().map(PathBuf::from);
+        let input = file(&machine.uart.input).filter(|_| self.uart.is_none());
+        Self {
+            uart_input: self.uart_input.clone().or(input),
+            uart_output: self.uart_output.clone().or_else(|| file(&machine.uart.output)),
+            uart: self.uart.clone(),
+        }
+    }
+}

@@ -1,0 +1,240 @@
+//! `cc67 build`: compile and link for a thread, write what is asked for.
+
+mod names;
+#[cfg(feature = "native")]
+mod native;
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail, ensure};
+use clap::{Args, ValueEnum};
+use coff::Image;
+use kmotiondef::ThreadId;
+
+use crate::cli::args::compiler::CompilerArguments;
+use crate::cli::compile::units;
+use crate::cli::io::exit::Exit;
+use crate::cli::io::output;
+use crate::cli::report::diagnostics;
+use compiler::diag::levels::Levels;
+use compiler::image::{self, download, map};
+use compiler::link::Linked;
+use compiler::object::Object;
+use compiler::target::Target;
+use compiler::{Compilation, Options, link_units};
+
+/// Arguments of `cc67 build`.
+#[derive(Debug, Args)]
+pub(super) struct BuildArguments {
+    /// Sources and objects (.o, .obj); together they make one program
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<PathBuf>,
+    /// The thread that the program is for, 1 to 7
+    #[arg(long, short = 't', value_name = "N", default_value = "1", value_parser = thread)]
+    thread: ThreadId,
+    /// Name of the image, or of the object with `-c` and one source
+    #[arg(short = 'o', long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Compile to objects, do not link; the same as `--emit object`
+    #[arg(short = 'c')]
+    compile_only: bool,
+    /// Also write a map: what stands where, and what is largest
+    #[arg(long)]
+    map: bool,
+    /// Also write the commands that download the program to a controller's thread
+    #[arg(long)]
+    download_script: bool,
+    /// What to write, separated by commas
+    #[arg(long, value_name = "KIND", value_enum, value_delimiter = ',')]
+    emit: Vec<Emit>,
+    #[command(flatten)]
+    compiler: CompilerArguments,
+}
+
+/// What can be written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Emit {
+    /// The linked program, FILE(N).out
+    Image,
+    /// An object for each source, FILE.o
+    Object,
+    /// The instructions of `--target sim` as text, FILE(N).txt
+    Bytecode,
+    /// What stands where, FILE(N).map
+    Map,
+    /// Commands that download the program, FILE(N).kmd
+    Download,
+    /// A stand-alone executable for this computer, FILE; needs `--target sim` and `cc`. With `-o NAME.o` the host's
+    /// object file alone
+    Native,
+}
+
+pub(super) fn thread(text: &str) -> Result<ThreadId, String> {
+    let number = text.parse().ok().and_then(ThreadId::new);
+    number.ok_or_else(|| format!("valid range 1-{}", ThreadId::MAX))
+}
+
+/// Compiles, links, writes.
+pub(super) fn build(arguments: &BuildArguments) -> Result<Exit> {
+    let options = Options { target: arguments.target(), ..arguments.compiler.resolve()? };
+    let levels = arguments.compiler.levels()?;
+    let emit = arguments.emit();
+    arguments.check_target(&emit)?;
+    let mut units = units::compile(&arguments.files, &options)?;
+    arguments.check_objects(&units)?;
+    ensure!(
+        cfg!(feature = "native") || !emit.contains(&Emit::Native),
+        "`--emit native`: this cc67 is built without the native engine"
+    );
+    if emit == [Emit::Object] {
+        if diagnostics::report_all(&units, &levels, arguments.compiler.format()) {
+            return Ok(Exit::Failure);
+        }
+        return arguments.write_objects(&units);
+    }
+    // Linking uses the objects up.
+    let objects = if emit.contains(&Emit::Object) { arguments.objects(&units)? } else { Vec::new() };
+    let linked = link_units(&mut units, arguments.thread, &options);
+    let has_errors = diagnostics::report_all(&units, &levels, arguments.compiler.format());
+    let Some(linked) = linked.filter(|_| !has_errors) else { return Ok(Exit::Failure) };
+    output::write_all(&objects)?;
+    arguments.write_program(&linked, &emit)?;
+    output::print(&(sizes(&linked, warnings(&units, &levels)) + "\n"))?;
+    Ok(Exit::Success)
+}
+
+impl BuildArguments {
+    fn target(&self) -> Target {
+        self.compiler.target().unwrap_or(Target::C67x)
+    }
+
+    /// What the controller's code cannot be made into.
+    fn check_target(&self, emit: &[Emit]) -> Result<()> {
+        if self.target() == Target::Sim {
+            return Ok(());
+        }
+        for (kind, name) in [(Emit::Bytecode, "bytecode"), (Emit::Native, "native")] {
+            ensure!(!emit.contains(&kind), "`--emit {name}` needs `--target sim`: it is made of bytecode");
+        }
+        Ok(())
+    }
+
+    /// Objects are for the target that is asked for.
+    fn check_objects(&self, units: &[Compilation]) -> Result<()> {
+        for unit in units {
+            let Some(target) = unit.object.as_ref().map(Object::target) else { continue };
+            let (found, wanted) = match (target, self.target()) {
+                (Target::Sim, Target::C67x) => ("bytecode for the simulated board", "sim"),
+                (Target::C67x, Target::Sim) => ("code for the controller's processor", "c67x"),
+                (Target::Sim, Target::Sim) | (Target::C67x, Target::C67x) => continue,
+            };
+            bail!("{} holds {found}: compile it again, or link with `--target {wanted}`", unit.name);
+        }
+        Ok(())
+    }
+
+    /// The kinds that are asked for.
+    fn emit(&self) -> Vec<Emit> {
+        let mut emit = self.emit.clone();
+        if self.compile_only {
+            emit.push(Emit::Object);
+        }
+        if emit.is_empty() {
+            emit.push(Emit::Image);
+        }
+        if self.map {
+            emit.push(Emit::Map);
+        }
+        if self.download_script {
+            emit.push(Emit::Download);
+        }
+        emit
+    }
+
+    fn write_objects(&self, units: &[Compilation]) -> Result<Exit> {
+        output::write_all(&self.objects(units)?)?;
+        Ok(Exit::Success)
+    }
+
+    /// The objects of all sources, with their names.
+    fn objects(&self, units: &[Compilation]) -> Result<Vec<(PathBuf, Vec<u8>)>> {
+        let sources = self.files.iter().zip(units).filter(|(path, _)| !units::is_object_name(path));
+        let sources: Vec<_> = sources.collect();
+        ensure!(!sources.is_empty(), "`-c` needs a source; all files are objects already");
+        let renamed = self.output.as_ref().filter(|_| self.emit() == [Emit::Object]);
+        ensure!(
+            renamed.is_none() || sources.len() == 1,
+            "`-o` with `-c` names one object, but there are several sources"
+        );
+        let mut objects = Vec::new();
+        for (path, unit) in sources {
+            let Some(object) = &unit.object else { continue };
+            let name = renamed.cloned().unwrap_or_else(|| names::object(path));
+            objects.push((name, object.write().with_context(|| path.display().to_string())?));
+        }
+        Ok(objects)
+    }
+
+    /// Writes everything that is made of the linked program.
+    fn write_program(&self, linked: &Linked, emit: &[Emit]) -> Result<()> {
+        let first = self.files.first().context("there is a file")?;
+        let program = self.output.clone().unwrap_or_else(|| names::image(first, self.thread));
+        if self.files.contains(&program) {
+            bail!("`-o {}` would overwrite an input", program.display());
+        }
+        let bytes = image::write(linked).with_context(|| first.display().to_string())?;
+        for kind in emit {
+            match kind {
+                Emit::Image => output::write(&program, &bytes)?,
+                Emit::Map => output::write(&names::beside(&program, "map"), map::render(linked).as_bytes())?,
+                Emit::Bytecode => {
+                    let text = vm::text::disassemble(&linked.text.bytes);
+                    output::write(&names::beside(&program, "txt"), text.as_bytes())?;
+                }
+                Emit::Download => {
+                    let image = Image::read(&bytes).context("the image that was just made")?;
+                    let script = download::script(&image, self.thread);
+                    output::write(&names::beside(&program, "kmd"), script.as_bytes())?;
+                }
+                #[cfg(feature = "native")]
+                Emit::Native => {
+                    let given = self.output.as_ref();
+                    let target = match given {
+                        Some(name) if emit == [Emit::Native] => name.clone(),
+                        _ => names::executable(given.unwrap_or(first)),
+                    };
+                    ensure!(!self.files.contains(&target), "{} would be overwritten", target.display());
+                    native::write(&target, &bytes, self.thread)?;
+                }
+                #[cfg(not(feature = "native"))]
+                Emit::Native => {}
+                Emit::Object => {}
+            }
+        }
+        Ok(())
+    }
+}
+
+/// How many warnings the user has seen.
+fn warnings(units: &[Compilation], levels: &Levels) -> usize {
+    units.iter().map(|unit| diagnostics::warnings(unit, levels)).sum()
+}
+
+/// The line that the vendor's editor shows behind a compilation: the sizes of the sections, and
+/// the bytes from the first to the last, gaps included.
+fn sizes(linked: &Linked, warnings: usize) -> String {
+    let warnings = match warnings {
+        0 => "No Warnings".to_owned(),
+        1 => "1 Warning".to_owned(),
+        more => format!("{more} Warnings"),
+    };
+    let (text, data) = (linked.text.bytes.len(), linked.data.bytes.len());
+    let total = linked.bss.address.get() + linked.bss.size - linked.text.address.get();
+    format!("No Errors, {warnings}, text={text}, bss={}, data={data}, total={total}", linked.bss.size)
+}
+
+/// Whether a path has one of the given extensions, in any letter case.
+fn has_extension(path: &Path, extensions: &[&str]) -> bool {
+    let own = path.extension().unwrap_or_default();
+    extensions.iter().any(|extension| own.eq_ignore_ascii_case(extension))
+}

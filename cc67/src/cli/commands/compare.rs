@@ -1,0 +1,280 @@
+//! `cc67 compare`: the modelled firmware and the user's own firmware file side by side.
+//!
+//! Each program runs on both boards from the same start. Compared are console and replies line by line, the board time
+//! of each line within a tolerance, `persist.UserData`, where the axes end, and the pins that are outputs.
+
+use std::ffi::OsString;
+use std::fmt::Write as _;
+
+use anyhow::{Context, Result, bail};
+use boot::Halted;
+use cc67_host::End;
+use clap::Args;
+use kmotiondef::limits::TIMEBASE;
+use kmotiondef::structs::{Chan, Persist};
+use kmotiondef::variables::{CHAN, PERSIST};
+use kmotiondef::{AxisId, Bit, Cycles, Ticks};
+use runtime::{Event, EventKind, MachineFile};
+use vm::engine::Engine;
+
+use crate::cli::args::board::BoardArguments;
+use crate::cli::args::compiler::CompilerArguments;
+use crate::cli::args::program::assign;
+use crate::cli::args::setting;
+use crate::cli::args::time::{DEFAULT_LIMIT, seconds};
+use crate::cli::io::exit::Exit;
+use crate::cli::io::{output, terminal};
+use crate::cli::session::booted::{Booted, Ready};
+use crate::cli::session::{Rig, Setup, Work};
+
+/// Pins of the board.
+const PINS: i32 = 48;
+/// Pins of step generators: the level of a pulse is not modelled at register level.
+const STEP_PINS: [std::ops::Range<usize>; 2] = [8..16, 36..44];
+/// Digits of positions that are compared: a thousandth.
+const POSITION: f64 = 1e-3;
+
+/// Arguments of `cc67 compare`.
+#[derive(Debug, Args)]
+pub(super) struct CompareArguments {
+    /// Programs, each run by itself on both boards; `1:A+2:B` runs several in one run
+    #[arg(required = true, value_name = "PROGRAM")]
+    programs: Vec<OsString>,
+    /// End each run after so many seconds of board time
+    #[arg(long = "for", value_name = "SECONDS", value_parser = seconds, default_value = "10")]
+    limit: f64,
+    /// Differences of board times up to this are none, in seconds; more of them are reported, not failed
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "0.001")]
+    tolerance: f64,
+    /// Fail on board times beyond the tolerance, too
+    #[arg(long)]
+    strict_times: bool,
+    #[command(flatten)]
+    board: BoardArguments,
+    #[command(flatten)]
+    compiler: CompilerArguments,
+}
+
+/// What a run came to, on either board.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Outcome {
+    /// Board time in seconds, whether it is a reply, text.
+    lines: Vec<(f64, bool, String)>,
+    /// How it ended.
+    end: String,
+    user_data: Vec<u32>,
+    /// Commanded and measured position of each axis.
+    axes: Vec<(f64, f64)>,
+    /// Pins that are high.
+    pins: Vec<bool>,
+}
+
+/// A difference: what, on the model, on the firmware, and the page that says how it is meant.
+#[derive(Clone, Debug, PartialEq)]
+struct Difference {
+    what: String,
+    model: String,
+    firmware: String,
+    page: &'static str,
+}
+
+/// Compares all programs; exit code 5 if any differs.
+pub(super) fn compare(arguments: &CompareArguments) -> Result<Exit> {
+    let Some(file) = &arguments.board.boot else {
+        bail!("`cc67 compare` needs `--boot FILE`, your firmware file")
+    };
+    if let Some(option) = arguments.board.left_out_by_boot() {
+        bail!("`{option}` does not work with `--boot` yet");
+    }
+    let mut ready = Booted::new(file)?.into_ready();
+    let mut table = String::new();
+    let mut unequal = 0;
+    for program in &arguments.programs {
+        let programs = together(program)?;
+        let Some(model) = arguments.model(&programs)? else { return Ok(Exit::Failure) };
+        let Some(firmware) = arguments.firmware(&programs, &mut ready)? else { return Ok(Exit::Failure) };
+        let differences = model.differences(&firmware);
+        let late = model.latest(&firmware);
+        let is_late = arguments.strict_times && late > arguments.tolerance;
+        unequal += usize::from(!differences.is_empty() || is_late);
+        let name = program.to_string_lossy();
+        if let Some(first) = differences.first() {
+            output::print(&format!(
+                "{name}: {}\n  model:    {}\n  firmware: {}\n  see {}\n",
+                first.what, first.model, first.firmware, first.page
+            ))?;
+        }
+        let verdict = if differences.is_empty() { "equal".to_owned() } else { plural(differences.len()) };
+        let times = if late > arguments.tolerance { "  (times beyond the tolerance)" } else { "" };
+        let lines = firmware.lines.len();
+        writeln!(table, "{name:40} {lines:6} {verdict:16} {late:10.6}{times}")?;
+    }
+    output::print(&format!("{:40} {:>6} {:16} {:>10}\n{table}", "program", "lines", "result", "times, s"))?;
+    if unequal > 0 {
+        terminal::note(&format!("{unequal} of {} programs differ", arguments.programs.len()));
+        return Ok(Exit::Unmet);
+    }
+    Ok(Exit::Success)
+}
+
+fn plural(count: usize) -> String {
+    if count == 1 { "1 difference".to_owned() } else { format!("{count} differences") }
+}
+
+/// `1:A+2:B` as two programs.
+fn together(program: &OsString) -> Result<Vec<OsString>> {
+    let text = program.to_str().with_context(|| format!("{} is not text", program.display()))?;
+    Ok(text.split('+').map(OsString::from).collect())
+}
+
+impl CompareArguments {
+    fn ticks(&self) -> Ticks {
+        Ticks::new((self.limit.min(DEFAULT_LIMIT * 1000.0) / TIMEBASE).round() as u64)
+    }
+
+    /// The run on the modelled board; `None` if a source has errors.
+    fn model(&self, programs: &[OsString]) -> Result<Option<Outcome>> {
+        let setup = Setup::of_model(programs, &self.board, &self.compiler, None)?;
+        let Some(setup) = setup else { return Ok(None) };
+        let mut outcome = Outcome::default();
+        setup.on_its_engine(Model { limit: self.ticks(), outcome: &mut outcome })?;
+        Ok(Some(outcome))
+    }
+
+    /// The run on the firmware; `None` if a source has errors.
+    fn firmware(&self, programs: &[OsString], ready: &mut Ready) -> Result<Option<Outcome>> {
+        let mut booted = ready.fresh();
+        booted.store(&setting::all(&self.board.set, &mut MachineFile::default())?)?;
+        let files = assign(programs)?;
+        if !booted.load(&files, files.len(), &self.compiler)? {
+            return Ok(None);
+        }
+        let mut outcome = Outcome::default();
+        let ended = booted.run(self.ticks(), &mut |event| outcome.note(&event));
+        outcome.end = match ended {
+            Ok(End::AllEnded | End::Interrupted) => "ended".to_owned(),
+            Ok(End::Limit) => "still running".to_owned(),
+            Err(Halted::Crashed(crash)) => crash.to_string(),
+        };
+        outcome.look_at_firmware(&booted);
+        ready.take_back(booted);
+        Ok(Some(outcome))
+    }
+}
+
+/// Runs the modelled board and notes what it came to.
+struct Model<'a> {
+    limit: Ticks,
+    outcome: &'a mut Outcome,
+}
+
+impl Work for Model<'_> {
+    fn on<E: Engine>(self, mut rig: Rig<E>) -> Result<Exit> {
+        let outcome = self.outcome;
+        let mut traps = Vec::new();
+        let mut sink = |event: Event| {
+            if let EventKind::Trap(trap) = &event.kind {
+                traps.push(trap.to_string());
+            }
+            outcome.note(&event);
+        };
+        let end = rig.run(self.limit, None, &mut sink);
+        rig.finish(&mut |_| {})?;
+        outcome.end = match (traps.first(), end) {
+            (Some(trap), _) => trap.clone(),
+            (None, End::Limit) => "still running".to_owned(),
+            (None, End::AllEnded | End::Interrupted) => "ended".to_owned(),
+        };
+        let session = &rig.session;
+        let memory = session.board().memory();
+        let data = PERSIST.field(Persist::USER_DATA).address();
+        outcome.user_data = (0..200).map(|index| memory.peek(data.offset(4 * index))).collect();
+        outcome.axes = AxisId::all()
+            .map(|axis| {
+                let base = CHAN.address().offset(Chan::STRUCTURE.size * axis.index() as u32);
+                (
+                    memory.peek(base.offset(Chan::DEST.offset())),
+                    memory.peek(base.offset(Chan::POSITION.offset())),
+                )
+            })
+            .collect();
+        outcome.pins = (0..PINS).filter_map(Bit::new).map(|bit| session.bit(bit)).collect();
+        Ok(Exit::Success)
+    }
+}
+
+impl Outcome {
+    fn note(&mut self, event: &Event) {
+        let seconds = event.at.get() as f64 / Cycles::PER_SECOND.get() as f64;
+        let (is_reply, text) = match &event.kind {
+            EventKind::ConsoleLine(text) => (false, text),
+            EventKind::Reply(text) => (true, text),
+            _ => return,
+        };
+        self.lines.push((seconds, is_reply, String::from_utf8_lossy(text).into_owned()));
+    }
+
+    fn look_at_firmware(&mut self, booted: &Booted) {
+        let board = &booted.board;
+        if let Some(persist) = board.file().address("persist") {
+            let data = persist.offset(Persist::USER_DATA.offset());
+            self.user_data = (0..200).map(|index| board.memory().peek(data.offset(4 * index))).collect();
+        }
+        self.axes = AxisId::all().filter_map(|axis| board.axis(axis)).collect();
+        self.pins = (0..PINS as usize).map(|pin| board.is_output(pin) && board.is_high(pin)).collect();
+    }
+
+    /// The largest difference between the times of lines, the first ones set to each other.
+    fn latest(&self, other: &Self) -> f64 {
+        let pairs = self.lines.iter().zip(&other.lines);
+        pairs.map(|(one, two)| (one.0 - two.0).abs()).fold(0.0, f64::max)
+    }
+
+    /// What differs, in the order in which it is met.
+    fn differences(&self, firmware: &Self) -> Vec<Difference> {
+        let mut found = Vec::new();
+        let mut differ = |what: String, model: String, firmware: String, page| {
+            found.push(Difference { what, model, firmware, page });
+        };
+        let longest = self.lines.len().max(firmware.lines.len());
+        let line = |lines: &[(f64, bool, String)], index: usize| {
+            let shown = |(at, _, text): &(f64, bool, String)| format!("{at:.6} s  {text}");
+            lines.get(index).map_or("(no more lines)".to_owned(), shown)
+        };
+        for index in 0..longest {
+            let (one, two) = (self.lines.get(index), firmware.lines.get(index));
+            if one.map(|one| (one.1, &one.2)) != two.map(|two| (two.1, &two.2)) {
+                let (model, firmware) = (line(&self.lines, index), line(&firmware.lines, index));
+                differ(
+                    format!("line {}", index + 1),
+                    model,
+                    firmware,
+                    "gather-persist-console.md, threads-and-time.md",
+                );
+            }
+        }
+        if self.end != firmware.end {
+            differ("how it ended".to_owned(), self.end.clone(), firmware.end.clone(), "threads-and-time.md");
+        }
+        for (index, (one, two)) in self.user_data.iter().zip(&firmware.user_data).enumerate() {
+            if one != two {
+                let hex = |word: &u32| format!("0x{word:08X}");
+                differ(format!("persist.UserData[{index}]"), hex(one), hex(two), "gather-persist-console.md");
+            }
+        }
+        for (axis, (one, two)) in self.axes.iter().zip(&firmware.axes).enumerate() {
+            // Where the loop is closed depends on the load, which a booted board does not have yet.
+            if (one.0 - two.0).abs() > POSITION {
+                let shown = |axis: &(f64, f64)| format!("Dest {:.6}", axis.0);
+                differ(format!("axis {axis}"), shown(one), shown(two), "axes-and-motion.md");
+            }
+        }
+        for (pin, (one, two)) in self.pins.iter().zip(&firmware.pins).enumerate() {
+            let is_pulsed = STEP_PINS.iter().any(|pins| pins.contains(&pin));
+            if one != two && !is_pulsed {
+                differ(format!("bit {pin}"), u8::from(*one).to_string(), u8::from(*two).to_string(), "io.md");
+            }
+        }
+        found
+    }
+}

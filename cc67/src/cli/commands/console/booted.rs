@@ -1,0 +1,168 @@
+//! `cc67 console --boot FILE`: script commands to the user's own firmware file.
+//!
+//! Lines come from the keyboard or from a script; board time passes as they need it, and as `wait` says.
+
+use std::io::{self, IsTerminal};
+use std::path::Path;
+
+use anyhow::{Context, Result, bail};
+use boot::Halted;
+use kmotiondef::limits::TIMEBASE;
+use kmotiondef::{Cycles, ThreadId, Ticks};
+use runtime::MachineFile;
+
+use super::input::{self, Input};
+use super::screen::Screen;
+use super::words::{self, Word};
+use super::{ConsoleArguments, Flow};
+use crate::cli::args::program::{ProgramFile, assign};
+use crate::cli::args::setting;
+use crate::cli::args::time::DEFAULT_LIMIT;
+use crate::cli::io::exit::Exit;
+use crate::cli::session::booted::Booted;
+
+/// Talks to the firmware until the input ends.
+pub(super) fn console(arguments: &ConsoleArguments, file: &Path) -> Result<Exit> {
+    if let Some(option) = left_out(arguments) {
+        bail!("`{option}` does not work with `--boot` yet");
+    }
+    let mut booted = Booted::new(file)?;
+    booted.store(&setting::all(&arguments.board.set, &mut MachineFile::default())?)?;
+    let mut console =
+        Console { arguments, booted, screen: Screen::new(arguments.time, false), has_crashed: false };
+    let files = assign(&[arguments.programs.as_slice(), arguments.board.load.as_slice()].concat())?;
+    if !console.load(&files, arguments.programs.len())? {
+        return Ok(Exit::Failure);
+    }
+    if io::stdin().is_terminal() && io::stdout().is_terminal() {
+        console.keyboard()
+    } else {
+        console.script()
+    }
+}
+
+/// The first option given that a booted board does not know.
+fn left_out(arguments: &ConsoleArguments) -> Option<&'static str> {
+    let own = [(arguments.realtime, "--realtime"), (arguments.serve.is_some(), "--serve")];
+    let given = own.into_iter().find(|(is_given, _)| *is_given).map(|(_, name)| name);
+    given.or_else(|| arguments.board.left_out_by_boot())
+}
+
+/// The firmware, and the person or script that talks to it.
+struct Console<'a> {
+    arguments: &'a ConsoleArguments,
+    booted: Booted,
+    screen: Screen,
+    has_crashed: bool,
+}
+
+impl Console<'_> {
+    fn keyboard(&mut self) -> Result<Exit> {
+        let (lines, printer) = input::keyboard()?;
+        self.screen.print_through(printer);
+        while let Ok(Input::Line(line)) = lines.next() {
+            if self.line(&line) == Flow::Leave {
+                break;
+            }
+            lines.ready();
+        }
+        self.leave()
+    }
+
+    /// Takes the lines of a script one after the other; then the programs go on to their end.
+    fn script(&mut self) -> Result<Exit> {
+        for line in io::stdin().lines() {
+            let line = line.context("cannot read the script")?;
+            if self.line(&line) == Flow::Leave || self.screen.is_closed() {
+                return self.leave();
+            }
+        }
+        let seconds = self.arguments.limit.unwrap_or(DEFAULT_LIMIT);
+        let limit = Ticks::new(self.booted.tick().get() + (seconds / TIMEBASE) as u64);
+        let screen = &mut self.screen;
+        let end = self.booted.run(limit, &mut |event| screen.show(&event));
+        if let Err(halted) = end {
+            self.tell(&halted);
+        }
+        self.leave()
+    }
+
+    fn leave(&mut self) -> Result<Exit> {
+        self.screen.finish().context("cannot write to standard output")?;
+        Ok(if self.has_crashed { Exit::Trapped } else { Exit::Success })
+    }
+
+    fn line(&mut self, line: &str) -> Flow {
+        let line = line.trim();
+        if line.is_empty() || line.starts_with('#') {
+            return Flow::Continue;
+        }
+        let word = match words::parse(line) {
+            Some(Ok(Word::Quit)) => return Flow::Leave,
+            Some(Ok(word)) => word,
+            Some(Err(error)) => {
+                self.screen.note(&error.to_string());
+                return Flow::Continue;
+            }
+            None => {
+                self.send(line);
+                return Flow::Continue;
+            }
+        };
+        if let Err(error) = self.obey(&word) {
+            self.screen.note(&format!("{error:#}"));
+        }
+        Flow::Continue
+    }
+
+    /// Does what one of the console's own words says.
+    fn obey(&mut self, word: &Word) -> Result<()> {
+        match word {
+            Word::Help(name) => self.screen.text(&words::help(name.as_deref())),
+            Word::Kill { except } => {
+                for thread in ThreadId::all().filter(|thread| Some(*thread) != *except) {
+                    self.send(&format!("Kill{thread}"));
+                }
+            }
+            Word::Load(file) | Word::Run(file) => {
+                let starts = usize::from(matches!(word, Word::Run(_)));
+                self.load(&assign(std::slice::from_ref(file))?, starts)?;
+            }
+            Word::Time => {
+                let seconds = self.booted.now().get() as f64 / Cycles::PER_SECOND.get() as f64;
+                self.screen.text(&format!("{seconds:.6}\n"));
+            }
+            Word::Wait(seconds) => {
+                let cycles = (seconds * Cycles::PER_SECOND.get() as f64) as u64;
+                let screen = &mut self.screen;
+                let passed = self.booted.advance(cycles, &mut |event| screen.show(&event));
+                if let Err(halted) = passed {
+                    self.tell(&halted);
+                }
+            }
+            Word::Press(_) | Word::Release(_) | Word::Act(_) => {
+                bail!("inputs of a booted firmware cannot be driven at the prompt yet");
+            }
+            Word::Quit => {}
+        }
+        Ok(())
+    }
+
+    fn load(&mut self, files: &[ProgramFile], starts: usize) -> Result<bool> {
+        self.booted.load(files, starts, &self.arguments.compiler)
+    }
+
+    fn send(&mut self, line: &str) {
+        let screen = &mut self.screen;
+        let answered = self.booted.exchange(line, &mut |event| screen.show(&event));
+        if let Err(halted) = answered {
+            self.tell(&halted);
+        }
+    }
+
+    /// The firmware ran away; the command line goes on.
+    fn tell(&mut self, halted: &Halted) {
+        self.has_crashed = true;
+        self.screen.note(halted.to_string().trim_end());
+    }
+}

@@ -1,0 +1,345 @@
+//! `cc67 console`: a simulated board to talk to, by hand or from a script.
+//!
+//! A line is script commands for the board, or begins with one of the console's own words ([`words`]). By hand the
+//! board keeps pace with the clock; from a script it runs as fast as it can, and time passes only where the script
+//! lets it: each line takes as long as on the wire, `wait` as long as it says.
+
+mod booted;
+mod input;
+mod screen;
+mod serve;
+mod words;
+
+use std::collections::BTreeMap;
+use std::ffi::{OsStr, OsString};
+use std::io::{self, BufRead, IsTerminal};
+use std::sync::mpsc::RecvTimeoutError;
+use std::time::Duration;
+
+use anyhow::{Context, Result};
+use cc67_host::End;
+use clap::Args;
+use kmotiondef::limits::TIMEBASE;
+use kmotiondef::{Bit, ThreadId, Ticks};
+use runtime::Event;
+use vm::engine::Engine;
+
+use input::{Input, Lines};
+use screen::Screen;
+use words::Word;
+
+use crate::cli::args::board::BoardArguments;
+use crate::cli::args::compiler::CompilerArguments;
+use crate::cli::args::program::{ProgramFile, assign};
+use crate::cli::args::time::{DEFAULT_LIMIT, seconds};
+use crate::cli::args::trace::TraceArguments;
+use crate::cli::io::exit::Exit;
+use crate::cli::io::pace::Pace;
+use crate::cli::report::seen::Seen;
+use crate::cli::report::trace::{self, Trace};
+use crate::cli::session::{Rig, Setup, Work};
+
+/// How often a board that keeps pace with the clock is brought up to it.
+const BEAT: Duration = Duration::from_millis(10);
+/// Ticks that a board which does not keep pace runs before the next look at the keyboard.
+const STRETCH: u64 = 1111;
+
+/// Arguments of `cc67 console`.
+#[derive(Debug, Args)]
+pub(super) struct ConsoleArguments {
+    /// Programs to load and start: FILE for the lowest free thread, N:FILE for thread N
+    #[arg(value_name = "[N:]FILE")]
+    programs: Vec<OsString>,
+    /// Keep pace with the clock; the default at a terminal
+    #[arg(long, overrides_with = "fast")]
+    realtime: bool,
+    /// Run as fast as possible; the default from a script
+    #[arg(long, overrides_with = "realtime")]
+    fast: bool,
+    /// Serve programs of the PC instead of a person: the socket of the vendor's server, /tmp/kmotionsocket, or tcp:PORT
+    #[arg(long, value_name = "ADDRESS", conflicts_with = "time")]
+    serve: Option<String>,
+    /// Behind the last line, go on for so many seconds of board time at most
+    #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
+    limit: Option<f64>,
+    /// Show the board time in seconds before each line of the board
+    #[arg(long)]
+    time: bool,
+    #[command(flatten)]
+    board: BoardArguments,
+    #[command(flatten)]
+    trace: TraceArguments,
+    #[command(flatten)]
+    compiler: CompilerArguments,
+}
+
+/// Talks to a board until the input ends.
+pub(super) fn console(arguments: &ConsoleArguments) -> Result<Exit> {
+    if let Some(file) = &arguments.board.boot {
+        return booted::console(arguments, file);
+    }
+    let setup = Setup::new(&arguments.programs, &arguments.board, &arguments.compiler, None)?;
+    let Some(setup) = setup else { return Ok(Exit::Failure) };
+    match &arguments.serve {
+        Some(address) => serve::serve(arguments, setup, address),
+        None => setup.on_its_engine(arguments),
+    }
+}
+
+impl Work for &ConsoleArguments {
+    fn on<E: Engine>(self, mut rig: Rig<E>) -> Result<Exit> {
+        rig.connect()?;
+        Console::new(self, rig)?.run()
+    }
+}
+
+/// Whether there is more to come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[must_use]
+enum Flow {
+    Continue,
+    Leave,
+}
+
+/// A board, and the person or script that talks to it.
+struct Console<'a, E> {
+    arguments: &'a ConsoleArguments,
+    rig: Rig<E>,
+    shown: Shown<'a>,
+    /// Inputs that are pressed, and the level of each before.
+    pressed: BTreeMap<Bit, bool>,
+}
+
+impl<'a, E: Engine> Console<'a, E> {
+    fn new(arguments: &'a ConsoleArguments, rig: Rig<E>) -> Result<Self> {
+        let request = trace::request(&arguments.trace, &rig.session)?;
+        let mut rig = rig;
+        if let Some(request) = &request {
+            rig.session.record(request.clone());
+        }
+        let trace = request.as_ref().map(|request| Trace::begin(&arguments.trace, request)).transpose()?;
+        let is_script = !(io::stdin().is_terminal() && io::stdout().is_terminal());
+        let screen = Screen::new(arguments.time, is_script && !arguments.realtime);
+        let shown = Shown { screen, seen: Seen::default(), trace, arguments };
+        let mut console = Self { arguments, rig, shown, pressed: BTreeMap::new() };
+        console.know_programs();
+        Ok(console)
+    }
+
+    /// Has the screen know what is loaded.
+    fn know_programs(&mut self) {
+        self.shown.screen.programs = self.rig.session.debug().into_iter().map(|(_, debug)| debug).collect();
+    }
+
+    fn run(mut self) -> Result<Exit> {
+        if io::stdin().is_terminal() && io::stdout().is_terminal() {
+            let (input, printer) = input::keyboard()?;
+            self.shown.screen.print_through(printer);
+            if self.arguments.fast { self.hurry(&input) } else { self.keep_pace(&input) }
+        } else if self.arguments.realtime {
+            self.keep_pace(&input::script_beside())
+        } else {
+            self.script()
+        }
+    }
+
+    /// Takes the lines of a script one after the other; then the programs go on to their end.
+    fn script(&mut self) -> Result<Exit> {
+        for line in io::stdin().lock().split(b'\n') {
+            let line = line.context("cannot read the script")?;
+            let flow = match str::from_utf8(&line) {
+                Ok(text) => self.line(text.trim_end_matches('\r')),
+                // Bytes that are no text are for the board.
+                Err(_) => {
+                    self.send(&line);
+                    Flow::Continue
+                }
+            };
+            if flow == Flow::Leave {
+                return self.leave();
+            }
+            if self.shown.screen.is_closed() {
+                return Ok(Exit::Success);
+            }
+        }
+        let limit = self.after(self.arguments.limit.unwrap_or(DEFAULT_LIMIT));
+        let shown = &mut self.shown;
+        let end = self.rig.run(limit, None, &mut |event| shown.note(&event));
+        let exit = self.leave()?;
+        if end == End::Limit && self.arguments.limit.is_none() && exit == Exit::Success {
+            self.shown
+                .screen
+                .note(&format!("still running {DEFAULT_LIMIT} s of board time after the last line"));
+            return Ok(Exit::StillRunning);
+        }
+        Ok(exit)
+    }
+
+    /// Takes lines as they come while the board keeps pace with the clock.
+    fn keep_pace(&mut self, input: &Lines) -> Result<Exit> {
+        self.rig.is_paced();
+        let pace = Pace::new(self.rig.session.tick());
+        let mut interrupted = false;
+        loop {
+            if self.take(input, input.within(BEAT), &mut interrupted) == Flow::Leave {
+                return self.leave();
+            }
+            self.advance(pace.due());
+        }
+    }
+
+    /// Takes lines as they come; as long as programs run, so does the board, as fast as it can.
+    fn hurry(&mut self, input: &Lines) -> Result<Exit> {
+        let mut interrupted = false;
+        loop {
+            let next = if self.rig.session.has_ended() { input.next() } else { input.within(Duration::ZERO) };
+            if self.take(input, next, &mut interrupted) == Flow::Leave {
+                return self.leave();
+            }
+            self.advance(Ticks::new(self.rig.session.tick().get() + STRETCH));
+        }
+    }
+
+    /// Says good-bye with what is still held.
+    fn leave(&mut self) -> Result<Exit> {
+        let shown = &mut self.shown;
+        self.rig.finish(&mut |event| shown.note(&event))?;
+        self.shown.finish(self.rig.session.tick())?;
+        Ok(self.shown.seen.exit(End::AllEnded, true).0)
+    }
+
+    /// A line, or an interruption: the first one stops the programs, the second one leaves.
+    fn take(&mut self, lines: &Lines, next: Result<Input, RecvTimeoutError>, interrupted: &mut bool) -> Flow {
+        let flow = match next {
+            Ok(Input::Line(line)) => {
+                *interrupted = false;
+                self.line(&line)
+            }
+            Ok(Input::Interrupt) if *interrupted => Flow::Leave,
+            Ok(Input::Interrupt) => {
+                *interrupted = true;
+                self.stop(|_| true);
+                self.shown.screen.note("all threads are stopped; Ctrl-C once more leaves");
+                Flow::Continue
+            }
+            Err(RecvTimeoutError::Timeout) if self.shown.screen.is_closed() => return Flow::Leave,
+            Err(RecvTimeoutError::Timeout) => return Flow::Continue,
+            Err(RecvTimeoutError::Disconnected) => Flow::Leave,
+        };
+        if flow == Flow::Continue {
+            lines.ready();
+        }
+        flow
+    }
+
+    /// One line of the person or script.
+    fn line(&mut self, line: &str) -> Flow {
+        if self.rig.session.board().is_in_command() {
+            self.send(line.as_bytes());
+            return Flow::Continue;
+        }
+        let line = line.trim();
+        if line.is_empty() || line.starts_with('#') {
+            return Flow::Continue;
+        }
+        match words::parse(line) {
+            Some(Ok(Word::Quit)) => return Flow::Leave,
+            Some(Ok(word)) => {
+                if let Err(error) = self.obey(&word) {
+                    self.shown.screen.note(&format!("{error:#}"));
+                }
+            }
+            Some(Err(error)) => self.shown.screen.note(&error.to_string()),
+            None => self.send(line.as_bytes()),
+        }
+        Flow::Continue
+    }
+
+    /// Does what one of the console's own words says.
+    fn obey(&mut self, word: &Word) -> Result<()> {
+        match word {
+            Word::Help(name) => self.shown.screen.text(&words::help(name.as_deref())),
+            Word::Kill { except } => {
+                self.stop(|thread| Some(thread) != *except);
+            }
+            Word::Load(file) | Word::Run(file) => {
+                let starts = usize::from(matches!(word, Word::Run(_)));
+                self.load(&assign(std::slice::from_ref(file))?, starts)?;
+            }
+            Word::Time => {
+                let text = format!("{:.6}\n", self.rig.session.tick().get() as f64 * TIMEBASE);
+                self.shown.screen.text(&text);
+            }
+            Word::Wait(seconds) => self.advance(self.after(*seconds)),
+            Word::Press(bit) => {
+                let level = self.rig.session.bit(*bit);
+                self.pressed.entry(*bit).or_insert(level);
+                self.rig.session.act(&format!("bit {bit} = {}", u8::from(!level)))?;
+            }
+            Word::Release(bit) => {
+                let level = self.pressed.remove(bit).unwrap_or(false);
+                self.rig.session.act(&format!("bit {bit} = {}", u8::from(level)))?;
+            }
+            Word::Act(statement) => self.rig.session.act(statement)?,
+            Word::Quit => {}
+        }
+        Ok(())
+    }
+
+    /// Compiles and loads programs, and starts the first so many.
+    fn load(&mut self, programs: &[ProgramFile], starts: usize) -> Result<()> {
+        let loaded = self.rig.load(programs, starts, &self.arguments.compiler);
+        self.know_programs();
+        loaded.map(drop)
+    }
+
+    /// Stops threads where they are.
+    fn stop(&mut self, is_meant: impl Fn(ThreadId) -> bool) {
+        ThreadId::all().filter(|thread| is_meant(*thread)).for_each(|thread| self.rig.session.stop(thread));
+    }
+
+    /// Sends a line to the board, and lets pass the time it takes.
+    fn send(&mut self, line: &[u8]) {
+        let shown = &mut self.shown;
+        self.rig.exchange(line, &mut |event| shown.note(&event));
+    }
+
+    /// The tick so many seconds from now.
+    fn after(&self, seconds: f64) -> Ticks {
+        self.rig.session.tick_after(seconds)
+    }
+
+    /// Runs to the end of a tick.
+    fn advance(&mut self, limit: Ticks) {
+        let shown = &mut self.shown;
+        self.rig.advance(limit, &mut |event| shown.note(&event));
+    }
+}
+
+/// Where the events of the board go.
+struct Shown<'a> {
+    screen: Screen,
+    /// What they mean for the exit code.
+    seen: Seen,
+    trace: Option<Trace>,
+    arguments: &'a ConsoleArguments,
+}
+
+impl Shown<'_> {
+    /// Shows an event, and keeps it for the traces and the exit code.
+    fn note(&mut self, event: &Event) {
+        if let Some(trace) = &mut self.trace {
+            trace.note(event);
+        }
+        self.seen.note(event);
+        self.screen.show(event);
+    }
+
+    /// Says what is left to say, and completes the files.
+    fn finish(&mut self, end: Ticks) -> Result<()> {
+        self.screen.finish().context("cannot write to standard output")?;
+        let Some(trace) = self.trace.take() else { return Ok(()) };
+        let title = self.arguments.programs.join(OsStr::new(", "));
+        trace.finish(&self.arguments.trace, end, &title.to_string_lossy())
+    }
+}

@@ -1,0 +1,146 @@
+//! `cc67 debug`: a debugger in the terminal, from a script, or for an editor.
+
+mod terminal;
+
+use std::ffi::OsString;
+use std::io::{self, BufReader, Write};
+use std::net::{Ipv4Addr, TcpListener};
+use std::path::PathBuf;
+
+use anyhow::{Context, Result};
+use cc67_debug::dap::{self, Launch};
+use cc67_debug::{Debugger, Said, Shell};
+use clap::{Args, Parser};
+use kmotiondef::Ticks;
+use kmotiondef::limits::TIMEBASE;
+
+use crate::cli::args::board::BoardArguments;
+use crate::cli::args::compiler::CompilerArguments;
+use crate::cli::args::time::seconds;
+use crate::cli::io::exit::Exit;
+use crate::cli::io::input::read;
+use crate::cli::io::{output, terminal as screen};
+use crate::cli::session::Setup;
+
+/// Where a run ends if nothing else is said: an hour of board time.
+const LIMIT: f64 = 3600.0;
+
+/// Arguments of `cc67 debug`.
+#[derive(Debug, Args)]
+pub(super) struct DebugArguments {
+    /// The programs, sources or images: FILE for the lowest free thread, N:FILE for thread N
+    #[arg(required_unless_present_any = ["explain", "dap", "listen"], value_name = "[N:]FILE")]
+    programs: Vec<OsString>,
+    /// Take the commands from a file, `-` for stdin; stops at the first that is refused
+    #[arg(long, value_name = "FILE")]
+    batch: Option<PathBuf>,
+    /// Debug for an editor, by the Debug Adapter Protocol: over stdin and stdout, or for one client of a TCP port
+    #[arg(long, value_name = "PORT", num_args = 0..=1, require_equals = false, default_missing_value = "0")]
+    dap: Option<u16>,
+    /// The same for one client after the other of a TCP port
+    #[arg(long, value_name = "PORT", conflicts_with_all = ["dap", "batch"])]
+    listen: Option<u16>,
+    /// End after so many seconds of board time
+    #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
+    limit: Option<f64>,
+    #[command(flatten)]
+    board: BoardArguments,
+    #[command(flatten)]
+    compiler: CompilerArguments,
+}
+
+/// The same arguments as a client of the protocol gives them.
+#[derive(Debug, Parser)]
+#[command(name = "launch", no_binary_name = true)]
+struct LaunchArguments {
+    #[command(flatten)]
+    debug: DebugArguments,
+    /// For `--explain` of the whole command, which nobody gives here.
+    #[arg(long, hide = true)]
+    explain: Option<String>,
+}
+
+/// Debugs programs.
+pub(super) fn debug(arguments: &DebugArguments) -> Result<Exit> {
+    match (arguments.dap, arguments.listen) {
+        (Some(0), _) => {
+            dap::serve(BufReader::new(io::stdin()), io::stdout(), &mut launch)?;
+            return Ok(Exit::Success);
+        }
+        (Some(port), _) => return listen(port, true),
+        (None, Some(port)) => return listen(port, false),
+        (None, None) => {}
+    }
+    let Some(debugger) = debugger(arguments)? else { return Ok(Exit::Failure) };
+    let mut shell = Shell::new(debugger);
+    for why in shell.debugger().programs().unknown() {
+        screen::note(&why);
+    }
+    match &arguments.batch {
+        Some(path) => batch(&mut shell, path),
+        None => terminal::talk(shell),
+    }
+}
+
+/// A debugger of the programs; `None` if one has errors, which have been reported.
+fn debugger(arguments: &DebugArguments) -> Result<Option<Debugger>> {
+    let setup = Setup::new(&arguments.programs, &arguments.board, &arguments.compiler, None)?;
+    let Some(setup) = setup else { return Ok(None) };
+    let session = setup.for_debugger()?;
+    let limit = Ticks::new((arguments.limit.unwrap_or(LIMIT) / TIMEBASE).round() as u64);
+    Ok(Some(Debugger::new(session, limit)))
+}
+
+/// Does the commands of a file.
+fn batch(shell: &mut Shell, path: &std::path::Path) -> Result<Exit> {
+    let text =
+        if path.as_os_str() == "-" { io::read_to_string(io::stdin())?.into_bytes() } else { read(path)? };
+    for line in String::from_utf8_lossy(&text).lines() {
+        // An empty line of a script repeats nothing.
+        if line.trim().is_empty() {
+            continue;
+        }
+        let answer = shell
+            .command(line, &mut |text| show(text))
+            .map_err(|error| anyhow::anyhow!("`{line}`: {error}"))?;
+        match answer {
+            Said::Text(text) => output::print(&text)?,
+            Said::Quit => break,
+        }
+    }
+    Ok(Exit::Success)
+}
+
+/// Shows what the board says while it runs; a reader that is gone misses it.
+fn show(text: &str) {
+    match text.strip_prefix("cc67: ") {
+        Some(remark) => screen::note(remark.trim_end()),
+        None => _ = io::stdout().write_all(text.as_bytes()),
+    }
+}
+
+/// Serves clients of a port on this computer.
+fn listen(port: u16, is_once: bool) -> Result<Exit> {
+    let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))
+        .with_context(|| format!("cannot listen on port {port}"))?;
+    screen::note(&format!("debugger: waiting for an editor on {}", listener.local_addr()?));
+    loop {
+        let (stream, _) = listener.accept().context("debugger")?;
+        stream.set_nodelay(true)?;
+        let served = dap::serve(BufReader::new(stream.try_clone()?), stream, &mut launch);
+        if let Err(error) = served {
+            screen::note(&format!("debugger: {error}"));
+        }
+        if is_once {
+            return Ok(Exit::Success);
+        }
+    }
+}
+
+/// What a client wants to debug: the programs, and the options of a board under their long names.
+fn launch(request: &Launch) -> Result<Debugger, String> {
+    let line = request.command_line().map_err(|error| error.to_string())?;
+    let arguments = LaunchArguments::try_parse_from(line).map_err(|error| error.to_string())?;
+    let debugger = debugger(&arguments.debug).map_err(|error| format!("{error:#}"))?;
+    debugger.ok_or_else(|| "a program has errors; `cc67 check` shows them".to_owned())
+}

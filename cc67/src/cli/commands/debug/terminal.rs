@@ -1,0 +1,90 @@
+//! A person with a keyboard: lines with history and completion.
+
+use std::borrow::Cow;
+use std::cell::RefCell;
+use std::io::{self, IsTerminal};
+use std::rc::Rc;
+
+use anyhow::{Context as _, Result};
+use cc67_debug::{Said, Shell};
+use rustyline::completion::{Completer, Pair};
+use rustyline::error::ReadlineError;
+use rustyline::highlight::Highlighter;
+use rustyline::hint::Hinter;
+use rustyline::history::DefaultHistory;
+use rustyline::validate::Validator;
+use rustyline::{Context, Editor, Helper};
+
+use super::show;
+use crate::cli::io::exit::Exit;
+use crate::cli::io::output;
+
+const PROMPT: &str = "(cc67) ";
+
+/// Takes commands until the end of the input.
+pub(super) fn talk(shell: Shell) -> Result<Exit> {
+    if !io::stdin().is_terminal() {
+        let mut shell = shell;
+        for line in io::stdin().lines() {
+            if !obey(&mut shell, &line?)? {
+                break;
+            }
+        }
+        return Ok(Exit::Success);
+    }
+    let shell = Rc::new(RefCell::new(shell));
+    let mut editor: Editor<Guide, DefaultHistory> = Editor::new().context("no terminal to edit lines on")?;
+    editor.set_helper(Some(Guide(Rc::clone(&shell))));
+    loop {
+        match editor.readline(PROMPT) {
+            Ok(line) => {
+                // A line that cannot be remembered is only harder to repeat.
+                let _ = editor.add_history_entry(&line);
+                if !obey(&mut shell.borrow_mut(), &line)? {
+                    return Ok(Exit::Success);
+                }
+            }
+            Err(ReadlineError::Interrupted) => {}
+            Err(_) => return Ok(Exit::Success),
+        }
+    }
+}
+
+/// Does what a line says; whether there may be another one.
+fn obey(shell: &mut Shell, line: &str) -> Result<bool> {
+    match shell.command(line, &mut |text| show(text)) {
+        Ok(Said::Text(text)) => output::print(&text)?,
+        Ok(Said::Quit) => return Ok(false),
+        Err(error) => output::print(&format!("{error}\n"))?,
+    }
+    Ok(true)
+}
+
+/// Completes commands and what programs name.
+struct Guide(Rc<RefCell<Shell>>);
+
+impl Completer for Guide {
+    type Candidate = Pair;
+
+    fn complete(&self, line: &str, at: usize, _: &Context<'_>) -> rustyline::Result<(usize, Vec<Pair>)> {
+        let before = line.get(..at).unwrap_or(line);
+        let start =
+            before.rfind(|c: char| !(c.is_ascii_alphanumeric() || "_-".contains(c))).map_or(0, |at| at + 1);
+        let names = self.0.try_borrow().map(|shell| shell.complete(before)).unwrap_or_default();
+        Ok((start, names.into_iter().map(|name| Pair { display: name.clone(), replacement: name }).collect()))
+    }
+}
+
+impl Hinter for Guide {
+    type Hint = String;
+}
+
+impl Highlighter for Guide {
+    fn highlight_prompt<'b, 's: 'b, 'p: 'b>(&'s self, prompt: &'p str, _: bool) -> Cow<'b, str> {
+        Cow::Borrowed(prompt)
+    }
+}
+
+impl Validator for Guide {}
+
+impl Helper for Guide {}

@@ -1,0 +1,392 @@
+//! The command line of the vendor's compiler.
+//!
+//! Options begin with one `-` and are told apart by the table [`OPTIONS`]; an option's argument
+//! is the next word, or follows directly where the table says so. Everything else is a file, told by its suffix.
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+
+use compiler::pp::Standard;
+
+/// What is shown when there is nothing to compile.
+pub(super) const HELP: &str = "\
+usage: tcc67 [options] program.c firmware.out
+
+  -text H      load address of the program, hexadecimal, a multiple of 32
+  -data H      address of the initialised data, behind the text by default
+  -bss H       address of the uninitialised data, behind the initialised by default
+  -o FILE      write the program to FILE; without it the program is only compiled
+  -g           write symbols and line numbers
+  -I DIR       search DIR for included files
+  -D NAME[=V]  define a macro
+  -U NAME      undefine a macro
+  -c           do not link
+
+This is cc67 in the place of the vendor's compiler; `cc67 --help` shows its own commands.
+";
+
+/// Where a program goes unless an address is given.
+const DEFAULT_TEXT: u32 = 0x400;
+
+/// The text stands at a multiple of this.
+const FETCH_PACKET: u32 = 32;
+
+/// What a command line asks for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Call {
+    /// To compile.
+    Compile(Box<Request>),
+    /// Nothing; help is due.
+    Help,
+    /// Where the compiler looks for its files.
+    SearchDirectories,
+}
+
+/// What is to be compiled, and how.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(super) struct Request {
+    /// The source file.
+    pub(super) source: PathBuf,
+    /// The firmware file.
+    pub(super) firmware: Option<PathBuf>,
+    /// The file to write; `None` if the program is only to be compiled.
+    pub(super) output: Option<PathBuf>,
+    /// Address of the text.
+    pub(super) text: u32,
+    /// Address of the initialised data, if not behind the text.
+    pub(super) data: Option<u32>,
+    /// Address of the uninitialised data, if not behind the initialised.
+    pub(super) bss: Option<u32>,
+    /// Whether symbols and line numbers are written.
+    pub(super) has_symbols: bool,
+    /// Directories of included files.
+    pub(super) include_dirs: Vec<PathBuf>,
+    /// Macros with their bodies.
+    pub(super) defines: Vec<(String, Option<String>)>,
+    /// Macros to undefine.
+    pub(super) undefines: Vec<String>,
+    /// Which C the program is written in.
+    pub(super) standard: Standard,
+}
+
+/// How an option takes its argument.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Takes {
+    /// It has none.
+    Nothing,
+    /// The next word.
+    Next,
+    /// The rest of the word, or the next word if there is no rest.
+    RestOrNext,
+    /// The rest of the word, which may be empty.
+    Rest,
+}
+
+/// What an option means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Meaning {
+    Text,
+    Data,
+    Bss,
+    Symbols,
+    IncludeDirectory,
+    Define,
+    Undefine,
+    Output,
+    CompileOnly,
+    SearchDirectories,
+    /// Options of the linker, some of which matter.
+    Linker,
+    /// Which C the program is written in.
+    Standard,
+    /// Accepted for old command lines; nothing follows from it here.
+    Nothing,
+}
+
+/// Every option; the first one that fits counts.
+const OPTIONS: &[(&str, Takes, Meaning)] = &[
+    ("-text", Takes::Next, Meaning::Text),
+    ("-data", Takes::Next, Meaning::Data),
+    ("-bss", Takes::Next, Meaning::Bss),
+    ("-bench", Takes::Nothing, Meaning::Nothing),
+    ("-bt", Takes::Next, Meaning::Nothing),
+    ("-b", Takes::Nothing, Meaning::Nothing),
+    ("-g", Takes::Nothing, Meaning::Symbols),
+    ("-nostdinc", Takes::Nothing, Meaning::Nothing),
+    ("-nostdlib", Takes::Nothing, Meaning::Nothing),
+    ("-print-search-dirs", Takes::Nothing, Meaning::SearchDirectories),
+    ("-rdynamic", Takes::Nothing, Meaning::Nothing),
+    ("-r", Takes::Nothing, Meaning::Nothing),
+    ("-shared", Takes::Nothing, Meaning::Nothing),
+    ("-static", Takes::Nothing, Meaning::Nothing),
+    ("-std=", Takes::Rest, Meaning::Standard),
+    ("-c", Takes::Nothing, Meaning::CompileOnly),
+    ("-o", Takes::RestOrNext, Meaning::Output),
+    ("-I", Takes::RestOrNext, Meaning::IncludeDirectory),
+    ("-D", Takes::RestOrNext, Meaning::Define),
+    ("-U", Takes::RestOrNext, Meaning::Undefine),
+    ("-L", Takes::RestOrNext, Meaning::Nothing),
+    ("-B", Takes::RestOrNext, Meaning::Nothing),
+    ("-l", Takes::RestOrNext, Meaning::Nothing),
+    ("-Wl,", Takes::Rest, Meaning::Linker),
+    ("-W", Takes::Rest, Meaning::Nothing),
+    ("-O", Takes::Rest, Meaning::Nothing),
+    ("-m", Takes::Rest, Meaning::Nothing),
+    ("-f", Takes::Rest, Meaning::Nothing),
+];
+
+/// Reads a command line without the program's name.
+///
+/// # Errors
+/// What is wrong with it, in the vendor's words where there are any.
+pub(super) fn parse(arguments: &[OsString]) -> Result<Call, String> {
+    let mut reading = Reading {
+        request: Request { text: DEFAULT_TEXT, ..Request::default() },
+        sources: Vec::new(),
+        compile_only: false,
+        search_directories: false,
+    };
+    let mut rest = arguments.iter();
+    while let Some(argument) = rest.next() {
+        let word = argument.to_string_lossy();
+        if !word.starts_with('-') || word == "-" {
+            reading.file(Path::new(argument))?;
+            continue;
+        }
+        let (name, takes, meaning) = find(&word).ok_or_else(|| format!("invalid option -- '{word}'"))?;
+        let joined = word.get(name.len()..).unwrap_or_default();
+        let value = match takes {
+            Takes::Nothing => String::new(),
+            Takes::Rest => joined.to_owned(),
+            Takes::RestOrNext if !joined.is_empty() => joined.to_owned(),
+            Takes::Next | Takes::RestOrNext => {
+                let next = rest.next().ok_or_else(|| format!("argument to '{name}' is missing"))?;
+                next.to_string_lossy().into_owned()
+            }
+        };
+        reading.option(meaning, &value)?;
+    }
+    reading.finish()
+}
+
+/// The row of the table that an option fits.
+fn find(word: &str) -> Option<(&'static str, Takes, Meaning)> {
+    let fits = |(name, takes, _): &&(&'static str, Takes, Meaning)| match takes {
+        Takes::Nothing | Takes::Next => word == *name,
+        Takes::RestOrNext | Takes::Rest => word.starts_with(name),
+    };
+    OPTIONS.iter().find(fits).copied()
+}
+
+/// A command line while it is read.
+struct Reading {
+    request: Request,
+    sources: Vec<PathBuf>,
+    compile_only: bool,
+    search_directories: bool,
+}
+
+impl Reading {
+    fn option(&mut self, meaning: Meaning, value: &str) -> Result<(), String> {
+        let request = &mut self.request;
+        match meaning {
+            Meaning::Text => request.text = text_address(value)?,
+            Meaning::Data => request.data = Some(address(value, "data")?),
+            Meaning::Bss => request.bss = Some(address(value, "bss")?),
+            Meaning::Symbols => request.has_symbols = true,
+            Meaning::IncludeDirectory => request.include_dirs.push(native(Path::new(value))),
+            Meaning::Define => {
+                let (name, body) = value.split_once('=').map_or((value, None), |(n, v)| (n, Some(v)));
+                request.defines.push((name.to_owned(), body.map(str::to_owned)));
+            }
+            Meaning::Undefine => request.undefines.push(value.to_owned()),
+            Meaning::Output => request.output = Some(native(Path::new(value))),
+            Meaning::CompileOnly => self.compile_only = true,
+            Meaning::SearchDirectories => self.search_directories = true,
+            Meaning::Linker => {
+                // `-Wl,-Ttext,80050000`, or with `=`: the call of newer versions.
+                let mut words = value.split([',', '=']).skip_while(|word| *word != "-Ttext").skip(1);
+                if let Some(address) = words.next() {
+                    request.text = text_address(address)?;
+                }
+            }
+            Meaning::Standard => request.standard = Standard::named(value).unwrap_or_default(),
+            Meaning::Nothing => {}
+        }
+        Ok(())
+    }
+
+    fn file(&mut self, path: &Path) -> Result<(), String> {
+        let path = native(path);
+        let suffix = path.extension().unwrap_or_default();
+        if suffix.eq_ignore_ascii_case("c") {
+            self.sources.push(path);
+            return Ok(());
+        }
+        if suffix != "out" {
+            return Err(format!(
+                "unrecognized file type: '{}' (a program ends in .c, the firmware file in .out)",
+                path.display()
+            ));
+        }
+        match self.request.firmware.replace(path) {
+            None => Ok(()),
+            Some(first) => Err(format!("more than one firmware file, the first is '{}'", first.display())),
+        }
+    }
+
+    fn finish(mut self) -> Result<Call, String> {
+        if self.search_directories {
+            return Ok(Call::SearchDirectories);
+        }
+        let mut sources = self.sources.into_iter();
+        let Some(source) = sources.next() else { return Ok(Call::Help) };
+        if let Some(second) = sources.next() {
+            let (first, second) = (source.display(), second.display());
+            return Err(format!("one program at a time: '{first}' and '{second}' are given"));
+        }
+        if self.compile_only && self.request.output.take().is_some() {
+            return Err("option '-c' writes no file; without it the program is linked".to_owned());
+        }
+        self.request.source = source;
+        Ok(Call::Compile(Box::new(self.request)))
+    }
+}
+
+fn text_address(value: &str) -> Result<u32, String> {
+    let address = address(value, "text")?;
+    if !address.is_multiple_of(FETCH_PACKET) {
+        return Err(".text linker section must be aligned to fetch packet (32 byte boundary)".to_owned());
+    }
+    Ok(address)
+}
+
+fn address(value: &str, section: &str) -> Result<u32, String> {
+    let digits = value.strip_prefix("0x").or_else(|| value.strip_prefix("0X")).unwrap_or(value);
+    // `from_str_radix` would take a sign.
+    let is_number = digits.bytes().all(|byte| byte.is_ascii_hexdigit());
+    let address = is_number.then(|| u32::from_str_radix(digits, 16).ok()).flatten();
+    address.ok_or_else(|| format!("Invalid {section} address option"))
+}
+
+/// A path as this system writes it: the calls of Windows programs have backslashes.
+fn native(path: &Path) -> PathBuf {
+    match path.to_str() {
+        Some(text) if !cfg!(windows) && text.contains('\\') && !path.exists() => {
+            PathBuf::from(text.replace('\\', "/"))
+        }
+        _ => path.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn call(words: &[&str]) -> Result<Call, String> {
+        parse(&words.iter().map(OsString::from).collect::<Vec<_>>())
+    }
+
+    fn request(words: &[&str]) -> Request {
+        match call(words) {
+            Ok(Call::Compile(request)) => *request,
+            other => panic!("{words:?}: {other:?}"),
+        }
+    }
+
+    #[test]
+    fn the_call_of_the_pc_software_is_understood() {
+        let words = [
+            "-text",
+            "80050000",
+            "-g",
+            "-nostdinc",
+            "-I",
+            "DSP dir",
+            "-I",
+            "source dir",
+            "-o",
+            "prog(1).out",
+            "prog.c",
+            "DSP dir/DSPKFLOP.out",
+        ];
+        let expect = Request {
+            source: "prog.c".into(),
+            firmware: Some("DSP dir/DSPKFLOP.out".into()),
+            output: Some("prog(1).out".into()),
+            text: 0x8005_0000,
+            has_symbols: true,
+            include_dirs: vec!["DSP dir".into(), "source dir".into()],
+            ..Request::default()
+        };
+        assert_eq!(request(&words), expect);
+    }
+
+    #[test]
+    fn the_call_of_newer_versions_is_understood() {
+        let words = [
+            "-Wl,-Ttext,80060000",
+            "-Wl,--oformat,coff",
+            "-static",
+            "-nostdinc",
+            "-nostdlib",
+            "-IDSP",
+            "-DMILLS=3",
+            "-DX",
+            "-UY",
+            "-O2",
+            "-Wall",
+            "-fno-common",
+            "-m32",
+            "-bt",
+            "8",
+            "-bench",
+            "-lm",
+            "DSP\\DSPKFLOP.out",
+            "P.C",
+            "-oP.out",
+        ];
+        let expect = Request {
+            source: "P.C".into(),
+            firmware: Some("DSP/DSPKFLOP.out".into()),
+            output: Some("P.out".into()),
+            text: 0x8006_0000,
+            include_dirs: vec!["DSP".into()],
+            defines: vec![("MILLS".to_owned(), Some("3".to_owned())), ("X".to_owned(), None)],
+            undefines: vec!["Y".to_owned()],
+            ..Request::default()
+        };
+        assert_eq!(request(&words), expect);
+    }
+
+    #[test]
+    fn addresses_are_hexadecimal_and_the_text_stands_at_a_multiple_of_32() {
+        assert_eq!(request(&["a.c"]).text, 0x400);
+        let words = ["-text", "0x80050020", "-data", "80052000", "-bss", "80053000", "a.c"];
+        let Request { text, data, bss, .. } = request(&words);
+        assert_eq!((text, data, bss), (0x8005_0020, Some(0x8005_2000), Some(0x8005_3000)));
+    }
+
+    #[test]
+    fn wrong_command_lines_get_the_vendors_words() {
+        for (words, expect) in [
+            (&["-zzz", "a.c"][..], "invalid option -- '-zzz'"),
+            (&["a.c", "-text"], "argument to '-text' is missing"),
+            (&["-text", "80050010", "a.c"], ".text linker section must be aligned to fetch packet"),
+            (&["-text", "xyz", "a.c"], "Invalid text address option"),
+            (&["-text", "+1", "a.c"], "Invalid text address option"),
+            (&["a.txt"], "unrecognized file type"),
+            (&["a"], "unrecognized file type"),
+            (&["a.c", "F.OUT"], "unrecognized file type"),
+            (&["a.c", "b.c"], "one program at a time"),
+            (&["a.c", "a.out", "b.out"], "more than one firmware file"),
+            (&["-c", "-o", "a.o", "a.c"], "option '-c' writes no file"),
+        ] {
+            let message = call(words).expect_err("the command line is wrong");
+            assert!(message.contains(expect), "{words:?}: {message}");
+        }
+        assert_eq!(call(&[]), Ok(Call::Help));
+        assert_eq!(call(&["-g", "F.out"]), Ok(Call::Help));
+        assert_eq!(call(&["-print-search-dirs"]), Ok(Call::SearchDirectories));
+    }
+}

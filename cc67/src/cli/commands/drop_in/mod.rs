@@ -1,0 +1,175 @@
+//! The drop-in mode: `cc67` in the place of the vendor's compiler.
+//!
+//! The controller's PC software starts its compiler with one source file, the firmware file and
+//! the address of a thread, and reads what it says (specification, `dialect.md` section 4,
+//! `coff.md` section 8). Called by the name `tcc67`, or with that command line, `cc67` takes the
+//! same arguments and answers in the same form: nothing on success, else `file:line: message`
+//! in less than 4000 bytes and exit code 1. What it writes is an image for the controller's processor.
+//!
+//! The names that a program may use are those of the firmware file and no others; what it lacks is
+//! an undefined symbol, even where the simulated board would have it.
+
+mod arguments;
+
+use std::ffi::OsString;
+use std::io::{self, Write};
+use std::path::Path;
+use std::process::ExitCode;
+use std::sync::Arc;
+
+use kmotiondef::map::program_base;
+use kmotiondef::{GuestAddr, ThreadId};
+
+use arguments::{Call, Request};
+
+use crate::cli::io::exit::Exit;
+use crate::cli::io::output;
+use compiler::diag::levels::Levels;
+use compiler::diag::{Diagnostic, Severity};
+use compiler::firmware::{Firmware, FirmwareFile};
+use compiler::link::SectionAddresses;
+use compiler::passes::Level;
+use compiler::pp::{self, Disk};
+use compiler::render::vendor;
+use compiler::{Compilation, Options, files, image};
+
+/// The name under which programs expect the vendor's compiler.
+const NAME: &str = "tcc67";
+
+/// Whether the arguments of a process, the program's name first, are meant for the vendor's compiler.
+pub(super) fn is_meant(arguments: &[OsString]) -> bool {
+    let Some((program, rest)) = arguments.split_first() else { return false };
+    let stem = Path::new(program).file_stem().unwrap_or_default();
+    // `cc67` itself begins with a subcommand and has no option of these names.
+    let is_vendors = |argument: &OsString| {
+        let argument = argument.to_string_lossy();
+        argument == "-text" || argument == "-nostdinc" || argument.starts_with("-Wl,-Ttext")
+    };
+    stem.eq_ignore_ascii_case(NAME)
+        || rest.first().is_some_and(|first| first.to_string_lossy().starts_with('-'))
+            && rest.iter().any(is_vendors)
+}
+
+/// Does what the vendor's compiler does with the arguments of a process.
+pub(super) fn main(arguments: &[OsString]) -> ExitCode {
+    let rest = arguments.get(1..).unwrap_or_default();
+    let result = match arguments::parse(rest) {
+        Ok(Call::Compile(request)) => compile(&request),
+        Ok(Call::Help) => {
+            print(arguments::HELP);
+            return Exit::Failure.into();
+        }
+        Ok(Call::SearchDirectories) => {
+            let program = arguments.first().map(Path::new).and_then(Path::parent);
+            print(&format!("install: {}/\n", program.unwrap_or(Path::new("")).display()));
+            return Exit::Success.into();
+        }
+        Err(message) => Err(format!("tcc: {message}\n")),
+    };
+    match result {
+        Ok(()) => Exit::Success,
+        Err(text) => {
+            // Nobody is left to be told when stderr is gone.
+            let _ = io::stderr().write_all(text.as_bytes());
+            Exit::Failure
+        }
+    }
+    .into()
+}
+
+fn print(text: &str) {
+    // Nobody is left to be told when stdout is gone.
+    let _ = io::stdout().write_all(text.as_bytes());
+}
+
+/// Compiles, links and writes; the error is all that the compiler says.
+fn compile(request: &Request) -> Result<(), String> {
+    let text = files::read(&request.source)
+        .map_err(|_| format!("tcc: file '{}' not found\n", request.source.display()))?;
+    let firmware = request.firmware.as_deref().map(read_firmware).transpose()?;
+    let options = options(request, firmware);
+    let mut compilation = compiler::compile(&request.source, text, &options, &Disk);
+    let Some(output) = &request.output else { return silent_without_errors(&compilation) };
+    if request.firmware.is_none() {
+        compilation.sink.report(Diagnostic::global_error(
+            "no firmware file given: its name stands behind the source file and ends in .out",
+        ));
+    }
+    let linked = thread(request.text).and_then(|thread| compilation.link(thread, &options));
+    silent_without_errors(&compilation)?;
+    let source = request.source.display();
+    let Some(linked) = linked else { return Err(format!("tcc: '{source}' cannot be linked\n")) };
+    let image = if request.has_symbols { image::write(&linked) } else { image::write_stripped(&linked) };
+    let image = image.map_err(|error| format!("tcc: '{source}': {error}\n"))?;
+    output::write(output, &image)
+        .map_err(|_| format!("tcc: Unable to open output file '{}'\n", output.display()))
+}
+
+/// The firmware's symbols.
+fn read_firmware(path: &Path) -> Result<Firmware, String> {
+    let bytes = files::read(path).map_err(|_| format!("tcc: file '{}' not found\n", path.display()))?;
+    let file = FirmwareFile::read(&bytes).map_err(|error| format!("tcc: '{}': {error}\n", path.display()))?;
+    Ok(Firmware::File(Arc::new(file)))
+}
+
+fn options(request: &Request, firmware: Option<Firmware>) -> Options {
+    let defines =
+        request.defines.iter().map(|(name, value)| (name.clone(), value.clone().unwrap_or("1".to_owned())));
+    Options {
+        preprocessor: pp::Options {
+            include_dirs: request.include_dirs.clone(),
+            defines: defines.collect(),
+            undefines: request.undefines.clone(),
+            embedded: kmotiondef::headers::EMBEDDED,
+            standard: request.standard,
+        },
+        level: Level::default(),
+        target: compiler::target::Target::C67x,
+        firmware: firmware.unwrap_or_default(),
+        addresses: SectionAddresses {
+            text: Some(GuestAddr::new(request.text)),
+            data: request.data.map(GuestAddr::new),
+            bss: request.bss.map(GuestAddr::new),
+        },
+        ..Options::default()
+    }
+}
+
+/// The thread whose space begins at an address; the first one for all other addresses.
+fn thread(text: u32) -> Option<ThreadId> {
+    let own = ThreadId::all().find(|thread| program_base(*thread).get() == text);
+    own.or_else(|| ThreadId::all().next())
+}
+
+/// What there is to say about a compilation, if it has errors.
+fn silent_without_errors(compilation: &Compilation) -> Result<(), String> {
+    let levels = Levels::default();
+    let shown: Vec<_> =
+        compilation.diagnostics().into_iter().filter_map(|diagnostic| levels.apply(diagnostic)).collect();
+    if shown.iter().any(|diagnostic| diagnostic.severity == Severity::Error) {
+        return Err(vendor::render(&shown, &compilation.sources));
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_name_or_the_command_line_of_the_vendors_compiler_is_recognised() {
+        for (line, expect) in [
+            ("tcc67", true),
+            ("/opt/KMotion/TCC67.exe prog.c", true),
+            ("cc67 -text 80050000 -g -nostdinc prog.c DSPKFLOP.out", true),
+            ("cc67 -Wl,-Ttext,80050000 -static prog.c", true),
+            ("cc67 run -I x prog.c", false),
+            ("cc67 --version", false),
+            ("cc67 check -text.c", false),
+            ("cc67", false),
+        ] {
+            let arguments: Vec<_> = line.split(' ').map(OsString::from).collect();
+            assert_eq!(is_meant(&arguments), expect, "{line}");
+        }
+    }
+}

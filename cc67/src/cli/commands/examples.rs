@@ -1,0 +1,174 @@
+//! `cc67 examples`: the programs of `c-programs/`, which the command brings along, as programs that stand alone.
+//!
+//! A copy holds what the program includes, so that it needs no other file but its machine file and its stimulus.
+
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
+use anyhow::{Context, Result, bail};
+use clap::Args;
+use compiler::words::suggest;
+
+use crate::cli::args::beside::Head;
+use crate::cli::io::exit::Exit;
+use crate::cli::io::output;
+
+/// Names and contents of all files.
+const FILES: &[(&str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/examples.rs"));
+
+/// Arguments of `cc67 examples`.
+#[derive(Debug, Args)]
+pub(super) struct ExamplesArguments {
+    /// The example to copy, with what belongs to it; without one all are listed
+    #[arg(value_name = "NAME")]
+    name: Option<String>,
+    /// Where the copy goes
+    #[arg(value_name = "DIR", default_value = ".")]
+    folder: PathBuf,
+    /// Print the program instead
+    #[arg(long)]
+    print: bool,
+}
+
+/// A file of a copy: its name and its text.
+pub(super) type Copy = (String, Vec<u8>);
+
+/// Lists the examples, or copies one.
+pub(super) fn examples(arguments: &ExamplesArguments) -> Result<Exit> {
+    let Some(name) = &arguments.name else {
+        output::print(&list())?;
+        return Ok(Exit::Success);
+    };
+    let path = find(name)?;
+    let stem = stem(path);
+    if arguments.print {
+        output::print(&alone(path, &mut BTreeSet::new()))?;
+        return Ok(Exit::Success);
+    }
+    let files: Vec<_> =
+        copy(path, stem).into_iter().map(|(name, text)| (arguments.folder.join(name), text)).collect();
+    if let Some((path, _)) = files.iter().find(|(path, _)| path.symlink_metadata().is_ok()) {
+        bail!("{} is there already; nothing was written", path.display());
+    }
+    std::fs::create_dir_all(&arguments.folder)
+        .with_context(|| format!("cannot make the folder {}", arguments.folder.display()))?;
+    output::write_all(&files)?;
+    let names: Vec<_> = files.iter().map(|(path, _)| path.display().to_string()).collect();
+    let program = arguments.folder.join(format!("{stem}.c"));
+    output::print(&format!("Wrote {}. Run it with\n  cc67 run {}\n", names.join(", "), program.display()))?;
+    Ok(Exit::Success)
+}
+
+/// All examples with what the first line of their comment says.
+fn list() -> String {
+    let mut text = "Copy one of these programs into the folder: cc67 examples NAME\n".to_owned();
+    let mut folder = "";
+    for (path, bytes) in FILES.iter().filter(|(path, _)| is_program(path)) {
+        let (of, name) = path.rsplit_once('/').unwrap_or(("", path));
+        if of != folder {
+            text.push_str(&format!("\n{of}\n"));
+            folder = of;
+        }
+        let source = String::from_utf8_lossy(bytes);
+        let about = source.lines().find_map(|line| line.strip_prefix(&format!("// {name} - ")));
+        text.push_str(&format!("  {:<24}{}\n", stem(path), about.unwrap_or_default()));
+    }
+    text
+}
+
+/// Whether a file is a program with a golden.
+fn is_program(path: &str) -> bool {
+    path.strip_suffix(".c").is_some_and(|stem| content(&format!("{stem}.expected")).is_some())
+}
+
+fn stem(path: &str) -> &str {
+    let name = path.rsplit('/').next().unwrap_or(path);
+    name.strip_suffix(".c").unwrap_or(name)
+}
+
+fn content(path: &str) -> Option<&'static [u8]> {
+    FILES.iter().find(|(known, _)| *known == path).map(|(_, bytes)| *bytes)
+}
+
+/// The program of a name: `homing/index`, or `index` alone.
+fn find(name: &str) -> Result<&'static str> {
+    let wanted = name.trim_end_matches(".c").trim_start_matches("c-programs/");
+    let mut programs = FILES.iter().map(|(path, _)| *path).filter(|path| is_program(path));
+    let fits = |path: &&str| path.strip_suffix(".c") == Some(wanted) || stem(path) == wanted;
+    let near =
+        || suggest(wanted, FILES.iter().filter(|(path, _)| is_program(path)).map(|(path, _)| stem(path)));
+    programs.find(fits).with_context(|| match near() {
+        Some(near) => format!("there is no example `{name}`; did you mean `{near}`?"),
+        None => format!("there is no example `{name}`; `cc67 examples` lists them"),
+    })
+}
+
+/// The files of a copy that is called `name`: the program, those beside it, and programs that run along.
+pub(super) fn copy(path: &str, name: &str) -> Vec<Copy> {
+    let folder = path.rsplit_once('/').map_or("", |(folder, _)| folder);
+    let own = path.strip_suffix(".c").unwrap_or(path);
+    let renamed = |text: String| {
+        let text = text.replace(&format!("c-programs/{own}"), name);
+        text.replace(&format!("{}.c", stem(path)), &format!("{name}.c"))
+            .replace(&format!("c-programs/{folder}/"), "")
+    };
+    let source = renamed(alone(path, &mut BTreeSet::new()));
+    let mut files = vec![(format!("{name}.c"), source.clone().into_bytes())];
+    for suffix in ["toml", "stim", "expected"] {
+        if let Some(bytes) = content(&format!("{own}.{suffix}")) {
+            files.push((format!("{name}.{suffix}"), bytes.to_vec()));
+        }
+    }
+    if let Ok(Head::Run { also, .. }) = Head::parse(source.lines().next().unwrap_or_default()) {
+        for program in also {
+            let file = program.rsplit(':').next().unwrap_or(&program).to_owned();
+            let text = alone(&join(folder, &file), &mut BTreeSet::new());
+            files.push((file, text.into_bytes()));
+        }
+    }
+    files
+}
+
+/// The example of a topic, as files of a project that are called after it.
+pub(super) fn topic(path: &str, name: &str) -> Result<Vec<Copy>> {
+    let files = copy(path, name);
+    if content(path).is_none() {
+        bail!("this cc67 was built without its examples");
+    }
+    Ok(files)
+}
+
+/// A source with all that it includes, each file once; the board's header stays a line.
+fn alone(path: &str, seen: &mut BTreeSet<String>) -> String {
+    let folder = path.rsplit_once('/').map_or("", |(folder, _)| folder);
+    let source = String::from_utf8_lossy(content(path).unwrap_or_default()).into_owned();
+    let mut text = String::new();
+    for line in source.lines() {
+        let included = line.trim().strip_prefix("#include \"").and_then(|rest| rest.strip_suffix('"'));
+        let file = included.map(|name| join(folder, name));
+        match file.filter(|file| content(file).is_some()) {
+            Some(file) if seen.insert(file.clone()) => text.push_str(&alone(&file, seen)),
+            Some(_) => {}
+            None => {
+                text.push_str(line);
+                text.push('\n');
+            }
+        }
+    }
+    text
+}
+
+/// A name relative to a folder, without `..`.
+fn join(folder: &str, name: &str) -> String {
+    let mut parts: Vec<&str> = folder.split('/').filter(|part| !part.is_empty()).collect();
+    for part in name.split('/') {
+        match part {
+            ".." => {
+                parts.pop();
+            }
+            "." => {}
+            part => parts.push(part),
+        }
+    }
+    parts.join("/")
+}

@@ -1,0 +1,106 @@
+//! `cc67 firmware`: the simulated firmware as a file to link against, and as a list.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use anyhow::Result;
+use clap::{Args, Subcommand};
+use kmotiondef::firmware::{ABSENT, FIRMWARE_FUNCTIONS, Origin};
+use kmotiondef::limits::VERSION;
+use kmotiondef::variables::FIRMWARE_VARIABLES;
+use serde_json::json;
+
+use crate::cli::io::exit::Exit;
+use crate::cli::io::output;
+use compiler::firmware;
+
+/// Arguments of `cc67 firmware`.
+#[derive(Debug, Args)]
+pub(super) struct FirmwareArguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Write the names and addresses as a file that `--firmware` and other linkers read
+    Export {
+        /// Where to
+        #[arg(value_name = "FILE", default_value = "DSPKFLOP.out")]
+        file: PathBuf,
+    },
+    /// List functions and variables with their addresses and what they do
+    List {
+        /// As JSON
+        #[arg(long)]
+        json: bool,
+    },
+}
+
+/// Does what is asked for.
+pub(super) fn firmware(arguments: &FirmwareArguments) -> Result<Exit> {
+    match &arguments.command {
+        Command::Export { file } => output::write(file, &firmware::export()?)?,
+        Command::List { json: true } => output::print(&list_json())?,
+        Command::List { json: false } => output::print(&list())?,
+    }
+    Ok(Exit::Success)
+}
+
+fn list() -> String {
+    let mut out = format!("{}\n\nfunctions\n", VERSION.trim_end());
+    for function in FIRMWARE_FUNCTIONS.iter().filter(|function| !ABSENT.contains(&function.name)) {
+        let note = match function.origin {
+            Origin::Header => "",
+            Origin::Firmware => " (KMotionDef.h does not declare it)",
+            Origin::Library => " (not in firmware 4.34; the simulated board supplies it)",
+        };
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            out,
+            "{:08x} {};\n         {}{note}",
+            function.address.get(),
+            function.prototype(),
+            function.doc
+        );
+    }
+    out.push_str("\nvariables\n");
+    for variable in FIRMWARE_VARIABLES {
+        let declaration = variable.ty.declare(variable.name);
+        let _ =
+            writeln!(out, "{:08x} {declaration};\n         {}", variable.address.get(), variable.doc.trim());
+    }
+    out
+}
+
+fn list_json() -> String {
+    let functions: Vec<_> = FIRMWARE_FUNCTIONS
+        .iter()
+        .filter(|function| !ABSENT.contains(&function.name))
+        .map(|function| {
+            json!({
+                "name": function.name,
+                "address": function.address.get(),
+                "prototype": function.prototype(),
+                "cost": function.cost.get(),
+                "group": function.group,
+                "in_firmware": function.origin != Origin::Library,
+                "doc": function.doc,
+            })
+        })
+        .collect();
+    let variables: Vec<_> = FIRMWARE_VARIABLES
+        .iter()
+        .map(|variable| {
+            json!({
+                "name": variable.name,
+                "address": variable.address.get(),
+                "size": variable.size,
+                "type": variable.ty.declare(""),
+                "doc": variable.doc.trim(),
+            })
+        })
+        .collect();
+    let all = json!({ "version": VERSION.trim_end(), "functions": functions, "variables": variables });
+    format!("{all:#}\n")
+}

@@ -1,0 +1,164 @@
+//! `cc67 inspect`: what is in an image.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Result, anyhow};
+use clap::{Args, ValueEnum};
+use coff::{Image, dump};
+
+use crate::cli::io::exit::Exit;
+use crate::cli::io::input::read;
+use crate::cli::io::output;
+use compiler::files;
+use compiler::inspect::{Inspection, Order, Sources};
+
+/// Arguments of `cc67 inspect`.
+#[derive(Debug, Args)]
+pub(super) struct InspectArguments {
+    /// An image, an object or a firmware file
+    #[arg(value_name = "IMAGE")]
+    file: PathBuf,
+    /// Headers and sections; shown with the symbols when nothing is chosen
+    #[arg(long)]
+    headers: bool,
+    /// Functions and objects
+    #[arg(long)]
+    symbols: bool,
+    /// Order of the symbols
+    #[arg(long, value_name = "ORDER", value_enum, default_value_t = OrderName::Address)]
+    sort: OrderName,
+    /// The symbol table entry by entry, as the file has it
+    #[arg(long)]
+    raw: bool,
+    /// The source line of each address
+    #[arg(long)]
+    lines: bool,
+    /// The instructions with their source lines, of all functions or of one
+    #[arg(long, short = 'd', value_name = "FUNCTION", num_args = 0..=1, require_equals = true)]
+    disassembly: Option<Option<String>>,
+    /// Folder of the sources; else that of the image
+    #[arg(long, value_name = "DIR")]
+    sources: Option<PathBuf>,
+    /// Debug information: where variables are, and their types; of an image whose source is beside it
+    #[arg(long)]
+    debug: bool,
+    /// Who calls whom
+    #[arg(long)]
+    calls: bool,
+    /// Stack of each function and the worst chain of calls
+    #[arg(long)]
+    stack: bool,
+    /// Everything
+    #[arg(long)]
+    all: bool,
+    /// As JSON: headers, sections, symbols, lines, functions
+    #[arg(long)]
+    json: bool,
+}
+
+/// Orders by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum OrderName {
+    /// Ascending
+    Address,
+    /// The largest first
+    Size,
+    /// By alphabet
+    Name,
+}
+
+impl From<OrderName> for Order {
+    fn from(name: OrderName) -> Self {
+        match name {
+            OrderName::Address => Self::Address,
+            OrderName::Size => Self::Size,
+            OrderName::Name => Self::Name,
+        }
+    }
+}
+
+/// Prints what is asked for.
+pub(super) fn inspect(arguments: &InspectArguments) -> Result<Exit> {
+    if arguments.debug {
+        return debug(arguments);
+    }
+    let inspection = Inspection::new(read_image(&arguments.file)?);
+    let order = arguments.sort.into();
+    if arguments.json {
+        output::print(&format!("{:#}\n", inspection.to_json(order)))?;
+        return Ok(Exit::Success);
+    }
+    let folder = arguments.file.parent().unwrap_or(Path::new(""));
+    let sources = Folder(arguments.sources.clone().unwrap_or_else(|| folder.to_owned()));
+    let nothing = !(arguments.headers
+        || arguments.symbols
+        || arguments.raw
+        || arguments.lines
+        || arguments.disassembly.is_some()
+        || arguments.calls
+        || arguments.stack);
+    let mut parts = Vec::new();
+    if arguments.headers || arguments.all || nothing {
+        parts.push(inspection.headers());
+    }
+    if arguments.symbols || arguments.all || nothing {
+        parts.push(inspection.symbol_table(order));
+    }
+    if arguments.raw {
+        parts.push(dump::symbols(&inspection.image));
+    }
+    if arguments.lines || arguments.all {
+        parts.push(inspection.line_table());
+    }
+    if arguments.calls || arguments.all {
+        parts.push(inspection.calls());
+    }
+    if arguments.stack || arguments.all {
+        parts.push(inspection.stack());
+    }
+    if let Some(function) = &arguments.disassembly {
+        parts.push(inspection.disassembly(&sources, function.as_deref()));
+    } else if arguments.all {
+        parts.push(inspection.disassembly(&sources, None));
+    }
+    output::print(&parts.join("\n"))?;
+    Ok(Exit::Success)
+}
+
+/// Prints the debug information of an image.
+fn debug(arguments: &InspectArguments) -> Result<Exit> {
+    let image = read_image(&arguments.file)?;
+    if image.target != coff::Target::CC67 {
+        anyhow::bail!(
+            "{}: debug information is of images for the simulated board alone",
+            arguments.file.display()
+        );
+    }
+    let path =
+        arguments.sources.as_ref().map_or_else(|| arguments.file.clone(), |folder| folder.join("image"));
+    let model = compiler::debug::of_image(&path, &read(&arguments.file)?, &compiler::Options::default());
+    let model =
+        model.map_err(|error| anyhow!("no debug information of {}: {error}", arguments.file.display()))?;
+    output::print(&model.table())?;
+    Ok(Exit::Success)
+}
+
+/// Reads an image; of another file the message says what it is.
+pub(super) fn read_image(path: &Path) -> Result<Image> {
+    let bytes = read(path)?;
+    Image::read(&bytes).map_err(|error| match files::describe(&bytes) {
+        Some(what) => anyhow!("{} is {what}, not a TI COFF image", path.display()),
+        None => anyhow!("{}: {error}", path.display()),
+    })
+}
+
+/// Source files in a folder.
+struct Folder(PathBuf);
+
+impl Sources for Folder {
+    fn text(&self, name: &str) -> Option<String> {
+        let bytes = fs::read(self.0.join(name)).ok()?;
+        Some(String::from_utf8_lossy(&bytes).into_owned())
+    }
+}

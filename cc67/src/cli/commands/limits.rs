@@ -1,0 +1,162 @@
+//! Every limit of the tool with its number, for `--explain limits` and the book.
+//!
+//! The numbers stand where they are enforced; this is their one list. The limits of the compiler
+//! are far above what a program for the board needs: they keep hostile text from taking memory,
+//! time or the stack. The limits of the board are the board's own.
+
+use std::fmt::Write as _;
+
+use kmotiondef::ThreadId;
+use kmotiondef::limits::MAX_NSTRINGS;
+use kmotiondef::map::{PROGRAM_BASE, PROGRAM_SIZE, STACK_BASE, STACK_SIZE};
+
+use crate::cli::report::SHOWN_REMARKS;
+use crate::cli::report::trace::SAMPLES as PICTURE_SAMPLES;
+use cc67_host::{CONSOLE_LINES, REPLY_BYTES};
+use compiler::bytecode::MAX_FRAME;
+use compiler::diag::MAX_ERRORS;
+use compiler::files::{DATA_BYTES, FILE_BYTES};
+use compiler::parse;
+use compiler::pp::limits as pp;
+use compiler::sema::MAX_VALUES;
+use compiler::ty::layout::MAX_OBJECT_SIZE;
+use runtime::FILE_BYTES as PC_FILE_BYTES;
+use runtime::stimulus::MOST_PLANNED as STIMULUS_PLANS;
+
+/// A limit.
+#[derive(Clone, Copy, Debug)]
+pub struct Limit {
+    /// What is counted.
+    pub what: &'static str,
+    /// The most that is accepted.
+    pub number: u64,
+    /// What happens beyond it.
+    pub beyond: &'static str,
+}
+
+/// What most limits of the compiler lead to.
+const ERROR: &str = "an error with this number";
+
+const fn limit(what: &'static str, number: u64, beyond: &'static str) -> Limit {
+    Limit { what, number, beyond }
+}
+
+/// What the compiler refuses to go beyond.
+pub const COMPILER: &[Limit] = &[
+    limit("files included within each other", pp::INCLUDE_DEPTH as u64, ERROR),
+    limit("files included by one compilation, each time counted", pp::INCLUDES as u64, ERROR),
+    limit("bytes of one source file", pp::FILE_BYTES as u64, ERROR),
+    limit("bytes of all source files together, each inclusion counted", pp::TOTAL_BYTES as u64, ERROR),
+    limit("`#if` within `#if`", pp::CONDITIONALS as u64, ERROR),
+    limit("parameters of a macro", pp::PARAMETERS as u64, ERROR),
+    limit("macro calls within each other, parentheses within an `#if` expression", pp::NESTING as u64, ERROR),
+    limit("tokens that macros make", pp::EXPANDED_TOKENS as u64, ERROR),
+    limit("bytes of a token that `#` or `##` makes", pp::MADE_BYTES as u64, ERROR),
+    limit("tokens after preprocessing", pp::TOKENS as u64, ERROR),
+    limit(
+        "parentheses, blocks, declarators, prefix operators within each other",
+        parse::NESTING as u64,
+        ERROR,
+    ),
+    limit("binary operators in a row", parse::CHAIN as u64, ERROR),
+    limit("values of an initialiser", MAX_VALUES as u64, ERROR),
+    limit("bytes of an object", MAX_OBJECT_SIZE as u64, ERROR),
+    limit("bytes of the local variables of a function", MAX_FRAME as u64, ERROR),
+    limit("errors in one stage", MAX_ERRORS as u64, "the rest of the program is not checked, as it says"),
+];
+
+/// What a program meets on the board.
+pub const BOARD: &[Limit] = &[
+    limit("user threads, each with one program", ThreadId::MAX as u64, "the command line is refused"),
+    limit(
+        "bytes of a program and its data in its own space",
+        PROGRAM_SIZE as u64,
+        "a warning: the threads whose space it takes are named",
+    ),
+    limit(
+        "bytes of a program and its data from thread 1 on",
+        (STACK_BASE - PROGRAM_BASE) as u64,
+        "an error that names the largest parts",
+    ),
+    limit("bytes of a thread's stack", STACK_SIZE as u64, "the thread traps"),
+    limit(
+        "console strings that wait for the PC",
+        (MAX_NSTRINGS - 1) as u64,
+        "`printf` waits, as on the board",
+    ),
+    limit("files that a program has open for reading", 1, "`fopen` closes the one before"),
+    limit("files that a program has open for writing", 1, "`fopen` closes the one before"),
+];
+
+/// What waits for a client of the board, see [`cc67_host`].
+pub const CLIENTS: &[Limit] = &[
+    limit("console lines that no client has taken", CONSOLE_LINES as u64, "the board's own queue fills"),
+    limit(
+        "bytes of replies that no client has read",
+        REPLY_BYTES as u64,
+        "what comes then is lost; a remark says so",
+    ),
+];
+
+/// What is read and drawn.
+pub const FILES: &[Limit] = &[
+    limit("bytes of an image, a machine file or another input", FILE_BYTES, "the file is refused"),
+    limit("bytes of saved data that `cc67 plot` draws", DATA_BYTES, "the file is refused"),
+    limit(
+        "bytes of a file of the PC that a program reads",
+        PC_FILE_BYTES,
+        "the program is told that there is no such file, and a remark says why",
+    ),
+    limit(
+        "things that a stimulus has planned at a time",
+        STIMULUS_PLANS as u64,
+        "later ones are left out; a remark says so",
+    ),
+    limit(
+        "different remarks that a run shows",
+        SHOWN_REMARKS as u64,
+        "further ones are counted; `--json` shows all",
+    ),
+    limit(
+        "samples in a picture of a run",
+        PICTURE_SAMPLES as u64,
+        "the picture shows what was so every so many ticks, as it says; traces show all",
+    ),
+];
+
+/// All of them, under their headings.
+pub const ALL: [(&str, &[Limit]); 4] = [
+    ("The compiler", COMPILER),
+    ("A program on the board", BOARD),
+    ("A board that serves programs of the PC", CLIENTS),
+    ("Files, stimuli, remarks and pictures", FILES),
+];
+
+/// A number with its thousands apart.
+#[must_use]
+pub fn grouped(number: u64) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// All limits as tables.
+#[must_use]
+pub fn page() -> String {
+    let mut text = String::new();
+    for (title, limits) in ALL {
+        let _ = write!(text, "{title}\n\n");
+        for limit in limits {
+            let _ = writeln!(text, "{:>13}  {}: {}", grouped(limit.number), limit.what, limit.beyond);
+        }
+        text.push('\n');
+    }
+    text.push_str("Names, string constants and lines are as long as their file allows.\n");
+    text
+}

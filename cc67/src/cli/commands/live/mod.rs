@@ -1,0 +1,201 @@
+//! `cc67 live`: a simulated board on a page in the browser.
+//!
+//! What the page shows and does is in `cc67-live`; here it gets its board, and a browser.
+
+mod demo;
+
+use std::ffi::{OsStr, OsString};
+use std::io::{self, Write};
+use std::net::Ipv4Addr;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use anyhow::{Context, Result, bail};
+use cc67_live::{ListenError, Program, Server, Show, TestOption};
+use clap::{Args, Parser};
+use vm::engine::Engine;
+
+use crate::cli::args::beside::BesideArguments;
+use crate::cli::args::board::BoardArguments;
+use crate::cli::args::compiler::CompilerArguments;
+use crate::cli::args::program::assign;
+use crate::cli::args::time::seconds;
+use crate::cli::io::exit::Exit;
+use crate::cli::io::terminal;
+use crate::cli::session::{Rig, Setup, Started, Work};
+
+/// The port that is taken if it is free and no other is asked for.
+const PORT: u16 = 8067;
+
+/// Arguments of `cc67 live`.
+#[derive(Debug, Args)]
+pub(super) struct LiveArguments {
+    /// Programs to load and start: FILE for the lowest free thread, N:FILE for thread N
+    #[arg(value_name = "[N:]FILE")]
+    programs: Vec<OsString>,
+    /// Listen on this port; 0 picks a free one [default: 8067, or a free one if that is taken]
+    #[arg(long, value_name = "PORT")]
+    port: Option<u16>,
+    /// Do not open a browser
+    #[arg(long)]
+    no_open: bool,
+    /// Signals of the scope: items such as dest0,bit46 and C expressions in the words of the programs
+    #[arg(long, value_name = "LIST", default_value = "")]
+    watch: String,
+    /// Seconds of board time in a second, 0.01 to 100
+    #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = speed)]
+    speed: f64,
+    /// Show a machine that homes and mills; its files are written into a folder of their own
+    #[arg(long, conflicts_with = "programs")]
+    demo: bool,
+    /// Wait with the clock stopped
+    #[arg(long)]
+    paused: bool,
+    /// Load a program that is saved without errors at once
+    #[arg(long)]
+    reload: bool,
+    /// End after so many seconds of board time
+    #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
+    limit: Option<f64>,
+    #[command(flatten)]
+    beside: BesideArguments,
+    #[command(flatten)]
+    board: BoardArguments,
+    #[command(flatten)]
+    compiler: CompilerArguments,
+}
+
+impl LiveArguments {
+    /// The programs, if what stands beside them is to be used.
+    pub(super) fn with_sidecars(&self) -> Option<&[OsString]> {
+        (!self.beside.no_sidecar).then_some(&self.programs)
+    }
+}
+
+/// A factor of time.
+fn speed(text: &str) -> Result<f64, String> {
+    let factor = text.parse().ok().filter(|factor| (0.01..=100.0).contains(factor));
+    factor.ok_or_else(|| "expected a number from 0.01 to 100".to_owned())
+}
+
+/// Shows a board until it is interrupted.
+pub(super) fn live(arguments: &LiveArguments) -> Result<Exit> {
+    if arguments.board.uart.is_given() {
+        bail!("`cc67 live`: the serial port cannot be connected yet");
+    }
+    if arguments.demo {
+        return demonstrate(arguments);
+    }
+    let started = Started { programs: &arguments.programs, first: &arguments.beside.first };
+    let setup = Setup::new(started, &arguments.board, &arguments.compiler, None)?;
+    let Some(setup) = setup else { return Ok(Exit::Failure) };
+    setup.on_its_engine(arguments)
+}
+
+/// Shows the demonstration, with those of the arguments that are about the page.
+fn demonstrate(arguments: &LiveArguments) -> Result<Exit> {
+    let folder = demo::write()?;
+    terminal::note(&format!("the files of the demonstration are in {}", folder.display()));
+    let mut words = vec!["live".to_owned()];
+    words.extend(demo::arguments(&folder));
+    words.push(format!("--speed={}", arguments.speed));
+    words.extend(arguments.port.map(|port| format!("--port={port}")));
+    words.extend(arguments.limit.map(|limit| format!("--for={limit}")));
+    let switches =
+        [("--no-open", arguments.no_open), ("--paused", arguments.paused), ("--reload", arguments.reload)];
+    words.extend(switches.iter().filter(|(_, is_on)| *is_on).map(|(word, _)| (*word).to_owned()));
+    live(&Demonstration::try_parse_from(words)?.arguments)
+}
+
+/// The arguments of the demonstration, as if they had been typed.
+#[derive(Debug, Parser)]
+struct Demonstration {
+    #[command(flatten)]
+    arguments: LiveArguments,
+}
+
+impl Work for &LiveArguments {
+    fn on<E: Engine>(self, mut rig: Rig<E>) -> Result<Exit> {
+        let show = self.show()?;
+        let server = self.listen()?;
+        if self.board.pc.address().is_some_and(|host| !host.is_loopback()) {
+            terminal::note("other computers can reach this page: whoever has the address moves the machine");
+        }
+        let mut out = io::stdout();
+        writeln!(out, "{}", server.url()).and_then(|()| out.flush()).context("cannot write the address")?;
+        if !self.no_open {
+            open(server.url());
+        }
+        server.run(&mut rig.session, show);
+        rig.finish(&mut |_| ())?;
+        Ok(Exit::Success)
+    }
+}
+
+impl LiveArguments {
+    /// What the page shows beside the board.
+    fn show(&self) -> Result<Show> {
+        let files = assign(&[&self.programs[..], &self.board.load].concat())?;
+        let programs = files.into_iter().map(|file| Program {
+            thread: file.thread,
+            is_image: file.is_image(),
+            path: file.path,
+        });
+        Ok(Show {
+            title: self.programs.join(OsStr::new(", ")).to_string_lossy().into_owned(),
+            machine: self.board.machine_file()?,
+            programs: programs.collect(),
+            include_dirs: self.compiler.resolve()?.preprocessor.include_dirs,
+            watch: self.watch.clone(),
+            speed: self.speed,
+            is_paused: self.paused,
+            reloads: self.reload,
+            limit: self.limit,
+            command: std::env::current_exe().context("cannot find the file of this command")?,
+            test_options: self.test_options(),
+        })
+    }
+
+    /// What `cc67 run` has to be told for the same board.
+    fn test_options(&self) -> Vec<TestOption> {
+        let text = |option: &str, value: &str| TestOption::Text(format!("{option}={value}"));
+        let board = &self.board;
+        let machine = board.machine.iter().map(|file| TestOption::File("--machine", file.clone()));
+        let settings = board.set.iter().map(|setting| text("--set", setting));
+        let stimuli = board.stim.iter().map(|stimulus| match Path::new(stimulus).exists() {
+            true => TestOption::File("--stim", stimulus.into()),
+            false => text("--stim", stimulus),
+        });
+        let assist = board.assist.then(|| TestOption::Text("--assist".to_owned()));
+        machine.chain(settings).chain(stimuli).chain(assist).collect()
+    }
+
+    fn listen(&self) -> Result<Server> {
+        let host = self.board.pc.address().unwrap_or(Ipv4Addr::LOCALHOST.into());
+        let listen = |port| Server::listen(host, port);
+        let server = match self.port {
+            Some(port) => listen(port),
+            None => listen(PORT).or_else(|error| match error {
+                ListenError::Address { .. } => listen(0),
+                ListenError::Random(_) => Err(error),
+            }),
+        };
+        Ok(server?)
+    }
+}
+
+/// Opens the browser that the person uses; where that cannot be done, the address stands in the terminal.
+fn open(url: &str) {
+    let (program, arguments): (_, &[&str]) = if cfg!(target_os = "macos") {
+        ("open", &[])
+    } else if cfg!(windows) {
+        ("rundll32", &["url.dll,FileProtocolHandler"])
+    } else {
+        ("xdg-open", &[])
+    };
+    let mut command = Command::new(program);
+    command.args(arguments).arg(url).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    if command.spawn().is_err() {
+        terminal::note("no browser could be opened: open the address above");
+    }
+}

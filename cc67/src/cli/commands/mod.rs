@@ -1,0 +1,231 @@
+//! The subcommands: one file each, one row each in [`Command`].
+//!
+//! A subcommand has arguments, does its work with what stands below it, and says by an exit code how that went.
+
+mod build;
+mod check;
+mod compare;
+mod console;
+mod debug;
+mod diff;
+mod drop_in;
+mod examples;
+mod explain;
+mod firmware;
+mod init;
+mod inspect;
+pub mod limits;
+#[cfg(feature = "live")]
+mod live;
+mod package;
+mod plot;
+mod run;
+mod shell;
+#[cfg(feature = "native")]
+mod stand_alone;
+mod test;
+
+use std::ffi::OsString;
+use std::path::Path;
+use std::process::ExitCode;
+
+use anyhow::{Context, Result, anyhow};
+use clap::error::{ContextKind, ContextValue};
+use clap::{CommandFactory, Parser, Subcommand};
+use compiler::words::suggest;
+
+use super::args::beside::Beside;
+use super::io::exit::Exit;
+use super::io::terminal;
+#[cfg(feature = "native")]
+pub use stand_alone::main as stand_alone;
+
+/// C compiler, linker and simulated KFLOP board.
+#[derive(Debug, Parser)]
+#[command(name = "cc67", version = VERSION, about, max_term_width = 100, arg_required_else_help = true, args_override_self = true)]
+struct Arguments {
+    /// Explain a warning by the name in its brackets; `warnings` lists them all; also limits, machine, stimulus
+    #[arg(long, value_name = "WARNING", global = true, allow_hyphen_values = true)]
+    explain: Option<String>,
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+/// Our version and that of the firmware which the simulated board models.
+const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (models KFLOP firmware 4.34)");
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Compile programs into threads, execute them on the simulated board, print the console
+    Run(Box<run::RunArguments>),
+    /// Compile and link a program for a thread into an image, FILE(N).out
+    Build(build::BuildArguments),
+    /// Compile programs and report what is wrong with them
+    Check(check::CheckArguments),
+    /// Talk to a simulated board: script commands, programs, what they print; interactive or from a script
+    Console(Box<console::ConsoleArguments>),
+    /// Show a simulated board on a page in the browser: axes, inputs and outputs, console, threads, signals
+    #[cfg(feature = "live")]
+    Live(Box<live::LiveArguments>),
+    /// Debug programs, also backwards: in the terminal, from a script, or for an editor (--dap)
+    Debug(Box<debug::DebugArguments>),
+    /// Show what is in an image: headers, symbols, lines, instructions, calls, stack
+    Inspect(inspect::InspectArguments),
+    /// Run programs on the modelled firmware and on your own firmware file, and show where they differ
+    Compare(Box<compare::CompareArguments>),
+    /// Show how two images differ
+    Diff(diff::DiffArguments),
+    /// The simulated firmware as a file to link against, and as a list
+    Firmware(firmware::FirmwareArguments),
+    /// Run programs and compare their consoles with what is expected
+    Test(test::TestArguments),
+    /// Make a project folder ready for an editor and for CI
+    Init(init::InitArguments),
+    /// List the example programs, or copy one that stands alone
+    Examples(examples::ExamplesArguments),
+    /// Draw saved data over time: columns of numbers, traces (.csv, .vcd)
+    Plot(plot::PlotArguments),
+    /// Run programs many times over parameters, FILE.toml, and make a table; needs the Python package
+    Sweep(package::PackageArguments),
+    /// Step and frequency response, following error, tolerance of a program; needs the Python package
+    Study(package::PackageArguments),
+    /// Print a script that completes commands and options in a shell
+    Completions(shell::CompletionArguments),
+    /// Write manual pages
+    Man(shell::ManArguments),
+}
+
+impl Command {
+    fn run(&self) -> Result<Exit> {
+        match self {
+            Self::Run(arguments) => run::run(arguments),
+            Self::Build(arguments) => build::build(arguments),
+            Self::Check(arguments) => check::check(arguments),
+            Self::Console(arguments) => console::console(arguments),
+            #[cfg(feature = "live")]
+            Self::Live(arguments) => live::live(arguments),
+            Self::Debug(arguments) => debug::debug(arguments),
+            Self::Inspect(arguments) => inspect::inspect(arguments),
+            Self::Compare(arguments) => compare::compare(arguments),
+            Self::Diff(arguments) => diff::diff(arguments),
+            Self::Firmware(arguments) => firmware::firmware(arguments),
+            Self::Test(arguments) => test::test(arguments),
+            Self::Init(arguments) => init::init(arguments),
+            Self::Examples(arguments) => examples::examples(arguments),
+            Self::Plot(arguments) => plot::plot(arguments),
+            Self::Sweep(arguments) => package::run("sweep", arguments),
+            Self::Study(arguments) => package::run("study", arguments),
+            Self::Completions(arguments) => shell::completions(arguments, Arguments::command()),
+            Self::Man(arguments) => shell::man(arguments, Arguments::command()),
+        }
+    }
+}
+
+/// `-std=c99`, as other compilers take it, is `--std=c99` here.
+fn as_long_option(argument: OsString) -> OsString {
+    match argument.to_str().and_then(|text| text.strip_prefix("-std=")) {
+        Some(standard) => format!("--std={standard}").into(),
+        None => argument,
+    }
+}
+
+/// Runs the command with the arguments of a process, the program's name first.
+pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    if drop_in::is_meant(&arguments) {
+        return drop_in::main(&arguments);
+    }
+    let words: Vec<OsString> = arguments.into_iter().map(as_long_option).collect();
+    let arguments = match Arguments::try_parse_from(&words) {
+        Ok(arguments) => match arguments.with_sidecars(&words) {
+            Ok(arguments) => arguments,
+            Err(error) => {
+                terminal::error(&error);
+                return Exit::WrongInput.into();
+            }
+        },
+        Err(error) => match advice(&error) {
+            Some(advice) => {
+                terminal::note(&advice);
+                return Exit::WrongInput.into();
+            }
+            // Help and version go to stdout with success, wrong usage to stderr with 2.
+            None => error.exit(),
+        },
+    };
+    let result = match (&arguments.explain, &arguments.command) {
+        (Some(name), _) => explain::explain(name),
+        (None, Some(command)) => command.run(),
+        (None, None) => return Exit::WrongInput.into(),
+    };
+    result
+        .unwrap_or_else(|error| {
+            terminal::error(&error);
+            Exit::WrongInput
+        })
+        .into()
+}
+
+impl Arguments {
+    /// The same with the options of the project file and of what stands beside the first program, which is said in one
+    /// line.
+    fn with_sidecars(self, words: &[OsString]) -> Result<Self> {
+        let (name, programs) = match &self.command {
+            Some(Command::Run(arguments)) => ("run", arguments.with_sidecars()),
+            #[cfg(feature = "live")]
+            Some(Command::Live(arguments)) => ("live", arguments.with_sidecars()),
+            Some(Command::Test(_)) => ("test", None),
+            _ => return Ok(self),
+        };
+        let (beside, line) = match (programs, &self.command) {
+            (Some(programs), _) => {
+                let beside = Beside::of(name, programs, words, |option| knows(name, option))?;
+                let line = programs.first().and_then(|program| beside.line(program));
+                (beside, line)
+            }
+            (None, Some(Command::Test(arguments))) => (Beside::from(arguments.of_project()?), None),
+            (None, _) => return Ok(self),
+        };
+        if beside.is_empty() {
+            return Ok(self);
+        }
+        let at = words.iter().position(|word| word == name).context("the subcommand is among the words")? + 1;
+        let (before, given) = words.split_at(at);
+        let arguments = Self::try_parse_from([before, &beside.options, given, &beside.also].concat());
+        let arguments = arguments.map_err(|error| {
+            let text = error.to_string();
+            let first = text.lines().next().unwrap_or_default().trim_start_matches("error: ");
+            anyhow!("{}: {first}", line.as_deref().unwrap_or("cc67.toml"))
+        })?;
+        line.iter().for_each(|line| terminal::note(line));
+        Ok(arguments)
+    }
+}
+
+/// Whether a subcommand has an option, by its long or short name.
+fn knows(subcommand: &str, option: &str) -> bool {
+    let command = Arguments::command();
+    let Some(subcommand) = command.find_subcommand(subcommand) else { return false };
+    subcommand.get_arguments().any(|argument| {
+        let long = argument.get_long_and_visible_aliases().unwrap_or_default();
+        let aliases = argument.get_all_aliases().unwrap_or_default();
+        let is_long = long.into_iter().chain(aliases).any(|name| option == format!("--{name}"));
+        is_long
+            || argument
+                .get_short()
+                .is_some_and(|short| option.starts_with(&format!("-{short}")) && !option.starts_with("--"))
+    })
+}
+
+/// What to type in place of a word that is no subcommand: a program needs `run`, and another word may be misspelt.
+fn advice(error: &clap::Error) -> Option<String> {
+    let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidSubcommand) else { return None };
+    let path = Path::new(word);
+    let suffix = path.extension().unwrap_or_default();
+    if ["c", "out"].iter().any(|known| suffix.eq_ignore_ascii_case(known)) || path.is_file() {
+        return Some(format!("`{word}` is not a subcommand; to run it: `cc67 run {word}`"));
+    }
+    let command = Arguments::command();
+    let similar = suggest(word, command.get_subcommands().map(clap::Command::get_name))?;
+    Some(format!("`{word}` is not a subcommand; did you mean `{similar}`?"))
+}

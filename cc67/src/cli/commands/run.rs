@@ -1,0 +1,201 @@
+//! `cc67 run`: compile, load, execute, print the console.
+
+mod booted;
+
+use std::ffi::{OsStr, OsString};
+use std::io::{self, BufWriter};
+
+use anyhow::Result;
+use cc67_host::Ending;
+use clap::Args;
+use kmotiondef::limits::TIMEBASE;
+use kmotiondef::{AxisId, ThreadId, Ticks};
+use runtime::Board;
+use vm::engine::Engine;
+#[cfg(feature = "native")]
+use vm::native::NativeEngine;
+use vm::profile::ProfilingEngine;
+
+use crate::cli::args::beside::BesideArguments;
+use crate::cli::args::board::BoardArguments;
+use crate::cli::args::compiler::CompilerArguments;
+use crate::cli::args::time::{DEFAULT_LIMIT, seconds};
+use crate::cli::args::trace::TraceArguments;
+use crate::cli::io::exit::Exit;
+use crate::cli::io::pace::Pace;
+use crate::cli::io::{output, terminal};
+use crate::cli::report::profile;
+use crate::cli::report::screen::{Reader, Screen, Style, no_run};
+use crate::cli::report::seen::Seen;
+use crate::cli::report::state::State;
+use crate::cli::report::trace::{self, Trace};
+use crate::cli::session::{Rig, Setup, Started, Work};
+
+/// Arguments of `cc67 run`.
+#[derive(Debug, Args)]
+pub(super) struct RunArguments {
+    /// The programs, sources or images: FILE for the lowest free thread, N:FILE for thread N
+    #[arg(required_unless_present_any = ["explain", "flash"], value_name = "[N:]FILE")]
+    programs: Vec<OsString>,
+    /// End after so many seconds of board time, with success
+    #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
+    limit: Option<f64>,
+    /// Show the board time in seconds before each console line
+    #[arg(long)]
+    time: bool,
+    /// Keep pace with the clock; what happens is the same
+    #[arg(long)]
+    realtime: bool,
+    /// Show all of it as JSON on stdout, an object a line; the last one sums it up
+    #[arg(long, conflicts_with = "time")]
+    json: bool,
+    /// Say in which state the board is left: axes, bits, elements of persist; in a golden, too
+    #[arg(long)]
+    state: bool,
+    /// Show every remark of the board, also on what is probably as intended: unknown FPGA registers
+    #[arg(long)]
+    verbose: bool,
+    /// Show where board time went; with =FILE.svg also draw it as a flame graph
+    #[arg(long, value_name = "FILE.svg", num_args = 0..=1, require_equals = true, default_missing_value = "")]
+    profile: Option<String>,
+    #[command(flatten)]
+    beside: BesideArguments,
+    #[command(flatten)]
+    board: BoardArguments,
+    #[command(flatten)]
+    trace: TraceArguments,
+    #[command(flatten)]
+    compiler: CompilerArguments,
+}
+
+/// Compiles, loads and runs the programs.
+pub(super) fn run(arguments: &RunArguments) -> Result<Exit> {
+    if let Some(file) = &arguments.board.boot {
+        return booted::run(arguments, file);
+    }
+    let setup = Setup::new(arguments.started(), &arguments.board, &arguments.compiler, None)?;
+    match setup {
+        Some(setup) => run_setup(arguments, setup),
+        None => {
+            if arguments.json {
+                output::print(&no_run(Exit::Failure, "compile error"))?;
+            }
+            Ok(Exit::Failure)
+        }
+    }
+}
+
+/// The same, where the image of the first program is at hand, and its code is known to a native engine.
+#[cfg(feature = "native")]
+pub(super) fn run_held(arguments: &RunArguments, image: &[u8], native: NativeEngine) -> Result<Exit> {
+    let setup = Setup::new(arguments.started(), &arguments.board, &arguments.compiler, Some(image))?;
+    let Some(setup) = setup else { return Ok(Exit::Failure) };
+    run_setup(arguments, setup.with_native(native))
+}
+
+fn run_setup(arguments: &RunArguments, setup: Setup) -> Result<Exit> {
+    let Some(target) = &arguments.profile else { return setup.on_its_engine(arguments) };
+    let target = profile::target(target)?;
+    let mut rig = setup.rig(ProfilingEngine::default())?;
+    let exit = arguments.execute(&mut rig)?;
+    terminal::aside(&profile::report(rig.session.board(), &target)?);
+    Ok(exit)
+}
+
+impl Work for &RunArguments {
+    fn on<E: Engine>(self, mut rig: Rig<E>) -> Result<Exit> {
+        self.execute(&mut rig)
+    }
+}
+
+impl RunArguments {
+    /// The programs, if what stands beside them is to be used.
+    pub(super) fn with_sidecars(&self) -> Option<&[OsString]> {
+        (!self.beside.no_sidecar && self.board.boot.is_none()).then_some(&self.programs)
+    }
+
+    /// The programs and the order in which they start.
+    fn started(&self) -> Started<'_> {
+        Started { programs: &self.programs, first: &self.beside.first }
+    }
+
+    /// Runs the board and shows what happens.
+    fn execute<E: Engine>(&self, rig: &mut Rig<E>) -> Result<Exit> {
+        let request = trace::request(&self.trace, &rig.session)?;
+        let (programs, offered) = (rig.session.debug(), rig.session.offered());
+        let mut screen = Screen::new(BufWriter::new(io::stdout().lock()), self.style(), programs, offered);
+        if let Some(request) = &request {
+            rig.session.record(request.clone());
+        }
+        let mut trace = request.as_ref().map(|request| Trace::begin(&self.trace, request)).transpose()?;
+        rig.connect()?;
+        let mut seen = Seen::default();
+        let limit = Ticks::new((self.limit.unwrap_or(DEFAULT_LIMIT) / TIMEBASE).round() as u64);
+        let pace = self.realtime.then(|| Pace::new(rig.session.tick()));
+        let mut sink = |event| {
+            if let Some(trace) = &mut trace {
+                trace.note(&event);
+            }
+            seen.note(&event);
+            screen.show(&event);
+        };
+        let end = rig.run(limit, pace.as_ref(), &mut sink);
+        rig.finish(&mut sink)?;
+        let (board, ending) = (rig.session.board(), rig.session.ending());
+        let (exit, why) = seen.exit(end, self.limit.is_some());
+        let active = active(board);
+        let state = State::of(board);
+        screen.end(exit, why, board.tick(), &active, &ending, &state);
+        if screen.finish().map_err(|error| output::lost_output(&error))? == Reader::Gone {
+            return Ok(Exit::Success);
+        }
+        if let Some(trace) = trace {
+            let title = self.programs.join(OsStr::new(", "));
+            trace.finish(&self.trace, board.tick(), &title.to_string_lossy())?;
+        }
+        if self.state {
+            state.lines().iter().for_each(|line| terminal::note(line));
+        }
+        if let Some(how) = how_it_ended(exit, board, &ending) {
+            terminal::note(&how);
+        }
+        Ok(exit)
+    }
+
+    /// How the run is shown.
+    fn style(&self) -> Style {
+        Style { time: self.time, is_verbose: self.verbose, is_live: self.realtime, json: self.json }
+    }
+}
+
+/// The numbers of the threads that are active.
+fn active<E: Engine>(board: &Board<E>) -> Vec<u8> {
+    let is_active = |thread: &ThreadId| board.thread(*thread).is_active();
+    ThreadId::all().filter(is_active).map(ThreadId::get).collect()
+}
+
+/// How a run ended that has left something undone: which threads are still there and what they wait for.
+fn how_it_ended<E: Engine>(exit: Exit, board: &Board<E>, ending: &Ending) -> Option<String> {
+    let moving = board.moving();
+    let is_over = ending.has_all_ended() && moving.is_empty();
+    let head = match exit {
+        Exit::StillRunning => still_running(&active(board), &moving),
+        _ if is_over => return None,
+        _ => format!("at the end, after {:.3} s of board time:", board.tick().get() as f64 * TIMEBASE),
+    };
+    Some(format!("{head}\n{ending}"))
+}
+
+/// Why a run has not ended by the usual limit, and what can be done.
+fn still_running(active: &[u8], moving: &[AxisId]) -> String {
+    let after = format!("after {DEFAULT_LIMIT} s of board time");
+    let (Some(first), []) = (moving.first(), active) else {
+        return format!("still running {after}; `--for SECONDS` sets the limit");
+    };
+    let numbers = moving.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+    let (axes, verb) = if moving.len() == 1 { ("axis", "moves") } else { ("axes", "move") };
+    format!(
+        "the programs have ended, but {axes} {numbers} still {verb} {after}: what `Jog` begins, `Jog({first}, 0)` or \
+         `DisableAxis({first})` ends; `--for SECONDS` ends the run at a time of your choice, with exit code 0"
+    )
+}

@@ -1,0 +1,113 @@
+//! Which programs are tests, and how each wants to be run.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+
+use crate::cli::args::beside::{BESIDE, Head, Project};
+use crate::cli::io::input::read;
+
+/// A program with the console it should show.
+#[derive(Debug)]
+pub(super) struct Case {
+    /// The program.
+    pub(super) source: PathBuf,
+    /// What it should show, or nothing if that was never written down.
+    pub(super) expected: Option<String>,
+    /// Arguments of `cc67 run` in front of the program.
+    pub(super) options: Vec<String>,
+    /// Programs for other threads, behind it.
+    pub(super) also: Vec<String>,
+}
+
+impl Case {
+    /// Where the expected console stands.
+    pub(super) fn golden(&self) -> PathBuf {
+        self.source.with_extension("expected")
+    }
+
+    /// The folder it is run in.
+    pub(super) fn folder(&self) -> &Path {
+        match self.source.parent() {
+            Some(folder) if folder != Path::new("") => folder,
+            _ => Path::new("."),
+        }
+    }
+
+    /// The name for reports.
+    pub(super) fn name(&self) -> String {
+        let name = self.source.with_extension("").to_string_lossy().replace('\\', "/");
+        name.strip_prefix("./").map_or(name.clone(), str::to_owned)
+    }
+}
+
+/// The tests among the paths: programs that are named, and those in folders, in the order of names.
+pub(super) fn find(paths: &[PathBuf]) -> Result<Vec<Case>> {
+    let mut cases = Vec::new();
+    for path in paths {
+        if path.is_dir() {
+            search(path, &mut cases)?;
+        } else {
+            let head = Head::of(path)?;
+            if let Head::Part = head {
+                bail!("{} says that it is a part of another program's test", path.display());
+            }
+            cases.push(case(path, head)?);
+        }
+    }
+    Ok(cases)
+}
+
+/// Adds the tests of a folder and of those in it.
+fn search(folder: &Path, cases: &mut Vec<Case>) -> Result<()> {
+    let entries = fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))?;
+    let mut paths: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+    paths.sort();
+    for path in paths {
+        // A link to a folder may lead back here.
+        if path.is_dir() && !path.is_symlink() {
+            search(&path, cases)?;
+        } else if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("c")) {
+            let head = Head::of(&path)?;
+            let is_test = matches!(head, Head::Run { .. })
+                || matches!(head, Head::None) && path.with_extension("expected").exists();
+            if is_test {
+                cases.push(case(&path, head)?);
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Options of the project file for the programs of tests; files with their whole path, as a test is run in its folder.
+fn project(path: &Path) -> Result<Vec<String>> {
+    let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    let folder = folder.canonicalize().with_context(|| format!("cannot read {}", folder.display()))?;
+    let Some(project) = Project::above(&folder)? else { return Ok(Vec::new()) };
+    let (_, options) = project.parted_options("test", |option| super::OWN_OPTIONS.contains(&option));
+    Ok(options.into_iter().map(|word| word.to_string_lossy().into_owned()).collect())
+}
+
+fn case(path: &Path, head: Head) -> Result<Case> {
+    let (mut options, also) = match head {
+        Head::Run { options, also } => (options, also),
+        Head::Part | Head::None => (Vec::new(), Vec::new()),
+    };
+    let project = project(path)?;
+    for (suffix, option) in BESIDE {
+        let beside = path.with_extension(suffix);
+        if beside.is_file() && !options.iter().any(|given| given.starts_with(option)) {
+            let name = beside.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            options.extend([(*option).to_owned(), name]);
+        }
+    }
+    // What is nearer to the program comes later, and wins.
+    options.splice(0..0, project);
+    let golden = path.with_extension("expected");
+    let expected = match golden.exists() {
+        true => Some(String::from_utf8_lossy(&read(&golden)?).replace("\r\n", "\n")),
+        false => None,
+    };
+    Ok(Case { source: path.to_owned(), expected, options, also })
+}

@@ -1,0 +1,201 @@
+//! Runs the tests, several at a time.
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+use std::{env, fs, process, thread};
+
+use anyhow::{Context, Result};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::case::Case;
+use super::golden::{self, Shown};
+use super::this_command;
+use crate::cli::args::engine::EngineName;
+use crate::cli::io::output;
+
+/// How a test ended.
+#[derive(Debug)]
+pub(super) enum Verdict {
+    /// Every engine showed what was expected.
+    Passed,
+    /// The expected text was written anew.
+    Blessed,
+    /// The text would be written, but holds more than a console: that is asked for first.
+    Asked(Shown),
+    /// The text is not written: nothing was run, or not as it should.
+    Refused(Shown),
+    /// There is no expected text.
+    Unknown,
+    /// The engines agree on something else.
+    Differs(Shown),
+    /// An engine did not show what the first one did.
+    Disagrees(Shown, EngineName, Shown),
+}
+
+impl Verdict {
+    /// Whether the test is as it should be.
+    pub(super) fn is_good(&self) -> bool {
+        matches!(self, Self::Passed | Self::Blessed)
+    }
+}
+
+/// Runs all cases on all engines, `jobs` runs at a time; the verdicts have the order of the cases.
+pub(super) fn all(
+    cases: &[Case],
+    engines: &[EngineName],
+    options: &[String],
+    bless: bool,
+    jobs: usize,
+) -> Result<(Vec<Verdict>, Vec<Duration>)> {
+    let command = this_command()?;
+    let runs: Vec<_> = cases
+        .iter()
+        .flat_map(|case| engines.iter().map(move |engine| (case, *engine)))
+        .zip(0..)
+        .map(|((case, engine), scratch)| Run { command: &command, case, engine, options, scratch })
+        .collect();
+    let shown = execute(&runs, jobs)?;
+    let took = shown.chunks(engines.len().max(1)).map(|runs| runs.iter().map(|shown| shown.took).sum());
+    let took = took.collect();
+    let mut shown = shown.into_iter();
+    let of_case = |case: &Case| verdict(case, engines.iter().copied().zip(shown.by_ref()), bless);
+    Ok((cases.iter().map(of_case).collect::<Result<_>>()?, took))
+}
+
+/// What every run shows, in their order.
+fn execute(runs: &[Run<'_>], jobs: usize) -> Result<Vec<Shown>> {
+    let bar = ProgressBar::new(runs.len() as u64);
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}") {
+        bar.set_style(style);
+    }
+    let next = AtomicUsize::new(0);
+    let slots: Vec<_> = runs.iter().map(|_| Mutex::new(None)).collect();
+    thread::scope(|scope| {
+        for _ in 0..jobs.min(runs.len()) {
+            scope.spawn(|| {
+                while let Some(index) = claim(&next, runs.len()) {
+                    let (Some(run), Some(slot)) = (runs.get(index), slots.get(index)) else { return };
+                    bar.set_message(run.case.name());
+                    let shown = run.execute();
+                    if let Ok(mut slot) = slot.lock() {
+                        *slot = Some(shown);
+                    }
+                    bar.inc(1);
+                }
+            });
+        }
+    });
+    bar.finish_and_clear();
+    slots.into_iter().map(|slot| slot.into_inner().ok().flatten().context("a test was not run")?).collect()
+}
+
+/// What the runs of a case say, the first engine first.
+fn verdict(case: &Case, runs: impl Iterator<Item = (EngineName, Shown)>, bless: bool) -> Result<Verdict> {
+    let mut first: Option<Shown> = None;
+    let mut verdict = None;
+    for (engine, shown) in runs {
+        match &first {
+            None => first = Some(shown),
+            Some(first) if first.golden != shown.golden => {
+                verdict.get_or_insert(Verdict::Disagrees(first.clone(), engine, shown));
+            }
+            Some(_) => {}
+        }
+    }
+    let first = first.context("a test was not run")?;
+    if let Some(verdict) = verdict {
+        return Ok(verdict);
+    }
+    Ok(match &case.expected {
+        Some(expected) if *expected == first.golden => Verdict::Passed,
+        _ if bless && matches!(first.code, None | Some(1 | 2)) => Verdict::Refused(first),
+        _ if bless && !first.notes().is_empty() => Verdict::Asked(first),
+        _ if bless => {
+            write(case, &first)?;
+            Verdict::Blessed
+        }
+        None => Verdict::Unknown,
+        Some(_) => Verdict::Differs(first),
+    })
+}
+
+/// Writes what a run showed as what is expected.
+pub(super) fn write(case: &Case, shown: &Shown) -> Result<()> {
+    output::write(&case.golden(), shown.golden.as_bytes())
+}
+
+/// The index of a run that nobody has taken.
+fn claim(next: &AtomicUsize, count: usize) -> Option<usize> {
+    let index = next.fetch_add(1, Ordering::Relaxed);
+    (index < count).then_some(index)
+}
+
+/// One test about to be run on one engine.
+struct Run<'a> {
+    command: &'a Path,
+    case: &'a Case,
+    engine: EngineName,
+    options: &'a [String],
+    /// A number of its own, for the name of its temporary folder.
+    scratch: usize,
+}
+
+impl Run<'_> {
+    /// Runs the program in its folder; files that it writes go to a temporary one.
+    fn execute(&self) -> Result<Shown> {
+        let files = env::temp_dir().join(format!("cc67-test-{}-{}", process::id(), self.scratch));
+        let name = self.case.source.file_name().unwrap_or_default();
+        let mut command = Command::new(self.command);
+        command.arg("run").arg("--no-sidecar").arg("--engine").arg(self.engine.name());
+        if !self.case.options.iter().any(|option| option.starts_with("--files")) {
+            command.arg("--files").arg(&files);
+        }
+        command.args(self.options).args(&self.case.options).arg(name).args(&self.case.also);
+        command.current_dir(self.case.folder()).stdin(Stdio::null()).env("NO_COLOR", "1");
+        let start = now();
+        let output = command.output().with_context(|| format!("cannot run {}", self.case.name()))?;
+        let took = start.elapsed();
+        // It exists only if the program wrote a file.
+        let _ = fs::remove_dir_all(&files);
+        // A golden has the usual folder of files.
+        let stderr = String::from_utf8_lossy(&output.stderr).replace(&*files.to_string_lossy(), "cc67-files");
+        let shown = golden::shown(&output.stdout, stderr.as_bytes(), output.status.code());
+        Ok(Shown { took, ..shown })
+    }
+}
+
+#[expect(clippy::disallowed_methods, reason = "a report says how long a test took; no result depends on it")]
+fn now() -> Instant {
+    Instant::now()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check(expected: Option<&str>, shown: [&str; 2], expect: &str) {
+        let case = Case {
+            source: "a.c".into(),
+            expected: expected.map(str::to_owned),
+            options: Vec::new(),
+            also: Vec::new(),
+        };
+        let shown = shown.map(|text| golden::shown(text.as_bytes(), b"", Some(0)));
+        let runs = [EngineName::Bytecode, EngineName::Native].into_iter().zip(shown);
+        let verdict = verdict(&case, runs, false).map(|verdict| format!("{verdict:?}"));
+        let verdict = verdict.expect("nothing is written");
+        assert!(verdict.starts_with(expect), "{verdict}");
+    }
+
+    #[test]
+    fn engines_must_agree_with_each_other_and_with_what_is_expected() {
+        check(Some("a\n"), ["a", "a"], "Passed");
+        check(Some("a\n"), ["b", "b"], "Differs");
+        check(Some("a\n"), ["a", "b"], "Disagrees");
+        check(Some("a\n"), ["b", "a"], "Disagrees");
+        check(None, ["a", "a"], "Unknown");
+    }
+}

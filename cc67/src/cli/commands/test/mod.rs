@@ -1,0 +1,134 @@
+//! `cc67 test`: golden tests of user programs.
+//!
+//! A test is a program `NAME.c` with `NAME.expected` beside it, which holds what the console shows.
+//! The program is run by this very command, in a process of its own for each engine, so a test is
+//! exactly what `cc67 run` does and no program can spoil another's result. The results are listed in
+//! the order of the programs' names, whichever is ready first.
+
+mod case;
+mod execute;
+mod golden;
+mod human;
+mod machine;
+
+use std::ffi::OsString;
+use std::io::{self, IsTerminal};
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+use clap::Args;
+
+use crate::cli::args::beside::Project;
+use crate::cli::args::engine::EngineName;
+use crate::cli::io::exit::Exit;
+use crate::cli::io::{output, terminal};
+use execute::Verdict;
+use golden::Shown;
+
+/// Options that are the command's own; all others in `[test]` of a project file are those of its programs.
+const OWN_OPTIONS: &[&str] = &["bless", "force", "engine", "jobs", "json", "junit"];
+
+/// Arguments of `cc67 test`.
+#[derive(Debug, Args)]
+#[command(after_help = HELP)]
+pub(super) struct TestArguments {
+    /// Programs, and folders to search for them
+    #[arg(required_unless_present = "explain", value_name = "PATH")]
+    paths: Vec<PathBuf>,
+    /// Write what the programs show now to their .expected files; asks where that is more than a console
+    #[arg(long)]
+    bless: bool,
+    /// With --bless, write remarks, traps and exit codes without asking
+    #[arg(long, requires = "bless")]
+    force: bool,
+    /// Run on this engine alone; else on all, which must agree
+    #[arg(long, value_enum)]
+    engine: Option<EngineName>,
+    /// Runs at a time, a program on two engines being two; else as many as there are processors
+    #[arg(long, short, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    jobs: Option<u16>,
+    /// Print the results as JSON
+    #[arg(long)]
+    json: bool,
+    /// Write the results as a JUnit report, too
+    #[arg(long, value_name = "FILE")]
+    junit: Option<PathBuf>,
+    /// Options of `cc67 run` for every program
+    #[arg(last = true, value_name = "OPTION")]
+    options: Vec<String>,
+}
+
+const HELP: &str = "\
+A test is a program NAME.c with NAME.expected beside it: the lines of the console, then `---- notes` and the
+messages of the board, if there were any, then `---- exit N` unless the run succeeded.
+The first line of the program may say how it is run:
+    // cc67: run --for 2.5 --stim door.stim also 2:watchdog.c
+NAME.toml beside it, if there is one, is its machine file, and NAME.stim its stimulus; cc67.toml in its folder or above has
+defaults. Words may be in quotes as in a shell.
+Exit code: 0 all as expected, 1 not all, 2 wrong usage.";
+
+impl TestArguments {
+    /// The command's own options in the project file of what is tested.
+    pub(super) fn of_project(&self) -> Result<Vec<OsString>> {
+        let Some(path) = self.paths.first() else { return Ok(Vec::new()) };
+        let folder = if path.is_dir() { path } else { path.parent().unwrap_or(Path::new("")) };
+        let project = Project::above(folder)?;
+        let own = |project: Project| project.parted_options("test", |option| OWN_OPTIONS.contains(&option)).0;
+        Ok(project.map(own).unwrap_or_default())
+    }
+}
+
+/// Finds the tests, runs them and reports.
+pub(super) fn test(arguments: &TestArguments) -> Result<Exit> {
+    let cases = case::find(&arguments.paths)?;
+    if cases.is_empty() {
+        bail!(
+            "no tests there: a test is a program NAME.c with NAME.expected beside it, which `cc67 test --bless NAME.c` writes"
+        );
+    }
+    let engines = arguments.engine.map_or_else(EngineName::available, |engine| vec![engine]);
+    let jobs = arguments.jobs.map_or_else(processors, usize::from);
+    let (mut verdicts, took) = execute::all(&cases, &engines, &arguments.options, arguments.bless, jobs)?;
+    for (case, verdict) in cases.iter().zip(&mut verdicts) {
+        if let Verdict::Asked(shown) = verdict
+            && (arguments.force || agrees(&case.name(), shown)?)
+        {
+            execute::write(case, shown)?;
+            *verdict = Verdict::Blessed;
+        }
+    }
+    if let Some(path) = &arguments.junit {
+        output::write(path, machine::junit(&cases, &verdicts, &took).as_bytes())?;
+    }
+    let text = if arguments.json {
+        machine::json(&cases, &verdicts)
+    } else {
+        human::report(&cases, &verdicts, terminal::color(&std::io::stdout()))
+    };
+    output::print(&text)?;
+    Ok(if verdicts.iter().all(Verdict::is_good) { Exit::Success } else { Exit::Failure })
+}
+
+/// Asks whether remarks, traps and an exit code are to be expected from now on; without a terminal, they are not.
+fn agrees(name: &str, shown: &Shown) -> Result<bool> {
+    if !io::stdin().is_terminal() {
+        return Ok(false);
+    }
+    let notes = human::indented(shown.notes());
+    terminal::aside(&format!("{name}: this would be expected from now on:\n{notes}Write it? [y/N] "));
+    let mut answer = String::new();
+    io::stdin().read_line(&mut answer).context("cannot read the answer")?;
+    Ok(matches!(answer.trim(), "y" | "Y" | "yes"))
+}
+
+fn processors() -> usize {
+    std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
+}
+
+/// The command itself, to run programs with: this file, or the script that a package started the command by.
+fn this_command() -> Result<PathBuf> {
+    if let Some(script) = std::env::var_os("CC67_COMMAND") {
+        return Ok(script.into());
+    }
+    std::env::current_exe().context("cannot find the file of this command")
+}

@@ -1,0 +1,68 @@
+//! Programs for threads: an image each, of a source or as it is.
+
+use anyhow::{Context, Result};
+use cc67_host::UserProgram;
+
+use compiler::diag::levels::Levels;
+use compiler::render::Format;
+use compiler::{Options, image};
+
+use super::units;
+use crate::cli::args::compiler::CompilerArguments;
+use crate::cli::args::program::ProgramFile;
+use crate::cli::io::input::read;
+use crate::cli::report::diagnostics;
+
+/// The programs of files; `None` if a source has errors, after all have been compiled.
+pub(crate) fn programs(
+    files: &[ProgramFile],
+    compiler: &CompilerArguments,
+) -> Result<Option<Vec<UserProgram>>> {
+    let options = compiler.resolve()?;
+    options.firmware.check_version().context("`--firmware`")?;
+    programs_with(files, compiler, &options)
+}
+
+/// The same for a target and a firmware of the caller's choice.
+pub(crate) fn programs_with(
+    files: &[ProgramFile],
+    compiler: &CompilerArguments,
+    options: &Options,
+) -> Result<Option<Vec<UserProgram>>> {
+    let levels = compiler.levels()?;
+    let format = compiler.format();
+    let mut programs = Vec::new();
+    let mut has_errors = false;
+    for file in files {
+        let bytes = read(&file.path)?;
+        let is_image = file.is_image();
+        let image = if is_image { Some(bytes) } else { build(file, bytes, options, &levels, format)? };
+        has_errors |= image.is_none();
+        let program = |image| UserProgram {
+            thread: file.thread,
+            path: file.path.clone(),
+            is_image,
+            image,
+            starts: false,
+        };
+        programs.extend(image.map(program));
+    }
+    Ok((!has_errors).then_some(programs))
+}
+
+/// Compiles, links and reports; `None` after errors.
+fn build(
+    program: &ProgramFile,
+    text: Vec<u8>,
+    options: &Options,
+    levels: &Levels,
+    format: Format,
+) -> Result<Option<Vec<u8>>> {
+    let mut compilation = units::unit(&program.path, text, options)?;
+    let linked = compilation.link(program.thread, options);
+    if diagnostics::report(&compilation, levels, format) {
+        return Ok(None);
+    }
+    let Some(linked) = linked else { return Ok(None) };
+    Ok(Some(image::write(&linked).with_context(|| program.name().to_string())?))
+}

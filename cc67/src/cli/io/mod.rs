@@ -1,0 +1,7 @@
+//! The process: the files that a command reads and writes, the terminal, the clock, and what its exit code says.
+
+pub(crate) mod exit;
+pub(crate) mod input;
+pub(crate) mod output;
+pub(crate) mod pace;
+pub(crate) mod terminal;

@@ -1,0 +1,162 @@
+//! Files that commands write: under a temporary name first, so that nobody meets half a file.
+//!
+//! A process that is killed leaves the old file or the new one. The disk is not waited for, as by
+//! any compiler: it would take longer than the compilation.
+
+use std::fs::{self, File};
+use std::io::{self, BufReader, BufWriter, Seek, Write};
+use std::path::{Path, PathBuf};
+
+use anyhow::{Result, anyhow};
+
+use compiler::files::reason;
+
+/// Writes a file and replaces what was there.
+pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<()> {
+    let mut draft = Draft::new(path)?;
+    draft.write_all(bytes).map_err(|error| cannot_write(path, &error))?;
+    draft.commit()
+}
+
+/// Writes several files.
+pub(crate) fn write_all(files: &[(PathBuf, Vec<u8>)]) -> Result<()> {
+    files.iter().try_for_each(|(path, bytes)| write(path, bytes))
+}
+
+/// The message about a file that cannot be written.
+pub(crate) fn cannot_write(path: &Path, error: &io::Error) -> anyhow::Error {
+    anyhow!("cannot write {}: {}", path.display(), reason(error))
+}
+
+/// A file in the making. It takes its name when it is complete; one that is given up leaves nothing behind.
+#[derive(Debug)]
+pub(crate) struct Draft {
+    writer: BufWriter<File>,
+    path: PathBuf,
+    /// Its name until then; devices such as /dev/null have their own from the beginning, as no file may take their
+    /// place.
+    temporary: Option<Temporary>,
+}
+
+impl Draft {
+    /// Begins a file.
+    pub(crate) fn new(path: &Path) -> Result<Self> {
+        let is_device = fs::metadata(path).is_ok_and(|known| !known.is_file() && !known.is_dir());
+        let temporary = (!is_device).then(|| Temporary(temporary(path, "tmp")));
+        let name = temporary.as_ref().map_or(path, |temporary| &temporary.0);
+        let file = File::create(name).map_err(|error| cannot_write(path, &error))?;
+        Ok(Self { writer: BufWriter::new(file), path: path.to_owned(), temporary })
+    }
+
+    /// The file is complete.
+    pub(crate) fn commit(mut self) -> Result<()> {
+        let flushed = self.writer.flush();
+        let placed = flushed.and_then(|()| match &self.temporary {
+            Some(temporary) => fs::rename(&temporary.0, &self.path),
+            None => Ok(()),
+        });
+        placed.map_err(|error| cannot_write(&self.path, &error))
+    }
+
+    /// The name that it will have.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+}
+
+impl Write for Draft {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.writer.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.writer.flush()
+    }
+}
+
+/// What is written first and read once, for a file whose head is known last.
+#[derive(Debug)]
+pub(crate) struct Scratch {
+    writer: BufWriter<File>,
+    name: Temporary,
+}
+
+impl Scratch {
+    /// Begins it, beside the file that it is for.
+    pub(crate) fn beside(path: &Path) -> Result<Self> {
+        let name = Temporary(temporary(path, "body.tmp"));
+        let file = File::options().read(true).write(true).create(true).truncate(true).open(&name.0);
+        let file = file.map_err(|error| cannot_write(path, &error))?;
+        Ok(Self { writer: BufWriter::new(file), name })
+    }
+
+    /// Hands it to `read` from its beginning; then it is gone.
+    pub(crate) fn read(self, read: impl FnOnce(BufReader<File>) -> io::Result<()>) -> io::Result<()> {
+        let Self { writer, name } = self;
+        let mut file = writer.into_inner().map_err(io::IntoInnerError::into_error)?;
+        file.rewind()?;
+        let result = read(BufReader::new(file));
+        drop(name);
+        result
+    }
+}
+
+impl Write for Scratch {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.writer.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.writer.flush()
+    }
+}
+
+/// A temporary name: what still has it in the end is removed.
+#[derive(Debug)]
+pub(crate) struct Temporary(PathBuf);
+
+#[cfg(feature = "native")]
+impl Temporary {
+    /// A name beside that of `path`.
+    pub(crate) fn beside(path: &Path, suffix: &str) -> Self {
+        Self(temporary(path, suffix))
+    }
+
+    /// The name.
+    pub(crate) fn path(&self) -> &Path {
+        &self.0
+    }
+
+    /// Renames the file that another process has made under the name.
+    pub(crate) fn commit(self, path: &Path) -> Result<()> {
+        fs::rename(&self.0, path).map_err(|error| cannot_write(path, &error))
+    }
+}
+
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        // What is left of it helps nobody.
+        let _ = fs::remove_file(&self.0);
+    }
+}
+
+/// A name in the same folder, so that the file can be renamed.
+fn temporary(path: &Path, suffix: &str) -> PathBuf {
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(format!(".{}.{suffix}", std::process::id()));
+    path.with_file_name(name)
+}
+
+/// Prints what a command answers.
+pub(crate) fn print(text: &str) -> Result<()> {
+    match io::stdout().write_all(text.as_bytes()) {
+        // A reader that has seen enough, as `head` has, is no failure.
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(lost_output(&error)),
+        _ => Ok(()),
+    }
+}
+
+/// What is said when standard output takes no more.
+pub(crate) fn lost_output(error: &io::Error) -> anyhow::Error {
+    anyhow!("cannot write to standard output: {}", reason(error))
+}

@@ -1,0 +1,41 @@
+//! Keeping a run at the pace of the clock: a tick that is done waits until its time has come.
+//!
+//! Board time is counted and not measured: what happens in a run, and when, is the same at any pace. A computer that is
+//! slower than the board falls behind, and catches up as soon as it can.
+
+use std::thread;
+use std::time::{Duration, Instant};
+
+use kmotiondef::Ticks;
+use kmotiondef::limits::TIMEBASE;
+
+/// A clock that was started with the board.
+#[derive(Debug)]
+pub(crate) struct Pace {
+    start: Instant,
+    origin: Ticks,
+}
+
+impl Pace {
+    /// Starts the clock at a tick of the board.
+    pub(crate) fn new(origin: Ticks) -> Self {
+        Self { start: now(), origin }
+    }
+
+    /// The tick that the clock has come to.
+    pub(crate) fn due(&self) -> Ticks {
+        Ticks::new(self.origin.get() + (self.start.elapsed().as_secs_f64() / TIMEBASE) as u64)
+    }
+
+    /// Waits until the clock has come to a tick.
+    pub(crate) fn wait(&self, tick: Ticks) {
+        let ticks = tick.get().saturating_sub(self.origin.get());
+        let end = Duration::from_secs_f64(ticks as f64 * TIMEBASE);
+        thread::sleep(end.saturating_sub(self.start.elapsed()));
+    }
+}
+
+#[expect(clippy::disallowed_methods, reason = "a run is paced by the clock here; what happens in it is not")]
+fn now() -> Instant {
+    Instant::now()
+}

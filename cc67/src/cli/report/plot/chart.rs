@@ -1,0 +1,129 @@
+//! What a plot shows: panels of lines over time, and strips of levels below them.
+
+/// Values over time; each holds until the next.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::cli) struct Line {
+    /// Its name in the legend.
+    pub(in crate::cli) name: String,
+    /// Seconds and values, ascending in time.
+    pub(in crate::cli) points: Vec<(f64, f64)>,
+}
+
+/// Lines that share an axis of values.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::cli) struct Panel {
+    /// What is shown.
+    pub(in crate::cli) title: String,
+    /// The unit of the values; empty for mere numbers.
+    pub(in crate::cli) unit: String,
+    /// The lines.
+    pub(in crate::cli) lines: Vec<Line>,
+}
+
+/// Spans in which something is so: a bit is high, a thread has the processor.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::cli) struct Strip {
+    /// What is so.
+    pub(in crate::cli) name: String,
+    /// Beginnings and ends in seconds, ascending.
+    pub(in crate::cli) spans: Vec<(f64, f64)>,
+}
+
+/// A whole plot.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(in crate::cli) struct Chart {
+    /// The headline.
+    pub(in crate::cli) title: String,
+    /// What the horizontal axis is, with its unit.
+    pub(in crate::cli) abscissa: String,
+    /// Panels from top to bottom.
+    pub(in crate::cli) panels: Vec<Panel>,
+    /// Strips below them.
+    pub(in crate::cli) strips: Vec<Strip>,
+    /// The first and the last instant.
+    pub(in crate::cli) range: (f64, f64),
+}
+
+impl Line {
+    /// The smallest and the largest value; `None` without points.
+    pub(in crate::cli::report) fn extent(&self) -> Option<(f64, f64)> {
+        let values = self.points.iter().map(|(_, value)| *value).filter(|value| value.is_finite());
+        values.fold(None, |extent, value| match extent {
+            None => Some((value, value)),
+            Some((low, high)) => Some((value.min(low), value.max(high))),
+        })
+    }
+
+    /// At most about `columns` times four points that look the same: of each column of time the first, the lowest,
+    /// the highest and the last.
+    pub(in crate::cli::report) fn thinned(&self, range: (f64, f64), columns: usize) -> Vec<(f64, f64)> {
+        if self.points.len() <= 4 * columns {
+            return self.points.clone();
+        }
+        let width = (range.1 - range.0) / columns as f64;
+        let column = |time: f64| ((time - range.0) / width) as i64;
+        let mut thin = Vec::new();
+        for group in self.points.chunk_by(|a, b| column(a.0) == column(b.0)) {
+            let by_value = |a: &usize, b: &usize| group[*a].1.total_cmp(&group[*b].1);
+            let lowest = (0..group.len()).min_by(by_value).unwrap_or_default();
+            let highest = (0..group.len()).max_by(by_value).unwrap_or_default();
+            let mut kept = vec![0, lowest, highest, group.len() - 1];
+            kept.sort_unstable();
+            kept.dedup();
+            thin.extend(kept.into_iter().map(|index| group[index]));
+        }
+        thin
+    }
+}
+
+impl Panel {
+    /// The range of values to show: the extent of the lines, with a little room.
+    pub(in crate::cli::report) fn range(&self) -> (f64, f64) {
+        let extents: Vec<_> = self.lines.iter().filter_map(Line::extent).collect();
+        let low = extents.iter().map(|extent| extent.0).fold(f64::INFINITY, f64::min);
+        let high = extents.iter().map(|extent| extent.1).fold(f64::NEG_INFINITY, f64::max);
+        if !(low.is_finite() && high.is_finite()) {
+            return (-1.0, 1.0);
+        }
+        // A constant gets a window around it, whatever its size.
+        let room = if high > low { (high - low) * 0.06 } else { (low.abs() * 0.1).max(1.0) };
+        (low - room, high + room)
+    }
+
+    /// Title and unit.
+    pub(in crate::cli::report) fn heading(&self) -> String {
+        match self.unit.as_str() {
+            "" => self.title.clone(),
+            unit => format!("{} ({unit})", self.title),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thinning_keeps_the_extremes_of_each_column() {
+        let points =
+            (0..10_000).map(|i| (f64::from(i), if i == 5_555 { 9.0 } else { f64::from(i % 2) })).collect();
+        let line = Line { name: String::new(), points };
+        let thin = line.thinned((0.0, 9_999.0), 100);
+        assert!(thin.len() <= 410, "{}", thin.len());
+        assert!(thin.contains(&(5_555.0, 9.0)));
+        assert_eq!((thin.first(), thin.last()), (Some(&(0.0, 0.0)), Some(&(9_999.0, 1.0))));
+        assert!(thin.is_sorted_by(|a, b| a.0 < b.0));
+    }
+
+    #[test]
+    fn a_constant_has_room_around_it() {
+        let panel = |value| Panel {
+            title: String::new(),
+            unit: String::new(),
+            lines: vec![Line { name: String::new(), points: vec![(0.0, value), (1.0, value)] }],
+        };
+        assert_eq!(panel(0.0).range(), (-1.0, 1.0));
+        assert_eq!(panel(1000.0).range(), (900.0, 1100.0));
+        assert_eq!(panel(f64::NAN).range(), (-1.0, 1.0));
+    }
+}

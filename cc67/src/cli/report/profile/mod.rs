@@ -1,0 +1,149 @@
+//! `cc67 run --profile`: where board time went, by thread, function and line.
+//!
+//! The account of the [profiling engine](vm::profile) is exact, so a profile is the same each time. A segment's cost is
+//! spread over the instructions of the segment, whose lines the image knows.
+
+mod flame;
+mod table;
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use anyhow::{Result, bail};
+use kmotiondef::firmware::FIRMWARE_FUNCTIONS;
+use kmotiondef::{CodeAddr, Cycles, GuestAddr};
+use runtime::Board;
+use vm::engine::ContextId;
+use vm::profile::{ProfilingEngine, Site, Spent, segment};
+
+use crate::cli::io::output;
+
+/// Where a profile is written to.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Target {
+    /// A table behind the run.
+    Table,
+    /// The same, and a flame graph.
+    Flame(PathBuf),
+}
+
+/// Reads the value of `--profile`.
+pub(crate) fn target(text: &str) -> Result<Target> {
+    if text.is_empty() {
+        return Ok(Target::Table);
+    }
+    let path = PathBuf::from(text);
+    if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svg")) {
+        bail!("a flame graph is an SVG picture: `--profile=NAME.svg`");
+    }
+    Ok(Target::Flame(path))
+}
+
+/// Writes the flame graph, if one is wanted, and gives the table.
+pub(crate) fn report(board: &Board<ProfilingEngine>, target: &Target) -> Result<String> {
+    let spent = collect(board);
+    if let Target::Flame(path) = target {
+        output::write(path, &flame::draw(&spent)?)?;
+    }
+    Ok(table::table(&spent, board.now()))
+}
+
+/// A line of a function, or a firmware function called from one.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Frame {
+    function: String,
+    file: String,
+    line: Option<u32>,
+}
+
+/// A place in the source with the functions that led there.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Place {
+    /// The thread or the call-back.
+    context: ContextId,
+    /// The outermost function first.
+    frames: Vec<Frame>,
+    /// The firmware function in which the time was spent.
+    firmware: Option<String>,
+}
+
+/// What was spent where.
+type Account = BTreeMap<Place, Spent>;
+
+/// Turns addresses into places; a segment becomes its lines.
+fn collect(board: &Board<ProfilingEngine>) -> Account {
+    let mut account = Account::new();
+    for (site, spent) in board.machine().engine().profile().sites() {
+        let Some((head, callers)) = site.calls.split_first() else { continue };
+        let outer: Vec<Frame> = callers.iter().rev().map(|call| frame(board, *call)).collect();
+        for (at, part) in parts(board, site, *head, spent) {
+            let mut frames = outer.clone();
+            frames.push(frame(board, at));
+            let place = Place { context: site.context, frames, firmware: site.firmware.map(firmware_name) };
+            let entry = account.entry(place).or_default();
+            entry.computing += part.computing;
+            entry.waiting += part.waiting;
+        }
+    }
+    account
+}
+
+/// The instructions that share what was spent at a site.
+fn parts(
+    board: &Board<ProfilingEngine>,
+    site: &Site,
+    head: CodeAddr,
+    spent: Spent,
+) -> Vec<(CodeAddr, Spent)> {
+    let Some(program) = program_of(board, head) else { return vec![(head, spent)] };
+    let costs: Vec<(CodeAddr, u32)> = segment(program, head).collect();
+    let call = costs.iter().rev().find(|(at, _)| {
+        program.word_at(*at).and_then(|word| program.ops().get(word)).is_some_and(vm::meter::is_call)
+    });
+    if site.firmware.is_some() {
+        return vec![(call.map_or(head, |(at, _)| *at), spent)];
+    }
+    let total: i64 = costs.iter().map(|(_, cost)| i64::from(*cost)).sum();
+    if total == 0 {
+        return vec![(head, spent)];
+    }
+    // What a device register took beyond the instructions stays with the first of them.
+    let times = spent.computing.get() / total;
+    let rest = spent.computing.get() - times * total;
+    let mut parts: Vec<_> = costs
+        .iter()
+        .map(|(at, cost)| {
+            let computing = Cycles::new(times * i64::from(*cost));
+            (*at, Spent { computing, ..Spent::default() })
+        })
+        .collect();
+    if let Some((_, first)) = parts.first_mut() {
+        first.computing += Cycles::new(rest);
+    }
+    parts
+}
+
+/// The program in whose text an address lies.
+fn program_of(board: &Board<ProfilingEngine>, address: CodeAddr) -> Option<&vm::program::Program> {
+    let mut programs = kmotiondef::ThreadId::all().filter_map(|thread| board.machine().program(thread));
+    programs.find(|program| program.word_at(address).is_some())
+}
+
+fn frame(board: &Board<ProfilingEngine>, address: CodeAddr) -> Frame {
+    match board.source(address) {
+        Some(place) => {
+            Frame { function: place.function.to_owned(), file: place.file.to_owned(), line: place.line }
+        }
+        None => Frame { function: address.to_string(), file: String::new(), line: None },
+    }
+}
+
+fn firmware_name(address: GuestAddr) -> String {
+    let known = FIRMWARE_FUNCTIONS.iter().find(|function| function.address == address);
+    known.map_or_else(|| address.to_string(), |function| function.name.to_owned())
+}
+
+/// "thread 1" or "call-back".
+fn context_name(context: ContextId) -> String {
+    context.thread().map_or_else(|| "call-back".to_owned(), |thread| format!("thread {thread}"))
+}

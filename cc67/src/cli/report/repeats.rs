@@ -1,0 +1,66 @@
+//! Remarks that a program brings about again and again: each is shown once, and counted from then on.
+
+use std::collections::BTreeMap;
+
+/// How many different remarks are shown.
+pub(crate) const MOST: usize = 1000;
+
+/// The remarks so far.
+#[derive(Debug, Default)]
+pub(crate) struct Repeats {
+    /// How often each was made again.
+    again: BTreeMap<String, u64>,
+    /// How many there were that differed from all that are shown, when no more were.
+    left_out: u64,
+}
+
+impl Repeats {
+    /// Notes a remark; whether it is to be shown.
+    pub(crate) fn is_shown(&mut self, text: &str) -> bool {
+        if let Some(again) = self.again.get_mut(text) {
+            *again += 1;
+            return false;
+        }
+        if self.again.len() >= MOST {
+            self.left_out += 1;
+            return false;
+        }
+        self.again.insert(text.to_owned(), 0);
+        true
+    }
+
+    /// What there is to be said of those that were not shown.
+    pub(crate) fn summary(&self) -> Vec<String> {
+        let repeated = self.again.iter().filter(|(_, again)| **again > 0);
+        let mut lines: Vec<_> = repeated
+            .map(|(text, again)| match again {
+                1 => format!("once more: {text}"),
+                again => format!("{again} times more: {text}"),
+            })
+            .collect();
+        if self.left_out > 0 {
+            lines.push(format!("{} further remarks are not shown; --json shows all", self.left_out));
+        }
+        lines
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_remark_is_shown_once_and_counted_from_then_on() {
+        let mut repeats = Repeats::default();
+        let shown: Vec<_> = ["a", "b", "a", "a", "b"].map(|text| repeats.is_shown(text)).into();
+        assert_eq!(shown, [true, true, false, false, false]);
+        assert_eq!(repeats.summary(), ["2 times more: a", "once more: b"]);
+    }
+
+    #[test]
+    fn so_many_different_remarks_are_shown_and_no_more() {
+        let mut repeats = Repeats::default();
+        assert_eq!((0..1500).filter(|number| repeats.is_shown(&number.to_string())).count(), MOST);
+        assert_eq!(repeats.summary(), ["500 further remarks are not shown; --json shows all"]);
+    }
+}

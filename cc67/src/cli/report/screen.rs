@@ -1,0 +1,366 @@
+//! What a run shows, and where: console lines on stdout and everything else on stderr, or all of it as JSON on stdout.
+//!
+//! With `--json` each line is an object with a `type`, and the last one, of type `end`, sums the run up. Texts that are
+//! not UTF-8 have the replacement character where they are not.
+
+use std::io::{self, Write};
+
+use kmotiondef::{Bit, Cycles, ThreadId, Ticks};
+use runtime::debug::DebugInfo;
+use runtime::{Event, EventKind, Message, Remark, Severity};
+use serde::Serialize;
+
+use super::repeats::Repeats;
+use super::state::State;
+use crate::cli::io::exit::Exit;
+use crate::cli::io::terminal;
+use cc67_host::{Ending, EndingAxis, EndingThread, SourceCall, remark};
+
+/// How a run is shown.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Style {
+    /// The board time stands before each console line.
+    pub(crate) time: bool,
+    /// Details are shown, too.
+    pub(crate) is_verbose: bool,
+    /// Every line is written at once, not only when the buffer is full.
+    pub(crate) is_live: bool,
+    /// As JSON.
+    pub(crate) json: bool,
+}
+
+/// A line of `--json`.
+#[derive(Debug, Serialize)]
+#[serde(tag = "type", rename_all = "lowercase")]
+enum Line<'a> {
+    /// A line of the console.
+    Console { seconds: f64, text: &'a str },
+    /// A thread or the call-back was stopped.
+    Trap { seconds: f64, thread: Option<u8>, text: &'a str },
+    /// The PC did something for a program.
+    Pc { seconds: f64, text: &'a str },
+    /// An expectation of the stimulus was not met.
+    Unmet { seconds: f64, text: &'a str },
+    /// The simulation has something to say; a row of the table of remarks has a code.
+    Remark {
+        seconds: f64,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        code: Option<&'static str>,
+        /// Where the call is, if it is one of a program.
+        #[serde(flatten)]
+        place: Option<CallLeft<'a>>,
+        text: &'a str,
+    },
+    /// The run is over.
+    End(Summary<'a>),
+}
+
+/// What a run came to.
+#[derive(Clone, Debug, Serialize)]
+struct Summary<'a> {
+    /// `ended`, `limit`, `still running`, `trapped` or `unmet`.
+    reason: &'a str,
+    /// The exit code that goes with it.
+    exit: u8,
+    /// Board time.
+    seconds: f64,
+    ticks: u64,
+    /// How many lines, traps and remarks there were.
+    console_lines: u64,
+    traps: u64,
+    remarks: u64,
+    /// Threads that have not ended, and the axes that programs have used.
+    threads: Vec<ThreadLeft<'a>>,
+    used_axes: Vec<AxisLeft<'a>>,
+    /// Threads that are active still.
+    active: &'a [u8],
+    /// In which state the board is left.
+    #[serde(flatten)]
+    state: &'a State,
+}
+
+/// The last line of `--json` of a run that did not come about.
+pub(crate) fn no_run(exit: Exit, reason: &str) -> String {
+    let line = Line::End(Summary {
+        reason,
+        exit: exit as u8,
+        seconds: 0.0,
+        ticks: 0,
+        console_lines: 0,
+        traps: 0,
+        remarks: 0,
+        threads: Vec::new(),
+        used_axes: Vec::new(),
+        active: &[],
+        state: &State::default(),
+    });
+    serde_json::to_string(&line).unwrap_or_default() + "\n"
+}
+
+/// A thread that has not ended.
+#[derive(Clone, Debug, Serialize)]
+struct ThreadLeft<'a> {
+    thread: u8,
+    state: &'a str,
+    #[serde(flatten)]
+    place: Option<CallLeft<'a>>,
+    /// The calls that led there, innermost first.
+    calls: Vec<CallLeft<'a>>,
+    waits_for: &'a [String],
+    since: f64,
+}
+
+/// A place in a source.
+#[derive(Clone, Copy, Debug, Serialize)]
+struct CallLeft<'a> {
+    file: &'a str,
+    line: Option<u32>,
+    function: &'a str,
+}
+
+/// An axis that programs have used.
+#[derive(Clone, Debug, Serialize)]
+struct AxisLeft<'a> {
+    axis: u8,
+    #[serde(skip_serializing_if = "str::is_empty")]
+    name: &'a str,
+    enabled: bool,
+    dest: f64,
+    position: f64,
+    velocity: f64,
+    why: &'a [String],
+}
+
+impl<'a> From<&'a EndingThread> for ThreadLeft<'a> {
+    fn from(ending: &'a EndingThread) -> Self {
+        let EndingThread { thread, state, calls, waits_for, since } = ending;
+        let mut places = calls.iter().map(CallLeft::from);
+        let (place, calls) = (places.next(), places.collect());
+        Self { thread: thread.get(), state, place, calls, waits_for, since: *since }
+    }
+}
+
+impl<'a> From<&'a SourceCall> for CallLeft<'a> {
+    fn from(call: &'a SourceCall) -> Self {
+        Self { file: &call.file, line: call.line, function: &call.function }
+    }
+}
+
+impl<'a> From<&'a EndingAxis> for AxisLeft<'a> {
+    fn from(ending: &'a EndingAxis) -> Self {
+        let EndingAxis { axis, name, enabled, dest, position, velocity, why } = ending;
+        let (axis, enabled) = (axis.get(), *enabled);
+        Self { axis, name, enabled, dest: *dest, position: *position, velocity: *velocity, why }
+    }
+}
+
+/// A program that a stimulus may load: its thread, its name, and what is known of it.
+pub(crate) type Offered = (ThreadId, String, DebugInfo);
+
+/// Where events go.
+pub(crate) struct Screen<W: Write> {
+    out: W,
+    style: Style,
+    /// What is known of the programs, and the thread of each.
+    programs: Vec<DebugInfo>,
+    threads: Vec<ThreadId>,
+    offered: Vec<Offered>,
+    console_lines: u64,
+    traps: u64,
+    remarks: u64,
+    repeats: Repeats,
+    /// Who has read which inputs that nothing drives: told together when the run is over.
+    undriven: Vec<(String, Bit, u8)>,
+    error: Option<io::Error>,
+}
+
+impl<W: Write> Screen<W> {
+    /// A screen for a run of these programs, and of those that a stimulus may load.
+    pub(crate) fn new(
+        out: W,
+        style: Style,
+        programs: Vec<(ThreadId, DebugInfo)>,
+        offered: Vec<Offered>,
+    ) -> Self {
+        let (threads, programs) = programs.into_iter().unzip();
+        let (console_lines, traps, remarks, repeats, undriven) = Default::default();
+        let error = None;
+        Self {
+            out,
+            style,
+            programs,
+            threads,
+            offered,
+            console_lines,
+            traps,
+            remarks,
+            repeats,
+            undriven,
+            error,
+        }
+    }
+
+    /// Another program has been loaded.
+    fn replace(&mut self, thread: ThreadId, name: &str) {
+        let offered = self.offered.iter().find(|(other, known, _)| *other == thread && known == name);
+        let Some((_, _, debug)) = offered else { return };
+        match self.threads.iter().position(|other| *other == thread) {
+            Some(index) => self.programs[index] = debug.clone(),
+            None => {
+                self.threads.push(thread);
+                self.programs.push(debug.clone());
+            }
+        }
+    }
+
+    /// Shows an event.
+    pub(crate) fn show(&mut self, event: &Event) {
+        match &event.kind {
+            EventKind::ConsoleLine(line) => {
+                self.console_lines += 1;
+                let written = self.write_line(line, event.at);
+                self.keep(written);
+            }
+            EventKind::Trace(_) | EventKind::UartSent(_) => {}
+            EventKind::Loaded(thread, name) => self.replace(*thread, name),
+            EventKind::Remark(remark) if remark.message.severity() == Severity::Detail => {
+                if self.style.is_verbose {
+                    self.say(event, &remark::words(remark, &self.programs));
+                }
+            }
+            EventKind::Remark(remark @ Remark { message: Message::UndrivenInput { bit, level }, .. })
+                if !self.style.json && !self.style.is_live =>
+            {
+                self.undriven.push((remark::who(remark, &self.programs), *bit, *level));
+            }
+            _ => {
+                if let Some(text) = remark::describe(event, &self.programs) {
+                    self.say(event, &text);
+                }
+            }
+        }
+    }
+
+    fn write_line(&mut self, line: &[u8], at: Cycles) -> io::Result<()> {
+        if self.style.json {
+            let text = String::from_utf8_lossy(line);
+            return self.write_json(&Line::Console { seconds: seconds(at), text: &text });
+        }
+        if self.style.time {
+            write!(self.out, "{:.6} ", seconds(at))?;
+        }
+        self.out.write_all(line)?;
+        self.out.write_all(b"\n")?;
+        if self.style.is_live { self.out.flush() } else { Ok(()) }
+    }
+
+    /// Shows a text that is not the programs'.
+    fn say(&mut self, event: &Event, text: &str) {
+        let is_trap = matches!(event.kind, EventKind::Trap(_));
+        *(if is_trap { &mut self.traps } else { &mut self.remarks }) += 1;
+        if !self.style.json {
+            let may_repeat = matches!(&event.kind, EventKind::Remark(remark) if remark.message.severity() > Severity::Detail);
+            if may_repeat && !self.repeats.is_shown(text) {
+                return;
+            }
+            // What was printed before stands before it on a terminal that shows both.
+            let flushed = self.out.flush();
+            self.keep(flushed);
+            return terminal::note(text);
+        }
+        let seconds = seconds(event.at);
+        let call;
+        let line = match &event.kind {
+            EventKind::Trap(trap) => Line::Trap { seconds, thread: trap.thread.map(ThreadId::get), text },
+            EventKind::Host(_) => Line::Pc { seconds, text },
+            EventKind::Unmet(_) => Line::Unmet { seconds, text },
+            EventKind::Remark(remark) => {
+                call = remark.place.and_then(|at| remark::place(at, &self.programs));
+                let place = call.as_ref().map(CallLeft::from);
+                Line::Remark { seconds, code: Some(remark.message.code()), place, text }
+            }
+            _ => Line::Remark { seconds, code: None, place: None, text },
+        };
+        let written = self.write_json(&line);
+        self.keep(written);
+    }
+
+    fn write_json(&mut self, line: &Line<'_>) -> io::Result<()> {
+        if self.error.is_some() {
+            return Ok(());
+        }
+        serde_json::to_writer(&mut self.out, line)?;
+        self.out.write_all(b"\n")?;
+        if self.style.is_live { self.out.flush() } else { Ok(()) }
+    }
+
+    /// Keeps the first error of all writes.
+    fn keep(&mut self, written: io::Result<()>) {
+        self.error = self.error.take().or(written.err());
+    }
+
+    /// Says how the run has ended.
+    pub(crate) fn end(
+        &mut self,
+        exit: Exit,
+        reason: &str,
+        at: Ticks,
+        active: &[u8],
+        ending: &Ending,
+        state: &State,
+    ) {
+        let mut last = self.repeats.summary();
+        if !self.undriven.is_empty() {
+            last.push(remark::undriven(&self.undriven));
+        }
+        if !last.is_empty() {
+            let flushed = self.out.flush();
+            self.keep(flushed);
+        }
+        last.iter().for_each(|text| terminal::note(text));
+        if !self.style.json {
+            return;
+        }
+        let line = Line::End(Summary {
+            reason,
+            exit: exit as u8,
+            seconds: seconds(Cycles::new((at.get() as i64).saturating_mul(Cycles::PER_TICK.get()))),
+            ticks: at.get(),
+            console_lines: self.console_lines,
+            traps: self.traps,
+            remarks: self.remarks,
+            threads: ending.threads.iter().map(ThreadLeft::from).collect(),
+            used_axes: ending.axes.iter().map(AxisLeft::from).collect(),
+            active,
+            state,
+        });
+        let written = self.write_json(&line);
+        self.keep(written);
+    }
+
+    /// Writes what is left; whether anybody reads it, and the first error of all writes.
+    ///
+    /// # Errors
+    /// Why stdout cannot be written; a reader that has seen enough, as `head` has, is no failure.
+    pub(crate) fn finish(&mut self) -> io::Result<Reader> {
+        let flushed = self.out.flush();
+        self.keep(flushed);
+        match self.error.take() {
+            Some(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(Reader::Gone),
+            Some(error) => Err(error),
+            None => Ok(Reader::There),
+        }
+    }
+}
+
+/// Whether somebody reads what is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[must_use]
+pub(crate) enum Reader {
+    There,
+    Gone,
+}
+
+fn seconds(at: Cycles) -> f64 {
+    at.get() as f64 / Cycles::PER_SECOND.get() as f64
+}

@@ -1,0 +1,103 @@
+//! The state in which a run left the board: axes, bits, elements of `persist.UserData`.
+
+use std::collections::BTreeMap;
+
+use kmotiondef::limits::N_USER_DATA_VARS;
+use kmotiondef::structs::Chan;
+use kmotiondef::variables::CHAN;
+use kmotiondef::{AxisId, Bit};
+use runtime::Board;
+use runtime::trace::Item;
+use serde::Serialize;
+use vm::engine::Engine;
+
+/// The state of a board.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub(crate) struct State {
+    /// Axes that are enabled or not at 0.
+    axes: Vec<AxisState>,
+    /// Bits that are 1.
+    bits: Vec<u16>,
+    /// Elements that are not 0.
+    persist: BTreeMap<usize, i32>,
+}
+
+/// The state of an axis.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct AxisState {
+    axis: u8,
+    enabled: bool,
+    dest: f64,
+    position: f64,
+    velocity: f64,
+}
+
+impl State {
+    /// The present state.
+    pub(crate) fn of<E: Engine>(board: &Board<E>) -> Self {
+        let bits = (0..=i32::from(Bit::MAX)).filter_map(Bit::new);
+        let elements = (0..N_USER_DATA_VARS).filter_map(|index| Some((index, board.user_data(index)?)));
+        Self {
+            axes: AxisId::all().filter_map(|axis| AxisState::of(board, axis)).collect(),
+            bits: bits.filter(|bit| board.bit(*bit)).map(Bit::get).collect(),
+            persist: elements.filter(|(_, value)| *value != 0).collect(),
+        }
+    }
+
+    /// The same as lines of text.
+    pub(crate) fn lines(&self) -> Vec<String> {
+        let axis = |state: &AxisState| {
+            let enabled = if state.enabled { "enabled" } else { "disabled" };
+            let AxisState { axis, dest, position, velocity, .. } = state;
+            let moves = if *velocity == 0.0 { String::new() } else { format!(", velocity {velocity}") };
+            format!("axis {axis} {enabled}, dest {dest}, position {position}{moves}")
+        };
+        let mut lines: Vec<String> = self.axes.iter().map(axis).collect();
+        if !self.bits.is_empty() {
+            lines.push(format!("bits that are 1: {}", ranges(&self.bits)));
+        }
+        if !self.persist.is_empty() {
+            let elements: Vec<_> =
+                self.persist.iter().map(|(index, value)| format!("{index} = {value}")).collect();
+            lines.push(format!("persist {}", elements.join(", ")));
+        }
+        lines.into_iter().map(|line| format!("final state: {line}")).collect()
+    }
+}
+
+impl AxisState {
+    fn of<E: Engine>(board: &Board<E>, axis: AxisId) -> Option<Self> {
+        let value = |kind: &str| Item::new(&format!("{kind}{axis}")).map_or(0.0, |item| board.value(item));
+        let place = CHAN.element(axis.index()).field(Chan::ENABLE);
+        let enabled = board.memory().peek::<u32>(place.address()) != 0;
+        let state = Self {
+            axis: axis.get(),
+            enabled,
+            dest: value("dest"),
+            position: value("pos"),
+            velocity: value("vel"),
+        };
+        (enabled || state.dest != 0.0 || state.position != 0.0).then_some(state)
+    }
+}
+
+/// Numbers as ranges: "8, 140-143".
+fn ranges(numbers: &[u16]) -> String {
+    let runs = numbers.chunk_by(|one, next| one + 1 == *next);
+    let shown = runs.filter_map(|run| match run {
+        [] => None,
+        [one] => Some(one.to_string()),
+        [first, .., last] => Some(format!("{first}-{last}")),
+    });
+    shown.collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::ranges;
+
+    #[test]
+    fn neighbours_are_a_range() {
+        assert_eq!(ranges(&[8, 140, 141, 142, 1024]), "8, 140-142, 1024");
+    }
+}

@@ -1,0 +1,47 @@
+//! Changes of bits as a table: `time_ns,bit,value,thread`, thread 0 for what no thread did.
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use anyhow::Result;
+use kmotiondef::{Cycles, Ticks};
+
+use super::{Entry, Sink, nanoseconds};
+use crate::cli::io::output::Draft;
+
+/// The table in the making.
+pub(super) struct Changes(Draft);
+
+impl Changes {
+    /// Begins it.
+    pub(super) fn new(path: &Path) -> Result<Self> {
+        let mut draft = Draft::new(path)?;
+        writeln!(draft, "time_ns,bit,value,thread")?;
+        Ok(Self(draft))
+    }
+}
+
+impl Sink for Changes {
+    fn note(&mut self, at: Cycles, entry: &Entry) -> io::Result<()> {
+        let Entry::Bit { bit, level, thread } = entry else { return Ok(()) };
+        let (value, thread) = (u8::from(*level), thread.map_or(0, |thread| thread.get()));
+        writeln!(self.0, "{},{bit},{value},{thread}", nanoseconds(at))
+    }
+
+    fn finish(self: Box<Self>, _: Ticks) -> Result<()> {
+        self.0.commit()
+    }
+
+    fn path(&self) -> &Path {
+        self.0.path()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn a_change_is_a_line() {
+        let text = super::super::testing::file("bits.csv");
+        assert_eq!(text, "time_ns,bit,value,thread\n215000,46,0,1\n");
+    }
+}

@@ -1,0 +1,277 @@
+//! `--trace` and its kin: what a run did, as a file for a viewer or a table.
+//!
+//! The suffix of the file decides: `.vcd` for waveform viewers, `.json` for trace viewers (Perfetto, Chrome), anything
+//! else is a table of values. Files grow while the run goes on, under temporary names, and get their own when it is
+//! over: a run of any length needs no more memory than a short one, and one that is killed leaves no half file. Only
+//! pictures are made of what is kept in memory, which is bounded, too.
+
+mod bits;
+mod chrome;
+mod columns;
+mod log;
+mod order;
+mod picture;
+mod table;
+mod unit;
+mod vcd;
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Result, anyhow, bail};
+use cc67_host::{Session, WatchError};
+use kmotiondef::{Bit, Cycles, ThreadId, Ticks};
+use runtime::trace::{Item, Quantity, Record, Request};
+use runtime::{Event, EventKind};
+use vm::engine::Engine;
+
+use crate::cli::args::trace::TraceArguments;
+use crate::cli::io::{output, terminal};
+use crate::cli::report::plot::{self, Form};
+use columns::Columns;
+use log::Log;
+pub(crate) use log::SAMPLES;
+use order::Order;
+
+/// What a session is to record; `None` if nothing is traced.
+pub(crate) fn request<E: Engine>(
+    arguments: &TraceArguments,
+    session: &Session<E>,
+) -> Result<Option<Request>> {
+    let TraceArguments { trace, trace_bits, plot, trace_items, trace_every } = arguments;
+    if trace.is_empty() && trace_bits.is_none() && plot.is_empty() {
+        if trace_items.is_some() {
+            bail!("`--watch` says what is shown; `--plot FILE.svg` or `--trace FILE.csv` says where");
+        }
+        return Ok(None);
+    }
+    trace.iter().try_for_each(|path| known_suffix(path))?;
+    for picture in plot {
+        Form::of(picture)?;
+    }
+    let quantities = match trace_items {
+        None => Item::of_axes().into_iter().map(Quantity::from).collect(),
+        Some(list) => session.quantities(list).map_err(refused)?,
+    };
+    let is_table = |path: &PathBuf| !matches!(suffix(path).as_str(), "vcd" | "json");
+    let changes = trace_bits.is_some() || !plot.is_empty() || !trace.iter().all(is_table);
+    Ok(Some(Request { quantities, every: *trace_every, changes }))
+}
+
+/// A suffix that is known, or none.
+fn known_suffix(path: &Path) -> Result<()> {
+    match suffix(path).as_str() {
+        "" | "csv" | "txt" | "vcd" | "json" => Ok(()),
+        "svg" | "png" | "html" => bail!("`--trace {0}`: a picture is drawn by `--plot {0}`", path.display()),
+        other => bail!(
+            "`--trace {}`: there is no trace of the form `.{other}`; there are .csv, .txt, .vcd and .json",
+            path.display()
+        ),
+    }
+}
+
+fn suffix(path: &Path) -> String {
+    path.extension().unwrap_or_default().to_string_lossy().to_lowercase()
+}
+
+/// Something that a trace shows; its instant comes with it.
+#[derive(Clone, Debug, PartialEq)]
+enum Entry {
+    /// A bit has changed, and the thread that did it.
+    Bit { bit: Bit, level: bool, thread: Option<ThreadId> },
+    /// A thread has the processor until then.
+    Slice { thread: ThreadId, end: Cycles },
+    /// Items have these values; the axes that are enabled.
+    Sample { values: Vec<f64>, enabled: u8 },
+    /// A console line.
+    Line(String),
+    /// A character sent by the serial port.
+    Sent(u8),
+}
+
+impl Entry {
+    /// What an event shows, if it belongs to a trace.
+    fn of(event: &Event) -> Option<Self> {
+        Some(match &event.kind {
+            EventKind::Trace(Record::Bit { bit, level, thread }) => {
+                Self::Bit { bit: *bit, level: *level, thread: *thread }
+            }
+            EventKind::Trace(Record::Slice { thread, end }) => Self::Slice { thread: *thread, end: *end },
+            EventKind::Trace(Record::Sample { values, enabled }) => {
+                Self::Sample { values: values.clone(), enabled: *enabled }
+            }
+            EventKind::ConsoleLine(line) => Self::Line(String::from_utf8_lossy(line).into_owned()),
+            EventKind::UartSent(byte) => Self::Sent(*byte),
+            _ => return None,
+        })
+    }
+}
+
+/// A file that grows with a run.
+trait Sink {
+    /// Takes up what has happened; instants never go back.
+    fn note(&mut self, at: Cycles, entry: &Entry) -> io::Result<()>;
+
+    /// The run has ended with this tick.
+    fn finish(self: Box<Self>, end: Ticks) -> Result<()>;
+
+    /// The file.
+    fn path(&self) -> &Path;
+}
+
+/// All files of a run.
+pub(crate) struct Trace {
+    order: Order,
+    sinks: Vec<Box<dyn Sink>>,
+    log: Option<Log>,
+    /// The first file that could not be written, and why.
+    failed: Option<(PathBuf, io::Error)>,
+}
+
+/// Why something is not recorded, as a message of the option.
+fn refused(error: WatchError) -> anyhow::Error {
+    match error {
+        WatchError::Missing => {
+            anyhow!("`--watch` wants names between its commas, such as axis0,bit46,persist.5")
+        }
+        WatchError::Item(_) => error.into(),
+        WatchError::TooLong | WatchError::NoPlace(_) => anyhow!("`--watch`: {error}"),
+        WatchError::Wrong { expression, message } => anyhow!("`--watch {expression}`: {message}"),
+    }
+}
+
+impl Trace {
+    /// Begins all files.
+    pub(crate) fn begin(arguments: &TraceArguments, request: &Request) -> Result<Self> {
+        let mut sinks: Vec<Box<dyn Sink>> = Vec::new();
+        for path in &arguments.trace {
+            let columns = Columns::new(request);
+            sinks.push(match suffix(path).as_str() {
+                "vcd" => Box::new(vcd::Dump::new(path, columns)?),
+                "json" => Box::new(chrome::Events::new(path, columns)?),
+                _ => Box::new(table::Table::new(path, columns, request.every)?),
+            });
+        }
+        if let Some(path) = &arguments.trace_bits {
+            sinks.push(Box::new(bits::Changes::new(path)?));
+        }
+        let log = (!arguments.plot.is_empty()).then(|| Log::new(request));
+        Ok(Self { order: Order::default(), sinks, log, failed: None })
+    }
+
+    /// Completes all files; `end` is the last tick of the run, `title` what pictures are called.
+    pub(crate) fn finish(mut self, arguments: &TraceArguments, end: Ticks, title: &str) -> Result<()> {
+        self.pass_on(true);
+        if let Some((path, error)) = self.failed {
+            return Err(output::cannot_write(&path, &error));
+        }
+        for sink in self.sinks {
+            let path = sink.path().to_owned();
+            sink.finish(end).map_err(|error| match error.downcast::<io::Error>() {
+                Ok(error) => output::cannot_write(&path, &error),
+                Err(other) => other,
+            })?;
+        }
+        let every = self.log.as_ref().map_or(0, |log| log.step.get() / Cycles::PER_TICK.get());
+        if every as u64 > arguments.trace_every {
+            terminal::note(&format!(
+                "the picture shows every {every} ticks what was so then: it is made of {SAMPLES} samples at most; \
+                 `--trace FILE` writes all"
+            ));
+        }
+        for path in &arguments.plot {
+            let Some(log) = &self.log else { continue };
+            let chart = picture::chart(log, title.to_owned(), end);
+            plot::write(&chart, Form::of(path)?, path)?;
+        }
+        Ok(())
+    }
+
+    /// Takes up an event, if it belongs to a trace.
+    pub(crate) fn note(&mut self, event: &Event) {
+        if let Some(entry) = Entry::of(event) {
+            self.order.add(event.at, entry);
+            self.pass_on(false);
+        }
+    }
+
+    /// Writes what is in order, at the end everything.
+    fn pass_on(&mut self, is_over: bool) {
+        while let Some((at, entry)) = self.order.take(is_over) {
+            for sink in &mut self.sinks {
+                if self.failed.is_none()
+                    && let Err(error) = sink.note(at, &entry)
+                {
+                    self.failed = Some((sink.path().to_owned(), error));
+                }
+            }
+            if let Some(log) = &mut self.log {
+                log.note(at, entry);
+            }
+        }
+    }
+}
+
+/// Nanoseconds since power-up.
+fn nanoseconds(at: Cycles) -> i64 {
+    at.get() * (1_000_000_000 / Cycles::PER_SECOND.get())
+}
+
+#[cfg(test)]
+mod testing {
+    use super::*;
+
+    /// What a run with a few records of each kind was asked for.
+    pub(crate) fn request() -> Request {
+        let item = |name| Quantity::from(Item::new(name).expect("an item"));
+        Request { quantities: ["dest0", "bit46"].map(item).to_vec(), every: 2, changes: true }
+    }
+
+    /// Its records, as they come: not quite in order.
+    pub(crate) fn events() -> Vec<Event> {
+        let us = |us: i64| Cycles::new(us * Cycles::PER_SECOND.get() / 1_000_000);
+        let (bit, thread) = (Bit::new(46).expect("a bit"), ThreadId::new(1).expect("1 is a thread"));
+        let kinds = [
+            (180, EventKind::Trace(Record::Sample { values: vec![0.5, 1.0], enabled: 1 })),
+            (215, EventKind::Trace(Record::Bit { bit, level: false, thread: Some(thread) })),
+            (205, EventKind::Trace(Record::Slice { thread, end: us(230) })),
+            (450, EventKind::ConsoleLine(b"a \"b\"".to_vec())),
+            (540, EventKind::Trace(Record::Sample { values: vec![2.0, 0.0], enabled: 1 })),
+            (560, EventKind::UartSent(b'x')),
+        ];
+        kinds.into_iter().map(|(at, kind)| Event { at: us(at), kind }).collect()
+    }
+
+    /// The file that a run of seven ticks leaves under this name.
+    pub(crate) fn file(name: &str) -> String {
+        let folder = std::env::temp_dir().join(format!("cc67-trace-{}-{name}", std::process::id()));
+        std::fs::create_dir_all(&folder).expect("a folder");
+        let path = folder.join(name);
+        let is_bits = name.starts_with("bits");
+        let arguments = TraceArguments {
+            trace: if is_bits { Vec::new() } else { vec![path.clone()] },
+            trace_bits: is_bits.then(|| path.clone()),
+            plot: Vec::new(),
+            trace_items: None,
+            trace_every: 2,
+        };
+        let mut trace = Trace::begin(&arguments, &request()).expect("it can be written");
+        events().iter().for_each(|event| trace.note(event));
+        assert!(!path.exists(), "it has its name before it is complete");
+        trace.finish(&arguments, Ticks::new(7), "").expect("it can be written");
+        let text = std::fs::read_to_string(&path).expect("it is written");
+        let left: Vec<_> = std::fs::read_dir(&folder).expect("it is there").collect();
+        assert_eq!(left.len(), 1, "{left:?}");
+        std::fs::remove_dir_all(&folder).expect("it is ours");
+        text
+    }
+
+    /// The same records for pictures.
+    pub(crate) fn log() -> Log {
+        let mut log = Log::new(&request());
+        for event in events() {
+            log.note(event.at, Entry::of(&event).expect("it belongs to a trace"));
+        }
+        log
+    }
+}

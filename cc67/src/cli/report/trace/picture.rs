@@ -1,0 +1,113 @@
+//! `--plot`: a chart of what moved, made of what was traced.
+//!
+//! What was sampled becomes panels; bits and the slices of the threads become strips.
+
+use kmotiondef::{Bit, Cycles, Ticks};
+use runtime::trace::{Item, Quantity};
+
+use super::log::Log;
+use super::unit;
+use crate::cli::report::plot::chart::{Chart, Strip};
+use crate::cli::report::plot::samples::{Column, Samples};
+
+/// Strips in a picture; a program that moves more bits than that is looked at with `--trace`.
+const STRIPS: usize = 16;
+
+/// The chart of a run up to a tick.
+pub(super) fn chart(log: &Log, title: String, end: Ticks) -> Chart {
+    let end = Cycles::new((end.get() as i64).saturating_mul(Cycles::PER_TICK.get()));
+    let columns = log.columns();
+    let column = |(_, quantity): &(usize, &Quantity)| Column {
+        name: quantity.to_string(),
+        unit: unit::of(quantity).to_owned(),
+    };
+    let value = |values: &[f64], index: usize| values.get(index).copied().unwrap_or_default();
+    let row = |(at, values): &(Cycles, Vec<f64>)| {
+        (seconds(*at), columns.iter().map(|(index, _)| value(values, *index)).collect())
+    };
+    let samples = Samples {
+        columns: columns.iter().map(column).collect(),
+        rows: log.samples.iter().map(row).collect(),
+        step: seconds(log.step),
+        end: seconds(end),
+    };
+    let panels = samples.panels();
+    let mut strips = bits(log, end);
+    strips.truncate(STRIPS);
+    strips.extend(threads(log));
+    let chart = Chart { title, abscissa: "time (s)".to_owned(), panels, strips, range: (0.0, seconds(end)) };
+    in_readable_units(chart)
+}
+
+/// A chart of a very short run in milliseconds or microseconds: its instants have few digits then.
+fn in_readable_units(mut chart: Chart) -> Chart {
+    let (factor, unit) = match chart.range.1 {
+        end if end < 1e-3 => (1e6, "µs"),
+        end if end < 0.1 => (1e3, "ms"),
+        _ => return chart,
+    };
+    chart.abscissa = format!("time ({unit})");
+    chart.range.1 *= factor;
+    let lines = chart.panels.iter_mut().flat_map(|panel| &mut panel.lines);
+    lines.flat_map(|line| &mut line.points).for_each(|(time, _)| *time *= factor);
+    let spans = chart.strips.iter_mut().flat_map(|strip| &mut strip.spans);
+    spans.for_each(|(from, to)| (*from, *to) = (*from * factor, *to * factor));
+    chart
+}
+
+fn seconds(at: Cycles) -> f64 {
+    at.get() as f64 / Cycles::PER_SECOND.get() as f64
+}
+
+/// When each bit was high: those that are watched, else those that changed.
+fn bits(log: &Log, end: Cycles) -> Vec<Strip> {
+    let columns = log.columns();
+    let watched: Vec<(usize, Bit)> =
+        columns.iter().filter_map(|(column, quantity)| Some((*column, bit(quantity)?))).collect();
+    if watched.is_empty() {
+        return log.changed_bits().map(|bit| strip(format!("bit {bit}"), log.spans_of(bit, end))).collect();
+    }
+    let first = |column: usize| {
+        log.samples.first().and_then(|(_, values)| values.get(column)).is_some_and(|value| *value != 0.0)
+    };
+    let spans = |column, bit| match log.has_changed(bit) {
+        true => log.spans_of(bit, end),
+        false => first(column).then_some((Cycles::default(), end)).into_iter().collect(),
+    };
+    watched.into_iter().map(|(column, bit)| strip(format!("bit {bit}"), spans(column, bit))).collect()
+}
+
+fn bit(quantity: &Quantity) -> Option<Bit> {
+    quantity.item().and_then(Item::bit)
+}
+
+fn strip(name: String, spans: impl IntoIterator<Item = (Cycles, Cycles)>) -> Strip {
+    Strip { name, spans: spans.into_iter().map(|(from, to)| (seconds(from), seconds(to))).collect() }
+}
+
+/// When each thread had the processor.
+fn threads(log: &Log) -> Vec<Strip> {
+    let strip = |thread| strip(format!("thread {thread}"), log.threads.of(thread));
+    kmotiondef::ThreadId::all().map(strip).filter(|strip| !strip.spans.is_empty()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_holds_between_its_samples() {
+        let log = super::super::testing::log();
+        let chart = chart(&log, String::new(), Ticks::new(7));
+        let lines: Vec<_> = chart.panels.iter().flat_map(|panel| &panel.lines).collect();
+        assert_eq!(lines[0].name, "Dest 0");
+        assert_eq!(chart.abscissa, "time (µs)");
+        let times: Vec<_> = lines[0].points.iter().map(|point| point.0.round() as i64).collect();
+        assert_eq!(times, [180, 360, 540, 630]);
+        let values: Vec<_> = lines[0].points.iter().map(|point| point.1).collect();
+        assert_eq!(values, [0.5, 0.5, 2.0, 2.0]);
+        assert_eq!(chart.strips[0].name, "bit 46");
+        assert_eq!(chart.strips[0].spans.len(), 1);
+        assert_eq!(chart.strips[1].name, "thread 1");
+    }
+}

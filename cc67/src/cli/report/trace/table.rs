@@ -1,0 +1,106 @@
+//! Samples as a table: the time in seconds, then the items; a line for each sampled tick.
+//!
+//! Which columns there are is known last, so all of them are written first and then copied.
+
+use std::io::{self, BufRead, Write};
+use std::path::Path;
+
+use anyhow::Result;
+use kmotiondef::{Cycles, Ticks};
+
+use super::columns::Columns;
+use super::{Entry, Sink};
+use crate::cli::io::output::{Draft, Scratch};
+
+/// The table in the making. Samples are recorded when they change; between them the last one holds.
+pub(super) struct Table {
+    draft: Draft,
+    body: Scratch,
+    columns: Columns,
+    every: u64,
+    /// The next tick that gets a line.
+    tick: u64,
+    values: Option<Vec<f64>>,
+}
+
+fn instant(tick: u64) -> Cycles {
+    Cycles::new((tick as i64).saturating_mul(Cycles::PER_TICK.get()))
+}
+
+impl Table {
+    /// Begins it, with a line every so many ticks.
+    pub(super) fn new(path: &Path, columns: Columns, every: u64) -> Result<Self> {
+        let (draft, body) = (Draft::new(path)?, Scratch::beside(path)?);
+        Ok(Self { draft, body, columns, every, tick: every, values: None })
+    }
+
+    /// The line of the next tick.
+    fn line(&mut self) -> io::Result<()> {
+        if let Some(values) = &self.values {
+            let seconds = instant(self.tick).get() as f64 / Cycles::PER_SECOND.get() as f64;
+            write!(self.body, "{seconds:.6}")?;
+            for index in 0..self.columns.all().len() {
+                write!(self.body, ",{}", values.get(index).copied().unwrap_or_default())?;
+            }
+            writeln!(self.body)?;
+        }
+        self.tick += self.every;
+        Ok(())
+    }
+}
+
+impl Sink for Table {
+    fn note(&mut self, at: Cycles, entry: &Entry) -> io::Result<()> {
+        let Entry::Sample { values, enabled } = entry else { return Ok(()) };
+        while instant(self.tick) < at {
+            self.line()?;
+        }
+        self.columns.note(*enabled);
+        self.values = Some(values.clone());
+        Ok(())
+    }
+
+    fn finish(mut self: Box<Self>, end: Ticks) -> Result<()> {
+        while self.tick <= end.get() {
+            self.line()?;
+        }
+        let Self { mut draft, body, columns, .. } = *self;
+        let shown: Vec<_> = columns.shown().collect();
+        write!(draft, "time")?;
+        for (_, quantity) in &shown {
+            write!(draft, ",{}", field(&quantity.to_string()))?;
+        }
+        writeln!(draft)?;
+        body.read(|lines| {
+            for line in lines.lines() {
+                let line = line?;
+                let cells: Vec<&str> = line.split(',').collect();
+                write!(draft, "{}", cells.first().unwrap_or(&""))?;
+                for (index, _) in &shown {
+                    write!(draft, ",{}", cells.get(index + 1).unwrap_or(&""))?;
+                }
+                writeln!(draft)?;
+            }
+            Ok(())
+        })?;
+        draft.commit()
+    }
+
+    fn path(&self) -> &Path {
+        self.draft.path()
+    }
+}
+
+/// A name as a field of the table: in quotes if it has a comma or quotes.
+fn field(name: &str) -> String {
+    if name.contains([',', '"']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name.to_owned() }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn a_sample_holds_until_the_next() {
+        let text = super::super::testing::file("table.csv");
+        assert_eq!(text, "time,dest0,bit46\n0.000180,0.5,1\n0.000360,0.5,1\n0.000540,2,0\n");
+    }
+}

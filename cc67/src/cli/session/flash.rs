@@ -1,0 +1,49 @@
+//! The file that a board's flash memory is kept in.
+
+use std::path::PathBuf;
+
+use anyhow::{Result, bail};
+use runtime::FLASH_SIZE;
+
+use crate::cli::io::input::read;
+use crate::cli::io::output;
+
+/// A file of flash memory, if there is one, and what it holds.
+#[derive(Debug)]
+pub(crate) struct Flash {
+    path: Option<PathBuf>,
+    /// What it held at the start; nothing if it was not there.
+    before: Option<Vec<u8>>,
+}
+
+impl Flash {
+    /// Reads the file, if it is there.
+    pub(super) fn read(path: Option<PathBuf>) -> Result<Self> {
+        let Some(path) = path else { return Ok(Self { path: None, before: None }) };
+        let before = if path.exists() { Some(read(&path)?) } else { None };
+        if let Some(bytes) = before.as_ref().filter(|bytes| bytes.len() != FLASH_SIZE) {
+            bail!(
+                "{} is not a board's flash: it has {} bytes, not {FLASH_SIZE}",
+                path.display(),
+                bytes.len()
+            );
+        }
+        Ok(Self { path: Some(path), before })
+    }
+
+    /// What a board begins with.
+    pub(super) fn contents(&self) -> Option<Vec<u8>> {
+        self.before.clone()
+    }
+
+    /// Keeps what flash memory holds now, if that is another than before.
+    pub(crate) fn keep(&self, now: &[u8]) -> Result<()> {
+        let is_erased = || now.iter().all(|byte| *byte == 0xFF);
+        match &self.path {
+            Some(path) if self.before.as_ref().map_or_else(|| !is_erased(), |before| before != now) => {
+                output::write(path, now)
+            }
+            _ => Ok(()),
+        }
+    }
+}

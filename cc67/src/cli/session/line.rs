@@ -1,0 +1,296 @@
+//! The serial port of a board and whatever it is connected to.
+//!
+//! Files keep a run a function of its inputs: their characters arrive at the port's rate from the moment the program
+//! first looks for them. A terminal, a TCP peer or another program acts when it likes: the run is then kept at about real time, and
+//! what arrives when is no longer the same in every run. Without these options nothing is connected.
+
+use std::io::{self, Read, Write};
+use std::net::{Ipv4Addr, TcpListener};
+use std::process::{Child, Command, Stdio};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
+use std::thread;
+use std::time::Duration;
+
+use anyhow::{Context, Result, bail};
+use cc67_host::{End, Session};
+use kmotiondef::Ticks;
+use runtime::{Event, EventKind};
+use vm::engine::Engine;
+
+use crate::cli::args::uart::UartArguments;
+use crate::cli::io::output::{Draft, cannot_write};
+use crate::cli::io::pace::Pace;
+use crate::cli::io::terminal;
+
+/// Ticks that a run with a peer goes on before it looks for what has come: 9.99 ms.
+const PART: u64 = 111;
+/// Pieces that a peer may be ahead with, and characters that wait on the line, before it has to wait.
+const AHEAD: usize = 16;
+const BACKLOG: usize = 4096;
+/// The same on the peer's clock; the run is about as fast as the board.
+const PART_TIME: Duration = Duration::from_millis(10);
+
+/// The other end, which lives in real time.
+#[derive(Debug)]
+struct Peer {
+    name: String,
+    /// What it has sent; ends when it goes away.
+    incoming: Receiver<Vec<u8>>,
+    outgoing: Outgoing,
+    /// A program is waited for when the run is over.
+    child: Option<Child>,
+}
+
+/// Where characters for the peer go.
+struct Outgoing(Box<dyn Write>);
+
+impl std::fmt::Debug for Outgoing {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str("Outgoing")
+    }
+}
+
+/// Makes the peer that the option names.
+fn peer(text: &str) -> Result<Peer> {
+    match text.split_once(':') {
+        Some(("tcp", port)) => tcp(port),
+        Some(("run", command)) => program(command),
+        None if text == "pty" => pty(),
+        _ => bail!("`--uart {text}`: there are pty, tcp:PORT and run:COMMAND"),
+    }
+}
+
+/// Waits for a client on this computer.
+fn tcp(port: &str) -> Result<Peer> {
+    let number: u16 = port.parse().with_context(|| format!("`--uart tcp:{port}`: not a port number"))?;
+    let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, number))
+        .with_context(|| format!("cannot listen on port {number}"))?;
+    let address = listener.local_addr()?;
+    terminal::note(&format!("serial port: waiting for a client on {address}"));
+    let (stream, from) = listener.accept().context("serial port")?;
+    stream.set_nodelay(true)?;
+    let outgoing = Box::new(stream.try_clone()?);
+    Ok(Peer::new(format!("client {from}"), stream, outgoing, None))
+}
+
+/// Starts a program whose input and output are the line.
+fn program(command: &str) -> Result<Peer> {
+    let mut words = command.split_whitespace();
+    let name = words.next().context("`--uart run:` names no program")?;
+    let started = Command::new(name).args(words).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn();
+    let mut child = started.with_context(|| format!("cannot run `{name}`"))?;
+    let (Some(outgoing), Some(incoming)) = (child.stdin.take(), child.stdout.take()) else {
+        bail!("`{name}` has no input and output");
+    };
+    Ok(Peer::new(format!("program `{name}`"), incoming, Box::new(outgoing), Some(child)))
+}
+
+/// Opens a pseudo-terminal and says its name.
+#[cfg(unix)]
+fn pty() -> Result<Peer> {
+    use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+    use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
+
+    let controller = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).context("cannot open a terminal")?;
+    grantpt(&controller)?;
+    unlockpt(&controller)?;
+    let name = ptsname(&controller, Vec::new())?.to_string_lossy().into_owned();
+    // Held open, as the line would be broken whenever nobody else has it open.
+    let line = std::fs::OpenOptions::new().read(true).write(true).open(&name)?;
+    let mut mode = tcgetattr(&line)?;
+    mode.make_raw();
+    tcsetattr(&line, OptionalActions::Now, &mode)?;
+    terminal::note(&format!("serial port: terminal {name}"));
+    let controller = std::fs::File::from(controller);
+    let outgoing = Held { file: controller.try_clone()?, _line: line };
+    Ok(Peer::new(format!("terminal {name}"), controller, Box::new(outgoing), None))
+}
+
+#[cfg(not(unix))]
+fn pty() -> Result<Peer> {
+    bail!("`--uart pty`: this system has no pseudo-terminals; tcp:PORT works everywhere")
+}
+
+/// A terminal and its other side, which keeps it alive.
+#[cfg(unix)]
+struct Held {
+    file: std::fs::File,
+    _line: std::fs::File,
+}
+
+#[cfg(unix)]
+impl Write for Held {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.file.flush()
+    }
+}
+
+impl Peer {
+    /// Reads what the peer sends in the background.
+    fn new(
+        name: String,
+        mut reader: impl Read + Send + 'static,
+        outgoing: Box<dyn Write>,
+        child: Option<Child>,
+    ) -> Self {
+        let (sender, incoming) = mpsc::sync_channel(AHEAD);
+        thread::spawn(move || {
+            let mut buffer = [0; 256];
+            while let Ok(count) = reader.read(&mut buffer) {
+                let bytes = buffer.get(..count).unwrap_or_default();
+                if count == 0 || sender.send(bytes.to_vec()).is_err() {
+                    break;
+                }
+            }
+        });
+        Self { name, incoming, outgoing: Outgoing(outgoing), child }
+    }
+}
+
+/// The line from the board to whatever it is connected to; nothing, unless it is connected.
+#[derive(Debug, Default)]
+pub(super) struct Line {
+    peer: Option<Peer>,
+    output: Option<Draft>,
+    /// Why a character could not be written.
+    failed: Option<io::Error>,
+    /// What the board has sent and the peer has not been given.
+    fresh: Vec<u8>,
+    /// Whether it was said that the peer is gone.
+    is_told: bool,
+    /// How long a part of a run waits for the peer.
+    patience: Duration,
+}
+
+impl Line {
+    /// The other end of the port, which is waited for if it has to be there.
+    pub(super) fn connect(uart: &UartArguments) -> Result<Self> {
+        let peer = uart.uart.as_deref().map(peer).transpose()?;
+        let output = uart.uart_output.as_deref().map(Draft::new).transpose()?;
+        Ok(Self { peer, output, failed: None, fresh: Vec::new(), is_told: false, patience: PART_TIME })
+    }
+
+    /// Takes up a character that the board has sent.
+    pub(super) fn note(&mut self, event: &Event) {
+        if let EventKind::UartSent(byte) = event.kind {
+            if self.peer.is_some() {
+                self.fresh.push(byte);
+            }
+            if let Some(output) = &mut self.output
+                && self.failed.is_none()
+            {
+                self.failed = output.write_all(&[byte]).err();
+            }
+        }
+    }
+
+    /// Somebody else keeps the board at the pace of a clock, so the line does not wait for the peer.
+    pub(super) fn is_paced_elsewhere(&mut self) {
+        self.patience = Duration::ZERO;
+    }
+
+    /// Runs the board to its end, or to the limit, and the line beside it; at the pace of a clock, if there is one.
+    pub(super) fn run<E: Engine>(
+        &mut self,
+        session: &mut Session<E>,
+        limit: Ticks,
+        pace: Option<&Pace>,
+        sink: &mut dyn FnMut(Event),
+    ) -> End {
+        loop {
+            let part = self.part(session.tick(), limit, pace.is_some());
+            let end = session.run(part, &mut |event| {
+                self.note(&event);
+                sink(event);
+            });
+            self.exchange(session);
+            if let Some(pace) = pace {
+                pace.wait(session.tick());
+            }
+            if end == End::AllEnded || session.tick() >= limit {
+                return end;
+            }
+        }
+    }
+
+    /// Runs the board to the end of a tick, also when its programs have ended, and the line beside it.
+    pub(super) fn advance<E: Engine>(
+        &mut self,
+        session: &mut Session<E>,
+        limit: Ticks,
+        sink: &mut dyn FnMut(Event),
+    ) {
+        while session.tick() < limit {
+            let part = self.part(session.tick(), limit, false);
+            session.advance(part, &mut |event| {
+                self.note(&event);
+                sink(event);
+            });
+            self.exchange(session);
+        }
+    }
+
+    /// The tick at which the peer and the clock are looked at next.
+    fn part(&self, tick: Ticks, limit: Ticks, is_paced: bool) -> Ticks {
+        let is_paced = self.peer.is_some() || is_paced;
+        if is_paced { Ticks::new((tick.get() + PART).min(limit.get())) } else { limit }
+    }
+
+    /// Gives the peer what was sent and puts on the line what it sends. While enough waits there it is not listened to.
+    fn exchange<E: Engine>(&mut self, session: &mut Session<E>) {
+        let came = self.take(session.board().uart_backlog());
+        if !came.is_empty() {
+            session.send_to_uart(&came);
+        }
+    }
+
+    /// Gives the peer what was sent and takes what it sends, for as long as a part of the run lasts.
+    fn take(&mut self, backlog: usize) -> Vec<u8> {
+        let Some(peer) = &mut self.peer else { return Vec::new() };
+        let fresh = std::mem::take(&mut self.fresh);
+        let written = peer.outgoing.0.write_all(&fresh).and_then(|()| peer.outgoing.0.flush());
+        if backlog >= BACKLOG {
+            thread::sleep(self.patience);
+            return Vec::new();
+        }
+        let mut came = Vec::new();
+        let mut is_gone = written.is_err();
+        match peer.incoming.recv_timeout(self.patience) {
+            Ok(bytes) => came.extend(bytes),
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => {
+                is_gone = true;
+                // The run is kept at its pace: the peer may still read.
+                thread::sleep(self.patience);
+            }
+        }
+        came.extend(peer.incoming.try_iter().take(AHEAD).flatten());
+        if is_gone && !self.is_told {
+            self.is_told = true;
+            terminal::note(&format!("serial port: {} is gone; the run goes on without it", peer.name));
+        }
+        came
+    }
+
+    /// The run is over: the peer is let go, and what was sent is written.
+    pub(super) fn finish(&mut self) -> Result<()> {
+        if let Some(peer) = self.peer.take() {
+            drop(peer.outgoing);
+            if let Some(mut child) = peer.child {
+                // It ends with its input, or it is ended.
+                thread::sleep(PART_TIME);
+                let _ = child.kill();
+                let _ = child.wait();
+            }
+        }
+        let Some(output) = self.output.take() else { return Ok(()) };
+        match self.failed.take() {
+            Some(error) => Err(cannot_write(output.path(), &error)),
+            None => output.commit(),
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! How fast the processor's interpreter is: millions of cycles and packets a second of the computer's processor time.
+//!
+//! `kernel/integer`, `kernel/memory` and `kernel/double` are the loops of `c67x.md` 7 by hand. Where `CC67_FIRMWARE`
+//! names a firmware file, `boot` is its start (wanted: 0.3 s) and `idle` a board second after it (wanted: 1 s).
+//!
+//! ```sh
+//! CC67_FIRMWARE=DSPKFLOP.out cargo bench -p cc67-boot
+//! ```
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use boot::{BootedBoard, FirmwareFile};
+use kmotiondef::GuestAddr;
+use vm::dsp::{Clock, Core, Halt, Memory};
+use vm::memory::GuestMemory;
+use vm::trap::{Access, TrapKind};
+
+/// Where kernels are, and where they return to.
+const CODE: u32 = 0x8005_0000;
+const BACK: u32 = 0x0000_1000;
+/// Cycles of a measurement.
+const CYCLES: u64 = 100_000_000;
+
+/// `c67x.md` 7.1: one element in six cycles.
+const INTEGER: &str =
+    "0013E05B 02800029 01900058 030C3665 20000191 2003E05A 00006000 0298A078 000C0362 02140058 00006000";
+/// `c67x.md` 7.3: products of doubles, three cycles for an element.
+const DOUBLE: &str = "02901059 011839A3 04800029 021088C2 0108205B 04000029 0280002B 0318C4F8 01000029 0300002B 001084FB \
+                      0018C4F8 01800029 0380002B 041084FA 00000000 04103765 00191701 60000010 03143766 03103765 00191702 \
+                      04143767 01004318 010BE05A 0200831A 0000A000 02105318 000C0362 00008000";
+/// Copies words, one in six cycles, load and store beside each other.
+const COPY: &str =
+    "0013E05B 02800029 01900058 030C3665 20000191 2003E05A 00006000 030C0274 000C0362 02140058 00006000";
+
+/// Both RAMs and nothing else.
+struct Ram(GuestMemory);
+
+fn absent(addr: u32, access: Access) -> TrapKind {
+    TrapKind::Unmapped { addr: GuestAddr::new(addr), access }
+}
+
+macro_rules! accesses {
+    ($($load:ident, $store:ident, $ty:ty;)*) => {$(
+        #[inline(always)]
+        fn $load(&mut self, addr: u32, _: &mut Clock) -> Result<u32, TrapKind> {
+            let value = self.0.load_ram::<$ty>(GuestAddr::new(addr));
+            value.map(u32::from).ok_or_else(|| absent(addr, Access::Read))
+        }
+
+        #[inline(always)]
+        fn $store(&mut self, addr: u32, value: u32, _: &mut Clock) -> Result<(), TrapKind> {
+            let stored = self.0.store_ram(GuestAddr::new(addr), value as $ty);
+            stored.ok_or_else(|| absent(addr, Access::Write))
+        }
+    )*};
+}
+
+impl Memory for Ram {
+    fn fetch(&self, addr: u32) -> Option<u32> {
+        (addr >= CODE).then(|| self.0.peek(GuestAddr::new(addr)))
+    }
+
+    accesses! { load8, store8, u8; load16, store16, u16; load32, store32, u32; }
+
+    #[inline(always)]
+    fn load64(&mut self, addr: u32, _: &mut Clock) -> Result<u64, TrapKind> {
+        self.0.load_ram(GuestAddr::new(addr)).ok_or_else(|| absent(addr, Access::Read))
+    }
+}
+
+/// Processor time since the start of the process.
+fn cpu() -> Duration {
+    #[cfg(unix)]
+    {
+        let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
+        Duration::new(time.tv_sec.try_into().unwrap_or(0), time.tv_nsec.try_into().unwrap_or(0))
+    }
+    #[cfg(not(unix))]
+    Duration::ZERO
+}
+
+/// Shows what a measurement came to.
+fn show(name: &str, began: Duration, cycles: u64, packets: u64) {
+    let seconds = (cpu() - began).as_secs_f64();
+    let rate = |count: u64| count as f64 / seconds / 1e6;
+    println!("{name:16} {seconds:7.3} s {:8.1} M cycles/s {:8.1} M packets/s", rate(cycles), rate(packets));
+}
+
+fn kernel(name: &str, words: &str, arguments: &[(c67x::Reg, u32)]) {
+    let mut ram = Ram(GuestMemory::new());
+    for (at, word) in (CODE..).step_by(4).zip(words.split_whitespace()) {
+        ram.0.poke(GuestAddr::new(at), u32::from_str_radix(word, 16).expect("a word"));
+    }
+    let mut core = Core::new(CODE);
+    let began = cpu();
+    let mut calls = 0;
+    while core.state.cycle() < CYCLES {
+        core.state.set_pc(CODE);
+        core.state.set_reg(c67x::Reg::b(3), BACK);
+        arguments.iter().for_each(|(reg, value)| core.state.set_reg(*reg, *value));
+        assert_eq!(core.run_until(&mut ram, u64::MAX / 4), Halt::Left(BACK), "{name}");
+        calls += 1;
+    }
+    assert!(calls > 10, "{name} is short");
+    show(name, began, core.state.cycle(), core.packets());
+}
+
+fn main() {
+    let (a, b) = (c67x::Reg::a, c67x::Reg::b);
+    let (first, second) = (0x8006_0000, 0x8007_0000);
+    kernel("kernel/integer", INTEGER, &[(a(4), first), (b(4), 1000)]);
+    kernel("kernel/memory", COPY, &[(a(4), first), (b(4), 1000), (a(5), second)]);
+    kernel("kernel/double", DOUBLE, &[(a(4), first), (b(4), second), (a(6), 1000)]);
+    let Some(path) = std::env::var_os("CC67_FIRMWARE") else {
+        println!("boot, idle: not measured, CC67_FIRMWARE names no firmware file");
+        return;
+    };
+    let file = FirmwareFile::read(&std::fs::read(path).expect("a file")).expect("a firmware file");
+    let began = cpu();
+    let mut board = BootedBoard::booted(Arc::new(file)).expect("it starts");
+    show("boot", began, board.cycle(), board.packets());
+    let (began, cycles, packets) = (cpu(), board.cycle(), board.packets());
+    board.run_to(cycles + 200_000_000).expect("it runs");
+    show("idle", began, board.cycle() - cycles, board.packets() - packets);
+    let axes = (0..8).map(|axis| format!("OutputMode{axis}=6;OutputChan0{axis}={axis};EnableAxis{axis}"));
+    axes.for_each(|line| board.send_line(line.as_bytes()));
+    (0..8).for_each(|axis| board.send_line(format!("Jog{axis}=1000").as_bytes()));
+    let (began, cycles, packets) = (cpu(), board.cycle(), board.packets());
+    board.run_to(cycles + 200_000_000).expect("it runs");
+    show("eight axes", began, board.cycle() - cycles, board.packets() - packets);
+    println!("steps of generator 3: {:.3}", board.steps(3).0);
+}

@@ -1,0 +1,501 @@
+//! The board in one time: processor, timer, link, restarts, programs.
+
+use std::sync::Arc;
+
+use coff::{Contents, Image};
+use kmotiondef::map::{FLASH, IRAM, SDRAM};
+use kmotiondef::structs::Chan;
+use kmotiondef::{AxisId, GuestAddr, ThreadId};
+use vm::dsp::{Core, Halt, listing};
+use vm::memory::GuestMemory;
+use vm::memory::snapshot::MemorySnapshot;
+
+use super::bus::Hardware;
+use super::crash::Crash;
+use super::file::{FirmwareError, FirmwareFile};
+use super::loads::Loads;
+
+/// Cycles of a second.
+const SECOND: u64 = 200_000_000;
+/// Cycles from taking an interrupt to the first packet of its vector.
+const OVERHEAD: u64 = 11;
+/// Longest start: many times what any version takes.
+const LONGEST_START: u64 = 3 * SECOND;
+/// Longest time for which the timer's interrupt may wait.
+const LONGEST_SHADOW: u64 = SECOND / 5;
+/// Where a board with flash starts, and its stack there.
+const FLASH_START: u32 = 0x1000_1000;
+const FLASH_STACK: u32 = 0x1000_0440;
+/// Flash content and where it is copied to when the board starts: offset, address, bytes.
+const PIECES: [(u32, u32, u32); 4] = [
+    (0, 0x1000_0000, 0x1000),
+    (0x1000, 0x8000_0000, 0xF000),
+    (0x1_0000, 0x1000_1000, 0x1_F000),
+    (0x2_F000, 0x8000_F000, 0xD_1000),
+];
+/// The users' half of the flash, erased.
+const USER: u32 = 0x10_0000;
+/// Begins a line for the console; begins a command without echo, with any byte after it.
+const ESCAPE: u8 = 0x1B;
+const NO_ECHO: u8 = 1;
+/// Words shown before and after the place of a crash.
+const AROUND: u32 = 8 * 4;
+
+/// What kind of line the firmware sent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sent {
+    /// Console text.
+    Console,
+    /// An answer to a command.
+    Reply,
+    /// A request to the PC about files; the bytes begin with its number.
+    Request,
+}
+
+/// A line that the firmware sent, without its line end.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Line {
+    /// The cycle of its first byte, since power-up.
+    pub cycle: u64,
+    /// What it is.
+    pub kind: Sent,
+    /// Its text.
+    pub text: Vec<u8>,
+}
+
+/// Why the board stands still.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Halted {
+    /// The firmware ran away.
+    #[error("{0}")]
+    Crashed(Box<Crash>),
+}
+
+/// A board that runs a real firmware.
+#[derive(Clone, Debug)]
+pub struct BootedBoard {
+    file: Arc<FirmwareFile>,
+    core: Core,
+    hardware: Hardware,
+    /// Bytes of a line that is not complete, and the cycle of the first.
+    unfinished: (u64, Vec<u8>),
+    lines: Vec<Line>,
+    /// The cycle in which the timer's interrupt began to wait.
+    waits_since: u64,
+    /// What the axes move.
+    loads: Loads,
+    /// Whether waiting loops are skipped.
+    skips: bool,
+    /// The end of it, if there was one.
+    crash: Option<Box<Crash>>,
+}
+
+/// A [`BootedBoard`] as it was.
+#[derive(Clone, Debug)]
+pub struct BootedSnapshot {
+    board: BootedBoard,
+    memory: MemorySnapshot,
+}
+
+impl BootedSnapshot {
+    /// The cycle in which it was taken.
+    #[must_use]
+    pub const fn cycle(&self) -> u64 {
+        self.board.cycle()
+    }
+
+    /// A board of its own that goes on from here.
+    #[must_use]
+    pub fn board(&self) -> BootedBoard {
+        let mut board = self.board.clone();
+        board.restore(self);
+        board
+    }
+}
+
+impl BootedBoard {
+    /// Whether loops that wait are run through in one step, as they are at first; nothing that can be seen changes.
+    pub const fn skip_waits(&mut self, whether: bool) {
+        self.core.skip_waits(whether);
+        self.skips = whether;
+    }
+
+    /// Cycles of waiting loops that were skipped.
+    #[must_use]
+    pub const fn skipped(&self) -> u64 {
+        self.core.skipped()
+    }
+
+    /// A board at power-up: the sections are in memory, the processor is before the entry.
+    #[must_use]
+    pub fn new(file: Arc<FirmwareFile>) -> Self {
+        let mut hardware = Hardware::default();
+        file.load(&mut hardware.memory);
+        fill_flash(&mut hardware.memory);
+        let mut core = Core::at_power_up(file.entry(), 0, 0);
+        core.skip_waits(true);
+        let unfinished = (0, Vec::new());
+        let (lines, loads) = (Vec::new(), Loads::default());
+        Self { file, core, hardware, unfinished, lines, waits_since: 0, loads, skips: true, crash: None }
+    }
+
+    /// The board that a firmware file makes, when it first looks for what the PC sends.
+    ///
+    /// # Errors
+    /// The firmware never comes to that.
+    pub fn booted(file: Arc<FirmwareFile>) -> Result<Self, Halted> {
+        let mut board = Self::new(file);
+        board.boot()?;
+        Ok(board)
+    }
+
+    /// Runs until the firmware first looks for what the PC sends.
+    ///
+    /// # Errors
+    /// It never comes to that.
+    pub fn boot(&mut self) -> Result<(), Halted> {
+        while self.hardware.first_look.is_none() {
+            if self.cycle() >= LONGEST_START {
+                let reason = "it has not begun to wait for the PC within 3 s of its start";
+                return Err(self.crash(reason.to_owned()));
+            }
+            self.run_events(self.cycle() + SECOND / 100)?;
+        }
+        Ok(())
+    }
+
+    /// The file that it was made of.
+    #[must_use]
+    pub fn file(&self) -> &FirmwareFile {
+        &self.file
+    }
+
+    /// Cycles of 5 ns since power-up.
+    #[must_use]
+    pub const fn cycle(&self) -> u64 {
+        self.core.state.cycle()
+    }
+
+    /// The cycle in which the firmware first looked for what the PC sends.
+    #[must_use]
+    pub const fn ready_at(&self) -> Option<u64> {
+        self.hardware.first_look
+    }
+
+    /// Packets executed since power-up.
+    #[must_use]
+    pub const fn packets(&self) -> u64 {
+        self.core.packets()
+    }
+
+    /// The registers by name.
+    #[must_use]
+    pub fn registers(&self) -> Vec<(String, u32)> {
+        self.core.registers()
+    }
+
+    /// Memory.
+    #[must_use]
+    pub const fn memory(&self) -> &GuestMemory {
+        &self.hardware.memory
+    }
+
+    /// Memory, to change it from outside; code may be among it.
+    pub fn memory_mut(&mut self) -> &mut GuestMemory {
+        self.core.forget_code();
+        &mut self.hardware.memory
+    }
+
+    /// Runs to the first packet from this cycle on.
+    ///
+    /// # Errors
+    /// The firmware ran away; it stays so.
+    pub fn run_to(&mut self, cycle: u64) -> Result<(), Halted> {
+        while self.cycle() < cycle {
+            self.run_events(cycle)?;
+        }
+        Ok(())
+    }
+
+    /// Runs to `cycle`, or to where a device asked to stop.
+    fn run_events(&mut self, cycle: u64) -> Result<(), Halted> {
+        if let Some(crash) = &self.crash {
+            return Err(Halted::Crashed(crash.clone()));
+        }
+        let next = self.hardware.timer.next_match();
+        if next <= self.cycle() {
+            self.tick();
+            return Ok(());
+        }
+        let until = cycle.min(next);
+        let halt = if self.core.state.has_timer_flag() {
+            if self.core.state.is_interruptible() {
+                self.core.state.take_timer_interrupt(OVERHEAD);
+                return Ok(());
+            }
+            if self.cycle() - self.waits_since > LONGEST_SHADOW {
+                return Err(self.crash("it has not taken an interrupt for 0.2 s".to_owned()));
+            }
+            self.core.run_to_interrupt(&mut self.hardware, until)
+        } else {
+            self.waits_since = self.cycle();
+            self.core.run_until(&mut self.hardware, until)
+        };
+        match halt {
+            Halt::Preempted => Ok(()),
+            Halt::Left(0) => {
+                self.restart();
+                Ok(())
+            }
+            Halt::Left(address) => {
+                Err(self
+                    .crash(format!("it went to 0x{address:08X}, where this board has no memory for code")))
+            }
+            Halt::Faulted(kind) => Err(self.crash(kind.to_string())),
+        }
+    }
+
+    /// The timer matches: what is connected moves, then the interrupt is asked for.
+    fn tick(&mut self) {
+        if let Some(chan) = self.file.address("chan") {
+            let now = self.hardware.timer.next_match();
+            let Hardware { memory, window, .. } = &mut self.hardware;
+            self.loads.tick(chan, memory, window, now);
+        }
+        if self.hardware.timer.take_match() {
+            self.core.state.raise_timer();
+        }
+    }
+
+    /// A reset: everything but flash and link as at power-up.
+    fn restart(&mut self) {
+        let Hardware { memory, window, .. } = std::mem::take(&mut self.hardware);
+        self.hardware = Hardware { memory, window, first_look: Some(self.cycle()), ..Hardware::default() };
+        self.hardware.window.reset();
+        let memory = &mut self.hardware.memory;
+        for region in [IRAM, SDRAM] {
+            let zeros = vec![0; region.size as usize];
+            let stored = memory.poke_bytes(region.base, &zeros);
+            debug_assert!(stored.is_ok(), "both RAMs are mapped");
+        }
+        for (offset, address, size) in PIECES {
+            copy(memory, FLASH.base.get() + offset, address, size);
+        }
+        self.core = Core::at_power_up(FLASH_START, FLASH_STACK, self.cycle());
+        self.core.skip_waits(self.skips);
+    }
+
+    /// Stands still from here on.
+    fn crash(&mut self, reason: String) -> Halted {
+        let pc = self.core.state.pc();
+        let from = (pc & !3).saturating_sub(AROUND);
+        let thread = self.file.address("CurrentThread").map(|at| self.hardware.memory.peek::<u32>(at));
+        let crash = Box::new(Crash {
+            reason,
+            cycle: self.cycle(),
+            pc,
+            function: self.file.function_at(pc),
+            thread,
+            registers: self.core.registers(),
+            listing: listing(from..(pc & !3).saturating_add(AROUND), |at| self.hardware.word(at)),
+        });
+        self.crash = Some(crash.clone());
+        Halted::Crashed(crash)
+    }
+
+    /// The PC sends bytes.
+    pub fn send(&mut self, bytes: &[u8]) {
+        self.hardware.window.link.send(bytes);
+    }
+
+    /// The PC sends a command, which is not echoed.
+    pub fn send_line(&mut self, command: &[u8]) {
+        self.send(&[&[ESCAPE, NO_ECHO], command, b"\r"].concat());
+    }
+
+    /// Whether the firmware has read everything that was sent.
+    #[must_use]
+    pub fn has_read_all(&self) -> bool {
+        self.hardware.window.link.is_read()
+    }
+
+    /// The bytes that the firmware sent since this or [`take_lines`](Self::take_lines) was last called, with their cycles.
+    pub fn take_bytes(&mut self) -> Vec<(u64, u8)> {
+        self.hardware.window.link.take_sent()
+    }
+
+    /// The lines that the firmware has completed since the last time.
+    pub fn take_lines(&mut self) -> Vec<Line> {
+        for (cycle, byte) in self.hardware.window.link.take_sent() {
+            self.hear(cycle, byte);
+        }
+        std::mem::take(&mut self.lines)
+    }
+
+    fn hear(&mut self, cycle: u64, byte: u8) {
+        let (first, bytes) = &mut self.unfinished;
+        if bytes.is_empty() {
+            *first = cycle;
+        }
+        bytes.push(byte);
+        // The answer to an abort is the one line that ends with a carriage return alone.
+        if byte != b'\n' && bytes != b"\x1bC\r" {
+            return;
+        }
+        let cycle = *first;
+        let line = std::mem::take(bytes);
+        let text = line.strip_suffix(b"\n").unwrap_or(&line);
+        let text = text.strip_suffix(b"\r").unwrap_or(text);
+        let (kind, text) = match text {
+            [ESCAPE, request @ 1..=7, ..] => (Sent::Request, &text[usize::from(*request != 0)..]),
+            [ESCAPE, rest @ ..] if line.last() == Some(&b'\n') => (Sent::Console, rest),
+            _ => (Sent::Reply, text),
+        };
+        self.lines.push(Line { cycle, kind, text: text.to_vec() });
+    }
+
+    /// Puts the sections of a linked program into memory, as a download does, and tells the firmware where it begins.
+    ///
+    /// # Errors
+    /// The bytes are not an image of this processor.
+    pub fn load_program(&mut self, thread: ThreadId, image: &[u8]) -> Result<(), FirmwareError> {
+        let image = Image::read(image).map_err(FirmwareError::NotAnImage)?;
+        if image.target != coff::Target::C6000 {
+            return Err(FirmwareError::OtherTarget(image.target));
+        }
+        let entry = image.program.ok_or(FirmwareError::NoEntry)?.entry;
+        for section in &image.sections {
+            if let Contents::Data(bytes) = &section.contents
+                && self.hardware.memory.poke_bytes(GuestAddr::new(section.address), bytes).is_err()
+            {
+                let name = section.name.to_str().into_owned();
+                return Err(FirmwareError::OtherBoard { name, address: section.address });
+            }
+        }
+        self.core.forget_code();
+        self.send_line(format!("EntryPoint{thread} {entry:X}").as_bytes());
+        Ok(())
+    }
+
+    /// Starts a thread.
+    pub fn execute(&mut self, thread: ThreadId) {
+        self.send_line(format!("Execute{thread}").as_bytes());
+    }
+
+    /// Whether a user thread is active; `None` if the firmware does not say.
+    #[must_use]
+    pub fn is_active(&self, thread: ThreadId) -> Option<bool> {
+        let active: u32 = self.memory().peek(self.file.address("ThreadActive")?);
+        Some(active >> thread.get() & 1 != 0)
+    }
+
+    /// Where an axis is commanded to be and where it is; `None` if the firmware does not say.
+    #[must_use]
+    pub fn axis(&self, axis: AxisId) -> Option<(f64, f64)> {
+        let base = self.file.address("chan")?.offset(axis.get() as u32 * Chan::STRUCTURE.size);
+        let at = |offset: u32| self.memory().peek::<f64>(base.offset(offset));
+        Some((at(Chan::DEST.offset()), at(Chan::POSITION.offset())))
+    }
+
+    /// Steps that a generator has made, and steps a second.
+    pub fn steps(&mut self, generator: usize) -> (f64, f64) {
+        let now = self.cycle();
+        let (steps, rate) = self.hardware.window.generators.position(generator, now);
+        (steps, rate * SECOND as f64)
+    }
+
+    /// Whether a pin is high, as an output or as it is driven.
+    #[must_use]
+    pub fn is_high(&self, pin: usize) -> bool {
+        self.hardware.window.pins.is_high(pin)
+    }
+
+    /// Whether a pin is an output.
+    #[must_use]
+    pub fn is_output(&self, pin: usize) -> bool {
+        self.hardware.window.pins.directions(pin / 8) >> (pin % 8) & 1 != 0
+    }
+
+    /// Drives an input pin from outside.
+    pub fn drive_pin(&mut self, pin: usize, level: bool) {
+        self.hardware.window.pins.drive(pin, level);
+    }
+
+    /// Changes of output pins since the last time: cycle, pin, level.
+    pub fn take_pin_changes(&mut self) -> Vec<(u64, u8, bool)> {
+        self.hardware.window.pins.take_changes()
+    }
+
+    /// What the encoder of a channel shows from now on: the low eight bits of its counts.
+    pub fn show_encoder(&mut self, channel: usize, counts: u8) {
+        if let Some(encoder) = self.hardware.window.encoders.get_mut(channel) {
+            *encoder = counts;
+        }
+    }
+
+    /// A Kanalog is connected, the converters of which show these values, 0 … 4095; 2048 is 0 V.
+    pub fn show_converters(&mut self, values: [u16; 8]) {
+        self.hardware.window.converters = Some(values);
+    }
+
+    /// What the inputs of the Kanalog show, bits 128 to 143.
+    pub fn show_kanalog_inputs(&mut self, inputs: u16) {
+        self.hardware.window.kanalog_inputs = inputs;
+    }
+
+    /// A KStep is connected; a bit is set while current flows in an input.
+    pub fn show_kstep(&mut self, inputs: u16) {
+        self.hardware.window.kstep = Some(inputs);
+    }
+
+    /// The last word written to a register of the FPGA.
+    #[must_use]
+    pub fn register(&self, number: usize) -> u16 {
+        self.hardware.window.cell(number)
+    }
+
+    /// Sends to the serial port.
+    pub fn send_serial(&mut self, bytes: &[u8]) {
+        let now = self.cycle();
+        self.hardware.window.uart.put(bytes, now);
+    }
+
+    /// What the serial port has sent since the last time, with the cycle of each byte.
+    pub fn take_serial(&mut self) -> Vec<(u64, u8)> {
+        self.hardware.window.uart.take_sent()
+    }
+
+    /// Everything that the board is.
+    pub fn snapshot(&mut self) -> BootedSnapshot {
+        let memory = self.hardware.memory.snapshot();
+        let kept = std::mem::take(&mut self.hardware.memory);
+        let board = self.clone();
+        self.hardware.memory = kept;
+        BootedSnapshot { board, memory }
+    }
+
+    /// Goes back to a snapshot, and on from there as then.
+    pub fn restore(&mut self, snapshot: &BootedSnapshot) {
+        let mut memory = std::mem::take(&mut self.hardware.memory);
+        memory.restore(&snapshot.memory);
+        *self = snapshot.board.clone();
+        self.hardware.memory = memory;
+    }
+}
+
+/// Copies bytes inside of guest memory; both places are mapped.
+fn copy(memory: &mut GuestMemory, from: u32, to: u32, size: u32) {
+    let bytes = memory.read_bytes(GuestAddr::new(from), size).map(<[u8]>::to_vec).unwrap_or_default();
+    let stored = memory.poke_bytes(GuestAddr::new(to), &bytes);
+    debug_assert!(stored.is_ok(), "{to:X} is mapped");
+}
+
+/// A board as it leaves the factory: the system's half as loaded, the users' half erased.
+fn fill_flash(memory: &mut GuestMemory) {
+    for (offset, address, size) in PIECES {
+        copy(memory, address, FLASH.base.get() + offset, size);
+    }
+    let erased = vec![0xFF; (FLASH.size - USER) as usize];
+    let stored = memory.poke_bytes(FLASH.base.offset(USER), &erased);
+    debug_assert!(stored.is_ok(), "the flash is mapped");
+}

@@ -1,0 +1,177 @@
+//! Which address is whose (`dsp-board.md` 3).
+
+use kmotiondef::GuestAddr;
+use kmotiondef::map::{FLASH, FPGA, IRAM, SDRAM};
+use vm::dsp::{Clock, Memory};
+use vm::memory::GuestMemory;
+use vm::trap::{Access, TrapKind};
+
+use super::control::Control;
+use super::flash::Chip;
+use super::timer::Timer;
+use super::window::Window;
+
+/// Bytes of the internal ROM: reads 0, writes do nothing.
+const ROM: u32 = 0x6_0000;
+/// The timer.
+const TIMER: u32 = 0x4200_0000;
+const TIMER_SIZE: u32 = 0x100;
+
+/// Everything that the processor reaches.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Hardware {
+    pub(super) memory: GuestMemory,
+    pub(super) timer: Timer,
+    pub(super) window: Window,
+    pub(super) control: Control,
+    pub(super) chip: Chip,
+    /// The cycle in which the firmware first looked whether the PC has sent something.
+    pub(super) first_look: Option<u64>,
+    /// Accesses of devices, but for looks at an empty link.
+    pub(super) touches: u64,
+}
+
+impl Hardware {
+    #[cold]
+    fn load(&mut self, addr: u32, bytes: u32, clock: &mut Clock) -> Result<u32, TrapKind> {
+        let now = clock.cycle();
+        if let Some(offset) = inside(addr, FPGA.base.get(), FPGA.size) {
+            return Ok(self.look(offset, bytes, clock));
+        }
+        self.touches += 1;
+        if let Some(offset) = inside(addr, TIMER, TIMER_SIZE) {
+            return Ok(self.timer.read(offset, now));
+        }
+        if let Some(offset) = inside(addr, FLASH.base.get(), FLASH.size) {
+            return Ok(self.flash(offset, bytes, now));
+        }
+        if Control::has(addr) {
+            return Ok(self.control.read(addr));
+        }
+        if addr < ROM { Ok(0) } else { Err(unmapped(addr, Access::Read)) }
+    }
+
+    fn flash(&mut self, offset: u32, bytes: u32, now: u64) -> u32 {
+        let low = self.chip.read(offset & !1, &self.memory, now);
+        match bytes {
+            1 => low >> (8 * (offset & 1)) & 0xFF,
+            2 => low,
+            _ => low | self.chip.read(offset | 2, &self.memory, now) << 16,
+        }
+    }
+
+    /// Reads a register of the FPGA. At the first look at the link the processor stops: the board is ready.
+    fn look(&mut self, offset: u32, bytes: u32, clock: &mut Clock) -> u32 {
+        let (looks, touches) = (self.window.link.looks(), self.window.touches());
+        let value = self.window.read(offset, bytes, clock.cycle());
+        self.touches += self.window.touches() - touches;
+        if self.first_look.is_none() && self.window.link.looks() != looks {
+            self.first_look = Some(clock.cycle());
+            clock.set_left(0);
+        }
+        value
+    }
+
+    #[cold]
+    fn store(&mut self, addr: u32, bytes: u32, value: u32, clock: &mut Clock) -> Result<(), TrapKind> {
+        let now = clock.cycle();
+        self.touches += 1;
+        if let Some(offset) = inside(addr, FPGA.base.get(), FPGA.size) {
+            self.window.write(offset, bytes, value, now);
+        } else if let Some(offset) = inside(addr, TIMER, TIMER_SIZE) {
+            self.timer.write(offset, value, now);
+            let left = self.timer.next_match().saturating_sub(now);
+            clock.set_left(clock.left().min(i64::try_from(left).unwrap_or(i64::MAX)));
+        } else if let Some(offset) = inside(addr, FLASH.base.get(), FLASH.size) {
+            self.chip.write(offset & !1, value, &mut self.memory, now);
+        } else if Control::has(addr) {
+            self.control.write(addr, value);
+        } else if addr >= ROM {
+            return Err(unmapped(addr, Access::Write));
+        }
+        Ok(())
+    }
+
+    /// A word of RAM, where code may be.
+    pub(super) fn word(&self, addr: u32) -> Option<u32> {
+        let is_ram = |region: &kmotiondef::map::Region| addr.wrapping_sub(region.base.get()) < region.size;
+        (is_ram(&SDRAM) || is_ram(&IRAM)).then(|| self.memory.peek(GuestAddr::new(addr)))
+    }
+}
+
+const fn inside(addr: u32, base: u32, size: u32) -> Option<u32> {
+    let offset = addr.wrapping_sub(base);
+    if offset < size { Some(offset) } else { None }
+}
+
+const fn unmapped(addr: u32, access: Access) -> TrapKind {
+    TrapKind::Unmapped { addr: GuestAddr::new(addr), access }
+}
+
+impl Memory for Hardware {
+    fn touches(&self) -> u64 {
+        self.touches
+    }
+
+    fn fetch(&self, addr: u32) -> Option<u32> {
+        self.word(addr)
+    }
+
+    #[inline(always)]
+    fn load8(&mut self, addr: u32, clock: &mut Clock) -> Result<u32, TrapKind> {
+        match self.memory.load_ram::<u8>(GuestAddr::new(addr)) {
+            Some(value) => Ok(u32::from(value)),
+            None => self.load(addr, 1, clock),
+        }
+    }
+
+    #[inline(always)]
+    fn load16(&mut self, addr: u32, clock: &mut Clock) -> Result<u32, TrapKind> {
+        match self.memory.load_ram::<u16>(GuestAddr::new(addr)) {
+            Some(value) => Ok(u32::from(value)),
+            None => self.load(addr, 2, clock),
+        }
+    }
+
+    #[inline(always)]
+    fn load32(&mut self, addr: u32, clock: &mut Clock) -> Result<u32, TrapKind> {
+        match self.memory.load_ram(GuestAddr::new(addr)) {
+            Some(value) => Ok(value),
+            None => self.load(addr, 4, clock),
+        }
+    }
+
+    #[inline(always)]
+    fn load64(&mut self, addr: u32, clock: &mut Clock) -> Result<u64, TrapKind> {
+        if let Some(value) = self.memory.load_ram(GuestAddr::new(addr)) {
+            return Ok(value);
+        }
+        let low = self.load32(addr, clock)?;
+        let high = self.load32(addr.wrapping_add(4), clock)?;
+        Ok(u64::from(low) | u64::from(high) << 32)
+    }
+
+    #[inline(always)]
+    fn store8(&mut self, addr: u32, value: u32, clock: &mut Clock) -> Result<(), TrapKind> {
+        match self.memory.store_ram(GuestAddr::new(addr), value as u8) {
+            Some(()) => Ok(()),
+            None => self.store(addr, 1, value, clock),
+        }
+    }
+
+    #[inline(always)]
+    fn store16(&mut self, addr: u32, value: u32, clock: &mut Clock) -> Result<(), TrapKind> {
+        match self.memory.store_ram(GuestAddr::new(addr), value as u16) {
+            Some(()) => Ok(()),
+            None => self.store(addr, 2, value, clock),
+        }
+    }
+
+    #[inline(always)]
+    fn store32(&mut self, addr: u32, value: u32, clock: &mut Clock) -> Result<(), TrapKind> {
+        match self.memory.store_ram(GuestAddr::new(addr), value) {
+            Some(()) => Ok(()),
+            None => self.store(addr, 4, value, clock),
+        }
+    }
+}

@@ -1,0 +1,198 @@
+//! The firmware file: what is loaded where, and its symbols (`dsp-board.md` 2.1 and 10).
+
+use std::collections::BTreeMap;
+
+use coff::{Contents, Image, SectionFlags, StorageClass, Target};
+use kmotiondef::GuestAddr;
+use kmotiondef::map::{IRAM, Region, SDRAM};
+use vm::memory::GuestMemory;
+
+/// Sections with one of these flags are not loaded; of these one must be there.
+const LEFT_OUT: u32 = 0x12;
+const LOADED: u32 = 0xE0;
+/// What every firmware of this board has.
+const REQUIRED: [&str; 4] = ["c_int00", "main", "persist", "chan"];
+/// The text that says which version it is.
+const VERSION: &str = "VersionAndBuildTime";
+/// Longest such text.
+const VERSION_LENGTH: usize = 80;
+
+/// Why a file cannot be started.
+#[derive(Debug, thiserror::Error)]
+pub enum FirmwareError {
+    /// The bytes are not a TI COFF image, or end before it does.
+    #[error("not a firmware file: {0}")]
+    NotAnImage(coff::Error),
+    /// It is for another processor.
+    #[error("not a firmware file: it is for target {0}, the board's processor has {want}", want = Target::C6000)]
+    OtherTarget(Target),
+    /// It has no entry point.
+    #[error(
+        "not a firmware file: it has no entry point in the board's memory; is it an object or a library?"
+    )]
+    NoEntry,
+    /// A part of it does not belong to this board.
+    #[error(
+        "firmware of another board: section {name} at 0x{address:08X} lies outside this board's memory \
+         (on-chip RAM at 0x10000000, SDRAM at 0x80000000)"
+    )]
+    OtherBoard {
+        /// The section.
+        name: String,
+        /// Where it is to be loaded.
+        address: u32,
+    },
+    /// It is not a firmware.
+    #[error(
+        "not a firmware file: it has no `{0}`; a user program runs on a firmware, as `cc67 run --boot FIRMWARE PROGRAM`"
+    )]
+    Missing(&'static str),
+}
+
+/// A section that is loaded.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Loaded {
+    address: u32,
+    /// `None` for bytes that are filled with 0.
+    bytes: Option<Vec<u8>>,
+}
+
+/// A firmware that can be started.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FirmwareFile {
+    entry: u32,
+    sections: Vec<Loaded>,
+    /// Names as programs write them.
+    symbols: BTreeMap<String, u32>,
+    /// Functions by address.
+    functions: BTreeMap<u32, String>,
+}
+
+impl FirmwareFile {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// The first reason found why the board could not start from it.
+    pub fn read(bytes: &[u8]) -> Result<Self, FirmwareError> {
+        let image = Image::read(bytes).map_err(FirmwareError::NotAnImage)?;
+        if image.target != Target::C6000 {
+            return Err(FirmwareError::OtherTarget(image.target));
+        }
+        let sections = sections(&image)?;
+        let symbols = symbols(&image);
+        if let Some(name) = REQUIRED.iter().find(|name| !symbols.contains_key(**name)) {
+            return Err(FirmwareError::Missing(name));
+        }
+        let entry = image.program.map(|program| program.entry).ok_or(FirmwareError::NoEntry)?;
+        if !sections
+            .iter()
+            .any(|one| one.bytes.as_ref().is_some_and(|bytes| holds(one.address, bytes, entry)))
+        {
+            return Err(FirmwareError::NoEntry);
+        }
+        let functions = functions(&image);
+        Ok(Self { entry, sections, symbols, functions })
+    }
+
+    /// Where execution begins.
+    #[must_use]
+    pub const fn entry(&self) -> u32 {
+        self.entry
+    }
+
+    /// The address of a variable or function, as C writes its name; `None` if this version has none.
+    #[must_use]
+    pub fn address(&self, name: &str) -> Option<GuestAddr> {
+        self.symbols.get(name).copied().map(GuestAddr::new)
+    }
+
+    /// The version as the firmware itself tells it; empty if it does not.
+    #[must_use]
+    pub fn version(&self) -> String {
+        let Some(at) = self.symbols.get(VERSION) else { return String::new() };
+        let holder = self.sections.iter().find_map(|one| {
+            let bytes = one.bytes.as_ref()?;
+            bytes.get(usize::try_from(at.checked_sub(one.address)?).ok()?..)
+        });
+        let text = holder.unwrap_or_default().iter().take(VERSION_LENGTH).take_while(|byte| **byte != 0);
+        text.map(|byte| char::from(*byte)).collect()
+    }
+
+    /// The function that an address belongs to, and how far into it.
+    #[must_use]
+    pub fn function_at(&self, address: u32) -> Option<(String, u32)> {
+        let (start, name) = self.functions.range(..=address).next_back()?;
+        Some((name.clone(), address - start))
+    }
+
+    /// Puts the sections into memory.
+    pub(super) fn load(&self, memory: &mut GuestMemory) {
+        for section in &self.sections {
+            if let Some(bytes) = &section.bytes {
+                let stored = memory.poke_bytes(GuestAddr::new(section.address), bytes);
+                debug_assert!(stored.is_ok(), "sections lie in RAM");
+            }
+        }
+    }
+}
+
+fn holds(address: u32, bytes: &[u8], entry: u32) -> bool {
+    (entry.wrapping_sub(address) as usize) < bytes.len()
+}
+
+/// Whether `size` bytes at `address` lie in a RAM.
+fn is_inside(region: &Region, address: u32, size: u64) -> bool {
+    let offset = u64::from(address.wrapping_sub(region.base.get()));
+    offset + size <= u64::from(region.size)
+}
+
+fn sections(image: &Image) -> Result<Vec<Loaded>, FirmwareError> {
+    let is_loaded = |flags: SectionFlags| flags.0 & LEFT_OUT == 0 && flags.0 & LOADED != 0;
+    let mut loaded = Vec::new();
+    for section in image.sections.iter().filter(|one| one.size() != 0 && is_loaded(one.flags)) {
+        let (address, size) = (section.address, section.size());
+        if !is_inside(&IRAM, address, size) && !is_inside(&SDRAM, address, size) {
+            return Err(FirmwareError::OtherBoard { name: section.name.to_str().into_owned(), address });
+        }
+        let bytes = match &section.contents {
+            Contents::Data(bytes) => Some(bytes.clone()),
+            Contents::Uninitialised(_) => None,
+        };
+        loaded.push(Loaded { address, bytes });
+    }
+    Ok(loaded)
+}
+
+/// External symbols, without the underscore that C names have in an image.
+fn symbols(image: &Image) -> BTreeMap<String, u32> {
+    let external =
+        image.symbols.iter().filter(|one| one.class == StorageClass::EXTERNAL && one.section.0 > 0);
+    let mut symbols = BTreeMap::new();
+    for symbol in external {
+        let name = symbol.name.to_str();
+        match name.strip_prefix('_') {
+            Some(plain) => {
+                symbols.insert(plain.to_owned(), symbol.value);
+            }
+            None => {
+                symbols.entry(name.into_owned()).or_insert(symbol.value);
+            }
+        }
+    }
+    symbols
+}
+
+/// Symbols of code by address: external and static ones of sections with code.
+fn functions(image: &Image) -> BTreeMap<u32, String> {
+    let is_code = |number: i16| {
+        let index = usize::try_from(i32::from(number) - 1).ok();
+        let section = index.and_then(|index| image.sections.get(index));
+        section.is_some_and(|section| section.flags.contains(SectionFlags::TEXT))
+    };
+    let named = image.symbols.iter().filter(|one| {
+        matches!(one.class, StorageClass::EXTERNAL | StorageClass::STATIC) && is_code(one.section.0)
+    });
+    let names =
+        named.filter(|one| !one.name.as_bytes().starts_with(b".") && !one.name.as_bytes().starts_with(b"$"));
+    names.map(|one| (one.value, one.name.to_str().trim_start_matches('_').to_owned())).collect()
+}

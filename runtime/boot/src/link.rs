@@ -1,0 +1,50 @@
+//! The byte link to the PC (`dsp-board.md` 5).
+
+use std::collections::VecDeque;
+
+/// Bytes on their way to the firmware, and bytes that it sent with their cycle.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Link {
+    received: VecDeque<u8>,
+    sent: Vec<(u64, u8)>,
+    /// How often the firmware has looked whether a byte waits.
+    looks: u64,
+}
+
+impl Link {
+    /// The PC sends.
+    pub(super) fn send(&mut self, bytes: &[u8]) {
+        self.received.extend(bytes);
+    }
+
+    /// Whether everything that the PC sent was read.
+    pub(super) fn is_read(&self) -> bool {
+        self.received.is_empty()
+    }
+
+    /// How often the firmware has looked for a byte.
+    pub(super) const fn looks(&self) -> u64 {
+        self.looks
+    }
+
+    /// What was sent since the last time.
+    pub(super) fn take_sent(&mut self) -> Vec<(u64, u8)> {
+        std::mem::take(&mut self.sent)
+    }
+
+    /// 1 if a byte waits. Any other value would be taken for the byte.
+    pub(super) fn status(&mut self) -> u16 {
+        self.looks += 1;
+        u16::from(!self.received.is_empty())
+    }
+
+    /// The next byte.
+    pub(super) fn take(&mut self) -> u16 {
+        self.received.pop_front().map_or(0, u16::from)
+    }
+
+    /// The firmware sends a byte.
+    pub(super) fn put(&mut self, byte: u8, now: u64) {
+        self.sent.push((now, byte));
+    }
+}

@@ -1,0 +1,4 @@
+//! The recorded start of the real firmware, where there is one (`CC67_FIRMWARE`), and devices without it.
+
+mod recorded;
+mod small;

@@ -1,0 +1,212 @@
+//! A firmware of our own, so small that it is written here: it starts, answers its timer, sends text, echoes what the PC
+//! sends, and moves a step generator.
+
+use std::sync::Arc;
+
+use coff::{
+    Contents, FileFlags, Image, Name, Program, Section, SectionFlags, SectionNumber, StorageClass, Symbol,
+    SymbolType, Target,
+};
+
+use crate::{BootedBoard, FirmwareError, FirmwareFile, Halted, Sent};
+
+/// Where the code is, the interrupt's vector, and what the interrupt executes.
+const START: u32 = 0x8000_0000;
+const VECTOR: u32 = 0x1000_0080;
+const HANDLER: u32 = 0x8000_1000;
+
+/// Two instructions that load a constant.
+fn constant(unit: &str, value: u32, reg: &str) -> String {
+    // The upper half is taken from the whole constant.
+    format!("MVK {unit} {},{reg}\nMVKH {unit} 0x{value:08X},{reg}\n", i32::from(value as u16 as i16))
+}
+
+/// Stores a word, half word or byte to an address.
+fn store(op: &str, address: u32, value: u32) -> String {
+    constant(".S1", address, "A20") + &constant(".S1", value, "A21") + &format!("{op} .D1T1 A21,*A20\n")
+}
+
+/// The words of a program.
+fn code(text: &str, base: u32) -> Vec<u8> {
+    let mut at = base;
+    let mut bytes = Vec::new();
+    for line in text.lines() {
+        let line = c67x::assemble(line, at).unwrap_or_else(|error| panic!("{line}: {error}"));
+        assert!(!line.joins_previous, "one instruction a packet");
+        bytes.extend(line.inst.encode(false).to_le_bytes());
+        at += 4;
+    }
+    bytes
+}
+
+/// Vectors, a timer of 90 µs, interrupts on, and then a loop that echoes.
+fn start() -> String {
+    let timer = |offset: u32, value: u32| store("STW", 0x4200_0000 + offset, value);
+    let set = [(0x18, 1), (0x38, 1), (0x0C, 1), (0x50, 4500), (0x54, 4500), (0x80, 1), (0x00, 3)];
+    let control = |value: u32, name: &str| constant(".S2", value, "B20") + &format!("MVC .S2 B20,{name}\n");
+    let mut text = control(0x1000_0000, "ISTP") + &control(0x13, "IER");
+    set.iter().for_each(|(offset, value)| text += &timer(*offset, *value));
+    text += &control(0x103, "CSR");
+    text += &(constant(".S1", 0x9100_0012, "A4") + &constant(".S1", 0x9100_0016, "A5"));
+    let echo = START + 4 * text.lines().count() as u32;
+    text += "LDBU .D1T1 *A4,A1\nNOP 4\n";
+    text += &format!("[!A1] B .S1 0x{echo:08X}\nNOP 5\nLDBU .D1T1 *A5,A6\nNOP 4\nSTB .D1T1 A6,*A4\n");
+    text + &format!("B .S1 0x{echo:08X}\nNOP 5\n")
+}
+
+/// Clears the flag, counts the tick, sends a line at the third, and has a generator step from the fifth on.
+fn handler() -> String {
+    let mut text = store("STW", 0x4200_0088, 1) + "ADD .L1 1,A16,A16\n";
+    for (tick, stores) in [
+        (3, b"\x1bhi\r\n".iter().map(|byte| (0x9100_0012, u32::from(*byte))).collect::<Vec<_>>()),
+        // 2^20 / 2^23 of 200 MHz / 12 are 2,083,333 steps a second; generator 2.
+        (5, vec![(0x9100_00F2, 0), (0x9100_00F6, 0), (0x9100_00FA, 0x10), (0x9100_00FE, 0x82)]),
+    ] {
+        text += &format!("CMPEQ .L1 {tick},A16,A2\n");
+        for (address, value) in stores {
+            text += &store("STB", address, value).replace("STB", "[A2] STB");
+        }
+    }
+    text + "B .S2 IRP\nNOP 5\n"
+}
+
+fn section(name: &str, address: u32, bytes: Vec<u8>) -> Section {
+    Section {
+        name: Name::from(name),
+        physical: address,
+        address,
+        flags: SectionFlags::TEXT,
+        page: 0,
+        contents: Contents::Data(bytes),
+        relocations: Vec::new(),
+        lines: Vec::new(),
+    }
+}
+
+fn image(start: &str) -> Image {
+    let jump = constant(".S2", HANDLER, "B31") + "B .S2 B31\nNOP 5\n";
+    let symbols =
+        [("_c_int00", START), ("_main", START), ("_persist", START), ("_chan", START), ("_handler", HANDLER)];
+    let symbol = |(name, value): (&str, u32)| Symbol {
+        name: Name::from(name),
+        value,
+        section: SectionNumber(1),
+        ty: SymbolType::default(),
+        class: StorageClass::EXTERNAL,
+        aux: Vec::new(),
+    };
+    Image {
+        target: Target::C6000,
+        timestamp: 0,
+        flags: FileFlags::EXECUTABLE,
+        program: Some(Program { entry: START, ..Program::default() }),
+        sections: vec![
+            section(".text", START, code(start, START)),
+            section("vectors", VECTOR, code(&jump, VECTOR)),
+            section(".tick", HANDLER, code(&handler(), HANDLER)),
+        ],
+        symbols: symbols.map(symbol).to_vec(),
+    }
+}
+
+fn file(start: &str) -> Arc<FirmwareFile> {
+    let bytes = image(start).write().expect("it can be written");
+    Arc::new(FirmwareFile::read(&bytes).unwrap_or_else(|error| panic!("{error}")))
+}
+
+fn booted() -> BootedBoard {
+    BootedBoard::booted(file(&start())).unwrap_or_else(|crash| panic!("{crash}"))
+}
+
+#[test]
+fn it_answers_its_timer_prints_and_moves_a_generator() {
+    let mut board = booted();
+    let begun = board.cycle();
+    board.run_to(begun + 20 * 18_000).expect("it runs");
+    let lines = board.take_lines();
+    let [line] = lines.as_slice() else { panic!("one line: {lines:?}") };
+    assert_eq!((line.kind, line.text.as_slice()), (Sent::Console, b"hi".as_slice()));
+    assert!((line.cycle - 3 * 18_000) < 1000, "in the third tick: {}", line.cycle);
+    let (steps, rate) = board.steps(2);
+    assert!((rate - 2_083_333.333).abs() < 0.01, "{rate}");
+    let expected = rate * (board.cycle() - 5 * 18_000) as f64 * 5e-9;
+    // The rate is written some hundred cycles after the match.
+    assert!((steps - expected).abs() < 4.0, "{steps} of {expected}");
+}
+
+#[test]
+fn what_the_pc_sends_is_echoed() {
+    let mut board = booted();
+    board.send(b"abc\n");
+    board.run_to(board.cycle() + 9000).expect("it runs");
+    assert!(board.has_read_all());
+    let texts: Vec<_> = board.take_lines().into_iter().map(|line| (line.kind, line.text)).collect();
+    assert_eq!(texts, [(Sent::Reply, b"abc".to_vec())]);
+}
+
+#[test]
+fn skipping_the_wait_changes_nothing() {
+    let run = |skips: bool| {
+        let mut board = booted();
+        board.skip_waits(skips);
+        for part in 0..10 {
+            board.run_to(board.cycle() + 50_001).expect("it runs");
+            board.send(format!("{part}\n").as_bytes());
+        }
+        let (registers, cycle, packets) = (board.registers(), board.cycle(), board.packets());
+        let lines = board.take_lines();
+        let skipped = board.skipped();
+        assert_eq!(skipped > 100_000, skips, "{skipped}");
+        (registers, cycle, packets, lines, board.steps(2))
+    };
+    assert_eq!(run(true), run(false));
+}
+
+#[test]
+fn a_snapshot_goes_on_as_the_board_did() {
+    let mut board = booted();
+    board.run_to(board.cycle() + 70_000).expect("it runs");
+    let snapshot = board.snapshot();
+    let on = |board: &mut BootedBoard| {
+        board.run_to(board.cycle() + 90_000).expect("it runs");
+        (board.cycle(), board.registers(), board.take_lines(), board.steps(2))
+    };
+    let first = on(&mut board);
+    board.restore(&snapshot);
+    assert_eq!(on(&mut board), first);
+    assert_eq!(on(&mut snapshot.board()), first);
+}
+
+/// The text of the crash of a firmware that starts so.
+fn crash(start: &str) -> String {
+    let Err(Halted::Crashed(crash)) = BootedBoard::booted(file(start)) else { panic!("it starts") };
+    crash.to_string()
+}
+
+#[test]
+fn a_firmware_that_runs_away_is_stopped_with_registers_and_code() {
+    let away = constant(".S2", 0x1234_5678, "B20") + "B .S2 B20\nNOP 5\n";
+    let text = crash(&away);
+    assert!(text.contains("it went to 0x12345678, where this board has no memory for code"), "{text}");
+    assert!(text.contains(" B20=12345678"), "{text}");
+    let wild = store("STW", 0x7000_0000, 1) + "NOP 5\n";
+    let text = crash(&wild);
+    assert!(text.contains("write of the unmapped address 0x70000000"), "{text}");
+    assert!(text.contains("STW .D1T1 A21,*"), "{text}");
+}
+
+#[test]
+fn files_that_are_no_firmware_are_refused_with_their_reason() {
+    let bytes = image(&start()).write().expect("it can be written");
+    let refused = |bytes: &[u8]| FirmwareFile::read(bytes).expect_err("it is refused").to_string();
+    assert!(refused(b"#include \"KMotionDef.h\"").starts_with("not a firmware file"));
+    assert!(refused(&bytes[..bytes.len() / 2]).starts_with("not a firmware file"));
+    let mut low = image(&start());
+    low.sections[0].address = 0x1000;
+    let low = low.write().expect("it can be written");
+    assert!(matches!(FirmwareFile::read(&low), Err(FirmwareError::OtherBoard { .. })), "{}", refused(&low));
+    let mut program = image(&start());
+    program.symbols.truncate(2);
+    let program = program.write().expect("it can be written");
+    assert!(refused(&program).contains("it has no `persist`"));
+}

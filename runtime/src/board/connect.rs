@@ -1,0 +1,62 @@
+//! Connects what a machine file describes to the board's parts.
+
+use kmotiondef::variables::{KANALOG_PRESENT, SNAP_AMP_PRESENT};
+use kmotiondef::{AxisId, Cycles};
+use vm::memory::GuestMemory;
+
+use super::machine_file::MachineFile;
+use crate::firmware::parts::Parts;
+use crate::io::konnect::Port;
+use crate::machine::description::{Axis, Encoder, Model};
+use crate::machine::{Mechanics, Plant, connect_snapamp};
+use crate::views::Typed;
+use crate::world::outside::wire::Wire;
+
+/// Connects a machine to the board at power-up.
+pub(crate) fn install(parts: &mut Parts, machine: &MachineFile) {
+    let Parts { out, io, machine: connected, pc, calls, .. } = parts;
+    for axis in AxisId::all() {
+        connected.loads[axis] = Plant::new(&machine.axes[axis.index()]);
+    }
+    if let Some(spindle) = machine.connected.spindle {
+        // The load of that axis counts as its encoder does.
+        let load = Axis { model: Model::None, encoder: Encoder::Connected, ..Axis::default() };
+        connected.loads[spindle.axis] = Plant::new(&load);
+    }
+    connected.mechanics = Mechanics::new(&machine.axes, &machine.connected);
+    connected.needs_enable = machine.boards.has_kstep && machine.boards.respect_enable;
+    (0..machine.boards.snapamps).for_each(|board| connect_snapamp(&mut io.snapamps, &mut io.pins, board));
+    for (port, present) in
+        [(Port::Aux0, machine.boards.konnects[0]), (Port::Aux1, machine.boards.konnects[1])]
+    {
+        io.konnects.set_present(port, present);
+    }
+    for &bit in &machine.idle_high {
+        io.pins.idle_high(bit);
+    }
+    pc.disk.latency = Cycles::new((machine.pc.disk_latency_s * Cycles::PER_SECOND.get() as f64) as i64);
+    out.hints = machine.hints;
+    machine.unwanted_remarks.iter().for_each(|code| out.silence(code));
+    calls.plan_ticks = machine.cpu.plan_ticks;
+    if machine.cpu.fresh_globals {
+        calls.globals.keep();
+    }
+}
+
+/// What a machine does by itself: its wires and devices, and its events.
+pub(crate) fn play(parts: &mut Parts, machine: &MachineFile, memory: &mut GuestMemory) {
+    if machine.boards.has_kanalog || !machine.connected.analog.is_empty() {
+        memory.set(KANALOG_PRESENT, 1);
+    }
+    if machine.boards.snapamps > 0 {
+        memory.set(SNAP_AMP_PRESENT, 1);
+    }
+    let (world, mut stage) = parts.stage(Cycles::default());
+    for wire in &machine.wires {
+        stage.io.pins.declare(wire.to);
+        stage.attach(Box::new(Wire::of(wire)), memory);
+    }
+    if !machine.stimulus.is_empty() {
+        world.play(machine.stimulus.clone(), &mut stage, memory);
+    }
+}

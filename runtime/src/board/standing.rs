@@ -1,0 +1,252 @@
+//! How things are when a run is over: what each thread waits for, what each axis does and why it does not move.
+//!
+//! Facts only; whoever tells them to a person finds the words.
+
+use std::fmt;
+
+use kmotiondef::bits::{BitDirection, BitKind, range_of};
+use kmotiondef::modes::OutputMode;
+use kmotiondef::structs::Chan;
+use kmotiondef::variables::{COORD_SYSTEM0, CS0_STOPPING_STATE};
+use kmotiondef::{AxisId, Bit, CodeAddr, Cycles, ThreadId};
+use vm::engine::Engine;
+use vm::thread::{Progress, ThreadState};
+use vm::wake::Wake;
+
+use super::Board;
+use crate::firmware::calls::Repeated;
+use crate::io::bits::bit_state;
+use crate::servo::coordinated::system;
+use crate::servo::independent::has_motion;
+use crate::views::Typed;
+
+/// A thread that has not ended.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StandingThread {
+    /// Its number.
+    pub thread: ThreadId,
+    /// What it does.
+    pub state: Standing,
+    /// Its instruction, then the calls that led there, innermost first.
+    pub calls: Vec<CodeAddr>,
+    /// When it last did anything but look and wait.
+    pub since: Cycles,
+    /// What it has looked at since.
+    pub awaited: Vec<Awaited>,
+}
+
+/// What a thread that has not ended does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Standing {
+    /// It computes.
+    Computing,
+    /// It waits for an instant.
+    Until(Cycles),
+    /// It waits for its next slice.
+    Slice,
+    /// It waits in a call that only the board can end: for a lock, for room in the console's queue, for the PC.
+    Call,
+    /// Another thread has paused it, or it has paused itself.
+    Paused,
+    /// It was resumed without ever having been started, and does nothing.
+    Idle,
+}
+
+/// Something that a thread looks at while it waits.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Awaited {
+    /// The level of a bit.
+    Bit(Bit, bool, Source),
+    /// The end of the motion of an axis, with what `CheckDone` returns.
+    Motion(AxisId, i32),
+    /// The end of a path.
+    Path,
+    /// The end of a recording.
+    Recording,
+    /// A lock.
+    Lock,
+}
+
+/// Where the level of a bit comes from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Source {
+    /// Nothing drives the input.
+    Nothing,
+    /// A switch, a probe or an index of an axis: where it is closed, its level there, where the axis is.
+    Contact(AxisId, String, bool, f64),
+    /// Something else drives the input: a wire, a device, the stimulus.
+    Outside,
+    /// The program: it is an output.
+    Output,
+    /// Any program: the bit is memory.
+    Memory,
+    /// A KStep, whose inputs are read only once `KStepPresent` is set.
+    NoKstep,
+}
+
+/// An axis that programs have used.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StandingAxis {
+    /// Its number.
+    pub axis: AxisId,
+    /// What the machine file calls it; empty for nothing.
+    pub name: String,
+    /// Whether it is enabled.
+    pub is_enabled: bool,
+    /// Its commanded position.
+    pub dest: f64,
+    /// Its measured position.
+    pub position: f64,
+    /// How fast the command moves, units a second.
+    pub velocity: f64,
+    /// Why it does not move, or what it does.
+    pub reasons: Vec<Reason>,
+}
+
+/// Why an axis does not move.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reason {
+    /// It is disabled.
+    Disabled,
+    /// `OutputMode` is `NO_OUTPUT_MODE`.
+    DrivesNothing,
+    /// `Vel`, `Accel` or `Jerk` is not positive.
+    NoLimits(&'static str),
+    /// A feedhold.
+    FeedHold,
+    /// It belongs to a path that is executed.
+    OnPath,
+    /// A limit switch that is watched is active.
+    Limit(Bit),
+}
+
+impl fmt::Display for Reason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Disabled => f.write_str("it is disabled"),
+            Self::DrivesNothing => f.write_str("its OutputMode is NO_OUTPUT_MODE, so it drives nothing"),
+            Self::NoLimits(field) => write!(f, "its {field} is 0"),
+            Self::FeedHold => f.write_str("feedhold"),
+            Self::OnPath => f.write_str("it follows a path"),
+            Self::Limit(bit) => write!(f, "its limit switch, bit {bit}, is active"),
+        }
+    }
+}
+
+impl<E: Engine> Board<E> {
+    /// The threads that have not ended, each with what it waits for.
+    #[must_use]
+    pub fn standing_threads(&self) -> Vec<StandingThread> {
+        ThreadId::all().filter_map(|thread| self.standing(thread)).collect()
+    }
+
+    fn standing(&self, thread: ThreadId) -> Option<StandingThread> {
+        let state = match *self.thread(thread) {
+            ThreadState::Active(Progress::Fresh | Progress::Going) => Standing::Computing,
+            ThreadState::Active(Progress::Waiting(Wake::At(time))) => Standing::Until(time),
+            ThreadState::Active(Progress::Waiting(Wake::NextSlice)) => Standing::Slice,
+            ThreadState::Active(Progress::Waiting(Wake::Retry)) => Standing::Call,
+            ThreadState::Active(Progress::Idle) => Standing::Idle,
+            ThreadState::Paused(_) => Standing::Paused,
+            ThreadState::Empty | ThreadState::Ready | ThreadState::Faulted(_) => return None,
+        };
+        let wait = self.machine.firmware().parts.calls.waits.of(thread);
+        let mut awaited = Vec::new();
+        for one in wait.calls.iter().filter_map(|call| self.awaited(call)) {
+            if !awaited.contains(&one) {
+                awaited.push(one);
+            }
+        }
+        let calls = self.machine.backtrace(thread);
+        Some(StandingThread { thread, state, calls, since: wait.since, awaited })
+    }
+
+    fn awaited(&self, call: &Repeated) -> Option<Awaited> {
+        match call.function {
+            "ReadBit" => {
+                let bit = Bit::new(call.argument)?;
+                Some(Awaited::Bit(bit, self.bit(bit), self.source_of(bit)))
+            }
+            "CheckDone" => {
+                let axis = AxisId::new(call.argument)?;
+                let is_enabled = self.memory().axis(axis, Chan::ENABLE) != 0;
+                let done = if is_enabled { i32::from(!has_motion(self.memory(), axis)) } else { -1 };
+                Some(Awaited::Motion(axis, done))
+            }
+            "CheckDoneXYZABC" | "CheckDoneBuf" => Some(Awaited::Path),
+            "CheckDoneGather" => Some(Awaited::Recording),
+            "MutexLock" => Some(Awaited::Lock),
+            _ => None,
+        }
+    }
+
+    /// Where the level of a bit comes from.
+    fn source_of(&self, bit: Bit) -> Source {
+        let parts = &self.machine.firmware().parts;
+        if let Some((axis, condition, active)) = parts.machine.mechanics.contact(bit) {
+            let load = parts.machine.loads[axis].load;
+            return Source::Contact(
+                axis,
+                condition.map_or("once a turn".to_owned(), |condition| condition.to_string()),
+                active,
+                load,
+            );
+        }
+        let (_, is_input) = bit_state(&parts.io, self.memory(), bit);
+        let range = range_of(bit);
+        match range.map(|range| range.direction) {
+            Some(BitDirection::Memory) => Source::Memory,
+            _ if range.is_some_and(|range| range.kind == BitKind::KstepInput) && !is_input => Source::NoKstep,
+            _ if !is_input => Source::Output,
+            _ if parts.io.pins.is_driven(bit) => Source::Outside,
+            _ => Source::Nothing,
+        }
+    }
+
+    /// The axes that programs have used, and those that are enabled.
+    #[must_use]
+    pub fn standing_axes(&self) -> Vec<StandingAxis> {
+        let waits = &self.machine.firmware().parts.calls.waits;
+        let is_enabled = |axis| self.memory().axis(axis, Chan::ENABLE) != 0;
+        let used = AxisId::all().filter(|&axis| waits.has_touched(axis) || is_enabled(axis));
+        used.map(|axis| self.standing_axis(axis)).collect()
+    }
+
+    fn standing_axis(&self, axis: AxisId) -> StandingAxis {
+        let memory = self.memory();
+        let is_enabled = memory.axis(axis, Chan::ENABLE) != 0;
+        let velocity = if is_enabled { f64::from(memory.axis(axis, Chan::LAST_VEL)) } else { 0.0 };
+        StandingAxis {
+            axis,
+            name: self.names[axis.index()].clone(),
+            is_enabled,
+            dest: memory.axis(axis, Chan::DEST),
+            position: memory.axis(axis, Chan::POSITION),
+            velocity,
+            reasons: self.reasons(axis, is_enabled),
+        }
+    }
+
+    fn reasons(&self, axis: AxisId, is_enabled: bool) -> Vec<Reason> {
+        let memory = self.memory();
+        if !is_enabled {
+            return vec![Reason::Disabled];
+        }
+        let is_member = system::is_member(memory, axis);
+        let is_held = is_member && memory.get(CS0_STOPPING_STATE) != 0;
+        let limit = |field| memory.axis(axis, field) <= 0.0;
+        let lacking = [("Vel", Chan::VEL), ("Accel", Chan::ACCEL), ("Jerk", Chan::JERK)];
+        let lacking = lacking.into_iter().find(|(_, field)| limit(*field));
+        let drives_nothing = memory.axis(axis, Chan::OUTPUT_MODE) == OutputMode::None.get();
+        [
+            drives_nothing.then_some(Reason::DrivesNothing),
+            lacking.map(|(name, _)| Reason::NoLimits(name)),
+            is_held.then_some(Reason::FeedHold),
+            (is_member && !memory.get(COORD_SYSTEM0).is_null()).then_some(Reason::OnPath),
+            self.machine.firmware().active_limit(memory, axis).map(Reason::Limit),
+        ]
+        .into_iter()
+        .flatten()
+        .collect()
+    }
+}

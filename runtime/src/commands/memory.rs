@@ -1,0 +1,22 @@
+//! What script commands remember from one to the next.
+
+use kmotiondef::AxisId;
+
+use crate::servo::coordinated::download::Point;
+
+/// The latest line that was sent.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Geometry {
+    pub(super) line: Option<(Point, Point)>,
+}
+
+/// A recorded motion in progress.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Experiment {
+    pub(super) axis: AxisId,
+    pub(super) amount: f64,
+    pub(super) jumps: bool,
+    /// Ticks at which the axis goes away and comes back.
+    pub(super) legs: [u64; 2],
+    pub(super) done: usize,
+}

@@ -1,0 +1,105 @@
+//! What firmware functions remember from call to call.
+
+mod globals;
+mod heap;
+mod notices;
+mod reading;
+mod serial;
+mod waits;
+
+use kmotiondef::limits::N_CHANNELS;
+use kmotiondef::{AxisId, GuestAddr, ThreadId};
+use vm::firmware::Caller;
+
+pub(crate) use globals::Globals;
+pub(crate) use heap::Heap;
+pub(crate) use notices::{Named, Notices};
+pub(crate) use reading::Reading;
+pub(crate) use serial::SerialService;
+pub(crate) use waits::{Repeated, Waits};
+
+/// What a waiting call remembers until it is made again.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Continuation {
+    /// Text that the console queue had no room for, and what the call returns.
+    Print {
+        /// The text.
+        rest: Vec<u8>,
+        /// The result.
+        result: i32,
+    },
+    /// The target of a motion, as it was when the call began.
+    Target(f64),
+    /// That a stop was begun, and the axes that are still to be stopped once those are known.
+    Stop(Option<Vec<AxisId>>),
+    /// The axes that are still to go on after a feedhold.
+    Resume(Vec<AxisId>),
+}
+
+/// What firmware functions remember.
+#[derive(Clone, Debug)]
+pub(crate) struct Calls {
+    continuations: [Option<Continuation>; ThreadId::MAX as usize + 1],
+    pub(crate) serial: SerialService,
+    pub(crate) heap: Heap,
+    /// What the board remembers of files on the PC.
+    pub(crate) reading: Reading,
+    pub(crate) globals: Globals,
+    /// State of `rand`.
+    pub(crate) random: u32,
+    /// Where `strtok` continues.
+    pub(crate) token: GuestAddr,
+    /// Ticks that a motion call plans before its motion begins.
+    pub(crate) plan_ticks: u32,
+    /// Motion calls in a row that each came while the one before was planned, of each axis.
+    pub(crate) hurried_calls: [u8; N_CHANNELS],
+    /// What threads wait for.
+    pub(crate) waits: Waits,
+    /// What is worth a remark in the light of what follows.
+    pub(crate) notices: Notices,
+}
+
+impl Default for Calls {
+    fn default() -> Self {
+        Self {
+            continuations: Default::default(),
+            serial: SerialService::default(),
+            heap: Heap::default(),
+            reading: Reading::default(),
+            globals: Globals::default(),
+            random: 1,
+            token: GuestAddr::NULL,
+            plan_ticks: 0,
+            hurried_calls: [0; N_CHANNELS],
+            waits: Waits::default(),
+            notices: Notices::default(),
+        }
+    }
+}
+
+impl Calls {
+    /// Remembers something for the call that is made again when its wake comes true.
+    pub(crate) fn keep(&mut self, caller: &Caller<'_>, continuation: Continuation) {
+        self.continuations[slot(caller.thread)] = Some(continuation);
+    }
+
+    /// What the call remembered.
+    pub(crate) fn take(&mut self, caller: &Caller<'_>) -> Option<Continuation> {
+        self.continuations[slot(caller.thread)].take()
+    }
+
+    /// The board restarts: everything that the firmware keeps is as at power-up.
+    pub(crate) fn restart(&mut self) {
+        self.continuations = Default::default();
+        self.reading = Reading::default();
+        self.serial = SerialService::default();
+        self.heap = Heap::default();
+        self.waits = Waits::default();
+        self.random = 1;
+        self.token = GuestAddr::NULL;
+    }
+}
+
+fn slot(thread: Option<ThreadId>) -> usize {
+    thread.map_or(0, |thread| usize::from(thread.get()))
+}

@@ -1,0 +1,119 @@
+//! What is worth a remark only in the light of what follows, or of what came before.
+//!
+//! A level written to a pin that is still an input is as it should be if the pin becomes an output soon; a move called
+//! while another one has just begun replaces it; a text longer than its array is known by the arrays of the programs.
+
+use std::sync::Arc;
+
+use kmotiondef::limits::N_CHANNELS;
+use kmotiondef::{AxisId, Bit, CodeAddr, Cycles, GuestAddr, ThreadId};
+use vm::firmware::Caller;
+
+use crate::out::{Message, Out};
+
+/// How long a level may be written before its pin becomes an output: half a second.
+const PATIENCE: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 2);
+/// Levels that are followed at a time.
+const MOST: usize = 64;
+/// Never.
+const NEVER: Cycles = Cycles::new(i64::MAX);
+
+/// A named object of a program, an array perhaps.
+#[derive(Clone, Debug)]
+pub(crate) struct Named {
+    /// Its name.
+    pub(crate) name: String,
+    /// Its first address.
+    pub(crate) start: u32,
+    /// Its size in bytes.
+    pub(crate) size: u32,
+}
+
+/// A level that was written to an input.
+#[derive(Clone, Copy, Debug)]
+struct Latch {
+    bit: Bit,
+    function: &'static str,
+    thread: Option<ThreadId>,
+    at: Option<CodeAddr>,
+}
+
+/// The last move of an axis.
+#[derive(Clone, Copy, Debug)]
+struct Called {
+    thread: ThreadId,
+    target: f64,
+    /// How often the thread had waited or looked at anything.
+    looks: u64,
+}
+
+/// What is followed.
+#[derive(Clone, Debug)]
+pub(crate) struct Notices {
+    latches: Vec<Latch>,
+    /// When the levels are looked at.
+    pub(crate) due: Cycles,
+    moves: [Option<Called>; N_CHANNELS],
+    /// The named objects of the programs that are loaded.
+    objects: [Arc<[Named]>; ThreadId::MAX as usize],
+}
+
+impl Default for Notices {
+    fn default() -> Self {
+        Self {
+            latches: Vec::new(),
+            due: NEVER,
+            moves: Default::default(),
+            objects: std::array::from_fn(|_| Arc::from([])),
+        }
+    }
+}
+
+impl Notices {
+    /// A level is written to a pin that is an input.
+    pub(crate) fn latch(&mut self, caller: &Caller<'_>, function: &'static str, bit: Bit) {
+        if self.latches.len() < MOST && self.latches.iter().all(|latch| latch.bit != bit) {
+            self.latches.push(Latch { bit, function, thread: caller.thread, at: caller.at });
+            self.due = self.due.min(caller.now() + PATIENCE);
+        }
+    }
+
+    /// Tells of the levels whose pins are inputs still.
+    pub(crate) fn settle(&mut self, out: &mut Out, now: Cycles, is_output: impl Fn(Bit) -> bool) {
+        self.due = NEVER;
+        for Latch { bit, function, thread, at } in std::mem::take(&mut self.latches) {
+            if !is_output(bit) {
+                out.remark_of(now, thread.into(), at, Message::StillAnInput { function, bit });
+            }
+        }
+    }
+
+    /// A thread that has waited `looks` times calls a move; the target of the one it replaces before that has moved.
+    pub(crate) fn replaced(
+        &mut self,
+        axis: AxisId,
+        thread: ThreadId,
+        looks: u64,
+        target: f64,
+    ) -> Option<f64> {
+        let called = Called { thread, target, looks };
+        let before = self.moves[axis.index()].replace(called)?;
+        let is_at_once = before.thread == thread && before.looks == looks && before.target != target;
+        is_at_once.then_some(before.target)
+    }
+
+    /// A program with these named objects is loaded.
+    pub(crate) fn load(&mut self, thread: ThreadId, objects: Arc<[Named]>) {
+        self.objects[thread.index()] = objects;
+    }
+
+    /// The object that some bytes begin in and go beyond.
+    pub(crate) fn overrun(&self, to: GuestAddr, size: usize) -> Option<&Named> {
+        let begin = u64::from(to.get());
+        let end = begin + size as u64;
+        self.objects.iter().flat_map(|objects| objects.iter()).find(|object| {
+            let (first, past) = (u64::from(object.start), u64::from(object.start) + u64::from(object.size));
+            (first..past).contains(&begin) && end > past
+        })
+    }
+}

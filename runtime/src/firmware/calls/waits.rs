@@ -1,0 +1,73 @@
+//! What each thread waits for: the calls that it repeats while it does nothing else.
+//!
+//! A thread waits as long as it calls nothing but functions that look or let time pass. Any other call ends the wait.
+
+use kmotiondef::{AxisId, CodeAddr, Cycles, ThreadId};
+use vm::firmware::Caller;
+
+/// Calls of a wait that are remembered.
+const MOST: usize = 16;
+
+/// A call that a thread repeats while it waits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Repeated {
+    /// The function.
+    pub(crate) function: &'static str,
+    /// Its first argument.
+    pub(crate) argument: i32,
+    /// Where the call is.
+    at: Option<CodeAddr>,
+}
+
+/// The wait of one thread.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Wait {
+    /// When the thread last did anything else.
+    pub(crate) since: Cycles,
+    /// How often it has looked at anything.
+    pub(crate) looks: u64,
+    /// What it has called since.
+    pub(crate) calls: Vec<Repeated>,
+}
+
+/// The waits of all threads, and the axes that programs have told to do something.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Waits {
+    threads: [Wait; ThreadId::MAX as usize],
+    /// A bit for each axis.
+    axes: u8,
+}
+
+impl Waits {
+    /// A thread looks at something or lets time pass.
+    pub(crate) fn look(&mut self, thread: ThreadId, function: &'static str, caller: &Caller<'_>) {
+        let wait = &mut self.threads[thread.index()];
+        wait.looks += 1;
+        let call = Repeated { function, argument: caller.arguments.get(0), at: caller.at };
+        if wait.calls.len() < MOST && !wait.calls.contains(&call) {
+            wait.calls.push(call);
+        }
+    }
+
+    /// A thread does anything else.
+    pub(crate) fn act(&mut self, thread: ThreadId, now: Cycles) {
+        let wait = &mut self.threads[thread.index()];
+        wait.calls.clear();
+        wait.since = now;
+    }
+
+    /// A program tells an axis to do something.
+    pub(crate) fn touch(&mut self, axis: AxisId) {
+        self.axes |= 1 << axis.index();
+    }
+
+    /// Whether one has.
+    pub(crate) fn has_touched(&self, axis: AxisId) -> bool {
+        self.axes >> axis.index() & 1 != 0
+    }
+
+    /// What a thread waits for.
+    pub(crate) fn of(&self, thread: ThreadId) -> &Wait {
+        &self.threads[thread.index()]
+    }
+}

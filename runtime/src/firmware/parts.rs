@@ -1,0 +1,154 @@
+//! The parts of the board, side by side, as a firmware function or a script command reaches them.
+//!
+//! Nothing here does anything by itself: a call goes to one part, and hands over the others that the part works on.
+
+use kmotiondef::timing::Timing;
+use kmotiondef::{Bit, Cycles, GuestAddr};
+use vm::bus::AccessSize;
+use vm::firmware::{Caller, TickContext};
+use vm::memory::GuestMemory;
+use vm::scheduler::Turn;
+
+use super::calls::Calls;
+use crate::io::{Io, bits};
+use crate::machine::{Lines, Machine};
+use crate::out::{Message, Out};
+use crate::pc::Pc;
+use crate::servo::cache::Change;
+use crate::servo::{Servo, Tick};
+use crate::world::trace::View;
+use crate::world::{Stage, World};
+
+/// Where in board time things are.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Clock {
+    /// When the present tick began.
+    pub(crate) tick_start: Cycles,
+    /// When the present slice began, and whose it is.
+    pub(crate) slice_start: Cycles,
+    pub(crate) turn: Turn,
+}
+
+/// The parts of the board.
+#[derive(Clone, Debug)]
+pub(crate) struct Parts {
+    pub(crate) out: Out,
+    pub(crate) io: Io,
+    pub(crate) machine: Machine,
+    pub(crate) servo: Servo,
+    pub(crate) pc: Pc,
+    pub(crate) world: World,
+    pub(crate) calls: Calls,
+    pub(crate) clock: Clock,
+    /// Whose time is counted.
+    pub(crate) timing: Timing,
+}
+
+impl Parts {
+    /// The parts at power-up.
+    pub(crate) fn new(pc: Pc) -> Self {
+        Self {
+            out: Out::default(),
+            io: Io::default(),
+            machine: Machine::default(),
+            servo: Servo::default(),
+            pc,
+            world: World::default(),
+            calls: Calls::default(),
+            clock: Clock {
+                tick_start: Cycles::default(),
+                slice_start: Cycles::default(),
+                turn: Turn::Primary,
+            },
+            timing: Timing::Fast,
+        }
+    }
+
+    /// The board's lines at an instant.
+    pub(crate) fn lines(&mut self, now: Cycles) -> Lines<'_> {
+        Lines { machine: &mut self.machine, io: &mut self.io, out: &mut self.out, now }
+    }
+
+    /// What a tick of the servo works on, and the tick's beginning.
+    pub(crate) fn servo_tick(&mut self) -> Tick<'_> {
+        Tick {
+            servo: &mut self.servo,
+            machine: &mut self.machine,
+            io: &mut self.io,
+            out: &mut self.out,
+            now: self.clock.tick_start,
+        }
+    }
+
+    /// The world, and what it acts on.
+    pub(crate) fn stage(&mut self, now: Cycles) -> (&mut World, Stage<'_>) {
+        let stage =
+            Stage { machine: &mut self.machine, io: &mut self.io, pc: &mut self.pc, out: &mut self.out, now };
+        (&mut self.world, stage)
+    }
+
+    /// The values of the board.
+    pub(crate) fn view<'a>(&'a self, memory: &'a GuestMemory) -> View<'a> {
+        View::new(&self.machine, &self.io, self.clock.tick_start, memory)
+    }
+
+    /// The level of a bit.
+    pub(crate) fn level(&self, memory: &GuestMemory, bit: Bit) -> bool {
+        bits::bit_state(&self.io, memory, bit).0
+    }
+
+    /// Reads a register of the FPGA.
+    pub(crate) fn read_register(&mut self, address: GuestAddr, size: AccessSize, now: Cycles) -> u32 {
+        let (fpga, behind) = self.io.registers(now);
+        fpga.read(behind, address, size)
+    }
+
+    /// Writes a register of the FPGA.
+    pub(crate) fn write_register(&mut self, address: GuestAddr, size: AccessSize, value: u32, now: Cycles) {
+        let (fpga, behind) = self.io.registers(now);
+        if let Some(remark) = fpga.write(behind, address, size, value) {
+            self.out.remark(now, remark);
+        }
+        self.lines(now).settle();
+    }
+
+    /// Sends a console line; the PC keeps those for itself that are requests for files.
+    pub(crate) fn send_line(&mut self, line: Vec<u8>, now: Cycles) {
+        self.pc.take_line(&mut self.out, line, now);
+    }
+
+    /// Sends all console text that waits, the unfinished line included.
+    pub(crate) fn flush_console(&mut self, now: Cycles) {
+        for line in self.out.console.drain() {
+            self.send_line(line, now);
+        }
+    }
+
+    /// A call stores `size` bytes from an address on: whether the array that they begin in has room for them.
+    pub(crate) fn check_room(
+        &mut self,
+        caller: &Caller<'_>,
+        function: &'static str,
+        to: GuestAddr,
+        size: usize,
+    ) {
+        if let Some(array) = self.calls.notices.overrun(to, size) {
+            let (name, room) = (array.name.clone(), array.size);
+            self.out.diagnose(caller, Message::BeyondArray { function, name, size: room, bytes: size });
+        }
+    }
+
+    /// Exchanges inputs and outputs with one of the Konnects, if there are any; whether that was done.
+    pub(crate) fn exchange(&mut self, context: &mut TickContext<'_>) -> bool {
+        let has_any = self.io.konnects.has_any();
+        if has_any && let Some((board, outputs)) = self.io.konnects.tick(context.memory, context.tick) {
+            self.machine.konnect(board, outputs, context.now);
+        }
+        has_any
+    }
+
+    /// Something outside has changed what the next tick may depend on.
+    pub(crate) fn disturb(&mut self) {
+        self.servo.cache.invalidate(Change::Anything);
+    }
+}

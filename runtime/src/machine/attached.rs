@@ -1,0 +1,79 @@
+//! Devices on the board's lines: pins, Konnect outputs, the UART.
+//!
+//! They answer an edge at its very instant. When one is attached it is told every bit that is high, so that it can take
+//! all others for low. Without any, a tick costs nothing. Which devices there are is written in `world`.
+
+use std::fmt::Debug;
+
+use kmotiondef::{Bit, Cycles};
+
+use super::Loads;
+use crate::io::changes::BitChange;
+use crate::io::fpga::Fpga;
+use crate::io::kanalog::Kanalog;
+use crate::io::konnect::Board;
+use crate::io::pins::Pins;
+use crate::io::uart::Uart;
+
+/// What a device can reach.
+#[derive(Debug)]
+pub(crate) struct Outside<'a> {
+    pub(crate) pins: &'a mut Pins,
+    pub(crate) kanalog: &'a mut Kanalog,
+    pub(crate) uart: &'a mut Uart,
+    pub(crate) fpga: &'a Fpga,
+    pub(crate) loads: &'a mut Loads,
+}
+
+/// Another device in the same state.
+pub(crate) trait Copied {
+    /// The copy.
+    fn copied(&self) -> Box<dyn Attached>;
+}
+
+impl<T: Attached + Clone + 'static> Copied for T {
+    fn copied(&self) -> Box<dyn Attached> {
+        Box::new(self.clone())
+    }
+}
+
+impl Clone for Box<dyn Attached> {
+    fn clone(&self) -> Self {
+        // Of the device, not of the box.
+        (**self).copied()
+    }
+}
+
+/// A device around the board.
+pub(crate) trait Attached: Debug + Send + Copied {
+    /// A bit has changed.
+    fn edge(&mut self, change: BitChange, outside: &mut Outside<'_>) {
+        let _ = (change, outside);
+    }
+
+    /// The outputs of a Konnect board have changed.
+    fn konnect(&mut self, board: Board, outputs: u16, at: Cycles) {
+        let _ = (board, outputs, at);
+    }
+
+    /// The UART has sent a character.
+    fn sent(&mut self, byte: u8, at: Cycles, outside: &mut Outside<'_>) {
+        let _ = (byte, at, outside);
+    }
+
+    /// A tick begins.
+    fn tick(&mut self, now: Cycles, outside: &mut Outside<'_>) {
+        let _ = (now, outside);
+    }
+
+    /// Whether it takes every edge of a bit; else one level a tick is enough.
+    fn watches(&self, bit: Bit) -> bool {
+        let _ = bit;
+        false
+    }
+
+    /// Whether the next tick does what the last one did.
+    fn is_settled(&self) -> bool {
+        true
+    }
+}

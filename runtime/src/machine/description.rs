@@ -1,0 +1,281 @@
+//! The machine as a machine file describes it: loads, switches, probes, sources, a spindle, wires.
+
+use std::fmt;
+
+use kmotiondef::{AxisId, Bit};
+
+/// How an axis' load moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Model {
+    /// Goes where the axis commands, whatever its gains.
+    Follow,
+    /// Is driven by what the board really puts out.
+    Motor,
+    /// Nothing moves it.
+    None,
+}
+
+/// Whether an axis' load turns its encoder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Encoder {
+    /// So that the position follows the command.
+    Auto,
+    /// With `counts_per_unit`.
+    Connected,
+    /// No.
+    Absent,
+}
+
+/// One axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axis {
+    /// What the user calls it.
+    pub name: String,
+    /// How its load moves.
+    pub model: Model,
+    /// Name of its unit.
+    pub units: String,
+    /// Encoder counts of a unit: the gearing.
+    pub counts_per_unit: f64,
+    /// Its encoder.
+    pub encoder: Encoder,
+    /// Time constant with which a load of the model `follow` follows, seconds.
+    pub lag_s: f64,
+    /// Hard stops, machine coordinates.
+    pub min: f64,
+    /// The other one.
+    pub max: f64,
+    /// Machine coordinate at power-up.
+    pub start: f64,
+    /// Its motor.
+    pub motor: Motor,
+    /// How its rotor is built in.
+    pub rotor: Rotor,
+    /// Its index pulse.
+    pub index: Option<Index>,
+}
+
+impl Default for Axis {
+    fn default() -> Self {
+        Self {
+            name: String::new(),
+            model: Model::Follow,
+            units: "counts".to_owned(),
+            counts_per_unit: 1.0,
+            encoder: Encoder::Auto,
+            lag_s: 0.000_5,
+            min: -1e9,
+            max: 1e9,
+            start: 0.0,
+            motor: Motor::default(),
+            rotor: Rotor::default(),
+            index: None,
+        }
+    }
+}
+
+/// A motor with its load.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motor {
+    /// Units a second for one PWM or DAC count; 435 and 50 if absent.
+    pub ku: Option<f64>,
+    /// Mechanical time constant in seconds, for the motor alone.
+    pub tau_s: f64,
+    /// Coulomb friction in units a second of lost speed.
+    pub friction: f64,
+    /// Units a second squared for one count of current.
+    pub ka: f64,
+    /// Time constant of viscous friction under a current drive, seconds.
+    pub tau_v_s: f64,
+    /// Inertia of motor and load, in inertias of the motor.
+    pub inertia: f64,
+}
+
+impl Default for Motor {
+    fn default() -> Self {
+        Self { ku: None, tau_s: 0.02, friction: 0.0, ka: 2000.0, tau_v_s: 0.5, inertia: 1.0 }
+    }
+}
+
+/// How the rotor of a brushless motor is connected to its load.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rotor {
+    /// Electrical cycles of a unit; what the axis says if absent.
+    pub cycles_per_unit: Option<f64>,
+    /// Electrical angle at machine coordinate 0, cycles.
+    pub phase: f64,
+}
+
+impl Default for Rotor {
+    fn default() -> Self {
+        Self { cycles_per_unit: None, phase: -0.25 }
+    }
+}
+
+/// An index pulse.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Index {
+    /// The bit that is 1 during the pulse.
+    pub bit: Bit,
+    /// Units from pulse to pulse.
+    pub every: f64,
+    /// Units of a pulse.
+    pub width: f64,
+    /// Where one begins.
+    pub offset: f64,
+}
+
+/// Where a switch is active.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Condition {
+    /// At or below a coordinate.
+    AtMost(f64),
+    /// At or above one.
+    AtLeast(f64),
+    /// From one to another.
+    Between(f64, f64),
+}
+
+impl fmt::Display for Condition {
+    /// "at ≤ -200".
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::AtMost(place) => write!(f, "at ≤ {place}"),
+            Self::AtLeast(place) => write!(f, "at ≥ {place}"),
+            Self::Between(from, to) => write!(f, "from {from} to {to}"),
+        }
+    }
+}
+
+impl Condition {
+    /// Whether it holds at a machine coordinate.
+    #[must_use]
+    pub fn holds(self, coordinate: f64) -> bool {
+        match self {
+            Self::AtMost(limit) => coordinate <= limit,
+            Self::AtLeast(limit) => coordinate >= limit,
+            Self::Between(from, to) => (from..=to).contains(&coordinate),
+        }
+    }
+}
+
+/// A switch that an axis trips.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Switch {
+    /// The input it drives.
+    pub bit: Bit,
+    /// The axis.
+    pub axis: AxisId,
+    /// Where it is active.
+    pub when: Condition,
+    /// The level there.
+    pub active: bool,
+}
+
+/// A probe that touches a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Probe {
+    /// The input it drives, 1 while it touches.
+    pub bit: Bit,
+    /// The axis that carries it.
+    pub axis: AxisId,
+    /// Where it touches.
+    pub touches: Condition,
+}
+
+/// An encoder that is turned by hand.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Handwheel {
+    /// Its input channel.
+    pub channel: usize,
+    /// Start in seconds, counts, duration in seconds; in steady motion.
+    pub moves: Vec<[f64; 3]>,
+}
+
+/// A source of an analog input, in its counts, −2048 to 2047.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Analog {
+    /// The input.
+    pub channel: usize,
+    /// What it reads.
+    pub source: AnalogSource,
+}
+
+/// What an analog input reads.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AnalogSource {
+    /// A constant.
+    Value(f64),
+    /// A sine: mean, amplitude, frequency.
+    Sine {
+        /// Its mean.
+        mean: f64,
+        /// Its amplitude.
+        amp: f64,
+        /// Its frequency.
+        hz: f64,
+    },
+    /// A line of an axis' machine coordinate.
+    Follows {
+        /// The axis.
+        axis: AxisId,
+        /// Counts of a unit.
+        gain: f64,
+        /// Counts at 0.
+        offset: f64,
+    },
+}
+
+/// A spindle with its drive and encoder.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spindle {
+    /// The axis whose encoder it turns.
+    pub axis: AxisId,
+    /// Counts of a revolution.
+    pub counts_per_rev: f64,
+    /// What drives it.
+    pub drive: SpindleDrive,
+    /// Revolutions a second at full drive.
+    pub full_scale_rps: f64,
+    /// Time constant of its speed.
+    pub tau_s: f64,
+}
+
+/// What drives a spindle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SpindleDrive {
+    /// The analog output of an axis.
+    Axis(AxisId),
+    /// An analog output.
+    Dac(usize),
+    /// Two outputs, clockwise and back.
+    Bits {
+        /// Full speed forward.
+        cw: Bit,
+        /// Full speed back.
+        ccw: Bit,
+    },
+}
+
+/// A connection from an output to an input.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wire {
+    /// The output.
+    pub from: Bit,
+    /// The input.
+    pub to: Bit,
+    /// Whether it inverts.
+    pub invert: bool,
+    /// How late the input follows.
+    pub delay_s: f64,
+}
+
+impl fmt::Display for Model {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Follow => "follow",
+            Self::Motor => "motor",
+            Self::None => "none",
+        })
+    }
+}

@@ -1,0 +1,250 @@
+//! What moves by itself, and what the loads trip: handwheels, a spindle, switches, probes, analog sources.
+//!
+//! Nothing of it exists on a real board; a machine file describes it. It is moved once a tick, before the axes read
+//! their inputs.
+
+use kmotiondef::limits::{N_CHANNELS, TIMEBASE};
+use kmotiondef::structs::Chan;
+use kmotiondef::variables::DAC_BUFFER;
+use kmotiondef::{AxisId, Bit, Cycles};
+use vm::memory::GuestMemory;
+
+use super::description::{
+    Analog, AnalogSource, Axis, Condition, Handwheel, Probe, Spindle, SpindleDrive, Switch,
+};
+use super::{Loads, Machine};
+use crate::io::Io;
+use crate::io::bits::bit_state;
+use crate::io::kanalog::conversion;
+use crate::views::Typed;
+
+/// Something that makes contact along an axis.
+#[derive(Clone, Copy, Debug)]
+struct Contact {
+    bit: Bit,
+    axis: AxisId,
+    closes: Closes,
+    active: bool,
+}
+
+/// Where it does.
+#[derive(Clone, Copy, Debug)]
+enum Closes {
+    Where(Condition),
+    /// Once in a distance: every, width, offset.
+    Every(f64, f64, f64),
+}
+
+impl Contact {
+    fn is_closed(&self, loads: &Loads) -> bool {
+        let load = loads[self.axis].load;
+        match self.closes {
+            Closes::Where(condition) => condition.holds(load),
+            Closes::Every(every, width, offset) => {
+                let turns = (load - offset) / every;
+                (turns - libm::floor(turns)) * every < width
+            }
+        }
+    }
+}
+
+/// What a machine file connects to the board, beside the loads themselves, in its own words.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Connected {
+    /// Switches that axes trip.
+    pub switches: Vec<Switch>,
+    /// Probes.
+    pub probes: Vec<Probe>,
+    /// Encoders turned by hand.
+    pub encoders: Vec<Handwheel>,
+    /// Analog inputs.
+    pub analog: Vec<Analog>,
+    /// The spindle, if there is one.
+    pub spindle: Option<Spindle>,
+}
+
+/// The same as the simulation moves it.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Mechanics {
+    contacts: Vec<Contact>,
+    analog: Vec<Analog>,
+    handwheels: Vec<Handwheel>,
+    spindle: Option<Spindle>,
+    /// Revolutions a second.
+    spindle_speed: f64,
+    /// Whether there is anything of all that.
+    is_any: bool,
+}
+
+impl Mechanics {
+    /// What a description of a machine comes to.
+    pub(crate) fn new(axes: &[Axis; N_CHANNELS], described: &Connected) -> Self {
+        let switches = described.switches.iter().map(|switch| Contact {
+            bit: switch.bit,
+            axis: switch.axis,
+            closes: Closes::Where(switch.when),
+            active: switch.active,
+        });
+        let probes = described.probes.iter().map(|probe| Contact {
+            bit: probe.bit,
+            axis: probe.axis,
+            closes: Closes::Where(probe.touches),
+            active: true,
+        });
+        let indexes = AxisId::all().filter_map(|axis| {
+            let index = axes[axis.index()].index?;
+            let closes = Closes::Every(index.every, index.width, index.offset);
+            Some(Contact { bit: index.bit, axis, closes, active: true })
+        });
+        let contacts: Vec<_> = switches.chain(probes).chain(indexes).collect();
+        let (analog, handwheels) = (described.analog.clone(), described.encoders.clone());
+        let spindle = described.spindle;
+        let is_any =
+            !(contacts.is_empty() && analog.is_empty() && handwheels.is_empty() && spindle.is_none());
+        Self { contacts, analog, handwheels, spindle, spindle_speed: 0.0, is_any }
+    }
+
+    /// Whether an axis trips a switch or carries a probe.
+    pub(crate) fn has_contacts(&self, axis: AxisId) -> bool {
+        self.contacts.iter().any(|contact| contact.axis == axis)
+    }
+
+    /// What makes a contact on a bit: the axis, where it is closed unless that is once in a distance, the level there.
+    pub(crate) fn contact(&self, bit: Bit) -> Option<(AxisId, Option<Condition>, bool)> {
+        let contact = self.contacts.iter().find(|contact| contact.bit == bit)?;
+        let condition = match contact.closes {
+            Closes::Where(condition) => Some(condition),
+            Closes::Every(..) => None,
+        };
+        Some((contact.axis, condition, contact.active))
+    }
+
+    /// Whether it moves by itself after `time`, so that ticks cannot be skipped.
+    fn goes_on(&self, time: f64) -> bool {
+        let turns =
+            |wheel: &Handwheel| wheel.moves.iter().any(|[start, _, duration]| time <= start + duration);
+        self.spindle_speed != 0.0
+            || self.handwheels.iter().any(turns)
+            || self.analog.iter().any(|analog| matches!(analog.source, AnalogSource::Sine { .. }))
+    }
+}
+
+impl Machine {
+    /// Whether a machine file connects anything to the board beside the loads themselves.
+    #[inline]
+    pub(crate) const fn has_mechanics(&self) -> bool {
+        self.mechanics.is_any
+    }
+
+    /// What moves by time and by other outputs than the axes' own; whether it will move in the next tick too.
+    #[inline]
+    pub(crate) fn drive(&mut self, io: &Io, memory: &GuestMemory, now: Cycles) -> bool {
+        self.mechanics.is_any && self.turn(io, memory, now)
+    }
+
+    fn turn(&mut self, io: &Io, memory: &GuestMemory, now: Cycles) -> bool {
+        let time = now.get() as f64 / Cycles::PER_SECOND.get() as f64;
+        self.turn_handwheels(memory, time);
+        self.turn_spindle(io, memory);
+        self.mechanics.goes_on(time)
+    }
+
+    fn turn_handwheels(&mut self, memory: &GuestMemory, time: f64) {
+        for wheel in &self.mechanics.handwheels {
+            let Some(axis) = AxisId::new(wheel.channel as i32) else { continue };
+            let gain = f64::from(memory.axis(axis, Chan::INPUT_GAIN0));
+            let turned: f64 =
+                wheel.moves.iter().map(|turn| turned(turn, time) - turned(turn, time - TIMEBASE)).sum();
+            if turned != 0.0 {
+                self.loads.push(axis, turned * gain);
+            }
+        }
+    }
+
+    fn turn_spindle(&mut self, io: &Io, memory: &GuestMemory) {
+        let Some(spindle) = self.mechanics.spindle else { return };
+        let target = spindle.full_scale_rps * fraction(io, memory, &spindle);
+        let speed = &mut self.mechanics.spindle_speed;
+        *speed = target + (*speed - target) * libm::exp(-TIMEBASE / spindle.tau_s);
+        if target == 0.0 && speed.abs() < 1e-6 {
+            *speed = 0.0;
+        }
+        let counts = *speed * spindle.counts_per_rev * TIMEBASE;
+        if counts != 0.0 {
+            self.loads.push(spindle.axis, counts);
+        }
+    }
+
+    /// Shows the board what switches, probes and sources say where the loads are now.
+    #[inline]
+    pub(crate) fn signal(&self, io: &mut Io, now: Cycles) {
+        if self.mechanics.is_any {
+            self.show(io, now);
+        }
+    }
+
+    fn show(&self, io: &mut Io, now: Cycles) {
+        let mechanics = &self.mechanics;
+        for (index, contact) in mechanics.contacts.iter().enumerate() {
+            let mut others = mechanics.contacts.iter().filter(|other| other.bit == contact.bit);
+            // The first contact of a bit speaks for all of them: one that is closed decides.
+            if mechanics.contacts[..index].iter().any(|before| before.bit == contact.bit) {
+                continue;
+            }
+            let closed = others.find(|other| other.is_closed(&self.loads));
+            let level = closed.map_or(!contact.active, |contact| contact.active);
+            set(io, contact.bit, level, now);
+        }
+        let time = now.get() as f64 / Cycles::PER_SECOND.get() as f64;
+        for analog in &mechanics.analog {
+            let value = match analog.source {
+                AnalogSource::Value(value) => value,
+                AnalogSource::Sine { mean, amp, hz } => {
+                    mean + amp * libm::sin(std::f64::consts::TAU * hz * time)
+                }
+                AnalogSource::Follows { axis, gain, offset } => self.loads[axis].load * gain + offset,
+            };
+            io.kanalog.drive(analog.channel, conversion(value));
+        }
+    }
+}
+
+/// The counts of a move that are done at a time.
+fn turned(&[start, counts, duration]: &[f64; 3], time: f64) -> f64 {
+    if time < start {
+        0.0
+    } else if time >= start + duration {
+        counts
+    } else {
+        counts * (time - start) / duration
+    }
+}
+
+/// How far a spindle is driven, −1 to 1.
+fn fraction(io: &Io, memory: &GuestMemory, spindle: &Spindle) -> f64 {
+    const FULL: f64 = 2047.0;
+    let dac = |channel: usize| {
+        // The buffer holds the value in offset binary, from the other side.
+        let value = (i32::from(memory.get(DAC_BUFFER.element(channel))) + 2048) & 0xfff;
+        f64::from(if value >= 2048 { value - 4096 } else { value }) / FULL
+    };
+    match spindle.drive {
+        SpindleDrive::Dac(channel) => dac(channel),
+        SpindleDrive::Axis(axis) if memory.axis(axis, Chan::ENABLE) == 0 => 0.0,
+        SpindleDrive::Axis(axis) => usize::try_from(memory.axis(axis, Chan::OUTPUT_CHAN0))
+            .ok()
+            .filter(|&channel| channel < 8)
+            .map_or(0.0, dac),
+        SpindleDrive::Bits { cw, ccw } => {
+            let level = |bit| f64::from(u8::from(bit_state(io, memory, bit).0));
+            level(cw) - level(ccw)
+        }
+    }
+}
+
+/// Drives an input, if that is news.
+fn set(io: &mut Io, bit: Bit, level: bool, now: Cycles) {
+    if io.pins.input(bit) != level || !io.pins.is_driven(bit) {
+        io.pins.drive(bit, level, now);
+    }
+}

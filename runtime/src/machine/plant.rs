@@ -1,0 +1,426 @@
+//! The load of one axis: where it is, what moves it, what its encoder counts. Source: plant.md sections 1 to 4.
+//!
+//! An axis as it is without a machine file goes where it is commanded: step generators move it by their steps, one
+//! tick late; closed loops follow with a first-order lag, whatever their gains. With the model `motor` it is driven by
+//! what the board really puts out.
+
+use std::f64::consts::TAU;
+
+use kmotiondef::limits::TIMEBASE;
+use kmotiondef::structs::Chan;
+
+use super::description::{Axis, Encoder, Model};
+use super::motor::{Applied, Motor};
+use crate::views::AxisView;
+
+/// Counts in one tick that an 8-bit encoder register can tell from going backwards, with some room.
+pub(crate) const COUNTS_PER_TICK: f64 = 120.0;
+/// A remaining distance that counts as none.
+const NEGLIGIBLE: f64 = 1e-9;
+/// Time constant with which a rotor turns into a vector that stands, seconds.
+const DRAG_S: f64 = 0.01;
+
+/// What drives the load in the next tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) enum Drive {
+    /// Nothing.
+    #[default]
+    None,
+    /// A step generator or microstepping: the command it goes to, in position units.
+    Steps(f64),
+    /// A closed loop with this command, and what it puts out.
+    Loop(f64, Applied),
+    /// A vector on the phases of a disabled axis: magnitude, and angle in cycles.
+    Vector(f64, f64),
+}
+
+/// How the load is built; the same all the time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Build {
+    model: Model,
+    /// What a closed loop follows of the rest in one tick.
+    followed: f64,
+    encoder: Scale,
+    min: f64,
+    max: f64,
+    motor: Motor,
+}
+
+/// Position units of a count of the encoder that the load turns.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Scale {
+    /// The axis' own input gain: whatever that is, the position follows the load.
+    Axis,
+    Units(f64),
+    /// There is no encoder.
+    Absent,
+}
+
+impl Scale {
+    fn of(axis: &Axis) -> Self {
+        match (axis.encoder, axis.model) {
+            (Encoder::Auto, Model::Follow) => Self::Axis,
+            (Encoder::Auto | Encoder::Connected, _) => Self::Units(1.0 / axis.counts_per_unit),
+            (Encoder::Absent, _) => Self::Absent,
+        }
+    }
+}
+
+/// What the encoder that the load turns has counted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Counter {
+    /// Position units of one count, and what it has counted at the load `counted`.
+    gain: f64,
+    register: i64,
+    counted: f64,
+    /// Whether anything can be counted with that gain.
+    counts: bool,
+    /// Where the gain last changed, and the count there.
+    base: f64,
+    base_count: i64,
+}
+
+impl Counter {
+    /// Counts to where the load is. Another gain counts from here on: the register does not jump.
+    #[inline(always)]
+    fn count(&mut self, load: f64, gain: f64) {
+        if gain != self.gain {
+            (self.base, self.base_count, self.gain) = (self.counted, self.register, gain);
+            self.counts = gain != 0.0 && gain.is_finite();
+        }
+        self.counted = load;
+        if self.counts {
+            let way = load - self.base;
+            // A division takes the board's tick longer here than everything else of an encoder.
+            let counts = if gain == 1.0 { way } else { way / gain } + 0.5;
+            let whole = counts as i64;
+            let whole = if counts < whole as f64 { whole - 1 } else { whole };
+            self.register = self.base_count.wrapping_add(whole);
+        }
+    }
+}
+
+/// What the step generator has done with the load.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Steps {
+    /// Command that it has reached.
+    reached: f64,
+    /// Where the load is when that command is 0.
+    origin: f64,
+    /// What it has put out in the last tick, whether that is to be told, and whether its amplifier is off.
+    stepped: f64,
+    has_stepped: bool,
+    is_off: bool,
+    /// Whether it was to make more steps than it can.
+    is_behind: bool,
+}
+
+/// One axis' load, in position units of the axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Plant {
+    build: Build,
+    /// Machine coordinate of the load.
+    pub(crate) load: f64,
+    /// Its velocity, if it has a motor.
+    velocity: f64,
+    /// What the axis' position is beyond the load.
+    shift: f64,
+    /// The position as the board last stored it.
+    position: f64,
+    counter: Counter,
+    steps: Steps,
+    pub(crate) drive: Drive,
+    torque: Torque,
+}
+
+/// How well a brushless motor that follows its command would have been driven.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Torque {
+    /// Sum over some ticks of what part of the current turns the motor.
+    sum: f64,
+    ticks: u32,
+    is_told: bool,
+}
+
+impl Default for Plant {
+    fn default() -> Self {
+        Self::new(&Axis::default())
+    }
+}
+
+impl Plant {
+    /// The load that a machine file describes.
+    pub(crate) fn new(axis: &Axis) -> Self {
+        let build = Build {
+            model: axis.model,
+            followed: if axis.lag_s > 0.0 { 1.0 - libm::exp(-TIMEBASE / axis.lag_s) } else { 1.0 },
+            encoder: Scale::of(axis),
+            min: axis.min,
+            max: axis.max,
+            motor: Motor::new(axis),
+        };
+        let start = axis.start;
+        Self {
+            build,
+            load: start,
+            velocity: 0.0,
+            shift: -start,
+            position: 0.0,
+            counter: Counter {
+                gain: 0.0,
+                register: 0,
+                counted: start,
+                counts: false,
+                base: start,
+                base_count: 0,
+            },
+            steps: Steps { origin: start, ..Steps::default() },
+            drive: Drive::None,
+            torque: Torque::default(),
+        }
+    }
+
+    /// The register of the encoder that the load turns; `gain` is the axis' input gain.
+    #[inline(always)]
+    pub(crate) fn encoder(&mut self, gain: f64) -> i8 {
+        let gain = match self.build.encoder {
+            Scale::Axis => gain,
+            Scale::Units(units) => units,
+            Scale::Absent => return 0,
+        };
+        let counter = &mut self.counter;
+        if self.load != counter.counted || gain != counter.gain {
+            counter.count(self.load, gain);
+        }
+        counter.register as i8
+    }
+
+    /// Whether a real motor would hardly turn under a vector at this angle in cycles, where this one follows whatever
+    /// is applied; told once. `own_cycles` is what the axis says of its cycles.
+    pub(crate) fn would_not_turn(&mut self, angle: f64, own_cycles: f64) -> bool {
+        const TICKS: u32 = 100;
+        const ENOUGH: f64 = 0.3;
+        if self.build.model != Model::Follow || self.torque.is_told {
+            return false;
+        }
+        let motor = &self.build.motor;
+        let lead = angle - motor.angle(self.load, motor.cycles(own_cycles));
+        self.torque.sum += libm::sin(TAU * (lead - libm::floor(lead)));
+        self.torque.ticks += 1;
+        if self.torque.ticks < TICKS {
+            return false;
+        }
+        let is_enough = self.torque.sum >= ENOUGH * f64::from(TICKS);
+        self.torque = Torque { is_told: !is_enough, ..Torque::default() };
+        !is_enough
+    }
+
+    /// The board has stored this position.
+    pub(crate) fn note_position(&mut self, position: f64) {
+        self.position = position;
+    }
+
+    /// The step generator stands at this command: enabling moves nothing.
+    pub(crate) fn refer_to(&mut self, command: f64) {
+        self.steps.reached = command;
+        self.steps.origin = self.load - command;
+        // What was commanded in the last tick counts from there as well.
+        if let Drive::Steps(last) = &mut self.drive {
+            *last = command;
+        }
+    }
+
+    /// Something outside moves the load; step generators go on from there.
+    pub(crate) fn push(&mut self, units: f64) {
+        self.load += units;
+        self.steps.origin += units;
+    }
+
+    /// The axis is disabled: its amplifier is off, unless a program applies a vector.
+    pub(crate) fn release(&mut self) {
+        if !matches!(self.drive, Drive::Vector(..)) {
+            self.drive = Drive::None;
+        }
+    }
+
+    /// Moves the load by what the last tick put out, and takes up a position that a program has written; whether
+    /// anything changed. An encoder reaches as far as `reach` in a tick, a step generator makes at most
+    /// `steps_per_tick`.
+    #[inline(always)]
+    pub(crate) fn advance(
+        &mut self,
+        chan: &AxisView<'_>,
+        reach: f64,
+        steps_per_tick: impl FnOnce() -> f64,
+    ) -> bool {
+        let position = chan.get(Chan::POSITION);
+        let was_written = position != self.position;
+        if was_written {
+            self.shift += position - self.position;
+            self.position = position;
+        }
+        let moves = match self.drive {
+            Drive::Loop(command, _) if self.build.model == Model::Follow => {
+                let before = self.load;
+                self.follow(command, reach);
+                self.stop_hard();
+                self.load != before
+            }
+            Drive::None if self.velocity == 0.0 => false,
+            _ => self.moves(chan, steps_per_tick()),
+        };
+        was_written | moves
+    }
+
+    /// What is neither at rest nor follows its command.
+    fn moves(&mut self, chan: &AxisView<'_>, steps_per_tick: f64) -> bool {
+        let before = self.load;
+        match (self.build.model, self.drive) {
+            (Model::None, _) | (Model::Follow, Drive::None | Drive::Loop(..)) => return false,
+            (_, Drive::Steps(command)) if command == self.steps.reached => return false,
+            (_, Drive::Steps(command)) => {
+                let steps_per_unit = f64::from(chan.get(Chan::OUTPUT_GAIN)).abs();
+                self.step(command, if steps_per_unit > 0.0 { steps_per_tick / steps_per_unit } else { 0.0 });
+            }
+            (_, Drive::Vector(magnitude, angle)) => self.turn(magnitude, angle, chan),
+            (Model::Motor, Drive::None) => self.run(Applied::Pwm(0.0), chan),
+            (Model::Motor, Drive::Loop(_, applied)) => self.run(applied, chan),
+        }
+        self.stop_hard();
+        self.load != before || self.velocity != 0.0 || self.steps.stepped != 0.0
+    }
+
+    /// Steps towards a command.
+    fn step(&mut self, command: f64, limit: f64) {
+        let step = command - self.steps.reached;
+        self.steps.stepped = step.clamp(-limit, limit);
+        self.steps.has_stepped = true;
+        self.steps.is_behind |= step != self.steps.stepped;
+        self.steps.reached =
+            if step == self.steps.stepped { command } else { self.steps.reached + self.steps.stepped };
+        if self.steps.is_off {
+            self.steps.origin = self.load - self.steps.reached;
+        } else {
+            self.load = self.steps.origin + self.steps.reached;
+        }
+    }
+
+    /// Whether the step generator has put anything out since the last time, or was to.
+    pub(crate) const fn has_stepped(&self) -> bool {
+        self.steps.has_stepped
+    }
+
+    /// Position units that the step generator has put out since the last time.
+    pub(crate) fn take_stepped(&mut self) -> f64 {
+        self.steps.has_stepped = false;
+        std::mem::take(&mut self.steps.stepped)
+    }
+
+    /// Whether the step generator could not follow its command since the last time.
+    pub(crate) fn take_behind(&mut self) -> bool {
+        std::mem::take(&mut self.steps.is_behind)
+    }
+
+    /// Switches the amplifier behind the step generator on or off; without it the steps are lost.
+    pub(crate) fn set_amplifier(&mut self, is_on: bool) {
+        self.steps.is_off = !is_on;
+    }
+
+    /// Follows a command with a lag, by `reach` in a tick at most; 0 for no limit.
+    #[inline(always)]
+    fn follow(&mut self, command: f64, reach: f64) {
+        let rest = command - (self.load + self.shift);
+        if rest == 0.0 {
+            return;
+        }
+        let step = if rest.abs() < NEGLIGIBLE { rest } else { rest * self.build.followed };
+        self.load += if step.abs() > reach && reach > 0.0 { libm::copysign(reach, step) } else { step };
+        self.steps.origin = self.load - self.steps.reached;
+    }
+
+    /// Runs its motor for a tick.
+    fn run(&mut self, applied: Applied, chan: &AxisView<'_>) {
+        let last = self.velocity;
+        let cycles = f64::from_bits(chan.get(Chan::INV_DIST_PER_CYCLE).to_bits());
+        self.velocity = self.build.motor.advance(last, applied, self.load, cycles);
+        self.load += f64::midpoint(last, self.velocity) * TIMEBASE;
+        self.steps.origin = self.load - self.steps.reached;
+    }
+
+    /// Turns the rotor towards a vector: to the nearest place where it stands.
+    fn turn(&mut self, magnitude: f64, angle: f64, chan: &AxisView<'_>) {
+        if magnitude == 0.0 {
+            return;
+        }
+        let cycles = self.build.motor.cycles(chan.get(Chan::INV_DIST_PER_CYCLE));
+        let lead = angle - self.build.motor.angle(self.load, cycles);
+        let lead = lead - libm::floor(lead + 0.5);
+        if lead.abs() > NEGLIGIBLE && cycles != 0.0 {
+            self.load += lead / cycles * (1.0 - libm::exp(-TIMEBASE / DRAG_S));
+            self.steps.origin = self.load - self.steps.reached;
+        }
+    }
+
+    /// Holds the load at its hard stops: a stepper loses steps there, a motor stalls.
+    #[inline(always)]
+    fn stop_hard(&mut self) {
+        let is_beyond = self.load > self.build.max;
+        if is_beyond || self.load < self.build.min {
+            let held = if is_beyond { self.build.max } else { self.build.min };
+            self.load = held;
+            self.velocity = 0.0;
+            self.steps.origin = held - self.steps.reached;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_loop_settles_on_its_command() {
+        let mut plant = Plant::default();
+        for _ in 0..1000 {
+            plant.follow(50.25, COUNTS_PER_TICK);
+        }
+        assert_eq!((plant.load, plant.encoder(1.0)), (50.25, 50));
+    }
+
+    #[test]
+    fn steps_are_limited_in_rate() {
+        let mut plant = Plant::default();
+        plant.step(100.0, 30.0);
+        assert_eq!(plant.load, 30.0);
+    }
+
+    #[test]
+    fn steps_are_lost_while_the_amplifier_is_off() {
+        let mut plant = Plant::default();
+        for (is_on, command, expect) in [(true, 10.0, 10.0), (false, 30.0, 10.0), (true, 35.0, 15.0)] {
+            plant.set_amplifier(is_on);
+            plant.step(command, 100.0);
+            assert_eq!(plant.load, expect, "{command}");
+        }
+        assert_eq!(plant.take_stepped(), 5.0);
+    }
+
+    #[test]
+    fn another_gain_moves_no_register() {
+        let mut plant = Plant::default();
+        plant.push(100.0);
+        assert_eq!(plant.encoder(1.0), 100);
+        assert_eq!(plant.encoder(0.5), 100);
+        plant.push(1.0);
+        assert_eq!(plant.encoder(0.5), 102);
+    }
+
+    #[test]
+    fn a_stepper_loses_steps_at_its_stop() {
+        let mut plant = Plant::new(&Axis { max: 50.0, ..Axis::default() });
+        plant.step(100.0, 1000.0);
+        plant.stop_hard();
+        plant.step(90.0, 1000.0);
+        assert_eq!(plant.load, 40.0);
+    }
+}

@@ -1,0 +1,161 @@
+//! Console text on its way to the PC: one holding buffer, one queue.
+//!
+//! Text is held until its line ends, or until 125 characters are held and another one comes. A queue of strings then
+//! waits for the primary thread, which sends one in each of its slices. All threads share the holding buffer.
+
+use std::collections::VecDeque;
+
+use kmotiondef::limits::MAX_NSTRINGS;
+
+/// Characters that are held at most.
+const HELD_LIMIT: usize = 125;
+/// Strings the queue takes; a queue whose two indices are equal is empty, so one place stays free.
+const QUEUE_LIMIT: usize = MAX_NSTRINGS - 1;
+
+/// The console as the board keeps it.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Console {
+    held: Vec<u8>,
+    queue: VecDeque<Vec<u8>>,
+    /// What the servo has to say: one place for all axes and all kinds of events.
+    servo: Option<String>,
+    /// Strings queued since power-up.
+    queued: u64,
+}
+
+impl Console {
+    /// Takes as much of `text` as the queue has room for and returns the rest.
+    pub(crate) fn put<'t>(&mut self, text: &'t [u8]) -> &'t [u8] {
+        let mut rest = text;
+        while let Some((&byte, tail)) = rest.split_first() {
+            if byte == b'\n' || self.held.len() == HELD_LIMIT {
+                if self.queue.len() == QUEUE_LIMIT {
+                    break;
+                }
+                self.flush();
+            }
+            if byte != b'\n' {
+                self.held.push(byte);
+            }
+            rest = tail;
+        }
+        rest
+    }
+
+    /// A message of the board itself; a full queue loses it.
+    pub(crate) fn message(&mut self, text: &str) {
+        if self.queue.len() < QUEUE_LIMIT {
+            self.queue.push_back(text.as_bytes().to_vec());
+            self.queued += 1;
+        }
+    }
+
+    /// A message of the servo, which waits for the primary thread. One that finds another waiting is lost
+    /// (axes-and-motion.md section 7.4).
+    pub(crate) fn servo_message(&mut self, text: &str) {
+        self.servo.get_or_insert_with(|| text.to_owned());
+    }
+
+    /// The primary thread's slice: it prints what the servo has to say.
+    pub(crate) fn print_servo_message(&mut self) {
+        if let Some(text) = self.servo.take() {
+            self.message(&text);
+        }
+    }
+
+    /// The string that is sent next.
+    pub(crate) fn send(&mut self) -> Option<Vec<u8>> {
+        self.queue.pop_front()
+    }
+
+    /// Everything not sent yet, the unfinished line last.
+    pub(crate) fn drain(&mut self) -> Vec<Vec<u8>> {
+        self.print_servo_message();
+        if !self.held.is_empty() {
+            self.flush();
+        }
+        self.queue.drain(..).collect()
+    }
+
+    /// The line that was begun and has not ended.
+    pub(crate) fn held(&self) -> &[u8] {
+        &self.held
+    }
+
+    /// Whether a line was begun and has not ended.
+    pub(crate) fn is_holding(&self) -> bool {
+        !self.held.is_empty()
+    }
+
+    /// Whether nothing waits to be sent.
+    pub(crate) fn is_idle(&self) -> bool {
+        self.queue.is_empty() && self.servo.is_none()
+    }
+
+    /// The queue's write and read indices.
+    pub(crate) fn indices(&self) -> (i32, i32) {
+        let index = |count: u64| (count % MAX_NSTRINGS as u64) as i32;
+        (index(self.queued), index(self.queued - self.queue.len() as u64))
+    }
+
+    fn flush(&mut self) {
+        self.queue.push_back(std::mem::take(&mut self.held));
+        self.queued += 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check(pieces: &[&str], expect: &[&str]) {
+        let mut console = Console::default();
+        for piece in pieces {
+            assert!(console.put(piece.as_bytes()).is_empty());
+        }
+        let mut sent = Vec::new();
+        while let Some(line) = console.send() {
+            sent.push(String::from_utf8(line).expect("text"));
+        }
+        assert_eq!(sent, expect);
+    }
+
+    #[test]
+    fn lines_are_sent_when_they_end() {
+        check(&["abc"], &[]);
+        check(&["a", "b", "c\n"], &["abc"]);
+        check(&["a\nb", "c\n", "\n"], &["a", "bc", ""]);
+    }
+
+    #[test]
+    fn a_126th_character_ends_the_line() {
+        let (full, over) = ("x".repeat(125), "x".repeat(126));
+        check(&[&format!("{full}\n")], &[&full]);
+        check(&[&format!("{over}\n")], &[&full, "x"]);
+    }
+
+    #[test]
+    fn the_servo_has_one_place_for_a_message() {
+        let mut console = Console::default();
+        console.servo_message("first");
+        console.servo_message("second");
+        assert!(!console.is_idle());
+        assert!(console.put(b"of a program\n").is_empty());
+        console.print_servo_message();
+        console.servo_message("third");
+        let sent: Vec<_> =
+            console.drain().into_iter().map(|line| String::from_utf8(line).expect("text")).collect();
+        assert_eq!(sent, ["of a program", "first", "third"]);
+    }
+
+    #[test]
+    fn a_full_queue_takes_no_further_line() {
+        let mut console = Console::default();
+        let text = "x\n".repeat(300);
+        assert_eq!(console.put(text.as_bytes()).len(), 600 - 2 * 255 - 1);
+        assert_eq!(console.indices(), (255, 0));
+        console.send();
+        assert_eq!(console.indices(), (255, 1));
+        assert_eq!(console.drain().len(), 255);
+    }
+}

@@ -1,0 +1,182 @@
+//! What a run tells the outside, with the board time at which it happened.
+//!
+//! Every part of the board may tell something; nothing that is told comes back into the simulation, except console
+//! lines for a stimulus that waits for one.
+
+mod console;
+mod record;
+mod remarks;
+
+use std::collections::{BTreeSet, VecDeque};
+use std::sync::Arc;
+
+use kmotiondef::{CodeAddr, Cycles, ThreadId};
+use vm::firmware::Caller;
+use vm::trap::Trap;
+
+pub(crate) use console::Console;
+pub use record::Record;
+pub use remarks::{Message, REMARKS, Remark, RemarkRow, Severity, Speaker};
+
+/// What goes out: console text on its way, events since the last time they were taken, requests to the board.
+#[derive(Clone, Debug)]
+pub(crate) struct Out {
+    pub(crate) console: Console,
+    events: Vec<Event>,
+    requests: Vec<Request>,
+    /// Console lines that a stimulus has not seen; `None` if there is none.
+    lines: Option<VecDeque<(Cycles, Vec<u8>)>>,
+    /// Whether remarks are worth making that say what a program may have forgotten.
+    pub(crate) hints: bool,
+    /// Whether a script command is being executed.
+    pub(crate) is_commanding: bool,
+    /// Codes of remarks that nobody wants.
+    unwanted: BTreeSet<&'static str>,
+    /// Remarks that are made once and were made: code and what tells them apart.
+    made: BTreeSet<(&'static str, u64)>,
+}
+
+impl Default for Out {
+    fn default() -> Self {
+        Self {
+            console: Console::default(),
+            events: Vec::new(),
+            requests: Vec::new(),
+            lines: None,
+            hints: true,
+            is_commanding: false,
+            unwanted: BTreeSet::new(),
+            made: BTreeSet::new(),
+        }
+    }
+}
+
+impl Out {
+    /// Records an event.
+    pub(crate) fn tell(&mut self, at: Cycles, kind: EventKind) {
+        if let (EventKind::ConsoleLine(line), Some(lines)) = (&kind, &mut self.lines) {
+            lines.push_back((at, line.clone()));
+        }
+        self.events.push(Event { at, kind });
+    }
+
+    /// A remark about the board or what is around it.
+    pub(crate) fn remark(&mut self, at: Cycles, message: Message) {
+        self.remark_of(at, Speaker::Board, None, message);
+    }
+
+    /// Remarks of this code are not made any more.
+    pub(crate) fn silence(&mut self, code: &'static str) {
+        self.unwanted.insert(code);
+    }
+
+    /// A remark about a call.
+    pub(crate) fn diagnose(&mut self, caller: &Caller<'_>, message: Message) {
+        let speaker = match caller.thread {
+            Some(thread) => Speaker::Thread(thread),
+            None if self.is_commanding => Speaker::Command,
+            None => Speaker::CallBack,
+        };
+        self.remark_of(caller.now(), speaker, caller.at, message);
+    }
+
+    /// A remark about somebody, unless it was made before or nobody wants it.
+    pub(crate) fn remark_of(
+        &mut self,
+        at: Cycles,
+        speaker: Speaker,
+        place: Option<CodeAddr>,
+        message: Message,
+    ) {
+        let is_hint = message.severity() == Severity::Hint;
+        let is_wanted = (self.hints || !is_hint) && !self.unwanted.contains(message.code());
+        let is_new = |key| self.made.insert((message.code(), key));
+        if is_wanted && message.once().is_none_or(is_new) {
+            self.tell(at, EventKind::Remark(Remark { message, speaker, place }));
+        }
+    }
+
+    /// Remarks of these codes are made once more.
+    pub(crate) fn forget_remarks(&mut self, codes: &[&str]) {
+        self.made.retain(|(code, _)| !codes.contains(code));
+    }
+
+    /// The events since the last time.
+    pub(crate) fn take_events(&mut self) -> Vec<Event> {
+        std::mem::take(&mut self.events)
+    }
+
+    /// Asks the board as a whole for something, to be done after this tick.
+    pub(crate) fn ask(&mut self, request: Request) {
+        self.requests.push(request);
+    }
+
+    /// What was asked for since the last time.
+    pub(crate) fn take_requests(&mut self) -> Vec<Request> {
+        std::mem::take(&mut self.requests)
+    }
+
+    /// Keeps console lines for a stimulus from now on.
+    pub(crate) fn keep_lines(&mut self) {
+        self.lines.get_or_insert_default();
+    }
+
+    /// The next console line that a stimulus has not seen.
+    pub(crate) fn next_line(&mut self) -> Option<(Cycles, Vec<u8>)> {
+        self.lines.as_mut()?.pop_front()
+    }
+
+    /// Whether a stimulus has seen every console line.
+    pub(crate) fn has_shown_lines(&self) -> bool {
+        self.lines.as_ref().is_none_or(VecDeque::is_empty)
+    }
+}
+
+/// What only the board as a whole can do, as it holds the programs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Request {
+    /// Make a program of what was downloaded into a thread that was started.
+    Load(ThreadId),
+    /// Save programs and settings in flash.
+    Flash,
+    /// Restart from flash.
+    Reboot,
+    /// Load a program that was offered and start it.
+    Run(ThreadId, Arc<str>),
+}
+
+/// One event and its time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Event {
+    /// The instant; power-up is 0.
+    pub at: Cycles,
+    /// What happened.
+    pub kind: EventKind,
+}
+
+/// What happened.
+#[derive(Clone, Debug, PartialEq)]
+pub enum EventKind {
+    /// The PC received a line of console text, without its line end.
+    ConsoleLine(Vec<u8>),
+    /// The PC received a line of a reply, without its line end.
+    Reply(Vec<u8>),
+    /// The PC received back what it sent: the characters of a line without an escape.
+    Echo(Vec<u8>),
+    /// The PC received the answer to 0x03: the line or command in progress is dropped.
+    Aborted,
+    /// A remark of the simulation that the real board would not make.
+    Remark(Remark),
+    /// A stimulus has loaded the program of this name.
+    Loaded(ThreadId, Arc<str>),
+    /// A thread was stopped by a trap.
+    Trap(Trap),
+    /// Something that was asked to be recorded.
+    Trace(Record),
+    /// The UART has sent a character; told to who asked for it.
+    UartSent(u8),
+    /// Something that the stimulus expects is not so.
+    Unmet(String),
+    /// The PC did something that a program asked for.
+    Host(String),
+}

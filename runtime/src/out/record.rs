@@ -1,0 +1,31 @@
+//! What a recording of a run holds: levels, slices, values over time.
+
+use kmotiondef::{Bit, Cycles, ThreadId};
+
+/// One thing that was recorded; the event around it says when.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Record {
+    /// A bit has changed.
+    Bit {
+        /// The bit.
+        bit: Bit,
+        /// Its level since.
+        level: bool,
+        /// The thread that changed it; `None` for the world, the board and the call-back.
+        thread: Option<ThreadId>,
+    },
+    /// A thread had the processor.
+    Slice {
+        /// The thread.
+        thread: ThreadId,
+        /// Until when.
+        end: Cycles,
+    },
+    /// The quantities have these values, some of which are new.
+    Sample {
+        /// In the order of the request.
+        values: Vec<f64>,
+        /// The axes that are enabled, axis 0 lowest.
+        enabled: u8,
+    },
+}

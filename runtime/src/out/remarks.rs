@@ -1,0 +1,472 @@
+//! What the simulated board tells a person: one row a remark.
+//!
+//! A row has a code, how much it matters, of what it is made once, and its text with named arguments. Whoever notices
+//! something makes a [`Message`] with the arguments and hands it to `Out`; whether it is new, and whether anybody wants
+//! it, is decided there and nowhere else.
+
+use std::fmt;
+
+use kmotiondef::{AxisId, Bit, CodeAddr, GuestAddr, ThreadId};
+
+/// How much a remark matters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// Only worth making to who asks for all of them.
+    Detail,
+    /// What a program may have forgotten; a machine file can switch these off.
+    Hint,
+    /// Something is not as it was meant.
+    Warning,
+}
+
+/// Who a remark is about.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Speaker {
+    /// The board, or what is around it.
+    #[default]
+    Board,
+    /// A call of a thread.
+    Thread(ThreadId),
+    /// A call of the call-back.
+    CallBack,
+    /// A script command.
+    Command,
+}
+
+impl From<Option<ThreadId>> for Speaker {
+    /// The thread of a call; without one it is the call-back.
+    fn from(thread: Option<ThreadId>) -> Self {
+        thread.map_or(Self::CallBack, Self::Thread)
+    }
+}
+
+impl fmt::Display for Speaker {
+    /// The words in front of a text about it.
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Board => Ok(()),
+            Self::Thread(thread) => write!(formatter, "thread {thread}: "),
+            Self::CallBack => formatter.write_str("call-back: "),
+            Self::Command => formatter.write_str("command: "),
+        }
+    }
+}
+
+/// A remark of the simulation that the real board would not make.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Remark {
+    /// What there is to say.
+    pub message: Message,
+    /// Who it is about.
+    pub speaker: Speaker,
+    /// Where the program is, as far as known.
+    pub place: Option<CodeAddr>,
+}
+
+impl fmt::Display for Remark {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{}{}", self.speaker, self.message)
+    }
+}
+
+/// An argument that tells remarks of one kind apart.
+trait Key {
+    /// As a number.
+    fn key(&self) -> u64;
+}
+
+impl Key for AxisId {
+    fn key(&self) -> u64 {
+        self.get().into()
+    }
+}
+
+impl Key for Bit {
+    fn key(&self) -> u64 {
+        self.get().into()
+    }
+}
+
+impl Key for i32 {
+    fn key(&self) -> u64 {
+        u64::from(self.cast_unsigned())
+    }
+}
+
+impl Key for u32 {
+    fn key(&self) -> u64 {
+        (*self).into()
+    }
+}
+
+/// Of what a remark is made once: of nothing, of the whole run, or of each value of an argument.
+macro_rules! once {
+    (always) => {
+        None
+    };
+    (once) => {
+        Some(0)
+    };
+    (per $field:ident) => {
+        Some(Key::key($field))
+    };
+}
+
+macro_rules! messages {
+    ($(
+        $(#[doc = $doc:literal])+
+        $name:ident { $($field:ident: $ty:ty),* } = $code:literal, $severity:ident, [$($once:tt)+], $text:literal;
+    )*) => {
+        /// What a remark says.
+        #[derive(Clone, Debug, PartialEq)]
+        pub enum Message {
+            $(
+                $(#[doc = $doc])+
+                $name {
+                    $(#[doc = concat!("Stands for `{", stringify!($field), "}` in the text.")] $field: $ty,)*
+                },
+            )*
+        }
+
+        /// One row of the table, without its arguments.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub struct RemarkRow {
+            /// Its code, as `-R no-CODE` and JSON have it.
+            pub code: &'static str,
+            /// How much it matters.
+            pub severity: Severity,
+            /// The text, with the names of its arguments in braces.
+            pub text: &'static str,
+            /// What it is about, in a sentence.
+            pub about: &'static str,
+        }
+
+        /// All rows.
+        pub const REMARKS: &[RemarkRow] = &[$(
+            RemarkRow {
+                code: $code,
+                severity: Severity::$severity,
+                text: $text,
+                about: concat!($($doc),+),
+            },
+        )*];
+
+        impl Message {
+            /// The code of its row.
+            #[must_use]
+            pub const fn code(&self) -> &'static str {
+                match self {
+                    $(Self::$name { .. } => $code,)*
+                }
+            }
+
+            /// How much it matters.
+            #[must_use]
+            pub const fn severity(&self) -> Severity {
+                match self {
+                    $(Self::$name { .. } => Severity::$severity,)*
+                }
+            }
+
+            /// Of what it is made once: two remarks of a code and the same number are one.
+            pub(super) fn once(&self) -> Option<u64> {
+                match self {
+                    $(
+                        Self::$name { $($field),* } => {
+                            // Most rows are not told apart by their arguments.
+                            let _: &[&dyn fmt::Debug] = &[$($field),*];
+                            once!($($once)+)
+                        }
+                    )*
+                }
+            }
+
+            /// Its arguments, by name.
+            #[must_use]
+            pub fn arguments(&self) -> Vec<(&'static str, String)> {
+                match self {
+                    $(Self::$name { $($field),* } => vec![$((stringify!($field), $field.to_string())),*],)*
+                }
+            }
+        }
+
+        impl fmt::Display for Message {
+            fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+                match self {
+                    $(Self::$name { $($field),* } => write!(formatter, $text),)*
+                }
+            }
+        }
+    };
+}
+
+messages! {
+    /// A call names a bit that does not exist.
+    NoSuchBit { function: &'static str, bit: i32 } = "no-such-bit", Warning, [always],
+        "{function}({bit}): there are bits 0 to 2047";
+    /// A call names an axis that does not exist.
+    NoSuchAxis { function: &'static str, axis: i32 } = "no-such-axis", Warning, [always],
+        "{function}({axis}, …): there are axes 0 to 7";
+    /// A program reads an input that nothing drives: no switch, no device, no stimulus.
+    UndrivenInput { bit: Bit, level: u8 } = "undriven-input", Hint, [per bit],
+        "reads bit {bit}, an input that nothing drives; it stays {level}";
+    /// A program writes to a bit that is an input for good: of an option board.
+    InputWritten { function: &'static str, bit: Bit } = "input-written", Warning, [per bit],
+        "{function}({bit}): bit {bit} is an input, so nothing changes";
+    /// A program writes to a pin that is an input, and does not make it an output.
+    StillAnInput { function: &'static str, bit: Bit } = "still-an-input", Warning, [per bit],
+        "{function}({bit}): bit {bit} is an input, so its pin does not change: call SetBitDirection({bit}, 1) first";
+    /// A program uses a bit number that nothing on the board or its option boards answers.
+    BitUnused { function: &'static str, bit: Bit } = "bit-unused", Warning, [per bit],
+        "{function}({bit}): nothing answers bit {bit}: it reads 0 and cannot be written";
+    /// A pin becomes an output that something outside of the board drives: a switch, a probe, a wire.
+    OutputAgainstInput { bit: Bit } = "output-against-input", Warning, [per bit],
+        "SetBitDirection({bit}, 1): the machine drives bit {bit}, so two outputs work against each other, and the program no longer sees the input";
+    /// A program reads an input of a KStep board, and has not said that there is one.
+    KstepAbsent { bit: Bit } = "kstep-absent", Warning, [once],
+        "ReadBit({bit}): inputs of a KStep read 0 until KStepPresent is set: write KStepPresent = TRUE first";
+    /// A program reads a pin on which a step generator makes its pulses.
+    StepPinRead { bit: Bit } = "step-pin-read", Warning, [per bit],
+        "ReadBit({bit}): bit {bit} is a step or direction output, so it is no input: check OutputChan0 of the axes";
+    /// The step output of an axis takes a pin that something outside of the board drives.
+    StepPins { axis: AxisId, bit: Bit, channel: i32 } = "step-pins", Warning, [per bit],
+        "axis {axis} steps on OutputChan0 = {channel}, which takes bit {bit}, an input that the machine drives: set OutputChan0 to a free generator";
+    /// A thread waits for a switch, and its axis moves away from it.
+    MovesAway { axis: AxisId, bit: Bit, place: String, load: f64 } = "moves-away", Warning, [per bit],
+        "waits for bit {bit}, but axis {axis} moves away from its switch, which is active {place}: the axis is at {load:.0}";
+    /// A call moves an axis that has no output, while other axes have outputs.
+    NoOutput { function: &'static str, axis: AxisId } = "no-output", Hint, [per axis],
+        "{function}: axis {axis} has no OutputMode, so its Dest moves and no motor does (is a program that sets the axes up to run first?)";
+    /// An axis moves that another one should follow, which is disabled.
+    SlaveDisabled { axis: AxisId, master: AxisId } = "slave-disabled", Warning, [per axis],
+        "axis {axis} has MasterAxis = {master}, but is disabled, so it does not follow: call EnableAxis({axis})";
+    /// A move is called before an earlier one of the same axis had any time to begin.
+    MoveReplaced { function: &'static str, axis: AxisId, earlier: f64, target: f64 } = "move-replaced", Warning, [per axis],
+        "{function}: axis {axis} goes to {target} at once, the move to {earlier} is replaced before it begins: wait with `while (!CheckDone({axis}));` in between";
+    /// A path begins, and an axis of it is disabled.
+    PathDisabled { } = "path-disabled", Warning, [once],
+        "a path is to be executed, but an axis of the coordinate system is disabled, so nothing moves: enable all axes that DefineCoordSystem names";
+    /// A path ends that is smoothed with a time constant of zero.
+    KlpWithoutTau { } = "klp-without-tau", Warning, [once],
+        "a path has ended with KLP set and TauKLP 0, so Dest of its axes is not a number any more: set TauKLP = -TIMEBASE / log(KLP) before the path begins";
+    /// An axis in a closed loop goes the wrong way until its following error disables it.
+    RunsAway { axis: AxisId } = "runs-away", Warning, [per axis],
+        "axis {axis} runs away: its output drives it further from Dest; change the sign of OutputGain or of InputGain0";
+    /// A text or a block is stored in an array that is too small for it.
+    BeyondArray { function: &'static str, name: String, size: u32, bytes: usize } = "beyond-array", Warning, [always],
+        "{function} stores {bytes} bytes in `{name}`, which has {size}: what lies after it is overwritten";
+    /// A value for a PWM output is beyond what it takes.
+    PwmRange { function: &'static str, channel: i32, value: i32, most: i32 } = "pwm-range", Warning, [per channel],
+        "{function}({channel}, {value}): values go from -{most} to {most}; it is limited to that";
+    /// A call names a PWM output that does not exist.
+    NoSuchPwm { function: &'static str, channel: i32 } = "no-such-pwm", Warning, [per channel],
+        "{function}({channel}, …): no such channel (0-15)";
+    /// A program ends with a line of text that has no newline.
+    UnfinishedLine { text: String } = "unfinished-line", Hint, [once],
+        "the text `{text}` has no newline: the board keeps it, and the PC never receives it";
+    /// The operator of `--assist` toggles an input for a while.
+    Assisted { bit: Bit, level: u8 } = "assisted", Warning, [always],
+        "waits: bit {bit} is {level} for 0.1 s (--assist)";
+    /// A call passes an address that is not that of an element of `chan`.
+    NotAnAxis { function: &'static str, chan: GuestAddr } = "not-an-axis", Warning, [always],
+        "{function}: {chan} is no axis structure";
+    /// A call names a thread that does not exist.
+    NoSuchThread { function: &'static str, thread: i32 } = "no-such-thread", Warning, [always],
+        "{function}({thread}): there are threads 1 to 7";
+    /// A thread without a program is started by a call.
+    ThreadEmpty { thread: ThreadId } = "thread-empty", Warning, [always],
+        "StartThread({thread}): no program is loaded in thread {thread}";
+    /// A call names an analog input that does not exist.
+    NoSuchAdc { channel: i32 } = "no-such-adc", Warning, [always],
+        "ReadADC({channel}): there are channels 0 to 7";
+    /// A call names a register that a SnapAmp does not have.
+    NoSuchSnapRegister { function: &'static str, address: i32 } = "no-such-snap-register", Warning, [always],
+        "{function}({address:#x}): there are registers 0x40 to 0x7f";
+    /// A motion call names an axis that is disabled.
+    AxisDisabled { function: &'static str, axis: AxisId } = "axis-disabled", Warning, [always],
+        "{function}: axis {axis} is disabled, nothing moves";
+    /// A motion call names an axis that follows a path.
+    AxisOnPath { function: &'static str, axis: AxisId } = "axis-on-path", Warning, [always],
+        "{function}: axis {axis} executes coordinated motion, which continues";
+    /// A motion is commanded to an axis with switches whose output drives nothing.
+    AxisUndriven { function: &'static str, axis: AxisId } = "axis-undriven", Hint, [per axis],
+        "{function}: axis {axis} drives nothing, its OutputMode is NO_OUTPUT_MODE: what the machine file connects to it stays as it is (is a program that sets the axes up to run first?)";
+    /// Motions are called faster than the board plans them.
+    Hurried { function: &'static str, axis: AxisId, ms: f64, calls: u8 } = "hurried", Hint, [always],
+        "{function}: axis {axis} gets a new target within {ms} ms, {calls} times in a row. The board takes that long to plan a motion that replaces another, and the axis keeps its speed until then: no target ever takes effect. Call less often, or use MoveExp";
+    /// A motion call passes a number that is not finite.
+    NotAPlace { function: &'static str, value: f64 } = "not-a-place", Warning, [always],
+        "{function}: {value} is not a valid position, nothing moves";
+    /// A motion call names an axis without limits.
+    NoLimits { function: &'static str, axis: AxisId } = "no-limits", Warning, [always],
+        "{function}: Vel, Accel and Jerk of axis {axis} are not all positive";
+    /// An axis executes a list of states that is not there.
+    NoStates { axis: AxisId } = "no-states", Warning, [always],
+        "axis {axis}: pcoeff points at no list of states; its motion has ended";
+    /// A step generator is to be faster than its pulses allow.
+    StepsTooFast { axis: AxisId, fastest: f64, length: f64 } = "steps-too-fast", Warning, [per axis],
+        "axis {axis} is to make more than the {fastest:.0} steps a second that pulses of {length:.2} µs leave room for: it falls behind and catches up (STEP_PULSE_LENGTH_ADD)";
+    /// A real brushless motor would not turn as the simulated one does.
+    WouldNotTurn { axis: AxisId } = "would-not-turn", Warning, [always],
+        "axis {axis}: with this CommutationOffset a real brushless motor would not turn as commanded; the simulated one follows (model \"follow\")";
+    /// A coordinate system is defined with numbers that are not axes.
+    BadCoordSystem { axes: String } = "bad-coord-system", Warning, [always],
+        "DefineCoordSystem: {axes} must be axes 0 to 7 or -1";
+    /// A coordinate system is defined with an axis for two letters.
+    CoordSystemTwice { axes: String } = "coord-system-twice", Warning, [always],
+        "DefineCoordSystem: {axes} names an axis twice";
+    /// The path being executed is overwritten by a longer one.
+    PathOverwritten { } = "path-overwritten", Warning, [always],
+        "coordinated motion: the buffer is full and the segment being executed is overwritten";
+    /// The pointer to the path does not point at segments.
+    NoSegments { list: GuestAddr } = "no-segments", Warning, [always],
+        "CoordSystem0 is {list}, where no segments lie; the path has ended";
+    /// A spindle is configured with an axis that does not exist.
+    NoSuchSpindleAxis { axis: i32 } = "no-such-spindle-axis", Warning, [always],
+        "ConfigureSpindle: axis {axis}; there are axes 0 to 7";
+    /// A spindle is configured without counts.
+    NoSpindleCounts { counts: f32 } = "no-spindle-counts", Warning, [always],
+        "ConfigureSpindle: {counts} counts of a revolution measure nothing";
+    /// Threading begins without a spindle.
+    NoSpindle { } = "no-spindle", Warning, [always],
+        "TrigThreading: no spindle is configured, so nothing will move";
+    /// Threading begins with a base speed of zero.
+    NoBaseSpeed { speed: f32 } = "no-base-speed", Warning, [always],
+        "TrigThreading: {speed} revolutions a second are no base speed";
+    /// Threading begins without a path.
+    NothingToThread { } = "nothing-to-thread", Warning, [always],
+        "TrigThreading: the segment buffer is empty";
+    /// A Konnect is added at an address that no board can have.
+    KonnectAddress { function: &'static str, address: i32 } = "konnect-address", Warning, [always],
+        "{function}({address}, …): boards have addresses 0 to 7";
+    /// A Konnect is added that the machine does not have.
+    KonnectAbsent { function: &'static str, address: i32 } = "konnect-absent", Warning, [always],
+        "{function}({address}, …): the machine has no board with that address";
+    /// The words of a Konnect's service are overwritten by a load.
+    KonnectDropped { thread: ThreadId } = "konnect-dropped", Warning, [always],
+        "Konnect service with words of thread {thread} ends: its program is replaced";
+    /// An output of Kanalog is written, which nothing has switched on.
+    KanalogOff { bit: Bit } = "kanalog-off", Detail, [once],
+        "bit {bit} is an output of Kanalog, which nothing has switched on: it is stored, no more (`board.kanalog = true` in the machine file)";
+    /// A pin becomes an output that the Kanalog's interface occupies.
+    KanalogPins { bit: Bit } = "kanalog-pins", Warning, [once],
+        "bit {bit} becomes an output, but Kanalog is connected to bits 0 to 15 of JP7";
+    /// An unknown register of the FPGA is written.
+    UnknownRegister { number: u32 } = "unknown-register", Detail, [per number],
+        "FPGA register {number:#x} is not known: it only stores what is written";
+    /// A place on the bus is written that nothing answers.
+    NoEffect { address: GuestAddr } = "no-effect", Warning, [always],
+        "write to {address} has no effect";
+    /// The UART sends, and is not connected to its pins.
+    UartUnconnected { } = "uart-unconnected", Warning, [once],
+        "the UART is not connected to its pins: call InitRS232, or write 2 to KAN_TRIG_REG";
+    /// Characters were received on the UART and not read in time.
+    UartOverrun { size: usize } = "uart-overrun", Warning, [once],
+        "{size} characters received on the UART and not read: they are lost";
+    /// Characters on the UART are taken as commands.
+    UartCommands { } = "uart-commands", Warning, [once],
+        "characters received on the UART are taken as script commands; clear DoRS232Cmds to read them";
+    /// A line of a file is written in parts.
+    LineInParts { } = "line-in-parts", Warning, [once],
+        "fprintf: the line before has not ended; as on the board, a stray character 2 stands where this text begins, and a line begun by printf goes to the console. Write each line by one call";
+    /// A text for a file has a percent sign in it.
+    PercentTwice { } = "percent-twice", Warning, [once],
+        "fprintf: the text has a % in it, which the board takes as a conversion once more. Write %%%% for it";
+    /// The PC refuses to write a file.
+    FileNotMade { name: String, error: String } = "file-not-made", Warning, [always],
+        "the PC does not write {name}: {error}";
+    /// The PC refuses to read a file.
+    FileNotRead { name: String, error: String } = "file-not-read", Warning, [always],
+        "the PC does not read {name}: {error}";
+    /// The PC fails to write to an open file.
+    FileNotWritten { name: String, error: String } = "file-not-written", Warning, [always],
+        "the PC cannot write {name}: {error}";
+    /// A line is written without an open file.
+    NoOpenFile { } = "no-open-file", Warning, [once],
+        "a line is written, and no file is open for writing on the PC";
+    /// A request waits for a PC that is not there.
+    NoPc { code: i32 } = "no-pc", Warning, [always],
+        "request {code} waits for a PC, and none is connected (`host.enabled = false`)";
+    /// Replies wait that nobody reads.
+    RepliesLost { bytes: usize } = "replies-lost", Warning, [always],
+        "{bytes} bytes of replies wait, which nobody reads; what comes now is lost";
+    /// A block is freed that was never allocated.
+    NotAllocated { block: GuestAddr } = "not-allocated", Warning, [always],
+        "free({block}): no block of the heap starts there";
+    /// Flash is programmed at a place where there are no blocks of the users'.
+    NotABlock { words: i32, to: GuestAddr } = "not-a-block", Warning, [always],
+        "ProgramFlash: {words} words at {to}: blocks of the users' flash begin at multiples of 0x10000 from 0x90100000 and hold 32768 words";
+    /// A program has used more stack than the board has.
+    StackUsed { used: u32 } = "stack-used", Warning, [always],
+        "{used} bytes of stack used; the board has about 1900";
+    /// A call-back is overwritten by a load.
+    CallBackDropped { thread: ThreadId } = "call-back-dropped", Warning, [always],
+        "the call-back in the space of thread {thread} is taken out: its program is replaced";
+    /// What flash holds for a thread is not a program.
+    NotFlashed { thread: ThreadId, error: String } = "not-flashed", Warning, [always],
+        "what was flashed for thread {thread} is not a valid program: {error}";
+    /// A program of a stimulus is not run.
+    NotRun { name: String, thread: ThreadId, error: String } = "not-run", Warning, [always],
+        "{name} is not run in thread {thread}: {error}";
+    /// A downloaded program is not started.
+    NotStarted { thread: ThreadId, error: String } = "not-started", Warning, [always],
+        "thread {thread} is not started: {error}";
+    /// A stimulus starts a thread without a program.
+    StimulusThreadEmpty { place: String, thread: ThreadId } = "stimulus-thread-empty", Warning, [always],
+        "{place}: thread {thread} holds no program";
+    /// Statements of a stimulus had nothing to do until the run was over.
+    NeverHappened { statements: String } = "never-happened", Warning, [always],
+        "never happened: {statements}";
+    /// A stimulus plans more than fits.
+    TooMuchPlanned { most: usize } = "too-much-planned", Warning, [once],
+        "the stimulus has more than {most} things to do; later ones are left out";
+    /// Devices answer each other without end.
+    DevicesEndless { } = "devices-endless", Warning, [always],
+        "devices on bits answer each other without end: they are taken off";
+    /// A new firmware is announced.
+    NoFirmwareToReplace { } = "no-firmware-to-replace", Warning, [always],
+        "ClearFlashImage begins a new firmware: the simulated board has none to replace, and ignores what comes";
+    /// A script command is one where the released firmware stops.
+    FirmwareStops { command: &'static str } = "firmware-stops", Warning, [always],
+        "the released firmware stops at this use of `{command}`: it answers nothing until it is restarted";
+    /// A line is G code.
+    GCode { } = "g-code", Warning, [always],
+        "G code is planned by the PC's application: the board has no command for it, nor has the simulated one";
+    /// A command has another name in this firmware.
+    CommandNamed { word: String, name: &'static str } = "command-named", Warning, [always],
+        "firmware 4.34 has no command {word}; its name there is {name}";
+    /// A command came with a later firmware.
+    CommandLater { word: String } = "command-later", Warning, [always],
+        "{word} is a command of later firmware than 4.34, which the simulated board models";
+    /// A command is one of another board.
+    CommandOtherBoard { word: String } = "command-other-board", Warning, [always],
+        "{word} is a command of the Kogna board; the simulated board is a KFLOP";
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    #[test]
+    fn codes_are_words_and_each_is_there_once() {
+        let codes: BTreeSet<_> = REMARKS.iter().map(|row| row.code).collect();
+        assert_eq!(codes.len(), REMARKS.len());
+        for code in codes {
+            assert!(
+                code.bytes().all(|byte| byte.is_ascii_lowercase() || b"-0123456789".contains(&byte)),
+                "{code}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_remark_says_who_and_what() {
+        let message = Message::NoSuchBit { function: "SetBit", bit: 3000 };
+        assert_eq!(message.arguments(), [("function", "SetBit".to_owned()), ("bit", "3000".to_owned())]);
+        let speaker = Speaker::Thread(ThreadId::new(1).expect("1 is a thread"));
+        let remark = Remark { message, speaker, place: None };
+        assert_eq!(remark.to_string(), "thread 1: SetBit(3000): there are bits 0 to 2047");
+    }
+}

@@ -1,0 +1,53 @@
+//! What was downloaded into threads word by word.
+//!
+//! A download is bytes in memory and an entry point; nothing says where the text of a program ends. What was stored in
+//! one go is kept here, so that the board can find the text among it when the thread is started.
+
+use kmotiondef::map::{PROGRAM_SIZE, program_base};
+use kmotiondef::{GuestAddr, ThreadId};
+
+/// What downloads have stored since the threads were last started.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Downloads {
+    /// First address, and the one behind the last.
+    stored: Vec<(GuestAddr, GuestAddr)>,
+}
+
+/// Stretches that are kept: no program needs as many.
+const MOST_STRETCHES: usize = 1000;
+
+impl Downloads {
+    /// Bytes were stored from `start` to before `end`.
+    pub(crate) fn record(&mut self, start: GuestAddr, end: GuestAddr) {
+        self.stored.retain(|stretch| stretch.0 != start);
+        if self.stored.len() < MOST_STRETCHES {
+            self.stored.push((start, end));
+        }
+    }
+
+    /// Whether something was stored in the space of a thread.
+    pub(crate) fn has(&self, thread: ThreadId) -> bool {
+        let start = program_base(thread).get();
+        self.stored.iter().any(|(stored, _)| (start..start + PROGRAM_SIZE).contains(&stored.get()))
+    }
+
+    /// Where the text at the beginning of a thread's space may end: the stretches that follow each other from there.
+    pub(crate) fn ends(&self, thread: ThreadId) -> Vec<GuestAddr> {
+        let mut ends = Vec::new();
+        let mut place = program_base(thread);
+        while let Some((_, end)) = self.stored.iter().find(|(start, _)| *start == place) {
+            if *end == place {
+                break;
+            }
+            ends.push(*end);
+            place = *end;
+        }
+        ends
+    }
+
+    /// Forgets what was stored in the space of a thread.
+    pub(crate) fn forget(&mut self, thread: ThreadId) {
+        let start = program_base(thread).get();
+        self.stored.retain(|(stored, _)| !(start..start + PROGRAM_SIZE).contains(&stored.get()));
+    }
+}

@@ -1,0 +1,110 @@
+//! Bytes on their way to the board, and the lines that they are.
+//!
+//! A line that begins with an escape is taken without echo; the byte behind the escape is thrown away. Any other line is
+//! echoed. 0x03 drops what is under way, wherever it comes. Rules: host-protocol.md sections 1 and 2.
+
+use std::collections::VecDeque;
+
+/// Drops the line and the command in progress.
+const ABORT: u8 = 0x03;
+/// Begins a line that is not echoed.
+pub(crate) const ESCAPE: u8 = 0x1B;
+/// Ends a line.
+pub(crate) const END: u8 = b'\r';
+
+/// Where in a line the link stands.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Intake {
+    /// Before its first byte.
+    #[default]
+    Start,
+    /// Behind the escape: the next byte is thrown away.
+    Escaped,
+    /// In its text.
+    Silent,
+    /// In the text of a line that is echoed.
+    Echoed,
+}
+
+/// What has arrived.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Arrival {
+    /// 0x03: what was under way is dropped.
+    Abort,
+    /// A line, and whether it was echoed.
+    Line(Vec<u8>, bool),
+}
+
+/// The board's end of a line: the USB port, or the UART.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ByteLink {
+    input: VecDeque<u8>,
+    intake: Intake,
+    line: Vec<u8>,
+    /// Whether nobody takes what arrives any more.
+    is_dead: bool,
+}
+
+impl ByteLink {
+    /// Bytes arrive from the PC.
+    pub(crate) fn receive(&mut self, bytes: &[u8]) {
+        if !self.is_dead {
+            self.input.extend(bytes);
+        }
+    }
+
+    /// Whether bytes wait to be taken.
+    pub(crate) fn is_busy(&self) -> bool {
+        !self.input.is_empty()
+    }
+
+    /// Takes bytes up to the end of a line, at most `limit` of its text, or to an abort; `None` when they run out before.
+    /// What is to be echoed is added to `echo`.
+    pub(crate) fn next(&mut self, limit: usize, echo: &mut Vec<u8>) -> Option<Arrival> {
+        loop {
+            let byte = self.input.pop_front()?;
+            if byte == ABORT {
+                self.intake = Intake::Start;
+                self.line.clear();
+                self.is_dead = false;
+                return Some(Arrival::Abort);
+            }
+            match self.intake {
+                Intake::Start if byte == ESCAPE => {
+                    self.intake = Intake::Escaped;
+                    continue;
+                }
+                Intake::Escaped => {
+                    self.intake = Intake::Silent;
+                    continue;
+                }
+                Intake::Start => self.intake = Intake::Echoed,
+                Intake::Silent | Intake::Echoed => {}
+            }
+            let is_echoed = self.intake == Intake::Echoed;
+            if is_echoed {
+                echo.push(byte);
+            }
+            let ends = byte == END;
+            if !ends {
+                self.line.push(byte);
+            }
+            if ends || self.line.len() == limit {
+                echo.extend(is_echoed.then_some(b'\n'));
+                self.intake = Intake::Start;
+                return Some(Arrival::Line(std::mem::take(&mut self.line), is_echoed));
+            }
+        }
+    }
+
+    /// The board takes nothing any more: what waits is lost, and what comes.
+    pub(crate) fn die(&mut self) {
+        self.input.clear();
+        self.is_dead = true;
+    }
+
+    /// Whether the board takes nothing any more.
+    pub(crate) const fn is_dead(&self) -> bool {
+        self.is_dead
+    }
+}

@@ -1,0 +1,166 @@
+//! What the servo keeps of guest memory so as not to compute it in every tick, and the one way to make it forget.
+//!
+//! Guest memory is the truth for everything that an axis is set to. Three things are derived from it: the plans of the
+//! axes, whether a tick would change anything at all, and whether the last tick left nothing to do. Whoever changes
+//! what they depend on says so with [`Cache::invalidate`] and a [`Change`]; what else is to be forgotten for that
+//! follows here and nowhere else.
+
+use kmotiondef::limits::N_CHANNELS;
+use kmotiondef::timing::WaitStates;
+use kmotiondef::{AxisId, Cycles};
+use vm::memory::GuestMemory;
+
+use super::duration::duration;
+use super::interrupt::Interrupt;
+use super::plan::AxisPlan;
+use super::still::Stillness;
+
+/// What has changed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Change {
+    /// Anything may have: somebody outside of the tick has had the board.
+    Anything,
+    /// Memory may have been written, by programs or by what goes in at the beginning of a tick.
+    Memory,
+    /// Something moves, or what the servo or a load remembers of an axis was replaced.
+    Motion,
+    /// An axis was switched off.
+    SwitchedOff,
+    /// A thread has had the processor.
+    Thread,
+}
+
+/// What is known, until it changes.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Cache {
+    plans: [AxisPlan; N_CHANNELS],
+    /// Whether the plans, and what follows from them, are what memory says.
+    has_plans: bool,
+    /// Whether an axis depends on another by them.
+    is_coupled: bool,
+    /// Whether one follows a master by them.
+    has_slaves: bool,
+    /// What the interrupt takes with them.
+    duration: Cycles,
+    /// The same as on the board, apart from what goes on.
+    interrupt: Interrupt,
+    still: Stillness,
+    /// Whether the last tick changed nothing and no thread has run since.
+    is_settled: bool,
+}
+
+impl Cache {
+    /// Forgets what a change may have made wrong.
+    #[inline]
+    pub(crate) const fn invalidate(&mut self, change: Change) {
+        match change {
+            Change::Anything => {
+                self.is_settled = false;
+                self.has_plans = false;
+                self.still.interrupt();
+            }
+            Change::Memory => self.has_plans = false,
+            Change::Motion => self.still.interrupt(),
+            Change::SwitchedOff => {
+                self.has_plans = false;
+                self.still.interrupt();
+            }
+            Change::Thread => self.is_settled = false,
+        }
+    }
+
+    /// What the settings of an axis come to.
+    #[inline(always)]
+    pub(super) const fn plan(&self, axis: AxisId) -> &AxisPlan {
+        &self.plans[axis.index()]
+    }
+
+    /// Whether an axis depends on another.
+    pub(super) const fn is_coupled(&self) -> bool {
+        self.is_coupled
+    }
+
+    /// Whether an axis follows a master.
+    pub(super) const fn has_slaves(&self) -> bool {
+        self.has_slaves
+    }
+
+    /// What the servo interrupt takes of a tick.
+    #[inline]
+    pub(crate) fn duration(&self, memory: &GuestMemory) -> Cycles {
+        if self.has_plans { self.duration } else { duration(memory) }
+    }
+
+    /// What it takes on the board, with the waits for memory.
+    #[inline]
+    pub(crate) fn interrupt(&self, memory: &GuestMemory, waits: WaitStates) -> Cycles {
+        if self.has_plans {
+            self.interrupt.time(memory, waits, self.is_settled)
+        } else {
+            Interrupt::of(memory).time(memory, waits, false)
+        }
+    }
+
+    /// Works the plans out, unless they are known.
+    pub(super) fn make_plans(&mut self, memory: &mut GuestMemory) {
+        if !self.has_plans {
+            for axis in AxisId::all() {
+                self.plans[axis.index()] = AxisPlan::of(memory, axis);
+            }
+            self.is_coupled = AxisId::all().any(|axis| self.plans[axis.index()].is_coupled(axis));
+            self.has_slaves = self.plans.iter().any(|plan| plan.is_slave);
+            self.duration = duration(memory);
+            self.interrupt = Interrupt::of(memory);
+            self.has_plans = true;
+        }
+        debug_assert!(
+            self.plans_hold(memory) && self.duration == duration(memory),
+            "settings have changed unnoticed"
+        );
+    }
+
+    /// Whether the settings still come to what is known.
+    fn plans_hold(&self, memory: &mut GuestMemory) -> bool {
+        AxisId::all().zip(&self.plans).all(|(axis, plan)| {
+            let now = AxisPlan::of(memory, axis);
+            // A setting that is no number equals itself in print only.
+            *plan == now || format!("{plan:?}") == format!("{now:?}")
+        })
+    }
+
+    /// Whether a tick of the axes would change nothing. Unless `is_touched`, nobody has written to the axis structures.
+    #[inline]
+    pub(super) fn is_still(&self, memory: &GuestMemory, is_touched: bool) -> bool {
+        self.still.lasts(memory, is_touched)
+    }
+
+    /// A tick of the axes is computed.
+    pub(super) fn begin(&mut self, memory: &mut GuestMemory) {
+        self.still.begin(memory);
+        self.make_plans(memory);
+    }
+
+    /// An axis depends on inputs that are not compared: every tick is computed.
+    pub(super) const fn watch(&mut self) {
+        self.still.watch();
+    }
+
+    /// The tick of the axes is over; whether it has changed anything, and `moved` says that it has.
+    pub(super) fn end(&mut self, memory: &GuestMemory, moved: bool) -> bool {
+        if moved {
+            self.invalidate(Change::Motion);
+            return true;
+        }
+        !self.still.end(memory)
+    }
+
+    /// The whole tick is over; whether the next one may be left out if no thread runs before.
+    pub(crate) const fn settle(&mut self, is_settled: bool) {
+        self.is_settled = is_settled;
+    }
+
+    /// Whether the last tick changed nothing and nothing has changed since.
+    pub(crate) const fn is_settled(&self) -> bool {
+        self.is_settled
+    }
+}

@@ -1,0 +1,95 @@
+//! Feedhold of what moves in the coordinate system: of its path, or of its axes where each moves by itself.
+//!
+//! Source: coordinated-motion.md sections 4 and 5. The path's part is [`feedhold`].
+
+use kmotiondef::AxisId;
+use kmotiondef::modes::LastMotion;
+use kmotiondef::structs::Chan;
+use kmotiondef::variables::CS0_STOPPING_STATE;
+use vm::memory::GuestMemory;
+
+use super::coordinated::feedhold::{self, HoldState};
+use super::coordinated::path;
+use super::coordinated::system::{is_member, members};
+use super::independent::{has_motion, is_moving, present, run};
+use super::moves::{limits, start_move_to};
+use super::state::Servo;
+use super::{profile, spindle};
+use crate::views::Typed;
+
+/// Ends the path that an axis belongs to, whether one runs or not (coordinated-motion.md section 3.4): it is
+/// disabled or zeroed. A write to its `Enable` does not do that.
+pub(crate) fn abort_if_member(memory: &mut GuestMemory, axis: AxisId) {
+    if is_member(memory, axis) {
+        path::drop_all(memory);
+    }
+}
+
+/// Whether there is something for a feedhold to stop. Nothing but its end holds a path that the spindle drives.
+pub(crate) fn may_stop(memory: &GuestMemory) -> bool {
+    HoldState::of(memory) == HoldState::Running && !spindle::is_threading(memory)
+}
+
+/// Computes how long a stop takes, for [`stop`].
+pub(crate) fn prepare_stop(memory: &mut GuestMemory) {
+    if may_stop(memory) {
+        feedhold::note_time(memory);
+    }
+}
+
+/// Begins a feedhold that was prepared, if something in the coordinate system moves; whether it does.
+pub(crate) fn stop(servo: &mut Servo, memory: &mut GuestMemory) -> bool {
+    if !may_stop(memory) {
+        return false;
+    }
+    if feedhold::stop(memory) {
+        return true;
+    }
+    let moving = moving_members(memory);
+    moving.iter().for_each(|&axis| stop_axis(servo, memory, axis));
+    if !moving.is_empty() {
+        memory.set(CS0_STOPPING_STATE, HoldState::StoppingAxes.number());
+    }
+    !moving.is_empty()
+}
+
+/// The axes of the coordinate system that move by themselves.
+pub(crate) fn moving_members(memory: &GuestMemory) -> Vec<AxisId> {
+    members(memory).filter(|&axis| is_moving(memory, axis)).collect()
+}
+
+/// Decelerates an axis to rest.
+pub(crate) fn stop_axis(servo: &mut Servo, memory: &mut GuestMemory, axis: AxisId) {
+    if let Some(limits) = limits(memory, axis, Some(1.0)) {
+        let states = profile::jog(present(memory, axis), 0.0, &limits);
+        run(memory, axis, &states);
+        servo.axes[axis.index()].is_held = true;
+    }
+}
+
+/// Ends the second phase of a feedhold when the axes have stopped.
+pub(crate) fn update_state(memory: &mut GuestMemory) {
+    let stopped = members(memory).all(|axis| !has_motion(memory, axis));
+    if HoldState::of(memory) == HoldState::StoppingAxes && stopped {
+        memory.set(CS0_STOPPING_STATE, HoldState::AxesStopped.number());
+    }
+}
+
+/// Restarts what a feedhold interrupted. A jog is not resumed; an exponential approach becomes a move.
+pub(crate) fn resume_axis(servo: &mut Servo, memory: &mut GuestMemory, axis: AxisId) {
+    let was_held = std::mem::take(&mut servo.axes[axis.index()].is_held);
+    let kind = LastMotion::new(memory.axis(axis, Chan::LAST_MOTION_TYPE));
+    let Some(kind) = kind.filter(|&kind| was_held && kind != LastMotion::Jog) else { return };
+    let target = memory.axis(axis, Chan::LAST_MOTION_DEST);
+    if let Some(limits) = limits(memory, axis, None) {
+        start_move_to(memory, axis, target, &limits, kind);
+    }
+}
+
+/// Gives up what a feedhold holds.
+pub(crate) fn clear(servo: &mut Servo, memory: &mut GuestMemory) {
+    if !feedhold::clear(memory) {
+        memory.set(CS0_STOPPING_STATE, HoldState::Running.number());
+    }
+    servo.axes.iter_mut().for_each(|axis| axis.is_held = false);
+}

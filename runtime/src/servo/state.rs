@@ -1,0 +1,68 @@
+//! What the servo remembers beside guest memory, and what a tick of it works on.
+
+use kmotiondef::limits::N_CHANNELS;
+use kmotiondef::{AxisId, Cycles};
+use vm::memory::GuestMemory;
+
+use super::cache::Cache;
+use super::coordinated::{Coordinated, path};
+use super::stop::StopRequest;
+use super::{independent, recorder};
+use crate::io::Io;
+use crate::machine::Machine;
+use crate::out::Out;
+
+/// What the servo remembers of an axis beside its structure.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct AxisMemory {
+    /// Destination at the end of the last tick.
+    pub(crate) dest: f64,
+    /// Its velocity in the last tick, for the feed forward.
+    pub(super) velocity: f64,
+    /// The velocity in the tick before.
+    pub(super) last_velocity: f64,
+    /// Whether a feedhold interrupted a motion of the axis.
+    pub(crate) is_held: bool,
+}
+
+impl AxisMemory {
+    /// Stands at `dest`, so that no velocity is seen.
+    pub(crate) fn rest(dest: f64) -> Self {
+        Self { dest, ..Self::default() }
+    }
+}
+
+/// What the servo remembers beside guest memory.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Servo {
+    pub(crate) axes: [AxisMemory; N_CHANNELS],
+    /// What is derived from guest memory.
+    pub(crate) cache: Cache,
+    pub(super) coordinated: Coordinated,
+    pub(super) stop_request: StopRequest,
+}
+
+impl Servo {
+    /// An axis is where it was told to be at once: no velocity is seen.
+    pub(crate) fn jump(&mut self, axis: AxisId, dest: f64) {
+        self.axes[axis.index()] = AxisMemory::rest(dest);
+    }
+
+    /// Whether a path or an axis on its own moves or something is being recorded.
+    pub(crate) fn is_busy(memory: &GuestMemory) -> bool {
+        recorder::is_recording(memory)
+            || path::is_under_way(memory)
+            || AxisId::all().any(|axis| independent::is_moving(memory, axis))
+    }
+}
+
+/// The parts of the board that a tick of the servo works on, beside guest memory.
+#[derive(Debug)]
+pub(crate) struct Tick<'a> {
+    pub(crate) servo: &'a mut Servo,
+    pub(crate) machine: &'a mut Machine,
+    pub(crate) io: &'a mut Io,
+    pub(crate) out: &'a mut Out,
+    /// When the tick began.
+    pub(crate) now: Cycles,
+}

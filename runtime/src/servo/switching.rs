@@ -1,0 +1,94 @@
+//! Switching axes on and off, and setting them to zero.
+
+use kmotiondef::modes::{AtRest, OutputMode};
+use kmotiondef::structs::{Chan, Iir};
+use kmotiondef::{AxisId, GuestAddr};
+use vm::memory::GuestMemory;
+
+use super::cache::Change;
+use super::output::write_dac;
+use super::state::{AxisMemory, Servo};
+use crate::io::amplifiers::{recirculate, store_pwm};
+use crate::machine::{Drive, Machine};
+use crate::views::Typed;
+
+/// Makes an axis stand at a destination and turns it on.
+pub(crate) fn enable(
+    servo: &mut Servo,
+    machine: &mut Machine,
+    memory: &mut GuestMemory,
+    axis: AxisId,
+    dest: f64,
+) {
+    memory.set_axis(axis, Chan::PCOEFF, GuestAddr::NULL);
+    for field in [Chan::DEST, Chan::LAST_DEST, Chan::PREV_DEST] {
+        memory.set_axis(axis, field, dest);
+    }
+    clear_filters(memory, axis);
+    memory.set_axis(axis, Chan::BACKLASH, 0.0);
+    memory.set_axis(axis, Chan::LAST_NON_ZERO_DIR, 0);
+    memory.set_axis(axis, Chan::DIRECTION_OF_MOTION, 0);
+    memory.set_axis(axis, Chan::LAST_VEL, 0.0);
+    memory.set_axis(axis, Chan::ENABLE, 1);
+    servo.cache.invalidate(Change::Motion);
+    servo.axes[axis.index()] = AxisMemory::rest(dest);
+    machine.loads[axis].refer_to(dest);
+}
+
+/// Makes the present place of an axis its zero.
+pub(crate) fn zero(servo: &mut Servo, machine: &mut Machine, memory: &mut GuestMemory, axis: AxisId) {
+    memory.set_axis(axis, Chan::PCOEFF, GuestAddr::NULL);
+    memory.set_axis(axis, Chan::POSITION, 0.0);
+    let zeroed =
+        [Chan::DEST, Chan::UNFILTERED_DEST, Chan::LAST_DEST, Chan::PREV_DEST, Chan::LAST_FOLLOWING_ERROR];
+    zeroed.into_iter().for_each(|field| memory.set_axis(axis, field, 0.0));
+    clear_filters(memory, axis);
+    memory.set_axis(axis, Chan::LAST_VEL, 0.0);
+    memory.set_axis(axis, Chan::LAST_NON_ZERO_DIR, 0);
+    memory.set_axis(axis, Chan::DIRECTION_OF_MOTION, 0);
+    memory.set_axis(axis, Chan::PREV_BACKLASH_DEST, 0.0);
+    servo.cache.invalidate(Change::Motion);
+    servo.axes[axis.index()] = AxisMemory::rest(0.0);
+    machine.loads[axis].refer_to(0.0);
+}
+
+/// Clears the filters of an axis and what the servo remembers of its motion.
+pub(crate) fn reset_filters(servo: &mut Servo, memory: &mut GuestMemory, axis: AxisId) {
+    clear_filters(memory, axis);
+    let dest = memory.axis(axis, Chan::DEST);
+    servo.cache.invalidate(Change::Motion);
+    servo.axes[axis.index()] = AxisMemory::rest(dest);
+}
+
+/// Clears what the compensation remembers.
+fn clear_filters(memory: &mut GuestMemory, axis: AxisId) {
+    for field in [Chan::INTEGRATOR, Chan::OUTPUT, Chan::PREV_OUTPUT] {
+        memory.set_axis(axis, field, 0.0);
+    }
+    for number in 0..3 {
+        memory.set_axis(axis, Chan::IIR.element(number).field(Iir::D0), 0.0);
+        memory.set_axis(axis, Chan::IIR.element(number).field(Iir::D1), 0.0);
+    }
+    let position = memory.axis(axis, Chan::POSITION);
+    memory.set_axis(axis, Chan::LAST_POSITION, position);
+}
+
+/// Disables an axis: its output goes to zero; profile, destination and filters stay as they are.
+pub(crate) fn switch_off(servo: &mut Servo, machine: &mut Machine, memory: &mut GuestMemory, axis: AxisId) {
+    memory.set_axis(axis, Chan::ENABLE, 0);
+    servo.cache.invalidate(Change::SwitchedOff);
+    machine.loads[axis].drive = Drive::None;
+    let channels = [memory.axis(axis, Chan::OUTPUT_CHAN0), memory.axis(axis, Chan::OUTPUT_CHAN1)];
+    let mode = OutputMode::new(memory.axis(axis, Chan::OUTPUT_MODE));
+    let mut stop = |channels: &[i32]| {
+        channels.iter().for_each(|&channel| store_pwm(memory, channel, recirculate(0)));
+    };
+    let Some(mode) = mode else { return };
+    match mode.traits().at_rest {
+        AtRest::Nothing => {}
+        AtRest::First => stop(&channels[..1]),
+        AtRest::Both => stop(&channels),
+        AtRest::FirstAndNext => stop(&[channels[0], channels[0].wrapping_add(1)]),
+        AtRest::Analog => write_dac(memory, axis, 0.0),
+    }
+}

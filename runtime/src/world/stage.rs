@@ -1,0 +1,40 @@
+//! The board as the world acts on it.
+
+use kmotiondef::Cycles;
+use vm::memory::GuestMemory;
+use vm::scheduler::Turn;
+
+use crate::io::Io;
+use crate::machine::attached::Attached;
+use crate::machine::{Lines, Machine};
+use crate::out::Out;
+use crate::pc::Pc;
+
+/// What the world reaches at an instant.
+#[derive(Debug)]
+pub(crate) struct Stage<'a> {
+    pub(crate) machine: &'a mut Machine,
+    pub(crate) io: &'a mut Io,
+    pub(crate) pc: &'a mut Pc,
+    pub(crate) out: &'a mut Out,
+    pub(crate) now: Cycles,
+}
+
+impl Stage<'_> {
+    /// The board's lines.
+    pub(crate) fn lines(&mut self) -> Lines<'_> {
+        Lines { machine: self.machine, io: self.io, out: self.out, now: self.now }
+    }
+
+    /// Attaches a device.
+    pub(crate) fn attach(&mut self, device: Box<dyn Attached>, memory: &GuestMemory) {
+        self.machine.attach(device, self.io, self.out, memory, self.now);
+    }
+}
+
+/// Who has the processor, and since when.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Moment {
+    pub(crate) turn: Turn,
+    pub(crate) slice_start: Cycles,
+}

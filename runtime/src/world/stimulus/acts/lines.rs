@@ -1,0 +1,158 @@
+//! Levels of inputs and virtual bits, and analog inputs.
+
+use kmotiondef::bits::{BitDirection, range_of};
+use kmotiondef::variables::KANALOG_PRESENT;
+use kmotiondef::{Bit, Cycles};
+use vm::firmware::TickContext;
+use vm::memory::GuestMemory;
+
+use crate::io::bits::bit_state;
+use crate::io::kanalog::ADC_CHANNELS;
+use crate::views::Typed;
+use crate::world::Stage;
+use crate::world::stimulus::reader::{StatementReader, number};
+use crate::world::stimulus::scene::Scene;
+use crate::world::stimulus::tokens::Mistake;
+use crate::world::stimulus::wave::Wave;
+
+/// Length of a pulse that does not say it: 10 ms.
+const PULSE: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 100);
+/// Counts of an analog input in a volt: 2048 in 10 V.
+const COUNTS_PER_VOLT: f64 = 204.8;
+/// Inputs of Kanalog.
+const KANALOG_INPUTS: std::ops::RangeInclusive<u16> = 128..=143;
+
+pub(crate) fn read_bit(reader: &mut StatementReader<'_>) -> Result<(Bit, bool), Mistake> {
+    let bit = reader.input_number()?;
+    reader.equals()?;
+    Ok((bit, reader.level()?))
+}
+
+pub(crate) fn read_set(reader: &mut StatementReader<'_>) -> Result<(Bit, bool), Mistake> {
+    Ok((reader.input()?, true))
+}
+
+pub(crate) fn read_clear(reader: &mut StatementReader<'_>) -> Result<(Bit, bool), Mistake> {
+    Ok((reader.input()?, false))
+}
+
+pub(crate) fn set(scene: &mut Scene<'_, '_, '_>, bit: Bit, level: bool) {
+    drive(scene.stage, scene.context, bit, level);
+}
+
+pub(crate) fn read_toggle(reader: &mut StatementReader<'_>) -> Result<(Bit,), Mistake> {
+    Ok((reader.input()?,))
+}
+
+pub(crate) fn toggle(scene: &mut Scene<'_, '_, '_>, bit: Bit) {
+    let level = level(scene, bit);
+    set(scene, bit, !level);
+}
+
+pub(crate) fn read_pulse(reader: &mut StatementReader<'_>) -> Result<(Bit, Cycles), Mistake> {
+    let bit = reader.input()?;
+    Ok((bit, if reader.accept("for") { reader.time()? } else { PULSE }))
+}
+
+pub(crate) fn pulse(scene: &mut Scene<'_, '_, '_>, bit: Bit, duration: Cycles) {
+    let level = level(scene, bit);
+    set(scene, bit, !level);
+    scene.plans.level(scene.context.now + duration, bit, level);
+}
+
+/// What will be driven is no accident, and a Kanalog whose inputs are driven is there.
+pub(crate) fn announce(bit: &Bit, stage: &mut Stage<'_>, memory: &mut GuestMemory) {
+    stage.io.pins.declare(*bit);
+    if KANALOG_INPUTS.contains(&bit.get()) {
+        memory.set(KANALOG_PRESENT, 1);
+    }
+}
+
+/// An analog input is one of a Kanalog.
+pub(crate) fn announce_adc(_: &usize, _: &mut Stage<'_>, memory: &mut GuestMemory) {
+    memory.set(KANALOG_PRESENT, 1);
+}
+
+pub(crate) fn read_adc(reader: &mut StatementReader<'_>) -> Result<(usize, Wave), Mistake> {
+    let channel = reader.below("an analog input from 0 to 7", ADC_CHANNELS)?;
+    reader.equals()?;
+    Ok((channel, wave(reader)?))
+}
+
+pub(crate) fn adc(scene: &mut Scene<'_, '_, '_>, channel: usize, wave: Wave) {
+    scene.plans.begin_wave(channel, wave, scene.context.now);
+}
+
+fn wave(reader: &mut StatementReader<'_>) -> Result<Wave, Mistake> {
+    let word = reader.peek().unwrap_or_default().to_owned();
+    match word.as_str() {
+        "sine" => {
+            reader.advance();
+            let mean = if reader.accept("mean") { counts(reader)? } else { 0.0 };
+            reader.expect("amplitude")?;
+            let amplitude = counts(reader)?;
+            reader.expect("hz")?;
+            Ok(Wave::Sine { mean, amplitude, hz: reader.number("a frequency")? })
+        }
+        "square" => {
+            reader.advance();
+            reader.expect("low")?;
+            let low = counts(reader)?;
+            reader.expect("high")?;
+            let high = counts(reader)?;
+            reader.expect("hz")?;
+            Ok(Wave::Square { low, high, hz: reader.number("a frequency")? })
+        }
+        "ramp" => {
+            reader.advance();
+            reader.expect("from")?;
+            let from = counts(reader)?;
+            reader.expect("to")?;
+            let to = counts(reader)?;
+            reader.expect("in")?;
+            Ok(Wave::Ramp { from, to, over: reader.time()? })
+        }
+        "follows" => {
+            reader.advance();
+            reader.expect("axis")?;
+            let axis = reader.axis()?;
+            let gain = if reader.accept("gain") { reader.number("a factor")? } else { 1.0 };
+            let offset = if reader.accept("offset") { counts(reader)? } else { 0.0 };
+            Ok(Wave::Follows { axis, gain, offset })
+        }
+        _ => counts(reader).map(Wave::Constant),
+    }
+}
+
+/// Counts of an analog input, or volts.
+fn counts(reader: &mut StatementReader<'_>) -> Result<f64, Mistake> {
+    reader.take("counts, volts such as 2.5V, `sine`, `square`, `ramp` or `follows`", |word| {
+        match word.strip_suffix('V') {
+            Some(volts) => number(volts).map(|volts| volts * COUNTS_PER_VOLT),
+            None => number(word),
+        }
+    })
+}
+
+/// Whether a bit lives in guest memory.
+fn is_memory(bit: Bit) -> bool {
+    range_of(bit).is_some_and(|range| range.direction == BitDirection::Memory)
+}
+
+/// The level that the world gives a bit.
+fn level(scene: &Scene<'_, '_, '_>, bit: Bit) -> bool {
+    if is_memory(bit) {
+        bit_state(scene.stage.io, scene.context.memory, bit).0
+    } else {
+        scene.stage.io.pins.input(bit)
+    }
+}
+
+/// Gives a bit its level.
+pub(crate) fn drive(stage: &mut Stage<'_>, context: &mut TickContext<'_>, bit: Bit, level: bool) {
+    if is_memory(bit) {
+        stage.lines().write(context.memory, bit, level);
+    } else {
+        stage.lines().drive(bit, level);
+    }
+}

@@ -1,0 +1,56 @@
+//! Loads that are pushed and encoders that are turned, or fail.
+
+use kmotiondef::structs::Chan;
+use kmotiondef::{AxisId, Cycles};
+
+use crate::io::encoder::CHANNELS;
+use crate::machine::COUNTS_PER_TICK;
+use crate::views::Typed;
+use crate::world::stimulus::reader::StatementReader;
+use crate::world::stimulus::scene::Scene;
+use crate::world::stimulus::tokens::Mistake;
+
+pub(crate) fn read_push(reader: &mut StatementReader<'_>) -> Result<(AxisId, f64), Mistake> {
+    let axis = reader.axis()?;
+    reader.expect("push")?;
+    Ok((axis, reader.number("a distance")?))
+}
+
+/// Moves a load at once, or as fast as an encoder can be read.
+pub(crate) fn push(scene: &mut Scene<'_, '_, '_>, axis: AxisId, units: f64) {
+    let gain = f64::from(scene.context.memory.axis(axis, Chan::INPUT_GAIN0));
+    let ticks = (units / gain / COUNTS_PER_TICK).abs().ceil();
+    if gain == 0.0 || ticks <= 1.0 {
+        return scene.stage.machine.loads.push(axis, units);
+    }
+    let over = Cycles::new((ticks as i64).saturating_mul(Cycles::PER_TICK.get()));
+    turn(scene, axis, units / gain, over);
+}
+
+pub(crate) fn read_turn(reader: &mut StatementReader<'_>) -> Result<(AxisId, f64, Cycles), Mistake> {
+    let column = reader.column();
+    let channel = encoder(reader)?;
+    let axis = AxisId::new(channel as i32)
+        .ok_or_else(|| (column, "only encoders 0 to 7 can be moved".to_owned()))?;
+    reader.expect("moves")?;
+    let counts = reader.number("a number of counts")?;
+    Ok((axis, counts, if reader.accept("in") { reader.time()? } else { Cycles::default() }))
+}
+
+fn encoder(reader: &mut StatementReader<'_>) -> Result<usize, Mistake> {
+    reader.below("an encoder input from 0 to 15", CHANNELS)
+}
+
+pub(crate) fn turn(scene: &mut Scene<'_, '_, '_>, axis: AxisId, counts: f64, over: Cycles) {
+    scene.plans.begin_turn(axis, counts, over, scene.context.now);
+}
+
+pub(crate) fn read_fail(reader: &mut StatementReader<'_>) -> Result<(usize,), Mistake> {
+    let channel = encoder(reader)?;
+    reader.expect("fails")?;
+    Ok((channel,))
+}
+
+pub(crate) fn fail(scene: &mut Scene<'_, '_, '_>, channel: usize) {
+    scene.stage.io.encoders.fail(channel);
+}

@@ -1,0 +1,332 @@
+//! What should be: a value compared with another, a text on the console, the state of an axis or a thread.
+//!
+//! An expectation is met or not at an instant, and says then what was. [`monitor`](super::monitor) watches those that
+//! hold over a time.
+
+use std::fmt;
+use std::sync::Arc;
+
+use kmotiondef::structs::{Chan, Persist};
+use kmotiondef::variables::PERSIST;
+use kmotiondef::{AxisId, ThreadId};
+use vm::scheduler::ThreadSet;
+
+use super::reader::{StatementReader, integer, number};
+use super::relation::Relation;
+use super::scene::Scene;
+use super::tokens::Mistake;
+use crate::views::Typed;
+use crate::world::trace::{Formula, Item, View};
+
+/// What should be, or should not.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Expectation {
+    /// What is looked at.
+    pub predicate: Predicate,
+    /// Whether it should be so.
+    pub sense: Sense,
+}
+
+/// Whether something should be so.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sense {
+    /// It should.
+    Is,
+    /// It should not.
+    IsNot,
+    /// It should not be so at any time.
+    Never,
+}
+
+/// What is so, or is not.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Predicate {
+    /// A value is in a relation to a number, or within a distance of it.
+    Value {
+        /// The value.
+        subject: Subject,
+        /// The relation.
+        relation: Relation,
+        /// The number.
+        number: f64,
+        /// How far an equal value may be from it.
+        tolerance: f64,
+    },
+    /// A console line so far contains the text.
+    Printed(String),
+    /// An axis is enabled, or disabled.
+    Enabled(AxisId, bool),
+    /// A thread is active, or not.
+    Active(ThreadId, bool),
+}
+
+/// What has a value.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Subject {
+    /// An item of the board, and what statements call it.
+    Item(Item, Arc<str>),
+    /// An element of `persist.UserData`, or two.
+    Persist(usize, Stored),
+    /// A variable or an expression in the words of the programs.
+    Expression(Expression),
+}
+
+/// How a value lies in `persist.UserData`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stored {
+    /// An integer.
+    Whole,
+    /// A `float`.
+    Single,
+    /// A `double` in two elements.
+    Double,
+}
+
+/// An expression, and what computes it once somebody who knows the programs has [resolved](super::Stimulus::resolve) it.
+#[derive(Clone, Debug)]
+pub struct Expression {
+    /// The text.
+    pub text: Arc<str>,
+    pub(super) formula: Option<Arc<dyn Formula>>,
+}
+
+impl PartialEq for Expression {
+    fn eq(&self, other: &Self) -> bool {
+        self.text == other.text
+    }
+}
+
+/// Values of an axis as statements call them, and the items that they are.
+const OF_AXIS: &[(&str, &str)] =
+    &[("position", "pos"), ("dest", "dest"), ("velocity", "vel"), ("output", "out"), ("load", "load")];
+
+/// What can be looked at.
+pub(super) struct Look<'a> {
+    pub(super) view: View<'a>,
+    pub(super) threads: ThreadSet,
+    /// Whether the text of this expectation was printed.
+    pub(super) said: bool,
+}
+
+/// What was seen.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Seen {
+    /// Whether it is as it should be.
+    pub(super) is_met: bool,
+    /// What was, and what should be.
+    pub(super) text: String,
+}
+
+impl Expectation {
+    /// Looks at an instant.
+    pub(super) fn look(&self, look: &Look<'_>) -> Seen {
+        let is_wanted = self.sense == Sense::Is;
+        let (holds, was) = match &self.predicate {
+            Predicate::Value { subject, relation, number, tolerance } => match subject.value(&look.view) {
+                Some(value) => (relation.holds(value, *number, *tolerance), format!("{subject} is {value}")),
+                // It is not met either way.
+                None => (!is_wanted, format!("{subject} has no value here")),
+            },
+            Predicate::Printed(text) => {
+                let who = if look.said { "a" } else { "no" };
+                (look.said, format!("{who} line contains \"{text}\""))
+            }
+            Predicate::Enabled(axis, expected) => {
+                let is_enabled = look.view.memory.axis(*axis, Chan::ENABLE) != 0;
+                let state = if is_enabled { "enabled" } else { "disabled" };
+                (is_enabled == *expected, format!("axis {axis} is {state}"))
+            }
+            Predicate::Active(thread, expected) => {
+                let is_active = look.threads.contains(*thread);
+                let state = if is_active { "active" } else { "not active" };
+                (is_active == *expected, format!("thread {thread} is {state}"))
+            }
+        };
+        Seen { is_met: holds == is_wanted, text: format!("{was}, expected {}", self.expected()) }
+    }
+
+    /// What should be, in words that follow "expected".
+    fn expected(&self) -> String {
+        let what = match &self.predicate {
+            Predicate::Value { relation: Relation::Equal, number, tolerance, .. } => match tolerance {
+                0.0 => number.to_string(),
+                tolerance => format!("{number} ± {tolerance}"),
+            },
+            Predicate::Value { relation, number, .. } => format!("{} {number}", relation.sign()),
+            Predicate::Printed(_) => {
+                return match self.sense {
+                    Sense::Is => "one".to_owned(),
+                    Sense::IsNot | Sense::Never => "none".to_owned(),
+                };
+            }
+            Predicate::Enabled(_, true) => "enabled".to_owned(),
+            Predicate::Enabled(_, false) => "disabled".to_owned(),
+            Predicate::Active(_, true) => "active".to_owned(),
+            Predicate::Active(_, false) => "ended".to_owned(),
+        };
+        match self.sense {
+            Sense::Is => what,
+            Sense::IsNot => format!("not {what}"),
+            Sense::Never => format!("never {what}"),
+        }
+    }
+
+    /// The text that it waits for on the console.
+    pub(super) fn printed(&self) -> Option<&str> {
+        match &self.predicate {
+            Predicate::Printed(text) => Some(text),
+            Predicate::Value { .. } | Predicate::Enabled(..) | Predicate::Active(..) => None,
+        }
+    }
+
+    /// Its expression, if it has one.
+    pub(super) fn expression(&mut self) -> Option<&mut Expression> {
+        match &mut self.predicate {
+            Predicate::Value { subject: Subject::Expression(expression), .. } => Some(expression),
+            Predicate::Value { .. }
+            | Predicate::Printed(_)
+            | Predicate::Enabled(..)
+            | Predicate::Active(..) => None,
+        }
+    }
+}
+
+impl Subject {
+    /// Its value; `None` for an expression that nobody has resolved.
+    fn value(&self, view: &View<'_>) -> Option<f64> {
+        let user_data = PERSIST.field(Persist::USER_DATA);
+        let word = |index| view.memory.get(user_data.element(index)).cast_unsigned();
+        match self {
+            Self::Item(item, _) => Some(view.item(*item)),
+            Self::Persist(index, Stored::Whole) => Some(f64::from(word(*index).cast_signed())),
+            Self::Persist(index, Stored::Single) => Some(f64::from(f32::from_bits(word(*index)))),
+            Self::Persist(index, Stored::Double) => {
+                let (low, high) = (u64::from(word(*index)), u64::from(word(*index + 1)));
+                Some(f64::from_bits(high << 32 | low))
+            }
+            Self::Expression(expression) => Some(expression.formula.as_ref()?.value(view)),
+        }
+    }
+}
+
+impl fmt::Display for Subject {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Item(_, name) => f.write_str(name),
+            Self::Persist(index, _) => write!(f, "persist {index}"),
+            Self::Expression(expression) => f.write_str(&expression.text),
+        }
+    }
+}
+
+/// The action `expect`.
+pub(super) fn read(reader: &mut StatementReader<'_>) -> Result<(Expectation,), Mistake> {
+    Ok((expectation(reader)?,))
+}
+
+/// What should be, or after `not` should not.
+pub(super) fn expectation(reader: &mut StatementReader<'_>) -> Result<Expectation, Mistake> {
+    let sense = if reader.accept("not") { Sense::IsNot } else { Sense::Is };
+    Ok(Expectation { predicate: predicate(reader)?, sense })
+}
+
+/// What never should be.
+pub(super) fn never(reader: &mut StatementReader<'_>) -> Result<Expectation, Mistake> {
+    Ok(Expectation { predicate: predicate(reader)?, sense: Sense::Never })
+}
+
+/// It is checked now, by who knows what was printed.
+pub(super) fn check(scene: &mut Scene<'_, '_, '_>, _: Expectation) {
+    scene.is_checked = true;
+}
+
+fn predicate(reader: &mut StatementReader<'_>) -> Result<Predicate, Mistake> {
+    if reader.is_at_text() {
+        let text = reader.string()?;
+        return compared(reader, expression(&text));
+    }
+    let word = reader.peek().unwrap_or_default().to_owned();
+    if word.is_empty() {
+        return reader.expected(
+            "`axis`, `bit`, `printed`, `not printed`, `persist`, `thread`, a variable or an expression in \"…\"",
+        );
+    }
+    match word.as_str() {
+        "printed" => {
+            reader.advance();
+            reader.string().map(Predicate::Printed)
+        }
+        "thread" => thread(reader),
+        "axis" => axis(reader),
+        "persist" => persist(reader),
+        "bit" => {
+            let bit = reader.bit()?;
+            let item = Item::new(&format!("bit{bit}")).expect("every bit is an item");
+            reader.equals()?;
+            let level = reader.level()?;
+            let subject = Subject::Item(item, format!("bit {bit}").into());
+            let number = f64::from(u8::from(level));
+            Ok(Predicate::Value { subject, relation: Relation::Equal, number, tolerance: 0.0 })
+        }
+        _ => {
+            let subject = match Item::new(&word) {
+                Ok(item) => Subject::Item(item, word.as_str().into()),
+                Err(_) => expression(&word),
+            };
+            reader.advance();
+            compared(reader, subject)
+        }
+    }
+}
+
+fn expression(text: &str) -> Subject {
+    Subject::Expression(Expression { text: text.into(), formula: None })
+}
+
+fn thread(reader: &mut StatementReader<'_>) -> Result<Predicate, Mistake> {
+    let thread = reader.thread()?;
+    reader.take("`active` or `ended`", |word| match word {
+        "active" | "running" => Some(Predicate::Active(thread, true)),
+        "ended" => Some(Predicate::Active(thread, false)),
+        _ => None,
+    })
+}
+
+fn axis(reader: &mut StatementReader<'_>) -> Result<Predicate, Mistake> {
+    reader.advance();
+    let axis = reader.axis()?;
+    for (word, is_enabled) in [("enabled", true), ("disabled", false)] {
+        if reader.accept(word) {
+            return Ok(Predicate::Enabled(axis, is_enabled));
+        }
+    }
+    let what = "`position`, `dest`, `velocity`, `output`, `load`, `enabled` or `disabled`";
+    let (name, kind) = reader.take(what, |word| OF_AXIS.iter().find(|(name, _)| *name == word).copied())?;
+    let item = Item::new(&format!("{kind}{axis}")).expect("every axis has it");
+    compared(reader, Subject::Item(item, format!("axis {axis} {name}").into()))
+}
+
+/// The form of an element is that of the value it is compared with.
+fn persist(reader: &mut StatementReader<'_>) -> Result<Predicate, Mistake> {
+    reader.advance();
+    let index = reader.persist()?;
+    let relation = reader.relation()?;
+    let last_double = kmotiondef::limits::N_USER_DATA_VARS - 2;
+    let what = "an integer, a float such as f:1.25, or a double such as d:1.25";
+    let (stored, number) = reader.take(what, |word| match word.split_once(':') {
+        Some(("f", float)) => Some((Stored::Single, f64::from(number(float)? as f32))),
+        Some(("d", double)) if index <= last_double => Some((Stored::Double, number(double)?)),
+        Some(_) => None,
+        None => Some((Stored::Whole, f64::from(integer(word)?))),
+    })?;
+    let tolerance = reader.tolerance()?;
+    Ok(Predicate::Value { subject: Subject::Persist(index, stored), relation, number, tolerance })
+}
+
+/// A relation, a number, and perhaps how far an equal value may be from it.
+fn compared(reader: &mut StatementReader<'_>, subject: Subject) -> Result<Predicate, Mistake> {
+    let relation = reader.relation()?;
+    let number = reader.take("a number", |word| number(word).or_else(|| integer(word).map(f64::from)))?;
+    let tolerance = reader.tolerance()?;
+    Ok(Predicate::Value { subject, relation, number, tolerance })
+}

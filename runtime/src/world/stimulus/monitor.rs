@@ -1,0 +1,156 @@
+//! Watches expectations that hold over a time: `within …`, `always …`, `never …`.
+//!
+//! They are looked at in every tick, before the servo acts. What is not as it should be is told once for each
+//! statement, at the first tick in which it was seen.
+
+use kmotiondef::Cycles;
+use vm::firmware::TickContext;
+
+use super::expectation::Look;
+use super::plans::Due;
+use super::player::Player;
+use super::{Action, Condition, Expectation, Trigger};
+use crate::out::EventKind;
+use crate::world::Stage;
+use crate::world::trace::View;
+
+/// What is known of a statement so far.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Progress {
+    /// When it was due last. At one instant it happens once, so that rules which make each other happen do not
+    /// multiply.
+    pub(super) last_due: Option<Cycles>,
+    /// Whether the text it expects was printed: since the condition, where there is one.
+    pub(super) said: bool,
+    /// Whether it has done or checked something.
+    pub(super) happened: bool,
+    /// Whether it was told that something is not as expected.
+    told: bool,
+    /// When the condition happened after which something has to come.
+    since: Option<Cycles>,
+}
+
+impl Player {
+    /// A line has come: which expectations have their text, of the statements that were there.
+    pub(super) fn note_text(&mut self, line: &str, at: Cycles, known: usize) {
+        for (rule, progress) in self.rules.iter().zip(&mut self.progress).take(known) {
+            let Action::Expect(expectation) = &rule.action else { continue };
+            let is_in_time = match &rule.trigger {
+                Trigger::Within { limit, .. } => {
+                    progress.since.is_some_and(|since| at > since && at <= since + *limit)
+                }
+                _ => true,
+            };
+            progress.said |= is_in_time && expectation.printed().is_some_and(|text| line.contains(text));
+        }
+    }
+
+    /// Something has happened: what has to come within a time is waited for from now on.
+    pub(super) fn begin_waiting(&mut self, at: Cycles, fits: &impl Fn(&Condition) -> bool) {
+        for index in 0..self.rules.len() {
+            let Trigger::Within { limit, condition } = &self.rules[index].trigger else { continue };
+            if !fits(condition) || self.progress[index].since.is_some() {
+                continue;
+            }
+            let deadline = at + *limit;
+            let progress = &mut self.progress[index];
+            (progress.since, progress.said) = (Some(at), false);
+            self.plans.add(deadline, Due::Check);
+        }
+    }
+
+    /// Whether something is watched in every tick.
+    pub(crate) fn is_watching(&self) -> bool {
+        self.rules.iter().zip(&self.progress).any(|(rule, progress)| match &rule.trigger {
+            Trigger::Always { .. } => !progress.told,
+            Trigger::Within { .. } => progress.since.is_some(),
+            Trigger::At(_) | Trigger::Every { .. } | Trigger::When { .. } | Trigger::End => false,
+        })
+    }
+
+    /// Looks at all that is watched.
+    pub(super) fn watch(&mut self, stage: &mut Stage<'_>, context: &TickContext<'_>) {
+        for index in 0..self.rules.len() {
+            match &self.rules[index].trigger {
+                Trigger::Always { while_met } => {
+                    let is_watched =
+                        while_met.as_ref().is_none_or(|met| self.look(stage, context, index, met).0);
+                    if is_watched && !self.progress[index].told {
+                        self.check(stage, context, index);
+                    }
+                }
+                Trigger::Within { .. } => self.watch_deadline(stage, context, index),
+                Trigger::At(_) | Trigger::Every { .. } | Trigger::When { .. } | Trigger::End => {}
+            }
+        }
+    }
+
+    /// Whether what has to come within a time has come, or the time is over.
+    fn watch_deadline(&mut self, stage: &mut Stage<'_>, context: &TickContext<'_>, index: usize) {
+        let Trigger::Within { limit, .. } = self.rules[index].trigger else { return };
+        let Action::Expect(expectation) = &self.rules[index].action else { return };
+        let Some(since) = self.progress[index].since else { return };
+        if self.look(stage, context, index, expectation).0 {
+            self.progress[index].happened = true;
+            self.progress[index].since = None;
+        } else if context.now >= since + limit {
+            self.check(stage, context, index);
+            self.progress[index].since = None;
+        }
+    }
+
+    /// Whether something is so that belongs to a statement, and what was and should be.
+    fn look(
+        &self,
+        stage: &Stage<'_>,
+        context: &TickContext<'_>,
+        index: usize,
+        expectation: &Expectation,
+    ) -> (bool, String) {
+        let view = View::new(stage.machine, stage.io, context.now, context.memory);
+        let look = Look { view, threads: context.threads.active(), said: self.progress[index].said };
+        let seen = expectation.look(&look);
+        (seen.is_met, seen.text)
+    }
+
+    /// Tells what is not as expected.
+    pub(super) fn check(&mut self, stage: &mut Stage<'_>, context: &TickContext<'_>, index: usize) {
+        let rule = &self.rules[index];
+        let Action::Expect(expectation) = &rule.action else { return };
+        let (is_met, text) = self.look(stage, context, index, expectation);
+        if !is_met {
+            let (place, at) = (&rule.place, seconds(context.now));
+            let within = match (&rule.trigger, self.progress[index].since) {
+                (Trigger::Within { limit, condition }, Some(since)) => {
+                    format!(", within {} s of {condition} at {} s", seconds(*limit), seconds(since))
+                }
+                _ => String::new(),
+            };
+            let text = format!("{place}: at {at} s {text}{within}");
+            stage.out.tell(context.now, EventKind::Unmet(text));
+            self.progress[index].told = true;
+        }
+        self.progress[index].happened = true;
+    }
+
+    /// The run is over: what is watched is looked at once more, and what has not come is told.
+    pub(super) fn finish_watching(&mut self, stage: &mut Stage<'_>, context: &TickContext<'_>) {
+        self.watch(stage, context);
+        for index in 0..self.rules.len() {
+            let Trigger::Within { condition, .. } = &self.rules[index].trigger else { continue };
+            if self.progress[index].since.is_some() {
+                self.check(stage, context, index);
+            } else if !self.progress[index].happened {
+                let place = &self.rules[index].place;
+                let text = format!("{place}: {condition} never happened, so nothing was checked");
+                stage.out.tell(context.now, EventKind::Unmet(text));
+                self.progress[index].happened = true;
+            }
+        }
+    }
+}
+
+/// Seconds as short as they are exact to the nanosecond.
+fn seconds(time: Cycles) -> f64 {
+    time.get() as f64 / Cycles::PER_SECOND.get() as f64
+}

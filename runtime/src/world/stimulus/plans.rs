@@ -1,0 +1,157 @@
+//! What is planned, and what is under way: due statements, pulses that end, courses of analog inputs, turning encoders.
+
+use std::collections::BTreeMap;
+
+use kmotiondef::structs::Chan;
+use kmotiondef::{AxisId, Bit, Cycles};
+use vm::firmware::TickContext;
+
+use super::wave::Wave;
+use crate::io::kanalog::{ADC_CHANNELS, conversion};
+use crate::views::Typed;
+use crate::world::Stage;
+
+/// The most that may be planned at a time.
+pub const MOST_PLANNED: usize = 100_000;
+
+/// What is due at an instant.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Due {
+    /// A rule.
+    Rule(usize),
+    /// A pulse ends: the level before it.
+    Level(Bit, bool),
+    /// The time is over within which something had to come.
+    Check,
+}
+
+/// An encoder on its way.
+#[derive(Clone, Copy, Debug)]
+struct Turning {
+    axis: AxisId,
+    counts: f64,
+    begun: Cycles,
+    over: Cycles,
+    /// Counts already turned.
+    turned: f64,
+}
+
+/// All that goes on by itself.
+#[derive(Clone, Debug)]
+pub(crate) struct Plans {
+    /// What is due, by time and then in the order it became so.
+    due: BTreeMap<(Cycles, u64), Due>,
+    count: u64,
+    waves: [Option<(Wave, Cycles)>; ADC_CHANNELS],
+    turning: Vec<Turning>,
+    /// The analog value each input was last given.
+    converted: [i32; ADC_CHANNELS],
+}
+
+impl Default for Plans {
+    fn default() -> Self {
+        Self {
+            due: BTreeMap::new(),
+            count: 0,
+            waves: [None; ADC_CHANNELS],
+            turning: Vec::new(),
+            converted: [-1; ADC_CHANNELS],
+        }
+    }
+}
+
+impl Plans {
+    /// Something is due at an instant.
+    pub(super) fn add(&mut self, at: Cycles, due: Due) {
+        self.due.insert((at, self.count), due);
+        self.count += 1;
+    }
+
+    /// A bit goes back to a level.
+    pub(crate) fn level(&mut self, at: Cycles, bit: Bit, level: bool) {
+        self.add(at, Due::Level(bit, level));
+    }
+
+    /// An analog input begins a course.
+    pub(crate) fn begin_wave(&mut self, channel: usize, wave: Wave, now: Cycles) {
+        self.waves[channel] = Some((wave, now));
+    }
+
+    /// An encoder begins to turn.
+    pub(crate) fn begin_turn(&mut self, axis: AxisId, counts: f64, over: Cycles, now: Cycles) {
+        self.turning.push(Turning { axis, counts, begun: now, over, turned: 0.0 });
+    }
+
+    /// Leaves out what is farthest in the future if too much is planned; whether it is.
+    pub(super) fn limit(&mut self) -> bool {
+        let is_too_much = self.due.len() > MOST_PLANNED;
+        while self.due.len() > MOST_PLANNED {
+            self.due.pop_last();
+        }
+        is_too_much
+    }
+
+    /// All that is due some time.
+    pub(super) fn all(&self) -> impl Iterator<Item = Due> {
+        self.due.values().copied()
+    }
+
+    /// The same, which is due no more.
+    pub(super) fn take_all(&mut self) -> impl Iterator<Item = Due> + use<> {
+        std::mem::take(&mut self.due).into_values()
+    }
+
+    /// What is due now, the first of it.
+    pub(super) fn take(&mut self, now: Cycles) -> Option<Due> {
+        let entry = self.due.first_entry()?;
+        (entry.key().0 <= now).then(|| entry.remove())
+    }
+
+    /// Whether an encoder turns.
+    pub(super) fn is_turning(&self) -> bool {
+        !self.turning.is_empty()
+    }
+
+    /// How many of the ticks behind the one that began at `now` have nothing to do.
+    pub(super) fn quiet_ticks(&self, now: Cycles) -> u64 {
+        let moves = self.waves.iter().flatten().any(|(wave, begun)| !wave.is_over(now - *begun));
+        if moves || self.is_turning() {
+            return 0;
+        }
+        let Some((&(at, _), _)) = self.due.first_key_value() else { return u64::MAX };
+        let tick = Cycles::PER_TICK.get();
+        let first = at.get().saturating_add(tick - 1) / tick;
+        u64::try_from(first - now.get() / tick - 1).unwrap_or(0)
+    }
+
+    /// Encoders turn, and analog inputs take their course.
+    pub(super) fn run(&mut self, stage: &mut Stage<'_>, context: &TickContext<'_>) {
+        self.turn_encoders(stage, context);
+        self.run_waves(stage, context);
+    }
+
+    fn turn_encoders(&mut self, stage: &mut Stage<'_>, context: &TickContext<'_>) {
+        for turning in &mut self.turning {
+            let elapsed = context.now - turning.begun;
+            let part =
+                if elapsed < turning.over { elapsed.get() as f64 / turning.over.get() as f64 } else { 1.0 };
+            let step = turning.counts * part - turning.turned;
+            turning.turned += step;
+            let gain = f64::from(context.memory.axis(turning.axis, Chan::INPUT_GAIN0));
+            stage.machine.loads.push(turning.axis, step * gain);
+        }
+        self.turning.retain(|turning| context.now - turning.begun < turning.over);
+    }
+
+    fn run_waves(&mut self, stage: &mut Stage<'_>, context: &TickContext<'_>) {
+        for channel in 0..ADC_CHANNELS {
+            let Some((wave, begun)) = &self.waves[channel] else { continue };
+            let load = |axis: AxisId| stage.machine.loads[axis].load;
+            let value = conversion(wave.value(context.now - *begun, load));
+            if self.converted[channel] != value {
+                self.converted[channel] = value;
+                stage.io.kanalog.drive(channel, value);
+            }
+        }
+    }
+}

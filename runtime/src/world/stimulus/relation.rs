@@ -1,0 +1,44 @@
+//! How two numbers are compared.
+
+/// A relation between two numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Relation {
+    /// Equal, or as near as the tolerance.
+    Equal,
+    /// Not so.
+    Different,
+    /// Below it.
+    Less,
+    /// Above it.
+    Greater,
+    /// Not above it.
+    LessOrEqual,
+    /// Not below it.
+    GreaterOrEqual,
+}
+
+impl Relation {
+    /// How it is written.
+    pub(super) const fn sign(self) -> &'static str {
+        match self {
+            Self::Equal => "=",
+            Self::Different => "!=",
+            Self::Less => "<",
+            Self::Greater => ">",
+            Self::LessOrEqual => "<=",
+            Self::GreaterOrEqual => ">=",
+        }
+    }
+
+    /// Whether a value is so.
+    pub(super) fn holds(self, value: f64, number: f64, tolerance: f64) -> bool {
+        match self {
+            Self::Equal => (value - number).abs() <= tolerance,
+            Self::Different => !Self::Equal.holds(value, number, tolerance),
+            Self::Less => value < number,
+            Self::Greater => value > number,
+            Self::LessOrEqual => value <= number,
+            Self::GreaterOrEqual => value >= number,
+        }
+    }
+}

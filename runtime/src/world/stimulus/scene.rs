@@ -1,0 +1,18 @@
+//! What an action reaches.
+
+use vm::firmware::TickContext;
+
+use super::plans::Plans;
+use crate::world::Stage;
+
+/// The board, what is planned, and the statement that acts.
+#[derive(Debug)]
+pub(crate) struct Scene<'a, 'b, 'c> {
+    pub(crate) plans: &'a mut Plans,
+    pub(crate) stage: &'a mut Stage<'b>,
+    pub(crate) context: &'a mut TickContext<'c>,
+    /// Where the statement stands, for messages.
+    pub(crate) place: &'a str,
+    /// Whether its expectation is to be checked.
+    pub(crate) is_checked: bool,
+}

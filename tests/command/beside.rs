@@ -1,0 +1,83 @@
+//! What stands beside a program: its machine file, its stimulus, the options of its first line, the project file.
+
+use std::fs;
+
+use harness::{Scratch, cc67};
+
+/// Prints whether the switch of the machine file is closed, and an element that options set.
+const PROGRAM: &str = "// cc67: run --set persist.5=7 --stim \"persist 6 = 8\" also 2:other.c
+#include \"KMotionDef.h\"
+main()
+{
+    Delay_sec(0.01);
+    printf(\"%d %d %d\\n\", ReadBit(136), persist.UserData[5], persist.UserData[6]);
+}
+";
+const OTHER: &str = "#include \"KMotionDef.h\"\nmain() { printf(\"other\\n\"); }";
+const MACHINE: &str = "[inputs]\nidle_high = [136]\nhints = false\n";
+
+fn scratch(name: &str) -> Scratch {
+    let scratch = Scratch::new(name);
+    let folder = scratch.path().join("sub");
+    fs::create_dir_all(&folder).expect("a folder");
+    for (name, text) in [("prog.c", PROGRAM), ("other.c", OTHER), ("prog.toml", MACHINE)] {
+        fs::write(folder.join(name), text).expect("a file");
+    }
+    scratch
+}
+
+#[test]
+fn a_run_uses_what_stands_beside_the_program_and_says_so() {
+    let scratch = scratch("beside");
+    let said = "cc67: sub/prog.c is run with sub/prog.toml; its first line: --set persist.5=7 --stim \"persist 6 = 8\" also 2:other.c (--no-sidecar: without)\n";
+    for (options, stdout, stderr) in [
+        (&[][..], "other\n1 7 8\n", said),
+        (&["--set", "persist.5=9"], "other\n1 9 8\n", said),
+        (&["--no-sidecar", "--machine", "sub/prog.toml"], "1 0 0\n", ""),
+    ] {
+        let output = cc67(&scratch, [&["run", "sub/prog.c"], options].concat());
+        assert_eq!((output.stdout.as_str(), output.code), (stdout, 0), "{}", output.stderr);
+        assert_eq!(output.stderr, stderr);
+    }
+}
+
+#[test]
+fn a_project_file_has_defaults_for_its_programs() {
+    let scratch = scratch("project");
+    let folder = scratch.path().join("sub");
+    fs::write(
+        folder.join("init.c"),
+        "#include \"KMotionDef.h\"\nmain() { Delay_sec(1); printf(\"init\\n\"); }",
+    )
+    .expect("a file");
+    fs::write(folder.join("plain.c"), OTHER).expect("a file");
+    fs::write(
+        scratch.path().join("cc67.toml"),
+        "first = \"sub/init.c\"\n[run]\ntime = true\n[test]\njobs = 1\n",
+    )
+    .expect("a file");
+    let output = cc67(&scratch, ["run", "sub/plain.c"]);
+    let shown: Vec<_> =
+        output.stdout.lines().filter_map(|line| line.split_once(' ')).map(|(_, text)| text).collect();
+    assert_eq!((shown, output.code), (vec!["init", "other"], 0), "{}{}", output.stdout, output.stderr);
+    assert!(output.stderr.contains("cc67.toml"), "{}", output.stderr);
+    let output = cc67(&scratch, ["test", "--bless", "sub/plain.c"]);
+    assert_eq!(output.code, 0, "{}{}", output.stdout, output.stderr);
+    assert_eq!(fs::read_to_string(folder.join("plain.expected")).expect("a golden"), "init\nother\n");
+
+    fs::write(scratch.path().join("cc67.toml"), "[run]\nfro = 5\n").expect("a file");
+    let output = cc67(&scratch, ["run", "sub/plain.c"]);
+    assert_eq!(output.code, 2, "{}", output.stderr);
+    assert!(output.stderr.contains("cc67.toml") && output.stderr.contains("--fro"), "{}", output.stderr);
+}
+
+#[test]
+fn first_programs_run_to_their_end_before_the_others_start() {
+    let scratch = Scratch::new("first");
+    for (name, text) in [("a", "Delay_sec(0.2)"), ("b", "Delay_sec(0.1)"), ("c", ""), ("d", "")] {
+        let text = format!("#include \"KMotionDef.h\"\nmain() {{ {text}; printf(\"{name}\\n\"); }}");
+        fs::write(scratch.path().join(format!("{name}.c")), text).expect("a file");
+    }
+    let output = cc67(&scratch, ["run", "--first", "a.c", "--first", "b.c", "c.c", "d.c"]);
+    assert_eq!((output.stdout.as_str(), output.stderr.as_str(), output.code), ("a\nb\nc\nd\n", "", 0));
+}

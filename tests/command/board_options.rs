@@ -1,0 +1,66 @@
+//! An option of a board means the same to every command that has a board.
+
+use harness::{Scratch, cc67, cc67_with_input};
+
+/// Prints what options decide: an element of UserData, a virtual bit.
+const PROGRAM: &str = "\
+#include \"KMotionDef.h\"
+main()
+{
+  Delay_sec(0.02);
+  printf(\"%d %d\\n\", persist.UserData[5], ReadBit(48));
+}
+";
+
+/// What is asked for, and what the program then prints.
+const CASES: &[(&[&str], &str)] = &[
+    (&[], "0 0\n"),
+    (&["--set", "persist.5=7"], "7 0\n"),
+    (&["--mcode", "M101:5"], "101 0\n"),
+    (&["--stim", "t=0.01 bit 48=1"], "0 1\n"),
+    (&["--stim", "t=0.01 bit 48=1", "--set", "persist.5=7", "--no-shortcuts"], "7 1\n"),
+    (&["--machine", "a.machine"], "0 1\n"),
+];
+
+fn scratch(name: &str, arguments: &[&str], expect: &str) -> Scratch {
+    let scratch = Scratch::new(name);
+    let test = format!("// cc67: run {}\n{PROGRAM}", arguments.join(" "));
+    // A test has words without spaces.
+    scratch.write("world.stim", "t=0.01 bit 48=1\n");
+    scratch.write("a.c", PROGRAM).write("t.c", test.replace("t=0.01 bit 48=1", "world.stim"));
+    scratch.write("t.expected", expect);
+    scratch.write("a.machine", "[[event]]\nat = 0.01\nset_bit = { 48 = 1 }\n");
+    scratch
+}
+
+#[test]
+fn run_console_and_test_understand_the_same_options() {
+    for (index, (arguments, expect)) in CASES.iter().enumerate() {
+        let scratch = scratch(&format!("board-options-{index}"), arguments, expect);
+        let run = cc67(&scratch, [&["run", "a.c"], *arguments].concat());
+        let console = cc67_with_input(&scratch, [&["console", "a.c"], *arguments].concat(), "wait 0.1\n");
+        for (command, output) in [("run", run), ("console", console)] {
+            let shown = (output.code, output.stdout.as_str());
+            assert_eq!(shown, (0, *expect), "{command} {arguments:?}: {}", output.stderr);
+        }
+        let test = cc67(&scratch, ["test", "t.c"]);
+        assert_eq!(test.code, 0, "{arguments:?}: {}{}", test.stdout, test.stderr);
+    }
+}
+
+#[test]
+fn characters_of_the_serial_port_come_from_a_file_in_every_command() {
+    let scratch = Scratch::new("board-options-uart");
+    scratch.write(
+        "a.c",
+        "#include \"KMotionDef.h\"\nmain()\n{\n  SetBitDirection(45, 1);\n  FPGA(KAN_TRIG_REG) = 2;\n  \
+         FPGA(RS232_BAUD_REG) = RS232_BAUD_115200;\n  while (!(FPGA(RS232_STATUS) & RS232_DATA_READY)) ;\n  \
+         printf(\"%c\\n\", FPGA(RS232_DATA));\n}\n",
+    );
+    scratch.write("in", "x");
+    for (command, input) in [("run", ""), ("console", "wait 0.1\n")] {
+        let arguments = [command, "a.c", "--uart-input", "in", "--for", "0.1"];
+        let output = cc67_with_input(&scratch, arguments, input);
+        assert_eq!(output.stdout, "x\n", "{command}: {}", output.stderr);
+    }
+}

@@ -1,0 +1,8 @@
+//@ prints: 0
+//@ says: thread 1 at adc_channel_9.c:7 in `main`: ReadADC(9): there are channels 0 to 7
+#include "KMotionDef.h"
+
+main()
+{
+    printf("%d\n", ReadADC(9));
+}

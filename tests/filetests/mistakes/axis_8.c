@@ -1,0 +1,8 @@
+//@ says: thread 1 at axis_8.c:7 in `main`: EnableAxis(8, …): there are axes 0 to 7
+#include "KMotionDef.h"
+
+main()
+{
+    int axis = 8;
+    EnableAxis(axis);
+}

@@ -1,0 +1,16 @@
+//@ args: --machine parts/motor.toml --for 1
+//@ prints: Following Error Disabled Axis:0
+//@ says: axis 0 runs away: its output drives it further from Dest; change the sign of OutputGain or of InputGain0
+#include "KMotionDef.h"
+
+main()
+{
+    ch0->InputMode = ENCODER_MODE;
+    ch0->OutputMode = DAC_SERVO_MODE;
+    ch0->P = 1;
+    ch0->OutputGain = -1;
+    ch0->MaxFollowingError = 500;
+    EnableAxisDest(0, 0);
+    MoveAtVel(0, 5, 100);
+    Delay_sec(0.5);
+}

@@ -1,0 +1,7 @@
+//@ says: thread 1 at bit_number_too_high.c:6 in `main`: SetBit(3000): there are bits 0 to 2047
+#include "KMotionDef.h"
+
+main()
+{
+    SetBit(3000);
+}

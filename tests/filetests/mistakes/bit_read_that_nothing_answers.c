@@ -1,0 +1,7 @@
+//@ says: thread 1 at bit_read_that_nothing_answers.c:6 in `main`: ReadBit(190): nothing answers bit 190: it reads 0 and cannot be written
+#include "KMotionDef.h"
+
+main()
+{
+    if (ReadBit(190)) printf("on\n");
+}

@@ -1,0 +1,8 @@
+//@ says: a line is written, and no file is open for writing on the PC
+#include "KMotionDef.h"
+
+main()
+{
+    FILE *f = 0;
+    fprintf(f, "line\n");
+}

@@ -1,0 +1,7 @@
+//@ says: thread 1 at move_on_a_disabled_axis.c:6 in `main`: Move: axis 0 is disabled, nothing moves
+#include "KMotionDef.h"
+
+main()
+{
+    Move(0, 1000);
+}

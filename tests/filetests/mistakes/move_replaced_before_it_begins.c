@@ -1,0 +1,15 @@
+//@ says: thread 1 at move_replaced_before_it_begins.c:13 in `main`: Move: axis 0 goes to 500 at once, the move to 1000 is replaced before it begins: wait with `while (!CheckDone(0));` in between
+#include "KMotionDef.h"
+
+main()
+{
+    ch0->InputMode = NO_INPUT_MODE;
+    ch0->OutputMode = STEP_DIR_MODE;
+    ch0->Vel = 10000;
+    ch0->Accel = 100000;
+    ch0->Jerk = 1e6;
+    EnableAxisDest(0, 0);
+    Move(0, 1000);
+    Move(0, 500);
+    while (!CheckDone(0)) ;
+}

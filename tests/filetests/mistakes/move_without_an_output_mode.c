@@ -1,0 +1,10 @@
+//@ says: thread 1 at move_without_an_output_mode.c:8 in `main`: Move: axis 0 has no OutputMode, so its Dest moves and no motor does (is a program that sets the axes up to run first?)
+#include "KMotionDef.h"
+
+main()
+{
+    ch1->OutputMode = STEP_DIR_MODE;
+    EnableAxis(0);
+    Move(0, 100);
+    while (!CheckDone(0)) ;
+}

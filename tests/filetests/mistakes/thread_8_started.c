@@ -1,0 +1,8 @@
+//@ says: thread 1 at thread_8_started.c:7 in `main`: StartThread(8): there are threads 1 to 7
+#include "KMotionDef.h"
+
+main()
+{
+    int thread = 8;
+    StartThread(thread);
+}

@@ -1,0 +1,8 @@
+//@ says: thread 1 at virtual_bit_range_missed.c:7 in `main`: SetBit(188): nothing answers bit 188: it reads 0 and cannot be written
+#include "KMotionDef.h"
+
+main()
+{
+    SetBitDirection(47, 1);
+    SetBit(48 + 140);
+}

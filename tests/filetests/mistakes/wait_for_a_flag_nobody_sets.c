@@ -1,0 +1,19 @@
+//@ args: --for 0.5
+//@ says: warning[endless-wait]: this loop waits for `ready`, which nothing in the program changes
+//@ says:    ┌─ wait_for_a_flag_nobody_sets.c:17:12
+//@ says:    │
+//@ says: 17 │     while (!ready)
+//@ says:    │            ^^^^^^ the same in every turn
+//@ says:    │
+//@ says:    = help: a variable belongs to its own program: threads share `persist.UserData` and virtual bits
+//@ says: at the end, after 0.500 s of board time:
+//@ says:   thread 1 at wait_for_a_flag_nobody_sets.c:18 in `main` waits for `ready`, which nobody writes: it is 0 (`!ready`), since 0.000 s
+#include "KMotionDef.h"
+
+int ready;
+
+main()
+{
+    while (!ready)
+        WaitNextTimeSlice();
+}

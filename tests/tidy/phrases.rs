@@ -1,0 +1,136 @@
+//! No text of the repository has a phrase of the list of worn phrases, `worn-phrases.tsv`.
+//!
+//! Checked are the pages; the sources follow when their messages and comments have been edited. Blocks of code and what
+//! is between backquotes is left out.
+
+use std::fs;
+
+use super::{files, relative, root};
+
+/// Files and folders whose texts are still to be edited.
+const TO_DO: &[&str] = &[
+    // Made from tables in the sources.
+    "cc67/book/src/functions.md",
+    "cc67/book/src/limits.md",
+    "cc67/book/src/variables.md",
+];
+
+/// A phrase of the list.
+struct Phrase {
+    /// For each word what it may be; empty for any.
+    words: Vec<Vec<String>>,
+    /// What to write instead.
+    usual: String,
+    /// After one of these words it is fine.
+    after: Vec<String>,
+    /// Before one of these words it is fine.
+    before: Vec<String>,
+}
+
+impl Phrase {
+    fn parse(line: &str) -> Self {
+        let mut columns = line.split('\t');
+        let mut next = || columns.next().unwrap_or_default();
+        let list = |text: &str| text.split_whitespace().map(str::to_owned).collect();
+        let either = |word: &str| match word {
+            "*" => Vec::new(),
+            word => word.split('|').map(str::to_owned).collect(),
+        };
+        Self {
+            words: next().split_whitespace().map(either).collect(),
+            usual: next().to_owned(),
+            after: list(next()),
+            before: list(next()),
+        }
+    }
+
+    /// Whether it begins at a place of a text.
+    fn is_at(&self, text: &[Word], at: usize) -> bool {
+        let Some(found) = text.get(at..at + self.words.len()) else { return false };
+        let has = |list: &[String], word: Option<&Word>| word.is_some_and(|word| list.contains(&word.text));
+        found.iter().zip(&self.words).all(|(word, either)| either.is_empty() || either.contains(&word.text))
+            && !has(&self.after, at.checked_sub(1).and_then(|before| text.get(before)))
+            && !has(&self.before, text.get(at + self.words.len()))
+    }
+}
+
+/// A word or a mark of a text.
+struct Word {
+    text: String,
+    line: usize,
+}
+
+/// The words of a page in lower case, without code; marks are words, and a heading begins with `#`.
+fn words(page: &str) -> Vec<Word> {
+    let mut words = Vec::new();
+    let mut is_code = false;
+    for (index, line) in page.lines().enumerate() {
+        let line_number = index + 1;
+        if line.trim_start().starts_with("```") {
+            is_code = !is_code;
+        }
+        if is_code || line.starts_with("    ") {
+            continue;
+        }
+        if line.starts_with('#') {
+            words.push(Word { text: "#".to_owned(), line: line_number });
+        }
+        for (part, text) in line.split('`').enumerate() {
+            if part % 2 == 1 {
+                words.push(Word { text: "`".to_owned(), line: line_number });
+                continue;
+            }
+            let mut rest = text.trim_start_matches('#');
+            while let Some(first) = rest.chars().next() {
+                let is_letter = |c: char| c.is_alphanumeric() || c == '\'' || c == '-';
+                let end = rest.find(|c| !is_letter(c)).unwrap_or(rest.len()).max(first.len_utf8());
+                let (word, after) = rest.split_at(end);
+                if !word.trim().is_empty() {
+                    words.push(Word { text: word.to_lowercase(), line: line_number });
+                }
+                rest = after;
+            }
+        }
+    }
+    words
+}
+
+fn phrases() -> Vec<Phrase> {
+    let list = fs::read_to_string(root().join("tests/tidy/worn-phrases.tsv")).expect("the list exists");
+    list.lines().filter(|line| line.contains('\t')).map(Phrase::parse).collect()
+}
+
+#[test]
+fn no_page_has_a_worn_phrase() {
+    let phrases = phrases();
+    assert!(phrases.len() >= 40, "only {} phrases", phrases.len());
+    let mut found = Vec::new();
+    for file in files(root(), "md") {
+        let path = relative(&file);
+        if TO_DO.iter().any(|folder| path.starts_with(folder)) {
+            continue;
+        }
+        let words = words(&fs::read_to_string(&file).expect("pages are UTF-8"));
+        for (at, word) in words.iter().enumerate() {
+            for phrase in phrases.iter().filter(|phrase| phrase.is_at(&words, at)) {
+                let text: Vec<_> =
+                    words[at..].iter().take(phrase.words.len()).map(|word| word.text.as_str()).collect();
+                found.push(format!("{path}:{}: \"{}\": write {}", word.line, text.join(" "), phrase.usual));
+            }
+        }
+    }
+    assert!(found.is_empty(), "{} worn phrases:\n{}", found.len(), found.join("\n"));
+}
+
+#[test]
+fn phrases_are_found_across_lines_and_not_in_code() {
+    let count = |text: &str| {
+        let (phrases, words) = (phrases(), words(text));
+        (0..words.len()).filter(|at| phrases.iter().any(|phrase| phrase.is_at(&words, *at))).count()
+    };
+    assert_eq!(count("It is told\nof once."), 2);
+    assert_eq!(count("`behind` and\n```text\nbehind\n```\n"), 0);
+    assert_eq!(count("Leave it behind"), 1);
+    assert_eq!(count("He left behind"), 0);
+    assert_eq!(count("## What stands"), 2);
+}

@@ -1,0 +1,26 @@
+//! Which registers a call uses, by the convention that the board's firmware and its compilers follow.
+
+use crate::Reg;
+
+/// Registers of the arguments, in order; a pair takes the register and the next.
+pub const ARGUMENTS: [Reg; 10] = [
+    Reg::a(4),
+    Reg::b(4),
+    Reg::a(6),
+    Reg::b(6),
+    Reg::a(8),
+    Reg::b(8),
+    Reg::a(10),
+    Reg::b(10),
+    Reg::a(12),
+    Reg::b(12),
+];
+
+/// Where results are; of a pair the even register.
+pub const RESULT: Reg = Reg::a(4);
+
+/// The return address.
+pub const LINK: Reg = Reg::b(3);
+
+/// The stack pointer.
+pub const STACK: Reg = Reg::b(15);

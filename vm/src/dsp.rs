@@ -1,0 +1,39 @@
+//! The third engine: executes the real processor's packets.
+//!
+//! A [`Core`] is one processor context: registers, results in flight, branches on their way.
+//! It meets memory through [`Memory`] and knows no thread, firmware or board.
+//!
+//! The model is that of the specification (`c67x.md` 2.6): all instructions of a packet read
+//! their sources before any of them writes; a result of stage Ek lands k cycles after the
+//! issue; until then the old value is read. What differs from a plain queue is only speed:
+//! results in flight wait in sixteen [`pipeline`] slots, one a cycle, and packets are decoded
+//! once ([`decode`]) and kept by address ([`cache`]).
+//!
+//! Invariants:
+//! - [`work`] is the one place that maps an instruction to what is executed, without a `_` arm.
+//! - A run depends on the words, the registers and the memory alone.
+
+mod alu;
+mod cache;
+mod core;
+mod decode;
+mod execute;
+mod float;
+mod idle;
+mod inspect;
+mod memory;
+mod pipeline;
+mod product;
+mod threads;
+mod view;
+mod work;
+
+#[cfg(test)]
+mod tests;
+
+pub use self::core::{Core, Halt};
+pub use self::decode::is_code;
+pub use self::inspect::listing;
+pub use self::memory::{Clock, Memory};
+pub use self::pipeline::State;
+pub use self::threads::{DspEngine, DspSnapshot};

@@ -1,0 +1,178 @@
+//! Decoded packets by address.
+//!
+//! Packets that follow each other in memory are decoded together and follow each other here, so that straight code
+//! needs no search. Pages of 4 KiB say which packet begins at each word, and which lines of 32 bytes hold words that
+//! were decoded: a store to such a line drops the packets of it and no others.
+
+use super::decode::{Micro, NoPacket, Packet, decode};
+use super::memory::Memory;
+
+/// Packets decoded at once.
+const RUN: usize = 64;
+/// Packets kept; with more of them, everything is forgotten.
+const MOST: usize = 1 << 20;
+/// Bytes of a page, of a line.
+const PAGE: u32 = 1 << PAGE_BITS;
+const PAGE_BITS: u32 = 12;
+const LINE: u32 = 32;
+/// Words of a page.
+const WORDS: usize = PAGE as usize / 4;
+/// Places for pages: as many as the two RAMs have.
+const PLACES: usize = 1 << 13;
+/// Bytes before a line in which a packet of it may begin: a packet has eight words at most.
+const BEFORE: u32 = 28;
+/// No packet begins there.
+const NONE: u32 = u32::MAX;
+
+/// What was decoded of a page.
+#[derive(Debug)]
+struct Page {
+    /// Its number: address / 4096.
+    number: u32,
+    /// Lines that hold decoded words, a bit each.
+    lines: u128,
+    /// The packet that begins at each word.
+    packets: [u32; WORDS],
+}
+
+/// Decoded packets of one context.
+#[derive(Debug)]
+pub(super) struct Cache {
+    packets: Vec<Packet>,
+    micros: Vec<Micro>,
+    pages: Box<[Option<Box<Page>>]>,
+}
+
+impl Default for Cache {
+    fn default() -> Self {
+        let pages = std::iter::repeat_with(|| None).take(PLACES).collect();
+        Self { packets: Vec::new(), micros: Vec::new(), pages }
+    }
+}
+
+/// A copy knows nothing yet: what is decoded follows from memory, and copies are made for snapshots.
+impl Clone for Cache {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
+/// The place of the page of an address: SDRAM and on-chip RAM have all of theirs.
+#[inline(always)]
+const fn place(at: u32) -> usize {
+    (at >> PAGE_BITS & 0xFFF | (at >> 31) << 12) as usize
+}
+
+#[inline(always)]
+const fn line_bit(at: u32) -> u128 {
+    1 << (at % PAGE / LINE)
+}
+
+impl Cache {
+    /// The packet with this index.
+    #[inline(always)]
+    pub(super) fn packet(&self, index: u32) -> &Packet {
+        &self.packets[index as usize]
+    }
+
+    /// The instructions of a packet.
+    #[inline(always)]
+    pub(super) fn micros<'a>(&'a self, packet: &'a Packet) -> &'a [Micro] {
+        if packet.count == 1 {
+            return std::slice::from_ref(&packet.lone);
+        }
+        let first = packet.first as usize;
+        &self.micros[first..first + usize::from(packet.count)]
+    }
+
+    /// The index of the packet at an address, decoded if need be.
+    #[inline(always)]
+    pub(super) fn find<M: Memory>(&mut self, at: u32, memory: &M) -> Result<u32, NoPacket> {
+        match self.known(at) {
+            Some(index) => Ok(index),
+            None => self.fill(at, memory),
+        }
+    }
+
+    #[inline(always)]
+    fn page(&self, at: u32) -> Option<&Page> {
+        self.pages[place(at)].as_deref().filter(|page| page.number == at >> PAGE_BITS)
+    }
+
+    #[inline(always)]
+    fn known(&self, at: u32) -> Option<u32> {
+        let index = self.page(at)?.packets[(at % PAGE / 4) as usize];
+        (index != NONE).then_some(index)
+    }
+
+    /// Decodes packets from `at` on until one is known or cannot be decoded.
+    #[cold]
+    fn fill<M: Memory>(&mut self, at: u32, memory: &M) -> Result<u32, NoPacket> {
+        if self.packets.len() >= MOST {
+            self.clear();
+        }
+        let start = self.packets.len();
+        let mut next = at;
+        while self.packets.len() < start + RUN && self.known(next).is_none() {
+            let packet = match decode(memory, next, &mut self.micros) {
+                Ok(packet) => packet,
+                Err(reason) if self.packets.len() == start => return Err(reason),
+                Err(_) => break,
+            };
+            self.note(next, packet.end);
+            next = packet.end;
+            if let Some(previous) = self.packets[start..].last_mut() {
+                previous.is_linked = !previous.is_idle;
+            }
+            self.packets.push(packet);
+        }
+        Ok(start as u32)
+    }
+
+    /// The next packet begins at `at`, and its words end before `end`.
+    fn note(&mut self, at: u32, end: u32) {
+        let index = self.packets.len() as u32;
+        self.page_mut(at).packets[(at % PAGE / 4) as usize] = index;
+        let mut word = at;
+        while word != end {
+            self.page_mut(word).lines |= line_bit(word);
+            word = word.wrapping_add(4);
+        }
+    }
+
+    fn page_mut(&mut self, at: u32) -> &mut Page {
+        let number = at >> PAGE_BITS;
+        let page = &mut self.pages[place(at)];
+        if page.as_ref().is_some_and(|page| page.number != number) {
+            // Only addresses outside both RAMs share places.
+            *page = None;
+        }
+        page.get_or_insert_with(|| Box::new(Page { number, lines: 0, packets: [NONE; WORDS] }))
+    }
+
+    /// Whether a store to `at` changes words that were decoded.
+    #[inline(always)]
+    pub(super) fn is_code(&self, at: u32) -> bool {
+        self.page(at).is_some_and(|page| page.lines & line_bit(at) != 0)
+    }
+
+    /// The line of `at` has changed: drops the packets that have words of it.
+    #[cold]
+    pub(super) fn drop_line(&mut self, at: u32) {
+        let line = at & !(LINE - 1);
+        for word in (line.wrapping_sub(BEFORE)..line.wrapping_add(LINE)).step_by(4) {
+            if let Some(index) = self.known(word) {
+                self.page_mut(word).packets[(word % PAGE / 4) as usize] = NONE;
+                if let Some(previous) = index.checked_sub(1) {
+                    self.packets[previous as usize].is_linked = false;
+                }
+            }
+        }
+        self.page_mut(line).lines &= !line_bit(line);
+    }
+
+    /// Forgets everything.
+    pub(super) fn clear(&mut self) {
+        *self = Self::default();
+    }
+}

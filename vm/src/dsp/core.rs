@@ -1,0 +1,336 @@
+//! One processor context: packet after packet, until something ends it.
+
+use super::cache::Cache;
+use super::decode::{NoPacket, STACK};
+use super::idle::{Arrival, Idle};
+use super::memory::{Clock, Memory};
+use super::pipeline::{Passed, State};
+use crate::trap::{Fault, TrapKind};
+
+/// Cycles after which code that never allows an interrupt is held to be endless: 1 ms.
+///
+/// The board loses ticks long before, and with them position.
+const LONGEST_SHADOW: i64 = 200_000;
+
+/// Why a core returned.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[must_use]
+pub enum Halt {
+    /// The cycles are used up, and an interrupt is possible here.
+    Preempted,
+    /// The next packet would be at this address, where the context has no code.
+    Left(u32),
+    /// A packet could not be executed.
+    Faulted(TrapKind),
+}
+
+/// Where a core stops when its cycles are over.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Border {
+    /// Where an interrupt is possible; none for long is a fault.
+    #[default]
+    Slice,
+    /// At the next packet.
+    Next,
+    /// Where an interrupt is possible, or at the first packet from this cycle on.
+    Interrupt(u64),
+}
+
+/// Registers, results in flight, decoded packets.
+#[derive(Clone, Debug, Default)]
+pub struct Core {
+    /// Registers and what is on its way to them.
+    pub state: State,
+    cache: Cache,
+    stack: Option<StackRange>,
+    lowest_stack: Option<u32>,
+    packets: u64,
+    border: Border,
+    idle: Idle,
+    skips: bool,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct StackRange {
+    limit: u32,
+    top: u32,
+}
+
+impl Core {
+    /// Stands before the packet at `pc`, all registers 0, interrupts possible.
+    #[must_use]
+    pub fn new(pc: u32) -> Self {
+        let mut core = Self::default();
+        core.state.pc = pc;
+        core
+    }
+
+    /// Watches B15: below `limit` is a fault; bytes are counted from `top` down.
+    pub const fn watch_stack(&mut self, limit: u32, top: u32) {
+        self.stack = Some(StackRange { limit, top });
+    }
+
+    /// The lowest B15 while it was watched.
+    #[must_use]
+    pub const fn lowest_stack(&self) -> Option<u32> {
+        self.lowest_stack
+    }
+
+    /// Packets executed.
+    #[must_use]
+    pub const fn packets(&self) -> u64 {
+        self.packets
+    }
+
+    /// Forgets decoded packets: memory has changed.
+    pub fn forget_code(&mut self) {
+        self.cache.clear();
+    }
+
+    /// Executes packets until no cycles are left and an interrupt is possible.
+    pub fn run<M: Memory>(&mut self, memory: &mut M) -> Halt {
+        self.border = Border::Slice;
+        self.idle.forget();
+        self.run_to_border(memory)
+    }
+
+    /// Whether loops that wait are run through in one step by [`run_until`](Self::run_until); nothing else changes.
+    pub const fn skip_waits(&mut self, whether: bool) {
+        self.skips = whether;
+    }
+
+    /// Cycles that were skipped.
+    #[must_use]
+    pub const fn skipped(&self) -> u64 {
+        self.idle.skipped
+    }
+
+    /// Executes packets up to the first that begins in cycle `until` or later.
+    pub fn run_until<M: Memory>(&mut self, memory: &mut M, until: u64) -> Halt {
+        self.border = Border::Next;
+        self.idle.forget();
+        self.state.clock.deadline = until;
+        self.run_to_border(memory)
+    }
+
+    /// As [`run_until`](Self::run_until), but no further than to where an interrupt is possible.
+    pub fn run_to_interrupt<M: Memory>(&mut self, memory: &mut M, until: u64) -> Halt {
+        self.border = Border::Interrupt(until);
+        self.idle.forget();
+        self.state.clock.deadline = self.state.clock.cycle;
+        self.run_to_border(memory)
+    }
+
+    fn run_to_border<M: Memory>(&mut self, memory: &mut M) -> Halt {
+        loop {
+            let index = match self.find(memory) {
+                Ok(index) => index,
+                Err(NoPacket::Outside) => return Halt::Left(self.state.pc),
+                Err(NoPacket::Fault(fault)) => return Halt::Faulted(fault.into()),
+            };
+            let from = self.state.pc;
+            if let Some(halt) = self.run_from(index, memory) {
+                return halt;
+            }
+            if self.state.pc <= from && self.skips {
+                self.went_back(memory);
+            }
+        }
+    }
+
+    /// Executes one packet, with all cycles it lasts.
+    ///
+    /// # Errors
+    /// Why it could not be executed, or where the context has no code.
+    pub fn step<M: Memory>(&mut self, memory: &mut M) -> Result<(), Halt> {
+        match self.find(memory) {
+            Ok(index) => self.packet(index, memory).map(drop).map_err(Halt::Faulted),
+            Err(NoPacket::Outside) => Err(Halt::Left(self.state.pc)),
+            Err(NoPacket::Fault(fault)) => Err(Halt::Faulted(fault.into())),
+        }
+    }
+
+    /// A branch has gone back: a loop that changes nothing is skipped up to the next border.
+    fn went_back<M: Memory>(&mut self, memory: &M) {
+        match self.idle.arrive(self.state.pc, self.state.clock.cycle) {
+            Arrival::Pass => {}
+            Arrival::Look => self.idle.look(self.state.picture(), self.packets, memory.touches()),
+            Arrival::Again => self.skip_turns(memory),
+        }
+    }
+
+    #[cold]
+    fn skip_turns<M: Memory>(&mut self, memory: &M) {
+        let picture = self.state.picture();
+        let ended = self.idle.end(&picture, self.packets, memory.touches(), |at| memory.fetch(at));
+        let (Some((period, packets)), true) = (ended, self.border == Border::Next) else { return };
+        let left = self.state.clock.left().max(0).cast_unsigned();
+        let turns = left / period;
+        // The slot of a result is its cycle modulo 16.
+        let turns = if picture.has_flight() { turns / 16 * 16 } else { turns };
+        self.state.skip(turns * period);
+        self.packets += turns * packets;
+        self.idle.skipped += turns * period;
+    }
+
+    fn find<M: Memory>(&mut self, memory: &M) -> Result<u32, NoPacket> {
+        if self.state.pc & 3 != 0 {
+            return Err(NoPacket::Fault(Fault::OddBranch { target: self.state.pc }));
+        }
+        self.cache.find(self.state.pc, memory)
+    }
+
+    /// Executes packets that follow each other in memory; `None` where the next must be searched.
+    #[inline(always)]
+    fn run_from<M: Memory>(&mut self, mut index: u32, memory: &mut M) -> Option<Halt> {
+        loop {
+            if self.state.clock.is_over()
+                && let Some(halt) = self.at_border()
+            {
+                return Some(halt);
+            }
+            match self.packet(index, memory) {
+                Ok(true) => index += 1,
+                Ok(false) => {
+                    if self.state.is_idle {
+                        self.wait();
+                    }
+                    return None;
+                }
+                Err(kind) => return Some(Halt::Faulted(kind)),
+            }
+        }
+    }
+
+    /// The cycles are over: why the core stops here, if it does.
+    fn at_border(&self) -> Option<Halt> {
+        let is_interruptible = self.state.is_interruptible();
+        match self.border {
+            Border::Slice if is_interruptible => Some(Halt::Preempted),
+            Border::Slice if self.state.clock.left() <= -LONGEST_SHADOW => {
+                let cycles = LONGEST_SHADOW.unsigned_abs();
+                Some(Halt::Faulted(Fault::NoInterrupts { cycles }.into()))
+            }
+            Border::Slice => None,
+            Border::Next => Some(Halt::Preempted),
+            Border::Interrupt(until) => {
+                (is_interruptible || self.state.clock.cycle >= until).then_some(Halt::Preempted)
+            }
+        }
+    }
+
+    /// Executes a packet; whether the next of the cache follows.
+    #[inline(always)]
+    fn packet<M: Memory>(&mut self, index: u32, memory: &mut M) -> Result<bool, TrapKind> {
+        let packet = *self.cache.packet(index);
+        let state = &mut self.state;
+        let idle = &mut self.idle;
+        let mut memory = Watched { inner: memory, cache: &self.cache, idle, hits: [None; 2] };
+        if packet.has_branch {
+            state.hold_interrupts();
+        }
+        for micro in self.cache.micros(&packet) {
+            if (state.regs[usize::from(micro.pred)] == 0) != micro.inverted {
+                continue;
+            }
+            state.execute(micro, &mut memory)?;
+        }
+        let hits = memory.hits;
+        self.packets += 1;
+        if packet.moves_stack && self.stack.is_some() {
+            self.check_stack()?;
+        }
+        self.state.refuse_undefined()?;
+        self.state.pc = packet.end;
+        let passed = self.state.advance(packet.cycles);
+        if hits[0].is_some() {
+            hits.into_iter().flatten().for_each(|at| self.cache.drop_line(at));
+            return Ok(false);
+        }
+        Ok(packet.is_linked && passed == Passed::Through)
+    }
+
+    /// Waits for the interrupt.
+    fn wait(&mut self) {
+        self.state.is_idle = false;
+        self.state.settle();
+        let left = self.state.clock.left();
+        self.state.clock.cycle += left.max(0).cast_unsigned();
+    }
+
+    fn check_stack(&mut self) -> Result<(), TrapKind> {
+        let Some(stack) = self.stack else { return Ok(()) };
+        let pointer = self.state.regs[usize::from(STACK)];
+        self.lowest_stack = Some(self.lowest_stack.map_or(pointer, |lowest| lowest.min(pointer)));
+        if pointer < stack.limit || pointer > stack.top {
+            let used = stack.top.wrapping_sub(pointer);
+            return Err(TrapKind::StackOverflow { used, size: stack.top - stack.limit });
+        }
+        Ok(())
+    }
+}
+
+/// Memory, with an eye on stores among decoded packets.
+struct Watched<'a, M> {
+    inner: &'a mut M,
+    cache: &'a Cache,
+    idle: &'a mut Idle,
+    /// Where the packet has changed words that were decoded: it has two stores at most.
+    hits: [Option<u32>; 2],
+}
+
+impl<M: Memory> Watched<'_, M> {
+    #[inline(always)]
+    fn notice(&mut self, addr: u32) {
+        if self.idle.is_watching {
+            self.idle.store(addr & !3, self.inner.fetch(addr & !3));
+        }
+        if self.cache.is_code(addr) {
+            self.hits = [Some(addr), self.hits[0]];
+        }
+    }
+}
+
+impl<M: Memory> Memory for Watched<'_, M> {
+    fn fetch(&self, addr: u32) -> Option<u32> {
+        self.inner.fetch(addr)
+    }
+
+    #[inline(always)]
+    fn load8(&mut self, addr: u32, clock: &mut Clock) -> Result<u32, TrapKind> {
+        self.inner.load8(addr, clock)
+    }
+
+    #[inline(always)]
+    fn load16(&mut self, addr: u32, clock: &mut Clock) -> Result<u32, TrapKind> {
+        self.inner.load16(addr, clock)
+    }
+
+    #[inline(always)]
+    fn load32(&mut self, addr: u32, clock: &mut Clock) -> Result<u32, TrapKind> {
+        self.inner.load32(addr, clock)
+    }
+
+    #[inline(always)]
+    fn load64(&mut self, addr: u32, clock: &mut Clock) -> Result<u64, TrapKind> {
+        self.inner.load64(addr, clock)
+    }
+
+    #[inline(always)]
+    fn store8(&mut self, addr: u32, value: u32, clock: &mut Clock) -> Result<(), TrapKind> {
+        self.notice(addr);
+        self.inner.store8(addr, value, clock)
+    }
+
+    #[inline(always)]
+    fn store16(&mut self, addr: u32, value: u32, clock: &mut Clock) -> Result<(), TrapKind> {
+        self.notice(addr);
+        self.inner.store16(addr, value, clock)
+    }
+
+    #[inline(always)]
+    fn store32(&mut self, addr: u32, value: u32, clock: &mut Clock) -> Result<(), TrapKind> {
+        self.notice(addr);
+        self.inner.store32(addr, value, clock)
+    }
+}

@@ -1,0 +1,295 @@
+//! The instructions, one arm each.
+
+use super::decode::{AFTER, DEFERRED, LONG1, LONG2, Micro, NEGATIVE, STEADY, UNSIGNED, UPDATES};
+use super::memory::Memory;
+use super::pipeline::{Late, State};
+use super::work::Work;
+use super::{alu, float, product};
+use crate::trap::TrapKind;
+
+impl State {
+    /// Executes an instruction whose condition holds.
+    #[inline(always)]
+    pub(super) fn execute<M: Memory>(&mut self, m: &Micro, memory: &mut M) -> Result<(), TrapKind> {
+        let s1 = self.regs[usize::from(m.a)].wrapping_add(m.imm);
+        let s2 = self.regs[usize::from(m.b)];
+        match m.work {
+            Work::Add => self.give(m, s1.wrapping_add(s2)),
+            Work::Sub => self.give(m, s1.wrapping_sub(s2)),
+            Work::AddScaled => self.give(m, s2.wrapping_add(s1 << m.extra)),
+            Work::SubScaled => self.give(m, s2.wrapping_sub(s1 << m.extra)),
+            Work::And => self.give(m, s1 & s2),
+            Work::Or => self.give(m, s1 | s2),
+            Work::Xor => self.give(m, s1 ^ s2),
+            Work::Cmpeq => self.give(m, u32::from(s1 == s2)),
+            Work::Cmpgt => self.give(m, u32::from(s1.cast_signed() > s2.cast_signed())),
+            Work::Cmplt => self.give(m, u32::from(s1.cast_signed() < s2.cast_signed())),
+            Work::Cmpgtu => self.give(m, u32::from(s1 > s2)),
+            Work::Cmpltu => self.give(m, u32::from(s1 < s2)),
+            Work::Abs => self.give(m, alu::abs(s2)),
+            Work::Lmbd => self.give(m, alu::lmbd(s1, s2)),
+            Work::Norm => self.give(m, alu::norm(s2)),
+            Work::Sadd => self.give(m, alu::saturate(signed(s1) + signed(s2))),
+            Work::Ssub => self.give(m, alu::saturate(signed(s1) - signed(s2))),
+            Work::Subc => self.give(m, alu::subc(s1, s2)),
+            Work::Add2 => self.give(m, alu::add2(s1, s2)),
+            Work::Sub2 => self.give(m, alu::sub2(s1, s2)),
+            Work::Clr => self.give(m, alu::clr(s1, s2)),
+            Work::Set => self.give(m, alu::set(s1, s2)),
+            Work::Ext => self.give(m, alu::ext(s1, s2)),
+            Work::Extu => self.give(m, alu::extu(s1, s2)),
+            Work::Shl => self.give(m, alu::shl(s1, s2)),
+            Work::Shr => self.give(m, alu::shr(s1, s2)),
+            Work::Shru => self.give(m, alu::shru(s1, s2)),
+            Work::Sshl => self.give(m, alu::sshl(s1, s2)),
+            Work::Mvk => self.give(m, m.imm),
+            Work::Mvkh => self.give(m, m.imm | self.regs[usize::from(m.dst)] & 0xFFFF),
+            Work::AddLong => self.give_long(m, self.long1(m) + self.long2(m)),
+            Work::SubLong => self.give_long(m, self.long1(m) - self.long2(m)),
+            Work::SaddLong => self.give_long(m, alu::saturate_long(self.long1(m) + self.long2(m))),
+            Work::SsubLong => self.give_long(m, alu::saturate_long(self.long1(m) - self.long2(m))),
+            Work::AbsLong => self.give_long(m, self.long2(m).abs()),
+            Work::CmpeqLong => self.give(m, u32::from(self.long1(m) == self.long2(m))),
+            Work::CmpgtLong => self.give(m, u32::from(self.long1(m) > self.long2(m))),
+            Work::CmpltLong => self.give(m, u32::from(self.long1(m) < self.long2(m))),
+            Work::CmpgtuLong => self.give(m, u32::from(unsigned(self.long1(m)) > unsigned(self.long2(m)))),
+            Work::CmpltuLong => self.give(m, u32::from(unsigned(self.long1(m)) < unsigned(self.long2(m)))),
+            Work::NormLong => self.give(m, alu::norm_long(self.long2(m))),
+            Work::SatLong => self.give(m, alu::saturate(self.long2(m))),
+            Work::ShlLong => self.give_long(m, alu::shl_long(i64::from(s1), self.long2(m))),
+            Work::ShrLong => self.give_long(m, alu::shr_long(i64::from(s1), self.long2(m))),
+            Work::ShruLong => self.give_long(m, alu::shru_long(i64::from(s1), self.long2(m))),
+            Work::Product => self.push(2, m.dst, product::multiply(m.extra, s1, s2)),
+            Work::Mpyi => self.push(9, m.dst, s1.wrapping_mul(s2)),
+            Work::Mpyid => self.push_pair(9, 10, m.dst, (signed(s1) * signed(s2)).cast_unsigned()),
+            Work::Addsp => self.push(4, m.dst, float::addsp(s1, s2)),
+            Work::Subsp => self.push(4, m.dst, float::subsp(s1, s2)),
+            Work::Mpysp => self.push(4, m.dst, float::mpysp(s1, s2)),
+            Work::Intsp => self.push(4, m.dst, float::intsp(s2)),
+            Work::Intspu => self.push(4, m.dst, float::intspu(s2)),
+            Work::Spint => self.push(4, m.dst, float::spint(s2)),
+            Work::Sptrunc => self.push(4, m.dst, float::sptrunc(s2)),
+            Work::Dpint => self.push(4, m.dst, float::dpint(self.double2(m))),
+            Work::Dptrunc => self.push(4, m.dst, float::dptrunc(self.double2(m))),
+            Work::Dpsp => self.push(4, m.dst, float::dpsp(self.double2(m))),
+            Work::Intdp => self.push_pair(4, 5, m.dst, float::intdp(s2)),
+            Work::Intdpu => self.push_pair(4, 5, m.dst, float::intdpu(s2)),
+            Work::Spdp => self.give_double(m, float::spdp(s2)),
+            Work::Abssp => self.give(m, s2 & 0x7FFF_FFFF),
+            Work::Absdp => self.give_double(m, self.double2(m) & !(1 << 63)),
+            Work::Cmpeqsp => self.give(m, u32::from(float::single(s1) == float::single(s2))),
+            Work::Cmpgtsp => self.give(m, u32::from(float::single(s1) > float::single(s2))),
+            Work::Cmpltsp => self.give(m, u32::from(float::single(s1) < float::single(s2))),
+            Work::Rcpsp => self.give(m, float::rcpsp(s2)),
+            Work::Rsqrsp => self.give(m, float::rsqrsp(s2)),
+            Work::Rcpdp => self.give_double(m, float::rcpdp(self.double2(m))),
+            Work::Rsqrdp => self.give_double(m, float::rsqrdp(self.double2(m))),
+            Work::Adddp
+            | Work::Subdp
+            | Work::Cmpeqdp
+            | Work::Cmpgtdp
+            | Work::Cmpltdp
+            | Work::Mpydp
+            | Work::Mpyspdp => self.start_double(m, s1, s2),
+            Work::Mpysp2dp => self.push_pair(4, 5, m.dst, float::mpysp2dp(s1, s2)),
+            Work::Ldbu => {
+                let addr = self.address(m, s1, s2);
+                let value = memory.load8(addr, &mut self.clock)?;
+                self.push(5, m.dst, value);
+            }
+            Work::Ldb => {
+                let addr = self.address(m, s1, s2);
+                let value = memory.load8(addr, &mut self.clock)?;
+                self.push(5, m.dst, value as u8 as i8 as u32);
+            }
+            Work::Ldhu => {
+                let addr = self.address(m, s1, s2) & !1;
+                let value = memory.load16(addr, &mut self.clock)?;
+                self.push(5, m.dst, value);
+            }
+            Work::Ldh => {
+                let addr = self.address(m, s1, s2) & !1;
+                let value = memory.load16(addr, &mut self.clock)?;
+                self.push(5, m.dst, value as u16 as i16 as u32);
+            }
+            Work::Ldw => {
+                let addr = self.address(m, s1, s2) & !3;
+                let value = memory.load32(addr, &mut self.clock)?;
+                self.push(5, m.dst, value);
+            }
+            Work::Lddw => {
+                let addr = self.address(m, s1, s2) & !7;
+                let value = memory.load64(addr, &mut self.clock)?;
+                self.push_pair(5, 5, m.dst, value);
+            }
+            Work::Stb => {
+                let addr = self.address(m, s1, s2);
+                memory.store8(addr, self.regs[usize::from(m.dst)], &mut self.clock)?;
+            }
+            Work::Sth => {
+                let addr = self.address(m, s1, s2) & !1;
+                memory.store16(addr, self.regs[usize::from(m.dst)], &mut self.clock)?;
+            }
+            Work::Stw => {
+                let addr = self.address(m, s1, s2) & !3;
+                memory.store32(addr, self.regs[usize::from(m.dst)], &mut self.clock)?;
+            }
+            Work::BranchTo => self.branch(m.imm),
+            Work::BranchRegister => self.branch(s2),
+            Work::BranchIrp => {
+                let target = self.return_from_interrupt();
+                self.branch(target);
+            }
+            Work::BranchNrp => {
+                let target = self.return_from_nmi();
+                self.branch(target);
+            }
+            Work::ReadControl => {
+                let value = self.read_control(m.extra);
+                self.give(m, value);
+            }
+            Work::WriteControl => self.write_control(m.extra, s2),
+            Work::Idle => self.is_idle = true,
+            Work::Nop => {}
+        }
+        Ok(())
+    }
+
+    /// A result of E1.
+    #[inline(always)]
+    fn give(&mut self, m: &Micro, value: u32) {
+        if m.flags & DEFERRED == 0 {
+            self.write(m.dst, value);
+        } else {
+            self.push(1, m.dst, value);
+        }
+    }
+
+    /// A 40-bit result of E1.
+    fn give_long(&mut self, m: &Micro, value: i64) {
+        let value = alu::to_unsigned_long(value);
+        if m.flags & DEFERRED == 0 {
+            self.write(m.dst, value as u32);
+            self.write(m.dst | 1, (value >> 32) as u32);
+        } else {
+            self.push_pair(1, 1, m.dst, value);
+        }
+    }
+
+    /// A double whose low word is there in E1, the high one in E2.
+    fn give_double(&mut self, m: &Micro, value: u64) {
+        self.give(m, value as u32);
+        self.push(2, m.dst | 1, (value >> 32) as u32);
+    }
+
+    fn double1(&self, m: &Micro) -> u64 {
+        self.pair(m.a)
+    }
+
+    fn double2(&self, m: &Micro) -> u64 {
+        self.pair(m.b)
+    }
+
+    fn pair(&self, low: u8) -> u64 {
+        u64::from(self.regs[usize::from(low)]) | u64::from(self.regs[usize::from(low | 1)]) << 32
+    }
+
+    /// s1 of 40-bit arithmetic.
+    fn long1(&self, m: &Micro) -> i64 {
+        if m.flags & LONG1 != 0 {
+            return alu::to_long(self.pair(m.a).cast_signed());
+        }
+        widen(m, self.regs[usize::from(m.a)].wrapping_add(m.imm))
+    }
+
+    /// s2 of 40-bit arithmetic.
+    fn long2(&self, m: &Micro) -> i64 {
+        if m.flags & LONG2 != 0 {
+            return alu::to_long(self.pair(m.b).cast_signed());
+        }
+        widen(m, self.regs[usize::from(m.b)])
+    }
+
+    /// The address of a load or store; the base changes.
+    #[inline(always)]
+    fn address(&mut self, m: &Micro, base_and_constant: u32, offset: u32) -> u32 {
+        let offset = offset << m.extra;
+        let sum = if m.flags & NEGATIVE == 0 {
+            base_and_constant.wrapping_add(offset)
+        } else {
+            base_and_constant.wrapping_sub(offset)
+        };
+        if m.flags & UPDATES == 0 {
+            return sum;
+        }
+        let base = self.regs[usize::from(m.a)];
+        self.give_base(m, sum);
+        if m.flags & AFTER == 0 { sum } else { base }
+    }
+
+    #[inline(always)]
+    fn give_base(&mut self, m: &Micro, value: u32) {
+        if m.flags & DEFERRED == 0 {
+            self.write(m.a, value);
+        } else {
+            self.push(1, m.a, value);
+        }
+    }
+
+    /// A double instruction that reads its high words after E1: at once where nothing can change them.
+    fn start_double(&mut self, m: &Micro, low1: u32, low2: u32) {
+        let late =
+            Late { due: self.clock.cycle + 1, issued: self.clock.cycle, micro: *m, low1, low2, high2: None };
+        let is_steady = m.flags & STEADY != 0 && m.work != Work::Mpydp && !self.lands_next(m.a | 1, m.b | 1);
+        if is_steady {
+            self.finish_double(late, self.double1(m), self.double2(m));
+        } else {
+            self.push_late(late);
+        }
+    }
+
+    /// The next read of a double instruction.
+    pub(super) fn continue_late(&mut self, late: Late) {
+        let high1 = self.regs[usize::from(late.micro.a | 1)];
+        let high2 = self.regs[usize::from(late.micro.b | 1)];
+        let join = |low: u32, high: u32| u64::from(low) | u64::from(high) << 32;
+        if late.micro.work == Work::Mpydp && late.high2.is_none() {
+            self.push_late(Late { due: self.clock.cycle + 1, high2: Some(high2), ..late });
+            return;
+        }
+        let s2 = join(late.low2, late.high2.unwrap_or(high2));
+        self.finish_double(late, join(late.low1, high1), s2);
+    }
+
+    /// Computes with all words there.
+    fn finish_double(&mut self, late: Late, s1: u64, s2: u64) {
+        let dst = late.micro.dst;
+        let passed = self.clock.cycle - late.issued;
+        let (a, b) = (float::double(s1), float::double(s2));
+        match late.micro.work {
+            Work::Adddp => self.push_pair(6 - passed, 7 - passed, dst, float::adddp(s1, s2)),
+            Work::Subdp => self.push_pair(6 - passed, 7 - passed, dst, float::subdp(s1, s2)),
+            Work::Mpydp => self.push_pair(9 - passed, 10 - passed, dst, float::mpydp(s1, s2)),
+            Work::Mpyspdp => {
+                self.push_pair(6 - passed, 7 - passed, dst, float::mpyspdp(late.low1, s2));
+            }
+            Work::Cmpgtdp => self.push(2 - passed, dst, u32::from(a > b)),
+            Work::Cmpltdp => self.push(2 - passed, dst, u32::from(a < b)),
+            // Only these seven start so; see `start_double`.
+            _ => self.push(2 - passed, dst, u32::from(a == b)),
+        }
+    }
+}
+
+fn signed(value: u32) -> i64 {
+    i64::from(value.cast_signed())
+}
+
+fn unsigned(value: i64) -> u64 {
+    alu::to_unsigned_long(value)
+}
+
+/// A 32-bit source of 40-bit arithmetic.
+fn widen(m: &Micro, value: u32) -> i64 {
+    if m.flags & UNSIGNED != 0 { i64::from(value) } else { signed(value) }
+}

@@ -1,0 +1,128 @@
+//! Loops that wait: found by what they do, and run through in one step.
+//!
+//! A loop that has changed nothing after a turn, with the same registers, the same results in flight, every byte that
+//! it stored as before, and no device reached, does the same in every further turn until something happens: so as many
+//! turns pass as there is room for. Nobody can see the difference but the clock of the computer. Source: `dsp-board.md`
+//! 9, "Skipping idle loops".
+
+use super::pipeline::Picture;
+
+/// Visits of a place after which it is looked at.
+const ENOUGH: u8 = 8;
+/// Longest turn, in cycles.
+const LONGEST: u64 = 4000;
+/// Most stores of a turn.
+const MOST_STORES: usize = 64;
+/// Places that are counted, a power of two.
+const PLACES: usize = 64;
+
+/// A word that was stored to: its address, and what was there before.
+type Old = (u32, u32);
+
+/// A turn that is being watched.
+#[derive(Clone, Debug)]
+struct Turn {
+    picture: Picture,
+    packets: u64,
+    touches: u64,
+    stores: Vec<Old>,
+}
+
+/// What is known of the loops since something last happened.
+#[derive(Clone, Debug)]
+pub(super) struct Idle {
+    visits: [(u32, u8); PLACES],
+    turn: Option<Box<Turn>>,
+    /// Whether stores are to be noted.
+    pub(super) is_watching: bool,
+    /// Cycles that were skipped so far.
+    pub(super) skipped: u64,
+}
+
+impl Default for Idle {
+    fn default() -> Self {
+        Self { visits: [(0, 0); PLACES], turn: None, is_watching: false, skipped: 0 }
+    }
+}
+
+/// What is to be done at the target of a backward branch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Arrival {
+    /// Nothing.
+    Pass,
+    /// The place is worth a picture.
+    Look,
+    /// The place of the picture is reached again.
+    Again,
+}
+
+impl Idle {
+    /// Something has happened: what was seen does not hold any more.
+    pub(super) fn forget(&mut self) {
+        self.visits = [(0, 0); PLACES];
+        self.turn = None;
+        self.is_watching = false;
+    }
+
+    /// A branch has gone back to `pc` in this cycle.
+    #[inline(always)]
+    pub(super) fn arrive(&mut self, pc: u32, cycle: u64) -> Arrival {
+        if let Some(turn) = &self.turn {
+            if turn.picture.pc == pc {
+                return Arrival::Again;
+            }
+            if cycle - turn.picture.cycle > LONGEST {
+                self.turn = None;
+                self.is_watching = false;
+            }
+            return Arrival::Pass;
+        }
+        let place = &mut self.visits[pc as usize / 4 % PLACES];
+        if place.0 != pc {
+            *place = (pc, 0);
+        }
+        place.1 = place.1.saturating_add(1);
+        if place.1 == ENOUGH { Arrival::Look } else { Arrival::Pass }
+    }
+
+    /// Watches the turn that begins here.
+    pub(super) fn look(&mut self, picture: Picture, packets: u64, touches: u64) {
+        self.turn = Some(Box::new(Turn { picture, packets, touches, stores: Vec::new() }));
+        self.is_watching = true;
+    }
+
+    /// A word is stored to that holds `old`.
+    #[cold]
+    pub(super) fn store(&mut self, addr: u32, old: Option<u32>) {
+        let Some(turn) = &mut self.turn else { return };
+        let is_noted = turn.stores.iter().any(|(known, _)| *known == addr);
+        match old {
+            Some(old) if turn.stores.len() < MOST_STORES || is_noted => {
+                if !is_noted {
+                    turn.stores.push((addr, old));
+                }
+            }
+            // A device, or too many.
+            _ => {
+                self.turn = None;
+                self.is_watching = false;
+            }
+        }
+    }
+
+    /// Cycles and packets of the turn that ends here, if it has changed nothing.
+    pub(super) fn end(
+        &mut self,
+        now: &Picture,
+        packets: u64,
+        touches: u64,
+        word: impl Fn(u32) -> Option<u32>,
+    ) -> Option<(u64, u64)> {
+        self.is_watching = false;
+        let turn = self.turn.take()?;
+        let is_same = touches == turn.touches
+            && turn.picture.is_like(now)
+            && turn.stores.iter().all(|(addr, old)| word(*addr) == Some(*old));
+        is_same.then(|| (now.cycle - turn.picture.cycle, packets - turn.packets))
+    }
+}

@@ -1,0 +1,55 @@
+//! What a person is shown of a processor that stands still: its registers, the code around a place.
+
+use c67x::{Control, Inst, PARALLEL, Reg};
+
+use super::core::Core;
+
+/// The stack pointer at the start of a board.
+const STACK: Reg = Reg::b(15);
+/// CSR at power-up: little endian, interrupts off.
+const POWER_UP: u32 = 0x100;
+
+impl Core {
+    /// A processor at power-up before the packet at `pc`: registers 0 but for the stack pointer, interrupts off.
+    ///
+    /// The cycles go on from `cycle`.
+    #[must_use]
+    pub fn at_power_up(pc: u32, stack: u32, cycle: u64) -> Self {
+        let mut core = Self::new(pc);
+        core.state.set_control(Control::Csr, POWER_UP);
+        core.state.set_control(Control::Ier, 0);
+        core.state.set_reg(STACK, stack);
+        core.state.clock.cycle = cycle;
+        core
+    }
+
+    /// The registers by name, those of side A first, then the control registers that matter.
+    #[must_use]
+    pub fn registers(&self) -> Vec<(String, u32)> {
+        let state = &self.state;
+        let plain = (0..Reg::COUNT).filter_map(Reg::from_index).map(|reg| (reg.to_string(), state.reg(reg)));
+        let control = [
+            ("CSR", Control::Csr),
+            ("IER", Control::Ier),
+            ("IFR", Control::Ifr),
+            ("ISTP", Control::Istp),
+            ("IRP", Control::Irp),
+        ];
+        plain.chain(control.map(|(name, control)| (name.to_owned(), state.control(control)))).collect()
+    }
+}
+
+/// A line of text for each word of `range` that `fetch` has.
+#[must_use]
+pub fn listing(range: std::ops::Range<u32>, fetch: impl Fn(u32) -> Option<u32>) -> Vec<(u32, String)> {
+    let mut follows = false;
+    let mut lines = Vec::new();
+    for at in range.step_by(4) {
+        let Some(word) = fetch(at) else { continue };
+        let bars = if follows { "|| " } else { "   " };
+        let text = Inst::decode(word).map_or_else(|_| "(no instruction)".to_owned(), |inst| inst.text(at));
+        lines.push((at, format!("{word:08X}  {bars}{text}")));
+        follows = word & PARALLEL != 0;
+    }
+    lines
+}

@@ -1,0 +1,94 @@
+//! What the processor needs of memory.
+
+use crate::trap::TrapKind;
+
+/// Cycles that have passed, and those that may still pass.
+///
+/// An access that makes the processor wait takes its time off what is left.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Clock {
+    /// Cycles of packets since the start.
+    pub(super) cycle: u64,
+    /// The cycle in which nothing is left.
+    pub(super) deadline: u64,
+}
+
+impl Clock {
+    /// Cycles of packets since the start.
+    #[must_use]
+    pub const fn cycle(&self) -> u64 {
+        self.cycle
+    }
+
+    /// Cycles left; below zero when more were spent.
+    #[must_use]
+    pub const fn left(&self) -> i64 {
+        self.deadline.wrapping_sub(self.cycle).cast_signed()
+    }
+
+    /// Sets what is left.
+    pub const fn set_left(&mut self, left: i64) {
+        self.deadline = self.cycle.wrapping_add_signed(left);
+    }
+
+    /// Whether nothing is left.
+    #[inline(always)]
+    pub(super) const fn is_over(&self) -> bool {
+        self.left() <= 0
+    }
+}
+
+/// Memory and registers of devices, as the processor reaches them.
+///
+/// Addresses are multiples of the size of the access: the processor ignores the low bits.
+pub trait Memory {
+    /// How often a device was reached so far in a way that may matter; a loop that reaches none can be skipped.
+    fn touches(&self) -> u64 {
+        0
+    }
+
+    /// The word at `addr` as an instruction; `None` where the context has no code, so that it leaves the core.
+    fn fetch(&self, addr: u32) -> Option<u32>;
+
+    /// Loads a byte, zero-extended.
+    ///
+    /// # Errors
+    /// Nothing is there.
+    fn load8(&mut self, addr: u32, clock: &mut Clock) -> Result<u32, TrapKind>;
+
+    /// Loads two bytes, zero-extended.
+    ///
+    /// # Errors
+    /// Nothing is there.
+    fn load16(&mut self, addr: u32, clock: &mut Clock) -> Result<u32, TrapKind>;
+
+    /// Loads a word.
+    ///
+    /// # Errors
+    /// Nothing is there.
+    fn load32(&mut self, addr: u32, clock: &mut Clock) -> Result<u32, TrapKind>;
+
+    /// Loads two words, the first in the low half.
+    ///
+    /// # Errors
+    /// Nothing is there.
+    fn load64(&mut self, addr: u32, clock: &mut Clock) -> Result<u64, TrapKind>;
+
+    /// Stores the low byte of `value`.
+    ///
+    /// # Errors
+    /// Nothing is there, or it must not be changed.
+    fn store8(&mut self, addr: u32, value: u32, clock: &mut Clock) -> Result<(), TrapKind>;
+
+    /// Stores the low two bytes of `value`.
+    ///
+    /// # Errors
+    /// Nothing is there, or it must not be changed.
+    fn store16(&mut self, addr: u32, value: u32, clock: &mut Clock) -> Result<(), TrapKind>;
+
+    /// Stores a word.
+    ///
+    /// # Errors
+    /// Nothing is there, or it must not be changed.
+    fn store32(&mut self, addr: u32, value: u32, clock: &mut Clock) -> Result<(), TrapKind>;
+}

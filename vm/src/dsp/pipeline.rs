@@ -1,0 +1,459 @@
+//! Registers, and what is on its way to them.
+//!
+//! Results that are not there yet wait in sixteen slots, the slot of a cycle being its number
+//! modulo 16: no instruction takes longer. A slot has a value for every register and a mask
+//! of those that are meant, so two results for one register in one cycle are found for free.
+
+use c67x::Reg;
+
+use super::decode::{Micro, TRUE};
+use super::memory::Clock;
+use crate::trap::Fault;
+
+/// Slots; more than the longest latency.
+const SLOTS: usize = 16;
+/// Cycles from a branch to its target.
+const BRANCH: u64 = 6;
+
+/// Bits of CSR and IER.
+const GIE: u32 = 1;
+const PGIE: u32 = 2;
+const TIMER: u32 = 1 << 4;
+const CSR: usize = 1;
+const IFR: usize = 2;
+const ICR: usize = 3;
+const IER: usize = 4;
+const ISTP: usize = 5;
+/// The bits of ISTP that say where the vectors are, and the bytes of a vector.
+const VECTORS: u32 = !0x3FF;
+const VECTOR_BYTES: u32 = 32;
+const IRP: usize = 6;
+const NRP: usize = 7;
+
+/// A double instruction that has not read all of its sources.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Late {
+    /// The cycle of its next read.
+    pub(super) due: u64,
+    /// The cycle of its issue.
+    pub(super) issued: u64,
+    /// The instruction.
+    pub(super) micro: Micro,
+    /// Low word of s1, or all of a single.
+    pub(super) low1: u32,
+    /// Low word of s2.
+    pub(super) low2: u32,
+    /// High word of s2, once read.
+    pub(super) high2: Option<u32>,
+}
+
+/// Registers, control registers and everything in flight.
+#[derive(Clone, Debug)]
+pub struct State {
+    /// A0..=A31, B0..=B31, then the constants 1 and 0.
+    pub(super) regs: [u32; 256],
+    control: [u32; 32],
+    /// Address of the next packet.
+    pub(super) pc: u32,
+    /// Cycles passed and left.
+    pub clock: Clock,
+    /// Slots that have something to do, a bit each.
+    busy: u16,
+    masks: [u64; SLOTS],
+    values: Box<[[u32; 64]; SLOTS]>,
+    branches: u16,
+    targets: [u32; SLOTS],
+    /// The packet of the last branch.
+    branched_at: u32,
+    late: Vec<Late>,
+    /// The first cycle before which an interrupt is possible again.
+    shadow: u64,
+    /// Registers with two results in one cycle; not 0 either if two branches arrive in one.
+    conflicts: u64,
+    two_branches: Option<(u32, u32)>,
+    /// Whether an `IDLE` waits.
+    pub(super) is_idle: bool,
+}
+
+/// What decides how a processor goes on, but for memory.
+#[derive(Clone, Debug)]
+pub(super) struct Picture {
+    /// The cycle of it.
+    pub(super) cycle: u64,
+    /// The next packet.
+    pub(super) pc: u32,
+    regs: [u32; 64],
+    control: [u32; 32],
+    /// Cycles until an interrupt is possible.
+    shadow: u64,
+    /// Results in flight: when, which registers, their values, and the target of a branch.
+    flight: Vec<(u64, u64, [u32; 64], Option<u32>)>,
+    /// Whether everything in flight is in `flight`.
+    is_whole: bool,
+}
+
+impl Picture {
+    /// Whether two processors go on alike.
+    pub(super) fn is_like(&self, other: &Self) -> bool {
+        self.is_whole
+            && other.is_whole
+            && self.pc == other.pc
+            && self.regs == other.regs
+            && self.control == other.control
+            && self.shadow == other.shadow
+            && self.flight == other.flight
+    }
+
+    /// Whether results are in flight: their slots are those of cycles modulo 16.
+    pub(super) const fn has_flight(&self) -> bool {
+        !self.flight.is_empty()
+    }
+}
+
+impl Default for State {
+    fn default() -> Self {
+        let mut regs = [0; 256];
+        regs[usize::from(TRUE)] = 1;
+        let mut control = [0; 32];
+        control[CSR] = 0x100 | PGIE | GIE;
+        control[IER] = TIMER | 3;
+        Self {
+            regs,
+            control,
+            pc: 0,
+            clock: Clock::default(),
+            busy: 0,
+            masks: [0; SLOTS],
+            values: Box::new([[0; 64]; SLOTS]),
+            branches: 0,
+            targets: [0; SLOTS],
+            branched_at: 0,
+            late: Vec::new(),
+            shadow: 0,
+            conflicts: 0,
+            two_branches: None,
+            is_idle: false,
+        }
+    }
+}
+
+impl State {
+    /// The value of a register as the next packet sees it.
+    #[must_use]
+    pub const fn reg(&self, reg: Reg) -> u32 {
+        self.regs[reg.index()]
+    }
+
+    /// Sets a register at once.
+    pub const fn set_reg(&mut self, reg: Reg, value: u32) {
+        self.regs[reg.index()] = value;
+    }
+
+    /// A control register.
+    #[must_use]
+    pub const fn control(&self, control: c67x::Control) -> u32 {
+        self.control[control.number() as usize & 31]
+    }
+
+    /// Sets a control register at once, all bits of it.
+    pub const fn set_control(&mut self, control: c67x::Control, value: u32) {
+        self.control[control.number() as usize & 31] = value;
+    }
+
+    /// Address of the next packet.
+    #[must_use]
+    pub const fn pc(&self) -> u32 {
+        self.pc
+    }
+
+    /// Address of the packet of the last branch that was taken.
+    #[must_use]
+    pub const fn branched_at(&self) -> u32 {
+        self.branched_at
+    }
+
+    /// Continues at an address, with nothing in flight.
+    pub fn set_pc(&mut self, pc: u32) {
+        self.settle();
+        self.pc = pc;
+    }
+
+    /// Cycles since the start.
+    #[must_use]
+    pub const fn cycle(&self) -> u64 {
+        self.clock.cycle
+    }
+
+    /// Whether the processor would take an interrupt before the next packet.
+    #[must_use]
+    pub const fn is_interruptible(&self) -> bool {
+        self.clock.cycle >= self.shadow && self.control[CSR] & GIE != 0 && self.control[IER] & TIMER != 0
+    }
+
+    /// What decides how it goes on.
+    pub(super) fn picture(&self) -> Picture {
+        let mut regs = [0; 64];
+        regs.copy_from_slice(&self.regs[..64]);
+        let delays = (1..=SLOTS as u64).filter(|delay| self.busy >> self.slot(*delay) & 1 != 0);
+        let flight = delays.map(|delay| {
+            let slot = self.slot(delay);
+            let mut values = self.values[slot];
+            let mask = self.masks[slot];
+            values
+                .iter_mut()
+                .enumerate()
+                .filter(|(reg, _)| mask >> reg & 1 == 0)
+                .for_each(|(_, value)| *value = 0);
+            let target = (self.branches >> slot & 1 != 0).then(|| self.targets[slot]);
+            (delay, mask, values, target)
+        });
+        Picture {
+            cycle: self.clock.cycle,
+            pc: self.pc,
+            regs,
+            control: self.control,
+            shadow: self.shadow.saturating_sub(self.clock.cycle),
+            flight: flight.collect(),
+            is_whole: self.late.is_empty(),
+        }
+    }
+
+    /// Lets cycles pass in which nothing changes; a multiple of 16 if results are in flight.
+    pub(super) const fn skip(&mut self, cycles: u64) {
+        self.clock.cycle += cycles;
+        self.shadow += cycles;
+    }
+
+    /// Sets the flag of interrupt 4, that of the timer.
+    pub const fn raise_timer(&mut self) {
+        self.control[IFR] |= TIMER;
+    }
+
+    /// Whether the interrupt of the timer waits to be taken.
+    #[must_use]
+    pub const fn has_timer_flag(&self) -> bool {
+        self.control[IFR] & TIMER != 0
+    }
+
+    /// Takes the interrupt of the timer: everything in flight lands, and the handler begins `overhead` cycles later.
+    ///
+    /// Source: `dsp-board.md` 4.2. Whoever calls has asked [`is_interruptible`](Self::is_interruptible).
+    pub fn take_timer_interrupt(&mut self, overhead: u64) {
+        self.settle();
+        self.clock.cycle += overhead;
+        self.control[IFR] &= !TIMER;
+        self.control[IRP] = self.pc;
+        let enabled = if self.control[CSR] & GIE != 0 { PGIE } else { 0 };
+        self.control[CSR] = self.control[CSR] & !(GIE | PGIE) | enabled;
+        self.pc = (self.control[ISTP] & VECTORS) + VECTOR_BYTES * TIMER.trailing_zeros();
+    }
+
+    /// Lets everything in flight land, as the processor does before it handles an interrupt.
+    ///
+    /// Branches that are on their way are lost; where an interrupt is possible there are none.
+    pub fn settle(&mut self) {
+        if self.busy == 0 {
+            return;
+        }
+        self.branches = 0;
+        let now = self.clock.cycle;
+        for _ in 0..SLOTS {
+            self.clock.cycle += 1;
+            self.land();
+        }
+        self.clock.cycle = now;
+        self.busy = 0;
+    }
+
+    /// Writes a result of E1.
+    #[inline(always)]
+    pub(super) fn write(&mut self, reg: u8, value: u32) {
+        self.conflicts |= self.masks[self.slot(1)] & bit(reg);
+        self.regs[usize::from(reg)] = value;
+    }
+
+    /// Lets a result land in `delay` cycles from now.
+    #[inline(always)]
+    pub(super) fn push(&mut self, delay: u64, reg: u8, value: u32) {
+        let slot = self.slot(delay);
+        self.conflicts |= self.masks[slot] & bit(reg);
+        self.masks[slot] |= bit(reg);
+        self.values[slot][usize::from(reg & 63)] = value;
+        self.busy |= 1 << slot;
+    }
+
+    /// Lets the low and the high word of a result land.
+    #[inline(always)]
+    pub(super) fn push_pair(&mut self, low_delay: u64, high_delay: u64, reg: u8, value: u64) {
+        self.push(low_delay, reg, value as u32);
+        self.push(high_delay, reg | 1, (value >> 32) as u32);
+    }
+
+    /// Whether one of two registers receives a result in the next cycle.
+    #[inline(always)]
+    pub(super) fn lands_next(&self, one: u8, other: u8) -> bool {
+        self.masks[self.slot(1)] & (bit(one) | bit(other)) != 0
+    }
+
+    /// Remembers a double instruction whose high words are read later.
+    pub(super) fn push_late(&mut self, late: Late) {
+        self.busy |= 1 << (late.due as usize % SLOTS);
+        self.late.push(late);
+    }
+
+    /// A branch, taken or not, keeps interrupts off.
+    #[inline(always)]
+    pub(super) const fn hold_interrupts(&mut self) {
+        self.shadow = self.clock.cycle + BRANCH;
+    }
+
+    /// Lets a branch arrive in six cycles.
+    #[inline(always)]
+    pub(super) const fn branch(&mut self, target: u32) {
+        let slot = (self.clock.cycle + BRANCH) as usize % SLOTS;
+        if self.branches & 1 << slot != 0 {
+            self.two_branches = Some((self.targets[slot], target));
+            self.conflicts |= 1;
+        }
+        self.branches |= 1 << slot;
+        self.targets[slot] = target;
+        self.branched_at = self.pc;
+        self.busy |= 1 << slot;
+    }
+
+    /// Returns from an interrupt: where to.
+    pub(super) const fn return_from_interrupt(&mut self) -> u32 {
+        let previous = if self.control[CSR] & PGIE != 0 { GIE } else { 0 };
+        self.control[CSR] = self.control[CSR] & !GIE | previous;
+        self.control[IRP]
+    }
+
+    /// Returns from the interrupt that cannot be masked: where to.
+    pub(super) const fn return_from_nmi(&mut self) -> u32 {
+        self.control[IER] |= 2;
+        self.control[NRP]
+    }
+
+    /// A control register as `MVC` reads it.
+    pub(super) const fn read_control(&self, number: u8) -> u32 {
+        self.control[number as usize & 31]
+    }
+
+    /// A control register as `MVC` writes it: ISR sets, ICR clears pending interrupts.
+    pub(super) const fn write_control(&mut self, number: u8, value: u32) {
+        match number as usize {
+            IFR => self.control[IFR] |= value & 0xFFF0,
+            ICR => self.control[IFR] &= !(value & 0xFFF0),
+            other => self.control[other & 31] = value,
+        }
+    }
+
+    /// The fault of a packet whose outcome the processor leaves open.
+    #[inline(always)]
+    pub(super) fn refuse_undefined(&self) -> Result<(), Fault> {
+        if self.conflicts != 0 { Err(self.undefined()) } else { Ok(()) }
+    }
+
+    /// Lets up to `cycles` cycles pass; they end where a branch arrives.
+    #[inline(always)]
+    pub(super) fn advance(&mut self, cycles: u8) -> Passed {
+        if self.busy == 0 {
+            self.clock.cycle += u64::from(cycles);
+            return Passed::Through;
+        }
+        if cycles == 1 {
+            self.clock.cycle += 1;
+            let slot = self.clock.cycle as usize % SLOTS;
+            return if self.busy >> slot & 1 == 0 { Passed::Through } else { self.arrive(slot) };
+        }
+        self.advance_far(cycles)
+    }
+
+    /// Lets several cycles pass.
+    fn advance_far(&mut self, cycles: u8) -> Passed {
+        let end = self.clock.cycle + u64::from(cycles);
+        while self.clock.cycle < end {
+            let ahead = u32::from(self.busy.rotate_right(self.slot(1) as u32));
+            let window = ahead & ((1 << (end - self.clock.cycle)) - 1);
+            if window == 0 {
+                self.clock.cycle = end;
+                break;
+            }
+            self.clock.cycle += u64::from(window.trailing_zeros()) + 1;
+            if self.arrive(self.clock.cycle as usize % SLOTS) == Passed::Branched {
+                return Passed::Branched;
+            }
+        }
+        Passed::Through
+    }
+
+    /// What is due in the slot of this cycle lands.
+    #[inline(always)]
+    fn arrive(&mut self, slot: usize) -> Passed {
+        self.land();
+        if self.branches & 1 << slot == 0 {
+            return Passed::Through;
+        }
+        self.branches &= !(1 << slot);
+        self.pc = self.targets[slot];
+        Passed::Branched
+    }
+
+    /// Applies what is due in this cycle.
+    #[inline(always)]
+    fn land(&mut self) {
+        let slot = self.clock.cycle as usize % SLOTS;
+        self.busy &= !(1 << slot);
+        let mut mask = std::mem::take(&mut self.masks[slot]);
+        let values = &self.values[slot];
+        while mask != 0 {
+            let reg = mask.trailing_zeros() as usize;
+            self.regs[reg] = values[reg & 63];
+            mask &= mask - 1;
+        }
+        if !self.late.is_empty() {
+            self.read_late();
+        }
+    }
+
+    #[cold]
+    fn read_late(&mut self) {
+        let mut index = 0;
+        while let Some(late) = self.late.get(index).copied() {
+            if late.due == self.clock.cycle {
+                self.late.swap_remove(index);
+                self.continue_late(late);
+            } else {
+                index += 1;
+            }
+        }
+    }
+
+    #[cold]
+    fn undefined(&self) -> Fault {
+        if let Some((first, second)) = self.two_branches {
+            return Fault::TwoBranches { first, second };
+        }
+        let reg = Reg::from_index(self.conflicts.trailing_zeros() as usize).unwrap_or(Reg::a(0));
+        Fault::TwoWriters { reg }
+    }
+
+    #[inline(always)]
+    const fn slot(&self, delay: u64) -> usize {
+        (self.clock.cycle + delay) as usize % SLOTS
+    }
+}
+
+/// How the cycles of a packet passed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Passed {
+    /// The next packet follows.
+    Through,
+    /// A branch has arrived.
+    Branched,
+}
+
+#[inline(always)]
+const fn bit(reg: u8) -> u64 {
+    1 << (reg & 63)
+}

@@ -1,0 +1,5 @@
+//! The executor against what the emulator recorded.
+
+mod faults;
+mod flat;
+mod vectors;

@@ -1,0 +1,236 @@
+//! Threads on the processor: how they begin, call the firmware, lose the processor and end.
+//!
+//! A branch that leaves the program area is a call of the firmware: the function of that
+//! address is called with the arguments of the calling convention, and the program goes on
+//! at B3. Rules: `c67-subset.md` 5, 7 and 10 of the specification.
+
+use std::sync::Arc;
+
+use c67x::Reg;
+use c67x::convention::{ARGUMENTS, LINK, RESULT, STACK};
+use kmotiondef::map::{BOARD_STACK_SIZE, BOARD_STACKS_BASE};
+use kmotiondef::{CodeAddr, Cycles, GuestAddr, ThreadId};
+
+use super::core::{Core, Halt};
+use super::view::View;
+use crate::call::ArgumentList;
+use crate::engine::{ContextId, Executor, ForeignSnapshot, Slice, Stack, Stop};
+use crate::firmware::{Firmware, Outcome, Value};
+use crate::loaded::Image;
+use crate::memory::GuestMemory;
+use crate::operand::Class;
+use crate::trap::{Trap, TrapKind};
+
+const A5: Reg = Reg::a(5);
+const A14: Reg = Reg::a(14);
+
+/// Where a call-back returns to: no code and no function is there.
+const CALLBACK_RETURN: u32 = 0xFFFF_FFE0;
+
+/// What a register holds that a firmware function may change: a value that shows itself.
+const CHANGED: u32 = 0xC4A7_6ED0;
+
+/// Runs real images.
+#[derive(Debug, Default)]
+pub struct DspEngine {
+    contexts: [Option<Processor>; ContextId::COUNT],
+}
+
+/// The contexts of a [`DspEngine`] as they were.
+#[derive(Clone, Debug)]
+pub struct DspSnapshot([Option<Processor>; ContextId::COUNT]);
+
+#[derive(Clone, Debug)]
+struct Processor {
+    core: Core,
+    /// B15 at the start.
+    top: u32,
+    arguments: ArgumentList,
+}
+
+impl DspEngine {
+    /// The registers of `id`, and where it is; `None` if it was never started.
+    #[must_use]
+    pub fn core(&self, id: ContextId) -> Option<&Core> {
+        self.contexts[id.index()].as_ref().map(|context| &context.core)
+    }
+}
+
+/// B15 at the start of a thread, and the lowest address of its stack.
+fn board_stack(thread: ThreadId) -> (u32, u32) {
+    let base = BOARD_STACKS_BASE + BOARD_STACK_SIZE * (u32::from(thread.get()) - 1);
+    // The start code leaves room for what an interrupt saves, and takes it back at once.
+    let top = ((base + BOARD_STACK_SIZE - 140) & !7) + 128;
+    (top, base)
+}
+
+impl Executor for DspEngine {
+    type Code = Image;
+    type Snapshot = DspSnapshot;
+
+    fn start<F: Firmware + ?Sized>(
+        &mut self,
+        id: ContextId,
+        code: &Arc<Image>,
+        entry: GuestAddr,
+        stack: Stack,
+        _firmware: &F,
+    ) -> Result<(), TrapKind> {
+        if !entry.get().is_multiple_of(4) || !Image::is_code(entry.get()) {
+            return Err(TrapKind::BadCallTarget { addr: entry });
+        }
+        let mut core = Core::new(entry.get());
+        let (top, base, returns_to) = match id.thread() {
+            Some(thread) => {
+                let (top, base) = board_stack(thread);
+                core.state.set_reg(A14, u32::from(thread.get()));
+                (top, base, code.returns_to().get())
+            }
+            None => (stack.top - 8, stack.limit, CALLBACK_RETURN),
+        };
+        core.state.set_reg(STACK, top);
+        core.state.set_reg(LINK, returns_to);
+        core.watch_stack(base, top);
+        self.contexts[id.index()] = Some(Processor { core, top, arguments: ArgumentList::default() });
+        Ok(())
+    }
+
+    fn resume<F: Firmware + ?Sized>(&mut self, id: ContextId, slice: &mut Slice<'_, F>) -> Stop {
+        let Some(context) = &mut self.contexts[id.index()] else { return Stop::Ended };
+        context
+            .run(id, slice)
+            .unwrap_or_else(|kind| Stop::Trapped(Trap { kind, at: context.place(), thread: id.thread() }))
+    }
+
+    fn snapshot(&self) -> DspSnapshot {
+        DspSnapshot(self.contexts.clone())
+    }
+
+    fn restore(&mut self, snapshot: &DspSnapshot) -> Result<(), ForeignSnapshot> {
+        // Restoring has the memory along with them, so decoded packets are those of their words.
+        self.contexts.clone_from(&snapshot.0);
+        Ok(())
+    }
+
+    fn stack_used(&self, id: ContextId) -> u32 {
+        let Some(context) = &self.contexts[id.index()] else { return 0 };
+        context.core.lowest_stack().map_or(0, |lowest| context.top.saturating_sub(lowest))
+    }
+
+    fn backtrace(&self, id: ContextId) -> Vec<CodeAddr> {
+        self.contexts[id.index()].iter().map(Processor::place).collect()
+    }
+}
+
+impl Processor {
+    /// The packet it is before; in a firmware call, the branch that made it.
+    fn place(&self) -> CodeAddr {
+        let pc = self.core.state.pc();
+        if Image::is_code(pc) { code_at(pc) } else { call_at(&self.core) }
+    }
+
+    fn run<F: Firmware + ?Sized>(
+        &mut self,
+        id: ContextId,
+        slice: &mut Slice<'_, F>,
+    ) -> Result<Stop, TrapKind> {
+        loop {
+            self.core.state.clock.set_left(slice.budget.get());
+            let halt = self.core.run(&mut View(slice));
+            slice.budget = Cycles::new(self.core.state.clock.left());
+            match halt {
+                Halt::Preempted => {
+                    self.core.state.settle();
+                    return Ok(Stop::Preempted);
+                }
+                Halt::Left(CALLBACK_RETURN) if id == ContextId::CALLBACK => return Ok(Stop::Ended),
+                Halt::Left(address) => {
+                    if let Some(stop) = self.call(id, slice, GuestAddr::new(address))? {
+                        return Ok(stop);
+                    }
+                }
+                Halt::Faulted(kind) => return Err(kind),
+            }
+        }
+    }
+
+    /// Makes the firmware call of an address; the stop, if the program does not go on at once.
+    fn call<F: Firmware + ?Sized>(
+        &mut self,
+        id: ContextId,
+        slice: &mut Slice<'_, F>,
+        address: GuestAddr,
+    ) -> Result<Option<Stop>, TrapKind> {
+        self.core.state.settle();
+        let Self { core, arguments, .. } = self;
+        let Some(signature) = slice.firmware.signature(address) else {
+            return Err(TrapKind::BadCallTarget { addr: address });
+        };
+        let named = slice.firmware.is_variadic(address).then(|| signature.params.len() - 1);
+        let memory = &*slice.memory;
+        let at = call_at(core);
+        let arguments = arguments.gather(&signature.params, |position, class| match named {
+            Some(named) if position + 1 >= named => on_stack(core, memory, position + 1 - named),
+            _ => in_register(core, position, class),
+        });
+        let outcome = slice.call_firmware(id, address, arguments, at)?;
+        let changed = slice.firmware.changed_registers(address);
+        match outcome {
+            Outcome::Done(value) => {
+                self.return_from(changed, value);
+                Ok(None)
+            }
+            Outcome::Wait(wake) => Ok(Some(Stop::Waiting(wake))),
+            Outcome::End => Ok(Some(Stop::Ended)),
+            Outcome::Pause => {
+                self.return_from(changed, Value::Unit);
+                Ok(Some(Stop::Paused))
+            }
+        }
+    }
+
+    /// Goes on after a firmware call.
+    fn return_from(&mut self, changed: u64, value: Value) {
+        let state = &mut self.core.state;
+        let back = state.reg(LINK);
+        for reg in (0..Reg::COUNT).filter(|index| changed >> index & 1 != 0).filter_map(Reg::from_index) {
+            state.set_reg(reg, CHANGED);
+        }
+        let slot = value.into_slot();
+        match value.class() {
+            None => {}
+            Some(Class::I32 | Class::F32) => state.set_reg(RESULT, slot as u32),
+            Some(Class::I64 | Class::F64) => {
+                state.set_reg(RESULT, slot as u32);
+                state.set_reg(A5, (slot >> 32) as u32);
+            }
+        }
+        state.set_pc(back);
+    }
+}
+
+/// The branch that left the program for a firmware call.
+fn call_at(core: &Core) -> CodeAddr {
+    code_at(core.state.branched_at())
+}
+
+fn code_at(address: u32) -> CodeAddr {
+    CodeAddr::new(address & !3).expect("it is made a multiple of 4")
+}
+
+/// An argument in registers; 0 after the tenth, which no firmware function has.
+fn in_register(core: &Core, position: usize, class: Class) -> u64 {
+    let Some(reg) = ARGUMENTS.get(position).copied() else { return 0 };
+    let low = u64::from(core.state.reg(reg));
+    match class {
+        Class::I32 | Class::F32 => low,
+        Class::I64 | Class::F64 => low | u64::from(core.state.reg(reg.pair().high())) << 32,
+    }
+}
+
+/// The last named argument of a variadic function, or the address of those after it.
+fn on_stack(core: &Core, memory: &GuestMemory, after_named: usize) -> u64 {
+    let first = core.state.reg(STACK).wrapping_add(4);
+    let named = memory.peek::<u32>(GuestAddr::new(first));
+    u64::from(if after_named == 0 { named } else { first.wrapping_add(4) })
+}

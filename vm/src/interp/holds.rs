@@ -1,0 +1,216 @@
+//! Where a debugger holds contexts: before instructions that it names, after one instruction, after a change in memory.
+//!
+//! A word at which a context is held has an opcode that leaves the execution in a copy of the words that the interpreter executes, so
+//! what is nowhere held runs as fast as ever. To execute one instruction alone, it is the only one in a text of such
+//! words. What is watched for changes is compared after every instruction that can store; those have the opcode too.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use kmotiondef::{CodeAddr, GuestAddr};
+
+use super::code::{Code, Encoded, Words, plain_word};
+use super::context::Context;
+use crate::engine::{ContextId, Slice, Stop};
+use crate::firmware::Firmware;
+use crate::memory::GuestMemory;
+use crate::op::Op;
+use crate::program::Program;
+use crate::trap::TrapKind;
+
+/// Why a context is held.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HoldReason {
+    /// Before an instruction with a breakpoint.
+    Breakpoint,
+    /// After one instruction, as was asked for.
+    Step,
+    /// Something that is watched was changed.
+    Changed {
+        /// Its place in the list that was set.
+        index: usize,
+        /// The instruction that did it; `None` if it was none of this context's.
+        by: Option<CodeAddr>,
+    },
+}
+
+/// A context that is held.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Hold {
+    /// Which one.
+    pub context: ContextId,
+    /// Why.
+    pub reason: HoldReason,
+}
+
+/// Bytes of memory that are compared with what they were.
+#[derive(Clone, Debug)]
+struct WatchedBytes {
+    address: GuestAddr,
+    bytes: Vec<u8>,
+}
+
+impl WatchedBytes {
+    fn is_changed(&self, memory: &GuestMemory) -> bool {
+        let present =
+            |(offset, byte): (usize, &u8)| memory.peek::<u8>(self.address.offset(offset as u32)) != *byte;
+        self.bytes.iter().enumerate().any(present)
+    }
+}
+
+/// Where contexts are held.
+#[derive(Debug, Default)]
+pub(super) struct Holds {
+    breakpoints: BTreeSet<u32>,
+    watched: Vec<WatchedBytes>,
+    stepping: Option<ContextId>,
+    /// Contexts whose present instruction is executed without being held before.
+    pub(super) passes: [bool; ContextId::COUNT],
+    pub(super) hold: Option<Hold>,
+    patched: Vec<(Arc<Program>, Arc<Encoded>)>,
+    scratch: Option<Box<Words>>,
+}
+
+impl Holds {
+    /// Whether anything is held anywhere.
+    pub(super) fn is_active(&self) -> bool {
+        self.stepping.is_some() || !self.breakpoints.is_empty() || !self.watched.is_empty()
+    }
+
+    pub(super) fn set_breakpoints(&mut self, addresses: impl IntoIterator<Item = CodeAddr>) {
+        self.breakpoints = addresses.into_iter().map(CodeAddr::get).collect();
+        self.patched.clear();
+    }
+
+    pub(super) fn set_watched(&mut self, memory: &GuestMemory, ranges: &[(GuestAddr, u32)]) {
+        let bytes = |address: GuestAddr, length: u32| {
+            (0..length).map(|offset| memory.peek::<u8>(address.offset(offset))).collect()
+        };
+        self.watched = ranges
+            .iter()
+            .map(|(address, length)| WatchedBytes { address: *address, bytes: bytes(*address, *length) })
+            .collect();
+        self.patched.clear();
+    }
+
+    pub(super) const fn set_stepping(&mut self, context: Option<ContextId>) {
+        self.stepping = context;
+        if let Some(context) = context {
+            self.passes[context.index()] = true;
+        }
+    }
+
+    /// The first of what is watched that is not what it was; it is from now on what it is.
+    pub(super) fn take_change(&mut self, memory: &GuestMemory) -> Option<usize> {
+        let index = self.watched.iter().position(|watched| watched.is_changed(memory))?;
+        let WatchedBytes { address, bytes } = &mut self.watched[index];
+        for (offset, byte) in bytes.iter_mut().enumerate() {
+            *byte = memory.peek(address.offset(offset as u32));
+        }
+        Some(index)
+    }
+
+    /// The words of a program with those at which contexts are held; `plain` are those without.
+    pub(super) fn words(&mut self, program: &Arc<Program>, plain: Arc<Encoded>) -> Arc<Encoded> {
+        if self.breakpoints.is_empty() && self.watched.is_empty() {
+            return plain;
+        }
+        if let Some((_, words)) = self.patched.iter().find(|(known, _)| Arc::ptr_eq(known, program)) {
+            return Arc::clone(words);
+        }
+        let is_probed = |op: &Op| !self.watched.is_empty() && may_store(op);
+        let is_held =
+            |pc: usize, op: &Op| self.breakpoints.contains(&program.address_of(pc).get()) || is_probed(op);
+        let words = Arc::new(Encoded::held(program.ops(), &is_held));
+        self.patched.push((Arc::clone(program), Arc::clone(&words)));
+        words
+    }
+
+    /// Runs a context until it stops or is held.
+    pub(super) fn resume<F: Firmware + ?Sized>(
+        &mut self,
+        id: ContextId,
+        code: &Code,
+        context: &mut Context,
+        slice: &mut Slice<'_, F>,
+    ) -> Result<Stop, TrapKind> {
+        let me = id.index();
+        if let Some(index) = self.take_change(slice.memory) {
+            return Ok(self.hold(id, HoldReason::Changed { index, by: None }));
+        }
+        super::enter(&code.program, context)?;
+        loop {
+            if self.passes[me] {
+                let at = code.program.address_of(context.calls.pc);
+                let stop = self.single(id, code, context, slice);
+                // A call that waits is the same instruction when it is made again.
+                self.passes[me] = matches!(stop, Ok(Stop::Waiting(_)));
+                let stop = stop?;
+                if stop != Stop::Held {
+                    return Ok(stop);
+                }
+                if let Some(index) = self.take_change(slice.memory) {
+                    return Ok(self.hold(id, HoldReason::Changed { index, by: Some(at) }));
+                }
+            }
+            if self.stepping == Some(id) {
+                self.passes[me] = true;
+                return Ok(self.hold(id, HoldReason::Step));
+            }
+            let stop = super::run(id, &code.program, code.words.words(), context, slice)?;
+            if stop != Stop::Held {
+                return Ok(stop);
+            }
+            self.passes[me] = true;
+            if self.breakpoints.contains(&code.program.address_of(context.calls.pc).get()) {
+                return Ok(self.hold(id, HoldReason::Breakpoint));
+            }
+        }
+    }
+
+    const fn hold(&mut self, context: ContextId, reason: HoldReason) -> Stop {
+        self.hold = Some(Hold { context, reason });
+        Stop::Held
+    }
+
+    /// Executes the present instruction; [`Stop::Held`] before the next.
+    fn single<F: Firmware + ?Sized>(
+        &mut self,
+        id: ContextId,
+        code: &Code,
+        context: &mut Context,
+        slice: &mut Slice<'_, F>,
+    ) -> Result<Stop, TrapKind> {
+        let pc = context.calls.pc;
+        let Some(op) = code.program.ops().get(pc) else { return Err(TrapKind::Unreachable) };
+        let words = self.scratch.get_or_insert_with(super::code::all_held);
+        let place = pc % words.len();
+        let held = std::mem::replace(&mut words[place], plain_word(op));
+        let stop = super::run(id, &code.program, words, context, slice);
+        words[place] = held;
+        stop
+    }
+}
+
+/// Whether an instruction can change memory.
+fn may_store(op: &Op) -> bool {
+    matches!(
+        op,
+        Op::StoreI8 { .. }
+            | Op::StoreI8At { .. }
+            | Op::StoreI16 { .. }
+            | Op::StoreI16At { .. }
+            | Op::StoreI32 { .. }
+            | Op::StoreI32At { .. }
+            | Op::StoreI64 { .. }
+            | Op::StoreI64At { .. }
+            | Op::StoreF32 { .. }
+            | Op::StoreF32At { .. }
+            | Op::StoreF64 { .. }
+            | Op::StoreF64At { .. }
+            | Op::Copy { .. }
+            | Op::Clear { .. }
+            | Op::CallFw { .. }
+            | Op::CallPtr { .. }
+    )
+}

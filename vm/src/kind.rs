@@ -1,0 +1,237 @@
+//! What an instruction is: one word of its row, from which every predicate over instructions follows.
+//!
+//! A question about instructions is a method of [`OpKind`] or a match over it, which names every kind: a new kind is
+//! then a compile error wherever somebody must decide.
+
+use crate::operand::Class;
+
+/// What a load or store moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Width {
+    /// 8 bits, sign-extended.
+    I8S,
+    /// 8 bits, zero-extended.
+    I8U,
+    /// 16 bits, sign-extended.
+    I16S,
+    /// 16 bits, zero-extended.
+    I16U,
+    /// 32 bits of an integer.
+    I32,
+    /// 64 bits of an integer.
+    I64,
+    /// A single.
+    F32,
+    /// A double.
+    F64,
+}
+
+impl Width {
+    /// All widths in the order of their numbers.
+    pub const ALL: [Self; 8] =
+        [Self::I8S, Self::I8U, Self::I16S, Self::I16U, Self::I32, Self::I64, Self::F32, Self::F64];
+
+    /// Number of bytes.
+    #[must_use]
+    pub const fn bytes(self) -> u32 {
+        match self {
+            Self::I8S | Self::I8U => 1,
+            Self::I16S | Self::I16U => 2,
+            Self::I32 | Self::F32 => 4,
+            Self::I64 | Self::F64 => 8,
+        }
+    }
+}
+
+/// Defines the names of operands that are asked for by name.
+macro_rules! operand_names {
+    ($($(#[doc = $doc:literal])+ $name:ident = $text:literal,)*) => {
+        /// A name that operands have in the rows, as far as anybody asks for an operand by its name.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum Name {
+            $($(#[doc = $doc])+ $name,)*
+        }
+
+        impl Name {
+            /// All names.
+            pub const ALL: &[Self] = &[$(Self::$name),*];
+
+            /// As it is written in the rows.
+            #[must_use]
+            pub const fn text(self) -> &'static str {
+                match self {
+                    $(Self::$name => $text,)*
+                }
+            }
+        }
+    };
+}
+
+operand_names! {
+    /// A constant address.
+    Addr = "addr",
+    /// The register with the address of an access.
+    Base = "base",
+    /// The bits of a single.
+    Bits = "bits",
+    /// The register that is assigned.
+    Dst = "dst",
+    /// The function that is called.
+    Func = "func",
+    /// The number of an argument.
+    Index = "index",
+    /// The number of branches of a table, less one.
+    Count = "n",
+    /// The displacement of an access.
+    Off = "off",
+    /// The place of a double in the pool.
+    Pool = "pool",
+    /// The signature of a call.
+    Sig = "sig",
+    /// The register that is copied.
+    Src = "src",
+    /// Where a branch goes.
+    To = "to",
+}
+
+/// The kinds of instructions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OpKind {
+    /// Describes the program; never executed.
+    Structure,
+    /// Spends cycles, and is where the processor can be lost.
+    Charge,
+    /// Assigns a constant.
+    Constant,
+    /// Assigns the bits of another register.
+    Move,
+    /// Assigns the address of a local.
+    Address,
+    /// Computes; a NaN that it yields is that of arithmetic.
+    Arithmetic,
+    /// Changes the sign alone.
+    Negation,
+    /// Computes a value of another class; a NaN that it yields is that of arithmetic.
+    Conversion,
+    /// Loads: from `base + off`, or from `addr`.
+    Load(Width),
+    /// Stores: to `base + off`, or to `addr`.
+    Store(Width),
+    /// Writes to many bytes of memory.
+    Block,
+    /// Goes to `to`.
+    Jump,
+    /// Goes to `to` or on with the next word.
+    Branch,
+    /// Goes on at one of the jumps that follow.
+    Table,
+    /// Passes an argument to the call that follows.
+    Argument(Class),
+    /// Calls a function.
+    Call,
+    /// Takes the result of the call before.
+    Result(Class),
+    /// Returns, with a value of this class if there is one.
+    Return(Option<Class>),
+    /// Stops the program.
+    Stop,
+}
+
+impl OpKind {
+    /// Whether execution never goes on with the next word.
+    #[must_use]
+    pub const fn ends_path(self) -> bool {
+        match self {
+            Self::Jump | Self::Return(_) | Self::Stop => true,
+            Self::Structure
+            | Self::Charge
+            | Self::Constant
+            | Self::Move
+            | Self::Address
+            | Self::Arithmetic
+            | Self::Negation
+            | Self::Conversion
+            | Self::Load(_)
+            | Self::Store(_)
+            | Self::Block
+            | Self::Branch
+            | Self::Table
+            | Self::Argument(_)
+            | Self::Call
+            | Self::Result(_) => false,
+        }
+    }
+
+    /// Whether execution simply goes on with the next word, and the word belongs to no call.
+    #[must_use]
+    pub const fn is_straight(self) -> bool {
+        match self {
+            Self::Structure
+            | Self::Constant
+            | Self::Move
+            | Self::Address
+            | Self::Arithmetic
+            | Self::Negation
+            | Self::Conversion
+            | Self::Load(_)
+            | Self::Store(_)
+            | Self::Block => true,
+            Self::Charge
+            | Self::Jump
+            | Self::Branch
+            | Self::Table
+            | Self::Argument(_)
+            | Self::Call
+            | Self::Result(_)
+            | Self::Return(_)
+            | Self::Stop => false,
+        }
+    }
+
+    /// What is moved between memory and a register.
+    #[must_use]
+    pub const fn width(self) -> Option<Width> {
+        match self {
+            Self::Load(width) | Self::Store(width) => Some(width),
+            Self::Structure
+            | Self::Charge
+            | Self::Constant
+            | Self::Move
+            | Self::Address
+            | Self::Arithmetic
+            | Self::Negation
+            | Self::Conversion
+            | Self::Block
+            | Self::Jump
+            | Self::Branch
+            | Self::Table
+            | Self::Argument(_)
+            | Self::Call
+            | Self::Result(_)
+            | Self::Return(_)
+            | Self::Stop => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::for_each_op;
+
+    macro_rules! define_fields {
+        ($($(#[$doc:meta])* $name:ident = $variant:ident { $($field:ident: $operand:ident),* }, cost $cost:expr, $kind:ident $(($fact:ident))?;)*) => {
+            const FIELDS: &[&str] = &[$($(stringify!($field),)*)*];
+        };
+    }
+
+    for_each_op!(define_fields);
+
+    #[test]
+    fn each_name_is_that_of_an_operand() {
+        for name in Name::ALL {
+            assert!(FIELDS.contains(&name.text()), "{name:?}");
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! What a thread is loaded with, whatever engine runs it.
+
+mod image;
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use kmotiondef::{Cycles, GuestAddr};
+
+use crate::firmware::Pure;
+use crate::program::Program;
+
+pub use self::image::Image;
+
+/// What a thread is loaded with; each kind has its engine.
+#[derive(Clone, Debug)]
+pub enum Loaded {
+    /// Bytecode, for the engine that the machine was made with.
+    Program(Arc<Program>),
+    /// Code of the real processor.
+    Image(Arc<Image>),
+}
+
+impl Loaded {
+    /// The program, if it is one.
+    #[must_use]
+    pub fn program(&self) -> Option<&Arc<Program>> {
+        match self {
+            Self::Program(program) => Some(program),
+            Self::Image(_) => None,
+        }
+    }
+
+    /// The addresses that hold its code, into which no thread may write.
+    #[must_use]
+    pub fn text(&self) -> Range<GuestAddr> {
+        match self {
+            Self::Program(program) => program.text(),
+            Self::Image(image) => image.text(),
+        }
+    }
+
+    /// The addresses that its code lies among.
+    #[must_use]
+    pub fn code(&self) -> Range<GuestAddr> {
+        match self {
+            Self::Program(program) => program.text(),
+            Self::Image(image) => image.code(),
+        }
+    }
+
+    /// Whether a call of `address` is one of its functions.
+    #[must_use]
+    pub fn has_function(&self, address: GuestAddr) -> bool {
+        match self {
+            Self::Program(program) => program.function_at(address).is_some(),
+            Self::Image(image) => image.has_function(address),
+        }
+    }
+
+    /// The most cycles spent from one instant at which it can lose the processor to the next.
+    pub(crate) fn longest_step(&self, pure: &dyn Fn(GuestAddr) -> Option<Pure>) -> Cycles {
+        match self {
+            Self::Program(program) => program.longest_step(pure),
+            // It takes no long slices.
+            Self::Image(_) => Cycles::default(),
+        }
+    }
+}

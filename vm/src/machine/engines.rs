@@ -1,0 +1,98 @@
+//! The engines of a machine: a context is run by the engine of what its thread is loaded with.
+
+use kmotiondef::{CodeAddr, GuestAddr};
+
+use crate::dsp::{DspEngine, DspSnapshot};
+use crate::engine::{ContextId, Engine, Executor, ForeignSnapshot, Slice, Stack, Stop};
+use crate::firmware::Firmware;
+use crate::loaded::Loaded;
+use crate::trap::TrapKind;
+
+/// The contexts of all engines as they were; `S` is what the engine of bytecode keeps of its own.
+#[derive(Debug)]
+pub(super) struct EnginesSnapshot<S> {
+    programs: S,
+    images: DspSnapshot,
+}
+
+/// One engine for each kind of [`Loaded`].
+///
+/// Whoever names a context says what it is loaded with, and by that whose context it is.
+#[derive(Debug, Default)]
+pub(super) struct Engines<E> {
+    /// Runs bytecode.
+    pub(super) programs: E,
+    /// Runs real images.
+    pub(super) images: DspEngine,
+}
+
+impl<E: Engine> Engines<E> {
+    /// Gives `id` a fresh context at the function `entry` of `loaded`.
+    ///
+    /// # Errors
+    /// [`TrapKind::BadCallTarget`] if there is no such function.
+    pub(super) fn start<F: Firmware + ?Sized>(
+        &mut self,
+        id: ContextId,
+        loaded: &Loaded,
+        entry: GuestAddr,
+        stack: Stack,
+        firmware: &F,
+    ) -> Result<(), TrapKind> {
+        match loaded {
+            Loaded::Program(program) => self.programs.start(id, program, entry, stack, firmware),
+            Loaded::Image(image) => self.images.start(id, image, entry, stack, firmware),
+        }
+    }
+
+    /// Runs `id` until it stops.
+    pub(super) fn resume<F: Firmware + ?Sized>(
+        &mut self,
+        id: ContextId,
+        loaded: &Loaded,
+        slice: &mut Slice<'_, F>,
+    ) -> Stop {
+        match loaded {
+            Loaded::Program(_) => self.programs.resume(id, slice),
+            Loaded::Image(_) => self.images.resume(id, slice),
+        }
+    }
+
+    /// All contexts as they are.
+    pub(super) fn snapshot(&self) -> EnginesSnapshot<E::Snapshot> {
+        EnginesSnapshot { programs: self.programs.snapshot(), images: self.images.snapshot() }
+    }
+
+    /// Makes all contexts what they were.
+    ///
+    /// # Errors
+    /// [`ForeignSnapshot`] if they cannot go on here; nothing has changed then.
+    pub(super) fn restore(&mut self, snapshot: &EnginesSnapshot<E::Snapshot>) -> Result<(), ForeignSnapshot> {
+        self.programs.restore(&snapshot.programs)?;
+        self.images.restore(&snapshot.images)
+    }
+
+    /// Whether `id` may be resumed with a [long slice](Slice::is_long).
+    pub(super) fn takes_long_slices(&self, id: ContextId, loaded: &Loaded) -> bool {
+        match loaded {
+            Loaded::Program(_) => self.programs.takes_long_slices(id),
+            Loaded::Image(_) => self.images.takes_long_slices(id),
+        }
+    }
+
+    /// The most bytes of its stack that `id` has used since its start.
+    pub(super) fn stack_used(&self, id: ContextId, loaded: &Loaded) -> u32 {
+        match loaded {
+            Loaded::Program(_) => self.programs.stack_used(id),
+            Loaded::Image(_) => self.images.stack_used(id),
+        }
+    }
+
+    /// Where `id` is: its instruction, then the calls that led there, innermost first.
+    pub(super) fn backtrace(&self, id: ContextId, loaded: &Loaded) -> Vec<CodeAddr> {
+        match loaded {
+            Loaded::Program(_) => self.programs.backtrace(id),
+            Loaded::Image(_) => self.images.backtrace(id),
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! A tick that a debugger holds: it stops between two instructions of a program and is gone on with later.
+//!
+//! Nothing else of the board moves meanwhile, and the tick goes on as if it had never been held.
+
+use kmotiondef::{Cycles, GuestAddr, ThreadId};
+
+use super::{Machine, Window};
+use crate::engine::{ContextId, Engine};
+use crate::firmware::Firmware;
+use crate::thread::{Progress, ThreadState};
+use crate::wake::Wake;
+
+/// Where a tick is held.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Held {
+    /// In the call-back.
+    Callback {
+        /// Its function.
+        address: GuestAddr,
+        /// When it began.
+        begin: Cycles,
+        /// What is left of its budget.
+        left: Cycles,
+    },
+    /// In the slice of a thread.
+    Slice {
+        /// The thread.
+        thread: ThreadId,
+        /// Its slice.
+        window: Window,
+        /// What is left of it.
+        left: Cycles,
+        /// The wake that came true, if the thread is in a waiting call.
+        woken: Option<Wake>,
+    },
+}
+
+impl<F: Firmware, E: Engine> Machine<F, E> {
+    /// Whose program the tick is held in, and the instant; `None` between two ticks.
+    #[must_use]
+    pub fn held(&self) -> Option<(ContextId, Cycles)> {
+        Some(match self.held? {
+            Held::Callback { begin, left, .. } => {
+                (ContextId::CALLBACK, begin + (super::CALLBACK_LIMIT - left))
+            }
+            Held::Slice { thread, window, left, .. } => (ContextId::of(thread), window.end - left),
+        })
+    }
+
+    /// How much a computer has had to do for the board since power-up: cycles of programs, and what a tick takes
+    /// besides in such cycles. Time that is skipped is no work. No snapshot sets it back.
+    #[must_use]
+    pub const fn work(&self) -> u64 {
+        self.work
+    }
+
+    /// Goes on with the tick that was held.
+    pub(super) fn go_on(&mut self, held: Held) {
+        match held {
+            Held::Callback { address, begin, left } => {
+                if let Some(spent) = self.resume_callback(address, begin, left) {
+                    self.after_callback(begin, spent);
+                }
+            }
+            Held::Slice { thread, window, left, woken } => {
+                // Somebody may have stopped or started the thread meanwhile.
+                let state = self.threads.state(thread);
+                if matches!(state, ThreadState::Active(Progress::Going | Progress::Waiting(_))) {
+                    self.run_thread(thread, window, left, woken);
+                }
+            }
+        }
+    }
+}
+
+impl<F: Firmware> Machine<F> {
+    /// Holds contexts after these bytes, addresses and how many, are not what they are now; and after no others.
+    pub fn set_watched(&mut self, ranges: &[(GuestAddr, u32)]) {
+        self.engines.programs.set_watched(&self.memory, ranges);
+    }
+
+    /// Which of the watched bytes have changed since that was last said.
+    pub fn take_change(&mut self) -> Option<usize> {
+        self.engines.programs.take_change(&self.memory)
+    }
+}

@@ -1,0 +1,89 @@
+//! The machine as it was at an instant, between two ticks or where one is held, to go on from there as often as one
+//! likes.
+
+use kmotiondef::{Cycles, ThreadId, Ticks};
+
+use super::Machine;
+use super::engines::EnginesSnapshot;
+use super::held::Held;
+use crate::engine::{Engine, ForeignSnapshot};
+use crate::firmware::Firmware;
+use crate::loaded::Loaded;
+use crate::memory::snapshot::MemorySnapshot;
+use crate::scheduler::{ThreadSet, Turn};
+use crate::thread::Threads;
+
+/// Everything that a machine holds besides its settings and its firmware; `S` is the snapshot of its engine.
+#[derive(Debug)]
+pub struct Snapshot<S> {
+    memory: MemorySnapshot,
+    threads: Threads,
+    loaded: [Option<Loaded>; ThreadId::MAX as usize],
+    longest_steps: [Cycles; ThreadId::MAX as usize],
+    engines: EnginesSnapshot<S>,
+    tick: Ticks,
+    turn: Turn,
+    stack_reported: ThreadSet,
+    held: Option<Held>,
+}
+
+impl<S> Snapshot<S> {
+    /// Number of servo interrupts until the instant.
+    #[must_use]
+    pub const fn tick(&self) -> Ticks {
+        self.tick
+    }
+
+    /// Whether a tick is held.
+    #[must_use]
+    pub const fn is_held(&self) -> bool {
+        self.held.is_some()
+    }
+
+    /// Guest memory at the instant.
+    #[must_use]
+    pub const fn memory(&self) -> &MemorySnapshot {
+        &self.memory
+    }
+}
+
+impl<F: Firmware, E: Engine> Machine<F, E> {
+    /// The machine as it is, without its firmware: whoever owns that keeps a copy of it beside.
+    ///
+    /// Memory is shared with earlier snapshots page by page, and so is the code of programs.
+    pub fn snapshot(&mut self) -> Snapshot<E::Snapshot> {
+        Snapshot {
+            memory: self.memory.snapshot(),
+            threads: self.threads.clone(),
+            loaded: self.loaded.clone(),
+            longest_steps: self.longest_steps,
+            engines: self.engines.snapshot(),
+            tick: self.tick,
+            turn: self.turn,
+            stack_reported: self.stack_reported,
+            held: self.held,
+        }
+    }
+
+    /// Makes the machine what it was when `snapshot` was taken; it goes on from there exactly as it went on then.
+    ///
+    /// The firmware must be made what it was as well. Snapshots may be restored in any order, each as often as one
+    /// likes. One of a machine of bytecode may also be restored in another machine with the same settings.
+    ///
+    /// # Errors
+    /// [`ForeignSnapshot`] for a snapshot of another machine with native threads; nothing has changed then.
+    pub fn restore(&mut self, snapshot: &Snapshot<E::Snapshot>) -> Result<(), ForeignSnapshot> {
+        let Snapshot { memory, threads, loaded, longest_steps, engines, tick, turn, stack_reported, held } =
+            snapshot;
+        self.engines.restore(engines)?;
+        self.memory.restore(memory);
+        self.threads.clone_from(threads);
+        self.loaded.clone_from(loaded);
+        self.longest_steps = *longest_steps;
+        self.tick = *tick;
+        self.turn = *turn;
+        self.stack_reported = *stack_reported;
+        self.held = *held;
+        Ok(())
+    }
+}

@@ -1,0 +1,170 @@
+//! Guest memory as it was at an instant, in pages that snapshots share.
+//!
+//! Compiled code writes to memory without saying where, so a snapshot compares every page with the one that the last
+//! snapshot has: a page that is the same is shared. RAM that nothing was ever written to is compared with one page of
+//! zeros, which takes the host next to no time.
+
+use std::sync::Arc;
+
+use super::flash::{self, Flash};
+use super::{GuestMemory, IRAM_SIZE, SDRAM_SIZE};
+use crate::protection::Protection;
+
+/// Bytes of a page.
+const PAGE: usize = 0x1000;
+
+type Page = [u8; PAGE];
+
+const _: () = assert!(SDRAM_SIZE.is_multiple_of(PAGE) && IRAM_SIZE.is_multiple_of(PAGE));
+const _: () = assert!(flash::SIZE.is_multiple_of(PAGE));
+
+/// A region of memory.
+#[derive(Clone, Debug)]
+struct Pages(Vec<Arc<Page>>);
+
+impl Pages {
+    /// A region of `size` bytes that all are `byte`.
+    fn filled(byte: u8, size: usize) -> Self {
+        let page = Arc::new([byte; PAGE]);
+        Self(vec![page; size / PAGE])
+    }
+
+    /// The region as it is, sharing with `before` what is the same.
+    fn of(region: &[u8], before: &Self) -> Self {
+        let pages = region.as_chunks::<PAGE>().0.iter().zip(&before.0);
+        Self(
+            pages
+                .map(|(page, known)| if *page == **known { Arc::clone(known) } else { Arc::new(*page) })
+                .collect(),
+        )
+    }
+
+    /// Makes the region what it was; pages that are the same are not written to.
+    fn put_back(&self, region: &mut [u8]) {
+        for (page, saved) in region.as_chunks_mut::<PAGE>().0.iter_mut().zip(&self.0) {
+            if *page != **saved {
+                *page = **saved;
+            }
+        }
+    }
+
+    /// Bytes of the pages that `other` does not share.
+    fn bytes_beyond(&self, other: &Self) -> usize {
+        self.0.iter().zip(&other.0).filter(|(page, known)| !Arc::ptr_eq(page, known)).count() * PAGE
+    }
+}
+
+/// The regions.
+#[derive(Clone, Debug)]
+pub(super) struct Regions {
+    sdram: Pages,
+    iram: Pages,
+    flash: Pages,
+}
+
+impl Default for Regions {
+    /// Those of memory at power-up.
+    fn default() -> Self {
+        Self {
+            sdram: Pages::filled(0, SDRAM_SIZE),
+            iram: Pages::filled(0, IRAM_SIZE),
+            flash: Pages::filled(flash::ERASED_BYTE, flash::SIZE),
+        }
+    }
+}
+
+/// Guest memory as it was at an instant.
+#[derive(Clone, Debug)]
+pub struct MemorySnapshot {
+    regions: Regions,
+    is_flash_erased: bool,
+    protection: Protection,
+    is_touched: bool,
+}
+
+impl MemorySnapshot {
+    /// Bytes of the pages that this snapshot has beside those that it shares with `other`.
+    #[must_use]
+    pub fn bytes_beyond(&self, other: &Self) -> usize {
+        let Regions { sdram, iram, flash } = &self.regions;
+        sdram.bytes_beyond(&other.regions.sdram)
+            + iram.bytes_beyond(&other.regions.iram)
+            + flash.bytes_beyond(&other.regions.flash)
+    }
+}
+
+impl GuestMemory {
+    /// All of memory as it is, with the protection of program text.
+    ///
+    /// It takes as much of the host's memory as has changed since the last snapshot of this memory was taken or
+    /// restored, in pages of 4 KiB, and a list of the pages, which is less than 40 KiB.
+    pub fn snapshot(&mut self) -> MemorySnapshot {
+        let before = self.last.take().unwrap_or_default();
+        let regions = Regions {
+            sdram: Pages::of(&self.sdram[..], &before.sdram),
+            iram: Pages::of(&self.iram[..], &before.iram),
+            flash: if self.flash.is_erased() {
+                before.flash
+            } else {
+                Pages::of(self.flash.bytes(), &before.flash)
+            },
+        };
+        self.last = Some(regions.clone());
+        MemorySnapshot {
+            regions,
+            is_flash_erased: self.flash.is_erased(),
+            protection: self.protection.clone(),
+            is_touched: self.is_touched,
+        }
+    }
+
+    /// Makes memory what it was when `snapshot` was taken, here or in another memory.
+    pub fn restore(&mut self, snapshot: &MemorySnapshot) {
+        let MemorySnapshot { regions, is_flash_erased, protection, is_touched } = snapshot;
+        regions.sdram.put_back(&mut self.sdram[..]);
+        regions.iram.put_back(&mut self.iram[..]);
+        if *is_flash_erased {
+            self.flash = Flash::default();
+        } else {
+            regions.flash.put_back(self.flash.bytes_mut());
+        }
+        self.protection.clone_from(protection);
+        self.is_touched = *is_touched;
+        self.last = Some(regions.clone());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use kmotiondef::GuestAddr;
+    use kmotiondef::map::{FLASH, IRAM, SDRAM};
+
+    use super::*;
+
+    #[test]
+    fn memory_is_what_it_was_and_shares_what_did_not_change() {
+        let mut memory = GuestMemory::new();
+        let empty = memory.snapshot();
+        memory.poke(SDRAM.base.offset(0x12_3456), 1_u8);
+        let first = memory.snapshot();
+        memory.poke(SDRAM.base.offset(0x12_3456), 2_u8);
+        memory.poke(IRAM.base.offset(4), 3_u32);
+        memory.poke(FLASH.base.offset(8), 4_u32);
+        let changed = memory.clone();
+        let second = memory.snapshot();
+        assert_eq!(first.bytes_beyond(&empty), PAGE);
+        assert_eq!(second.bytes_beyond(&first), 3 * PAGE);
+        assert_eq!(memory.snapshot().bytes_beyond(&second), 0);
+        memory.restore(&first);
+        let peek = |memory: &GuestMemory, addr: GuestAddr| memory.peek::<u8>(addr);
+        assert_eq!(peek(&memory, SDRAM.base.offset(0x12_3456)), 1);
+        assert_eq!((peek(&memory, IRAM.base.offset(4)), peek(&memory, FLASH.base.offset(8))), (0, 0xff));
+        for _ in 0..2 {
+            memory.restore(&second);
+            assert!(memory == changed);
+        }
+        let mut other = GuestMemory::new();
+        other.restore(&second);
+        assert!(other == changed);
+    }
+}

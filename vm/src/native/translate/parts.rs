@@ -1,0 +1,58 @@
+//! What a translator is made of: what it knows of registers, calls, second translations and the frame.
+
+use std::collections::BTreeMap;
+
+use cranelift_codegen::ir::{FuncRef, MemFlagsData, SigRef, Value};
+use cranelift_frontend::Variable;
+
+use super::fast::{Fast, Way};
+use super::turns::Plan;
+
+/// What the registers of the program are.
+pub(super) struct Registers {
+    pub(super) variables: Vec<Variable>,
+    pub(super) budget: Variable,
+    /// The floating registers in which any NaN is the one that arithmetic makes.
+    pub(super) lax: Vec<bool>,
+    /// Results of this block's floating arithmetic in other registers, before their NaNs were made the same.
+    pub(super) raw: BTreeMap<usize, Value>,
+}
+
+/// What calls and requests need.
+pub(super) struct CallParts {
+    /// The functions of the program that this one has called so far.
+    pub(super) callees: BTreeMap<usize, FuncRef>,
+    pub(super) request: FuncRef,
+    pub(super) leave: SigRef,
+    /// Arguments of the next call.
+    pub(super) arguments: Vec<Value>,
+    /// Result of the call directly before, as a slot or as it is.
+    pub(super) result: Option<Value>,
+}
+
+/// What is translated a second time.
+#[derive(Default)]
+pub(super) struct Twice {
+    /// The loops that are translated in several turns at once, by their first word, and the one at hand.
+    pub(super) plans: BTreeMap<usize, Plan>,
+    pub(super) fast: Option<Fast>,
+    /// Whether what is translated is there for the rare case that fast turns cannot go on.
+    pub(super) is_rare: bool,
+    /// What is still to be translated of the ways that the next branch takes.
+    pub(super) ways: Vec<Way>,
+}
+
+/// Flags of accesses to the state and to guest memory, which never overlap.
+pub(super) struct Flags {
+    pub(super) state: MemFlagsData,
+    pub(super) guest: MemFlagsData,
+}
+
+/// Where the machine function has what belongs to the call.
+pub(super) struct FrameParts {
+    pub(super) state: Value,
+    /// Address of this call's frame in guest memory.
+    pub(super) stack_pointer: Value,
+    /// The entry of the table of calls that belongs to the frame.
+    pub(super) call_entry: Value,
+}

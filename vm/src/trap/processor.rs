@@ -1,0 +1,48 @@
+//! What stops the processor: code that no compiler makes.
+
+use c67x::Reg;
+
+/// Why a packet could not be executed.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Fault {
+    /// A word that is not an instruction.
+    #[error("the word {word:08X} at 0x{at:08X} is not an instruction of this processor")]
+    BadWord {
+        /// Its address.
+        at: u32,
+        /// The word.
+        word: u32,
+    },
+    /// A packet that does not end after eight instructions.
+    #[error("the packet at 0x{at:08X} has more than eight instructions")]
+    LongPacket {
+        /// Its address.
+        at: u32,
+    },
+    /// A branch to where no instruction can be.
+    #[error("branch to 0x{target:08X}, which is not a multiple of 4")]
+    OddBranch {
+        /// Where it leads.
+        target: u32,
+    },
+    /// Two branches taken at once.
+    #[error("two branches are taken in the same cycle, to 0x{first:08X} and 0x{second:08X}")]
+    TwoBranches {
+        /// Where one leads.
+        first: u32,
+        /// Where the other leads.
+        second: u32,
+    },
+    /// Two results for one register at once.
+    #[error("two results are written to {reg} in the same cycle")]
+    TwoWriters {
+        /// The register.
+        reg: Reg,
+    },
+    /// Code that keeps interrupts off for ever, which on the board stops servo, console and all threads.
+    #[error("{cycles} cycles without a place where an interrupt is possible: the board's servo stands still")]
+    NoInterrupts {
+        /// How long.
+        cycles: u64,
+    },
+}
