@@ -90,7 +90,7 @@ fn recursion_has_no_worst_chain() {
 }
 
 #[test]
-fn an_image_of_the_vendors_compiler_shows_all_but_the_code() {
+fn an_image_of_the_vendors_compiler_shows_its_parts() {
     let scratch = Scratch::new("inspect-vendor");
     scratch.write("tiny(1).out", vendor::image());
     let text = succeed(&scratch, &["inspect", "--headers", "--lines", "-d", "tiny(1).out"]);
@@ -105,6 +105,41 @@ fn an_image_of_the_vendors_compiler_shows_all_but_the_code() {
     ] {
         assert!(symbols.contains(line), "{line:?} in:\n{symbols}");
     }
+}
+
+#[test]
+fn cycles_of_functions_and_loops_are_counted_in_the_code() {
+    let scratch = Scratch::new("cycles");
+    let source = "#include \"KMotionDef.h\"
+int total(int *a, int n)
+{
+  int i, s = 0;
+  for (i = 0; i < n; i++) s += a[i];
+  return s;
+}
+int a[4];
+main()
+{
+  for (;;) {
+    WaitNextTimeSlice();
+    persist.UserData[0] = total(a, 4);
+  }
+}
+";
+    scratch.write("p.c", source);
+    succeed(&scratch, &["build", "p.c", "--asm"]);
+    let listing = std::fs::read_to_string(scratch.path().join("p(1).asm")).expect("it is written");
+    for part in ["main: ; 800500", "; p.c:5: for (i = 0; i < n; i++) s += a[i];", " LDW .D", "; loop, "] {
+        assert!(listing.contains(part), "{part:?} in:\n{listing}");
+    }
+    let table = succeed(&scratch, &["cycles", "p.c"]);
+    assert_eq!(table, succeed(&scratch, &["cycles", "p(1).out"]), "of the source and of the image");
+    assert!(listing.starts_with(&table), "the listing begins with the table:\n{listing}");
+    for part in ["a turn of the loop at line 5\n", ", without WaitNextTimeSlice\n", "main, "] {
+        assert!(table.contains(part), "{part:?} in:\n{table}");
+    }
+    let output = cc67(&scratch, ["build", "--target", "sim", "--asm", "p.c"]);
+    assert!(output.code != 0 && output.stderr.contains("`--asm` needs the controller's code"), "{output:?}");
 }
 
 #[test]

@@ -20,6 +20,9 @@ impl Inspection {
     /// The instructions of every function, or of the one called `only`.
     #[must_use]
     pub fn disassembly(&self, sources: &dyn Sources, only: Option<&str>) -> String {
+        if self.image.target == coff::Target::C6000 {
+            return self.assembly(sources, only);
+        }
         let program = match &self.program {
             Ok(program) => program,
             Err(reason) => return format!("no disassembly: {reason}\n"),

@@ -24,6 +24,7 @@ pub struct SourceLine {
 pub(super) fn collect(image: &Image, symbols: &[Entry]) -> Vec<SourceLine> {
     let functions: Vec<_> = symbols.iter().filter(|entry| is_function(image, entry)).collect();
     let mut lines = Vec::new();
+    let is_vendors = image.target == Target::C6000 && has_no_parallel(image);
     for section in &image.sections {
         let mut position = 0;
         for entry in &section.lines {
@@ -36,7 +37,7 @@ pub(super) fn collect(image: &Image, symbols: &[Entry]) -> Vec<SourceLine> {
             let function = after.checked_sub(1).and_then(|index| functions.get(index));
             lines.push(SourceLine {
                 address: *address,
-                line: statement_line(image.target, position, u32::from(line.get())),
+                line: statement_line(is_vendors, position, u32::from(line.get())),
                 file: function.and_then(|function| function.file.clone()),
                 function: function.map(|function| function.name.clone()),
             });
@@ -55,8 +56,8 @@ fn is_function(image: &Image, entry: &Entry) -> bool {
 
 /// The vendor's compiler pairs every address but a function's first with the line behind the
 /// statement (`coff.md` section 5 of the specification).
-const fn statement_line(target: Target, position: usize, line: u32) -> u32 {
-    if target.0 == Target::C6000.0 && position > 1 { line.saturating_sub(1) } else { line }
+const fn statement_line(is_vendors: bool, position: usize, line: u32) -> u32 {
+    if is_vendors && position > 1 { line.saturating_sub(1) } else { line }
 }
 
 impl Inspection {
@@ -86,4 +87,11 @@ impl Inspection {
         }
         out
     }
+}
+
+/// Whether no instruction executes in parallel with another, as in all code of the vendor's compiler; ours pads packets
+/// with parallel instructions even where nothing is optimised.
+fn has_no_parallel(image: &Image) -> bool {
+    let words = image.section(".text").map(|text| text.data().as_chunks::<4>().0).unwrap_or_default();
+    words.iter().all(|word| u32::from_le_bytes(*word) & c67x::PARALLEL == 0)
 }

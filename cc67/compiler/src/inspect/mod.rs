@@ -1,14 +1,16 @@
 //! What an image tells about itself.
 //!
 //! [`Inspection`] takes an image apart once: functions, objects, lines, and for images of our own
-//! the verified program, from which disassembly, calls and stack depth follow. Machine code for
-//! the DSP has everything but these three. The modules beside this one put parts of it into words.
+//! the verified program, from which disassembly, calls and stack depth follow. Code for the controller's processor has
+//! packets in their place, from which the listing and the cycles follow. The modules beside this one put parts of it into words.
 
 mod calls;
 mod compare;
+mod cycles;
 mod disassembly;
 mod json;
 mod lines;
+mod machine;
 mod stack;
 mod symbols;
 
@@ -115,7 +117,7 @@ fn program(image: &Image) -> Result<Program, String> {
     match image.target {
         Target::CC67 if image.program.is_none() => return Err("the object is not linked".to_owned()),
         Target::CC67 => {}
-        Target::C6000 => return Err("machine code of the DSP is not disassembled".to_owned()),
+        Target::C6000 => return Err("it is code for the controller's processor, not bytecode".to_owned()),
         other => return Err(format!("code for target {other}")),
     }
     let text = image.section(".text").ok_or("there is no section .text")?;

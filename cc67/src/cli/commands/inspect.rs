@@ -90,7 +90,7 @@ pub(super) fn inspect(arguments: &InspectArguments) -> Result<Exit> {
         return Ok(Exit::Success);
     }
     let folder = arguments.file.parent().unwrap_or(Path::new(""));
-    let sources = Folder(arguments.sources.clone().unwrap_or_else(|| folder.to_owned()));
+    let sources = Folder::new(arguments.sources.as_deref().unwrap_or(folder));
     let nothing = !(arguments.headers
         || arguments.symbols
         || arguments.raw
@@ -154,7 +154,13 @@ pub(super) fn read_image(path: &Path) -> Result<Image> {
 }
 
 /// Source files in a folder.
-struct Folder(PathBuf);
+pub(super) struct Folder(PathBuf);
+
+impl Folder {
+    pub(super) fn new(folder: &Path) -> Self {
+        Self(folder.to_owned())
+    }
+}
 
 impl Sources for Folder {
     fn text(&self, name: &str) -> Option<String> {

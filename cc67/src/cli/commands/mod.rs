@@ -6,6 +6,7 @@ mod build;
 mod check;
 mod compare;
 mod console;
+mod cycles;
 mod debug;
 mod diff;
 mod drop_in;
@@ -71,6 +72,8 @@ enum Command {
     Debug(Box<debug::DebugArguments>),
     /// Show what is in an image: headers, symbols, lines, instructions, calls, stack
     Inspect(inspect::InspectArguments),
+    /// Show what functions and loops cost on the controller's processor, from the code itself
+    Cycles(cycles::CyclesArguments),
     /// Run programs on the modelled firmware and on your own firmware file, and show where they differ
     Compare(Box<compare::CompareArguments>),
     /// Show how two images differ
@@ -106,6 +109,7 @@ impl Command {
             Self::Live(arguments) => live::live(arguments),
             Self::Debug(arguments) => debug::debug(arguments),
             Self::Inspect(arguments) => inspect::inspect(arguments),
+            Self::Cycles(arguments) => cycles::cycles(arguments),
             Self::Compare(arguments) => compare::compare(arguments),
             Self::Diff(arguments) => diff::diff(arguments),
             Self::Firmware(arguments) => firmware::firmware(arguments),

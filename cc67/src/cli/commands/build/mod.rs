@@ -11,6 +11,7 @@ use clap::{Args, ValueEnum};
 use coff::Image;
 use kmotiondef::ThreadId;
 
+use super::inspect::Folder;
 use crate::cli::args::compiler::CompilerArguments;
 use crate::cli::compile::units;
 use crate::cli::io::exit::Exit;
@@ -18,6 +19,7 @@ use crate::cli::io::output;
 use crate::cli::report::diagnostics;
 use compiler::diag::levels::Levels;
 use compiler::image::{self, download, map};
+use compiler::inspect::Inspection;
 use compiler::link::Linked;
 use compiler::object::Object;
 use compiler::target::Target;
@@ -41,6 +43,9 @@ pub(super) struct BuildArguments {
     /// Also write a map: what stands where, and what is largest
     #[arg(long)]
     map: bool,
+    /// Also write the instructions with their packets, units and cycles, FILE(N).asm; of the controller's code alone
+    #[arg(long)]
+    asm: bool,
     /// Also write the commands that download the program to a controller's thread
     #[arg(long)]
     download_script: bool,
@@ -62,6 +67,8 @@ enum Emit {
     Bytecode,
     /// What stands where, FILE(N).map
     Map,
+    /// The instructions of the controller's code with packets, units and cycles, FILE(N).asm
+    Asm,
     /// Commands that download the program, FILE(N).kmd
     Download,
     /// A stand-alone executable for this computer, FILE; needs `--target sim` and `cc`. With `-o NAME.o` the host's
@@ -111,6 +118,10 @@ impl BuildArguments {
     /// What the controller's code cannot be made into.
     fn check_target(&self, emit: &[Emit]) -> Result<()> {
         if self.target() == Target::Sim {
+            ensure!(
+                !emit.contains(&Emit::Asm),
+                "`--asm` needs the controller's code: leave out `--target sim`"
+            );
             return Ok(());
         }
         for (kind, name) in [(Emit::Bytecode, "bytecode"), (Emit::Native, "native")] {
@@ -144,6 +155,9 @@ impl BuildArguments {
         }
         if self.map {
             emit.push(Emit::Map);
+        }
+        if self.asm {
+            emit.push(Emit::Asm);
         }
         if self.download_script {
             emit.push(Emit::Download);
@@ -187,6 +201,12 @@ impl BuildArguments {
             match kind {
                 Emit::Image => output::write(&program, &bytes)?,
                 Emit::Map => output::write(&names::beside(&program, "map"), map::render(linked).as_bytes())?,
+                Emit::Asm => {
+                    let inspection = Inspection::read(&bytes).context("the image that was just made")?;
+                    let folder = Folder::new(first.parent().unwrap_or(Path::new("")));
+                    let text = inspection.cycles() + "\n" + &inspection.assembly(&folder, None);
+                    output::write(&names::beside(&program, "asm"), text.as_bytes())?;
+                }
                 Emit::Bytecode => {
                     let text = vm::text::disassemble(&linked.text.bytes);
                     output::write(&names::beside(&program, "txt"), text.as_bytes())?;

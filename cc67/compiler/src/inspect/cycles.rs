@@ -1,0 +1,230 @@
+//! What the processor's code costs: cycles of functions and of the turns of loops, and the listing that shows why.
+//!
+//! The cycles are those of the packets (`c67x.md` section 5); what memory makes the processor wait comes on top. Where
+//! the code can take several ways, the shortest and the longest are given; a loop inside counts as one turn, a call as
+//! nothing but the branch.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+use super::disassembly::Sources;
+use super::machine::{self, Block, Called, Routine};
+use super::{Inspection, calls::firmware_name};
+
+/// Cycles between two interrupts of the servo: 90 µs at 200 MHz.
+const SLICE: u32 = 18_000;
+
+/// A loop: a jump back to a block before it.
+#[derive(Debug)]
+struct Loop {
+    first: usize,
+    last: usize,
+    /// The shortest and the longest turn.
+    turn: (u32, u32),
+}
+
+impl Inspection {
+    /// Cycles of every function and loop, as a table.
+    #[must_use]
+    pub fn cycles(&self) -> String {
+        let functions = match machine::functions(self) {
+            Ok(functions) => functions,
+            Err(reason) => return format!("no cycles: {reason}\n"),
+        };
+        let mut out = format!("cycles at 200 MHz; share of the {SLICE} between two interrupts (90 µs)\n");
+        // Writing to a string cannot fail.
+        let _ = writeln!(out, "{:>13} {:>8}", "cycles", "share");
+        for code in &functions {
+            let own = code.path(0, None).unwrap_or_default();
+            let _ = writeln!(out, "{}  {}, {} bytes", span(own), code.name, code.bytes);
+            for found in code.loops() {
+                let lines = self.lines_of(code, &found);
+                let _ = write!(out, "{}    a turn of the loop{lines}", span(found.turn));
+                let calls = self.called(&code.blocks[found.first..=found.last]);
+                let _ = match calls.as_str() {
+                    "" => writeln!(out),
+                    calls => writeln!(out, ", without {calls}"),
+                };
+            }
+        }
+        out
+    }
+
+    /// The packets of every function, or of one, with units, cycles and the lines of the source.
+    #[must_use]
+    pub fn assembly(&self, sources: &dyn Sources, only: Option<&str>) -> String {
+        let functions = match machine::functions(self) {
+            Ok(functions) => functions,
+            Err(reason) => return format!("no assembly: {reason}\n"),
+        };
+        let mut listing = Listing { inspection: self, sources, files: BTreeMap::new(), out: String::new() };
+        for code in functions.iter().filter(|code| only.is_none_or(|only| only == code.name)) {
+            listing.function(code);
+        }
+        listing.out
+    }
+
+    /// " at line 12" or " at lines 12 to 15".
+    fn lines_of(&self, code: &Routine, found: &Loop) -> String {
+        let packets = code.blocks[found.first].packets.start..code.blocks[found.last].packets.end;
+        let lines =
+            || code.packets[packets.clone()].iter().filter_map(|packet| Some(self.line_at(packet.at)?.line));
+        match (lines().min(), lines().max()) {
+            (Some(first), Some(last)) if first == last => format!(" at line {first}"),
+            (Some(first), Some(last)) => format!(" at lines {first} to {last}"),
+            _ => String::new(),
+        }
+    }
+
+    /// The names of what blocks call.
+    fn called(&self, blocks: &[Block]) -> String {
+        let mut names: Vec<String> =
+            blocks.iter().filter_map(|block| Some(self.callee(block.call?))).collect();
+        names.sort();
+        names.dedup();
+        names.join(", ")
+    }
+
+    fn callee(&self, call: Called) -> String {
+        match call {
+            Called::At(address) => firmware_name(self, machine::beyond(&self.image, address)),
+            Called::Pointer => "what a pointer calls".to_owned(),
+        }
+    }
+}
+
+/// "7" or "7–20" cycles, and the share of a slice.
+fn span((least, most): (u32, u32)) -> String {
+    let cycles = if least == most { most.to_string() } else { format!("{least}–{most}") };
+    format!("{cycles:>13} {:7.2}%", f64::from(most) * 100.0 / f64::from(SLICE))
+}
+
+impl Routine {
+    /// The shortest and the longest way forward from a block to the end of the function, or to the jump back to it.
+    fn path(&self, from: usize, within: Option<usize>) -> Option<(u32, u32)> {
+        let last = within.unwrap_or(self.blocks.len() - 1);
+        let mut paths: Vec<Option<(u32, u32)>> = vec![None; self.blocks.len()];
+        for index in (from..=last).rev() {
+            let block = &self.blocks[index];
+            let mut best: Option<(u32, u32)> = None;
+            let mut join = |(least, most): (u32, u32)| {
+                best = Some(best.map_or((least, most), |(a, b)| (a.min(least), b.max(most))));
+            };
+            for edge in &block.edges {
+                if within.is_some() && edge.to == from {
+                    join((edge.cycles, edge.cycles));
+                } else if edge.to > index
+                    && let Some((least, most)) = paths[edge.to]
+                {
+                    join((edge.cycles + least, edge.cycles + most));
+                }
+            }
+            let leaves = block.edges.iter().all(|edge| edge.to <= index);
+            if within.is_none() && leaves {
+                join((block.cycles, block.cycles));
+            }
+            paths[index] = best;
+        }
+        paths.get(from).copied().flatten()
+    }
+
+    /// The loops, in the order of the code.
+    fn loops(&self) -> Vec<Loop> {
+        let mut ends: BTreeMap<usize, usize> = BTreeMap::new();
+        for (index, block) in self.blocks.iter().enumerate() {
+            for edge in block.edges.iter().filter(|edge| edge.to <= index) {
+                ends.insert(edge.to, index);
+            }
+        }
+        let turns = ends.into_iter().filter_map(|(first, last)| {
+            let turn = self.path(first, Some(last))?;
+            Some(Loop { first, last, turn })
+        });
+        turns.collect()
+    }
+
+    /// Whether the stages of several turns overlap in a loop: why, or why not.
+    fn remark(&self, found: &Loop) -> &'static str {
+        let blocks = &self.blocks[found.first..=found.last];
+        if blocks.iter().any(|block| block.call.is_some()) {
+            "not pipelined: it calls"
+        } else if blocks.len() > 1 {
+            "not pipelined: it has branches inside"
+        } else if self.is_filled(&blocks[0]) {
+            "every cycle issues"
+        } else {
+            "its turns wait for results, or for its branch"
+        }
+    }
+
+    fn is_filled(&self, block: &Block) -> bool {
+        let nothing = |inst: &c67x::Inst| inst.unit().is_none();
+        !self.packets[block.packets.clone()].iter().any(|packet| packet.insts.iter().all(nothing))
+    }
+}
+
+struct Listing<'a> {
+    inspection: &'a Inspection,
+    sources: &'a dyn Sources,
+    /// The lines of each file met so far; none if the file is not found.
+    files: BTreeMap<String, Vec<String>>,
+    out: String,
+}
+
+impl Listing<'_> {
+    fn function(&mut self, code: &Routine) {
+        let own = code.path(0, None).unwrap_or_default();
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            self.out,
+            "{}: ; {:08x}, {} bytes, {} cycles",
+            code.name,
+            code.address,
+            code.bytes,
+            span(own).trim_start()
+        );
+        let mut last = None;
+        let loops = code.loops();
+        for (number, block) in code.blocks.iter().enumerate() {
+            for found in loops.iter().filter(|found| found.first == number) {
+                let (least, most) = found.turn;
+                let turn = if least == most { most.to_string() } else { format!("{least} to {most}") };
+                let _ = writeln!(self.out, "; loop, {turn} cycles a turn; {}", code.remark(found));
+            }
+            let start = code.packets[block.packets.start].time;
+            for packet in &code.packets[block.packets.clone()] {
+                let line = self.inspection.line_at(packet.at).map(|line| (line.file.clone(), line.line));
+                if line != last {
+                    self.source(line.as_ref());
+                    last = line;
+                }
+                self.packet(packet, packet.time - start);
+            }
+            if let Some(call) = block.call {
+                let name = self.inspection.callee(call);
+                let _ = writeln!(self.out, "; calls {name}");
+            }
+        }
+        self.out.push('\n');
+    }
+
+    fn packet(&mut self, packet: &machine::Packet, cycle: u32) {
+        for (index, (at, inst)) in (packet.at..).step_by(4).zip(&packet.insts).enumerate() {
+            let (cycle, bars) = if index == 0 { (cycle.to_string(), "  ") } else { (String::new(), "||") };
+            let _ = writeln!(self.out, "{at:08x} {cycle:>4} {bars} {}", inst.text(at));
+        }
+    }
+
+    /// A line of the source, or its place where the file is not found.
+    fn source(&mut self, line: Option<&(Option<String>, u32)>) {
+        let Some((file, line)) = line else { return };
+        let file = file.as_deref().unwrap_or("?");
+        if !self.files.contains_key(file) {
+            let text = self.sources.text(file).unwrap_or_default();
+            self.files.insert(file.to_owned(), text.lines().map(str::to_owned).collect());
+        }
+        let lines = self.files.get(file).map_or(&[][..], Vec::as_slice);
+        let text = (*line as usize).checked_sub(1).and_then(|index| lines.get(index));
+        let _ = writeln!(self.out, "; {file}:{line}: {}", text.map_or("", |text| text.trim()));
+    }
+}
