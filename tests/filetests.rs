@@ -70,10 +70,10 @@ fn check(path: &Path, is_blessed: bool) -> Result<(), Failed> {
     check_cycles(&test, is_blessed)
 }
 
-/// What a program prints as code for the real processor, at both levels; what ends in a trap is for the other engines.
+/// What a program prints as code for the real processor, at every level; what ends in a trap is for the other engines.
 fn check_code(test: &FileTest) -> Result<(), Failed> {
     let Some(expected) = test.stdout_of_code() else { return Ok(()) };
-    for level in ["-O0", "-O1"] {
+    for level in ["-O0", "-O1", "-O2"] {
         let output = test.run(&["-w", "--target", "c67x", level]);
         if (output.code, output.stdout.as_str()) != (0, expected) {
             let name = test.folder().display();

@@ -4,7 +4,7 @@
 //!
 //! 1. [`select`]: IR to instructions over virtual registers ([`code`]); [`forms`] says which forms of the table can do
 //!    what an instruction asks for.
-//! 2. [`predicate`]: short branches become conditions. [`sides`]: every register gets one of the two files; copies where an instruction reaches only one.
+//! 2. [`predicate`]: short branches become conditions. [`turns`]: several turns of a short loop as one. [`sides`]: every register gets one of the two files; copies where an instruction reaches only one.
 //! 3. [`live`], [`allocate`], [`spill`]: registers of the processor, those that survive a thread switch.
 //! 4. [`frame`], [`moves`], [`expand`]: calls, the stack, the beginning and the ends; regions of [`step`]s.
 //! 5. [`graph`], [`resources`], [`schedule`]: packets.
@@ -35,6 +35,7 @@ mod sides;
 mod spill;
 mod step;
 pub(crate) mod text;
+mod turns;
 
 #[cfg(test)]
 mod tests;
@@ -80,6 +81,9 @@ impl Generator {
         let mut code = select::select(context);
         if self.level != Level::None {
             predicate::run(&mut code);
+        }
+        if self.level == Level::Fast {
+            turns::run(&mut code);
         }
         sides::assign(&mut code);
         let assignment = allocate::allocate(&mut code).ok_or_else(|| too_large(ir.span, name))?;

@@ -230,6 +230,9 @@ pub fn generate_code(unit: &Unit, sources: &SourceMap, level: Level, sink: &mut 
     for function in &unit.functions {
         let mut ir = lower::lower(unit, function, &definitions, Timing::Fast, builder.signatures());
         optimize(&mut ir, level, &mut candidates, sources);
+        if level == Level::Fast {
+            passes::unroll(&mut ir);
+        }
         let about = About { symbol: ir.symbol, signature: ir.signature, end: ir.end };
         let name = builder.name(about.symbol).to_owned();
         match generator.function(&ir, builder.signatures(), &name) {

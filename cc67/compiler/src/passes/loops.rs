@@ -48,9 +48,9 @@ pub fn run(function: &mut Function) -> bool {
 
 /// A stretch of the layout.
 #[derive(Clone, Copy, Debug)]
-struct Stretch {
-    first: usize,
-    last: usize,
+pub(super) struct Stretch {
+    pub(super) first: usize,
+    pub(super) last: usize,
 }
 
 impl Stretch {
@@ -62,7 +62,7 @@ impl Stretch {
 }
 
 /// Where in the layout each block stands.
-fn places(function: &Function) -> SecondaryMap<BlockId, u32> {
+pub(super) fn places(function: &Function) -> SecondaryMap<BlockId, u32> {
     let mut places = table(function.blocks.len());
     for (place, id) in (0..).zip(&function.layout) {
         places[*id] = place;
@@ -71,7 +71,7 @@ fn places(function: &Function) -> SecondaryMap<BlockId, u32> {
 }
 
 /// The stretch from each block that a jump backwards leads to, to the last such jump.
-fn find(function: &Function, places: &SecondaryMap<BlockId, u32>) -> Vec<Stretch> {
+pub(super) fn find(function: &Function, places: &SecondaryMap<BlockId, u32>) -> Vec<Stretch> {
     let mut loops: Vec<Stretch> = Vec::new();
     for (last, id) in function.layout.iter().enumerate() {
         for target in function.blocks[*id].terminator.targets() {

@@ -12,6 +12,7 @@ pub mod jumps;
 pub mod loops;
 pub mod reuse;
 mod strength;
+pub mod unroll;
 
 use crate::ir::function::Function;
 use inline::Candidates;
@@ -21,9 +22,11 @@ use inline::Candidates;
 pub enum Level {
     /// Nothing: the code follows the source (`-O0`).
     None,
-    /// Everything (`-O1`, `-O2`).
+    /// Everything that makes code faster without making it much larger (`-O1`).
     #[default]
     Full,
+    /// For the controller's processor also what makes it larger (`-O2`); bytecode is that of `Full`.
+    Fast,
 }
 
 /// A pass over the functions of a unit, in their order.
@@ -37,6 +40,7 @@ pub const ALL: &[(&str, Pass)] = &[
     ("loops", |unit| unit.iter_mut().for_each(|function| _ = loops::run(function))),
     ("dead", |unit| unit.iter_mut().for_each(dead::run)),
     ("divide", |unit| unit.iter_mut().for_each(divide::run)),
+    ("unroll", |unit| unit.iter_mut().for_each(|function| _ = unroll::run(function))),
     ("inline", inline_all),
 ];
 
@@ -63,6 +67,20 @@ pub fn run(function: &mut Function, level: Level) {
     }
     dead::run(function);
     divide::run(function);
+}
+
+/// Unrolls loops, and cleans up after it.
+pub fn unroll(function: &mut Function) {
+    jumps::run(function);
+    if unroll::run(function) {
+        jumps::run(function);
+        if fold::run(function) {
+            jumps::run(function);
+        }
+        reuse::run(function);
+        fold::run(function);
+        dead::run(function);
+    }
 }
 
 #[cfg(test)]

@@ -33,7 +33,7 @@ pub(crate) struct CompilerArguments {
     /// Read constants as a C standard does: c99, c11, c17, or as the vendor's compiler
     #[arg(long, value_name = "STANDARD", default_value = "vendor", value_parser = standard)]
     std: Standard,
-    /// Optimisation: 0 none, 1 and 2 what makes programs faster
+    /// Optimisation: 0 none, 1 what makes programs faster, 2 also what makes the controller's code larger
     #[arg(short = 'O', value_name = "LEVEL", default_value = "1", value_parser = clap::value_parser!(u8).range(0..=2))]
     optimization: u8,
     /// Whose code the board's time is counted for: vendor, as long as on the board; fast, a cycle or two for each
@@ -105,7 +105,11 @@ impl CompilerArguments {
                 standard: self.std,
             },
             target: self.target().unwrap_or_default(),
-            level: if self.optimization == 0 { Level::None } else { Level::Full },
+            level: match self.optimization {
+                0 => Level::None,
+                1 => Level::Full,
+                _ => Level::Fast,
+            },
             timing: self.timing(),
             firmware: self.firmware()?,
             gc_sections: self.gc_sections || (self.optimization > 0 && !self.no_gc_sections),

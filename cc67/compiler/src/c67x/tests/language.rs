@@ -22,7 +22,51 @@ const PRINTED: &str = "\
 
 #[test]
 fn quotients_wide_integers_structures_and_many_arguments_are_right() {
-    for level in [Level::None, Level::Full] {
+    for level in [Level::None, Level::Full, Level::Fast] {
         assert_eq!(machine::run(&build(SOURCE, level)).console, PRINTED, "{level:?}");
     }
+}
+
+/// Loops whose number of turns nobody knows: several turns become one, which must end where each of them would.
+const LOOPS: &str = r#"
+#include "KMotionDef.h"
+char text[] = "several turns";
+int a[9] = { 3, -1, 4, 1, -5, 9, 2, 6, 5 };
+double d[5] = { 1.5, 2.25, -3.0, 4.0, 0.5 };
+int length(char *p) { int n = 0; while (*p++) n++; return n; }
+int sum(int *p, int n) { int i, s = 0; for (i = 0; i < n; i++) s += p[i]; return s; }
+int most(int *p, int n) { int i, m = p[0]; for (i = 1; i < n; i++) if (p[i] > m) m = p[i]; return m; }
+double product(double *p, int n) { double r = 1; int i; for (i = 0; i < n; i++) r *= p[i]; return r; }
+long long wide(int n) { long long s = 1; while (n-- > 0) s = s * 3 + n; return s; }
+void copy(int *to, int *from, int n) { do { *to++ = *from++; } while (--n != 0); }
+int steps(int n) { int k = 0; while (n != 1) { if (n & 1) n = 3 * n + 1; else n = n >> 1; k++; } return k; }
+void bump(int *p, int n) { int i; for (i = 0; i < n; i++) if (p[i] < 0) p[i] = p[i] + 100; }
+main()
+{
+    int n, b[10];
+    for (n = 0; n < 10; n++) b[n] = 77;
+    for (n = 0; n < 14; n++) printf("%d ", length(text + n - (n > 13)));
+    for (n = 0; n < 10; n++) printf("%d ", sum(a, n));
+    for (n = 1; n < 10; n++) printf("%d ", most(a, n));
+    printf("
+");
+    for (n = 0; n < 6; n++) printf("%.4f ", product(d, n));
+    for (n = 0; n < 7; n++) printf("%d ", (int)wide(n));
+    for (n = 1; n < 9; n++) { copy(b, a, n); printf("%d%d ", b[n - 1], b[n]); }
+    for (n = 1; n < 12; n++) printf("%d ", steps(n));
+    bump(b, 7);
+    for (n = 0; n < 10; n++) printf("%d ", b[n]);
+    printf("
+");
+}
+"#;
+
+#[test]
+fn several_turns_of_a_loop_end_where_one_would() {
+    let [plain, full, fast] =
+        [Level::None, Level::Full, Level::Fast].map(|level| machine::run(&build(LOOPS, level)));
+    assert_eq!(plain.console.lines().count(), 2, "{}", plain.console);
+    assert!(plain.console.starts_with("13 12 11 10 9 8 7 6 5 4 3 2 1 0 0 3 2 6 7 2 11 13 19 24 3 3 4 4 4 9"));
+    assert_eq!(plain.console, full.console);
+    assert_eq!(plain.console, fast.console);
 }

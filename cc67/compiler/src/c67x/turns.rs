@@ -1,0 +1,275 @@
+//! Several turns of a short loop as one, each under the condition that the one before would have jumped back.
+//!
+//! A jump back costs six cycles whatever the turn does. Where nobody knows how many turns there will be, the second
+//! turn follows the first under the first's condition, the third under that of both, and only the last one jumps. What
+//! cannot be seen from outside happens in any case, in registers of its own, so that it needs not wait for the
+//! condition; loads, stores and what the next turn or the code after the loop reads happen under it. So every access to
+//! memory happens when, and as often as, the source says.
+
+use cranelift_entity::SecondaryMap;
+
+use super::code::{Arg, Base, Block, Code, Condition, End, Info, Inst, VReg};
+use super::forms::Kind;
+
+/// The largest turn, in instructions.
+const LARGEST: usize = 20;
+/// Instructions of all turns together.
+const ALL: usize = 44;
+/// The most turns: each needs a register that is tested.
+const MOST: usize = 4;
+/// Registers that are tested inside a turn, at most, for several turns to have a chance.
+const TESTED: usize = 2;
+
+/// Rewrites the short loops of one block.
+pub(super) fn run(code: &mut Code) {
+    for number in 0..code.blocks.len() {
+        let Some(back) = back(&code.blocks[number], number as u32) else { continue };
+        let Some(facts) = facts(code, number, back) else { continue };
+        let copies = MOST.min(ALL / code.blocks[number].insts.len().max(1)).min(MOST - facts.tested);
+        if copies < 2 {
+            continue;
+        }
+        let body = std::mem::take(&mut code.blocks[number].insts);
+        let mut worker =
+            Turns { code, facts, out: body.clone(), names: SecondaryMap::new(), fresh: Vec::new() };
+        let mut condition = back;
+        for _ in 1..copies {
+            condition = worker.turn(&body, condition);
+        }
+        let out = worker.out;
+        code.blocks[number].insts = out;
+        if let Some(read) = code.blocks[number].end.read_mut() {
+            *read = condition.0;
+        }
+    }
+}
+
+/// The condition under which a block jumps to itself.
+fn back(block: &Block, number: u32) -> Option<(VReg, bool)> {
+    match block.end {
+        End::Branch { condition, negated, then, otherwise } if then != otherwise => {
+            if then == number {
+                Some((condition, negated))
+            } else {
+                (otherwise == number).then_some((condition, !negated))
+            }
+        }
+        End::Branch { .. } | End::Jump(_) | End::Table { .. } | End::Return(_) | End::Unreachable => None,
+    }
+}
+
+/// What is known of a loop.
+struct Facts {
+    /// What a turn writes and the next turn, or the code after the loop, may read.
+    carried: Vec<VReg>,
+    /// The register of the jump back, and the instruction that writes it last.
+    condition: VReg,
+    last: usize,
+    /// Registers that are tested inside a turn.
+    tested: usize,
+}
+
+/// Whether a loop can be rewritten, and what that takes.
+fn facts(code: &Code, number: usize, back: (VReg, bool)) -> Option<Facts> {
+    let block = &code.blocks[number];
+    let is_simple = |inst: &Inst| {
+        !matches!(inst.kind, Kind::Call | Kind::FrameAddress)
+            && inst.stepped().is_none()
+            && (inst.kind.bytes().is_none() || inst.condition.is_none())
+            && !matches!(inst.place, Some(place) if matches!(place.base, Base::Spill(_)))
+    };
+    if block.insts.is_empty() || block.insts.len() > LARGEST || !block.insts.iter().all(is_simple) {
+        return None;
+    }
+    let outside = outside(code, number);
+    let mut written: Vec<VReg> = Vec::new();
+    let mut carried: Vec<VReg> = Vec::new();
+    let mut tested: Vec<VReg> = Vec::new();
+    let mut last = None;
+    for (index, inst) in block.insts.iter().enumerate() {
+        inst.visit_reads(|reg| {
+            if !written.contains(&reg) && !carried.contains(&reg) {
+                carried.push(reg);
+            }
+        });
+        if let Some((reg, _)) = inst.condition
+            && !tested.contains(&reg)
+        {
+            tested.push(reg);
+        }
+        if let Some((reg, is_whole)) = inst.written() {
+            // Half of a pair of which nothing is known yet is carried.
+            if !is_whole && !written.contains(&reg) && !carried.contains(&reg) {
+                carried.push(reg);
+            }
+            if !written.contains(&reg) {
+                written.push(reg);
+            }
+            if reg == back.0 {
+                last = Some((index, is_whole && matches!(inst.dst, Arg::Reg(_))));
+            }
+        }
+    }
+    let (last, is_whole) = last?;
+    // The condition is nobody else's.
+    if !is_whole || outside[back.0] || carried.contains(&back.0) || tested.contains(&back.0) {
+        return None;
+    }
+    if tested.len() > TESTED {
+        return None;
+    }
+    carried.retain(|reg| written.contains(reg));
+    for reg in written {
+        if outside[reg] && !carried.contains(&reg) {
+            carried.push(reg);
+        }
+    }
+    Some(Facts { carried, condition: back.0, last, tested: tested.len() })
+}
+
+/// The registers that something outside of a block mentions.
+fn outside(code: &Code, number: usize) -> SecondaryMap<VReg, bool> {
+    let mut outside = SecondaryMap::with_default(false);
+    outside.resize(code.regs.len());
+    for (reg, _) in &code.params {
+        outside[*reg] = true;
+    }
+    for (_, block) in code.blocks.iter().enumerate().filter(|(other, _)| *other != number) {
+        for inst in &block.insts {
+            inst.visit_reads(|reg| outside[reg] = true);
+            if let Some((reg, _)) = inst.written() {
+                outside[reg] = true;
+            }
+            if inst.kind == Kind::Call {
+                code.calls[inst.number as usize].arguments.iter().for_each(|(reg, _)| outside[*reg] = true);
+            }
+        }
+        if let Some(reg) = block.end.read() {
+            outside[reg] = true;
+        }
+    }
+    outside
+}
+
+struct Turns<'a> {
+    code: &'a mut Code,
+    facts: Facts,
+    out: Vec<Inst>,
+    /// The present name of each register that a turn wrote.
+    names: SecondaryMap<VReg, Option<VReg>>,
+    /// The registers that have a name of this turn.
+    fresh: Vec<VReg>,
+}
+
+impl Turns<'_> {
+    /// Adds a turn under a condition; that of the next one.
+    fn turn(&mut self, body: &[Inst], condition: (VReg, bool)) -> (VReg, bool) {
+        self.fresh.clear();
+        let next = self.reg_like(self.facts.condition);
+        // If the turn does not happen, there is no next one.
+        let never = i32::from(condition.1);
+        let span = body.first().map_or(self.code.blocks[0].span, |inst| inst.span);
+        self.out.push(Inst::new(Kind::Mvk, next.into(), Arg::number(never), Arg::None, span));
+        for (index, inst) in body.iter().enumerate() {
+            let mut inst = *inst;
+            self.rename_reads(&mut inst);
+            if index == self.facts.last {
+                inst.dst = next.into();
+                inst.condition = Some(condition);
+                self.out.push(inst);
+                self.names[self.facts.condition] = Some(next);
+            } else {
+                self.rename_written(&mut inst, Some(condition));
+            }
+        }
+        for index in 0..self.facts.carried.len() {
+            let reg = self.facts.carried[index];
+            if let Some(name) = self.names[reg].filter(|_| self.fresh.contains(&reg)) {
+                self.commit(reg, name, Some(condition), span);
+            }
+        }
+        (next, condition.1)
+    }
+
+    fn reg_like(&mut self, reg: VReg) -> VReg {
+        let info = self.code.regs[reg];
+        self.code.reg(Info { side: None, hint: None, constant: None, ..info })
+    }
+
+    fn name(&self, reg: VReg) -> VReg {
+        self.names[reg].unwrap_or(reg)
+    }
+
+    fn rename_reads(&self, inst: &mut Inst) {
+        for arg in [&mut inst.src1, &mut inst.src2] {
+            if let Arg::Reg(reg) | Arg::Low(reg) | Arg::High(reg) = arg {
+                *reg = self.name(*reg);
+            }
+        }
+        if let Some(place) = &mut inst.place {
+            if let Base::Reg(reg) = &mut place.base {
+                *reg = self.name(*reg);
+            }
+            if let Some(reg) = &mut place.index {
+                *reg = self.name(*reg);
+            }
+        }
+        if let Some((reg, _)) = &mut inst.condition {
+            *reg = self.name(*reg);
+        }
+    }
+
+    /// Gives the result a name of this turn; a load happens under the turn's condition, and so does a store.
+    fn rename_written(&mut self, inst: &mut Inst, condition: Condition) {
+        let is_memory = inst.kind.bytes().is_some();
+        let Some(reg) = inst.dst.reg() else {
+            if is_memory {
+                inst.condition = condition;
+            }
+            self.out.push(*inst);
+            return;
+        };
+        let is_fresh = self.fresh.contains(&reg);
+        let is_part = inst.keeps_destination() || matches!(inst.dst, Arg::Low(_) | Arg::High(_));
+        if !(is_part && is_fresh) {
+            let old = self.name(reg);
+            let name = self.reg_like(reg);
+            if is_part {
+                self.commit(name, old, None, inst.span);
+            }
+            self.names[reg] = Some(name);
+            if !is_fresh {
+                self.fresh.push(reg);
+            }
+        }
+        let name = self.name(reg);
+        match &mut inst.dst {
+            Arg::Reg(dst) | Arg::Low(dst) | Arg::High(dst) => *dst = name,
+            Arg::None | Arg::Value(_) => {}
+        }
+        if is_memory {
+            // Nobody reads the register where the turn does not happen.
+            self.out.push(Inst::new(Kind::Begin, name.into(), Arg::None, Arg::None, inst.span));
+            inst.condition = condition;
+        }
+        self.out.push(*inst);
+    }
+
+    /// `to = from`, perhaps under a condition.
+    fn commit(&mut self, to: VReg, from: VReg, condition: Condition, span: crate::source::Span) {
+        let copy = |dst: Arg, src: Arg| {
+            let mut inst = Inst::new(Kind::Move, dst, Arg::number(0), src, span);
+            inst.condition = condition;
+            inst
+        };
+        if self.code.regs[to].is_pair {
+            if condition.is_none() {
+                self.out.push(Inst::new(Kind::Begin, to.into(), Arg::None, Arg::None, span));
+            }
+            self.out.push(copy(Arg::Low(to), Arg::Low(from)));
+            self.out.push(copy(Arg::High(to), Arg::High(from)));
+        } else {
+            self.out.push(copy(to.into(), from.into()));
+        }
+    }
+}

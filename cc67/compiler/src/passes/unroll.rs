@@ -1,0 +1,422 @@
+//! Loops that count to a known number: several turns as one, or all of them one after the other.
+//!
+//! A loop is taken if its last block alone jumps back and ends with the comparison of a counter, which that block
+//! increases by a constant and nothing else changes, with a constant; and if the counter's first value is known. Then
+//! the number of turns is known, and the copies of a turn need no test between them. Loads, stores and calls keep
+//! their number and order. A turn of one block gets new names for what it writes, so that the turns overlap where the
+//! processor can; the last one writes the old names, which the rest of the function reads.
+
+use cranelift_entity::SecondaryMap;
+
+use super::loops::{self, Stretch};
+use crate::ir::function::{Block, Function, table};
+use crate::ir::inst::{ArgumentRange, BlockId, Inst, InstKind, Operand, Terminator, ValueId};
+use crate::ir::operators::{BinaryOp, CompareOp};
+
+/// The most turns that are counted.
+const MOST_TURNS: u32 = 1 << 16;
+/// Instructions of a loop that disappears.
+const WHOLE: u32 = 120;
+/// Turns of it.
+const WHOLE_TURNS: u32 = 32;
+/// Instructions of a loop that takes several turns as one.
+const SEVERAL: u32 = 96;
+/// Turns that it takes as one.
+const MOST_COPIES: u32 = 8;
+/// The largest function, in instructions, whose loops grow.
+const LARGEST: usize = 3000;
+
+/// Unrolls loops; returns whether anything changed.
+pub fn run(function: &mut Function) -> bool {
+    let mut is_changed = false;
+    // Every loop is looked at once; those that were unrolled are not again.
+    let mut done: Vec<BlockId> = Vec::new();
+    loop {
+        let size: usize = function.layout.iter().map(|id| function.blocks[*id].insts.len() + 1).sum();
+        if size > LARGEST {
+            return is_changed;
+        }
+        let places = loops::places(function);
+        let mut found = loops::find(function, &places);
+        found.sort_by_key(|stretch| stretch.last - stretch.first);
+        let next = found.into_iter().find_map(|stretch| {
+            let header = function.layout[stretch.first];
+            let is_new = !done.contains(&header);
+            is_new.then(|| (stretch, header, plan(function, &places, stretch)))
+        });
+        let Some((stretch, header, plan)) = next else { return is_changed };
+        done.push(header);
+        if let Some(plan) = plan {
+            Unroller::new(function, stretch).run(plan);
+            is_changed = true;
+            if plan.is_whole {
+                // What is left may make an outer loop one block.
+                super::jumps::run(function);
+                super::fold::run(function);
+                super::jumps::run(function);
+            }
+        }
+    }
+}
+
+/// What happens to a loop.
+#[derive(Clone, Copy, Debug)]
+struct Plan {
+    /// Turns in front of the loop, or all of them.
+    before: u32,
+    /// Turns that the loop takes as one.
+    copies: u32,
+    is_whole: bool,
+}
+
+fn plan(function: &Function, places: &SecondaryMap<BlockId, u32>, stretch: Stretch) -> Option<Plan> {
+    let turns = turns(function, places, stretch)?;
+    let blocks = &function.layout[stretch.first..=stretch.last];
+    let insts = blocks.iter().map(|id| &function.blocks[*id].insts);
+    let has_call = insts.clone().flatten().any(|inst| matches!(inst.kind, InstKind::Call { .. }));
+    let size: u32 = insts.map(|insts| insts.len() as u32 + 1).sum();
+    if turns == 1 || turns <= WHOLE_TURNS && turns * size <= WHOLE && !has_call {
+        return Some(Plan { before: turns, copies: 0, is_whole: true });
+    }
+    // A call costs more than the jump back.
+    if has_call {
+        return None;
+    }
+    let fits = |copies: &u32| (copies + turns % copies) * size <= SEVERAL && turns >= 2 * copies;
+    let copies = (2..=MOST_COPIES).rev().filter(fits);
+    // One that leaves nothing over is better, unless it is much smaller.
+    let copies = copies.max_by_key(|copies| if turns % copies == 0 { 2 * copies } else { *copies })?;
+    Some(Plan { before: turns % copies, copies, is_whole: false })
+}
+
+/// How many turns a loop takes, if that is known.
+fn turns(function: &Function, places: &SecondaryMap<BlockId, u32>, stretch: Stretch) -> Option<u32> {
+    let (header, latch) = (function.layout[stretch.first], function.layout[stretch.last]);
+    let entrance = entrance(function, places, stretch)?;
+    let Terminator::Branch { condition: Operand::Value(condition), then, otherwise } =
+        function.blocks[latch].terminator
+    else {
+        return None;
+    };
+    let goes_on = match (then == header, otherwise == header) {
+        (true, false) => true,
+        (false, true) => false,
+        (true, true) | (false, false) => return None,
+    };
+    let outside = if goes_on { otherwise } else { then };
+    if (stretch.first as u32..=stretch.last as u32).contains(&places[outside]) {
+        return None;
+    }
+    let insts = &function.blocks[latch].insts;
+    let compare = insts.iter().rposition(|inst| inst.kind.dst() == Some(condition))?;
+    let InstKind::Compare { op, a: Operand::Value(counter), b, .. } = insts[compare].kind else {
+        return None;
+    };
+    let limit = b.as_int()?;
+    let writes = |id: &BlockId| {
+        function.blocks[*id].insts.iter().filter(|inst| inst.kind.dst() == Some(counter)).count()
+    };
+    let inside = &function.layout[stretch.first..=stretch.last];
+    if inside.iter().map(writes).sum::<usize>() != 1 || function.params.contains(&counter) {
+        return None;
+    }
+    let step = insts[..compare].iter().find_map(|inst| {
+        let InstKind::Binary { op, dst, a: Operand::Value(a), b } = inst.kind else { return None };
+        let step = b.as_int().filter(|_| dst == counter && a == counter)?;
+        if op == BinaryOp::Add {
+            return Some(step);
+        }
+        (op == BinaryOp::Subtract).then(|| step.wrapping_neg())
+    })?;
+    let before = &function.blocks[entrance];
+    if !matches!(before.terminator, Terminator::Jump(_)) {
+        return None;
+    }
+    let start = before.insts.iter().rev().find(|inst| inst.kind.dst() == Some(counter))?;
+    let InstKind::Copy { src, .. } = start.kind else { return None };
+    let mut value = src.as_int()?;
+    for turn in 1..=MOST_TURNS {
+        value = value.wrapping_add(step);
+        if holds(op, value, limit) != goes_on {
+            return Some(turn);
+        }
+    }
+    None
+}
+
+/// The block before a loop, if that is its only entrance and its last block the only way back and out.
+fn entrance(function: &Function, places: &SecondaryMap<BlockId, u32>, stretch: Stretch) -> Option<BlockId> {
+    let (header, latch) = (function.layout[stretch.first], function.layout[stretch.last]);
+    let is_inside = |id: BlockId| (stretch.first as u32..=stretch.last as u32).contains(&places[id]);
+    let mut entrance = None;
+    for id in &function.layout {
+        let terminator = &function.blocks[*id].terminator;
+        if is_inside(*id) {
+            let leaves = matches!(terminator, Terminator::Return(_) | Terminator::Unreachable)
+                || terminator.targets().any(|target| target == header || !is_inside(target));
+            if leaves && *id != latch {
+                return None;
+            }
+        } else {
+            for target in terminator.targets().filter(|target| is_inside(*target)) {
+                if target != header || entrance.replace(*id).is_some() {
+                    return None;
+                }
+            }
+        }
+    }
+    entrance
+}
+
+const fn holds(op: CompareOp, a: i32, b: i32) -> bool {
+    match op {
+        CompareOp::Equal => a == b,
+        CompareOp::NotEqual => a != b,
+        CompareOp::Less => a < b,
+        CompareOp::LessEqual => a <= b,
+        CompareOp::LessUnsigned => a.cast_unsigned() < b.cast_unsigned(),
+        CompareOp::LessEqualUnsigned => a.cast_unsigned() <= b.cast_unsigned(),
+    }
+}
+
+struct Unroller<'a> {
+    function: &'a mut Function,
+    stretch: Stretch,
+    /// The present name of each value that a turn writes.
+    names: SecondaryMap<ValueId, Option<ValueId>>,
+    /// The block alone that mentions a value, which it writes first.
+    own: SecondaryMap<ValueId, Option<BlockId>>,
+}
+
+impl<'a> Unroller<'a> {
+    fn new(function: &'a mut Function, stretch: Stretch) -> Self {
+        let mut names = SecondaryMap::new();
+        names.resize(function.values.len());
+        let own = own(function);
+        Self { function, stretch, names, own }
+    }
+
+    fn run(mut self, plan: Plan) {
+        let blocks: Vec<BlockId> = self.function.layout[self.stretch.first..=self.stretch.last].to_vec();
+        let (header, latch) = (blocks[0], blocks[blocks.len() - 1]);
+        let outside = self.function.blocks[latch].terminator.targets().find(|target| *target != header);
+        let Some(outside) = outside else { return };
+        let bodies: Vec<Block> = blocks.iter().map(|id| self.function.blocks[*id].clone()).collect();
+        if blocks.len() == 1 {
+            self.one_block(plan, blocks[0], outside);
+            return;
+        }
+        // The last turn is in the old blocks; the others are in new ones in front of them.
+        let mut layout = Vec::new();
+        let mut turns: Vec<Vec<BlockId>> = Vec::new();
+        let count = if plan.is_whole { plan.before } else { plan.before + plan.copies };
+        for _ in 1..count {
+            let copies: Vec<BlockId> = bodies
+                .iter()
+                .map(|body| {
+                    let empty =
+                        Block { insts: Vec::new(), terminator: Terminator::Unreachable, span: body.span };
+                    self.function.blocks.push(empty)
+                })
+                .collect();
+            layout.extend(&copies);
+            turns.push(copies);
+        }
+        turns.push(blocks.clone());
+        let back = turns[if plan.is_whole { 0 } else { plan.before as usize }][0];
+        for (turn, ids) in turns.iter().enumerate() {
+            let is_last = turn + 1 == turns.len();
+            for (index, body) in bodies.iter().enumerate() {
+                let mut body = body.clone();
+                if !is_last {
+                    self.rename_own(&mut body, blocks[index]);
+                }
+                body.terminator.visit_targets(|target| {
+                    if let Some(place) = blocks.iter().position(|own| own == target) {
+                        *target = ids[place];
+                    }
+                });
+                if index + 1 == bodies.len() {
+                    body.terminator = match turns.get(turn + 1) {
+                        Some(next) => Terminator::Jump(next[0]),
+                        None if plan.is_whole => Terminator::Jump(outside),
+                        None => back_to(body.terminator, outside, back),
+                    };
+                }
+                self.function.blocks[ids[index]] = body;
+            }
+        }
+        self.enter(header, turns[0][0]);
+        self.function.layout.splice(self.stretch.first..self.stretch.first, layout);
+    }
+
+    /// Jumps from outside go to the first turn.
+    fn enter(&mut self, header: BlockId, first: BlockId) {
+        let before = &self.function.layout[..self.stretch.first];
+        let after = &self.function.layout[self.stretch.last + 1..];
+        for id in before.iter().chain(after) {
+            self.function.blocks[*id].terminator.visit_targets(|target| {
+                if *target == header {
+                    *target = first;
+                }
+            });
+        }
+    }
+
+    /// A loop of one block.
+    fn one_block(&mut self, plan: Plan, id: BlockId, outside: BlockId) {
+        let body = self.function.blocks[id].clone();
+        let turns = |worker: &mut Self, count: u32| {
+            let mut insts = Vec::with_capacity(body.insts.len() * count as usize);
+            for turn in 1..=count {
+                worker.turn(&body.insts, turn == count, &mut insts);
+            }
+            insts
+        };
+        let before = turns(self, plan.before);
+        let span = body.span;
+        if plan.is_whole {
+            self.function.blocks[id] = Block { insts: before, terminator: Terminator::Jump(outside), span };
+            return;
+        }
+        self.function.blocks[id].insts = turns(self, plan.copies);
+        if plan.before > 0 {
+            let block = Block { insts: before, terminator: Terminator::Jump(id), span };
+            let block = self.function.blocks.push(block);
+            self.enter(id, block);
+            self.function.layout.insert(self.stretch.first, block);
+        }
+    }
+
+    /// A turn of a loop of one block; what it writes last has its old name in the last turn.
+    fn turn(&mut self, body: &[Inst], is_last: bool, out: &mut Vec<Inst>) {
+        for (index, inst) in body.iter().enumerate() {
+            let mut inst = *inst;
+            self.rename_reads(&mut inst);
+            if let Some(dst) = inst.kind.dst() {
+                let is_final = is_last && body[index + 1..].iter().all(|other| other.kind.dst() != Some(dst));
+                self.names[dst] = if is_final { None } else { Some(self.name(dst)) };
+                if let Some(name) = self.names[dst] {
+                    set_dst(&mut inst.kind, name);
+                }
+            }
+            out.push(inst);
+        }
+    }
+
+    /// A new value like another.
+    fn name(&mut self, like: ValueId) -> ValueId {
+        let class = self.function.values[like];
+        self.function.values.push(class)
+    }
+
+    fn renamed(&self, operand: Operand) -> Operand {
+        match operand {
+            Operand::Value(value) => self.names[value].map_or(operand, Operand::Value),
+            Operand::Constant(_) => operand,
+        }
+    }
+
+    fn rename_reads(&mut self, inst: &mut Inst) {
+        inst.kind.visit_operands(|operand| *operand = self.renamed(*operand));
+        if let InstKind::Call { arguments, .. } = &mut inst.kind {
+            let start = self.function.arguments.len() as u32;
+            for index in arguments.range() {
+                let argument = self.renamed(self.function.arguments[index]);
+                self.function.arguments.push(argument);
+            }
+            *arguments = ArgumentRange { start, count: arguments.count };
+        }
+    }
+
+    /// New names for what nobody but the block mentions.
+    fn rename_own(&mut self, body: &mut Block, id: BlockId) {
+        for inst in &mut body.insts {
+            self.rename_reads(inst);
+            let Some(dst) = inst.kind.dst() else { continue };
+            if self.own[dst] == Some(id) {
+                let name = self.name(dst);
+                self.names[dst] = Some(name);
+                set_dst(&mut inst.kind, name);
+            }
+        }
+        if let Some(operand) = body.terminator.operand_mut() {
+            *operand = self.renamed(*operand);
+        }
+    }
+}
+
+/// The terminator of the last turn: what jumped back to the old turn does so to the first of the loop.
+fn back_to(mut terminator: Terminator, outside: BlockId, back: BlockId) -> Terminator {
+    terminator.visit_targets(|target| {
+        if *target != outside {
+            *target = back;
+        }
+    });
+    terminator
+}
+
+/// For each value the block that alone mentions it, if it writes it before it reads it.
+fn own(function: &Function) -> SecondaryMap<ValueId, Option<BlockId>> {
+    let mut own: SecondaryMap<ValueId, Option<BlockId>> = table(function.values.len());
+    let mut shared: SecondaryMap<ValueId, bool> = table(function.values.len());
+    for param in &function.params {
+        shared[*param] = true;
+    }
+    for id in &function.layout {
+        let block = &function.blocks[*id];
+        let mut read = |operand: Operand, own: &SecondaryMap<ValueId, Option<BlockId>>| {
+            if let Operand::Value(value) = operand
+                && own[value] != Some(*id)
+            {
+                shared[value] = true;
+            }
+        };
+        let mut written: Vec<ValueId> = Vec::new();
+        for inst in &block.insts {
+            let mut kind = inst.kind;
+            kind.visit_operands(|operand| read(*operand, &own));
+            if let Some(arguments) = kind.arguments() {
+                function.arguments[arguments.range()].iter().for_each(|operand| read(*operand, &own));
+            }
+            if let Some(dst) = kind.dst() {
+                written.push(dst);
+                if own[dst].is_none() {
+                    own[dst] = Some(*id);
+                }
+            }
+        }
+        if let Some(operand) = block.terminator.operand() {
+            read(operand, &own);
+        }
+        for dst in written {
+            if own[dst] != Some(*id) {
+                shared[dst] = true;
+            }
+        }
+    }
+    for value in function.values.keys() {
+        if shared[value] {
+            own[value] = None;
+        }
+    }
+    own
+}
+
+/// Makes an instruction write another value.
+fn set_dst(kind: &mut InstKind, to: ValueId) {
+    match kind {
+        InstKind::Copy { dst, .. }
+        | InstKind::Unary { dst, .. }
+        | InstKind::Binary { dst, .. }
+        | InstKind::Compare { dst, .. }
+        | InstKind::Convert { dst, .. }
+        | InstKind::Load { dst, .. }
+        | InstKind::FrameAddress { dst, .. } => *dst = to,
+        InstKind::Call { dst, .. } => *dst = Some(to).into(),
+        InstKind::Store { .. }
+        | InstKind::CopyMemory { .. }
+        | InstKind::ClearMemory { .. }
+        | InstKind::Cost { .. } => {}
+    }
+}
