@@ -4,6 +4,7 @@
 //! snapshot has: a page that is the same is shared. RAM that nothing was ever written to is compared with one page of
 //! zeros, which takes the host next to no time.
 
+use std::fmt;
 use std::sync::Arc;
 
 use super::flash::{self, Flash};
@@ -19,8 +20,29 @@ const _: () = assert!(SDRAM_SIZE.is_multiple_of(PAGE) && IRAM_SIZE.is_multiple_o
 const _: () = assert!(flash::SIZE.is_multiple_of(PAGE));
 
 /// A region of memory.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 struct Pages(Vec<Arc<Page>>);
+
+/// Where bytes begin that differ from those of the page before, and a checksum of each such page.
+impl fmt::Debug for Pages {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut map = f.debug_map();
+        let mut before: Option<&Arc<Page>> = None;
+        for (index, page) in self.0.iter().enumerate() {
+            if before.is_none_or(|before| !Arc::ptr_eq(before, page) && before != page) {
+                map.entry(&index, &checksum(page));
+            }
+            before = Some(page);
+        }
+        map.finish()
+    }
+}
+
+/// 64-bit FNV-1a of a page.
+fn checksum(page: &Page) -> u64 {
+    page.iter()
+        .fold(0xcbf2_9ce4_8422_2325, |sum, byte| (sum ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3))
+}
 
 impl Pages {
     /// A region of `size` bytes that all are `byte`.

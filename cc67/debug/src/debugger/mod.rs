@@ -10,7 +10,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use cc67_host::{History, Session, Timeline};
+use cc67_host::{History, Session, Snapshot, Timeline};
 use compiler::debug::Probe;
 use kmotiondef::{CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
 use runtime::Event;
@@ -233,6 +233,11 @@ impl Debugger {
         &self.session
     }
 
+    /// The board as it is at this instant, to compare it with another instant.
+    pub fn snapshot(&mut self) -> Snapshot<BytecodeEngine> {
+        self.session.snapshot()
+    }
+
     /// What is known of the programs.
     #[must_use]
     pub const fn programs(&self) -> &Programs {
@@ -277,6 +282,11 @@ impl Debugger {
     #[must_use]
     pub fn history(&self) -> (usize, usize) {
         (self.timeline.bytes(), self.timeline.len())
+    }
+
+    /// Records the past with a snapshot after so much work; see [`Timeline::keep_every`].
+    pub fn keep_every(&mut self, work: u64) {
+        self.timeline.keep_every(work);
     }
 
     /// Looks at a thread, or at another call.

@@ -77,6 +77,8 @@ pub struct Timeline<E: Engine> {
     end: Ticks,
     /// The session's work, and its place on the line, when it was last put somewhere.
     base: (u64, u64),
+    /// Work between two snapshots.
+    interval: u64,
 }
 
 impl<E: Engine> Timeline<E> {
@@ -85,7 +87,13 @@ impl<E: Engine> Timeline<E> {
         let journal = session.journal().to_vec();
         let (work, end) = (session.board().machine().work(), session.tick());
         let first = Mark { snapshot: session.snapshot(), place: 0, is_needed: true };
-        Self { marks: vec![first], done: journal.len(), journal, end, base: (work, 0) }
+        Self { marks: vec![first], done: journal.len(), journal, end, base: (work, 0), interval: INTERVAL }
+    }
+
+    /// Keeps a snapshot after so much work of the engine, about the number of its instructions, in place of the usual
+    /// amount: more of them take more memory, and make a way back shorter.
+    pub fn keep_every(&mut self, work: u64) {
+        self.interval = work.max(1);
     }
 
     /// The first tick that it can go to.
@@ -135,7 +143,7 @@ impl<E: Engine> Timeline<E> {
         let history = self.note(session);
         self.end = self.end.max(session.tick());
         if session.held().is_none() {
-            self.mark_after(session, INTERVAL);
+            self.mark_after(session, self.interval);
         }
         history
     }
@@ -188,7 +196,7 @@ impl<E: Engine> Timeline<E> {
             let next = self.next_input().map_or(tick, |next| next.min(tick));
             session.step(next, &mut |_| ());
             if session.held().is_none() {
-                self.mark_after(session, INTERVAL / PARTS);
+                self.mark_after(session, self.interval / PARTS);
             }
         }
     }
@@ -276,7 +284,7 @@ impl<E: Engine> Timeline<E> {
         let last = self.marks.last().map_or(0, |mark| mark.place);
         let cost = |index: usize| {
             let [before, mark, after] = [index - 1, index, index + 1].map(|index| self.marks[index].place);
-            (after - before) as f64 / (last - mark + INTERVAL) as f64
+            (after - before) as f64 / (last - mark + self.interval) as f64
         };
         let inner = (1..self.marks.len() - 1).filter(|index| !self.marks[*index].is_needed);
         let least = inner.min_by(|a, b| cost(*a).total_cmp(&cost(*b)));
