@@ -5,6 +5,7 @@ mod board_options;
 mod boot;
 mod console;
 mod drop_in;
+mod editor;
 mod golden;
 mod init;
 mod keyboard;

@@ -30,6 +30,20 @@ pub fn is_long() -> bool {
     std::env::var_os("CC67_LONG").is_some()
 }
 
+/// The folder of npm's packages if it has one of this name; a test that uses it does not run where this is `None`, which
+/// is said. `.ci/node/install` fills `target/node`.
+#[must_use]
+pub fn node_modules(package: &str) -> Option<PathBuf> {
+    let modules = root().join("target/node/node_modules");
+    let has_node =
+        || Command::new("node").arg("--version").output().is_ok_and(|output| output.status.success());
+    if modules.join(package).is_dir() && has_node() {
+        return Some(modules);
+    }
+    println!("not run: npm's `{package}` is not there; `.ci/node/install` fetches it");
+    None
+}
+
 /// What a run of the command left behind.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Output {
