@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use harness::{Scratch, cc67};
+use harness::{Scratch, cc67, cc67_with_input, root};
 
 fn project(name: &str) -> Scratch {
     let scratch = Scratch::new(&format!("init-{name}"));
@@ -54,6 +54,48 @@ fn the_tasks_for_the_editor_find_what_is_reported() {
         check["problemMatcher"]["pattern"]["regexp"],
         r"^(.+?):(\d+):(\d+): (error|warning|note): (.*)$"
     );
+}
+
+#[test]
+fn the_debugger_accepts_what_the_editor_launches() {
+    let scratch = project("launch");
+    let folder = scratch.path().join("machine");
+    let text = fs::read_to_string(folder.join(".vscode/launch.json")).expect("it was written");
+    let launch: serde_json::Value = serde_json::from_str(&text).expect("it is JSON");
+    let configurations = launch["configurations"].as_array().expect("a list");
+    assert_eq!(configurations.len(), 2);
+    let program = folder.join("first.c");
+    let mut input = String::new();
+    let last = configurations.last().expect("there are two").to_string();
+    // What the editor puts in place of its variable is a text within JSON.
+    let program = serde_json::Value::from(program.to_str().expect("a name in UTF-8")).to_string();
+    let arguments = last.replace("${file}", program.trim_matches('"'));
+    for request in [
+        r#"{"type":"request","seq":1,"command":"initialize","arguments":{"adapterID":"cc67"}}"#.to_owned(),
+        format!(r#"{{"type":"request","seq":2,"command":"launch","arguments":{arguments}}}"#),
+        r#"{"type":"request","seq":3,"command":"configurationDone"}"#.to_owned(),
+        r#"{"type":"request","seq":4,"command":"evaluate","arguments":{"expression":"ch0->Vel"}}"#.to_owned(),
+    ] {
+        input.push_str(&format!("Content-Length: {}\r\n\r\n{request}", request.len()));
+    }
+    let output = cc67_with_input(&scratch, ["debug", "--dap"], &input);
+    assert_eq!((output.code, output.stderr.as_str()), (0, ""), "{}", output.stdout);
+    assert!(
+        output.stdout.contains(r#""command":"launch","request_seq":2,"seq":2,"success":true"#),
+        "{}",
+        output.stdout
+    );
+    let extensions = fs::read_to_string(folder.join(".vscode/extensions.json")).expect("it was written");
+    let extensions: serde_json::Value = serde_json::from_str(&extensions).expect("it is JSON");
+    let package = fs::read_to_string(root().join("cc67/editors/vscode/package.json")).expect("it is there");
+    let package: serde_json::Value = serde_json::from_str(&package).expect("it is JSON");
+    let id = format!(
+        "{}.{}",
+        package["publisher"].as_str().expect("a text"),
+        package["name"].as_str().expect("a text")
+    );
+    assert_eq!(extensions["recommendations"][0], id);
+    assert_eq!(package["contributes"]["debuggers"][0]["type"], configurations[0]["type"]);
 }
 
 #[test]

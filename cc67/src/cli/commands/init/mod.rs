@@ -54,6 +54,8 @@ const PROJECT: &[(&str, &[u8])] = &[
     ("first.expected", include_bytes!("project/first.expected")),
     ("compile_flags.txt", include_bytes!("project/compile_flags.txt")),
     (".vscode/tasks.json", include_bytes!("project/.vscode/tasks.json")),
+    (".vscode/launch.json", include_bytes!("project/.vscode/launch.json")),
+    (".vscode/extensions.json", include_bytes!("project/.vscode/extensions.json")),
     (".github/workflows/test.yml", include_bytes!("project/.github/workflows/test.yml")),
 ];
 
