@@ -1,6 +1,8 @@
 // Inputs as switches, outputs as lamps, analog inputs as sliders.
 
 import { attribute, el, head, mark, say } from "./dom.js";
+import { mountPersist } from "./persist.js";
+import { mountWheels } from "./wheels.js";
 
 /** A press that is longer than this is a hold: the input goes back when it ends. */
 const HOLD = 400;
@@ -11,8 +13,11 @@ export function mountIo(section, link) {
   const inputs = el("div", { className: "bits" }), outputs = el("div", { className: "bits" });
   const sliders = el("div", { className: "sliders" });
   const analog = el("details", {}, el("summary", {}, "Analog"), sliders);
-  section.append(el("div", { className: "body" },
-    el("h3", {}, "Inputs: click switches, hold presses"), inputs, el("h3", {}, "Outputs"), outputs, analog));
+  const body = el("div", { className: "body" },
+    el("h3", {}, "Inputs: click switches, hold presses"), inputs, el("h3", {}, "Outputs"), outputs, analog);
+  section.append(body);
+  mountWheels(body, link);
+  mountPersist(body, link);
   let bits = [], known = "", wanted = [];
   const channels = Array.from({ length: 8 }, (_, index) => new Channel(index, link, sliders));
 

@@ -78,7 +78,7 @@ export function mountSource(section, link, sources) {
     rows.forEach((row, index) => {
       const mine = here.get(index + 1);
       row.element.classList.toggle("here", Boolean(mine));
-      row.who.replaceChildren(...(mine ?? []).map((thread) => el("span", { title: `thread ${thread}` }, String(thread))));
+      row.who.replaceChildren(...(mine ?? []).map((thread) => el("span", { title: `thread ${thread}`, role: "img", "aria-label": `thread ${thread}`, "data-thread": thread })));
     });
     if (follow.checked && here.size) reveal(Math.min(...here.keys()));
   }

@@ -1,9 +1,10 @@
 //! What the programs call their bits, and what they do with them: read from their sources.
 //!
 //! `#define ESTOP 136` with `ReadBit(ESTOP)` somewhere makes bit 136 the input `ESTOP`. A number without a macro is a
-//! bit, too, where it is an argument of such a function.
+//! bit, too, where it is an argument of such a function. In a sum the first macro names the bit: with
+//! `#define HOME_X 136`, `ReadBit(HOME_X + axis)` makes bit 136 `HOME_X`, and `ReadBit(HOME_X + 1)` bit 137 `HOME_X + 1`.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -17,6 +18,8 @@ const FUNCTIONS: [(&str, bool); 5] = [
     ("SetStateBit", true),
     ("SetBitDirection", true),
 ];
+/// Terms and macros of one bit's number at most.
+const TERMS: u32 = 100;
 /// Files that are read for a program at most.
 const FILES: usize = 100;
 
@@ -68,12 +71,15 @@ pub(crate) fn bits_of(texts: &[String]) -> BTreeMap<Bit, Used> {
     let mut bits: BTreeMap<Bit, Used> = BTreeMap::new();
     for (function, writes) in FUNCTIONS {
         for argument in texts.iter().flat_map(|text| arguments(text, function)) {
-            let Some(bit) = number(argument, &macros).and_then(Bit::new) else { continue };
+            // Of a sum with a variable, the base is shown: it is where the bits begin.
+            let whole = number(argument, &macros).map(|bit| (argument, bit));
+            let Some((named, bit)) = whole.or_else(|| base(argument, &macros)) else { continue };
+            let Some(bit) = Bit::new(bit) else { continue };
             let used = bits.entry(bit).or_default();
             used.is_read |= !writes;
             used.is_written |= writes;
-            if macros.contains_key(argument) {
-                used.name.get_or_insert_with(|| argument.to_owned());
+            if named.split(['+', '-']).any(|term| macros.contains_key(term.trim())) {
+                used.name.get_or_insert_with(|| named.to_owned());
             }
         }
     }
@@ -97,23 +103,44 @@ fn arguments<'a>(text: &'a str, function: &str) -> Vec<&'a str> {
             return None;
         }
         let rest = text.get(at + function.len()..)?.trim_start().strip_prefix('(')?;
-        Some(rest.get(..rest.find([',', ')'])?)?.trim())
+        let mut depth = 0;
+        let end = rest.find(|c: char| {
+            depth += i32::from(c == '(') - i32::from(c == ')');
+            depth < 0 || (c == ',' && depth == 0)
+        });
+        Some(rest.get(..end?)?.trim())
     };
     text.match_indices(function).filter_map(call).collect()
 }
 
-/// The value of a number, or of a macro for one.
+/// The macro in a sum with a variable, and its value.
+fn base<'a>(text: &'a str, macros: &BTreeMap<&'a str, &'a str>) -> Option<(&'a str, i32)> {
+    let mut terms = text.split('+').map(str::trim);
+    let named = terms.find(|term| macros.contains_key(term)).filter(|named| *named != text)?;
+    Some((named, number(named, macros)?))
+}
+
+/// The value of a number, of a macro for one, or of a sum of such.
 fn number(text: &str, macros: &BTreeMap<&str, &str>) -> Option<i32> {
-    let mut text = text;
-    let mut seen = BTreeSet::new();
-    while let Some(value) = macros.get(text.trim()) {
-        if !seen.insert(text.trim()) {
-            return None;
-        }
-        text = value;
-    }
+    sum(text, macros, &mut { TERMS })
+}
+
+/// The same; what is longer than `rest` terms, or names itself, has no value.
+fn sum(text: &str, macros: &BTreeMap<&str, &str>, rest: &mut u32) -> Option<i32> {
+    *rest = rest.checked_sub(1)?;
     let text = text.trim();
-    let text = text.strip_prefix('(').and_then(|inner| inner.strip_suffix(')')).unwrap_or(text).trim();
+    if let Some(value) = macros.get(text) {
+        return sum(value, macros, rest);
+    }
+    if let Some(inner) = text.strip_prefix('(').and_then(|inner| inner.strip_suffix(')')) {
+        return sum(inner, macros, rest);
+    }
+    // The last sign, since subtraction is from left to right.
+    if let Some((left, right)) = text.rfind(['+', '-']).and_then(|at| text.split_at_checked(at)) {
+        let left = sum(left, macros, rest)?;
+        let value = sum(right.get(1..)?, macros, rest)?;
+        return if right.starts_with('+') { left.checked_add(value) } else { left.checked_sub(value) };
+    }
     match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
         Some(digits) => i32::from_str_radix(digits, 16).ok(),
         None => text.parse().ok(),
@@ -179,6 +206,11 @@ mod tests {
         check("#define A (0x10)\n#define B A // the door\nReadBit( B ); SetBit(A);", "16 B rw");
         check("ReadBit(1024 + i); MyReadBit(5); SetStateBit(46, x); ClearBit(9999);", "46 - w");
         check("/* ReadBit(1) */ // ReadBit(2)\nprintf(\"ReadBit(3) \\\" ReadBit(4)\"); ReadBit(5);", "5 - r");
+        check(
+            "#define HOME_X 136\n#define HOME_Y (HOME_X + 1)\nReadBit(HOME_X + n); ReadBit(HOME_Y);",
+            "136 HOME_X r, 137 HOME_Y r",
+        );
+        check("#define OUT 10\nSetBit(OUT + 2); ClearBit((OUT)); SetBit(i + OUT);", "10 OUT w, 12 OUT + 2 w");
         check("#define LOOP LOOP\n#define F(x) 3\nReadBit(LOOP); ReadBit(F(1));", "");
     }
 

@@ -3,6 +3,7 @@
 mod browser;
 mod hostile;
 mod page;
+mod panels;
 
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Stdio};
