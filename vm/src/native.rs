@@ -19,6 +19,7 @@ mod linked;
 mod object;
 mod protected;
 mod request;
+mod shared;
 mod state;
 #[cfg(test)]
 mod tests;
@@ -32,6 +33,7 @@ use kmotiondef::{CodeAddr, GuestAddr};
 pub use self::compile::CompileError;
 pub use self::linked::{Description, Linked, LinkedError};
 pub use self::object::{PREFIX, Parts, START, object};
+pub use self::shared::SharedCode;
 
 use self::code::Code;
 use self::context::{Context, Saved};
@@ -53,6 +55,8 @@ pub struct NativeEngine {
     code: Translations<Option<Arc<Code>>>,
     /// A program whose machine code is part of this executable.
     linked: Option<(Program, Arc<Code>)>,
+    /// Code that this engine has in common with others.
+    shared: Option<SharedCode>,
     protected: ProtectedBlocks,
     /// Runs the contexts whose program cannot be compiled.
     bytecode: BytecodeEngine,
@@ -82,12 +86,20 @@ impl NativeEngine {
         Ok(Self { linked: Some((program, code)), ..Self::default() })
     }
 
+    /// An engine that compiles nothing that another engine with the same `shared` has compiled lately.
+    #[must_use]
+    pub fn with_shared(shared: SharedCode) -> Self {
+        Self { shared: Some(shared), ..Self::default() }
+    }
+
     /// The machine code of `program`.
     fn code(&mut self, program: &Arc<Program>, pure: PureFunctions<'_>) -> Option<Arc<Code>> {
-        let linked = &self.linked;
-        self.code.get(program, |program| match linked {
-            Some((known, code)) if known == program => Some(Arc::clone(code)),
-            _ => Code::compile(program, pure).ok().map(Arc::new),
+        let (linked, shared) = (&self.linked, &self.shared);
+        let compile = |program: &Program| Code::compile(program, pure).ok().map(Arc::new);
+        self.code.get(program, |program| match (linked, shared) {
+            (Some((known, code)), _) if known == program => Some(Arc::clone(code)),
+            (_, Some(shared)) => shared.get(program, compile),
+            (_, None) => compile(program),
         })
     }
 }

@@ -1,7 +1,7 @@
 //! A board for Python: whose thread it is, signals while it runs, exceptions.
 
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Mutex, PoisonError, TryLockError};
+use std::sync::{LazyLock, Mutex, PoisonError, TryLockError};
 use std::thread::{self, ThreadId};
 
 use cc67_host::Until;
@@ -10,7 +10,7 @@ use kmotiondef::limits::TIMEBASE;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use vm::interp::BytecodeEngine;
-use vm::native::NativeEngine;
+use vm::native::{NativeEngine, SharedCode};
 
 use crate::control::{Control, Fault, Portion, Rig, Said, field_names};
 use crate::errors::{Error, ExpectationError, ThreadError, TrapError, input};
@@ -21,6 +21,9 @@ use crate::trace::MOST_VALUES;
 
 /// Numbers for boards and snapshots, so that nobody takes one for another's.
 static NUMBERS: AtomicU64 = AtomicU64::new(1);
+
+/// What the native engines of all boards have compiled: a sweep makes a thousand boards of one program.
+static COMPILED: LazyLock<SharedCode> = LazyLock::new(SharedCode::default);
 
 /// A column of a trace.
 type Column<'py> = Bound<'py, PyArray1<f64>>;
@@ -142,7 +145,10 @@ impl Board {
                 .detach(|| setup.session_on(BytecodeEngine::default()))
                 .map(|session| Residence::Here(Box::new(Rig::new(session)))),
             "native" => {
-                let make = move || setup.session_on(NativeEngine::default()).map(Rig::new);
+                let make = move || {
+                    let engine = NativeEngine::with_shared(COMPILED.clone());
+                    setup.session_on(engine).map(Rig::new)
+                };
                 let residence = py.detach(|| Residence::elsewhere(make));
                 residence.ok_or_else(|| Error::new_err("the system cannot start a thread for the board"))?
             }

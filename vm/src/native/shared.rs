@@ -1,0 +1,78 @@
+//! Machine code that several engines have in common: what many boards run one after the other is compiled once.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use super::code::Code;
+use crate::program::Program;
+
+/// Programs that are kept; the one that was used longest ago goes first.
+const MOST: usize = 32;
+
+/// A program, and its machine code; `None` where it cannot be compiled.
+type Known = (Program, Option<Arc<Code>>);
+
+/// Machine code of the programs that were compiled last, for engines whose boards have the same firmware.
+///
+/// A program is known again by what it is, not by where it is, so boards that are made from one image share its code.
+#[derive(Clone, Debug, Default)]
+pub struct SharedCode(Arc<Mutex<Vec<Known>>>);
+
+impl SharedCode {
+    /// The code of `program`. Nobody waits while it is compiled; where two ask at once, both compile.
+    pub(super) fn get(
+        &self,
+        program: &Program,
+        compile: impl FnOnce(&Program) -> Option<Arc<Code>>,
+    ) -> Option<Arc<Code>> {
+        if let Some(code) = self.find(program) {
+            return code;
+        }
+        let code = compile(program);
+        if self.find(program).is_none() {
+            let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+            known.truncate(MOST - 1);
+            known.insert(0, (program.clone(), code.clone()));
+        }
+        code
+    }
+
+    fn find(&self, program: &Program) -> Option<Option<Arc<Code>>> {
+        let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let index = known.iter().position(|(known, _)| known == program)?;
+        let found = known.remove(index);
+        let code = found.1.clone();
+        known.insert(0, found);
+        Some(code)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::program;
+
+    #[test]
+    fn a_program_is_compiled_once_for_all_and_the_oldest_is_forgotten() {
+        let shared = SharedCode::default();
+        let of = |number: i32| {
+            program(
+                1,
+                &format!("@main: func sig0, 1, 0\ntypes 0\ncharge 9\nadd_i32_imm r0, r0, {number}\nret"),
+            )
+        };
+        let mut compiled = Vec::new();
+        let mut ask = |number| {
+            let found = shared.clone().get(&of(number), |_| {
+                compiled.push(number);
+                None
+            });
+            assert!(found.is_none());
+        };
+        (2..2 + MOST as i32).for_each(&mut ask);
+        ask(2);
+        ask(100);
+        ask(2);
+        ask(3);
+        assert_eq!(compiled.split_off(MOST), [100, 3]);
+    }
+}
