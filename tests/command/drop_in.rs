@@ -288,6 +288,12 @@ fn wrong_calls_get_the_vendors_words() {
             &["-text", "80050000", "-o", "no/prog.out", "prog.c", "DSP dir/DSPKFLOP.out"],
             "tcc: Unable to open output file 'no/prog.out'\n",
         ),
+        (
+            "other-board",
+            &["-text", "80038000", "-o", "prog.out", "prog.c", "DSP dir/DSPKFLOP.out"],
+            "tcc: address 80038000 is in no thread of a KFLOP: thread 1 begins at 80050000, each of the 7 has 10000 bytes; \
+             the KMotion library takes a board that is in use by another client for the older KMotion: try again\n",
+        ),
     ] {
         let all = [&["-nostdinc"], arguments].concat();
         check_message(name, BLINK, &all, expect);
@@ -297,6 +303,27 @@ fn wrong_calls_get_the_vendors_words() {
     let output = call(&scratch, CALL);
     assert_eq!(output.code, 1);
     assert!(output.stderr.starts_with("tcc: 'DSP dir/DSPKFLOP.out': not a firmware file"), "{output:?}");
+}
+
+#[test]
+fn the_firmware_of_another_board_is_refused() {
+    let scratch = folder("other-firmware", BLINK);
+    let other: Vec<u8> = {
+        let bytes = firmware(&[]);
+        let at = bytes.windows(5).position(|part| part == b"KFLOP").expect("it says what it is");
+        [&bytes[..at], b"KOGNA", &bytes[at + 5..]].concat()
+    };
+    for (name, bytes, expect) in [
+        ("DSPKMotion.out", firmware(&[]), "tcc: DSPKMotion.out is not the firmware of a KFLOP; "),
+        ("DSPKFLOP.out", other, "tcc: 'other/DSPKFLOP.out' is the firmware of another board: KOGNA 4.34"),
+    ] {
+        scratch.write(&format!("other/{name}"), bytes);
+        let file = format!("other/{name}");
+        let output = call(&scratch, &["-text", "80050000", "-o", "prog.out", "prog.c", &file]);
+        assert_eq!(output.code, 1);
+        assert!(output.stderr.starts_with(expect), "{output:?}");
+        assert!(!scratch.path().join("prog.out").exists());
+    }
 }
 
 #[test]

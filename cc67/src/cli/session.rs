@@ -150,11 +150,6 @@ impl Setup {
         }
         Ok(self.session.session()?)
     }
-
-    /// The same for a board that has clients, on the engine that can change its thread; with the file of its flash.
-    pub(crate) fn shared(self) -> Result<(cc67_host::Board, Flash)> {
-        Ok((cc67_host::Board::from_session(self.session.session()?), self.flash))
-    }
 }
 
 /// Programs that start, and those that run to their end before.
@@ -268,6 +263,11 @@ impl<E: Engine> Rig<E> {
         });
     }
 
+    /// Keeps what flash memory holds now in its file.
+    pub(crate) fn keep_flash(&mut self) -> Result<()> {
+        self.flash.keep(self.session.board().flash())
+    }
+
     /// The run is over: what is held comes out, the files of the serial port and of the flash are written.
     pub(crate) fn finish(&mut self, sink: &mut dyn FnMut(Event)) -> Result<()> {
         let line = &mut self.line;
@@ -276,6 +276,6 @@ impl<E: Engine> Rig<E> {
             sink(event);
         });
         line.finish()?;
-        self.flash.keep(self.session.board().flash())
+        self.keep_flash()
     }
 }

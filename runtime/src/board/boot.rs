@@ -11,7 +11,6 @@ use vm::memory::GuestMemory;
 use super::{Board, Loaded};
 use crate::board::code;
 use crate::board::power_up::{self, Before};
-use crate::commands::FLASH_COMPLETE;
 use crate::io::flash;
 use crate::out::Message;
 use crate::views::Typed;
@@ -74,8 +73,6 @@ impl<E: Engine> Board<E> {
         let programs = self.programs_mut();
         let known = |loaded: &Option<Loaded>| loaded.as_ref().map(|loaded| loaded.debug.clone());
         programs.flashed = programs.loaded.each_ref().map(known);
-        let (kernel, _) = self.machine.firmware_mut();
-        kernel.parts.out.console.message(FLASH_COMPLETE);
     }
 
     /// Starts anew from flash. Time goes on: it counts from the first power-up.

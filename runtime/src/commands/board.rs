@@ -9,8 +9,8 @@ use crate::firmware::serial;
 use crate::out::{Message, Request};
 use crate::views::Typed;
 
-/// What the board says when flash is written.
-pub(crate) const FLASH_COMPLETE: &str = "Program Flash Image Complete";
+/// What the board replies when flash is written (host-protocol.md section 9).
+const FLASH_COMPLETE: &str = "Program Flash Image Complete";
 /// Characters of `Echo` and the one behind it.
 const ECHO: usize = 5;
 /// The UART's clock, 16 of whose periods make the shortest bit.
@@ -34,7 +34,7 @@ pub(super) fn reboot(session: &mut Session<'_, '_>, _: &Values) -> Answer {
 
 pub(super) fn flash(session: &mut Session<'_, '_>, _: &Values) -> Answer {
     session.parts.out.ask(Request::Flash);
-    Answer::Nothing
+    FLASH_COMPLETE.to_owned().into()
 }
 
 pub(super) fn clear_flash_image(session: &mut Session<'_, '_>, _: &Values) -> Answer {
@@ -43,9 +43,8 @@ pub(super) fn clear_flash_image(session: &mut Session<'_, '_>, _: &Values) -> An
 }
 
 /// A new firmware is taken and ignored; the answer is as if it were there.
-pub(super) fn program_flash_image(session: &mut Session<'_, '_>, _: &Values) -> Answer {
-    session.parts.out.console.message(FLASH_COMPLETE);
-    Answer::Nothing
+pub(super) fn program_flash_image(_: &mut Session<'_, '_>, _: &Values) -> Answer {
+    FLASH_COMPLETE.to_owned().into()
 }
 
 /// Replies go to the PC again.

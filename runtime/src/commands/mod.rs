@@ -30,7 +30,6 @@ mod table;
 pub use arguments::Argument;
 pub use table::COMMANDS;
 
-pub(crate) use board::FLASH_COMPLETE;
 use vm::firmware::TickContext;
 
 use arguments::Values;

@@ -9,10 +9,14 @@ use super::arguments::Values;
 use super::data::{Data, Kind};
 use super::session::{Answer, Session};
 use crate::firmware::thread;
+use crate::out::Message;
 use crate::views::Typed;
 
 pub(super) fn execute(session: &mut Session<'_, '_>, values: &Values) -> Answer {
-    thread::start(session.parts, session.context.memory, session.context.threads, values.thread());
+    let (thread, context) = (values.thread(), &mut *session.context);
+    if !thread::start(session.parts, context.memory, context.threads, thread) {
+        session.parts.out.remark(context.now, Message::ExecuteEmpty { thread });
+    }
     Answer::Nothing
 }
 

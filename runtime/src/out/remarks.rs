@@ -276,6 +276,9 @@ messages! {
     /// A thread without a program is started by a call.
     ThreadEmpty { thread: ThreadId } = "thread-empty", Warning, [always],
         "StartThread({thread}): no program is loaded in thread {thread}";
+    /// A script command starts a thread without a program.
+    ExecuteEmpty { thread: ThreadId } = "execute-empty", Warning, [always],
+        "Execute{thread}: no program is loaded in thread {thread}, and nothing starts";
     /// A call names an analog input that does not exist.
     NoSuchAdc { channel: i32 } = "no-such-adc", Warning, [always],
         "ReadADC({channel}): there are channels 0 to 7";

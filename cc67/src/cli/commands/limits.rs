@@ -10,6 +10,7 @@ use kmotiondef::ThreadId;
 use kmotiondef::limits::MAX_NSTRINGS;
 use kmotiondef::map::{PROGRAM_BASE, PROGRAM_SIZE, STACK_BASE, STACK_SIZE};
 
+use super::serve::{self, MOST_CLIENTS, UNHEARD_LINES};
 use crate::cli::report::SHOWN_REMARKS;
 use crate::cli::report::trace::SAMPLES as PICTURE_SAMPLES;
 use cc67_host::{CONSOLE_LINES, REPLY_BYTES};
@@ -95,6 +96,17 @@ pub const CLIENTS: &[Limit] = &[
         "bytes of replies that no client has read",
         REPLY_BYTES as u64,
         "what comes then is lost; a remark says so",
+    ),
+    limit("clients of `cc67 serve` at a time", MOST_CLIENTS as u64, "the connection is closed"),
+    limit(
+        "console lines of `cc67 serve` while no client is the console",
+        UNHEARD_LINES as u64,
+        "the oldest is thrown away",
+    ),
+    limit(
+        "console lines of `cc67 serve` that its console has not received",
+        serve::CONSOLE_LINES as u64,
+        "the oldest is lost; the server reports it",
     ),
 ];
 

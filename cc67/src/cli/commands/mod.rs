@@ -21,6 +21,7 @@ mod live;
 mod package;
 mod plot;
 mod run;
+mod serve;
 mod shell;
 #[cfg(feature = "native")]
 mod stand_alone;
@@ -65,6 +66,8 @@ enum Command {
     Check(check::CheckArguments),
     /// Talk to a simulated board: script commands, programs, what they print; interactive or from a script
     Console(Box<console::ConsoleArguments>),
+    /// Serve a simulated board to programs that use the vendor's client library, in place of its server
+    Serve(Box<serve::ServeArguments>),
     /// Show a simulated board on a page in the browser: axes, inputs and outputs, console, threads, signals
     #[cfg(feature = "live")]
     Live(Box<live::LiveArguments>),
@@ -105,6 +108,7 @@ impl Command {
             Self::Build(arguments) => build::build(arguments),
             Self::Check(arguments) => check::check(arguments),
             Self::Console(arguments) => console::console(arguments),
+            Self::Serve(arguments) => serve::serve(arguments),
             #[cfg(feature = "live")]
             Self::Live(arguments) => live::live(arguments),
             Self::Debug(arguments) => debug::debug(arguments),
@@ -139,6 +143,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     if drop_in::is_meant(&arguments) {
         return drop_in::main(&arguments);
     }
+    let arguments = serve::home::called_as_server(&arguments).unwrap_or(arguments);
     let words: Vec<OsString> = arguments.into_iter().map(as_long_option).collect();
     let arguments = match Arguments::try_parse_from(&words) {
         Ok(arguments) => match arguments.with_sidecars(&words) {

@@ -14,28 +14,36 @@ use kmotiondef::limits::TIMEBASE;
 pub(crate) struct Pace {
     start: Instant,
     origin: Ticks,
+    /// Seconds of board time in a second.
+    speed: f64,
 }
 
 impl Pace {
     /// Starts the clock at a tick of the board.
     pub(crate) fn new(origin: Ticks) -> Self {
-        Self { start: now(), origin }
+        Self::with_speed(origin, 1.0)
+    }
+
+    /// The same for a board that is `speed` times as fast as the real one.
+    pub(crate) fn with_speed(origin: Ticks, speed: f64) -> Self {
+        Self { start: now(), origin, speed }
     }
 
     /// The tick that the clock has come to.
     pub(crate) fn due(&self) -> Ticks {
-        Ticks::new(self.origin.get() + (self.start.elapsed().as_secs_f64() / TIMEBASE) as u64)
+        Ticks::new(self.origin.get() + (self.start.elapsed().as_secs_f64() * self.speed / TIMEBASE) as u64)
     }
 
     /// Waits until the clock has come to a tick.
     pub(crate) fn wait(&self, tick: Ticks) {
         let ticks = tick.get().saturating_sub(self.origin.get());
-        let end = Duration::from_secs_f64(ticks as f64 * TIMEBASE);
+        let end = Duration::from_secs_f64(ticks as f64 * TIMEBASE / self.speed);
         thread::sleep(end.saturating_sub(self.start.elapsed()));
     }
 }
 
+/// The present moment.
 #[expect(clippy::disallowed_methods, reason = "a run is paced by the clock here; what happens in it is not")]
-fn now() -> Instant {
+pub(crate) fn now() -> Instant {
     Instant::now()
 }

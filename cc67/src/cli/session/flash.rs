@@ -12,7 +12,7 @@ use crate::cli::io::output;
 #[derive(Debug)]
 pub(crate) struct Flash {
     path: Option<PathBuf>,
-    /// What it held at the start; nothing if it was not there.
+    /// What it held at the start, or was written to it since; nothing if it was not there.
     before: Option<Vec<u8>>,
 }
 
@@ -37,11 +37,13 @@ impl Flash {
     }
 
     /// Keeps what flash memory holds now, if that is another than before.
-    pub(crate) fn keep(&self, now: &[u8]) -> Result<()> {
+    pub(crate) fn keep(&mut self, now: &[u8]) -> Result<()> {
         let is_erased = || now.iter().all(|byte| *byte == 0xFF);
         match &self.path {
             Some(path) if self.before.as_ref().map_or_else(|| !is_erased(), |before| before != now) => {
-                output::write(path, now)
+                output::write(path, now)?;
+                self.before = Some(now.to_vec());
+                Ok(())
             }
             _ => Ok(()),
         }

@@ -7,7 +7,6 @@
 mod booted;
 mod input;
 mod screen;
-mod serve;
 mod words;
 
 use std::collections::BTreeMap;
@@ -28,6 +27,7 @@ use input::{Input, Lines};
 use screen::Screen;
 use words::Word;
 
+use super::serve::Terms;
 use crate::cli::args::board::BoardArguments;
 use crate::cli::args::compiler::CompilerArguments;
 use crate::cli::args::program::{ProgramFile, assign};
@@ -56,7 +56,7 @@ pub(super) struct ConsoleArguments {
     /// Run as fast as possible; the default from a script
     #[arg(long, overrides_with = "realtime")]
     fast: bool,
-    /// Serve programs of the PC instead of a person: the socket of the vendor's server, /tmp/kmotionsocket, or tcp:PORT
+    /// Serve programs of the PC instead of a person, as `cc67 serve --listen ADDRESS`
     #[arg(long, value_name = "ADDRESS", conflicts_with = "time")]
     serve: Option<String>,
     /// Behind the last line, go on for so many seconds of board time at most
@@ -81,8 +81,24 @@ pub(super) fn console(arguments: &ConsoleArguments) -> Result<Exit> {
     let setup = Setup::new(&arguments.programs, &arguments.board, &arguments.compiler, None)?;
     let Some(setup) = setup else { return Ok(Exit::Failure) };
     match &arguments.serve {
-        Some(address) => serve::serve(arguments, setup, address),
+        Some(address) => setup.on_its_engine(&arguments.terms(address)),
         None => setup.on_its_engine(arguments),
+    }
+}
+
+impl ConsoleArguments {
+    /// How the board is served to programs of the PC.
+    fn terms(&self, address: &str) -> Terms<'_> {
+        Terms {
+            addresses: vec![address.to_owned()],
+            option: "--serve",
+            pace: (!self.fast).then_some(1.0),
+            once: false,
+            limit: self.limit,
+            log: None,
+            trace: &self.trace,
+            title: self.programs.join(OsStr::new(", ")).to_string_lossy().into_owned(),
+        }
     }
 }
 

@@ -26,7 +26,7 @@ This is cc67 in the place of the vendor's compiler; `cc67 --help` shows its own 
 ";
 
 /// Where a program goes unless an address is given.
-const DEFAULT_TEXT: u32 = 0x400;
+pub(super) const DEFAULT_TEXT: u32 = 0x400;
 
 /// The text stands at a multiple of this.
 const FETCH_PACKET: u32 = 32;

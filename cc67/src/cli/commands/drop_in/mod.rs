@@ -17,10 +17,10 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 
-use kmotiondef::map::program_base;
+use kmotiondef::map::{PROGRAM_SIZE, program_base};
 use kmotiondef::{GuestAddr, ThreadId};
 
-use arguments::{Call, Request};
+use arguments::{Call, DEFAULT_TEXT, Request};
 
 use crate::cli::io::exit::Exit;
 use crate::cli::io::output;
@@ -87,6 +87,9 @@ fn compile(request: &Request) -> Result<(), String> {
     let text = files::read(&request.source)
         .map_err(|_| format!("tcc: file '{}' not found\n", request.source.display()))?;
     let firmware = request.firmware.as_deref().map(read_firmware).transpose()?;
+    if request.output.is_some() {
+        refuse_other_boards(request)?;
+    }
     let options = options(request, firmware);
     let mut compilation = compiler::compile(&request.source, text, &options, &Disk);
     let Some(output) = &request.output else { return silent_without_errors(&compilation) };
@@ -105,10 +108,37 @@ fn compile(request: &Request) -> Result<(), String> {
         .map_err(|_| format!("tcc: Unable to open output file '{}'\n", output.display()))
 }
 
+/// The name of the firmware file of the older board.
+const OTHER_FIRMWARE: &str = "DSPKMotion";
+/// Why a program is compiled for the older board, when it is not meant (host-protocol.md section 9, item 7).
+const MISTAKEN: &str =
+    "the KMotion library takes a board that is in use by another client for the older KMotion: try again";
+
+/// A program for the older board would be downloaded to a place where no thread of this one begins.
+fn refuse_other_boards(request: &Request) -> Result<(), String> {
+    let stem = request.firmware.as_deref().and_then(Path::file_stem).unwrap_or_default();
+    if stem.eq_ignore_ascii_case(OTHER_FIRMWARE) {
+        return Err(format!("tcc: {OTHER_FIRMWARE}.out is not the firmware of a KFLOP; {MISTAKEN}\n"));
+    }
+    let begin = ThreadId::all().next().map_or(0, |first| program_base(first).get());
+    let is_inside = (begin..begin + PROGRAM_SIZE * u32::from(ThreadId::MAX)).contains(&request.text);
+    if !is_inside && request.text != DEFAULT_TEXT {
+        return Err(format!(
+            "tcc: address {:x} is in no thread of a KFLOP: thread 1 begins at {begin:x}, each of the {} has {PROGRAM_SIZE:x} bytes; {MISTAKEN}\n",
+            request.text,
+            ThreadId::MAX,
+        ));
+    }
+    Ok(())
+}
+
 /// The firmware's symbols.
 fn read_firmware(path: &Path) -> Result<Firmware, String> {
     let bytes = files::read(path).map_err(|_| format!("tcc: file '{}' not found\n", path.display()))?;
     let file = FirmwareFile::read(&bytes).map_err(|error| format!("tcc: '{}': {error}\n", path.display()))?;
+    if let Some(version) = file.version().filter(|version| !version.contains("KFLOP")) {
+        return Err(format!("tcc: '{}' is the firmware of another board: {version}\n", path.display()));
+    }
     Ok(Firmware::File(Arc::new(file)))
 }
 

@@ -1,0 +1,186 @@
+//! What each call does, as the vendor's server does it. Source: host-protocol.md sections 7 to 9.
+
+use std::time::{Duration, Instant};
+
+use cc67_host::session::EXCHANGE;
+use cc67_host::{Lock, Readiness};
+use vm::engine::Engine;
+
+use super::desk::{Desk, Token, Waiting, Wanted};
+use super::link::{CONSOLE_LINES, Line};
+use super::message::{Call, Reply, Request};
+use crate::cli::io::terminal;
+
+/// Before a line that is not echoed.
+const SILENT: &[u8] = b"\x1b\x01";
+/// How long the answer to a line is waited for, in milliseconds.
+const ANSWER_WITHIN: u32 = 3000;
+/// How long each line is waited for until `Ready` comes.
+const READY_WITHIN: u32 = 100;
+/// The identifiers of the boards: there is one.
+const LOCATIONS: [i32; 1] = [1];
+/// The generation of the firmware.
+const FIRMWARE: i32 = 2;
+/// The result of a line that does not come in time.
+const TIMEOUT: i32 = 2;
+/// What a client hears of when it gives up the link.
+const FAILED: &str = "Read Failed - Auto Disconnect";
+
+impl<E: Engine> Desk<'_, E> {
+    /// Does what a client asks for; its reply, if that is known already.
+    pub(super) fn ask(&mut self, client: u64, request: &Request) -> Option<Reply> {
+        if !request.is_for(&LOCATIONS) {
+            return Some(Reply::number(elsewhere(&request.call)));
+        }
+        let success = Some(Reply::number(0));
+        match &request.call {
+            Call::WriteLineReadLine(line) => return self.exchange(client, line),
+            Call::WriteLine(line) => self.write(SILENT, line),
+            Call::WriteLineWithEcho(line) => self.write(b"", line),
+            Call::ReadLine(_) if !self.is_connected => return Some(Reply::text(TIMEOUT, b"")),
+            Call::ReadLine(milliseconds) => return self.wait(client, Wanted::Line, *milliseconds),
+            Call::ListLocations => return Some(Reply::numbers(&LOCATIONS)),
+            Call::Failed => self.fail(),
+            Call::Disconnect => self.is_connected = false,
+            Call::FirmwareVersion => return Some(Reply::number(FIRMWARE)),
+            Call::CheckForReady if !self.is_connected => {
+                return Some(Reply::number(Readiness::NoData as i32));
+            }
+            Call::CheckForReady => {
+                return self.wait(client, Wanted::Ready { after_error: false }, READY_WITHIN);
+            }
+            Call::Lock => return Some(Reply::number(self.lock(client) as i32)),
+            Call::Location => {
+                let [location] = LOCATIONS;
+                return Some(Reply::number(if self.is_connected { location } else { -1 }));
+            }
+            Call::Release => self.token = Token::default(),
+            Call::ServiceConsole => self.service_console(),
+            Call::SetConsole => {
+                self.console = Some(client);
+                self.board.is_heard = true;
+            }
+        }
+        success
+    }
+
+    /// A line and the first line of its answer.
+    fn exchange(&mut self, client: u64, line: &[u8]) -> Option<Reply> {
+        let begin = self.board.tick().get();
+        self.write(SILENT, line);
+        let reply = self.wait(client, Wanted::Answer, ANSWER_WITHIN);
+        if !self.is_clocked() {
+            let spent = self.board.tick().get() - begin;
+            self.board.until(EXCHANGE.saturating_sub(spent), |_| false);
+        }
+        reply
+    }
+
+    fn write(&mut self, before: &[u8], line: &[u8]) {
+        self.connect();
+        self.board.send(before, line);
+    }
+
+    /// Opens the link to the board if it is not open.
+    fn connect(&mut self) {
+        if !std::mem::replace(&mut self.is_connected, true) {
+            self.board.reopen();
+        }
+    }
+
+    fn fail(&mut self) {
+        self.is_connected = false;
+        if !std::mem::replace(&mut self.has_told_failure, true) {
+            self.error_texts.push(FAILED.to_owned());
+        }
+    }
+
+    /// Asks for the token once. Who has it does not get it a second time.
+    fn lock(&mut self, client: u64) -> Lock {
+        self.connect();
+        match &mut self.token {
+            Token { taken_by: None, .. } => {
+                self.token = Token { taken_by: Some(client), has_told: false };
+                Lock::Locked
+            }
+            Token { taken_by: Some(holder), has_told } => {
+                if *holder == client && !std::mem::replace(has_told, true) {
+                    terminal::note(&format!(
+                        "client {client} asks for the token that it has itself; it waits until some client calls ReleaseToken"
+                    ));
+                }
+                Lock::InUse
+            }
+        }
+    }
+
+    /// Reads a line for the console, if nobody has the token.
+    fn service_console(&mut self) {
+        if self.token.taken_by.is_none() && self.is_connected {
+            self.board.until(EXCHANGE, |board| board.link.has_line());
+            if let Some(Line::Console(line) | Line::Reply(line)) = self.read() {
+                self.show(line);
+            }
+        }
+    }
+
+    /// The next line from the link.
+    fn read(&mut self) -> Option<Line> {
+        let line = self.board.link.next()?;
+        self.has_told_failure = false;
+        Some(line)
+    }
+
+    /// A line for the console: without one it is thrown away.
+    fn show(&mut self, line: Vec<u8>) {
+        if self.console.is_some() {
+            if self.console_lines.len() >= CONSOLE_LINES {
+                self.console_lines.pop_front();
+            }
+            self.console_lines.push_back(line);
+        }
+    }
+
+    /// Looks for what a client waits for: its reply, if it has come or the time has passed.
+    pub(super) fn look(&mut self, waiting: &mut Waiting, time: Instant) -> Option<Reply> {
+        while let Some(line) = self.read() {
+            match (&mut waiting.wanted, line) {
+                (Wanted::Answer, Line::Reply(line)) => return Some(Reply::text(0, &line)),
+                (Wanted::Line, Line::Reply(line)) => {
+                    return Some(Reply::text(0, &[&line[..], b"\r\n"].concat()));
+                }
+                (Wanted::Ready { after_error }, Line::Reply(line) | Line::Console(line)) => {
+                    let is_ready = line == b"Ready";
+                    *after_error |= line.to_ascii_lowercase().windows(5).any(|part| part == b"error");
+                    let length = Duration::from_millis(READY_WITHIN.into());
+                    (waiting.until, waiting.left) = (time + length, self.ticks(length));
+                    let result = if *after_error { Readiness::ReadyAfterError } else { Readiness::Ready };
+                    self.show(line);
+                    if is_ready {
+                        return Some(Reply::number(result as i32));
+                    }
+                }
+                (Wanted::Answer | Wanted::Line, Line::Console(line)) => self.show(line),
+            }
+        }
+        self.has_passed(waiting, time).then(|| match waiting.wanted {
+            Wanted::Answer => Reply::text(1, b""),
+            Wanted::Line => Reply::text(TIMEOUT, b""),
+            Wanted::Ready { .. } if self.board.link.has_partial_line() => {
+                Reply::number(Readiness::Partial as i32)
+            }
+            Wanted::Ready { .. } => Reply::number(Readiness::NoData as i32),
+        })
+    }
+}
+
+/// The result of a call for a board that is not there.
+fn elsewhere(call: &Call) -> i32 {
+    if *call == Call::Lock {
+        Lock::NotConnected as i32
+    } else if *call == Call::Location {
+        -1
+    } else {
+        1
+    }
+}

@@ -1,0 +1,307 @@
+//! The desk: takes one request after another for the one board, and keeps its time.
+//!
+//! At the pace of a clock the board is never far from it: it waits for the clock, and requests wait for the board. Without
+//! a clock its time passes only while a client waits for an answer, so that the same questions get the same answers each
+//! time, however long a client sleeps between them.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender};
+use std::time::{Duration, Instant};
+
+use anyhow::Result;
+use cc67_host::session::EXCHANGE;
+use kmotiondef::Ticks;
+use kmotiondef::limits::TIMEBASE;
+use vm::engine::Engine;
+
+use super::Terms;
+use super::board::ServedBoard;
+use super::message::{self, Reply, Request};
+use crate::cli::io::exit::Exit;
+use crate::cli::io::pace::{Pace, now};
+
+/// How often a board at the pace of a clock is brought up to it while nobody asks anything.
+const BEAT: Duration = Duration::from_millis(10);
+/// The same while somebody waits for the board, or for the clock.
+const SHORT_BEAT: Duration = Duration::from_millis(1);
+/// Ticks that the board runs before the next look at what is asked.
+const STRETCH: u64 = 111;
+/// Ticks that the board may be ahead of a clock at the board's own pace, before requests wait for the clock: 1 ms.
+const AHEAD: f64 = 11.0;
+/// Console lines that are sent before one reply at most.
+const LINES_AT_ONCE: usize = 10;
+
+/// What comes to the desk.
+#[derive(Debug)]
+pub(super) enum Note {
+    /// A client, and where its answers go.
+    Came(u64, Sender<Vec<Vec<u8>>>),
+    /// A request of a client.
+    Asked(u64, Request),
+    /// A client is gone.
+    Left(u64),
+    /// Somebody wants the server to end.
+    End,
+}
+
+/// Whether there is more to come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[must_use]
+enum Flow {
+    Continue,
+    Leave,
+}
+
+/// What a client waits for.
+#[derive(Clone, Debug)]
+pub(super) enum Wanted {
+    /// A line of a reply, without its end.
+    Answer,
+    /// The same with its end.
+    Line,
+    /// `Ready`; whether an error came before.
+    Ready { after_error: bool },
+}
+
+/// A client that waits for the board.
+#[derive(Clone, Debug)]
+pub(super) struct Waiting {
+    pub(super) client: u64,
+    pub(super) wanted: Wanted,
+    /// When it waits no longer.
+    pub(super) until: Instant,
+    /// Without a clock: ticks that the board still runs for it.
+    pub(super) left: u64,
+}
+
+/// The token of the board: a counter that belongs to nobody.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Token {
+    /// The client that has taken it last.
+    pub(super) taken_by: Option<u64>,
+    /// Whether it was said that this client waits for itself.
+    pub(super) has_told: bool,
+}
+
+/// The board and its clients.
+pub(super) struct Desk<'a, E> {
+    pub(super) board: ServedBoard<'a, E>,
+    terms: &'a Terms<'a>,
+    /// The clock, if the board keeps pace with one, and its speed.
+    clock: Option<(Pace, f64)>,
+    inbox: Receiver<Note>,
+    /// What has come and is not taken yet.
+    notes: VecDeque<Note>,
+    clients: BTreeMap<u64, Sender<Vec<Vec<u8>>>>,
+    waiting: Vec<Waiting>,
+    pub(super) token: Token,
+    /// The client that receives the console, and lines that it has not received yet.
+    pub(super) console: Option<u64>,
+    pub(super) console_lines: VecDeque<Vec<u8>>,
+    /// Whether the link to the board is open.
+    pub(super) is_connected: bool,
+    /// Error texts for the next answer.
+    pub(super) error_texts: Vec<String>,
+    /// Whether the loss of the link was said since something was read.
+    pub(super) has_told_failure: bool,
+}
+
+impl<'a, E: Engine> Desk<'a, E> {
+    /// A desk for requests from `inbox`.
+    pub(super) fn new(board: ServedBoard<'a, E>, terms: &'a Terms<'a>, inbox: Receiver<Note>) -> Self {
+        let clock = terms.pace.map(|speed| (Pace::with_speed(board.tick(), speed), speed));
+        Self {
+            board,
+            terms,
+            clock,
+            inbox,
+            notes: VecDeque::new(),
+            clients: BTreeMap::new(),
+            waiting: Vec::new(),
+            token: Token::default(),
+            console: None,
+            console_lines: VecDeque::new(),
+            is_connected: true,
+            error_texts: Vec::new(),
+            has_told_failure: false,
+        }
+    }
+
+    /// Serves until somebody ends it, the board time is up, or the last client is gone and should be the last.
+    pub(super) fn run(mut self) -> Result<Exit> {
+        let limit = self.terms.limit.map_or(u64::MAX, |seconds| (seconds / TIMEBASE).round() as u64);
+        while self.board.tick().get() < limit {
+            if let Some(note) = self.next_note()
+                && self.take(note) == Flow::Leave
+            {
+                break;
+            }
+            self.catch_up(limit);
+            self.settle();
+        }
+        self.board.finish()
+    }
+
+    /// What comes next; nothing if it is time to look at the board.
+    fn next_note(&mut self) -> Option<Note> {
+        if let Some(note) = self.notes.pop_front() {
+            return Some(note);
+        }
+        let first = self.waiting.iter().map(|waiting| waiting.until).min();
+        let patience = match (&self.clock, first) {
+            (Some(_), None) => BEAT,
+            (Some(_), Some(_)) => SHORT_BEAT,
+            (None, Some(_)) if self.ticks_wanted() > 0 => Duration::ZERO,
+            (None, Some(until)) => until.saturating_duration_since(now()),
+            // Time passes in exchanges only.
+            (None, None) => return Some(self.inbox.recv().unwrap_or(Note::End)),
+        };
+        match self.inbox.recv_timeout(patience) {
+            Ok(note) => Some(note),
+            Err(RecvTimeoutError::Timeout) => None,
+            Err(RecvTimeoutError::Disconnected) => Some(Note::End),
+        }
+    }
+
+    fn take(&mut self, note: Note) -> Flow {
+        match note {
+            Note::End => return Flow::Leave,
+            Note::Came(client, answers) => {
+                self.clients.insert(client, answers);
+            }
+            Note::Left(client) => return self.left(client),
+            Note::Asked(client, request) => {
+                self.wait_for_clock();
+                if let Some(reply) = self.ask(client, &request) {
+                    self.answer(client, reply);
+                }
+                if self.board.is_logged() {
+                    self.board.log(&format!("client {client}: {}", request.call.name()));
+                }
+            }
+        }
+        Flow::Continue
+    }
+
+    /// A client is gone: what it had is free again.
+    fn left(&mut self, client: u64) -> Flow {
+        self.clients.remove(&client);
+        self.waiting.retain(|waiting| waiting.client != client);
+        if self.token.taken_by == Some(client) {
+            self.token = Token::default();
+        }
+        if self.console == Some(client) {
+            self.console = None;
+            self.board.is_heard = false;
+            self.console_lines.clear();
+        }
+        if self.terms.once && self.clients.is_empty() { Flow::Leave } else { Flow::Continue }
+    }
+
+    /// Answers a client; before the reply go error texts, and console lines if it is the console.
+    pub(super) fn answer(&mut self, client: u64, reply: Reply) {
+        let errors = self.error_texts.drain(..).map(|text| message::error_text(&text));
+        let mut messages: Vec<_> = errors.collect();
+        if self.console == Some(client) {
+            let count = self.console_lines.len().min(LINES_AT_ONCE);
+            messages.extend(self.console_lines.drain(..count).map(|line| message::console_line(&line)));
+        }
+        messages.push(reply.bytes());
+        if let Some(answers) = self.clients.get(&client) {
+            // A client that is gone is taken out when its connection says so.
+            let _ = answers.send(messages);
+        }
+    }
+
+    /// Lets the clock come up to a board that is ahead of it.
+    fn wait_for_clock(&mut self) {
+        if let Some((pace, speed)) = &self.clock {
+            let ahead = self.board.tick().get().saturating_sub(pace.due().get());
+            if ahead as f64 > AHEAD * speed {
+                pace.wait(self.board.tick());
+            }
+        }
+        self.catch_up(u64::MAX);
+    }
+
+    /// Brings the board up to the clock, unless something comes that is to be taken first.
+    fn catch_up(&mut self, limit: u64) {
+        let Some((pace, _)) = &self.clock else { return self.run_for_clients() };
+        let due = pace.due().get().min(limit);
+        loop {
+            let tick = self.board.tick().get();
+            if tick >= due {
+                return;
+            }
+            self.board.advance(Ticks::new(due.min(tick + STRETCH)));
+            self.notes.extend(self.inbox.try_iter());
+            if !self.notes.is_empty() {
+                return;
+            }
+        }
+    }
+
+    /// The ticks that the longest wait of a client still takes; none where there is a clock.
+    fn ticks_wanted(&self) -> u64 {
+        self.waiting.iter().map(|waiting| waiting.left).max().unwrap_or(0)
+    }
+
+    /// Runs the board a little for those who wait, until it has something for them.
+    fn run_for_clients(&mut self) {
+        let ticks = self.ticks_wanted().min(STRETCH);
+        let begin = self.board.tick().get();
+        self.board.until(ticks, |board| board.link.has_line());
+        let passed = self.board.tick().get() - begin;
+        for waiting in &mut self.waiting {
+            waiting.left = waiting.left.saturating_sub(passed);
+        }
+    }
+
+    /// Answers those whose line has come, or whose time has passed.
+    fn settle(&mut self) {
+        let time = now();
+        for mut waiting in std::mem::take(&mut self.waiting) {
+            match self.look(&mut waiting, time) {
+                Some(reply) => self.answer(waiting.client, reply),
+                None => self.waiting.push(waiting),
+            }
+        }
+    }
+
+    /// Has a client wait for the board, at most for some milliseconds; its reply, if the board needs no longer for it than
+    /// for an exchange.
+    pub(super) fn wait(&mut self, client: u64, wanted: Wanted, milliseconds: u32) -> Option<Reply> {
+        let time = now();
+        let length = Duration::from_millis(milliseconds.into());
+        let mut waiting = Waiting { client, wanted, until: time + length, left: self.ticks(length) };
+        let end = self.board.tick().get() + EXCHANGE;
+        loop {
+            let begin = self.board.tick().get();
+            if let Some(reply) = self.look(&mut waiting, time) {
+                return Some(reply);
+            }
+            let has_come = self.board.until(end.saturating_sub(begin), |board| board.link.has_line());
+            waiting.left = waiting.left.saturating_sub(self.board.tick().get() - begin);
+            if !has_come {
+                self.waiting.push(waiting);
+                return None;
+            }
+        }
+    }
+
+    /// The ticks that the board runs for a wait, if there is no clock that it follows.
+    pub(super) fn ticks(&self, length: Duration) -> u64 {
+        if self.is_clocked() { 0 } else { (length.as_secs_f64() / TIMEBASE).round() as u64 }
+    }
+
+    /// Whether the time of a wait has passed: on the clock; or on the board, and for ReadLineTimeOut on both.
+    pub(super) fn has_passed(&self, waiting: &Waiting, time: Instant) -> bool {
+        let is_timed = self.is_clocked() || matches!(waiting.wanted, Wanted::Line);
+        waiting.left == 0 && (!is_timed || time >= waiting.until)
+    }
+
+    /// Whether the board keeps pace with a clock.
+    pub(super) const fn is_clocked(&self) -> bool {
+        self.clock.is_some()
+    }
+}

@@ -1,0 +1,157 @@
+//! `--home DIR`: the folder in which the vendor's library looks for its compiler, its server and the firmware's files.
+//!
+//! Compiler and server are links to this command, which acts by the name that it is called by. The server is started by
+//! the library when it finds none; it serves then what `cc67 serve --home` was last told to serve.
+
+use std::ffi::{OsStr, OsString};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+use compiler::firmware;
+use kmotiondef::headers::EMBEDDED;
+
+use crate::cli::io::output;
+
+/// The name under which the library expects its server.
+const SERVER: &str = "KMotionServer";
+/// The name under which it expects its compiler.
+const COMPILER: &str = "tcc67";
+/// Folders of the firmware's files, and the name of the firmware file in each.
+const FIRMWARE: [(&str, &str); 2] = [("DSP_KFLOP", "DSPKFLOP.out"), ("DSP_KMotion", "DSPKMotion.out")];
+/// Variables of the G-code interpreter that it keeps from one run to the next: home positions, the offset of G92, the
+/// coordinate system in use, and the origins of nine (NIST RS274NGC, section 3.2.1).
+const VARIABLES: &str = "Data/emc.var";
+/// What the server was last told: the folder it was told in, and a word a line.
+const OPTIONS: &str = "serve.options";
+
+/// Makes what is missing in the folder.
+pub(super) fn make(folder: &Path) -> Result<PathBuf> {
+    let folder = std::path::absolute(folder).context("--home")?;
+    for part in ["bin", "Data", FIRMWARE[0].0, FIRMWARE[1].0] {
+        let part = folder.join(part);
+        fs::create_dir_all(&part).with_context(|| format!("cannot make the folder {}", part.display()))?;
+    }
+    let command = std::env::current_exe().context("cannot find the file of this command")?;
+    for name in [COMPILER, SERVER] {
+        link(&command, &folder.join("bin").join(name))?;
+    }
+    let image = firmware::export()?;
+    for (place, name) in FIRMWARE {
+        let place = folder.join(place);
+        supply(&place.join(name), &image)?;
+        for (header, text) in EMBEDDED {
+            supply(&place.join(header), text)?;
+        }
+    }
+    supply(&folder.join(VARIABLES), variables().as_bytes())?;
+    Ok(folder)
+}
+
+/// What a person types so that a program uses the folder.
+pub(super) fn lines(folder: &Path) -> String {
+    let folder = folder.display();
+    format!("export KMOTIONX_HOME='{folder}'\nexport LD_LIBRARY_PATH=FOLDER_OF_THE_LIBRARY\n./YOUR_PROGRAM\n")
+}
+
+/// Notes what is served, for the server that the library starts.
+pub(super) fn remember(folder: &Path, words: impl Iterator<Item = OsString>) -> Result<()> {
+    let here = std::env::current_dir().context("cannot find the present folder")?;
+    let mut text = here.into_os_string();
+    let mut skips = false;
+    for word in words {
+        let is_ours = skips || word == "--home" || word.to_string_lossy().starts_with("--home=");
+        skips = !skips && word == "--home";
+        if !is_ours {
+            text.push("\n");
+            text.push(word);
+        }
+    }
+    text.push("\n");
+    output::write(&folder.join(OPTIONS), text.as_encoded_bytes())
+}
+
+/// The command line that is meant when the command is called by the name of the vendor's server; `None` if it is not.
+pub(in crate::cli::commands) fn called_as_server(arguments: &[OsString]) -> Option<Vec<OsString>> {
+    let (program, given) = arguments.split_first()?;
+    let program = Path::new(program);
+    if !program.file_stem()?.eq_ignore_ascii_case(SERVER) {
+        return None;
+    }
+    let mut words: Vec<OsString> = ["cc67", "serve", "--once"].map(OsString::from).into();
+    let home = program.parent().and_then(Path::parent);
+    if let Some(text) = home.and_then(|home| fs::read_to_string(home.join(OPTIONS)).ok()) {
+        let mut lines = text.lines();
+        // Paths among the words are as they were typed there.
+        if lines.next().is_some_and(|folder| std::env::set_current_dir(folder).is_ok()) {
+            words.extend(lines.map(OsString::from));
+        }
+    }
+    words.extend(given.iter().cloned());
+    Some(words)
+}
+
+/// Writes a file that is not there; what a person has put there stays.
+fn supply(path: &Path, bytes: &[u8]) -> Result<()> {
+    if path.exists() { Ok(()) } else { output::write(path, bytes) }
+}
+
+/// Zeros for all variables; the first coordinate system is in use.
+fn variables() -> String {
+    let axes = |first: u32| first..first + 6;
+    let sets = [5161, 5181, 5211].into_iter().chain((5221..=5381).step_by(20));
+    let mut numbers: Vec<u32> = sets.flat_map(axes).collect();
+    numbers.push(5220);
+    numbers.sort_unstable();
+    numbers.iter().map(|number| format!("{number}\t{:.6}\n", f64::from(u8::from(*number == 5220)))).collect()
+}
+
+/// Makes a link to the command; one that is there is replaced, a file of another kind is not.
+#[cfg(unix)]
+fn link(command: &Path, path: &Path) -> Result<()> {
+    if let Ok(known) = fs::symlink_metadata(path) {
+        if !known.is_symlink() {
+            bail!(
+                "{} is there already and is not a link: remove it, or choose another folder",
+                path.display()
+            );
+        }
+        fs::remove_file(path).map_err(|error| output::cannot_write(path, &error))?;
+    }
+    std::os::unix::fs::symlink(command, path).map_err(|error| output::cannot_write(path, &error))
+}
+
+#[cfg(not(unix))]
+fn link(command: &Path, path: &Path) -> Result<()> {
+    let path = path.with_extension("exe");
+    if fs::symlink_metadata(&path).is_ok_and(|known| !known.is_file()) {
+        bail!("{} is there already and is not a file", path.display());
+    }
+    fs::copy(command, &path).map(drop).map_err(|error| output::cannot_write(&path, &error))
+}
+
+/// The words of this process after the name of the subcommand.
+pub(super) fn own_words() -> impl Iterator<Item = OsString> {
+    std::env::args_os().skip_while(|word| word != OsStr::new("serve")).skip(1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_name_of_the_vendors_server_makes_a_server() {
+        let words = |line: &str| line.split(' ').map(OsString::from).collect::<Vec<_>>();
+        assert_eq!(called_as_server(&words("/nowhere/bin/KMotionServer")), Some(words("cc67 serve --once")));
+        assert_eq!(called_as_server(&words("cc67 serve")), None);
+    }
+
+    #[test]
+    fn every_variable_that_the_interpreter_needs_is_there_in_ascending_order() {
+        let text = variables();
+        assert_eq!(text.lines().count(), 3 * 6 + 1 + 9 * 6);
+        assert!(text.starts_with("5161\t0.000000\n"));
+        assert!(text.contains("5216\t0.000000\n5220\t1.000000\n5221\t0.000000\n"));
+        assert!(text.ends_with("5386\t0.000000\n"));
+    }
+}

@@ -1,0 +1,154 @@
+//! What the board has sent over its link and nobody has read yet.
+//!
+//! Lines of replies, echoes and the console are read in the order in which they came. Source: host-protocol.md sections
+//! 4, 7 and 9.
+
+use std::collections::VecDeque;
+use std::mem;
+
+use cc67_host::REPLY_BYTES;
+
+/// Console lines that are kept while no client is the console; older ones are dropped.
+pub(in crate::cli::commands) const UNHEARD_LINES: usize = 256;
+/// Console lines that are kept for the client that is the console; older ones are lost.
+pub(in crate::cli::commands) const CONSOLE_LINES: usize = 1_000_000;
+
+/// A line of the board, without its end.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Line {
+    /// Of a reply, or the echo of a command.
+    Reply(Vec<u8>),
+    /// Of the console.
+    Console(Vec<u8>),
+}
+
+/// What is new, and what nobody has read yet.
+#[derive(Debug, Default)]
+pub(super) struct Link {
+    /// Each line with its number in the order of all.
+    replies: VecDeque<(u64, Vec<u8>)>,
+    console: VecDeque<(u64, Vec<u8>)>,
+    /// The echo of a line that has not ended.
+    partial: Vec<u8>,
+    lines: u64,
+    reply_bytes: usize,
+    lost_replies: bool,
+    lost_console: bool,
+}
+
+impl Link {
+    /// A line of a reply came.
+    pub(super) fn reply(&mut self, line: &[u8]) {
+        let mut whole = mem::take(&mut self.partial);
+        whole.extend(line);
+        if self.reply_bytes + whole.len() > REPLY_BYTES {
+            self.lost_replies = true;
+            return;
+        }
+        self.reply_bytes += whole.len();
+        self.lines += 1;
+        self.replies.push_back((self.lines, whole));
+    }
+
+    /// Characters came back that the board was sent.
+    pub(super) fn echo(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            match byte {
+                b'\n' => self.reply(&[]),
+                b'\r' => {}
+                byte => self.partial.push(*byte),
+            }
+        }
+    }
+
+    /// A console line came; some client is the console, or none.
+    pub(super) fn console(&mut self, line: Vec<u8>, is_heard: bool) {
+        let limit = if is_heard { CONSOLE_LINES } else { UNHEARD_LINES };
+        while self.console.len() >= limit {
+            self.lost_console |= is_heard;
+            self.console.pop_front();
+        }
+        self.lines += 1;
+        self.console.push_back((self.lines, line));
+    }
+
+    /// Whether a line of a reply waits.
+    pub(super) fn has_reply(&self) -> bool {
+        !self.replies.is_empty()
+    }
+
+    /// Whether any line waits.
+    pub(super) fn has_line(&self) -> bool {
+        !self.replies.is_empty() || !self.console.is_empty()
+    }
+
+    /// Whether a line has begun.
+    pub(super) fn has_partial_line(&self) -> bool {
+        !self.partial.is_empty()
+    }
+
+    /// The next line, whatever it is.
+    pub(super) fn next(&mut self) -> Option<Line> {
+        let reply = self.replies.front().map_or(u64::MAX, |(number, _)| *number);
+        if self.console.front().is_some_and(|(number, _)| *number < reply) {
+            return self.console.pop_front().map(|(_, line)| Line::Console(line));
+        }
+        let (_, line) = self.replies.pop_front()?;
+        self.reply_bytes -= line.len();
+        Some(Line::Reply(line))
+    }
+
+    /// Drops everything, as when the link is opened anew.
+    pub(super) fn clear(&mut self) {
+        self.replies.clear();
+        self.console.clear();
+        self.partial.clear();
+        self.reply_bytes = 0;
+    }
+
+    /// Whether replies were lost that nobody reads; says so once.
+    pub(super) fn take_lost_replies(&mut self) -> bool {
+        mem::take(&mut self.lost_replies)
+    }
+
+    /// Whether console lines were lost; says so once for each time of looking.
+    pub(super) fn take_lost_console(&mut self) -> bool {
+        mem::take(&mut self.lost_console)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_are_read_in_their_order() {
+        let mut link = Link::default();
+        link.console(b"one".to_vec(), true);
+        link.echo(b"Read");
+        assert!(link.has_partial_line() && !link.has_reply());
+        link.echo(b"Bit46\r\n");
+        link.console(b"two".to_vec(), true);
+        link.reply(b"1");
+        let order: Vec<_> = std::iter::from_fn(|| link.next()).collect();
+        let console = |text: &[u8]| Line::Console(text.to_vec());
+        let reply = |text: &[u8]| Line::Reply(text.to_vec());
+        assert_eq!(order, [console(b"one"), reply(b"ReadBit46"), console(b"two"), reply(b"1")]);
+        assert!(!link.has_line());
+    }
+
+    #[test]
+    fn what_nobody_reads_has_a_limit() {
+        let mut link = Link::default();
+        for number in 0..UNHEARD_LINES + 10 {
+            link.console(number.to_string().into_bytes(), false);
+        }
+        assert_eq!(link.next(), Some(Line::Console(b"10".to_vec())));
+        assert!(!link.take_lost_console(), "nobody has registered for them");
+        for _ in 0..=REPLY_BYTES / 1000 {
+            link.reply(&[b'x'; 1000]);
+        }
+        assert!(link.take_lost_replies());
+        assert!(!link.take_lost_replies());
+    }
+}

@@ -1,0 +1,186 @@
+//! Where clients come in: sockets and ports, and a thread for each connection.
+//!
+//! A connection reads requests, hands them to the [desk](super::desk) and sends what it answers. It alone waits for its
+//! client: one that sends half a message, or reads no reply, keeps nobody else from the board.
+
+use std::io::{Read, Write};
+use std::net::{Ipv4Addr, Shutdown, TcpListener, TcpStream};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+use std::sync::mpsc::{Sender, channel};
+use std::thread;
+
+use anyhow::{Context, Result, bail};
+
+use super::desk::Note;
+use super::message::{self, Received, Request};
+use crate::cli::io::terminal;
+
+/// Connections at a time.
+pub(in crate::cli::commands) const MOST_CLIENTS: usize = 200;
+/// What somebody reads who sends text.
+const NO_TEXT: &[u8] =
+    b"cc67: a board is served here to programs that use the KMotion client library (4.34), not as text; to type commands: cc67 console\r\n";
+/// Bytes of such a text that are read before the connection is closed.
+const TEXT_LIMIT: u64 = 1 << 16;
+
+/// A connection, whatever it goes over.
+trait Stream: Read + Write + Send + 'static {
+    /// Ends what is sent; what comes is still received.
+    fn end(&self);
+}
+
+impl Stream for TcpStream {
+    fn end(&self) {
+        // A client that is gone needs no end.
+        let _ = self.shutdown(Shutdown::Write);
+    }
+}
+
+#[cfg(unix)]
+impl Stream for std::os::unix::net::UnixStream {
+    fn end(&self) {
+        // A client that is gone needs no end.
+        let _ = self.shutdown(Shutdown::Write);
+    }
+}
+
+/// Sockets in folders, which are removed at the end.
+#[derive(Debug, Default)]
+pub(super) struct Places(Vec<PathBuf>);
+
+impl Drop for Places {
+    fn drop(&mut self) {
+        for path in &self.0 {
+            // One that somebody has removed before needs no removal.
+            let _ = std::fs::remove_file(path);
+        }
+    }
+}
+
+/// The way from a connection to the desk.
+#[derive(Clone, Debug)]
+struct Door {
+    desk: Sender<Note>,
+    /// Connections so far.
+    numbers: Arc<AtomicU64>,
+    /// Connections now.
+    present: Arc<AtomicUsize>,
+}
+
+/// Takes connections at these addresses in the background; `option` is where they come from.
+pub(super) fn listen(addresses: &[String], option: &str, desk: &Sender<Note>) -> Result<Places> {
+    let door = Door { desk: desk.clone(), numbers: Arc::default(), present: Arc::default() };
+    let mut places = Places::default();
+    for address in addresses {
+        let complaint = || format!("`{option} {address}`");
+        if let Some(port) = address.strip_prefix("tcp:") {
+            listen_on_port(port, &door).with_context(complaint)?;
+        } else if address.contains(':') && !address.contains('/') {
+            bail!("{}: neither tcp:PORT nor the path of a socket", complaint());
+        } else {
+            places.0.push(listen_on_path(address, &door).with_context(complaint)?);
+        }
+    }
+    Ok(places)
+}
+
+fn listen_on_port(port: &str, door: &Door) -> Result<()> {
+    let number: u16 = port.parse().with_context(|| format!("`{port}` is not a port number"))?;
+    let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, number)).context("cannot listen there")?;
+    terminal::note(&format!("a board is served on tcp:{}", listener.local_addr()?.port()));
+    let door = door.clone();
+    thread::spawn(move || {
+        // Small messages go out at once; where that cannot be set, they are only later.
+        let streams = listener.incoming().flatten().inspect(|stream| drop(stream.set_nodelay(true)));
+        streams.for_each(|stream| door.enter(stream));
+    });
+    Ok(())
+}
+
+#[cfg(unix)]
+fn listen_on_path(address: &str, door: &Door) -> Result<PathBuf> {
+    use std::os::unix::net::{UnixListener, UnixStream};
+
+    // What a server that was killed has left serves nobody.
+    let is_socket = std::fs::symlink_metadata(address)
+        .is_ok_and(|known| std::os::unix::fs::FileTypeExt::is_socket(&known.file_type()));
+    if is_socket {
+        if UnixStream::connect(address).is_ok() {
+            bail!("another server is there already");
+        }
+        std::fs::remove_file(address).context("cannot replace it")?;
+    }
+    let listener = UnixListener::bind(address).context("cannot listen there")?;
+    terminal::note(&format!("a board is served on {address}"));
+    let door = door.clone();
+    thread::spawn(move || listener.incoming().flatten().for_each(|stream| door.enter(stream)));
+    Ok(std::path::absolute(address).unwrap_or_else(|_| address.into()))
+}
+
+#[cfg(not(unix))]
+fn listen_on_path(_: &str, _: &Door) -> Result<PathBuf> {
+    bail!("this system has no such sockets; tcp:PORT works everywhere")
+}
+
+impl Door {
+    /// Serves a connection in a thread of its own; one too many is closed.
+    fn enter(&self, stream: impl Stream) {
+        let number = self.numbers.fetch_add(1, Ordering::Relaxed) + 1;
+        if self.present.fetch_add(1, Ordering::Relaxed) >= MOST_CLIENTS {
+            self.present.fetch_sub(1, Ordering::Relaxed);
+            terminal::note(&format!("client {number}: refused, {MOST_CLIENTS} are connected"));
+            return;
+        }
+        let door = self.clone();
+        let spawned = thread::Builder::new().spawn(move || {
+            serve(number, stream, &door.desk);
+            door.present.fetch_sub(1, Ordering::Relaxed);
+        });
+        if spawned.is_err() {
+            self.present.fetch_sub(1, Ordering::Relaxed);
+            terminal::note(&format!("client {number}: refused, there is no thread for it"));
+        }
+    }
+}
+
+/// Answers requests until the client goes, or asks for what does not exist.
+fn serve(number: u64, mut stream: impl Stream, desk: &Sender<Note>) {
+    let mut received = message::read_first(&mut stream);
+    match received {
+        Received::Text => return refuse_text(&mut stream),
+        Received::OldLibrary => {
+            terminal::note(&format!(
+                "client {number}: its library is that of KMotion 4.32, whose messages have no length; it needs that of 4.34"
+            ));
+            return;
+        }
+        Received::Message(_) | Received::Nothing => {}
+    }
+    let (answers, inbox) = channel();
+    // A desk that is closed answers nothing below.
+    let _ = desk.send(Note::Came(number, answers));
+    while let Received::Message(bytes) = &received {
+        let Some(request) = Request::read(bytes) else { break };
+        if desk.send(Note::Asked(number, request)).is_err() {
+            break;
+        }
+        let Ok(messages) = inbox.recv() else { break };
+        if message::answer(&mut stream, &messages).is_none() {
+            break;
+        }
+        received = message::read(&mut stream);
+    }
+    // The desk may have closed before.
+    let _ = desk.send(Note::Left(number));
+}
+
+/// Says what is spoken here, and reads on a little, so that the answer is not lost with the connection.
+fn refuse_text(stream: &mut impl Stream) {
+    if stream.write_all(NO_TEXT).is_ok() {
+        stream.end();
+        // Whatever it is, it is not for us.
+        let _ = std::io::copy(&mut stream.take(TEXT_LIMIT), &mut std::io::sink());
+    }
+}

@@ -1,0 +1,66 @@
+//! The log of the exchanges: what clients asked, as a script for `cc67 console`.
+//!
+//! A line for the board is a line of the script; `wait` lets the time pass that passed between two of them; everything
+//! else is a comment. So `cc67 console PROGRAM < LOG` asks the same board the same again.
+
+use std::fs::File;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use anyhow::Result;
+use cc67_host::session::EXCHANGE;
+use kmotiondef::Ticks;
+use kmotiondef::limits::TIMEBASE;
+
+use crate::cli::io::output::cannot_write;
+use crate::cli::io::terminal;
+
+/// A file that grows with each exchange; nothing of it is held back, so that a server that is killed leaves all of it.
+#[derive(Debug)]
+pub(super) struct Log {
+    path: PathBuf,
+    /// Nothing once it could not be written.
+    file: Option<File>,
+    /// The tick that the script has come to, as far as it says.
+    reached: u64,
+}
+
+impl Log {
+    /// Begins a log.
+    pub(super) fn new(path: &Path) -> Result<Self> {
+        let file = File::create(path).map_err(|error| cannot_write(path, &error))?;
+        Ok(Self { path: path.to_owned(), file: Some(file), reached: 0 })
+    }
+
+    /// A line is sent to the board: a command, or data of the command in progress.
+    pub(super) fn line(&mut self, tick: Ticks, line: &[u8], is_data: bool) {
+        let mut text = Vec::new();
+        if !is_data {
+            let pause = tick.get().saturating_sub(self.reached);
+            if pause > 0 {
+                text.extend(format!("wait {:.6}\n", pause as f64 * TIMEBASE).into_bytes());
+            }
+            self.reached = tick.get().max(self.reached) + EXCHANGE;
+        }
+        // The board takes upper and lower case alike, the words of the console are lower case.
+        text.extend(line.iter().map(u8::to_ascii_uppercase).filter(|byte| *byte != b'\n'));
+        text.push(b'\n');
+        self.write(&text);
+    }
+
+    /// What else there is to know; between data lines there is no place for it.
+    pub(super) fn remark(&mut self, tick: Ticks, text: &str, is_in_command: bool) {
+        if !is_in_command {
+            let seconds = tick.get() as f64 * TIMEBASE;
+            self.write(format!("# {seconds:.6} {}\n", text.replace(['\r', '\n'], " ")).as_bytes());
+        }
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        let Some(file) = &mut self.file else { return };
+        if let Err(error) = file.write_all(bytes) {
+            terminal::error(&cannot_write(&self.path, &error).context("the log ends here"));
+            self.file = None;
+        }
+    }
+}

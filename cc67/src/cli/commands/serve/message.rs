@@ -1,0 +1,292 @@
+//! Requests and replies as bytes. Source: host-protocol.md section 8.
+//!
+//! A message is its length, two bytes with the low one first, and that number of bytes. Numbers have four bytes, texts
+//! end with a 0. A request is the number of a call, the number of a board and what the call takes; a reply is a 0, the
+//! result and what the call yields.
+
+use std::io::{Read, Write};
+
+/// Bytes of a message to us at most.
+const LONGEST: usize = 4096;
+/// Bytes of a message from us at most.
+const LONGEST_REPLY: usize = 2561;
+/// Begins a normal reply.
+const REPLY: u8 = 0;
+/// Begins a console line.
+const CONSOLE: u8 = 1;
+/// Begins an error text.
+const ERROR: u8 = 2;
+/// What the client answers to both.
+const ACKNOWLEDGED: u8 = 0xAA;
+/// How the first message of the library of version 4.32 begins, which has no length.
+const OLD_LIBRARY: [u8; 8] = [9, 0, 0, 0, 0, 0, 0, 0];
+
+/// What is asked for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Call {
+    WriteLineReadLine(Vec<u8>),
+    WriteLine(Vec<u8>),
+    WriteLineWithEcho(Vec<u8>),
+    /// With the time it may take, in milliseconds.
+    ReadLine(u32),
+    ListLocations,
+    Failed,
+    Disconnect,
+    FirmwareVersion,
+    CheckForReady,
+    Lock,
+    Location,
+    Release,
+    ServiceConsole,
+    SetConsole,
+}
+
+impl Call {
+    /// Its name in the vendor's library, with the line that it sends.
+    pub(super) fn name(&self) -> String {
+        let line = |name: &str, line: &[u8]| format!("{name}({})", String::from_utf8_lossy(line));
+        match self {
+            Self::WriteLineReadLine(text) => line("WriteLineReadLine", text),
+            Self::WriteLine(text) => line("WriteLine", text),
+            Self::WriteLineWithEcho(text) => line("WriteLineWithEcho", text),
+            Self::ReadLine(milliseconds) => format!("ReadLineTimeOut({milliseconds})"),
+            Self::ListLocations => "ListLocations".to_owned(),
+            Self::Failed => "Failed".to_owned(),
+            Self::Disconnect => "Disconnect".to_owned(),
+            Self::FirmwareVersion => "FirmwareVersion".to_owned(),
+            Self::CheckForReady => "CheckForReady".to_owned(),
+            Self::Lock => "KMotionLock".to_owned(),
+            Self::Location => "USBLocation".to_owned(),
+            Self::Release => "ReleaseToken".to_owned(),
+            Self::ServiceConsole => "ServiceConsole".to_owned(),
+            Self::SetConsole => "SetConsole".to_owned(),
+        }
+    }
+}
+
+/// A request of a client.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Request {
+    pub(super) call: Call,
+    /// 0, -1 … for the first, second … board that is connected; else the identifier of one.
+    board: i32,
+}
+
+impl Request {
+    /// Reads a request; `None` if there is no such call.
+    pub(super) fn read(bytes: &[u8]) -> Option<Self> {
+        let mut rest = bytes;
+        let code = number(&mut rest)?;
+        let board = if code == 4 { 0 } else { number(&mut rest)? };
+        let call = match code {
+            0 => Call::WriteLineReadLine(text(rest)),
+            1 => Call::WriteLine(text(rest)),
+            2 => Call::WriteLineWithEcho(text(rest)),
+            3 => Call::ReadLine(u32::try_from(number(&mut rest)?).unwrap_or(0)),
+            4 => Call::ListLocations,
+            5 => Call::Failed,
+            6 => Call::Disconnect,
+            7 => Call::FirmwareVersion,
+            8 => Call::CheckForReady,
+            // Recovery asks for the token as well.
+            9 | 11 => Call::Lock,
+            10 => Call::Location,
+            12 => Call::Release,
+            13 => Call::ServiceConsole,
+            14 => Call::SetConsole,
+            _ => return None,
+        };
+        Some(Self { call, board })
+    }
+
+    /// Whether it is for the first of the boards that are connected, the only one there is.
+    pub(super) fn is_for(&self, locations: &[i32]) -> bool {
+        self.board == 0 || locations.first() == Some(&self.board)
+    }
+}
+
+fn number(rest: &mut &[u8]) -> Option<i32> {
+    let (bytes, tail) = rest.split_first_chunk()?;
+    *rest = tail;
+    Some(i32::from_le_bytes(*bytes))
+}
+
+fn text(bytes: &[u8]) -> Vec<u8> {
+    bytes.split(|byte| *byte == 0).next().unwrap_or_default().to_vec()
+}
+
+/// What a request is answered.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Reply(Vec<u8>);
+
+impl Reply {
+    /// A result alone.
+    pub(super) fn number(result: i32) -> Self {
+        Self([&[REPLY][..], &result.to_le_bytes()].concat())
+    }
+
+    /// A result and a text.
+    pub(super) fn text(result: i32, text: &[u8]) -> Self {
+        let mut reply = Self::number(result);
+        let room = LONGEST_REPLY - reply.0.len() - 1;
+        reply.0.extend(text.iter().copied().take(room).chain([0]));
+        reply
+    }
+
+    /// A list of numbers.
+    pub(super) fn numbers(list: &[i32]) -> Self {
+        let mut reply = Self::number(0);
+        let count = i32::try_from(list.len()).unwrap_or(0);
+        reply.0.extend([count].iter().chain(list).flat_map(|number| number.to_le_bytes()));
+        reply
+    }
+
+    /// Its bytes.
+    pub(super) fn bytes(self) -> Vec<u8> {
+        self.0
+    }
+}
+
+/// A console line as a message.
+pub(super) fn console_line(line: &[u8]) -> Vec<u8> {
+    let room = LONGEST_REPLY - 4;
+    [&[CONSOLE][..], line.get(..room).unwrap_or(line), b"\r\n\0"].concat()
+}
+
+/// An error text as a message.
+pub(super) fn error_text(text: &str) -> Vec<u8> {
+    [&[ERROR][..], text.as_bytes(), b"\0"].concat()
+}
+
+/// What came over a connection.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Received {
+    /// A message.
+    Message(Vec<u8>),
+    /// The beginning of a text, from somebody who expects to talk to a person or to a web server.
+    Text,
+    /// A message of the library of version 4.32.
+    OldLibrary,
+    /// Nothing: the client is gone, or sends what cannot be a message.
+    Nothing,
+}
+
+/// Reads the first message of a connection, which may be of another kind than ours.
+pub(super) fn read_first(stream: &mut impl Read) -> Received {
+    let mut length = [0; 2];
+    if stream.read_exact(&mut length).is_err() {
+        return Received::Nothing;
+    }
+    if length.iter().all(|byte| matches!(byte, b'\t' | b'\r' | b'\n' | b' '..=b'~')) {
+        return Received::Text;
+    }
+    let [low, high, rest @ ..] = OLD_LIBRARY;
+    if length != [low, high] {
+        return read_body(stream, length);
+    }
+    // The old library has sent no more than this, and waits.
+    let mut begin = [0; 6];
+    if stream.read_exact(&mut begin).is_err() {
+        return Received::Nothing;
+    }
+    if begin == rest {
+        return Received::OldLibrary;
+    }
+    let mut tail = vec![0; usize::from(low) - begin.len()];
+    match stream.read_exact(&mut tail) {
+        Ok(()) => Received::Message([&begin[..], &tail].concat()),
+        Err(_) => Received::Nothing,
+    }
+}
+
+/// Reads a message.
+pub(super) fn read(stream: &mut impl Read) -> Received {
+    let mut length = [0; 2];
+    match stream.read_exact(&mut length) {
+        Ok(()) => read_body(stream, length),
+        Err(_) => Received::Nothing,
+    }
+}
+
+fn read_body(stream: &mut impl Read, length: [u8; 2]) -> Received {
+    let mut bytes = vec![0; usize::from(u16::from_le_bytes(length))];
+    if bytes.len() > LONGEST || stream.read_exact(&mut bytes).is_err() {
+        return Received::Nothing;
+    }
+    Received::Message(bytes)
+}
+
+/// Sends what answers a request: each message before the last is acknowledged by the client. `None` if it is gone.
+pub(super) fn answer(stream: &mut (impl Read + Write), messages: &[Vec<u8>]) -> Option<()> {
+    for bytes in messages {
+        write(stream, bytes)?;
+        if bytes.first() != Some(&REPLY) {
+            let mut answer = [0];
+            stream.read_exact(&mut answer).ok().filter(|()| answer == [ACKNOWLEDGED])?;
+        }
+    }
+    Some(())
+}
+
+/// Sends a message; `None` if the client is gone.
+fn write(stream: &mut impl Write, bytes: &[u8]) -> Option<()> {
+    let length = u16::try_from(bytes.len()).ok()?;
+    stream.write_all(&[&length.to_le_bytes()[..], bytes].concat()).and_then(|()| stream.flush()).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The request of the specification's example, without its length.
+    const VERSION: &[u8] = b"\0\0\0\0\0\0\0\0Version\0";
+
+    #[test]
+    fn the_example_of_the_specification_is_read_and_answered() {
+        let mut stream = &[&[0x10, 0][..], VERSION].concat()[..];
+        let Received::Message(bytes) = read(&mut stream) else { panic!("no message") };
+        let request = Request::read(&bytes).expect("a request");
+        assert_eq!(request, Request { call: Call::WriteLineReadLine(b"Version".to_vec()), board: 0 });
+        let mut sent = Vec::new();
+        let reply = Reply::text(0, b"KFLOP 4.34 Build 16:07:06 Aug 14 2018").bytes();
+        assert_eq!(write(&mut sent, &reply), Some(()));
+        assert_eq!(&sent[..7], [0x2B, 0, 0, 0, 0, 0, 0]);
+        assert_eq!(sent.len(), 2 + 0x2B);
+    }
+
+    #[test]
+    fn requests_that_are_none_are_refused() {
+        for bytes in [
+            &b""[..],
+            b"\0\0\0",
+            b"\0\0\0\0",
+            b"\x0F\0\0\0\0\0\0\0",
+            b"\x03\0\0\0\0\0\0\0",
+            b"\xFF\xFF\xFF\xFF\0\0\0\0",
+        ] {
+            assert_eq!(Request::read(bytes), None, "{bytes:?}");
+        }
+        assert_eq!(read(&mut &b"\xFF\xFF"[..]), Received::Nothing);
+        assert_eq!(read(&mut &b"\x05\0abc"[..]), Received::Nothing);
+    }
+
+    #[test]
+    fn other_speakers_are_recognised_by_what_they_say_first() {
+        for (bytes, expect) in [
+            (&b"GET / HTTP/1.1\r\n"[..], Received::Text),
+            (b"\r\n", Received::Text),
+            (&[9, 0, 0, 0, 0, 0, 0, 0], Received::OldLibrary),
+            (b"\x09\0\x09\0\0\0\0\0\0\0\0", Received::Message(b"\x09\0\0\0\0\0\0\0\0".to_vec())),
+            (b"\xFF\xFF\xFF\xFF", Received::Nothing),
+            (b"\x09", Received::Nothing),
+        ] {
+            assert_eq!(read_first(&mut &*bytes), expect, "{bytes:?}");
+        }
+    }
+
+    #[test]
+    fn a_list_has_its_length_in_front() {
+        assert_eq!(Reply::numbers(&[7]).bytes(), b"\0\0\0\0\0\x01\0\0\0\x07\0\0\0");
+        assert_eq!(Reply::text(0, &[b'x'; 9999]).bytes().len(), LONGEST_REPLY);
+    }
+}

@@ -1,0 +1,184 @@
+//! `cc67 serve`: a board for programs of the PC, in place of the vendor's server process.
+//!
+//! The vendor's client library talks to a process that owns the board, over a socket; that process is this one.
+//!
+//! ```text
+//! listen    sockets and ports; a thread for each connection
+//! desk      takes one request after another, keeps the board's time
+//! calls     what each request does
+//! board     the board under control, with what is written of it
+//! link      what the board has sent and nobody has read yet
+//! message   requests and replies as bytes
+//! log       the exchanges as a script for the console
+//! home      the folder that the vendor's library reads
+//! ```
+
+mod board;
+mod calls;
+mod desk;
+pub(super) mod home;
+mod link;
+mod listen;
+mod log;
+mod message;
+
+use std::ffi::{OsStr, OsString};
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Sender, channel};
+
+use anyhow::{Context, Result, bail};
+use clap::Args;
+use vm::engine::Engine;
+
+use crate::cli::args::board::BoardArguments;
+use crate::cli::args::compiler::CompilerArguments;
+use crate::cli::args::time::seconds;
+use crate::cli::args::trace::TraceArguments;
+use crate::cli::io::exit::Exit;
+use crate::cli::io::output;
+use crate::cli::session::{Rig, Setup, Work};
+use board::ServedBoard;
+use desk::{Desk, Note};
+pub(super) use link::{CONSOLE_LINES, UNHEARD_LINES};
+pub(super) use listen::MOST_CLIENTS;
+
+/// Where the vendor's server listens.
+const USUAL: &[&str] = if cfg!(unix) { &["/tmp/kmotionsocket", "tcp:57777"] } else { &["tcp:57777"] };
+
+/// Arguments of `cc67 serve`.
+#[derive(Debug, Args)]
+pub(super) struct ServeArguments {
+    /// Programs to load and start: FILE for the lowest free thread, N:FILE for thread N
+    #[arg(value_name = "[N:]FILE")]
+    programs: Vec<OsString>,
+    /// Listen on this socket or port; may be repeated [default: /tmp/kmotionsocket and tcp:57777, as the vendor's server]
+    #[arg(long, value_name = "PATH|tcp:PORT")]
+    listen: Vec<String>,
+    /// Board time in a second: 1 as the board, N times as fast; `fast`: it passes only while a client waits for an answer
+    #[arg(long, value_name = "1|N|fast", default_value = "1", value_parser = pace)]
+    pace: PaceName,
+    /// End when the last client is gone
+    #[arg(long)]
+    once: bool,
+    /// Write what clients ask to FILE, a script for `cc67 console`
+    #[arg(long, value_name = "FILE")]
+    log: Option<PathBuf>,
+    /// Make the folder that the vendor's library reads, with its compiler and its server, and say how to use it
+    #[arg(long, value_name = "DIR")]
+    home: Option<PathBuf>,
+    /// End after so many seconds of board time
+    #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
+    limit: Option<f64>,
+    /// Show the board on a page: not built yet
+    #[arg(long, hide = true)]
+    live: bool,
+    #[command(flatten)]
+    board: BoardArguments,
+    #[command(flatten)]
+    trace: TraceArguments,
+    #[command(flatten)]
+    compiler: CompilerArguments,
+}
+
+/// How fast board time passes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum PaceName {
+    /// So many times as fast as a clock.
+    Clock(f64),
+    /// Only in exchanges.
+    Exchanges,
+}
+
+fn pace(text: &str) -> Result<PaceName, String> {
+    if text == "fast" {
+        return Ok(PaceName::Exchanges);
+    }
+    let factor = text.parse().ok().filter(|factor| (0.01..=1000.0).contains(factor));
+    factor.map(PaceName::Clock).ok_or_else(|| "expected a number from 0.01 to 1000, or `fast`".to_owned())
+}
+
+/// How a board is served.
+#[derive(Debug)]
+pub(super) struct Terms<'a> {
+    /// Where clients come in, and the option that says so.
+    pub(super) addresses: Vec<String>,
+    pub(super) option: &'static str,
+    /// How many times as fast as a clock board time passes; without it, it passes in exchanges only.
+    pub(super) pace: Option<f64>,
+    /// Whether the last client ends it.
+    pub(super) once: bool,
+    /// The board time that ends it, in seconds.
+    pub(super) limit: Option<f64>,
+    /// The log of the exchanges.
+    pub(super) log: Option<&'a Path>,
+    /// What of the board is recorded, and the title of pictures.
+    pub(super) trace: &'a TraceArguments,
+    pub(super) title: String,
+}
+
+/// Serves clients until it is ended.
+pub(super) fn serve(arguments: &ServeArguments) -> Result<Exit> {
+    if arguments.live {
+        bail!("`--live`: a served board cannot be shown on a page yet");
+    }
+    let setup = Setup::new(&arguments.programs, &arguments.board, &arguments.compiler, None)?;
+    let Some(setup) = setup else { return Ok(Exit::Failure) };
+    let given = arguments.listen.clone();
+    let usual = || USUAL.iter().map(|address| (*address).to_owned()).collect();
+    let terms = Terms {
+        addresses: if given.is_empty() { usual() } else { given },
+        option: "--listen",
+        pace: match arguments.pace {
+            PaceName::Clock(speed) => Some(speed),
+            PaceName::Exchanges => None,
+        },
+        once: arguments.once,
+        limit: arguments.limit,
+        log: arguments.log.as_deref(),
+        trace: &arguments.trace,
+        title: arguments.programs.join(OsStr::new(", ")).to_string_lossy().into_owned(),
+    };
+    if let Some(folder) = &arguments.home {
+        let folder = home::make(folder)?;
+        home::remember(&folder, home::own_words())?;
+        output::print(&home::lines(&folder))?;
+    }
+    setup.on_its_engine(&terms)
+}
+
+impl Work for &Terms<'_> {
+    fn on<E: Engine>(self, mut rig: Rig<E>) -> Result<Exit> {
+        rig.connect()?;
+        let board = ServedBoard::new(rig, self)?;
+        let (notes, inbox) = channel();
+        end_on_signal(notes.clone())?;
+        let places = listen::listen(&self.addresses, self.option, &notes)?;
+        drop(notes);
+        let exit = Desk::new(board, self, inbox).run();
+        drop(places);
+        exit
+    }
+}
+
+/// Has Ctrl-C, and a request of the system to end, end the server.
+fn end_on_signal(desk: Sender<Note>) -> Result<()> {
+    let end = move || {
+        // A desk that is closed has ended.
+        let _ = desk.send(Note::End);
+    };
+    ctrlc::set_handler(end).context("cannot take Ctrl-C")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pace_is_a_factor_or_fast() {
+        assert_eq!(pace("fast"), Ok(PaceName::Exchanges));
+        assert_eq!(pace("10"), Ok(PaceName::Clock(10.0)));
+        for text in ["0", "-1", "2000", "NaN", "quick"] {
+            assert!(pace(text).is_err(), "{text}");
+        }
+    }
+}
