@@ -72,11 +72,6 @@ impl Link {
         self.console.push_back((self.lines, line));
     }
 
-    /// Whether a line of a reply waits.
-    pub(super) fn has_reply(&self) -> bool {
-        !self.replies.is_empty()
-    }
-
     /// Whether any line waits.
     pub(super) fn has_line(&self) -> bool {
         !self.replies.is_empty() || !self.console.is_empty()
@@ -126,7 +121,7 @@ mod tests {
         let mut link = Link::default();
         link.console(b"one".to_vec(), true);
         link.echo(b"Read");
-        assert!(link.has_partial_line() && !link.has_reply());
+        assert!(link.has_partial_line());
         link.echo(b"Bit46\r\n");
         link.console(b"two".to_vec(), true);
         link.reply(b"1");
