@@ -43,7 +43,6 @@ fn the_home_folder_has_what_the_library_looks_for() {
     assert_eq!(fs::read_to_string(home.join("DSP_KFLOP/KMotionDef.h")).expect("it is there"), "// mine\n");
 }
 
-#[cfg(unix)]
 #[test]
 fn the_links_of_the_home_folder_are_compiler_and_server() {
     let scratch = home("serve-links");
@@ -75,7 +74,6 @@ fn the_links_of_the_home_folder_are_compiler_and_server() {
     assert_eq!(server.ends().code(), Some(0), "the last client is gone");
 }
 
-#[cfg(unix)]
 #[test]
 fn a_home_folder_that_cannot_be_made_says_why_and_can_be_made_later() {
     let scratch = Scratch::new("serve-no-home");

@@ -3,6 +3,7 @@
 
 mod calls;
 mod client;
+#[cfg(unix)]
 mod home;
 mod hostile;
 
