@@ -81,7 +81,7 @@ fn a_home_folder_that_cannot_be_made_says_why_and_can_be_made_later() {
     let words = ["serve", "--home", "home", "--listen", "tcp:0", "--for", "0"];
     let output = cc67(&scratch, words);
     assert_eq!(output.code, 2);
-    assert!(output.stderr.contains("bin/tcc67 is there already and is not a link"), "{output:?}");
+    assert!(output.stderr.contains("bin/tcc67 exists and is not a link"), "{output:?}");
     fs::remove_file(scratch.path().join("home/bin/tcc67")).expect("it is there");
     assert_eq!(cc67(&scratch, words).code, 0);
 }

@@ -90,7 +90,7 @@ fn who_speaks_something_else_is_answered_in_words() {
     old.stream.write_all(&[9, 0, 0, 0, 0, 0, 0, 0]).expect("it is sent");
     assert!(old.is_closed());
     server.says("its library is that of KMotion 4.32");
-    // That of 4.34 begins the same but for two bytes.
+    // That of 4.34 begins the same except for two bytes.
     let mut client = server.client();
     client.send(&[&LOCK.to_le_bytes()[..], &[0; 4], b"\0"].concat());
     assert_eq!(client.reply().0, 0);

@@ -152,7 +152,7 @@ fn clients_over_a_socket_share_the_board_by_its_token() {
         .expect("the command under test starts");
     assert_eq!(again.status.code(), Some(2));
     let message = String::from_utf8_lossy(&again.stderr).into_owned();
-    assert!(message.contains("another server is there already"), "{message}");
+    assert!(message.contains("another server listens there"), "{message}");
 }
 
 #[cfg(unix)]
@@ -172,7 +172,7 @@ fn a_socket_and_a_port_are_served_together_and_the_socket_is_removed_at_the_end(
     here.write_line("SetPersistDec 7 11");
     assert_eq!(there.ask("GetPersistDec 7"), "11");
     drop(here);
-    assert_eq!(there.ask("CheckThread1"), "1", "another client is there still");
+    assert_eq!(there.ask("CheckThread1"), "1", "another client is still there");
     drop(there);
     assert_eq!(server.ends().code(), Some(0), "the last client is gone");
     assert!(!path.exists(), "the socket is removed");

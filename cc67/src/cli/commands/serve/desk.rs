@@ -40,7 +40,7 @@ pub(super) enum Note {
     Asked(u64, Request),
     /// A client is gone.
     Left(u64),
-    /// Somebody wants the server to end.
+    /// The server is to end.
     End,
 }
 

@@ -22,7 +22,7 @@ const FIRMWARE: [(&str, &str); 2] = [("DSP_KFLOP", "DSPKFLOP.out"), ("DSP_KMotio
 /// Variables of the G-code interpreter that it keeps from one run to the next: home positions, the offset of G92, the
 /// coordinate system in use, and the origins of nine (NIST RS274NGC, section 3.2.1).
 const VARIABLES: &str = "Data/emc.var";
-/// What the server was last told: the folder it was told in, and a word a line.
+/// What the server was last to serve: the folder of that command line, and its words, one a line.
 const OPTIONS: &str = "serve.options";
 
 /// Makes what is missing in the folder.
@@ -111,10 +111,7 @@ fn variables() -> String {
 fn link(command: &Path, path: &Path) -> Result<()> {
     if let Ok(known) = fs::symlink_metadata(path) {
         if !known.is_symlink() {
-            bail!(
-                "{} is there already and is not a link: remove it, or choose another folder",
-                path.display()
-            );
+            bail!("{} exists and is not a link: remove it, or choose another folder", path.display());
         }
         fs::remove_file(path).map_err(|error| output::cannot_write(path, &error))?;
     }
@@ -125,7 +122,7 @@ fn link(command: &Path, path: &Path) -> Result<()> {
 fn link(command: &Path, path: &Path) -> Result<()> {
     let path = path.with_extension("exe");
     if fs::symlink_metadata(&path).is_ok_and(|known| !known.is_file()) {
-        bail!("{} is there already and is not a file", path.display());
+        bail!("{} exists and is not a file", path.display());
     }
     fs::copy(command, &path).map(drop).map_err(|error| output::cannot_write(&path, &error))
 }

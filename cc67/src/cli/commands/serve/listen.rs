@@ -108,7 +108,7 @@ fn listen_on_path(address: &str, door: &Door) -> Result<PathBuf> {
         .is_ok_and(|known| std::os::unix::fs::FileTypeExt::is_socket(&known.file_type()));
     if is_socket {
         if UnixStream::connect(address).is_ok() {
-            bail!("another server is there already");
+            bail!("another server listens there");
         }
         std::fs::remove_file(address).context("cannot replace it")?;
     }

@@ -66,7 +66,7 @@ pub(super) struct ServeArguments {
     /// Make the folder that the vendor's library reads, with its compiler and its server, and say how to use it
     #[arg(long, value_name = "DIR")]
     home: Option<PathBuf>,
-    /// End after so many seconds of board time
+    /// End after SECONDS of board time
     #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
     limit: Option<f64>,
     /// Show the board on a page: not built yet
@@ -83,7 +83,7 @@ pub(super) struct ServeArguments {
 /// How fast board time passes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum PaceName {
-    /// So many times as fast as a clock.
+    /// This many times as fast as a clock.
     Clock(f64),
     /// Only in exchanges.
     Exchanges,
