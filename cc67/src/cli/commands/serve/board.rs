@@ -7,8 +7,8 @@ use runtime::{Event, EventKind, Message};
 use vm::engine::Engine;
 
 use super::Terms;
-use super::link::{CONSOLE_LINES, Link};
-use super::log::Log;
+use super::link::{CONSOLE_LINES, Unread};
+use super::log::ExchangeLog;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::terminal;
 use crate::cli::report::seen::Seen;
@@ -25,10 +25,10 @@ const TAKEN_WITHIN: u64 = 11_111;
 pub(super) struct ServedBoard<'a, E> {
     rig: Rig<E>,
     terms: &'a Terms<'a>,
-    pub(super) link: Link,
+    pub(super) link: Unread,
     /// Whether a client is the console.
     pub(super) is_heard: bool,
-    log: Option<Log>,
+    log: Option<ExchangeLog>,
     seen: Seen,
     trace: Option<Trace>,
     /// Whether flash was written and is to be kept.
@@ -44,14 +44,14 @@ impl<'a, E: Engine> ServedBoard<'a, E> {
             rig.session.record(request.clone());
         }
         let trace = request.as_ref().map(|request| Trace::begin(terms.trace, request)).transpose()?;
-        let log = terms.log.map(Log::new).transpose()?;
+        let log = terms.log.map(ExchangeLog::new).transpose()?;
         rig.session.stop_recording();
         rig.session.listen(true);
         rig.is_paced();
         Ok(Self {
             rig,
             terms,
-            link: Link::default(),
+            link: Unread::default(),
             is_heard: false,
             log,
             seen: Seen::default(),

@@ -7,7 +7,7 @@ use cc67_host::{Lock, Readiness};
 use vm::engine::Engine;
 
 use super::desk::{Desk, Token, Waiting, Wanted};
-use super::link::{CONSOLE_LINES, Line};
+use super::link::{CONSOLE_LINES, LinkLine};
 use super::message::{Call, Reply, Request};
 use crate::cli::io::terminal;
 
@@ -37,13 +37,13 @@ impl<E: Engine> Desk<'_, E> {
             Call::WriteLineReadLine(line) => return self.exchange(client, line),
             Call::WriteLine(line) => self.write(SILENT, line),
             Call::WriteLineWithEcho(line) => self.write(b"", line),
-            Call::ReadLine(_) if !self.is_connected => return Some(Reply::text(TIMEOUT, b"")),
+            Call::ReadLine(_) if !self.state.is_open => return Some(Reply::text(TIMEOUT, b"")),
             Call::ReadLine(milliseconds) => return self.wait(client, Wanted::Line, *milliseconds),
             Call::ListLocations => return Some(Reply::numbers(&LOCATIONS)),
             Call::Failed => self.fail(),
-            Call::Disconnect => self.is_connected = false,
+            Call::Disconnect => self.state.is_open = false,
             Call::FirmwareVersion => return Some(Reply::number(FIRMWARE)),
-            Call::CheckForReady if !self.is_connected => {
+            Call::CheckForReady if !self.state.is_open => {
                 return Some(Reply::number(Readiness::NoData as i32));
             }
             Call::CheckForReady => {
@@ -52,7 +52,7 @@ impl<E: Engine> Desk<'_, E> {
             Call::Lock => return Some(Reply::number(self.lock(client) as i32)),
             Call::Location => {
                 let [location] = LOCATIONS;
-                return Some(Reply::number(if self.is_connected { location } else { -1 }));
+                return Some(Reply::number(if self.state.is_open { location } else { -1 }));
             }
             Call::Release => self.token = Token::default(),
             Call::ServiceConsole => self.service_console(),
@@ -83,14 +83,14 @@ impl<E: Engine> Desk<'_, E> {
 
     /// Opens the link to the board if it is not open.
     fn connect(&mut self) {
-        if !std::mem::replace(&mut self.is_connected, true) {
+        if !std::mem::replace(&mut self.state.is_open, true) {
             self.board.reopen();
         }
     }
 
     fn fail(&mut self) {
-        self.is_connected = false;
-        if !std::mem::replace(&mut self.has_told_failure, true) {
+        self.state.is_open = false;
+        if !std::mem::replace(&mut self.state.has_told_failure, true) {
             self.error_texts.push(FAILED.to_owned());
         }
     }
@@ -116,18 +116,18 @@ impl<E: Engine> Desk<'_, E> {
 
     /// Reads a line for the console, if nobody has the token.
     fn service_console(&mut self) {
-        if self.token.taken_by.is_none() && self.is_connected {
+        if self.token.taken_by.is_none() && self.state.is_open {
             self.board.until(EXCHANGE, |board| board.link.has_line());
-            if let Some(Line::Console(line) | Line::Reply(line)) = self.read() {
+            if let Some(LinkLine::Console(line) | LinkLine::Reply(line)) = self.read() {
                 self.show(line);
             }
         }
     }
 
     /// The next line from the link.
-    fn read(&mut self) -> Option<Line> {
+    fn read(&mut self) -> Option<LinkLine> {
         let line = self.board.link.next()?;
-        self.has_told_failure = false;
+        self.state.has_told_failure = false;
         Some(line)
     }
 
@@ -145,11 +145,11 @@ impl<E: Engine> Desk<'_, E> {
     pub(super) fn look(&mut self, waiting: &mut Waiting, time: Instant) -> Option<Reply> {
         while let Some(line) = self.read() {
             match (&mut waiting.wanted, line) {
-                (Wanted::Answer, Line::Reply(line)) => return Some(Reply::text(0, &line)),
-                (Wanted::Line, Line::Reply(line)) => {
+                (Wanted::Answer, LinkLine::Reply(line)) => return Some(Reply::text(0, &line)),
+                (Wanted::Line, LinkLine::Reply(line)) => {
                     return Some(Reply::text(0, &[&line[..], b"\r\n"].concat()));
                 }
-                (Wanted::Ready { after_error }, Line::Reply(line) | Line::Console(line)) => {
+                (Wanted::Ready { after_error }, LinkLine::Reply(line) | LinkLine::Console(line)) => {
                     let is_ready = line == b"Ready";
                     *after_error |= line.to_ascii_lowercase().windows(5).any(|part| part == b"error");
                     let length = Duration::from_millis(READY_WITHIN.into());
@@ -160,7 +160,7 @@ impl<E: Engine> Desk<'_, E> {
                         return Some(Reply::number(result as i32));
                     }
                 }
-                (Wanted::Answer | Wanted::Line, Line::Console(line)) => self.show(line),
+                (Wanted::Answer | Wanted::Line, LinkLine::Console(line)) => self.show(line),
             }
         }
         self.has_passed(waiting, time).then(|| match waiting.wanted {

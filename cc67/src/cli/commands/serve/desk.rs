@@ -47,7 +47,7 @@ pub(super) enum Note {
 /// Whether there is more to come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
-enum Flow {
+enum Course {
     Continue,
     Leave,
 }
@@ -83,6 +83,15 @@ pub(super) struct Token {
     pub(super) has_told: bool,
 }
 
+/// The link to the board, as clients find it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LinkState {
+    /// Whether it is open.
+    pub(super) is_open: bool,
+    /// Whether its loss was said since something was read.
+    pub(super) has_told_failure: bool,
+}
+
 /// The board and its clients.
 pub(super) struct Desk<'a, E> {
     pub(super) board: ServedBoard<'a, E>,
@@ -98,12 +107,9 @@ pub(super) struct Desk<'a, E> {
     /// The client that receives the console, and lines that it has not received yet.
     pub(super) console: Option<u64>,
     pub(super) console_lines: VecDeque<Vec<u8>>,
-    /// Whether the link to the board is open.
-    pub(super) is_connected: bool,
+    pub(super) state: LinkState,
     /// Error texts for the next answer.
     pub(super) error_texts: Vec<String>,
-    /// Whether the loss of the link was said since something was read.
-    pub(super) has_told_failure: bool,
 }
 
 impl<'a, E: Engine> Desk<'a, E> {
@@ -121,9 +127,8 @@ impl<'a, E: Engine> Desk<'a, E> {
             token: Token::default(),
             console: None,
             console_lines: VecDeque::new(),
-            is_connected: true,
+            state: LinkState { is_open: true, has_told_failure: false },
             error_texts: Vec::new(),
-            has_told_failure: false,
         }
     }
 
@@ -132,7 +137,7 @@ impl<'a, E: Engine> Desk<'a, E> {
         let limit = self.terms.limit.map_or(u64::MAX, |seconds| (seconds / TIMEBASE).round() as u64);
         while self.board.tick().get() < limit {
             if let Some(note) = self.next_note()
-                && self.take(note) == Flow::Leave
+                && self.take(note) == Course::Leave
             {
                 break;
             }
@@ -163,9 +168,9 @@ impl<'a, E: Engine> Desk<'a, E> {
         }
     }
 
-    fn take(&mut self, note: Note) -> Flow {
+    fn take(&mut self, note: Note) -> Course {
         match note {
-            Note::End => return Flow::Leave,
+            Note::End => return Course::Leave,
             Note::Came(client, answers) => {
                 self.clients.insert(client, answers);
             }
@@ -180,11 +185,11 @@ impl<'a, E: Engine> Desk<'a, E> {
                 }
             }
         }
-        Flow::Continue
+        Course::Continue
     }
 
     /// A client is gone: what it had is free again.
-    fn left(&mut self, client: u64) -> Flow {
+    fn left(&mut self, client: u64) -> Course {
         self.clients.remove(&client);
         self.waiting.retain(|waiting| waiting.client != client);
         if self.token.taken_by == Some(client) {
@@ -195,7 +200,7 @@ impl<'a, E: Engine> Desk<'a, E> {
             self.board.is_heard = false;
             self.console_lines.clear();
         }
-        if self.terms.once && self.clients.is_empty() { Flow::Leave } else { Flow::Continue }
+        if self.terms.once && self.clients.is_empty() { Course::Leave } else { Course::Continue }
     }
 
     /// Answers a client; before the reply go error texts, and console lines if it is the console.

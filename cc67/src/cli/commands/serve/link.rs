@@ -15,7 +15,7 @@ pub(in crate::cli::commands) const CONSOLE_LINES: usize = 1_000_000;
 
 /// A line of the board, without its end.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum Line {
+pub(super) enum LinkLine {
     /// Of a reply, or the echo of a command.
     Reply(Vec<u8>),
     /// Of the console.
@@ -24,7 +24,7 @@ pub(super) enum Line {
 
 /// What is new, and what nobody has read yet.
 #[derive(Debug, Default)]
-pub(super) struct Link {
+pub(super) struct Unread {
     /// Each line with its number in the order of all.
     replies: VecDeque<(u64, Vec<u8>)>,
     console: VecDeque<(u64, Vec<u8>)>,
@@ -36,7 +36,7 @@ pub(super) struct Link {
     lost_console: bool,
 }
 
-impl Link {
+impl Unread {
     /// A line of a reply came.
     pub(super) fn reply(&mut self, line: &[u8]) {
         let mut whole = mem::take(&mut self.partial);
@@ -83,14 +83,14 @@ impl Link {
     }
 
     /// The next line, whatever it is.
-    pub(super) fn next(&mut self) -> Option<Line> {
+    pub(super) fn next(&mut self) -> Option<LinkLine> {
         let reply = self.replies.front().map_or(u64::MAX, |(number, _)| *number);
         if self.console.front().is_some_and(|(number, _)| *number < reply) {
-            return self.console.pop_front().map(|(_, line)| Line::Console(line));
+            return self.console.pop_front().map(|(_, line)| LinkLine::Console(line));
         }
         let (_, line) = self.replies.pop_front()?;
         self.reply_bytes -= line.len();
-        Some(Line::Reply(line))
+        Some(LinkLine::Reply(line))
     }
 
     /// Drops everything, as when the link is opened anew.
@@ -118,7 +118,7 @@ mod tests {
 
     #[test]
     fn lines_are_read_in_their_order() {
-        let mut link = Link::default();
+        let mut link = Unread::default();
         link.console(b"one".to_vec(), true);
         link.echo(b"Read");
         assert!(link.has_partial_line());
@@ -126,19 +126,19 @@ mod tests {
         link.console(b"two".to_vec(), true);
         link.reply(b"1");
         let order: Vec<_> = std::iter::from_fn(|| link.next()).collect();
-        let console = |text: &[u8]| Line::Console(text.to_vec());
-        let reply = |text: &[u8]| Line::Reply(text.to_vec());
+        let console = |text: &[u8]| LinkLine::Console(text.to_vec());
+        let reply = |text: &[u8]| LinkLine::Reply(text.to_vec());
         assert_eq!(order, [console(b"one"), reply(b"ReadBit46"), console(b"two"), reply(b"1")]);
         assert!(!link.has_line());
     }
 
     #[test]
     fn what_nobody_reads_has_a_limit() {
-        let mut link = Link::default();
+        let mut link = Unread::default();
         for number in 0..UNHEARD_LINES + 10 {
             link.console(number.to_string().into_bytes(), false);
         }
-        assert_eq!(link.next(), Some(Line::Console(b"10".to_vec())));
+        assert_eq!(link.next(), Some(LinkLine::Console(b"10".to_vec())));
         assert!(!link.take_lost_console(), "nobody has registered for them");
         for _ in 0..=REPLY_BYTES / 1000 {
             link.reply(&[b'x'; 1000]);

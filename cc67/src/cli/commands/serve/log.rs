@@ -17,7 +17,7 @@ use crate::cli::io::terminal;
 
 /// A file that grows with each exchange; nothing of it is held back, so that a server that is killed leaves all of it.
 #[derive(Debug)]
-pub(super) struct Log {
+pub(super) struct ExchangeLog {
     path: PathBuf,
     /// Nothing once it could not be written.
     file: Option<File>,
@@ -25,7 +25,7 @@ pub(super) struct Log {
     reached: u64,
 }
 
-impl Log {
+impl ExchangeLog {
     /// Begins a log.
     pub(super) fn new(path: &Path) -> Result<Self> {
         let file = File::create(path).map_err(|error| cannot_write(path, &error))?;
