@@ -30,7 +30,7 @@ const OTHERWISE: &[&str] = &["io/thermocouple:", "io/digital:"];
 
 #[test]
 fn every_program_shows_its_golden_console_as_code_for_the_processor() {
-    for level in ["-O0", "-O1"] {
+    for level in ["-O0", "-O1", "-O2"] {
         let output = cc67(
             harness::root(),
             ["test", "--engine", "bytecode", "c-programs", "--", "--target", "c67x", level],
