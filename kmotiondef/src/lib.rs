@@ -11,6 +11,7 @@
 //! | [`map`] | the loader and guest memory |
 //! | [`limits`], [`modes`] | the servo and the devices |
 //! | [`headers`] | the preprocessor |
+//! | [`waiting`] | the warning about waits in the call-back, `--explain` |
 //! | [`hidden`] | the warning about names that the vendor's linker refuses |
 //!
 //! Invariant: depends on nothing and holds no behaviour.
@@ -31,6 +32,7 @@ pub mod start;
 pub mod structs;
 pub mod timing;
 pub mod variables;
+pub mod waiting;
 
 #[cfg(test)]
 mod tests;

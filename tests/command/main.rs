@@ -6,8 +6,11 @@ mod boot;
 mod console;
 mod drop_in;
 mod editor;
+mod explain;
 mod golden;
 mod init;
+#[cfg(unix)]
+mod interrupt;
 mod keyboard;
 #[cfg(feature = "live")]
 mod live;

@@ -287,7 +287,7 @@ fn every_warning_explains_itself() {
         assert!(output.stdout.ends_with("Default: on.\n"), "{}", output.stdout);
     }
     let unknown = cc67(&scratch, ["--explain", "stack-siez"]);
-    assert_plain(&unknown, 2, "no warning is named `stack-siez`; did you mean `stack-size`?");
+    assert_plain(&unknown, 2, "no page is named `stack-siez`; did you mean `stack-size`?");
     assert_plain(&cc67(&scratch, ["check", "-Wno-formt", "a.c"]), 2, "did you mean `format`?");
 }
 

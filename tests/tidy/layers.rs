@@ -11,7 +11,7 @@ pub(crate) const LAYERS: &[(&str, &[Row])] = &[
     (
         "kmotiondef",
         &[
-            ("lists", &["firmware", "variables", "map", "headers", "hidden", "modes"]),
+            ("lists", &["firmware", "variables", "map", "headers", "hidden", "modes", "waiting"]),
             ("structures", &["structs"]),
             ("places", &["place", "limits"]),
             ("types", &["ctype", "bits", "start", "timing"]),

@@ -2,6 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use kmotiondef::waiting::waits_for;
+
 use super::call_graph::CallGraph;
 use super::program::Program;
 use crate::diag::{Diagnostic, Lint, Sink};
@@ -9,21 +11,6 @@ use crate::typed::{Callee, ExprId, ExprKind, Function, PlaceId, PlaceKind, Symbo
 
 /// The firmware's pointer to the function that every servo interrupt calls.
 const VARIABLE: &str = "UserCallBack";
-
-/// Firmware functions that may wait: for time, for the PC, for another thread.
-const WAITING: &[&str] = &[
-    "Delay_sec",
-    "MutexLock",
-    "RS232_GetChar",
-    "RS232_PutChar",
-    "WaitNextTimeSlice",
-    "WaitUntil",
-    "fgets",
-    "fopen",
-    "fprintf",
-    "fscanf",
-    "printf",
-];
 
 /// Reports calls that may wait in the functions that the unit installs as call-back.
 pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
@@ -39,7 +26,7 @@ pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
             for (expr, call) in function.calls() {
                 let Callee::Symbol(callee) = call.callee else { continue };
                 let name = program.name(callee);
-                if !WAITING.contains(&name) || !seen.insert((function.symbol, callee)) {
+                if waits_for(name).is_none() || !seen.insert((function.symbol, callee)) {
                     continue;
                 }
                 let diagnostic = Diagnostic::warning(

@@ -48,7 +48,7 @@ pub(super) fn examples(arguments: &ExamplesArguments) -> Result<Exit> {
     let files: Vec<_> =
         copy(path, stem).into_iter().map(|(name, text)| (arguments.folder.join(name), text)).collect();
     if let Some((path, _)) = files.iter().find(|(path, _)| path.symlink_metadata().is_ok()) {
-        bail!("{} is there already; nothing was written", path.display());
+        bail!("{} already exists; nothing was written", path.display());
     }
     std::fs::create_dir_all(&arguments.folder)
         .with_context(|| format!("cannot make the folder {}", arguments.folder.display()))?;
@@ -127,6 +127,22 @@ pub(super) fn copy(path: &str, name: &str) -> Vec<Copy> {
         }
     }
     files
+}
+
+/// A statement of an example that calls a function, and the name of the example.
+pub(super) fn call(function: &str) -> Option<(&'static str, &'static str)> {
+    let programs = FILES.iter().filter(|(path, _)| is_program(path));
+    programs
+        .filter_map(|(path, bytes)| Some((path.strip_suffix(".c")?, std::str::from_utf8(bytes).ok()?)))
+        .find_map(|(program, source)| {
+            let calls = |line: &&str| {
+                let at = line.find(&format!("{function}("));
+                let before = at.and_then(|at| line.get(..at)).and_then(|before| before.chars().next_back());
+                let is_name = before.is_none_or(|c| !(c.is_alphanumeric() || c == '_'));
+                at.is_some() && is_name && line.ends_with(';') && !line.starts_with("//")
+            };
+            source.lines().map(str::trim).find(calls).map(|line| (program, line))
+        })
 }
 
 /// The example of a topic, as files of a project that are called after it.

@@ -1,50 +1,119 @@
-//! `--explain NAME`: the page of a warning, of a remark of the board or of a language of its own; `warnings` and
-//! `remarks` list them.
+//! `--explain NAME`: what the tables say of a name, and the pages on subjects.
+//!
+//! A name may be a firmware function, a variable, a field, a constant, a bit, a script command, a warning, a remark, a
+//! limit or a topic; an answer has every one of these that it is. Nothing is listed here: each room turns the rows of a
+//! table into text. A word that is not a name finds the names whose texts have it, or the name that was probably meant.
+
+mod bits;
+mod commands;
+mod functions;
+mod places;
+mod topics;
+mod words;
 
 use std::fmt::Write as _;
 
-use anyhow::Result;
+use anyhow::{Result, bail};
+use compiler::diag::{Lint, Preset};
+use compiler::words::suggest;
+use runtime::{REMARKS, RemarkRow};
 
 use super::limits;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::output;
-use compiler::diag::{Lint, Preset};
-use runtime::{REMARKS, RemarkRow};
 
-/// What lists all warnings; no lint has this name.
-const LIST: &str = "warnings";
+/// A name that can be explained, and the sentence that describes it.
+struct Explained {
+    name: &'static str,
+    about: String,
+}
 
-/// What lists all limits.
-const LIMITS: &str = "limits";
-
-/// What lists all remarks of the board.
-const REMARK_LIST: &str = "remarks";
-
-/// Pages about other things than warnings.
-const PAGES: &[(&str, &str)] =
-    &[("stimulus", include_str!("pages/stimulus.md")), ("machine", include_str!("pages/machine.md"))];
-
-/// Prints the page of the warning that a message, a switch or the user's memory names.
+/// Prints what there is to say of a name that a message, a switch or the user's memory has.
 pub(super) fn explain(name: &str) -> Result<Exit> {
-    if name == LIST {
-        output::print(&list())?;
-    } else if name == LIMITS {
-        output::print(&limits::page())?;
-    } else if name == REMARK_LIST {
-        output::print(&remarks())?;
-    } else if let Some(row) = REMARKS.iter().find(|row| row.code == name) {
-        let RemarkRow { code, about, text, .. } = row;
-        let off = format!(
-            "`-R no-{code}` switches it off; so does `{code} = false` in `[remarks]` of the machine file."
-        );
-        output::print(&format!("# {code}\n\n{}\n\n    {text}\n\n{off}\n", about.trim()))?;
-    } else if let Some((_, page)) = PAGES.iter().find(|(known, _)| *known == name) {
-        output::print(page)?;
-    } else {
-        let lint = Lint::named(name)?;
-        output::print(&format!("{}\n{}", lint.page(), lint.switches()))?;
-    }
+    let name = name.trim();
+    let text = match answer(name) {
+        Some(text) => text,
+        None => match bits::answer(name)? {
+            Some(text) => text,
+            None => found(name)?,
+        },
+    };
+    output::print(&text)?;
     Ok(Exit::Success)
+}
+
+/// Everything that a name is: with its letter case, else in any.
+fn answer(name: &str) -> Option<String> {
+    let same: &dyn Fn(&str) -> bool = &|known| known == name;
+    let similar: &dyn Fn(&str) -> bool = &|known| known.eq_ignore_ascii_case(name);
+    [same, similar].into_iter().find_map(|is_meant| {
+        let parts: Vec<_> = [
+            list(is_meant),
+            topics::answer(is_meant),
+            warning(name),
+            remark(is_meant),
+            functions::answer(is_meant),
+            places::answer(is_meant),
+        ]
+        .into_iter()
+        .flatten()
+        .collect();
+        // A script command is named in any letter case, and shares its name with fields and functions.
+        let command = commands::answer(&|known: &str| known.eq_ignore_ascii_case(name));
+        let parts: Vec<_> = parts.into_iter().chain(command).chain(words::answer(name)).collect();
+        (!parts.is_empty()).then(|| parts.join("\n"))
+    })
+}
+
+/// What lists the rows of a table.
+fn list(is_meant: &dyn Fn(&str) -> bool) -> Option<String> {
+    const LISTS: &[(&str, fn() -> String)] = &[
+        ("warnings", warnings),
+        ("remarks", remarks),
+        ("limits", limits::page),
+        ("functions", functions::list),
+        ("variables", places::variables),
+        ("commands", commands::list),
+        ("bits", bits::list),
+        ("topics", everything),
+    ];
+    LISTS.iter().find(|(name, _)| is_meant(name)).map(|(_, text)| text())
+}
+
+/// What can be explained: topics, lists, and the kinds of names.
+fn everything() -> String {
+    let mut text = "Topics:\n".to_owned();
+    for entry in topics::entries() {
+        let _ = writeln!(text, "  {:<12}{}", entry.name, entry.about);
+    }
+    text.push_str("\nLists:\n");
+    for (name, about) in [
+        ("functions", "firmware functions by group"),
+        ("variables", "firmware variables"),
+        ("CHAN", "fields of an axis; PERSIST and other structures likewise"),
+        ("bits", "ranges of I/O bits; `bit46` explains one"),
+        ("commands", "script commands of the console"),
+        ("warnings", "warnings of the compiler"),
+        ("remarks", "remarks of the simulated board"),
+        ("limits", "limits of the tool and of the board"),
+    ] {
+        let _ = writeln!(text, "  {name:<12}{about}");
+    }
+    text.push_str("\nEach name in these lists is explained as well, such as `cc67 --explain EnableAxis`.\n");
+    text
+}
+
+fn warning(name: &str) -> Option<String> {
+    let lint = Lint::named(name).ok()?;
+    Some(format!("{}\n{}", lint.page(), lint.switches()))
+}
+
+fn remark(is_meant: &dyn Fn(&str) -> bool) -> Option<String> {
+    let RemarkRow { code, about, text, .. } = REMARKS.iter().find(|row| is_meant(row.code))?;
+    let off = format!(
+        "`-R no-{code}` switches it off; so does `{code} = false` in `[remarks]` of the machine file."
+    );
+    Some(format!("# {code}\n\n{}\n\n    {text}\n\n{off}\n", about.trim()))
 }
 
 /// Every remark of the board with what it is about.
@@ -56,7 +125,7 @@ fn remarks() -> String {
 }
 
 /// Every warning with what it reports.
-fn list() -> String {
+fn warnings() -> String {
     let mut text = String::new();
     for (preset, title) in [
         (Preset::On, "On by default, also named by -Wall:"),
@@ -74,17 +143,98 @@ fn list() -> String {
     text
 }
 
+/// Every name with its sentence.
+fn entries() -> Vec<Explained> {
+    let lints =
+        Lint::ALL.iter().map(|lint| Explained { name: lint.name(), about: lint.summary().to_owned() });
+    let remarks = REMARKS.iter().map(|row| Explained { name: row.code, about: row.about.trim().to_owned() });
+    let mut all = topics::entries();
+    all.extend(functions::entries());
+    all.extend(places::entries());
+    all.extend(commands::entries());
+    all.extend(lints);
+    all.extend(remarks);
+    all
+}
+
+/// The names whose sentences have a word; without one, the name that was probably meant.
+fn found(word: &str) -> Result<String> {
+    const MOST: usize = 20;
+    const LEAST: usize = 4;
+    let entries = entries();
+    if let Some(near) = near(word, &entries) {
+        bail!("no page is named `{word}`; did you mean `{near}`?");
+    }
+    let lower = word.to_lowercase();
+    let has = |entry: &&Explained| {
+        let text = format!("{} {}", entry.name, entry.about).to_lowercase();
+        text.split(|c: char| !c.is_alphanumeric() && c != '_')
+            .any(|of| of.strip_prefix(lower.as_str()).is_some_and(|rest| rest.len() <= 2))
+            || entry.name.to_lowercase().contains(&lower)
+    };
+    let mut rows: Vec<_> = entries.iter().filter(has).filter(|_| word.len() >= LEAST).collect();
+    rows.dedup_by_key(|entry| entry.name);
+    if rows.is_empty() {
+        bail!("no page is named `{word}`; `cc67 --explain topics` lists what there is");
+    }
+    let mut text = format!("No page is named `{word}`. These names have to do with it:\n\n");
+    for entry in rows.iter().take(MOST) {
+        let _ = writeln!(text, "  {:<24}{}", entry.name, first_sentence(&entry.about));
+    }
+    if rows.len() > MOST {
+        let _ = writeln!(text, "  … and {} more", rows.len() - MOST);
+    }
+    Ok(text)
+}
+
+/// The name that was probably meant; for a word of the lists, that list.
+fn near(word: &str, entries: &[Explained]) -> Option<&'static str> {
+    const LISTS: &[&str] = &["warnings", "remarks", "limits", "functions", "variables", "commands", "topics"];
+    let names = || entries.iter().map(|entry| entry.name).chain(LISTS.iter().copied());
+    let near = suggest(word, names())?;
+    // A name that only begins like the word is no spelling of it.
+    let is_spelling = !word.to_lowercase().starts_with(&near.to_lowercase());
+    names().find(|name| *name == near).filter(|_| is_spelling)
+}
+
+/// A text up to its first full stop, on one line.
+fn first_sentence(text: &str) -> String {
+    let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    match line.split_once(". ") {
+        Some((first, _)) => format!("{first}."),
+        None => line,
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::PAGES;
+    use super::{entries, topics};
 
     #[test]
     fn every_action_of_a_stimulus_is_explained() {
-        let (_, page) = PAGES.iter().find(|(name, _)| *name == "stimulus").expect("there is the page");
+        let page = topics::answer(&|name| name == "stimulus").expect("there is the page");
         for usage in runtime::stimulus::usages() {
             let words: Vec<_> =
                 usage.split(' ').take_while(|word| word.chars().all(char::is_lowercase)).collect();
             assert!(page.contains(&format!("`{}", words.join(" "))), "{usage}");
+        }
+    }
+
+    #[test]
+    fn every_name_has_an_answer() {
+        for entry in entries() {
+            assert!(super::answer(entry.name).is_some(), "{}", entry.name);
+        }
+    }
+
+    #[test]
+    fn each_name_that_a_topic_refers_to_is_explained() {
+        for entry in topics::entries() {
+            let page = topics::answer(&|name| name == entry.name).expect("a page");
+            let Some((_, names)) = page.rsplit_once("See also:") else { continue };
+            for name in names.split('`').skip(1).step_by(2) {
+                assert!(super::answer(name).is_some() || name == "bits", "{}: {name}", entry.name);
+            }
         }
     }
 }

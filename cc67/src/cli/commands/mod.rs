@@ -1,6 +1,6 @@
 //! The subcommands: one file each, one row each in [`Command`].
 //!
-//! A subcommand has arguments, does its work with what stands below it, and says by an exit code how that went.
+//! A subcommand has arguments, does its work with what is below it, and says by an exit code how that went.
 
 mod build;
 mod check;
@@ -46,8 +46,8 @@ pub use stand_alone::main as stand_alone;
 #[derive(Debug, Parser)]
 #[command(name = "cc67", version = VERSION, about, max_term_width = 100, arg_required_else_help = true, args_override_self = true)]
 struct Arguments {
-    /// Explain a warning by the name in its brackets; `warnings` lists them all; also limits, machine, stimulus
-    #[arg(long, value_name = "WARNING", global = true, allow_hyphen_values = true)]
+    /// Explain a function, field, bit, script command, warning, remark or topic; `topics` lists what there is
+    #[arg(long, value_name = "NAME", global = true, allow_hyphen_values = true)]
     explain: Option<String>,
     #[command(subcommand)]
     command: Option<Command>,
@@ -176,7 +176,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
 }
 
 impl Arguments {
-    /// The same with the options of the project file and of what stands beside the first program, which is said in one
+    /// The same with the options of the project file and of what is beside the first program, which is said in one
     /// line.
     fn with_sidecars(self, words: &[OsString]) -> Result<Self> {
         let (name, programs) = match &self.command {
@@ -226,7 +226,7 @@ fn knows(subcommand: &str, option: &str) -> bool {
     })
 }
 
-/// What to type in place of a word that is no subcommand: a program needs `run`, and another word may be misspelt.
+/// What to type in place of a word that is not a subcommand: a program needs `run`, and another word may be misspelt.
 fn advice(error: &clap::Error) -> Option<String> {
     let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidSubcommand) else { return None };
     let path = Path::new(word);

@@ -1,0 +1,136 @@
+//! Firmware functions: the row of the table, what they wait for, what goes wrong, an example.
+//!
+//! What goes wrong and an example are on the page `pages/functions.md`, whose headings name functions; a function that is
+//! not there has the call of an example program.
+
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+
+use kmotiondef::firmware::{ABSENT, FIRMWARE_FUNCTIONS, FirmwareFunction, Origin};
+use kmotiondef::waiting::waits_for;
+use runtime::REMARKS;
+
+use super::Explained;
+use crate::cli::commands::examples;
+
+/// Under each heading the names of functions, then their text.
+const PAGE: &str = include_str!("../pages/functions.md");
+
+/// Cycles of the processor in a microsecond.
+const CYCLES_PER_US: f64 = 200.0;
+
+fn shown() -> impl Iterator<Item = &'static FirmwareFunction> {
+    FIRMWARE_FUNCTIONS.iter().filter(|function| !ABSENT.contains(&function.name))
+}
+
+/// Each function with the doc comment of its row.
+pub(super) fn entries() -> impl Iterator<Item = Explained> {
+    shown().map(|function| Explained { name: function.name, about: sentence(function) })
+}
+
+/// The names of all functions, by group.
+pub(super) fn list() -> String {
+    let groups: BTreeSet<_> = shown().map(|function| function.group).collect();
+    let mut text = String::new();
+    for group in groups {
+        let _ = writeln!(text, "{group}:");
+        for function in shown().filter(|function| function.group == group) {
+            let _ = writeln!(text, "  {:<24}{}", function.name, super::first_sentence(&sentence(function)));
+        }
+    }
+    text
+}
+
+/// The answer for one function.
+pub(super) fn answer(is_meant: &dyn Fn(&str) -> bool) -> Option<String> {
+    let function = shown().find(|function| is_meant(function.name))?;
+    let name = function.name;
+    let mut text = format!("# {name}\n\n    {};\n\n{}\n\n", function.prototype(), sentence(function));
+    let cost = function.cost.get() as f64 / CYCLES_PER_US;
+    let _ = match waits_for(name) {
+        Some(what) => writeln!(
+            text,
+            "- It waits {what}, while other threads run: not in the call-back (`UserCallBack`). It takes {cost} µs besides."
+        ),
+        None => writeln!(text, "- It takes {cost} µs and does not wait."),
+    };
+    text.push_str(match function.origin {
+        Origin::Header => "- `#include \"KMotionDef.h\"` declares it.\n",
+        Origin::Firmware => "- The firmware has it, the header does not declare it: declare it in the program.\n",
+        Origin::Library => {
+            "- Firmware 4.34 lacks it; the simulated board has it, the real one needs a definition in the program.\n"
+        }
+    });
+    let codes = codes(name);
+    if !codes.is_empty() {
+        let _ = writeln!(text, "- Remarks that name it: {}.", codes.join(", "));
+    }
+    match section(name) {
+        Some(section) => {
+            let _ = write!(text, "\n{section}\n");
+        }
+        None => {
+            if let Some((program, line)) = examples::call(name) {
+                let _ = write!(text, "\nFrom `cc67 examples {program}`:\n\n    {line}\n");
+            }
+        }
+    }
+    Some(text)
+}
+
+/// The doc comment of the row on one line.
+fn sentence(function: &FirmwareFunction) -> String {
+    function.doc.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// The remarks whose text or description names a function.
+fn codes(name: &str) -> Vec<String> {
+    let names = |text: &str| {
+        text.split(|c: char| !(c.is_alphanumeric() || c == '_')).any(|word| word == name)
+            && (text.contains(&format!("{name}(")) || text.contains(&format!("{name}:")))
+    };
+    REMARKS.iter().filter(|row| names(row.text)).map(|row| format!("`{}`", row.code)).collect()
+}
+
+/// The text under the heading that names a function.
+fn section(name: &str) -> Option<&'static str> {
+    PAGE.split("\n## ").skip(1).find_map(|section| {
+        let (heading, text) = section.split_once('\n')?;
+        heading.split(", ").any(|of| of.trim() == name).then(|| text.trim_matches(['\n', '\r']))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn headings_of_the_page_are_functions_each_once() {
+        let mut seen = BTreeSet::new();
+        for section in PAGE.split("\n## ").skip(1) {
+            for name in section.lines().next().unwrap_or_default().split(", ") {
+                assert!(kmotiondef::firmware::function_named(name.trim()).is_some(), "{name}");
+                assert!(seen.insert(name.trim()), "{name} has two sections");
+            }
+        }
+    }
+
+    #[test]
+    fn every_code_of_the_page_is_a_remark_or_a_name() {
+        for word in PAGE.split('`').skip(1).step_by(2).filter(|word| word.contains('-')) {
+            let is_code = word.bytes().all(|byte| byte.is_ascii_lowercase() || byte == b'-');
+            assert!(!is_code || REMARKS.iter().any(|row| row.code == word), "{word}");
+        }
+    }
+
+    #[test]
+    fn functions_of_the_board_have_an_example() {
+        let groups = ["io", "motion", "time", "thread", "sync"];
+        let missing: Vec<_> = shown()
+            .filter(|function| groups.contains(&function.group))
+            .filter(|function| section(function.name).is_none() && examples::call(function.name).is_none())
+            .map(|function| function.name)
+            .collect();
+        assert!(missing.len() <= 12, "{missing:?}");
+    }
+}

@@ -1,0 +1,34 @@
+//! Pages on subjects: one file each, whose first paragraph describes it.
+
+use super::{Explained, first_sentence};
+
+/// Name and page.
+const PAGES: &[(&str, &str)] = &[
+    ("threads", include_str!("../pages/topics/threads.md")),
+    ("time", include_str!("../pages/topics/time.md")),
+    ("motion", include_str!("../pages/topics/motion.md")),
+    ("paths", include_str!("../pages/topics/paths.md")),
+    ("homing", include_str!("../pages/topics/homing.md")),
+    ("probing", include_str!("../pages/topics/probing.md")),
+    ("spindle", include_str!("../pages/topics/spindle.md")),
+    ("estop", include_str!("../pages/topics/estop.md")),
+    ("persist", include_str!("../pages/topics/persist.md")),
+    ("flash", include_str!("../pages/topics/flash.md")),
+    ("analog", include_str!("../pages/topics/analog.md")),
+    ("pc", include_str!("../pages/topics/pc.md")),
+    ("call-back", include_str!("../pages/topics/call-back.md")),
+    ("exit", include_str!("../pages/topics/exit.md")),
+    ("machine", include_str!("../pages/machine.md")),
+    ("stimulus", include_str!("../pages/stimulus.md")),
+];
+
+/// The page of a topic.
+pub(super) fn answer(is_meant: &dyn Fn(&str) -> bool) -> Option<String> {
+    PAGES.iter().find(|(name, _)| is_meant(name)).map(|(_, page)| (*page).to_owned())
+}
+
+/// Each topic with its heading.
+pub(super) fn entries() -> Vec<Explained> {
+    let about = |page: &str| first_sentence(page.lines().next().unwrap_or_default().trim_start_matches("# "));
+    PAGES.iter().map(|(name, page)| Explained { name, about: about(page) }).collect()
+}
