@@ -23,7 +23,7 @@ use crate::cli::args::time::{DEFAULT_LIMIT, seconds};
 use crate::cli::args::trace::TraceArguments;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::pace::Pace;
-use crate::cli::io::{output, terminal};
+use crate::cli::io::{interrupt, output, terminal};
 use crate::cli::report::profile;
 use crate::cli::report::screen::{Reader, Screen, Style, no_run};
 use crate::cli::report::seen::Seen;
@@ -37,7 +37,7 @@ pub(super) struct RunArguments {
     /// The programs, sources or images: FILE for the lowest free thread, N:FILE for thread N
     #[arg(required_unless_present_any = ["explain", "flash"], value_name = "[N:]FILE")]
     programs: Vec<OsString>,
-    /// End after so many seconds of board time, with success
+    /// Stop after SECONDS of board time and exit 0
     #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
     limit: Option<f64>,
     /// Show the board time in seconds before each console line
@@ -109,7 +109,7 @@ impl Work for &RunArguments {
 }
 
 impl RunArguments {
-    /// The programs, if what stands beside them is to be used.
+    /// The programs, if what is beside them is to be used.
     pub(super) fn with_sidecars(&self) -> Option<&[OsString]> {
         (!self.beside.no_sidecar && self.board.boot.is_none()).then_some(&self.programs)
     }
@@ -139,6 +139,7 @@ impl RunArguments {
             seen.note(&event);
             screen.show(&event);
         };
+        interrupt::ends(rig.session.interrupter())?;
         let end = rig.run(limit, pace.as_ref(), &mut sink);
         rig.finish(&mut sink)?;
         let (board, ending) = (rig.session.board(), rig.session.ending());
@@ -180,10 +181,16 @@ fn how_it_ended<E: Engine>(exit: Exit, board: &Board<E>, ending: &Ending) -> Opt
     let is_over = ending.has_all_ended() && moving.is_empty();
     let head = match exit {
         Exit::StillRunning => still_running(&active(board), &moving),
+        Exit::Interrupted => format!("interrupted after {:.3} s of board time:", seconds_of(board)),
         _ if is_over => return None,
-        _ => format!("at the end, after {:.3} s of board time:", board.tick().get() as f64 * TIMEBASE),
+        _ => format!("at the end, after {:.3} s of board time:", seconds_of(board)),
     };
     Some(format!("{head}\n{ending}"))
+}
+
+/// The board time.
+fn seconds_of<E: Engine>(board: &Board<E>) -> f64 {
+    board.tick().get() as f64 * TIMEBASE
 }
 
 /// Why a run has not ended by the usual limit, and what can be done.

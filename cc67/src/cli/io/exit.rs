@@ -5,7 +5,7 @@ use std::process::ExitCode;
 /// What the command's exit code says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Exit {
-    /// The programs ended, or the asked-for time is over.
+    /// The programs ended, or the given time has passed.
     Success = 0,
     /// The source has errors; images that are compared differ; a test is not as expected.
     Failure = 1,
@@ -15,8 +15,10 @@ pub enum Exit {
     Trapped = 3,
     /// Programs were still running at the default time limit.
     StillRunning = 4,
-    /// Something that the stimulus expects was not so.
+    /// An expectation of the stimulus was not met.
     Unmet = 5,
+    /// Ctrl-C ended the run, as shells count it.
+    Interrupted = 130,
 }
 
 impl From<Exit> for ExitCode {

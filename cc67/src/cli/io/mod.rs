@@ -2,6 +2,7 @@
 
 pub(crate) mod exit;
 pub(crate) mod input;
+pub(crate) mod interrupt;
 pub(crate) mod output;
 pub(crate) mod pace;
 pub(crate) mod terminal;

@@ -27,7 +27,7 @@ impl Seen {
             End::Limit if !is_limited => (Exit::StillRunning, "still running"),
             End::Limit => (Exit::Success, "limit"),
             End::AllEnded => (Exit::Success, "ended"),
-            End::Interrupted => (Exit::Success, "interrupted"),
+            End::Interrupted => (Exit::Interrupted, "interrupted"),
         }
     }
 }

@@ -211,7 +211,7 @@ impl Line {
             if let Some(pace) = pace {
                 pace.wait(session.tick());
             }
-            if end == End::AllEnded || session.tick() >= limit {
+            if end != End::Limit || session.tick() >= limit {
                 return end;
             }
         }
@@ -276,7 +276,7 @@ impl Line {
         came
     }
 
-    /// The run is over: the peer is let go, and what was sent is written.
+    /// The run has ended: the peer may end, and what was sent is written.
     pub(super) fn finish(&mut self) -> Result<()> {
         if let Some(peer) = self.peer.take() {
             drop(peer.outgoing);
