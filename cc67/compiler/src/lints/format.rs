@@ -10,7 +10,7 @@ use crate::source::Span;
 use crate::ty::{TypeId, Types};
 use crate::typed::{self, Call, Callee, Definition, ExprId, ExprKind, PlaceKind, Unit};
 
-/// Compares every format with the arguments behind it.
+/// Compares every format with the arguments after it.
 pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
     for function in program.functions() {
         for (_, call) in function.calls() {
@@ -82,7 +82,7 @@ impl Function {
     }
 }
 
-/// An argument behind the format: its type after array and function names became pointers, and its place.
+/// An argument after the format: its type after array and function names became pointers, and its place.
 type Argument = (TypeId, Span);
 
 /// A mismatch.
@@ -114,7 +114,7 @@ impl Finding {
     }
 }
 
-/// Compares a format with the arguments behind it.
+/// Compares a format with the arguments after it.
 fn compare(types: &Types, function: Function, format: &[u8], arguments: &[Argument]) -> Vec<Finding> {
     let mut findings = Vec::new();
     let mut left = arguments.iter();
@@ -153,8 +153,11 @@ fn compare(types: &Types, function: Function, format: &[u8], arguments: &[Argume
             conversion.printed(types, argument.0)
         };
         if let Err(wanted) = wanted {
-            let help =
-                if function.is_scan { scan_help(types, argument.0) } else { print_help(types, argument.0) };
+            let help = if function.is_scan {
+                scan_help(types, argument.0)
+            } else {
+                conversion.print_help(types, argument.0)
+            };
             let lacks_address = function.is_scan && types.pointee(argument.0).is_none();
             let message = format!("`{spelled}` needs {wanted}");
             findings.push(Finding { lacks_address, ..finding(Some(argument), message, help) });
@@ -188,7 +191,7 @@ struct Conversion {
 }
 
 impl Conversion {
-    /// Reads what stands behind a `%`; also what is left of the format.
+    /// Reads what follows a `%`; also what is left of the format.
     fn parse(text: &[u8], is_scan: bool) -> (Self, &[u8]) {
         let mut conversion = Self { letter: 0, stars: 0, is_suppressed: false, longs: 0, halves: 0 };
         let mut rest = text;
@@ -263,6 +266,19 @@ fn is_int(ty: TypeId) -> bool {
 
 fn points_to(types: &Types, ty: TypeId, is_wanted: impl Fn(TypeId) -> bool) -> bool {
     types.pointee(ty).is_some_and(|to| is_wanted(to.ty))
+}
+
+impl Conversion {
+    /// What to write for an argument that does not fit: what it points to, if that would, or another conversion.
+    fn print_help(self, types: &Types, ty: TypeId) -> Option<String> {
+        let to = types.pointee(ty).map(|to| to.ty).filter(|to| !to.is_character());
+        match to {
+            Some(to) if self.printed(types, to).is_ok() => {
+                Some("write `*` before it for the value that it points to".to_owned())
+            }
+            _ => print_help(types, ty),
+        }
+    }
 }
 
 fn print_help(types: &Types, ty: TypeId) -> Option<String> {

@@ -5,12 +5,12 @@ use kmotiondef::structs::STRUCTURES;
 use super::Sema;
 use crate::diag::Diagnostic;
 use crate::names::Name;
-use crate::words::foreign::{self as foreign_words, Word};
+use crate::words::foreign::{self as foreign_words, Origin, Word};
 
 /// What to do when the vendor's header seems to be missing.
 pub(super) const HEADER_HELP: &str = "is `KMotionDef.h` included?";
 
-/// What is known of a name that nothing declares.
+/// What is known about a name that nothing declares.
 pub(super) enum Advice {
     /// It follows from another error, and needs no words.
     Silence,
@@ -28,7 +28,7 @@ impl Sema<'_> {
             return Advice::Silence;
         }
         let spelling = self.names.get(name).to_owned();
-        if let Some(word) = foreign_words::word(&spelling) {
+        if let Some(word) = foreign_words::word(&spelling).filter(|word| !self.is_own(name, word)) {
             return self.foreign_advice(word);
         }
         if self.firmware.is_variable(&spelling) || self.firmware.prototype(&spelling).is_some() {
@@ -61,6 +61,14 @@ impl Sema<'_> {
         }
     }
 
+    /// Whether the program itself probably has a name, where only a pattern speaks for the word.
+    fn is_own(&self, name: Name, word: &Word) -> bool {
+        let has_case =
+            || self.near_name(word.spelling).is_some_and(|near| near.eq_ignore_ascii_case(word.spelling));
+        matches!(word.origin, Origin::Board | Origin::Console)
+            && (self.noted.locals_elsewhere.contains_key(&name) || has_case())
+    }
+
     fn foreign_advice(&mut self, word: &'static Word) -> Advice {
         let is_first = self.noted.origins.insert(word.origin);
         // `true` of a program whose `bool` was reported needs no second error.
@@ -78,7 +86,7 @@ fn say(change: impl FnOnce(Diagnostic) -> Diagnostic + 'static) -> Advice {
     Advice::Say(Box::new(change))
 }
 
-/// Whether a name is that of an axis pointer, but for the number.
+/// Whether a name is that of an axis pointer, except for the number.
 fn is_axis(spelling: &str) -> bool {
     spelling
         .strip_prefix("ch")

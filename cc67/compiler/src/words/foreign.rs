@@ -17,6 +17,10 @@ pub enum Origin {
     Computer,
     /// Examples of the manual, which define it themselves.
     Example,
+    /// Names that people expect in the firmware, by the pattern of those it has.
+    Board,
+    /// Script commands of the board's console.
+    Console,
 }
 
 /// A word that the board's C does not have.
@@ -46,7 +50,7 @@ const fn companion(spelling: &'static str, origin: Origin, advice: &'static str)
     Word { spelling, origin, is_companion: true, advice }
 }
 
-use Origin::{Arduino, Computer, Cpp, Example, Script};
+use Origin::{Arduino, Board, Computer, Console, Cpp, Example, Script};
 
 /// Where the functions are that ask the PC for something.
 const PC_REQUESTS: &str =
@@ -97,6 +101,50 @@ const WORDS: &[Word] = &[
     lead("DoPC", Example, PC_REQUESTS),
     lead("DoPCInt", Example, PC_REQUESTS),
     lead("DoPCFloat", Example, PC_REQUESTS),
+    lead("GetBit", Board, "`ReadBit(bit)` is the level of a bit"),
+    lead("GetBitState", Board, "`ReadBit(bit)` is the level of a bit"),
+    lead("ReadInput", Board, "`ReadBit(bit)` is the level of a bit"),
+    lead("WriteBit", Board, "`SetStateBit(bit, level)` sets a bit to a level"),
+    lead("ToggleBit", Board, "`SetStateBit(bit, !ReadBit(bit))` toggles a bit"),
+    lead("GetADC", Board, "`ADC(channel)` is the last conversion of a channel"),
+    lead("MoveXYZ", Board, "`MoveXYZABC(x, y, z, a, b, c)` moves the axes of the coordinate system"),
+    lead("MoveTo", Board, "`Move(axis, position)` starts a move"),
+    lead("MoveAbs", Board, "`Move(axis, position)` starts a move"),
+    lead("StopAxis", Board, "`Jog(axis, 0.0)` brings an axis to a stop"),
+    lead("Stop", Board, "`Jog(axis, 0.0)` brings an axis to a stop"),
+    lead("Home", Board, "there is no function for homing; `cc67 --explain homing` shows a program"),
+    lead("Wait", Board, "`Delay_sec(0.1)` waits a tenth of a second"),
+    lead("GetTime", Board, "`Time_sec()` is the time in seconds"),
+    lead("KillThread", Board, "`PauseThread(thread)` stops a thread"),
+    lead("StopThread", Board, "`PauseThread(thread)` stops a thread"),
+    lead("Pos", Console, "`Pos` is a script command of the console; in C write `ch0->Position`"),
+    lead(
+        "Execute",
+        Console,
+        "`Execute` is a script command of the console; in C write `StartThread(thread)`",
+    ),
+    lead("Kill", Console, "`Kill` is a script command of the console; in C write `PauseThread(thread)`"),
+    lead("Enabled", Console, "`Enabled` is a script command of the console; in C write `ch0->Enable`"),
+    lead(
+        "CheckThread",
+        Console,
+        "`CheckThread` is a script command of the console; in C let the other thread set an element of `persist.UserData`",
+    ),
+    lead(
+        "SetPersistDec",
+        Console,
+        "`SetPersistDec` is a script command of the console; in C write `persist.UserData[10] = 5`",
+    ),
+    lead(
+        "GetPersistDec",
+        Console,
+        "`GetPersistDec` is a script command of the console; in C write `persist.UserData[10]`",
+    ),
+    lead("Flash", Console, "`Flash` is a script command of the console; a program cannot send it"),
+    lead("ExecBuf", Console, "`ExecBuf` is a script command of the console; a path comes from the PC"),
+    lead("OpenBuf", Console, "`OpenBuf` is a script command of the console; a path comes from the PC"),
+    lead("Linear", Console, "`Linear` is a script command of the console; a path comes from the PC"),
+    lead("Arc", Console, "`Arc` is a script command of the console; a path comes from the PC"),
     lead("PI", Computer, "write `#define PI 3.14159265358979`"),
     lead("M_PI", Computer, "write `#define M_PI 3.14159265358979`"),
 ];
