@@ -15,6 +15,8 @@ use kmotiondef::variables::FIRMWARE_VARIABLES;
 use runtime::commands::COMMANDS;
 use runtime::{REMARKS, Severity};
 
+use crate::messages::{is_of, messages, sources};
+
 fn source() -> PathBuf {
     harness::root().join("cc67/book/src")
 }
@@ -23,7 +25,7 @@ fn read(name: &str) -> String {
     fs::read_to_string(source().join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
-/// The fenced blocks of a chapter: what stands behind the fence, and the text.
+/// The fenced blocks of a chapter: what follows the fence, and the text.
 fn blocks(text: &str) -> Vec<(String, String)> {
     let mut blocks = Vec::new();
     let mut open: Option<(String, String)> = None;
@@ -115,7 +117,7 @@ fn commands_and_options_in_the_book_exist() {
     assert!(count >= 15, "only {count} commands");
 }
 
-/// What stands behind each `mark` up to `end`.
+/// What follows each `mark` up to `end`.
 fn behind<'a>(text: &'a str, mark: &str, end: char) -> Vec<&'a str> {
     text.split(mark).skip(1).filter_map(|rest| rest.split(end).next()).collect()
 }
@@ -228,6 +230,66 @@ fn the_chapter_of_remarks_has_each() {
             write!(text, "\n## {}\n\n{}{detail}\n\n```text\n{}\n```\n", row.code, row.about.trim(), row.text);
     }
     check_list("remarks.md", &text);
+}
+
+/// The parts of the compiler in the order of a compilation: folder, heading.
+const PARTS: &[(&str, &str)] = &[
+    ("driver", "Reading files"),
+    ("pp", "Preprocessing"),
+    ("parse", "Syntax"),
+    ("sema", "Types and names"),
+    ("lints", "Warnings that look at the whole program"),
+    ("bytecode", "Code"),
+    ("c67x", "Code for the board's processor"),
+    ("link", "Linking"),
+];
+
+#[test]
+fn the_chapter_of_messages_has_each() {
+    let (found, unknown) = messages(&sources(&harness::root().join("cc67/compiler/src")));
+    assert!(unknown.is_empty(), "the text of these diagnostics was not found: {unknown:#?}");
+    assert!(found.len() >= 250, "only {} messages", found.len());
+    let parts: BTreeSet<_> = PARTS.iter().map(|(part, _)| *part).collect();
+    let other: Vec<_> = found.iter().filter(|message| !parts.contains(message.part.as_str())).collect();
+    assert!(other.is_empty(), "add a part: {other:?}");
+    let mut text = "# Messages of the compiler\n\nEvery message once, with the names of what it fills in between braces. A message may have a warning's name in \
+                    brackets,\nwhich [warnings](warnings.md) explains; what the board says in a run is in [remarks](remarks.md).\n"
+        .to_owned();
+    for (part, title) in PARTS {
+        let _ = write!(text, "\n## {title}\n");
+        for kind in ["error", "warning", "note"] {
+            let rows: Vec<_> =
+                found.iter().filter(|message| message.part == *part && message.kind == kind).collect();
+            if !rows.is_empty() {
+                let _ = write!(text, "\n{kind}s:\n\n```text\n");
+                rows.iter().for_each(|message| text.push_str(&format!("{}\n", message.text)));
+                text.push_str("```\n");
+            }
+        }
+    }
+    check_list("messages.md", &text);
+}
+
+#[test]
+fn messages_of_the_filetests_are_in_the_chapter() {
+    let (found, _) = messages(&sources(&harness::root().join("cc67/compiler/src")));
+    let mut count = 0;
+    for file in files(&harness::root().join("tests/filetests/diagnostics"), "snap") {
+        let text = fs::read_to_string(&file).expect("snapshots are UTF-8");
+        for line in text.lines() {
+            let Some((head, shown)) = line.split_once(": ") else { continue };
+            let kind = head.split('[').next().unwrap_or_default();
+            if !["error", "warning"].contains(&kind) || shown.starts_with("cc67") {
+                continue;
+            }
+            count += 1;
+            // Of an error of the linker the file comes first.
+            let without_file = shown.split_once(".c: ").map_or(shown, |(_, text)| text);
+            let is_there = found.iter().any(|message| is_of(without_file, &message.text));
+            assert!(is_there, "{}: no message of the chapter is `{shown}`", file.display());
+        }
+    }
+    assert!(count >= 50, "only {count} messages");
 }
 
 #[test]

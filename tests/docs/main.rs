@@ -2,4 +2,8 @@
 
 mod book;
 mod commands;
+mod messages;
 mod programs;
+
+#[path = "../tidy/tokens.rs"]
+mod tokens;
