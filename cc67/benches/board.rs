@@ -1,7 +1,7 @@
-//! What lies between an image and a running program: reading, loading, translating, running, calling the firmware.
+//! The way from an image to a running program: reading, loading, translating, running, calling the firmware.
 //!
 //! `image/read/...`: bytes to an image. `load/...`: an image to a program in a thread, with all checks, and its first
-//! tick, in front of which the native engine translates it. `execute/...`: a program that computes, and one that calls
+//! tick, before which the native engine translates it. `execute/...`: a program that computes, and one that calls
 //! the firmware or a function of its own by its address in each turn, so that the difference is what a call costs.
 //!
 //! `cargo bench -p cc67 --bench board`
@@ -39,7 +39,7 @@ fn program(name: &str) -> Vec<u8> {
     compile(&path, text)
 }
 
-/// A program that does something so many times.
+/// A program that does something this many times.
 fn repeat(what: &str) -> Vec<u8> {
     let text = format!(
         "#include \"KMotionDef.h\"\nint state;\nint own(int bit) {{ return state >> bit & 1; }}\n\

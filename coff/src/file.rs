@@ -1,7 +1,7 @@
 //! Any bytes as a checked view: headers, sections and symbols, nothing copied.
 //!
 //! [`File::parse`] checks that every part the headers name lies inside the file. Names are
-//! checked as they are asked for, because most readers want a few of them only.
+//! checked as they are asked for, because most readers need only a few of them.
 
 use std::num::NonZeroU16;
 
@@ -29,7 +29,7 @@ impl<'a> File<'a> {
     /// Checks the headers.
     ///
     /// # Errors
-    /// If the bytes are no complete little-endian COFF2 image.
+    /// If the bytes are not a complete little-endian COFF2 image.
     pub fn parse(bytes: &'a [u8]) -> Result<Self, Error> {
         let header: raw::FileHeader = structure(bytes, 0, Part::FileHeader)?;
         match header.magic.get() {
@@ -132,7 +132,7 @@ impl<'a> File<'a> {
         Ok(SymbolView { index, at, name: self.name(&entry.name, at)?, entry, aux })
     }
 
-    /// Where each section header stands in the file.
+    /// Where each section header is in the file.
     fn section_offsets(&self) -> impl Iterator<Item = u64> + use<> {
         let start = self.sections_at;
         (0..).map(move |index| start + index * size::<raw::SectionHeader>())
@@ -174,7 +174,7 @@ impl<'a> SectionView<'a> {
         self.header
     }
 
-    /// Where its header stands in the file.
+    /// Where its header is in the file.
     #[must_use]
     pub const fn offset(&self) -> u64 {
         self.at
@@ -241,7 +241,7 @@ impl<'a> SectionView<'a> {
 pub struct SymbolView<'a> {
     /// Its index as the format counts, auxiliary entries included.
     pub index: u32,
-    /// Where its entry stands in the file.
+    /// Where its entry is in the file.
     pub at: u64,
     /// Its name.
     pub name: &'a [u8],

@@ -97,7 +97,7 @@ impl Section {
 pub enum Contents {
     /// Bytes in the file.
     Data(Vec<u8>),
-    /// So many bytes that are not in the file.
+    /// This many bytes that are not in the file.
     Uninitialised(u32),
 }
 

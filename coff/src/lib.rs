@@ -2,7 +2,7 @@
 //!
 //! [`Image::read`] takes any bytes and either gives the whole image or says what is wrong at
 //! which offset; [`Image::write`] gives the same bytes for the same image on every host.
-//! [`File::parse`] does the same checks and copies nothing, for a reader that wants a few
+//! [`File::parse`] does the same checks and copies nothing, for a reader that needs a few
 //! symbols of a large file. [`dump`] lists an image for people and for golden tests.
 //!
 //! The format is that of C6000 programs: the vendor compiler's images, the firmware file, and
@@ -13,12 +13,12 @@
 //! |---|---|---|---|
 //! | file header | 22 | 0 | [`raw::FileHeader`] |
 //! | optional header: entry point and sizes | 28, or none | 22 | [`raw::OptionalHeader`], [`Program`] |
-//! | section headers | 48 each | behind it | [`raw::SectionHeader`], [`Section`] |
+//! | section headers | 48 each | after it | [`raw::SectionHeader`], [`Section`] |
 //! | raw data | as their headers say | anywhere; the writer puts them in header order | [`Contents`] |
-//! | relocations, none in a linked image | 12 each | anywhere; behind all raw data | [`raw::Relocation`] |
-//! | line numbers | 6 each | anywhere; behind all relocations | [`raw::Line`] |
-//! | symbols and their auxiliary entries | 18 each | anywhere; behind all line numbers | [`raw::Symbol`], [`Aux`] |
-//! | string table: length, then the names above eight characters | to the end of the file | behind the symbols | [`Name`] |
+//! | relocations, none in a linked image | 12 each | anywhere; after all raw data | [`raw::Relocation`] |
+//! | line numbers | 6 each | anywhere; after all relocations | [`raw::Line`] |
+//! | symbols and their auxiliary entries | 18 each | anywhere; after all line numbers | [`raw::Symbol`], [`Aux`] |
+//! | string table: length, then the names above eight characters | to the end of the file | after the symbols | [`Name`] |
 //!
 //! The length of the string table counts its own four bytes in files of TI's tools, and does not
 //! in those of the vendor's compiler; both are read, the first is written. Section numbers in

@@ -141,7 +141,7 @@ structures! {
         size: U32,
         /// File offset of its first line number.
         lines_at: U32,
-        /// Index of the symbol behind the function's entries.
+        /// Index of the symbol after the function's entries.
         next: U32,
         /// Zero.
         reserved: U16,
@@ -157,7 +157,7 @@ structures! {
         lines: U16,
         /// Zero.
         size: U32,
-        /// `.bf`: index of the symbol behind the function's entries; `.ef`: 0.
+        /// `.bf`: index of the symbol after the function's entries; `.ef`: 0.
         next: U32,
         /// Zero.
         reserved: U16,
@@ -183,7 +183,7 @@ structures! {
         size: U32,
         /// Zero.
         reserved: U32,
-        /// Index of the symbol behind the members.
+        /// Index of the symbol after the members.
         next: U32,
         /// Zero.
         reserved_end: U16,

@@ -13,7 +13,7 @@ impl Image {
     /// Reads an image.
     ///
     /// # Errors
-    /// If the bytes are no complete little-endian COFF2 image.
+    /// If the bytes are not a complete little-endian COFF2 image.
     pub fn read(bytes: &[u8]) -> Result<Self, Error> {
         let file = File::parse(bytes)?;
         let mut reader = Reader::new(bytes);

@@ -53,7 +53,7 @@ extern int CurrentThread; // thread being executed: 0 the primary one, 1 to 7 us
 void StartThread(int thread);
 // Stops scheduling user thread 1 to 7; a thread may name itself.
 void PauseThread(int thread);
-// Lets a paused thread go on where it stopped; 1 if no program is loaded there, else 0.
+// Continues a paused thread where it stopped; 1 if no program is loaded there, else 0.
 int ResumeThread(int thread);
 // Ends the calling thread, as a return from main does. Does not return.
 void ThreadDone(void);
@@ -359,7 +359,7 @@ extern double ResolverFactor;                       // position units per radian
 
 // Enabling.
 
-// Turns an axis on where it stands: the destination becomes the measured position.
+// Turns an axis on where it is: the destination becomes the measured position.
 void EnableAxis(int ch);
 // Turns an axis on with destination Dest in position units, filters reset, no profile running.
 void EnableAxisDest(int ch, double Dest);

@@ -78,7 +78,7 @@ pub enum ValueClass {
 }
 
 impl CType {
-    /// The type behind qualifiers and typedef names; a structure stays `Named`.
+    /// The type without qualifiers and typedef names; a structure stays `Named`.
     #[must_use]
     pub fn resolved(self) -> Self {
         match self {

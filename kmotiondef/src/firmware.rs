@@ -9,7 +9,7 @@
 //! origin `library` are those that programs expect and firmware 4.34 lacks
 //! (`api/README.md`, `dialect.md` section 5).
 //!
-//! The file is as long as the board has functions: behind the hundred lines of the row's type there is nothing but
+//! The file is as long as the board has functions: after the hundred lines of the row's type there is nothing but
 //! rows, and a row cut off from the others would be looked for in two places.
 
 use std::collections::BTreeMap;
@@ -192,7 +192,7 @@ macro_rules! for_each_firmware_fn {
             io::write_pwmc = WritePWMC(ch: i32, v: i32), at 0x1000_1BD8, cost 17, header;
 
             // ---- motion: single axes: enabling, independent moves, commutation ------------------------
-            /// Turns an axis on where it stands: the destination becomes the measured position.
+            /// Turns an axis on where it is: the destination becomes the measured position.
             motion::enable_axis = EnableAxis(ch: i32), at 0x8001_1258, cost 241, header;
             /// Turns an axis on with destination `Dest` in position units, filters reset, no profile
             /// running.
@@ -323,7 +323,7 @@ macro_rules! for_each_firmware_fn {
             thread::start_thread = StartThread(thread: i32), at 0x8002_50E0, cost 116, header;
             /// Stops scheduling user thread 1 to 7; a thread may name itself.
             thread::pause_thread = PauseThread(thread: i32), at 0x8002_5218, cost 89, header;
-            /// Lets a paused thread go on where it stopped; 1 if no program is loaded there, else 0.
+            /// Continues a paused thread where it stopped; 1 if no program is loaded there, else 0.
             thread::resume_thread = ResumeThread(thread: i32) -> i32, at 0x8002_52B8, cost 38, header;
             /// Ends the calling thread, as a return from main does. Does not return.
             thread::thread_done = ThreadDone(), at 0x8002_51D4, cost 200, header;

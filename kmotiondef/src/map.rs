@@ -4,7 +4,7 @@
 
 use crate::{GuestAddr, ThreadId};
 
-/// What stands behind an address range.
+/// What answers an address range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RegionKind {
     /// Memory that is read and written.
@@ -24,7 +24,7 @@ pub struct Region {
     pub base: GuestAddr,
     /// Size in bytes.
     pub size: u32,
-    /// What stands there.
+    /// What is there.
     pub kind: RegionKind,
 }
 
@@ -58,7 +58,7 @@ pub const TIMER0: GuestAddr = GuestAddr::new(0x4200_0010);
 pub const PROGRAM_BASE: u32 = 0x8005_0000;
 /// Bytes of one thread's program slot; the next thread's follows.
 pub const PROGRAM_SIZE: u32 = 0x1_0000;
-/// First address behind every program slot: the limit for a program that needs several.
+/// First address after every program slot: the limit for a program that needs several.
 pub const PROGRAM_LIMIT: u32 = 0x8010_0000;
 
 /// Start of the stack of thread 1; design choice, in SDRAM that nothing else uses.
@@ -82,7 +82,7 @@ pub fn stack_base(thread: ThreadId) -> GuestAddr {
     GuestAddr::new(STACK_BASE + u32::from(thread.get() - 1) * STACK_SIZE)
 }
 
-/// Stack for the call-back, which belongs to no thread: behind those of the seven threads.
+/// Stack for the call-back, which belongs to no thread: after those of the seven threads.
 pub const CALLBACK_STACK_BASE: u32 = STACK_BASE + 7 * STACK_SIZE;
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use crate::GuestAddr;
 
-/// What stands in a variable or field at power-up.
+/// What is in a variable or field at power-up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Start {
     /// Zeros.

@@ -2,7 +2,7 @@
 //!
 //! A structure becomes an empty type of the same name that stands for it in the types of
 //! places, and one typed [`Field`] constant for each of its fields, `Chan::DEST`. The
-//! offsets stand in the tables for the reader; that they are those of the C layout is
+//! offsets are in the tables for the reader; that they are those of the C layout is
 //! checked while this crate compiles.
 //!
 //! Source: table `api/structs.csv` of the specification, firmware 4.34.
@@ -36,7 +36,7 @@ pub struct StructureField {
     pub offset: u32,
     /// Its size in bytes.
     pub size: u32,
-    /// What stands in it at power-up.
+    /// What is in it at power-up.
     pub start: Start,
     /// When that is stored.
     pub stored: Stored,

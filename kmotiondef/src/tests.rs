@@ -15,7 +15,7 @@ pub(crate) fn table(name: &str) -> Vec<Row> {
     lines.map(|cells| header.iter().cloned().zip(cells).collect()).collect()
 }
 
-/// The cells of one line; a cell with commas or quotes stands in quotes.
+/// The cells of one line; a cell with commas or quotes is in quotes.
 fn cells(line: &str) -> Vec<String> {
     let mut cells = vec![String::new()];
     let mut is_quoted = false;

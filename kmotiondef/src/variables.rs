@@ -27,7 +27,7 @@ pub struct FirmwareVariable {
     pub address: GuestAddr,
     /// Its size in bytes.
     pub size: u32,
-    /// What stands in it at power-up.
+    /// What is in it at power-up.
     pub start: Start,
     /// When that is stored.
     pub stored: Stored,
@@ -215,7 +215,7 @@ macro_rules! for_each_firmware_var {
             /// Start of the buffer of MAX_SEGMENTS entries.
             PARAMETRIC_COEFFS = ParametricCoeffs: *mut ParametricCoeff, at 0x1001_7E1C,
                 starts Address(GuestAddr::new(0x808A_B220));
-            /// First address behind the buffer.
+            /// First address after the buffer.
             PARAMETRIC_COEFFS_END = ParametricCoeffsEnd: *mut ParametricCoeff, at 0x1001_7E20,
                 starts Address(GuestAddr::new(0x80FE_0D60));
             /// Entry the next segment or command will be put into.

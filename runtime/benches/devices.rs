@@ -18,10 +18,10 @@ use vm::verify::verify;
 
 /// Ticks of one measurement.
 const TICKS: u64 = 1000;
-/// First word of the program behind its header.
+/// First word of the program after its header.
 const MAIN: usize = 4;
 
-/// A program that sets and clears bit 8 some five times in each of its slices, for ever.
+/// A program that sets and clears bit 8 some five times in each of its slices, forever.
 fn program() -> String {
     let address = |name: &str| FIRMWARE_FUNCTIONS[function_named(name).expect(name)].address.get();
     let (set, clear) = (address("SetBit"), address("ClearBit"));

@@ -4,7 +4,7 @@
 //! axis is enabled. Shortcuts are off, so that no tick is skipped.
 //!
 //! What is measured is the time of the processor where the system tells it, so that a busy machine does not blur it.
-//! Wanted: 2,000,000 ticks a second of eight moving axes, 5,000,000 of three still ones.
+//! Goal: 2,000,000 ticks a second of eight moving axes, 5,000,000 of three still ones.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -25,7 +25,7 @@ use vm::verify::verify;
 
 /// Ticks of one measurement.
 const TICKS: u64 = 1000;
-/// First word of the program behind its header.
+/// First word of the program after its header.
 const MAIN: usize = 5;
 
 /// A program that calls a firmware function with each axis number and the value in the pool.
@@ -55,7 +55,7 @@ fn call(board: &mut Board, name: &str, axes: u64, value: f64) {
     assert_eq!(*board.thread(thread), ThreadState::Ready, "{name}");
 }
 
-/// Lets so many ticks pass.
+/// Lets this many ticks pass.
 fn run(board: &mut Board, ticks: u64) {
     let end = Ticks::new(board.tick().get() + ticks);
     board.machine_mut().run_until(end);

@@ -1,4 +1,4 @@
-//! The kernel: the board's parts behind the machine's traits, and the order of a tick.
+//! The kernel: the board's parts as implementations of the machine's traits, and the order of a tick.
 //!
 //! It composes the parts and says what comes after what; what each of them does is theirs.
 
@@ -61,7 +61,7 @@ impl Kernel {
         }
     }
 
-    /// Everything that the firmware keeps is as at power-up; what lies outside of the board is left alone.
+    /// Everything that the firmware keeps is as at power-up; what is outside of the board is left alone.
     pub(crate) fn restart(&mut self) {
         let Self { parts, scripts, signatures: _, kinds: _ } = self;
         parts.calls.restart();
@@ -129,7 +129,7 @@ impl Kernel {
         }
     }
 
-    /// Tells of levels that were written to pins which are inputs still.
+    /// Reports levels that were written to pins which are still inputs.
     fn settle_notices(&mut self, now: Cycles) {
         let Parts { out, io, calls, .. } = &mut self.parts;
         calls.notices.settle(out, now, |bit| io.pins.is_output(bit));

@@ -1,19 +1,19 @@
 //! The simulated KFLOP board: firmware functions, servo, inputs and outputs, console, and a minimal PC.
 //!
-//! A board is a stack of parts, each of which knows only those below it. At the bottom is what goes out ([`Event`]s)
+//! A board is a stack of parts, each of which sees only those below it. At the bottom is what goes out ([`Event`]s)
 //! and typed views of guest memory. On that are inputs and outputs: pins, registers of the FPGA, lines, option boards.
 //! On these is the machine that the board moves: loads of the axes, switches that they trip, devices on the lines. Once
 //! a tick the servo reads the axes from guest memory, moves destinations, loads and outputs, and knows nothing above
 //! it. Beside each other above it are the PC, which answers requests and keeps files, and the world, which plays a
 //! stimulus on the lines and records what happens. Firmware functions (a C call in) and script commands (a word in)
-//! are thin: each is a call of one part. The kernel puts the parts behind the traits of `vm` and says in which order
+//! are thin: each is a call of one part. The kernel makes the parts implement the traits of `vm` and says in which order
 //! they have their turn in a tick. [`Board`] holds the kernel and the programs, and is the way in: load programs, start
 //! threads, run, and receive events.
 //!
 //! | folder | what it is | state |
 //! |---|---|---|
 //! | `board/` | the public face: programs, start-up, machine files | [`Board`] |
-//! | `kernel.rs` | the parts behind the machine's traits; the order of a tick | [`Kernel`] |
+//! | `kernel.rs` | the parts that implement the machine's traits; the order of a tick | [`Kernel`] |
 //! | `commands/` | script commands, one row and one function each | `Scripts` |
 //! | `firmware/` | firmware functions, one function a row; the parts side by side | `Parts`, `Calls` |
 //! | `world/` | stimulus, operator, recordings; the devices that there are | `World` |

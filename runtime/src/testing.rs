@@ -123,7 +123,7 @@ impl Desk {
         }
     }
 
-    /// Runs so many ticks, every other one the primary thread's.
+    /// Runs this many ticks, every other one the primary thread's.
     pub(crate) fn run(&mut self, ticks: u64) {
         for _ in 0..ticks {
             self.tick = self.tick.next();

@@ -395,7 +395,7 @@ main()
     DisableAxis(0);
 }
 ";
-    let (output, _) = run("behind", program, &[], &[]);
+    let (output, _) = run("after", program, &[], &[]);
     assert_eq!((output.code, output.stdout.as_str()), (0, "1 200\n"));
     let told = "cc67: axis 0 is to make more than the 132275 steps a second that pulses of 3.78 µs leave room for: \
                 it falls behind and catches up (STEP_PULSE_LENGTH_ADD)\n";
@@ -633,7 +633,7 @@ fn a_stimulus_moves_a_load_and_starts_and_stops_threads() {
 fn a_stimulus_that_plans_without_end_is_limited() {
     let stimulus = "every 90us toggle bit 24; when bit 24 changes after 1000s set bit 25";
     let (output, _) = run("plans", "main() { Delay_sec(10); }", &[], &["--stim", stimulus]);
-    let told = "cc67: the stimulus has more than 100000 things to do; later ones are left out\n\
+    let told = "cc67: the stimulus has more than 100000 actions; later ones are left out\n\
                 cc67: never happened: --stim:1:27: when bit 24 changes\n";
     assert_eq!((output.code, output.stderr.as_str()), (0, told));
 }

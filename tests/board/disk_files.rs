@@ -1,4 +1,4 @@
-//! Files on the PC: what goes over the link, as recorded from the released firmware, and what lies on the disk then.
+//! Files on the PC: what goes over the link, as recorded from the released firmware, and what is on the disk then.
 
 use std::collections::BTreeMap;
 use std::fs;

@@ -42,7 +42,7 @@ fn a_program_that_does_not_compile_leaves_the_one_that_runs() {
             assert!(text.contains("bad.c:3:"), "{text}");
         }
         assert_eq!(number(&mut board, "CheckThread1"), 1);
-        assert!(number(&mut board, "GetPersistDec 9") > before, "the program stands still");
+        assert!(number(&mut board, "GetPersistDec 9") > before, "the program does not run");
     }
     let mut message = [0xff; 8];
     let good = scratch.path().join("a.c");
@@ -50,7 +50,7 @@ fn a_program_that_does_not_compile_leaves_the_one_that_runs() {
     assert_eq!(message[0], 0);
     assert_eq!(number(&mut board, "CheckThread2"), 0, "loading does not start");
     assert!(matches!(board.compile_and_load_coff(&good, 8), Err(HostError::Thread(8))));
-    assert!(matches!(board.load_coff(1, &good), Err(HostError::Foreign { .. })), "a source is no image");
+    assert!(matches!(board.load_coff(1, &good), Err(HostError::Foreign { .. })), "a source is not an image");
 }
 
 #[test]
@@ -65,7 +65,7 @@ fn two_clients_in_two_threads_do_not_mix_their_exchanges() {
                     assert_eq!(client.wait_token(None), Lock::Locked);
                     client.write_line(&format!("GetGatherHex {} 9", number * 8)).expect("it is connected");
                     let line = client.read_line_timeout(100).expect("it answers");
-                    client.read_line_timeout(100).expect("the ninth word stands on a line of its own");
+                    client.read_line_timeout(100).expect("the ninth word is on a line of its own");
                     assert!(line.starts_with(&format!("{:08X} ", number + 1)), "{line}");
                     client.release_token();
                 }

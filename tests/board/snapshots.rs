@@ -1,4 +1,4 @@
-//! A board goes back to any instant and goes on from there as it went on then, on both engines.
+//! A board goes back to any instant and continues from there as it continued then, on both engines.
 
 use std::fs;
 use std::path::Path;
@@ -57,7 +57,7 @@ impl Numbers {
     }
 }
 
-/// A program with what stands beside it, and with those that its first line names for other threads.
+/// A program with what is beside it, and with those that its first line names for other threads.
 fn setup(name: &str) -> Setup {
     let path = root().join("c-programs").join(name).with_extension("c");
     let beside = |suffix: &str| fs::read_to_string(path.with_extension(suffix)).ok();

@@ -14,8 +14,8 @@
 //! | `? ITEM` | asks for an effect: an item of `--trace-items`, `thread N`, or `hex`, `int`, `float`, `double`, `text` of a firmware variable |
 //! | `# TEXT` | a remark |
 //!
-//! Whatever else stands in the files is what comes back: replies as they are, console lines behind `| `, remarks of
-//! the simulation behind `cc67: `, effects behind `= `. `CC67_WRITE_TRANSCRIPTS=1` writes what comes back, for review.
+//! Whatever else is in the files is what comes back: replies as they are, console lines after `| `, remarks of
+//! the simulation after `cc67: `, effects after `= `. `CC67_WRITE_TRANSCRIPTS=1` writes what comes back, for review.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -37,10 +37,10 @@ const LONGEST: usize = 16;
 /// How many of those lines are shown.
 const SHOWN: usize = 3;
 
-/// Prompts, and the references whose examples stand behind them.
+/// Prompts, and the references whose examples come after them.
 const PROMPTS: [(&str, &[usize]); 4] = [("> ", &[]), ("M> ", &[0, 1]), ("M1> ", &[0]), ("M2> ", &[1])];
 
-/// The line behind a prompt, and the references it is an example of.
+/// The line after a prompt, and the references it is an example of.
 fn sent(line: &str) -> Option<(&str, &'static [usize])> {
     PROMPTS.iter().find_map(|(prompt, of)| line.strip_prefix(prompt).map(|text| (text, *of)))
 }

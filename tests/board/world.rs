@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 
 use harness::{Output, Scratch, cc67, root};
 
-/// A program that sends back what it receives, with a mark behind, up to a full stop.
+/// A program that sends back what it receives, with a mark after, up to a full stop.
 const ECHO: &str = "#include \"KMotionDef.h\"
 main()
 {

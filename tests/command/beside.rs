@@ -1,4 +1,4 @@
-//! What stands beside a program: its machine file, its stimulus, the options of its first line, the project file.
+//! What is beside a program: its machine file, its stimulus, the options of its first line, the project file.
 
 use std::fs;
 

@@ -75,7 +75,8 @@ fn mistakes_in_own_words_and_sources_do_not_end_the_session() {
     let script = "wait x\nload nosuch.c\nrun bad.c\nkill all but 9\nEcho on\n";
     let output = console("console-mistakes", &[("bad.c", "main() { retrun 1; }\n")], &[], script);
     assert_eq!((output.code, output.stdout.as_str()), (0, "ON\n"), "{output:?}");
-    for message in ["`x` is not a number of seconds", "cannot read nosuch.c", "error", "`9` is no thread"] {
+    for message in ["`x` is not a number of seconds", "cannot read nosuch.c", "error", "`9`: no such thread"]
+    {
         assert!(output.stderr.contains(message), "{message}: {}", output.stderr);
     }
 }

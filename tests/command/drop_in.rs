@@ -1,4 +1,4 @@
-//! `cc67` in the place of the vendor's compiler: its command lines, messages and images.
+//! `cc67` in place of the vendor's compiler: its command lines, messages and images.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -80,7 +80,7 @@ impl Terminal {
         false
     }
 
-    /// Waits until a text is shown behind what was looked for before.
+    /// Waits until a text is shown after what was looked for before.
     fn wait(&mut self, expect: &str) {
         while !self.text.contains(expect) {
             let Ok(bytes) = self.shown.recv_timeout(PATIENCE) else {

@@ -78,7 +78,7 @@ fn what_is_watched_is_drawn() {
     let output = run(&Scratch::new("plot-unknown"), &["run", "--plot", "a.svg", "--watch", "axis9", "a.c"]);
     assert_eq!(output.code, 2);
     assert!(
-        output.stderr.starts_with("cc67: `dest9` is no item; there are dest0 to dest7"),
+        output.stderr.starts_with("cc67: `dest9` is not an item; there are dest0 to dest7"),
         "{}",
         output.stderr
     );
@@ -86,7 +86,7 @@ fn what_is_watched_is_drawn() {
     let expect = "---- stderr\ncc67: `--watch` says what is shown; `--plot FILE.svg` or `--trace FILE.csv` says where\n---- exit 2\n";
     assert_eq!(output.render(), expect);
     let output = run(&Scratch::new("plot-form"), &["run", "--plot", "a.gif", "a.c"]);
-    let expect = "cc67: a.gif is no picture: its name must end in .svg, .png or .html\n";
+    let expect = "cc67: a.gif is not a picture: its name must end in .svg, .png or .html\n";
     assert_eq!((output.code, output.stderr.as_str()), (2, expect));
 }
 
@@ -144,8 +144,8 @@ fn a_name_that_is_not_there_is_answered_with_the_nearest() {
     check("ch0->Dst", "`--watch ch0->Dst`: `CHAN` has no member `Dst`; did you mean `Dest`?");
     check("count = 1", "`--watch count = 1`: it changes something; an expression that is watched only reads");
     check("2:count", "`--watch 2:count`: there is no program in that thread");
-    check("bit4000", "`bit4000` is no item; there are bit0 to bit2047");
-    check("count,,rate", "`--watch` wants names between its commas, such as axis0,bit46,persist.5");
+    check("bit4000", "`bit4000` is not an item; there are bit0 to bit2047");
+    check("count,,rate", "`--watch` needs names between its commas, such as axis0,bit46,persist.5");
 }
 
 #[test]
@@ -228,7 +228,7 @@ fn a_saved_trace_is_drawn_as_the_run_itself() {
         assert_eq!(headings(&picture), headings(&svg), "{saved}");
     }
     fs::write(scratch.path().join("bad.vcd"), "time,a\n1,2\n").expect("files can be written");
-    let expect = "---- stderr\ncc67: bad.vcd: this is no value change dump: `$enddefinitions` is missing\n---- exit 2\n";
+    let expect = "---- stderr\ncc67: bad.vcd: this is not a value change dump: `$enddefinitions` is missing\n---- exit 2\n";
     assert_eq!(run(&scratch, &["plot", "bad.vcd"]).render(), expect);
 }
 

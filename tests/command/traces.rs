@@ -68,7 +68,7 @@ fn another_reader_accepts_the_dump() {
     for command in parser {
         match command.expect("the body is right") {
             Command::Timestamp(time) => {
-                assert!(time > now || time == 0, "{time} behind {now}");
+                assert!(time > now || time == 0, "{time} after {now}");
                 now = time;
             }
             Command::ChangeScalar(id, value) if names[&id].0 == "bit46" && now > 0 => {

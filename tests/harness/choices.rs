@@ -1,6 +1,6 @@
 //! A sequence of bytes as a sequence of decisions: how inputs of tests are made from what a fuzzer offers.
 
-/// Decisions, one byte after the other; when they are used up, each is 0.
+/// Decisions, one byte after another; when they are used up, each is 0.
 #[derive(Clone, Debug)]
 pub struct Choices<'a>(&'a [u8]);
 

@@ -15,7 +15,7 @@
 //! | `processor: WHY` | as code for the real processor the program does something else, for this reason |
 //! | `uses: FILE` | the annotations of this included file count, too |
 //!
-//! An annotation `//~ what` behind a line is a diagnostic expected there: the name of a warning's
+//! An annotation `//~ what` after a line is a diagnostic expected there: the name of a warning's
 //! switch, or `error`; `what: text` asks for that text in its message. `//~^` means the line
 //! above, `//~^^` the one above that. A file with annotations has no other diagnostics than these.
 //! Without `says`, `snapshot` or annotations, stderr must be empty.

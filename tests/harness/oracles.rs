@@ -534,7 +534,7 @@ pub fn commands(bytes: &[u8]) {
     assert!(answer(&mut board, b"\x1b\x01Version\r").is_some_and(|line| line.starts_with(b"KFLOP 4.34")));
 }
 
-/// What stands behind the name of a command.
+/// What follows the name of a command.
 const ARGUMENT_PIECES: &[&str] = &[
     "0", "1", "7", "8", "-1", "99", "1e9", "0.5", "nan", "FFFFFFFF", "80050000", " ", " ", " ", "=", "=",
     ";", "\n", "\n", "\n",

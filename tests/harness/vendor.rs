@@ -21,7 +21,7 @@ pub enum Tool {
 pub struct Section {
     /// Its name.
     pub name: &'static str,
-    /// Where it stands in the board's memory.
+    /// Where it is in the board's memory.
     pub address: u32,
     /// Its flags.
     pub flags: u32,
@@ -55,7 +55,7 @@ impl Symbol {
         Self { name: name.to_owned(), value, section, ty, class, aux: Vec::new() }
     }
 
-    /// The entry that the vendor's compiler puts behind everything that is no function.
+    /// The entry that the vendor's compiler puts after everything that is not a function.
     #[must_use]
     pub fn plain_aux(mut self) -> Self {
         self.aux.push(bytes(&[(0, 4), (0x20, 4), (0, 10)]));
@@ -70,7 +70,7 @@ pub struct File {
     pub tool: Tool,
     /// Unix seconds.
     pub timestamp: u32,
-    /// The seven words of the optional header behind its magic number; the first is a half word.
+    /// The seven words of the optional header after its magic number; the first is a half word.
     pub optional: [u32; 7],
     /// Its sections.
     pub sections: Vec<Section>,
@@ -269,7 +269,7 @@ pub fn board_firmware() -> Vec<u8> {
 /// ```
 ///
 /// for thread 1, the code replaced by zeros. `helper` is a label whose opening line entry names
-/// the symbol behind the last one.
+/// the symbol after the last one.
 #[must_use]
 pub fn image() -> Vec<u8> {
     let (text, data, bss) = (0x8005_0000, 0x8005_0080, 0x8005_00A0);

@@ -160,11 +160,7 @@ fn no_symbol_of_a_vendors_image_is_lost() {
     assert_eq!(image.symbols[8].class, StorageClass::LABEL);
     assert_eq!(image.symbols[1].ty, SymbolType(0x24));
     let entries = image.symbol_entries() as u32;
-    assert_eq!(
-        image.sections[0].lines[0],
-        Line::Function(entries),
-        "statics name the symbol behind the last"
-    );
+    assert_eq!(image.sections[0].lines[0], Line::Function(entries), "statics name the symbol after the last");
     assert_eq!(image.program.expect("it has one").entry, 0x8005_0020);
 }
 

@@ -188,7 +188,7 @@ fn the_code_that_runs_is_that_of_the_object() {
     let code = &mut bytes[text];
     // Once as the argument; slow ways may hold it again.
     let places: Vec<_> = (0..code.len() - 4).filter(|at| code[*at..*at + 4] == number).collect();
-    assert!(!places.is_empty(), "the number stands in the code");
+    assert!(!places.is_empty(), "the number is in the code");
     for at in places {
         code[at..at + 4].copy_from_slice(&42_u32.to_le_bytes());
     }

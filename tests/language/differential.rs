@@ -1,7 +1,7 @@
 //! Generated programs: what they print, how long they take and what they leave in memory is the same on both
-//! engines, and what they print is the same as code for the real processor, at every level of optimisation and behind `gcc`, where that is installed.
+//! engines, and what they print is the same as code for the real processor, at every level of optimisation and by `gcc`, where that is installed.
 //!
-//! An ordinary run takes a few programs. `CC67_PROGRAMS=20000` takes so many, `CC67_SEED=n` begins at another seed.
+//! An ordinary run takes a few programs. `CC67_PROGRAMS=20000` takes this many, `CC67_SEED=n` begins at another seed.
 
 use std::path::Path;
 use std::process::Command;
@@ -69,7 +69,7 @@ fn console(seed: u64, seen: Seen) -> String {
     text
 }
 
-/// What each of the programs `seeds` prints behind `gcc`; `None` where that is not installed.
+/// What each of the programs `seeds` prints when compiled by `gcc`; `None` where that is not installed.
 fn gcc(seeds: &[u64]) -> Option<Vec<String>> {
     let scratch = Scratch::new(&format!("differential-{}", seeds[0]));
     let mut source = String::new();

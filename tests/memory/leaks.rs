@@ -12,7 +12,7 @@ use vm::interp::BytecodeEngine;
 
 use crate::{MEMORY, alone};
 
-/// Programs that end badly, or not at all; each runs for some ticks and is then killed where it stands.
+/// Programs that end badly, or not at all; each runs for some ticks and is then killed where it is.
 const PROGRAMS: [(&str, &str); 5] = [
     (
         "overflow",
@@ -51,7 +51,7 @@ fn held() -> (usize, usize) {
     (MEMORY.current_usage(), maps)
 }
 
-/// Runs each program `times` times on one board; returns what is held behind that, and how many traps there were.
+/// Runs each program `times` times on one board; returns what is held after that, and how many traps there were.
 fn run<E: Engine>(board: &mut Board<E>, images: &[Vec<u8>], times: u32) -> (usize, usize, usize) {
     let mut traps = 0;
     for _ in 0..times {

@@ -24,7 +24,7 @@ const PATIENCE: Duration = Duration::from_secs(60);
 /// The same for the command's own time on the processor, in seconds.
 const PROCESSOR_TIME: u32 = 60;
 
-/// More diagnostics than this are no help to anybody.
+/// More diagnostics than this do not help anybody.
 const MOST_ERRORS: usize = 25;
 
 /// The longest text that the diagnostics of one input may have.

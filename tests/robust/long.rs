@@ -58,12 +58,12 @@ fn a_million_lines_on_the_console_take_no_more_memory_than_a_few() {
     }
     assert!(child.wait().expect("it ends").success());
     let (first, last) = first.zip(last).expect("there were lines");
-    println!("{count} lines: {first:?} behind a tenth, {last:?} behind eight");
+    println!("{count} lines: {first:?} after a tenth, {last:?} after eight");
     assert!(last.peak < MEMORY, "{last:?}");
     assert!(last.peak <= first.peak + BREATH, "{first:?}, {last:?}");
 }
 
-/// Three programs that serve a machine for ever: one looks at a door in every slice, one blinks, one counts seconds.
+/// Three programs that serve a machine forever: one looks at a door in every slice, one blinks, one counts seconds.
 const SERVICES: [(&str, &str); 3] = [
     (
         "door.c",
@@ -141,7 +141,7 @@ struct Heavy {
     most: u64,
 }
 
-/// Eight axes that move for ever, and a bit that changes in every slice.
+/// Eight axes that move forever, and a bit that changes in every slice.
 const AXES: &str = "main() { int i; for (i = 0; i < 8; i++) { chan[i].InputMode = NO_INPUT_MODE;
     chan[i].OutputMode = NO_OUTPUT_MODE; chan[i].Vel = 1000; chan[i].Accel = 1e4; chan[i].Jerk = 1e5; EnableAxisDest(i, 0); }
     for (i = 0;; i = 100 - i) { Move(0, i); Move(1, i); Move(2, i); Move(3, i); Move(4, i); Move(5, i); Move(6, i); Move(7, i);

@@ -64,7 +64,7 @@ fn arrows_inside_a_crate_point_downwards() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// The graph of rooms: what lies directly in `src`.
+/// The graph of rooms: what is directly in `src`.
 fn rooms(imports: &Imports) -> Graph {
     let room = |file: &str| file.split('/').next().unwrap_or(file).trim_end_matches(".rs").to_owned();
     let mut graph = Graph::new();

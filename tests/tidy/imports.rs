@@ -1,7 +1,7 @@
 //! Who imports whom inside a crate, file by file.
 //!
 //! An arrow is a `use` or a path in the code that begins with `crate`, `super` or the crate's own name. A name that is
-//! imported again on the way is followed to the file that defines it. That a module names its own children is no arrow;
+//! imported again on the way is followed to the file that defines it. That a module names its own children is not an arrow;
 //! tests are left out.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -101,7 +101,7 @@ impl Module {
         module
     }
 
-    /// Reads the import or path that begins at `at`; where to go on.
+    /// Reads the import or path that begins at `at`; where to continue.
     fn path_at(&mut self, at: usize) -> usize {
         let text = |index: usize| self.tokens.get(index).map_or("", |token| token.text.as_str());
         if text(at) == "use" && !matches!(text(at + 1), "<" | ">" | ",") {
@@ -129,7 +129,7 @@ impl Module {
         end
     }
 
-    /// Reads what stands between `use` and `;`.
+    /// Reads what is between `use` and `;`.
     fn tree(&mut self, tree: &[Token], head: &[String]) {
         let mut path = head.to_vec();
         let Some(line) = tree.first().map(|token| token.line) else { return };
@@ -192,7 +192,7 @@ struct Resolver<'a> {
 }
 
 impl Resolver<'_> {
-    /// The file that a path of the module `at` leads to; none for paths that are no arrows.
+    /// The file that a path of the module `at` leads to; none for paths that are not arrows.
     fn resolve(&self, at: &[String], path: &[String], depth: usize) -> Option<String> {
         let (first, rest) = path.split_first()?;
         let mut rest = rest;

@@ -59,7 +59,7 @@ pub(crate) fn sources() -> Vec<(String, Vec<Token>)> {
         .collect()
 }
 
-/// How many fields the structure has whose name stands at `at`.
+/// How many fields the structure has whose name is at `at`.
 fn fields(tokens: &[Token], at: usize) -> usize {
     let Some(open) = (at..tokens.len()).find(|index| ["{", ";", "("].contains(&tokens[*index].text.as_str()))
     else {

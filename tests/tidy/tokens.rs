@@ -1,19 +1,51 @@
-//! Rust source as tokens: words, `::`, `->`, `=>` and single characters, without comments, the insides of strings, and
-//! items under `#[cfg(test)]`.
+//! Rust source as tokens: words, strings, `::`, `->`, `=>` and single characters, without comments and items under
+//! `#[cfg(test)]`; and the texts in a source that people read: strings and doc comments.
 
-/// A token and the line that it stands in, from 1.
+/// A token and the line that it is in, from 1.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Token {
     /// Its text; `"` for a string, `'` for a character or a lifetime's mark.
     pub(crate) text: String,
     /// Its line.
     pub(crate) line: usize,
+    /// What is between the quotes of a string, as written.
+    pub(crate) inside: String,
 }
 
 /// The tokens of a source text.
 pub(crate) fn tokens(text: &str) -> Vec<Token> {
-    without_tests(&all_tokens(text))
+    let mut all = all_tokens(text);
+    all.retain(|token| token.text != DOC);
+    without_tests(&all)
 }
+
+/// The strings and doc comments of a source text, those of tests included, each with its first line.
+///
+/// Consecutive lines of a doc comment are one text.
+pub(crate) fn texts(text: &str) -> Vec<(usize, String)> {
+    let mut found: Vec<(usize, String)> = Vec::new();
+    let mut next_line = 0;
+    for token in all_tokens(text) {
+        match token.text.as_str() {
+            DOC if token.line == next_line => {
+                let (_, before) = found.last_mut().expect("the line before is a doc comment");
+                before.push('\n');
+                before.push_str(&token.inside);
+                next_line += 1;
+            }
+            DOC => {
+                next_line = token.line + 1;
+                found.push((token.line, token.inside));
+            }
+            "\"" => found.push((token.line, token.inside)),
+            _ => {}
+        }
+    }
+    found
+}
+
+/// The text of the token of a doc comment.
+const DOC: &str = "///";
 
 fn all_tokens(text: &str) -> Vec<Token> {
     let chars: Vec<char> = text.chars().collect();
@@ -23,7 +55,12 @@ fn all_tokens(text: &str) -> Vec<Token> {
         let (end, token) = next(&chars, at);
         at = end;
         if let Some(text) = token {
-            found.push(Token { text, line });
+            let inside = match text.as_str() {
+                "\"" => inside(&chars[start..at]),
+                DOC => chars[start + DOC.len()..at].iter().collect(),
+                _ => String::new(),
+            };
+            found.push(Token { text, line, inside });
         }
         line += chars[start..at].iter().filter(|c| **c == '\n').count();
     }
@@ -35,6 +72,10 @@ fn next(chars: &[char], at: usize) -> (usize, Option<String>) {
     let rest = &chars[at..];
     let has = |text: &str| text.chars().eq(rest.iter().copied().take(text.chars().count()));
     let word = |c: char| c.is_alphanumeric() || c == '_';
+    if has("//!") || (has("///") && !has("////")) {
+        let end = rest.iter().position(|c| *c == '\n').unwrap_or(rest.len());
+        return (at + end, Some(DOC.to_owned()));
+    }
     if has("//") {
         return (at + rest.iter().position(|c| *c == '\n').unwrap_or(rest.len()), None);
     }
@@ -54,6 +95,14 @@ fn next(chars: &[char], at: usize) -> (usize, Option<String>) {
         _ if has("::") || has("->") || has("=>") => (at + 2, Some(rest[..2].iter().collect())),
         c => (at + 1, Some(c.to_string())),
     }
+}
+
+/// What is between the quotes of a string.
+fn inside(string: &[char]) -> String {
+    let text: String = string.iter().collect();
+    let begin = text.find('"').map_or(0, |at| at + 1);
+    let end = text.rfind('"').unwrap_or(text.len()).max(begin);
+    text[begin..end].to_owned()
 }
 
 fn block_comment(rest: &[char]) -> usize {
@@ -105,7 +154,7 @@ fn character(rest: &[char]) -> usize {
     if rest.get(2) == Some(&'\'') { 3 } else { 1 }
 }
 
-/// The index behind the bracket that closes the one at `at`.
+/// The index after the bracket that closes the one at `at`.
 pub(crate) fn closing(tokens: &[Token], at: usize) -> usize {
     let mut depth = 0_usize;
     for (index, token) in tokens.iter().enumerate().skip(at) {
@@ -179,4 +228,12 @@ fn comments_strings_and_tests_are_left_out() {
         "use a :: b ; fn h < ' a > ( x : & ' a str ) -> char { let _ = ( \" , \" , ' , ' , \" ) ; ' } \
          # [ cfg ( feature = \" ) ] struct Q ;"
     );
+}
+
+#[test]
+fn strings_and_doc_comments_are_the_texts() {
+    let text = "//! a\n//! b\n\n/// c\nfn d() { e(\"f {g}\", r#\"h\"#) } // i\n";
+    let texts = texts(text);
+    let expect = [(1, " a\n b"), (4, " c"), (5, "f {g}"), (5, "h")];
+    assert_eq!(texts, expect.map(|(line, text)| (line, text.to_owned())));
 }

@@ -24,12 +24,12 @@ const TABLES: &[&str] = &[
 /// Crates with matches that still have such an arm, and how many; the number may only fall.
 const REMAINING: &[(&str, usize)] = &[("cc67/compiler", 8), ("runtime", 1)];
 
-/// An arm of a match: its pattern, and where it stands.
+/// An arm of a match: its pattern, and where it is.
 struct Arm<'a> {
     pattern: &'a [Token],
 }
 
-/// The arms of the match whose keyword stands at `at`.
+/// The arms of the match whose keyword is at `at`.
 fn arms(tokens: &[Token], at: usize) -> Vec<Arm<'_>> {
     let mut open = at + 1;
     while let Some(token) = tokens.get(open) {

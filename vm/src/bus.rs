@@ -1,6 +1,6 @@
 //! Device registers: addresses where a read or write is an action.
 //!
-//! The machine does not know what stands behind them; the kernel routes an access to its
+//! The machine does not know what answers; the kernel routes an access to its
 //! device. An access of eight bytes reaches the bus as two of four, low half first.
 
 use kmotiondef::{Cycles, GuestAddr};

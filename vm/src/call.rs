@@ -1,6 +1,6 @@
 //! The arguments of a firmware call, as every engine hands them over.
 //!
-//! How a program passes arguments is a matter of its engine: bytecode has them in registers behind its own, machine
+//! How a program passes arguments is a matter of its engine: bytecode has them in registers after its own, machine
 //! code in the state that it shares with the engine, the real processor in A4, B4, A6, B6 and so on and then on its
 //! stack. The firmware sees none of that. It takes arguments by position, and of a variadic function the variable part
 //! by its address ([`VarArgs`]). Its result is a [`Value`](crate::firmware::Value), which the engine puts where its
@@ -20,7 +20,7 @@ impl<'a> CallArguments<'a> {
     /// No arguments.
     pub const NONE: Self = Self(&[]);
 
-    /// CallArguments that lie in slots one after the other.
+    /// CallArguments that lie in slots one after another.
     #[must_use]
     pub const fn from_slots(slots: &'a [u64]) -> Self {
         Self(slots)

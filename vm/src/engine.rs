@@ -27,7 +27,7 @@ pub enum Stop {
     Preempted,
     /// Only of a long slice: what comes next involves the board, so it belongs into an ordinary slice.
     NeedsBoard,
-    /// A debugger holds the context before its instruction; the slice goes on when the context is resumed.
+    /// A debugger holds the context before its instruction; the slice continues when the context is resumed.
     Held,
     /// A firmware call waits; it is repeated when the wake comes true.
     Waiting(Wake),
@@ -114,7 +114,7 @@ pub struct Slice<'a, F: ?Sized> {
     pub length: Cycles,
     /// What is left of it; below zero when the last block overdrew it.
     pub budget: Cycles,
-    /// The wake that came true, if the context stands in a waiting call.
+    /// The wake that came true, if the context is in a waiting call.
     pub woken: Option<Wake>,
     /// Whether the budget is that of several slices, of a thread that is alone and of a board that does nothing.
     ///
@@ -160,7 +160,7 @@ impl<F: Firmware + ?Sized> Slice<'_, F> {
     }
 }
 
-/// A snapshot that another engine has taken: threads that run as machine code go on where they were taken only.
+/// A snapshot that another engine has taken: threads that run as machine code continue where they were taken only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the snapshot is of another board, whose native threads cannot go on here")]
 pub struct ForeignSnapshot;

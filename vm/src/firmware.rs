@@ -1,6 +1,6 @@
 //! How a program leaves the machine: firmware calls, their results and waits.
 //!
-//! The machine knows only this trait. The kernel implements it and finds the function by its
+//! The machine sees only this trait. The kernel implements it and finds the function by its
 //! guest address, as the linked program names it.
 
 use kmotiondef::{CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
@@ -61,14 +61,14 @@ impl Value {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 pub enum Outcome<T> {
-    /// It is done; the program goes on behind the call.
+    /// It is done; the program continues after the call.
     Done(T),
     /// The thread waits. When the wake comes true the same call is made again, with
     /// [`Caller::woken`] saying so.
     Wait(Wake),
     /// The calling thread has ended (`ThreadDone`).
     End,
-    /// The calling thread has paused itself; when it is resumed, the program goes on behind the call.
+    /// The calling thread has paused itself; when it is resumed, the program continues after the call.
     Pause,
 }
 
@@ -84,7 +84,7 @@ pub struct Signature {
 impl Signature {
     /// Whether a function of this signature may be called through a pointer to `called`.
     ///
-    /// The call passes what the function takes, in this order; what it passes behind that is ignored. A result may be
+    /// The call passes what the function takes, in this order; what it passes after that is ignored. A result may be
     /// ignored, and one that is not there reads as 0. Machine code relies on the order: in every calling convention
     /// the place of a parameter depends only on those before it, and the caller clears the stack.
     #[must_use]
@@ -271,7 +271,7 @@ pub trait Firmware: Bus {
     /// The servo interrupt: all work of the kernel in one tick.
     fn tick(&mut self, context: &mut TickContext<'_>);
 
-    /// What the servo interrupt takes of the present tick, asked behind [`tick`](Self::tick).
+    /// What the servo interrupt takes of the present tick, asked after [`tick`](Self::tick).
     fn servo_time(&self, memory: &GuestMemory) -> Cycles {
         let _ = memory;
         Cycles::new(8_000)

@@ -1,8 +1,8 @@
-//! What stands before bytecode in an image: words that the real processor may execute.
+//! What precedes bytecode in an image: words that the real processor may execute.
 //!
 //! Whoever loads an image without looking at its target, as the vendor's loader does, would have the processor execute
 //! bytecode. So an image's text begins with a return: a thread that is started there has ended before it reaches the
-//! bytecode, whose first word lies behind. The entry point of such an image is the start of its text, for the processor
+//! bytecode, whose first word lies after. The entry point of such an image is the start of its text, for the processor
 //! as for the simulated board, which reads in the next word where `main` is.
 
 use kmotiondef::GuestAddr;

@@ -1,7 +1,7 @@
 //! The bytecode engine: interprets a program.
 //!
 //! The registers of all calls of a context lie in one array, each call's window directly
-//! behind its caller's registers, so that an argument is written where the callee has its
+//! after its caller's registers, so that an argument is written where the callee has its
 //! parameter. `dispatch::execute` goes from instruction to instruction, calls and returns
 //! included, until something else is needed than registers and RAM; the loop around it sees to that.
 
@@ -270,7 +270,7 @@ fn execute<F: Firmware + ?Sized>(
     exit
 }
 
-/// Makes a firmware call; the stop, if the context does not go on behind it at once.
+/// Makes a firmware call; the stop, if the context does not continue after it at once.
 ///
 /// # Errors
 /// `missing` if there is no function at `address`, or what the call itself yields.

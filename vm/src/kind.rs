@@ -139,7 +139,7 @@ pub enum OpKind {
 }
 
 impl OpKind {
-    /// Whether execution never goes on with the next word.
+    /// Whether execution never continues with the next word.
     #[must_use]
     pub const fn ends_path(self) -> bool {
         match self {
@@ -163,7 +163,7 @@ impl OpKind {
         }
     }
 
-    /// Whether execution simply goes on with the next word, and the word belongs to no call.
+    /// Whether execution simply continues with the next word, and the word belongs to no call.
     #[must_use]
     pub const fn is_straight(self) -> bool {
         match self {

@@ -19,7 +19,7 @@
 //! - `loaded`, `verify/`, `program`: what a thread is loaded with, and how bytes become a program
 //! - `firmware`, `call`, `varargs`, `wake`: how a program leaves the machine, and what it waits for
 //! - `thread`, `scheduler`: the states of the seven threads, and whose turn it is
-//! - `guard`: what stands before bytecode in an image
+//! - `guard`: what precedes bytecode in an image
 //! - `op`, `kind`, `operand`, `slot`, `meter`, `patch`, `text`: the instruction table and what follows from it
 //! - `memory/`, `bus`, `protection`: what a program can see; pages that snapshots share
 //! - `arith`, `trap`: arithmetic as the processor does it; the impossible

@@ -32,7 +32,7 @@ use crate::wake::Wake;
 /// Bytes of the board's stacks that a program can use: each interrupt takes 128 of the 2048.
 const BOARD_STACK_USABLE: u32 = BOARD_STACK_SIZE - 128;
 
-/// How long a call-back may run before it counts as endless: the board would stand still.
+/// How long a call-back may run before it counts as endless: the board would stop.
 const CALLBACK_TICKS: i64 = 100;
 /// What a tick takes of the computer besides programs, in cycles of theirs that take it as long.
 const TICK_WORK: u64 = 500;
@@ -234,7 +234,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
     /// Runs to the end of the next tick in which something can happen, or of tick `limit`, whichever
     /// comes first.
     ///
-    /// A tick that is [held](Self::held) is gone on with, whatever the limit.
+    /// A tick that is [held](Self::held) is continued, whatever the limit.
     pub fn step(&mut self, limit: Ticks) {
         if self.held.is_some() {
             return self.run_tick();

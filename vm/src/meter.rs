@@ -8,16 +8,16 @@
 //! beginning to their end. A segment begins
 //! - at the function's first executable word;
 //! - at every branch target;
-//! - behind every branch (`br`, `br_if`, `br_unless`, `br_table` with its `br` words), return and `unreachable`;
-//! - behind every call with its result word, if it has one.
+//! - after every branch (`br`, `br_if`, `br_unless`, `br_table` with its `br` words), return and `unreachable`;
+//! - after every call with its result word, if it has one.
 //!
 //! It ends before the next beginning. The cost of a segment is the sum of the costs of its
 //! words; the `br` words of a `br_table` cost nothing, its own cost includes the jump. The first
 //! word of every segment whose cost is not 0 is a `charge` of that cost. There is one such charge
 //! a segment and no other.
 //!
-//! A segment that begins behind a call is charged when the callee has returned, so a firmware
-//! call that overdraws the budget loses the processor directly behind itself.
+//! A segment that begins after a call is charged when the callee has returned, so a firmware
+//! call that overdraws the budget loses the processor directly after itself.
 
 use std::ops::Range;
 
@@ -28,7 +28,7 @@ use crate::operand::Label;
 /// The charges that `body` needs: the word before which each stands, and its cycles, ascending.
 ///
 /// `body` holds the executable words of one function, without the `func` and `types` words;
-/// labels are indices into `ops`. Charges that are there already count as free, and then the
+/// labels are indices into `ops`. Charges that already exist count as free, and then the
 /// word named is the charge itself.
 #[must_use]
 pub fn charge_points(ops: &[Op], body: Range<usize>) -> Vec<(usize, u32)> {

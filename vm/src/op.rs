@@ -41,7 +41,7 @@ macro_rules! for_each_op {
             func = Func { sig: SigRef, regs: Count, frame: Count }, cost 0, Structure;
 
             // ---- time -------------------------------------------------------------------
-            /// Spends `cycles`; if the budget is then below zero, the slice ends behind this instruction.
+            /// Spends `cycles`; if the budget is then below zero, the slice ends after this instruction.
             charge = Charge { cycles: Count32 }, cost 0, Charge;
 
             // ---- constants and copies -----------------------------------------------------
@@ -490,7 +490,7 @@ macro_rules! define_ops {
 }
 for_each_op!(define_ops);
 
-/// Packs operands behind an opcode.
+/// Packs operands after an opcode.
 struct Packer {
     word: [u8; WORD],
     at: usize,
@@ -510,7 +510,7 @@ impl Packer {
     }
 }
 
-/// Takes operands from behind an opcode.
+/// Takes operands from after an opcode.
 struct Unpacker {
     word: [u8; WORD],
     at: usize,
@@ -528,7 +528,7 @@ impl Unpacker {
         O::from_bits(u32::from_le_bytes(bytes))
     }
 
-    /// Whether the bytes behind the last operand are zero, as the encoder leaves them.
+    /// Whether the bytes after the last operand are zero, as the encoder leaves them.
     fn is_exhausted(&self) -> bool {
         self.word[self.at..].iter().all(|byte| *byte == 0)
     }

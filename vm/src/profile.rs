@@ -1,7 +1,7 @@
 //! The profiling engine: the bytecode engine, with an account of where the time went.
 //!
 //! Nothing is sampled. The interpreter is given nothing to spend, so that every `charge` returns to here: what it
-//! spent is put down to the segment that begins there, then the program goes on with what it really has left. By
+//! spent is put down to the segment that begins there, then the program continues with what it really has left. By
 //! [the rule of metering](crate::meter) a segment is executed as a whole, and a call ends it, so the account is exact.
 //! Firmware functions and devices see the true budget, and the run is the same, cycle by cycle, as without a profile.
 

@@ -13,7 +13,7 @@ use crate::operand::{Class, FuncRef, SigRef};
 /// Most bytes of a text: the whole program area.
 pub(crate) const MAX_TEXT: usize = (PROGRAM_LIMIT - PROGRAM_BASE) as usize;
 
-/// Index of the first executable word of a function with `registers`: behind its `func` and `types` words.
+/// Index of the first executable word of a function with `registers`: after its `func` and `types` words.
 #[inline]
 pub(crate) fn body_of(function: FuncRef, registers: u16) -> usize {
     function.0 as usize + 1 + usize::from(registers).div_ceil(16)
@@ -24,7 +24,7 @@ pub(crate) fn body_of(function: FuncRef, registers: u16) -> usize {
 pub struct Function {
     /// Index of its `func` word.
     pub at: FuncRef,
-    /// Its executable words: behind the `types` words, up to the next function.
+    /// Its executable words: after the `types` words, up to the next function.
     pub body: Range<usize>,
     /// Its signature.
     pub signature: SigRef,

@@ -31,7 +31,7 @@ sig 2, 4
 types 0xc
 ";
 
-/// First word behind the head.
+/// First word after the head.
 pub(crate) const HEAD_WORDS: usize = 11;
 
 /// Where test programs put their results.
@@ -63,7 +63,7 @@ enum Function {
     Delay,
     /// `void next_slice(void)`.
     NextSlice,
-    /// `int wait_for_flag(void)`: waits until the word behind `OUT` is not 0 and returns it.
+    /// `int wait_for_flag(void)`: waits until the word after `OUT` is not 0 and returns it.
     WaitForFlag,
     /// `void done(void)`.
     Done,
@@ -75,7 +75,7 @@ enum Function {
     Resume,
     /// `double scale(int, double)`: the product.
     Scale,
-    /// Does not exist behind its address.
+    /// Does not exist after its address.
     Missing,
 }
 

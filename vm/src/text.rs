@@ -1,7 +1,7 @@
 //! Bytecode as text: disassembler and assembler, both expanded from the instruction table.
 //!
 //! One word a line, `@12: add_i32 r0, r1, r2`. The number in front is the word's index, as
-//! labels name it. A word that is no instruction, or a constant of the pool, is printed as
+//! labels name it. A word that is not an instruction, or a constant of the pool, is printed as
 //! `word 0x…`. A `;` begins a comment. What is printed can be parsed again, byte for byte; texts
 //! written by hand may leave the index away or put a name in its place: `@loop:`, then
 //! `br @loop` and `call fn@main`.
@@ -40,7 +40,7 @@ pub enum AssembleErrorKind {
     #[error("there is no label `{0}`")]
     UnknownLabel(String),
     /// A label is defined twice, or a number is not the index of its word.
-    #[error("the label `{0}` cannot stand here")]
+    #[error("the label `{0}` is not allowed here")]
     BadLabel(String),
 }
 
@@ -77,7 +77,7 @@ macro_rules! define_text {
 }
 for_each_op!(define_text);
 
-/// Prints an operand behind `separator` and yields the separator of the next.
+/// Prints an operand after `separator` and yields the separator of the next.
 fn print_operand<O: Operand>(
     f: &mut fmt::Formatter<'_>,
     separator: &str,
@@ -87,7 +87,7 @@ fn print_operand<O: Operand>(
     Ok(", ")
 }
 
-/// The text of `bytes`, which need not be a valid program; bytes behind the last whole word are left away, and so are
+/// The text of `bytes`, which need not be a valid program; bytes after the last whole word are left away, and so are
 /// the words before the bytecode of an image.
 #[must_use]
 pub fn disassemble(bytes: &[u8]) -> String {
@@ -144,7 +144,7 @@ impl<'a> Line<'a> {
     }
 }
 
-/// The index of the word that each named label stands before.
+/// The index of the word that each named label comes before.
 fn define_labels<'a>(lines: &[Line<'a>]) -> Result<BTreeMap<&'a str, usize>, AssembleError> {
     let mut labels = BTreeMap::new();
     let mut word = 0;
@@ -210,8 +210,8 @@ mod tests {
         };
         check("ret\nfly r1", "line 2: there is no instruction `fly`");
         check("br @up", "line 1: there is no label `up`");
-        check("@a:\n@a: ret", "line 2: the label `a` cannot stand here");
-        check("@7: ret", "line 1: the label `7` cannot stand here");
+        check("@a:\n@a: ret", "line 2: the label `a` is not allowed here");
+        check("@7: ret", "line 1: the label `7` is not allowed here");
         check("mov_i32 r1, d2", "line 1: the operands of `mov_i32` are not `dst: RegI32, src: RegI32`");
         check("ret r1", "line 1: the operands of `ret` are not ``");
     }

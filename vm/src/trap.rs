@@ -1,6 +1,6 @@
 //! Traps: the running program did the impossible.
 //!
-//! A trap stops one thread; the machine goes on. Firmware functions yield a [`TrapKind`],
+//! A trap stops one thread; the machine continues. Firmware functions yield a [`TrapKind`],
 //! the engine adds the place and the thread.
 
 mod processor;
@@ -101,7 +101,7 @@ pub enum TrapKind {
         limit: i64,
     },
     /// The compiler held this place to be out of reach; a `goto *` to no label leads to such a one.
-    #[error("execution reached a place where no code is, as by `goto *` to what is no label")]
+    #[error("execution reached a place without code, as by `goto *` to something other than a label")]
     Unreachable,
     /// Code of the real processor that no compiler makes.
     #[error(transparent)]

@@ -1,6 +1,6 @@
 //! Variable arguments of a firmware call, as the compiler lays them out.
 //!
-//! They lie in guest memory behind one another, each at a multiple of its own size (4 or 8);
+//! They lie in guest memory one after another, each at a multiple of its own size (4 or 8);
 //! the first at a multiple of 8. Their address is the last parameter of the function.
 
 use kmotiondef::GuestAddr;
@@ -8,7 +8,7 @@ use kmotiondef::GuestAddr;
 use crate::memory::{GuestMemory, Scalar};
 use crate::trap::TrapKind;
 
-/// Reads variable arguments one after the other.
+/// Reads variable arguments one after another.
 #[derive(Clone, Copy, Debug)]
 pub struct VarArgs {
     next: GuestAddr,

@@ -31,7 +31,7 @@ use crate::program::{Function, MAX_TEXT, Program};
 /// Most parameters of a function.
 pub const MAX_PARAMETERS: usize = 255;
 
-/// Most registers of a function, so that the arguments of its calls fit behind them.
+/// Most registers of a function, so that the arguments of its calls fit after them.
 pub const MAX_REGISTERS: usize = 0xff00;
 
 /// Classes in one `types` word.
@@ -73,8 +73,8 @@ pub enum VerifyErrorKind {
     /// No instruction has this encoding.
     #[error("not an instruction")]
     UnknownInstruction,
-    /// A `program`, `sig`, `func` or `types` word stands where it cannot.
-    #[error("`{0}` cannot stand here")]
+    /// A `program`, `sig`, `func` or `types` word is where it cannot be.
+    #[error("`{0}` is not allowed here")]
     Misplaced(&'static str),
     /// A signature or function states more than the machine can hold.
     #[error("{0} is beyond the limit of {1}")]
@@ -107,7 +107,7 @@ pub enum VerifyErrorKind {
     #[error("word {0} cannot be the target of a branch here")]
     BadLabel(u32),
     /// An argument does not follow the one before it, or no call follows.
-    #[error("the arguments of a call must stand in order directly before it")]
+    #[error("the arguments of a call must be in order directly before it")]
     Arguments,
     /// The arguments of a call are not those of its signature.
     #[error("the arguments of the call are not those of its signature")]
@@ -121,11 +121,11 @@ pub enum VerifyErrorKind {
     /// A return is of another class than the signature says.
     #[error("the return is not that of the function's signature")]
     ReturnClass,
-    /// The last instruction of a function goes on behind it.
-    #[error("the function goes on behind its end")]
+    /// The last instruction of a function continues after it.
+    #[error("the function continues after its end")]
     FallsOff,
     /// A function begins, or a loop turns, without a charge.
-    #[error("the code from here on can run for ever without being charged")]
+    #[error("the code from here on can run forever without being charged")]
     Uncharged,
 }
 
@@ -145,7 +145,7 @@ pub fn verify_image(text: &[u8], start: GuestAddr) -> Result<Program, VerifyErro
     Ok(program)
 }
 
-/// Verifies the bytecode that stands at `base`.
+/// Verifies the bytecode that is at `base`.
 ///
 /// # Errors
 /// The first thing that is wrong.
@@ -202,7 +202,7 @@ fn decode(words: &[[u8; WORD]], pool_size: usize) -> Result<Vec<Op>, VerifyError
     words.iter().enumerate().map(decode).collect()
 }
 
-/// Reads the words behind the pool in their order.
+/// Reads the words after the pool in their order.
 struct Reader<'a> {
     ops: &'a [Op],
     at: usize,

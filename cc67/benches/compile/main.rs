@@ -47,7 +47,7 @@ impl Start {
     }
 }
 
-/// The stages one after the other, each on the result of the one before.
+/// The stages one after another, each on the result of the one before.
 fn stages(c: &mut Criterion) {
     let options = Options::default();
     for (name, text) in [("init3", INIT_PROGRAM), ("sequence", &generate::sequence(10_000))] {

@@ -163,7 +163,7 @@ int cc67_take_remark(struct cc67_client *client,
 enum cc67_result cc67_write_line(struct cc67_client *client, const char *line);
 
 /*
- Sends a line that the board echoes, and behind which it says `Ready`.
+ Sends a line that the board echoes, and after which it says `Ready`.
 
  Requires:
  `client` is open, and no other call uses it meanwhile; the text ends with a 0.
@@ -183,7 +183,7 @@ enum cc67_result cc67_write_line_read_line(struct cc67_client *client,
                                            uintptr_t size);
 
 /*
- The next line of a reply, with its line end, if it comes within so many milliseconds of board time.
+ The next line of a reply, with its line end, if it comes within this many milliseconds of board time.
 
  Requires:
  `client` is open, and no other call uses it meanwhile; `reply` has room for `size` bytes.
@@ -194,7 +194,7 @@ enum cc67_result cc67_read_line_timeout(struct cc67_client *client,
                                         uint32_t milliseconds);
 
 /*
- Reads lines until `Ready` comes, or none for 0.1 s: 0 nothing came, 1 a part of a line, 2 `Ready`, 3 `Ready` behind an
+ Reads lines until `Ready` comes, or none for 0.1 s: 0 nothing came, 1 a part of a line, 2 `Ready`, 3 `Ready` after an
  error; -1 without a connection.
 
  Requires:
@@ -220,7 +220,7 @@ enum cc67_result cc67_include_dir(struct cc67_client *client, const char *folder
 
 /*
  Compiles a source, links it for a thread, 1 to 7, and loads it there; it does not start. If it fails, what was in the
- thread is there still and goes on running.
+ thread is still there and running.
 
  Requires:
  `client` is open, and no other call uses it meanwhile; the text ends with a 0.
@@ -243,7 +243,7 @@ enum cc67_result cc67_compile_and_load_coff_with_message(struct cc67_client *cli
                                                          uintptr_t size);
 
 /*
- Loads an image, as `cc67 build` writes it, into a thread. If it fails, what was in the thread is there still.
+ Loads an image, as `cc67 build` writes it, into a thread. If it fails, what was in the thread is still there.
 
  Requires:
  `client` is open, and no other call uses it meanwhile; the text ends with a 0.
@@ -251,7 +251,7 @@ enum cc67_result cc67_compile_and_load_coff_with_message(struct cc67_client *cli
 enum cc67_result cc67_load_coff(struct cc67_client *client, int thread, const char *file);
 
 /*
- Lets so many seconds of board time pass.
+ Lets this many seconds of board time pass.
 
  Requires:
  `client` is open, and no other call uses it meanwhile.
@@ -259,7 +259,7 @@ enum cc67_result cc67_load_coff(struct cc67_client *client, int thread, const ch
 enum cc67_result cc67_run_for(struct cc67_client *client, double seconds);
 
 /*
- Lets board time pass until `is_over` says so behind a tick, at most so many seconds: 1 it said so, 0 the time is over, -1
+ Lets board time pass until `is_over` says so after a tick, at most this many seconds: 1 it said so, 0 the time has passed, -1
  an argument is wrong.
 
  Requires:
@@ -304,7 +304,7 @@ enum cc67_result cc67_drive_input(struct cc67_client *client, int bit, int level
 int cc67_kmotion_lock(struct cc67_client *client);
 
 /*
- Waits for the token until another client releases it, at most so many milliseconds by the clock, or 2000 s for a
+ Waits for the token until another client releases it, at most this many milliseconds by the clock, or 2000 s for a
  negative number. The result is that of `cc67_kmotion_lock`.
 
  Requires:

@@ -87,7 +87,7 @@ pub(crate) unsafe fn optional_text<'a>(pointer: *const c_char) -> Result<Option<
 /// A buffer of the caller; empty where there is none.
 ///
 /// # Safety
-/// Null, or so many bytes that nobody else uses during the call.
+/// Null, or this many bytes that nobody else uses during the call.
 pub(crate) unsafe fn buffer<'a>(pointer: *mut c_char, size: usize) -> &'a mut [u8] {
     if pointer.is_null() || isize::try_from(size).is_err() {
         return &mut [];

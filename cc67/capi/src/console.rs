@@ -1,4 +1,4 @@
-//! Console lines, and what the simulation has to say.
+//! Console lines, and what the simulation reports.
 
 use std::ffi::{CString, c_char, c_int, c_void};
 

@@ -20,7 +20,7 @@ pub unsafe extern "C" fn cc67_write_line(client: *mut Client, line: *const c_cha
     })
 }
 
-/// Sends a line that the board echoes, and behind which it says `Ready`.
+/// Sends a line that the board echoes, and after which it says `Ready`.
 ///
 /// # Safety
 /// `client` is open, and no other call uses it meanwhile; the text ends with a 0.
@@ -58,7 +58,7 @@ pub unsafe extern "C" fn cc67_write_line_read_line(
     })
 }
 
-/// The next line of a reply, with its line end, if it comes within so many milliseconds of board time.
+/// The next line of a reply, with its line end, if it comes within this many milliseconds of board time.
 ///
 /// # Safety
 /// `client` is open, and no other call uses it meanwhile; `reply` has room for `size` bytes.
@@ -79,7 +79,7 @@ pub unsafe extern "C" fn cc67_read_line_timeout(
     })
 }
 
-/// Reads lines until `Ready` comes, or none for 0.1 s: 0 nothing came, 1 a part of a line, 2 `Ready`, 3 `Ready` behind an
+/// Reads lines until `Ready` comes, or none for 0.1 s: 0 nothing came, 1 a part of a line, 2 `Ready`, 3 `Ready` after an
 /// error; -1 without a connection.
 ///
 /// # Safety

@@ -27,7 +27,7 @@ pub unsafe extern "C" fn cc67_include_dir(client: *mut Client, folder: *const c_
 }
 
 /// Compiles a source, links it for a thread, 1 to 7, and loads it there; it does not start. If it fails, what was in the
-/// thread is there still and goes on running.
+/// thread is still there and running.
 ///
 /// # Safety
 /// `client` is open, and no other call uses it meanwhile; the text ends with a 0.
@@ -73,7 +73,7 @@ pub unsafe extern "C" fn cc67_compile_and_load_coff_with_message(
     })
 }
 
-/// Loads an image, as `cc67 build` writes it, into a thread. If it fails, what was in the thread is there still.
+/// Loads an image, as `cc67 build` writes it, into a thread. If it fails, what was in the thread is still there.
 ///
 /// # Safety
 /// `client` is open, and no other call uses it meanwhile; the text ends with a 0.

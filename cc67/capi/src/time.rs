@@ -12,7 +12,7 @@ use crate::{Client, Outcome};
 /// Says whether a run is over, by a number other than 0. It may use the client.
 pub type EndCallback = Option<unsafe extern "C" fn(client: *mut Client, user: *mut c_void) -> c_int>;
 
-/// Lets so many seconds of board time pass.
+/// Lets this many seconds of board time pass.
 ///
 /// # Safety
 /// `client` is open, and no other call uses it meanwhile.
@@ -28,7 +28,7 @@ pub unsafe extern "C" fn cc67_run_for(client: *mut Client, seconds: f64) -> Outc
     })
 }
 
-/// Lets board time pass until `is_over` says so behind a tick, at most so many seconds: 1 it said so, 0 the time is over, -1
+/// Lets board time pass until `is_over` says so after a tick, at most this many seconds: 1 it said so, 0 the time has passed, -1
 /// an argument is wrong.
 ///
 /// # Safety

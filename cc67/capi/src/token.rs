@@ -23,7 +23,7 @@ pub unsafe extern "C" fn cc67_kmotion_lock(client: *mut Client) -> c_int {
     })
 }
 
-/// Waits for the token until another client releases it, at most so many milliseconds by the clock, or 2000 s for a
+/// Waits for the token until another client releases it, at most this many milliseconds by the clock, or 2000 s for a
 /// negative number. The result is that of `cc67_kmotion_lock`.
 ///
 /// # Safety

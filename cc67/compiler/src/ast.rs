@@ -59,7 +59,7 @@ pub struct Declaration {
 pub struct InitDeclarator {
     /// Name and derivation.
     pub declarator: Declarator,
-    /// What stands behind `=`.
+    /// What follows `=`.
     pub initializer: Option<Initializer>,
 }
 
@@ -104,7 +104,7 @@ pub struct Specifiers {
     pub span: Span,
 }
 
-/// An alignment that an object, member or record shall have at least.
+/// An alignment that an object, member or record has at least.
 #[derive(Debug)]
 pub enum Alignment {
     /// `_Alignas(16)`, `__attribute__((aligned(16)))`
@@ -187,7 +187,7 @@ pub struct RecordSpecifier {
     pub tag: Option<(Name, Span)>,
     /// The members; `None` for a mere reference.
     pub members: Option<Vec<MemberDeclaration>>,
-    /// Alignments asked for in front of the tag or behind the brace.
+    /// Alignments asked for before the tag or after the brace.
     pub alignments: Vec<Alignment>,
     /// From the keyword to the closing brace or tag.
     pub span: Span,
@@ -231,7 +231,7 @@ pub struct Enumerator {
     pub name: Name,
     /// Its place.
     pub span: Span,
-    /// The value behind `=`.
+    /// The value after `=`.
     pub value: Option<Expression>,
 }
 
@@ -242,7 +242,7 @@ pub struct Declarator {
     pub name: Option<(Name, Span)>,
     /// Derivations from the name outwards: `int *a[3]` is `[Array, Pointer]`.
     pub derived: Vec<Derived>,
-    /// Alignments asked for behind the declarator.
+    /// Alignments asked for after the declarator.
     pub alignments: Vec<Alignment>,
     /// The whole declarator.
     pub span: Span,
@@ -347,7 +347,7 @@ pub enum Designator {
 pub struct Statement {
     /// What it does.
     pub kind: StatementKind,
-    /// Where it stands.
+    /// Where it is.
     pub span: Span,
 }
 
@@ -384,7 +384,7 @@ pub enum StatementKind {
     DoWhile {
         /// The body.
         body: Box<Statement>,
-        /// Tested behind each turn.
+        /// Tested after each turn.
         condition: Expression,
     },
     /// `for`
@@ -393,7 +393,7 @@ pub enum StatementKind {
         init: Box<Statement>,
         /// Tested before each turn.
         condition: Option<Expression>,
-        /// Evaluated behind each turn.
+        /// Evaluated after each turn.
         step: Option<Expression>,
         /// The body.
         body: Box<Statement>,
@@ -405,7 +405,7 @@ pub enum StatementKind {
         /// The body.
         body: Box<Statement>,
     },
-    /// `case first … last:` with the statement behind it
+    /// `case first … last:` with the statement after it
     Case {
         /// The value, or the first of a range.
         first: Expression,
@@ -414,9 +414,9 @@ pub enum StatementKind {
         /// The labelled statement.
         body: Box<Statement>,
     },
-    /// `default:` with the statement behind it
+    /// `default:` with the statement after it
     Default(Box<Statement>),
-    /// `name:` with the statement behind it
+    /// `name:` with the statement after it
     Label {
         /// The label.
         name: Name,
@@ -442,7 +442,7 @@ pub enum StatementKind {
 pub struct Expression {
     /// What it computes.
     pub kind: ExpressionKind,
-    /// Where it stands.
+    /// Where it is.
     pub span: Span,
 }
 
@@ -478,13 +478,13 @@ pub enum ExpressionKind {
     },
     /// A prefix operator.
     Unary(UnaryOperator, Box<Expression>),
-    /// `++`, `--`, before or behind.
+    /// `++`, `--`, before or after.
     Increment {
         /// What is changed.
         operand: Box<Expression>,
         /// `++`, else `--`.
         is_increment: bool,
-        /// The operator stands before the operand.
+        /// The operator comes before the operand.
         is_prefix: bool,
     },
     /// `(type) a`
@@ -575,7 +575,7 @@ pub struct StringLiteral {
 /// The prefix of a string or character constant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Encoding {
-    /// None: bytes as they stand in the source.
+    /// None: bytes as they are in the source.
     #[default]
     Plain,
     /// `u8`: the same.

@@ -3,8 +3,8 @@
 //! A text becomes tokens in [`pp`], which also reads what it includes, and [`parse`] makes of them a tree of the syntax,
 //! [`ast`]. [`sema`] gives every expression a type and writes out what C leaves implicit: the typed tree of
 //! [`typed`], over the types of [`ty`]; [`lints`] search that tree for mistakes. What is wrong is collected as
-//! diagnostics ([`diag`]), and analysis goes on. [`lower`] turns the typed tree of a function into [`ir`], basic blocks of
-//! three-address code for any target, which [`passes`] improve one after the other. A back end, [`bytecode`] for the
+//! diagnostics ([`diag`]), and analysis continues. [`lower`] turns the typed tree of a function into [`ir`], basic blocks of
+//! three-address code for any target, which [`passes`] improve one after another. A back end, [`bytecode`] for the
 //! simulated machine or `c67x` for the controller's processor, turns IR into words. [`object`] holds the words and data of a unit,
 //! [`link`] joins units, what they use of the C library, and the addresses of the [`firmware`] to one program, and
 //! [`image`] writes that as the file that a board loads. [`driver`] is the only place that knows the order of all this.

@@ -80,7 +80,7 @@ const USUAL_NAMES: usize = 4096;
 /// Every identifier of a compilation, each once.
 #[derive(Clone, Debug)]
 pub struct Names {
-    /// All spellings, one behind the other.
+    /// All spellings, one after another.
     text: String,
     /// Where each spelling ends in `text`.
     ends: Vec<usize>,

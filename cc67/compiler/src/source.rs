@@ -1,7 +1,7 @@
 //! Source files, positions and the macro expansions that tokens came through.
 //!
 //! Every byte of every file that a compilation reads has a number of its own: files lie one
-//! behind the other in a single position space. A [`Span`] is a range in it, together with
+//! after another in a single position space. A [`Span`] is a range in it, together with
 //! the macro expansion that put the text in its place, if one did. Spans are small and
 //! `Copy`; the [`SourceMap`] turns them back into file, line and column.
 
@@ -22,7 +22,7 @@ pub struct ExpansionId(u32);
 entity_impl!(ExpansionId, "expansion");
 
 impl ExpansionId {
-    /// Text that stands in a file as it is.
+    /// Text that is in a file as it is.
     pub const NONE: Self = Self(u32::MAX);
 }
 
@@ -31,14 +31,14 @@ impl ExpansionId {
 pub struct Span {
     /// Position of the first byte.
     pub lo: u32,
-    /// Position behind the last byte.
+    /// Position after the last byte.
     pub hi: u32,
     /// The innermost macro expansion the text came through; its call site says where to look.
     pub expansion: ExpansionId,
 }
 
 impl Span {
-    /// A span of text that stands in a file as it is.
+    /// A span of text that is in a file as it is.
     #[must_use]
     pub const fn new(lo: u32, hi: u32) -> Self {
         Self { lo, hi, expansion: ExpansionId::NONE }
@@ -71,7 +71,7 @@ pub struct SourceFile {
 }
 
 impl SourceFile {
-    /// Offsets of the line starts; a line ends behind its line feed.
+    /// Offsets of the line starts; a line ends after its line feed.
     #[must_use]
     pub fn lines(&self) -> &[u32] {
         self.lines.get_or_init(|| {
@@ -79,7 +79,7 @@ impl SourceFile {
         })
     }
 
-    /// The position behind the last byte.
+    /// The position after the last byte.
     #[must_use]
     pub fn end(&self) -> u32 {
         self.start + self.text.len() as u32
@@ -122,7 +122,7 @@ impl SourceMap {
         Self::default()
     }
 
-    /// Adds a file behind those already there.
+    /// Adds a file after those already there.
     pub fn add_file(
         &mut self,
         name: impl Into<String>,
@@ -144,7 +144,7 @@ impl SourceMap {
         })
     }
 
-    /// Adds text that stands in no file: a joined or quoted token. The caller gives its span an expansion.
+    /// Adds text that is in no file: a joined or quoted token. The caller gives its span an expansion.
     pub fn add_scratch(&mut self, text: &[u8]) -> Span {
         let scratch = match self.scratch {
             Some(file) => file,
@@ -164,7 +164,7 @@ impl SourceMap {
         self.file_at(span.lo).is_some_and(|file| self.files[file].is_scratch)
     }
 
-    /// The position behind everything added so far.
+    /// The position after everything added so far.
     #[must_use]
     pub fn end(&self) -> u32 {
         self.files.values().next_back().map_or(0, SourceFile::end)

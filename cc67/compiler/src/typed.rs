@@ -59,7 +59,7 @@ pub struct Symbol {
     pub ty: TypeId,
     /// Alignment that a declaration asks for; the type may want more.
     pub align: u32,
-    /// What stands at the address.
+    /// What is at the address.
     pub definition: Definition,
     /// The defining declaration, else the first one.
     pub span: Span,
@@ -207,7 +207,7 @@ pub struct Local {
 pub struct Label {
     /// Its name.
     pub name: String,
-    /// Where it stands.
+    /// Where it is.
     pub span: Span,
     /// The number that `&&label` gives and [`StmtKind::GotoAddress`] finds it by; counted from 1.
     pub address: Option<u32>,
@@ -227,7 +227,7 @@ pub struct Stmt {
 pub enum StmtKind {
     /// Evaluates and drops a value.
     Expr(ExprId),
-    /// Statements one after the other.
+    /// Statements one after another.
     Block(Vec<Stmt>),
     /// Branches on a value that is zero or not; integers, pointers and floats alike.
     If {
@@ -240,13 +240,13 @@ pub enum StmtKind {
     },
     /// Any loop: `while (condition) { body; step; }`, the first test left out for `do`.
     Loop {
-        /// Tested before each turn, or behind it; `None` is true.
+        /// Tested before each turn, or after it; `None` is true.
         condition: Option<ExprId>,
         /// When it is tested.
         test: LoopTest,
-        /// The body; `continue` goes behind it.
+        /// The body; `continue` goes past it.
         body: Vec<Stmt>,
-        /// Evaluated behind the body.
+        /// Evaluated after the body.
         step: Option<ExprId>,
     },
     /// Chooses among the cases of the body.
@@ -316,7 +316,7 @@ pub struct Expr {
     pub kind: ExprKind,
     /// The type of the value.
     pub ty: TypeId,
-    /// Where it stands.
+    /// Where it is.
     pub span: Span,
 }
 
@@ -331,7 +331,7 @@ pub enum ExprKind {
     Load(PlaceId),
     /// The address of a place.
     Address(PlaceId),
-    /// Stores a value of the place's type; the value is that of the place behind the store.
+    /// Stores a value of the place's type; the value is that of the place after the store.
     Assign(PlaceId, ExprId),
     /// `place = place op operand`, the place evaluated once, before the operand.
     Update(Update),
@@ -479,7 +479,7 @@ pub struct Place {
     pub kind: PlaceKind,
     /// The type of what is stored.
     pub ty: TypeId,
-    /// Where it stands.
+    /// Where it is.
     pub span: Span,
 }
 

@@ -1,6 +1,6 @@
 //! Expressions that are looked at while a program runs: C, in the words of the program.
 //!
-//! An expression is compiled as the result of a function behind the program's own text, so every name, type and macro of
+//! An expression is compiled as the result of a function after the program's own text, so every name, type and macro of
 //! the program means in it what it means there. It is not executed by the board but computed from the board's memory, so
 //! a run is the same whether it is watched or not. For the same reason it only reads.
 
@@ -399,7 +399,7 @@ pub(crate) fn read(ty: TypeId, bytes: [u8; 8]) -> Constant {
     }
 }
 
-/// A value as memory holds it; what is no number goes there as 0.
+/// A value as memory holds it; what is not a number goes there as 0.
 fn bytes_of(value: f64, ty: TypeId) -> Vec<u8> {
     match ty {
         Types::DOUBLE => value.to_le_bytes().into(),

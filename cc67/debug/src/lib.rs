@@ -1,8 +1,8 @@
-//! A debugger for programs on a simulated board: it stops anywhere, in all threads and the servo at one instant, and goes
+//! A debugger for programs on a simulated board: it stops anywhere, in all threads and the servo at the same instant, and goes
 //! back.
 //!
 //! A [`Debugger`] has a session and the debug information of its programs. It runs the session to breakpoints, changes of
-//! variables, traps and other events, by lines of one thread while the others go on as on the board, and back in time:
+//! variables, traps and other events, by lines of one thread while the others continue as on the board, and back in time:
 //! a step back is the last step before, found by executing the past again. [`Shell`] gives it the commands of gdb,
 //! [`dap`] the protocol by which editors debug.
 //!

@@ -1,4 +1,4 @@
-//! What is known of the programs in the threads.
+//! What is known about the programs in the threads.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -37,7 +37,7 @@ impl Programs {
         }
     }
 
-    /// What is known of the program in a thread.
+    /// What is known about the program in a thread.
     ///
     /// # Errors
     /// Why nothing is.
@@ -60,7 +60,7 @@ impl Programs {
         self.known.iter().filter_map(|(thread, (_, model))| Some((*thread, model.as_ref().ok()?)))
     }
 
-    /// Why nothing is known of some.
+    /// Why nothing is known about some.
     pub fn unknown(&self) -> impl Iterator<Item = String> {
         self.known.keys().filter_map(|thread| self.of(*thread).err())
     }
@@ -109,7 +109,7 @@ impl Programs {
         (all, taken)
     }
 
-    /// Where a function begins, behind what enters it.
+    /// Where a function begins, after what enters it.
     pub(crate) fn at_function(&self, name: &str, thread: Option<ThreadId>) -> Vec<Statement> {
         let mut found = Vec::new();
         for (number, model) in self.all().filter(|(number, _)| thread.is_none_or(|thread| thread == *number))

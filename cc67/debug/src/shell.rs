@@ -71,7 +71,7 @@ pub struct Shell {
     debugger: Debugger,
     /// The line that was given last, for an empty one.
     last: String,
-    /// The line that `list` goes on with.
+    /// The line that `list` continues with.
     listed: u32,
     values: u32,
 }
@@ -341,7 +341,7 @@ fn command_of(word: &str) -> Result<&'static str, DebugError> {
     }
 }
 
-/// The text before ` if `, and the condition behind it.
+/// The text before ` if `, and the condition after it.
 fn split_if(text: &str) -> (&str, Option<&str>) {
     let text = text.trim();
     if let Some(condition) = text.strip_prefix("if ") {

@@ -43,7 +43,7 @@ pub enum Readiness {
     Partial = 1,
     /// `Ready` came.
     Ready = 2,
-    /// `Ready` came behind an error.
+    /// `Ready` came after an error.
     ReadyAfterError = 3,
 }
 
@@ -102,8 +102,8 @@ impl Board {
         Self::from_session(session.expect("nothing is loaded that could be refused"))
     }
 
-    /// The first client of a board that is under control already. What clients do is not recorded: they may do it for
-    /// ever.
+    /// The first client of a board that is under control already. What clients do is not recorded: they may do it
+    /// forever.
     #[must_use]
     pub fn from_session(session: Session) -> Self {
         let mut state = State::new(session);
@@ -138,7 +138,7 @@ impl Board {
     /// Compiles a source, links it for a thread and loads it there; it does not start.
     ///
     /// # Errors
-    /// Why not: what was in the thread is there still, and goes on running.
+    /// Why not: what was in the thread is still there, and still running.
     ///
     /// ```
     /// use cc67_host::Board;
@@ -194,7 +194,7 @@ impl Board {
     /// Loads an image, as `cc67 build` writes it, into a thread.
     ///
     /// # Errors
-    /// Why not: what was in the thread is there still, and goes on running.
+    /// Why not: what was in the thread is still there, and still running.
     ///
     /// ```
     /// use cc67_host::Board;
@@ -226,7 +226,7 @@ impl Board {
         Ok(())
     }
 
-    /// Sends a line that the board echoes, and behind which it says `Ready`.
+    /// Sends a line that the board echoes, and after which it says `Ready`.
     ///
     /// # Errors
     /// [`HostError::NotConnected`].
@@ -246,7 +246,7 @@ impl Board {
         Ok(())
     }
 
-    /// The next line of a reply, with its line end, if it comes within so many milliseconds of board time.
+    /// The next line of a reply, with its line end, if it comes within this many milliseconds of board time.
     ///
     /// # Errors
     /// [`HostError::Timeout`], [`HostError::NotConnected`].
@@ -485,7 +485,7 @@ impl Board {
         2
     }
 
-    /// Lets so many seconds of board time pass.
+    /// Lets this many seconds of board time pass.
     ///
     /// ```
     /// let mut board = cc67_host::Board::new();
@@ -498,7 +498,7 @@ impl Board {
         self.state().advance(ticks(seconds), &mut |_| false);
     }
 
-    /// Lets board time pass until `is_over` says so behind a tick, at most so many seconds; whether it said so.
+    /// Lets board time pass until `is_over` says so after a tick, at most this many seconds; whether it said so.
     ///
     /// ```
     /// let mut board = cc67_host::Board::new();

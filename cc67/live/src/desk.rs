@@ -137,7 +137,7 @@ impl Mailbox {
     }
 }
 
-/// The value behind a lock; one whose holder panicked is as good as before, each change being complete.
+/// The value under a lock; one whose holder panicked is as good as before, each change being complete.
 pub(crate) fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

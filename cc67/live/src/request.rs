@@ -6,7 +6,7 @@ use serde::Deserialize;
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(tag = "do", rename_all = "lowercase", deny_unknown_fields)]
 pub(crate) enum PageRequest {
-    /// Send so many frames a second, at most 60; 0 for none.
+    /// Send this many frames a second, at most 60; 0 for none.
     Rate {
         /// Frames a second.
         frames: f64,
@@ -49,7 +49,7 @@ pub(crate) enum PageRequest {
         /// The list, commas in between.
         list: String,
     },
-    /// Show the board as it was at a tick; what is done then goes on from there.
+    /// Show the board as it was at a tick; what is done then continues from there.
     Goto {
         /// The tick.
         tick: u64,

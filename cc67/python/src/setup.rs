@@ -37,7 +37,7 @@ pub(crate) struct BoardArguments<'py> {
     uart_input: Vec<u8>,
 }
 
-/// A setup, and what is known of the axes.
+/// A setup, and what is known about the axes.
 pub(crate) struct Arranged {
     pub(crate) setup: Setup,
     /// Name and unit of each axis.

@@ -224,7 +224,7 @@ impl<E: Engine> Rig<E> {
         Ok(())
     }
 
-    /// Compiles and loads programs, and starts the first so many; whether their sources have no errors.
+    /// Compiles and loads programs, and starts the first of them; whether their sources have no errors.
     pub(crate) fn load(
         &mut self,
         files: &[ProgramFile],

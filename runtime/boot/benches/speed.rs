@@ -1,7 +1,7 @@
 //! How fast the processor's interpreter is: millions of cycles and packets a second of the computer's processor time.
 //!
 //! `kernel/integer`, `kernel/memory` and `kernel/double` are the loops of `c67x.md` 7 by hand. Where `CC67_FIRMWARE`
-//! names a firmware file, `boot` is its start (wanted: 0.3 s) and `idle` a board second after it (wanted: 1 s).
+//! names a firmware file, `boot` is its start (goal: 0.3 s) and `idle` a board second after it (goal: 1 s).
 //!
 //! ```sh
 //! CC67_FIRMWARE=DSPKFLOP.out cargo bench -p cc67-boot

@@ -63,7 +63,7 @@ pub struct Line {
     pub text: Vec<u8>,
 }
 
-/// Why the board stands still.
+/// Why the board does not move.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Halted {
     /// The firmware ran away.
@@ -104,7 +104,7 @@ impl BootedSnapshot {
         self.board.cycle()
     }
 
-    /// A board of its own that goes on from here.
+    /// A board of its own that continues from here.
     #[must_use]
     pub fn board(&self) -> BootedBoard {
         let mut board = self.board.clone();
@@ -285,7 +285,7 @@ impl BootedBoard {
         self.core.skip_waits(self.skips);
     }
 
-    /// Stands still from here on.
+    /// Does not move from here on.
     fn crash(&mut self, reason: String) -> Halted {
         let pc = self.core.state.pc();
         let from = (pc & !3).saturating_sub(AROUND);

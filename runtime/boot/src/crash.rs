@@ -1,4 +1,4 @@
-//! What is told of a firmware that went where no firmware goes.
+//! What is reported of a firmware that went where no firmware goes.
 
 use std::fmt;
 

@@ -55,7 +55,7 @@ impl Axis<'_> {
 }
 
 impl Loads {
-    /// Moves all loads by what the last tick put out, and shows them to the encoders.
+    /// Moves all loads by what the last tick output, and shows them to the encoders.
     pub(super) fn tick(&mut self, chan: GuestAddr, memory: &GuestMemory, window: &mut Window, now: u64) {
         for (number, load) in (0..).zip(&mut self.0) {
             let axis = Axis { memory, base: chan.offset(Chan::STRUCTURE.size * number) };

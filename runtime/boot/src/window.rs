@@ -41,7 +41,7 @@ const DIRECT: usize = 0x120;
 const READ: usize = 0x130;
 const GROUPS: usize = 6;
 
-/// The window and what is behind it.
+/// The window and what it shows.
 #[derive(Clone, Debug)]
 pub(super) struct Window {
     cells: Box<[u16; REGISTERS]>,
@@ -79,7 +79,7 @@ impl Default for Window {
 }
 
 impl Window {
-    /// As at power-up, but for the link and what is connected.
+    /// As at power-up, except for the link and what is connected.
     pub(super) fn reset(&mut self) {
         let old = std::mem::take(self);
         *self = Self {

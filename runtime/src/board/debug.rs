@@ -79,7 +79,7 @@ impl DebugInfo {
         Some(SourcePlace { function: &function.name, file: &function.file, line })
     }
 
-    /// What lies at or just before a data address, in words: "4 bytes past the end of `table`".
+    /// What is at or just before a data address, in words: "4 bytes past the end of `table`".
     #[must_use]
     pub fn describe(&self, address: GuestAddr) -> Option<String> {
         /// Farther than this from an object, naming it would mislead.
@@ -98,7 +98,7 @@ impl DebugInfo {
         let past = offset - object.size;
         let plural = if past == 1 { "" } else { "s" };
         (past < NEAR).then(|| match past {
-            0 => format!("right behind `{name}`"),
+            0 => format!("right after `{name}`"),
             _ => format!("{past} byte{plural} past the end of `{name}`"),
         })
     }

@@ -41,7 +41,7 @@ pub struct Placed {
 pub enum Fill {
     /// These bytes.
     Bytes(Vec<u8>),
-    /// So many bytes of uninitialised data.
+    /// This many bytes of uninitialised data.
     Uninitialised(u32),
 }
 
@@ -79,7 +79,7 @@ pub enum LoadError {
     Missing(&'static str),
     /// Linked for another thread.
     #[error(
-        "the image is linked for thread {linked}, not for thread {wanted}: its code and data stand at the \
+        "the image is linked for thread {linked}, not for thread {wanted}: its code and data are at the \
          addresses of thread {linked}; load it there, or build it for thread {wanted}"
     )]
     OtherThread {
@@ -261,7 +261,7 @@ fn place(section: &Section) -> Placed {
 
 /// Collects functions, lines and objects from the symbol table.
 ///
-/// A file symbol names the file of the functions behind it. The size of an object stands in its
+/// A file symbol names the file of the functions after it. The size of an object is in its
 /// auxiliary entry, where that of a function is too.
 fn debug(image: &Image) -> DebugInfo {
     let mut file = String::new();

@@ -93,7 +93,7 @@ pub enum RunEnd {
 #[derive(Clone, Debug)]
 struct Loaded {
     debug: DebugInfo,
-    /// Addresses from its first to behind its last byte.
+    /// Addresses from its first to after its last byte.
     extent: Range<u32>,
 }
 
@@ -101,7 +101,7 @@ struct Loaded {
 #[derive(Clone, Debug, Default)]
 struct Programs {
     loaded: [Option<Loaded>; ThreadId::MAX as usize],
-    /// What is known of the programs in flash.
+    /// What is known about the programs in flash.
     flashed: [Option<DebugInfo>; ThreadId::MAX as usize],
     /// Images that a stimulus may load, by the thread they are linked for and what it calls them.
     offered: BTreeMap<(ThreadId, Arc<str>), Vec<u8>>,
@@ -207,7 +207,7 @@ impl<E: Engine> Board<E> {
     }
 
     /// Runs to the end of the next tick in which something can happen, or of tick `limit`, whichever comes first; a tick
-    /// that is held is gone on with in any case.
+    /// that is held is continued in any case.
     pub fn advance(&mut self, limit: Ticks, sink: &mut dyn FnMut(Event)) {
         if self.machine.tick() < limit || self.machine.held().is_some() {
             self.step(limit);
@@ -224,7 +224,7 @@ impl<E: Engine> Board<E> {
 
     /// Runs until `is_over` says so of the events of a tick, or to the end of tick `limit`; whether it said so.
     ///
-    /// Unlike [`run`](Self::run) it goes on when all threads have ended, and leaves unfinished console lines alone.
+    /// Unlike [`run`](Self::run) it continues when all threads have ended, and leaves unfinished console lines alone.
     pub fn run_until(&mut self, limit: Ticks, is_over: &mut dyn FnMut(Event) -> bool) -> bool {
         while self.machine.tick() < limit {
             self.step(limit);
@@ -346,7 +346,7 @@ mod tests {
     /// `sig0` is `()`, `sig1` `(i32, f64)`, `sig2` `(f64)`, `sig3` `(i32) -> i32`; the pool holds 0, 100 and 0.5.
     const HEAD: &str = "program 1, 3\nword 0x0\nword 0x4059000000000000\nword 0x3fe0000000000000
 sig 0, 0\nsig 2, 0\ntypes 0xc\nsig 1, 0\ntypes 3\nsig 1, 1\ntypes 0\n";
-    /// First word behind it.
+    /// First word after it.
     const MAIN: usize = 11;
     /// Where the text to print stands, in the thread's own space.
     const TEXT: u32 = 0x8005_F000;

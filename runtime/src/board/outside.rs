@@ -1,4 +1,4 @@
-//! What stands around the board: the PC, signals on its pins and lines, and who records them.
+//! What is around the board: the PC, signals on its pins and lines, and who records them.
 
 use kmotiondef::{AxisId, Bit};
 use vm::engine::Engine;
@@ -64,7 +64,7 @@ impl<E: Engine> Board<E> {
         kernel.parts.disturb();
     }
 
-    /// Puts characters on the UART's line; they arrive one after the other at its rate.
+    /// Puts characters on the UART's line; they arrive one after another at its rate.
     pub fn send_to_uart(&mut self, bytes: &[u8]) {
         let (kernel, context) = self.machine.firmware_mut();
         kernel.parts.io.uart.arrive(bytes, context.now);

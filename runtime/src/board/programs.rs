@@ -47,7 +47,7 @@ impl<E: Engine> Board<E> {
         Ok(())
     }
 
-    /// What is known of programs, to change it; snapshots keep what they have.
+    /// What is known about programs, to change it; snapshots keep what they have.
     pub(super) fn programs_mut(&mut self) -> &mut Programs {
         Arc::make_mut(&mut self.programs)
     }
@@ -93,7 +93,7 @@ impl<E: Engine> Board<E> {
         }
     }
 
-    /// What is known of the image in `thread`.
+    /// What is known about the image in `thread`.
     #[must_use]
     pub fn debug(&self, thread: ThreadId) -> Option<&DebugInfo> {
         self.programs.loaded[thread.index()].as_ref().map(|loaded| &loaded.debug)
@@ -136,7 +136,7 @@ impl<E: Engine> Board<E> {
         self.machine.start(thread)
     }
 
-    /// Keeps an image that a stimulus may load into `thread` under this name; what is known of its program.
+    /// Keeps an image that a stimulus may load into `thread` under this name; what is known about its program.
     ///
     /// # Errors
     /// Why the image would be refused.

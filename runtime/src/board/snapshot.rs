@@ -1,4 +1,4 @@
-//! A board as it was at an instant between two ticks, to go on from there as often as one likes.
+//! A board as it was at an instant between two ticks, to continue from there as often as one likes.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use crate::kernel::Kernel;
 
 /// Everything that a board holds besides its settings.
 ///
-/// Guest memory is shared with earlier snapshots in pages of 4 KiB, and what is known of programs with the board.
+/// Guest memory is shared with earlier snapshots in pages of 4 KiB, and what is known about programs with the board.
 #[derive(Debug)]
 pub struct BoardSnapshot<E: Engine> {
     machine: MachineSnapshot<<E as Executor>::Snapshot>,
@@ -53,7 +53,7 @@ impl<E: Engine> Board<E> {
         }
     }
 
-    /// Makes the board what it was when `snapshot` was taken; it goes on from there byte for byte as it went on then.
+    /// Makes the board what it was when `snapshot` was taken; it continues from there byte for byte as it continued then.
     ///
     /// Snapshots may be restored in any order, each as often as one likes. One of a board on the interpreter may also be
     /// restored in another board with the same settings.

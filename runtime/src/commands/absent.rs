@@ -60,7 +60,7 @@ const WORDS: &[(&str, Why)] = &[
     ("SPISETMODE", OtherBoard),
 ];
 
-/// Letters that a block of G code begins with, and behind which a number stands.
+/// Letters that a block of G code begins with, and after which a number stands.
 const G_CODE: &[u8] = b"GMTSFN";
 
 /// What is to be said of a part, in upper case, that begins with no command.

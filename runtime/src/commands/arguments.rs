@@ -1,7 +1,7 @@
 //! Arguments of script commands: what each command takes, and how the board reads it.
 //!
 //! The rules, odd ones included, are those of the released firmware (host-protocol.md section 2): a number ends where
-//! it ends and what follows it is ignored; only spaces separate; a hexadecimal number takes the character behind it
+//! it ends and what follows it is ignored; only spaces separate; a hexadecimal number takes the character after it
 //! along, whatever that is; a mistake is reported with the column where reading stopped.
 
 use kmotiondef::{AxisId, Bit, ThreadId};
@@ -19,7 +19,7 @@ pub enum Argument {
     Limited(f32, f32),
     /// A hexadecimal number of 32 bits.
     Hex,
-    /// A hexadecimal number that may be missing, with all behind it.
+    /// A hexadecimal number that may be missing, with all after it.
     OptionalHex,
     /// An equals sign.
     Equals,
@@ -39,7 +39,7 @@ pub(super) struct Mistake {
 /// What is said about a mistake.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Message {
-    /// The first word is no command.
+    /// The first word is not a command.
     InvalidCommand,
     /// A number is missing or is none.
     Number,
@@ -84,7 +84,7 @@ impl<'t> Reader<'t> {
         self.text.get(self.column..).unwrap_or_default()
     }
 
-    /// Where it stands once the spaces are skipped.
+    /// Where it is once the spaces are skipped.
     fn behind_spaces(&self) -> Self {
         let spaces = self.rest().iter().take_while(|&&byte| byte == b' ').count();
         Self { column: self.column + spaces, ..*self }
@@ -131,7 +131,7 @@ impl<'t> Reader<'t> {
         Ok(value)
     }
 
-    /// A hexadecimal number, low 32 bits, and the character behind it.
+    /// A hexadecimal number, low 32 bits, and the character after it.
     pub(super) fn hex(&mut self) -> Result<u32, Mistake> {
         let mut next = self.behind_spaces();
         let is_negative = next.rest().first() == Some(&b'-');

@@ -11,7 +11,7 @@ use crate::views::Typed;
 
 /// What the board replies when flash is written (host-protocol.md section 9).
 const FLASH_COMPLETE: &str = "Program Flash Image Complete";
-/// Characters of `Echo` and the one behind it.
+/// Characters of `Echo` and the one after it.
 const ECHO: usize = 5;
 /// The UART's clock, 16 of whose periods make the shortest bit.
 const UART_CLOCK: i32 = 16_666_666 / 16;

@@ -1,4 +1,4 @@
-//! Data lines: what some commands ask for behind their own line.
+//! Data lines: what some commands ask for after their own line.
 //!
 //! A data line holds a fixed count of hexadecimal numbers; what follows them on the line is ignored.
 
@@ -56,7 +56,7 @@ pub(super) struct Data {
 }
 
 impl Data {
-    /// `count` numbers that go to `start` and behind.
+    /// `count` numbers that go to `start` and after.
     pub(super) const fn new(kind: Kind, start: GuestAddr, count: usize) -> Self {
         Self { kind, start, place: start, left: count }
     }

@@ -124,7 +124,7 @@ fn available(values: &Values) -> usize {
     values.count(1).min(GATHER_WORDS as usize - values.count(0))
 }
 
-/// Words, eight on a line; those behind the end of the buffer are left out.
+/// Words, eight on a line; those after the end of the buffer are left out.
 pub(super) fn get_hex(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let start = word(session, values).address();
     let memory = &*session.memory();

@@ -54,7 +54,7 @@ pub(super) fn get_bit_direction(session: &mut Session<'_, '_>, values: &Values) 
     session.call(|parts, caller| io::get_bit_direction(parts, caller, values.integer(0))).into()
 }
 
-/// Words of the extended virtual bits on one line. The released firmware goes on reading behind the last word, and
+/// Words of the extended virtual bits on one line. The released firmware continues reading after the last word, and
 /// hangs; a count of 0 yields nothing.
 pub(super) fn get_virtual_bits(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let (first, count) = (values.count(0), values.count(1));

@@ -35,7 +35,7 @@ pub(super) fn fixed(value: f64) -> String {
     formatted("%f", value)
 }
 
-/// A limit of a real, by `%f`. The digits of 1e12 are as recorded: the board's own are wrong behind the 16th.
+/// A limit of a real, by `%f`. The digits of 1e12 are as recorded: the board's own are wrong after the 16th.
 pub(super) fn limit(value: f32) -> String {
     let text = if value.abs() == 1e12 { "999999995904.000163".to_owned() } else { fixed(value.abs().into()) };
     if value < 0.0 { format!("-{text}") } else { text }

@@ -40,7 +40,7 @@ fn point(first: usize, numbers: &[f32]) -> Point {
     point
 }
 
-/// Reports what the buffer has to say.
+/// Reports the state of the buffer.
 fn noted(session: &mut Session<'_, '_>, result: Result<(), Message>) -> Answer {
     if let Err(message) = result {
         session.parts.out.remark(session.context.now, message);

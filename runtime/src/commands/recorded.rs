@@ -15,10 +15,10 @@ use crate::text::vectors::rows;
 const BY_FORM: &[(&str, &str, &str)] = &[
     ("ADC", "ADC", "the recorded board has nothing connected, which reads as the lowest value"),
     ("GETSTATUS", "GETSTATUS", "analog inputs, time stamp"),
-    ("GETVIRTUALBITS", "GETVIRTUALBITS31 31", "a word behind the array"),
+    ("GETVIRTUALBITS", "GETVIRTUALBITS31 31", "a word after the array"),
     ("move and poll", "Dest0", "an axis that jogs while lines go back and forth"),
-    ("buffer", "ExecTime", "time goes on while lines go back and forth"),
-    ("buffer", "Dest0", "time goes on while lines go back and forth"),
+    ("buffer", "ExecTime", "time continues while lines go back and forth"),
+    ("buffer", "Dest0", "time continues while lines go back and forth"),
     ("host-replies", "\u{1b}\u{1}ADC0", "as above"),
 ];
 
@@ -65,7 +65,7 @@ impl Wire {
         self.desk.kernel.parts.out.take_events().into_iter().map(wire).collect()
     }
 
-    /// Sends a recorded line, or does what stands in its place in parentheses.
+    /// Sends a recorded line, or does what is in its place in parentheses.
     fn exchange(&mut self, line: &str) -> String {
         let Some(action) = line.strip_prefix('(').and_then(|line| line.strip_suffix(')')) else {
             return self.send(format!("\x1b\x01{line}\r").as_bytes());

@@ -21,7 +21,7 @@ pub(super) enum Answer {
     Lines(Vec<String>),
     /// A console line.
     Console(Vec<u8>),
-    /// The command goes on with data lines.
+    /// The command continues with data lines.
     Data(Data),
     /// A console line that says why nothing is done.
     Refused(&'static str),

@@ -1,6 +1,6 @@
 //! The table of script commands.
 //!
-//! Rows stand in groups; the order means nothing, as the longest word that matches wins. Words, arguments and limits
+//! Rows are in groups; the order means nothing, as the longest word that matches wins. Words, arguments and limits
 //! are those of the released firmware (host-protocol.md section 3.2).
 
 use kmotiondef::structs::Chan;

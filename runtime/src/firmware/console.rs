@@ -18,7 +18,7 @@ use crate::text::{Arguments, Scanned, Sink, format_counted, scan};
 /// Longest string a `%s` reads.
 const LONGEST: u32 = 0x10_0000;
 
-/// The values behind `...`, as they lie in guest memory: each aligned to its own size.
+/// The values after `...`, as they lie in guest memory: each aligned to its own size.
 pub(crate) struct GuestArguments<'a> {
     memory: &'a mut GuestMemory,
     at: u32,
@@ -91,7 +91,7 @@ impl Sink for GuestArguments<'_> {
     }
 }
 
-/// Formats the values behind `...`.
+/// Formats the values after `...`.
 pub(crate) fn formatted(
     caller: &mut Caller<'_>,
     pattern: GuestAddr,
@@ -104,7 +104,7 @@ pub(crate) fn formatted(
     Ok(formatted.text)
 }
 
-/// Converts `text` under a pattern into the places behind `...`.
+/// Converts `text` under a pattern into the places after `...`.
 pub(crate) fn converted(
     caller: &mut Caller<'_>,
     text: &[u8],
@@ -140,7 +140,7 @@ pub(crate) fn put(parts: &mut Parts, caller: &Caller<'_>, text: &[u8], result: i
     Outcome::Wait(Wake::Retry)
 }
 
-/// Goes on with a call that waits for the queue.
+/// Continues a call that waits for the queue.
 pub(crate) fn resumed(parts: &mut Parts, caller: &Caller<'_>) -> Option<Outcome<i32>> {
     caller.woken?;
     match parts.calls.take(caller) {

@@ -111,7 +111,7 @@ pub(crate) fn stop_coordinated_motion(parts: &mut Parts, caller: &mut Caller<'_>
     stop_later(parts, caller, left)
 }
 
-/// Goes on with stopping axes in the next slice, the last one first.
+/// Continues to stop axes in the next slice, the last one first.
 fn stop_later(parts: &mut Parts, caller: &Caller<'_>, left: Vec<AxisId>) -> Outcome<()> {
     if left.is_empty() {
         return Outcome::Done(());
@@ -124,7 +124,7 @@ pub(crate) fn update_stopping_state(_: &mut Parts, caller: &mut Caller<'_>) {
     hold::update_state(caller.memory);
 }
 
-/// Ends a feedhold. A thread waits for a slice in front of each axis but the first, and of that if it still moves: the
+/// Ends a feedhold. A thread waits for a slice before each axis but the first, and of that if it still moves: the
 /// board plans there.
 pub(crate) fn resume_coordinated_motion(parts: &mut Parts, caller: &mut Caller<'_>) -> Outcome<()> {
     let (mut left, mut has_planned) = match (caller.woken, parts.calls.take(caller)) {

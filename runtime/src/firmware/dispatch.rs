@@ -20,10 +20,10 @@ use crate::firmware::{
 /// What a call came to.
 pub(crate) type Answer = Result<Outcome<Value>, TrapKind>;
 
-/// One firmware function behind one signature.
+/// One firmware function under one signature.
 pub(crate) type Handler = fn(&mut Parts, &mut Caller<'_>) -> Answer;
 
-/// The address of the values behind `...`.
+/// The address of the values after `...`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Varargs(pub(crate) GuestAddr);
 
@@ -120,7 +120,7 @@ impl<T: IntoOutcome> IntoOutcome for Result<T, TrapKind> {
     }
 }
 
-/// A Rust function that takes `Parameters` behind parts and caller.
+/// A Rust function that takes `Parameters` after parts and caller.
 trait Function<Parameters> {
     /// The classes of its arguments.
     const PARAMETERS: &'static [Class];

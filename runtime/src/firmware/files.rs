@@ -1,6 +1,6 @@
 //! Text files on the PC. Source: gather-persist-console.md section 6, host-protocol.md section 6.
 //!
-//! Everything goes through the console's queue, as lines that begin with a code; so what programs write stands in the
+//! Everything goes through the console's queue, as lines that begin with a code; so what programs write is in the
 //! order of all that is printed, and waits as prints do. Reading is one line ahead: `fopen` brings the first line into
 //! `read_disk_buffer`, and each line that is taken asks for the next. `FILE` is an int and the board keeps no table: one
 //! handle stands for the file open for reading, one for the file open for writing.
@@ -49,7 +49,7 @@ impl Arguments for Nothing {
     }
 }
 
-/// A request as it is printed. Odd and kept: the text behind the code is taken as a format a second time.
+/// A request as it is printed. Odd and kept: the text after the code is taken as a format a second time.
 fn printed(request: Request, text: &[u8]) -> Result<Vec<u8>, TrapKind> {
     let text = format(&[&[request.code()], text].concat(), &mut Nothing)?;
     Ok(cut(&text).to_vec())
@@ -107,7 +107,7 @@ pub(crate) fn fopen(
     Ok(if waits { Outcome::Wait(Wake::Retry) } else { address(outcome) })
 }
 
-/// Goes on with an opening: the request is still to be sent, or its answer to come.
+/// Continues an opening: the request is still to be sent, or its answer to come.
 fn opened(parts: &mut Parts, caller: &Caller<'_>) -> Outcome<GuestAddr> {
     if let Some(Continuation::Print { rest, result }) = parts.calls.take(caller) {
         let outcome = address(put(parts, caller, &rest, result));
@@ -197,7 +197,7 @@ pub(crate) fn fgets(
     Ok(send(parts, caller, Request::NextLine, to))
 }
 
-/// Goes on with sending the request for the next line, if the call waits for that.
+/// Continues sending the request for the next line, if the call waits for that.
 fn sent(parts: &mut Parts, caller: &Caller<'_>) -> Option<Outcome<i32>> {
     caller.woken?;
     match parts.calls.take(caller) {

@@ -71,7 +71,7 @@ pub(crate) fn enable_axis_dest(parts: &mut Parts, caller: &mut Caller<'_>, axis:
     }
 }
 
-/// Makes an axis stand at a destination and turns it on.
+/// Puts an axis at a destination and turns it on.
 fn enable(parts: &mut Parts, memory: &mut GuestMemory, axis: AxisId, dest: f64) {
     switching::enable(&mut parts.servo, &mut parts.machine, memory, axis, dest);
 }
@@ -145,7 +145,7 @@ fn planning_wait(parts: &Parts, caller: &Caller<'_>, axis: AxisId) -> Option<Wak
 
 /// Tells a program that calls motions faster than the board plans them why the axis does not get on.
 fn notice_hurry(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, function: &'static str) {
-    /// So many in a row are no chance; it is told once.
+    /// That many in a row are not a coincidence; it is reported once.
     const CALLS: u8 = 50;
     let calls = &mut parts.calls.hurried_calls[axis.index()];
     if is_planned(caller.memory, axis) {
@@ -409,7 +409,7 @@ pub(crate) fn setup_for_move(
         return Ok(());
     };
     let ramps = [abrupt_start, abrupt_end].map(|flag| if flag != 0 { Ramp::Abrupt } else { Ramp::Smooth });
-    // Without the standing tick and the end: those come from SetupForMotionPause and SetupForMotionEnd.
+    // Without the resting tick and the end: those come from SetupForMotionPause and SetupForMotionEnd.
     let states = profile::bare_move(from, to, ramps, &limits);
     write(caller.memory, axis, index(offset), &states);
     if !count.is_null() {

@@ -32,7 +32,7 @@ pub(crate) fn wait_until(parts: &mut Parts, caller: &mut Caller<'_>, time: f64) 
     delay_sec(parts, caller, remaining)
 }
 
-/// Waits so many seconds. The call-back cannot wait: it spends the time.
+/// Waits this many seconds. The call-back cannot wait: it spends the time.
 pub(crate) fn delay_sec(parts: &mut Parts, caller: &mut Caller<'_>, seconds: f64) -> Outcome<()> {
     if caller.woken.is_some() || seconds.is_nan() || seconds <= 0.0 {
         return Outcome::Done(());

@@ -1,4 +1,4 @@
-//! What functions that wait still do when the wait is over, as the board does (costs.md section 3).
+//! What functions that wait still do when the wait has ended, as the board does (costs.md section 3).
 //!
 //! The table's cost is spent when the call is made; what is spent after the wait depends on why it waited.
 

@@ -31,7 +31,7 @@ pub(crate) struct Changes {
     list: Vec<BitChange>,
     /// How many of them the devices have seen.
     seen: usize,
-    /// The virtual bits as they were last told, the extended ones behind.
+    /// The virtual bits as they were last told, the extended ones after.
     words: Vec<u32>,
 }
 

@@ -80,7 +80,7 @@ pub(crate) fn text(memory: &GuestMemory, thread: ThreadId) -> Option<Range<Guest
     (end > base.get() && end <= PROGRAM_BASE + PROGRAMS).then(|| base..GuestAddr::new(end))
 }
 
-/// Erases the block at `to` and programs it with 16-bit words; `false` if that is no block of the users', or the
+/// Erases the block at `to` and programs it with 16-bit words; `false` if that is not a block of the users', or the
 /// words are too many.
 pub(crate) fn program(memory: &mut GuestMemory, to: GuestAddr, words: &[u8]) -> bool {
     let offset = to.get().wrapping_sub(FLASH.base.get());
@@ -93,7 +93,7 @@ pub(crate) fn program(memory: &mut GuestMemory, to: GuestAddr, words: &[u8]) -> 
     memory.poke_bytes(to, &block).is_ok()
 }
 
-/// Bytes of so many words; `None` if a call does not take as many.
+/// Bytes of this many words; `None` if a call does not take as many.
 pub(crate) fn length(words: i32) -> Option<u32> {
     (0..=WORD_LIMIT).contains(&words).then_some(words.unsigned_abs() * 2)
 }

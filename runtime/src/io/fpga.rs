@@ -24,7 +24,7 @@ const LANE: u32 = 2;
 /// Groups of eight pins.
 const GROUPS: u32 = PINS as u32 / 8;
 
-/// A range of registers and what is known of it.
+/// A range of registers and what is known about it.
 struct Registers {
     first: u32,
     last: u32,
@@ -48,7 +48,7 @@ enum Kind {
     UartData,
     /// The UART's status when read, its divisor when written.
     UartStatus,
-    /// Values and switches of the PWM generators, one after the other.
+    /// Values and switches of the PWM generators, one after another.
     Pwm,
     /// What the pins of the port carry.
     Port,
@@ -122,7 +122,7 @@ const KANALOG_INPUTS: i32 = 128;
 /// Pins of JP7 that the interface of Kanalog occupies.
 const JP7_PINS: u16 = 16;
 
-/// What stands behind the registers that act, and the instant of an access.
+/// What the registers act on, and the instant of an access.
 #[derive(Debug)]
 pub(crate) struct Behind<'a> {
     pub(crate) pins: &'a mut Pins,
@@ -152,7 +152,7 @@ impl Default for Fpga {
     }
 }
 
-/// So many bits from a number on.
+/// This many bits from a number on.
 fn bits(first: i32, count: i32) -> impl Iterator<Item = Bit> {
     (first..first + count).filter_map(Bit::new)
 }
@@ -307,7 +307,7 @@ impl Fpga {
 mod tests {
     use super::*;
 
-    /// Registers and what stands behind them.
+    /// Registers and what they act on.
     #[derive(Default)]
     pub(super) struct Bench {
         pub(super) fpga: Fpga,

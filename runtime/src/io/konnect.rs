@@ -39,7 +39,7 @@ pub(crate) struct Service {
     pub(crate) inputs: GuestAddr,
 }
 
-/// The boards served, and what stands at their terminals.
+/// The boards served, and what is at their terminals.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Konnects {
     services: Vec<Service>,

@@ -45,7 +45,7 @@ pub(crate) struct Io {
 }
 
 impl Io {
-    /// The registers and what is behind them.
+    /// The registers and what they act on.
     pub(crate) fn registers(&mut self, now: Cycles) -> (&mut Fpga, Behind<'_>) {
         let behind = Behind {
             pins: &mut self.pins,

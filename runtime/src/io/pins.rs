@@ -49,7 +49,7 @@ pub(crate) struct Pins {
     driven: BitSet,
     /// Inputs that carry the phases of an encoder.
     phases: u64,
-    /// Pins whose fast signals are told edge by edge, and the levels last told of them.
+    /// Pins whose fast signals are told edge by edge, and the levels last reported of them of them.
     watched: u64,
     shown: u64,
     /// What changed, for those who want to know.
@@ -147,7 +147,7 @@ impl Pins {
         }
     }
 
-    /// An encoder gives its two inputs from `first` on the levels of two bits, unless something else stands there.
+    /// An encoder gives its two inputs from `first` on the levels of two bits, unless something else is there.
     #[inline]
     pub(crate) fn show_phases(&mut self, first: u16, levels: u64, at: Cycles) {
         let mask = 0b11 << first & !self.driven.0[0];
@@ -192,7 +192,7 @@ impl Pins {
         }
     }
 
-    /// Something will drive an input: its level is no accident.
+    /// Something will drive an input: its level is not an accident.
     pub(crate) fn declare(&mut self, bit: Bit) {
         self.driven.set(bit, true);
     }

@@ -28,7 +28,7 @@ pub(crate) struct Uart {
     is_attended: bool,
     /// When the transmitter's shift register is through.
     sent: Cycles,
-    /// The character that waits behind it.
+    /// The character that waits after it.
     waiting: Option<u8>,
     /// Whether somebody listens, and characters sent since the last time.
     is_heard: bool,

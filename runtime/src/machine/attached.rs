@@ -1,6 +1,6 @@
 //! Devices on the board's lines: pins, Konnect outputs, the UART.
 //!
-//! They answer an edge at its very instant. When one is attached it is told every bit that is high, so that it can take
+//! They answer an edge at its very instant. When one is attached it gets every bit that is high, so that it can take
 //! all others for low. Without any, a tick costs nothing. Which devices there are is written in `world`.
 
 use std::fmt::Debug;

@@ -9,7 +9,7 @@ use kmotiondef::{AxisId, Bit};
 pub enum Model {
     /// Goes where the axis commands, whatever its gains.
     Follow,
-    /// Is driven by what the board really puts out.
+    /// Is driven by what the board really outputs.
     Motor,
     /// Nothing moves it.
     None,
@@ -266,7 +266,7 @@ pub struct Wire {
     pub to: Bit,
     /// Whether it inverts.
     pub invert: bool,
-    /// How late the input follows.
+    /// The delay of the input.
     pub delay_s: f64,
 }
 

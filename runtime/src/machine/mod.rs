@@ -1,6 +1,6 @@
 //! The simulated machine that the board moves: loads of the axes, what they trip, devices on the board's lines.
 //!
-//! It is moved by what the board puts out, and knows only inputs and outputs and guest memory.
+//! It is moved by what the board outputs, and sees only inputs and outputs and guest memory.
 
 pub(crate) mod attached;
 pub(crate) mod description;
@@ -33,7 +33,7 @@ use crate::io::snapamp::SnapAmps;
 use crate::machine::attached::{Attached, Outside};
 use crate::out::{EventKind, Message, Out};
 
-/// Edges that devices may answer at one instant.
+/// Edges that devices may answer at the same instant.
 const EDGES_AT_ONCE: usize = 10_000;
 
 /// Opto inputs of a SnapAmp, and the first of each board.
@@ -78,7 +78,7 @@ impl IndexMut<AxisId> for Loads {
     }
 }
 
-/// What is behind the board's outputs.
+/// What is connected to the board's outputs.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Machine {
     pub(crate) loads: Loads,

@@ -2,7 +2,7 @@
 //!
 //! An axis as it is without a machine file goes where it is commanded: step generators move it by their steps, one
 //! tick late; closed loops follow with a first-order lag, whatever their gains. With the model `motor` it is driven by
-//! what the board really puts out.
+//! what the board really outputs.
 
 use std::f64::consts::TAU;
 
@@ -28,7 +28,7 @@ pub(crate) enum Drive {
     None,
     /// A step generator or microstepping: the command it goes to, in position units.
     Steps(f64),
-    /// A closed loop with this command, and what it puts out.
+    /// A closed loop with this command, and what it outputs.
     Loop(f64, Applied),
     /// A vector on the phases of a disabled axis: magnitude, and angle in cycles.
     Vector(f64, f64),
@@ -107,7 +107,7 @@ struct Steps {
     reached: f64,
     /// Where the load is when that command is 0.
     origin: f64,
-    /// What it has put out in the last tick, whether that is to be told, and whether its amplifier is off.
+    /// What it has output in the last tick, whether that is to be told, and whether its amplifier is off.
     stepped: f64,
     has_stepped: bool,
     is_off: bool,
@@ -220,7 +220,7 @@ impl Plant {
         self.position = position;
     }
 
-    /// The step generator stands at this command: enabling moves nothing.
+    /// The step generator is at this command: enabling moves nothing.
     pub(crate) fn refer_to(&mut self, command: f64) {
         self.steps.reached = command;
         self.steps.origin = self.load - command;
@@ -230,7 +230,7 @@ impl Plant {
         }
     }
 
-    /// Something outside moves the load; step generators go on from there.
+    /// Something outside moves the load; step generators continue from there.
     pub(crate) fn push(&mut self, units: f64) {
         self.load += units;
         self.steps.origin += units;
@@ -243,7 +243,7 @@ impl Plant {
         }
     }
 
-    /// Moves the load by what the last tick put out, and takes up a position that a program has written; whether
+    /// Moves the load by what the last tick output, and takes up a position that a program has written; whether
     /// anything changed. An encoder reaches as far as `reach` in a tick, a step generator makes at most
     /// `steps_per_tick`.
     #[inline(always)]
@@ -310,7 +310,7 @@ impl Plant {
         self.steps.has_stepped
     }
 
-    /// Position units that the step generator has put out since the last time.
+    /// Position units that the step generator has output since the last time.
     pub(crate) fn take_stepped(&mut self) -> f64 {
         self.steps.has_stepped = false;
         std::mem::take(&mut self.steps.stepped)
@@ -321,7 +321,7 @@ impl Plant {
         std::mem::take(&mut self.steps.is_behind)
     }
 
-    /// Switches the amplifier behind the step generator on or off; without it the steps are lost.
+    /// Switches the amplifier of the step generator on or off; without it the steps are lost.
     pub(crate) fn set_amplifier(&mut self, is_on: bool) {
         self.steps.is_off = !is_on;
     }
@@ -347,7 +347,7 @@ impl Plant {
         self.steps.origin = self.load - self.steps.reached;
     }
 
-    /// Turns the rotor towards a vector: to the nearest place where it stands.
+    /// Turns the rotor towards a vector: to the nearest place where it rests.
     fn turn(&mut self, magnitude: f64, angle: f64, chan: &AxisView<'_>) {
         if magnitude == 0.0 {
             return;

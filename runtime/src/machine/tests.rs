@@ -1,4 +1,4 @@
-//! Machines behind the board: what programs see of them.
+//! Machines connected to the board: what programs see of them.
 
 use kmotiondef::modes::{InputMode, OutputMode};
 use kmotiondef::structs::Chan;
@@ -23,7 +23,7 @@ fn desk(machine: &str) -> Desk {
     desk
 }
 
-/// A desk with a motor on axis 0, enabled as a servo that stands at 0, to be commanded to 400 with limits as in the
+/// A desk with a motor on axis 0, enabled as a servo that is at 0, to be commanded to 400 with limits as in the
 /// reference table of plant.md.
 fn servo(p: f32, i: f32, d: f32) -> Desk {
     let mut desk = desk("[axis.0]\nmodel = \"motor\"");

@@ -17,7 +17,7 @@ const QUEUE_LIMIT: usize = MAX_NSTRINGS - 1;
 pub(crate) struct Console {
     held: Vec<u8>,
     queue: VecDeque<Vec<u8>>,
-    /// What the servo has to say: one place for all axes and all kinds of events.
+    /// What the servo reports: one place for all axes and all kinds of events.
     servo: Option<String>,
     /// Strings queued since power-up.
     queued: u64,
@@ -56,7 +56,7 @@ impl Console {
         self.servo.get_or_insert_with(|| text.to_owned());
     }
 
-    /// The primary thread's slice: it prints what the servo has to say.
+    /// The primary thread's slice: it prints what the servo reports.
     pub(crate) fn print_servo_message(&mut self) {
         if let Some(text) = self.servo.take() {
             self.message(&text);

@@ -175,7 +175,7 @@ pub enum EventKind {
     Trace(Record),
     /// The UART has sent a character; told to who asked for it.
     UartSent(u8),
-    /// Something that the stimulus expects is not so.
+    /// An expectation of the stimulus is not met.
     Unmet(String),
     /// The PC did something that a program asked for.
     Host(String),

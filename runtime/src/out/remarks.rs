@@ -254,7 +254,7 @@ messages! {
         "axis {axis} runs away: its output drives it further from Dest; change the sign of OutputGain or of InputGain0";
     /// A text or a block is stored in an array that is too small for it.
     BeyondArray { function: &'static str, name: String, size: u32, bytes: usize } = "beyond-array", Warning, [always],
-        "{function} stores {bytes} bytes in `{name}`, which has {size}: what lies after it is overwritten";
+        "{function} stores {bytes} bytes in `{name}`, which has {size}: what follows it is overwritten";
     /// A value for a PWM output is beyond what it takes.
     PwmRange { function: &'static str, channel: i32, value: i32, most: i32 } = "pwm-range", Warning, [per channel],
         "{function}({channel}, {value}): values go from -{most} to {most}; it is limited to that";
@@ -269,7 +269,7 @@ messages! {
         "waits: bit {bit} is {level} for 0.1 s (--assist)";
     /// A call passes an address that is not that of an element of `chan`.
     NotAnAxis { function: &'static str, chan: GuestAddr } = "not-an-axis", Warning, [always],
-        "{function}: {chan} is no axis structure";
+        "{function}: {chan} is not an axis structure";
     /// A call names a thread that does not exist.
     NoSuchThread { function: &'static str, thread: i32 } = "no-such-thread", Warning, [always],
         "{function}({thread}): there are threads 1 to 7";
@@ -329,13 +329,13 @@ messages! {
         "ConfigureSpindle: axis {axis}; there are axes 0 to 7";
     /// A spindle is configured without counts.
     NoSpindleCounts { counts: f32 } = "no-spindle-counts", Warning, [always],
-        "ConfigureSpindle: {counts} counts of a revolution measure nothing";
+        "ConfigureSpindle: {counts} is not a valid number of counts per revolution";
     /// Threading begins without a spindle.
     NoSpindle { } = "no-spindle", Warning, [always],
         "TrigThreading: no spindle is configured, so nothing will move";
     /// Threading begins with a base speed of zero.
     NoBaseSpeed { speed: f32 } = "no-base-speed", Warning, [always],
-        "TrigThreading: {speed} revolutions a second are no base speed";
+        "TrigThreading: {speed} revolutions/s is not a valid base speed";
     /// Threading begins without a path.
     NothingToThread { } = "nothing-to-thread", Warning, [always],
         "TrigThreading: the segment buffer is empty";
@@ -371,7 +371,7 @@ messages! {
         "characters received on the UART are taken as script commands; clear DoRS232Cmds to read them";
     /// A line of a file is written in parts.
     LineInParts { } = "line-in-parts", Warning, [once],
-        "fprintf: the line before has not ended; as on the board, a stray character 2 stands where this text begins, and a line begun by printf goes to the console. Write each line by one call";
+        "fprintf: the line before has not ended; as on the board, a stray character 2 comes before this text, and a line begun by printf goes to the console. Write each line by one call";
     /// A text for a file has a percent sign in it.
     PercentTwice { } = "percent-twice", Warning, [once],
         "fprintf: the text has a % in it, which the board takes as a conversion once more. Write %%%% for it";
@@ -422,7 +422,7 @@ messages! {
         "never happened: {statements}";
     /// A stimulus plans more than fits.
     TooMuchPlanned { most: usize } = "too-much-planned", Warning, [once],
-        "the stimulus has more than {most} things to do; later ones are left out";
+        "the stimulus has more than {most} actions; later ones are left out";
     /// Devices answer each other without end.
     DevicesEndless { } = "devices-endless", Warning, [always],
         "devices on bits answer each other without end: they are taken off";

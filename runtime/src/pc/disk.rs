@@ -41,7 +41,7 @@ pub(crate) enum Request {
     NextLine = 5,
     /// Close the file open for reading.
     CloseReading = 6,
-    /// Open for writing behind what is there.
+    /// Open for writing after what is there.
     Append = 7,
 }
 
@@ -56,7 +56,7 @@ impl Request {
         Self::Append,
     ];
 
-    /// The request that a console line is, and what stands behind its code.
+    /// The request that a console line is, and what follows its code.
     fn read(line: &[u8]) -> Option<(Self, &[u8])> {
         let (code, text) = line.split_first()?;
         Self::ALL.into_iter().find(|request| request.code() == *code).map(|request| (request, text))

@@ -9,7 +9,7 @@ use kmotiondef::{GuestAddr, ThreadId};
 /// What downloads have stored since the threads were last started.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Downloads {
-    /// First address, and the one behind the last.
+    /// First address, and the one after the last.
     stored: Vec<(GuestAddr, GuestAddr)>,
 }
 

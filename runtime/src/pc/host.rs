@@ -102,7 +102,7 @@ impl Host {
         if self.is_connected { self.until_poll.saturating_sub(2) } else { u64::MAX }
     }
 
-    /// So many ticks have passed at once.
+    /// This many ticks have passed at once.
     pub(crate) fn skip(&mut self, ticks: u64) {
         self.until_poll = self.until_poll.saturating_sub(ticks);
     }
@@ -148,7 +148,7 @@ pub(crate) fn slice(host: &mut Host, out: &mut Out, context: &mut TickContext<'_
     } else if host.answers.silent.contains(&code) {
         if host.unanswered != code {
             host.unanswered = code;
-            say(out, context, format!("request {code} is left without an answer"));
+            say(out, context, format!("request {code} gets no answer"));
         }
     } else {
         let answer = answer(host, out, context, code);
@@ -253,7 +253,7 @@ fn string(memory: &GuestMemory, offset: i32) -> String {
 /// Buttons of a message box.
 const BUTTONS: i32 = 0xf;
 
-/// Shows a box and presses the button that was named for it, or its first one that goes on.
+/// Shows a box and presses the button that was named for it, or its first one that continues the program the program.
 fn message_box(host: &mut Host, out: &mut Out, context: &mut TickContext<'_>, [offset, flags, _]: [i32; 3]) {
     let text = string(context.memory, offset);
     let default = match flags & BUTTONS {

@@ -1,6 +1,6 @@
 //! Bytes on their way to the board, and the lines that they are.
 //!
-//! A line that begins with an escape is taken without echo; the byte behind the escape is thrown away. Any other line is
+//! A line that begins with an escape is taken without echo; the byte after the escape is thrown away. Any other line is
 //! echoed. 0x03 drops what is under way, wherever it comes. Rules: host-protocol.md sections 1 and 2.
 
 use std::collections::VecDeque;
@@ -18,7 +18,7 @@ enum Intake {
     /// Before its first byte.
     #[default]
     Start,
-    /// Behind the escape: the next byte is thrown away.
+    /// After the escape: the next byte is thrown away.
     Escaped,
     /// In its text.
     Silent,

@@ -42,7 +42,7 @@ pub(crate) struct Cache {
     has_slaves: bool,
     /// What the interrupt takes with them.
     duration: Cycles,
-    /// The same as on the board, apart from what goes on.
+    /// The same as on the board, apart from the motion in progress.
     interrupt: Interrupt,
     still: Stillness,
     /// Whether the last tick changed nothing and no thread has run since.

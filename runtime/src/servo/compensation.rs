@@ -10,7 +10,7 @@ use super::plan::{Filter, Gains};
 use super::state::AxisMemory;
 use crate::views::AxisView;
 
-/// Limits `value` to ±`limit`, which is not below 0; what is no number stays so.
+/// Limits `value` to ±`limit`, which is not below 0; what is not a number stays so.
 #[inline(always)]
 fn clamp(value: f64, limit: f64) -> f64 {
     let value = if limit < value { limit } else { value };

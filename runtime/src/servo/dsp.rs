@@ -43,7 +43,7 @@ pub(crate) fn root(square: f64) -> f64 {
     f64::from(square * reciprocal)
 }
 
-/// A number cut to the eight binary digits behind the leading one that the processor's tables hold.
+/// A number cut to the eight binary digits after the leading one that the processor's tables hold.
 fn eight_bits(number: f64) -> f64 {
     const REST: u64 = (1 << 44) - 1;
     f64::from_bits(number.to_bits() & !REST)

@@ -83,7 +83,7 @@ pub(crate) fn is_moving(memory: &GuestMemory, axis: AxisId) -> bool {
     memory.axis(axis, Chan::ENABLE) != 0 && has_motion(memory, axis)
 }
 
-/// The place in the list, counted from the current state: the states behind it follow in memory.
+/// The place in the list, counted from the current state: the states after it follow in memory.
 fn cursor(memory: &GuestMemory, axis: AxisId) -> Cursor {
     Cursor { index: 0, t: memory.axis(axis, Chan::T) }
 }
@@ -114,7 +114,7 @@ pub(crate) fn advance(memory: &mut GuestMemory, axis: AxisId) -> bool {
     true
 }
 
-/// The same where another state begins, or something else than a polynomial goes on.
+/// The same where another state begins, or something else than a polynomial follows.
 fn enter(memory: &mut GuestMemory, axis: AxisId) -> bool {
     let current = memory.axis(axis, Chan::PCOEFF);
     let stepped = {

@@ -11,7 +11,7 @@ use super::plan::Input;
 use crate::machine::Loads;
 use crate::views::{AxisView, Typed};
 
-/// Takes the position from an input that is no encoder.
+/// Takes the position from an input that is not an encoder.
 pub(crate) fn measure(input: Input, loads: &mut Loads, memory: &mut GuestMemory, axis: AxisId) {
     match input {
         Input::None | Input::Encoder(_) => {}

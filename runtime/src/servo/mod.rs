@@ -168,7 +168,7 @@ fn switch_amplifiers(tick: &mut Tick<'_>, memory: &mut GuestMemory) {
     }
 }
 
-/// Moves the load of an axis by what the last tick has put out, and its destination by what it is told; whether that
+/// Moves the load of an axis by what the last tick has output, and its destination by what it is told; whether that
 /// changed anything.
 #[inline(always)]
 fn advance(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId) -> bool {

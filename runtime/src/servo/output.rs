@@ -22,7 +22,7 @@ const SNAP_AMP: i32 = 8;
 /// Marks a word of a brushless vector; the magnitude is in the low half.
 const VECTOR: u32 = 0x8000_0000;
 
-/// Puts out one tick of an enabled axis.
+/// Outputs one tick of an enabled axis.
 #[inline(always)]
 pub(crate) fn drive(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId, command: f64, output: f32) {
     let mode = tick.servo.cache.plan(axis).mode;
@@ -89,7 +89,7 @@ fn limited(output: f32, limit: i32) -> f64 {
     f64::from(output).clamp(-limit, limit)
 }
 
-/// Puts out the vector of a brushless axis; `None` if its amplifier is off.
+/// Outputs the vector of a brushless axis; `None` if its amplifier is off.
 fn turn(
     tick: &mut Tick<'_>,
     memory: &mut GuestMemory,

@@ -1,6 +1,6 @@
 //! What the settings of an axis come to, ready for a tick.
 //!
-//! The settings lie in guest memory, where programs write them at any time. A tick in front of which nobody but the
+//! The settings lie in guest memory, where programs write them at any time. A tick before which nobody but the
 //! servo had the board need not look at each of them: what they come to is kept from tick to tick, and worked out
 //! again as soon as a thread, the call-back, the PC or the world has done anything. Builds with debug assertions
 //! compare it in every tick.

@@ -64,7 +64,7 @@ pub(crate) struct State {
 }
 
 impl State {
-    /// Stands at `position` for `duration`.
+    /// Rests at `position` for `duration`.
     pub(crate) fn hold(position: f64, duration: f64) -> Self {
         Self { mode: Mode::Independent, t: duration, a: 0.0, b: 0.0, c: 0.0, d: position }
     }
@@ -204,7 +204,7 @@ impl Path {
         self.end.a = 0.0;
     }
 
-    /// Appends a move from rest to `target`, with the standing tick the board puts behind it.
+    /// Appends a move from rest to `target`, with the resting tick the board puts after it.
     fn move_from_rest(&mut self, target: f64, limits: &Limits) {
         let distance = target - self.end.x;
         let sign = if distance < 0.0 { -1.0 } else { 1.0 };
@@ -333,7 +333,7 @@ fn peak_velocity(length: f64, ramps: [Ramp; 2], limits: &Limits) -> f64 {
     low
 }
 
-/// A move planned while the axis moves: 20 ticks go on as they are, then either the target is approached at full
+/// A move planned while the axis moves: 20 ticks continue as they are, then either the target is approached at full
 /// speed or the axis stops and starts again.
 pub(crate) fn move_in_motion(start: Point, to: f64, limits: &Limits) -> Vec<State> {
     let mut path = lead(start);

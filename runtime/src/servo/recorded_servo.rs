@@ -163,7 +163,7 @@ fn desk_with(row: &Json, names: &[&str]) -> Desk {
     desk
 }
 
-/// Writes the first column, the destination, and compares the others behind each tick.
+/// Writes the first column, the destination, and compares the others after each tick.
 fn check_columns(desk: &mut Desk, row: &Json, first: usize) {
     let columns: Vec<&str> =
         row["columns"].as_array().expect("columns").iter().filter_map(Json::as_str).collect();

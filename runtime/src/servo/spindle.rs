@@ -1,7 +1,7 @@
 //! Spindle measurement, and threading: the path's clock follows the spindle.
 //!
 //! Source: coordinated-motion.md section 7 and the recorded runs (`coord.jsonl`): the time that belongs to the spindle's
-//! angle goes through a low-pass filter; the speed, multiplied by the filter's time constant, is added in front of it,
+//! angle goes through a low-pass filter; the speed, multiplied by the filter's time constant, is added before it,
 //! so that a constant speed is followed without lag.
 
 use kmotiondef::limits::TIMEBASE;

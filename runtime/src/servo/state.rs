@@ -26,7 +26,7 @@ pub(crate) struct AxisMemory {
 }
 
 impl AxisMemory {
-    /// Stands at `dest`, so that no velocity is seen.
+    /// Rests at `dest`, so that no velocity is seen.
     pub(crate) fn rest(dest: f64) -> Self {
         Self { dest, ..Self::default() }
     }

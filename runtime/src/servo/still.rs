@@ -15,7 +15,7 @@ const PWM_SIZE: usize = 64;
 const DAC_SIZE: usize = 16;
 const ADC_SIZE: usize = 32;
 
-/// What the axes had in memory behind the last tick that was computed.
+/// What the axes had in memory after the last tick that was computed.
 #[derive(Clone, Debug)]
 pub(crate) struct Stillness {
     chans: Box<[u8; CHANS_SIZE]>,

@@ -12,7 +12,7 @@ use crate::io::amplifiers::{recirculate, store_pwm};
 use crate::machine::{Drive, Machine};
 use crate::views::Typed;
 
-/// Makes an axis stand at a destination and turns it on.
+/// Puts an axis at a destination and turns it on.
 pub(crate) fn enable(
     servo: &mut Servo,
     machine: &mut Machine,

@@ -8,7 +8,7 @@ use kmotiondef::limits::TIMEBASE;
 use super::dsp::{divide, root};
 use super::profile::{Mode, Point, State};
 
-/// Where a motion stands in its list.
+/// Where a motion is in its list.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Cursor {
     /// Index of the current state.
@@ -37,7 +37,7 @@ pub(crate) struct Approach {
 /// What one tick came to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Step {
-    /// The destination of this tick, and the place in the list from which the next one goes on.
+    /// The destination of this tick, and the place in the list where the next one begins.
     Moving(f64, Cursor),
     /// The list has ended; the destination stays.
     Ended,

@@ -19,12 +19,12 @@ pub(super) const fn width(fill: u32) -> u32 {
     90 + 35 * fill
 }
 
-/// `%d` and `%u` of so many digits.
+/// `%d` and `%u` of this many digits.
 pub(super) const fn decimal(digits: u32, is_negative: bool) -> u32 {
     1600 + 146 * digits + if is_negative { 27 } else { 0 }
 }
 
-/// `%x` and `%o` of so many digits.
+/// `%x` and `%o` of this many digits.
 pub(super) const fn hexadecimal(digits: u32) -> u32 {
     1615 + 112 * digits
 }
@@ -32,7 +32,7 @@ pub(super) const fn hexadecimal(digits: u32) -> u32 {
 /// `%c`
 pub(super) const CHARACTER: u32 = 1364;
 
-/// `%s` of so many characters.
+/// `%s` of this many characters.
 pub(super) const fn text(characters: u32) -> u32 {
     1256 + 35 * characters
 }
@@ -63,7 +63,7 @@ pub(super) fn general(precision: Option<u32>, exponent: i32) -> u32 {
     2890 + digits + 290 * steps + 55 * steps * steps + (decades - steps) * if exponent < 0 { 45 } else { 95 }
 }
 
-/// What a conversion of `sscanf` costs that used so many characters.
+/// What a conversion of `sscanf` costs that used this many characters.
 pub(super) const fn scanned(letter: u8, characters: u32) -> u32 {
     match letter {
         b'x' | b'X' | b'p' | b'i' => 520 + 400 * characters,

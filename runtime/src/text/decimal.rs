@@ -2,7 +2,7 @@
 //!
 //! The board does not round correctly: it brings large values into the range of an `int` by multiplying with 0.1,
 //! takes the integer part as it is, and finds every further digit by multiplying the fraction by ten in double
-//! arithmetic; the one digit behind the last one wanted decides the rounding, halves going up. `%e` multiplies until
+//! arithmetic; the one digit after the last one needed decides the rounding, halves going up. `%e` multiplies until
 //! a single digit is before the point. So 0.35 rounds to 0.4 and 2.675 to 2.67, `%f` of 123456789012345678 ends in
 //! 719.337463, and `%.16e` of 4462 is 4.4620000000000006e+03, as measured (gather-persist-console.md section 4.1).
 //! The same steps here give the same text.
@@ -12,18 +12,18 @@
 pub(crate) struct Digits {
     /// Digits as values 0 to 9; the first is not 0 unless the value is.
     pub(crate) digits: Vec<u8>,
-    /// How many digits stand before the decimal point; negative for zeros behind it.
+    /// How many digits come before the decimal point; negative for zeros after it.
     pub(crate) point: i32,
 }
 
-/// Which digits are wanted, and by which of the board's two ways.
+/// Which digits are needed, and by which of the board's two ways.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Keep {
-    /// So many digits from the first that is not 0, as `%g` finds them.
+    /// This many digits from the first that is not 0, as `%g` finds them.
     Significant(usize),
-    /// So many digits behind the decimal point, as `%f` finds them.
+    /// This many digits after the decimal point, as `%f` finds them.
     Decimals(usize),
-    /// So many digits from the first that is not 0, as `%e` finds them.
+    /// This many digits from the first that is not 0, as `%e` finds them.
     Scientific(usize),
 }
 
@@ -84,7 +84,7 @@ fn split(magnitude: f64) -> (Vec<u8>, f64, i32) {
     (digits, fraction, point)
 }
 
-/// The first digit, the fraction behind it, and the place of the point.
+/// The first digit, the fraction after it, and the place of the point.
 fn split_scientific(magnitude: f64) -> (Vec<u8>, f64, i32) {
     let (mut value, mut exponent) = finite(magnitude);
     while value >= 10.0 {
@@ -109,7 +109,7 @@ fn extend(digits: &mut Vec<u8>, mut fraction: f64, count: usize) {
     }
 }
 
-/// Cuts to `wanted` digits; the digit behind them rounds up from 5.
+/// Cuts to `wanted` digits; the digit after them rounds up from 5.
 fn round_at(mut digits: Vec<u8>, mut point: i32, wanted: usize) -> Digits {
     let up = digits.get(wanted).is_some_and(|&digit| digit >= 5);
     digits.truncate(wanted);
@@ -128,7 +128,7 @@ fn round_at(mut digits: Vec<u8>, mut point: i32, wanted: usize) -> Digits {
 }
 
 impl Digits {
-    /// The digit at `place` counted from the decimal point: 0 is the first behind it, −1 the one before it.
+    /// The digit at `place` counted from the decimal point: 0 is the first after it, −1 the one before it.
     fn at(&self, place: i64) -> u8 {
         let index = place + i64::from(self.point);
         usize::try_from(index)
@@ -137,7 +137,7 @@ impl Digits {
             .map_or(b'0', |digit| b'0' + digit)
     }
 
-    /// Text with `decimals` digits behind the point, as `%f` has it.
+    /// Text with `decimals` digits after the point, as `%f` has it.
     pub(crate) fn fixed(&self, decimals: usize, always_point: bool) -> Vec<u8> {
         let whole = i64::from(self.point.max(1));
         let mut text: Vec<u8> = (-whole..0).map(|place| self.at(place)).collect();
@@ -148,7 +148,7 @@ impl Digits {
         text
     }
 
-    /// Text with `decimals` digits behind the point and an exponent, as `%e` has it; `letter` is `e` or `E`.
+    /// Text with `decimals` digits after the point and an exponent, as `%e` has it; `letter` is `e` or `E`.
     pub(crate) fn scientific(&self, decimals: usize, always_point: bool, letter: u8) -> Vec<u8> {
         let mantissa = Self { digits: self.digits.clone(), point: 1 };
         let mut text = mantissa.fixed(decimals, always_point);

@@ -1,4 +1,4 @@
-//! The formatter behind `printf` and its kin.
+//! The formatter of `printf` and its kin.
 //!
 //! The board's results, odd ones included, are what programs see: halves round up, `%#06x` fills before its prefix,
 //! `%ld` takes 40 bits from two words, an unknown conversion prints nothing but its width
@@ -196,7 +196,7 @@ fn convert<A: Arguments>(
 /// The bits of the board's `long` in an eight-byte place.
 const LONG_MASK: u64 = (1 << 40) - 1;
 
-/// The board's `long`: 40 bits of two words. The words behind a last argument are whatever the caller has there.
+/// The board's `long`: 40 bits of two words. The words after a last argument are whatever the caller has there.
 fn long<A: Arguments>(arguments: &mut A) -> Result<i64, A::Error> {
     const UNUSED: u32 = u64::BITS - LONG_MASK.count_ones();
     Ok((arguments.long_long()? << UNUSED).cast_signed() >> UNUSED)
@@ -222,14 +222,14 @@ fn signed(spec: &Spec, value: i64, out: &mut Formatted) {
     integer(spec, sign(spec, value < 0), &value.unsigned_abs().to_string(), out);
 }
 
-/// What stands before an unsigned number or a character: a blank, if there is the flag, whatever other flags say.
+/// What precedes an unsigned number or a character: a blank, if there is the flag, whatever other flags say.
 fn blank(spec: &Spec) -> &'static [u8] {
     if spec.space { b" " } else { b"" }
 }
 
 /// `%u`, `%x`, `%X` and `%o`; `h` keeps 16 bits.
 ///
-/// Odd and kept: zeros that fill a width stand before the prefix, and `%#o` always has one more zero.
+/// Odd and kept: zeros that fill a width come before the prefix, and `%#o` always has one more zero.
 fn unsigned(spec: &Spec, value: u64, letter: u8, out: &mut Formatted) {
     let value = if spec.short { value & 0xffff } else { value };
     let (prefix, text) = match letter {
@@ -245,7 +245,7 @@ fn unsigned(spec: &Spec, value: u64, letter: u8, out: &mut Formatted) {
     pad(&filled(spec), blank(spec), format!("{prefix}{digits}").as_bytes(), out);
 }
 
-/// Digits of a signed integer behind their sign.
+/// Digits of a signed integer after their sign.
 fn integer(spec: &Spec, head: &[u8], text: &str, out: &mut Formatted) {
     let digits = precise(spec, text);
     out.spend(cost::decimal(digits.len() as u32, head == b"-"));
@@ -424,7 +424,7 @@ pub(super) mod tests {
         formatted
     }
 
-    /// So many characters of one call reach the console.
+    /// This many characters of one call reach the console.
     const SEEN: usize = 128;
 
     fn check(row: &Json) {

@@ -1,7 +1,7 @@
-//! The converter behind `sscanf` and `fscanf`.
+//! The converter of `sscanf` and `fscanf`.
 //!
 //! The board's results, which are not C's: a conversion that finds nothing does not end the call and takes no
-//! argument, white space behind an ordinary character is an ordinary character, sets have no ranges, floats ignore
+//! argument, white space after an ordinary character is an ordinary character, sets have no ranges, floats ignore
 //! their width, `%ld` stores eight bytes (gather-persist-console.md section 4.2). Recorded in `scanf.jsonl` and
 //! `printf-scanf.jsonl`, which the tests below replay.
 
@@ -27,7 +27,7 @@ pub(crate) enum Scanned<'t> {
     Text(&'t [u8]),
 }
 
-/// Where converted values go, one after the other.
+/// Where converted values go, one after another.
 pub(crate) trait Sink {
     /// Why a value could not be stored.
     type Error;
@@ -57,7 +57,7 @@ struct Spec {
     length: Length,
 }
 
-/// Whether the call goes on behind a directive.
+/// Whether the call continues after a directive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Next {
     Go,
@@ -284,7 +284,7 @@ mod tests {
     use super::*;
     use crate::text::vectors::{rows, split, unquote};
 
-    /// The recording program's variables, each with spare bytes behind it, and the targets of the call.
+    /// The recording program's variables, each with spare bytes after it, and the targets of the call.
     struct Variables {
         targets: std::vec::IntoIter<String>,
         variables: Vec<(String, Vec<u8>)>,
@@ -399,7 +399,7 @@ mod tests {
         }
     }
 
-    /// A row of the older vectors: all variables, as text; the ints lie one behind the other.
+    /// A row of the older vectors: all variables, as text; the ints lie one after another.
     fn check_text(row: &Json) {
         let (result, variables) = call(row);
         let expect = |name: &str| row[name].as_str().unwrap_or_default();

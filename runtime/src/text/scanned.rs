@@ -63,10 +63,10 @@ fn limited(magnitude: u64, negative: bool, is_signed: bool) -> u64 {
     value & ((1 << LONG_BITS) - 1)
 }
 
-/// The powers of ten by the bits of the exponent, and what lies behind them in the board's memory.
+/// The powers of ten by the bits of the exponent, and what is after them in the board's memory.
 const POWERS: [f64; 9] = [1e1, 1e2, 1e4, 1e8, 1e16, 1e32, 0.0, 1.0, 2.0];
 
-/// The decimal exponents of doubles: what lies beyond is the largest one, or 0.
+/// The decimal exponents of doubles: what is beyond is the largest one, or 0.
 const EXPONENT_MAX: i64 = 308;
 
 /// Reads a float at the beginning of `text`: its value, and how many bytes belong to it.

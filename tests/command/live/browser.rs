@@ -21,7 +21,7 @@ pub(super) struct Browser {
     calls: u64,
     /// The addresses that the page has asked for.
     pub(super) requests: Vec<String>,
-    /// Errors of the page: exceptions, and what stands in the browser's console.
+    /// Errors of the page: exceptions, and what is in the browser's console.
     pub(super) complaints: Vec<String>,
     _profile: Scratch,
 }

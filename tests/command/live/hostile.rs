@@ -1,4 +1,4 @@
-//! Clients that mean no good: the board goes on, and says in one line that something is wrong.
+//! Clients that mean no good: the board continues, and says in one line that something is wrong.
 
 use std::fs;
 use std::io::{Read, Write};
@@ -11,7 +11,7 @@ use tungstenite::{Bytes, Message};
 
 use super::Live;
 
-/// Counts for ever.
+/// Counts forever.
 const PROGRAM: &str =
     "#include \"KMotionDef.h\"\nmain() { for (;;) { WaitNextTimeSlice(); persist.UserData[9]++; } }\n";
 
@@ -32,7 +32,7 @@ fn status(live: &Live, request: &str) -> String {
     answer.lines().next().unwrap_or_default().to_owned()
 }
 
-/// The board still shows frames in which time goes on.
+/// The board still shows frames in which time continues.
 fn is_alive(live: &Live) {
     let (mut socket, _) = tungstenite::connect(live.socket()).expect("a page may come");
     socket.send(Message::text(r#"{"do":"rate","frames":60}"#)).expect("it listens");

@@ -33,7 +33,7 @@ main()
 }
 ";
 
-/// What is true when a text stands in a part of the page.
+/// What is true when a text is in a part of the page.
 fn shows(part: &str, text: &str) -> String {
     format!("document.querySelector('{part}').textContent.includes({text:?})")
 }

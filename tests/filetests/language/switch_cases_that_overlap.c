@@ -1,6 +1,6 @@
 // Overlap of unsigned ranges is found across the sign bit, an empty range as such.
 //@ exit: 1
-//@ says: `case 9223372036854775808` stands twice
+//@ says: `case 9223372036854775808` appears twice
 //@ says: this range of cases is empty
 #include "KMotionDef.h"
 

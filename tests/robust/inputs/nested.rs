@@ -10,7 +10,7 @@ fn nest(open: &str, middle: &str, close: &str) -> String {
     format!("{}{middle}{}", open.repeat(DEPTH), close.repeat(DEPTH))
 }
 
-/// What stands within a function: name, opening, middle, closing, and the limit that is hit.
+/// What is within a function: name, opening, middle, closing, and the limit that is hit.
 const WITHIN: &[(&str, &str, &str, &str, Option<&str>)] = &[
     ("parentheses", "a = ", "(", "1", Some("640")),
     ("negations", "a = ", "!", "1", Some("640")),
@@ -44,7 +44,7 @@ const WITHIN: &[(&str, &str, &str, &str, Option<&str>)] = &[
     ("opening quotes of other languages", "a = ", "«", ";", None),
 ];
 
-/// What stands at file scope: name, text before, opening, middle, closing, text behind.
+/// What is at file scope: name, text before, opening, middle, closing, text after.
 const OUTSIDE: &[(&str, &str, &str, &str, &str, &str)] = &[
     ("declarators", "int ", "(", "x", ")", ";\nmain() { }\n"),
     ("pointers", "int ", "*", "x", "", ";\nmain() { }\n"),

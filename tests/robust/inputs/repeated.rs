@@ -82,7 +82,7 @@ fn doubling_structure() -> String {
     format!("{text}struct s39 x;\nmain() {{ }}\n")
 }
 
-/// Many of one construct, one behind the other.
+/// Many of one construct, one after another.
 fn sequences() -> Vec<Input> {
     let declared = |text: String| format!("{text}\nmain() {{ }}\n");
     vec![

@@ -54,7 +54,7 @@ pub enum BadOperands {
         given: usize,
     },
     /// An operand of another kind, of the wrong file, or out of range.
-    #[error("operand {} of {form} does not fit: wanted {wanted:?}", .index + 1, form = .op.row().mnemonic)]
+    #[error("operand {} of {form} does not fit: {wanted:?} is needed", .index + 1, form = .op.row().mnemonic)]
     Operand {
         /// The form.
         op: Op,

@@ -1,6 +1,6 @@
 //! An instruction's parts as they are written: unit, operands, the target of a branch.
 //!
-//! [`Inst::plain_text`] may stand for another word too; `text` adds the word where it does.
+//! [`Inst::plain_text`] may be another word as well; `text` adds the word where it does.
 
 use crate::alias::Alias;
 use crate::inst::Inst;

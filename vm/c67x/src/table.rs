@@ -1,6 +1,6 @@
 //! The instruction table: one row a form, everything mechanical expanded from it.
 //!
-//! `for_each_form!` hands all 302 rows to a macro of the caller's; the rows stand in the
+//! `for_each_form!` hands all 302 rows to a macro of the caller's; the rows are in the
 //! files of this folder, a file a group of units. Here they become the [`Op`] enum and
 //! [`Op::row`].
 //!

@@ -57,7 +57,7 @@ struct StackRange {
 }
 
 impl Core {
-    /// Stands before the packet at `pc`, all registers 0, interrupts possible.
+    /// Is before the packet at `pc`, all registers 0, interrupts possible.
     #[must_use]
     pub fn new(pc: u32) -> Self {
         let mut core = Self::default();

@@ -28,7 +28,7 @@ struct Turn {
     stores: Vec<Old>,
 }
 
-/// What is known of the loops since something last happened.
+/// What is known about the loops since something last happened.
 #[derive(Clone, Debug)]
 pub(super) struct Idle {
     visits: [(u32, u8); PLACES],

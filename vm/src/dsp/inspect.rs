@@ -1,4 +1,4 @@
-//! What a person is shown of a processor that stands still: its registers, the code around a place.
+//! What a person is shown of a processor that is halted: its registers, the code around a place.
 
 use c67x::{Control, Inst, PARALLEL, Reg};
 
@@ -10,9 +10,9 @@ const STACK: Reg = Reg::b(15);
 const POWER_UP: u32 = 0x100;
 
 impl Core {
-    /// A processor at power-up before the packet at `pc`: registers 0 but for the stack pointer, interrupts off.
+    /// A processor at power-up before the packet at `pc`: registers 0 except for the stack pointer, interrupts off.
     ///
-    /// The cycles go on from `cycle`.
+    /// The cycles continue from `cycle`.
     #[must_use]
     pub fn at_power_up(pc: u32, stack: u32, cycle: u64) -> Self {
         let mut core = Self::new(pc);

@@ -75,7 +75,7 @@ pub struct State {
     pub(super) is_idle: bool,
 }
 
-/// What decides how a processor goes on, but for memory.
+/// What decides how a processor continues, but for memory.
 #[derive(Clone, Debug)]
 pub(super) struct Picture {
     /// The cycle of it.
@@ -190,7 +190,7 @@ impl State {
         self.clock.cycle >= self.shadow && self.control[CSR] & GIE != 0 && self.control[IER] & TIMER != 0
     }
 
-    /// What decides how it goes on.
+    /// What decides how it continues.
     pub(super) fn picture(&self) -> Picture {
         let mut regs = [0; 64];
         regs.copy_from_slice(&self.regs[..64]);

@@ -189,7 +189,7 @@ impl Processor {
         }
     }
 
-    /// Goes on after a firmware call.
+    /// Continues after a firmware call.
     fn return_from(&mut self, changed: u64, value: Value) {
         let state = &mut self.core.state;
         let back = state.reg(LINK);

@@ -13,7 +13,7 @@ use crate::trap::TrapKind;
 pub(super) struct View<'s, 'a, F: ?Sized>(pub(super) &'s mut Slice<'a, F>);
 
 impl<F: Firmware + ?Sized> View<'_, '_, F> {
-    /// A load that RAM does not answer: a device, or a trap. The processor stands still while a device works.
+    /// A load that RAM does not answer: a device, or a trap. The processor waits while a device works.
     #[cold]
     fn load_elsewhere(&mut self, addr: u32, width: Width, clock: &mut Clock) -> Result<u32, TrapKind> {
         self.0.budget = Cycles::new(clock.left());

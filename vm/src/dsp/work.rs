@@ -1,7 +1,7 @@
 //! What an instruction does, once its operands are resolved.
 //!
 //! Several forms of the table share one [`Work`]: sides, cross paths and constants are gone.
-//! The formulas are those of the table (`c67x::Row::meaning`); here stands what is common.
+//! The formulas are those of the table (`c67x::Row::meaning`); here is what is common.
 
 use c67x::{Inst, Kind, Mnemonic, Op, UnitKind};
 

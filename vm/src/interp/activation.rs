@@ -42,7 +42,7 @@ pub(super) enum Exit {
     Held,
 }
 
-/// How the execution goes on behind an instruction.
+/// How the execution continues after an instruction.
 pub(super) enum Flow {
     /// With the next word.
     Next,

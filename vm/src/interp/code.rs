@@ -17,7 +17,7 @@ pub(super) type Word = [u16; WORD / 2];
 /// Room for the longest text, as a power of two: an index is cut to it instead of being compared.
 const CAPACITY: usize = (MAX_TEXT / WORD).next_power_of_two();
 
-/// The words of a program by index; behind the last one of it there are only `program` words, which trap.
+/// The words of a program by index; after the last one of it there are only `program` words, which trap.
 pub(super) type Words = [Word; CAPACITY];
 
 /// The word `pc`.
@@ -26,7 +26,7 @@ pub(super) const fn word_at(words: &Words, pc: usize) -> &Word {
     &words[pc % CAPACITY]
 }
 
-/// Takes the operands of a word one behind the other.
+/// Takes the operands of a word one after another.
 pub(super) struct Operands<'a> {
     word: &'a Word,
     at: usize,

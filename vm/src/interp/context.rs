@@ -27,7 +27,7 @@ const CALL_OVERHEAD: u32 = 16;
 /// A call that waits for its callee.
 #[derive(Clone, Copy, Debug)]
 struct Frame {
-    /// The instruction behind the call.
+    /// The instruction after the call.
     pc: usize,
     /// First register.
     base: usize,
@@ -68,7 +68,7 @@ impl Calls {
         Some(window)
     }
 
-    /// Begins a call with the parameters that lie behind the current registers; all its others are 0.
+    /// Begins a call with the parameters that lie after the current registers; all its others are 0.
     #[inline]
     fn begin<'a>(
         &mut self,
@@ -101,7 +101,7 @@ impl Calls {
         self.window(registers)
     }
 
-    /// The registers of the current call and what lies behind them, among all `registers`.
+    /// The registers of the current call and what is after them, among all `registers`.
     #[inline]
     pub(super) fn window<'a>(&self, registers: &'a [Cell<u64>]) -> Option<&'a Window> {
         registers.get(self.current.base..)?.first_chunk()
@@ -134,7 +134,7 @@ pub struct FrameView {
 /// What a context has besides guest memory.
 #[derive(Debug)]
 pub(super) struct Context {
-    /// Of all calls, with a whole window behind the first register of the current one.
+    /// Of all calls, with a whole window after the first register of the current one.
     registers: Vec<u64>,
     pub(super) calls: Calls,
     /// The entry function, until it is entered.
@@ -144,7 +144,7 @@ pub(super) struct Context {
 /// A context as it was at an instant.
 #[derive(Debug)]
 pub(super) struct Saved {
-    /// The registers of the calls in progress, and the arguments behind them; whatever comes then is written before it
+    /// The registers of the calls in progress, and the arguments after them; whatever comes then is written before it
     /// is read.
     registers: Vec<u64>,
     calls: Calls,
@@ -188,7 +188,7 @@ impl Context {
         }
     }
 
-    /// Forgets everything; the next thing to do is entering `function`.
+    /// Forgets everything; the next step is entering `function`.
     pub(super) fn reset(&mut self, function: FuncRef, stack: Stack) {
         let calls = &mut self.calls;
         calls.frames.clear();
@@ -209,7 +209,7 @@ impl Context {
         Ok(())
     }
 
-    /// Calls `function` with the arguments that lie behind the current registers.
+    /// Calls `function` with the arguments that lie after the current registers.
     pub(super) fn call(&mut self, program: &Program, function: FuncRef) -> Result<(), TrapKind> {
         self.make_room(program, function)?;
         let (calls, registers) = self.parts();
@@ -284,7 +284,7 @@ impl Context {
     }
 }
 
-/// Sets the first `count` of `registers` to 0, and up to seven behind them, which nobody reads before they are set.
+/// Sets the first `count` of `registers` to 0, and up to seven after them, which nobody reads before they are set.
 #[inline]
 fn clear(registers: &[Cell<u64>], count: usize) {
     let (blocks, rest) = registers.as_chunks::<8>();

@@ -119,7 +119,7 @@ impl<'m> Activation<'_, 'm> {
         }
     }
 
-    /// Goes on where the current call stands, whose registers are in `window`.
+    /// Continues where the current call stands, whose registers are in `window`.
     #[inline(always)]
     fn go_to_call(&mut self, window: &'m Window) -> Flow {
         self.window = window;

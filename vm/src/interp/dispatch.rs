@@ -1,7 +1,7 @@
 //! Dispatch: from one instruction to the next.
 //!
 //! Each instruction has a handler, expanded from the instruction table: it takes its operands from the
-//! word, does what the method of its name does (`arith.rs`, `memory.rs`, `control.rs`) and goes on with
+//! word, does what the method of its name does (`arith.rs`, `memory.rs`, `control.rs`) and continues with
 //! the handler of the next word. That call is the last thing it does, with the arguments in the same
 //! registers, so an optimising compiler makes a jump of it: no loop to go back to, and every instruction
 //! predicts its own successor.
@@ -24,7 +24,7 @@ use crate::trap::TrapKind;
 /// Executes the word `word`, number `pc`, and what comes then, until something leaves the state an exit.
 type Handler = for<'m> fn(&mut State<'m>, &'m Window, &Words, pc: usize, &Word);
 
-/// Executes one instruction after the other; where one may go two ways, the next is there on both.
+/// Executes one instruction after another; where one may go two ways, the next is there on both.
 macro_rules! run {
     ($activation:ident, $words:ident, $word:expr, $last:ident) => {
         match step::$last(&mut $activation, $word) {
@@ -137,7 +137,7 @@ pub(super) fn execute(state: &mut State<'_>, words: &Words) -> Exit {
     }
 }
 
-/// Goes on with the word `next`.
+/// Continues with the word `next`.
 #[inline(always)]
 fn go_to(next: usize, activation: Activation<'_, '_>, words: &Words) {
     let Activation { state, window, .. } = activation;

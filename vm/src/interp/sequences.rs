@@ -2,7 +2,7 @@
 //!
 //! One handler executes them all, so that only the last one looks for the handler of what comes next. The
 //! words stay as they are: the first gets another opcode, and whoever jumps into the middle finds there
-//! what he would find without. Behind a branch a sequence goes on where the branch leads, so it is one only
+//! what he would find without. After a branch a sequence continues where the branch leads, so it is one only
 //! if the next instruction is there on both ways.
 //!
 //! The list is what was measured to be most frequent in `c-programs` and in `vm/benches`.
@@ -14,7 +14,7 @@ use crate::op::{OPCODES, Op};
 use crate::operand::{FuncRef, Label};
 use crate::program::body_of;
 
-/// Hands rows `name: instruction instruction…;` to the macro `$m`, behind those given.
+/// Hands rows `name: instruction instruction…;` to the macro `$m`, after those given.
 macro_rules! for_each_sequence {
     ($m:ident $($rows:tt)*) => {
         $m! {
@@ -112,12 +112,12 @@ pub(super) use for_each_sequence;
 /// The opcode of a word at which a debugger holds a context; it begins no sequence.
 pub(super) const BREAK: u16 = 255;
 
-/// A row of the list: opcodes one behind the other.
+/// A row of the list: opcodes one after another.
 pub(super) type Sequence = &'static [u16];
 
 macro_rules! define_list {
     ($($name:ident: $($step:ident)+;)*) => {
-        /// The list; a sequence has the opcode of its index, behind those of the instructions.
+        /// The list; a sequence has the opcode of its index, after those of the instructions.
         pub(super) const SEQUENCES: &[Sequence] = &[$(&[$(opcode_of(stringify!($step))),+]),*];
     };
 }

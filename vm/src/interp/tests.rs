@@ -18,17 +18,17 @@ fn check(body: &str, expected: u64) {
     assert_eq!(machine.memory().peek::<u64>(OUT), expected, "{body}");
 }
 
-/// Checks the 32 bits of `r0` behind `body`.
+/// Checks the 32 bits of `r0` after `body`.
 fn check_i32(body: &str, expected: i32) {
     check(&format!("{body} | store_i32_at r0, 0x10000000"), u64::from(expected.cast_unsigned()));
 }
 
-/// Checks `r0` behind `op r0, r1, r2` with `a` and `b` in `r1` and `r2`.
+/// Checks `r0` after `op r0, r1, r2` with `a` and `b` in `r1` and `r2`.
 fn check_binary(op: &str, a: i32, b: i32, expected: i32) {
     check_i32(&format!("const_i32 r1, {a} | const_i32 r2, {b} | {op} r0, r1, r2"), expected);
 }
 
-/// Checks the log behind `body`.
+/// Checks the log after `body`.
 fn check_trap(body: &str, expected: &str) {
     let machine = run_body(&format!("{body} | ret"), "");
     assert_eq!(machine.firmware().log, [expected], "{body}");
@@ -154,7 +154,7 @@ fn what_a_program_must_not_do_traps() {
     check("const_i32 r0, 0x80060058 | call_ptr r0, sig0 | charge 9", 0x8005_0078, foreign);
     let missing = "calls `Missing`, whose behaviour the simulated board does not model yet";
     check("call_fw sig0, 0x10008048 | charge 9", 0x8005_0070, missing);
-    let end = "execution reached a place where no code is, as by `goto *` to what is no label";
+    let end = "execution reached a place without code, as by `goto *` to something other than a label";
     check("unreachable | charge 9", 0x8005_0070, end);
 }
 

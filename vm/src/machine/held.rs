@@ -1,6 +1,6 @@
-//! A tick that a debugger holds: it stops between two instructions of a program and is gone on with later.
+//! A tick that a debugger holds: it stops between two instructions of a program and is continued later.
 //!
-//! Nothing else of the board moves meanwhile, and the tick goes on as if it had never been held.
+//! Nothing else of the board moves meanwhile, and the tick continues as if it had never been held.
 
 use kmotiondef::{Cycles, GuestAddr, ThreadId};
 
@@ -48,13 +48,13 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
     }
 
     /// How much a computer has had to do for the board since power-up: cycles of programs, and what a tick takes
-    /// besides in such cycles. Time that is skipped is no work. No snapshot sets it back.
+    /// besides in such cycles. Time that is skipped is not work. No snapshot sets it back.
     #[must_use]
     pub const fn work(&self) -> u64 {
         self.work
     }
 
-    /// Goes on with the tick that was held.
+    /// Continues the tick that was held.
     pub(super) fn go_on(&mut self, held: Held) {
         match held {
             Held::Callback { address, begin, left } => {

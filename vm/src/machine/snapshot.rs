@@ -1,4 +1,4 @@
-//! The machine as it was at an instant, between two ticks or where one is held, to go on from there as often as one
+//! The machine as it was at an instant, between two ticks or where one is held, to continue from there as often as one
 //! likes.
 
 use kmotiondef::{Cycles, ThreadId, Ticks};
@@ -65,7 +65,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         }
     }
 
-    /// Makes the machine what it was when `snapshot` was taken; it goes on from there exactly as it went on then.
+    /// Makes the machine what it was when `snapshot` was taken; it continues from there exactly as it continued then.
     ///
     /// The firmware must be made what it was as well. Snapshots may be restored in any order, each as often as one
     /// likes. One of a machine of bytecode may also be restored in another machine with the same settings.

@@ -20,7 +20,7 @@ call_fw sig1, 0x10008000
 charge 1
 br @next";
 
-/// Counts for ever at `OUT`, 10 cycles a round.
+/// Counts forever at `OUT`, 10 cycles a round.
 const COUNTS: &str = "@main: func sig0, 1, 0
 types 0
 @next: charge 10

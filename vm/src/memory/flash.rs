@@ -8,7 +8,7 @@ pub(super) const SIZE: usize = 0x20_0000;
 /// What erased flash reads as.
 pub(super) const ERASED_BYTE: u8 = 0xff;
 
-/// Flash to which nothing was ever written; a board of a few milliseconds shall not have to fill two megabytes.
+/// Flash to which nothing was ever written; a board of a few milliseconds should not have to fill two megabytes.
 static ERASED: [u8; SIZE] = [ERASED_BYTE; SIZE];
 
 /// Flash memory.

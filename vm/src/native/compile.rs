@@ -34,7 +34,7 @@ pub enum CompileError {
     /// Cranelift has no code generator for the host.
     #[error("no native code for this host: {0}")]
     Host(String),
-    /// A function has so many registers that the interpreter would bound the depth of its calls by them.
+    /// A function has too many registers: the interpreter would bound the depth of its calls by them.
     #[error("a function of {0} registers, more than {MAX_REGISTERS}")]
     TooManyRegisters(usize),
     /// A function is so long that to translate it takes longer than to interpret it.

@@ -1,4 +1,4 @@
-//! A context of the native engine: its fiber, where it stands, and what it needs to go on.
+//! A context of the native engine: its fiber, where it is, and what it needs to continue.
 
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ use crate::operand::{FuncRef, SigRef};
 use crate::program::Program;
 use crate::trap::TrapKind;
 
-/// How a context goes on when it is resumed.
+/// How a context continues when it is resumed.
 #[derive(Clone, Debug)]
 enum Next {
     /// With the answer to its last request.
@@ -236,7 +236,7 @@ impl Context {
         Ok(Step::Go(Answer::Slot(slot)))
     }
 
-    /// A call that the stack has no room for: it is its caller that stands there.
+    /// A call that the stack has no room for: it is its caller that is shown.
     fn overflow(&mut self, request: Request) -> TrapKind {
         if request.stack_pointer < self.stack.top {
             self.at = self.fiber.state().call_of(request.stack_pointer);

@@ -1,9 +1,9 @@
 //! A fiber: the native stack on which one context's compiled code runs.
 //!
-//! A fiber is never unwound. It runs until it has returned, or it is discarded where it stands;
+//! A fiber is never unwound. It runs until it has returned, or it is discarded where it is;
 //! the only Rust frames on it are the body below and [`leave`](super::entry::leave), and neither
 //! owns anything. So it can also be copied where it is suspended: the bytes on its stack and the state, which are put back
-//! to the same addresses when it is to go on from there once more.
+//! to the same addresses when it is to continue from there once more.
 #![expect(unsafe_code, reason = "runs compiled code and discards fibers without unwinding them")]
 
 use std::cell::Cell;
@@ -45,7 +45,7 @@ struct Home {
 }
 
 impl Home {
-    /// A place with a stack of so many bytes.
+    /// A place with a stack of this many bytes.
     fn new(size: usize, guest: Stack) -> Rc<Self> {
         let stack = DefaultStack::new(size).expect("the host has address space for a stack");
         Rc::new(Self {
@@ -154,7 +154,7 @@ impl Fiber {
         Self { coroutine, place, rest: Rest { code, ram: None, resolving: false } }
     }
 
-    /// The fiber as it is, to go on from here again.
+    /// The fiber as it is, to continue from here again.
     pub(super) fn save(&self) -> SavedFiber {
         let base = self.place.stack.base().get();
         let lowest = if self.coroutine.done() {

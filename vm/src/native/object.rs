@@ -24,7 +24,7 @@ use crate::program::{Function, Program};
 /// The function of the simulator library that `main` calls: `int START(const Description *)`.
 pub const START: &str = "cc67_run_linked";
 
-/// What stands before the names of the program's functions, so that none is the host's `main`.
+/// What precedes the names of the program's functions, so that none is the host's `main`.
 pub const PREFIX: &str = "guest.";
 
 /// What an object file is made of.
@@ -189,7 +189,7 @@ fn filled(bytes: Vec<u8>) -> DataDescription {
     data
 }
 
-/// Data of so many bytes that begin as 0 or as addresses.
+/// Data of this many bytes that begin as 0 or as addresses.
 fn zeros(size: usize) -> DataDescription {
     filled(vec![0; size])
 }

@@ -120,7 +120,7 @@ fn lockstep(functions: &str, budgets: &[i64]) -> Stop {
         }
     }
     assert_eq!(native.firmware.seen(), bytecode.firmware.seen(), "{functions}");
-    assert!(native.memory == bytecode.memory, "memory differs behind\n{functions}");
+    assert!(native.memory == bytecode.memory, "memory differs after\n{functions}");
     last
 }
 

@@ -4,12 +4,12 @@
 //! machine signature is that of the program's with three parameters before it and a result of its
 //! own: state, the caller's stack pointer and the budget go in, the budget comes back with the
 //! result as a register slot. So the budget stays in a processor register; it is written to the
-//! state for a request and read back behind it.
+//! state for a request and read back after it.
 //!
 //! A small loop is translated twice, and so is a stretch of code without calls: `candidates.rs` finds them, `turns.rs`
 //! plans several turns on one test of the budget and few checks of addresses, `fast.rs` makes them.
 //!
-//! The arms of the instructions stand in `arith.rs`, `memory.rs` and `control.rs`, one method an
+//! The arms of the instructions are in `arith.rs`, `memory.rs` and `control.rs`, one method an
 //! instruction, named as in the table.
 
 mod accesses;
@@ -79,7 +79,7 @@ pub(super) struct Translation<'a> {
 /// Where the firmware's functions that only compute are found.
 pub(super) type PureFunctions<'a> = &'a dyn Fn(GuestAddr) -> Option<Pure>;
 
-/// How compiled code finds the host's functions behind [`PureFunctions`].
+/// How compiled code finds the host's functions of [`PureFunctions`].
 #[derive(Clone, Copy)]
 pub(super) enum HostFunctions<'a> {
     /// At the addresses that they have in this process.

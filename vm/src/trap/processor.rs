@@ -39,8 +39,8 @@ pub enum Fault {
         /// The register.
         reg: Reg,
     },
-    /// Code that keeps interrupts off for ever, which on the board stops servo, console and all threads.
-    #[error("{cycles} cycles without a place where an interrupt is possible: the board's servo stands still")]
+    /// Code that keeps interrupts off forever, which on the board stops servo, console and all threads.
+    #[error("{cycles} cycles without a place where an interrupt is possible: the board's servo stops")]
     NoInterrupts {
         /// How long.
         cycles: u64,

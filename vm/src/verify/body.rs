@@ -34,13 +34,13 @@ struct Body<'a> {
 }
 
 impl Body<'_> {
-    /// The word `at`; behind the body nothing, which is as good as `unreachable`.
+    /// The word `at`; after the body nothing, which is as good as `unreachable`.
     fn op(&self, at: usize) -> Op {
         let op = if self.function.body.contains(&at) { self.program.ops.get(at) } else { None };
         op.copied().unwrap_or(Op::Unreachable {})
     }
 
-    /// Checks that arguments, calls, results and tables stand together.
+    /// Checks that arguments, calls, results and tables are together.
     fn check_groups(&mut self) -> Result<(), VerifyError> {
         let mut at = self.function.body.start;
         while at < self.function.body.end {
@@ -88,7 +88,7 @@ impl Body<'_> {
         if complete { Ok(1 + count) } else { Err(VerifyError { at, kind: VerifyErrorKind::Table(count) }) }
     }
 
-    /// The length of the call whose first argument, if it has any, stands at `at`.
+    /// The length of the call whose first argument, if it has any, is at `at`.
     fn call(&self, at: usize) -> Result<usize, VerifyError> {
         let mut classes = Vec::new();
         let mut next = at;
@@ -159,7 +159,7 @@ impl Body<'_> {
         }
     }
 
-    /// Checks that the last word does not go on behind the function.
+    /// Checks that the last word does not continue after the function.
     fn check_end(&self) -> Result<(), VerifyError> {
         let at = self.function.body.end.saturating_sub(1);
         if self.op(at).kind().ends_path() {

@@ -51,9 +51,9 @@ fn branches_stay_in_their_function_and_out_of_groups() {
 
 #[test]
 fn calls_stand_together_and_fit_their_signature() {
-    let order = "word 14: the arguments of a call must stand in order directly before it";
+    let order = "word 14: the arguments of a call must be in order directly before it";
     check("charge 9 | arg_i32 r0, 1 | call_fw sig1, 0 | charge 2 | ret", order);
-    let alone = "word 15: the arguments of a call must stand in order directly before it";
+    let alone = "word 15: the arguments of a call must be in order directly before it";
     check("charge 9 | arg_i32 r0, 0 | ret", alone);
     let classes = "word 15: the arguments of the call are not those of its signature";
     check("charge 9 | arg_i64 l2, 0 | call_fw sig1, 0 | charge 2 | ret", classes);
@@ -67,15 +67,15 @@ fn calls_stand_together_and_fit_their_signature() {
 #[test]
 fn a_function_returns_what_its_signature_says() {
     check("charge 3 | ret_i32 r0", "word 14: the return is not that of the function's signature");
-    check("charge 3 | add_i32 r0, r0, r0", "word 14: the function goes on behind its end");
-    check("charge 3 | br_if r0, @13", "word 14: the function goes on behind its end");
-    check("charge 4 | call_fw sig0, 0", "word 14: the function goes on behind its end");
+    check("charge 3 | add_i32 r0, r0, r0", "word 14: the function continues after its end");
+    check("charge 3 | br_if r0, @13", "word 14: the function continues after its end");
+    check("charge 4 | call_fw sig0, 0", "word 14: the function continues after its end");
     check("", "word 11: the function is empty");
 }
 
 #[test]
 fn no_function_begins_and_no_loop_turns_without_a_charge() {
-    let uncharged = |at| format!("word {at}: the code from here on can run for ever without being charged");
+    let uncharged = |at| format!("word {at}: the code from here on can run forever without being charged");
     check("ret", &uncharged(13));
     check("charge 0 | ret", &uncharged(13));
     check("charge 1 | ret", "ok");
@@ -91,11 +91,11 @@ fn no_function_begins_and_no_loop_turns_without_a_charge() {
 fn the_words_of_the_structure_keep_their_order() {
     assert_eq!(message("sig 1, 9"), "word 11: a result class of 9 does not exist");
     assert_eq!(message("sig 1, 0"), "word 12: the text is truncated");
-    assert_eq!(message("ret"), "word 11: `ret` cannot stand here");
-    assert_eq!(message("func sig0, 1, 0\nret"), "word 12: `ret` cannot stand here");
+    assert_eq!(message("ret"), "word 11: `ret` is not allowed here");
+    assert_eq!(message("func sig0, 1, 0\nret"), "word 12: `ret` is not allowed here");
     let wrong = "word 11: the function's first registers are not the parameters of its signature";
     assert_eq!(message("func sig1, 1, 0\ntypes 1\ncharge 2\nret"), wrong);
-    check("charge 2 | types 0 | ret", "word 14: `types` cannot stand here");
+    check("charge 2 | types 0 | ret", "word 14: `types` is not allowed here");
     assert_eq!(message("word 0xffff"), "word 11: not an instruction");
 }
 

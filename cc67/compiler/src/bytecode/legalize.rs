@@ -92,7 +92,7 @@ pub(super) fn legalize(function: &mut Function) -> FrameLayout {
     FrameLayout { size, offsets: legalizer.offsets, prologue }
 }
 
-/// Which blocks, by their place in the layout, stand between a jump backwards and its target.
+/// Which blocks, by their place in the layout, are between a jump backwards and its target.
 fn blocks_in_loops(function: &Function) -> Vec<bool> {
     let mut places: SecondaryMap<BlockId, u32> = table(function.blocks.len());
     for (index, id) in function.layout.iter().enumerate() {

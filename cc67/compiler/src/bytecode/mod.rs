@@ -72,7 +72,7 @@ pub(crate) struct Generated {
     pub(crate) variables: Vec<VariablePlaces>,
 }
 
-/// Writes the functions of a unit, one after the other.
+/// Writes the functions of a unit, one after another.
 #[derive(Debug, Default)]
 pub(crate) struct Generator {
     text: Text,

@@ -5,7 +5,7 @@ use vm::operand::{Imm16, RegF32, RegF64, RegI32, RegI64};
 
 use crate::ir::operators::{BinaryOp, CompareOp};
 
-/// What legal IR never asks for: the program stops there, where a wrong instruction would go on with a wrong result.
+/// What legal IR never asks for: the program stops there, where a wrong instruction would continue with a wrong result.
 pub(super) fn illegal() -> Op {
     debug_assert!(false, "the IR is verified and legal");
     Op::Unreachable {}

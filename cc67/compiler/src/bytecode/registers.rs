@@ -37,7 +37,7 @@ impl Registers {
     }
 
     /// The positions of instructions from and to which a value has its register to itself; an instruction has an even
-    /// one, counted from 2 by twos, and what it writes the odd one behind.
+    /// one, counted from 2 by twos, and what it writes the odd one after.
     pub(super) fn span(&self, value: ValueId) -> Option<(u32, u32)> {
         Some(self.spans[value]).filter(|(_, end)| *end != 0)
     }
@@ -56,7 +56,7 @@ pub(super) const fn register_class(class: Class) -> RegisterClass {
 /// Where a value is mentioned.
 #[derive(Clone, Copy, Debug, Default)]
 struct Interval {
-    /// Position of the first mention; a read has an even position, a write the odd one behind.
+    /// Position of the first mention; a read has an even position, a write the odd one after.
     start: u32,
     end: u32,
     /// The block of the first mention.

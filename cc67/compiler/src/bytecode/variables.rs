@@ -22,7 +22,7 @@ pub struct VariablePlaces {
 pub enum Location {
     /// In a register of its call.
     Register(u16),
-    /// So many bytes above the beginning of the frame.
+    /// This many bytes above the beginning of the frame.
     Frame(u32),
     /// In memory, at the address in a register.
     Pointer(u16),

@@ -17,7 +17,7 @@ use crate::typed::SymbolId;
 pub(super) struct VReg(u32);
 entity_impl!(VReg, "r");
 
-/// What is known of a virtual register.
+/// What is known about a virtual register.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Info {
     /// A pair of registers.

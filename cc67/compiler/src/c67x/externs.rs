@@ -1,4 +1,4 @@
-//! Symbols that generated code needs besides those of the source, and what is known of symbols.
+//! Symbols that generated code needs besides those of the source, and what is known about symbols.
 
 use std::collections::BTreeMap;
 

@@ -196,7 +196,7 @@ impl Builder {
         }
     }
 
-    /// What lies above the stack pointer is the function's only until that is raised.
+    /// What is above the stack pointer is the function's only until that is raised.
     fn stack(&mut self, step: u32, inst: &Inst) {
         if inst.writes().any(|write| write.reg == abi::STACK) {
             for index in 0..self.accesses.len() {

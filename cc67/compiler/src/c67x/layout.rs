@@ -193,5 +193,5 @@ impl Layout {
     }
 }
 
-/// Marks a label whose region is empty: it stands where the next packet begins.
+/// Marks a label whose region is empty: it is where the next packet begins.
 const PENDING: u32 = 1 << 31;

@@ -19,7 +19,7 @@ pub(super) struct Interval {
     pub(super) is_used: bool,
 }
 
-/// What is known of all registers.
+/// What is known about all registers.
 #[derive(Debug)]
 pub(super) struct Liveness {
     pub(super) intervals: SecondaryMap<VReg, Interval>,

@@ -50,7 +50,7 @@ use expand::TooLarge;
 use schedule::Order;
 use text::Words;
 
-/// Writes the functions of a unit, one after the other.
+/// Writes the functions of a unit, one after another.
 #[derive(Debug)]
 pub(crate) struct Generator {
     words: Vec<u32>,
@@ -117,7 +117,7 @@ impl Generator {
 fn verify(laid: &layout::Laid, name: &str) {
     let code = &laid.words[..laid.code as usize];
     let Ok(packets) = c67x::schedule::packets(code) else {
-        panic!("{name}: a word that is no instruction");
+        panic!("{name}: a word that is not an instruction");
     };
     let entries: Vec<u32> = laid.entries.iter().map(|word| word * 4).collect();
     // Branches that the linker completes leave the code: a displacement of 0 would be followed.

@@ -1,7 +1,7 @@
 //! Conditional execution in place of short branches, and blocks that follow each other as one.
 //!
 //! A branch costs six cycles and ends a region; an instruction under a condition costs nothing if it does not happen.
-//! Where a short block does no more than go on where its branch would have gone, its instructions move before the
+//! Where a short block does no more than continue where its branch would have gone, its instructions move before the
 //! branch. What has no effect and whose result nobody outside wants, happens anyway; loads and stores never do unless
 //! the source says so.
 
@@ -35,7 +35,7 @@ pub(super) fn run(code: &mut Code) {
     }
 }
 
-/// How many ways lead to each block.
+/// How many paths lead to each block.
 fn predecessors(code: &Code) -> Vec<u32> {
     let mut before = vec![0; code.blocks.len()];
     if let Some(first) = before.first_mut() {
@@ -97,7 +97,7 @@ impl Worker<'_> {
         &self.code.blocks[number as usize]
     }
 
-    /// Takes in the block that follows, if no other way leads there.
+    /// Takes in the block that follows, if no other path leads there.
     fn join(&mut self, number: usize) -> bool {
         if self.before[number] == 0 {
             return false;

@@ -1,6 +1,6 @@
 //! Debug information: where everything that a source names is while its program runs, and of which type.
 //!
-//! A compilation is a function of its source and options, so what is known of a program beyond its image is found by
+//! A compilation is a function of its source and options, so what is known about a program beyond its image is found by
 //! compiling the source again: types, scopes, and for every local in which register or where in the frame it is at each
 //! instruction. [`Model::of`] compares the image that comes out with the one that is there, byte for byte; where they
 //! differ the information would be of another program, and there is none.
@@ -31,7 +31,7 @@ use crate::typed::Unit;
 
 pub use crate::object::Location;
 
-/// What is known of one program for a debugger.
+/// What is known about one program for a debugger.
 #[derive(Debug)]
 pub struct Model {
     /// The source file.
@@ -56,7 +56,7 @@ pub struct FunctionModel {
     pub file: String,
     /// The line of its name, and that of its closing brace.
     pub lines: Range<u32>,
-    /// The addresses at which a line begins, ascending, each with the line; the first is behind what enters the function.
+    /// The addresses at which a line begins, ascending, each with the line; the first is after what enters the function.
     pub statements: Vec<(u32, u32)>,
     /// Parameters and variables in the order of their declarations.
     pub locals: Vec<LocalModel>,
@@ -87,7 +87,7 @@ impl LocalModel {
 }
 
 impl Model {
-    /// What is known of the program that `text` became, an image for `thread`.
+    /// What is known about the program that `text` became, an image for `thread`.
     ///
     /// # Errors
     /// Why there is no information: the source does not compile, or makes another image.

@@ -1,6 +1,6 @@
 //! Which warnings are shown, and as what: the `-W` switches.
 //!
-//! A switch that names a lint wins over one that names a group, wherever it stands; among
+//! A switch that names a lint wins over one that names a group, wherever it is; among
 //! switches of one kind the last wins. `-w` silences everything.
 
 use crate::diag::{Diagnostic, Lint, Preset, Severity};

@@ -26,7 +26,7 @@ macro_rules! for_each_lint {
             Portability = "portability", Extra, pass portability;
             /// A declaration names no type, where programs seldom mean `int`.
             ImplicitInt = "implicit-int", On;
-            /// The types of the parameters stand behind the parentheses, as before 1989.
+            /// The types of the parameters come after the parentheses, as before 1989.
             OldStyleDefinition = "old-style-definition", On;
             /// `main` has parameters, which the board does not pass.
             MainParameters = "main-parameters", On;
@@ -48,7 +48,7 @@ macro_rules! for_each_lint {
             MissingAddress = "missing-address", On;
             /// An assignment is used as a condition.
             AssignmentCondition = "assignment-condition", On;
-            /// The name of a function stands where its result is meant: the `()` is missing.
+            /// The name of a function is used where its result is meant: the `()` is missing.
             MissingCall = "missing-call", On, pass missing_call;
             /// A statement computes a value and drops it.
             UnusedValue = "unused-value", On;

@@ -1,6 +1,6 @@
 //! Diagnostics: what is wrong with the source, where, and what to do about it.
 //!
-//! Analysis goes on after a diagnostic; the sink collects. Rendering is a matter of the
+//! Analysis continues after a diagnostic; the sink collects. Rendering is a matter of the
 //! caller (`render` for people).
 
 pub mod levels;
@@ -210,7 +210,7 @@ impl Sink {
         self.lacks_names
     }
 
-    /// Whether so many errors were reported that looking for more is pointless.
+    /// Whether enough errors were reported that looking for more is pointless.
     #[must_use]
     pub fn is_full(&self) -> bool {
         self.errors >= MAX_ERRORS

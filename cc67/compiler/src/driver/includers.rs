@@ -1,6 +1,6 @@
 //! Which programs beside a file include it.
 //!
-//! Many files of this field are no programs but parts of some: functions for homing or for the
+//! Many files of this field are not programs but parts of some: functions for homing or for the
 //! spindle that programs include as `.c` files. Whoever compiles such a part is told which
 //! programs it belongs to.
 

@@ -3,8 +3,8 @@
 //! What the firmware lacks becomes a part of the program: the linker asks for what a program uses and does not
 //! define. It is compiled like any other source, costs what its instructions cost and can be preempted.
 //!
-//! A file of the library is made of members, each a text of its own that begins behind a line `//@ name …`: the names
-//! that ask for it, and behind a `+` others that it defines.
+//! A file of the library is made of members, each a text of its own that begins after a line `//@ name …`: the names
+//! that ask for it, and after a `+` others that it defines.
 
 use std::collections::BTreeSet;
 use std::io;
@@ -33,9 +33,9 @@ const FILES: &[(&str, &str)] = &[
 /// A part of the library that is taken or left as a whole.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Member<'t> {
-    /// The file it stands in.
+    /// The file it is in.
     pub(super) file: &'t str,
-    /// What it defines, with blanks between; a `+` stands before the names that do not ask for it.
+    /// What it defines, with blanks between; a `+` comes before the names that do not ask for it.
     pub(super) names: &'t str,
     /// Its source.
     pub(super) text: &'t str,

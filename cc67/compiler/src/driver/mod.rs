@@ -272,7 +272,7 @@ impl Compilation {
     /// A unit that was compiled earlier, read from the bytes of an object file.
     ///
     /// # Errors
-    /// Why the bytes are no object.
+    /// Why the bytes are not an object.
     pub fn from_object(path: &Path, bytes: &[u8]) -> Result<Self, object::ReadError> {
         let object = Some(Object::read(bytes)?);
         let name = path.to_string_lossy().into_owned();

@@ -17,7 +17,7 @@ const FORMATS: &[(&[u8], &str)] = &[
 
 /// What a file is that cannot be C source text; `None` if it may be.
 ///
-/// A single stray byte is left to the preprocessor, which shows where it stands.
+/// A single stray byte is left to the preprocessor, which shows where it is.
 #[must_use]
 pub(crate) fn not_source(text: &[u8]) -> Option<&'static str> {
     let sample = text.get(..SAMPLE).unwrap_or(text);

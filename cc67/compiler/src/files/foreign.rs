@@ -6,7 +6,7 @@ use goblin::elf::header::{ET_DYN, ET_EXEC, ET_REL, et_to_str, machine_to_str};
 use goblin::mach::{Mach, constants::cputype::get_arch_name_from_types};
 use goblin::{Hint, Object};
 
-/// What a file is that is no TI COFF, with its article; `None` if it is not known.
+/// What a file is that is not a TI COFF, with its article; `None` if it is not known.
 #[must_use]
 pub fn describe(bytes: &[u8]) -> Option<String> {
     if bytes.is_empty() {

@@ -22,7 +22,7 @@ pub fn read(path: &Path) -> io::Result<Vec<u8>> {
     read_up_to(path, FILE_BYTES)
 }
 
-/// The bytes of a file, so many at most.
+/// The bytes of a file, this many at most.
 ///
 /// # Errors
 /// What the system says, or that the file is too large.

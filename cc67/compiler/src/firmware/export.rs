@@ -1,7 +1,7 @@
 //! The simulated board's firmware as a file that programs can be linked against.
 //!
 //! It has what linkers and the version check of the vendor's library look at: every name that
-//! programs can use, with the underscore that TI's compiler puts in front of it, and the version
+//! programs can use, with the underscore that TI's compiler puts before it, and the version
 //! text in `.const`. There is no code in it.
 
 use coff::{

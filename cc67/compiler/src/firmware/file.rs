@@ -1,6 +1,6 @@
 //! A firmware file: what programs are linked against with `--firmware`.
 //!
-//! The file is an image of the whole firmware. The linker wants its external symbols, the version
+//! The file is an image of the whole firmware. The linker needs its external symbols, the version
 //! check the text that the firmware answers to `Version` (`coff.md` sections 8 and 9.3).
 
 use std::collections::BTreeMap;
@@ -110,7 +110,7 @@ fn is_exported(ty: SymbolType) -> bool {
     }
 }
 
-/// The firmware's tools put an underscore in front of each name. Its own `main` keeps it, so that
+/// The firmware's tools put an underscore before each name. Its own `main` keeps it, so that
 /// it is not taken for the program's.
 fn program_name(name: &[u8]) -> &[u8] {
     match name {

@@ -13,7 +13,7 @@ use crate::ir::inst::Class;
 /// A symbol of the firmware.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FirmwareSymbol {
-    /// Where it stands.
+    /// Where it is.
     pub address: GuestAddr,
     /// What it is.
     pub kind: FirmwareKind,

@@ -25,7 +25,7 @@ pub struct Download {
     pub writes: Vec<(GuestAddr, Vec<u8>)>,
 }
 
-/// Why lines are no download.
+/// Why lines are not a download.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("line {line}: {kind}")]
 pub struct DownloadError {
@@ -193,7 +193,7 @@ impl Download {
     }
 }
 
-/// A line that is no bytes.
+/// A line that is not bytes.
 enum Command {
     Kill(ThreadId),
     Load(GuestAddr, usize),

@@ -128,7 +128,7 @@ impl Table {
         self.symbols.push(Symbol { name: Name::from(name), value, section, ty, class, aux: aux.to_vec() });
     }
 
-    /// A file symbol for each source file, behind it the functions that are defined there.
+    /// A file symbol for each source file, after it the functions that are defined there.
     fn functions(&mut self, linked: &Linked) {
         for (file, path) in (0..).zip(&linked.files) {
             let name = path.rsplit(['/', '\\']).next().unwrap_or(path);

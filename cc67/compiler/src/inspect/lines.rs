@@ -54,7 +54,7 @@ fn is_function(image: &Image, entry: &Entry) -> bool {
     entry.kind == Kind::Function || (entry.kind == Kind::Label && is_static())
 }
 
-/// The vendor's compiler pairs every address but a function's first with the line behind the
+/// The vendor's compiler pairs every address but a function's first with the line after the
 /// statement (`coff.md` section 5 of the specification).
 const fn statement_line(is_vendors: bool, position: usize, line: u32) -> u32 {
     if is_vendors && position > 1 { line.saturating_sub(1) } else { line }

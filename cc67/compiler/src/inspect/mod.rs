@@ -54,7 +54,7 @@ impl Inspection {
     /// Reads an image and takes it apart.
     ///
     /// # Errors
-    /// If the bytes are no image.
+    /// If the bytes are not an image.
     pub fn read(bytes: &[u8]) -> Result<Self, coff::Error> {
         Image::read(bytes).map(Self::new)
     }

@@ -1,6 +1,6 @@
 //! How deep the guest stack can get: frames along chains of calls.
 //!
-//! A frame holds what has an address: arrays, structures, locals behind `&`. Everything else
+//! A frame holds what has an address: arrays, structures, locals with `&`. Everything else
 //! lives in registers of the machine and costs no stack.
 
 use std::fmt::Write as _;

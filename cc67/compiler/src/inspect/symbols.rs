@@ -119,7 +119,7 @@ fn inside(image: &Image, address: u32) -> bool {
     (u64::from(start)..end + bss).contains(&u64::from(address))
 }
 
-/// The vendor's compiler writes an entry without a size behind everything but functions.
+/// The vendor's compiler writes an entry without a size after everything but functions.
 fn size(image: &Image, symbol: &Symbol, kind: Kind) -> Option<u32> {
     let has_size = image.target == Target::CC67 || kind == Kind::Function;
     symbol.size().filter(|_| has_size)

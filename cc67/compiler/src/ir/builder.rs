@@ -1,8 +1,8 @@
 //! Appends instructions to the block that is open.
 //!
-//! No block is open behind a terminator: what is appended there cannot be reached and is
+//! No block is open after a terminator: what is appended there cannot be reached and is
 //! dropped, until the next block is opened. A block enters the layout when it is opened, so
-//! the code stands in the order in which it was built.
+//! the code is in the order in which it was built.
 
 use cranelift_entity::packed_option::PackedOption;
 
@@ -88,7 +88,7 @@ impl Builder {
         self.cost = None;
     }
 
-    /// A block that only costs and goes on at `to`; it stands in front of it, if that is still to be opened.
+    /// A block that only costs and continues at `to`; it is before it, if that is still to be opened.
     pub fn way(&mut self, to: BlockId, cycles: u32) -> BlockId {
         let span = self.span;
         let insts = vec![Inst { kind: InstKind::Cost { cycles }, span }];
@@ -121,7 +121,7 @@ impl Builder {
         self.terminate(Terminator::Branch { condition, then, otherwise });
     }
 
-    /// The place behind what was appended last.
+    /// The place after what was appended last.
     #[must_use]
     pub fn point(&self) -> Point {
         let index = self.open.map_or(0, |block| self.function.blocks[block].insts.len() as u32);

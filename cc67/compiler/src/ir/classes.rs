@@ -1,6 +1,6 @@
 //! What the text of a function says of the classes of its values.
 //!
-//! A parameter list names classes, and so does every instruction that writes a value, but for a copy: that has the
+//! A parameter list names classes, and so does every instruction that writes a value, except for a copy: that has the
 //! class of its source. What nothing says is declared in front of the first block: the class of a value that is read
 //! and never written, or that is only a copy of such values.
 

@@ -94,7 +94,7 @@ pub struct SourceVariable {
 /// Where a local is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VariableHome {
-    /// In a value that was written so many times when the function was lowered.
+    /// In a value that was written this many times when the function was lowered.
     Value(ValueId, u32),
     /// In the frame.
     Slot(SlotId),

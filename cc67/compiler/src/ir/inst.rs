@@ -444,7 +444,7 @@ pub enum Terminator {
         /// Taken for 0.
         otherwise: BlockId,
     },
-    /// Goes to `targets[index]`, or to `default` if there are not so many; `index` counts as unsigned.
+    /// Goes to `targets[index]`, or to `default` if there are fewer; `index` counts as unsigned.
     Table {
         /// The index, `I32`.
         index: Operand,

@@ -2,7 +2,7 @@
 //!
 //! Operators name signedness where it matters, as the machine's instructions do. `>` and `>=`
 //! do not exist: whoever builds a comparison swaps its operands. What passes and back ends ask of an
-//! operator stands in its row.
+//! operator is in its row.
 
 use super::inst::Class;
 

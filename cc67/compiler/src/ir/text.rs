@@ -13,7 +13,7 @@
 //! ```
 //!
 //! An operator is followed by the class of its operands, a load or store by the width of what it moves, a call by the
-//! class of its result, wanted or not. Constants are `1` (`i32`), `1L` (`i64`), `1.0f` (`f32`), `1.0` (`f64`) and
+//! class of its result, needed or not. Constants are `1` (`i32`), `1L` (`i64`), `1.0f` (`f32`), `1.0` (`f64`) and
 //! `&symbol + 4`; infinities and NaNs are their bits, `f64(0x7ff0000000000000)`. A symbol with the name of a value or
 //! slot has an `@` in front. A value whose class no instruction names ([`super::classes`]) is declared after the slots.
 //!

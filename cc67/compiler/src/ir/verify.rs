@@ -1,4 +1,4 @@
-//! Checks that a function is well formed; run behind every stage in tests and debug builds.
+//! Checks that a function is well formed; run after every stage in tests and debug builds.
 //!
 //! A finding is a defect of the compiler, never of the user's program.
 

@@ -41,7 +41,7 @@ pub enum LinkErrorKind {
         /// File and line of the second.
         second: String,
     },
-    /// A call of something that is no function.
+    /// A call of something that is not a function.
     #[error("`{name}` is called, but is not a function")]
     NotAFunction {
         /// The name.
@@ -58,7 +58,7 @@ pub enum LinkErrorKind {
         defined: String,
     },
     /// The program does not fit the program area.
-    #[error("the program is {excess} bytes too large for the {space} bytes behind its address")]
+    #[error("the program is {excess} bytes too large for the {space} bytes after its address")]
     TooLarge {
         /// How many bytes stand beyond the limit.
         excess: u32,

@@ -4,7 +4,7 @@
 //! its symbols. All that is missing is reported at once.
 //!
 //! Placement (specification, `coff.md` section 4): text at the start of the thread's space,
-//! data and uninitialised data behind it, each at a multiple of 32, every object aligned to
+//! data and uninitialised data after it, each at a multiple of 32, every object aligned to
 //! its type. A pointer to a function is the address of its `func` word.
 
 mod error;
@@ -120,7 +120,7 @@ pub enum Section {
 pub struct LinkedSymbol {
     /// Its name.
     pub name: String,
-    /// Where it stands.
+    /// Where it is.
     pub address: GuestAddr,
     /// Its size in bytes.
     pub size: u32,
@@ -159,7 +159,7 @@ pub struct LinkedLine {
 pub struct Import {
     /// Its name.
     pub name: String,
-    /// Where it stands.
+    /// Where it is.
     pub address: GuestAddr,
     /// Whether it is a function.
     pub is_function: bool,

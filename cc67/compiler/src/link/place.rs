@@ -10,7 +10,7 @@ use super::text::Layout;
 use super::{LinkedSymbol, Section, SectionAddresses};
 use crate::object::{Object, Symbol};
 
-/// Sections start at multiples of so many bytes.
+/// Sections start at multiples of this many bytes.
 const SECTION_ALIGN: u32 = 32;
 /// How many symbols are named when the program is too large.
 const NAMED: usize = 5;
@@ -38,7 +38,7 @@ impl Placed {
     }
 }
 
-/// Places text at `base` and everything else behind it.
+/// Places text at `base` and everything else after it.
 pub(super) fn place(
     objects: &[Object],
     names: &Names<'_>,
@@ -74,7 +74,7 @@ pub(super) fn place(
     placed
 }
 
-/// Where the section behind one that ends at `end` begins.
+/// Where the section after one that ends at `end` begins.
 fn behind(end: u32) -> GuestAddr {
     GuestAddr::new(end.checked_next_multiple_of(SECTION_ALIGN).unwrap_or(u32::MAX))
 }
@@ -139,7 +139,7 @@ fn linked(
 }
 
 /// Compares the program's end with the space there is (specification, `dialect.md` section 7). A program
-/// whose text does not stand in the space of the board's user programs is for another board.
+/// whose text is not in the space of the board's user programs is for another board.
 pub(super) fn check_size(placed: &Placed, text: GuestAddr) -> Result<Vec<LinkWarning>, Vec<LinkError>> {
     if !(PROGRAM_BASE..STACK_BASE).contains(&text.get()) {
         return Ok(Vec::new());

@@ -1,7 +1,7 @@
 //! The text of a program for the controller's processor.
 //!
 //! Functions begin at fetch packets, the first at the start of the text. A branch with a displacement reaches 4 MiB: the
-//! whole of the program and the firmware's functions in SDRAM. For functions in the on-chip memory a jump stands behind
+//! whole of the program and the firmware's functions in SDRAM. For functions in the on-chip memory a jump comes after
 //! the program's functions.
 
 use kmotiondef::GuestAddr;
@@ -36,7 +36,7 @@ pub(super) fn check_targets(objects: &[Object]) -> Result<(), Vec<LinkError>> {
 }
 
 impl Layout {
-    /// Lays out the functions that are needed, behind them the jumps.
+    /// Lays out the functions that are needed, after them the jumps.
     pub(super) fn processor(&mut self, objects: &[Object], reached: &Reached, base: GuestAddr) {
         self.word_bytes = WORD;
         self.guard = 0;

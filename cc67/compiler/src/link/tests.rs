@@ -168,7 +168,7 @@ fn a_program_larger_than_its_space_enters_the_next_ones() {
     let errors = try_link(&[source], 5, true).expect_err("does not fit");
     let message = errors[0].to_diagnostic();
     assert!(
-        message.message.ends_with("bytes too large for the 196608 bytes behind its address"),
+        message.message.ends_with("bytes too large for the 196608 bytes after its address"),
         "{}",
         message.message
     );

@@ -207,11 +207,7 @@ impl Writer<'_> {
             }
             self.text.extend_from_slice(&bytes);
         }
-        debug_assert_eq!(
-            start,
-            guard::BYTES + word as usize * WORD,
-            "functions stand where they were placed"
-        );
+        debug_assert_eq!(start, guard::BYTES + word as usize * WORD, "functions are where they were placed");
     }
 
     /// The call of a symbol.
@@ -307,7 +303,7 @@ pub(super) fn data(objects: &[Object], addresses: &Addresses<'_>) -> Vec<u8> {
     data
 }
 
-/// What is known of each function besides its symbol.
+/// What is known about each function besides its symbol.
 pub(super) fn functions(objects: &[Object], layout: &Layout) -> Vec<LinkedFunction> {
     let mut first_line = 0;
     let describe = |(object, index, _): &(usize, u32, u32)| {

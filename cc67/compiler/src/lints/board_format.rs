@@ -55,11 +55,11 @@ fn finding(spelled: &[u8], (message, help): Quirk) -> Finding {
     Finding { spelled: String::from_utf8_lossy(spelled).into_owned(), message, help }
 }
 
-/// White space behind an ordinary character before a conversion of `scanf`.
+/// White space after an ordinary character before a conversion of `scanf`.
 fn literal_space(between: &[u8]) -> Option<Quirk> {
     let written = between.trim_ascii_start();
     written.iter().any(u8::is_ascii_whitespace).then_some((
-        "reads white space behind another character as that very character",
+        "reads white space after another character as that very character",
         "leave the white space out: most conversions skip it",
     ))
 }
@@ -78,7 +78,7 @@ struct Conversion<'f> {
 }
 
 impl<'f> Conversion<'f> {
-    /// Reads what stands behind a `%`; also what is left of the format.
+    /// Reads what follows a `%`; also what is left of the format.
     fn parse(text: &'f [u8], is_scan: bool) -> (Self, &'f [u8]) {
         let mut conversion = Self::default();
         let mut rest = text;
@@ -155,7 +155,7 @@ impl<'f> Conversion<'f> {
                 Some(("prints `0.` or `0.1` for values below 0.1", "print an `int`: `%d`"))
             }
             (b'g' | b'G', _) if matches!(self.precision, Some(0..=3)) => Some((
-                "prints only zeros for values with as many zeros behind the point",
+                "prints only zeros for values with as many zeros after the point",
                 "use `%f`, or `%g` without a precision",
             )),
             _ => None,

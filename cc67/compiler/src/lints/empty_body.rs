@@ -20,6 +20,6 @@ pub(crate) fn finding(
     (line(condition.span) == line(then.span)).then(|| {
         Diagnostic::warning(Lint::EmptyBody, then.span, "`if` with an empty body")
             .at("this `;` ends the `if`")
-            .help("remove the `;`, or write `{}` if nothing shall be done")
+            .help("remove the `;`, or write `{}` if nothing should be done")
     })
 }

@@ -1,4 +1,4 @@
-//! Loops that never end and do nothing: the thread spends its slices on them for ever.
+//! Loops that never end and do nothing: the thread spends its slices on them forever.
 
 use std::collections::BTreeSet;
 

@@ -28,7 +28,7 @@ pub(crate) fn finding(sources: &SourceMap, guard: &Statement, next: &Statement) 
     })
 }
 
-/// Line number of a statement and the blanks before it; `None` if something else stands there.
+/// Line number of a statement and the blanks before it; `None` if something else is there.
 fn indentation(sources: &SourceMap, span: Span) -> Option<(u32, &[u8])> {
     let place = sources.place(span)?;
     let file = sources.file(place.file);

@@ -1,6 +1,6 @@
 //! Frames and call chains beyond the board's small stack.
 //!
-//! A thread has 2048 bytes, of which about 1.9 KiB are usable, with no guard behind them: the
+//! A thread has 2048 bytes, of which about 1.9 KiB are usable, with no guard after them: the
 //! next thread's stack begins there. The frame is that of the vendor's compiler (`dialect.md`
 //! section 7): all locals, 8-byte aligned, 8 bytes for each parameter, and 16.
 

@@ -1,6 +1,6 @@
 //! Reads of locals in which nothing was stored.
 //!
-//! Certain is a read if no store stands before it in the text, and none behind it in a loop
+//! Certain is a read if no store comes before it in the text, and none after it in a loop
 //! around both. Possible is one that some path reaches without a store; which paths are taken
 //! is not known, so that many of these are false alarms. Functions with labels are left out.
 //! Locals in memory are, too: their address may have been passed on.
@@ -47,7 +47,7 @@ fn search(function: &Function, sink: &mut Sink) {
         let message = format!("`{}` may be read before it has a value", local.name);
         sink.report(
             Diagnostic::warning(Lint::MaybeUninitialized, *span, message)
-                .at("a way leads here on which nothing is stored in it")
+                .at("not assigned on every path to here")
                 .label(local.span, "declared without a value"),
         );
     }

@@ -12,7 +12,7 @@ pub(crate) fn finding(expression: &Expression, is_function: bool) -> Option<Diag
     Some(match &expression.kind {
         ExpressionKind::Binary(BinaryOperator::Equal, ..) => diagnostic.help("`=` assigns, `==` compares"),
         ExpressionKind::Identifier(_) if is_function => {
-            diagnostic.help("write `()` behind the name to call the function")
+            diagnostic.help("write `()` after the name to call the function")
         }
         _ => diagnostic.at("the value is dropped"),
     })

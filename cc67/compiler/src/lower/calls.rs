@@ -79,7 +79,7 @@ impl Lowering<'_> {
         operands
     }
 
-    /// Stores variable arguments one behind the other, each aligned to its size; returns where they start.
+    /// Stores variable arguments one after another, each aligned to its size; returns where they start.
     fn store_variable(&mut self, arguments: &[Operand]) -> Operand {
         if arguments.is_empty() {
             return Operand::int(0);

@@ -6,7 +6,7 @@ use crate::ir::operators::{CompareOp, Width};
 use crate::ty::Types;
 use crate::typed::{self, ExprId, ExprKind, UnaryOp};
 
-/// Which way of a condition the vendor's code jumps; on the other it goes on where it is.
+/// Which way of a condition the vendor's code jumps; on the other it continues where it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Sense {
     /// As in `if`, loops and `&&`.
@@ -164,7 +164,7 @@ impl Lowering<'_> {
         to == Types::BOOL || (is_word && types::width(types, to) == Some(Width::I32))
     }
 
-    /// Whether a loop can afford to have the condition twice, in front and behind the body.
+    /// Whether a loop can afford to have the condition twice, before and after the body.
     pub(super) fn is_small(&self, condition: ExprId) -> bool {
         let mut budget = 12;
         self.count(condition, &mut budget);

@@ -78,7 +78,7 @@ impl Lowering<'_> {
         }
     }
 
-    /// Evaluates an expression whose value is not wanted.
+    /// Evaluates an expression whose value is not needed.
     pub(super) fn effect(&mut self, id: ExprId) {
         let expr = &self.function.exprs[id];
         match expr.kind {
@@ -125,12 +125,12 @@ impl Lowering<'_> {
         }
     }
 
-    /// The value that an instruction should write: the wanted one or a new one.
+    /// The value that an instruction should write: the requested one or a new one.
     pub(super) fn destination(&mut self, class: Class, into: Option<ValueId>) -> ValueId {
         into.unwrap_or_else(|| self.builder.value(class))
     }
 
-    /// Brings an operand to the wanted place, if there is one.
+    /// Brings an operand to the requested place, if there is one.
     pub(super) fn place_in(&mut self, operand: Operand, into: Option<ValueId>) -> Operand {
         let Some(dst) = into else { return operand };
         self.builder.copy(dst, operand);

@@ -6,7 +6,7 @@
 //!
 //! Everything is evaluated from left to right. A local in a register is read by naming its
 //! value, not by copying it; where a later operand of the same expression writes that local,
-//! a copy is put in behind the fact ([`Lowering::hold`]).
+//! a copy is put in after the fact ([`Lowering::hold`]).
 
 mod calls;
 mod conditions;

@@ -1,6 +1,6 @@
 //! Charges what the vendor's code takes, where the typed tree is lowered.
 //!
-//! The vendor's compiler makes the same code for a construct wherever it stands, so the costs follow the source and not
+//! The vendor's compiler makes the same code for a construct wherever it is, so the costs follow the source and not
 //! the instructions that we make of it: what optimisation does later changes none. The rules are those of
 //! `spec/costs.md` section 6; a few smaller ones, marked here, follow from its recorded programs.
 
@@ -14,7 +14,7 @@ use crate::ir::function::table;
 use crate::ir::inst::{BlockId, Class};
 use crate::typed::{self, BinaryOp, ExprId, ExprKind, LocalId, PlaceId, PlaceKind, SymbolId, UnaryOp};
 
-/// Where SDRAM begins: what lies below is inside of the processor.
+/// Where SDRAM begins: what is below is inside of the processor.
 const SDRAM: u32 = 0x8000_0000;
 
 /// What is known for charging a function.

@@ -6,7 +6,7 @@ use crate::ir::inst::Terminator;
 use crate::typed::{ExprId, LoopTest, Stmt, StmtKind};
 
 impl Lowering<'_> {
-    /// Lowers statements one after the other.
+    /// Lowers statements one after another.
     pub(super) fn statements(&mut self, statements: &[Stmt]) {
         for statement in statements {
             self.statement(statement);

@@ -5,7 +5,7 @@ use crate::ir::inst::{BlockId, Class, Constant, Operand, Terminator};
 use crate::ir::operators::{BinaryOp, CompareOp};
 use crate::typed::{Case, ExprId, Stmt};
 
-/// A table has at most so many entries.
+/// A table has at most this many entries.
 const MAX_TABLE: i128 = 4096;
 /// So few cases are compared one by one.
 const FEW: usize = 3;
@@ -62,7 +62,7 @@ impl Lowering<'_> {
         self.builder.open(end);
     }
 
-    /// The blocks that cost what finding the cases costs the vendor's code: it compares with one after the other.
+    /// The blocks that cost what finding the cases costs the vendor's code: it compares with one after another.
     fn case_ways(&mut self, blocks: &[BlockId], default: BlockId) -> (Vec<BlockId>, BlockId) {
         if self.pricing.is_none() {
             return (blocks.to_vec(), default);

@@ -19,7 +19,7 @@ use crate::typed::{Linkage, SymbolId};
 /// Largest alignment of an object.
 const MAX_ALIGN: u32 = 64;
 
-/// Why a file is no object.
+/// Why a file is not an object.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ReadError {
     /// The bytes are not COFF.
@@ -316,7 +316,7 @@ impl<'a> ObjectReader<'a> {
         self.ids.get(index as usize).copied().flatten()
     }
 
-    /// The lines behind the entry of the function with symbol `index`.
+    /// The lines after the entry of the function with symbol `index`.
     fn lines(&mut self, index: u32, words: &Range<u32>, file: u32) -> Range<u32> {
         let first = self.object.lines.len() as u32;
         let own = self.text.lines.iter().skip_while(|line| **line != CoffLine::Function(index)).skip(1);

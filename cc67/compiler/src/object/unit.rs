@@ -15,7 +15,7 @@ use crate::source::{SourceMap, Span};
 use crate::ty::{ParameterTypes, Type, TypeId, Types};
 use crate::typed::{self, Linkage, SymbolId, Unit};
 
-/// What is known of a function besides its words.
+/// What is known about a function besides its words.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct About {
     /// Its symbol.

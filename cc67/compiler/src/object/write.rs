@@ -10,7 +10,7 @@
 //! - in code for the processor, [`LOW`] and [`HIGH`] put half of the symbol's address plus an offset into the constant
 //!   of an instruction, which holds that half of the offset, the displacement the other half; [`NEAR`] completes a
 //!   branch; [`OWN`] adds the function's address to the word;
-//! - the symbols behind the file symbols stand in the order of the unit's. A tentative external
+//! - the symbols after the file symbols are in the order of the unit's. A tentative external
 //!   object is undefined with its size as value, as common objects always are in COFF; a
 //!   `static` one lies in `.bss`;
 //! - the auxiliary entry of an object has its alignment, file and line; `.bf` and `.ef` have the
@@ -191,7 +191,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// Where a word of the unit's text stands in the section.
+    /// Where a word of the unit's text is in the section.
     fn byte(&self, word: u32) -> u32 {
         (self.head + word) * self.word
     }

@@ -94,7 +94,7 @@ impl Parser<'_> {
                 Some(_) => None,
                 None => Some(self.type_name()?),
             };
-            self.expect(TokenKind::Colon, "behind the type")?;
+            self.expect(TokenKind::Colon, "after the type")?;
             choices.push((ty, self.assignment()?));
         }
         Ok(ExpressionKind::Generic { value, choices })

@@ -207,7 +207,7 @@ impl Parser<'_> {
                 || self.is_identifier_at(0) && self.kind_at(1) == TokenKind::LeftParen)
     }
 
-    /// Whether a `;` stands between the head of a function and its body; reports it.
+    /// Whether a `;` is between the head of a function and its body; reports it.
     fn has_surplus_semicolon(&mut self, declarator: &Declarator) -> bool {
         let is_head = matches!(declarator.derived.first(), Some(Derived::Function(_)))
             && self.scopes.is_outermost()
@@ -221,7 +221,7 @@ impl Parser<'_> {
         is_head
     }
 
-    /// Reads an `==` in the place of the `=` before an initialiser, and reports it.
+    /// Reads an `==` in place of the `=` before an initialiser, and reports it.
     fn takes_equality(&mut self, declarator: &Declarator) -> bool {
         let Some(token) = self.take(TokenKind::Equal) else { return false };
         let name = declarator.name.map_or("it", |(name, _)| self.spelling(name));
@@ -258,7 +258,7 @@ impl Parser<'_> {
         is_variable
     }
 
-    /// Whether the name of a variable goes on behind a `-`, as in `int home-speed = 5;`; reports it.
+    /// Whether the name of a variable continues after a `-`, as in `int home-speed = 5;`; reports it.
     fn continues_name(&mut self) -> bool {
         let Some(first) = self.at.checked_sub(1).and_then(|at| self.tokens.get(at)).copied() else {
             return false;
@@ -370,7 +370,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Whether a statement stands where only declarations may.
+    /// Whether a statement is where only declarations may.
     fn is_loose_statement(&self) -> bool {
         let Some(name) = self.name() else {
             return self.kind() != TokenKind::Star && self.kind() != TokenKind::LeftParen;

@@ -224,7 +224,7 @@ impl Parser<'_> {
         specifiers.ty = Some(Self::missing_type(token.span));
     }
 
-    /// `asm("name")` and attributes behind a declarator.
+    /// `asm("name")` and attributes after a declarator.
     fn labels_and_attributes(&mut self) -> Parsed<Vec<Alignment>> {
         if matches!(self.name(), Some(word::ASM | word::ASM_ | word::ASM__)) {
             self.assembler()?;

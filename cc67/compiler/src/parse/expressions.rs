@@ -49,7 +49,7 @@ impl Parser<'_> {
         Ok(left)
     }
 
-    /// The operand behind a left-associative operator.
+    /// The operand after a left-associative operator.
     fn right_operand(&mut self, binding: u8) -> Parsed<Expression> {
         if self.nesting.operators >= OPERATORS {
             return Err(self.too_deep());
@@ -67,7 +67,7 @@ impl Parser<'_> {
         Ok(combine(operator, left, right))
     }
 
-    /// What stands behind `condition ?`; the middle operand may be missing.
+    /// What follows `condition ?`; the middle operand may be missing.
     #[inline(never)]
     fn branches(&mut self, condition: Expression) -> Parsed<Expression> {
         let then = match self.kind() {

@@ -52,7 +52,7 @@ impl Parser<'_> {
         if !fits {
             return None;
         }
-        let message = format!("`{written}` is no word of C; letter case matters");
+        let message = format!("`{written}` is not a word of C; letter case matters");
         let diagnostic = Diagnostic::error(self.peek().span, message).help(format!("write `{small}`"));
         self.report(diagnostic);
         Some(keyword)
@@ -65,13 +65,13 @@ impl Parser<'_> {
         if !is_known || self.kind_at(1) != TokenKind::LeftParen {
             return false;
         }
-        let message = format!("`{written}` is no word of C");
+        let message = format!("`{written}` is not a word of C");
         let diagnostic = Diagnostic::error(self.peek().span, message).help("write `else if`");
         self.report(diagnostic);
         true
     }
 
-    /// Goes over the `then` behind a condition.
+    /// Goes over the `then` after a condition.
     pub(super) fn skip_then(&mut self) {
         if self.unknown_word().is_some_and(|word| word.eq_ignore_ascii_case("then")) {
             let span = self.next().span;
@@ -88,7 +88,7 @@ impl Parser<'_> {
         let start = self.peek().span;
         let written = self.unknown_word()?;
         let (language, message, help) = if is_block_end(written) && self.kind_at(1) != TokenKind::LeftParen {
-            let message = format!("`{written}` is no word of C");
+            let message = format!("`{written}` is not a word of C");
             (Language::Basic, message, "`}` ends what `{` began".to_owned())
         } else if written == "delete" && self.kind_at(1) != TokenKind::LeftParen {
             let message = "`delete` belongs to C++".to_owned();
@@ -109,7 +109,7 @@ impl Parser<'_> {
         Some(Ok(Statement { kind: StatementKind::Expression(error), span }))
     }
 
-    /// Whether a word of G-code stands at the token `ahead`, which means nothing else.
+    /// Whether a word of G-code is at the token `ahead`, which means nothing else.
     fn is_g_code_at(&self, ahead: usize) -> bool {
         self.name_at(ahead).is_some_and(|name| {
             self.scopes.meaning(name) == Meaning::Unknown && foreign_words::is_g_code(self.spelling(name))
@@ -167,7 +167,7 @@ impl Parser<'_> {
         Some(Expression { kind: ExpressionKind::Error, span })
     }
 
-    /// What to say about a word that stands where an operator or a `)` was expected.
+    /// What to say about a word that is where an operator or a `)` was expected.
     pub(super) fn operator_word(&self) -> Option<&'static str> {
         match self.unknown_word()? {
             written @ ("and" | "or" | "not") => foreign_words::word(written).map(|word| word.advice),

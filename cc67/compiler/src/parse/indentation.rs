@@ -1,7 +1,7 @@
 //! Which `{` was probably left open: what people see is the indentation.
 //!
 //! A missing `}` makes every later one close the wrong block, so that the first brace of the
-//! function is the one without a partner. But a `}` that begins a line stands below the line of
+//! function is the one without a partner. But a `}` that begins a line is below the line of
 //! its `{`; the first one that stands further left than the block it closes shows which block
 //! was not closed.
 

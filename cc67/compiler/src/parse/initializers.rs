@@ -6,7 +6,7 @@ use crate::pp::TokenKind;
 use super::{Parsed, Parser};
 
 impl Parser<'_> {
-    /// What stands behind `=`.
+    /// What follows `=`.
     pub(super) fn initializer(&mut self) -> Parsed<Initializer> {
         if self.kind() != TokenKind::LeftBrace {
             return Ok(Initializer::Expression(self.assignment()?));
@@ -43,7 +43,7 @@ impl Parser<'_> {
         self.designator_steps(&mut designators)?;
         let ends_in_index = matches!(designators.last(), Some(Designator::Index(_) | Designator::Range(..)));
         if !designators.is_empty() && self.take(TokenKind::Assign).is_none() && !ends_in_index {
-            return self.fail_expected("`=` behind the designator");
+            return self.fail_expected("`=` after the designator");
         }
         Ok(designators)
     }

@@ -5,7 +5,7 @@
 //! does. The only thing it must know about names is whether they are types ([`scopes`]).
 //!
 //! An error is reported where it is found and travels up as [`Reported`] to the next
-//! statement or declaration, which goes on behind it ([`recover`]): one run shows all
+//! statement or declaration, which continues after it ([`recover`]): one run shows all
 //! independent errors, and few others.
 
 #![cfg_attr(
@@ -95,7 +95,7 @@ struct Parser<'a> {
     tokens: &'a [Token],
     /// Index of the next token.
     at: usize,
-    /// What stands behind the last token.
+    /// What follows the last token.
     end: Token,
     sources: &'a SourceMap,
     names: &'a Names,
@@ -103,7 +103,7 @@ struct Parser<'a> {
     scopes: Scopes,
     nesting: Nesting,
     recovery: Recovery,
-    /// The block that is read next, or is being read, stands behind `if (…)`.
+    /// The block that is read next, or is being read, comes after `if (…)`.
     is_branch: bool,
     /// A function was defined.
     has_function: bool,
@@ -136,7 +136,7 @@ struct Recovery {
 }
 
 impl Parser<'_> {
-    /// The next token; `End` for ever behind the last one.
+    /// The next token; `End` forever after the last one.
     fn peek(&self) -> Token {
         self.tokens.get(self.at).copied().unwrap_or(self.end)
     }

@@ -3,7 +3,7 @@
 use crate::ast::BinaryOperator;
 use crate::pp::TokenKind;
 
-/// An operator behind an operand, with another operand behind it.
+/// An operator after an operand, with another operand after it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Infix {
     /// `,`

@@ -1,4 +1,4 @@
-//! Reporting syntax errors, and going on behind them.
+//! Reporting syntax errors, and continuing after them.
 
 use crate::diag::{Diagnostic, TOO_MANY_ERRORS};
 use crate::names::word;
@@ -72,7 +72,7 @@ impl Parser<'_> {
         Some(advice.to_owned())
     }
 
-    /// What to change in the `#define` that put `=` or `;` where it cannot stand.
+    /// What to change in the `#define` that put `=` or `;` where it is not allowed.
     fn macro_advice(&self, token: Token) -> Option<String> {
         let expansion = self.sources.expansion(token.span.expansion)?;
         let text = match token.kind {
@@ -182,7 +182,7 @@ impl Parser<'_> {
         None
     }
 
-    /// Reads the `;` behind `what`, whose missing is reported where it should stand.
+    /// Reads the `;` after `what`, whose missing is reported where it should be.
     pub(super) fn semicolon(&mut self, what: Span) -> Parsed<()> {
         if self.take(TokenKind::Semicolon).is_some() {
             return Ok(());
@@ -211,7 +211,7 @@ impl Parser<'_> {
         if is_forgotten || found.kind == TokenKind::End { Ok(()) } else { Err(Reported) }
     }
 
-    /// The place behind the token read last.
+    /// The place after the token read last.
     pub(super) fn end_of_last(&self) -> Span {
         let site = self.sources.call_site(self.last_span());
         Span::new(site.hi, site.hi)
@@ -233,7 +233,7 @@ impl Parser<'_> {
         String::from_utf8_lossy(self.sources.text(span)).into_owned()
     }
 
-    /// The text from the start of a construct to a place behind it, if it is short and in one line.
+    /// The text from the start of a construct to a place after it, if it is short and in one line.
     fn short_text(&self, start: Span, end: Span) -> Option<String> {
         let text = self.text(Span::new(self.sources.call_site(start).lo, end.lo));
         let is_short = !text.is_empty() && text.len() <= 40 && !text.contains(['\n', '`']);
@@ -301,7 +301,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Goes behind the `)` of a condition that could not be parsed.
+    /// Goes past the `)` of a condition that could not be parsed.
     pub(super) fn skip_to_close(&mut self, open: usize) {
         let mut pending = self.recovery.open.len().saturating_sub(open);
         self.recovery.open.truncate(open);
@@ -317,7 +317,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Goes behind the brace that closes the next one.
+    /// Goes past the brace that closes the next one.
     pub(super) fn skip_braces(&mut self) {
         let mut depth = 0_usize;
         loop {

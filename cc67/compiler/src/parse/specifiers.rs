@@ -85,7 +85,7 @@ impl Parser<'_> {
         Ok(specifiers)
     }
 
-    /// Reads qualifiers and whatever stands in their place; true if something was read.
+    /// Reads qualifiers and whatever is in their place; true if something was read.
     pub(super) fn qualifier(&mut self, qualifiers: &mut Qualifiers) -> Parsed<bool> {
         match self.name() {
             Some(word::CONST | word::CONST_ | word::CONST__) => qualifiers.is_const = true,
@@ -140,7 +140,7 @@ impl Parser<'_> {
         Ok(alignment)
     }
 
-    /// Whether a word begins a type, wherever one may stand.
+    /// Whether a word begins a type, wherever one may be.
     pub(super) fn is_type_word(&self, name: Name) -> bool {
         match name {
             word::VOID
@@ -291,7 +291,7 @@ impl Parser<'_> {
         match ty {
             Some(ty) => Ok(ty),
             None => {
-                let message = format!("`{}` is no type", self.text(span));
+                let message = format!("`{}` is not a type", self.text(span));
                 self.fail(Diagnostic::error(span, message).at("these words do not go together"))
             }
         }
@@ -371,7 +371,7 @@ impl Parser<'_> {
     fn typeof_(&mut self) -> Parsed<TypeSpecifier> {
         self.at += 1;
         if self.kind() != TokenKind::LeftParen {
-            return self.fail_expected("`(` behind `typeof`");
+            return self.fail_expected("`(` after `typeof`");
         }
         self.open();
         let ty = if self.name().is_some_and(|name| self.is_type_word(name)) {

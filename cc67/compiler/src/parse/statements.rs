@@ -79,7 +79,7 @@ impl Parser<'_> {
         }
     }
 
-    /// A bracket that closes nothing, and the statement behind it.
+    /// A bracket that closes nothing, and the statement after it.
     fn surplus_bracket(&mut self) -> Parsed<Statement> {
         let token = self.next();
         let text = token.kind.punctuator().unwrap_or_default();
@@ -112,7 +112,7 @@ impl Parser<'_> {
             word::CASE => self.case()?,
             word::DEFAULT => {
                 self.at += 1;
-                self.colon("behind `default`")?;
+                self.colon("after `default`")?;
                 StatementKind::Default(self.labelled()?)
             }
             word::GOTO | word::BREAK | word::CONTINUE | word::RETURN => return self.jump(start),
@@ -120,8 +120,8 @@ impl Parser<'_> {
                 let token = self.next();
                 return self.fail(
                     Diagnostic::error(token.span, "`else` without `if`")
-                        .note("one statement, or several in `{ }`, may stand between `if (…)` and `else`")
-                        .help("are braces missing, or is there a `;` directly behind `if (…)`?"),
+                        .note("one statement, or several in `{ }`, can be between `if (…)` and `else`")
+                        .help("are braces missing, or is there a `;` directly after `if (…)`?"),
                 );
             }
             word::ASM | word::ASM_ | word::ASM__ => {
@@ -168,7 +168,7 @@ impl Parser<'_> {
         Ok(self.finish(StatementKind::Expression(expression), start))
     }
 
-    /// `( … )` behind `if` and its kin. If it cannot be parsed the statement is parsed all the same.
+    /// `( … )` after `if` and its kin. If it cannot be parsed the statement is parsed all the same.
     fn condition(&mut self, keyword: &str) -> Parsed<Expression> {
         let start = self.peek();
         if start.kind != TokenKind::LeftParen {
@@ -191,7 +191,7 @@ impl Parser<'_> {
     /// A condition whose parentheses were forgotten, as in `if x > 3:`.
     fn bare_condition(&mut self, keyword: &str) -> Parsed<Expression> {
         let start = self.peek();
-        let expected = format!("`(` behind `{keyword}`");
+        let expected = format!("`(` after `{keyword}`");
         let begins_operand = matches!(
             start.kind,
             TokenKind::Identifier | TokenKind::Number | TokenKind::Not | TokenKind::Minus
@@ -200,7 +200,7 @@ impl Parser<'_> {
             return self.fail_expected(&expected);
         }
         let message = format!("expected {expected}, found {}", self.describe(start));
-        let help = format!("the condition stands in parentheses: `{keyword} (…)`");
+        let help = format!("the condition needs parentheses: `{keyword} (…)`");
         self.report(Diagnostic::error(start.span, message).help(help));
         self.expression()?;
         self.take(TokenKind::Colon);
@@ -235,7 +235,7 @@ impl Parser<'_> {
         is_else
     }
 
-    /// Whether the block behind `if` ends before an `else`, its `}` forgotten; reports that.
+    /// Whether the block after `if` ends before an `else`, its `}` forgotten; reports that.
     fn ends_before_else(&mut self) -> bool {
         let Some(opener) = self.recovery.open.last().copied() else { return false };
         if self.name() != Some(word::ELSE) || !self.stands_left_of_block(opener) {
@@ -257,7 +257,7 @@ impl Parser<'_> {
         self.at += 1;
         let body = self.body()?;
         if self.take_word(word::WHILE).is_none() {
-            return self.fail_expected("`while` behind the body of `do`");
+            return self.fail_expected("`while` after the body of `do`");
         }
         let condition = self.condition("while")?;
         let span = self.since(start);
@@ -268,7 +268,7 @@ impl Parser<'_> {
     fn for_(&mut self) -> Parsed<StatementKind> {
         self.at += 1;
         if self.kind() != TokenKind::LeftParen {
-            return self.fail_expected("`(` behind `for`");
+            return self.fail_expected("`(` after `for`");
         }
         let open = self.recovery.open.len();
         let start = self.open().span;
@@ -304,12 +304,12 @@ impl Parser<'_> {
             }
             _ => {
                 let init = self.expression()?;
-                self.for_semicolon("behind the first part of `for`")?;
+                self.for_semicolon("after the first part of `for`")?;
                 self.finish(StatementKind::Expression(init), start)
             }
         };
         let condition = if self.kind() == TokenKind::Semicolon { None } else { Some(self.expression()?) };
-        self.for_semicolon("behind the condition of `for`")?;
+        self.for_semicolon("after the condition of `for`")?;
         let step = if self.kind() == TokenKind::RightParen { None } else { Some(self.expression()?) };
         self.close(TokenKind::RightParen)?;
         Ok((Box::new(init), condition, step))
@@ -341,7 +341,7 @@ impl Parser<'_> {
             Some(_) => Some(self.conditional()?),
             None => None,
         };
-        self.colon("behind the value of `case`")?;
+        self.colon("after the value of `case`")?;
         Ok(StatementKind::Case { first, last, body: self.labelled()? })
     }
 
@@ -371,7 +371,7 @@ impl Parser<'_> {
         Ok(self.finish(StatementKind::Label { name, name_span, body }, start))
     }
 
-    /// What stands behind a label: perhaps nothing, at the end of a block.
+    /// What follows a label: perhaps nothing, at the end of a block.
     fn labelled(&mut self) -> Parsed<Box<Statement>> {
         if self.kind() == TokenKind::RightBrace {
             return Ok(Box::new(Statement { kind: StatementKind::Empty, span: self.end_of_last() }));

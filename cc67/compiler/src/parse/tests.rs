@@ -246,7 +246,7 @@ fn specifiers() {
     unit("_Noreturn void f(void); __inline__ g();", "(var void f (fn))\n(var inline ? g ())");
     unit("typeof(1+2) a; typeof(int *) b;", "(var (typeof (+ 1 2)) a)\n(var (typeof int *) b)");
     unit("va_list a; int va_list;", "(var (typeof char *) a)\n(var int va_list)");
-    errors("unsigned double a;", &["1:1: `unsigned double` is no type"]);
+    errors("unsigned double a;", &["1:1: `unsigned double` is not a type"]);
     errors("static extern int a;", &["1:8: two storage classes in one declaration"]);
     errors("int double a;", &["1:5: `double` is one type too many"]);
     errors("asm(\"nop\");", &["1:1: assembler is not supported"]);
@@ -401,8 +401,8 @@ fn several_errors_are_found_in_one_run() {
             "2:6: expected an expression, found `;`",
             "4:8: expected an expression, found `;`",
             "5:9: expected an expression, found `)`",
-            "6:24: expected `;` behind the condition of `for`, found `)`",
-            "7:7: expected `(` behind `while`, found `)`",
+            "6:24: expected `;` after the condition of `for`, found `)`",
+            "7:7: expected `(` after `while`, found `)`",
             "9:9: expected an expression, found `;`",
         ],
     );
@@ -451,7 +451,7 @@ fn misplaced_things() {
     );
     errors(
         "main() { switch (a) { case 1; b; case 2\n c; } }",
-        &["1:29: expected `:` behind the value of `case`", "1:40: expected `:` behind the value of `case`"],
+        &["1:29: expected `:` after the value of `case`", "1:40: expected `:` after the value of `case`"],
     );
     errors("int 3x;", &["1:5: expected a name, found `3x`"]);
     errors("main() { int a = 1", &["1:8: `{` is never closed"]);

@@ -8,7 +8,7 @@ use crate::pp::{Flags, Token, TokenKind};
 use super::{NESTING, Parsed, Parser};
 
 impl Parser<'_> {
-    /// An operand with its prefix operators, and what stands behind it.
+    /// An operand with its prefix operators, and what follows it.
     pub(super) fn unary(&mut self) -> Parsed<Expression> {
         let operand = match self.kind() {
             TokenKind::LeftParen if self.is_type_at(1) => return self.cast(),
@@ -144,7 +144,7 @@ impl Parser<'_> {
         Ok(Expression { kind: ExpressionKind::AlignofType(ty), span: self.since(token.span) })
     }
 
-    /// What stands behind an operand.
+    /// What follows an operand.
     #[inline(never)]
     fn postfix(&mut self, mut operand: Expression) -> Parsed<Expression> {
         let mut count = 0;

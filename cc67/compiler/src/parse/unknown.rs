@@ -32,7 +32,7 @@ const HEADER_TYPES: &[&str] = &[
     "size_t",
 ];
 
-/// Words that may stand before a name.
+/// Words that may come before a name.
 const WORDS: &[&str] = &[
     "int", "double", "float", "char", "void", "unsigned", "short", "long", "struct", "static", "extern",
     "const", "typedef", "return", "else", "case", "goto",
@@ -70,7 +70,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Reads a name that is no type in the place of one, reports it, and completes `specifiers` with it.
+    /// Reads a name that is not a type in place of one, reports it, and completes `specifiers` with it.
     pub(super) fn unknown_type(&mut self, specifiers: &mut Specifiers) {
         let token = self.next();
         self.report_unknown_type(token.name, token.span);

@@ -1,5 +1,5 @@
 //! Folds constants and carries copies and sums forward, within a block and into the block
-//! behind it if that has no other predecessor.
+//! after it if that has no other predecessor.
 //!
 //! A fact about a value holds until the value, or the value the fact refers to, is written
 //! again; a counter of writes for each value tells. Nothing is ever cleared, so the pass is
@@ -12,7 +12,7 @@ use crate::ir::function::{Function, table};
 use crate::ir::inst::{Address, Base, Constant, Inst, InstKind, Operand, Terminator, ValueId};
 use crate::ir::operators::{BinaryOp, CompareOp};
 
-/// What is known of a value.
+/// What is known about a value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Known {
     /// Nothing.
@@ -96,7 +96,7 @@ impl Folder {
         }
     }
 
-    /// What is known of a value now.
+    /// What is known about a value now.
     fn known(&self, value: ValueId) -> Known {
         let fact = self.facts[value];
         let is_current = fact.region == self.region
@@ -254,7 +254,7 @@ impl Folder {
     }
 }
 
-/// The value that a fact is about besides the one it is known of.
+/// The value that a fact is about besides the one it is known about.
 const fn refers_to(known: Known) -> Option<ValueId> {
     match known {
         Known::Operand(operand) | Known::IsZero(operand) => operand.as_value(),

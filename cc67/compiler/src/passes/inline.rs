@@ -1,6 +1,6 @@
-//! Puts small functions in the place of their calls.
+//! Puts small functions in place of their calls.
 //!
-//! A function is taken over as it stands: its values, blocks and accesses are copied, its
+//! A function is taken over as it is: its values, blocks and accesses are copied, its
 //! parameters are written before it, its result is written where it returned. What has objects in
 //! the frame is left alone, so that a frame grows only by what its own function asks for.
 //!
@@ -17,7 +17,7 @@ use crate::ir::inst::{
 };
 use crate::typed::SymbolId;
 
-/// The most instructions of a function that is put in the place of its calls.
+/// The most instructions of a function that replaces its calls.
 const SMALL: usize = 40;
 
 /// The most instructions of a function whose calls of itself are replaced.
@@ -29,7 +29,7 @@ const LEVELS: usize = 3;
 /// What a function may grow to.
 const LARGEST: usize = 1500;
 
-/// The functions that may be put in the place of their calls, each with the source file that it is in.
+/// The functions that may replace their calls, each with the source file that it is in.
 #[derive(Debug)]
 pub struct Candidates {
     /// How often the calls of a function in itself are replaced.

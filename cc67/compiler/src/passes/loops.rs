@@ -1,4 +1,4 @@
-//! Takes work out of loops: what does not change is computed in front of them, and an expression
+//! Takes work out of loops: what does not change is computed before them, and an expression
 //! that grows evenly with a counter is a sum carried from turn to turn.
 //!
 //! A loop is a stretch of the layout from the target of a jump backwards to the jump; it counts
@@ -88,7 +88,7 @@ pub(super) fn find(function: &Function, places: &SecondaryMap<BlockId, u32>) -> 
     loops
 }
 
-/// What is known of the whole function, and of the loop that is worked on.
+/// What is known about the whole function, and of the loop that is worked on.
 struct Worker<'a> {
     function: &'a mut Function,
     places: SecondaryMap<BlockId, u32>,
@@ -115,7 +115,7 @@ impl<'a> Worker<'a> {
         Self { function, places, writes, writes_inside, before: Vec::new() }
     }
 
-    /// Works on one loop; returns whether a block was put in front of it.
+    /// Works on one loop; returns whether a block was put before it.
     fn improve(&mut self, stretch: Stretch) -> bool {
         if !self.has_one_entrance(stretch) {
             return false;

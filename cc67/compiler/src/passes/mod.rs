@@ -1,6 +1,6 @@
 //! Optimisations of the IR, one a file.
 //!
-//! All are local to a block or to the graph of blocks and take linear time, but for the loops,
+//! All are local to a block or to the graph of blocks and take linear time, except for the loops,
 //! each of which takes a turn over its function, up to a limit. They work on values only: loads, stores and calls stay where they are, in number and order
 //! (specification, `dialect.md` 1.5); only a call of a small function gives way to that function.
 
@@ -44,7 +44,7 @@ pub const ALL: &[(&str, Pass)] = &[
     ("inline", inline_all),
 ];
 
-/// Puts functions of the unit, taken as one file, in the place of their later calls.
+/// Puts functions of the unit, taken as one file, in place of their later calls.
 fn inline_all(unit: &mut [Function]) {
     let mut candidates = Candidates::default();
     for function in unit {

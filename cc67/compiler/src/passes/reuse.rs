@@ -1,5 +1,5 @@
-//! Computes an expression once where it stands several times, within a block and into the block
-//! behind it if that has no other predecessor.
+//! Computes an expression once where it occurs several times, within a block and into the block
+//! after it if that has no other predecessor.
 //!
 //! Only what works on values: every load of the source stays a load. The last few expressions are
 //! remembered until something they mention is written.

@@ -43,7 +43,7 @@ impl Preprocessor<'_> {
     pub(super) fn condition(&mut self, directive: Span) -> bool {
         let tokens = self.condition_tokens();
         if tokens.is_empty() {
-            self.sink.report(Diagnostic::error(directive, "expression missing behind the directive"));
+            self.sink.report(Diagnostic::error(directive, "expression missing after the directive"));
             return false;
         }
         let mut parser = Parser { pp: self, tokens: &tokens, at: 0, depth: 0, is_evaluated: true };
@@ -170,7 +170,7 @@ impl Parser<'_, '_> {
             let span = self.tokens.last().map_or(Span::new(0, 0), |token| token.span);
             return self.fail(
                 Diagnostic::error(span, "`#if` expression ends too early")
-                    .at("expected an operand behind this"),
+                    .at("expected an operand after this"),
             );
         };
         self.at += 1;
@@ -194,7 +194,7 @@ impl Parser<'_, '_> {
             }
             _ => {
                 let found = self.text(token);
-                let message = format!("`{found}` cannot stand in an `#if` expression");
+                let message = format!("`{found}` is not allowed in an `#if` expression");
                 self.fail(Diagnostic::error(token.span, message).at("expected an operand"))
             }
         }
@@ -204,7 +204,7 @@ impl Parser<'_, '_> {
     fn defined(&mut self, operator: Token) -> Evaluated {
         let has_paren = self.take(TokenKind::LeftParen);
         let Some(name) = self.peek().filter(|token| token.kind == TokenKind::Identifier) else {
-            return self.fail(Diagnostic::error(operator.span, "expected a name behind `defined`"));
+            return self.fail(Diagnostic::error(operator.span, "expected a name after `defined`"));
         };
         self.at += 1;
         if has_paren {

@@ -15,7 +15,7 @@ pub(super) struct Conditional {
     opener: Span,
     /// A branch was taken; the rest are skipped.
     is_taken: bool,
-    /// The `#else`, behind which only `#endif` may come.
+    /// The `#else`, after which only `#endif` may come.
     else_at: Option<Span>,
 }
 
@@ -51,7 +51,7 @@ impl Preprocessor<'_> {
         }
     }
 
-    /// `#elif` behind a branch that was taken.
+    /// `#elif` after a branch that was taken.
     pub(super) fn elif(&mut self, span: Span) {
         if self.check_branch(span, "#elif").is_some() {
             self.note_branch(span, false);
@@ -59,7 +59,7 @@ impl Preprocessor<'_> {
         }
     }
 
-    /// `#else` behind a branch that was taken.
+    /// `#else` after a branch that was taken.
     pub(super) fn else_(&mut self, span: Span) {
         if self.check_branch(span, "#else").is_some() {
             self.note_branch(span, true);
@@ -99,7 +99,7 @@ impl Preprocessor<'_> {
         };
         if let Some(else_at) = conditional.else_at {
             self.sink.report(
-                Diagnostic::error(span, format!("`{directive}` behind `#else`"))
+                Diagnostic::error(span, format!("`{directive}` after `#else`"))
                     .label(else_at, "the `#else`")
                     .label(conditional.opener, "of this `#if`"),
             );
@@ -107,7 +107,7 @@ impl Preprocessor<'_> {
         Some(conditional)
     }
 
-    /// Notes what a further branch means for those behind it.
+    /// Notes what a further branch means for those after it.
     fn note_branch(&mut self, span: Span, is_else: bool) {
         let Some(file) = self.open.last_mut() else { return };
         if file.conditionals.len() == 1 {
@@ -120,7 +120,7 @@ impl Preprocessor<'_> {
         }
     }
 
-    /// Skips to the branch that counts, or behind the `#endif`.
+    /// Skips to the branch that counts, or past the `#endif`.
     fn skip_branch(&mut self) {
         self.finish_line();
         let mut depth = 0_usize;
@@ -140,7 +140,7 @@ impl Preprocessor<'_> {
         }
     }
 
-    /// Whether the text behind this `#else` or `#elif` counts.
+    /// Whether the text after this `#else` or `#elif` counts.
     fn enters_branch(&mut self, name: Option<Name>, span: Span) -> bool {
         let is_else = name == Some(word::ELSE);
         let directive = if is_else { "#else" } else { "#elif" };

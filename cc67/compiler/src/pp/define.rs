@@ -84,7 +84,7 @@ impl Preprocessor<'_> {
         self.sink.report(
             Diagnostic::error(token.span, message)
                 .at("in the parameters of a macro")
-                .note("`(` directly behind its name gives a macro parameters; for a body in parentheses put a blank between"),
+                .note("`(` directly after its name gives a macro parameters; for a body in parentheses put a blank between"),
         );
         None
     }
@@ -106,7 +106,7 @@ impl Preprocessor<'_> {
                     if operand.kind != TokenKind::Stringize {
                         self.sink.report(
                             Diagnostic::error(token.span, "`#` is not followed by a parameter")
-                                .note("in a macro with parameters `#` makes a string of the one behind it"),
+                                .note("in a macro with parameters `#` makes a string of the following one"),
                         );
                         return None;
                     }

@@ -18,7 +18,7 @@ const DIRECTIVES: &[&str] = &[
 const KNOWN_PRAGMAS: &[&str] = &["TI_COMPILER", "once", "push_macro", "pop_macro"];
 
 impl Preprocessor<'_> {
-    /// Obeys the directive behind `hash`, and goes to the end of its line.
+    /// Obeys the directive after `hash`, and goes to the end of its line.
     pub(super) fn directive(&mut self, hash: Token) {
         let depth = self.open.len();
         let Some((lexer, mut cx)) = self.lexer() else { return };
@@ -148,7 +148,7 @@ impl Preprocessor<'_> {
             Some((number, rest)) if number.kind == TokenKind::Number => self.set_line(*number, rest),
             other => {
                 let span = other.map_or_else(|| self.directive_token().span, |(token, _)| token.span);
-                self.sink.report(Diagnostic::error(span, "expected a line number behind `#line`"));
+                self.sink.report(Diagnostic::error(span, "expected a line number after `#line`"));
             }
         }
     }

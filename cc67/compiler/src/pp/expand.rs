@@ -3,7 +3,7 @@
 //! The replacement of a name is put on a stack of frames and read from there, so that what
 //! follows the call in the file can belong to a macro call that the replacement starts.
 //! While a frame is on the stack its macro is active: its name, met inside, is marked
-//! `NO_EXPAND` and stays a name for ever. The active macros are the hide set of the C
+//! `NO_EXPAND` and stays a name forever. The active macros are the hide set of the C
 //! literature, kept per frame instead of per token.
 //!
 //! Arguments are expanded by themselves before they replace a parameter, in a frame that
@@ -17,12 +17,12 @@ use super::limits;
 use super::macros::{Builtin, MacroId};
 use super::token::{Flags, Token, TokenKind};
 
-/// Tokens that stand in the place of a macro call, being read.
+/// Tokens that replace a macro call, being read.
 pub(super) struct Frame {
     tokens: Tokens,
     /// Index of the next token.
     at: usize,
-    /// Index behind the last.
+    /// Index after the last.
     end: usize,
     /// The macro that is active as long as the frame is on the stack.
     active: Option<MacroId>,
@@ -182,7 +182,7 @@ impl Preprocessor<'_> {
         !self.work.is_stopped
     }
 
-    /// The token in the place of `__LINE__` and its kin.
+    /// The token in place of `__LINE__` and its kin.
     fn builtin(&mut self, builtin: Builtin, token: Token, id: MacroId) -> Token {
         let place = self.sources.place(token.span);
         let file = self.open.last();

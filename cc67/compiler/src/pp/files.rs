@@ -1,7 +1,7 @@
 //! How the preprocessor reaches files.
 //!
 //! Everything it reads goes through [`Files`], so that a test, an editor or a tool that lists
-//! dependencies can stand between.
+//! dependencies can be between.
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};

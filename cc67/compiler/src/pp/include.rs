@@ -41,9 +41,9 @@ impl Preprocessor<'_> {
                 Diagnostic::warning(
                     LAX,
                     header.span,
-                    format!("missing `{missing}` behind the name of the file"),
+                    format!("missing `{missing}` after the name of the file"),
                 )
-                .at(format!("the rest of the line behind `{other}` is taken for the name")),
+                .at(format!("the rest of the line after `{other}` is taken for the name")),
             );
         }
         self.finish_line();
@@ -61,7 +61,7 @@ impl Preprocessor<'_> {
         }
     }
 
-    /// The name that the macros behind `#include` give.
+    /// The name that the macros after `#include` give.
     fn computed_header(&mut self, directive: Span) -> Option<HeaderName> {
         let tokens = self.directive_tokens();
         let Some((first, rest)) = tokens.split_first() else {
@@ -90,7 +90,7 @@ impl Preprocessor<'_> {
                 Some(HeaderName { name, is_angled: true, is_closed: end.is_some(), span })
             }
             _ => {
-                let message = "expected the name of a file behind `#include`";
+                let message = "expected the name of a file after `#include`";
                 self.sink
                     .report_lost_names(Diagnostic::error(span, message).help("write `#include \"name\"`"));
                 None

@@ -37,7 +37,7 @@ pub(super) struct Lexer {
     text: Arc<Vec<u8>>,
     /// Offset of the next byte.
     at: usize,
-    /// Offset behind the last byte.
+    /// Offset after the last byte.
     end: usize,
     /// Position of the first byte in the source map.
     base: u32,
@@ -139,7 +139,7 @@ impl Lexer {
         self.byte(self.past_splices(self.at)) == b'('
     }
 
-    /// The byte at an offset; NUL behind the end.
+    /// The byte at an offset; NUL after the end.
     fn byte(&self, at: usize) -> u8 {
         self.text.get(at).copied().unwrap_or(0)
     }
@@ -194,7 +194,7 @@ impl Lexer {
         Token { kind: TokenKind::Identifier, flags, name, span: self.span_from(lo) }
     }
 
-    /// A preprocessing number: digits, letters, dots, and signs behind an exponent's letter.
+    /// A preprocessing number: digits, letters, dots, and signs after an exponent's letter.
     fn number(&mut self, flags: Flags, cx: &mut Context<'_>) -> Token {
         let lo = self.at;
         let mut flags = flags;
@@ -222,7 +222,7 @@ impl Lexer {
         }
     }
 
-    /// The offset behind any backslashes that join lines at `at`.
+    /// The offset after any backslashes that join lines at `at`.
     fn past_splices(&self, mut at: usize) -> usize {
         while self.byte(at) == b'\\' {
             let blanks = self.bytes(at + 1, self.end).iter().take_while(|byte| is_blank(**byte)).count();
@@ -235,7 +235,7 @@ impl Lexer {
         at
     }
 
-    /// Joins the next line at a backslash; complains about blanks behind it.
+    /// Joins the next line at a backslash; complains about blanks after it.
     fn splice(&mut self, cx: &mut Context<'_>) -> bool {
         let behind = self.past_splices(self.at);
         if behind == self.at {
@@ -245,7 +245,7 @@ impl Lexer {
         if has_blanks && self.at >= self.checked_splices {
             let span = self.span_to(self.at, self.at + 1);
             cx.sink.report(
-                Diagnostic::warning(super::LAX, span, "blanks behind a backslash at the end of a line")
+                Diagnostic::warning(super::LAX, span, "blanks after a backslash at the end of a line")
                     .at("this line is joined with the next")
                     .help("remove the blanks; other compilers do not join the lines"),
             );

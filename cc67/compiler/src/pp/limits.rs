@@ -1,6 +1,6 @@
 //! What the preprocessor refuses to go beyond.
 //!
-//! Every limit is far above what a program for the board needs, and stands as a number in the
+//! Every limit is far above what a program for the board needs, and is a number in the
 //! message about it. They keep hostile text from exhausting memory, time or the stack.
 
 use crate::files;
@@ -21,7 +21,7 @@ pub const TOTAL_BYTES: u32 = 64 << 20;
 /// bytes for each through all stages, so this is what keeps the compiler below a gigabyte.
 pub const TOKENS: usize = 2_000_000;
 
-/// Tokens that macros put in the place of their names, in one translation unit.
+/// Tokens that macros put in place of their names, in one translation unit.
 pub const EXPANDED_TOKENS: usize = 2_000_000;
 
 /// Bytes of a token made by `#` or `##`.

@@ -21,7 +21,7 @@ pub enum Number {
     Floating(FloatingLiteral),
 }
 
-/// Why a text is no number.
+/// Why a text is not a number.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {
     /// The finding.
@@ -177,7 +177,7 @@ impl Mantissa {
         }
     }
 
-    /// The nearest number of so many bits that is a multiple of `2^lowest`; ties go to the even one.
+    /// The nearest number of this many bits that is a multiple of `2^lowest`; ties go to the even one.
     fn round(&self, exponent: i64, bits: u32, lowest: i64) -> f64 {
         if self.bits == 0 {
             return 0.0;
@@ -209,7 +209,7 @@ fn scaled(integer: u64, exponent: i64) -> f64 {
     integer * power
 }
 
-/// Reads `e+10`: the value and the offset behind it.
+/// Reads `e+10`: the value and the offset after it.
 fn exponent(text: &[u8], letter: usize) -> Result<(i64, usize), Problem> {
     let sign = text.get(letter + 1);
     let start = letter + 1 + usize::from(matches!(sign, Some(b'+' | b'-')));
@@ -243,7 +243,7 @@ fn bad_suffix(text: &[u8], at: usize, kind: &str) -> Problem {
     }
 }
 
-/// The offset behind the bytes from `at` on that belong to a class.
+/// The offset after the bytes from `at` on that belong to a class.
 fn count(text: &[u8], at: usize, class: fn(&u8) -> bool) -> usize {
     at + text.iter().skip(at).take_while(|byte| class(byte)).count()
 }
@@ -256,7 +256,7 @@ mod tests {
     fn integers() {
         let check = |text: &str, value: u64, flags: &str| {
             let Ok(Number::Integer { literal, has_float_suffix }) = parse(text.as_bytes()) else {
-                panic!("{text} is no integer: {:?}", parse(text.as_bytes()));
+                panic!("{text} is not an integer: {:?}", parse(text.as_bytes()));
             };
             let found: String = [
                 (literal.is_decimal, 'd'),

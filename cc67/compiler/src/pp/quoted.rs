@@ -100,7 +100,7 @@ fn decode(text: &[u8], encoding: Encoding, problems: &mut Vec<Problem>) -> Vec<i
     elements
 }
 
-/// Takes one character as it stands; returns its length. Bytes that are no UTF-8 stand for themselves, as in latin-1.
+/// Takes one character as it is; returns its length. Bytes that are not UTF-8 stand for themselves, as in latin-1.
 fn plain(text: &[u8], encoding: Encoding, elements: &mut Vec<i32>) -> usize {
     let byte = text.first().copied().unwrap_or(0);
     let length = match byte {
@@ -201,7 +201,7 @@ fn numeric(
         _ => u32::MAX,
     };
     if length == 0 {
-        problem(ProblemKind::Error, at..end, "digits missing behind `\\x`");
+        problem(ProblemKind::Error, at..end, "digits missing after `\\x`");
     } else if overflows || value > most_of {
         let what = if most_of == 0xFF { "its low byte is taken" } else { "its low digits are taken" };
         problem(ProblemKind::Warning, at..end, &format!("escape does not fit a character; {what}"));
@@ -262,7 +262,7 @@ mod tests {
             assert_eq!(found, [(message.to_owned(), range)], "{text}");
         };
         check(r#""C:\Program""#, r"unknown escape `\P`", 3..5);
-        check(r#""\xg""#, r"digits missing behind `\x`", 1..3);
+        check(r#""\xg""#, r"digits missing after `\x`", 1..3);
         check(r#""\x123""#, "escape does not fit a character; its low byte is taken", 1..6);
         check("''", "character constant is empty", 0..2);
         check("'ab'", "character constant has more than one character", 0..4);

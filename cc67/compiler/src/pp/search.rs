@@ -13,7 +13,7 @@ use super::Files;
 pub(super) enum Found {
     /// A file; its real spelling may be another one than was asked for.
     File { path: PathBuf, text: Arc<Vec<u8>>, is_respelled: bool },
-    /// Names that differ from the wanted one, and from each other, in letter case only.
+    /// Names that differ from the requested one, and from each other, in letter case only.
     Ambiguous(Vec<PathBuf>),
     /// Something that cannot be read.
     Unreadable(PathBuf, io::Error),
@@ -96,7 +96,7 @@ impl<'a> Reader<'a> {
         Ok(text)
     }
 
-    /// The paths that are `name` but for letter case, component by component.
+    /// The paths that are `name` except for letter case, component by component.
     fn spellings(&mut self, directory: &Path, name: &str) -> Vec<PathBuf> {
         let mut paths = vec![directory.to_owned()];
         for component in name.split('/').filter(|component| !component.is_empty()) {
@@ -119,7 +119,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Whether the search should just go on.
+/// Whether the search should just continue.
 fn is_absence(error: &io::Error) -> bool {
     use io::ErrorKind::{InvalidFilename, InvalidInput, IsADirectory, NotADirectory, NotFound};
     matches!(error.kind(), NotFound | NotADirectory | IsADirectory | InvalidFilename | InvalidInput)

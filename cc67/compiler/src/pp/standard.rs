@@ -1,7 +1,7 @@
 //! Headers of the C library.
 //!
 //! No header but the vendor's exists for the board; yet programs that were tried on a PC first include them. They say
-//! what the firmware offers, and what our own C library adds (`driver/library`). All may stand beside the vendor's
+//! what the firmware offers, and what our own C library adds (`driver/library`). All may be beside the vendor's
 //! header. The others are taken as if empty, because the compiler knows the board's functions.
 
 macro_rules! headers {

@@ -23,11 +23,11 @@ impl MacroArguments<'_> {
     }
 }
 
-/// Stands in the place of an empty operand of `##` until the replacement is finished.
+/// Replaces an empty operand of `##` until the replacement is finished.
 const PLACEMARKER: TokenKind = TokenKind::End;
 
 impl Preprocessor<'_> {
-    /// The tokens in the place of a call; the first one gets the spacing of the macro's name.
+    /// The tokens in place of a call; the first one gets the spacing of the macro's name.
     pub(super) fn substitute(
         &mut self,
         id: MacroId,
@@ -132,7 +132,7 @@ impl Preprocessor<'_> {
         }
     }
 
-    /// Joins the last token of `output` with the operand behind `##`.
+    /// Joins the last token of `output` with the operand after `##`.
     fn paste_operand(
         &mut self,
         output: &mut Vec<Token>,

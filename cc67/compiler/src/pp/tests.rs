@@ -48,7 +48,7 @@ fn line_ends_and_blanks() {
     check("int a;\n\x1A", "int a;");
     check("int a;\n\x1A\0\0\r\n", "int a;");
     check("in\\\nt a\\\r\nb = 1\\\n2;", "int ab = 12;");
-    said("int a \\ \nb;", "int a b;", &["1:7: warning: blanks behind a backslash at the end of a line"]);
+    said("int a \\ \nb;", "int a b;", &["1:7: warning: blanks after a backslash at the end of a line"]);
     check("a+\\\n+b; c<\\\n<\\\n=d; e.\\\n.\\\n.;", "a++b; c<<=d; e...;");
 }
 
@@ -83,7 +83,7 @@ fn characters_that_c_does_not_know() {
     said(
         "f(\u{201C}a b\u{201D});",
         "f(\u{201C}a b\u{201D});",
-        &["1:3: error: character `\u{201C}` (u+201c) is no quote in c"],
+        &["1:3: error: character `\u{201C}` (u+201c) is not a quote in c"],
     );
     said("a \u{2013} b", "a - b", &["1:3: error: character `\u{2013}` (u+2013) outside a comment or string"]);
     said(
@@ -200,8 +200,8 @@ fn conditionals() {
     said("#if 1\na", "a", &["1:1: warning: `#if` without `#endif`"]);
     said("#endif", "", &["1:1: error: `#endif` without `#if`"]);
     said("#else\na", "a", &["1:1: error: `#else` without `#if`"]);
-    said("#if 1\n#else\n#else\n#endif", "", &["3:1: error: `#else` behind `#else`"]);
-    said("#if 1\n#else\n#elif 1\n#endif", "", &["3:1: error: `#elif` behind `#else`"]);
+    said("#if 1\n#else\n#else\n#endif", "", &["3:1: error: `#else` after `#else`"]);
+    said("#if 1\n#else\n#elif 1\n#endif", "", &["3:1: error: `#elif` after `#else`"]);
 }
 
 #[test]
@@ -247,15 +247,15 @@ fn if_expressions() {
     check("#define A 1\n#define B(x) x\n#if A && B(1) && defined A\ny\n#endif", "y");
     let fails =
         |expression: &str, message: &str| said(format!("#if {expression}\n1\n#endif"), "", &[message]);
-    fails("", "1:1: error: expression missing behind the directive");
+    fails("", "1:1: error: expression missing after the directive");
     fails("1/0", "1:6: error: division by zero in `#if` expression");
     fails("1 2", "1:7: error: unexpected `2` in `#if` expression");
     fails("sizeof(int)", "1:11: error: unexpected `(` in `#if` expression");
-    fails("\"a\"", "1:5: error: `\"a\"` cannot stand in an `#if` expression");
+    fails("\"a\"", "1:5: error: `\"a\"` is not allowed in an `#if` expression");
     fails("1.0", "1:5: error: floating constant in an `#if` expression");
     fails("(1", "1:6: error: expected `)` in `#if` expression");
     fails("1+", "1:6: error: `#if` expression ends too early");
-    fails("defined", "1:5: error: expected a name behind `defined`");
+    fails("defined", "1:5: error: expected a name after `defined`");
     fails("08", "1:5: error: invalid digit `8` in octal constant");
 }
 
@@ -308,7 +308,7 @@ fn includes() {
     );
     check("#include \"x.h\"", "x1", &[]);
     check("#include \"inc/X.H\"", "", &["1:10: error: `inc/x.h` can be several files"]);
-    check("#include \"b.h  ", "b", &["1:10: warning: missing `\"` behind the name of the file"]);
+    check("#include \"b.h  ", "b", &["1:10: warning: missing `\"` after the name of the file"]);
     check("#define H \"b.h\"\n#include H", "b", &[]);
     check("#define H <b.h>\n#include H", "b", &[]);
     check("#include \"b.h\"\n#include \"b.h\"", "b b", &[]);
@@ -318,7 +318,7 @@ fn includes() {
     check("#include <iso646.h>\n#include \"MEMORY.H\"", "", &[]);
     check("#include <stdbool.h>\ntrue", "1", &[]);
     check("#include \"ab.h\"", "", &["1:10: error: file `ab.h` not found"]);
-    check("#include x", "", &["1:10: error: expected the name of a file behind `#include`"]);
+    check("#include x", "", &["1:10: error: expected the name of a file after `#include`"]);
     check("#include", "", &["1:1: error: name of a file missing"]);
 }
 

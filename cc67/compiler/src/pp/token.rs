@@ -1,7 +1,7 @@
 //! Preprocessing tokens.
 //!
 //! A token is twenty bytes and `Copy`: its kind, the name of an identifier, and the span where
-//! its text stands. Text made by the preprocessor (joined and quoted tokens) stands in the
+//! its text stands. Text made by the preprocessor (joined and quoted tokens) is in the
 //! source map's scratch space, so that a span is enough for every token.
 
 use std::borrow::Cow;
@@ -28,7 +28,7 @@ pub struct Token {
 }
 
 impl Token {
-    /// A token that is no identifier.
+    /// A token that is not an identifier.
     #[must_use]
     pub fn new(kind: TokenKind, flags: Flags, span: Span) -> Self {
         Self { kind, flags, name: Name::reserved_value(), span }
@@ -55,7 +55,7 @@ pub struct Flags(u8);
 impl Flags {
     /// Nothing.
     pub const NONE: Self = Self(0);
-    /// White space or a comment stands before it.
+    /// White space or a comment comes before it.
     pub const SPACE: Self = Self(1);
     /// It is the first of its line.
     pub const LINE_START: Self = Self(1 << 1);

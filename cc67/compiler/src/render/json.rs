@@ -19,7 +19,7 @@
 //! | `file` | the file as the command line or the include search names it |
 //! | `byte_start`, `byte_end` | the range of bytes in the file, from 0, the end not included |
 //! | `line_start`, `column_start` | where it begins, from 1; columns count bytes |
-//! | `line_end`, `column_end` | where it ends, the column behind the last byte |
+//! | `line_end`, `column_end` | where it ends, the column after the last byte |
 //! | `is_primary` | whether this is the place of the mistake; the others explain it |
 //! | `label` | what is there, or `null` |
 //!

@@ -11,7 +11,7 @@ use crate::source::SourceMap;
 
 use super::marks::includes;
 
-/// All output stays below so many bytes.
+/// All output stays below this many bytes.
 pub const LIMIT: usize = 4000;
 
 /// Levels of inclusion that are shown.

@@ -54,12 +54,12 @@ pub(super) struct Jumps {
     pub(super) has_lost_case: bool,
 }
 
-/// What is known of a label.
+/// What is known about a label.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LabelState {
     /// The label.
     pub(super) label: LabelId,
-    /// Where it stands, once it was found.
+    /// Where it is, once it was found.
     pub(super) defined: Option<Span>,
     /// The first `goto`.
     pub(super) used: Option<Span>,

@@ -58,7 +58,7 @@ impl Sema<'_> {
             let diagnostic = Diagnostic::error(callee.span, format!("`{spelled}` cannot be called"))
                 .at("neither a function nor a pointer to one");
             self.report(if self.types.is_pointer(ty) {
-                diagnostic.help("an index stands in square brackets: `[ ]`")
+                diagnostic.help("an index needs square brackets: `[ ]`")
             } else {
                 diagnostic
             });
@@ -243,7 +243,7 @@ impl Sema<'_> {
         let subject = name.as_ref().map_or_else(|| "the function".to_owned(), |name| format!("`{name}`"));
         let message = format!("too {} arguments for {subject}", if few { "few" } else { "many" });
         let at_least = if is_variadic { "at least " } else { "" };
-        let at = format!("{given} given, {at_least}{} wanted", types.len());
+        let at = format!("{given} given, {at_least}{} needed", types.len());
         let ty = self.types.intern(Type::Function(ty.clone()));
         let spelled = self.types.spell_declaration(self.names, ty, name.as_deref().unwrap_or("(*)"));
         let mut diagnostic =

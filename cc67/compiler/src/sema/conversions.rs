@@ -140,7 +140,7 @@ impl Sema<'_> {
         }
     }
 
-    /// Whether a constant stands in the source as a number.
+    /// Whether a constant is in the source as a number.
     fn is_written(&self, value: ExprId, number: f64) -> bool {
         let text = String::from_utf8_lossy(self.sources.text(self.body.span(value))).into_owned();
         text.trim_end_matches(['f', 'F']).parse() == Ok(number.abs())
@@ -234,7 +234,7 @@ impl Sema<'_> {
             return;
         }
         let message =
-            format!("pointers to different types meet: `{}` and `{}`", self.spell(from), self.spell(to));
+            format!("pointers to different types are mixed: `{}` and `{}`", self.spell(from), self.spell(to));
         self.report(Diagnostic::warning(Lint::PointerMismatch, span, message));
     }
 
@@ -269,7 +269,7 @@ impl Sema<'_> {
         self.report_finding(finding);
     }
 
-    /// Warns about a use of what lies directly behind `persist.UserData`; its address alone is fine.
+    /// Warns about a use of what is directly after `persist.UserData`; its address alone is fine.
     pub(super) fn lint_user_data_end(&mut self, pointer: ExprId, span: Span) {
         let end = user_data_index::range().1;
         if self.persist_offset(pointer) == Some(end) {
@@ -301,7 +301,7 @@ impl Sema<'_> {
         let (from, to) = (self.spell(self.body.ty(value)), self.spell(to));
         self.report(
             Diagnostic::warning(lint, span, format!("{} makes {message}", self.describe(target)))
-                .at(format!("this is `{from}`, wanted is `{to}`"))
+                .at(format!("this is `{from}`, needed is `{to}`"))
                 .help(format!("write `({to})` if this is meant")),
         );
     }
@@ -316,7 +316,7 @@ impl Sema<'_> {
         let (from, to) = (self.spell(from), self.spell(to));
         let diagnostic =
             Diagnostic::error(span, format!("{}: cannot convert `{from}` to `{to}`", self.describe(target)))
-                .at(format!("this is `{from}`, wanted is `{to}`"));
+                .at(format!("this is `{from}`, needed is `{to}`"));
         match help {
             Some(help) => diagnostic.help(help),
             None => diagnostic,
@@ -327,7 +327,7 @@ impl Sema<'_> {
     fn conversion_help(&self, from: TypeId, to: TypeId, target: Target, span: Span) -> Option<&'static str> {
         let text = self.sources.text(span);
         if to.is_arithmetic() && text.starts_with(b"\"") {
-            return Some("a number stands without quotes");
+            return Some("a number has no quotes");
         }
         if to.is_arithmetic() && text.starts_with(b"&") {
             return Some("remove the `&`: it gives the address, not the value");

@@ -16,7 +16,7 @@ use crate::typed::{Definition, Linkage, SymbolId};
 pub(super) struct Declared<'t> {
     /// The name.
     pub(super) name: Name,
-    /// Where it stands.
+    /// Where it is.
     pub(super) span: Span,
     /// The type.
     pub(super) ty: QualifiedType,

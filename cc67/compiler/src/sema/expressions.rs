@@ -432,7 +432,7 @@ impl Sema<'_> {
         Some(self.effect(operand, expression.span))
     }
 
-    /// An operand that is evaluated behind an effect.
+    /// An operand that is evaluated after an effect.
     pub(super) fn after(&mut self, effect: ExprId, operand: Operand, span: Span) -> Option<Operand> {
         if let Operand::Place(located) = operand
             && self.is_record(operand)

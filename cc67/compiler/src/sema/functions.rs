@@ -91,7 +91,7 @@ impl Sema<'_> {
         Some(())
     }
 
-    /// Takes the types of old-style parameters from the declarations behind the list.
+    /// Takes the types of old-style parameters from the declarations after the list.
     fn old_style(
         &mut self,
         definition: &FunctionDefinition,

@@ -5,7 +5,7 @@
 //! the unit defines later, which is what programs for this board rely on
 //! (`dialect.md` 2.3), while names still become visible only where they are declared.
 //!
-//! Analysis goes on after an error. Whatever was diagnosed yields `None`, and what is made of
+//! Analysis continues after an error. Whatever was diagnosed yields `None`, and what is made of
 //! it is silent; so each mistake is reported once.
 //!
 //! Nothing here knows the target beyond the sizes in [`crate::ty::layout`] and the arithmetic

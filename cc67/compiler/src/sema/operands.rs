@@ -65,7 +65,7 @@ impl Sema<'_> {
                 self.report(if spelled == "PERSIST" {
                     diagnostic.help("write `persist.UserData[…]`")
                 } else {
-                    diagnostic.help("write a member of it, behind a `.`")
+                    diagnostic.help("write a member of it, after a `.`")
                 });
                 None
             }

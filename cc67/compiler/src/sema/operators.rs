@@ -227,7 +227,7 @@ impl Sema<'_> {
 
     fn lint_int_pointer_pair(&mut self, integer: ExprId, span: Span) {
         if !self.is_null(integer) {
-            let message = "a pointer meets an integer without a cast";
+            let message = "a pointer is mixed with an integer without a cast";
             let at = format!("this is `{}`", self.spell(self.body.ty(integer)));
             let place = self.body.span(integer);
             self.report(Diagnostic::warning(Lint::IntPointer, span, message).label(place, at));
@@ -272,9 +272,9 @@ impl Sema<'_> {
                     diagnostic.help("texts are not added; `printf(\"%f\\n\", value)` puts numbers in text");
             }
         } else if a.is_floating() || b.is_floating() {
-            diagnostic = diagnostic.note("floating-point values know only `+ - * /` and comparisons");
+            diagnostic = diagnostic.note("floating-point values support only `+ - * /` and comparisons");
             if operator == "^" {
-                diagnostic = diagnostic.help("`^` is no power: write `x * x`, or `pow(x, y)`");
+                diagnostic = diagnostic.help("`^` is not a power: write `x * x`, or `pow(x, y)`");
             }
         }
         self.report(diagnostic);

@@ -83,7 +83,7 @@ impl<E: Copy> Space<E> {
         std::iter::successors(at(self.heads[name]), move |binding| at(binding.hidden))
     }
 
-    /// Drops the bindings behind the first `length`, in the order of their declaration.
+    /// Drops the bindings after the first `length`, in the order of their declaration.
     fn unwind(&mut self, length: usize) -> Vec<Binding<E>> {
         for binding in self.bindings.get(length..).unwrap_or_default().iter().rev() {
             self.heads[binding.name] = binding.hidden;
@@ -178,7 +178,7 @@ impl Scopes {
         self.lookup(name).filter(|binding| binding.depth + 1 == self.depth())
     }
 
-    /// A file-scope declaration that stands behind the present item.
+    /// A file-scope declaration that comes after the present item.
     pub(super) fn lookup_later(&self, name: Name) -> Option<&Binding<Entity>> {
         self.ordinary.chain(name).find(|binding| binding.depth == 0 && binding.since > self.now)
     }

@@ -142,7 +142,7 @@ impl Sema<'_> {
         self.value(expression).unwrap_or_else(|| self.placeholder(expression.span))
     }
 
-    /// A value in the place of one that was diagnosed.
+    /// A value in place of one that was diagnosed.
     pub(super) fn placeholder(&mut self, span: Span) -> ExprId {
         self.body.int(0, Types::INT, span)
     }

@@ -132,7 +132,7 @@ impl Sema<'_> {
                 Some((end, first)) if low <= end => {
                     // The one that stands later in the text is the mistake.
                     let (early, late) = if span.lo >= first.lo { (first, span) } else { (span, first) };
-                    let message = format!("`case {low}` stands twice in one `switch`");
+                    let message = format!("`case {low}` appears twice in one `switch`");
                     self.report(Diagnostic::error(late, message).label(early, "first"));
                     reach = reach.filter(|(end, _)| *end >= high).or(Some((high, span)));
                 }

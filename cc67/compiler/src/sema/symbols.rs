@@ -96,12 +96,12 @@ impl Symbols {
         &mut self.table[symbol]
     }
 
-    /// What else is known of a symbol.
+    /// What else is known about a symbol.
     pub(super) fn facts(&self, symbol: SymbolId) -> &Facts {
         &self.facts[symbol]
     }
 
-    /// What else is known of a symbol, to change it.
+    /// What else is known about a symbol, to change it.
     pub(super) fn facts_mut(&mut self, symbol: SymbolId) -> &mut Facts {
         &mut self.facts[symbol]
     }

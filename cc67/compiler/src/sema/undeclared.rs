@@ -121,7 +121,7 @@ impl Sema<'_> {
         Some(FunctionType { result, parameters })
     }
 
-    /// A type of the board's interface. One that the program does not define is `void` behind its pointer.
+    /// A type of the board's interface. One that the program does not define is a pointer to `void`.
     fn interface_type(&mut self, ty: &CType) -> QualifiedType {
         QualifiedType::plain(match *ty {
             CType::Void => Types::VOID,
@@ -189,7 +189,7 @@ impl Sema<'_> {
         let later = self.scopes.lookup_later(name).map(|binding| (binding.entity, binding.span));
         if let Some((entity, place)) = later {
             if entity != Entity::Poisoned {
-                let diagnostic = diagnostic.label(place, "declared here, behind its use");
+                let diagnostic = diagnostic.label(place, "declared here, after its use");
                 self.report(diagnostic.help("move the declaration up"));
             }
             return;
@@ -227,7 +227,7 @@ impl Sema<'_> {
     }
 }
 
-/// Whether a name may be suggested for another: one letter is near to every other, only its case can be meant.
+/// Whether a name may be suggested for another: one letter is close to every other, only its case can be meant.
 pub(super) fn is_sensible(spelling: &str, name: &str) -> bool {
     spelling.len() > 1 || name.eq_ignore_ascii_case(spelling)
 }

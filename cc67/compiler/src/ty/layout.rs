@@ -60,12 +60,12 @@ impl Types {
     }
 }
 
-/// Places members one behind the other.
+/// Places members one after another.
 #[derive(Debug)]
 pub struct LayoutBuilder {
     kind: RecordKind,
     members: Vec<Member>,
-    /// First byte behind the members so far; for a union, the size of the largest.
+    /// First byte after the members so far; for a union, the size of the largest.
     end: u32,
     align: u32,
     /// The open unit of bit-fields.

@@ -100,7 +100,7 @@ pub enum Type {
 pub struct FunctionType {
     /// The result.
     pub result: TypeId,
-    /// What is known of the parameters.
+    /// What is known about the parameters.
     pub parameters: ParameterTypes,
 }
 

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use crate::debugger::DebugError;
 
-/// Keys of a launch request that are no options: the editors' own, and those that are looked at elsewhere.
+/// Keys of a launch request that are not options: the editors' own, and those that are looked at elsewhere.
 const KEYS: &[&str] = &[
     "programs",
     "program",

@@ -54,7 +54,7 @@ pub(super) fn source(path: &str) -> Value {
 /// The address in a memory reference.
 pub(super) fn address_of(text: &str) -> Result<u32, DebugError> {
     let digits = text.trim_start_matches("0x").trim_start_matches("0X");
-    u32::from_str_radix(digits, 16).map_err(|_| format!("`{text}` is no address").into())
+    u32::from_str_radix(digits, 16).map_err(|_| format!("`{text}` is not an address").into())
 }
 
 fn context_of(number: i64) -> Option<ContextId> {
@@ -306,7 +306,7 @@ impl<W: Write> Server<'_, W> {
         let base = address_of(arguments["memoryReference"].as_str().unwrap_or_default())?;
         let address = base.wrapping_add_signed(arguments["offset"].as_i64().unwrap_or(0) as i32);
         let bytes =
-            wire::decode(arguments["data"].as_str().unwrap_or_default()).ok_or("the data are no base64")?;
+            wire::decode(arguments["data"].as_str().unwrap_or_default()).ok_or("the data is not base64")?;
         self.debugger()?.store(address, &bytes)?;
         Ok(json!({ "bytesWritten": bytes.len() }))
     }

@@ -28,7 +28,7 @@ use crate::debugger::{DebugError, Debugger, Reason, Stop};
 use look::Handle;
 use wire::ClientWire;
 
-/// The number by which clients know the call-back, behind those of the threads.
+/// The number by which clients know the call-back, after those of the threads.
 const CALLBACK: i64 = 8;
 
 /// A response, or the message of one that failed.
@@ -201,7 +201,7 @@ impl<W: Write> Server<'_, W> {
         self.debugger.as_mut().ok_or_else(|| "nothing is launched yet".into())
     }
 
-    /// The client has said all: the board runs, or stands at its beginning.
+    /// The client has said all: the board runs, or is at its beginning.
     fn begin(&mut self) -> io::Result<()> {
         if self.asked.0["stopOnEntry"] == true {
             let stop = self.debugger.as_ref().map(|debugger| debugger.stop().clone());
@@ -246,7 +246,7 @@ impl<W: Write> Server<'_, W> {
         }
     }
 
-    /// Lets the board go; console lines are told at once.
+    /// Lets the board go; console lines are reported at once.
     fn run(&mut self, kind: Move) -> io::Result<Result<Stop, DebugError>> {
         self.handles.clear();
         let Some(debugger) = &mut self.debugger else { return Ok(Err("nothing is launched yet".into())) };

@@ -9,7 +9,7 @@ use crate::debugger::DebugError;
 /// Most bytes of a message; a client that says it sends more is none.
 const MOST: usize = 64 << 20;
 
-/// The next message; `None` at the end, and after what is no message.
+/// The next message; `None` at the end, and after what is not a message.
 pub(super) fn read(input: &mut impl BufRead) -> Option<Value> {
     let mut length = None;
     loop {

@@ -1,4 +1,4 @@
-//! The debugger: a session, its programs, breakpoints, and where it stands.
+//! The debugger: a session, its programs, breakpoints, and where it is.
 
 mod run;
 mod travel;
@@ -36,7 +36,7 @@ impl From<&str> for DebugError {
     }
 }
 
-/// Where something stands in a source.
+/// Where something is in a source.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CodePlace {
     /// The thread whose program it is of.
@@ -150,7 +150,7 @@ pub enum Reason {
 pub struct Stop {
     /// Why.
     pub reason: Reason,
-    /// Whose program is about to go on, if it is one's.
+    /// Whose program is about to continue, if it is one's.
     pub context: Option<ContextId>,
     /// Board time.
     pub at: Cycles,
@@ -202,7 +202,7 @@ pub struct Debugger {
 }
 
 impl Debugger {
-    /// A debugger of a board that stands where it is.
+    /// A debugger of a board in its present state.
     #[must_use]
     pub fn new(mut session: Session, limit: Ticks) -> Self {
         let timeline = Timeline::new(&mut session);
@@ -238,7 +238,7 @@ impl Debugger {
         self.session.snapshot()
     }
 
-    /// What is known of the programs.
+    /// What is known about the programs.
     #[must_use]
     pub const fn programs(&self) -> &Programs {
         &self.programs
@@ -508,7 +508,7 @@ impl Debugger {
         self.frames(self.context()).into_iter().nth(self.frame)?.place
     }
 
-    /// The context that is looked at: the thread's, or the call-back's if the board stands there.
+    /// The context that is looked at: the thread's, or the call-back's if the board is there.
     #[must_use]
     pub fn context(&self) -> ContextId {
         match self.stop.context {

@@ -1,4 +1,4 @@
-//! Forward: to a breakpoint, by steps of one thread while the others go on, to a time.
+//! Forward: to a breakpoint, by steps of one thread while the others continue, to a time.
 
 use std::sync::atomic::Ordering;
 
@@ -38,7 +38,7 @@ impl Debugger {
     /// Goes on to the next line of the thread that is looked at, into the functions that it calls.
     ///
     /// # Errors
-    /// The thread runs nothing, or nothing is known of its program.
+    /// The thread runs nothing, or nothing is known about its program.
     pub fn step(&mut self, events: Events<'_>) -> Result<Stop, DebugError> {
         let goal = self.line_goal(true)?;
         Ok(self.run(&goal, events))
@@ -53,7 +53,7 @@ impl Debugger {
         Ok(self.run(&goal, events))
     }
 
-    /// Goes on until the function that is looked at has returned.
+    /// Continues until the function that is looked at has returned.
     ///
     /// # Errors
     /// It is the outermost.
@@ -354,7 +354,7 @@ impl Debugger {
         (!ids.is_empty()).then_some(Reason::Breakpoint(ids))
     }
 
-    /// Whether a breakpoint that is met stops: its condition holds, it was passed as often as wanted, it is no log point.
+    /// Whether a breakpoint that is met stops: its condition holds, it was passed as often as needed, it is not a log point.
     fn is_to_stop(&mut self, index: usize, context: ContextId, counts: bool) -> bool {
         if let Some(condition) = self.breakpoints[index].condition.clone() {
             match self.holds(context, &condition) {

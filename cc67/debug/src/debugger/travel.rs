@@ -1,7 +1,7 @@
 //! Backwards: the past is executed again from a snapshot, and the last stop before the present is the one.
 //!
 //! What is searched is the stretch from one snapshot to the next, the latest first. Stops are counted on a first way;
-//! on a second one the session goes to the one that is wanted. Steps have so many stops that only the last ticks are
+//! on a second one the session goes to the one that is needed. Steps have more stops than can be kept, so only the last ticks are
 //! searched at first, then more.
 
 use std::sync::atomic::Ordering;
@@ -21,7 +21,7 @@ const WIDER: u64 = 6;
 enum Wanted {
     /// The last stop of a breakpoint or the like.
     Stop,
-    /// The beginning of the last line with at most so many calls around it.
+    /// The beginning of the last line with at most this many calls around it.
     Line { context: ContextId, depth: usize, function: Option<String> },
     /// The call of a function.
     Call { context: ContextId, depth: usize, at: u32 },
@@ -64,7 +64,7 @@ impl Debugger {
     /// Goes back to the beginning of the last line of the thread that is looked at, into functions that it called.
     ///
     /// # Errors
-    /// Nothing is known of the thread's program.
+    /// Nothing is known about the thread's program.
     pub fn reverse_step(&mut self) -> Result<Stop, DebugError> {
         self.programs.of(self.thread)?;
         Ok(self.back(&Wanted::Line { context: self.context(), depth: usize::MAX, function: None }))

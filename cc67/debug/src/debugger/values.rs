@@ -146,7 +146,7 @@ impl Debugger {
     /// What is wrong with it, or that it is no number.
     pub fn number(&self, expression: &str) -> Result<f64, DebugError> {
         let number = self.with_value(expression, |_, value, shown| shown.number(value))?;
-        number.ok_or_else(|| format!("`{expression}` is no number").into())
+        number.ok_or_else(|| format!("`{expression}` is not a number").into())
     }
 
     /// The parts of a structure, an array, or what a pointer points at.
@@ -207,7 +207,7 @@ impl Debugger {
     /// Gives a variable another value, as an assignment in C would.
     ///
     /// # Errors
-    /// What is wrong with the expressions, or that the first is no place.
+    /// What is wrong with the expressions, or that the first is not a place.
     pub fn set(&mut self, expression: &str, value: &str) -> Result<ShownVariable, DebugError> {
         let number = self.number(value)?;
         let (probe, items) = self.probe(expression)?;

@@ -173,7 +173,7 @@ impl<E: Engine> Session<E> {
         self.note(Input::Receive(bytes.to_vec()));
     }
 
-    /// Puts characters on the line to the serial port; they arrive one after the other at its rate.
+    /// Puts characters on the line to the serial port; they arrive one after another at its rate.
     pub fn send_to_uart(&mut self, bytes: &[u8]) {
         self.board.send_to_uart(bytes);
         self.recording.add(self.board.tick(), &format!("uart {}", quoted(bytes)));

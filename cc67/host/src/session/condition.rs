@@ -98,7 +98,7 @@ fn is_endless(text: &str) -> bool {
     matches!(text, "1" | "TRUE" | "true" | "")
 }
 
-/// Where a word stands in a text, not as a part of a longer one.
+/// Where a word is in a text, not as a part of a longer one.
 fn find_word(text: &str, word: &str) -> Option<usize> {
     let is_letter = |c: Option<char>| c.is_some_and(|c| c.is_ascii_alphanumeric() || c == '_');
     let mut from = 0;

@@ -10,7 +10,7 @@ use super::{Session, UserProgram};
 impl<E: Engine> Session<E> {
     /// Whose program holds the tick in progress, and the instant; `None` between two ticks.
     ///
-    /// Whatever lets time pass goes on with that tick first.
+    /// Whatever lets time pass continues with that tick first.
     #[must_use]
     pub fn held(&self) -> Option<(ContextId, Cycles)> {
         self.board.machine().held()
@@ -69,7 +69,7 @@ impl Session {
 
     /// Sets a register of a call in progress, the innermost of which is number 0; whether there is such a register.
     ///
-    /// No journal has it: a [timeline](super::Timeline) is told by [`branch`](super::Timeline::branch).
+    /// No journal has it: a [timeline](super::Timeline) is informed by [`branch`](super::Timeline::branch).
     pub fn set_register(&mut self, id: ContextId, frame: usize, register: u16, slot: u64) -> bool {
         self.board.engine_mut().set_register(id, frame, register, slot)
     }

@@ -365,7 +365,7 @@ impl Formula for Compiled {
     }
 }
 
-/// The eight bytes from an address on; what lies at the end of a region has fewer.
+/// The eight bytes from an address on; what is at the end of a region has fewer.
 fn eight(memory: &vm::memory::GuestMemory, address: GuestAddr) -> [u8; 8] {
     std::array::from_fn(|offset| memory.peek::<u8>(address.offset(offset as u32)))
 }

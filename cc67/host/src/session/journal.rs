@@ -68,7 +68,7 @@ impl<E: Engine> Session<E> {
     /// Does what the journal of a session says, now.
     ///
     /// # Errors
-    /// Why it cannot be done here: a bit that is no input, a thread without a program, a program that is refused.
+    /// Why it cannot be done here: a bit that is not an input, a thread without a program, a program that is refused.
     pub fn redo(&mut self, input: &Input) -> Result<(), HostError> {
         match input {
             Input::Act(action) => self.act(action).map_err(|error| HostError::Act(error.to_string()))?,

@@ -119,7 +119,7 @@ pub struct Session<E = BytecodeEngine> {
     options: Options,
     /// The programs in the threads: expressions are in their words.
     programs: Arc<Vec<UserProgram>>,
-    /// Those that a stimulus may load, with what is known of each.
+    /// Those that a stimulus may load, with what is known about each.
     offered: Vec<(UserProgram, DebugInfo)>,
     signals: Signals,
     recording: Recording,
@@ -183,14 +183,14 @@ impl<E: Engine> Session<E> {
         self.board.user_data(index)
     }
 
-    /// What is known of the programs that are loaded, each with its thread.
+    /// What is known about the programs that are loaded, each with its thread.
     #[must_use]
     pub fn debug(&self) -> Vec<(ThreadId, DebugInfo)> {
         let known = |thread| Some((thread, self.board.debug(thread).cloned()?));
         ThreadId::all().filter_map(known).collect()
     }
 
-    /// What is known of the programs that a stimulus may load, each with its thread and the name it goes by.
+    /// What is known about the programs that a stimulus may load, each with its thread and the name it goes by.
     #[must_use]
     pub fn offered(&self) -> Vec<(ThreadId, String, DebugInfo)> {
         let row =

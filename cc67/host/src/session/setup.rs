@@ -31,7 +31,7 @@ pub struct Setup {
     pub stimulus: Stimulus,
     /// Whether an operator is played who moves inputs that programs wait for.
     pub is_assisted: bool,
-    /// What waits on the line to the serial port; it arrives from when a program first looks for it.
+    /// What waits on the line to the serial port; it arrives from the moment a program first looks for it.
     pub uart_input: Vec<u8>,
     /// Whether every character that the serial port sends is reported as an event.
     pub hears_uart: bool,
@@ -115,7 +115,7 @@ pub(super) fn resolve(
     stimulus.resolve(|text| expression::for_stimulus(text, programs, options))
 }
 
-/// Keeps a program that a stimulus may load; with what is known of it.
+/// Keeps a program that a stimulus may load; with what is known about it.
 fn offer<E: Engine>(
     board: &mut Board<E>,
     program: UserProgram,

@@ -1,4 +1,4 @@
-//! A session as it was at an instant, to go on from there as often as one likes.
+//! A session as it was at an instant, to continue from there as often as one likes.
 
 use std::sync::Arc;
 
@@ -66,7 +66,7 @@ impl<E: Engine> Session<E> {
         }
     }
 
-    /// Makes the session what it was when `snapshot` was taken; with the same calls it goes on from there exactly as it
+    /// Makes the session what it was when `snapshot` was taken; with the same calls it continues from there exactly as it
     /// went on then. What was done by hand since is not in the [recording](Session::recording) any more.
     ///
     /// Subscriptions stay, and are sampled from there on. So do the options of the compiler, and files that the PC

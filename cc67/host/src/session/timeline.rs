@@ -1,6 +1,6 @@
 //! A timeline: a session's past, to go back to any tick of it and forward again.
 //!
-//! Snapshots are kept every so much work of the computer; what lies between two of them is executed again, with what
+//! Snapshots are kept every so much work of the computer; what is between two of them is executed again, with what
 //! was done by hand done again at its tick. Older snapshots are kept at larger distances, so that their number does not
 //! grow with the length of a session. Whoever does something else in the past than was done there begins a new line of
 //! history: what came later is forgotten.
@@ -72,7 +72,7 @@ pub struct Timeline<E: Engine> {
     marks: Vec<Mark<E>>,
     /// What was done on this line.
     journal: Vec<(Ticks, Input)>,
-    /// How much of the journal the session has behind it.
+    /// How much of the journal the session has done.
     done: usize,
     end: Ticks,
     /// The session's work, and its place on the line, when it was last put somewhere.
@@ -255,7 +255,7 @@ impl<E: Engine> Timeline<E> {
         self.base.1 + (session.board().machine().work() - self.base.0)
     }
 
-    /// Whether the line goes on after a place.
+    /// Whether the line continues after a place.
     fn is_known(&self, place: u64) -> bool {
         self.marks.last().is_some_and(|mark| mark.place > place)
     }

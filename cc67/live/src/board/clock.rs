@@ -7,7 +7,7 @@ use kmotiondef::limits::TIMEBASE;
 
 /// The slowest and the fastest speed, in seconds of board time a second.
 pub(super) const SPEEDS: (f64, f64) = (0.01, 100.0);
-/// A board that is further behind than this does not catch up.
+/// A board that is later than this does not catch up.
 const PATIENCE: f64 = 0.25;
 /// Over how long the speed is measured.
 const MEASURE: f64 = 0.5;

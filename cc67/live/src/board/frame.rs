@@ -35,7 +35,7 @@ const PINS: u16 = 64;
 pub(super) struct Moment {
     /// Whether the clock runs.
     pub(super) is_running: bool,
-    /// Whether the board is shown as it was, and went on from there.
+    /// Whether the board is shown as it was, and continued from there.
     pub(super) is_past: bool,
     /// The last tick of the run.
     pub(super) end: Ticks,

@@ -54,7 +54,7 @@ const SIGNALS: &str = "dest0,dest1,dest2";
 /// Ticks within which a thread has a slice, if one is active: all seven, and the primary thread in between.
 const ROTATION: u64 = 30;
 
-/// Runs a session and shows it until its time is over.
+/// Runs a session and shows it until its time has passed.
 pub(crate) fn run<E: Engine>(
     session: &mut Session<E>,
     show: Show,
@@ -94,7 +94,7 @@ struct Stage<'a, E: Engine> {
     samples: Samples,
     log: Log,
     pages: BTreeMap<PageId, Page>,
-    /// What pages were told of threads, and when.
+    /// What pages know of threads, and when.
     told: (Vec<ThreadRow>, Instant),
 }
 
@@ -242,14 +242,14 @@ impl<'a, E: Engine> Stage<'a, E> {
         Ok(())
     }
 
-    /// The timeline takes up what was done; in the past, the run goes on from there.
+    /// The timeline takes up what was done; in the past, the run continues from there.
     fn keep(&mut self) {
         if let History::New(_) = self.timeline.keep(self.session) {
             self.cut();
         }
     }
 
-    /// Whether the board is shown as it was, and went on from there.
+    /// Whether the board is shown as it was, and continued from there.
     fn is_past(&self) -> bool {
         self.session.tick() < self.timeline.end()
     }
@@ -260,7 +260,7 @@ impl<'a, E: Engine> Stage<'a, E> {
         self.timeline.go_to(self.session, tick).map_err(|error| error.to_string())
     }
 
-    /// The run goes on from the moment that is shown.
+    /// The run continues from the moment that is shown.
     fn go_on(&mut self) {
         if self.is_past()
             && let History::New(_) = self.timeline.branch(self.session)
@@ -269,7 +269,7 @@ impl<'a, E: Engine> Stage<'a, E> {
         }
     }
 
-    /// What was later than the present moment is no more.
+    /// What was later than the present moment is gone.
     fn cut(&mut self) {
         let tick = self.session.tick();
         self.log.cut(tick);

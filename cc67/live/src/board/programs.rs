@@ -89,7 +89,7 @@ impl Programs {
     }
 }
 
-/// The parts of `file:line: message`; a drive letter is no file.
+/// The parts of `file:line: message`; a drive letter is not a file.
 fn place(line: &str) -> (Option<&str>, Option<u32>, &str) {
     for (at, _) in line.match_indices(':').filter(|(at, _)| *at > 1) {
         let (file, rest) = (line.get(..at), line.get(at + 1..).unwrap_or_default());

@@ -2,7 +2,7 @@
 //!
 //! A browser sends any page's requests to any address, this one too. So a request is refused unless its `Host` is the
 //! address that the server listens on (which a site that renames itself cannot fake), and unless its `Origin`, if it has
-//! one, is the same. The files of the page are no secret; the page itself and the socket need the token.
+//! one, is the same. The files of the page are not secret; the page itself and the socket need the token.
 
 use std::net::{IpAddr, SocketAddr};
 

@@ -48,7 +48,7 @@ impl Head {
         self.target.split('?').next().unwrap_or_default()
     }
 
-    /// A value behind the question mark.
+    /// A value after the question mark.
     pub(super) fn query(&self, name: &str) -> Option<&str> {
         let (_, query) = self.target.split_once('?')?;
         query.split('&').find_map(|pair| pair.strip_prefix(name)?.strip_prefix('='))
@@ -61,7 +61,7 @@ impl Head {
         found.next().is_none().then_some(value)
     }
 
-    /// What a client that wants a socket has to have back.
+    /// What a client that asks for a socket has to have back.
     pub(super) fn websocket_key(&self) -> Option<&str> {
         let wants = self.header("upgrade")?.eq_ignore_ascii_case("websocket");
         let is_known = self.header("sec-websocket-version") == Some("13");

@@ -75,13 +75,13 @@ impl Server {
         &self.url
     }
 
-    /// Runs a board and shows it, until its time is over.
+    /// Runs a board and shows it, until its time has passed.
     pub fn run<E: Engine>(self, session: &mut Session<E>, show: Show) {
         board::run(session, show, &self.desk, &self.requests);
     }
 }
 
-/// Takes connections for ever, each on a thread of its own.
+/// Takes connections forever, each on a thread of its own.
 fn accept(listener: &TcpListener, gate: &Arc<Gate>, desk: &Arc<Desk>) {
     let count = Arc::new(AtomicUsize::new(0));
     for stream in listener.incoming() {

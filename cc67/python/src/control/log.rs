@@ -28,7 +28,7 @@ pub(crate) enum Fault {
         /// File, line and function, as far as known.
         place: Option<(String, Option<u32>, String)>,
     },
-    /// Something that the stimulus expects is not so.
+    /// An expectation of the stimulus is not met.
     Unmet {
         /// What.
         text: String,

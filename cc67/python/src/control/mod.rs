@@ -1,4 +1,4 @@
-//! A session on any engine behind one set of calls, and what its board has said so far.
+//! A session on any engine with one set of calls, and what its board has said so far.
 
 mod fields;
 mod log;

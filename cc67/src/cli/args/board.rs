@@ -34,7 +34,7 @@ pub(crate) struct BoardArguments {
     /// Switch a remark of the board off, or on again: `-R no-CODE`, `-R CODE`; `--explain remarks` lists the codes
     #[arg(short = 'R', value_name = "no-CODE")]
     remarks: Vec<String>,
-    /// Play an operator: programs that only wait on inputs get the other level of one input after the other
+    /// Play an operator: when all programs wait for inputs, toggle those inputs one at a time
     #[arg(long)]
     pub(crate) assist: bool,
     /// Simulate every tick and every wait; the results are the same
@@ -68,7 +68,7 @@ impl BoardArguments {
         given.or_else(|| self.pc.first_given())
     }
 
-    /// What is connected to the board, and which of its remarks are wanted.
+    /// What is connected to the board, and which of its remarks are shown.
     pub(crate) fn machine_file(&self) -> Result<MachineFile> {
         let mut machine = self.described()?;
         for switch in &self.remarks {

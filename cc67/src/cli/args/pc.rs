@@ -83,7 +83,7 @@ const LETTERS: [char; 3] = ['P', 'Q', 'R'];
 fn mcode(text: &str) -> Result<Vec<Setting>> {
     let (code, variable) = text.rsplit_once(':').unwrap_or((text, "0"));
     let variable: u32 =
-        variable.trim().parse().with_context(|| format!("`{variable}` is no element of UserData"))?;
+        variable.trim().parse().with_context(|| format!("`{variable}` is not an element of UserData"))?;
     let mut words = code.split_whitespace();
     let first = words.next().unwrap_or_default().to_ascii_uppercase();
     let number = |word: &str| word.parse::<f32>().with_context(|| format!("`{word}` is not a number"));
@@ -146,7 +146,7 @@ mod tests {
             ("M110 X5", "`X5` is neither P, Q nor R"),
             ("M110 Px", "`X` is not a number"),
             ("M110 P1:200", "outside"),
-            ("M110 P1:a", "`a` is no element of UserData"),
+            ("M110 P1:a", "`a` is not an element of UserData"),
         ] {
             let error = format!("{:#}", mcode(text).expect_err(text));
             assert!(error.contains(expect), "{text}: {error}");

@@ -50,7 +50,7 @@ pub(crate) fn assign(arguments: &[impl AsRef<OsStr>]) -> Result<Vec<ProgramFile>
         .collect()
 }
 
-/// Splits `N:FILE`. A drive letter is not a number, so Windows paths need no care; a name that is no text is all FILE.
+/// Splits `N:FILE`. A drive letter is not a number, so Windows paths need no care; a name that is not text is all FILE.
 fn split(whole: &OsStr) -> Result<(Option<ThreadId>, PathBuf)> {
     let argument = whole.to_str().unwrap_or_default();
     if let Some((number, path)) = argument.split_once(':')
@@ -61,7 +61,7 @@ fn split(whole: &OsStr) -> Result<(Option<ThreadId>, PathBuf)> {
             bail!("invalid thread number {number} in `{argument}`, valid range 1-{}", ThreadId::MAX);
         };
         if path.is_empty() {
-            bail!("no file behind the thread number in `{argument}`");
+            bail!("no file after the thread number in `{argument}`");
         }
         return Ok((Some(thread), PathBuf::from(path)));
     }
@@ -94,7 +94,7 @@ mod tests {
         check(&["0:a.c"], "invalid thread number 0 in `0:a.c`, valid range 1-7");
         check(&["8:a.c"], "invalid thread number 8 in `8:a.c`, valid range 1-7");
         check(&["2:a.c", "2:b.c"], "two programs for thread 2: a.c and b.c");
-        check(&["3:"], "no file behind the thread number in `3:`");
+        check(&["3:"], "no file after the thread number in `3:`");
         check(&["a", "b", "c", "d", "e", "f", "g", "h"], "more programs than the 7 user threads");
     }
 }

@@ -9,10 +9,10 @@ use runtime::stimulus::Stimulus;
 use super::program::ProgramFile;
 use crate::cli::io::input::read as read_file;
 
-/// What messages call statements that stand on the command line.
+/// What messages call statements that are on the command line.
 const OPTION: &str = "--stim";
 
-/// Reads all stimuli, one behind the other.
+/// Reads all stimuli, one after another.
 pub(crate) fn read(arguments: &[String]) -> Result<Stimulus> {
     let mut all = Stimulus::default();
     for argument in arguments {

@@ -8,7 +8,7 @@ use runtime::MachineFile;
 /// What the serial port is connected to.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct UartArguments {
-    /// Characters that the serial port receives, from when the program first looks for them
+    /// Characters that the serial port receives, from the moment the program first looks for them
     #[arg(long, value_name = "FILE", conflicts_with = "uart")]
     pub(crate) uart_input: Option<PathBuf>,
     /// Write what the serial port sends to FILE

@@ -40,7 +40,7 @@ pub(super) struct CompareArguments {
     /// Programs, each run by itself on both boards; `1:A+2:B` runs several in one run
     #[arg(required = true, value_name = "PROGRAM")]
     programs: Vec<OsString>,
-    /// End each run after so many seconds of board time
+    /// Stop each run after SECONDS of board time
     #[arg(long = "for", value_name = "SECONDS", value_parser = seconds, default_value = "10")]
     limit: f64,
     /// Differences of board times up to this are none, in seconds; more of them are reported, not failed

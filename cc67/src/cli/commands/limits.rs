@@ -1,6 +1,6 @@
 //! Every limit of the tool with its number, for `--explain limits` and the book.
 //!
-//! The numbers stand where they are enforced; this is their one list. The limits of the compiler
+//! The numbers are where they are enforced; this is their one list. The limits of the compiler
 //! are far above what a program for the board needs: they keep hostile text from taking memory,
 //! time or the stack. The limits of the board are the board's own.
 
@@ -132,7 +132,7 @@ pub const FILES: &[Limit] = &[
     limit(
         "samples in a picture of a run",
         PICTURE_SAMPLES as u64,
-        "the picture shows what was so every so many ticks, as it says; traces show all",
+        "the picture shows only some of the samples, as it says; traces show all",
     ),
 ];
 

@@ -19,7 +19,7 @@ use cc67_host::{Ending, EndingAxis, EndingThread, SourceCall, remark};
 /// How a run is shown.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Style {
-    /// The board time stands before each console line.
+    /// The board time comes before each console line.
     pub(crate) time: bool,
     /// Details are shown, too.
     pub(crate) is_verbose: bool,
@@ -154,14 +154,14 @@ impl<'a> From<&'a EndingAxis> for AxisLeft<'a> {
     }
 }
 
-/// A program that a stimulus may load: its thread, its name, and what is known of it.
+/// A program that a stimulus may load: its thread, its name, and what is known about it.
 pub(crate) type Offered = (ThreadId, String, DebugInfo);
 
 /// Where events go.
 pub(crate) struct Screen<W: Write> {
     out: W,
     style: Style,
-    /// What is known of the programs, and the thread of each.
+    /// What is known about the programs, and the thread of each.
     programs: Vec<DebugInfo>,
     threads: Vec<ThreadId>,
     offered: Vec<Offered>,
@@ -341,7 +341,7 @@ impl<W: Write> Screen<W> {
     /// Writes what is left; whether anybody reads it, and the first error of all writes.
     ///
     /// # Errors
-    /// Why stdout cannot be written; a reader that has seen enough, as `head` has, is no failure.
+    /// Why stdout cannot be written; a reader that has seen enough, as `head` has, is not a failure.
     pub(crate) fn finish(&mut self) -> io::Result<Reader> {
         let flushed = self.out.flush();
         self.keep(flushed);

@@ -84,7 +84,7 @@ impl Booted {
         Ok(Self { board, firmware: Firmware::File(Arc::new(symbols)), origin })
     }
 
-    /// Compiles and loads programs, and starts the first so many; whether their sources have no errors.
+    /// Compiles and loads programs, and starts the first of them; whether their sources have no errors.
     pub(crate) fn load(
         &mut self,
         files: &[ProgramFile],
@@ -132,7 +132,7 @@ impl Booted {
         ThreadId::all().filter(is_active).map(ThreadId::get).collect()
     }
 
-    /// Runs until everything has ended, or for so long since the firmware was ready.
+    /// Runs until everything has ended, or for that long since the firmware was ready.
     ///
     /// # Errors
     /// The firmware ran away; what it has sent before was handed over.
@@ -157,7 +157,7 @@ impl Booted {
         AxisId::all().map(|axis| self.board.axis(axis).map(|(dest, _)| dest.to_bits())).collect()
     }
 
-    /// Lets so many cycles pass; whether the firmware has sent lines.
+    /// Lets this many cycles pass; whether the firmware has sent lines.
     ///
     /// # Errors
     /// The firmware ran away.

@@ -1,6 +1,6 @@
 //! `[[event]]` and `[[device]]`: what happens around the board, as statements of a stimulus.
 //!
-//! Each key of an event is one statement of [`crate::world::stimulus`], which checks it; a mistake is told at the key's value.
+//! Each key of an event is one statement of [`crate::world::stimulus`], which checks it; a mistake is reported at the key's value.
 
 use super::MachineFileError;
 use super::read::{Read, Table, Value, Wrong};
@@ -9,7 +9,7 @@ use crate::world::stimulus::{Form, KEYS, Place, Rule, Stimulus};
 /// What messages about rules of a machine file call it.
 const SOURCE: &str = "machine file";
 
-/// A statement and where it stands in the text.
+/// A statement and where it is in the text.
 type Statement = (usize, String);
 
 /// The statements of `[[event]]`.
@@ -56,7 +56,7 @@ fn event(table: &Table<'_>) -> Read<Vec<Statement>> {
     Ok(actions.into_iter().map(|(offset, action)| (offset, format!("{moment} {action}"))).collect())
 }
 
-/// A condition as statements have it: there the text that is printed stands in quotes.
+/// A condition as statements have it: there the text that is printed is in quotes.
 fn condition(text: &str) -> String {
     match text.strip_prefix("printed ") {
         Some(printed) if !printed.starts_with('"') => format!("printed {}", quoted(printed)),

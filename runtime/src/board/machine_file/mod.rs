@@ -42,7 +42,7 @@ pub struct MachineFile {
     pub idle_high: Vec<Bit>,
     /// Whether reading an input that nothing drives is worth a hint.
     pub hints: bool,
-    /// Codes of remarks that are not wanted.
+    /// Codes of remarks that are switched off.
     pub unwanted_remarks: BTreeSet<&'static str>,
     /// Option boards and flash.
     pub boards: Boards,
@@ -191,7 +191,7 @@ impl MachineFile {
         }
     }
 
-    /// Whether remarks of a code are wanted; `None` if there is no such code.
+    /// Whether remarks of a code are shown; `None` if there is no such code.
     pub fn want_remark(&mut self, code: &str, is_wanted: bool) -> Option<()> {
         let RemarkRow { code, .. } = REMARKS.iter().find(|row| row.code == code)?;
         if is_wanted {

@@ -1,6 +1,6 @@
 //! `[host]`: what the PC answers, and its files.
 //!
-//! What it answers are the settings of [`Answers`], which checks them; a mistake is told at the value.
+//! What it answers are the settings of [`Answers`], which checks them; a mistake is reported at the value.
 
 use super::boards::file;
 use super::read::{Read, Table, Value, Wrong, keys};

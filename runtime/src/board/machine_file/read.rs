@@ -85,7 +85,7 @@ impl Key<'_> {
     /// The axis it numbers.
     pub(super) fn axis(&self) -> Read<AxisId> {
         let number = self.text.parse().ok().and_then(AxisId::new);
-        number.ok_or_else(|| Wrong::new(self.offset, format!("`{}` is no axis; there are 0 to 7", self.text)))
+        number.ok_or_else(|| Wrong::new(self.offset, format!("`{}` is not an axis (0-7)", self.text)))
     }
 }
 
@@ -123,12 +123,12 @@ impl<'a> Value<'a> {
         Wrong::new(self.source.span().start, format!("`{}` must be {expected}, not {found}", self.path))
     }
 
-    /// Where it stands in the text.
+    /// Where it is in the text.
     pub(super) fn offset(&self) -> usize {
         self.source.span().start
     }
 
-    /// A word or number as it stands there.
+    /// A word or number as it is there.
     pub(super) fn plain(&self) -> String {
         match self.source.get_ref() {
             DeValue::String(text) => text.to_string(),

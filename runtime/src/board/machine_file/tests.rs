@@ -162,7 +162,7 @@ fn message(text: &str) -> String {
 fn mistakes_are_named_with_their_place() {
     for (text, expect) in [
         ("[axis.0]\nmodle = \"motor\"", "2:1: unknown key `modle` in `axis.0`; did you mean `model`?"),
-        ("[axis.8]\nmodel = \"motor\"", "1:7: `8` is no axis; there are 0 to 7"),
+        ("[axis.8]\nmodel = \"motor\"", "1:7: `8` is not an axis (0-7)"),
         (
             "[axis.0]\n  model = \"servo\"",
             "2:11: `axis.0.model` must be \"follow\" or \"motor\" or \"none\", not \"servo\"",

@@ -7,11 +7,11 @@ use std::collections::BTreeMap;
 
 use kmotiondef::GuestAddr;
 
-/// First address behind the board's own buffers.
+/// First address after the board's own buffers.
 const START: u32 = 0x80FE_0D68;
 /// One past the last.
 const END: u32 = 0x80FF_9020;
-/// Bytes in front of each block.
+/// Bytes before each block.
 const HEADER: u32 = 8;
 
 /// The blocks in use: address of the block, and its size without header.

@@ -32,7 +32,7 @@ pub(crate) enum Continuation {
     Target(f64),
     /// That a stop was begun, and the axes that are still to be stopped once those are known.
     Stop(Option<Vec<AxisId>>),
-    /// The axes that are still to go on after a feedhold.
+    /// The axes that are still to continue after a feedhold.
     Resume(Vec<AxisId>),
 }
 

@@ -78,7 +78,7 @@ impl Notices {
         }
     }
 
-    /// Tells of the levels whose pins are inputs still.
+    /// Reports the levels whose pins are still inputs.
     pub(crate) fn settle(&mut self, out: &mut Out, now: Cycles, is_output: impl Fn(Bit) -> bool) {
         self.due = NEVER;
         for Latch { bit, function, thread, at } in std::mem::take(&mut self.latches) {

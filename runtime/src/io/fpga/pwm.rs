@@ -87,7 +87,7 @@ impl Fpga {
     }
 }
 
-/// Tells the edges of a pin that is high at the beginning of each period, for so long.
+/// Tells the edges of a pin that is high at the beginning of each period, for this long.
 fn tell_train(pins: &mut Pins, bit: Bit, (period, high): (i64, i64), span: Range<Cycles>) {
     let mut at = span.start.get();
     while at <= span.end.get() {

@@ -1,6 +1,6 @@
 //! The buffer of entries: filling, opening, executing.
 //!
-//! The buffer is a ring of [`MAX_SEGMENTS`] entries. The entry behind the last valid one always ends the path.
+//! The buffer is a ring of [`MAX_SEGMENTS`] entries. The entry after the last valid one always ends the path.
 
 use kmotiondef::limits::{MAX_SEGMENTS, TIMEBASE};
 use kmotiondef::variables::{
@@ -28,13 +28,13 @@ pub(crate) fn next_written(memory: &GuestMemory) -> Entry {
     entry(memory, memory.get(PARAMETRIC_INDEX))
 }
 
-/// The entry behind another.
+/// The entry after another.
 pub(crate) fn after(memory: &GuestMemory, entry: Entry) -> Entry {
     let next = entry.address().offset(SIZE);
     Entry::at(if next == memory.get(PARAMETRIC_COEFFS_END) { memory.get(PARAMETRIC_COEFFS) } else { next })
 }
 
-/// The entry in front of another; `None` at the beginning of the buffer and outside of it.
+/// The entry before another; `None` at the beginning of the buffer and outside of it.
 pub(crate) fn before(memory: &GuestMemory, entry: Entry) -> Option<Entry> {
     let (start, end) = (memory.get(PARAMETRIC_COEFFS), memory.get(PARAMETRIC_COEFFS_END));
     let address = entry.address();

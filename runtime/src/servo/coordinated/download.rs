@@ -29,7 +29,7 @@ const AXES: [Field<u8>; LETTERS] = [
     ParametricCoeff::V_AXIS,
 ];
 
-/// The coefficients of the letters behind X and Y.
+/// The coefficients of the letters after X and Y.
 const LINEAR: [Field<TripLinear>; LETTERS - 2] = [
     ParametricCoeff::COORD_Z,
     ParametricCoeff::COORD_A,
@@ -181,7 +181,7 @@ fn set_arc(memory: &mut GuestMemory, entry: Entry, coefficients: Field<TripCircl
     }
 }
 
-/// Fills the slots behind the first two.
+/// Fills the slots after the first two.
 fn set_lines(memory: &mut GuestMemory, entry: Entry, letters: [usize; LETTERS], begin: &Point, end: &Point) {
     for (coefficients, letter) in LINEAR.into_iter().zip(letters.into_iter().skip(2)) {
         let (from, to) = (f64::from(begin[letter]), f64::from(end[letter]));

@@ -15,10 +15,10 @@ use super::{Bits, Coordinated, buffer, rate};
 use crate::servo::spindle;
 use crate::views::Typed;
 
-/// Seconds in front of its end where a path is held that must not end yet.
+/// Seconds before its end where a path is held that must not end yet.
 const HELD_SHORT: f64 = 1e-6;
 
-/// Where the path stands after its commands have been carried out.
+/// Where the path is after its commands have been carried out.
 #[derive(Clone, Copy, Debug)]
 enum Halt {
     /// In a stretch.
@@ -85,7 +85,7 @@ impl Coordinated {
         }
     }
 
-    /// One tick of the last stretch, if there is one; behind it the path is done.
+    /// One tick of the last stretch, if there is one; after it the path is done.
     fn follow_spline(&mut self, memory: &mut GuestMemory) {
         self.spline.take_if(|spline| !spline.step(memory));
         if self.spline.is_none() {
@@ -129,7 +129,7 @@ fn is_held_open(memory: &GuestMemory) -> bool {
     memory.get(CS0_HOLD_AT_END) != 0
 }
 
-/// Stands at a command or at a held end. Only backwards does the path time go on, into the stretch before.
+/// Rests at a command or at a held end. Only backwards does the path time continue, into the stretch before.
 fn wait(memory: &mut GuestMemory, entry: Entry) {
     memory.set(COORD_SYSTEM0, entry.address());
     let time_base = memory.get(CS0_TIME_BASE);
@@ -204,7 +204,7 @@ fn go_back(memory: &mut GuestMemory, mut entry: Entry) -> Entry {
     entry
 }
 
-/// The stretch in front of an entry. Of the commands between them only rapids are undone.
+/// The stretch before an entry. Of the commands between them only rapids are undone.
 fn stretch_before(memory: &mut GuestMemory, mut entry: Entry) -> Option<Entry> {
     let mut rapid = None;
     for _ in 0..MAX_SEGMENTS {

@@ -79,7 +79,7 @@ pub(crate) fn set_doing_rapid(memory: &mut GuestMemory, doing: bool) {
     }
 }
 
-/// One tick of the ramp, behind the advance of the path time.
+/// One tick of the ramp, after the advance of the path time.
 pub(crate) fn ramp(memory: &mut GuestMemory) {
     let (now, delta) = (memory.get(CS0_TIME_BASE), memory.get(CS0_TIME_BASE_DELTA));
     // The board computes the aim as a single.

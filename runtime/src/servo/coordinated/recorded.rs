@@ -1,7 +1,7 @@
 //! Replays the recorded coordinated motion of the released firmware.
 //!
 //! A recording is a list of script commands with the ticks at which they were sent, and rows of what guest memory held
-//! behind some ticks. The script commands needed for that are interpreted here, by hand; the board behind them is
+//! after some ticks. The script commands needed for that are interpreted here, by hand; the board after them is
 //! complete. [`IN_SLICE`] lists the two rows that differ; the test fails when one of them no longer does.
 
 use std::collections::VecDeque;
@@ -77,11 +77,11 @@ const POSITIONS: [usize; 4] = [7, 8, 9, 14];
 /// The board of the recordings: axes 0 and 1 enabled, X and Y.
 struct Rig {
     desk: Desk,
-    /// A motion call that waits for its caller's next slice: in so many ticks.
+    /// A motion call that waits for its caller's next slice: in this many ticks.
     waiting: Option<(u64, String, Vec<u64>)>,
     /// How far a result may be off, relative: what goes through the board's divisions and singles is less exact.
     precision: f64,
-    /// What `CheckDoneBuf` said behind the latest ticks, newest first.
+    /// What `CheckDoneBuf` said after the latest ticks, newest first.
     done: VecDeque<i32>,
 }
 
@@ -265,7 +265,7 @@ impl Rig {
         Ok(String::new())
     }
 
-    /// Whether a value is equal but for the digits that the recording leaves out and what its precision allows.
+    /// Whether a value is equal except for the digits that the recording leaves out and what its precision allows.
     fn is_close(&self, column: usize, found: f64, expect: f64, [extent, path_time]: [f64; 2]) -> bool {
         let tolerance = match column {
             1 => self.precision * path_time.abs(),

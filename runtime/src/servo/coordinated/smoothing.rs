@@ -9,7 +9,7 @@ use vm::memory::GuestMemory;
 use super::system::{self, LETTERS};
 use crate::views::Typed;
 
-/// Stores where the path wants an axis to be, and its destination behind the filter.
+/// Stores where the path puts an axis, and its destination after the filter.
 pub(crate) fn move_to(memory: &mut GuestMemory, axis: AxisId, position: f64) {
     let klp = memory.get(KLP);
     memory.set_axis(axis, Chan::UNFILTERED_DEST, position);

@@ -1,4 +1,4 @@
-//! A resistor and a capacitor behind outputs: the voltage is exact between edges, and an analog input sees it.
+//! A resistor and a capacitor at outputs: the voltage is exact between edges, and an analog input sees it.
 //!
 //! `high` alone drives the resistor to the supply and to ground; with `low` beside it each output only drives one way,
 //! and the capacitor keeps its voltage while neither does. With `konnect` the two are outputs 0 to 15 of that board. An

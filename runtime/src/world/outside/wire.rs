@@ -1,4 +1,4 @@
-//! A wire: an input follows an output, inverted or late if wanted.
+//! A wire: an input follows an output, inverted or late if needed.
 
 use std::collections::VecDeque;
 

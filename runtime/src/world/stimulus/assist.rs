@@ -1,7 +1,7 @@
 //! An operator for programs that wait on inputs nobody drives: `--assist`.
 //!
-//! When the programs have done nothing for two seconds but look at inputs and wait, one of these inputs gets the other
-//! level for a tenth of a second; if nothing comes of that, the next one. All in board time. Source: plant.md section 7.
+//! When the programs have done nothing for two seconds but look at inputs and wait, one of these inputs is toggled
+//! for a tenth of a second; if nothing comes of that, the next one. All in board time. Source: plant.md section 7.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use kmotiondef::{Bit, CodeAddr, Cycles, ThreadId};
 
 /// How long programs wait before anything is done: 2 s.
 const PATIENCE: Cycles = Cycles::new(2 * Cycles::PER_SECOND.get());
-/// How long an input has the other level: 0.1 s. As long again is what the programs have to show that it helped.
+/// How long an input stays toggled: 0.1 s. As long again is what the programs have to show that it helped.
 const PRESSED: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 10);
 
 /// Functions that a program calls while it waits.
@@ -38,7 +38,7 @@ pub(crate) struct Asker {
 /// What the operator does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Step {
-    /// Gives an input the other level; who has read it last.
+    /// Toggles an input; who has read it last.
     Press(Bit, Asker),
     /// Gives it back the level it had.
     Release(Bit),
@@ -54,7 +54,7 @@ pub(crate) struct Assist {
     pressed: Option<Bit>,
     /// Whether the programs have done something since it was pressed.
     has_helped: bool,
-    /// The last input that was pressed: the one behind it is next.
+    /// The last input that was pressed: the following one is next.
     last: Option<Bit>,
 }
 
@@ -98,7 +98,7 @@ impl Assist {
         Some(Step::Press(bit, reader))
     }
 
-    /// How many of the ticks behind the one that began at `now` have nothing to do.
+    /// How many of the ticks after the one that began at `now` have nothing to do.
     pub(crate) fn quiet_ticks(&self, now: Cycles) -> u64 {
         let rest = (self.next - now).get() / Cycles::PER_TICK.get() - 1;
         u64::try_from(rest).unwrap_or(0)

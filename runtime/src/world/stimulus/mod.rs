@@ -74,7 +74,7 @@ impl fmt::Display for Place {
 /// One statement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rule {
-    /// Where it stands.
+    /// Where it is.
     pub place: Place,
     /// When it acts.
     pub trigger: Trigger,
@@ -98,7 +98,7 @@ impl Stimulus {
         text::parse(text, source).map(|rules| Self { rules })
     }
 
-    /// Adds the statements of another one behind these.
+    /// Adds the statements of another one after these.
     pub fn extend(&mut self, other: Self) {
         self.rules.extend(other.rules);
     }

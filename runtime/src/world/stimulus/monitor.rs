@@ -1,6 +1,6 @@
 //! Watches expectations that hold over a time: `within …`, `always …`, `never …`.
 //!
-//! They are looked at in every tick, before the servo acts. What is not as it should be is told once for each
+//! They are looked at in every tick, before the servo acts. Each failure is reported once for each
 //! statement, at the first tick in which it was seen.
 
 use kmotiondef::Cycles;
@@ -14,10 +14,10 @@ use crate::out::EventKind;
 use crate::world::Stage;
 use crate::world::trace::View;
 
-/// What is known of a statement so far.
+/// What is known about a statement so far.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Progress {
-    /// When it was due last. At one instant it happens once, so that rules which make each other happen do not
+    /// When it was due last. Simultaneous repeats count once, so that rules which trigger each other do not
     /// multiply.
     pub(super) last_due: Option<Cycles>,
     /// Whether the text it expects was printed: since the condition, where there is one.
@@ -85,7 +85,7 @@ impl Player {
         }
     }
 
-    /// Whether what has to come within a time has come, or the time is over.
+    /// Whether what has to come within a time has come, or the time has passed.
     fn watch_deadline(&mut self, stage: &mut Stage<'_>, context: &TickContext<'_>, index: usize) {
         let Trigger::Within { limit, .. } = self.rules[index].trigger else { return };
         let Action::Expect(expectation) = &self.rules[index].action else { return };

@@ -21,7 +21,7 @@ pub(super) enum Due {
     Rule(usize),
     /// A pulse ends: the level before it.
     Level(Bit, bool),
-    /// The time is over within which something had to come.
+    /// The time has passed within which something had to come.
     Check,
 }
 
@@ -36,7 +36,7 @@ struct Turning {
     turned: f64,
 }
 
-/// All that goes on by itself.
+/// All that continues by itself.
 #[derive(Clone, Debug)]
 pub(crate) struct Plans {
     /// What is due, by time and then in the order it became so.
@@ -112,7 +112,7 @@ impl Plans {
         !self.turning.is_empty()
     }
 
-    /// How many of the ticks behind the one that began at `now` have nothing to do.
+    /// How many of the ticks after the one that began at `now` have nothing to do.
     pub(super) fn quiet_ticks(&self, now: Cycles) -> u64 {
         let moves = self.waves.iter().flatten().any(|(wave, begun)| !wave.is_over(now - *begun));
         if moves || self.is_turning() {

@@ -20,7 +20,7 @@ use crate::world::Stage;
 #[derive(Clone, Debug)]
 pub(crate) struct Player {
     pub(super) rules: Vec<Rule>,
-    /// What is known of each so far.
+    /// What is known about each so far.
     pub(super) progress: Vec<Progress>,
     pub(super) plans: Plans,
     /// Console lines that no statement has been compared with yet, and how many statements there were when each came.
@@ -82,7 +82,7 @@ impl Player {
         self.lines.push_back((at, line, self.rules.len()));
     }
 
-    /// Whether a thread is still to be started or a command to be sent, so that the run must go on.
+    /// Whether a thread is still to be started or a command to be sent, so that the run must continue.
     ///
     /// Lines that were sent after the last tick have not been compared with anything.
     pub(crate) fn is_busy(&self, has_shown_lines: bool) -> bool {
@@ -106,7 +106,7 @@ impl Player {
         })
     }
 
-    /// How many of the ticks behind the one that began at `now` have nothing to do.
+    /// How many of the ticks after the one that began at `now` have nothing to do.
     pub(crate) fn quiet_ticks(&self, now: Cycles) -> u64 {
         let is_ending = self.active.is_empty() && !self.is_idle && self.awaits();
         if is_ending || !self.lines.is_empty() { 0 } else { self.plans.quiet_ticks(now) }

@@ -1,4 +1,4 @@
-//! Goes through the tokens of a statement, word by word; a mistake names its column and what should stand there.
+//! Goes through the tokens of a statement, word by word; a mistake names its column and what should be there.
 
 use kmotiondef::bits::{BitDirection, range_of};
 use kmotiondef::limits::N_USER_DATA_VARS;
@@ -10,7 +10,7 @@ use super::tokens::{Mistake, Token, TokenKind};
 /// Goes through the tokens of a statement.
 pub(crate) struct StatementReader<'a> {
     pub(super) tokens: &'a [Token],
-    /// The column behind the last token.
+    /// The column after the last token.
     pub(super) behind: usize,
 }
 
@@ -19,7 +19,7 @@ impl StatementReader<'_> {
         self.tokens.first().map_or(self.behind, |token| token.column)
     }
 
-    /// The mistake that something else should stand here.
+    /// The mistake that something else should be here.
     pub(crate) fn expected<T>(&self, what: &str) -> Result<T, Mistake> {
         let found = match self.tokens.first().map(|token| &token.kind) {
             None => "the end of the statement".to_owned(),
@@ -38,7 +38,7 @@ impl StatementReader<'_> {
         }
     }
 
-    /// The word so many tokens further on; nothing where the statement has ended.
+    /// The word this many tokens further on; nothing where the statement has ended.
     pub(crate) fn word(&self, index: usize) -> Option<&str> {
         match self.tokens.get(index).map(|token| &token.kind)? {
             TokenKind::Word(word) => Some(word),

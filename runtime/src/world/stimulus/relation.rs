@@ -3,7 +3,7 @@
 /// A relation between two numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Relation {
-    /// Equal, or as near as the tolerance.
+    /// Equal, or within the tolerance.
     Equal,
     /// Not so.
     Different,

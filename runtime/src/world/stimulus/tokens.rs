@@ -1,6 +1,6 @@
 //! Words, texts and signs of a line, each with its column.
 
-/// What stands at a place of a line.
+/// What is at a place of a line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum TokenKind {
     /// A word or number.
@@ -88,7 +88,7 @@ fn word(characters: &[char], at: &mut usize) -> String {
     characters.get(start..*at).unwrap_or_default().iter().collect()
 }
 
-/// The bytes of a text; `at` goes behind it.
+/// The bytes of a text; `at` goes past it.
 fn text(characters: &[char], at: &mut usize) -> Result<Vec<u8>, Mistake> {
     let start = *at + 1;
     let mut bytes = Vec::new();

@@ -37,7 +37,7 @@ pub enum Condition {
     Printed(String),
     /// A thread becomes active.
     Starts(ThreadId),
-    /// A thread is active no longer.
+    /// A thread is no longer active.
     Ends(ThreadId),
 }
 
@@ -66,7 +66,7 @@ pub enum Trigger {
     },
     /// When the run is over.
     End,
-    /// Checked all the time from a condition on, until it is met: at most for so long.
+    /// Checked all the time from a condition on, until it is met: at most for this long.
     Within {
         /// How long.
         limit: Cycles,

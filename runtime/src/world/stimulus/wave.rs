@@ -46,7 +46,7 @@ pub enum Wave {
 }
 
 impl Wave {
-    /// The value so long after its beginning; `load` tells where an axis is.
+    /// The value at a time after its beginning; `load` tells where an axis is.
     pub(crate) fn value(&self, elapsed: Cycles, load: impl Fn(AxisId) -> f64) -> f64 {
         let seconds = elapsed.get() as f64 / Cycles::PER_SECOND.get() as f64;
         match *self {
@@ -66,7 +66,7 @@ impl Wave {
         }
     }
 
-    /// Whether it stays as it is from so long after its beginning on.
+    /// Whether it stays as it is from a time after its beginning on.
     pub(crate) fn is_over(&self, elapsed: Cycles) -> bool {
         match self {
             Self::Constant(_) => true,

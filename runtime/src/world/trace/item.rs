@@ -133,7 +133,7 @@ pub struct Item {
 
 /// A name that is not one of an item.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("`{name}` is no item; there are {known}")]
+#[error("`{name}` is not an item; there are {known}")]
 pub struct UnknownItem {
     /// The name.
     pub name: String,
@@ -171,7 +171,7 @@ impl Item {
         Err(UnknownItem { name: name.clone(), known: known.join(", ") })
     }
 
-    /// Whether there are items of this name with a number behind it.
+    /// Whether there are items of this name with a number after it.
     #[must_use]
     pub fn is_kind(name: &str) -> bool {
         KINDS.iter().any(|kind| kind.name == name)

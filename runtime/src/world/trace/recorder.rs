@@ -10,7 +10,7 @@ use crate::views::Typed;
 #[derive(Clone, Debug)]
 pub(crate) struct Recorder {
     request: Request,
-    /// The values as bits, so that what is no number is equal to itself, and the enabled axes.
+    /// The values as bits, so that what is not a number is equal to itself, and the enabled axes.
     last: Option<(Vec<u64>, u8)>,
 }
 

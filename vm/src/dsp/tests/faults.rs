@@ -24,7 +24,7 @@ fn code(text: &str) -> (Core, Flat) {
     (Core::new(BASE), memory)
 }
 
-/// Runs until so many cycles have passed since the start.
+/// Runs until this many cycles have passed since the start.
 fn run(core: &mut Core, memory: &mut Flat, until: i64) -> Halt {
     core.state.clock.set_left(until - core.state.cycle().cast_signed());
     core.run(memory)
@@ -72,8 +72,7 @@ fn exclusive_conditions_write_one_register() {
 #[test]
 fn an_endless_loop_that_holds_interrupts_off_is_found() {
     let text = "B .S1 pc+0\nNOP\nNOP\nNOP\nNOP\nB .S1 pc+0";
-    let words =
-        "200000 cycles without a place where an interrupt is possible: the board's servo stands still";
+    let words = "200000 cycles without a place where an interrupt is possible: the board's servo stops";
     // Two branches, five cycles apart, keep each other's shadow alive.
     assert_eq!(fault(&format!("{text}\nNOP 4")), words);
 }

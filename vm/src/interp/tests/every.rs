@@ -1,4 +1,4 @@
-//! Every handler, very often in one slice: one that does not go on by a jump would use up the host's stack.
+//! Every handler, very often in one slice: one that does not continue by a jump would use up the host's stack.
 
 use std::sync::Arc;
 

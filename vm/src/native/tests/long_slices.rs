@@ -1,11 +1,11 @@
-//! Many slices at once against one after the other.
+//! Many slices at once against one after another.
 
 use super::*;
 
 /// The length of a slice with the servo's time of the tests.
 const SLICE: i64 = 10_000;
 
-/// The machine on engine `E` after so many ticks at a time.
+/// The machine on engine `E` after this many ticks at a time.
 fn run<E: Engine>(
     main: &str,
     pauses: &[u64],
@@ -19,7 +19,7 @@ fn run<E: Engine>(
     machine
 }
 
-/// Checks that a program does the same on both engines, seen behind each of `pauses`; the native machine.
+/// Checks that a program does the same on both engines, seen after each of `pauses`; the native machine.
 fn check(main: &str, pauses: &[u64]) -> Machine<Fake, NativeEngine> {
     let mut steps = Vec::new();
     let mut places = Vec::new();

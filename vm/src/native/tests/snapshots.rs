@@ -1,4 +1,4 @@
-//! A machine goes on from each of its snapshots as it went on when the snapshot was taken, on every engine.
+//! A machine continues from each of its snapshots as it continued when the snapshot was taken, on every engine.
 
 use std::time::{Duration, Instant};
 

@@ -53,7 +53,7 @@ impl Entries {
         Self(entries)
     }
 
-    /// Whether a branch to `at` comes from outside of the words from `first` on, or from behind.
+    /// Whether a branch to `at` comes from outside of the words from `first` on, or from after.
     fn is_entered(&self, at: usize, first: usize) -> bool {
         self.0.get(&at).is_some_and(|from| *from.start() < first || *from.end() >= at)
     }
@@ -90,7 +90,7 @@ pub(super) fn regions(
     regions
 }
 
-/// The end of `words` without the arguments of a call behind them, which belong to it.
+/// The end of `words` without the arguments of a call after them, which belong to it.
 fn without_arguments(program: &Program, words: Range<usize>) -> usize {
     let mut argument = None;
     for at in words.clone() {

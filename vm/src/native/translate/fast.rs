@@ -2,7 +2,7 @@
 //!
 //! [`turns`](super::turns) has decided which loops, and what is known in them. Here their words are
 //! translated once for each turn, by the same methods as elsewhere; the few that differ ask for
-//! [`Translator::fast`]. Behind the fast turns stands the loop as it is, for what they cannot do and for the
+//! [`Translator::fast`]. After the fast turns comes the loop as it is, for what they cannot do and for the
 //! last turns of a slice.
 
 use std::collections::BTreeMap;

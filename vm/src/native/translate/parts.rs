@@ -36,7 +36,7 @@ pub(super) struct Twice {
     /// The loops that are translated in several turns at once, by their first word, and the one at hand.
     pub(super) plans: BTreeMap<usize, Plan>,
     pub(super) fast: Option<Fast>,
-    /// Whether what is translated is there for the rare case that fast turns cannot go on.
+    /// Whether what is translated is there for the rare case that fast turns cannot continue.
     pub(super) is_rare: bool,
     /// What is still to be translated of the ways that the next branch takes.
     pub(super) ways: Vec<Way>,

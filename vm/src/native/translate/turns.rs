@@ -75,7 +75,7 @@ pub(super) struct Plan {
     pub(super) words: RangeInclusive<usize>,
     /// The same in the order of a turn.
     pub(super) order: Vec<usize>,
-    /// How many turns; none for a stretch that is no loop.
+    /// How many turns; none for a stretch that is not a loop.
     pub(super) turns: usize,
     /// The most cycles that they cost; none for a stretch without charges.
     pub(super) cost: u32,
@@ -252,7 +252,7 @@ impl<'a> Planner<'a> {
         words.clone().map(of).sum()
     }
 
-    /// Follows one instruction; yields what is known behind it, if it goes on there.
+    /// Follows one instruction; yields what is known after it, if it continues there.
     fn word(&mut self, turn: usize, at: usize, mut known: Known) -> Option<Known> {
         let op = self.program.ops()[at];
         known.spent += (self.cost)(&op).unwrap_or(0);
@@ -422,7 +422,7 @@ impl Plan {
         self.accesses.values().any(|access| !seen.insert(access.root))
     }
 
-    /// Where a branch of `turn` to the word `to` goes on, if that is in the fast turns.
+    /// Where a branch of `turn` to the word `to` continues, if that is in the fast turns.
     pub(super) fn target(&self, turn: usize, to: usize) -> Option<Place> {
         if to == self.entry() {
             return (turn + 1 < self.turns).then_some((turn + 1, to));

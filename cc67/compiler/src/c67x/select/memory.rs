@@ -89,7 +89,7 @@ impl Selector<'_> {
         Place::new(Base::Reg(sum), 0)
     }
 
-    /// An address of two words one after the other.
+    /// An address of two words one after another.
     fn place_of_two(&mut self, address: Address) -> Place {
         let place = self.place(address, 4);
         if place.offset / 4 < 31 || !matches!(place.base, Base::Reg(_)) {

@@ -96,7 +96,7 @@ impl Body {
             return self.declaration(word, line);
         }
         let content = inst::content(line, self, symbols)?;
-        let id = self.open.ok_or("this stands in no block")?;
+        let id = self.open.ok_or("this is not in a block")?;
         let block = self.blocks.entry(id).or_default();
         block.numbers.push(at);
         match content {
@@ -120,7 +120,7 @@ impl Body {
                 return Err(format!("{open} does not end before this"));
             }
             if self.blocks.contains_key(&block) {
-                return Err(format!("{block} stands twice"));
+                return Err(format!("{block} appears twice"));
             }
             self.blocks.insert(block, BlockLines { begins: self.at, ..BlockLines::default() });
             self.function.layout.push(block);

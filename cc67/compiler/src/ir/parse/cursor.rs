@@ -1,6 +1,6 @@
 //! One line of the text, read from left to right.
 //!
-//! A word is what stands between white space and the characters `, ( ) [ ] = :`.
+//! A word is what is between white space and the characters `, ( ) [ ] = :`.
 
 use cranelift_entity::EntityRef;
 

@@ -126,6 +126,6 @@ fn what_is_wrong_is_named_with_its_line() {
     check_error("function f()\n", "line 1: the function has no block");
     check_error("function f()\nblock0:\n", "line 2: block0 does not end");
     check_error("function f()\n  slot1: 4 bytes, align 4\n", "line 2: slot0 comes next, not slot1");
-    check_error("function f()\nblock0:\n  return\n  return\n", "line 4: this stands in no block");
-    check_error("function f()\nblock0:\n  return\nblock0:\n  return\n", "line 4: block0 stands twice");
+    check_error("function f()\nblock0:\n  return\n  return\n", "line 4: this is not in a block");
+    check_error("function f()\nblock0:\n  return\nblock0:\n  return\n", "line 4: block0 appears twice");
 }

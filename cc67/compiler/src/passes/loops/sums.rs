@@ -177,7 +177,7 @@ impl Worker<'_> {
         read
     }
 
-    /// What `operand` is when the loop begins, computed in front of it.
+    /// What `operand` is when the loop begins, computed before it.
     fn start(&mut self, linear: &BTreeMap<ValueId, Linear>, operand: Operand, inst: &Inst) -> Operand {
         let Some(sum) = operand.as_value().and_then(|value| linear.get(&value)).copied() else {
             return operand;

@@ -141,7 +141,7 @@ impl Lexer {
             closing = (is_partner || next == char::from(quote)).then_some(self.at);
         }
         self.at = closing.unwrap_or(behind);
-        let message = format!("{} is no quote in C", name_of(character));
+        let message = format!("{} is not a quote in C", name_of(character));
         let help = format!("write `{}`", char::from(quote));
         cx.sink.report(Diagnostic::error(opening, message).help(help));
         let kind = if quote == b'"' { TokenKind::String } else { TokenKind::Character };

@@ -1,4 +1,4 @@
-//! The file name behind `#include`, which is no token.
+//! The file name after `#include`, which is not a token.
 
 use crate::source::Span;
 
@@ -9,7 +9,7 @@ use super::{Context, Lexer};
 pub(in super::super) struct HeaderName {
     /// The text between the delimiters.
     pub(in super::super) name: String,
-    /// It stands in `<>`, not in quotes.
+    /// It is in `<>`, not in quotes.
     pub(in super::super) is_angled: bool,
     /// The closing delimiter is there.
     pub(in super::super) is_closed: bool,

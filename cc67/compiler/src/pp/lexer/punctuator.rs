@@ -54,7 +54,7 @@ impl Lexer {
         Some(kind)
     }
 
-    /// `short`, or what the byte behind it makes of it.
+    /// `short`, or what the byte after it makes of it.
     fn longest(&mut self, short: TokenKind, long: &[(u8, TokenKind)]) -> TokenKind {
         self.at += 1;
         let next = self.past_splices(self.at);

@@ -44,7 +44,7 @@ impl Lexer {
         Token::new(kind, flags, self.span_from(lo))
     }
 
-    /// Reports a missing closing quote and goes on behind the part of the line that was probably meant.
+    /// Reports a missing closing quote and continues after the part of the line that was probably meant.
     fn unterminated(
         &mut self,
         kind: TokenKind,

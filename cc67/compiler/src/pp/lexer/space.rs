@@ -84,13 +84,13 @@ impl Lexer {
         None
     }
 
-    /// The offset of the line feed that ends the line of `at`, whatever stands before it.
+    /// The offset of the line feed that ends the line of `at`, whatever comes before it.
     pub(super) fn end_of_line(&self, at: usize) -> usize {
         let rest = self.bytes(at, self.end);
         at + memchr::memchr(b'\n', rest).unwrap_or(rest.len())
     }
 
-    /// The offset behind the end of the block comment whose text is at `at`.
+    /// The offset after the end of the block comment whose text is at `at`.
     pub(super) fn end_of_comment(&self, at: usize) -> Option<usize> {
         Some(at + find_pair(self.bytes(at, self.end), *b"*/")? + 2)
     }
@@ -164,7 +164,7 @@ impl Lexer {
     }
 }
 
-/// Where two bytes stand together first.
+/// Where two bytes are together first.
 fn find_pair(text: &[u8], [first, second]: [u8; 2]) -> Option<usize> {
     memchr::memchr_iter(first, text).find(|at| text.get(at + 1) == Some(&second))
 }

@@ -85,7 +85,7 @@ fn wrong_operands_are_errors() {
             "4: error: `+` cannot be used on `int *` and `int *`",
             "5: error: `*` cannot be used on `int *` and `int`",
             "6: error: `~` needs an integer",
-            "7: error: `struct S` is used where a number or pointer is needed (write a member of it, behind a `.`)",
+            "7: error: `struct S` is used where a number or pointer is needed (write a member of it, after a `.`)",
             "8: error: `*` needs a pointer, and this is `int`",
             "9: error: `int` cannot be indexed",
             "10: error: `->` needs a pointer, and this is a `struct S` (use `.a`)",
@@ -99,7 +99,7 @@ fn wrong_operands_are_errors() {
             "18: error: assignment: cannot convert `int *` to `double` (write `*` before it for the value it points to)",
             "19: error: cannot cast `int *` to `double`",
             "20: error: assignment: cannot convert `int` to `struct S`",
-            "21: error: `struct S` is used where a number or pointer is needed (write a member of it, behind a `.`)",
+            "21: error: `struct S` is used where a number or pointer is needed (write a member of it, after a `.`)",
         ],
     );
 }

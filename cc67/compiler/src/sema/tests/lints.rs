@@ -13,7 +13,7 @@ fn pointers_and_integers() {
             "4: int-pointer: assignment makes an integer from a pointer without a cast (write `(int)` if this is meant)",
             "6: pointer-mismatch: assignment makes a pointer to another type without a cast (write `(char **)` if this is meant)",
             "7: error: assignment: cannot convert `struct B *` to `struct A *`",
-            "8: int-pointer: a pointer meets an integer without a cast",
+            "8: int-pointer: a pointer is mixed with an integer without a cast",
         ],
     );
     accept(
@@ -56,9 +56,9 @@ fn conditions_and_statements() {
             "2: assignment-condition: an assignment is used as a condition (write `==` to compare, or a second pair of parentheses if this is meant)",
             "4: assignment-condition: an assignment is used as a condition (write `==` to compare, or a second pair of parentheses if this is meant)",
             "5: unused-value: this statement has no effect (`=` assigns, `==` compares)",
-            "6: unused-value: this statement has no effect (write `()` behind the name to call the function)",
+            "6: unused-value: this statement has no effect (write `()` after the name to call the function)",
             "7: unused-value: this statement has no effect",
-            "8: empty-body: `if` with an empty body (remove the `;`, or write `{}` if nothing shall be done)",
+            "8: empty-body: `if` with an empty body (remove the `;`, or write `{}` if nothing should be done)",
         ],
     );
     accept(

@@ -53,7 +53,7 @@ impl Head {
                 options.push(word);
                 continue;
             }
-            let Some(program) = words.next() else { bail!("no program behind `also`") };
+            let Some(program) = words.next() else { bail!("no program after `also`") };
             also.push(program);
         }
         Ok(Self::Run { options, also })
@@ -86,7 +86,7 @@ mod tests {
             r#"run ["--stim", "at 1s bit 8 = 1"] also ["2:a b.c"]"#,
         );
         check("// cc67: part of relay.c", "Part");
-        check("// cc67: run also", "no program behind `also`");
+        check("// cc67: run also", "no program after `also`");
         check(
             "// cc67: --for 2",
             "`--for 2` does not say how a test is run; write `run` with options, or `part of FILE`",

@@ -1,7 +1,7 @@
-//! What a program is run with that stands beside it: `NAME.toml`, `NAME.stim`, the options of its first line, and the
+//! What a program is run with that is beside it: `NAME.toml`, `NAME.stim`, the options of its first line, and the
 //! project file `cc67.toml` of its folder or one above.
 //!
-//! All of it becomes options in front of those of the command line, which win. What was taken is said in one line.
+//! All of it becomes options before those of the command line, which win. What was taken is said in one line.
 
 mod head;
 mod project;
@@ -38,7 +38,7 @@ const FILES: &[&str] = &[
     "--plot",
 ];
 
-/// Which programs come first, and whether what stands beside them is used.
+/// Which programs come first, and whether what is beside them is used.
 #[derive(Debug, Args)]
 pub(crate) struct BesideArguments {
     /// Run a program to its end before the others start: initialisation
@@ -52,16 +52,16 @@ pub(crate) struct BesideArguments {
 /// What was found.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub(crate) struct Beside {
-    /// Options to put in front of those of the command line.
+    /// Options to put before those of the command line.
     pub(crate) options: Vec<OsString>,
-    /// Programs to put behind those of the command line.
+    /// Programs to put after those of the command line.
     pub(crate) also: Vec<OsString>,
     /// What was taken, for the line that says so.
     said: Vec<String>,
 }
 
 impl Beside {
-    /// What stands beside the first program of a command, whose arguments are `given`; of the first line what the command
+    /// What is beside the first program of a command, whose arguments are `given`; of the first line what the command
     /// knows.
     ///
     /// # Errors

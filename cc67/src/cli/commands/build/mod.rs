@@ -40,7 +40,7 @@ pub(super) struct BuildArguments {
     /// Compile to objects, do not link; the same as `--emit object`
     #[arg(short = 'c')]
     compile_only: bool,
-    /// Also write a map: what stands where, and what is largest
+    /// Also write a map: where everything is, and what is largest
     #[arg(long)]
     map: bool,
     /// Also write the instructions with their packets, units and cycles, FILE(N).asm; of the controller's code alone
@@ -65,7 +65,7 @@ enum Emit {
     Object,
     /// The instructions of `--target sim` as text, FILE(N).txt
     Bytecode,
-    /// What stands where, FILE(N).map
+    /// Where everything is, FILE(N).map
     Map,
     /// The instructions of the controller's code with packets, units and cycles, FILE(N).asm
     Asm,
@@ -240,7 +240,7 @@ fn warnings(units: &[Compilation], levels: &Levels) -> usize {
     units.iter().map(|unit| diagnostics::warnings(unit, levels)).sum()
 }
 
-/// The line that the vendor's editor shows behind a compilation: the sizes of the sections, and
+/// The line that the vendor's editor shows after a compilation: the sizes of the sections, and
 /// the bytes from the first to the last, gaps included.
 fn sizes(linked: &Linked, warnings: usize) -> String {
     let warnings = match warnings {

@@ -69,7 +69,7 @@ impl Console<'_> {
         self.leave()
     }
 
-    /// Takes the lines of a script one after the other; then the programs go on to their end.
+    /// Takes the lines of a script one after another; then the programs continue to their end.
     fn script(&mut self) -> Result<Exit> {
         for line in io::stdin().lines() {
             let line = line.context("cannot read the script")?;
@@ -160,7 +160,7 @@ impl Console<'_> {
         }
     }
 
-    /// The firmware ran away; the command line goes on.
+    /// The firmware ran away; the command line continues.
     fn tell(&mut self, halted: &Halted) {
         self.has_crashed = true;
         self.screen.note(halted.to_string().trim_end());

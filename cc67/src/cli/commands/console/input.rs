@@ -28,7 +28,7 @@ pub(super) enum Input {
     Interrupt,
 }
 
-/// Lines that come while the board goes on.
+/// Lines that come while the board continues.
 pub(super) struct Lines {
     inputs: Receiver<Input>,
     /// Tells the keyboard to read on: a terminal that nobody reads any more must not be left in its editing mode.
@@ -118,7 +118,7 @@ fn candidates(line: &str, cursor: usize) -> (usize, Vec<String>) {
     (start, names)
 }
 
-/// Sources and folders whose path begins with a text, behind its thread number.
+/// Sources and folders whose path begins with a text, after its thread number.
 fn files(text: &str) -> Vec<String> {
     let (thread, path) = match text.split_once(':') {
         Some((thread, path)) => (&text[..=thread.len()], path),

@@ -59,7 +59,7 @@ pub(super) struct ConsoleArguments {
     /// Serve programs of the PC instead of a person, as `cc67 serve --listen ADDRESS`
     #[arg(long, value_name = "ADDRESS", conflicts_with = "time")]
     serve: Option<String>,
-    /// Behind the last line, go on for so many seconds of board time at most
+    /// After the last line, run at most SECONDS more of board time
     #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
     limit: Option<f64>,
     /// Show the board time in seconds before each line of the board
@@ -159,7 +159,7 @@ impl<'a, E: Engine> Console<'a, E> {
         }
     }
 
-    /// Takes the lines of a script one after the other; then the programs go on to their end.
+    /// Takes the lines of a script one after another; then the programs continue to their end.
     fn script(&mut self) -> Result<Exit> {
         for line in io::stdin().lock().split(b'\n') {
             let line = line.context("cannot read the script")?;
@@ -302,7 +302,7 @@ impl<'a, E: Engine> Console<'a, E> {
         Ok(())
     }
 
-    /// Compiles and loads programs, and starts the first so many.
+    /// Compiles and loads programs, and starts the first of them.
     fn load(&mut self, programs: &[ProgramFile], starts: usize) -> Result<()> {
         let loaded = self.rig.load(programs, starts, &self.arguments.compiler);
         self.know_programs();
@@ -320,7 +320,7 @@ impl<'a, E: Engine> Console<'a, E> {
         self.rig.exchange(line, &mut |event| shown.note(&event));
     }
 
-    /// The tick so many seconds from now.
+    /// The tick this many seconds from now.
     fn after(&self, seconds: f64) -> Ticks {
         self.rig.session.tick_after(seconds)
     }

@@ -1,7 +1,7 @@
 //! What the console shows, and where.
 //!
 //! At a terminal everything goes through the line editor, which keeps the line being typed below it. Else lines of the
-//! board go to stdout, and what the simulation has to say to stderr.
+//! board go to stdout, and what the simulation reports to stderr.
 
 use std::io::{self, Write};
 
@@ -24,12 +24,12 @@ pub(super) struct Screen {
     /// Whether inputs that nothing drives are told together at the end; then those that were read.
     groups: bool,
     undriven: Vec<(String, Bit, u8)>,
-    /// What is known of the loaded programs.
+    /// What is known about the loaded programs.
     pub(super) programs: Vec<DebugInfo>,
 }
 
 impl Screen {
-    /// A screen that shows the board time before each line, or does not, and tells of inputs that nothing drives at the
+    /// A screen that shows the board time before each line, or does not, and reports inputs that nothing drives at the
     /// end, or as they are read.
     pub(super) const fn new(time: bool, groups: bool) -> Self {
         Self { time, printer: None, error: None, groups, undriven: Vec::new(), programs: Vec::new() }
@@ -45,7 +45,7 @@ impl Screen {
         self.error.is_some()
     }
 
-    /// What went wrong with writing; a reader that has seen enough, as `head` has, is no failure.
+    /// What went wrong with writing; a reader that has seen enough, as `head` has, is not a failure.
     pub(super) fn finish(&mut self) -> io::Result<()> {
         if !self.undriven.is_empty() {
             self.note(&remark::undriven(&self.undriven));

@@ -21,7 +21,7 @@ pub(super) enum Word {
     Load(String),
     /// Compile, load and start.
     Run(String),
-    /// Give an input the other level, until it is released.
+    /// Toggle an input until it is released.
     Press(Bit),
     /// Give an input back the level it had.
     Release(Bit),
@@ -55,7 +55,7 @@ const ROWS: &[Row] = &[
         help: "compiles a program, loads it into a thread and starts it",
     },
     Row { name: "kill", usage: "kill all [but N]", help: "stops all threads, or all but one" },
-    Row { name: "press", usage: "press BIT", help: "gives an input the other level, as a button does" },
+    Row { name: "press", usage: "press BIT", help: "toggles an input, as a button does" },
     Row { name: "release", usage: "release BIT", help: "gives it back the level it had" },
     Row {
         name: "bit",
@@ -133,7 +133,7 @@ fn kill(text: &str) -> Result<Word> {
         ["all"] => Ok(Word::Kill { except: None }),
         ["all", "but", number] => {
             let thread = number.parse().ok().and_then(ThreadId::new);
-            let thread = thread.with_context(|| format!("`{number}` is no thread; there are 1 to 7"))?;
+            let thread = thread.with_context(|| format!("`{number}`: no such thread (1-7)"))?;
             Ok(Word::Kill { except: Some(thread) })
         }
         _ => bail!("`kill {text}`: `kill all` or `kill all but 1`"),
@@ -157,7 +157,7 @@ pub(super) fn help(name: Option<&str>) -> String {
     if text.is_empty() {
         let similar = suggest(name, topics());
         let hint = similar.map_or(String::new(), |similar| format!("; did you mean `{similar}`?"));
-        text = format!("nothing is known of `{name}`{hint}\n");
+        text = format!("`{name}` is unknown{hint}\n");
     }
     text
 }
@@ -212,7 +212,7 @@ mod tests {
         for (line, expect) in [
             ("wait", "`wait` needs seconds"),
             ("wait x", "`x` is not a number of seconds"),
-            ("kill all but 9", "`9` is no thread; there are 1 to 7"),
+            ("kill all but 9", "`9`: no such thread (1-7)"),
             ("press 46", "`46` is not an input"),
             ("press", "`press` needs an input"),
             ("kill all now", "`kill all now`: `kill all` or `kill all but 1`"),

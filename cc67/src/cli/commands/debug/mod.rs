@@ -37,10 +37,10 @@ pub(super) struct DebugArguments {
     /// Debug for an editor, by the Debug Adapter Protocol: over stdin and stdout, or for one client of a TCP port
     #[arg(long, value_name = "PORT", num_args = 0..=1, require_equals = false, default_missing_value = "0")]
     dap: Option<u16>,
-    /// The same for one client after the other of a TCP port
+    /// The same for one client after another of a TCP port
     #[arg(long, value_name = "PORT", conflicts_with_all = ["dap", "batch"])]
     listen: Option<u16>,
-    /// End after so many seconds of board time
+    /// Stop after SECONDS of board time
     #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
     limit: Option<f64>,
     #[command(flatten)]

@@ -13,8 +13,8 @@ pub(super) const HELP: &str = "\
 usage: tcc67 [options] program.c firmware.out
 
   -text H      load address of the program, hexadecimal, a multiple of 32
-  -data H      address of the initialised data, behind the text by default
-  -bss H       address of the uninitialised data, behind the initialised by default
+  -data H      address of the initialised data, after the text by default
+  -bss H       address of the uninitialised data, after the initialised by default
   -o FILE      write the program to FILE; without it the program is only compiled
   -g           write symbols and line numbers
   -I DIR       search DIR for included files
@@ -22,13 +22,13 @@ usage: tcc67 [options] program.c firmware.out
   -U NAME      undefine a macro
   -c           do not link
 
-This is cc67 in the place of the vendor's compiler; `cc67 --help` shows its own commands.
+This is cc67 in place of the vendor's compiler; `cc67 --help` shows its own commands.
 ";
 
 /// Where a program goes unless an address is given.
 pub(super) const DEFAULT_TEXT: u32 = 0x400;
 
-/// The text stands at a multiple of this.
+/// The text begins at a multiple of this.
 const FETCH_PACKET: u32 = 32;
 
 /// What a command line asks for.
@@ -53,9 +53,9 @@ pub(super) struct Request {
     pub(super) output: Option<PathBuf>,
     /// Address of the text.
     pub(super) text: u32,
-    /// Address of the initialised data, if not behind the text.
+    /// Address of the initialised data, if not after the text.
     pub(super) data: Option<u32>,
-    /// Address of the uninitialised data, if not behind the initialised.
+    /// Address of the uninitialised data, if not after the initialised.
     pub(super) bss: Option<u32>,
     /// Whether symbols and line numbers are written.
     pub(super) has_symbols: bool,

@@ -1,4 +1,4 @@
-//! The drop-in mode: `cc67` in the place of the vendor's compiler.
+//! The drop-in mode: `cc67` in place of the vendor's compiler.
 //!
 //! The controller's PC software starts its compiler with one source file, the firmware file and
 //! the address of a thread, and reads what it says (specification, `dialect.md` section 4,
@@ -95,7 +95,7 @@ fn compile(request: &Request) -> Result<(), String> {
     let Some(output) = &request.output else { return silent_without_errors(&compilation) };
     if request.firmware.is_none() {
         compilation.sink.report(Diagnostic::global_error(
-            "no firmware file given: its name stands behind the source file and ends in .out",
+            "no firmware file given: its name comes after the source file and ends in .out",
         ));
     }
     let linked = thread(request.text).and_then(|thread| compilation.link(thread, &options));

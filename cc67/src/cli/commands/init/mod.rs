@@ -62,7 +62,7 @@ const PROJECT: &[(&str, &[u8])] = &[
 /// The folder of the headers within a project.
 const HEADERS: &str = "include";
 
-/// Writes the files of a new project; nothing if one of them is there already.
+/// Writes the files of a new project; nothing if one of them already exists.
 pub(super) fn init(arguments: &InitArguments) -> Result<Exit> {
     let folder = &arguments.folder;
     let example = arguments.example.as_deref().map(example).transpose()?.unwrap_or_default();
@@ -74,7 +74,7 @@ pub(super) fn init(arguments: &InitArguments) -> Result<Exit> {
         .collect();
     let first = arguments.example.as_ref().map_or("first.c".to_owned(), |name| format!("{name}.c"));
     if let Some((path, _)) = files.iter().find(|(path, _)| path.symlink_metadata().is_ok()) {
-        bail!("{} is there already; nothing was written", path.display());
+        bail!("{} already exists; nothing was written", path.display());
     }
     for (path, text) in &files {
         let parent = path.parent().unwrap_or(Path::new("."));
@@ -82,7 +82,7 @@ pub(super) fn init(arguments: &InitArguments) -> Result<Exit> {
         output::write(path, text)?;
     }
     output::print(&format!(
-        "Made a project of {} files in {}. Go on with\n  cc67 run {first}\n  cc67 test {}\n",
+        "Made a project of {} files in {}. Continue with\n  cc67 run {first}\n  cc67 test {}\n",
         files.len(),
         folder.display(),
         folder.display(),

@@ -23,7 +23,7 @@ pub(super) fn write() -> Result<PathBuf> {
     Ok(folder)
 }
 
-/// The arguments that show it, behind the name of the command.
+/// The arguments that show it, after the name of the command.
 pub(super) fn arguments(folder: &Path) -> Vec<String> {
     let file = |name: &str| folder.join(name).display().to_string();
     let watch = "dest0,dest1,dest2,bit140";

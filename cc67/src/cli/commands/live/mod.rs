@@ -54,7 +54,7 @@ pub(super) struct LiveArguments {
     /// Load a program that is saved without errors at once
     #[arg(long)]
     reload: bool,
-    /// End after so many seconds of board time
+    /// Stop after SECONDS of board time
     #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
     limit: Option<f64>,
     #[command(flatten)]
@@ -66,7 +66,7 @@ pub(super) struct LiveArguments {
 }
 
 impl LiveArguments {
-    /// The programs, if what stands beside them is to be used.
+    /// The programs, if what is beside them is to be used.
     pub(super) fn with_sidecars(&self) -> Option<&[OsString]> {
         (!self.beside.no_sidecar).then_some(&self.programs)
     }
@@ -184,7 +184,7 @@ impl LiveArguments {
     }
 }
 
-/// Opens the browser that the person uses; where that cannot be done, the address stands in the terminal.
+/// Opens the browser that the person uses; where that cannot be done, the address is in the terminal.
 fn open(url: &str) {
     let (program, arguments): (_, &[&str]) = if cfg!(target_os = "macos") {
         ("open", &[])

@@ -17,7 +17,7 @@ pub(super) struct Case {
     pub(super) expected: Option<String>,
     /// Arguments of `cc67 run` in front of the program.
     pub(super) options: Vec<String>,
-    /// Programs for other threads, behind it.
+    /// Programs for other threads, after it.
     pub(super) also: Vec<String>,
 }
 

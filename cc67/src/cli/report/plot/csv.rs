@@ -20,7 +20,7 @@ pub(super) fn chart(title: &str, text: &str) -> Result<Chart> {
         false => (0..table.rows.len()).map(|index| index as f64).collect(),
     };
     if let Some(index) = times.windows(2).position(|pair| pair[1] < pair[0]) {
-        bail!("the time goes back behind row {} of the numbers", index + 1);
+        bail!("the time goes back after row {} of the numbers", index + 1);
     }
     let first = usize::from(has_time);
     let names = table.names.iter().skip(first);
@@ -47,7 +47,7 @@ struct Table {
 
 fn read(text: &str) -> Result<Table> {
     if text.contains('\0') {
-        bail!("this is no text");
+        bail!("this is not text");
     }
     let mut lines = text
         .lines()
@@ -139,11 +139,11 @@ mod tests {
     #[test]
     fn what_is_no_table_is_said() {
         check("", "there are no numbers in it");
-        check("GIF\0", "this is no text");
+        check("GIF\0", "this is not text");
         check("a,b\n", "there are no numbers in it");
         check("a,b\n1,2\n3\n", "line 3 has 1 columns, the first has 2");
         check("a,b\n1,x\n", "line 2: `x` is not a number");
-        check("t,a\n2,1\n1,1\n", "the time goes back behind row 1 of the numbers");
+        check("t,a\n2,1\n1,1\n", "the time goes back after row 1 of the numbers");
         check("t\n2\n", "there is nothing but the time in it");
     }
 }

@@ -252,7 +252,7 @@ fn draw_panel<B: DrawingBackend>(
     Ok(())
 }
 
-/// The title of a panel, and behind it the names of its lines in their colours.
+/// The title of a panel, and after it the names of its lines in their colours.
 fn heading<B: DrawingBackend>(panel: &Panel, area: &Area<B>) -> Result<(), String> {
     let style = ("sans-serif", 15).into_font();
     let title = panel.heading();

@@ -37,7 +37,7 @@ impl Form {
             "svg" => Self::Svg,
             "png" => Self::Png,
             "html" | "htm" => Self::Html,
-            _ => bail!("{} is no picture: its name must end in .svg, .png or .html", path.display()),
+            _ => bail!("{} is not a picture: its name must end in .svg, .png or .html", path.display()),
         })
     }
 }

@@ -1,7 +1,7 @@
 //! Values that were sampled together, and the panels that show them.
 //!
 //! An axis gets panels for where it was sent and where it was, its velocity, its following error and its output, as far
-//! as they ever change. Everything else that is no bit gets a panel of its own. Values are known when they change; in
+//! as they ever change. Everything else that is not a bit gets a panel of its own. Values are known when they change; in
 //! between the last one holds.
 
 use super::chart::{Line, Panel, Strip};
@@ -128,7 +128,7 @@ impl Samples {
     }
 }
 
-/// The number behind one of these words, if a name is nothing else.
+/// The number after one of these words, if a name is nothing else.
 fn is_numbered<'a>(name: &'a str, words: &[&str]) -> Option<&'a str> {
     let number = words.iter().find_map(|word| name.strip_prefix(word))?;
     (!number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit())).then_some(number)

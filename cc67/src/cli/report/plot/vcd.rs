@@ -111,7 +111,7 @@ fn read(text: &str) -> Result<Dump> {
     let mut dump = Dump { variables: BTreeMap::new(), unit: 1e-9, scopes: Vec::new(), now: 0.0 };
     let mut words = text.split_ascii_whitespace();
     if !text.contains("$enddefinitions") {
-        bail!("this is no value change dump: `$enddefinitions` is missing");
+        bail!("this is not a value change dump: `$enddefinitions` is missing");
     }
     while let Some(word) = words.next() {
         match word {
@@ -157,7 +157,7 @@ impl Dump {
         let (kind, rest) = word.split_at(word.chars().next().map_or(0, char::len_utf8));
         let (id, value) = match kind {
             "#" => {
-                let Ok(time) = rest.parse::<f64>() else { bail!("`{word}` is no time") };
+                let Ok(time) = rest.parse::<f64>() else { bail!("`{word}` is not a time") };
                 if time * self.unit < self.now {
                     bail!("the time goes back at `{word}`");
                 }
@@ -168,7 +168,7 @@ impl Dump {
             "b" | "B" => (words.next().unwrap_or_default(), binary(rest)),
             "r" | "R" => match rest.parse() {
                 Ok(value) => (words.next().unwrap_or_default(), value),
-                Err(_) => bail!("`{word}` is no real number"),
+                Err(_) => bail!("`{word}` is not a real number"),
             },
             "s" | "S" => {
                 words.next();
@@ -191,7 +191,7 @@ fn timescale(text: &str) -> Result<f64> {
     let units = [("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9), ("ps", 1e-12), ("fs", 1e-15)];
     match (count.parse::<f64>(), units.iter().find(|(name, _)| *name == unit)) {
         (Ok(count), Some((_, seconds))) => Ok(count * seconds),
-        _ => bail!("`$timescale {text}` is no unit of time"),
+        _ => bail!("`$timescale {text}` is not a unit of time"),
     }
 }
 
@@ -230,14 +230,14 @@ mod tests {
 
     #[test]
     fn what_is_no_dump_is_said() {
-        check("1,2\n", "this is no value change dump: `$enddefinitions` is missing");
+        check("1,2\n", "this is not a value change dump: `$enddefinitions` is missing");
         check("$enddefinitions $end", "there is nothing in it that can be drawn");
-        check("$timescale 1 day $end $enddefinitions $end", "`$timescale 1day` is no unit of time");
-        check("$enddefinitions $end #x", "`#x` is no time");
+        check("$timescale 1 day $end $enddefinitions $end", "`$timescale 1day` is not a unit of time");
+        check("$enddefinitions $end #x", "`#x` is not a time");
         check("$enddefinitions $end #2 #1", "the time goes back at `#1`");
         check("$enddefinitions $end 1a", "`1a`: there is no variable `a`");
         check("$enddefinitions $end q", "`q` is neither a time nor a value");
-        check("$enddefinitions $end r1,5 a", "`r1,5` is no real number");
+        check("$enddefinitions $end r1,5 a", "`r1,5` is not a real number");
         check("$var wire 1 $end $enddefinitions $end", "a variable of the dump has no name: `$var wire 1`");
     }
 }

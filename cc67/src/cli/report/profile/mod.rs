@@ -21,7 +21,7 @@ use crate::cli::io::output;
 /// Where a profile is written to.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Target {
-    /// A table behind the run.
+    /// A table after the run.
     Table,
     /// The same, and a flame graph.
     Flame(PathBuf),

@@ -9,7 +9,7 @@ use vm::profile::Spent;
 
 use super::{Account, Place, context_name};
 
-/// Rows of a table; what is behind them took less.
+/// Rows of a table; what is after them took less.
 const ROWS: usize = 15;
 
 /// What a function took by itself, and with all that it called.

@@ -70,7 +70,7 @@ fn microseconds(at: Cycles) -> f64 {
 pub(super) struct Events {
     draft: Draft,
     columns: Columns,
-    /// Whether an event stands there already, behind which a comma belongs.
+    /// Whether an event precedes, after which a comma belongs.
     has_any: bool,
     threads: BTreeSet<ThreadId>,
     bits: BTreeSet<Bit>,

@@ -30,7 +30,7 @@ impl Columns {
         &self.quantities
     }
 
-    /// Those to show, and where each stands in a sample.
+    /// Those to show, and where each is in a sample.
     pub(super) fn shown(&self) -> impl Iterator<Item = (usize, &Quantity)> {
         let is_shown = |quantity: &Quantity| {
             let axis = quantity.item().and_then(Item::axis);

@@ -87,7 +87,7 @@ impl Log {
         }
     }
 
-    /// What to show, and where each stands in a sample.
+    /// What to show, and where each is in a sample.
     pub(super) fn columns(&self) -> Vec<(usize, &Quantity)> {
         self.columns.shown().collect()
     }
@@ -140,7 +140,7 @@ impl<K: Copy + Ord> Spans<K> {
         }
     }
 
-    /// Joins what lies close together until half of the spans are gone.
+    /// Joins what is close together until half of the spans are gone.
     fn join(&mut self) {
         while self.list.len() > self.limit / 2 {
             let mut last: BTreeMap<K, usize> = BTreeMap::new();

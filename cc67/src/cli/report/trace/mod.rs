@@ -1,7 +1,7 @@
 //! `--trace` and its kin: what a run did, as a file for a viewer or a table.
 //!
 //! The suffix of the file decides: `.vcd` for waveform viewers, `.json` for trace viewers (Perfetto, Chrome), anything
-//! else is a table of values. Files grow while the run goes on, under temporary names, and get their own when it is
+//! else is a table of values. Files grow while the run continues, under temporary names, and get their own when it is
 //! over: a run of any length needs no more memory than a short one, and one that is killed leaves no half file. Only
 //! pictures are made of what is kept in memory, which is bounded, too.
 
@@ -132,7 +132,7 @@ pub(crate) struct Trace {
 fn refused(error: WatchError) -> anyhow::Error {
     match error {
         WatchError::Missing => {
-            anyhow!("`--watch` wants names between its commas, such as axis0,bit46,persist.5")
+            anyhow!("`--watch` needs names between its commas, such as axis0,bit46,persist.5")
         }
         WatchError::Item(_) => error.into(),
         WatchError::TooLong | WatchError::NoPlace(_) => anyhow!("`--watch`: {error}"),

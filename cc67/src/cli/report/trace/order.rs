@@ -1,4 +1,4 @@
-//! Puts what has happened in order: a slice is told when it is over, an edge with the next tick.
+//! Puts what has happened in order: a slice is reported when it has ended, an edge with the next tick.
 
 use std::collections::BTreeMap;
 

@@ -28,7 +28,7 @@ fn instant(tick: u64) -> Cycles {
 }
 
 impl Table {
-    /// Begins it, with a line every so many ticks.
+    /// Begins it, with a line every few ticks.
     pub(super) fn new(path: &Path, columns: Columns, every: u64) -> Result<Self> {
         let (draft, body) = (Draft::new(path)?, Scratch::beside(path)?);
         Ok(Self { draft, body, columns, every, tick: every, values: None })

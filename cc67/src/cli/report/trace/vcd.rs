@@ -1,7 +1,7 @@
 //! A trace as a value change dump: bits and threads as wires, items as real numbers, the console as a string.
 //!
 //! The head names all variables and their first values, which are known last: so the changes are written first and
-//! then copied behind it. Numbers have their first sampled value from the start. The unit of time is the nanosecond.
+//! then copied after it. Numbers have their first sampled value from the start. The unit of time is the nanosecond.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

@@ -60,7 +60,7 @@ pub(crate) fn pulse(scene: &mut Scene<'_, '_, '_>, bit: Bit, duration: Cycles) {
     scene.plans.level(scene.context.now + duration, bit, level);
 }
 
-/// What will be driven is no accident, and a Kanalog whose inputs are driven is there.
+/// What will be driven is not an accident, and a Kanalog whose inputs are driven is there.
 pub(crate) fn announce(bit: &Bit, stage: &mut Stage<'_>, memory: &mut GuestMemory) {
     stage.io.pins.declare(*bit);
     if KANALOG_INPUTS.contains(&bit.get()) {
