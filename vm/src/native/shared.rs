@@ -1,4 +1,4 @@
-//! Machine code that several engines have in common: what many boards run one after the other is compiled once.
+//! Machine code that several engines have in common: what many boards run one after another is compiled once.
 
 use std::sync::{Arc, Mutex, PoisonError};
 

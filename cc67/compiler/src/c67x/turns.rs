@@ -58,7 +58,7 @@ fn back(block: &Block, number: u32) -> Option<(VReg, bool)> {
     }
 }
 
-/// What is known of a loop.
+/// What is known about a loop.
 struct Facts {
     /// What a turn writes and the next turn, or the code after the loop, may read.
     carried: Vec<VReg>,

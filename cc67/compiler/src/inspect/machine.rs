@@ -38,7 +38,7 @@ pub(super) struct Edge {
     pub(super) cycles: u32,
 }
 
-/// Packets that are executed one after the other.
+/// Packets that are executed one after another.
 #[derive(Clone, Debug)]
 pub(super) struct Block {
     pub(super) packets: Range<usize>,
@@ -234,7 +234,7 @@ impl Routine {
     }
 }
 
-/// The packets of words at an address; where one is no instruction, its address.
+/// The packets of words at an address; where one is not an instruction, its address.
 fn packets(address: u32, words: &[u32]) -> Result<Vec<Packet>, u32> {
     let mut all: Vec<Packet> = Vec::new();
     let (mut time, mut joins) = (0, false);

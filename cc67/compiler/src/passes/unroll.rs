@@ -1,4 +1,4 @@
-//! Loops that count to a known number: several turns as one, or all of them one after the other.
+//! Loops that count to a known number: several turns as one, or all of them one after another.
 //!
 //! A loop is taken if its last block alone jumps back and ends with the comparison of a counter, which that block
 //! increases by a constant and nothing else changes, with a constant; and if the counter's first value is known. Then
