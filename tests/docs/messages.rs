@@ -105,6 +105,9 @@ fn kept(sources: &[Source], source: &Source) -> Vec<(&'static str, String)> {
         let texts = match tokens[at].text.as_str() {
             "let" if is(at + 1, "message") => strings(&tokens[at..statement_end(tokens, at)]),
             "message" if is(at + 1, ":") && is(at + 2, "\"") => strings(&tokens[at + 2..at + 3]),
+            "message" if is(at + 1, ":") && is(at + 2, "format") => {
+                strings(&tokens[at..closing(tokens, at + 4)])
+            }
             "problem" | "finding" | "new" if is(at + 1, "(") && !is(at - 1, "fn") => {
                 arguments(tokens, at + 1)
                     .iter()
@@ -246,7 +249,14 @@ fn of_variable(
     depth: usize,
 ) -> Option<Vec<String>> {
     let tokens = &source.tokens;
+    // Several branches may have a variable of this name.
+    let is_named = |index: &usize| tokens[*index + 1].text == name && tokens[*index + 2].text == "=";
     let lets = (begin..at).rev().filter(|index| tokens[*index].text == "let");
+    let own = lets.clone().filter(is_named);
+    let own: Vec<_> = own.flat_map(|index| strings(&tokens[index..statement_end(tokens, index)])).collect();
+    if !own.is_empty() {
+        return Some(own);
+    }
     for index in lets {
         let Some(equals) = tokens[index..at].iter().position(|token| token.text == "=") else { continue };
         if !tokens[index..index + equals].iter().any(|token| token.text == name) {

@@ -95,7 +95,8 @@ impl Parser<'_> {
             (Language::Cpp, message, "nothing need be given back".to_owned())
         } else if foreign_words::is_g_code(written) && self.is_g_code_at(1) {
             let help = "`Move(0, 10);` moves axis 0; G-code is run by the PC, not by C programs";
-            (Language::GCode, "this is G-code, not C".to_owned(), help.to_owned())
+            let message = "this is G-code, not C".to_owned();
+            (Language::GCode, message, help.to_owned())
         } else {
             return None;
         };
