@@ -1,13 +1,18 @@
 //! How long programs and the firmware take: the choice that the compiler and the board share.
 
 /// Whose code the board's time is counted for.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Timing {
     /// What the vendor's compiler makes of the source takes on the board (`spec/costs.md`).
     Vendor(WaitStates),
     /// A cycle or two for each instruction, whatever the board would take.
-    #[default]
     Fast,
+}
+
+impl Default for Timing {
+    fn default() -> Self {
+        Self::VENDOR
+    }
 }
 
 impl Timing {

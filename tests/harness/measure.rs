@@ -3,23 +3,23 @@
 use std::path::Path;
 
 use compiler::{Options, image, pp};
+use kmotiondef::timing::Timing;
 use kmotiondef::{Cycles, ThreadId, Ticks};
-use runtime::Config;
 use vm::profile::ProfilingEngine;
 
-use crate::oracles::{execute, execute_everywhere};
+use crate::oracles::{counting, execute, execute_everywhere};
 
 /// Board time that a program gets: a minute.
 const LIMIT: Ticks = Ticks::new(666_667);
 
 /// The cycles that the program computes for in thread 1, firmware functions included; `None` if it does not compile.
 pub(crate) fn cycles(path: &Path, source: Vec<u8>) -> Option<i64> {
-    let options = Options::default();
+    let options = Options { timing: Timing::Fast, ..Options::default() };
     let mut compilation = compiler::compile(path, source, &options, &pp::Disk);
     let linked = compilation.link(ThreadId::new(1)?, &options)?;
     let image = image::write(&linked).expect("what is linked can be written");
-    let (profiled, board) = execute::<ProfilingEngine>(&image, LIMIT, Config::default())
-        .expect("what the compiler makes can be loaded");
+    let (profiled, board) =
+        execute::<ProfilingEngine>(&image, LIMIT, counting()).expect("what the compiler makes can be loaded");
     let seen = execute_everywhere(&image, LIMIT).expect("what one engine takes, all take");
     assert_eq!(seen, profiled, "{}: the profiling engine differs", path.display());
     let sites = board.machine().engine().profile().sites();
