@@ -42,6 +42,18 @@ fn a_run_uses_what_stands_beside_the_program_and_says_so() {
 }
 
 #[test]
+fn a_debugger_uses_them_too() {
+    let scratch = scratch("beside-debug");
+    scratch.write("commands", "continue\n");
+    for (option, stdout) in [(None, "other\n1 7 8\n"), (Some("--no-sidecar"), "0 0 0\n")] {
+        let output = cc67(&scratch, ["debug", "sub/prog.c", "--batch", "commands"].into_iter().chain(option));
+        assert_eq!(output.code, 0, "{}", output.stderr);
+        assert!(output.stdout.starts_with(stdout), "{}", output.stdout);
+        assert_eq!(output.stderr.contains("sub/prog.c is run with sub/prog.toml"), option.is_none());
+    }
+}
+
+#[test]
 fn a_project_file_has_defaults_for_its_programs() {
     let scratch = scratch("project");
     let folder = scratch.path().join("sub");

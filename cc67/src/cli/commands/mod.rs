@@ -183,6 +183,7 @@ impl Arguments {
             Some(Command::Run(arguments)) => ("run", arguments.with_sidecars()),
             #[cfg(feature = "live")]
             Some(Command::Live(arguments)) => ("live", arguments.with_sidecars()),
+            Some(Command::Debug(arguments)) => ("debug", arguments.with_sidecars()),
             Some(Command::Test(_)) => ("test", None),
             _ => return Ok(self),
         };

@@ -14,13 +14,14 @@ use clap::{Args, Parser};
 use kmotiondef::Ticks;
 use kmotiondef::limits::TIMEBASE;
 
+use crate::cli::args::beside::{Beside, BesideArguments};
 use crate::cli::args::board::BoardArguments;
 use crate::cli::args::compiler::CompilerArguments;
 use crate::cli::args::time::seconds;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::input::read;
 use crate::cli::io::{output, terminal as screen};
-use crate::cli::session::Setup;
+use crate::cli::session::{Setup, Started};
 
 /// Where a run ends if nothing else is said: an hour of board time.
 const LIMIT: f64 = 3600.0;
@@ -44,9 +45,18 @@ pub(super) struct DebugArguments {
     #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
     limit: Option<f64>,
     #[command(flatten)]
+    beside: BesideArguments,
+    #[command(flatten)]
     board: BoardArguments,
     #[command(flatten)]
     compiler: CompilerArguments,
+}
+
+impl DebugArguments {
+    /// The programs, if the files beside them are to be used.
+    pub(super) fn with_sidecars(&self) -> Option<&[OsString]> {
+        (!self.beside.no_sidecar).then_some(&self.programs)
+    }
 }
 
 /// The same arguments as a client of the protocol gives them.
@@ -58,6 +68,16 @@ struct LaunchArguments {
     /// For `--explain` of the whole command, which nobody gives here.
     #[arg(long, hide = true)]
     explain: Option<String>,
+}
+
+impl LaunchArguments {
+    /// What the words say, and the files beside the first program, as on a command line.
+    fn with_sidecars(words: &[OsString]) -> Result<Self> {
+        let arguments = Self::try_parse_from(words)?;
+        let Some(programs) = arguments.debug.with_sidecars() else { return Ok(arguments) };
+        let beside = Beside::of("debug", programs, words, |option| super::knows("debug", option))?;
+        Ok(Self::try_parse_from([&beside.options, words, &beside.also].concat())?)
+    }
 }
 
 /// Debugs programs.
@@ -84,7 +104,8 @@ pub(super) fn debug(arguments: &DebugArguments) -> Result<Exit> {
 
 /// A debugger of the programs; `None` if one has errors, which have been reported.
 fn debugger(arguments: &DebugArguments) -> Result<Option<Debugger>> {
-    let setup = Setup::new(&arguments.programs, &arguments.board, &arguments.compiler, None)?;
+    let started = Started { programs: &arguments.programs, first: &arguments.beside.first };
+    let setup = Setup::new(started, &arguments.board, &arguments.compiler, None)?;
     let Some(setup) = setup else { return Ok(None) };
     let session = setup.for_debugger()?;
     let limit = Ticks::new((arguments.limit.unwrap_or(LIMIT) / TIMEBASE).round() as u64);
@@ -140,7 +161,7 @@ fn listen(port: u16, is_once: bool) -> Result<Exit> {
 /// What a client wants to debug: the programs, and the options of a board under their long names.
 fn launch(request: &Launch) -> Result<Debugger, String> {
     let line = request.command_line().map_err(|error| error.to_string())?;
-    let arguments = LaunchArguments::try_parse_from(line).map_err(|error| error.to_string())?;
+    let arguments = LaunchArguments::with_sidecars(&line).map_err(|error| format!("{error:#}"))?;
     let debugger = debugger(&arguments.debug).map_err(|error| format!("{error:#}"))?;
     debugger.ok_or_else(|| "a program has errors; `cc67 check` shows them".to_owned())
 }
