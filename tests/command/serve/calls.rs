@@ -140,6 +140,7 @@ fn the_token_is_a_counter_of_the_board() {
 }
 
 #[test]
+#[expect(clippy::disallowed_methods, reason = "a client's wait is measured on the clock")]
 fn a_line_that_does_not_come_takes_its_time_on_the_clock() {
     let server = Server::fast("serve-clock", HELLO);
     let (mut client, mut other) = (server.client(), server.client());
