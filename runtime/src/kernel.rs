@@ -201,6 +201,26 @@ fn kinds() -> Vec<CallKind> {
     FIRMWARE_FUNCTIONS.iter().map(|row| kind(row.name)).collect()
 }
 
+/// Sends what waits in the console's queue: as much as the primary thread has time for in its slice, or one string if
+/// time is not the board's.
+fn send_lines(parts: &mut Parts, now: Cycles) {
+    let Some(waits) = parts.timing.wait_states() else {
+        if let Some(line) = parts.out.console.send() {
+            parts.send_line(line, now);
+        }
+        return;
+    };
+    let length = Cycles::PER_TICK - (now - parts.clock.tick_start);
+    let mut spent = std::mem::take(&mut parts.clock.sending);
+    while spent < length
+        && let Some(line) = parts.out.console.send()
+    {
+        spent += waits::sending(line.len(), waits);
+        parts.send_line(line, now);
+    }
+    parts.clock.sending = (spent - length).max(Cycles::default());
+}
+
 /// The time variables of a tick.
 fn store_time(context: &mut TickContext<'_>) {
     let (tick, now) = (context.tick, context.now);
@@ -329,16 +349,13 @@ impl Firmware for Kernel {
     fn primary_slice(&mut self, context: &mut TickContext<'_>) {
         let parts = &mut self.parts;
         parts.out.console.print_servo_message();
-        if parts.pc.is_heard
-            && !self.scripts.is_in_command()
-            && let Some(line) = parts.out.console.send()
-        {
-            parts.send_line(line, context.now);
+        if parts.pc.is_heard && !self.scripts.is_in_command() {
+            send_lines(parts, context.now);
         }
         let Parts { pc, servo, out, .. } = parts;
         for acts in [
             pc.disk.slice(context),
-            limits::slice(servo, out, context.memory),
+            limits::slice(servo, out, context.memory, context.threads.active().is_empty()),
             host::slice(&mut pc.host, out, context),
         ] {
             if acts {

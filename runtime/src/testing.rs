@@ -196,6 +196,11 @@ impl Desk {
             EventKind::ConsoleLine(line) => Some(String::from_utf8(line).expect("text")),
             _ => None,
         });
-        lines.collect()
+        let mut lines: Vec<String> = lines.collect();
+        let held = self.kernel.parts.out.console.held();
+        if !held.is_empty() {
+            lines.push(String::from_utf8(held.to_vec()).expect("text"));
+        }
+        lines
     }
 }

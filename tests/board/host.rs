@@ -106,13 +106,14 @@ fn a_reader_that_does_not_read_makes_the_program_wait() {
     let printed = number(&mut board, "GetPersistDec 9");
     board.run_for(5.0);
     assert_eq!(number(&mut board, "GetPersistDec 9"), printed, "the program goes on printing");
-    // 1000 lines wait at the PC, 255 on the board, and one cannot be put there.
-    assert_eq!(printed, 1256);
+    // 1000 lines wait at the PC, 255 on the board, and one cannot be put there. In the slice that fills the PC's list the
+    // board sends as many lines as it has time for.
+    assert!((1256..=1260).contains(&printed), "{printed}");
     for line in 0..100 {
         assert_eq!(board.service_console(), Some(line.to_string()));
     }
     board.run_for(1.0);
-    assert_eq!(number(&mut board, "GetPersistDec 9"), printed + 100);
+    assert!((1356..=1360).contains(&number(&mut board, "GetPersistDec 9")), "as many as were read");
 }
 
 #[test]

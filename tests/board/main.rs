@@ -1,8 +1,10 @@
 //! The simulated board: its threads, devices, files and script commands, from programs and from the PC.
 
 mod c_interface;
+mod cost;
 mod devices;
 mod disk_files;
+mod fidelity;
 mod host;
 mod session;
 mod snapshots;

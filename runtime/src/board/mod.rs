@@ -159,7 +159,7 @@ impl<E: Engine> Board<E> {
 
     /// Runs to the end of tick `limit` or until everything has ended; `sink` receives what happens.
     ///
-    /// At the end the console text still held is sent, and the expectations of the stimulus are checked.
+    /// At the end the console lines still waiting are sent, and the expectations of the stimulus are checked.
     pub fn run(&mut self, limit: Ticks, sink: &mut dyn FnMut(Event)) -> RunEnd {
         let end = self.run_part(limit, sink);
         self.finish(sink);
@@ -180,7 +180,7 @@ impl<E: Engine> Board<E> {
         }
     }
 
-    /// The run is over: sends the console text still held and checks the expectations of the stimulus.
+    /// The run is over: sends the console lines still waiting and checks the expectations of the stimulus.
     pub fn finish(&mut self, sink: &mut dyn FnMut(Event)) {
         let (kernel, context) = self.machine.firmware_mut();
         kernel.sum_up(&context);
@@ -215,7 +215,7 @@ impl<E: Engine> Board<E> {
         self.deliver(sink);
     }
 
-    /// Sends the console text that waits, the unfinished line included.
+    /// Sends the console lines that wait; one that has not ended stays.
     pub fn flush(&mut self, sink: &mut dyn FnMut(Event)) {
         let (kernel, context) = self.machine.firmware_mut();
         kernel.parts.flush_console(context.now);

@@ -212,6 +212,9 @@ pub(super) fn fro_with_rate(_: &mut Session<'_, '_>, _: &Values) -> Answer {
 
 /// Stop, resume or clear.
 pub(super) fn stop_immediate(session: &mut Session<'_, '_>, values: &Values) -> Answer {
+    if values.integer(0) != 0 {
+        session.call(|parts, caller| hold::complete(&mut parts.servo, caller.memory));
+    }
     match values.integer(0) {
         0 => planned(session.call(coord::stop_coordinated_motion)),
         1 => planned(session.call(coord::resume_coordinated_motion)),

@@ -79,8 +79,7 @@ pub(crate) fn check_done_buf(_: &mut Parts, caller: &mut Caller<'_>) -> i32 {
 /// itself; the others run on meanwhile. Only a thread can wait for them.
 pub(crate) fn stop_coordinated_motion(parts: &mut Parts, caller: &mut Caller<'_>) -> Outcome<()> {
     if caller.thread.is_none() {
-        hold::prepare_stop(caller.memory);
-        hold::stop(&mut parts.servo, caller.memory);
+        hold::ask(&mut parts.servo, caller.memory);
         return Outcome::Done(());
     }
     let mut left = match (caller.woken, parts.calls.take(caller)) {

@@ -130,6 +130,14 @@ fn any_output(memory: &GuestMemory) -> bool {
     AxisId::all().any(|axis| memory.axis(axis, Chan::OUTPUT_MODE) != OutputMode::None.get())
 }
 
+/// Whether an axis is beyond a soft limit and a call would lead it further out: the board does not begin that and does
+/// not say so (axes-and-motion.md section 7.3).
+fn is_beyond(memory: &GuestMemory, axis: AxisId, direction: f64) -> bool {
+    let dest = memory.axis(axis, Chan::DEST);
+    direction > 0.0 && dest > f64::from(memory.axis(axis, Chan::SOFT_LIMIT_POS))
+        || direction < 0.0 && dest < f64::from(memory.axis(axis, Chan::SOFT_LIMIT_NEG))
+}
+
 /// Waits for the caller's next slice if the axis is moving: the board plans there; for the planning time of the machine
 /// file if it has one. The call-back cannot wait.
 fn planning_wait(parts: &Parts, caller: &Caller<'_>, axis: AxisId) -> Option<Wake> {
@@ -209,7 +217,10 @@ fn request(parts: &mut Parts, caller: &mut Caller<'_>, request: &Request) -> Out
         parts.calls.keep(caller, Continuation::Target(target));
         return Outcome::Wait(wake);
     }
-    if !is_place(parts, caller, request.function, target) {
+    // A destination that is not a number makes a relative target another one.
+    if !is_place(parts, caller, request.function, request.target)
+        || is_beyond(caller.memory, axis, target - caller.memory.axis(axis, Chan::DEST))
+    {
         return Outcome::Done(());
     }
     notice_hurry(parts, caller, axis, request.function);
@@ -274,6 +285,14 @@ pub(crate) fn jog(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32, velocit
     }
     if let Some(wake) = planning_wait(parts, caller, axis) {
         return Outcome::Wait(wake);
+    }
+    if is_beyond(caller.memory, axis, velocity) {
+        return Outcome::Done(());
+    }
+    // At rest there is nothing to stop. What counts is whether a motion is executed, not its speed.
+    if velocity == 0.0 && !has_motion(caller.memory, axis) {
+        caller.memory.set_axis(axis, Chan::LAST_MOTION_TYPE, LastMotion::Jog.get());
+        return Outcome::Done(());
     }
     // Any speed will do: only acceleration and jerk limit a jog.
     let Some(limits) = limits(caller.memory, axis, Some(1.0)) else {

@@ -27,6 +27,8 @@ pub(crate) struct Clock {
     /// When the present slice began, and whose it is.
     pub(crate) slice_start: Cycles,
     pub(crate) turn: Turn,
+    /// What the primary thread still needs for a string that it has begun to send.
+    pub(crate) sending: Cycles,
 }
 
 /// The parts of the board.
@@ -59,6 +61,7 @@ impl Parts {
                 tick_start: Cycles::default(),
                 slice_start: Cycles::default(),
                 turn: Turn::Primary,
+                sending: Cycles::default(),
             },
             timing: Timing::Fast,
         }
@@ -117,7 +120,7 @@ impl Parts {
         self.pc.take_line(&mut self.out, line, now);
     }
 
-    /// Sends all console text that waits, the unfinished line included.
+    /// Sends all console lines that wait; one that has not ended stays.
     pub(crate) fn flush_console(&mut self, now: Cycles) {
         for line in self.out.console.drain() {
             self.send_line(line, now);

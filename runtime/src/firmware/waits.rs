@@ -1,4 +1,5 @@
-//! What functions that wait still do when the wait has ended, as the board does (costs.md section 3).
+//! What functions that wait still do when the wait has ended, and what the primary thread does meanwhile, as the board
+//! does (costs.md sections 3 and 5).
 //!
 //! The table's cost is spent when the call is made; what is spent after the wait depends on why it waited.
 
@@ -19,4 +20,36 @@ pub(crate) fn after(function: &str, wake: Wake, waits: WaitStates) -> Cycles {
         ("move_xyzabc", Wake::NextSlice) => 3475,
         _ => 0,
     })
+}
+
+/// What the primary thread takes to send a console line of some characters.
+pub(crate) fn sending(characters: usize, waits: WaitStates) -> Cycles {
+    let n = i64::try_from(characters).unwrap_or(i64::MAX / 1000);
+    let (cycles, accesses, words) = (248 + 79 * n, 5 + 2 * n, 4 + 3 * n);
+    Cycles::new(cycles + accesses * i64::from(waits.register) + words * i64::from(waits.sdram))
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::Value as Json;
+
+    use super::*;
+    use crate::text::vectors::rows;
+
+    #[test]
+    fn a_line_takes_the_primary_thread_what_was_measured() {
+        let mut compared = 0;
+        for row in rows("costs.jsonl") {
+            let Some(length) = row["what"].as_str().and_then(|what| what.strip_prefix("console line of "))
+            else {
+                continue;
+            };
+            let length = length.split(' ').next().and_then(|length| length.parse().ok()).expect("a number");
+            let settings = [WaitStates::NONE, WaitStates::REGISTERS, WaitStates { register: 44, sdram: 20 }];
+            let found = settings.map(|waits| Json::from(sending(length, waits).get()));
+            assert_eq!(Json::from(found.to_vec()), row["cycles"], "{length}");
+            compared += 1;
+        }
+        assert_eq!(compared, 4);
+    }
 }

@@ -68,12 +68,10 @@ impl Console {
         self.queue.pop_front()
     }
 
-    /// Everything not sent yet, the unfinished line last.
+    /// Everything not sent yet. A line that has not ended stays: the board never sends it
+    /// (gather-persist-console.md section 4).
     pub(crate) fn drain(&mut self) -> Vec<Vec<u8>> {
         self.print_servo_message();
-        if !self.held.is_empty() {
-            self.flush();
-        }
         self.queue.drain(..).collect()
     }
 
@@ -156,6 +154,7 @@ mod tests {
         assert_eq!(console.indices(), (255, 0));
         console.send();
         assert_eq!(console.indices(), (255, 1));
-        assert_eq!(console.drain().len(), 255);
+        assert_eq!(console.drain().len(), 254);
+        assert_eq!(console.held(), b"x");
     }
 }

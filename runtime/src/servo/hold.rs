@@ -37,8 +37,9 @@ pub(crate) fn prepare_stop(memory: &mut GuestMemory) {
     }
 }
 
-/// Begins a feedhold that was prepared, if something in the coordinate system moves; whether it does.
-pub(crate) fn stop(servo: &mut Servo, memory: &mut GuestMemory) -> bool {
+/// Begins a feedhold that was prepared, if something in the coordinate system moves; whether it does. Axes that move by
+/// themselves are stopped in the slices that follow.
+pub(super) fn begin(servo: &mut Servo, memory: &mut GuestMemory) -> bool {
     if !may_stop(memory) {
         return false;
     }
@@ -46,11 +47,36 @@ pub(crate) fn stop(servo: &mut Servo, memory: &mut GuestMemory) -> bool {
         return true;
     }
     let moving = moving_members(memory);
-    moving.iter().for_each(|&axis| stop_axis(servo, memory, axis));
-    if !moving.is_empty() {
+    let moves = !moving.is_empty();
+    servo.stop_request.stop_in_turn(moving);
+    moves
+}
+
+/// The next of the axes that a feedhold stops one by one; whether there was one.
+pub(super) fn stop_next(servo: &mut Servo, memory: &mut GuestMemory) -> bool {
+    let Some((axis, is_last)) = servo.stop_request.next_axis() else { return false };
+    stop_axis(servo, memory, axis);
+    if is_last {
         memory.set(CS0_STOPPING_STATE, HoldState::StoppingAxes.number());
     }
-    !moving.is_empty()
+    true
+}
+
+/// A command asks for a feedhold, which the primary thread begins in its next slice.
+pub(crate) fn ask(servo: &mut Servo, memory: &mut GuestMemory) {
+    let moves = path::is_under_way(memory) || !moving_members(memory).is_empty();
+    if moves && may_stop(memory) {
+        feedhold::note_time(memory);
+        servo.stop_request.ask_by_command();
+    }
+}
+
+/// Carries out at once what is left of a feedhold, for a command that ends it.
+pub(crate) fn complete(servo: &mut Servo, memory: &mut GuestMemory) {
+    if servo.stop_request.take().is_some() {
+        begin(servo, memory);
+    }
+    while stop_next(servo, memory) {}
 }
 
 /// The axes of the coordinate system that move by themselves.

@@ -174,8 +174,12 @@ fn check_soft(tick: &mut Tick<'_>, memory: &GuestMemory, axis: AxisId, end: &End
     tick.servo.stop_request.ask(text, Tells::Always);
 }
 
-/// What the primary thread does for the limits in its slice; whether a stop was tried.
-pub(crate) fn slice(servo: &mut Servo, out: &mut Out, memory: &mut GuestMemory) -> bool {
+/// What the primary thread does for the limits in its slice; whether a stop was tried. Where no other thread is active,
+/// it stops the first axis without being interrupted.
+pub(crate) fn slice(servo: &mut Servo, out: &mut Out, memory: &mut GuestMemory, is_alone: bool) -> bool {
+    if hold::stop_next(servo, memory) {
+        return true;
+    }
     if !servo.stop_request.is_asked() {
         return false;
     }
@@ -187,8 +191,16 @@ pub(crate) fn slice(servo: &mut Servo, out: &mut Out, memory: &mut GuestMemory) 
     if memory.get(CS0_STOPPING_STATE) != 0 {
         return false;
     }
-    let stops = hold::stop(servo, memory);
-    if let Some((text, _)) = asked.filter(|(_, tells)| stops || *tells == Tells::Always) {
+    let stops = hold::begin(servo, memory);
+    if is_alone {
+        hold::stop_next(servo, memory);
+    }
+    let is_told = |tells| match tells {
+        Tells::Stop => stops,
+        Tells::Always => true,
+        Tells::Never => false,
+    };
+    if let Some((text, _)) = asked.filter(|(_, tells)| is_told(*tells)) {
         out.console.message(&text);
     }
     true

@@ -265,10 +265,22 @@ impl Phases {
 
 /// A move from rest, as a new axis or one standing still makes it.
 pub(crate) fn move_from_rest(from: f64, to: f64, limits: &Limits) -> Vec<State> {
+    if from.is_nan() {
+        return move_from_nowhere(to, limits);
+    }
     let mut path = Path::from(Point::rest(from));
     path.move_from_rest(to, limits);
     path.states.push(State::END);
     path.states
+}
+
+/// A move of an axis whose destination is not a number: four phases of full length, and the last state that every move
+/// from rest has (coordinated-motion.md section 6).
+fn move_from_nowhere(to: f64, limits: &Limits) -> Vec<State> {
+    let phase =
+        State { mode: Mode::Independent, t: limits.a / limits.j, a: 0.0, b: 0.0, c: 0.0, d: f64::NAN };
+    let last = State { t: TIMEBASE, d: to, ..phase };
+    vec![phase, phase, phase, phase, last, State::END]
 }
 
 /// How a half of a move changes its speed.
@@ -360,9 +372,6 @@ pub(crate) fn move_in_motion(start: Point, to: f64, limits: &Limits) -> Vec<Stat
 
 /// A jog: 20 ticks as before, then the change to the new velocity, which lasts.
 pub(crate) fn jog(start: Point, velocity: f64, limits: &Limits) -> Vec<State> {
-    if start.v == 0.0 && start.a == 0.0 && velocity == 0.0 {
-        return vec![State::END];
-    }
     let mut path = lead(start);
     path.change(velocity, limits);
     path.states.push(if velocity == 0.0 { State::off(FOREVER, path.end.x) } else { constant(&path.end) });

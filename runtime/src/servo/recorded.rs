@@ -55,6 +55,10 @@ impl Axis {
         let start = self.point();
         let moving = start.v != 0.0 || start.a != 0.0;
         match name {
+            "Jog" if args[0] == 0.0 && self.cursor.is_none() => {
+                self.list = vec![State::END];
+                return;
+            }
             "Jog" => self.list = jog(start, args[0], &self.limits),
             "MoveExp" => return self.approach(args[0], args[1]),
             _ if moving => self.list = move_in_motion(start, target, &limits),

@@ -1,12 +1,19 @@
-//! A feedhold that the servo asks the primary thread for.
+//! A feedhold that the primary thread carries out: for the servo at a limit, or for a command.
+//!
+//! It takes several of its slices: in one it computes how long a stop takes, in the next it begins to stop a path, or
+//! each axis that moves by itself in one more (coordinated-motion.md section 5).
 
-/// When the stop at a limit is told.
+use kmotiondef::AxisId;
+
+/// When the stop is told.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Tells {
     /// If something was stopped.
     Stop,
     /// Whenever it was tried: again and again of an axis outside the coordinate system, which nothing stops.
     Always,
+    /// Never: somebody has asked for it.
+    Never,
 }
 
 /// The feedhold, if one is asked for.
@@ -15,12 +22,22 @@ pub(crate) struct StopRequest {
     asked: Option<(String, Tells)>,
     /// Whether the primary thread has seen it: computing the stop takes it until its next slice.
     is_seen: bool,
+    /// The axes that are still to be stopped, the last one first.
+    left: Vec<AxisId>,
 }
 
 impl StopRequest {
     /// Asks, unless a stop is being computed.
     pub(super) fn ask(&mut self, text: String, tells: Tells) {
-        self.asked.get_or_insert((text, tells));
+        if self.left.is_empty() {
+            self.asked.get_or_insert((text, tells));
+        }
+    }
+
+    /// A command asks, for whom the primary thread has computed the stop.
+    pub(super) fn ask_by_command(&mut self) {
+        self.ask(String::new(), Tells::Never);
+        self.is_seen = true;
     }
 
     /// Whether a stop is asked for.
@@ -37,5 +54,17 @@ impl StopRequest {
     pub(super) fn take(&mut self) -> Option<(String, Tells)> {
         self.is_seen = false;
         self.asked.take()
+    }
+
+    /// Stops these axes, one in each slice.
+    pub(super) fn stop_in_turn(&mut self, mut axes: Vec<AxisId>) {
+        axes.reverse();
+        self.left = axes;
+    }
+
+    /// The axis that is stopped next, and whether it is the last one.
+    pub(super) fn next_axis(&mut self) -> Option<(AxisId, bool)> {
+        let axis = self.left.pop()?;
+        Some((axis, self.left.is_empty()))
     }
 }

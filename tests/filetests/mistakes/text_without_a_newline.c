@@ -1,4 +1,3 @@
-//@ prints: done
 //@ says: the text `done` has no newline: the board keeps it, and the PC never receives it
 #include "KMotionDef.h"
 

@@ -142,7 +142,7 @@ impl<E: Engine> Session<E> {
         self.sample();
     }
 
-    /// The run is over: sends the console text still held, and checks what the stimulus expects at the end.
+    /// The run is over: sends the console lines still waiting, and checks what the stimulus expects at the end.
     pub fn finish(&mut self, events: EventSink<'_>) {
         self.board.finish(events);
     }

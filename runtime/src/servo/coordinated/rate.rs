@@ -82,10 +82,11 @@ pub(crate) fn set_doing_rapid(memory: &mut GuestMemory, doing: bool) {
 /// One tick of the ramp, after the advance of the path time.
 pub(crate) fn ramp(memory: &mut GuestMemory) {
     let (now, delta) = (memory.get(CS0_TIME_BASE), memory.get(CS0_TIME_BASE_DELTA));
-    // The board computes the aim as a single.
-    let aim = f64::from(aim_within_data(memory, now) as f32);
+    let exact = aim_within_data(memory, now);
+    // The board computes the aim as a single where it ramps.
+    let aim = f64::from(exact as f32);
     let next = if delta <= 0.0 {
-        aim
+        exact
     } else if aim > now + delta {
         now + delta
     } else if aim < now - delta {
@@ -138,7 +139,7 @@ mod tests {
             memory.set(CS0_FLUSHED, 1);
             set_feed(&mut memory, 0.5, time);
             ramp(&mut memory);
-            assert_eq!(memory.get(CS0_TIME_BASE), f64::from((0.5 * TIMEBASE) as f32));
+            assert_eq!(memory.get(CS0_TIME_BASE), 0.5 * TIMEBASE);
         }
     }
 

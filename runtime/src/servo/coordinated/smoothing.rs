@@ -41,11 +41,13 @@ struct Cubic {
 
 impl Spline {
     /// The spline from the axes' destinations and velocities to rest at the end of the path; `None` if the path is
-    /// not smoothed.
+    /// not smoothed. One that is smoothed by a `KLP` without its `TauKLP` divides by a duration of 0: the destinations
+    /// are not numbers then (coordinated-motion.md section 6).
     pub(crate) fn plan(memory: &GuestMemory, end: GuestAddr) -> Option<Self> {
         let exact = f64::from(memory.get(SPLINE_TAU_FACTOR)) * f64::from(memory.get(TAU_KLP));
         let duration = f64::from(exact as f32);
-        if duration < TIMEBASE {
+        let is_undefined = memory.get(KLP) != 0.0 && duration == 0.0;
+        if duration < TIMEBASE && !is_undefined {
             return None;
         }
         let cubics = system::letters(memory).map(|axis| Some(Cubic::plan(memory, axis?, exact, duration)));
