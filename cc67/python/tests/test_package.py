@@ -74,10 +74,8 @@ def test_another_file_is_named(write: Write, tmp_path: Path) -> None:
         cc67.Image.read(tmp_path / "missing.out")
 
 
-def test_what_code_costs_or_that_it_is_not_built(write: Write) -> None:
-    try:
-        costs = cc67.cycles(write(WAIT))
-    except cc67.NotBuiltError as error:
-        assert "cycles" in str(error)
-    else:
-        assert costs
+def test_what_code_costs(write: Write, tmp_path: Path) -> None:
+    text = cc67.cycles(write(WAIT))
+    assert text.startswith("cycles at 200 MHz") and "main" in text
+    with pytest.raises(cc67.InputError, match="missing"):
+        cc67.cycles(tmp_path / "missing.c")

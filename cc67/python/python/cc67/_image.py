@@ -9,7 +9,7 @@ from typing import Any
 
 from . import _native
 from ._command import run
-from ._errors import InputError, NotBuiltError, unknown
+from ._errors import InputError, unknown
 from ._program import PathLike, Program
 
 __all__ = ["Image", "cycles", "inspect"]
@@ -76,15 +76,13 @@ def inspect(image: PathLike | Program | Image) -> str:
     return "\n".join(text for _, text in _native.parts(image.name, bytes(image)))
 
 
-def cycles(*files: PathLike) -> Any:
-    """What the code costs on the real board, as `cc67 cycles --json` says it.
+def cycles(*files: PathLike) -> str:
+    """What the code costs on the real board: what `cc67 cycles` says of sources, objects or an image.
 
     Raises:
-        NotBuiltError: this version has no `cc67 cycles`.
+        InputError: a file cannot be read, or does not compile.
     """
-    result = run(["cycles", "--json", *[os.fspath(file) for file in files]])
+    result = run(["cycles", *[os.fspath(file) for file in files]])
     if result.returncode == 0:
-        return json.loads(result.stdout)
-    if "subcommand" in result.stderr or "no command" in result.stderr or "did you mean" in result.stderr:
-        raise NotBuiltError("`cc67 cycles` is not built in this version: what code costs on the real board")
+        return result.stdout
     raise InputError(result.stderr.strip())
