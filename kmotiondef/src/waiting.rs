@@ -12,6 +12,8 @@ pub const WAITING: &[(&str, &str)] = &[
     ("Print", "while the console queue is full"),
     ("PrintFloat", "while the console queue is full"),
     ("PrintInt", "while the console queue is full"),
+    ("ProgramFlash", "until the flash is written"),
+    ("ProgramFlashNoMessages", "until the flash is written"),
     ("RS232_GetChar", "while no character has been received"),
     ("RS232_PutChar", "while the transmit ring is full"),
     ("WaitNextTimeSlice", "until the next slice of the thread"),

@@ -2,7 +2,7 @@
 //!
 //! A recorded row holds what is in memory when the servo interrupt of its tick ends; a trace of the board samples there
 //! too. Tick 0 is the one in whose slice the program stored 1 in `persist.UserData[0]`. Rows are compared in every
-//! column. The last line is no program: it says what the gather buffer holds at power-up, 72,668 bytes of the vendor's
+//! column. The last line is not a program: it says what the gather buffer holds at power-up, 72,668 bytes of the vendor's
 //! data for the FPGA, which cc67 does not have; there it is zero.
 
 use std::collections::BTreeMap;
@@ -41,7 +41,7 @@ const DIFFERENT: &[(&str, &str)] = &[
     ),
     (
         "soft limit: axis at 6, limit 5, Jog(0, -1000)",
-        "how long the run went on after its rows is not recorded",
+        "how long the run continued after its rows is not recorded",
     ),
     ("soft limit: axis at 6, limit 5, MoveExp(0, 10, 0.01)", STOPPED),
     ("soft limit: axis at 6, limit 8, Move(0, 10)", STOPPED),
@@ -158,7 +158,7 @@ fn is_near(found: f64, recorded: &Json) -> bool {
 /// A line that was run to its last row.
 struct Run<'l> {
     line: &'l Json,
-    /// The columns behind the tick, each with what it is in the words of a program.
+    /// The columns after the tick, each with what it is in the words of a program.
     columns: Vec<(&'l str, Option<String>)>,
     session: Session,
     /// The sources, which expressions are read with.

@@ -91,7 +91,7 @@ fn a_word_without_a_page_of_its_own_finds_the_pages_that_have_it() {
     let output = cc67(&scratch, ["--explain", "encoder"]);
     assert_eq!(output.code, 0, "{}", output.stderr);
     assert!(
-        output.stdout.contains("InputMode") && output.stdout.contains("ENCODER_MODE"),
+        output.stdout.contains("ConfigureSpindle") && output.stdout.contains("InputGain0"),
         "{}",
         output.stdout
     );
