@@ -124,7 +124,7 @@ fn programs_and_statements_of_the_pages_compile() {
                 continue;
             }
             if block.contains("main()") {
-                scratch.write("whole.c", &format!("#include \"KMotionDef.h\"\n{block}"));
+                scratch.write("whole.c", format!("#include \"KMotionDef.h\"\n{block}"));
                 let output = cc67(&scratch, ["check", "whole.c"]);
                 assert_eq!((output.code, output.stderr.as_str()), (0, ""), "{}: {block}", page.display());
             } else {

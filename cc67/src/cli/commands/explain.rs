@@ -22,6 +22,9 @@ use super::limits;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::output;
 
+/// A name and what lists the names of its kind.
+type List = (&'static str, fn() -> String);
+
 /// A name that can be explained, and the sentence that describes it.
 struct Explained {
     name: &'static str,
@@ -67,7 +70,7 @@ fn answer(name: &str) -> Option<String> {
 
 /// What lists the rows of a table.
 fn list(is_meant: &dyn Fn(&str) -> bool) -> Option<String> {
-    const LISTS: &[(&str, fn() -> String)] = &[
+    const LISTS: &[List] = &[
         ("warnings", warnings),
         ("remarks", remarks),
         ("limits", limits::page),
