@@ -7,7 +7,7 @@ use crate::typed::LocalId;
 /// What is certain at a place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Flow {
-    /// No path leads here: whatever is said of it is true.
+    /// Not reachable: every statement about it holds.
     Unreachable,
     /// The locals that hold a value, one bit each.
     Stored(Vec<u64>),
@@ -34,7 +34,7 @@ impl Flow {
         words.get(word).is_some_and(|word| word & bit != 0)
     }
 
-    /// Another path leads here: certain is only what both have stored in.
+    /// Merges another path to the same point: only what both have assigned is certain.
     pub(super) fn join(&mut self, other: &Self) {
         match (&mut *self, other) {
             (_, Self::Unreachable) => {}

@@ -132,7 +132,7 @@ impl Lowering<'_> {
         self.cost(words.saturating_mul(waits.cast_signed()));
     }
 
-    /// A block that goes on at `to` and costs `cycles` before, if anything is charged.
+    /// A block that charges `cycles`, if there are any, and continues at `to`.
     pub(super) fn costly_way(&mut self, to: BlockId, cycles: u32) -> Option<BlockId> {
         self.pricing.as_ref()?;
         Some(self.builder.way(to, cycles))

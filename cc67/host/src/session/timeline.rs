@@ -201,7 +201,7 @@ impl<E: Engine> Timeline<E> {
         }
     }
 
-    /// The tick after which something is done on the line ahead; a session that goes on stops there to do it again.
+    /// The tick after which something is done on the line ahead; a session that continues stops there to do it again.
     #[must_use]
     pub fn next_input(&self) -> Option<Ticks> {
         self.journal.get(self.done).map(|(tick, _)| *tick)

@@ -47,7 +47,7 @@ const TICKS_AT_ONCE: u64 = 500;
 const REQUESTS_AT_ONCE: usize = 256;
 /// Most frames a second.
 const FRAMES: f64 = 60.0;
-/// How often pages are told what threads do.
+/// How often pages receive what threads do.
 const THREADS: Duration = Duration::from_millis(100);
 /// Signals that are followed where nobody asks for others.
 const SIGNALS: &str = "dest0,dest1,dest2";
@@ -157,7 +157,7 @@ impl<'a, E: Engine> Stage<'a, E> {
         }
     }
 
-    /// A page has come: it is told everything.
+    /// A page has connected: it receives everything.
     fn join(&mut self, id: PageId, mailbox: Arc<Mailbox>) {
         let page = Page { mailbox, every: None, last: now(), next_row: 0, generation: 0 };
         self.pages.insert(id, page);
