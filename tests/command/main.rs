@@ -16,6 +16,7 @@ mod keyboard;
 mod live;
 mod plots;
 mod profile;
+mod real_code;
 mod run;
 mod serve;
 mod shell;

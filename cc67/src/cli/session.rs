@@ -11,6 +11,7 @@ use std::ffi::OsString;
 
 use anyhow::Result;
 use cc67_host::{End, Session, UserProgram};
+use compiler::Options;
 use kmotiondef::Ticks;
 use runtime::stimulus::Stimulus;
 use runtime::{Config, Event};
@@ -83,8 +84,11 @@ impl Setup {
         let mut stimulus = stimulus::read(&board.stim)?;
         stimulus.extend(one_after_the_other(before, files.get(..programs.len()).unwrap_or_default())?);
         let uart = board.uart.or_those_of(&machine_file);
+        let options = board.engine.options(compiler)?;
         let offered = stimulus::programs(&[&machine_file.stimulus, &stimulus]);
-        let Some((mut loaded, offered)) = compile(&files, offered, compiler, first)? else { return Ok(None) };
+        let Some((mut loaded, offered)) = compile(&files, offered, compiler, &options, first)? else {
+            return Ok(None);
+        };
         let starting = if before.is_empty() { 0..programs.len() } else { programs.len()..programs.len() + 1 };
         loaded.iter_mut().enumerate().for_each(|(index, program)| program.starts = starting.contains(&index));
 
@@ -95,7 +99,7 @@ impl Setup {
             Config { machine, files: disk, machine_file, answers, flash: flashed, ..Config::default() };
         let session = cc67_host::Setup {
             config,
-            options: compiler.resolve()?,
+            options,
             programs: loaded,
             offered,
             values: settings.into_iter().map(|Setting { address, bytes }| (address, bytes)).collect(),
@@ -122,8 +126,10 @@ impl Setup {
 
     /// Does the work of a command on the engine that was asked for.
     pub(crate) fn on_its_engine(self, work: impl Work) -> Result<Exit> {
-        match self.engine {
-            EngineName::Bytecode => work.on(self.rig(BytecodeEngine::default())?),
+        // Beside real images there may be bytecode, which the usual engine executes.
+        let engine = if self.engine == EngineName::Dsp { EngineName::default() } else { self.engine };
+        match engine {
+            EngineName::Bytecode | EngineName::Dsp => work.on(self.rig(BytecodeEngine::default())?),
             #[cfg(feature = "native")]
             EngineName::Native => {
                 let mut arranged = self;
@@ -138,7 +144,7 @@ impl Setup {
     /// A board as the arguments want it, on an engine of the caller's choice.
     pub(crate) fn rig<E: Engine>(self, engine: E) -> Result<Rig<E>> {
         let session = self.session.session_on(engine)?;
-        Ok(Rig { session, uart: self.uart, line: Line::default(), flash: self.flash })
+        Ok(Rig { session, engine: self.engine, uart: self.uart, line: Line::default(), flash: self.flash })
     }
 
     /// The board for a debugger, on the engine that it can hold.
@@ -190,6 +196,7 @@ fn compile(
     files: &[ProgramFile],
     offered: Vec<ProgramFile>,
     compiler: &CompilerArguments,
+    options: &Options,
     first: Option<&[u8]>,
 ) -> Result<Option<(Vec<UserProgram>, Vec<UserProgram>)>> {
     let held = files.first().zip(first).map(|(file, image)| UserProgram {
@@ -201,7 +208,7 @@ fn compile(
     });
     let rest = files.get(usize::from(held.is_some())..).unwrap_or_default();
     let all = [rest, &offered].concat();
-    let Some(programs) = images::programs(&all, compiler)? else { return Ok(None) };
+    let Some(programs) = images::programs(&all, compiler, options)? else { return Ok(None) };
     let mut programs: Vec<_> = held.into_iter().chain(programs).collect();
     let offered = programs.split_off(files.len());
     Ok(Some((programs, offered)))
@@ -212,6 +219,7 @@ fn compile(
 pub(crate) struct Rig<E> {
     /// The board under control.
     pub(crate) session: Session<E>,
+    engine: EngineName,
     uart: UartArguments,
     line: Line,
     flash: Flash,
@@ -231,7 +239,9 @@ impl<E: Engine> Rig<E> {
         starts: usize,
         compiler: &CompilerArguments,
     ) -> Result<bool> {
-        let Some(programs) = images::programs(files, compiler)? else { return Ok(false) };
+        let Some(programs) = images::programs(files, compiler, &self.engine.options(compiler)?)? else {
+            return Ok(false);
+        };
         let load = |(index, program): (usize, UserProgram)| {
             self.session.load(UserProgram { starts: index < starts, ..program })
         };

@@ -1,7 +1,7 @@
 //! One processor context: packet after packet, until something ends it.
 
 use super::cache::Cache;
-use super::decode::{NoPacket, STACK};
+use super::decode::{NoPacket, STACK, places};
 use super::idle::{Arrival, Idle};
 use super::memory::{Clock, Memory};
 use super::pipeline::{Passed, State};
@@ -45,6 +45,8 @@ pub struct Core {
     stack: Option<StackRange>,
     lowest_stack: Option<u32>,
     packets: u64,
+    /// The instruction of the last fault.
+    faulted_at: Option<u32>,
     border: Border,
     idle: Idle,
     skips: bool,
@@ -74,6 +76,12 @@ impl Core {
     #[must_use]
     pub const fn lowest_stack(&self) -> Option<u32> {
         self.lowest_stack
+    }
+
+    /// The instruction of the last fault, if one of the packet that the core is before is known to have caused it.
+    #[must_use]
+    pub const fn faulted_at(&self) -> Option<u32> {
+        self.faulted_at
     }
 
     /// Packets executed.
@@ -229,11 +237,14 @@ impl Core {
         if packet.has_branch {
             state.hold_interrupts();
         }
-        for micro in self.cache.micros(&packet) {
+        for (number, micro) in self.cache.micros(&packet).iter().enumerate() {
             if (state.regs[usize::from(micro.pred)] == 0) != micro.inverted {
                 continue;
             }
-            state.execute(micro, &mut memory)?;
+            if let Err(kind) = state.execute(micro, &mut memory) {
+                self.faulted_at = instruction(&*memory.inner, state.pc, number);
+                return Err(kind);
+            }
         }
         let hits = memory.hits;
         self.packets += 1;
@@ -268,6 +279,12 @@ impl Core {
         }
         Ok(())
     }
+}
+
+/// The address of an instruction by its number in the order of execution.
+#[cold]
+fn instruction<M: Memory>(memory: &M, packet: u32, number: usize) -> Option<u32> {
+    places(memory, packet).get(number).copied()
 }
 
 /// Memory, with an eye on stores among decoded packets.

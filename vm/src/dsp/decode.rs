@@ -113,25 +113,19 @@ pub(super) enum NoPacket {
     Fault(Fault),
 }
 
+/// The addresses of the instructions of the packet at `at`, in the order in which they are executed.
+pub(super) fn places<M: Memory>(memory: &M, at: u32) -> Vec<u32> {
+    fetch(memory, at)
+        .and_then(|(insts, _)| order(&insts).map_err(NoPacket::Fault))
+        .map_or_else(|_| Vec::new(), |ordered| ordered.into_iter().map(|(at, _)| at).collect())
+}
+
 /// Decodes the packet at `at`; its instructions are appended to `micros`.
 pub(super) fn decode<M: Memory>(memory: &M, at: u32, micros: &mut Vec<Micro>) -> Result<Packet, NoPacket> {
-    let mut insts = Vec::with_capacity(MOST);
-    let mut end = at;
-    loop {
-        let Some(word) = memory.fetch(end) else { return Err(NoPacket::Outside) };
-        let inst = Inst::decode(word).map_err(|_| NoPacket::Fault(Fault::BadWord { at: end, word }))?;
-        insts.push((end, inst));
-        end = end.wrapping_add(4);
-        if word & PARALLEL == 0 {
-            break;
-        }
-        if insts.len() == MOST {
-            return Err(NoPacket::Fault(Fault::LongPacket { at }));
-        }
-    }
+    let (insts, end) = fetch(memory, at)?;
     let cycles = insts.iter().map(|(_, inst)| inst.cycles()).max().unwrap_or(1);
     let first = micros.len() as u32;
-    order(&insts, micros).map_err(NoPacket::Fault)?;
+    micros.extend(order(&insts).map_err(NoPacket::Fault)?.into_iter().map(|(_, micro)| micro));
     Ok(Packet {
         lone: micros.get(first as usize).copied().unwrap_or(NOTHING),
         first,
@@ -147,8 +141,28 @@ pub(super) fn decode<M: Memory>(memory: &M, at: u32, micros: &mut Vec<Micro>) ->
     })
 }
 
+/// The instructions of the packet at `at` with their addresses, and the address after it.
+fn fetch<M: Memory>(memory: &M, at: u32) -> Result<(Vec<(u32, Inst)>, u32), NoPacket> {
+    let mut insts = Vec::with_capacity(MOST);
+    let mut end = at;
+    loop {
+        let Some(word) = memory.fetch(end) else { return Err(NoPacket::Outside) };
+        let inst = Inst::decode(word).map_err(|_| NoPacket::Fault(Fault::BadWord { at: end, word }))?;
+        insts.push((end, inst));
+        end = end.wrapping_add(4);
+        if word & PARALLEL == 0 {
+            break;
+        }
+        if insts.len() == MOST {
+            return Err(NoPacket::Fault(Fault::LongPacket { at }));
+        }
+    }
+    Ok((insts, end))
+}
+
 /// An instruction with what matters for the order.
 struct Ordered {
+    at: u32,
     micro: Micro,
     inst: Inst,
     /// Registers read in E1, as bits.
@@ -157,12 +171,13 @@ struct Ordered {
     writes: u64,
 }
 
-/// Appends the instructions in an order in which each may write at once, or defers.
-fn order(insts: &[(u32, Inst)], micros: &mut Vec<Micro>) -> Result<(), Fault> {
+/// The instructions with their addresses, in an order in which each may write at once, or defers.
+fn order(insts: &[(u32, Inst)]) -> Result<Vec<(u32, Micro)>, Fault> {
     let mut open: Vec<Ordered> = insts
         .iter()
         .filter(|(_, inst)| plan(*inst).work != Work::Nop)
         .map(|(at, inst)| Ordered {
+            at: *at,
             micro: resolve(*at, *inst),
             inst: *inst,
             reads: reads(*inst),
@@ -178,6 +193,7 @@ fn order(insts: &[(u32, Inst)], micros: &mut Vec<Micro>) -> Result<(), Fault> {
             open[index].micro.flags |= STEADY;
         }
     }
+    let mut ordered = Vec::with_capacity(open.len());
     while !open.is_empty() {
         let is_free = |index: &usize| {
             let one = &open[*index];
@@ -192,9 +208,9 @@ fn order(insts: &[(u32, Inst)], micros: &mut Vec<Micro>) -> Result<(), Fault> {
         if free.is_none() {
             next.micro.flags |= DEFERRED;
         }
-        micros.push(next.micro);
+        ordered.push((next.at, next.micro));
     }
-    Ok(())
+    Ok(ordered)
 }
 
 /// Results of E1 for one register: refused if certain, else found when they land.

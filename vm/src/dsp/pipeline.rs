@@ -57,22 +57,47 @@ pub struct State {
     pub(super) pc: u32,
     /// Cycles passed and left.
     pub clock: Clock,
+    flight: Flight,
+    undefined: Undefined,
+    /// The packets of the last branch and of the one before it.
+    branched_at: [u32; 2],
+    /// The first cycle before which an interrupt is possible again.
+    shadow: u64,
+    /// Whether an `IDLE` waits.
+    pub(super) is_idle: bool,
+}
+
+/// What is on its way: results, branches, double instructions that have more to read.
+#[derive(Clone, Debug)]
+struct Flight {
     /// Slots that have something to do, a bit each.
     busy: u16,
     masks: [u64; SLOTS],
     values: Box<[[u32; 64]; SLOTS]>,
     branches: u16,
     targets: [u32; SLOTS],
-    /// The packet of the last branch.
-    branched_at: u32,
     late: Vec<Late>,
-    /// The first cycle before which an interrupt is possible again.
-    shadow: u64,
+}
+
+impl Default for Flight {
+    fn default() -> Self {
+        Self {
+            busy: 0,
+            masks: [0; SLOTS],
+            values: Box::new([[0; 64]; SLOTS]),
+            branches: 0,
+            targets: [0; SLOTS],
+            late: Vec::new(),
+        }
+    }
+}
+
+/// What a packet did whose outcome the processor leaves open.
+#[derive(Clone, Debug, Default)]
+struct Undefined {
     /// Registers with two results in one cycle; not 0 either if two branches arrive in one.
     conflicts: u64,
     two_branches: Option<(u32, u32)>,
-    /// Whether an `IDLE` waits.
-    pub(super) is_idle: bool,
 }
 
 /// What decides how a processor continues, but for memory.
@@ -122,16 +147,10 @@ impl Default for State {
             control,
             pc: 0,
             clock: Clock::default(),
-            busy: 0,
-            masks: [0; SLOTS],
-            values: Box::new([[0; 64]; SLOTS]),
-            branches: 0,
-            targets: [0; SLOTS],
-            branched_at: 0,
-            late: Vec::new(),
+            flight: Flight::default(),
+            undefined: Undefined::default(),
+            branched_at: [0; 2],
             shadow: 0,
-            conflicts: 0,
-            two_branches: None,
             is_idle: false,
         }
     }
@@ -166,9 +185,9 @@ impl State {
         self.pc
     }
 
-    /// Address of the packet of the last branch that was taken.
+    /// Addresses of the packets of the last branch that was taken, and of the one taken before it.
     #[must_use]
-    pub const fn branched_at(&self) -> u32 {
+    pub const fn branched_at(&self) -> [u32; 2] {
         self.branched_at
     }
 
@@ -194,17 +213,17 @@ impl State {
     pub(super) fn picture(&self) -> Picture {
         let mut regs = [0; 64];
         regs.copy_from_slice(&self.regs[..64]);
-        let delays = (1..=SLOTS as u64).filter(|delay| self.busy >> self.slot(*delay) & 1 != 0);
+        let delays = (1..=SLOTS as u64).filter(|delay| self.flight.busy >> self.slot(*delay) & 1 != 0);
         let flight = delays.map(|delay| {
             let slot = self.slot(delay);
-            let mut values = self.values[slot];
-            let mask = self.masks[slot];
+            let mut values = self.flight.values[slot];
+            let mask = self.flight.masks[slot];
             values
                 .iter_mut()
                 .enumerate()
                 .filter(|(reg, _)| mask >> reg & 1 == 0)
                 .for_each(|(_, value)| *value = 0);
-            let target = (self.branches >> slot & 1 != 0).then(|| self.targets[slot]);
+            let target = (self.flight.branches >> slot & 1 != 0).then(|| self.flight.targets[slot]);
             (delay, mask, values, target)
         });
         Picture {
@@ -214,7 +233,7 @@ impl State {
             control: self.control,
             shadow: self.shadow.saturating_sub(self.clock.cycle),
             flight: flight.collect(),
-            is_whole: self.late.is_empty(),
+            is_whole: self.flight.late.is_empty(),
         }
     }
 
@@ -252,23 +271,23 @@ impl State {
     ///
     /// Branches that are on their way are lost; where an interrupt is possible there are none.
     pub fn settle(&mut self) {
-        if self.busy == 0 {
+        if self.flight.busy == 0 {
             return;
         }
-        self.branches = 0;
+        self.flight.branches = 0;
         let now = self.clock.cycle;
         for _ in 0..SLOTS {
             self.clock.cycle += 1;
             self.land();
         }
         self.clock.cycle = now;
-        self.busy = 0;
+        self.flight.busy = 0;
     }
 
     /// Writes a result of E1.
     #[inline(always)]
     pub(super) fn write(&mut self, reg: u8, value: u32) {
-        self.conflicts |= self.masks[self.slot(1)] & bit(reg);
+        self.undefined.conflicts |= self.flight.masks[self.slot(1)] & bit(reg);
         self.regs[usize::from(reg)] = value;
     }
 
@@ -276,10 +295,10 @@ impl State {
     #[inline(always)]
     pub(super) fn push(&mut self, delay: u64, reg: u8, value: u32) {
         let slot = self.slot(delay);
-        self.conflicts |= self.masks[slot] & bit(reg);
-        self.masks[slot] |= bit(reg);
-        self.values[slot][usize::from(reg & 63)] = value;
-        self.busy |= 1 << slot;
+        self.undefined.conflicts |= self.flight.masks[slot] & bit(reg);
+        self.flight.masks[slot] |= bit(reg);
+        self.flight.values[slot][usize::from(reg & 63)] = value;
+        self.flight.busy |= 1 << slot;
     }
 
     /// Lets the low and the high word of a result land.
@@ -292,13 +311,13 @@ impl State {
     /// Whether one of two registers receives a result in the next cycle.
     #[inline(always)]
     pub(super) fn lands_next(&self, one: u8, other: u8) -> bool {
-        self.masks[self.slot(1)] & (bit(one) | bit(other)) != 0
+        self.flight.masks[self.slot(1)] & (bit(one) | bit(other)) != 0
     }
 
     /// Remembers a double instruction whose high words are read later.
     pub(super) fn push_late(&mut self, late: Late) {
-        self.busy |= 1 << (late.due as usize % SLOTS);
-        self.late.push(late);
+        self.flight.busy |= 1 << (late.due as usize % SLOTS);
+        self.flight.late.push(late);
     }
 
     /// A branch, taken or not, keeps interrupts off.
@@ -311,14 +330,14 @@ impl State {
     #[inline(always)]
     pub(super) const fn branch(&mut self, target: u32) {
         let slot = (self.clock.cycle + BRANCH) as usize % SLOTS;
-        if self.branches & 1 << slot != 0 {
-            self.two_branches = Some((self.targets[slot], target));
-            self.conflicts |= 1;
+        if self.flight.branches & 1 << slot != 0 {
+            self.undefined.two_branches = Some((self.flight.targets[slot], target));
+            self.undefined.conflicts |= 1;
         }
-        self.branches |= 1 << slot;
-        self.targets[slot] = target;
-        self.branched_at = self.pc;
-        self.busy |= 1 << slot;
+        self.flight.branches |= 1 << slot;
+        self.flight.targets[slot] = target;
+        self.branched_at = [self.pc, self.branched_at[0]];
+        self.flight.busy |= 1 << slot;
     }
 
     /// Returns from an interrupt: where to.
@@ -351,20 +370,20 @@ impl State {
     /// The fault of a packet whose outcome the processor leaves open.
     #[inline(always)]
     pub(super) fn refuse_undefined(&self) -> Result<(), Fault> {
-        if self.conflicts != 0 { Err(self.undefined()) } else { Ok(()) }
+        if self.undefined.conflicts != 0 { Err(self.undefined()) } else { Ok(()) }
     }
 
     /// Lets up to `cycles` cycles pass; they end where a branch arrives.
     #[inline(always)]
     pub(super) fn advance(&mut self, cycles: u8) -> Passed {
-        if self.busy == 0 {
+        if self.flight.busy == 0 {
             self.clock.cycle += u64::from(cycles);
             return Passed::Through;
         }
         if cycles == 1 {
             self.clock.cycle += 1;
             let slot = self.clock.cycle as usize % SLOTS;
-            return if self.busy >> slot & 1 == 0 { Passed::Through } else { self.arrive(slot) };
+            return if self.flight.busy >> slot & 1 == 0 { Passed::Through } else { self.arrive(slot) };
         }
         self.advance_far(cycles)
     }
@@ -373,7 +392,7 @@ impl State {
     fn advance_far(&mut self, cycles: u8) -> Passed {
         let end = self.clock.cycle + u64::from(cycles);
         while self.clock.cycle < end {
-            let ahead = u32::from(self.busy.rotate_right(self.slot(1) as u32));
+            let ahead = u32::from(self.flight.busy.rotate_right(self.slot(1) as u32));
             let window = ahead & ((1 << (end - self.clock.cycle)) - 1);
             if window == 0 {
                 self.clock.cycle = end;
@@ -391,11 +410,11 @@ impl State {
     #[inline(always)]
     fn arrive(&mut self, slot: usize) -> Passed {
         self.land();
-        if self.branches & 1 << slot == 0 {
+        if self.flight.branches & 1 << slot == 0 {
             return Passed::Through;
         }
-        self.branches &= !(1 << slot);
-        self.pc = self.targets[slot];
+        self.flight.branches &= !(1 << slot);
+        self.pc = self.flight.targets[slot];
         Passed::Branched
     }
 
@@ -403,15 +422,15 @@ impl State {
     #[inline(always)]
     fn land(&mut self) {
         let slot = self.clock.cycle as usize % SLOTS;
-        self.busy &= !(1 << slot);
-        let mut mask = std::mem::take(&mut self.masks[slot]);
-        let values = &self.values[slot];
+        self.flight.busy &= !(1 << slot);
+        let mut mask = std::mem::take(&mut self.flight.masks[slot]);
+        let values = &self.flight.values[slot];
         while mask != 0 {
             let reg = mask.trailing_zeros() as usize;
             self.regs[reg] = values[reg & 63];
             mask &= mask - 1;
         }
-        if !self.late.is_empty() {
+        if !self.flight.late.is_empty() {
             self.read_late();
         }
     }
@@ -419,9 +438,9 @@ impl State {
     #[cold]
     fn read_late(&mut self) {
         let mut index = 0;
-        while let Some(late) = self.late.get(index).copied() {
+        while let Some(late) = self.flight.late.get(index).copied() {
             if late.due == self.clock.cycle {
-                self.late.swap_remove(index);
+                self.flight.late.swap_remove(index);
                 self.continue_late(late);
             } else {
                 index += 1;
@@ -431,10 +450,10 @@ impl State {
 
     #[cold]
     fn undefined(&self) -> Fault {
-        if let Some((first, second)) = self.two_branches {
+        if let Some((first, second)) = self.undefined.two_branches {
             return Fault::TwoBranches { first, second };
         }
-        let reg = Reg::from_index(self.conflicts.trailing_zeros() as usize).unwrap_or(Reg::a(0));
+        let reg = Reg::from_index(self.undefined.conflicts.trailing_zeros() as usize).unwrap_or(Reg::a(0));
         Fault::TwoWriters { reg }
     }
 

@@ -27,6 +27,9 @@ const A14: Reg = Reg::a(14);
 /// Where a call-back returns to: no code and no function is there.
 const CALLBACK_RETURN: u32 = 0xFFFF_FFE0;
 
+/// Bytes from a call to its return address at most: six packets.
+const LONGEST_CALL: u32 = 6 * 32;
+
 /// What a register holds that a firmware function may change: a value that shows itself.
 const CHANGED: u32 = 0xC4A7_6ED0;
 
@@ -126,7 +129,7 @@ impl Processor {
     /// The packet it is before; in a firmware call, the branch that made it.
     fn place(&self) -> CodeAddr {
         let pc = self.core.state.pc();
-        if Image::is_code(pc) { code_at(pc) } else { call_at(&self.core) }
+        if Image::is_code(pc) { code_at(self.core.faulted_at().unwrap_or(pc)) } else { call_at(&self.core) }
     }
 
     fn run<F: Firmware + ?Sized>(
@@ -209,9 +212,12 @@ impl Processor {
     }
 }
 
-/// The branch that left the program for a firmware call.
+/// The branch that made a firmware call: where the linker put a jump in between, the one that led to the jump.
 fn call_at(core: &Core) -> CodeAddr {
-    code_at(core.state.branched_at())
+    let [last, before] = core.state.branched_at();
+    let back = core.state.reg(LINK);
+    let is_call = |at: u32| back.wrapping_sub(at) <= LONGEST_CALL;
+    code_at(if is_call(before) && !is_call(last) { before } else { last })
 }
 
 fn code_at(address: u32) -> CodeAddr {

@@ -1,6 +1,11 @@
 //! What executes the programs, by name.
 
+use anyhow::{Result, ensure};
 use clap::ValueEnum;
+use compiler::Options;
+use compiler::target::Target;
+
+use super::compiler::CompilerArguments;
 
 /// Engines by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -9,6 +14,8 @@ pub(crate) enum EngineName {
     Bytecode,
     /// Machine code of the host
     Native,
+    /// Code for the controller's processor, in its true cycles; sources are compiled for it
+    Dsp,
 }
 
 impl Default for EngineName {
@@ -19,7 +26,20 @@ impl Default for EngineName {
 }
 
 impl EngineName {
-    /// Those that this command is built with.
+    /// How sources are compiled for it.
+    pub(crate) fn options(self, compiler: &CompilerArguments) -> Result<Options> {
+        let options = compiler.resolve()?;
+        if self != Self::Dsp {
+            return Ok(options);
+        }
+        ensure!(
+            compiler.target() != Some(Target::Sim),
+            "`--engine dsp` executes code for the controller's processor, `--target sim` makes none: leave one out"
+        );
+        Ok(Options { target: Target::C67x, ..options })
+    }
+
+    /// Those that this command is built with and that take the same board time.
     pub(crate) fn available() -> Vec<Self> {
         let mut engines = vec![Self::Bytecode];
         if cfg!(feature = "native") {
@@ -33,6 +53,7 @@ impl EngineName {
         match self {
             Self::Bytecode => "bytecode",
             Self::Native => "native",
+            Self::Dsp => "dsp",
         }
     }
 }

@@ -17,10 +17,10 @@ use crate::cli::report::diagnostics;
 pub(crate) fn programs(
     files: &[ProgramFile],
     compiler: &CompilerArguments,
+    options: &Options,
 ) -> Result<Option<Vec<UserProgram>>> {
-    let options = compiler.resolve()?;
     options.firmware.check_version().context("`--firmware`")?;
-    programs_with(files, compiler, &options)
+    programs_with(files, compiler, options)
 }
 
 /// The same for a target and a firmware of the caller's choice.

@@ -1,0 +1,119 @@
+//! `--engine dsp`: sources become code of the controller's processor, and what goes wrong in it is said in words.
+
+use harness::{Output, Scratch, cc67, cc67_with_input};
+
+/// Runs the text as code of the processor.
+fn run(name: &str, source: &str) -> Output {
+    let scratch = Scratch::new(name);
+    scratch.write("a.c", format!("#include \"KMotionDef.h\"\n{source}"));
+    cc67(&scratch, ["run", "--engine", "dsp", "a.c"])
+}
+
+/// Runs words that are called as a function.
+fn run_words(name: &str, words: &str) -> Output {
+    run(name, &format!("unsigned code[] = {{ {words} }};\nmain()\n{{\n    ((void (*)(void))code)();\n}}\n"))
+}
+
+/// The message of a run that stops its thread.
+fn trap(output: &Output) -> &str {
+    assert_eq!(output.code, 3, "{output:?}");
+    output.stderr.trim_end().rsplit_once("cc67: thread 1 stopped at ").expect("a trap").1
+}
+
+const SUM: &str = "int main()\n{\n    int i; double sum = 0;\n    for (i = 0; i < 5; i++)\n        sum += i * 0.5;\n    printf(\"%g\\n\", sum);\n    return 0;\n}\n";
+
+#[test]
+fn sources_run_as_code_of_the_processor() {
+    let output = run("dsp-sum", SUM);
+    assert_eq!(output, Output { code: 0, stdout: "5\n".into(), stderr: String::new() });
+    // Bytecode has a stack of its own: only the board's overflows here.
+    let deep = "int Sum(int n)\n{\n    int a[20];\n    a[n % 20] = n;\n    return n ? Sum(n - 1) + a[n % 20] : 0;\n}\n\
+                main()\n{\n    printf(\"%d\\n\", Sum(25));\n}\n";
+    assert_eq!(
+        trap(&run("dsp-deep", deep)),
+        "a.c:5 in `Sum`: stack overflow: 2128 bytes used, 2032 available"
+    );
+}
+
+#[test]
+fn the_engine_and_the_target_agree() {
+    let scratch = Scratch::new("dsp-target");
+    scratch.write("a.c", SUM);
+    let output = cc67(&scratch, ["run", "--engine", "dsp", "--target", "sim", "a.c"]);
+    assert_eq!(output.code, 2, "{output:?}");
+    assert!(output.stderr.contains("leave one out"), "{}", output.stderr);
+}
+
+#[test]
+fn a_console_loads_sources_for_the_engine_it_was_given() {
+    let scratch = Scratch::new("dsp-console");
+    scratch.write("a.c", format!("#include \"KMotionDef.h\"\n{SUM}"));
+    scratch.write("bad.c", "#include \"KMotionDef.h\"\nmain()\n{\n    ((void (*)(void))0x80050002)();\n}\n");
+    let output = cc67_with_input(&scratch, ["console", "--engine", "dsp"], "run a.c\nwait 0.1\nrun bad.c\n");
+    assert_eq!(output.stdout, "5\n", "{output:?}");
+    assert!(output.stderr.contains("bad.c:4 in `main`: branch to 0x80050002"), "{}", output.stderr);
+}
+
+#[test]
+fn tests_run_on_the_engine_that_is_asked_for() {
+    let scratch = Scratch::new("dsp-test");
+    scratch.write("a.c", format!("#include \"KMotionDef.h\"\n{SUM}"));
+    scratch.write("a.expected", "5\n");
+    let output = cc67(&scratch, ["test", "--engine", "dsp", "."]);
+    assert_eq!(output.code, 0, "{output:?}");
+}
+
+#[test]
+fn a_word_that_is_no_instruction_stops_the_thread() {
+    let output = run_words("dsp-word", "0x00000000, 0x10000000");
+    let message = trap(&output);
+    let (at, text) = message.split_once(": ").expect("a place");
+    assert_eq!(text, format!("the word 10000000 at {at} is not an instruction of this processor"));
+}
+
+#[test]
+fn an_odd_branch_stops_the_thread() {
+    let source = "main()\n{\n    ((void (*)(void))0x80050002)();\n}\n";
+    assert_eq!(
+        trap(&run("dsp-odd", source)),
+        "a.c:4 in `main`: branch to 0x80050002, which is not a multiple of 4"
+    );
+}
+
+#[test]
+fn a_write_into_code_stops_the_thread() {
+    let source = "main()\n{\n    int *p = (int *)&main;\n    p[1] = 0;\n}\n";
+    let output = run("dsp-code", source);
+    assert!(
+        trap(&output).ends_with("in `main`: write to 0x80050004, which holds program text"),
+        "{output:?}"
+    );
+}
+
+#[test]
+fn two_results_for_one_register_stop_the_thread() {
+    // ADD .L1 A1,A2,A3 || SUB .S1 A4,A5,A3
+    let output = run_words("dsp-writers", "0x01882079, 0x01948DE0");
+    assert!(trap(&output).contains("two results are written to A"), "{}", output.stderr);
+}
+
+#[test]
+fn a_loop_that_keeps_interrupts_off_stops_the_thread() {
+    // Two branches to the first of them, five cycles apart: the shadow of one reaches that of the other.
+    let output = run_words("dsp-shadow", "0x00000010, 0, 0, 0, 0, 0x00000010, 0x00006000");
+    assert!(
+        trap(&output)
+            .ends_with("cycles without a place where an interrupt is possible: the board's servo stops"),
+        "{}",
+        output.stderr
+    );
+}
+
+#[test]
+fn a_remark_names_the_line_of_the_call() {
+    let output = run("dsp-remark", "main()\n{\n    MoveRel(2, 100);\n}\n");
+    assert_eq!(
+        output.stderr,
+        "cc67: thread 1 at a.c:4 in `main`: MoveRel: axis 2 is disabled, nothing moves\n"
+    );
+}
