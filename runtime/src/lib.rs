@@ -52,13 +52,13 @@ mod views;
 mod world;
 
 pub use board::machine_file::{MachineFile, MachineFileError};
-pub use board::{Board, BoardSnapshot, Config, RunEnd, debug, loader, machine_file, standing};
+pub use board::{Board, BoardSnapshot, Config, RunEnd, debug, loader, machine_file, standing, surroundings};
 pub use io::flash::FLASH_SIZE;
 pub use io::konnect::{Board as KonnectBoard, Port};
 pub use io::snapamp::{Quantity, Side};
 pub use kernel::{Kernel, pure_function};
 pub use out::{Event, EventKind, Message, REMARKS, Remark, RemarkRow, Severity, Speaker};
-pub use pc::files::{Directory, FILE_BYTES, FileError, HostFiles, NoFiles};
+pub use pc::files::{Directory, FILE_BYTES, FileError, HostFiles, NoFiles, Overlay};
 pub use pc::{ANSWERS_HELP, AnswerError, Answers};
 pub use world::attached::DeviceSpec;
 pub use world::{stimulus, trace};

@@ -51,8 +51,8 @@ fn options_that_a_booted_board_does_not_know_are_named() {
         let all = [&["run", "--boot", "x.out", "hello.c"], option].concat();
         assert_refused(&cc67(&scratch, all), &format!("`{name}` does not work with `--boot` yet"));
     };
-    refused(&["--stim", "t=1 bit 136=1"], "--stim");
-    refused(&["--machine", "m.toml"], "--machine");
+    refused(&["--assist"], "--assist");
+    refused(&["--uart", "pty"], "--uart");
     refused(&["--profile"], "--profile");
     refused(&["--plot", "a.svg"], "--plot");
     let test = cc67(&scratch, ["compare", "hello.c"]);

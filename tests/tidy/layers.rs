@@ -87,6 +87,7 @@ pub(crate) const LAYERS: &[(&str, &[Row])] = &[
             ("board", &["board"]),
             ("addresses", &["bus", "loads"]),
             ("registers", &["window"]),
+            ("surroundings", &["around"]),
             ("devices", &["control", "flash", "generators", "link", "pins", "timer", "uart"]),
             ("files and reports", &["file", "crash"]),
         ],

@@ -3,13 +3,14 @@
 //!
 //! Every command that has a board takes this way, so an option of a board reaches all of them.
 
+mod around;
 pub(crate) mod booted;
 mod flash;
 mod line;
 
 use std::ffi::OsString;
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use cc67_host::{End, Session, UserProgram};
 use compiler::Options;
 use kmotiondef::Ticks;
@@ -74,40 +75,10 @@ impl Setup {
         compiler: &CompilerArguments,
         first: Option<&[u8]>,
     ) -> Result<Option<Self>> {
-        let Started { programs, first: before } = started.into();
-        let files = assign(&[programs, before, &board.load].concat())?;
-        let before = files.get(programs.len()..programs.len() + before.len()).unwrap_or_default();
-        let mut machine_file = board.machine_file()?;
-        let settings = [setting::all(&board.set, &mut machine_file)?, board.pc.mcode()?].concat();
-        let answers = board.pc.answers(&machine_file)?;
-        let flash = Flash::read(board.pc.flash_file(&machine_file))?;
-        let mut stimulus = stimulus::read(&board.stim)?;
-        stimulus.extend(one_after_the_other(before, files.get(..programs.len()).unwrap_or_default())?);
-        let uart = board.uart.or_those_of(&machine_file);
         let options = board.engine.options(compiler)?;
-        let offered = stimulus::programs(&[&machine_file.stimulus, &stimulus]);
-        let Some((mut loaded, offered)) = compile(&files, offered, compiler, &options, first)? else {
-            return Ok(None);
-        };
-        let starting = if before.is_empty() { 0..programs.len() } else { programs.len()..programs.len() + 1 };
-        loaded.iter_mut().enumerate().for_each(|(index, program)| program.starts = starting.contains(&index));
-
-        let machine = MachineConfig { shortcuts: !board.no_shortcuts, ..MachineConfig::default() };
-        let disk = board.files(&machine_file);
-        let flashed = flash.contents();
-        let config =
-            Config { machine, files: disk, machine_file, answers, flash: flashed, ..Config::default() };
-        let session = cc67_host::Setup {
-            config,
-            options,
-            programs: loaded,
-            offered,
-            values: settings.into_iter().map(|Setting { address, bytes }| (address, bytes)).collect(),
-            stimulus,
-            is_assisted: board.assist,
-            uart_input: uart.uart_input.as_deref().map(read).transpose()?.unwrap_or_default(),
-            hears_uart: uart.uart.is_some() || uart.uart_output.is_some(),
-        };
+        options.firmware.check_version().context("`--firmware`")?;
+        let described = Described::read(started, board, compiler, Given { options, image: first })?;
+        let Some(Described { session, uart, flash }) = described else { return Ok(None) };
         Ok(Some(Self {
             session,
             engine: board.engine,
@@ -158,6 +129,68 @@ impl Setup {
     }
 }
 
+/// What the options of a board and its programs come to, whatever the programs are compiled for.
+#[derive(Debug)]
+pub(crate) struct Described {
+    /// The board and its programs.
+    pub(crate) session: cc67_host::Setup,
+    uart: UartArguments,
+    /// Its flash.
+    pub(crate) flash: Flash,
+}
+
+/// What programs are compiled with, and the image of the first one if it is at hand.
+#[derive(Debug)]
+pub(crate) struct Given<'a> {
+    /// How programs are compiled.
+    pub(crate) options: Options,
+    /// The first one.
+    pub(crate) image: Option<&'a [u8]>,
+}
+
+impl Described {
+    /// Reads what the arguments name and compiles the programs; `None` if one has errors, which have been reported.
+    pub(crate) fn read<'a>(
+        started: impl Into<Started<'a>>,
+        board: &BoardArguments,
+        compiler: &CompilerArguments,
+        held: Given<'_>,
+    ) -> Result<Option<Self>> {
+        let Started { programs, first: before } = started.into();
+        let files = assign(&[programs, before, &board.load].concat())?;
+        let before = files.get(programs.len()..programs.len() + before.len()).unwrap_or_default();
+        let mut machine_file = board.machine_file()?;
+        let settings = [setting::all(&board.set, &mut machine_file)?, board.pc.mcode()?].concat();
+        let answers = board.pc.answers(&machine_file)?;
+        let flash = Flash::read(board.pc.flash_file(&machine_file))?;
+        let mut stimulus = stimulus::read(&board.stim)?;
+        stimulus.extend(one_after_the_other(before, files.get(..programs.len()).unwrap_or_default())?);
+        let uart = board.uart.or_those_of(&machine_file);
+        let offered = stimulus::programs(&[&machine_file.stimulus, &stimulus]);
+        let Some((mut loaded, offered)) = compile(&files, offered, compiler, &held)? else { return Ok(None) };
+        let starting = if before.is_empty() { 0..programs.len() } else { programs.len()..programs.len() + 1 };
+        loaded.iter_mut().enumerate().for_each(|(index, program)| program.starts = starting.contains(&index));
+
+        let machine = MachineConfig { shortcuts: !board.no_shortcuts, ..MachineConfig::default() };
+        let disk = board.files(&machine_file);
+        let flashed = flash.contents();
+        let config =
+            Config { machine, files: disk, machine_file, answers, flash: flashed, ..Config::default() };
+        let session = cc67_host::Setup {
+            config,
+            options: held.options,
+            programs: loaded,
+            offered,
+            values: settings.into_iter().map(|Setting { address, bytes }| (address, bytes)).collect(),
+            stimulus,
+            is_assisted: board.assist,
+            uart_input: uart.uart_input.as_deref().map(read).transpose()?.unwrap_or_default(),
+            hears_uart: uart.uart.is_some() || uart.uart_output.is_some(),
+        };
+        Ok(Some(Self { session, uart, flash }))
+    }
+}
+
 /// Programs that start, and those that run to their end before.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Started<'a> {
@@ -196,10 +229,10 @@ fn compile(
     files: &[ProgramFile],
     offered: Vec<ProgramFile>,
     compiler: &CompilerArguments,
-    options: &Options,
-    first: Option<&[u8]>,
+    held: &Given<'_>,
 ) -> Result<Option<(Vec<UserProgram>, Vec<UserProgram>)>> {
-    let held = files.first().zip(first).map(|(file, image)| UserProgram {
+    let options = &held.options;
+    let held = files.first().zip(held.image).map(|(file, image)| UserProgram {
         thread: file.thread,
         path: file.path.clone(),
         is_image: true,
@@ -208,7 +241,7 @@ fn compile(
     });
     let rest = files.get(usize::from(held.is_some())..).unwrap_or_default();
     let all = [rest, &offered].concat();
-    let Some(programs) = images::programs(&all, compiler, options)? else { return Ok(None) };
+    let Some(programs) = images::programs_with(&all, compiler, options)? else { return Ok(None) };
     let mut programs: Vec<_> = held.into_iter().chain(programs).collect();
     let offered = programs.split_off(files.len());
     Ok(Some((programs, offered)))

@@ -10,10 +10,12 @@ use vm::dsp::{Core, Halt, listing};
 use vm::memory::GuestMemory;
 use vm::memory::snapshot::MemorySnapshot;
 
+use super::around::{Around, AtMatch};
 use super::bus::Hardware;
 use super::crash::Crash;
 use super::file::{FirmwareError, FirmwareFile};
 use super::loads::Loads;
+use super::window::Window;
 
 /// Cycles of a second.
 const SECOND: u64 = 200_000_000;
@@ -257,9 +259,13 @@ impl BootedBoard {
 
     /// The timer matches: what is connected moves, then the interrupt is asked for.
     fn tick(&mut self) {
-        if let Some(chan) = self.file.address("chan") {
-            let now = self.hardware.timer.next_match();
-            let Hardware { memory, window, .. } = &mut self.hardware;
+        let now = self.hardware.timer.next_match();
+        let Hardware { memory, window, .. } = &mut self.hardware;
+        let steps = std::array::from_fn(|number| window.generators.position(number, now).0);
+        let Window { around, encoders, kstep, .. } = window;
+        if let Some(around) = around {
+            around.tick(&mut AtMatch { memory, now, steps, encoders, kstep });
+        } else if let Some(chan) = self.file.address("chan") {
             self.loads.tick(chan, memory, window, now);
         }
         if self.hardware.timer.take_match() {
@@ -424,6 +430,29 @@ impl BootedBoard {
     /// Changes of output pins since the last time: cycle, pin, level.
     pub fn take_pin_changes(&mut self) -> Vec<(u64, u8, bool)> {
         self.hardware.window.pins.take_changes()
+    }
+
+    /// Connects what is around the board, and shows it what was written to the registers so far.
+    pub fn connect(&mut self, around: Box<dyn Around>) {
+        let now = self.cycle();
+        self.hardware.window.connect(around, now);
+    }
+
+    /// What [is connected](Self::connect).
+    pub fn around(&mut self) -> Option<&mut (dyn Around + 'static)> {
+        self.hardware.window.around.as_deref_mut()
+    }
+
+    /// The same, and memory, data only.
+    pub fn around_and_memory(&mut self) -> (Option<&mut (dyn Around + 'static)>, &mut GuestMemory) {
+        let Hardware { memory, window, .. } = &mut self.hardware;
+        (window.around.as_deref_mut(), memory)
+    }
+
+    /// The cycle of the next match of the timer.
+    #[must_use]
+    pub const fn next_tick(&self) -> u64 {
+        self.hardware.timer.next_match()
     }
 
     /// What the encoder of a channel shows from now on: the low eight bits of its counts.

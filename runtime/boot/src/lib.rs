@@ -3,7 +3,7 @@
 //! Nothing here imitates the firmware. The file is loaded as the board's loader does ([`file`]), the processor starts
 //! at its entry, and everything that it reaches outside of its two RAMs is a device of this room: the timer that
 //! interrupts it ([`timer`]), the byte link to the PC ([`link`]), the registers of the FPGA ([`window`]) with step
-//! generators ([`generators`]), pins ([`pins`]) and the serial port ([`uart`]), the flash chip ([`flash`]). What the axes move ([`loads`]) is brought up to date at
+//! generators ([`generators`]), pins ([`pins`]) and the serial port ([`uart`]), the flash chip ([`flash`]). What else is connected answers in their place ([`Around`]). What the axes move ([`loads`]) is brought up to date at
 //! each match of the timer. [`bus`] says
 //! which address is whose. [`BootedBoard`] runs them in one time: cycles of 5 ns.
 //!
@@ -16,6 +16,7 @@
 
 #![forbid(unsafe_code)]
 
+mod around;
 mod board;
 mod bus;
 mod control;
@@ -32,6 +33,7 @@ mod timer;
 mod uart;
 mod window;
 
+pub use around::{Around, AtMatch};
 pub use board::{BootedBoard, BootedSnapshot, Halted, Line, Sent};
 pub use crash::Crash;
 pub use file::{FirmwareError, FirmwareFile};

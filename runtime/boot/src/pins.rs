@@ -70,6 +70,11 @@ impl Pins {
         self.direction.get(group).copied().unwrap_or(0)
     }
 
+    /// The latches of a group.
+    pub(super) fn latch(&self, group: usize) -> u8 {
+        self.latch.get(group).copied().unwrap_or(0)
+    }
+
     /// Changes of outputs since the last time.
     pub(super) fn take_changes(&mut self) -> Vec<(u64, u8, bool)> {
         std::mem::take(&mut self.changes)

@@ -2,6 +2,7 @@
 //!
 //! Register r has its byte or half word at offset 2 of word r; writes elsewhere in the word do nothing.
 
+use super::around::Around;
 use super::generators::Generators;
 use super::link::Link;
 use super::pins::Pins;
@@ -57,6 +58,8 @@ pub(super) struct Window {
     pub(super) kanalog_inputs: u16,
     /// Inputs of a KStep, if there is one: a bit is set while current flows.
     pub(super) kstep: Option<u16>,
+    /// What else is connected.
+    pub(super) around: Option<Box<dyn Around>>,
     /// How often anything but the status of the link was reached.
     touches: u64,
 }
@@ -73,6 +76,7 @@ impl Default for Window {
             converters: None,
             kanalog_inputs: 0,
             kstep: None,
+            around: None,
             touches: 0,
         }
     }
@@ -88,8 +92,22 @@ impl Window {
             converters: old.converters,
             kanalog_inputs: old.kanalog_inputs,
             kstep: old.kstep,
+            around: old.around,
             ..Self::default()
         };
+    }
+
+    /// Connects what is around the board: it finds directions and latches as they are.
+    pub(super) fn connect(&mut self, mut around: Box<dyn Around>, now: u64) {
+        for register in [0xA0, 0x05, 0x06] {
+            around.write(register, false, self.cells[register], now);
+        }
+        for group in 0..GROUPS {
+            around.write(KEEP + group, true, u16::from(self.pins.latch(group)), now);
+            around.write(SET + group, true, u16::from(self.pins.latch(group)), now);
+            around.write(DIRECT + group, true, u16::from(self.pins.directions(group)), now);
+        }
+        self.around = Some(around);
     }
 
     /// The last word written to a register.
@@ -113,7 +131,12 @@ impl Window {
             return u32::from(status);
         }
         self.touches += 1;
-        let value = self.value(register, now);
+        let answered = self.around.as_mut().and_then(|around| around.read(register, bytes == 1, now));
+        let value = match answered {
+            Some(value) if register == READ => self.with_kstep(value),
+            Some(value) => value,
+            None => self.value(register, now),
+        };
         u32::from(if bytes == 1 { value & 0xFF } else { value })
     }
 
@@ -130,15 +153,14 @@ impl Window {
             KANALOG_INPUTS => self.kanalog_inputs,
             UART_DATA => self.uart.receive(now),
             UART_STATUS => self.uart.status(now),
-            READ => self.first_group(),
+            READ => self.with_kstep(self.pins.read(0)),
             0x131..0x136 => self.pins.read(register - READ),
             _ => self.cells[register],
         }
     }
 
     /// Pins 0 to 7; a KStep turns four of them among its inputs as latches 2 and 3 select.
-    fn first_group(&self) -> u16 {
-        let pins = self.pins.read(0);
+    fn with_kstep(&self, pins: u16) -> u16 {
         let Some(inputs) = self.kstep else { return pins };
         let select = pins >> 2 & 3;
         let nibble = !(inputs >> (4 * select)) & 0xF;
@@ -153,6 +175,11 @@ impl Window {
         let register = offset as usize / 4 % REGISTERS;
         let value = if bytes == 1 { value & 0xFF } else { value } as u16;
         self.cells[register] = value;
+        if register != LINK_STATUS
+            && let Some(around) = &mut self.around
+        {
+            around.write(register, bytes == 1, value, now);
+        }
         match register {
             LINK_STATUS => self.link.put(value as u8, now),
             RATE..RATE_LAST => self.generators.stage(register - RATE, value as u8),

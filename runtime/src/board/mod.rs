@@ -13,6 +13,7 @@ mod programs;
 mod recorded_programs;
 mod snapshot;
 pub mod standing;
+pub mod surroundings;
 
 pub use snapshot::BoardSnapshot;
 

@@ -1,10 +1,12 @@
 //! Where files of the PC live: a folder that the user names, and nothing outside of it.
 
+use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::fmt;
 use std::fs::{self, OpenOptions};
 use std::io::{ErrorKind, Read as _, Write as _};
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard};
 
 /// Bytes of a file that a program may read.
 pub const FILE_BYTES: u64 = 32 << 20;
@@ -96,6 +98,53 @@ impl HostFiles for NoFiles {
 
     fn handle(&self) -> Box<dyn HostFiles> {
         Box::new(*self)
+    }
+}
+
+/// Files as they are, and over them what programs write, which nobody else sees.
+#[derive(Clone, Debug)]
+pub struct Overlay {
+    below: Directory,
+    /// What was written, by the name in small letters; shared by all handles.
+    written: Arc<Mutex<BTreeMap<String, Vec<u8>>>>,
+}
+
+impl Overlay {
+    /// Nothing is written yet.
+    #[must_use]
+    pub fn new(below: Directory) -> Self {
+        Self { below, written: Arc::default() }
+    }
+
+    fn written(&self) -> Result<MutexGuard<'_, BTreeMap<String, Vec<u8>>>, FileError> {
+        self.written.lock().map_err(|_| FileError::NoFiles)
+    }
+}
+
+impl HostFiles for Overlay {
+    fn read(&mut self, name: &str) -> Result<Vec<u8>, FileError> {
+        let written = self.written()?.get(&name.to_lowercase()).cloned();
+        written.map_or_else(|| self.below.read(name), Ok)
+    }
+
+    fn create(&mut self, name: &str, keep: bool) -> Result<(), FileError> {
+        self.below.place(name)?;
+        let before = if keep { self.read(name).unwrap_or_default() } else { Vec::new() };
+        self.written()?.insert(name.to_lowercase(), before);
+        Ok(())
+    }
+
+    fn append(&mut self, name: &str, bytes: &[u8]) -> Result<(), FileError> {
+        self.written()?.entry(name.to_lowercase()).or_default().extend(bytes);
+        Ok(())
+    }
+
+    fn place_of(&self, name: &str) -> Option<String> {
+        self.below.place_of(name)
+    }
+
+    fn handle(&self) -> Box<dyn HostFiles> {
+        Box::new(self.clone())
     }
 }
 

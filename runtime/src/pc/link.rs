@@ -53,6 +53,11 @@ impl ByteLink {
         }
     }
 
+    /// Takes everything that has arrived, for a board that reads its link by itself.
+    pub(crate) fn take_all(&mut self) -> Vec<u8> {
+        self.input.drain(..).collect()
+    }
+
     /// Whether bytes wait to be taken.
     pub(crate) fn is_busy(&self) -> bool {
         !self.input.is_empty()

@@ -51,7 +51,7 @@ use crate::servo::plan::Input;
 use crate::servo::state::AxisMemory;
 use crate::views::{AxisView, Typed};
 
-pub(crate) use output::{four_phase, three_phase};
+pub(crate) use output::{driven, four_phase, three_phase};
 pub(crate) use state::{Servo, Tick};
 
 /// Step generators of a KStep, from 0 on, and the bit that enables its amplifiers.

@@ -77,6 +77,27 @@ fn drive_otherwise(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId, 
     tick.machine.loads[axis].drive = drive;
 }
 
+/// What drives the load of an enabled axis whose outputs somebody else has computed; `stepped` is where its step
+/// generator has got to.
+pub(crate) fn driven(chan: &AxisView<'_>, stepped: f64) -> Drive {
+    let output = chan.get(Chan::OUTPUT);
+    let command = super::command(chan);
+    match OutputMode::new(chan.get(Chan::OUTPUT_MODE)) {
+        None | Some(OutputMode::None) => Drive::None,
+        Some(OutputMode::StepDir | OutputMode::ClosedLoopStepDir) => Drive::Steps(stepped),
+        Some(OutputMode::Microstep | OutputMode::ClosedLoopMicrostep) => Drive::Steps(command),
+        Some(OutputMode::DcServo) if chan.get(Chan::OUTPUT_CHAN0) >= SNAP_AMP => {
+            Drive::Loop(command, Applied::Current(limited(output, MAX_PWMC_VALUE)))
+        }
+        Some(OutputMode::DcServo) => Drive::Loop(command, Applied::Pwm(limited(output, MAX_PWM_VALUE))),
+        Some(OutputMode::DacServo) => Drive::Loop(command, Applied::Dac(f64::from(analog(chan, output)))),
+        Some(OutputMode::Brushless3Ph | OutputMode::Brushless4Ph) => {
+            let magnitude = f64::from(output.clamp(-MAXV, MAXV));
+            Drive::Loop(command, Applied::Vector(magnitude, phase(chan)))
+        }
+    }
+}
+
 /// The bridges of a SnapAmp that has a fault are off.
 fn is_faulted(tick: &mut Tick<'_>, channel: i32) -> bool {
     tick.io.snapamps.is_present() && tick.io.snapamps.is_off(channel, tick.now)

@@ -87,7 +87,7 @@ pub use control::{End, Interrupter};
 pub use ending::{Ending, EndingAxis, EndingThread};
 pub use expression::{Watch, WatchError, expressions};
 pub use journal::Input;
-pub use setup::Setup;
+pub use setup::{Setup, resolve};
 pub use signals::SubscriptionId;
 pub use snapshot::Snapshot;
 pub use timeline::{History, Timeline, TimelineError};

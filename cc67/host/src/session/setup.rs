@@ -107,7 +107,10 @@ impl Setup {
 }
 
 /// Finds what computes the expressions of a stimulus, in the words of the programs and of those that it may load.
-pub(super) fn resolve(
+///
+/// # Errors
+/// The first expression that is none.
+pub fn resolve(
     stimulus: &mut Stimulus,
     programs: &[UserProgram],
     options: &Options,

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Result;
 use clap::Args;
 use compiler::words::suggest;
-use runtime::{Directory, MachineFile, REMARKS};
+use runtime::{Directory, HostFiles, MachineFile, Overlay, REMARKS};
 
 use super::engine::EngineName;
 use super::pc::PcArguments;
@@ -46,6 +46,9 @@ pub(crate) struct BoardArguments {
     /// Run the programs on your own firmware file, executed, in place of the modelled firmware
     #[arg(long, value_name = "FILE")]
     pub(crate) boot: Option<PathBuf>,
+    /// Whether what programs write to files is only seen by them.
+    #[arg(skip)]
+    pub(crate) keeps_files: bool,
     #[command(flatten)]
     pub(crate) uart: UartArguments,
     #[command(flatten)]
@@ -56,16 +59,12 @@ impl BoardArguments {
     /// The first option given that a board with the user's own firmware does not know.
     pub(crate) fn left_out_by_boot(&self) -> Option<&'static str> {
         let own = [
-            (self.set.iter().any(|text| !text.starts_with("persist.")), "--set of a key of the machine file"),
-            (self.machine.is_some(), "--machine"),
-            (self.files.is_some(), "--files"),
-            (!self.stim.is_empty(), "--stim"),
             (self.assist, "--assist"),
             (self.engine != EngineName::default(), "--engine"),
-            (self.uart.is_given(), "--uart"),
+            (self.uart.uart.is_some(), "--uart"),
+            (self.uart.uart_output.is_some(), "--uart-output"),
         ];
-        let given = own.into_iter().find(|(is_given, _)| *is_given).map(|(_, name)| name);
-        given.or_else(|| self.pc.first_given())
+        own.into_iter().find(|(is_given, _)| *is_given).map(|(_, name)| name)
     }
 
     /// What is connected to the board, and which of its remarks are shown.
@@ -100,9 +99,10 @@ impl BoardArguments {
     }
 
     /// Where the PC's files are: in the folder that is named here, in that of the machine file, or in the usual one.
-    pub(crate) fn files(&self, machine: &MachineFile) -> Box<Directory> {
+    pub(crate) fn files(&self, machine: &MachineFile) -> Box<dyn HostFiles> {
         let folder = self.files.as_deref().or(machine.pc.disk_root.as_deref().map(Path::new));
         let folder = folder.unwrap_or(Path::new("cc67-files"));
-        Box::new(Directory::new(folder).with_names(machine.pc.disk_files.clone()))
+        let files = Directory::new(folder).with_names(machine.pc.disk_files.clone());
+        if self.keeps_files { Box::new(Overlay::new(files)) } else { Box::new(files) }
     }
 }

@@ -33,17 +33,6 @@ impl PcArguments {
         self.host.as_ref()?.to_str()?.parse().ok()
     }
 
-    /// The first of these options that is given.
-    pub(crate) fn first_given(&self) -> Option<&'static str> {
-        let given = [
-            (self.host.is_some(), "--host"),
-            (!self.answer.is_empty(), "--answer"),
-            (self.mcode.is_some(), "--mcode"),
-            (self.flash.is_some(), "--flash"),
-        ];
-        given.into_iter().find(|(is_given, _)| *is_given).map(|(_, name)| name)
-    }
-
     /// What the PC answers: what the machine file says, and then these.
     pub(crate) fn answers(&self, machine: &MachineFile) -> Result<Option<Answers>> {
         let mut answers = machine.pc.answers.clone();

@@ -1,7 +1,8 @@
 //! `cc67 compare`: the modelled firmware and the user's own firmware file side by side.
 //!
-//! Each program runs on both boards from the same start. Compared are console and replies line by line, the board time
-//! of each line within a tolerance, `persist.UserData`, where the axes end, and the pins that are outputs.
+//! Each program runs on both boards from the same start, with the machine, the stimulus and the options that are beside
+//! it. Compared are console, replies and what the PC does line by line, expectations, the board time of each line within
+//! a tolerance, `persist.UserData`, where the axes end, and the pins that are outputs.
 
 use std::ffi::OsString;
 use std::fmt::Write as _;
@@ -9,23 +10,22 @@ use std::fmt::Write as _;
 use anyhow::{Context, Result, bail};
 use boot::Halted;
 use cc67_host::End;
-use clap::Args;
+use clap::{Args, Parser};
 use kmotiondef::limits::TIMEBASE;
 use kmotiondef::structs::{Chan, Persist};
 use kmotiondef::variables::{CHAN, PERSIST};
 use kmotiondef::{AxisId, Bit, Cycles, Ticks};
-use runtime::{Event, EventKind, MachineFile};
+use runtime::{Event, EventKind};
 use vm::engine::Engine;
 
+use crate::cli::args::beside::{Beside, BesideArguments};
 use crate::cli::args::board::BoardArguments;
 use crate::cli::args::compiler::CompilerArguments;
-use crate::cli::args::program::assign;
-use crate::cli::args::setting;
 use crate::cli::args::time::{DEFAULT_LIMIT, seconds};
 use crate::cli::io::exit::Exit;
 use crate::cli::io::{output, terminal};
 use crate::cli::session::booted::{Booted, Ready};
-use crate::cli::session::{Rig, Setup, Work};
+use crate::cli::session::{Rig, Setup, Started, Work};
 
 /// Pins of the board.
 const PINS: i32 = 48;
@@ -50,16 +50,32 @@ pub(super) struct CompareArguments {
     #[arg(long)]
     strict_times: bool,
     #[command(flatten)]
+    beside: BesideArguments,
+    #[command(flatten)]
     board: BoardArguments,
     #[command(flatten)]
     compiler: CompilerArguments,
+    /// All words of the command line.
+    #[arg(skip)]
+    pub(super) words: Vec<OsString>,
+}
+
+/// What a line is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum LineKind {
+    Console,
+    Reply,
+    /// What the PC does.
+    Host,
+    /// An expectation of the stimulus that is not met.
+    Unmet,
 }
 
 /// What a run came to, on either board.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Outcome {
-    /// Board time in seconds, whether it is a reply, text.
-    lines: Vec<(f64, bool, String)>,
+    /// Board time in seconds, what it is, text.
+    lines: Vec<(f64, LineKind, String)>,
     /// How it ended.
     end: String,
     user_data: Vec<u32>,
@@ -90,9 +106,9 @@ pub(super) fn compare(arguments: &CompareArguments) -> Result<Exit> {
     let mut table = String::new();
     let mut unequal = 0;
     for program in &arguments.programs {
-        let programs = together(program)?;
-        let Some(model) = arguments.model(&programs)? else { return Ok(Exit::Failure) };
-        let Some(firmware) = arguments.firmware(&programs, &mut ready)? else { return Ok(Exit::Failure) };
+        let (own, programs) = arguments.of(program)?;
+        let Some(model) = own.model(&programs)? else { return Ok(Exit::Failure) };
+        let Some(firmware) = own.firmware(&programs, &mut ready)? else { return Ok(Exit::Failure) };
         let differences = model.differences(&firmware);
         let late = model.latest(&firmware);
         let is_late = arguments.strict_times && late > arguments.tolerance;
@@ -132,9 +148,39 @@ impl CompareArguments {
         Ticks::new((self.limit.min(DEFAULT_LIMIT * 1000.0) / TIMEBASE).round() as u64)
     }
 
+    /// The arguments with what is beside a program, and the programs of its run.
+    fn of(&self, program: &OsString) -> Result<(Box<Self>, Vec<OsString>)> {
+        let mut programs = together(program)?;
+        let at = self.words.iter().position(|word| word == "compare").map_or(0, |at| at + 1);
+        let (before, given) = self.words.split_at(at);
+        let given: Vec<OsString> =
+            given.iter().filter(|word| !self.programs.contains(word)).cloned().collect();
+        let mut options = Vec::new();
+        if !self.beside.no_sidecar {
+            let beside = Beside::of("compare", &programs, &given, |option| super::knows("compare", option))?;
+            options = beside.options;
+            programs.extend(beside.also);
+        }
+        let words = [before, &options, &given, std::slice::from_ref(program)].concat();
+        match super::Arguments::try_parse_from(words)?.command {
+            Some(super::Command::Compare(mut own)) => {
+                own.board.keeps_files = true;
+                if let Some(option) = own.board.left_out_by_boot() {
+                    bail!("`{option}` does not work with `--boot` yet");
+                }
+                Ok((own, programs))
+            }
+            _ => bail!("the words of this command are not its own"),
+        }
+    }
+
+    fn started<'a>(&'a self, programs: &'a [OsString]) -> Started<'a> {
+        Started { programs, first: &self.beside.first }
+    }
+
     /// The run on the modelled board; `None` if a source has errors.
     fn model(&self, programs: &[OsString]) -> Result<Option<Outcome>> {
-        let setup = Setup::of_model(programs, &self.board, &self.compiler, None)?;
+        let setup = Setup::of_model(self.started(programs), &self.board, &self.compiler, None)?;
         let Some(setup) = setup else { return Ok(None) };
         let mut outcome = Outcome::default();
         setup.on_its_engine(Model { limit: self.ticks(), outcome: &mut outcome })?;
@@ -144,13 +190,12 @@ impl CompareArguments {
     /// The run on the firmware; `None` if a source has errors.
     fn firmware(&self, programs: &[OsString], ready: &mut Ready) -> Result<Option<Outcome>> {
         let mut booted = ready.fresh();
-        booted.store(&setting::all(&self.board.set, &mut MachineFile::default())?)?;
-        let files = assign(programs)?;
-        if !booted.load(&files, files.len(), &self.compiler)? {
+        if !booted.begin(self.started(programs), &self.board, &self.compiler, None)? {
             return Ok(None);
         }
         let mut outcome = Outcome::default();
         let ended = booted.run(self.ticks(), &mut |event| outcome.note(&event));
+        booted.finish(&mut |event| outcome.note(&event));
         outcome.end = match ended {
             Ok(End::AllEnded | End::Interrupted) => "ended".to_owned(),
             Ok(End::Limit) => "still running".to_owned(),
@@ -179,7 +224,11 @@ impl Work for Model<'_> {
             outcome.note(&event);
         };
         let end = rig.run(self.limit, None, &mut sink);
-        rig.finish(&mut |_| {})?;
+        rig.finish(&mut |event| {
+            if matches!(event.kind, EventKind::Unmet(_)) {
+                outcome.note(&event);
+            }
+        })?;
         outcome.end = match (traps.first(), end) {
             (Some(trap), _) => trap.clone(),
             (None, End::Limit) => "still running".to_owned(),
@@ -206,12 +255,14 @@ impl Work for Model<'_> {
 impl Outcome {
     fn note(&mut self, event: &Event) {
         let seconds = event.at.get() as f64 / Cycles::PER_SECOND.get() as f64;
-        let (is_reply, text) = match &event.kind {
-            EventKind::ConsoleLine(text) => (false, text),
-            EventKind::Reply(text) => (true, text),
+        let (kind, text) = match &event.kind {
+            EventKind::ConsoleLine(text) => (LineKind::Console, String::from_utf8_lossy(text)),
+            EventKind::Reply(text) => (LineKind::Reply, String::from_utf8_lossy(text)),
+            EventKind::Host(text) => (LineKind::Host, text.into()),
+            EventKind::Unmet(text) => (LineKind::Unmet, text.into()),
             _ => return,
         };
-        self.lines.push((seconds, is_reply, String::from_utf8_lossy(text).into_owned()));
+        self.lines.push((seconds, kind, text.into_owned()));
     }
 
     fn look_at_firmware(&mut self, booted: &Booted) {
@@ -237,8 +288,8 @@ impl Outcome {
             found.push(Difference { what, model, firmware, page });
         };
         let longest = self.lines.len().max(firmware.lines.len());
-        let line = |lines: &[(f64, bool, String)], index: usize| {
-            let shown = |(at, _, text): &(f64, bool, String)| format!("{at:.6} s  {text}");
+        let line = |lines: &[(f64, LineKind, String)], index: usize| {
+            let shown = |(at, _, text): &(f64, LineKind, String)| format!("{at:.6} s  {text}");
             lines.get(index).map_or("(no more lines)".to_owned(), shown)
         };
         for index in 0..longest {

@@ -178,7 +178,11 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
 impl Arguments {
     /// The same with the options of the project file and of what is beside the first program, which is said in one
     /// line.
-    fn with_sidecars(self, words: &[OsString]) -> Result<Self> {
+    fn with_sidecars(mut self, words: &[OsString]) -> Result<Self> {
+        if let Some(Command::Compare(arguments)) = &mut self.command {
+            // Each of its programs has its own.
+            arguments.words = words.to_vec();
+        }
         let (name, programs) = match &self.command {
             Some(Command::Run(arguments)) => ("run", arguments.with_sidecars()),
             #[cfg(feature = "live")]

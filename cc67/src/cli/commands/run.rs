@@ -111,7 +111,7 @@ impl Work for &RunArguments {
 impl RunArguments {
     /// The programs, if what is beside them is to be used.
     pub(super) fn with_sidecars(&self) -> Option<&[OsString]> {
-        (!self.beside.no_sidecar && self.board.boot.is_none()).then_some(&self.programs)
+        (!self.beside.no_sidecar).then_some(&self.programs)
     }
 
     /// The programs and the order in which they start.

@@ -6,19 +6,24 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use boot::{BootedBoard, BootedSnapshot, FirmwareFile, Halted, Line, Sent};
-use cc67_host::End;
+use cc67_host::session::resolve;
+use cc67_host::{End, UserProgram};
 use compiler::Options;
 use compiler::firmware::{Firmware, FirmwareFile as Symbols};
 use compiler::target::Target;
-use kmotiondef::variables::PERSIST;
-use kmotiondef::{AxisId, Cycles, ThreadId, Ticks};
-use runtime::{Event, EventKind};
+use kmotiondef::variables::{CHAN, PERSIST, READ_DISK_BUFFER, VIRTUAL_BITS};
+use kmotiondef::{AxisId, Cycles, GuestAddr, ThreadId, Ticks};
+use runtime::surroundings::{Asked, Surroundings};
+use runtime::{Event, EventKind, MachineFile, trace};
+
+use super::around::Attached;
+use super::{Described, Given, Started};
+use crate::cli::args::board::BoardArguments;
 
 use crate::cli::args::compiler::CompilerArguments;
 use crate::cli::args::program::ProgramFile;
-use crate::cli::args::setting::Setting;
 use crate::cli::compile::images;
 use crate::cli::io::input::read;
 
@@ -37,6 +42,8 @@ pub(crate) struct Booted {
     pub(crate) board: BootedBoard,
     firmware: Firmware,
     origin: u64,
+    /// Programs that a stimulus may load.
+    offered: Vec<UserProgram>,
 }
 
 /// A firmware that has started, to run programs on again and again from there.
@@ -55,8 +62,10 @@ impl Ready {
             board: self.snapshot.board(),
             firmware: self.firmware.clone(),
             origin,
+            offered: Vec::new(),
         });
         booted.board.restore(&self.snapshot);
+        booted.origin = origin;
         booted
     }
 
@@ -81,7 +90,7 @@ impl Booted {
         let symbols = Symbols::read(&bytes).with_context(shown)?;
         let board = BootedBoard::booted(Arc::new(file)).with_context(shown)?;
         let origin = board.cycle();
-        Ok(Self { board, firmware: Firmware::File(Arc::new(symbols)), origin })
+        Ok(Self { board, firmware: Firmware::File(Arc::new(symbols)), origin, offered: Vec::new() })
     }
 
     /// Compiles and loads programs, and starts the first of them; whether their sources have no errors.
@@ -91,21 +100,130 @@ impl Booted {
         starts: usize,
         compiler: &CompilerArguments,
     ) -> Result<bool> {
-        let options =
-            Options { target: Target::C67x, firmware: self.firmware.clone(), ..compiler.resolve()? };
+        let options = self.options(compiler)?;
         let Some(programs) = images::programs_with(files, compiler, &options)? else { return Ok(false) };
-        for program in &programs {
-            let loaded = self.board.load_program(program.thread, &program.image);
-            loaded.with_context(|| program.path.display().to_string())?;
-        }
+        programs.iter().try_for_each(|program| self.take(program))?;
         programs.iter().take(starts).for_each(|program| self.board.execute(program.thread));
         Ok(true)
     }
 
+    /// How programs for this firmware are compiled.
+    fn options(&self, compiler: &CompilerArguments) -> Result<Options> {
+        Ok(Options { target: Target::C67x, firmware: self.firmware.clone(), ..compiler.resolve()? })
+    }
+
+    fn take(&mut self, program: &UserProgram) -> Result<()> {
+        let loaded = self.board.load_program(program.thread, &program.image);
+        loaded.with_context(|| program.path.display().to_string())
+    }
+
+    /// Connects what the arguments describe, loads their programs, and starts those that are to start, all in one
+    /// slice: board time begins there. Whether the sources have no errors.
+    pub(crate) fn begin<'a>(
+        &mut self,
+        started: impl Into<Started<'a>>,
+        board: &BoardArguments,
+        compiler: &CompilerArguments,
+        request: Option<trace::Request>,
+    ) -> Result<bool> {
+        let options = self.options(compiler)?;
+        let described = Described::read(started, board, compiler, Given { options, image: None })?;
+        let Some(Described { session, .. }) = described else { return Ok(false) };
+        let cc67_host::Setup { mut config, options, programs, offered, values, mut stimulus, .. } = session;
+        self.store(&values)?;
+        programs.iter().try_for_each(|program| self.take(program))?;
+        self.settle()?;
+        if self.can_be_surrounded() {
+            let known = [&programs[..], &offered].concat();
+            let mut machine = std::mem::take(&mut config.machine_file);
+            for stimulus in [&mut machine.stimulus, &mut stimulus] {
+                resolve(stimulus, &known, &options)?;
+            }
+            config.machine_file = machine.clone();
+            let active = self.board.file().address("ThreadActive").unwrap_or_default();
+            let mut surroundings = Surroundings::new(config, active);
+            surroundings.begin(&machine, stimulus, self.board.memory_mut());
+            surroundings.connect_uart(&session.uart_input, session.hears_uart);
+            if let Some(request) = request {
+                surroundings.record(request, self.board.memory());
+            }
+            self.board.connect(Box::new(Attached { surroundings, origin: self.origin }));
+        } else if !stimulus.is_empty() || config.machine_file != MachineFile::default() {
+            bail!("nothing can be connected: this firmware keeps its variables in other places than 4.34");
+        }
+        self.offered = offered;
+        programs.iter().filter(|program| program.starts).for_each(|one| self.board.execute(one.thread));
+        Ok(true)
+    }
+
+    /// Lets the firmware read what was sent, and goes to the beginning of the next tick: time is 0 there.
+    fn settle(&mut self) -> Result<()> {
+        let end = self.board.cycle() + ANSWER;
+        while !self.board.has_read_all() && self.board.cycle() < end {
+            self.board.run_to(self.board.cycle() + TICK)?;
+        }
+        self.board.run_to(self.board.next_tick())?;
+        self.origin = self.board.cycle();
+        self.board.take_lines();
+        Ok(())
+    }
+
+    /// Whether this firmware has its variables where the surroundings look for them.
+    fn can_be_surrounded(&self) -> bool {
+        let places = [
+            ("chan", CHAN.address()),
+            ("persist", PERSIST.address()),
+            ("VirtualBits", VIRTUAL_BITS.address()),
+            ("read_disk_buffer", READ_DISK_BUFFER.address()),
+        ];
+        let file = self.board.file();
+        file.address("ThreadActive").is_some()
+            && places.iter().all(|(name, address)| file.address(name) == Some(*address))
+    }
+
+    /// What is around the board, if anything.
+    fn surroundings(&mut self) -> Option<&mut Surroundings> {
+        let attached: &mut Attached = self.board.around()?.as_any().downcast_mut()?;
+        Some(&mut attached.surroundings)
+    }
+
+    /// Does what the stimulus has asked for.
+    fn serve(&mut self) {
+        let asked = self.surroundings().map(Surroundings::take_asked).unwrap_or_default();
+        for one in asked {
+            match one {
+                Asked::Send(bytes) => self.board.send(&bytes),
+                Asked::Run(thread, name) => {
+                    let offered =
+                        self.offered.iter().find(|known| known.thread == thread && *known.name() == *name);
+                    if let Some(program) = offered.cloned()
+                        && self.take(&program).is_ok()
+                    {
+                        self.board.execute(thread);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The run is over: what the stimulus expects then is checked.
+    pub(crate) fn finish(&mut self, sink: &mut dyn FnMut(Event)) {
+        let now = self.now();
+        let (around, memory) = self.board.around_and_memory();
+        let attached = around.and_then(|around| around.as_any().downcast_mut::<Attached>());
+        if let Some(Attached { surroundings, .. }) = attached {
+            surroundings.finish(memory, now);
+            surroundings.take_events().into_iter().for_each(sink);
+        }
+    }
+
     /// Stores start values of `persist.UserData`, wherever this firmware has it.
-    pub(crate) fn store(&mut self, values: &[Setting]) -> Result<()> {
+    fn store(&mut self, values: &[(GuestAddr, Vec<u8>)]) -> Result<()> {
+        if values.is_empty() {
+            return Ok(());
+        }
         let persist = self.board.file().address("persist").context("this firmware has no `persist`")?;
-        for Setting { address, bytes } in values {
+        for (address, bytes) in values {
             let place = persist.offset(address.get() - PERSIST.address().get());
             self.board.memory_mut().poke_bytes(place, bytes)?;
         }
@@ -142,14 +260,22 @@ impl Booted {
         while self.tick() < limit {
             let has_sent = self.advance(TICK, sink)?;
             let moved = std::mem::replace(&mut axes, self.axes());
+            let is_awaited = self.is_awaited();
             let is_busy =
-                has_sent || moved != axes || !self.board.has_read_all() || !self.active().is_empty();
+                has_sent || is_awaited || moved != axes || !self.board.has_read_all() || !self.active().is_empty();
             quiet = if is_busy { 0 } else { quiet + 1 };
             if quiet >= QUIET {
                 return Ok(End::AllEnded);
             }
         }
         Ok(End::Limit)
+    }
+
+    /// Whether something is still to come from around the board.
+    fn is_awaited(&mut self) -> bool {
+        let (around, memory) = self.board.around_and_memory();
+        let attached = around.and_then(|around| around.as_any().downcast_mut::<Attached>());
+        attached.is_some_and(|attached| attached.surroundings.is_busy(memory))
     }
 
     /// Where the axes are commanded to be.
@@ -166,13 +292,27 @@ impl Booted {
         let lines = self.board.take_lines();
         let has_sent = !lines.is_empty();
         for line in lines {
-            sink(self.event(line));
+            let at = self.since_ready(line.cycle);
+            match self.surroundings() {
+                // The PC around it takes what is for files, and shows the rest.
+                Some(surroundings) if line.kind != Sent::Reply => surroundings.hear(line.text, at),
+                Some(_) => sink(Event { at, kind: EventKind::Reply(line.text) }),
+                None => sink(Self::event(line, at)),
+            }
+            self.tell(sink);
         }
+        self.tell(sink);
+        self.serve();
         result.map(|()| has_sent)
     }
 
-    fn event(&self, line: Line) -> Event {
-        let at = self.since_ready(line.cycle);
+    /// Hands over what has happened around the board.
+    fn tell(&mut self, sink: &mut dyn FnMut(Event)) {
+        let events = self.surroundings().map(Surroundings::take_events).unwrap_or_default();
+        events.into_iter().for_each(sink);
+    }
+
+    fn event(line: Line, at: Cycles) -> Event {
         let kind = match line.kind {
             Sent::Console => EventKind::ConsoleLine(line.text),
             Sent::Reply => EventKind::Reply(line.text),

@@ -1,6 +1,6 @@
 //! The start of the real firmware against what was recorded of it (`boot.jsonl`); where no file is named, this is said.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock};
 use std::{env, fs};
 
 use serde_json::Value;
@@ -31,9 +31,10 @@ fn firmware() -> Option<Arc<FirmwareFile>> {
 
 /// A board that has just booted.
 fn booted() -> Option<BootedBoard> {
-    static BOARD: OnceLock<Option<BootedBoard>> = OnceLock::new();
-    let boot = || Some(BootedBoard::booted(firmware()?).unwrap_or_else(|crash| panic!("{crash}")));
-    BOARD.get_or_init(boot).clone()
+    static BOARD: OnceLock<Option<Mutex<BootedBoard>>> = OnceLock::new();
+    let boot = || Some(Mutex::new(BootedBoard::booted(firmware()?).unwrap_or_else(|crash| panic!("{crash}"))));
+    let board = BOARD.get_or_init(boot).as_ref()?;
+    Some(board.lock().expect("no test holds it while it fails").clone())
 }
 
 fn hex(value: &Value) -> u32 {

@@ -9,14 +9,12 @@ use anyhow::{Context, Result, bail};
 use boot::Halted;
 use kmotiondef::limits::TIMEBASE;
 use kmotiondef::{Cycles, ThreadId, Ticks};
-use runtime::MachineFile;
 
 use super::input::{self, Input};
 use super::screen::Screen;
 use super::words::{self, Word};
 use super::{ConsoleArguments, Flow};
 use crate::cli::args::program::{ProgramFile, assign};
-use crate::cli::args::setting;
 use crate::cli::args::time::DEFAULT_LIMIT;
 use crate::cli::io::exit::Exit;
 use crate::cli::session::booted::Booted;
@@ -27,13 +25,12 @@ pub(super) fn console(arguments: &ConsoleArguments, file: &Path) -> Result<Exit>
         bail!("`{option}` does not work with `--boot` yet");
     }
     let mut booted = Booted::new(file)?;
-    booted.store(&setting::all(&arguments.board.set, &mut MachineFile::default())?)?;
-    let mut console =
-        Console { arguments, booted, screen: Screen::new(arguments.time, false), has_crashed: false };
-    let files = assign(&[arguments.programs.as_slice(), arguments.board.load.as_slice()].concat())?;
-    if !console.load(&files, arguments.programs.len())? {
+    let programs = arguments.programs.as_slice();
+    if !booted.begin(programs, &arguments.board, &arguments.compiler, None)? {
         return Ok(Exit::Failure);
     }
+    let mut console =
+        Console { arguments, booted, screen: Screen::new(arguments.time, false), has_crashed: false };
     if io::stdin().is_terminal() && io::stdout().is_terminal() {
         console.keyboard()
     } else {

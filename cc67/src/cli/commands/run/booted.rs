@@ -9,11 +9,8 @@ use boot::Halted;
 use cc67_host::End;
 use kmotiondef::Ticks;
 use kmotiondef::limits::TIMEBASE;
-use runtime::MachineFile;
 
 use super::RunArguments;
-use crate::cli::args::program::assign;
-use crate::cli::args::setting;
 use crate::cli::args::time::DEFAULT_LIMIT;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::{output, terminal};
@@ -27,20 +24,21 @@ pub(super) fn run(arguments: &RunArguments, file: &Path) -> Result<Exit> {
     if let Some(option) = left_out(arguments) {
         bail!("`{option}` does not work with `--boot` yet");
     }
-    let files = assign(&[arguments.programs.as_slice(), arguments.board.load.as_slice()].concat())?;
     let mut booted = Booted::new(file)?;
-    booted.store(&setting::all(&arguments.board.set, &mut MachineFile::default())?)?;
-    if !booted.load(&files, arguments.programs.len(), &arguments.compiler)? {
+    let request = None;
+    if !booted.begin(arguments.started(), &arguments.board, &arguments.compiler, request)? {
         return Ok(Exit::Failure);
     }
     let out = BufWriter::new(io::stdout().lock());
     let mut screen = Screen::new(out, arguments.style(), Vec::new(), Vec::new());
     let mut seen = Seen::default();
     let limit = Ticks::new((arguments.limit.unwrap_or(DEFAULT_LIMIT) / TIMEBASE).round() as u64);
-    let end = booted.run(limit, &mut |event| {
+    let mut sink = |event| {
         seen.note(&event);
         screen.show(&event);
-    });
+    };
+    let end = booted.run(limit, &mut sink);
+    booted.finish(&mut sink);
     let active = booted.active();
     let (exit, why) = match &end {
         Ok(end) => seen.exit(*end, arguments.limit.is_some()),
@@ -60,9 +58,8 @@ pub(super) fn run(arguments: &RunArguments, file: &Path) -> Result<Exit> {
 
 /// The first option given that a booted board does not know.
 fn left_out(arguments: &RunArguments) -> Option<&'static str> {
-    let RunArguments { realtime, profile, trace, beside, .. } = arguments;
-    let own =
-        [(*realtime, "--realtime"), (profile.is_some(), "--profile"), (!beside.first.is_empty(), "--first")];
+    let RunArguments { realtime, profile, trace, .. } = arguments;
+    let own = [(*realtime, "--realtime"), (profile.is_some(), "--profile")];
     let given = own.into_iter().find(|(is_given, _)| *is_given).map(|(_, name)| name);
     given.or_else(|| trace.first_given()).or_else(|| arguments.board.left_out_by_boot())
 }

@@ -1,0 +1,51 @@
+//! What is around the board at register level: motors, switches, devices on the lines.
+//!
+//! The board alone has registers that keep what was written, and loads that follow their axes ([`loads`](super::loads)).
+//! Whoever connects something else answers the registers of inputs in its place, sees every write in the cycle in which
+//! it is made, and has a turn at each match of the timer, before the interrupt is taken (`dsp-board.md` 8).
+
+use std::fmt::Debug;
+
+use vm::memory::GuestMemory;
+
+use super::generators::GENERATORS;
+
+/// What there is to see and to change at a match of the timer.
+#[derive(Debug)]
+pub struct AtMatch<'a> {
+    /// Memory, data only.
+    pub memory: &'a mut GuestMemory,
+    /// The cycle of the match, since power-up.
+    pub now: u64,
+    /// Steps that each generator has made.
+    pub steps: [f64; GENERATORS],
+    /// What the encoders show from now on.
+    pub encoders: &'a mut [u8; 8],
+    /// Inputs of a KStep from now on, if there is one: a bit is set while current flows.
+    pub kstep: &'a mut Option<u16>,
+}
+
+/// Something around the board. Cycles are counted since power-up.
+pub trait Around: Debug + Send {
+    /// What a register shows when the firmware reads it; `None` where the board itself answers.
+    fn read(&mut self, register: usize, is_byte: bool, now: u64) -> Option<u16>;
+
+    /// The firmware writes a register.
+    fn write(&mut self, register: usize, is_byte: bool, value: u16, now: u64);
+
+    /// The timer matches.
+    fn tick(&mut self, turn: &mut AtMatch<'_>);
+
+    /// The same in the same state.
+    fn copied(&self) -> Box<dyn Around>;
+
+    /// Itself, for whoever has connected it.
+    fn as_any(&mut self) -> &mut dyn std::any::Any;
+}
+
+impl Clone for Box<dyn Around> {
+    fn clone(&self) -> Self {
+        // Of what is around, not of the box.
+        (**self).copied()
+    }
+}

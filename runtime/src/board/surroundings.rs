@@ -1,0 +1,359 @@
+//! What is around a board that runs a real firmware: the same machine, devices, stimulus and PC as around the modelled
+//! one, attached at its registers.
+//!
+//! The parts are those of the modelled board, without its servo and its firmware functions: inputs and outputs answer
+//! the registers, loads move by what the firmware outputs, switches and encoders show them, the PC serves requests and
+//! files. All of them read the axes from memory at the addresses of the released firmware 4.34, so only a firmware that
+//! has its variables there can be surrounded by them.
+//!
+//! Source: `dsp-board.md` section 8.
+
+use kmotiondef::limits::N_CHANNELS;
+use kmotiondef::map::FPGA;
+use kmotiondef::modes::{InputMode, OutputMode};
+use kmotiondef::structs::Chan;
+use kmotiondef::variables::{CURRENT_THREAD, HOST_STATUS, KSTEP_PRESENT};
+use kmotiondef::{AxisId, Bit, Cycles, GuestAddr, ThreadId, Ticks};
+use vm::bus::AccessSize;
+use vm::firmware::TickContext;
+use vm::memory::GuestMemory;
+use vm::scheduler::{ThreadSet, Turn};
+use vm::thread::Threads;
+
+use super::machine_file::MachineFile;
+use super::{Config, connect};
+use crate::firmware::parts::Parts;
+use crate::io::stepgen::generator_of;
+use crate::machine::{COUNTS_PER_TICK, Drive};
+use crate::out::{Event, EventKind, Request, Speaker};
+use crate::pc::{Pc, host};
+use crate::servo::driven;
+use crate::views::{AxisView, Typed};
+use crate::world::stimulus::Stimulus;
+use crate::world::{Moment, trace};
+
+/// First register, and how many, that something else than the board answers.
+const ANSWERED: [std::ops::Range<usize>; 5] = [0x08..0x09, 0x88..0x8A, 0x90..0x99, 0xC0..0xC2, 0x130..0x136];
+/// Bytes between two registers, and where a register lies in them.
+const STRIDE: u32 = 4;
+const LANE: u32 = 2;
+/// Inputs of a KStep.
+const KSTEP_INPUTS: i32 = 168;
+/// Steps that a load can be moved by in a tick: as many as a generator makes.
+const ANY_STEPS: f64 = f64::MAX;
+
+/// What a stimulus asks of the board.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Asked {
+    /// The PC sends these bytes.
+    Send(Vec<u8>),
+    /// A program that was offered is to be loaded under this name, and started.
+    Run(ThreadId, String),
+}
+
+/// What a tick of the firmware is seen with.
+#[derive(Debug)]
+pub struct Instant<'a> {
+    /// Memory.
+    pub memory: &'a mut GuestMemory,
+    /// Since when the firmware is ready.
+    pub now: Cycles,
+    /// The same in ticks.
+    pub tick: Ticks,
+    /// Steps that each generator has made.
+    pub steps: [f64; N_CHANNELS],
+    /// What the encoders show.
+    pub encoders: &'a mut [u8; N_CHANNELS],
+    /// What a KStep shows, if there is one.
+    pub kstep: &'a mut Option<u16>,
+}
+
+/// The surroundings of a board.
+#[derive(Clone, Debug)]
+pub struct Surroundings {
+    parts: Parts,
+    threads: Threads,
+    /// Steps of each generator when they were last looked at.
+    steps: [f64; N_CHANNELS],
+    /// What the step generator of each axis has been commanded to, position units.
+    stepped: [f64; N_CHANNELS],
+    /// Where each axis is after the interrupt, if no program writes its position.
+    positions: [f64; N_CHANNELS],
+    was_enabled: [bool; N_CHANNELS],
+    /// Where this firmware keeps which threads are active.
+    active: GuestAddr,
+    asked: Vec<Asked>,
+}
+
+impl Surroundings {
+    /// What a machine file describes, with a PC that keeps its files; the word at `active` says which threads are
+    /// active.
+    ///
+    /// What concerns the firmware and its memory comes with [`begin`](Self::begin).
+    #[must_use]
+    pub fn new(config: Config, active: GuestAddr) -> Self {
+        let machine = &config.machine_file;
+        let mut parts = Parts::new(Pc::new(config.files));
+        parts.pc.host.connect(config.host && machine.pc.is_connected);
+        parts.pc.host.answer_with(config.answers.unwrap_or_else(|| machine.pc.answers.clone()));
+        connect::install(&mut parts, machine);
+        Self {
+            parts,
+            threads: Threads::new(),
+            steps: [0.0; N_CHANNELS],
+            stepped: [0.0; N_CHANNELS],
+            positions: [0.0; N_CHANNELS],
+            was_enabled: [false; N_CHANNELS],
+            active,
+            asked: Vec::new(),
+        }
+    }
+
+    /// The firmware is ready: what the machine does by itself begins, and a stimulus.
+    pub fn begin(&mut self, machine: &MachineFile, stimulus: Stimulus, memory: &mut GuestMemory) {
+        let status = i32::from(self.parts.pc.host.has_job());
+        memory.set(HOST_STATUS, status);
+        connect::play(&mut self.parts, machine, memory);
+        if !stimulus.is_empty() {
+            let (world, mut stage) = self.parts.stage(Cycles::default());
+            world.play(stimulus, &mut stage, memory);
+        }
+        self.positions = std::array::from_fn(|axis| {
+            AxisId::new(axis as i32).map_or(0.0, |axis| memory.axis(axis, Chan::POSITION))
+        });
+    }
+
+    /// What waits on the line to the serial port, and whether every character that the port sends is told.
+    pub fn connect_uart(&mut self, waiting: &[u8], is_heard: bool) {
+        if !waiting.is_empty() {
+            self.parts.io.uart.arrive(waiting, Cycles::default());
+        }
+        if is_heard {
+            let Parts { world, io, .. } = &mut self.parts;
+            world.hear_uart(io);
+        }
+    }
+
+    /// Records from now on what is asked for; the records come as events.
+    pub fn record(&mut self, request: trace::Request, memory: &GuestMemory) {
+        let Parts { world, io, .. } = &mut self.parts;
+        world.record(request, io, memory);
+    }
+
+    /// What a register shows; `None` where the board itself answers.
+    pub fn read(&mut self, register: usize, is_byte: bool, now: Cycles) -> Option<u16> {
+        let is_answered = ANSWERED.iter().any(|registers| registers.contains(&register));
+        is_answered.then(|| self.parts.read_register(address(register), size(is_byte), now) as u16)
+    }
+
+    /// The firmware writes a register.
+    pub fn write(&mut self, register: usize, is_byte: bool, value: u16, now: Cycles) {
+        let (fpga, behind) = self.parts.io.registers(now);
+        // The firmware knows its registers: what there would be to say concerns programs.
+        let _ = fpga.write(behind, address(register), size(is_byte), value.into());
+        self.parts.lines(now).settle();
+    }
+
+    /// The firmware has sent a console line; the PC keeps requests for files for itself.
+    pub fn hear(&mut self, line: Vec<u8>, now: Cycles) {
+        self.parts.send_line(line, now);
+    }
+
+    /// The timer matches: the world acts, then the machine moves, before the interrupt sees it.
+    pub fn tick(&mut self, instant: &mut Instant<'_>) {
+        let now = instant.now;
+        self.parts.clock.tick_start = now;
+        let active = active(instant.memory, self.active);
+        self.follow_threads(active);
+        let moment = Moment { turn: Turn::Primary, slice_start: now };
+        let mut context =
+            TickContext { memory: instant.memory, threads: &mut self.threads, tick: instant.tick, now };
+        let (world, mut stage) = self.parts.stage(now);
+        world.tick(&mut stage, &mut context, moment);
+        self.parts.pc.host.tick();
+        if context.memory.get(CURRENT_THREAD) == 0 {
+            let Parts { pc, out, .. } = &mut self.parts;
+            pc.disk.slice(&mut context);
+            host::slice(&mut pc.host, out, &mut context);
+        }
+        self.parts.machine.drive(&self.parts.io, context.memory, now);
+        self.move_loads(instant);
+        self.parts.machine.signal(&mut self.parts.io, now);
+        self.show(instant);
+        self.sample(instant);
+        self.ask(active);
+    }
+
+    /// The threads as the firmware has them.
+    fn follow_threads(&mut self, active: ThreadSet) {
+        for thread in ThreadId::all() {
+            // Whether there is a program, only the firmware knows.
+            if self.threads.entry(thread).is_null() {
+                self.threads.set_entry(thread, GuestAddr::new(1));
+            }
+            if active.contains(thread) == self.threads.state(thread).is_active() {
+                continue;
+            }
+            if active.contains(thread) {
+                let _ = self.threads.start(thread);
+            } else {
+                self.threads.pause(thread);
+            }
+        }
+    }
+
+    /// Moves each load by what the firmware has output for its axis in the last tick.
+    fn move_loads(&mut self, instant: &mut Instant<'_>) {
+        for axis in AxisId::all() {
+            let at = axis.index();
+            let chan = AxisView::of(instant.memory, axis);
+            let plant = &mut self.parts.machine.loads[axis];
+            plant.note_position(self.positions[at]);
+            let is_encoder = InputMode::new(chan.get(Chan::INPUT_MODE)) == Some(InputMode::Encoder);
+            if !is_encoder {
+                plant.note_position(chan.get(Chan::POSITION));
+            }
+            let mode = OutputMode::new(chan.get(Chan::OUTPUT_MODE));
+            let made = if OutputMode::has_generator(mode) {
+                let generator = generator_of(chan.get(Chan::OUTPUT_CHAN0));
+                let gain = f64::from(chan.get(Chan::OUTPUT_GAIN));
+                let made = instant.steps[generator] - self.steps[generator];
+                if gain == 0.0 { 0.0 } else { made / gain }
+            } else {
+                0.0
+            };
+            let is_enabled = chan.get(Chan::ENABLE) != 0;
+            let was_enabled = std::mem::replace(&mut self.was_enabled[at], is_enabled);
+            if is_enabled {
+                self.stepped[at] += made;
+                plant.drive = driven(&chan, self.stepped[at]);
+                if let (Drive::Steps(command), false) = (plant.drive, was_enabled || made != 0.0) {
+                    plant.refer_to(command);
+                }
+            } else {
+                plant.release();
+            }
+            let reach = COUNTS_PER_TICK * f64::from(chan.get(Chan::INPUT_GAIN0)).abs();
+            plant.advance(&chan, reach, || ANY_STEPS);
+            plant.take_stepped();
+        }
+        self.steps = instant.steps;
+    }
+
+    /// Shows the firmware what encoders count and switches say.
+    fn show(&mut self, instant: &mut Instant<'_>) {
+        for axis in AxisId::all() {
+            let chan = AxisView::of(instant.memory, axis);
+            let position = chan.get(Chan::POSITION);
+            self.positions[axis.index()] = position;
+            if InputMode::new(chan.get(Chan::INPUT_MODE)) != Some(InputMode::Encoder) {
+                continue;
+            }
+            let Some(channel) =
+                usize::try_from(chan.get(Chan::INPUT_CHAN0)).ok().filter(|channel| *channel < N_CHANNELS)
+            else {
+                continue;
+            };
+            let gain = f64::from(chan.get(Chan::INPUT_GAIN0));
+            let last = chan.get(Chan::LAST_ENC);
+            let turned_by = AxisId::new(channel as i32).unwrap_or(axis);
+            let turned_gain = f64::from(instant.memory.axis(turned_by, Chan::INPUT_GAIN0));
+            let count = self.parts.machine.loads[turned_by].encoder(turned_gain);
+            if instant.encoders[channel] != count.cast_unsigned() {
+                instant.encoders[channel] = count.cast_unsigned();
+                self.parts.io.encoders.count(channel, count, &mut self.parts.io.pins, instant.now);
+            }
+            self.positions[axis.index()] = position + gain * f64::from(count.wrapping_sub(last));
+        }
+        *instant.kstep = (instant.memory.get(KSTEP_PRESENT) != 0).then(|| {
+            let inputs = (0..16).filter_map(|input| Bit::new(KSTEP_INPUTS + input));
+            let levels = inputs.map(|bit| self.parts.io.pins.input(bit));
+            (0..).zip(levels).fold(0, |word, (index, level)| word | u16::from(level) << index)
+        });
+    }
+
+    fn sample(&mut self, instant: &mut Instant<'_>) {
+        let Parts { out, io, machine, world, clock, .. } = &mut self.parts;
+        if world.is_recording() {
+            let context = TickContext {
+                memory: instant.memory,
+                threads: &mut self.threads,
+                tick: instant.tick,
+                now: instant.now,
+            };
+            let view = trace::View::new(machine, io, clock.tick_start, context.memory);
+            world.sample(&view, out, &context, 1);
+        }
+    }
+
+    /// Keeps what the stimulus wants of threads and of the PC.
+    fn ask(&mut self, active: ThreadSet) {
+        for thread in ThreadId::all() {
+            match (active.contains(thread), self.threads.state(thread).is_active()) {
+                (false, true) => self.command(&format!("Execute{thread}")),
+                (true, false) => self.command(&format!("Kill{thread}")),
+                _ => {}
+            }
+        }
+        let bytes = self.parts.pc.usb.take_all();
+        if !bytes.is_empty() {
+            self.asked.push(Asked::Send(bytes));
+        }
+        for request in self.parts.out.take_requests() {
+            if let Request::Run(thread, name) = request {
+                self.asked.push(Asked::Run(thread, name.to_string()));
+            }
+        }
+    }
+
+    fn command(&mut self, line: &str) {
+        self.asked.push(Asked::Send(format!("\u{1b}.{line}\r").into_bytes()));
+    }
+
+    /// What was asked of the board since the last time.
+    pub fn take_asked(&mut self) -> Vec<Asked> {
+        std::mem::take(&mut self.asked)
+    }
+
+    /// What has happened since the last time.
+    pub fn take_events(&mut self) -> Vec<Event> {
+        let is_told = |event: &Event| match &event.kind {
+            // Of the programs on a booted board nothing is known that a remark could say.
+            EventKind::Remark(remark) => matches!(remark.speaker, Speaker::Board),
+            _ => true,
+        };
+        let mut events = self.parts.out.take_events();
+        events.retain(is_told);
+        events
+    }
+
+    /// Whether something is still to come: a statement that starts something, an answer that a program waits for.
+    #[must_use]
+    pub fn is_busy(&self, memory: &GuestMemory) -> bool {
+        let Parts { out, pc, world, .. } = &self.parts;
+        pc.host.is_asked(memory) || world.is_busy(out)
+    }
+
+    /// The run is over: what the stimulus expects then is checked.
+    pub fn finish(&mut self, memory: &mut GuestMemory, now: Cycles) {
+        self.follow_threads(active(memory, self.active));
+        let context = TickContext { memory, threads: &mut self.threads, tick: Ticks::new(0), now };
+        let (world, mut stage) = self.parts.stage(now);
+        world.finish(&mut stage, &context);
+    }
+}
+
+/// The threads that are active.
+fn active(memory: &GuestMemory, at: GuestAddr) -> ThreadSet {
+    let active: u32 = memory.peek(at);
+    ThreadId::all().filter(|thread| active >> thread.get() & 1 != 0).collect()
+}
+
+/// Where a register is.
+fn address(register: usize) -> GuestAddr {
+    FPGA.base.offset(register as u32 * STRIDE + LANE)
+}
+
+const fn size(is_byte: bool) -> AccessSize {
+    if is_byte { AccessSize::Byte } else { AccessSize::Half }
+}
