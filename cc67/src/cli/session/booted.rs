@@ -261,8 +261,11 @@ impl Booted {
             let has_sent = self.advance(TICK, sink)?;
             let moved = std::mem::replace(&mut axes, self.axes());
             let is_awaited = self.is_awaited();
-            let is_busy =
-                has_sent || is_awaited || moved != axes || !self.board.has_read_all() || !self.active().is_empty();
+            let is_busy = has_sent
+                || is_awaited
+                || moved != axes
+                || !self.board.has_read_all()
+                || !self.active().is_empty();
             quiet = if is_busy { 0 } else { quiet + 1 };
             if quiet >= QUIET {
                 return Ok(End::AllEnded);

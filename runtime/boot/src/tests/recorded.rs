@@ -32,7 +32,8 @@ fn firmware() -> Option<Arc<FirmwareFile>> {
 /// A board that has just booted.
 fn booted() -> Option<BootedBoard> {
     static BOARD: OnceLock<Option<Mutex<BootedBoard>>> = OnceLock::new();
-    let boot = || Some(Mutex::new(BootedBoard::booted(firmware()?).unwrap_or_else(|crash| panic!("{crash}"))));
+    let boot =
+        || Some(Mutex::new(BootedBoard::booted(firmware()?).unwrap_or_else(|crash| panic!("{crash}"))));
     let board = BOARD.get_or_init(boot).as_ref()?;
     Some(board.lock().expect("no test holds it while it fails").clone())
 }
