@@ -44,7 +44,8 @@ pub(super) fn allocate(code: &mut Code) -> Option<Assignment> {
         let mut scan = Scan::new(code, &liveness);
         scan.run(&live::in_order(code, &liveness))?;
         if scan.moved.is_empty() {
-            let kept = scan.used & abi::KEPT;
+            // Arguments from the seventh on are in registers that the function itself must keep.
+            let kept = code.calls.iter().fold(scan.used, |set, call| set | call.changes) & abi::KEPT;
             let mut is_used = SecondaryMap::with_capacity(code.regs.len());
             for reg in code.regs.keys() {
                 is_used[reg] = liveness.intervals[reg].is_used;

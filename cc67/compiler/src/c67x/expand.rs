@@ -12,6 +12,7 @@ use super::code::{Arg, Base, Call, Code, End, Inst, Place, Target, Value};
 use super::forms::Kind;
 use super::frame::{self, Frame};
 use super::moves;
+use super::schedule::Order;
 use super::step::{Access, Final, Finalizer, Operands, Step, pred, step};
 use crate::ir::function::{Function, table};
 use crate::ir::inst::SlotId;
@@ -25,6 +26,8 @@ pub(super) struct Region {
     pub(super) steps: Vec<Step>,
     /// The branches at its end, none if execution continues in the next region.
     pub(super) branches: Vec<Step>,
+    /// What happens in the slots of the branch, in this order: the register that it reads changes there.
+    pub(super) late: Vec<Step>,
     pub(super) span: Span,
 }
 
@@ -50,11 +53,16 @@ pub(super) fn expand(
     function: &Function,
     code: &Code,
     assignment: &Assignment,
+    order: Order,
 ) -> Result<Expanded, TooLarge> {
     let calls = !code.calls.is_empty();
     let mut saved: Vec<Reg> = abi::registers(assignment.kept).collect();
+    let mut back = abi::LINK;
     if calls {
-        saved.push(abi::LINK);
+        // A register that calls keep has the return address at once when the function ends.
+        let free = abi::registers(abi::KEPT & !assignment.kept).last().filter(|_| order == Order::Early);
+        back = free.unwrap_or(abi::LINK);
+        saved.push(back);
     }
     let frame = frame::lay_out(function, code, saved.len() as u32).ok_or(TooLarge::Frame)?;
     let escaping = escaping(function, code);
@@ -63,8 +71,10 @@ pub(super) fn expand(
         code,
         frame: &frame,
         saved,
+        back,
         regions: Vec::with_capacity(code.blocks.len()),
         steps: Vec::new(),
+        late: Vec::new(),
         label: 0,
         returns: code.blocks.len() as u32,
         span: function.span,
@@ -97,8 +107,11 @@ struct Expander<'a> {
     code: &'a Code,
     frame: &'a Frame,
     saved: Vec<Reg>,
+    /// Where the return address is while calls change B3.
+    back: Reg,
     regions: Vec<Region>,
     steps: Vec<Step>,
+    late: Vec<Step>,
     label: u32,
     /// The label of the next place that a call returns to.
     returns: u32,
@@ -125,8 +138,8 @@ impl Expander<'_> {
 
     /// Ends the region.
     fn close(&mut self, branches: Vec<Step>) {
-        let steps = std::mem::take(&mut self.steps);
-        self.regions.push(Region { label: self.label, steps, branches, span: self.span });
+        let (steps, late) = (std::mem::take(&mut self.steps), std::mem::take(&mut self.late));
+        self.regions.push(Region { label: self.label, steps, branches, late, span: self.span });
     }
 
     fn emit(&mut self, kind: Kind, operands: &Operands, access: Access) {
@@ -174,6 +187,9 @@ impl Expander<'_> {
         }
         for (index, reg) in (0..).zip(self.saved.clone()) {
             self.saved_word(Kind::StoreWord, reg, index);
+        }
+        if self.back != abi::LINK {
+            self.move_word(self.back, abi::LINK);
         }
         let mut list = Vec::new();
         for (reg, at) in &self.code.params {
@@ -341,12 +357,20 @@ impl Expander<'_> {
             self.words(abi::RESULT, from, self.code.regs[value].is_pair, &mut list);
             self.moves(&list);
         }
+        let mut late = None;
         for (index, reg) in (0..).zip(self.saved.clone()) {
             self.saved_word(Kind::LoadWord, reg, index);
+            if reg == self.back && self.back != abi::LINK {
+                late = self.steps.pop();
+            }
         }
         if self.frame.size > 0 {
             self.move_stack(self.frame.size.cast_signed());
         }
-        self.branch(Final::Reg(abi::LINK), Pred::Always).into_iter().collect()
+        if let Some(load) = late {
+            let stack = self.steps.pop();
+            self.late = [Some(load), stack].into_iter().flatten().collect();
+        }
+        self.branch(Final::Reg(self.back), Pred::Always).into_iter().collect()
     }
 }

@@ -3,14 +3,33 @@
 use std::collections::BTreeMap;
 
 use cranelift_entity::{PrimaryMap, SecondaryMap};
+use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, Origin, function_named};
 
 use crate::typed::SymbolId;
+
+/// What the unit knows about a symbol.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct About {
+    pub(crate) align: u32,
+    pub(crate) is_variadic: bool,
+    pub(crate) is_external: bool,
+    pub(crate) is_defined: bool,
+}
+
+/// Whether the board's firmware has a function of this name.
+fn is_in_firmware(name: &str) -> bool {
+    let function = function_named(name);
+    let origin = function.and_then(|number| FIRMWARE_FUNCTIONS.get(number)).map(|row| row.origin);
+    matches!(origin, Some(Origin::Header | Origin::Firmware))
+}
 
 /// The symbols of a unit, as far as code cares.
 #[derive(Debug, Default)]
 pub(crate) struct Externs {
     aligns: PrimaryMap<SymbolId, u32>,
     variadic: SecondaryMap<SymbolId, bool>,
+    /// Functions of the firmware with variable arguments, which take them from the stack alone.
+    stack_alone: SecondaryMap<SymbolId, bool>,
     named: BTreeMap<String, SymbolId>,
     /// Names that were asked for and are new, in the order of their numbers.
     added: Vec<&'static str>,
@@ -18,9 +37,11 @@ pub(crate) struct Externs {
 
 impl Externs {
     /// Takes a symbol of the unit, in the order of their numbers.
-    pub(crate) fn push(&mut self, name: &str, align: u32, is_variadic: bool, is_external: bool) {
+    pub(crate) fn push(&mut self, name: &str, about: About) {
+        let About { align, is_variadic, is_external, is_defined } = about;
         let id = self.aligns.push(align);
         self.variadic[id] = is_variadic;
+        self.stack_alone[id] = is_variadic && is_external && !is_defined && is_in_firmware(name);
         if is_external {
             self.named.insert(name.to_owned(), id);
         }
@@ -45,6 +66,11 @@ impl Externs {
     /// Whether a symbol is a function with variable arguments.
     pub(super) fn is_variadic(&self, symbol: SymbolId) -> bool {
         self.variadic[symbol]
+    }
+
+    /// Whether a function does not want the address of its variable arguments.
+    pub(super) fn takes_stack_alone(&self, symbol: SymbolId) -> bool {
+        self.stack_alone[symbol]
     }
 
     /// The names that the unit did not have.

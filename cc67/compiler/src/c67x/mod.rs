@@ -20,7 +20,7 @@ mod abi;
 mod allocate;
 mod code;
 mod expand;
-mod externs;
+pub(crate) mod externs;
 mod forms;
 mod frame;
 mod graph;
@@ -87,11 +87,11 @@ impl Generator {
         }
         sides::assign(&mut code);
         let assignment = allocate::allocate(&mut code).ok_or_else(|| too_large(ir.span, name))?;
-        let expanded = expand::expand(ir, &code, &assignment).map_err(|why| match why {
+        let order = if self.level == Level::None { Order::Source } else { Order::Early };
+        let expanded = expand::expand(ir, &code, &assignment, order).map_err(|why| match why {
             TooLarge::Frame => frame_too_large(ir.span, name),
             TooLarge::Code => too_large(ir.span, name),
         })?;
-        let order = if self.level == Level::None { Order::Source } else { Order::Early };
         let regions: Vec<_> =
             expanded.regions.into_iter().map(|region| schedule::schedule(region, order)).collect();
         let laid = layout::lay_out(&regions, &code.tables, code.blocks.len() as u32, ir.span);

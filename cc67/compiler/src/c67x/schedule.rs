@@ -10,7 +10,7 @@ use super::code::Value;
 use super::expand::Region;
 use super::graph::{self, BRANCH, Graph};
 use super::resources::Resources;
-use super::step::Step;
+use super::step::{Access, Step};
 use crate::source::Span;
 
 /// An instruction with its cycle.
@@ -44,7 +44,7 @@ pub(super) enum Order {
 
 /// Schedules a region.
 pub(super) fn schedule(region: Region, order: Order) -> Scheduled {
-    let Region { label, steps, branches, span } = region;
+    let Region { label, steps, branches, late, span } = region;
     let graph = graph::build(&steps, &branches);
     let mut list = List {
         earliest: vec![0; steps.len() + branches.len()],
@@ -53,9 +53,13 @@ pub(super) fn schedule(region: Region, order: Order) -> Scheduled {
         issued: Vec::with_capacity(steps.len() + branches.len()),
         graph: &graph,
         order,
+        last_access: 0,
     };
     let end = list.steps(&steps);
-    let cycles = list.branches(&steps, &branches, end);
+    let cycles = match branches.first() {
+        Some(branch) if !late.is_empty() => list.leave(steps.len(), branch, &late, end),
+        _ => list.branches(&steps, &branches, end),
+    };
     let mut insts = list.issued;
     insts.sort_by_key(|issued| issued.cycle);
     Scheduled { label, insts, cycles, span }
@@ -68,6 +72,8 @@ struct List<'a> {
     resources: Resources,
     issued: Vec<Issued>,
     order: Order,
+    /// The last cycle with a load or store.
+    last_access: u32,
 }
 
 impl List<'_> {
@@ -116,6 +122,9 @@ impl List<'_> {
 
     fn issue(&mut self, step: &Step, inst: Inst, cycle: u32) {
         self.resources.take(&inst, cycle);
+        if step.access != Access::None {
+            self.last_access = self.last_access.max(cycle);
+        }
         self.issued.push(Issued { cycle, inst, value: step.value, span: step.span });
     }
 
@@ -152,6 +161,35 @@ impl List<'_> {
             cycles = cycles.max(cycle + BRANCH);
         }
         cycles
+    }
+
+    /// Places the branch that leaves the function, and in its slots the load of the register that it reads and the
+    /// step of the stack pointer after that: no interrupt comes between them. The length of the region.
+    fn leave(&mut self, branch_index: usize, branch: &Step, late: &[Step], end: u32) -> u32 {
+        let mut cycle = self.earliest[branch_index].max(end.saturating_sub(BRANCH));
+        let last_access = self.last_access;
+        loop {
+            let own = self.form(branch, cycle);
+            let mut from = cycle;
+            let mut placed: Vec<(&Step, Inst, u32)> = Vec::with_capacity(late.len());
+            for step in late {
+                let is_access = step.access != Access::None;
+                let first = if is_access { from } else { from.max(cycle + 1).max(last_access) };
+                let landing = step.forms.first().map_or(1, graph::landing);
+                let found = (first..=cycle + BRANCH - landing).find_map(|at| Some((self.form(step, at)?, at)));
+                let Some((inst, at)) = found else { break };
+                from = at;
+                placed.push((step, inst, at));
+            }
+            if let (Some(own), true) = (own, placed.len() == late.len()) {
+                self.issue(branch, own, cycle);
+                for (step, inst, at) in placed {
+                    self.issue(step, inst, at);
+                }
+                return cycle + BRANCH;
+            }
+            cycle += 1;
+        }
     }
 }
 

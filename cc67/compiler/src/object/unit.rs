@@ -7,7 +7,7 @@ use super::{
 };
 use crate::bytecode::text::Added;
 use crate::bytecode::{Generated, Relocation, RelocationKind, Text};
-use crate::c67x::Externs;
+use crate::c67x::{Externs, externs};
 use crate::c67x::text::Words;
 use crate::ir::function::Signatures;
 use crate::ir::inst::SignatureId;
@@ -88,7 +88,10 @@ impl<'a> UnitBuilder<'a> {
                 _ => false,
             });
             let is_external = symbol.linkage == Linkage::External;
-            externs.push(&symbol.name, symbol.align, is_variadic, is_external);
+            let is_defined = (self.unit.symbols.get(id))
+                .is_some_and(|symbol| !matches!(symbol.definition, typed::Definition::None));
+            let about = externs::About { align: symbol.align, is_variadic, is_external, is_defined };
+            externs.push(&symbol.name, about);
         }
         externs
     }

@@ -2,9 +2,15 @@
 
 use super::{Selector, is_pair};
 use crate::c67x::abi;
+use crate::c67x::Externs;
 use crate::c67x::code::{Arg, Base, Call, Inst, Place, Target, VReg};
 use crate::c67x::forms::Kind;
 use crate::ir::inst::{ArgumentRange, Callee, Class, Operand, SignatureId, ValueId};
+
+/// Whether the last argument of a call, the address of its variable ones, is for nobody.
+pub(super) fn takes_stack_alone(callee: Callee, externs: &Externs) -> bool {
+    matches!(callee, Callee::Symbol(symbol) if externs.takes_stack_alone(symbol))
+}
 
 impl Selector<'_> {
     pub(super) fn call(
@@ -15,6 +21,9 @@ impl Selector<'_> {
         dst: Option<ValueId>,
     ) {
         let operands = &self.function.arguments[arguments.range()];
+        let last_named = operands.len().checked_sub(2);
+        let wanted = operands.len() - usize::from(takes_stack_alone(callee, self.externs));
+        let operands = &operands[..wanted];
         let mut passed: Vec<VReg> = operands.iter().map(|operand| self.operand(*operand)).collect();
         let classes: Vec<Class> = operands.iter().map(|operand| self.function.class(*operand)).collect();
         let takes_variable = match callee {
@@ -22,7 +31,7 @@ impl Selector<'_> {
             Callee::Pointer(_) => false,
         };
         if takes_variable {
-            self.last_named(&passed, &classes);
+            self.last_named(last_named.map(|index| (passed[index], classes[index])));
         }
         let rest = passed.split_off(passed.len().min(abi::ARGUMENTS.len()));
         let mut arguments: Vec<_> = passed.into_iter().zip(abi::ARGUMENTS).collect();
@@ -44,9 +53,8 @@ impl Selector<'_> {
     }
 
     /// The last named argument of a function with variable ones is in memory too (`c67x.md` 6.1).
-    fn last_named(&mut self, passed: &[VReg], classes: &[Class]) {
+    fn last_named(&mut self, last: Option<(VReg, Class)>) {
         self.code.has_variable_calls = true;
-        let last = passed.len().checked_sub(2).map(|index| (passed[index], classes[index]));
         if let Some((reg, class)) = last.filter(|(_, class)| !is_pair(*class)) {
             debug_assert!(!is_pair(class), "a pair has no place below the variable arguments");
             let mut inst = Inst::new(Kind::StoreWord, Arg::None, Arg::None, reg.into(), self.span);

@@ -39,12 +39,13 @@ pub(super) fn select(context: Context<'_>) -> Code {
     for (number, id) in (0..).zip(&function.layout) {
         numbers[*id] = number;
     }
+    let uses = count_uses(function, context.externs);
     let mut selector = Selector {
         function,
         signatures: context.signatures,
         externs: context.externs,
         values: SecondaryMap::new(),
-        uses: count_uses(function),
+        uses,
         numbers,
         code: Code {
             blocks: Vec::with_capacity(function.layout.len()),
@@ -67,7 +68,7 @@ pub(super) fn select(context: Context<'_>) -> Code {
 }
 
 /// How often each value is read.
-fn count_uses(function: &Function) -> SecondaryMap<ValueId, u32> {
+fn count_uses(function: &Function, externs: &Externs) -> SecondaryMap<ValueId, u32> {
     let mut uses: SecondaryMap<ValueId, u32> = table(function.values.len());
     let mut count = |operand: Operand| {
         if let Operand::Value(value) = operand {
@@ -80,7 +81,10 @@ fn count_uses(function: &Function) -> SecondaryMap<ValueId, u32> {
             let mut kind = inst.kind;
             kind.visit_operands(|operand| count(*operand));
             if let Some(arguments) = kind.arguments() {
-                function.arguments[arguments.range()].iter().for_each(|operand| count(*operand));
+                let operands = &function.arguments[arguments.range()];
+                let is_unwanted = matches!(kind, InstKind::Call { callee, .. } if call::takes_stack_alone(callee, externs));
+                let wanted = operands.len() - usize::from(is_unwanted);
+                operands.iter().take(wanted).for_each(|operand| count(*operand));
             }
         }
         if let Some(operand) = block.terminator.operand() {
@@ -300,6 +304,7 @@ impl Selector<'_> {
             InstKind::Convert { op, dst, src } => self.convert(op, dst, src),
             InstKind::Load { dst, width, address } => self.load(dst, width, address),
             InstKind::Store { src, width, address } => self.store(src, width, address),
+            InstKind::FrameAddress { dst, .. } if self.uses[dst] == 0 => {}
             InstKind::FrameAddress { dst, slot, offset } => {
                 let dst = self.value(dst);
                 self.frame_address(dst, slot, offset);
