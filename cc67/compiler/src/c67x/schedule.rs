@@ -176,7 +176,8 @@ impl List<'_> {
                 let is_access = step.access != Access::None;
                 let first = if is_access { from } else { from.max(cycle + 1).max(last_access) };
                 let landing = step.forms.first().map_or(1, graph::landing);
-                let found = (first..=cycle + BRANCH - landing).find_map(|at| Some((self.form(step, at)?, at)));
+                let found =
+                    (first..=cycle + BRANCH - landing).find_map(|at| Some((self.form(step, at)?, at)));
                 let Some((inst, at)) = found else { break };
                 from = at;
                 placed.push((step, inst, at));

@@ -7,8 +7,8 @@ use super::{
 };
 use crate::bytecode::text::Added;
 use crate::bytecode::{Generated, Relocation, RelocationKind, Text};
-use crate::c67x::{Externs, externs};
 use crate::c67x::text::Words;
+use crate::c67x::{Externs, externs};
 use crate::ir::function::Signatures;
 use crate::ir::inst::SignatureId;
 use crate::source::{SourceMap, Span};

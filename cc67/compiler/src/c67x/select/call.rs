@@ -1,8 +1,8 @@
 //! Calls.
 
 use super::{Selector, is_pair};
-use crate::c67x::abi;
 use crate::c67x::Externs;
+use crate::c67x::abi;
 use crate::c67x::code::{Arg, Base, Call, Inst, Place, Target, VReg};
 use crate::c67x::forms::Kind;
 use crate::ir::inst::{ArgumentRange, Callee, Class, Operand, SignatureId, ValueId};

@@ -82,7 +82,8 @@ fn count_uses(function: &Function, externs: &Externs) -> SecondaryMap<ValueId, u
             kind.visit_operands(|operand| count(*operand));
             if let Some(arguments) = kind.arguments() {
                 let operands = &function.arguments[arguments.range()];
-                let is_unwanted = matches!(kind, InstKind::Call { callee, .. } if call::takes_stack_alone(callee, externs));
+                let is_unwanted =
+                    matches!(kind, InstKind::Call { callee, .. } if call::takes_stack_alone(callee, externs));
                 let wanted = operands.len() - usize::from(is_unwanted);
                 operands.iter().take(wanted).for_each(|operand| count(*operand));
             }
