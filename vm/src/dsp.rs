@@ -21,7 +21,11 @@ mod execute;
 mod float;
 mod idle;
 mod inspect;
+#[cfg(feature = "native")]
+mod marks;
 mod memory;
+#[cfg(feature = "native")]
+mod native;
 mod pipeline;
 mod product;
 mod threads;

@@ -17,6 +17,7 @@ mod entry;
 mod fiber;
 mod linked;
 mod object;
+mod piece;
 mod protected;
 mod request;
 mod shared;
@@ -34,6 +35,9 @@ pub use self::compile::CompileError;
 pub use self::linked::{Description, Linked, LinkedError};
 pub use self::object::{PREFIX, Parts, START, object};
 pub use self::shared::SharedCode;
+
+pub(crate) use self::code::Piece;
+pub(crate) use self::piece::{Handover, LINES, MARK_BITS, Marks, Places, VALUES};
 
 use self::code::Code;
 use self::context::{Context, Saved};

@@ -57,6 +57,11 @@ macro_rules! accesses {
 }
 
 impl Memory for Ram {
+    #[cfg(feature = "native")]
+    fn ram(&mut self) -> Option<&mut GuestMemory> {
+        Some(&mut self.0)
+    }
+
     fn fetch(&self, addr: u32) -> Option<u32> {
         (addr >= CODE).then(|| self.0.peek(GuestAddr::new(addr)))
     }
@@ -84,7 +89,7 @@ fn cpu() -> Duration {
 fn show(name: &str, began: Duration, cycles: u64, packets: u64) {
     let seconds = (cpu() - began).as_secs_f64();
     let rate = |count: u64| count as f64 / seconds / 1e6;
-    println!("{name:16} {seconds:7.3} s {:8.1} M cycles/s {:8.1} M packets/s", rate(cycles), rate(packets));
+    println!("{name:26} {seconds:7.3} s {:8.1} M cycles/s {:8.1} M packets/s", rate(cycles), rate(packets));
 }
 
 fn kernel(name: &str, words: &str, arguments: &[(c67x::Reg, u32)]) {
@@ -92,7 +97,12 @@ fn kernel(name: &str, words: &str, arguments: &[(c67x::Reg, u32)]) {
     for (at, word) in (CODE..).step_by(4).zip(words.split_whitespace()) {
         ram.0.poke(GuestAddr::new(at), u32::from_str_radix(word, 16).expect("a word"));
     }
+    for element in 0..4096_u32 {
+        ram.0.poke(GuestAddr::new(0x8006_0000 + 8 * element), 1.0 + f64::from(element) / 64.0);
+        ram.0.poke(GuestAddr::new(0x8007_0000 + 8 * element), f64::from(element % 100) - 50.5);
+    }
     let mut core = Core::new(CODE);
+    core.translate(name.ends_with("translated"));
     let began = cpu();
     let mut calls = 0;
     while core.state.cycle() < CYCLES {
@@ -109,9 +119,11 @@ fn kernel(name: &str, words: &str, arguments: &[(c67x::Reg, u32)]) {
 fn main() {
     let (a, b) = (c67x::Reg::a, c67x::Reg::b);
     let (first, second) = (0x8006_0000, 0x8007_0000);
-    kernel("kernel/integer", INTEGER, &[(a(4), first), (b(4), 1000)]);
-    kernel("kernel/memory", COPY, &[(a(4), first), (b(4), 1000), (a(5), second)]);
-    kernel("kernel/double", DOUBLE, &[(a(4), first), (b(4), second), (a(6), 1000)]);
+    for how in ["", " translated"] {
+        kernel(&format!("kernel/integer{how}"), INTEGER, &[(a(4), first), (b(4), 1000)]);
+        kernel(&format!("kernel/memory{how}"), COPY, &[(a(4), first), (b(4), 1000), (a(5), second)]);
+        kernel(&format!("kernel/double{how}"), DOUBLE, &[(a(4), first), (b(4), second), (a(6), 1000)]);
+    }
     let Some(path) = std::env::var_os("CC67_FIRMWARE") else {
         println!("boot, idle: not measured, CC67_FIRMWARE names no firmware file");
         return;

@@ -41,12 +41,23 @@ pub(super) struct Cache {
     packets: Vec<Packet>,
     micros: Vec<Micro>,
     pages: Box<[Option<Box<Page>>]>,
+    /// How often decoded packets were dropped.
+    generation: u64,
+    #[cfg(feature = "native")]
+    marks: super::marks::LineMarks,
 }
 
 impl Default for Cache {
     fn default() -> Self {
         let pages = std::iter::repeat_with(|| None).take(PLACES).collect();
-        Self { packets: Vec::new(), micros: Vec::new(), pages }
+        Self {
+            packets: Vec::new(),
+            micros: Vec::new(),
+            pages,
+            generation: 0,
+            #[cfg(feature = "native")]
+            marks: Default::default(),
+        }
     }
 }
 
@@ -136,6 +147,8 @@ impl Cache {
         let mut word = at;
         while word != end {
             self.page_mut(word).lines |= line_bit(word);
+            #[cfg(feature = "native")]
+            self.marks.mark_code(word);
             word = word.wrapping_add(4);
         }
     }
@@ -160,6 +173,7 @@ impl Cache {
     #[cold]
     pub(super) fn drop_line(&mut self, at: u32) {
         let line = at & !(LINE - 1);
+        self.generation += 1;
         for word in (line.wrapping_sub(BEFORE)..line.wrapping_add(LINE)).step_by(4) {
             if let Some(index) = self.known(word) {
                 self.page_mut(word).packets[(word % PAGE / 4) as usize] = NONE;
@@ -173,6 +187,33 @@ impl Cache {
 
     /// Forgets everything.
     pub(super) fn clear(&mut self) {
+        let generation = self.generation + 1;
         *self = Self::default();
+        self.generation = generation;
+    }
+
+    /// A number that is another one once decoded packets were dropped.
+    #[cfg(feature = "native")]
+    pub(super) const fn generation(&self) -> u64 {
+        self.generation
+    }
+
+    /// Begins to mark the lines of decoded packets for translated code.
+    #[cfg(feature = "native")]
+    pub(super) fn mark_lines(&mut self) {
+        if self.marks.begin() {
+            let pages = self.pages.iter().flatten();
+            for page in pages {
+                for line in (0..PAGE / LINE).filter(|line| page.lines >> line & 1 != 0) {
+                    self.marks.mark_code((page.number << PAGE_BITS) + line * LINE);
+                }
+            }
+        }
+    }
+
+    /// Where translated code must not store: decoded packets, and what is protected in `memory`.
+    #[cfg(feature = "native")]
+    pub(super) fn marks(&mut self, memory: &crate::memory::GuestMemory) -> Option<&crate::native::Marks> {
+        self.marks.follow(memory.protected_texts())
     }
 }

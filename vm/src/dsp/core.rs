@@ -4,6 +4,8 @@ use super::cache::Cache;
 use super::decode::{NoPacket, STACK, places};
 use super::idle::{Arrival, Idle};
 use super::memory::{Clock, Memory};
+#[cfg(feature = "native")]
+use super::native::Account;
 use super::pipeline::{Passed, State};
 use crate::trap::{Fault, TrapKind};
 
@@ -50,6 +52,9 @@ pub struct Core {
     border: Border,
     idle: Idle,
     skips: bool,
+    /// Hot code as code of the host, where that is wanted.
+    #[cfg(feature = "native")]
+    native: Option<Box<super::native::Native>>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -131,6 +136,8 @@ impl Core {
 
     fn run_to_border<M: Memory>(&mut self, memory: &mut M) -> Halt {
         loop {
+            #[cfg(feature = "native")]
+            self.run_native(memory);
             let index = match self.find(memory) {
                 Ok(index) => index,
                 Err(NoPacket::Outside) => return Halt::Left(self.state.pc),
@@ -143,6 +150,43 @@ impl Core {
             if self.state.pc <= from && self.skips {
                 self.went_back(memory);
             }
+        }
+    }
+
+    /// Whether hot code is translated to code of the host, where this is built with it; nothing else changes.
+    pub fn translate(&mut self, whether: bool) {
+        #[cfg(feature = "native")]
+        {
+            self.native = whether.then(Box::default);
+        }
+        #[cfg(not(feature = "native"))]
+        let _ = whether;
+    }
+
+    /// Packets that were executed as code of the host.
+    #[must_use]
+    pub fn translated(&self) -> u64 {
+        #[cfg(feature = "native")]
+        return self.native.as_ref().map_or(0, |native| native.packets());
+        #[cfg(not(feature = "native"))]
+        0
+    }
+
+    /// A branch has arrived: executes what is translated from there on.
+    #[cfg(feature = "native")]
+    #[inline]
+    fn run_native<M: Memory>(&mut self, memory: &mut M) {
+        if self.native.is_none() || self.skips {
+            return;
+        }
+        let Some(native) = &mut self.native else { return };
+        let stack = self.stack.map_or((0, u32::MAX), |stack| (stack.limit, stack.top));
+        let mut account =
+            Account { stack, lowest: self.lowest_stack.unwrap_or(u32::MAX), packets: self.packets };
+        native.run(&mut self.state, &mut self.cache, memory, &mut account);
+        self.packets = account.packets;
+        if self.stack.is_some() && account.lowest != u32::MAX {
+            self.lowest_stack = Some(account.lowest);
         }
     }
 

@@ -1,5 +1,7 @@
 //! What the processor needs of memory.
 
+#[cfg(feature = "native")]
+use crate::memory::GuestMemory;
 use crate::trap::TrapKind;
 
 /// Cycles that have passed, and those that may still pass.
@@ -45,6 +47,12 @@ pub trait Memory {
     /// How often a device was reached so far in a way that may matter; a loop that reaches none can be skipped.
     fn touches(&self) -> u64 {
         0
+    }
+
+    /// Both RAMs, if they are all that accesses of their addresses reach: then hot code is translated.
+    #[cfg(feature = "native")]
+    fn ram(&mut self) -> Option<&mut GuestMemory> {
+        None
     }
 
     /// The word at `addr` as an instruction; `None` where the context has no code, so that it leaves the core.

@@ -11,7 +11,7 @@ use super::memory::Clock;
 use crate::trap::Fault;
 
 /// Slots; more than the longest latency.
-const SLOTS: usize = 16;
+pub(super) const SLOTS: usize = 16;
 /// Cycles from a branch to its target.
 const BRANCH: u64 = 6;
 
@@ -57,26 +57,26 @@ pub struct State {
     pub(super) pc: u32,
     /// Cycles passed and left.
     pub clock: Clock,
-    flight: Flight,
+    pub(super) flight: Flight,
     undefined: Undefined,
     /// The packets of the last branch and of the one before it.
-    branched_at: [u32; 2],
+    pub(super) branched_at: [u32; 2],
     /// The first cycle before which an interrupt is possible again.
-    shadow: u64,
+    pub(super) shadow: u64,
     /// Whether an `IDLE` waits.
     pub(super) is_idle: bool,
 }
 
 /// What is on its way: results, branches, double instructions that have more to read.
 #[derive(Clone, Debug)]
-struct Flight {
+pub(super) struct Flight {
     /// Slots that have something to do, a bit each.
-    busy: u16,
-    masks: [u64; SLOTS],
-    values: Box<[[u32; 64]; SLOTS]>,
-    branches: u16,
-    targets: [u32; SLOTS],
-    late: Vec<Late>,
+    pub(super) busy: u16,
+    pub(super) masks: [u64; SLOTS],
+    pub(super) values: Box<[[u32; 64]; SLOTS]>,
+    pub(super) branches: u16,
+    pub(super) targets: [u32; SLOTS],
+    pub(super) late: Vec<Late>,
 }
 
 impl Default for Flight {
@@ -458,7 +458,7 @@ impl State {
     }
 
     #[inline(always)]
-    const fn slot(&self, delay: u64) -> usize {
+    pub(super) const fn slot(&self, delay: u64) -> usize {
         (self.clock.cycle + delay) as usize % SLOTS
     }
 }

@@ -46,6 +46,30 @@ impl Halves {
         Self(Self::new(first, second).0 | SATURATING)
     }
 
+    /// From a byte of a decoded instruction.
+    #[cfg(feature = "native")]
+    pub(super) const fn from_bits(bits: u8) -> Self {
+        Self(bits)
+    }
+
+    /// Whether the first source is taken from its high half, and with its sign.
+    #[cfg(feature = "native")]
+    pub(super) const fn first(self) -> (bool, bool) {
+        (self.0 & HIGH1 != 0, self.0 & SIGNED1 != 0)
+    }
+
+    /// The same of the second source.
+    #[cfg(feature = "native")]
+    pub(super) const fn second(self) -> (bool, bool) {
+        (self.0 & HIGH2 != 0, self.0 & SIGNED2 != 0)
+    }
+
+    /// Whether the product is doubled and clamped.
+    #[cfg(feature = "native")]
+    pub(super) const fn is_saturating(self) -> bool {
+        self.0 & SATURATING != 0
+    }
+
     /// As a byte of a decoded instruction.
     pub(super) const fn bits(self) -> u8 {
         self.0

@@ -2,4 +2,6 @@
 
 mod faults;
 mod flat;
+#[cfg(feature = "native")]
+mod translated;
 mod vectors;

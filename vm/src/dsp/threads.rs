@@ -94,6 +94,7 @@ impl Executor for DspEngine {
         core.state.set_reg(STACK, top);
         core.state.set_reg(LINK, returns_to);
         core.watch_stack(base, top);
+        core.translate(true);
         self.contexts[id.index()] = Some(Processor { core, top, arguments: ArgumentList::default() });
         Ok(())
     }

@@ -7,6 +7,8 @@ use crate::engine::Slice;
 use crate::firmware::Firmware;
 use crate::kind::Width;
 use crate::loaded::Image;
+#[cfg(feature = "native")]
+use crate::memory::GuestMemory;
 use crate::trap::TrapKind;
 
 /// The memory of a slice.
@@ -39,6 +41,11 @@ impl<F: Firmware + ?Sized> View<'_, '_, F> {
 }
 
 impl<F: Firmware + ?Sized> Memory for View<'_, '_, F> {
+    #[cfg(feature = "native")]
+    fn ram(&mut self) -> Option<&mut GuestMemory> {
+        Some(self.0.memory)
+    }
+
     fn fetch(&self, addr: u32) -> Option<u32> {
         Image::is_code(addr).then(|| self.0.memory.peek(GuestAddr::new(addr)))
     }

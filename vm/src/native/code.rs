@@ -4,13 +4,20 @@
 use std::fmt;
 use std::mem::ManuallyDrop;
 
+use cranelift_codegen::ir::{AbiParam, Function, types};
+use cranelift_frontend::FunctionBuilderContext;
 use cranelift_jit::{ArenaMemoryProvider, JITBuilder, JITModule};
-use cranelift_module::{FuncId, default_libcall_names};
+use cranelift_module::{FuncId, Module, default_libcall_names};
 
 use super::compile::{CompileError, Job, Place, StackUse, compile, host_isa};
-use super::entry::Begin;
+use super::entry::{Begin, RunPiece};
+use super::piece::{Handover, Marks, Places};
 use super::translate::{HostFunctions, PureFunctions};
+use crate::memory::GuestMemory;
 use crate::program::Program;
+
+/// Bytes of address space for a piece.
+const PIECE_ROOM: usize = 0x10_0000;
 
 /// Bytes of native stack for what runs besides the program's functions: the way in, and requests.
 const STACK_RESERVE: usize = 0x1_0000;
@@ -59,9 +66,14 @@ pub(super) struct CodeMemory(ManuallyDrop<JITModule>);
 impl CodeMemory {
     /// Room for the code of `program`.
     fn new(program: &Program) -> Result<Self, CompileError> {
+        Self::with_room(
+            program.functions().len() * 2 * RESERVE_PER_FUNCTION + program.ops().len() * RESERVE_PER_WORD,
+        )
+    }
+
+    /// Room for this many bytes of code.
+    fn with_room(reserve: usize) -> Result<Self, CompileError> {
         let mut builder = JITBuilder::with_isa(host_isa(Place::Memory)?, default_libcall_names());
-        let reserve =
-            program.functions().len() * 2 * RESERVE_PER_FUNCTION + program.ops().len() * RESERVE_PER_WORD;
         // One piece, so that every call reaches its target.
         let arena =
             ArenaMemoryProvider::new_with_size(reserve).map_err(|error| CompileError::host(&error))?;
@@ -118,8 +130,77 @@ impl Code {
     }
 }
 
+/// The function of a piece at `pointer`.
+fn piece_at(pointer: *const u8) -> RunPiece {
+    // SAFETY: it is translated with the signature of `RunPiece` (`Piece::compile`).
+    unsafe { std::mem::transmute::<*const u8, RunPiece>(pointer) }
+}
+
 /// The function at `pointer`, which begins the outermost call.
 pub(super) fn begin_at(pointer: *const u8) -> Begin {
     // SAFETY: it is translated with the signature of `Begin` (`begin_signature`).
     unsafe { std::mem::transmute::<*const u8, Begin>(pointer) }
+}
+
+/// A piece of machine code that works on what is handed over to it.
+pub(crate) struct Piece {
+    _memory: CodeMemory,
+    entry: RunPiece,
+}
+
+// SAFETY: nothing changes after `compile`; the pointer is to memory that any thread may read and execute.
+unsafe impl Send for Piece {}
+// SAFETY: as above; the module is not used before it is dropped.
+unsafe impl Sync for Piece {}
+
+impl fmt::Debug for Piece {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Piece").finish_non_exhaustive()
+    }
+}
+
+impl Piece {
+    /// Compiles what `translate` writes, if it does: a function of pointers to a [`Handover`] and to
+    /// [`Places`] that returns a number.
+    ///
+    /// It must access nothing but those and what the [`Places`] are: 64 registers, both RAMs, a mark for
+    /// each line of them.
+    pub(crate) fn compile(
+        translate: impl FnOnce(&mut Function, &mut FunctionBuilderContext, &dyn Module) -> bool,
+    ) -> Result<Option<Self>, CompileError> {
+        let mut memory = CodeMemory::with_room(PIECE_ROOM)?;
+        let module = &mut *memory.0;
+        let mut signature = module.make_signature();
+        signature.params.extend([AbiParam::new(types::I64); 2]);
+        signature.returns.push(AbiParam::new(types::I32));
+        let mut context = module.make_context();
+        let id = module.declare_anonymous_function(&signature)?;
+        context.func.signature = signature;
+        if !translate(&mut context.func, &mut FunctionBuilderContext::new(), module) {
+            return Ok(None);
+        }
+        module.define_function(id, &mut context)?;
+        module.finalize_definitions()?;
+        let entry = piece_at(module.get_finalized_function(id));
+        Ok(Some(Self { _memory: memory, entry }))
+    }
+
+    /// Runs it; the number that it returns.
+    pub(crate) fn run(
+        &self,
+        handover: &mut Handover,
+        regs: &mut [u32; 256],
+        memory: &mut GuestMemory,
+        marks: &Marks,
+    ) -> u32 {
+        let (sdram, iram) = memory.ram_mut();
+        let places = Places {
+            regs: regs.as_mut_ptr(),
+            sdram: sdram.as_mut_ptr(),
+            iram: iram.as_mut_ptr(),
+            marks: marks.as_ptr(),
+        };
+        // SAFETY: the borrows last until it returns; its translation keeps to what they are of.
+        unsafe { (self.entry)(handover, &raw const places) }
+    }
 }

@@ -1,6 +1,7 @@
 //! The two ways between Rust and compiled code: in by [`enter`], out by [`leave`].
 #![expect(unsafe_code, reason = "calls compiled code, and is called by it with raw pointers")]
 
+use super::piece::{Handover, Places};
 use super::request::Request;
 use super::state::{State, WaysOut};
 use crate::arith;
@@ -11,6 +12,9 @@ pub(super) const WAYS_OUT: WaysOut = WaysOut { leave, convert };
 /// What begins the outermost call: a piece of compiled code that calls the thunk at the second
 /// pointer on the stack that the state describes.
 pub(super) type Begin = unsafe extern "C" fn(*const State, *const u8);
+
+/// A piece of machine code; what it returns says how it ended.
+pub(super) type RunPiece = unsafe extern "C" fn(*mut Handover, *const Places) -> u32;
 
 /// Runs a function of a program to its end.
 ///

@@ -1,0 +1,135 @@
+//! Loads and stores: RAM is reached at once, everything else is the interpreter's.
+
+use std::mem::offset_of;
+
+use cranelift_codegen::ir::condcodes::IntCC;
+use cranelift_codegen::ir::{Block, InstBuilder, Value, types};
+use kmotiondef::map::{IRAM, SDRAM};
+
+use super::super::decode::{AFTER, Micro, NEGATIVE, UPDATES, ZERO};
+use super::super::work::Work;
+use super::packet::Doing;
+use super::region::{Stopped, Translator, offset};
+use crate::native::{Handover, MARK_BITS};
+
+impl Translator<'_, '_> {
+    /// The address of an access; the base changes. The sources are the base, the base with the constant, the offset.
+    pub(super) fn address(
+        &mut self,
+        doing: &mut Doing,
+        m: &Micro,
+        [base, constant, register]: [Value; 3],
+    ) -> Result<Value, Stopped> {
+        let mut sum = constant;
+        if m.b != ZERO {
+            let scaled = self.builder.ins().ishl_imm_u(register, i64::from(m.extra));
+            let ins = self.builder.ins();
+            sum = if m.flags & NEGATIVE == 0 { ins.iadd(sum, scaled) } else { ins.isub(sum, scaled) };
+        }
+        if m.flags & UPDATES == 0 {
+            return Ok(sum);
+        }
+        self.give(doing, m, m.a, sum)?;
+        Ok(if m.flags & AFTER == 0 { sum } else { base })
+    }
+
+    /// Loads into a register or a pair.
+    pub(super) fn load(&mut self, doing: &mut Doing, m: &Micro, address: Value) -> Result<(), Stopped> {
+        let address = self.align(address, m.extra);
+        let pointer = self.pointer(doing, address, false);
+        let guest = self.guest;
+        let ins = self.builder.ins();
+        let value = match m.work {
+            Work::Ldbu => ins.uload8(types::I32, guest, pointer, 0),
+            Work::Ldb => ins.sload8(types::I32, guest, pointer, 0),
+            Work::Ldhu => ins.uload16(types::I32, guest, pointer, 0),
+            Work::Ldh => ins.sload16(types::I32, guest, pointer, 0),
+            Work::Lddw => ins.load(types::I64, guest, pointer, 0),
+            _ => ins.load(types::I32, guest, pointer, 0),
+        };
+        if m.work == Work::Lddw {
+            return self.push_pair(doing, [5, 5], m.dst, value);
+        }
+        self.push(doing, 5, m.dst, value)
+    }
+
+    /// Stores a register, at the end of the packet.
+    pub(super) fn store(&mut self, doing: &mut Doing, m: &Micro, address: Value) {
+        let value = self.read(doing, m.dst);
+        let address = self.align(address, m.extra);
+        let pointer = self.pointer(doing, address, true);
+        doing.stores.push((pointer, value, 1 << m.extra));
+    }
+
+    /// The low bits of an address do not count.
+    fn align(&mut self, address: Value, bits: u8) -> Value {
+        if bits == 0 { address } else { self.builder.ins().band_imm_s(address, -1 << bits) }
+    }
+
+    /// Where a guest address is on the host; for an access that is not made, somewhere harmless.
+    fn pointer(&mut self, doing: &mut Doing, address: Value, is_store: bool) -> Value {
+        let after = self.builder.create_block();
+        self.builder.append_block_param(after, types::I64);
+        if let Some(condition) = doing.condition {
+            let place = i64::try_from(offset_of!(Handover, scratch)).unwrap_or(0);
+            let scratch = self.builder.ins().iadd_imm_s(self.pointers.handover, place);
+            let made = self.builder.create_block();
+            self.builder.ins().brif(condition, made, &[], after, &[scratch.into()]);
+            self.builder.switch_to_block(made);
+        }
+        let (elsewhere, side) = (self.cold(), self.side(doing));
+        self.in_region(
+            address,
+            [SDRAM.base.get(), SDRAM.size],
+            0,
+            self.pointers.sdram,
+            is_store,
+            [elsewhere, side, after],
+        );
+        self.builder.switch_to_block(elsewhere);
+        let lines = SDRAM.size >> MARK_BITS;
+        self.in_region(
+            address,
+            [IRAM.base.get(), IRAM.size],
+            lines,
+            self.pointers.iram,
+            is_store,
+            [side, side, after],
+        );
+        self.builder.switch_to_block(after);
+        self.builder.block_params(after)[0]
+    }
+
+    /// Continues with the pointer to an address, if it is in this RAM; the blocks are those for an address that is not,
+    /// for a store that is not to be made, and for the access.
+    fn in_region(
+        &mut self,
+        address: Value,
+        [base, size]: [u32; 2],
+        first_mark: u32,
+        ram: Value,
+        is_store: bool,
+        [outside, marked, after]: [Block; 3],
+    ) {
+        let place = self.builder.ins().iadd_imm_s(address, -i64::from(base.cast_signed()));
+        let is_inside = self.builder.ins().icmp_imm_u(IntCC::UnsignedLessThan, place, i64::from(size));
+        let wide = self.builder.ins().uextend(types::I64, place);
+        let pointer = self.builder.ins().iadd(ram, wide);
+        if !is_store {
+            self.builder.ins().brif(is_inside, after, &[pointer.into()], outside, &[]);
+            return;
+        }
+        let inside = self.builder.create_block();
+        self.builder.ins().brif(is_inside, inside, &[], outside, &[]);
+        self.builder.switch_to_block(inside);
+        let line = self.builder.ins().ushr_imm_u(wide, i64::from(MARK_BITS));
+        let line = self.builder.ins().iadd(self.pointers.marks, line);
+        let mark = self.builder.ins().uload8(types::I32, self.own, line, first_mark.cast_signed());
+        if base == IRAM.base.get() {
+            let place = offset(offset_of!(Handover, touched));
+            let touched = self.builder.ins().iconst(types::I32, 1);
+            self.builder.ins().store(self.own, touched, self.pointers.handover, place);
+        }
+        self.builder.ins().brif(mark, marked, &[], after, &[pointer.into()]);
+    }
+}

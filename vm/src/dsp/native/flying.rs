@@ -1,0 +1,174 @@
+//! What is on its way at the border of a packet, without its values: the shape that a translation is made for.
+//!
+//! Results in flight are known when code is translated: a load lands five cycles after its issue whatever it loads. So
+//! a translation begins with a list of what is on its way, the values alone come from outside; and where it ends,
+//! another list says what the values are that it leaves.
+
+use super::super::decode::Micro;
+use super::super::pipeline::{Late, SLOTS, State};
+use crate::native::{Handover, VALUES};
+
+/// Something that is on its way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Flying {
+    /// Cycles until it arrives.
+    pub(super) due: u8,
+    /// Whether a value says if it arrives at all; that value comes first.
+    pub(super) is_conditional: bool,
+    /// What it is.
+    pub(super) what: Arriving,
+}
+
+/// What may be on its way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Arriving {
+    /// A result for this register; its value.
+    Result(u8),
+    /// A branch to an address, or to one that is a value.
+    Branch(Option<u32>),
+    /// A double instruction that reads high words when it arrives; the low words.
+    Start(Micro),
+    /// A product of doubles that reads the last high word; the low words and the high one of the second source.
+    Product(Micro),
+}
+
+impl Arriving {
+    /// How many values it has.
+    pub(super) const fn values(self) -> usize {
+        match self {
+            Self::Result(_) | Self::Branch(None) => 1,
+            Self::Branch(Some(_)) => 0,
+            Self::Start(_) => 2,
+            Self::Product(_) => 3,
+        }
+    }
+
+    /// Its place among those that arrive in the same cycle.
+    pub(super) const fn rank(self) -> u32 {
+        match self {
+            Self::Result(reg) => reg as u32,
+            Self::Start(micro) => 0x100 | micro.dst as u32,
+            Self::Product(micro) => 0x200 | micro.dst as u32,
+            Self::Branch(_) => 0x300,
+        }
+    }
+}
+
+impl State {
+    /// Lists what is on its way; `false` where that is not what a translation begins with.
+    pub(super) fn list_flying(&self, flying: &mut Vec<Flying>) -> bool {
+        flying.clear();
+        if self.flight.busy == 0 {
+            return true;
+        }
+        for due in 1..SLOTS as u8 {
+            let slot = self.slot(u64::from(due));
+            if self.flight.busy >> slot & 1 == 0 {
+                continue;
+            }
+            let mut mask = self.flight.masks[slot];
+            while mask != 0 {
+                let what = Arriving::Result(mask.trailing_zeros() as u8);
+                flying.push(Flying { due, is_conditional: false, what });
+                mask &= mask - 1;
+            }
+            for late in self.flight.late.iter().filter(|late| late.due == self.clock.cycle + u64::from(due)) {
+                if late.high2.is_none() || late.issued + 1 != self.clock.cycle || due != 1 {
+                    return false;
+                }
+                flying.push(Flying { due, is_conditional: false, what: Arriving::Product(late.micro) });
+            }
+            if self.flight.branches >> slot & 1 != 0 {
+                let what = Arriving::Branch(Some(self.flight.targets[slot]));
+                flying.push(Flying { due, is_conditional: false, what });
+            }
+        }
+        true
+    }
+
+    /// Hands over the values of what [`list_flying`](Self::list_flying) has listed: nothing is on its way here any more.
+    pub(super) fn take_flying(&mut self, flying: &[Flying], values: &mut [u32; VALUES]) {
+        let mut values = values.iter_mut();
+        let mut lates = self.flight.late.iter();
+        for one in flying {
+            let slot = self.slot(u64::from(one.due));
+            let mut put = |value| {
+                if let Some(place) = values.next() {
+                    *place = value;
+                }
+            };
+            match one.what {
+                Arriving::Result(reg) => put(self.flight.values[slot][usize::from(reg & 63)]),
+                Arriving::Branch(Some(_)) => {}
+                Arriving::Branch(None) => put(self.flight.targets[slot]),
+                Arriving::Start(_) | Arriving::Product(_) => {
+                    let Some(late) = lates.next() else { continue };
+                    put(late.low1);
+                    put(late.low2);
+                    put(late.high2.unwrap_or(0));
+                }
+            }
+        }
+        self.flight.busy = 0;
+        self.flight.masks = [0; SLOTS];
+        self.flight.branches = 0;
+        self.flight.late.clear();
+    }
+
+    /// Takes over what is on its way, in the present cycle.
+    pub(super) fn put_flying(&mut self, flying: &[Flying], values: &[u32; VALUES]) {
+        let mut values = values.iter().copied();
+        for one in flying {
+            let arrives = !one.is_conditional || values.next().is_some_and(|condition| condition != 0);
+            let mut own = [0; 3];
+            own.iter_mut().zip(values.by_ref().take(one.what.values())).for_each(|(own, value)| *own = value);
+            if !arrives {
+                continue;
+            }
+            let due = u64::from(one.due);
+            match one.what {
+                Arriving::Result(reg) => self.push(due, reg, own[0]),
+                Arriving::Branch(target) => self.set_branch(due, target.unwrap_or(own[0])),
+                Arriving::Start(micro) => self.push_late(Late {
+                    due: self.clock.cycle + due,
+                    issued: self.clock.cycle,
+                    micro,
+                    low1: own[0],
+                    low2: own[1],
+                    high2: None,
+                }),
+                Arriving::Product(micro) => self.push_late(Late {
+                    due: self.clock.cycle + due,
+                    issued: self.clock.cycle - 1,
+                    micro,
+                    low1: own[0],
+                    low2: own[1],
+                    high2: Some(own[2]),
+                }),
+            }
+        }
+    }
+
+    /// Hands over the time and the last branches.
+    pub(super) fn hand_over(&self, handover: &mut Handover) {
+        handover.time.cycle = self.clock.cycle;
+        handover.time.deadline = self.clock.deadline;
+        handover.time.shadow = self.shadow;
+        handover.branched_at = self.branched_at;
+    }
+
+    /// Takes them back.
+    pub(super) fn take_back(&mut self, handover: &Handover) {
+        self.clock.cycle = handover.time.cycle;
+        self.shadow = handover.time.shadow;
+        self.branched_at = handover.branched_at;
+    }
+
+    /// Lets a branch arrive that was issued before.
+    fn set_branch(&mut self, due: u64, target: u32) {
+        let slot = self.slot(due);
+        self.flight.branches |= 1 << slot;
+        self.flight.targets[slot] = target;
+        self.flight.busy |= 1 << slot;
+    }
+}

@@ -1,0 +1,335 @@
+//! One packet: what its instructions do, and how its cycles pass.
+//!
+//! Results of the first stage are kept apart until all instructions of the packet are written down, and so are stores:
+//! whatever finds that the packet is the interpreter's leads to the same exit, where nothing of it has happened.
+
+use std::collections::BTreeMap;
+use std::mem::offset_of;
+
+use cranelift_codegen::ir::condcodes::IntCC;
+use cranelift_codegen::ir::{Block, InstBuilder, Value, types};
+
+use super::super::decode::{DEFERRED, Micro, STACK, TRUE, ZERO};
+use super::super::work::Work;
+use super::flying::{Arriving, Flying};
+use super::region::{Border, Flight, Stopped, Translator, offset, result, sort};
+use crate::native::Handover;
+
+/// Cycles from a branch to its target.
+const BRANCH: u8 = 6;
+
+/// What a packet does, while its instructions are looked at.
+#[derive(Default)]
+pub(super) struct Doing {
+    /// Registers that have their new values at the end of this cycle.
+    pub(super) now: BTreeMap<u8, Value>,
+    /// What is on its way, from before and from this packet.
+    pub(super) flights: Vec<Flight>,
+    /// Stores that wait for the end: pointer, value, bytes.
+    pub(super) stores: Vec<(Value, Value, u32)>,
+    /// Branches that were taken: their conditions.
+    branches: Vec<Option<Value>>,
+    /// The condition of the instruction.
+    pub(super) condition: Option<Value>,
+    /// Where everything ends that is not to be done here.
+    side: Option<Block>,
+}
+
+impl Translator<'_, '_> {
+    /// Translates the packet at the border, which moves on; `false` where no packet follows in this block.
+    pub(super) fn packet(&mut self, border: &mut Border) -> Result<bool, Stopped> {
+        if border.pc & 3 != 0 {
+            return Err(Stopped::Here);
+        }
+        let (packet, micros) = (self.find)(border.pc).ok_or(Stopped::Here)?;
+        if packet.is_idle {
+            return Err(Stopped::Here);
+        }
+        let mut doing = Doing { flights: border.flights.clone(), ..Doing::default() };
+        let done = micros.iter().try_for_each(|micro| {
+            doing.condition = self.condition(&doing, micro);
+            self.micro(&mut doing, micro)
+        });
+        if done.is_ok() && packet.moves_stack {
+            self.check_stack(&mut doing);
+        }
+        if let Some(side) = doing.side {
+            self.builder.seal_block(side);
+            self.sides.push((side, border.clone()));
+        }
+        done?;
+        self.commit(&doing, border, packet.has_branch);
+        border.packets += 1;
+        border.flights = doing.flights;
+        let goes_on = self.advance(border, packet.cycles)?;
+        border.pc = packet.end;
+        Ok(goes_on)
+    }
+
+    /// The block where everything ends that is not to be done here.
+    pub(super) fn side(&mut self, doing: &mut Doing) -> Block {
+        *doing.side.get_or_insert_with(|| self.cold())
+    }
+
+    /// Leaves the packet to the interpreter if `is_wrong`.
+    pub(super) fn refuse_if(&mut self, doing: &mut Doing, is_wrong: Value) {
+        let (side, inside) = (self.side(doing), self.builder.create_block());
+        self.builder.ins().brif(is_wrong, side, &[], inside, &[]);
+        self.builder.switch_to_block(inside);
+    }
+
+    /// The value that says if an instruction is executed; `None` if it always is.
+    fn condition(&mut self, doing: &Doing, micro: &Micro) -> Option<Value> {
+        if micro.pred == TRUE {
+            return None;
+        }
+        let value = self.read(doing, micro.pred);
+        let condition = if micro.inverted { IntCC::Equal } else { IntCC::NotEqual };
+        Some(self.builder.ins().icmp_imm_u(condition, value, 0))
+    }
+
+    /// A register as the instruction sees it.
+    pub(super) fn read(&mut self, doing: &Doing, reg: u8) -> Value {
+        match reg {
+            ZERO => self.builder.ins().iconst(types::I32, 0),
+            TRUE => self.builder.ins().iconst(types::I32, 1),
+            _ => {
+                let known = doing.now.get(&reg).copied();
+                known.unwrap_or_else(|| self.builder.use_var(self.regs[usize::from(reg & 63)]))
+            }
+        }
+    }
+
+    /// A result of the first stage.
+    pub(super) fn give(
+        &mut self,
+        doing: &mut Doing,
+        micro: &Micro,
+        reg: u8,
+        value: Value,
+    ) -> Result<(), Stopped> {
+        if micro.flags & DEFERRED != 0 {
+            return self.push(doing, 1, reg, value);
+        }
+        let arriving = doing.flights.iter().find(|flight| flight.flying == strip(flight.flying, 1, reg));
+        if let Some(other) = arriving.map(|flight| flight.condition) {
+            self.refuse_both(doing, other)?;
+        }
+        let new = match doing.condition {
+            Some(condition) => {
+                let old = self.read(doing, reg);
+                self.builder.ins().select(condition, value, old)
+            }
+            None => value,
+        };
+        doing.now.insert(reg, new);
+        Ok(())
+    }
+
+    /// Two results for one register: certain, or only if both conditions hold.
+    fn refuse_both(&mut self, doing: &mut Doing, other: Option<Value>) -> Result<(), Stopped> {
+        let both = match (doing.condition, other) {
+            (None, None) => return Err(Stopped::Here),
+            (Some(one), None) | (None, Some(one)) => one,
+            (Some(one), Some(two)) => self.builder.ins().band(one, two),
+        };
+        self.refuse_if(doing, both);
+        Ok(())
+    }
+
+    /// A result that lands in `due` cycles.
+    pub(super) fn push(&mut self, doing: &mut Doing, due: u8, reg: u8, value: Value) -> Result<(), Stopped> {
+        let index = doing.flights.iter().position(|flight| flight.flying == strip(flight.flying, due, reg));
+        let Some(index) = index else {
+            let condition = doing.condition;
+            doing.flights.push(fly(result(due, reg), condition, vec![value]));
+            return Ok(());
+        };
+        let (other, old) = (doing.flights[index].condition, doing.flights[index].values[0]);
+        self.refuse_both(doing, other)?;
+        // Not both: where there are two conditions it is the result of the one that holds.
+        let (condition, value) = match (doing.condition, other) {
+            (Some(one), Some(two)) => {
+                (Some(self.builder.ins().bor(one, two)), self.builder.ins().select(one, value, old))
+            }
+            (Some(_) | None, None) => (None, old),
+            (None, Some(_)) => (None, value),
+        };
+        doing.flights[index] = fly(result(due, reg), condition, vec![value]);
+        Ok(())
+    }
+
+    /// A branch, to an address or to a value.
+    pub(super) fn branch(&mut self, doing: &mut Doing, target: Result<u32, Value>) -> Result<(), Stopped> {
+        let (known, values) = match target {
+            Ok(address) => (Some(address), Vec::new()),
+            Err(value) => (None, vec![value]),
+        };
+        let others: Vec<Option<Value>> = doing
+            .flights
+            .iter()
+            .filter(|flight| flight.flying.due == BRANCH && matches!(flight.flying.what, Arriving::Branch(_)))
+            .map(|flight| flight.condition)
+            .collect();
+        for other in others {
+            self.refuse_both(doing, other)?;
+        }
+        let flying = Flying { due: BRANCH, is_conditional: false, what: Arriving::Branch(known) };
+        doing.flights.push(fly(flying, doing.condition, values));
+        doing.branches.push(doing.condition);
+        Ok(())
+    }
+
+    /// A double instruction that reads its high words later.
+    pub(super) fn start_double(&mut self, doing: &mut Doing, micro: &Micro, low: [Value; 2]) {
+        let flying = Flying { due: 1, is_conditional: false, what: Arriving::Start(*micro) };
+        doing.flights.push(fly(flying, doing.condition, low.to_vec()));
+    }
+
+    /// Leaves the packet to the interpreter where the stack pointer leaves its bounds.
+    fn check_stack(&mut self, doing: &mut Doing) {
+        let pointer = self.read(doing, STACK);
+        let handover = self.pointers.handover;
+        let mut bound = |field| self.builder.ins().load(types::I32, self.own, handover, offset(field));
+        let limit = bound(offset_of!(Handover, stack.limit));
+        let top = bound(offset_of!(Handover, stack.top));
+        let under = self.builder.ins().icmp(IntCC::UnsignedLessThan, pointer, limit);
+        let over = self.builder.ins().icmp(IntCC::UnsignedGreaterThan, pointer, top);
+        let outside = self.builder.ins().bor(under, over);
+        self.refuse_if(doing, outside);
+        let field = offset(offset_of!(Handover, stack.lowest));
+        let lowest = self.builder.ins().load(types::I32, self.own, handover, field);
+        let lowest = self.builder.ins().umin(lowest, pointer);
+        self.builder.ins().store(self.own, lowest, handover, field);
+    }
+
+    /// Makes everything true that the packet does in its first cycle.
+    fn commit(&mut self, doing: &Doing, border: &Border, has_branch: bool) {
+        for (pointer, value, bytes) in &doing.stores {
+            match bytes {
+                1 => self.builder.ins().istore8(self.guest, *value, *pointer, 0),
+                2 => self.builder.ins().istore16(self.guest, *value, *pointer, 0),
+                _ => self.builder.ins().store(self.guest, *value, *pointer, 0),
+            };
+        }
+        for (reg, value) in &doing.now {
+            self.set(*reg, *value);
+        }
+        if has_branch {
+            let shadow = self.cycle(border.cycles + u32::from(BRANCH));
+            self.builder.def_var(self.counters.shadow, shadow);
+        }
+        for condition in &doing.branches {
+            let [last, before] = self.counters.branched_at;
+            let at = self.builder.ins().iconst(types::I32, i64::from(border.pc));
+            let (old, older) = (self.builder.use_var(last), self.builder.use_var(before));
+            let (new, second) = match condition {
+                Some(condition) => (
+                    self.builder.ins().select(*condition, at, old),
+                    self.builder.ins().select(*condition, old, older),
+                ),
+                None => (at, old),
+            };
+            self.builder.def_var(last, new);
+            self.builder.def_var(before, second);
+        }
+    }
+
+    /// Gives a register its value.
+    fn set(&mut self, reg: u8, value: Value) {
+        let reg = reg & 63;
+        self.builder.def_var(self.regs[usize::from(reg)], value);
+        self.builder.ins().store(self.own, value, self.pointers.regs, 4 * i32::from(reg));
+    }
+
+    /// Lets the cycles of a packet pass; `false` where a branch has certainly arrived.
+    fn advance(&mut self, border: &mut Border, cycles: u8) -> Result<bool, Stopped> {
+        for _ in 0..cycles {
+            border.cycles += 1;
+            border.flights.iter_mut().for_each(|flight| flight.flying.due -= 1);
+            let flights = std::mem::take(&mut border.flights);
+            let (arrived, mut rest): (Vec<_>, Vec<_>) =
+                flights.into_iter().partition(|flight| flight.flying.due == 0);
+            for flight in &arrived {
+                if let Arriving::Result(reg) = flight.flying.what {
+                    self.land(reg, flight.condition, flight.values[0]);
+                }
+            }
+            let mut doing = Doing { flights: std::mem::take(&mut rest), ..Doing::default() };
+            for flight in &arrived {
+                // A second result for a register is found by the interpreter at the next packet: not here.
+                self.read_late(&mut doing, flight).map_err(|_| Stopped::Unusual)?;
+            }
+            if doing.side.is_some() {
+                return Err(Stopped::Unusual);
+            }
+            border.flights = doing.flights;
+            sort(&mut border.flights);
+            for flight in &arrived {
+                if self.arrive(border, flight) {
+                    return Ok(false);
+                }
+            }
+        }
+        Ok(true)
+    }
+
+    fn land(&mut self, reg: u8, condition: Option<Value>, value: Value) {
+        let value = match condition {
+            Some(condition) => {
+                let old = self.builder.use_var(self.regs[usize::from(reg & 63)]);
+                self.builder.ins().select(condition, value, old)
+            }
+            None => value,
+        };
+        self.set(reg, value);
+    }
+
+    /// The next read of a double instruction.
+    fn read_late(&mut self, doing: &mut Doing, flight: &Flight) -> Result<(), Stopped> {
+        doing.condition = flight.condition;
+        let (micro, high2) = match flight.flying.what {
+            Arriving::Start(micro) => (micro, None),
+            Arriving::Product(micro) => (micro, Some(flight.values[2])),
+            Arriving::Result(_) | Arriving::Branch(_) => return Ok(()),
+        };
+        let [low1, low2] = [flight.values[0], flight.values[1]];
+        let high1 = self.read(doing, micro.a | 1);
+        let own2 = self.read(doing, micro.b | 1);
+        if micro.work == Work::Mpydp && high2.is_none() {
+            let flying = Flying { due: 1, is_conditional: false, what: Arriving::Product(micro) };
+            doing.flights.push(fly(flying, flight.condition, vec![low1, low2, own2]));
+            return Ok(());
+        }
+        self.finish_double(doing, &micro, [low1, high1], [low2, high2.unwrap_or(own2)])
+    }
+
+    /// What a branch does when it arrives; whether it certainly does.
+    fn arrive(&mut self, border: &Border, flight: &Flight) -> bool {
+        let Arriving::Branch(known) = flight.flying.what else { return false };
+        let rest = flight.condition.map(|condition| {
+            let (taken, rest) = (self.builder.create_block(), self.builder.create_block());
+            self.builder.ins().brif(condition, taken, &[], rest, &[]);
+            self.builder.switch_to_block(taken);
+            rest
+        });
+        match known {
+            Some(pc) => self.go_to(&Border { pc, ..border.clone() }),
+            None => self.exit(border, Some(flight.values[0]), true),
+        }
+        if let Some(rest) = rest {
+            self.builder.switch_to_block(rest);
+        }
+        rest.is_none()
+    }
+}
+
+/// `flying` if it is a result for `reg` that is due then; else something that it is not.
+fn strip(flying: Flying, due: u8, reg: u8) -> Flying {
+    Flying { is_conditional: flying.is_conditional, ..result(due, reg) }
+}
+
+/// Something on its way with its condition.
+fn fly(flying: Flying, condition: Option<Value>, values: Vec<Value>) -> Flight {
+    Flight { flying: Flying { is_conditional: condition.is_some(), ..flying }, condition, values }
+}

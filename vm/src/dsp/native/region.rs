@@ -1,0 +1,418 @@
+//! A region: packets that are reached from one place, as one function of the host.
+//!
+//! A block of it begins at a packet with a list of what is on its way there; the same packet with another list is
+//! another block. It follows the packets as they follow each other, and ends where a branch arrives. What is on its way
+//! from block to block goes as parameters of the blocks; the registers of the processor are variables, and each new
+//! value of one is stored as well, so that wherever the function ends the registers are what they should be.
+//!
+//! The function ends before a packet, never within one: all that can go wrong is tested before anything of the packet
+//! is stored. The interpreter executes what the function does not: accesses of devices, stores among code, control
+//! registers, faults. It ends likewise where less time is left than a block may take, so that no packet begins too late.
+
+use std::mem::offset_of;
+
+use cranelift_codegen::ir::condcodes::IntCC;
+use cranelift_codegen::ir::{
+    Block, BlockArg, Endianness, Function, InstBuilder, MemFlagsData, Type, Value, types,
+};
+use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext, Variable};
+use cranelift_module::Module;
+
+use super::super::decode::{Micro, Packet};
+use super::flying::{Arriving, Flying};
+use crate::native::{CompileError, Handover, Piece, Places, VALUES};
+
+/// Cycles that must be left where a block begins: no block takes more.
+pub(super) const LONGEST: u32 = 128;
+/// Cycles after which a block ends before its next packet.
+const ENOUGH: u32 = LONGEST - 32;
+/// Most packets, most blocks of a region.
+const MOST_PACKETS: u32 = 160;
+const MOST_BLOCKS: usize = 64;
+/// Registers of the processor.
+const REGISTERS: u8 = 64;
+
+/// Finds the packet at an address, and its instructions.
+pub(super) type Find<'a> = dyn FnMut(u32) -> Option<(Packet, Vec<Micro>)> + 'a;
+
+/// A region, ready to run.
+#[derive(Debug)]
+pub(super) struct Region {
+    /// What is on its way where it begins.
+    pub(super) entry: Vec<Flying>,
+    /// Its code; the number that it returns is that of an exit.
+    pub(super) piece: Piece,
+    /// Where it ends.
+    pub(super) exits: Vec<Exit>,
+}
+
+/// A way out of a region.
+#[derive(Debug)]
+pub(super) struct Exit {
+    /// The next packet; `None` if the code says so.
+    pub(super) pc: Option<u32>,
+    /// What is on its way there.
+    pub(super) flying: Vec<Flying>,
+    /// Whether another region may begin there.
+    pub(super) is_end: bool,
+}
+
+/// Why there is no region.
+#[derive(Debug)]
+pub(super) enum NoRegion {
+    /// Cranelift has refused it.
+    Compile,
+    /// It has something in it that only the interpreter has words for.
+    Unusual,
+}
+
+impl From<CompileError> for NoRegion {
+    fn from(_: CompileError) -> Self {
+        Self::Compile
+    }
+}
+
+/// Translates the packets that are reached from `pc` with `entry` on its way.
+pub(super) fn translate(pc: u32, entry: Vec<Flying>, find: &mut Find<'_>) -> Result<Region, NoRegion> {
+    let mut exits = Vec::new();
+    let piece = Piece::compile(|function, context, module| {
+        let mut translator = Translator::new(function, context, find);
+        let is_written = translator.region(pc, &entry).is_ok();
+        exits = std::mem::take(&mut translator.exits);
+        if is_written {
+            translator.finish(module);
+        }
+        is_written
+    })?;
+    Ok(Region { entry, piece: piece.ok_or(NoRegion::Unusual)?, exits })
+}
+
+/// What a region or a packet cannot have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Unusual;
+
+/// Something on its way, with its values.
+#[derive(Clone, Debug)]
+pub(super) struct Flight {
+    pub(super) flying: Flying,
+    pub(super) condition: Option<Value>,
+    pub(super) values: Vec<Value>,
+}
+
+/// A place between two packets of a block.
+#[derive(Clone, Debug)]
+pub(super) struct Border {
+    /// The next packet.
+    pub(super) pc: u32,
+    /// Cycles and packets since the block began.
+    pub(super) cycles: u32,
+    pub(super) packets: u32,
+    /// What is on its way, in its order.
+    pub(super) flights: Vec<Flight>,
+}
+
+/// A block of the region.
+struct Node {
+    pc: u32,
+    flying: Vec<Flying>,
+    block: Block,
+}
+
+/// Variables of the function besides registers.
+#[derive(Clone, Copy)]
+pub(super) struct Counters {
+    pub(super) cycle: Variable,
+    pub(super) packets: Variable,
+    pub(super) shadow: Variable,
+    pub(super) branched_at: [Variable; 2],
+}
+
+/// Pointers that the function holds.
+#[derive(Clone, Copy)]
+pub(super) struct Pointers {
+    pub(super) handover: Value,
+    pub(super) regs: Value,
+    pub(super) sdram: Value,
+    pub(super) iram: Value,
+    pub(super) marks: Value,
+}
+
+/// Writes the function.
+pub(super) struct Translator<'a, 'f> {
+    pub(super) builder: FunctionBuilder<'a>,
+    pub(super) find: &'a mut Find<'f>,
+    pub(super) regs: Vec<Variable>,
+    pub(super) counters: Counters,
+    pub(super) pointers: Pointers,
+    /// Whatever the function reads and writes is there; the guest's bytes have its order.
+    pub(super) own: MemFlagsData,
+    pub(super) guest: MemFlagsData,
+    nodes: Vec<Node>,
+    translated: u32,
+    exits: Vec<Exit>,
+    /// Blocks that are exits, still to be written, each of a border.
+    pub(super) sides: Vec<(Block, Border)>,
+}
+
+/// The offset of a field of what is handed over.
+pub(super) fn offset(field: usize) -> i32 {
+    i32::try_from(field).expect("it is small")
+}
+
+impl<'a, 'f> Translator<'a, 'f> {
+    fn new(
+        function: &'a mut Function,
+        context: &'a mut FunctionBuilderContext,
+        find: &'a mut Find<'f>,
+    ) -> Self {
+        let mut builder = FunctionBuilder::new(function, context);
+        let entry = builder.create_block();
+        builder.append_block_params_for_function_params(entry);
+        builder.switch_to_block(entry);
+        let (handover, places) = (builder.block_params(entry)[0], builder.block_params(entry)[1]);
+        let own = MemFlagsData::trusted();
+        let constant = own.with_readonly().with_can_move();
+        let mut pointer = |field| builder.ins().load(types::I64, constant, places, offset(field));
+        let pointers = Pointers {
+            handover,
+            regs: pointer(offset_of!(Places, regs)),
+            sdram: pointer(offset_of!(Places, sdram)),
+            iram: pointer(offset_of!(Places, iram)),
+            marks: pointer(offset_of!(Places, marks)),
+        };
+        let mut variable = |ty: Type, base: Value, field: i32| {
+            let variable = builder.declare_var(ty);
+            let value = builder.ins().load(ty, own, base, field);
+            builder.def_var(variable, value);
+            variable
+        };
+        let counters = Counters {
+            cycle: variable(types::I64, handover, offset(offset_of!(Handover, time.cycle))),
+            packets: variable(types::I64, handover, offset(offset_of!(Handover, time.packets))),
+            shadow: variable(types::I64, handover, offset(offset_of!(Handover, time.shadow))),
+            branched_at: [0, 4].map(|place| {
+                variable(types::I32, handover, offset(offset_of!(Handover, branched_at)) + place)
+            }),
+        };
+        let regs =
+            (0..REGISTERS).map(|reg| variable(types::I32, pointers.regs, 4 * i32::from(reg))).collect();
+        let guest = own.with_endianness(Endianness::Little);
+        Self {
+            builder,
+            find,
+            regs,
+            counters,
+            pointers,
+            own,
+            guest,
+            nodes: Vec::new(),
+            translated: 0,
+            exits: Vec::new(),
+            sides: Vec::new(),
+        }
+    }
+
+    /// Ends the function.
+    fn finish(mut self, module: &dyn Module) {
+        self.builder.seal_all_blocks();
+        self.builder.finalize(module.target_config());
+    }
+
+    /// Translates everything.
+    fn region(&mut self, pc: u32, entry: &[Flying]) -> Result<(), Unusual> {
+        let mut values = Vec::new();
+        let first = offset(offset_of!(Handover, values));
+        let count: usize = entry.iter().map(|flying| flying.what.values()).sum();
+        if count > VALUES {
+            return Err(Unusual);
+        }
+        for place in (first..).step_by(4).take(count) {
+            values.push(self.builder.ins().load(types::I32, self.own, self.pointers.handover, place));
+        }
+        let node = self.node(pc, entry);
+        let block = self.nodes[node].block;
+        let arguments: Vec<BlockArg> = values.into_iter().map(BlockArg::from).collect();
+        self.builder.ins().jump(block, &arguments);
+        let mut next = 0;
+        while next < self.nodes.len() {
+            self.block(next)?;
+            for (side, border) in std::mem::take(&mut self.sides) {
+                self.builder.switch_to_block(side);
+                self.exit(&border, None, false);
+            }
+            next += 1;
+        }
+        Ok(())
+    }
+
+    /// The block of a packet with something on its way.
+    fn node(&mut self, pc: u32, flying: &[Flying]) -> usize {
+        if let Some(known) = self.nodes.iter().position(|node| node.pc == pc && node.flying == flying) {
+            return known;
+        }
+        let block = self.builder.create_block();
+        for one in flying {
+            if one.is_conditional {
+                self.builder.append_block_param(block, types::I8);
+            }
+            for _ in 0..one.what.values() {
+                self.builder.append_block_param(block, types::I32);
+            }
+        }
+        self.nodes.push(Node { pc, flying: flying.to_vec(), block });
+        self.nodes.len() - 1
+    }
+
+    /// Translates a block: packets until a branch arrives, or enough of them.
+    fn block(&mut self, index: usize) -> Result<(), Unusual> {
+        let Node { pc, block, .. } = self.nodes[index];
+        let flying = self.nodes[index].flying.clone();
+        self.builder.switch_to_block(block);
+        let mut parameters = self.builder.block_params(block).to_vec().into_iter();
+        let flights = flying.into_iter().map(|flying| Flight {
+            condition: flying.is_conditional.then(|| parameters.next()).flatten(),
+            values: parameters.by_ref().take(flying.what.values()).collect(),
+            flying,
+        });
+        let mut border = Border { pc, cycles: 0, packets: 0, flights: flights.collect() };
+        self.leave_if_late(&border);
+        loop {
+            let is_known = border.packets > 0 && {
+                let flying = shape(&border.flights);
+                self.nodes.iter().any(|node| node.pc == border.pc && node.flying == flying)
+            };
+            if is_known || border.cycles >= ENOUGH || self.translated >= MOST_PACKETS {
+                if border.packets == 0 {
+                    self.exit(&border, None, true);
+                } else {
+                    self.go_to(&border);
+                }
+                return Ok(());
+            }
+            self.translated += 1;
+            match self.packet(&mut border) {
+                Ok(true) => {}
+                Ok(false) => return Ok(()),
+                Err(Stopped::Here) => {
+                    self.exit(&border, None, false);
+                    return Ok(());
+                }
+                Err(Stopped::Unusual) => return Err(Unusual),
+            }
+        }
+    }
+
+    /// Ends the function where less time is left than a block may take.
+    fn leave_if_late(&mut self, border: &Border) {
+        let cycle = self.builder.use_var(self.counters.cycle);
+        let place = offset(offset_of!(Handover, time.deadline));
+        let deadline = self.builder.ins().load(types::I64, self.own, self.pointers.handover, place);
+        let left = self.builder.ins().isub(deadline, cycle);
+        let is_late = self.builder.ins().icmp_imm_s(IntCC::SignedLessThan, left, i64::from(LONGEST));
+        let (late, inside) = (self.cold(), self.builder.create_block());
+        self.builder.ins().brif(is_late, late, &[], inside, &[]);
+        self.builder.switch_to_block(late);
+        self.exit(border, None, false);
+        self.builder.switch_to_block(inside);
+    }
+
+    /// A block that is seldom reached.
+    pub(super) fn cold(&mut self) -> Block {
+        let block = self.builder.create_block();
+        self.builder.set_cold_block(block);
+        block
+    }
+
+    /// Continues at a border in its own block, or ends the function there if there are too many.
+    pub(super) fn go_to(&mut self, border: &Border) {
+        let flying = shape(&border.flights);
+        let is_known = self.nodes.iter().any(|node| node.pc == border.pc && node.flying == flying);
+        if !is_known && (self.nodes.len() >= MOST_BLOCKS || self.translated >= MOST_PACKETS) {
+            return self.exit(border, None, true);
+        }
+        let node = self.node(border.pc, &flying);
+        let block = self.nodes[node].block;
+        let (cycle, packets) = self.counts(border);
+        self.builder.def_var(self.counters.cycle, cycle);
+        self.builder.def_var(self.counters.packets, packets);
+        let mut arguments = Vec::new();
+        for flight in &border.flights {
+            arguments.extend(flight.condition.map(BlockArg::from));
+            arguments.extend(flight.values.iter().copied().map(BlockArg::from));
+        }
+        self.builder.ins().jump(block, &arguments);
+    }
+
+    /// Cycle and packets at a border.
+    fn counts(&mut self, border: &Border) -> (Value, Value) {
+        let cycle = self.cycle(border.cycles);
+        let packets = self.builder.use_var(self.counters.packets);
+        (cycle, self.builder.ins().iadd_imm_s(packets, i64::from(border.packets)))
+    }
+
+    /// The cycle `after` cycles after the beginning of the block.
+    pub(super) fn cycle(&mut self, after: u32) -> Value {
+        let cycle = self.builder.use_var(self.counters.cycle);
+        self.builder.ins().iadd_imm_s(cycle, i64::from(after))
+    }
+
+    /// Ends the function at a border; at the packet at `target`, if that is a value.
+    pub(super) fn exit(&mut self, border: &Border, target: Option<Value>, is_end: bool) {
+        let (cycle, packets) = self.counts(border);
+        self.hand_back(cycle, offset_of!(Handover, time.cycle));
+        self.hand_back(packets, offset_of!(Handover, time.packets));
+        let shadow = self.builder.use_var(self.counters.shadow);
+        self.hand_back(shadow, offset_of!(Handover, time.shadow));
+        for (index, variable) in self.counters.branched_at.into_iter().enumerate() {
+            let at = self.builder.use_var(variable);
+            self.hand_back(at, offset_of!(Handover, branched_at) + 4 * index);
+        }
+        if let Some(target) = target {
+            self.hand_back(target, offset_of!(Handover, target));
+        }
+        let mut place = offset_of!(Handover, values);
+        for flight in &border.flights {
+            if let Some(condition) = flight.condition {
+                let condition = self.builder.ins().uextend(types::I32, condition);
+                self.hand_back(condition, place);
+                place += 4;
+            }
+            for value in &flight.values {
+                self.hand_back(*value, place);
+                place += 4;
+            }
+        }
+        let number = self.builder.ins().iconst(types::I32, self.exits.len() as i64);
+        self.builder.ins().return_(&[number]);
+        let pc = target.is_none().then_some(border.pc);
+        self.exits.push(Exit { pc, flying: shape(&border.flights), is_end });
+    }
+
+    fn hand_back(&mut self, value: Value, field: usize) {
+        self.builder.ins().store(self.own, value, self.pointers.handover, offset(field));
+    }
+}
+
+/// Why no packet follows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Stopped {
+    /// The packet is the interpreter's.
+    Here,
+    /// The region is.
+    Unusual,
+}
+
+/// What is on its way, without the values.
+fn shape(flights: &[Flight]) -> Vec<Flying> {
+    flights.iter().map(|flight| flight.flying).collect()
+}
+
+/// Puts what is on its way in its order.
+pub(super) fn sort(flights: &mut [Flight]) {
+    flights.sort_by_key(|flight| (flight.flying.due, flight.flying.what.rank()));
+}
+
+/// A result for a register.
+pub(super) const fn result(due: u8, reg: u8) -> Flying {
+    Flying { due, is_conditional: false, what: Arriving::Result(reg) }
+}

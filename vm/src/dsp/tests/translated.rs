@@ -1,0 +1,251 @@
+//! Translated code does what the interpreter does: registers, memory, cycles, packets, faults.
+
+use c67x::{PARALLEL, Reg, assemble};
+use kmotiondef::GuestAddr;
+use proptest::prelude::*;
+
+use crate::dsp::{Clock, Core, Halt, Memory};
+use crate::memory::GuestMemory;
+use crate::trap::{Access, TrapKind};
+
+const CODE: u32 = 0x8005_0000;
+const BACK: u32 = 0x0000_1000;
+
+/// Both RAMs; code everywhere in SDRAM from [`CODE`] on.
+#[derive(Clone, PartialEq)]
+struct Ram(GuestMemory);
+
+fn absent(addr: u32, access: Access) -> TrapKind {
+    TrapKind::Unmapped { addr: GuestAddr::new(addr), access }
+}
+
+macro_rules! accesses {
+    ($($load:ident, $store:ident, $ty:ty;)*) => {$(
+        fn $load(&mut self, addr: u32, _: &mut Clock) -> Result<u32, TrapKind> {
+            let value = self.0.load_ram::<$ty>(GuestAddr::new(addr));
+            value.map(u32::from).ok_or_else(|| absent(addr, Access::Read))
+        }
+
+        fn $store(&mut self, addr: u32, value: u32, _: &mut Clock) -> Result<(), TrapKind> {
+            let stored = self.0.store_ram(GuestAddr::new(addr), value as $ty);
+            stored.ok_or_else(|| absent(addr, Access::Write))
+        }
+    )*};
+}
+
+impl Memory for Ram {
+    fn ram(&mut self) -> Option<&mut GuestMemory> {
+        Some(&mut self.0)
+    }
+
+    fn fetch(&self, addr: u32) -> Option<u32> {
+        (addr >= CODE).then(|| self.0.peek(GuestAddr::new(addr)))
+    }
+
+    accesses! { load8, store8, u8; load16, store16, u16; load32, store32, u32; }
+
+    fn load64(&mut self, addr: u32, _: &mut Clock) -> Result<u64, TrapKind> {
+        self.0.load_ram(GuestAddr::new(addr)).ok_or_else(|| absent(addr, Access::Read))
+    }
+}
+
+/// The words of assembled lines.
+fn words(text: &str) -> Vec<u32> {
+    let lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
+    let mut words: Vec<u32> = Vec::new();
+    for line in lines {
+        let at = CODE + 4 * words.len() as u32;
+        let line = assemble(line, at).unwrap_or_else(|error| panic!("{line}: {error}"));
+        if line.joins_previous {
+            *words.last_mut().expect("an instruction before") |= PARALLEL;
+        }
+        words.push(line.inst.encode(false));
+    }
+    words
+}
+
+/// Everything that can be seen of a core.
+fn seen(core: &Core, halt: &Halt) -> String {
+    let state = &core.state;
+    let regs: Vec<u32> = (0..Reg::COUNT).filter_map(Reg::from_index).map(|reg| state.reg(reg)).collect();
+    format!(
+        "{halt:?} at {:x}, cycle {}, packets {}, branches {:x?}, interruptible {}, stack {:x?}, {regs:x?}",
+        state.pc(),
+        state.cycle(),
+        core.packets(),
+        state.branched_at(),
+        state.is_interruptible(),
+        core.lowest_stack(),
+    )
+}
+
+/// Runs words with and without translation in slices of this length; how many packets were not interpreted.
+fn check(words: &[u32], regs: &[(Reg, u32)], slice: i64, slices: usize) -> u64 {
+    let mut ram = Ram(GuestMemory::new());
+    for (at, word) in (CODE..).step_by(4).zip(words) {
+        ram.0.poke(GuestAddr::new(at), *word);
+    }
+    for at in 0..2048_u32 {
+        ram.0.poke(GuestAddr::new(0x8006_0000 + 4 * at), at.wrapping_mul(0x9E37_79B9).rotate_left(at));
+        ram.0.poke(GuestAddr::new(0x8007_0000 + 4 * at), (f64::from(at).to_bits() >> (at % 2 * 32)) as u32);
+    }
+    let mut plain = Core::new(CODE);
+    plain.state.set_reg(Reg::b(3), BACK);
+    plain.state.set_reg(Reg::b(15), 0x1001_3C78);
+    plain.watch_stack(0x1001_3400, 0x1001_3C78);
+    regs.iter().for_each(|(reg, value)| plain.state.set_reg(*reg, *value));
+    let mut other = plain.clone();
+    other.translate(true);
+    let mut others = ram.clone();
+    for _ in 0..slices {
+        plain.state.clock.set_left(slice);
+        other.state.clock.set_left(slice);
+        let (one, two) = (plain.run(&mut ram), other.run(&mut others));
+        assert_eq!(seen(&plain, &one), seen(&other, &two));
+        plain.state.settle();
+        other.state.settle();
+        assert_eq!(seen(&plain, &one), seen(&other, &two), "landed");
+        if one != Halt::Preempted {
+            break;
+        }
+    }
+    assert!(ram == others, "memory differs");
+    other.translated()
+}
+
+const INTEGER: [u32; 11] = [
+    0x0013_E05B,
+    0x0280_0029,
+    0x0190_0058,
+    0x030C_3665,
+    0x2000_0191,
+    0x2003_E05A,
+    0x0000_6000,
+    0x0298_A078,
+    0x000C_0362,
+    0x0214_0058,
+    0x0000_6000,
+];
+
+#[test]
+fn the_loop_of_integers_is_translated() {
+    let translated = check(&INTEGER, &[(Reg::a(4), 0x8006_0000), (Reg::b(4), 20_000)], 18_000, 8);
+    assert!(translated > 20_000, "{translated}");
+}
+
+#[test]
+fn code_that_is_written_again_and_again_runs_alike() {
+    // Each turn stores one of two constants over the MVK after it.
+    let text = "ADDK .S2 -1,B0\nXOR .L1 A6,A7,A6\nSTW .D1T1 A6,*A5\nNOP 5\nMVK .S1 1,A8\nADD .L1 A8,A9,A9\n\
+                [B0] B .S2 B31\nNOP 5\nB .S2 B3\nNOP 5\n";
+    let words = words(text);
+    let two = assemble("MVK .S1 2,A8", CODE).expect("an instruction").inst.encode(false);
+    let regs = [
+        (Reg::b(0), 3000),
+        (Reg::b(31), CODE),
+        (Reg::a(5), CODE + 4 * 4),
+        (Reg::a(6), words[4]),
+        (Reg::a(7), words[4] ^ two),
+    ];
+    check(&words, &regs, 5_000, 40);
+}
+
+#[test]
+fn an_access_outside_of_ram_ends_alike() {
+    // A pointer runs from the end of SDRAM into nothing.
+    let text = "LDW .D1T1 *A5++[16],A8\nNOP 4\nADD .L1 A8,A9,A9\nB .S2 B31\nNOP 5\n";
+    let translated =
+        check(&words(text), &[(Reg::b(31), CODE), (Reg::a(5), 0x8100_0000 - 2000 * 64)], 18_000, 10);
+    assert!(translated > 0);
+}
+
+/// One line of a loop from a few numbers.
+fn line(kind: u8, a: u8, b: u8, c: u8) -> String {
+    // A4 to A7 and B4 to B7 are addresses, A0, A1, B1, B2 conditions, B0 counts; the rest are values.
+    let [x, y, d] = [a, b, c].map(|n| if n % 16 == 7 { 24 } else { 8 + n % 16 });
+    let (p, q) = (4 + a % 4, 4 + b % 4);
+    let pair = |n: u8| format!("A{}:A{}", 9 + n % 8 * 2, 8 + n % 8 * 2);
+    let (one, two, three) = (pair(a), pair(b), pair(c));
+    let condition = ["", "", "[A1] ", "[!A1] ", "[B1] ", "[!B2] "][usize::from(a.wrapping_add(c)) % 6];
+    let text = match kind % 44 {
+        0 => format!("ADD .L1 A{x},A{y},A{d}"),
+        1 => format!("SUB .L2 B{x},B{y},B{d}"),
+        2 => format!("AND .S1 A{x},A{y},A{d}"),
+        3 => format!("XOR .S2 B{x},B{y},B{d}"),
+        4 => format!("SHL .S1 A{x},A{y},A{d}"),
+        5 => format!("SHR .S2 B{x},{},B{d}", b % 32),
+        6 => format!("SHRU .S1 A{x},A{y},A{d}"),
+        7 => format!("EXT .S2 B{x},{},{},B{d}", b % 32, c % 32),
+        8 => format!("EXTU .S1 A{x},A{y},A{d}"),
+        9 => format!("CLR .S2 B{x},{},{},B{d}", b % 32, c % 32),
+        10 => format!("SET .S1 A{x},A{y},A{d}"),
+        11 => format!("CMPGT .L1 A{x},A{y},A1"),
+        12 => format!("CMPLTU .L2 B{x},B{y},B1"),
+        13 => format!("CMPEQ .L2 B{x},B{y},B2"),
+        14 => format!("SADD .L1 A{x},A{y},A{d}"),
+        15 => format!("SSUB .L2 B{x},B{y},B{d}"),
+        16 => format!("SUBC .L1 A{x},A{y},A{d}"),
+        17 => format!("LMBD .L1 A{x},A{y},A{d}"),
+        18 => format!("NORM .L2 B{x},B{d}"),
+        19 => format!("ABS .L1 A{x},A{d}"),
+        20 => format!("ADD2 .S1 A{x},A{y},A{d}"),
+        21 => format!("MPY .M1 A{x},A{y},A{d}"),
+        22 => format!("MPYHU .M2 B{x},B{y},B{d}"),
+        23 => format!("SMPY .M1 A{x},A{y},A{d}"),
+        24 => format!("MPYI .M1 A{x},A{y},A{d}"),
+        25 => format!("MPYSP .M2 B{x},B{y},B{d}"),
+        26 => format!("ADDSP .L2 B{x},B{y},B{d}"),
+        27 => format!("SUBSP .L1 A{x},A{y},A{d}"),
+        28 => format!("INTSP .L1 A{x},A{d}"),
+        29 => format!("SPTRUNC .L2 B{x},B{d}"),
+        30 => format!("INTDP .L1 A{x},{three}"),
+        31 => format!("DPTRUNC .L1 {one},A{d}"),
+        32 => format!("ADDDP .L1 {one},{two},{three}"),
+        33 => format!("MPYDP .M1 {one},{two},{three}"),
+        34 => format!("CMPLTDP .S1 {one},{two},A1"),
+        35 => format!("LDW .D1T1 *A{p}[{}],A{d}", c % 32),
+        36 => format!("LDH .D2T2 *B{q}[{}],B{d}", c % 32),
+        37 => format!("LDDW .D1T1 *A{p}[{}],{three}", c % 16),
+        38 => format!("STW .D2T2 B{x},*B{q}[{}]", c % 32),
+        39 => format!("STB .D1T1 A{x},*A{p}[{}]", c % 32),
+        40 => format!("MV .L1X B{x},A{d}"),
+        41 => format!("ADDAW .D1 A{x},A{y},A{d}"),
+        42 => format!("MVK .S1 {},A{d}", i32::from(a) * 200 - 20_000),
+        _ => format!("SPDP .S2 B{x},B{}:B{}", 17 + c % 4 * 2, 16 + c % 4 * 2),
+    };
+    format!("{condition}{text}")
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 100, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn random_loops_run_alike(
+        lines in prop::collection::vec((any::<[u8; 4]>(), 0_u8..6), 4..24),
+        gap in 1_u8..8,
+        seeds in any::<[u32; 32]>(),
+        slice in 900_i64..20_000,
+    ) {
+        let mut text = String::from("ADDK .S2 -1,B0\n");
+        for (index, ([kind, a, b, c], nop)) in lines.iter().enumerate() {
+            if index > 0 && *nop == 5 {
+                text += "|| ";
+            }
+            text += &line(*kind, *a, *b, *c);
+            text.push('\n');
+            if *nop < 3 {
+                text += &format!("NOP {}\n", 1 + nop);
+            }
+        }
+        text += "NOP 9\n";
+        text += &format!("[B0] B .S2 B31\nNOP {gap}\nADD .L1 A8,A9,A10\nNOP 5\nB .S2 B3\nNOP 5\n");
+        let mut regs = vec![(Reg::b(0), 3000), (Reg::b(31), CODE), (Reg::a(1), 1), (Reg::b(1), 0), (Reg::b(2), 1)];
+        for (number, base) in (4..8).zip([0x8006_0000, 0x8006_0400, 0x8007_0000, 0x1001_0000]) {
+            regs.extend([(Reg::a(number), base), (Reg::b(number), base + 0x100)]);
+        }
+        for (number, seed) in (8..24).zip(&seeds) {
+            regs.extend([(Reg::a(number), *seed), (Reg::b(number), seed.rotate_left(9))]);
+        }
+        check(&words(&text), &regs, slice, 60);
+    }
+}
