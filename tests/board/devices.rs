@@ -322,7 +322,7 @@ main()
     let (output, _) = run("konnect", program, &[], &options);
     assert_eq!((output.code, output.stdout.as_str()), (0, "8 0\n"));
     let told =
-        "cc67: thread 1 at a.c:7 in `main`: AddKonnect(1, …): the machine has no board with that address\n";
+        "cc67: thread 1 at a.c:7:5 in `main`: AddKonnect(1, …): the machine has no board with that address\n";
     assert_eq!(output.stderr, told);
 }
 
@@ -359,7 +359,7 @@ main()
 fn pins_that_kanalog_occupies_are_warned_of() {
     let program = "main() { FPGA(KAN_TRIG_REG) = 1; SetBitDirection(16, 1); SetBitDirection(5, 1); SetBitDirection(6, 1); }";
     let (output, _) = run("jp7", program, &[], &[]);
-    let told = "cc67: thread 1 at a.c:2 in `main`: bit 5 becomes an output, but Kanalog is connected to bits 0 to 15 of JP7\n";
+    let told = "cc67: thread 1 at a.c:2:58 in `main`: bit 5 becomes an output, but Kanalog is connected to bits 0 to 15 of JP7\n";
     assert_eq!((output.code, output.stderr.as_str()), (0, told));
 }
 
@@ -552,7 +552,7 @@ fn a_stimulus_loads_programs_and_runs_them() {
         "at 1ms run thread 2 \"two.c\"; at 3ms run thread 2 \"three.c\"; at 5ms run thread 2 \"two.c\"";
     let (output, _) = run("loads", program, &files, &["--stim", stimulus]);
     assert_eq!((output.code, output.stdout.as_str()), (3, "121\n"), "{}", output.stderr);
-    assert!(output.stderr.contains("thread 2 stopped at three.c:6 in `main`"), "{}", output.stderr);
+    assert!(output.stderr.contains("thread 2 stopped at three.c:6:5 in `main`"), "{}", output.stderr);
     let (output, _) = run("loads-wrong", program, &[], &["--stim", "run thread 2 \"gone.c\""]);
     assert_eq!(
         (output.code, output.stderr.as_str()),
@@ -659,7 +659,7 @@ fn a_switch_on_an_axis_that_drives_nothing_is_told_of() {
     let program = "#include \"KMotionDef.h\"\nmain() { EnableAxis(2); Jog(2, 100); Jog(2, 0); Jog(3, 1); }";
     let machine = "[[switch]]\nbit = 12\naxis = 2\nwhen = \"<= -4000\"\n";
     let (output, _) = run("unmoved", program, &[("s.toml", machine)], &["--machine", "s.toml"]);
-    let told = "cc67: thread 1 at a.c:3 in `main`: Jog: axis 2 drives nothing, its OutputMode is NO_OUTPUT_MODE: what the machine file \
+    let told = "cc67: thread 1 at a.c:3:25 in `main`: Jog: axis 2 drives nothing, its OutputMode is NO_OUTPUT_MODE: what the machine file \
                 connects to it stays as it is (is a program that sets the axes up to run first?)\n";
     assert_eq!(output.stderr.lines().next(), told.lines().next());
     assert_eq!(output.stderr.matches("drives nothing").count(), 1, "{}", output.stderr);

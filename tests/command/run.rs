@@ -339,7 +339,7 @@ fn a_run_as_json_is_an_object_a_line_and_a_summary() {
         "{explained}"
     );
     assert_eq!(field(1, "thread"), 1);
-    assert!(field(1, "text").as_str().expect("a text").contains("a.c:6 in `main`"), "{}", output.stdout);
+    assert!(field(1, "text").as_str().expect("a text").contains("a.c:6:3 in `main`"), "{}", output.stdout);
     assert!(field(0, "seconds").as_f64().expect("a time") < field(2, "seconds").as_f64().expect("a time"));
     let end = ["reason", "exit", "console_lines", "traps", "remarks"].map(|name| field(3, name).to_string());
     assert_eq!(end, ["\"trapped\"", "3", "1", "1", "1"]);
@@ -437,12 +437,12 @@ fn a_remark_that_comes_again_and_again_is_shown_once() {
                   for (i = 0; i < 1000; i++) SetBit(bit);\n  SetBit(bit + 1);\n}\n";
     let output = run_source("repeats", source, &[]);
     let remark =
-        |line, bit| format!("thread 1 at a.c:{line} in `main`: SetBit({bit}): there are bits 0 to 2047");
+        |place, bit| format!("thread 1 at a.c:{place} in `main`: SetBit({bit}): there are bits 0 to 2047");
     let expected = format!(
         "cc67: {}\ncc67: {}\ncc67: 999 times more: {}\n",
-        remark(5, 5000),
-        remark(6, 5001),
-        remark(5, 5000)
+        remark("5:28", 5000),
+        remark("6:3", 5001),
+        remark("5:28", 5000)
     );
     assert_eq!((output.code, output.stderr), (0, expected));
 }

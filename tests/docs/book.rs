@@ -218,8 +218,8 @@ fn the_chapter_of_warnings_has_the_page_of_each() {
 
 #[test]
 fn the_chapter_of_remarks_has_each() {
-    let mut text = "# Remarks\n\nWhat the simulated board says that the real one does not. A remark of a call begins with thread, file and \
-                    line\nof the call. `-R no-CODE` switches a remark off for one run, `[remarks]` with `CODE = false` in the machine \
+    let mut text = "# Remarks\n\nWhat the simulated board says that the real one does not. A remark of a call begins with thread, file, line \
+                    and column\nof the call. `-R no-CODE` switches a remark off for one run, `[remarks]` with `CODE = false` in the machine \
                     file for good;\n`cc67 --explain CODE` shows its page. Remarks marked *detail* are shown by `--verbose` only.\n"
         .to_owned();
     let mut rows: Vec<_> = REMARKS.iter().collect();

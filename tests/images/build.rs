@@ -249,5 +249,5 @@ fn a_body_that_is_included_counts_as_the_line_of_its_include() {
         .write("a.c", "int *nowhere;\nmain()\n{\n  int x = 1;\n#include \"body.inc\"\n}\n")
         .write("body.inc", "\n\n\n\n\n\n\n  *nowhere = x;\n");
     let output = cc67(&scratch, ["run", "a.c"]);
-    assert!(output.stderr.contains("a.c:5 in `main`"), "{}", output.stderr);
+    assert!(output.stderr.contains("a.c:5:10 in `main`"), "{}", output.stderr);
 }

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use kmotiondef::{Bit, CodeAddr};
-use runtime::debug::DebugInfo;
+use runtime::debug::{DebugInfo, SourcePlace};
 use runtime::{Event, EventKind, Message, Remark, Severity, Speaker};
 use vm::trap::{Trap, TrapKind};
 
@@ -14,8 +14,17 @@ pub struct SourceCall {
     pub file: String,
     /// The line, from 1, if the image says so.
     pub line: Option<u32>,
+    /// The column, from 1, if the compiler has said so.
+    pub column: Option<u32>,
     /// The function around it.
     pub function: String,
+}
+
+impl From<SourcePlace<'_>> for SourceCall {
+    fn from(place: SourcePlace<'_>) -> Self {
+        let (file, function) = (place.file.to_owned(), place.function.to_owned());
+        Self { file, line: place.line, column: place.column, function }
+    }
 }
 
 impl fmt::Display for SourceCall {
@@ -23,6 +32,9 @@ impl fmt::Display for SourceCall {
         f.write_str(&self.file)?;
         if let Some(line) = self.line {
             write!(f, ":{line}")?;
+        }
+        if let Some(column) = self.column {
+            write!(f, ":{column}")?;
         }
         write!(f, " in `{}`", self.function)
     }
@@ -46,7 +58,7 @@ pub fn describe(event: &Event, programs: &[DebugInfo]) -> Option<String> {
     }
 }
 
-/// A remark with who it is about and where: "thread 1 at home.c:12 in `main`: SetBit(3000): …".
+/// A remark with who it is about and where: "thread 1 at home.c:12:5 in `main`: SetBit(3000): …".
 #[must_use]
 pub fn words(remark: &Remark, programs: &[DebugInfo]) -> String {
     let who = who(remark, programs);
@@ -60,7 +72,7 @@ pub fn words(remark: &Remark, programs: &[DebugInfo]) -> String {
     }
 }
 
-/// Who a remark is about, and where: "thread 1 at home.c:12 in `main`"; nothing for the board.
+/// Who a remark is about, and where: "thread 1 at home.c:12:5 in `main`"; nothing for the board.
 #[must_use]
 pub fn who(remark: &Remark, programs: &[DebugInfo]) -> String {
     let who = match remark.speaker {
@@ -95,7 +107,7 @@ pub fn undriven(inputs: &[(String, Bit, u8)]) -> String {
     )
 }
 
-/// "thread 1 stopped at home.c:12 in `main`: write of …".
+/// "thread 1 stopped at home.c:12:5 in `main`: write of …".
 fn describe_trap(trap: &Trap, programs: &[DebugInfo]) -> String {
     let who = trap.thread.map_or("call-back stopped".to_owned(), |thread| format!("thread {thread} stopped"));
     let place = source(trap.at, programs).unwrap_or_else(|| trap.at.to_string());
@@ -118,9 +130,7 @@ fn address(kind: &TrapKind) -> Option<kmotiondef::GuestAddr> {
 /// File, line and function of a code address.
 #[must_use]
 pub fn place(address: CodeAddr, programs: &[DebugInfo]) -> Option<SourceCall> {
-    let place = programs.iter().find_map(|debug| debug.place(address))?;
-    let (file, function) = (place.file.to_owned(), place.function.to_owned());
-    Some(SourceCall { file, line: place.line, function })
+    programs.iter().find_map(|debug| debug.place(address)).map(SourceCall::from)
 }
 
 /// The same in words.

@@ -104,18 +104,8 @@ enum Content {
 impl LinkableProgram {
     /// The program for a thread.
     pub(crate) fn for_thread(&self, thread: ThreadId) -> PyResult<UserProgram> {
-        Ok(UserProgram {
-            thread,
-            path: self.path.clone(),
-            is_image: matches!(self.content, Content::Image(_)),
-            image: self.linked(thread)?,
-            starts: false,
-        })
-    }
-
-    fn linked(&self, thread: ThreadId) -> PyResult<Vec<u8>> {
         let objects = match &self.content {
-            Content::Image(bytes) => return Ok(bytes.clone()),
+            Content::Image(bytes) => return Ok(UserProgram::of_bytes(&self.path, thread, bytes.clone())),
             Content::Objects(objects) => objects,
         };
         let unit = |(name, bytes): &(String, Vec<u8>)| {
@@ -125,7 +115,7 @@ impl LinkableProgram {
         let mut units = objects.iter().map(unit).collect::<PyResult<Vec<_>>>()?;
         let linked = link_units(&mut units, thread, &self.options);
         let linked = linked.ok_or_else(|| LoadError::new_err(what_is_wrong(&units, thread)))?;
-        image::write(&linked).map_err(|error| LoadError::new_err(error.to_string()))
+        UserProgram::of_linked(&self.path, &linked).map_err(|error| LoadError::new_err(error.to_string()))
     }
 }
 
@@ -168,7 +158,7 @@ impl LinkableProgram {
     /// The image for a thread, 1 to 7.
     fn image(&self, py: Python<'_>, number: i32) -> PyResult<Vec<u8>> {
         let thread = thread(number)?;
-        py.detach(|| self.linked(thread))
+        Ok(py.detach(|| self.for_thread(thread))?.image)
     }
 }
 

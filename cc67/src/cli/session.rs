@@ -232,13 +232,8 @@ fn compile(
     held: &Given<'_>,
 ) -> Result<Option<(Vec<UserProgram>, Vec<UserProgram>)>> {
     let options = &held.options;
-    let held = files.first().zip(held.image).map(|(file, image)| UserProgram {
-        thread: file.thread,
-        path: file.path.clone(),
-        is_image: true,
-        image: image.to_vec(),
-        starts: false,
-    });
+    let held = files.first().zip(held.image);
+    let held = held.map(|(file, image)| UserProgram::of_bytes(&file.path, file.thread, image.to_vec()));
     let rest = files.get(usize::from(held.is_some())..).unwrap_or_default();
     let all = [rest, &offered].concat();
     let Some(programs) = images::programs_with(&all, compiler, options)? else { return Ok(None) };

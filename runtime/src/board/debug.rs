@@ -3,6 +3,8 @@
 //! Traps and traces name places with it. An image without symbols has none, and every
 //! answer is then `None`.
 
+use std::sync::Arc;
+
 use kmotiondef::{CodeAddr, GuestAddr};
 
 /// A function and where it came from.
@@ -38,6 +40,21 @@ pub struct SourcePlace<'a> {
     pub file: &'a str,
     /// The line, if the image says so.
     pub line: Option<u32>,
+    /// The column, counted from 1, if the compiler has said so.
+    pub column: Option<u32>,
+    /// The function that contains it, if that is another one, which has it in place of a call.
+    pub around: Option<&'a str>,
+}
+
+/// What the compiler knows of the code from an address on and no image holds.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CodeDetail {
+    /// The address.
+    pub address: u32,
+    /// The column in its line, counted from 1.
+    pub column: u32,
+    /// The function whose source it is, if another function contains it in place of a call.
+    pub inlined: Option<Arc<str>>,
 }
 
 /// The debug data of one image.
@@ -46,6 +63,8 @@ pub struct DebugInfo {
     functions: Vec<FunctionInfo>,
     lines: Vec<(u32, u32)>,
     objects: Vec<ObjectInfo>,
+    /// By address; empty where the compiler has not said more than the image.
+    details: Arc<[CodeDetail]>,
 }
 
 impl DebugInfo {
@@ -59,7 +78,14 @@ impl DebugInfo {
         functions.sort_by_key(|function| function.start);
         lines.sort_unstable();
         objects.sort_by_key(|object| object.start);
-        Self { functions, lines, objects }
+        Self { functions, lines, objects, details: Arc::default() }
+    }
+
+    /// The same with what the compiler knows besides, ascending by address.
+    #[must_use]
+    pub fn with_details(self, details: Arc<[CodeDetail]>) -> Self {
+        debug_assert!(details.is_sorted_by_key(|detail| detail.address));
+        Self { details, ..self }
     }
 
     /// Its named objects, by address.
@@ -76,7 +102,16 @@ impl DebugInfo {
         let after = self.lines.partition_point(|(start, _)| *start <= address);
         let line = after.checked_sub(1).and_then(|index| self.lines.get(index));
         let line = line.filter(|(start, _)| *start >= function.start).map(|(_, line)| *line);
-        Some(SourcePlace { function: &function.name, file: &function.file, line })
+        let after = self.details.partition_point(|detail| detail.address <= address);
+        let detail = after.checked_sub(1).and_then(|index| self.details.get(index));
+        let detail = detail.filter(|detail| detail.address >= function.start);
+        let inlined = detail.and_then(|detail| detail.inlined.as_deref());
+        let column = detail.map(|detail| detail.column).filter(|column| line.is_some() && *column > 0);
+        let (name, around) = match inlined {
+            Some(inlined) => (inlined, Some(function.name.as_str())),
+            None => (function.name.as_str(), None),
+        };
+        Some(SourcePlace { function: name, file: &function.file, line, column, around })
     }
 
     /// What is at or just before a data address, in words: "4 bytes past the end of `table`".
@@ -125,6 +160,24 @@ mod tests {
         assert_eq!(line(0x128), Some(("main", Some(9))));
         assert_eq!(line(0x100), Some(("main", None)));
         assert_eq!(line(0x90), None);
+    }
+
+    #[test]
+    fn details_name_the_column_and_the_function_that_was_inlined() {
+        let detail = |address, column, inlined: Option<&str>| CodeDetail {
+            address,
+            column,
+            inlined: inlined.map(Arc::from),
+        };
+        let details = [detail(0x108, 5, None), detail(0x118, 12, Some("f"))];
+        let info = info().with_details(Arc::new(details));
+        let place = |address| {
+            let place = info.place(CodeAddr::new(address)?)?;
+            Some((place.function, place.column, place.around))
+        };
+        assert_eq!(place(0x110), Some(("main", Some(5), None)));
+        assert_eq!(place(0x118), Some(("f", Some(12), Some("main"))));
+        assert_eq!(place(0x48), Some(("f", None, None)));
     }
 
     #[test]

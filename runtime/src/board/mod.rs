@@ -33,7 +33,7 @@ use vm::machine::{Config as MachineConfig, Machine};
 use vm::memory::GuestMemory;
 use vm::thread::ThreadState;
 
-use crate::board::debug::DebugInfo;
+use crate::board::debug::{CodeDetail, DebugInfo};
 use crate::board::machine_file::{MachineFile, NS_PER_INSTRUCTION};
 use crate::io::flash::FLASH_SIZE;
 use crate::kernel::Kernel;
@@ -98,6 +98,9 @@ struct Loaded {
     extent: Range<u32>,
 }
 
+/// An image that a stimulus may load, and what is known about its code beyond it.
+type Offered = (Vec<u8>, Arc<[CodeDetail]>);
+
 /// What the board knows of programs.
 #[derive(Clone, Debug, Default)]
 struct Programs {
@@ -105,7 +108,7 @@ struct Programs {
     /// What is known about the programs in flash.
     flashed: [Option<DebugInfo>; ThreadId::MAX as usize],
     /// Images that a stimulus may load, by the thread they are linked for and what it calls them.
-    offered: BTreeMap<(ThreadId, Arc<str>), Vec<u8>>,
+    offered: BTreeMap<(ThreadId, Arc<str>), Offered>,
 }
 
 /// A simulated board.

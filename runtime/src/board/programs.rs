@@ -14,7 +14,7 @@ use vm::verify::VerifyError;
 
 use super::{Board, Loaded, Programs};
 use crate::board::code;
-use crate::board::debug::{DebugInfo, ObjectInfo, SourcePlace};
+use crate::board::debug::{CodeDetail, DebugInfo, ObjectInfo, SourcePlace};
 use crate::board::loader::{Fill, LoadError, Placed, prepare};
 use crate::firmware::calls::Named;
 use crate::out::{EventKind, Message};
@@ -26,6 +26,19 @@ impl<E: Engine> Board<E> {
     /// # Errors
     /// Why the image is refused; nothing has changed then.
     pub fn load(&mut self, thread: ThreadId, image: &[u8]) -> Result<(), LoadError> {
+        self.load_detailed(thread, image, Arc::default())
+    }
+
+    /// The same with what the compiler knows about the code besides.
+    ///
+    /// # Errors
+    /// Why the image is refused; nothing has changed then.
+    pub fn load_detailed(
+        &mut self,
+        thread: ThreadId,
+        image: &[u8],
+        details: Arc<[CodeDetail]>,
+    ) -> Result<(), LoadError> {
         let prepared = prepare(image, thread, |other| self.is_taken(other, thread))?;
         self.machine.unload_program(thread);
         self.machine.firmware_mut().0.parts.pc.downloads.forget(thread);
@@ -43,7 +56,7 @@ impl<E: Engine> Board<E> {
         let objects = prepared.debug.objects().iter().map(named).collect();
         self.machine.firmware_mut().0.parts.calls.notices.load(thread, objects);
         self.load_code(thread, prepared.code, prepared.entry);
-        self.programs_mut().loaded[thread.index()] = Some(Loaded { debug: prepared.debug, extent });
+        self.programs_mut().loaded[thread.index()] = Some(Loaded { debug: prepared.debug.with_details(details), extent });
         Ok(())
     }
 
@@ -140,16 +153,24 @@ impl<E: Engine> Board<E> {
     ///
     /// # Errors
     /// Why the image would be refused.
-    pub fn offer(&mut self, thread: ThreadId, name: &str, image: Vec<u8>) -> Result<DebugInfo, LoadError> {
-        let debug = prepare(&image, thread, |_| false)?.debug;
-        self.programs_mut().offered.insert((thread, name.into()), image);
+    pub fn offer(
+        &mut self,
+        thread: ThreadId,
+        name: &str,
+        image: Vec<u8>,
+        details: Arc<[CodeDetail]>,
+    ) -> Result<DebugInfo, LoadError> {
+        let debug = prepare(&image, thread, |_| false)?.debug.with_details(details.clone());
+        self.programs_mut().offered.insert((thread, name.into()), (image, details));
         Ok(debug)
     }
 
     /// Loads an image that was offered and starts it.
     pub(super) fn run_offered(&mut self, thread: ThreadId, name: &Arc<str>) {
         let result = match self.programs.offered.get(&(thread, name.clone())).cloned() {
-            Some(image) => self.load(thread, &image).map_err(|error| error.to_string()),
+            Some((image, details)) => {
+                self.load_detailed(thread, &image, details).map_err(|error| error.to_string())
+            }
             None => Err("nobody has compiled it".to_owned()),
         };
         let started = result.and_then(|()| self.start(thread).map_err(|error| error.to_string()));

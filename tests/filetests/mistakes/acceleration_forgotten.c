@@ -1,4 +1,4 @@
-//@ says: thread 1 at acceleration_forgotten.c:13 in `main`: Jog: Vel, Accel and Jerk of axis 0 are not all positive
+//@ says: thread 1 at acceleration_forgotten.c:13:5 in `main`: Jog: Vel, Accel and Jerk of axis 0 are not all positive
 #include "KMotionDef.h"
 
 main()

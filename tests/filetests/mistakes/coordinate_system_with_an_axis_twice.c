@@ -1,4 +1,4 @@
-//@ says: thread 1 at coordinate_system_with_an_axis_twice.c:6 in `main`: DefineCoordSystem: [1, 1, -1, -1] names an axis twice
+//@ says: thread 1 at coordinate_system_with_an_axis_twice.c:6:5 in `main`: DefineCoordSystem: [1, 1, -1, -1] names an axis twice
 #include "KMotionDef.h"
 
 main()

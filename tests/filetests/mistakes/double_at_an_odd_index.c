@@ -6,7 +6,7 @@
 //@ says:    │                 ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^ index 11: the board would load a wrong value
 //@ says:    │
 //@ says:    = help: use index 10 or 12
-//@ says: thread 1 stopped at double_at_an_odd_index.c:16 in `main`: read of 8 bytes at 0x10016d2c, which is not aligned
+//@ says: thread 1 stopped at double_at_an_odd_index.c:16:5 in `main`: read of 8 bytes at 0x10016d2c, which is not aligned
 #include "KMotionDef.h"
 
 main()

@@ -1,4 +1,4 @@
-//@ says: thread 1 at kstep_input_without_a_kstep.c:6 in `main`: ReadBit(168): inputs of a KStep read 0 until KStepPresent is set: write KStepPresent = TRUE first
+//@ says: thread 1 at kstep_input_without_a_kstep.c:6:9 in `main`: ReadBit(168): inputs of a KStep read 0 until KStepPresent is set: write KStepPresent = TRUE first
 #include "KMotionDef.h"
 
 main()

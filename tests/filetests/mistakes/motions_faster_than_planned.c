@@ -1,4 +1,4 @@
-//@ says: thread 1 at motions_faster_than_planned.c:15 in `main`: MoveAtVel: axis 2 gets a new target within 1.8 ms, 50 times in a row. The board takes that long to plan a motion that replaces another, and the axis keeps its speed until then: no target ever takes effect. Call less often, or use MoveExp
+//@ says: thread 1 at motions_faster_than_planned.c:15:9 in `main`: MoveAtVel: axis 2 gets a new target within 1.8 ms, 50 times in a row. The board takes that long to plan a motion that replaces another, and the axis keeps its speed until then: no target ever takes effect. Call less often, or use MoveExp
 #include "KMotionDef.h"
 
 main()

@@ -1,5 +1,5 @@
 //@ exit: 3
-//@ says: thread 1 stopped at pointer_that_points_nowhere.c:8 in `main`: write of the unmapped address 0x00000000
+//@ says: thread 1 stopped at pointer_that_points_nowhere.c:8:5 in `main`: write of the unmapped address 0x00000000
 #include "KMotionDef.h"
 
 main()

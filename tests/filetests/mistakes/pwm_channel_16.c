@@ -1,4 +1,4 @@
-//@ says: thread 1 at pwm_channel_16.c:6 in `main`: WritePWMC(16, …): no such channel (0-15)
+//@ says: thread 1 at pwm_channel_16.c:6:5 in `main`: WritePWMC(16, …): no such channel (0-15)
 #include "KMotionDef.h"
 
 main()

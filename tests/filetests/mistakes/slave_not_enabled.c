@@ -1,4 +1,4 @@
-//@ says: thread 1 at slave_not_enabled.c:13 in `main`: axis 1 has MasterAxis = 0, but is disabled, so it does not follow: call EnableAxis(1)
+//@ says: thread 1 at slave_not_enabled.c:13:5 in `main`: axis 1 has MasterAxis = 0, but is disabled, so it does not follow: call EnableAxis(1)
 #include "KMotionDef.h"
 
 main()

@@ -1,4 +1,4 @@
-//@ says: thread 1 at velocity_zero.c:13 in `main`: Move: Vel, Accel and Jerk of axis 0 are not all positive
+//@ says: thread 1 at velocity_zero.c:13:5 in `main`: Move: Vel, Accel and Jerk of axis 0 are not all positive
 #include "KMotionDef.h"
 
 main()

@@ -13,6 +13,8 @@
 pub mod download;
 pub mod map;
 
+/// Why a program cannot be an image: it exceeds what the format can count.
+pub use coff::Error as WriteError;
 use coff::raw::{BoundaryAux, FunctionAux};
 use coff::{
     Aux, BaseType, Contents, Derivation, Error, FileFlags, Image, Layout, Line, Name, Program, SectionFlags,
@@ -21,7 +23,7 @@ use coff::{
 use kmotiondef::GuestAddr;
 
 use crate::link::{Linked, LinkedFunction, LinkedSymbol, Section};
-use crate::object::{base_type, class, function_type, statement, to_u16};
+use crate::object::{base_type, class, function_type, statement, to_u16, whole_lines};
 
 /// Writes the image of a program.
 ///
@@ -147,14 +149,9 @@ impl Table {
         let next = self.entries + 6;
         let first_line = self.lines.len() as u32;
         self.lines.push(Line::Function(self.entries));
-        self.lines.extend(
-            linked
-                .lines
-                .get(function.lines.clone())
-                .unwrap_or_default()
-                .iter()
-                .filter_map(|line| statement(line.address.get(), line.place.line)),
-        );
+        let places = linked.lines.get(function.lines.clone()).unwrap_or_default();
+        let lines = whole_lines(places, |line| line.place);
+        self.lines.extend(lines.filter_map(|line| statement(line.address.get(), line.place.line)));
         let entries = self.lines.len() as u32 - first_line;
         self.first_lines.push((self.symbols.len(), first_line));
 

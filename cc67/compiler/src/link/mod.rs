@@ -16,6 +16,8 @@ mod text;
 
 pub use error::{LinkError, LinkErrorKind, LinkWarning};
 
+use std::sync::Arc;
+
 use kmotiondef::map::program_base;
 use kmotiondef::{GuestAddr, ThreadId};
 
@@ -71,7 +73,7 @@ pub struct Linked {
     pub symbols: Vec<LinkedSymbol>,
     /// The functions, in the order of their addresses; index for index the first of `symbols`.
     pub functions: Vec<LinkedFunction>,
-    /// Where source lines begin, ascending.
+    /// Where source lines and places in them begin, ascending.
     pub lines: Vec<LinkedLine>,
     /// What deserves a warning.
     pub warnings: Vec<LinkWarning>,
@@ -145,13 +147,17 @@ pub struct LinkedFunction {
     pub end: SourceLine,
 }
 
-/// From this address on the code belongs to this line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// From this address on the code belongs to this place.
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LinkedLine {
     /// The address.
     pub address: GuestAddr,
     /// The line; the file is an index into [`Linked::files`].
     pub place: SourceLine,
+    /// The column, counted from 1; 0 if the object does not say.
+    pub column: u32,
+    /// The function whose source this is, if another function contains it in place of a call.
+    pub inlined: Option<Arc<str>>,
 }
 
 /// A symbol of the firmware that the program refers to.

@@ -1,6 +1,7 @@
 //! Writes text and data with their final addresses.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use kmotiondef::GuestAddr;
 use vm::guard;
@@ -326,7 +327,20 @@ pub(super) fn lines(objects: &[Object], layout: &Layout, base: GuestAddr) -> Vec
         lines.extend(own.iter().map(|line| LinkedLine {
             address: base.offset((word + line.word - function.words.start) * layout.word_bytes),
             place: layout.place(*object, line.place),
+            column: line.column,
+            inlined: inlined(unit, function, line.place),
         }));
     }
     lines
+}
+
+/// The function whose source a line is, if that is another one than it is compiled into.
+fn inlined(unit: &Object, around: &Function, place: SourceLine) -> Option<Arc<str>> {
+    let contains = |function: &&Function| {
+        let begin = unit.symbols[function.symbol].place;
+        begin.file == place.file && (begin.line..=function.end.line).contains(&place.line)
+    };
+    let is_elsewhere = place.line > 0 && !contains(&around);
+    let other = if is_elsewhere { unit.functions.iter().find(contains) } else { None };
+    other.map(|other| unit.symbols[other.symbol].name.as_str().into())
 }

@@ -5,11 +5,11 @@ use crate::ir::function::Signature;
 use crate::ir::inst::{Address, Base, Callee, Class, Operand, SlotId, ValueId};
 use crate::ir::operators::{BinaryOp, Width};
 use crate::ty::TypeId;
-use crate::typed::{self, Call, PlaceId};
+use crate::typed::{self, Call, Expr, PlaceId};
 
 impl Lowering<'_> {
-    /// A call whose expression has type `ty`.
-    pub(super) fn call(&mut self, call: &Call, ty: TypeId, into: Option<ValueId>) -> Operand {
+    /// The call that an expression is. Whatever looks for its place finds that of the expression, not of its statement.
+    pub(super) fn call(&mut self, call: &Call, expr: &Expr, into: Option<ValueId>) -> Operand {
         let target = match call.callee {
             typed::Callee::Symbol(_) => None,
             typed::Callee::Pointer(pointer) => {
@@ -24,7 +24,7 @@ impl Lowering<'_> {
             (typed::Callee::Pointer(_), None) => return Operand::int(0),
         };
         self.price_call(call);
-        let wanted = types::class(&self.unit.types, ty);
+        let wanted = types::class(&self.unit.types, expr.ty);
         let declared = Signature {
             params: arguments.iter().map(|argument| self.builder.function.class(*argument)).collect(),
             result: types::class(&self.unit.types, call.ty.result),
@@ -41,7 +41,10 @@ impl Lowering<'_> {
             (Some(class), Some(_)) => Some(self.builder.value(class)),
             _ => None,
         };
+        let statement = self.builder.span();
+        self.builder.set_span(expr.span);
         self.builder.call(callee, signature, arguments, dst);
+        self.builder.set_span(statement);
         self.price_result(wanted);
         match (dst, wanted) {
             (Some(dst), Some(wanted)) if result != Some(wanted) => {

@@ -69,7 +69,7 @@ impl Lowering<'_> {
                 self.price_conversion(operand, self.class_or_int(expr.ty));
                 self.convert(value, from, expr.ty, into)
             }
-            ExprKind::Call(ref call) => self.call(call, expr.ty, into),
+            ExprKind::Call(ref call) => self.call(call, expr, into),
             ExprKind::VaArg(list) => self.variable_argument(list, expr.ty, into),
             ExprKind::Statements(ref statements, value) => {
                 self.statements(statements);

@@ -146,13 +146,20 @@ pub struct SourceLine {
     pub line: u32,
 }
 
-/// From this word on the code belongs to this line.
+/// From this word on the code belongs to this place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Line {
     /// Index of the word.
     pub word: u32,
     /// The line.
     pub place: SourceLine,
+    /// The column, counted from 1; 0 in an object that comes from a file, as files of objects have none.
+    pub column: u32,
+}
+
+/// The first place of each line: what a format without columns can hold.
+pub(crate) fn whole_lines<T>(places: &[T], line: impl Fn(&T) -> SourceLine) -> impl Iterator<Item = &T> {
+    places.chunk_by(move |one, next| line(one) == line(next)).filter_map(|same| same.first())
 }
 
 /// One function.

@@ -325,7 +325,7 @@ impl<'a> ObjectReader<'a> {
             let word = (address / self.word).wrapping_sub(self.head);
             if words.contains(&word) {
                 let place = SourceLine { file, line: u32::from(line.get()) };
-                self.object.lines.push(Line { word, place });
+                self.object.lines.push(Line { word, place, column: 0 });
             }
         }
         first..self.object.lines.len() as u32

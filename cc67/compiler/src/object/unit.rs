@@ -11,7 +11,7 @@ use crate::c67x::text::Words;
 use crate::c67x::{Externs, externs};
 use crate::ir::function::Signatures;
 use crate::ir::inst::SignatureId;
-use crate::source::{SourceMap, Span};
+use crate::source::{Place, SourceMap, Span};
 use crate::ty::{ParameterTypes, Type, TypeId, Types};
 use crate::typed::{self, Linkage, SymbolId, Unit};
 
@@ -192,38 +192,46 @@ impl<'a> UnitBuilder<'a> {
         }
     }
 
-    /// Records where the lines of a function of `file` begin.
+    /// Records where the lines of a function of `file` begin, and the calls and other places in them.
     fn lines(&mut self, file: u32, spans: &[(u32, Span)]) {
         let mut last = None;
         for (word, span) in spans {
             let place = self.place_in(file, *span);
             if last != Some(place) {
-                self.object.lines.push(Line { word: *word, place });
-                last = Some(place);
+                let (place, column) = place;
+                self.object.lines.push(Line { word: *word, place, column });
+                last = Some((place, column));
             }
         }
     }
 
-    /// The line of `file` that `span` belongs to: what a function's body includes counts as the
+    /// The line of `file` that `span` belongs to, and the column: what a function's body includes counts as the
     /// line of the `#include`, because an image knows one file a function.
-    fn place_in(&self, file: u32, span: Span) -> SourceLine {
+    fn place_in(&self, file: u32, span: Span) -> (SourceLine, u32) {
         let mut at = span;
         loop {
-            let place = self.place(at);
-            if place.file == file {
-                return place;
+            let Some(place) = self.sources.place(at) else { return self.line_and_column(span) };
+            if place.file.as_u32() == file {
+                return line_and_column(place);
             }
-            let included = self.sources.place(at).and_then(|at| self.sources.file(at.file).included_at);
-            let Some(include) = included else { return self.place(span) };
+            let Some(include) = self.sources.file(place.file).included_at else {
+                return self.line_and_column(span);
+            };
             at = include;
         }
     }
 
-    fn place(&self, span: Span) -> SourceLine {
-        let place = self.sources.place(span);
-        place
-            .map_or(SourceLine::default(), |place| SourceLine { file: place.file.as_u32(), line: place.line })
+    fn line_and_column(&self, span: Span) -> (SourceLine, u32) {
+        self.sources.place(span).map_or_else(Default::default, line_and_column)
     }
+
+    fn place(&self, span: Span) -> SourceLine {
+        self.line_and_column(span).0
+    }
+}
+
+fn line_and_column(place: Place) -> (SourceLine, u32) {
+    (SourceLine { file: place.file.as_u32(), line: place.line }, place.column)
 }
 
 /// The kind that the image's symbol table records for a type.

@@ -22,7 +22,7 @@ use coff::{
     StorageClass, Symbol, SymbolType, Target,
 };
 
-use super::{Definition, Function, Object, SourceLine, base_type, class, function_type, statement, to_u16};
+use super::{Definition, Function, Object, SourceLine, base_type, class, function_type, statement, to_u16, whole_lines};
 use crate::bytecode::{RelocationKind, WORD, head};
 use crate::c67x::text::{FixupKind, half};
 use crate::typed::{Linkage, SymbolId};
@@ -164,7 +164,8 @@ impl<'a> Writer<'a> {
         let first_line = self.lines.len() as u32;
         self.lines.push(Line::Function(self.entries));
         let lines = &self.object.lines[function.lines.start as usize..function.lines.end as usize];
-        let statements = lines.iter().filter_map(|line| statement(self.byte(line.word), line.place.line));
+        let statements = whole_lines(lines, |line| line.place)
+            .filter_map(|line| statement(self.byte(line.word), line.place.line));
         let statements: Vec<_> = statements.collect();
         self.lines.extend(statements);
         let entries = self.lines.len() as u32 - first_line;

@@ -370,7 +370,7 @@ impl Debugger {
             let place = self.place(first.address);
             place.map_or_else(
                 || format!("{:#010x}", first.address),
-                |place| format!("{}, {}:{}", first.function, file_name(&place.file), first.line),
+                |place| format!("{}, {}:{}", place.function, file_name(&place.file), first.line),
             )
         };
         let addresses = found.iter().map(|one| one.address).collect();

@@ -133,7 +133,7 @@ impl<E: Engine> Session<E> {
 
     fn ending_thread(&self, standing: StandingThread) -> EndingThread {
         let StandingThread { thread, state, calls, since, awaited } = standing;
-        let calls: Vec<_> = calls.into_iter().filter_map(|at| self.source_call(at)).collect();
+        let calls: Vec<_> = calls.into_iter().flat_map(|at| self.source_calls(at)).collect();
         let mut waits_for: Vec<_> = awaited.iter().map(awaited_words).collect();
         if waits_for.is_empty() && matches!(state, Standing::Slice | Standing::Computing) {
             waits_for.extend(calls.first().and_then(|call| self.condition(thread, call)));
@@ -150,11 +150,14 @@ impl<E: Engine> Session<E> {
         EndingThread { thread, state: state_word, calls, waits_for, since: seconds(since) }
     }
 
-    /// The source of an instruction.
-    fn source_call(&self, at: CodeAddr) -> Option<SourceCall> {
-        let place = self.board.source(at)?;
-        let (file, function) = (place.file.to_owned(), place.function.to_owned());
-        Some(SourceCall { file, line: place.line, function })
+    /// The source of an instruction; then the function that has it in place of a call, if there is one.
+    fn source_calls(&self, at: CodeAddr) -> impl Iterator<Item = SourceCall> {
+        let place = self.board.source(at);
+        let around = place.and_then(|place| {
+            let (file, function) = (place.file.to_owned(), place.around?.to_owned());
+            Some(SourceCall { file, line: None, column: None, function })
+        });
+        place.map(SourceCall::from).into_iter().chain(around)
     }
 
     /// The condition of the loop at a place, as far as the sources show one.

@@ -214,7 +214,9 @@ impl<E: Engine> Session<E> {
     /// # Errors
     /// Why it is refused; the program in the thread stays and continues.
     pub fn load(&mut self, program: UserProgram) -> Result<(), HostError> {
-        self.board.load(program.thread, &program.image).map_err(|error| program.refused(error))?;
+        let details = program.details.clone();
+        let loaded = self.board.load_detailed(program.thread, &program.image, details);
+        loaded.map_err(|error| program.refused(error))?;
         let (thread, starts) = (program.thread, program.starts);
         self.recording.cannot(self.board.tick(), &format!("load {} into thread {thread}", program.name()));
         self.note(Input::Load(Box::new(UserProgram { starts: false, ..program.clone() })));

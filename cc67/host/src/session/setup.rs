@@ -70,7 +70,9 @@ impl Setup {
         config.timing = options.timing;
         let mut board = Board::with_engine(config, engine);
         for program in &programs {
-            board.load(program.thread, &program.image).map_err(|error| program.refused(error))?;
+            board
+                .load_detailed(program.thread, &program.image, program.details.clone())
+                .map_err(|error| program.refused(error))?;
         }
         let offered = offered.into_iter().map(|program| offer(&mut board, program));
         let offered = offered.collect::<Result<_, _>>()?;
@@ -123,7 +125,8 @@ fn offer<E: Engine>(
     board: &mut Board<E>,
     program: UserProgram,
 ) -> Result<(UserProgram, DebugInfo), HostError> {
-    let debug = board.offer(program.thread, &program.name(), program.image.clone());
+    let debug = 
+        board.offer(program.thread, &program.name(), program.image.clone(), program.details.clone());
     let debug = debug.map_err(|error| program.refused(error))?;
     Ok((program, debug))
 }

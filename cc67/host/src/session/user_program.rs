@@ -1,13 +1,16 @@
 //! User programs: from a file to an image for a thread, with the compiler's answer as the vendor's tools show it.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use compiler::diag::Severity;
 use compiler::diag::levels::Levels;
+use compiler::link::{Linked, LinkedLine};
 use compiler::pp::Disk;
 use compiler::render::vendor;
 use compiler::{Options, files, image};
 use kmotiondef::ThreadId;
+use runtime::debug::CodeDetail;
 use runtime::loader::LoadError;
 
 use crate::error::{CompileError, HostError};
@@ -23,6 +26,8 @@ pub struct UserProgram {
     pub is_image: bool,
     /// The linked program.
     pub image: Vec<u8>,
+    /// What the compiler knows about its code besides; nothing of an image that comes from a file.
+    pub details: Arc<[CodeDetail]>,
     /// Whether it runs as soon as it is loaded.
     pub starts: bool,
 }
@@ -33,8 +38,31 @@ impl UserProgram {
     /// # Errors
     /// The file cannot be read, or what the compiler says.
     pub fn compile(path: &Path, thread: ThreadId, options: &Options) -> Result<Self, HostError> {
-        let image = build(path, thread, options)?;
-        Ok(Self { thread, path: path.to_owned(), is_image: false, image, starts: false })
+        let failed =
+            |error| HostError::Compile(CompileError::new(format!("{}: {error}", path.display())));
+        Self::of_linked(path, &build(path, thread, options)?).map_err(failed)
+    }
+
+    /// A program that was compiled from `path` and linked.
+    ///
+    /// # Errors
+    /// If it exceeds what an image can hold.
+    pub fn of_linked(path: &Path, linked: &Linked) -> Result<Self, image::WriteError> {
+        let image = image::write(linked)?;
+        let detail = |line: &LinkedLine| CodeDetail {
+            address: line.address.get(),
+            column: line.column,
+            inlined: line.inlined.clone(),
+        };
+        let details = linked.lines.iter().map(detail).collect();
+        let (thread, path) = (linked.thread, path.to_owned());
+        Ok(Self { thread, path, is_image: false, image, details, starts: false })
+    }
+
+    /// A program for `thread` from an image whose bytes are there.
+    #[must_use]
+    pub fn of_bytes(path: &Path, thread: ThreadId, image: Vec<u8>) -> Self {
+        Self { thread, path: path.to_owned(), is_image: true, image, details: Arc::default(), starts: false }
     }
 
     /// Reads an image, as `cc67 build` writes it.
@@ -42,7 +70,7 @@ impl UserProgram {
     /// # Errors
     /// The file cannot be read.
     pub fn from_image(path: &Path, thread: ThreadId) -> Result<Self, HostError> {
-        Ok(Self { thread, path: path.to_owned(), is_image: true, image: read(path)?, starts: false })
+        Ok(Self::of_bytes(path, thread, read(path)?))
     }
 
     /// The same program, to be started when it is loaded.
@@ -72,7 +100,7 @@ fn read(path: &Path) -> Result<Vec<u8>, HostError> {
 }
 
 /// Compiles and links a source for a thread.
-fn build(path: &Path, thread: ThreadId, options: &Options) -> Result<Vec<u8>, HostError> {
+fn build(path: &Path, thread: ThreadId, options: &Options) -> Result<Linked, HostError> {
     let failed = |text: String| HostError::Compile(CompileError::new(text));
     let mut compilation = compiler::compile(path, read(path)?, options, &Disk);
     let linked = compilation.link(thread, options);
@@ -82,6 +110,5 @@ fn build(path: &Path, thread: ThreadId, options: &Options) -> Result<Vec<u8>, Ho
     if !errors.is_empty() {
         return Err(failed(vendor::render(&errors, &compilation.sources)));
     }
-    let linked = linked.ok_or_else(|| failed(format!("{} cannot be linked", path.display())))?;
-    image::write(&linked).map_err(|error| failed(format!("{}: {error}", path.display())))
+    linked.ok_or_else(|| failed(format!("{} cannot be linked", path.display())))
 }

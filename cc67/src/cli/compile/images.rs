@@ -5,7 +5,7 @@ use cc67_host::UserProgram;
 
 use compiler::diag::levels::Levels;
 use compiler::render::Format;
-use compiler::{Options, image};
+use compiler::Options;
 
 use super::units;
 use crate::cli::args::compiler::CompilerArguments;
@@ -35,17 +35,13 @@ pub(crate) fn programs_with(
     let mut has_errors = false;
     for file in files {
         let bytes = read(&file.path)?;
-        let is_image = file.is_image();
-        let image = if is_image { Some(bytes) } else { build(file, bytes, options, &levels, format)? };
-        has_errors |= image.is_none();
-        let program = |image| UserProgram {
-            thread: file.thread,
-            path: file.path.clone(),
-            is_image,
-            image,
-            starts: false,
+        let program = if file.is_image() {
+            Some(UserProgram::of_bytes(&file.path, file.thread, bytes))
+        } else {
+            build(file, bytes, options, &levels, format)?
         };
-        programs.extend(image.map(program));
+        has_errors |= program.is_none();
+        programs.extend(program);
     }
     Ok((!has_errors).then_some(programs))
 }
@@ -57,12 +53,13 @@ fn build(
     options: &Options,
     levels: &Levels,
     format: Format,
-) -> Result<Option<Vec<u8>>> {
+) -> Result<Option<UserProgram>> {
     let mut compilation = units::unit(&program.path, text, options)?;
     let linked = compilation.link(program.thread, options);
     if diagnostics::report(&compilation, levels, format) {
         return Ok(None);
     }
     let Some(linked) = linked else { return Ok(None) };
-    Ok(Some(image::write(&linked).with_context(|| program.name().to_string())?))
+    let made = UserProgram::of_linked(&program.path, &linked);
+    Ok(Some(made.with_context(|| program.name().to_string())?))
 }

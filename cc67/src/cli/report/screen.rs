@@ -115,6 +115,8 @@ struct ThreadLeft<'a> {
 struct CallLeft<'a> {
     file: &'a str,
     line: Option<u32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    column: Option<u32>,
     function: &'a str,
 }
 
@@ -142,7 +144,7 @@ impl<'a> From<&'a EndingThread> for ThreadLeft<'a> {
 
 impl<'a> From<&'a SourceCall> for CallLeft<'a> {
     fn from(call: &'a SourceCall) -> Self {
-        Self { file: &call.file, line: call.line, function: &call.function }
+        Self { file: &call.file, line: call.line, column: call.column, function: &call.function }
     }
 }
 

@@ -2,6 +2,7 @@
 
 use kmotiondef::bits::{BitDirection, range_of};
 use kmotiondef::{AxisId, Bit};
+use strsim::levenshtein;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -74,8 +75,8 @@ impl Key<'_> {
     /// It is none of those that exist.
     pub(super) fn is_unknown(&self, known: &[&str]) -> Wrong {
         let place = if self.table.is_empty() { String::new() } else { format!(" in `{}`", self.table) };
-        let near = known.iter().min_by_key(|name| distance(self.text, name));
-        let hint = match near.filter(|name| distance(self.text, name) <= 2) {
+        let near = known.iter().min_by_key(|name| levenshtein(self.text, name));
+        let hint = match near.filter(|name| levenshtein(self.text, name) <= 2) {
             Some(name) => format!("; did you mean `{name}`?"),
             None => format!("; there are {}", known.join(", ")),
         };
@@ -87,21 +88,6 @@ impl Key<'_> {
         let number = self.text.parse().ok().and_then(AxisId::new);
         number.ok_or_else(|| Wrong::new(self.offset, format!("`{}` is not an axis (0-7)", self.text)))
     }
-}
-
-/// Letters to change to make one word of another.
-fn distance(from: &str, to: &str) -> usize {
-    let to: Vec<char> = to.chars().collect();
-    let mut row: Vec<usize> = (0..=to.len()).collect();
-    for (index, letter) in from.chars().enumerate() {
-        let mut diagonal = std::mem::replace(&mut row[0], index + 1);
-        for (column, other) in to.iter().enumerate() {
-            let cost = diagonal + usize::from(letter != *other);
-            diagonal = row[column + 1];
-            row[column + 1] = cost.min(diagonal + 1).min(row[column] + 1);
-        }
-    }
-    row[to.len()]
 }
 
 /// A value, with the path of its key.

@@ -68,7 +68,7 @@ impl StatementReader<'_> {
     }
 
     /// Takes a certain sign, if it comes next.
-    fn accept_sign(&mut self, sign: &str) -> bool {
+    pub(crate) fn accept_sign(&mut self, sign: &str) -> bool {
         let is_next =
             matches!(self.tokens.first(), Some(Token { kind: TokenKind::Sign(next), .. }) if *next == sign);
         if is_next {

@@ -256,6 +256,19 @@ mod tests {
     }
 
     #[test]
+    fn set_takes_a_level_as_well() {
+        for (one, same) in [
+            ("set bit 5 = 0", "bit 5 = 0"),
+            ("set bit 5 0", "bit 5 = 0"),
+            ("set bit 5 = 1", "bit 5 = 1"),
+            ("set bit 5", "bit 5 = 1"),
+        ] {
+            let action = |text| parse(text, "x").map(|rules| format!("{:?}", rules[0].action));
+            assert_eq!(action(one), action(same), "{one}");
+        }
+    }
+
+    #[test]
     fn waves_have_their_words() {
         for text in [
             "adc 0 = sine mean 0 amplitude 1000 hz 2",
@@ -276,6 +289,8 @@ mod tests {
             ("at soon set bit 3", "x.stim:1:4: expected a time such as 1.5s, 20ms or 90us, found `soon`"),
             ("at -1s set bit 3", "x.stim:1:4: expected a time such as 1.5s, 20ms or 90us, found `-1s`"),
             ("at 1s set bit", "x.stim:1:14: expected a bit from 0 to 2047, found the end of the statement"),
+            ("set bit 5 now", "x.stim:1:11: expected 0 or 1, found `now`"),
+            ("set bit 5 =", "x.stim:1:12: expected 0 or 1, found the end of the statement"),
             ("bit 5 = 2", "x.stim:1:9: expected 0 or 1, found `2`"),
             ("bit 5 = 1 now", "x.stim:1:11: expected the end of the statement, found `now`"),
             ("every 10us toggle bit 1", "x.stim:1:7: a period is at least one tick, 90us"),

@@ -75,10 +75,10 @@ fn collect(board: &Board<ProfilingEngine>) -> Account {
     let mut account = Account::new();
     for (site, spent) in board.machine().engine().profile().sites() {
         let Some((head, callers)) = site.calls.split_first() else { continue };
-        let outer: Vec<Frame> = callers.iter().rev().map(|call| frame(board, *call)).collect();
+        let outer: Vec<Frame> = callers.iter().rev().flat_map(|call| frames(board, *call)).collect();
         for (at, part) in parts(board, site, *head, spent) {
             let mut frames = outer.clone();
-            frames.push(frame(board, at));
+            frames.extend(self::frames(board, at));
             let place = Place { context: site.context, frames, firmware: site.firmware.map(firmware_name) };
             let entry = account.entry(place).or_default();
             entry.computing += part.computing;
@@ -129,12 +129,16 @@ fn program_of(board: &Board<ProfilingEngine>, address: CodeAddr) -> Option<&vm::
     programs.find(|program| program.word_at(address).is_some())
 }
 
-fn frame(board: &Board<ProfilingEngine>, address: CodeAddr) -> Frame {
+/// The function that an address lies in, and within it the one whose call it replaces.
+fn frames(board: &Board<ProfilingEngine>, address: CodeAddr) -> Vec<Frame> {
+    let frame =
+        |function: &str, file: &str, line| Frame { function: function.to_owned(), file: file.to_owned(), line };
     match board.source(address) {
         Some(place) => {
-            Frame { function: place.function.to_owned(), file: place.file.to_owned(), line: place.line }
+            let around = place.around.map(|function| frame(function, place.file, None));
+            around.into_iter().chain([frame(place.function, place.file, place.line)]).collect()
         }
-        None => Frame { function: address.to_string(), file: String::new(), line: None },
+        None => vec![frame(&address.to_string(), "", None)],
     }
 }
 

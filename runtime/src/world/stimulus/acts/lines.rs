@@ -28,8 +28,11 @@ pub(crate) fn read_bit(reader: &mut StatementReader<'_>) -> Result<(Bit, bool), 
     Ok((bit, reader.level()?))
 }
 
+/// `set bit 5`; people write `set bit 5 = 1` and `set bit 5 1` too.
 pub(crate) fn read_set(reader: &mut StatementReader<'_>) -> Result<(Bit, bool), Mistake> {
-    Ok((reader.input()?, true))
+    let bit = reader.input()?;
+    let is_alone = !reader.accept_sign("=") && reader.tokens.is_empty();
+    Ok((bit, is_alone || reader.level()?))
 }
 
 pub(crate) fn read_clear(reader: &mut StatementReader<'_>) -> Result<(Bit, bool), Mistake> {
