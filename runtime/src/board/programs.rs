@@ -56,7 +56,8 @@ impl<E: Engine> Board<E> {
         let objects = prepared.debug.objects().iter().map(named).collect();
         self.machine.firmware_mut().0.parts.calls.notices.load(thread, objects);
         self.load_code(thread, prepared.code, prepared.entry);
-        self.programs_mut().loaded[thread.index()] = Some(Loaded { debug: prepared.debug.with_details(details), extent });
+        self.programs_mut().loaded[thread.index()] =
+            Some(Loaded { debug: prepared.debug.with_details(details), extent });
         Ok(())
     }
 

@@ -22,7 +22,9 @@ use coff::{
     StorageClass, Symbol, SymbolType, Target,
 };
 
-use super::{Definition, Function, Object, SourceLine, base_type, class, function_type, statement, to_u16, whole_lines};
+use super::{
+    Definition, Function, Object, SourceLine, base_type, class, function_type, statement, to_u16, whole_lines,
+};
 use crate::bytecode::{RelocationKind, WORD, head};
 use crate::c67x::text::{FixupKind, half};
 use crate::typed::{Linkage, SymbolId};

@@ -125,8 +125,7 @@ fn offer<E: Engine>(
     board: &mut Board<E>,
     program: UserProgram,
 ) -> Result<(UserProgram, DebugInfo), HostError> {
-    let debug = 
-        board.offer(program.thread, &program.name(), program.image.clone(), program.details.clone());
+    let debug = board.offer(program.thread, &program.name(), program.image.clone(), program.details.clone());
     let debug = debug.map_err(|error| program.refused(error))?;
     Ok((program, debug))
 }

@@ -38,8 +38,7 @@ impl UserProgram {
     /// # Errors
     /// The file cannot be read, or what the compiler says.
     pub fn compile(path: &Path, thread: ThreadId, options: &Options) -> Result<Self, HostError> {
-        let failed =
-            |error| HostError::Compile(CompileError::new(format!("{}: {error}", path.display())));
+        let failed = |error| HostError::Compile(CompileError::new(format!("{}: {error}", path.display())));
         Self::of_linked(path, &build(path, thread, options)?).map_err(failed)
     }
 

@@ -3,9 +3,9 @@
 use anyhow::{Context, Result};
 use cc67_host::UserProgram;
 
+use compiler::Options;
 use compiler::diag::levels::Levels;
 use compiler::render::Format;
-use compiler::Options;
 
 use super::units;
 use crate::cli::args::compiler::CompilerArguments;

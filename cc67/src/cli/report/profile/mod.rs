@@ -131,8 +131,11 @@ fn program_of(board: &Board<ProfilingEngine>, address: CodeAddr) -> Option<&vm::
 
 /// The function that an address lies in, and within it the one whose call it replaces.
 fn frames(board: &Board<ProfilingEngine>, address: CodeAddr) -> Vec<Frame> {
-    let frame =
-        |function: &str, file: &str, line| Frame { function: function.to_owned(), file: file.to_owned(), line };
+    let frame = |function: &str, file: &str, line| Frame {
+        function: function.to_owned(),
+        file: file.to_owned(),
+        line,
+    };
     match board.source(address) {
         Some(place) => {
             let around = place.around.map(|function| frame(function, place.file, None));
