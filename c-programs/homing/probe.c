@@ -33,7 +33,8 @@ void Capture(double *To)
 void StopAll(void)
 {
     StopCoordinatedMotion();
-    while (!CheckDoneXYZABC()) WaitNextTimeSlice();
+    // not CheckDoneXYZABC, which stays 0 until the feedhold is cleared
+    while (!CheckDone(CS0_axis_z)) WaitNextTimeSlice();
     ClearStopImmediately();
 }
 

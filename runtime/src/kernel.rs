@@ -348,8 +348,11 @@ impl Firmware for Kernel {
 
     fn primary_slice(&mut self, context: &mut TickContext<'_>) {
         let parts = &mut self.parts;
-        parts.out.console.print_servo_message();
         if parts.pc.is_heard && !self.scripts.is_in_command() {
+            // Recorded: it comes before what programs have printed in the same slice.
+            if let Some(message) = parts.out.console.take_servo_message() {
+                parts.send_line(message, context.now);
+            }
             send_lines(parts, context.now);
         }
         let Parts { pc, servo, out, .. } = parts;

@@ -43,15 +43,10 @@ const DIFFERENT: &[(&str, &str)] = &[
         "soft limit: axis at 6, limit 5, Jog(0, -1000)",
         "how long the run continued after its rows is not recorded",
     ),
-    ("soft limit: axis at 6, limit 5, MoveExp(0, 10, 0.01)", STOPPED),
-    ("soft limit: axis at 6, limit 8, Move(0, 10)", STOPPED),
 ];
 
 /// An error of the vendor's compiler; cc67 compiles C.
 const VENDOR: &str = "the vendor's compiler takes a wrong address";
-
-/// What a stop at a limit leaves differently.
-const STOPPED: &str = "a stop at a limit leaves LastMotionType, which the board sets to that of a jog";
 
 /// What a column is in the words of a program; `None` for what no program can see.
 fn expression(column: &str, name: &str, checks: &mut usize) -> Option<String> {

@@ -10,4 +10,5 @@ mod session;
 mod snapshots;
 mod threads;
 mod transcripts;
+mod witness;
 mod world;

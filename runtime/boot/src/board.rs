@@ -21,6 +21,8 @@ use super::window::Window;
 const SECOND: u64 = 200_000_000;
 /// Cycles from taking an interrupt to the first packet of its vector.
 const OVERHEAD: u64 = 11;
+/// Longest interrupt of a board without motion, with room.
+const INTERRUPT: u64 = 8000;
 /// Longest start: many times what any version takes.
 const LONGEST_START: u64 = 3 * SECOND;
 /// Longest time for which the timer's interrupt may wait.
@@ -122,6 +124,11 @@ impl BootedBoard {
         self.skips = whether;
     }
 
+    /// Whether an address that is nobody's reads 0 and takes writes, as on a board; else it ends the run.
+    pub const fn forgive(&mut self, whether: bool) {
+        self.hardware.forgives = whether;
+    }
+
     /// Cycles of waiting loops that were skipped.
     #[must_use]
     pub const fn skipped(&self) -> u64 {
@@ -182,6 +189,12 @@ impl BootedBoard {
     #[must_use]
     pub const fn ready_at(&self) -> Option<u64> {
         self.hardware.first_look
+    }
+
+    /// Whether the firmware is starting, or starting anew, and does not look for what the PC sends yet.
+    #[must_use]
+    pub const fn is_starting(&self) -> bool {
+        self.hardware.first_look.is_none()
     }
 
     /// Packets executed since power-up.
@@ -275,8 +288,8 @@ impl BootedBoard {
 
     /// A reset: everything but flash and link as at power-up.
     fn restart(&mut self) {
-        let Hardware { memory, window, .. } = std::mem::take(&mut self.hardware);
-        self.hardware = Hardware { memory, window, first_look: Some(self.cycle()), ..Hardware::default() };
+        let Hardware { memory, window, forgives, .. } = std::mem::take(&mut self.hardware);
+        self.hardware = Hardware { memory, window, forgives, ..Hardware::default() };
         self.hardware.window.reset();
         let memory = &mut self.hardware.memory;
         for region in [IRAM, SDRAM] {
@@ -386,6 +399,36 @@ impl BootedBoard {
     /// Starts a thread.
     pub fn execute(&mut self, thread: ThreadId) {
         self.send_line(format!("Execute{thread}").as_bytes());
+    }
+
+    /// Starts threads all at once: in the rotation after this tick none of them comes before it is ready.
+    ///
+    /// # Errors
+    /// The firmware ran away.
+    pub fn execute_together(&mut self, threads: &[ThreadId]) -> Result<(), Halted> {
+        let Some(at) = self.file.address("ThreadActive") else {
+            threads.iter().for_each(|thread| self.execute(*thread));
+            return Ok(());
+        };
+        let mut started = 0;
+        for thread in threads {
+            self.execute(*thread);
+            let end = self.cycle() + LONGEST_SHADOW;
+            let is_begun = |board: &Self| board.is_active(*thread).unwrap_or(true);
+            while !is_begun(self) && self.cycle() < end {
+                self.run_to(self.cycle() + 20)?;
+            }
+            // Held back until all are ready.
+            let active: u32 = self.hardware.memory.peek(at);
+            self.hardware.memory.poke(at, active & !(1 << thread.get()));
+            started |= 1 << thread.get();
+        }
+        // After the interrupt of a tick, so that the next one begins with the first of them.
+        self.run_to(self.next_tick())?;
+        self.run_to(self.cycle() + INTERRUPT)?;
+        let active: u32 = self.hardware.memory.peek(at);
+        self.hardware.memory.poke(at, active | started);
+        Ok(())
     }
 
     /// Whether a user thread is active; `None` if the firmware does not say.

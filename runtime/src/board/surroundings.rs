@@ -12,7 +12,7 @@ use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::map::FPGA;
 use kmotiondef::modes::{InputMode, OutputMode};
 use kmotiondef::structs::Chan;
-use kmotiondef::variables::{CURRENT_THREAD, HOST_STATUS, KSTEP_PRESENT};
+use kmotiondef::variables::{ADC_BUFFER_IN, CURRENT_THREAD, HOST_STATUS, KSTEP_PRESENT};
 use kmotiondef::{AxisId, Bit, Cycles, GuestAddr, ThreadId, Ticks};
 use vm::bus::AccessSize;
 use vm::firmware::TickContext;
@@ -23,6 +23,7 @@ use vm::thread::Threads;
 use super::machine_file::MachineFile;
 use super::{Config, connect};
 use crate::firmware::parts::Parts;
+use crate::io::kanalog::ADC_CHANNELS;
 use crate::io::stepgen::generator_of;
 use crate::machine::{COUNTS_PER_TICK, Drive};
 use crate::out::{Event, EventKind, Request, Speaker};
@@ -34,6 +35,10 @@ use crate::world::{Moment, trace};
 
 /// First register, and how many, that something else than the board answers.
 const ANSWERED: [std::ops::Range<usize>; 5] = [0x08..0x09, 0x88..0x8A, 0x90..0x99, 0xC0..0xC2, 0x130..0x136];
+/// An analog input of 0 V.
+const ADC_ZERO: i32 = 2048;
+/// Where the converters are.
+const CONVERTERS: usize = 0x90;
 /// Bytes between two registers, and where a register lies in them.
 const STRIDE: u32 = 4;
 const LANE: u32 = 2;
@@ -82,6 +87,8 @@ pub struct Surroundings {
     was_enabled: [bool; N_CHANNELS],
     /// Where this firmware keeps which threads are active.
     active: GuestAddr,
+    /// What the converters show: what was there a tick ago.
+    conversions: [u16; ADC_CHANNELS],
     asked: Vec<Asked>,
 }
 
@@ -105,6 +112,7 @@ impl Surroundings {
             positions: [0.0; N_CHANNELS],
             was_enabled: [false; N_CHANNELS],
             active,
+            conversions: [ADC_ZERO as u16; ADC_CHANNELS],
             asked: Vec::new(),
         }
     }
@@ -113,6 +121,8 @@ impl Surroundings {
     pub fn begin(&mut self, machine: &MachineFile, stimulus: Stimulus, memory: &mut GuestMemory) {
         let status = i32::from(self.parts.pc.host.has_job());
         memory.set(HOST_STATUS, status);
+        // Nothing fills them without a Kanalog: what they hold at power-up is an accident, and this is that of the model.
+        (0..ADC_CHANNELS).for_each(|channel| memory.set(ADC_BUFFER_IN.element(channel), ADC_ZERO));
         connect::play(&mut self.parts, machine, memory);
         if !stimulus.is_empty() {
             let (world, mut stage) = self.parts.stage(Cycles::default());
@@ -142,6 +152,9 @@ impl Surroundings {
 
     /// What a register shows; `None` where the board itself answers.
     pub fn read(&mut self, register: usize, is_byte: bool, now: Cycles) -> Option<u16> {
+        if let Some(conversion) = register.checked_sub(CONVERTERS).and_then(|at| self.conversions.get(at)) {
+            return Some(*conversion);
+        }
         let is_answered = ANSWERED.iter().any(|registers| registers.contains(&register));
         is_answered.then(|| self.parts.read_register(address(register), size(is_byte), now) as u16)
     }
@@ -163,6 +176,7 @@ impl Surroundings {
     pub fn tick(&mut self, instant: &mut Instant<'_>) {
         let now = instant.now;
         self.parts.clock.tick_start = now;
+        self.conversions = std::array::from_fn(|channel| self.parts.io.kanalog.conversion(channel) as u16);
         let active = active(instant.memory, self.active);
         self.follow_threads(active);
         let moment = Moment { turn: Turn::Primary, slice_start: now };

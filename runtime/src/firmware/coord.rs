@@ -139,7 +139,7 @@ pub(crate) fn resume_coordinated_motion(parts: &mut Parts, caller: &mut Caller<'
                 return Outcome::Done(());
             }
             caller.memory.set(CS0_STOPPING_STATE, HoldState::Running.number());
-            let held = |axis: &AxisId| parts.servo.axes[axis.index()].is_held;
+            let held = |axis: &AxisId| parts.servo.axes[axis.index()].held.is_some();
             let mut left: Vec<AxisId> = members(caller.memory).filter(held).collect();
             left.reverse();
             (left, false)

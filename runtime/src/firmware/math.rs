@@ -1,13 +1,12 @@
 //! Mathematics, from `libm` so that every host computes the same.
 
-use std::f64::consts::TAU;
-
 use kmotiondef::GuestAddr;
 use vm::arith::{canonical_f32, canonical_f64};
 use vm::firmware::{Caller, PureFunction};
 use vm::trap::TrapKind;
 
 use super::parts::Parts;
+use crate::servo::sine::two_phases;
 
 /// A floating number, so that every NaN can be made that of all arithmetic: what `libm` makes differs between hosts.
 trait Number {
@@ -168,9 +167,9 @@ pub(crate) fn sine_3ph(
     x: f32,
     second: GuestAddr,
 ) -> Result<f32, TrapKind> {
-    let sine = |cycles: f64| libm::sin(TAU * cycles) as f32;
-    caller.memory.store(second, sine(f64::from(x) + 1.0 / 3.0))?;
-    Ok(sine(f64::from(x)))
+    let [first, ahead] = two_phases(x);
+    caller.memory.store(second, ahead)?;
+    Ok(first)
 }
 
 /// The fraction of a number, with its sign.

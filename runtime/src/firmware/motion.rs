@@ -379,6 +379,10 @@ pub(crate) fn check_done(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32) 
 }
 
 pub(crate) fn check_done_xyzabc(_: &mut Parts, caller: &mut Caller<'_>) -> i32 {
+    // Recorded: a feedhold is not done, not even when its axes have stopped or one of them is disabled.
+    if caller.memory.get(CS0_STOPPING_STATE) != 0 {
+        return 0;
+    }
     system::members(caller.memory).map(|axis| done(caller.memory, axis)).min().unwrap_or(1)
 }
 

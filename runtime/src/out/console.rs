@@ -56,11 +56,9 @@ impl Console {
         self.servo.get_or_insert_with(|| text.to_owned());
     }
 
-    /// The primary thread's slice: it prints what the servo reports.
-    pub(crate) fn print_servo_message(&mut self) {
-        if let Some(text) = self.servo.take() {
-            self.message(&text);
-        }
+    /// The primary thread's slice: it sends what the servo reports, past the queue.
+    pub(crate) fn take_servo_message(&mut self) -> Option<Vec<u8>> {
+        self.servo.take().map(String::into_bytes)
     }
 
     /// The string that is sent next.
@@ -71,8 +69,8 @@ impl Console {
     /// Everything not sent yet. A line that has not ended stays: the board never sends it
     /// (gather-persist-console.md section 4).
     pub(crate) fn drain(&mut self) -> Vec<Vec<u8>> {
-        self.print_servo_message();
-        self.queue.drain(..).collect()
+        let servo = self.take_servo_message();
+        servo.into_iter().chain(self.queue.drain(..)).collect()
     }
 
     /// The line that was begun and has not ended.
@@ -139,11 +137,11 @@ mod tests {
         console.servo_message("second");
         assert!(!console.is_idle());
         assert!(console.put(b"of a program\n").is_empty());
-        console.print_servo_message();
+        assert_eq!(console.take_servo_message().as_deref(), Some(&b"first"[..]));
         console.servo_message("third");
         let sent: Vec<_> =
             console.drain().into_iter().map(|line| String::from_utf8(line).expect("text")).collect();
-        assert_eq!(sent, ["of a program", "first", "third"]);
+        assert_eq!(sent, ["third", "of a program"]);
     }
 
     #[test]

@@ -89,7 +89,10 @@ pub(crate) fn stop_axis(servo: &mut Servo, memory: &mut GuestMemory, axis: AxisI
     if let Some(limits) = limits(memory, axis, Some(1.0)) {
         let states = profile::jog(present(memory, axis), 0.0, &limits);
         run(memory, axis, &states);
-        servo.axes[axis.index()].is_held = true;
+        // The axis is jogged to rest; what it did is kept for a resume.
+        let kind = LastMotion::new(memory.axis(axis, Chan::LAST_MOTION_TYPE));
+        servo.axes[axis.index()].held = Some(kind.unwrap_or(LastMotion::Jog));
+        memory.set_axis(axis, Chan::LAST_MOTION_TYPE, LastMotion::Jog.get());
     }
 }
 
@@ -103,12 +106,16 @@ pub(crate) fn update_state(memory: &mut GuestMemory) {
 
 /// Restarts what a feedhold interrupted. A jog is not resumed; an exponential approach becomes a move.
 pub(crate) fn resume_axis(servo: &mut Servo, memory: &mut GuestMemory, axis: AxisId) {
-    let was_held = std::mem::take(&mut servo.axes[axis.index()].is_held);
-    let kind = LastMotion::new(memory.axis(axis, Chan::LAST_MOTION_TYPE));
-    let Some(kind) = kind.filter(|&kind| was_held && kind != LastMotion::Jog) else { return };
+    let Some(kind) = servo.axes[axis.index()].held.take() else { return };
+    // Recorded: whatever it was, and whether it goes on or not, it counts as a part of a move of several axes.
+    memory.set_axis(axis, Chan::LAST_MOTION_TYPE, LastMotion::Multi.get());
+    if kind == LastMotion::Jog {
+        return;
+    }
     let target = memory.axis(axis, Chan::LAST_MOTION_DEST);
     if let Some(limits) = limits(memory, axis, None) {
         start_move_to(memory, axis, target, &limits, kind);
+        memory.set_axis(axis, Chan::LAST_MOTION_TYPE, LastMotion::Multi.get());
     }
 }
 
@@ -117,5 +124,5 @@ pub(crate) fn clear(servo: &mut Servo, memory: &mut GuestMemory) {
     if !feedhold::clear(memory) {
         memory.set(CS0_STOPPING_STATE, HoldState::Running.number());
     }
-    servo.axes.iter_mut().for_each(|axis| axis.is_held = false);
+    servo.axes.iter_mut().for_each(|axis| axis.held = None);
 }

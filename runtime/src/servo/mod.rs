@@ -30,6 +30,7 @@ mod recorded;
 #[cfg(test)]
 mod recorded_servo;
 mod recorder;
+pub(crate) mod sine;
 mod slave;
 pub(crate) mod spindle;
 mod state;

@@ -2,8 +2,6 @@
 //!
 //! Source: axes-and-motion.md sections 11 and 12.
 
-use std::f64::consts::TAU;
-
 use kmotiondef::limits::{MAX_PWM_VALUE, MAX_PWMC_VALUE, MAXV};
 use kmotiondef::modes::OutputMode;
 use kmotiondef::structs::Chan;
@@ -11,6 +9,7 @@ use kmotiondef::variables::DAC_BUFFER;
 use kmotiondef::{AxisId, Field};
 use vm::memory::GuestMemory;
 
+use super::sine::{QUARTER, sine};
 use super::state::Tick;
 use crate::io::amplifiers::{antiphase, current, store_pwm};
 use crate::machine::{Applied, Drive};
@@ -167,12 +166,12 @@ pub(super) fn write_dac(memory: &mut GuestMemory, axis: AxisId, output: f32) {
 
 /// Sine and cosine currents with lead compensation.
 fn microstep(memory: &mut GuestMemory, axis: AxisId, position: f64) {
-    let angle = TAU * position * memory.axis(axis, Chan::INV_DIST_PER_CYCLE);
+    let angle = position * memory.axis(axis, Chan::INV_DIST_PER_CYCLE);
     let amplitude = f64::from(memory.axis(axis, Chan::STEPPER_AMPLITUDE));
     let lead = f64::from(memory.axis(axis, Chan::LEAD));
     let phases: [(f64, Field<f32>, Field<i32>); 2] = [
-        (amplitude * libm::sin(angle), Chan::X1_LAST, Chan::OUTPUT_CHAN0),
-        (amplitude * libm::cos(angle), Chan::X2_LAST, Chan::OUTPUT_CHAN1),
+        (amplitude * sine(angle, 0), Chan::X1_LAST, Chan::OUTPUT_CHAN0),
+        (amplitude * sine(angle, QUARTER), Chan::X2_LAST, Chan::OUTPUT_CHAN1),
     ];
     for (value, last, channel) in phases {
         let led = value + (value - f64::from(memory.axis(axis, last))) * lead;
@@ -193,8 +192,8 @@ pub(crate) fn three_phase(memory: &mut GuestMemory, axis: AxisId, v: f32) {
 /// Applies a vector to two coils a quarter of a cycle apart; the angle is in cycles.
 pub(crate) fn four_phase(memory: &mut GuestMemory, axis: AxisId, v: f32, angle: f64) {
     let magnitude = f64::from(v.clamp(-MAXV, MAXV));
-    let angle = TAU * (angle - libm::floor(angle));
-    for (value, channel) in [(libm::sin(angle), Chan::OUTPUT_CHAN0), (libm::cos(angle), Chan::OUTPUT_CHAN1)] {
+    let phases = [(sine(angle, 0), Chan::OUTPUT_CHAN0), (sine(angle, QUARTER), Chan::OUTPUT_CHAN1)];
+    for (value, channel) in phases {
         let channel = memory.axis(axis, channel);
         store_pwm(memory, channel, pwm(channel, libm::round(magnitude * value) as i32));
     }

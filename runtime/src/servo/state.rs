@@ -1,6 +1,7 @@
 //! What the servo remembers beside guest memory, and what a tick of it works on.
 
 use kmotiondef::limits::N_CHANNELS;
+use kmotiondef::modes::LastMotion;
 use kmotiondef::{AxisId, Cycles};
 use vm::memory::GuestMemory;
 
@@ -21,8 +22,8 @@ pub(crate) struct AxisMemory {
     pub(super) velocity: f64,
     /// The velocity in the tick before.
     pub(super) last_velocity: f64,
-    /// Whether a feedhold interrupted a motion of the axis.
-    pub(crate) is_held: bool,
+    /// What kind of motion of the axis a feedhold interrupted.
+    pub(crate) held: Option<LastMotion>,
 }
 
 impl AxisMemory {

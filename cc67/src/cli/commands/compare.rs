@@ -31,6 +31,8 @@ use crate::cli::session::{Rig, Setup, Started, Work};
 const PINS: i32 = 48;
 /// Pins of step generators: the level of a pulse is not modelled at register level.
 const STEP_PINS: [std::ops::Range<usize>; 2] = [8..16, 36..44];
+/// Pins that the firmware turns while there is a KStep: they select its inputs.
+const KSTEP_PINS: std::ops::Range<usize> = 2..4;
 /// Digits of positions that are compared: a thousandth.
 const POSITION: f64 = 1e-3;
 
@@ -78,11 +80,17 @@ struct Outcome {
     lines: Vec<(f64, LineKind, String)>,
     /// How it ended.
     end: String,
+    /// When it ended.
+    ticks: Ticks,
     user_data: Vec<u32>,
     /// Commanded and measured position of each axis.
     axes: Vec<(f64, f64)>,
+    /// The same at its very end: what came to rest a little later.
+    last_axes: Vec<(f64, f64)>,
     /// Pins that are high.
     pins: Vec<bool>,
+    /// Whether a KStep is there.
+    has_kstep: bool,
 }
 
 /// A difference: what, on the model, on the firmware, and the page that says how it is meant.
@@ -108,7 +116,9 @@ pub(super) fn compare(arguments: &CompareArguments) -> Result<Exit> {
     for program in &arguments.programs {
         let (own, programs) = arguments.of(program)?;
         let Some(model) = own.model(&programs)? else { return Ok(Exit::Failure) };
-        let Some(firmware) = own.firmware(&programs, &mut ready)? else { return Ok(Exit::Failure) };
+        let Some(firmware) = own.firmware(&programs, &mut ready, model.ticks)? else {
+            return Ok(Exit::Failure);
+        };
         let differences = model.differences(&firmware);
         let late = model.latest(&firmware);
         let is_late = arguments.strict_times && late > arguments.tolerance;
@@ -188,13 +198,20 @@ impl CompareArguments {
     }
 
     /// The run on the firmware; `None` if a source has errors.
-    fn firmware(&self, programs: &[OsString], ready: &mut Ready) -> Result<Option<Outcome>> {
+    ///
+    /// Its axes are looked at in the tick in which the model ended: an axis that nobody stops continues.
+    fn firmware(&self, programs: &[OsString], ready: &mut Ready, at: Ticks) -> Result<Option<Outcome>> {
         let mut booted = ready.fresh();
         if !booted.begin(self.started(programs), &self.board, &self.compiler, None)? {
             return Ok(None);
         }
         let mut outcome = Outcome::default();
+        // The model ends before the tick that the firmware has just begun.
+        let until = Ticks::new(at.get() + 1).min(self.ticks());
+        while booted.tick() < until && booted.advance_tick(&mut |event| outcome.note(&event)).is_ok() {}
+        outcome.axes = booted.axes();
         let ended = booted.run(self.ticks(), &mut |event| outcome.note(&event));
+        outcome.last_axes = booted.axes();
         booted.finish(&mut |event| outcome.note(&event));
         outcome.end = match ended {
             Ok(End::AllEnded | End::Interrupted) => "ended".to_owned(),
@@ -235,6 +252,7 @@ impl Work for Model<'_> {
             (None, End::AllEnded | End::Interrupted) => "ended".to_owned(),
         };
         let session = &rig.session;
+        outcome.ticks = session.tick();
         let memory = session.board().memory();
         let data = PERSIST.field(Persist::USER_DATA).address();
         outcome.user_data = (0..200).map(|index| memory.peek(data.offset(4 * index))).collect();
@@ -271,7 +289,8 @@ impl Outcome {
             let data = persist.offset(Persist::USER_DATA.offset());
             self.user_data = (0..200).map(|index| board.memory().peek(data.offset(4 * index))).collect();
         }
-        self.axes = AxisId::all().filter_map(|axis| board.axis(axis)).collect();
+        let kstep = board.file().address("KStepPresent").map(|at| board.memory().peek::<u32>(at));
+        self.has_kstep = kstep.is_some_and(|present| present != 0);
         self.pins = (0..PINS as usize).map(|pin| board.is_output(pin) && board.is_high(pin)).collect();
     }
 
@@ -314,14 +333,15 @@ impl Outcome {
             }
         }
         for (axis, (one, two)) in self.axes.iter().zip(&firmware.axes).enumerate() {
-            // Where the loop is closed depends on the load, which a booted board does not have yet.
-            if (one.0 - two.0).abs() > POSITION {
+            let last = firmware.last_axes.get(axis).map_or(two.0, |last| last.0);
+            if (one.0 - two.0).abs() > POSITION && (one.0 - last).abs() > POSITION {
                 let shown = |axis: &(f64, f64)| format!("Dest {:.6}", axis.0);
                 differ(format!("axis {axis}"), shown(one), shown(two), "axes-and-motion.md");
             }
         }
         for (pin, (one, two)) in self.pins.iter().zip(&firmware.pins).enumerate() {
-            let is_pulsed = STEP_PINS.iter().any(|pins| pins.contains(&pin));
+            let is_pulsed = STEP_PINS.iter().any(|pins| pins.contains(&pin))
+                || firmware.has_kstep && KSTEP_PINS.contains(&pin);
             if one != two && !is_pulsed {
                 differ(format!("bit {pin}"), u8::from(*one).to_string(), u8::from(*two).to_string(), "io.md");
             }

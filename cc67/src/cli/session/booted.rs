@@ -132,7 +132,8 @@ impl Booted {
         let cc67_host::Setup { mut config, options, programs, offered, values, mut stimulus, .. } = session;
         self.store(&values)?;
         programs.iter().try_for_each(|program| self.take(program))?;
-        self.settle()?;
+        let starting = programs.iter().filter(|program| program.starts).map(|program| program.thread);
+        self.settle(&starting.collect::<Vec<_>>())?;
         if self.can_be_surrounded() {
             let known = [&programs[..], &offered].concat();
             let mut machine = std::mem::take(&mut config.machine_file);
@@ -152,18 +153,17 @@ impl Booted {
             bail!("nothing can be connected: this firmware keeps its variables in other places than 4.34");
         }
         self.offered = offered;
-        programs.iter().filter(|program| program.starts).for_each(|one| self.board.execute(one.thread));
         Ok(true)
     }
 
-    /// Lets the firmware read what was sent, and goes to the beginning of the next tick: time is 0 there.
-    fn settle(&mut self) -> Result<()> {
+    /// Lets the firmware read what was sent, and start threads in the next tick; time is 0 a tick before.
+    fn settle(&mut self, starting: &[ThreadId]) -> Result<()> {
         let end = self.board.cycle() + ANSWER;
         while !self.board.has_read_all() && self.board.cycle() < end {
             self.board.run_to(self.board.cycle() + TICK)?;
         }
-        self.board.run_to(self.board.next_tick())?;
-        self.origin = self.board.cycle();
+        self.board.execute_together(starting)?;
+        self.origin = self.board.next_tick() - TICK;
         self.board.take_lines();
         Ok(())
     }
@@ -256,11 +256,11 @@ impl Booted {
     /// The firmware ran away; what it has sent before was handed over.
     pub(crate) fn run(&mut self, limit: Ticks, sink: &mut dyn FnMut(Event)) -> Result<End, Halted> {
         let mut quiet = 0;
-        let mut axes = self.axes();
+        let mut axes = self.commands();
         while self.tick() < limit {
             let has_sent = self.advance(TICK, sink)?;
-            let moved = std::mem::replace(&mut axes, self.axes());
-            let is_awaited = self.is_awaited();
+            let moved = std::mem::replace(&mut axes, self.commands());
+            let is_awaited = self.is_awaited() || self.board.is_starting();
             let is_busy = has_sent
                 || is_awaited
                 || moved != axes
@@ -281,9 +281,23 @@ impl Booted {
         attached.is_some_and(|attached| attached.surroundings.is_busy(memory))
     }
 
-    /// Where the axes are commanded to be.
-    fn axes(&self) -> Vec<Option<u64>> {
-        AxisId::all().map(|axis| self.board.axis(axis).map(|(dest, _)| dest.to_bits())).collect()
+    /// Where the axes are commanded to be, as bits, to see whether they move.
+    fn commands(&self) -> Vec<u64> {
+        self.axes().iter().map(|(dest, _)| dest.to_bits()).collect()
+    }
+
+    /// Where the axes are commanded to be, and where they are.
+    pub(crate) fn axes(&self) -> Vec<(f64, f64)> {
+        AxisId::all().filter_map(|axis| self.board.axis(axis)).collect()
+    }
+
+    /// Runs to the next tick.
+    ///
+    /// # Errors
+    /// The firmware ran away.
+    pub(crate) fn advance_tick(&mut self, sink: &mut dyn FnMut(Event)) -> Result<bool, Halted> {
+        let left = TICK - (self.board.cycle() - self.origin) % TICK;
+        self.advance(left, sink)
     }
 
     /// Lets this many cycles pass; whether the firmware has sent lines.

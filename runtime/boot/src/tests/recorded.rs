@@ -7,12 +7,16 @@ use serde_json::Value;
 
 use crate::{BootedBoard, FirmwareFile, Sent};
 
-/// A row of the recording.
+/// All rows of a recording.
+pub(super) fn all_rows(name: &str) -> Vec<Value> {
+    let path = format!("{}/../../tests/data/vectors/{name}", env!("CARGO_MANIFEST_DIR"));
+    let text = fs::read_to_string(path).expect("a recording");
+    text.lines().map(|line| serde_json::from_str::<Value>(line).expect("a line of JSON")).collect()
+}
+
+/// The rows of the recorded start of a kind.
 fn rows(kind: &str) -> Vec<Value> {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/vectors/boot.jsonl");
-    let text = fs::read_to_string(path).expect("the recorded start");
-    let all = text.lines().map(|line| serde_json::from_str::<Value>(line).expect("a line of JSON"));
-    all.filter(|row| row["kind"] == kind).collect()
+    all_rows("boot.jsonl").into_iter().filter(|row| row["kind"] == kind).collect()
 }
 
 fn row(kind: &str) -> Value {
@@ -30,7 +34,7 @@ fn firmware() -> Option<Arc<FirmwareFile>> {
 }
 
 /// A board that has just booted.
-fn booted() -> Option<BootedBoard> {
+pub(super) fn booted() -> Option<BootedBoard> {
     static BOARD: OnceLock<Option<Mutex<BootedBoard>>> = OnceLock::new();
     let boot =
         || Some(Mutex::new(BootedBoard::booted(firmware()?).unwrap_or_else(|crash| panic!("{crash}"))));
