@@ -42,6 +42,7 @@ pub(super) struct Cache {
     micros: Vec<Micro>,
     pages: Box<[Option<Box<Page>>]>,
     /// How often decoded packets were dropped.
+    #[cfg(feature = "native")]
     generation: u64,
     #[cfg(feature = "native")]
     marks: super::marks::LineMarks,
@@ -54,6 +55,7 @@ impl Default for Cache {
             packets: Vec::new(),
             micros: Vec::new(),
             pages,
+            #[cfg(feature = "native")]
             generation: 0,
             #[cfg(feature = "native")]
             marks: Default::default(),
@@ -173,7 +175,10 @@ impl Cache {
     #[cold]
     pub(super) fn drop_line(&mut self, at: u32) {
         let line = at & !(LINE - 1);
-        self.generation += 1;
+        #[cfg(feature = "native")]
+        {
+            self.generation += 1;
+        }
         for word in (line.wrapping_sub(BEFORE)..line.wrapping_add(LINE)).step_by(4) {
             if let Some(index) = self.known(word) {
                 self.page_mut(word).packets[(word % PAGE / 4) as usize] = NONE;
@@ -187,9 +192,10 @@ impl Cache {
 
     /// Forgets everything.
     pub(super) fn clear(&mut self) {
-        let generation = self.generation + 1;
-        *self = Self::default();
-        self.generation = generation;
+        let cleared = Self::default();
+        #[cfg(feature = "native")]
+        let cleared = Self { generation: self.generation + 1, ..cleared };
+        *self = cleared;
     }
 
     /// A number that is another one once decoded packets were dropped.

@@ -162,7 +162,6 @@ impl Native {
             return None;
         };
         self.count += 1;
-        self.generation = cache.generation();
         let regions = self.regions.entry(pc).or_default();
         regions.push(region);
         Some(regions.len() - 1)

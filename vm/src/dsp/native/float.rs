@@ -14,6 +14,8 @@ const NAN_SINGLE: i64 = 0x7FFF_FFFF;
 const EXPONENT_DOUBLE: i64 = 0x7FF0_0000_0000_0000;
 const SIGN_DOUBLE: i64 = i64::MIN;
 const NAN_DOUBLE: i64 = i64::MAX;
+/// The exponent from which on sums are not looked at closely: 2^-900.
+const SUM_EXPONENT: i64 = 1023 - 900;
 
 impl Translator<'_, '_> {
     fn constant(&mut self, ty: Type, value: i64) -> Value {
@@ -212,17 +214,23 @@ impl Translator<'_, '_> {
         self.push_pair(doing, [5, 6], m.dst, value)
     }
 
-    /// A sum, a difference or a product. Where denormal numbers or NaNs are involved, it is computed again with care.
+    /// A sum, a difference or a product. Where zeros, denormal numbers or NaNs may be involved, it is
+    /// computed again with care.
     fn arithmetic(&mut self, work: Work, s1: [Value; 2], s2: [Value; 2]) -> Value {
         let [bits1, bits2] = [s1, s2].map(|[low, high]| self.join(low, high));
         let [one, two] = [bits1, bits2].map(|bits| self.cast(types::F64, bits));
         let value = self.operate(work, one, two);
         let bits = self.cast(types::I64, value);
-        let any = self.builder.ins().fcmp(FloatCC::Unordered, value, value);
-        let any = [bits1, bits2, bits].into_iter().fold(any, |any, bits| {
-            let is_denormal = self.is_denormal(bits);
-            self.builder.ins().bor(any, is_denormal)
-        });
+        let any = if work == Work::Mpydp {
+            let outside = self.is_outside(bits, 1);
+            [s1[1], s2[1]].into_iter().fold(outside, |any, high| {
+                let is_small = self.is_small(high);
+                self.builder.ins().bor(any, is_small)
+            })
+        } else {
+            // A denormal number changes no sum that is so much greater.
+            self.is_outside(bits, SUM_EXPONENT)
+        };
         let (slow, after) = (self.cold(), self.builder.create_block());
         self.builder.append_block_param(after, types::I64);
         self.builder.ins().brif(any, slow, &[], after, &[bits.into()]);
@@ -243,10 +251,18 @@ impl Translator<'_, '_> {
         }
     }
 
-    /// Whether a double is denormal and not zero.
-    fn is_denormal(&mut self, bits: Value) -> Value {
+    /// Whether the exponent of a double is less than `least`, or that of infinities and NaNs.
+    fn is_outside(&mut self, bits: Value, least: i64) -> Value {
         let magnitude = self.builder.ins().ishl_imm_u(bits, 1);
-        let from_least = self.builder.ins().iadd_imm_s(magnitude, -1);
-        self.builder.ins().icmp_imm_u(IntCC::UnsignedLessThan, from_least, (1 << 53) - 1)
+        let least = least << 53;
+        let from_least = self.builder.ins().iadd_imm_s(magnitude, -least);
+        let range = self.constant(types::I64, (EXPONENT_DOUBLE << 1).wrapping_sub(least));
+        self.builder.ins().icmp(IntCC::UnsignedGreaterThanOrEqual, from_least, range)
+    }
+
+    /// Whether the high word is that of a zero or a denormal number.
+    fn is_small(&mut self, high: Value) -> Value {
+        let exponent = self.builder.ins().band_imm_u(high, 0x7FF0_0000);
+        self.builder.ins().icmp_imm_u(IntCC::Equal, exponent, 0)
     }
 }

@@ -11,6 +11,30 @@ use crate::trap::{Access, TrapKind};
 const CODE: u32 = 0x8005_0000;
 const BACK: u32 = 0x0000_1000;
 
+/// Doubles of every kind, among them those that the processor takes for zeros.
+const DOUBLES: [f64; 20] = [
+    1.5,
+    -3.25,
+    0.0,
+    -0.0,
+    4e-320,
+    -4e-320,
+    2.3e-308,
+    -2.2250738585072014e-308,
+    1e-160,
+    -1e-200,
+    1e300,
+    f64::MAX,
+    f64::INFINITY,
+    f64::NEG_INFINITY,
+    f64::NAN,
+    3e-271,
+    -2.9e-271,
+    7e9,
+    1e-290,
+    -1e-290,
+];
+
 /// Both RAMs; code everywhere in SDRAM from [`CODE`] on.
 #[derive(Clone, PartialEq)]
 struct Ram(GuestMemory);
@@ -87,7 +111,7 @@ fn check(words: &[u32], regs: &[(Reg, u32)], slice: i64, slices: usize) -> u64 {
     }
     for at in 0..2048_u32 {
         ram.0.poke(GuestAddr::new(0x8006_0000 + 4 * at), at.wrapping_mul(0x9E37_79B9).rotate_left(at));
-        ram.0.poke(GuestAddr::new(0x8007_0000 + 4 * at), (f64::from(at).to_bits() >> (at % 2 * 32)) as u32);
+        ram.0.poke(GuestAddr::new(0x8007_0000 + 8 * at), DOUBLES[at as usize % DOUBLES.len()]);
     }
     let mut plain = Core::new(CODE);
     plain.state.set_reg(Reg::b(3), BACK);
@@ -214,6 +238,24 @@ fn line(kind: u8, a: u8, b: u8, c: u8) -> String {
         _ => format!("SPDP .S2 B{x},B{}:B{}", 17 + c % 4 * 2, 16 + c % 4 * 2),
     };
     format!("{condition}{text}")
+}
+
+#[test]
+fn doubles_of_every_kind_are_computed_alike() {
+    let text = "ADDK .S2 -1,B0\nLDDW .D1T1 *A5++[1],A9:A8\nLDDW .D1T1 *A6[0],A11:A10\nNOP 4\n\
+                MPYDP .M1 A9:A8,A11:A10,A13:A12\nADDDP .L1 A9:A8,A11:A10,A17:A16\nSUBDP .L1 A9:A8,A11:A10,A19:A18\nNOP 9\n\
+                XOR .L1 A12,A20,A20\nXOR .L1 A13,A21,A21\nXOR .L1 A16,A22,A22\nXOR .L1 A17,A23,A23\n\
+                XOR .L1 A18,A24,A24\nXOR .L1 A19,A25,A25\nROTL\n[B0] B .S2 B31\nNOP 5\nB .S2 B3\nNOP 5\n"
+        .replace("ROTL\n", "SHL .S1 A20,1,A26\nADD .L1 A26,A21,A20\nADD .L1 A22,A21,A21\nADD .L1 A24,A22,A22\n");
+    for second in 0..DOUBLES.len() as u32 {
+        let regs = [
+            (Reg::b(0), 1900),
+            (Reg::b(31), CODE),
+            (Reg::a(5), 0x8007_0000),
+            (Reg::a(6), 0x8007_0000 + 8 * second),
+        ];
+        assert!(check(&words(&text), &regs, 18_000, 8) > 10_000);
+    }
 }
 
 proptest! {
