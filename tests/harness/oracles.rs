@@ -41,6 +41,7 @@ pub const TARGETS: &[Target] = &[
     Target { name: "tokens", run: tokens },
     Target { name: "image", run: changed_file },
     Target { name: "execution", run: changed_program },
+    Target { name: "processor", run: changed_code },
     Target { name: "program", run: program },
     Target { name: "machine_file", run: machine_file },
     Target { name: "stimulus", run: stimulus },
@@ -109,7 +110,12 @@ pub(crate) fn counting() -> Config {
 
 /// Compiles and links; `None` after errors.
 fn build(text: &[u8], level: Level) -> Option<Vec<u8>> {
-    let options = Options { level, ..Options::default() };
+    build_for(Options::default().target, text, level)
+}
+
+/// The same for a target.
+fn build_for(target: compiler::target::Target, text: &[u8], level: Level) -> Option<Vec<u8>> {
+    let options = Options { target, level, ..Options::default() };
     let files = MemoryFiles::new();
     let mut compilation = compiler::compile(Path::new("input.c"), text.to_vec(), &options, &files);
     let linked = compilation.link(thread_1(), &options);
@@ -375,6 +381,23 @@ pub fn changed_program(bytes: &[u8]) {
     let mut image = IMAGE.clone();
     let mut choices = Choices::new(bytes);
     while !choices.is_empty() {
+        let at = choices.below(image.len());
+        image[at] ^= 1 << (choices.byte() & 7);
+    }
+    let _ = execute_everywhere(&image, SHORT);
+}
+
+/// A program for the processor whose image was changed in some bits: it is refused, or does the same whether its code
+/// is interpreted or translated.
+pub fn changed_code(bytes: &[u8]) {
+    static IMAGE: LazyLock<Vec<u8>> = LazyLock::new(|| {
+        let text = VICTIM.replace("i < 40", "i < 2000");
+        build_for(compiler::target::Target::C67x, text.as_bytes(), Level::Full).expect("it is a program")
+    });
+    let mut image = IMAGE.clone();
+    let mut choices = Choices::new(bytes);
+    // Few changes: most of them end a program early.
+    for _ in 0..choices.byte() % 4 {
         let at = choices.below(image.len());
         image[at] ^= 1 << (choices.byte() & 7);
     }

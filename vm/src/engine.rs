@@ -170,6 +170,9 @@ pub trait Executor: Default {
     /// What a thread is loaded with that runs on this engine.
     type Code;
 
+    /// Whether it makes code of the host; real images on the same machine are translated then, too.
+    const TRANSLATES: bool = false;
+
     /// All contexts as they were at an instant between two slices.
     type Snapshot: fmt::Debug;
 

@@ -109,6 +109,8 @@ impl NativeEngine {
 }
 
 impl Executor for NativeEngine {
+    const TRANSLATES: bool = true;
+
     type Code = Program;
     type Snapshot = NativeSnapshot;
 

@@ -37,6 +37,8 @@ const CHANGED: u32 = 0xC4A7_6ED0;
 #[derive(Debug, Default)]
 pub struct DspEngine {
     contexts: [Option<Processor>; ContextId::COUNT],
+    /// Whether hot code is translated.
+    translates: bool,
 }
 
 /// The contexts of a [`DspEngine`] as they were.
@@ -52,6 +54,12 @@ struct Processor {
 }
 
 impl DspEngine {
+    /// An engine that translates hot code to the host's, if it is built with that, or one that interprets all of it.
+    #[must_use]
+    pub fn new(translates: bool) -> Self {
+        Self { translates, ..Self::default() }
+    }
+
     /// The registers of `id`, and where it is; `None` if it was never started.
     #[must_use]
     pub fn core(&self, id: ContextId) -> Option<&Core> {
@@ -94,7 +102,7 @@ impl Executor for DspEngine {
         core.state.set_reg(STACK, top);
         core.state.set_reg(LINK, returns_to);
         core.watch_stack(base, top);
-        core.translate(true);
+        core.translate(self.translates);
         self.contexts[id.index()] = Some(Processor { core, top, arguments: ArgumentList::default() });
         Ok(())
     }
