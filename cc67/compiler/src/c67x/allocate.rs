@@ -12,6 +12,7 @@ use super::abi;
 use super::code::{Code, VReg};
 use super::live::{self, Interval, Liveness};
 use super::{sides, spill};
+use crate::passes::Level;
 
 /// The registers of a function.
 #[derive(Debug)]
@@ -38,10 +39,11 @@ impl Assignment {
 const ROUNDS: usize = 24;
 
 /// Allocates; `None` if the function does not fit the processor.
-pub(super) fn allocate(code: &mut Code) -> Option<Assignment> {
+pub(super) fn allocate(code: &mut Code, level: Level) -> Option<Assignment> {
     for _ in 0..ROUNDS {
         let liveness = live::analyze(code);
         let mut scan = Scan::new(code, &liveness);
+        scan.is_wide = level == Level::Fast;
         scan.run(&live::in_order(code, &liveness))?;
         if scan.moved.is_empty() {
             // Arguments from the seventh on are in registers that the function itself must keep.
@@ -67,6 +69,8 @@ struct Scan<'a> {
     holder: [Option<VReg>; Reg::COUNT],
     used: u64,
     moved: Vec<VReg>,
+    /// Loops use as many registers as there are, so that their turns overlap.
+    is_wide: bool,
 }
 
 impl<'a> Scan<'a> {
@@ -81,6 +85,7 @@ impl<'a> Scan<'a> {
             holder: [None; Reg::COUNT],
             used: 0,
             moved: Vec::new(),
+            is_wide: false,
         }
     }
 
@@ -121,9 +126,13 @@ impl<'a> Scan<'a> {
         if let Some(hint) = info.hint.filter(|hint| is_free(*hint)) {
             return Some(hint);
         }
+        let is_spread = self.is_wide && {
+            let next = self.liveness.loops.partition_point(|(_, end)| *end < start);
+            self.liveness.loops.get(next).is_some_and(|(first, _)| *first <= start)
+        };
         let key = |at: &Reg| {
             let whole = self.whole(reg, *at);
-            let is_new = whole & abi::KEPT & !self.used != 0;
+            let is_new = !is_spread && whole & abi::KEPT & !self.used != 0;
             let is_rare = !info.is_condition && whole & abi::CONDITIONS != 0;
             (is_new, is_rare, self.taken[at.index()], at.index())
         };

@@ -281,11 +281,20 @@ pub(super) struct Block {
     pub(super) end: End,
     /// How many loops it is in.
     pub(super) depth: u32,
+    /// How many turns of the source's loop it is.
+    pub(super) turns: u32,
     pub(super) span: Span,
 }
 
+impl Block {
+    /// How often it happens, as far as one can guess.
+    pub(super) fn weight(&self) -> f32 {
+        8_f32.powi(self.depth.min(5).cast_signed()) / self.turns as f32
+    }
+}
+
 /// A function.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Code {
     /// In the order of the code; a block's number is its place.
     pub(super) blocks: Vec<Block>,

@@ -19,7 +19,7 @@ use crate::ir::inst::SlotId;
 use crate::source::Span;
 
 /// What is scheduled as one.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Region {
     /// Its label: a block's number, or one after them for where a call returns to.
     pub(super) label: u32,
@@ -28,13 +28,33 @@ pub(super) struct Region {
     pub(super) branches: Vec<Step>,
     /// What happens in the slots of the branch, in this order: the register that it reads changes there.
     pub(super) late: Vec<Step>,
+    pub(super) beyond: Beyond,
+    /// How often it happens, and that of the code around a loop.
+    pub(super) weight: f32,
     pub(super) span: Span,
+}
+
+impl Region {
+    /// One without steps.
+    pub(super) fn new(label: u32, weight: f32, span: Span) -> Self {
+        let beyond = Beyond::default();
+        Self { label, steps: Vec::new(), branches: Vec::new(), late: Vec::new(), beyond, weight, span }
+    }
+}
+
+/// What code elsewhere does with registers, a bit each, where a region leaves the function.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Beyond {
+    pub(super) reads: u64,
+    pub(super) changes: u64,
 }
 
 /// A function whose registers are those of the processor.
 #[derive(Debug)]
 pub(super) struct Expanded {
     pub(super) regions: Vec<Region>,
+    /// The first label that nothing has.
+    pub(super) labels: u32,
     /// Bytes of its frame.
     pub(super) frame: u32,
 }
@@ -73,19 +93,16 @@ pub(super) fn expand(
         saved,
         back,
         regions: Vec::with_capacity(code.blocks.len()),
-        steps: Vec::new(),
-        late: Vec::new(),
-        label: 0,
+        region: Region::new(0, 1.0, function.span),
         returns: code.blocks.len() as u32,
-        span: function.span,
         is_wrong: false,
     };
     expander.run();
     if expander.is_wrong {
         return Err(TooLarge::Code);
     }
-    let regions = expander.regions;
-    Ok(Expanded { regions, frame: frame.size })
+    let (regions, labels) = (expander.regions, expander.returns);
+    Ok(Expanded { regions, labels, frame: frame.size })
 }
 
 /// The objects of the frame whose address is taken.
@@ -110,12 +127,10 @@ struct Expander<'a> {
     /// Where the return address is while calls change B3.
     back: Reg,
     regions: Vec<Region>,
-    steps: Vec<Step>,
-    late: Vec<Step>,
-    label: u32,
+    /// The one that grows.
+    region: Region,
     /// The label of the next place that a call returns to.
     returns: u32,
-    span: Span,
     is_wrong: bool,
 }
 
@@ -123,28 +138,30 @@ impl Expander<'_> {
     fn run(&mut self) {
         let code = self.code;
         for (number, block) in (0..).zip(&code.blocks) {
-            self.label = number;
+            self.region.label = number;
+            self.region.weight = block.weight();
             if number == 0 {
                 self.enter();
             }
             for inst in &block.insts {
-                self.span = inst.span;
+                self.region.span = inst.span;
                 self.inst(inst);
             }
-            self.span = block.span;
+            self.region.span = block.span;
             self.end(&block.end, number + 1);
         }
     }
 
     /// Ends the region.
     fn close(&mut self, branches: Vec<Step>) {
-        let (steps, late) = (std::mem::take(&mut self.steps), std::mem::take(&mut self.late));
-        self.regions.push(Region { label: self.label, steps, branches, late, span: self.span });
+        let Region { label, weight, span, .. } = self.region;
+        let done = std::mem::replace(&mut self.region, Region::new(label, weight, span));
+        self.regions.push(Region { branches, ..done });
     }
 
     fn emit(&mut self, kind: Kind, operands: &Operands, access: Access) {
-        match step(kind, operands, access, self.span) {
-            Some(step) => self.steps.push(step),
+        match step(kind, operands, access, self.region.span) {
+            Some(step) => self.region.steps.push(step),
             None => {
                 debug_assert!(false, "no form of {kind:?} takes {operands:?}");
                 self.is_wrong = true;
@@ -199,6 +216,12 @@ impl Expander<'_> {
             }
         }
         self.moves(&list);
+    }
+
+    /// The registers of a value that is at `at`, a bit each.
+    fn whole(&self, value: super::code::VReg, at: Reg) -> u64 {
+        let high = if self.code.regs[value].is_pair { abi::bit(at.pair().high()) } else { 0 };
+        abi::bit(at) | high
     }
 
     /// The moves of one value, a word each.
@@ -291,8 +314,11 @@ impl Expander<'_> {
             Target::Register => Final::Reg(abi::TARGET),
         };
         let branch = self.branch(target, Pred::Always);
+        let passed = call.arguments.iter();
+        let reads = passed.fold(0, |set, (reg, at)| set | self.whole(*reg, *at));
+        self.region.beyond = Beyond { reads, changes: call.changes };
         self.close(branch.into_iter().collect());
-        self.label = label;
+        self.region.label = label;
         if let Some(result) = result.filter(|result| self.finalizer.assignment.is_used(*result)) {
             let mut list = Vec::new();
             let to = self.finalizer.assignment.of(result);
@@ -310,7 +336,7 @@ impl Expander<'_> {
                 Operands { dst: Final::None, src1: Final::None, src2: target, mem: None, field: (0, 0), pred }
             }
         };
-        let step = step(Kind::Branch, &operands, Access::None, self.span);
+        let step = step(Kind::Branch, &operands, Access::None, self.region.span);
         self.is_wrong |= step.is_none();
         step
     }
@@ -339,6 +365,7 @@ impl Expander<'_> {
                 branches
             }
             End::Table { address, .. } => {
+                self.region.beyond.reads = !0;
                 let at = self.finalizer.assignment.of(address);
                 self.branch(Final::Reg(at), Pred::Always).into_iter().collect()
             }
@@ -351,7 +378,9 @@ impl Expander<'_> {
 
     /// The end of the function.
     fn leave(&mut self, value: Option<super::code::VReg>) -> Vec<Step> {
+        self.region.beyond.reads = abi::KEPT | abi::bit(abi::STACK);
         if let Some(value) = value {
+            self.region.beyond.reads |= self.whole(value, abi::RESULT);
             let mut list = Vec::new();
             let from = self.finalizer.assignment.of(value);
             self.words(abi::RESULT, from, self.code.regs[value].is_pair, &mut list);
@@ -361,15 +390,15 @@ impl Expander<'_> {
         for (index, reg) in (0..).zip(self.saved.clone()) {
             self.saved_word(Kind::LoadWord, reg, index);
             if reg == self.back && self.back != abi::LINK {
-                late = self.steps.pop();
+                late = self.region.steps.pop();
             }
         }
         if self.frame.size > 0 {
             self.move_stack(self.frame.size.cast_signed());
         }
         if let Some(load) = late {
-            let stack = self.steps.pop();
-            self.late = [Some(load), stack].into_iter().flatten().collect();
+            let stack = self.region.steps.pop();
+            self.region.late = [Some(load), stack].into_iter().flatten().collect();
         }
         self.branch(Final::Reg(self.back), Pred::Always).into_iter().collect()
     }

@@ -68,7 +68,7 @@ impl Externs {
         self.variadic[symbol]
     }
 
-    /// Whether a function does not want the address of its variable arguments.
+    /// Whether a function does without the address of its variable arguments.
     pub(super) fn takes_stack_alone(&self, symbol: SymbolId) -> bool {
         self.stack_alone[symbol]
     }

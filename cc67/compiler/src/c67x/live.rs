@@ -23,6 +23,8 @@ pub(super) struct Interval {
 #[derive(Debug)]
 pub(super) struct Liveness {
     pub(super) intervals: SecondaryMap<VReg, Interval>,
+    /// Positions of the beginning and end of each block that jumps to itself.
+    pub(super) loops: Vec<(u32, u32)>,
     /// Position and number of each call.
     pub(super) calls: Vec<(u32, u32)>,
 }
@@ -40,7 +42,10 @@ pub(super) fn analyze(code: &Code) -> Liveness {
     scan.number.resize(code.regs.len());
     let (bounds, calls) = scan.mentions(code);
     scan.flow(code, &bounds);
-    Liveness { intervals: scan.intervals, calls }
+    let loops = (0..).zip(&code.blocks).zip(&bounds);
+    let loops = loops.filter(|((number, block), _)| block.end.targets().any(|to| to == *number));
+    let loops = loops.map(|(_, bounds)| *bounds).collect();
+    Liveness { intervals: scan.intervals, loops, calls }
 }
 
 /// Positions, two and two.

@@ -7,7 +7,7 @@
 //! 2. [`predicate`]: short branches become conditions. [`turns`]: several turns of a short loop as one. [`sides`]: every register gets one of the two files; copies where an instruction reaches only one.
 //! 3. [`live`], [`allocate`], [`spill`]: registers of the processor, those that survive a thread switch.
 //! 4. [`frame`], [`moves`], [`expand`]: calls, the stack, the beginning and the ends; regions of [`step`]s.
-//! 5. [`graph`], [`resources`], [`schedule`]: packets.
+//! 5. [`graph`], [`resources`], [`schedule`]: packets; [`pipeline`], [`modulo`]: those of loops whose turns overlap.
 //! 6. [`layout`]: words, on fetch packets, with what the linker completes ([`text`]).
 //!
 //! Rules that all stages keep (`c67x.md`):
@@ -26,7 +26,9 @@ mod frame;
 mod graph;
 mod layout;
 mod live;
+mod modulo;
 mod moves;
+mod pipeline;
 mod predicate;
 mod resources;
 mod schedule;
@@ -46,8 +48,9 @@ use crate::diag::Diagnostic;
 use crate::ir::function::{Function, Signatures};
 use crate::passes::Level;
 use crate::source::Span;
+use code::Code;
 use expand::TooLarge;
-use schedule::Order;
+use schedule::{Order, Scheduled};
 use text::Words;
 
 /// Writes the functions of a unit, one after another.
@@ -56,6 +59,24 @@ pub(crate) struct Generator {
     words: Vec<u32>,
     externs: Externs,
     level: Level,
+}
+
+/// The most loops of a function that are tried in two ways.
+const MOST_TRIED: u32 = 6;
+
+/// A function in packets.
+struct Attempt {
+    regions: Vec<Scheduled>,
+    code: Code,
+    /// Bytes of its frame.
+    frame: u32,
+}
+
+impl Attempt {
+    /// Its cycles, as far as one can guess how often each region happens.
+    fn cost(&self) -> f32 {
+        self.regions.iter().map(|region| region.weight * region.cycles as f32).sum()
+    }
 }
 
 /// Functions begin at multiples of this many words: a fetch packet.
@@ -82,18 +103,11 @@ impl Generator {
         if self.level != Level::None {
             predicate::run(&mut code);
         }
-        if self.level == Level::Fast {
-            turns::run(&mut code);
-        }
-        sides::assign(&mut code);
-        let assignment = allocate::allocate(&mut code).ok_or_else(|| too_large(ir.span, name))?;
-        let order = if self.level == Level::None { Order::Source } else { Order::Early };
-        let expanded = expand::expand(ir, &code, &assignment, order).map_err(|why| match why {
+        let attempt = self.best(ir, code).map_err(|why| match why {
             TooLarge::Frame => frame_too_large(ir.span, name),
             TooLarge::Code => too_large(ir.span, name),
         })?;
-        let regions: Vec<_> =
-            expanded.regions.into_iter().map(|region| schedule::schedule(region, order)).collect();
+        let Attempt { regions, code, frame } = attempt;
         let laid = layout::lay_out(&regions, &code.tables, code.blocks.len() as u32, ir.span);
         #[cfg(debug_assertions)]
         verify(&laid, name);
@@ -103,7 +117,45 @@ impl Generator {
         self.words.extend(&laid.words);
         let end = self.words.len() as u32;
         let spans = laid.spans.into_iter().map(|(word, span)| (start + word, span)).collect();
-        Ok(Words { words: start..end, fixups: laid.fixups, spans, frame: expanded.frame })
+        Ok(Words { words: start..end, fixups: laid.fixups, spans, frame })
+    }
+
+    /// The packets of a function. At the level that makes code larger, short loops are tried with several turns as one
+    /// and without, and the better ones stay.
+    fn best(&self, ir: &Function, code: Code) -> Result<Attempt, TooLarge> {
+        if self.level != Level::Fast {
+            return self.attempt(ir, code);
+        }
+        let with_turns = |skipped: u32| {
+            let mut code = code.clone();
+            let count = turns::run(&mut code, skipped);
+            (self.attempt(ir, code), count)
+        };
+        let (mut best, count) = with_turns(0);
+        let mut skipped = 0;
+        for index in 0..count.min(MOST_TRIED) {
+            let (other, _) = with_turns(skipped | 1 << index);
+            if other.as_ref().is_ok_and(|other| best.as_ref().map_or(true, |best| other.cost() < best.cost()))
+            {
+                best = other;
+                skipped |= 1 << index;
+            }
+        }
+        best
+    }
+
+    /// Takes instructions over virtual registers through the stages that follow.
+    fn attempt(&self, ir: &Function, mut code: Code) -> Result<Attempt, TooLarge> {
+        sides::assign(&mut code);
+        let assignment = allocate::allocate(&mut code, self.level).ok_or(TooLarge::Code)?;
+        let order = if self.level == Level::None { Order::Source } else { Order::Early };
+        let expanded = expand::expand(ir, &code, &assignment, order)?;
+        let regions = if self.level == Level::Fast {
+            pipeline::schedule(expanded.regions, expanded.labels)
+        } else {
+            expanded.regions.into_iter().map(|region| schedule::schedule(region, order)).collect()
+        };
+        Ok(Attempt { regions, code, frame: expanded.frame })
     }
 
     /// The words of all functions, and the names that they need besides those of the unit.

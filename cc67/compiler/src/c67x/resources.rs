@@ -25,6 +25,8 @@ pub(super) struct Resources {
     products: Vec<(u8, Mnemonic, u32)>,
     /// Registers that are read in a cycle: cycle, register.
     reads: Vec<(u32, Reg)>,
+    /// After how many cycles everything repeats; 0 for never.
+    period: u32,
 }
 
 /// Cycles that must lie between different long products of one unit.
@@ -34,8 +36,25 @@ const PRODUCTS: u32 = 8;
 const READS: usize = 4;
 
 impl Resources {
+    /// The cycles of a turn, where the next one begins `period` cycles later.
+    pub(super) fn periodic(period: u32) -> Self {
+        Self { period, ..Self::default() }
+    }
+
+    /// Forgets everything taken.
+    pub(super) fn clear(&mut self) {
+        self.cycles.clear();
+        self.products.clear();
+        self.reads.clear();
+    }
+
+    /// The cycle as it is counted.
+    const fn counted(&self, cycle: u32) -> u32 {
+        if self.period == 0 { cycle } else { cycle % self.period }
+    }
+
     fn at(&mut self, cycle: u32) -> &mut Cycle {
-        let index = cycle as usize;
+        let index = self.counted(cycle) as usize;
         if index >= self.cycles.len() {
             self.cycles.resize(index + 12, Cycle::default());
         }
@@ -75,6 +94,13 @@ impl Resources {
         let Some(unit) = inst.unit() else { return true };
         // The firmware has a single product seven cycles after one of doubles, and the other way after one.
         let near = |(on, other, at): &(u8, Mnemonic, u32)| {
+            if self.period > 0 {
+                let after = (cycle + self.period - at % self.period) % self.period;
+                let before = (self.period - after) % self.period;
+                let is_near = *other != Mnemonic::Mpysp && after < PRODUCTS
+                    || name != Mnemonic::Mpysp && before < PRODUCTS;
+                return *on == unit.index() as u8 && *other != name && is_near;
+            }
             let (first, apart) = if *at <= cycle { (*other, cycle - at) } else { (name, at - cycle) };
             *on == unit.index() as u8 && *other != name && first != Mnemonic::Mpysp && apart < PRODUCTS
         };
@@ -84,7 +110,9 @@ impl Resources {
     fn reads_fit(&self, inst: &Inst, cycle: u32) -> bool {
         inst.reads().all(|read| {
             let own = inst.reads().filter(|other| other.reg == read.reg).count();
-            let others = self.reads.iter().rev().take(32);
+            let recent = if self.period == 0 { 32 } else { usize::MAX };
+            let others = self.reads.iter().rev().take(recent);
+            let cycle = self.counted(cycle);
             others.filter(|(at, reg)| *at == cycle && *reg == read.reg).count() + own <= READS
         })
     }
@@ -109,6 +137,7 @@ impl Resources {
         if is_product(inst.mnemonic()) {
             self.products.push((unit.index() as u8, inst.mnemonic(), cycle));
         }
+        let cycle = self.counted(cycle);
         self.reads.extend(inst.reads().map(|read| (cycle, read.reg)));
     }
 }

@@ -30,6 +30,8 @@ pub(super) struct Scheduled {
     pub(super) insts: Vec<Issued>,
     /// Cycles of the region.
     pub(super) cycles: u32,
+    /// How often it happens, as far as one can guess.
+    pub(super) weight: f32,
     pub(super) span: Span,
 }
 
@@ -44,17 +46,9 @@ pub(super) enum Order {
 
 /// Schedules a region.
 pub(super) fn schedule(region: Region, order: Order) -> Scheduled {
-    let Region { label, steps, branches, late, span } = region;
+    let Region { label, steps, branches, late, span, weight, .. } = region;
     let graph = graph::build(&steps, &branches);
-    let mut list = List {
-        earliest: vec![0; steps.len() + branches.len()],
-        waiting: graph.before.clone(),
-        resources: Resources::default(),
-        issued: Vec::with_capacity(steps.len() + branches.len()),
-        graph: &graph,
-        order,
-        last_access: 0,
-    };
+    let mut list = List::new(&graph, order);
     let end = list.steps(&steps);
     let cycles = match branches.first() {
         Some(branch) if !late.is_empty() => list.leave(steps.len(), branch, &late, end),
@@ -62,7 +56,35 @@ pub(super) fn schedule(region: Region, order: Order) -> Scheduled {
     };
     let mut insts = list.issued;
     insts.sort_by_key(|issued| issued.cycle);
-    Scheduled { label, insts, cycles, span }
+    Scheduled { label, insts, cycles, weight, span }
+}
+
+/// Steps that issued before a region and may have results in flight when it begins, and the cycle when it does.
+#[derive(Debug)]
+pub(super) struct Tail {
+    pub(super) issued: Vec<(Step, Inst, u32)>,
+    pub(super) cycles: u32,
+}
+
+/// Schedules a region after packets that are what they are.
+pub(super) fn schedule_after(tail: &Tail, region: Region) -> Scheduled {
+    let Region { label, steps: own, branches, span, weight, .. } = region;
+    let steps: Vec<Step> = tail.issued.iter().map(|(step, ..)| step.clone()).chain(own).collect();
+    let graph = graph::build(&steps, &branches);
+    let mut list = List::new(&graph, Order::Early);
+    list.first = (tail.issued.len() as u32, tail.cycles);
+    let mut ready = Vec::new();
+    for (index, (_, inst, cycle)) in (0..).zip(&tail.issued) {
+        list.resources.take(inst, *cycle);
+        list.release(index, *cycle, steps.len(), &mut ready);
+    }
+    let landing = tail.issued.iter().map(|(_, inst, cycle)| cycle + graph::landing(inst)).max();
+    let end = list.steps(&steps).max(landing.unwrap_or(0)).max(tail.cycles);
+    let cycles = list.branches(&steps, &branches, end) - tail.cycles;
+    let mut insts = list.issued;
+    insts.iter_mut().for_each(|issued| issued.cycle -= tail.cycles);
+    insts.sort_by_key(|issued| issued.cycle);
+    Scheduled { label, insts, cycles, weight, span }
 }
 
 struct List<'a> {
@@ -74,14 +96,29 @@ struct List<'a> {
     order: Order,
     /// The last cycle with a load or store.
     last_access: u32,
+    /// The first step that is not placed yet, and the first cycle.
+    first: (u32, u32),
 }
 
-impl List<'_> {
+impl<'a> List<'a> {
+    fn new(graph: &'a Graph, order: Order) -> Self {
+        Self {
+            earliest: vec![0; graph.before.len()],
+            waiting: graph.before.clone(),
+            resources: Resources::default(),
+            issued: Vec::with_capacity(graph.before.len()),
+            graph,
+            order,
+            last_access: 0,
+            first: (0, 0),
+        }
+    }
+
     /// Issues all steps but the branches; the cycle in which the last result has landed.
     fn steps(&mut self, steps: &[Step]) -> u32 {
         let mut ready: Vec<u32> =
-            (0..steps.len() as u32).filter(|step| self.waiting[*step as usize] == 0).collect();
-        let (mut cycle, mut end, mut left) = (0, 0, steps.len());
+            (self.first.0..steps.len() as u32).filter(|step| self.waiting[*step as usize] == 0).collect();
+        let (mut cycle, mut end, mut left) = (self.first.1, 0, steps.len() - self.first.0 as usize);
         while left > 0 {
             match self.order {
                 Order::Source => ready.sort_unstable(),
@@ -144,7 +181,7 @@ impl List<'_> {
     /// Places the branches; the length of the region.
     fn branches(&mut self, steps: &[Step], branches: &[Step], end: u32) -> u32 {
         let mut cycles = end;
-        let mut from = end.saturating_sub(BRANCH);
+        let mut from = end.saturating_sub(BRANCH).max(self.first.1);
         for (index, branch) in branches.iter().enumerate() {
             let mut cycle = self.earliest[steps.len() + index].max(from);
             let inst = loop {
@@ -195,7 +232,7 @@ impl List<'_> {
 }
 
 /// A branch with a displacement on the unit of side A.
-fn other_side(branch: &Step) -> Option<Inst> {
+pub(super) fn other_side(branch: &Step) -> Option<Inst> {
     let inst = branch.forms.first()?;
     let operands: Vec<c67x::Operand> = inst.operands().collect();
     Inst::new(inst.op(), c67x::Side::A, inst.pred(), &operands).ok()

@@ -20,13 +20,18 @@ const MOST: usize = 4;
 /// Registers that are tested inside a turn, at most, for several turns to have a chance.
 const TESTED: usize = 2;
 
-/// Rewrites the short loops of one block.
-pub(super) fn run(code: &mut Code) {
+/// Rewrites the short loops of one block, except those with a bit in `skipped`; how many there are.
+pub(super) fn run(code: &mut Code, skipped: u32) -> u32 {
+    let mut count = 0;
     for number in 0..code.blocks.len() {
         let Some(back) = back(&code.blocks[number], number as u32) else { continue };
         let Some(facts) = facts(code, number, back) else { continue };
         let copies = MOST.min(ALL / code.blocks[number].insts.len().max(1)).min(MOST - facts.tested);
         if copies < 2 {
+            continue;
+        }
+        count += 1;
+        if skipped.checked_shr(count - 1).is_some_and(|bits| bits & 1 != 0) {
             continue;
         }
         let body = std::mem::take(&mut code.blocks[number].insts);
@@ -38,10 +43,12 @@ pub(super) fn run(code: &mut Code) {
         }
         let out = worker.out;
         code.blocks[number].insts = out;
+        code.blocks[number].turns = copies as u32;
         if let Some(read) = code.blocks[number].end.read_mut() {
             *read = condition.0;
         }
     }
+    count
 }
 
 /// The condition under which a block jumps to itself.

@@ -230,6 +230,9 @@ pub fn generate_code(unit: &Unit, sources: &SourceMap, level: Level, sink: &mut 
     for function in &unit.functions {
         let mut ir = lower::lower(unit, function, &definitions, Timing::Fast, builder.signatures());
         optimize(&mut ir, level, &mut candidates, sources);
+        if level != Level::None {
+            passes::loops_again(&mut ir);
+        }
         if level == Level::Fast {
             passes::unroll(&mut ir);
         }

@@ -69,6 +69,16 @@ pub fn run(function: &mut Function, level: Level) {
     divide::run(function);
 }
 
+/// Looks at loops again: what the first look folded may grow evenly, too.
+pub fn loops_again(function: &mut Function) {
+    if loops::run(function) {
+        fold::run(function);
+        reuse::run(function);
+        fold::run(function);
+        dead::run(function);
+    }
+}
+
 /// Unrolls loops, and cleans up after it.
 pub fn unroll(function: &mut Function) {
     jumps::run(function);

@@ -21,6 +21,8 @@ const WHOLE: u32 = 120;
 const WHOLE_TURNS: u32 = 32;
 /// Instructions of a loop that takes several turns as one.
 const SEVERAL: u32 = 96;
+/// The same of a loop of one block, whose turns overlap anyway.
+const SEVERAL_OF_ONE: u32 = 40;
 /// Turns that it takes as one.
 const MOST_COPIES: u32 = 8;
 /// The largest function, in instructions, whose loops grow.
@@ -82,7 +84,8 @@ fn plan(function: &Function, places: &SecondaryMap<BlockId, u32>, stretch: Stret
     if has_call {
         return None;
     }
-    let fits = |copies: &u32| (copies + turns % copies) * size <= SEVERAL && turns >= 2 * copies;
+    let most = if blocks.len() == 1 { SEVERAL_OF_ONE } else { SEVERAL };
+    let fits = |copies: &u32| (copies + turns % copies) * size <= most && turns >= 2 * copies;
     let copies = (2..=MOST_COPIES).rev().filter(fits);
     // One that leaves nothing over is better, unless it is much smaller.
     let copies = copies.max_by_key(|copies| if turns % copies == 0 { 2 * copies } else { *copies })?;

@@ -137,7 +137,7 @@ impl Selector<'_> {
             self.span = block.span;
             let end = self.terminator(&block.terminator, fused);
             let insts = std::mem::take(&mut self.out);
-            self.code.blocks.push(Block { insts, end, depth, span: block.span });
+            self.code.blocks.push(Block { insts, end, depth, turns: 1, span: block.span });
         }
         self.enter();
     }
@@ -166,7 +166,7 @@ impl Selector<'_> {
         }
         self.code.tables.iter_mut().flatten().for_each(up);
         let span = self.function.span;
-        self.code.blocks.insert(0, Block { insts: early, end: End::Jump(1), depth: 0, span });
+        self.code.blocks.insert(0, Block { insts: early, end: End::Jump(1), depth: 0, turns: 1, span });
     }
 
     fn parameters(&mut self) {

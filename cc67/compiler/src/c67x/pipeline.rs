@@ -1,0 +1,322 @@
+//! Inner loops whose turns overlap: what comes before the loop's own packets, and after them.
+//!
+//! A loop of one region without calls becomes: regions that begin the first turns, the packets that [`modulo`] found,
+//! in which every turn is at another stage, and a region that ends the last turns. Every beginning ends with the
+//! branch of its turn, which leads to an end of its own if there is no further turn. So no number of turns needs to
+//! be known, and no load or store happens that the source does not ask for. Only steps without effect that nobody
+//! reads after the loop happen for a turn that never comes.
+//!
+//! The packets of the loop wait for results as if an interrupt could come anywhere; so they can be entered with
+//! nothing in flight, and one branch in six or more cycles leaves a place where it does come.
+
+use c67x::{Inst, Pred};
+
+use super::abi;
+use super::code::Value;
+use super::expand::Region;
+use super::graph::BRANCH;
+use super::modulo::{self, Overlap};
+use super::schedule::{self, Issued, Order, Scheduled, Tail};
+use super::step::{Access, Step};
+
+/// The largest turn, in steps.
+const LARGEST: usize = 120;
+/// Turns that must be enough for a loop to win.
+const TURNS: u32 = 5;
+
+/// Schedules all regions; loops overlap. `labels` is the first label that is free.
+pub(super) fn schedule(regions: Vec<Region>, labels: u32) -> Vec<Scheduled> {
+    let entering =
+        if regions.iter().any(|region| back(region).is_some()) { live(&regions) } else { Vec::new() };
+    let mut done = Vec::with_capacity(regions.len());
+    let mut ends = Vec::new();
+    let mut labels = labels;
+    for region in regions {
+        let plain = schedule::schedule(region.clone(), Order::Early);
+        let found = back(&region).and_then(|back| {
+            let mut turns = Loop::new(&region, back, &entering, plain.cycles)?;
+            turns.label = labels;
+            let (parts, after) = turns.parts()?;
+            Some((parts, after, turns.label))
+        });
+        match found {
+            Some((parts, after, next)) => {
+                done.extend(parts);
+                ends.extend(after);
+                labels = next;
+            }
+            None => done.push(plain),
+        }
+    }
+    done.extend(ends);
+    done
+}
+
+/// The branch of a region that leads back to it under a condition.
+fn back(region: &Region) -> Option<&Step> {
+    if region.steps.is_empty() || region.steps.len() > LARGEST || !region.late.is_empty() {
+        return None;
+    }
+    let is_back = |step: &&Step| {
+        let is_conditional = step.forms.first().is_some_and(|inst| inst.pred().reg().is_some());
+        step.value == Some(Value::Block(region.label)) && is_conditional
+    };
+    region.branches.iter().find(is_back)
+}
+
+/// The registers that somebody may read from the beginning of each region on, with its label.
+fn live(regions: &[Region]) -> Vec<(u32, u64)> {
+    let mut entering: Vec<(u32, u64)> = regions.iter().map(|region| (region.label, 0)).collect();
+    let mut is_changed = true;
+    while is_changed {
+        is_changed = false;
+        for index in (0..regions.len()).rev() {
+            let mut live = leaving(&regions[index], entering.get(index + 1), &entering);
+            for step in regions[index].branches.iter().chain(regions[index].steps.iter().rev()) {
+                let Some(inst) = step.forms.first() else { continue };
+                if inst.pred() == Pred::Always {
+                    inst.writes().for_each(|write| live &= !abi::bit(write.reg));
+                }
+                inst.reads().for_each(|read| live |= abi::bit(read.reg));
+                live |= inst.pred().reg().map_or(0, abi::bit);
+            }
+            is_changed |= entering[index].1 != live;
+            entering[index].1 = live;
+        }
+    }
+    entering
+}
+
+/// The registers that somebody may read after a region.
+fn leaving(region: &Region, next: Option<&(u32, u64)>, entering: &[(u32, u64)]) -> u64 {
+    let mut live = next.map_or(0, |(_, live)| *live) & !region.beyond.changes;
+    for step in &region.branches {
+        if let Some(Value::Block(label)) = step.value {
+            live |= entering_of(label, entering);
+        }
+    }
+    live | region.beyond.reads
+}
+
+fn entering_of(label: u32, entering: &[(u32, u64)]) -> u64 {
+    entering.iter().find(|(own, _)| *own == label).map_or(!0, |(_, live)| *live)
+}
+
+/// A loop that overlaps.
+struct Loop<'a> {
+    region: &'a Region,
+    /// The steps of a turn, the branch last.
+    steps: Vec<Step>,
+    plan: Overlap,
+    /// Where execution continues after the loop.
+    outside: u32,
+    /// The next free label.
+    label: u32,
+}
+
+/// A step of one turn; turns count from the first, or back from the last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Instance {
+    /// Counted from the beginning of turn 0.
+    cycle: i64,
+    turn: i64,
+    step: usize,
+}
+
+impl<'a> Loop<'a> {
+    fn new(region: &'a Region, back: &Step, entering: &[(u32, u64)], cycles: u32) -> Option<Self> {
+        let outside = match region.branches.iter().find(|step| step.value != back.value) {
+            Some(step) => match step.value {
+                Some(Value::Block(label)) => label,
+                _ => return None,
+            },
+            None => region.label + 1,
+        };
+        let read_after = entering_of(outside, entering);
+        let mut steps = region.steps.clone();
+        steps.push(modulo::with_both_sides(back));
+        let is_certain = |step: usize| {
+            let step: &Step = &steps[step];
+            let writes = |inst: &Inst| inst.writes().any(|write| read_after & abi::bit(write.reg) != 0);
+            step.access != Access::None || step.forms.first().is_none_or(writes)
+        };
+        let plan = modulo::search(&steps, is_certain, cycles)?;
+        Some(Self { region, steps, plan, outside, label: 0 })
+    }
+
+    /// The regions that replace the loop, and those that go to the end of the function.
+    fn parts(&mut self) -> Option<(Vec<Scheduled>, Vec<Scheduled>)> {
+        let (mut parts, mut ends) = (Vec::new(), Vec::new());
+        let (commit, stages) = (i64::from(self.plan.commit), i64::from(self.plan.stages()));
+        let depth = stages - commit;
+        let mut label = self.region.label;
+        let mut rest: Vec<Instance> = Vec::new();
+        let mut passes = 0..stages.min(commit + i64::from(depth > 1));
+        while !passes.is_empty() {
+            let mut own = self.beginnings(passes.clone());
+            let first_unknown = passes.end - commit;
+            let branch = depth > 1;
+            let mut now = std::mem::take(&mut rest);
+            if branch {
+                // Steps of the next turn that come after the branch may change what it tests.
+                let at = self.branch_cycle() + (first_unknown - 1) * self.period();
+                rest = own.extract_if(.., |one| one.turn >= first_unknown && one.cycle >= at).collect();
+            }
+            now.extend(own);
+            let mut branches = Vec::new();
+            if branch {
+                let end = self.fresh();
+                branches.push(self.leave_to(end)?);
+                ends.push(self.end_of(first_unknown, end)?);
+            }
+            parts.push(self.plain(label, &now, branches));
+            label = self.fresh();
+            passes = if passes.end < stages - 1 && branch { passes.end..passes.end + 1 } else { 0..0 };
+        }
+        if !rest.is_empty() {
+            parts.push(self.plain(label, &rest, Vec::new()));
+            label = self.fresh();
+        }
+        parts.push(self.packets(label));
+        parts.push(self.last()?);
+        let cycles = |parts: &[Scheduled]| parts.iter().map(|part| part.cycles).sum::<u32>();
+        let plain = schedule::schedule(self.region.clone(), Order::Early).cycles;
+        let overlapped = cycles(&parts) + self.plan.period * (TURNS - 1).saturating_sub(depth as u32 - 1);
+        (overlapped < plain * TURNS).then_some((parts, ends))
+    }
+
+    fn period(&self) -> i64 {
+        self.plan.period.into()
+    }
+
+    fn fresh(&mut self) -> u32 {
+        self.label += 1;
+        self.label - 1
+    }
+
+    fn branch(&self) -> usize {
+        self.steps.len() - 1
+    }
+
+    fn branch_cycle(&self) -> i64 {
+        (i64::from(self.plan.commit) + 1) * self.period() - i64::from(BRANCH)
+    }
+
+    fn instance(&self, step: usize, turn: i64) -> Instance {
+        Instance { cycle: i64::from(self.plan.places[step].0) + turn * self.period(), turn, step }
+    }
+
+    /// What happens in some of the passes before every stage has a turn, the branches excepted.
+    fn beginnings(&self, passes: std::ops::Range<i64>) -> Vec<Instance> {
+        let mut found = Vec::new();
+        for step in 0..self.branch() {
+            let stage = i64::from(self.plan.stage(step));
+            found.extend(
+                passes.clone().filter(|pass| *pass >= stage).map(|pass| self.instance(step, pass - stage)),
+            );
+        }
+        found.sort_unstable();
+        found
+    }
+
+    /// What is left to do for the last `turns` turns after the pass that was the last; the last turn is turn 0.
+    fn endings(&self, turns: i64) -> Vec<Instance> {
+        let mut found = Vec::new();
+        for step in 0..self.branch() {
+            let stage = i64::from(self.plan.stage(step));
+            let left = (0..turns).filter(|back| stage > i64::from(self.plan.commit) + back);
+            found.extend(left.map(|back| self.instance(step, -back)));
+        }
+        found.sort_unstable();
+        found
+    }
+
+    fn steps(&self, instances: &[Instance]) -> Vec<Step> {
+        instances.iter().map(|one| self.steps[one.step].clone()).collect()
+    }
+
+    fn plain(&self, label: u32, instances: &[Instance], branches: Vec<Step>) -> Scheduled {
+        let region = Region {
+            steps: self.steps(instances),
+            branches,
+            ..Region::new(label, self.region.weight / 8.0, self.region.span)
+        };
+        schedule::schedule(region, Order::Early)
+    }
+
+    /// The branch out of the loop where there is no further turn.
+    fn leave_to(&self, label: u32) -> Option<Step> {
+        let step = &self.steps[self.branch()];
+        let inst = step.forms.first()?;
+        let pred = match inst.pred() {
+            Pred::If(reg) => Pred::Unless(reg),
+            Pred::Unless(reg) => Pred::If(reg),
+            Pred::Always => return None,
+        };
+        branch_to(inst, pred, label, step)
+    }
+
+    /// The end of the first `turns` turns, if there are no more.
+    fn end_of(&self, turns: i64, label: u32) -> Option<Scheduled> {
+        let step = &self.steps[self.branch()];
+        let out = branch_to(step.forms.first()?, Pred::Always, self.outside, step)?;
+        Some(self.plain(label, &self.endings(turns), vec![out]))
+    }
+
+    /// The packets of the loop itself.
+    fn packets(&self, label: u32) -> Scheduled {
+        let mut insts = Vec::with_capacity(self.steps.len());
+        for (step, (cycle, inst)) in self.steps.iter().zip(&self.plan.places) {
+            let is_branch = inst.branch().is_some();
+            let value = if is_branch { Some(Value::Block(label)) } else { step.value };
+            insts.push(Issued { cycle: cycle % self.plan.period, inst: *inst, value, span: step.span });
+        }
+        insts.sort_by_key(|issued| issued.cycle);
+        Scheduled {
+            label,
+            insts,
+            cycles: self.plan.period,
+            weight: self.region.weight,
+            span: self.region.span,
+        }
+    }
+
+    /// The end of the loop after its own packets, with the results that are still in flight.
+    fn last(&mut self) -> Option<Scheduled> {
+        let depth = i64::from(self.plan.stages() - self.plan.commit);
+        let end = (i64::from(self.plan.commit) + 1) * self.period();
+        let start = end - 2 * self.period();
+        let mut tail: Vec<Instance> = Vec::new();
+        for step in 0..self.steps.len() {
+            let turns = -(depth + 2)..=i64::from(self.plan.commit) + 1;
+            let near = turns.map(|turn| self.instance(step, turn));
+            tail.extend(near.filter(|one| (start..end).contains(&one.cycle)));
+        }
+        tail.sort_unstable();
+        let issued: Vec<(Step, Inst, u32)> = tail
+            .iter()
+            .filter_map(|one| {
+                let cycle = u32::try_from(one.cycle - start).ok()?;
+                Some((self.steps[one.step].clone(), self.plan.places[one.step].1, cycle))
+            })
+            .collect();
+        let mut branches = Vec::new();
+        if self.outside != self.region.label + 1 {
+            let step = &self.steps[self.branch()];
+            branches.push(branch_to(step.forms.first()?, Pred::Always, self.outside, step)?);
+        }
+        let label = self.fresh();
+        let region = Region {
+            steps: self.steps(&self.endings(depth)),
+            branches,
+            ..Region::new(label, self.region.weight / 8.0, self.region.span)
+        };
+        Some(schedule::schedule_after(&Tail { issued, cycles: 2 * self.plan.period }, region))
+    }
+}
+
+fn branch_to(like: &Inst, pred: Pred, label: u32, step: &Step) -> Option<Step> {
+    let operands: Vec<c67x::Operand> = like.operands().collect();
+    let inst = Inst::new(like.op(), c67x::Side::B, pred, &operands).ok()?;
+    Some(Step { forms: vec![inst], value: Some(Value::Block(label)), access: Access::None, span: step.span })
+}
