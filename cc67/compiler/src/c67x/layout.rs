@@ -6,15 +6,9 @@
 use c67x::{FETCH_PACKET, Inst, Op, Operand, Side};
 
 use super::code::Value;
-use super::schedule::{Issued, Scheduled};
+use super::packets::{FETCH, Issued, LONGEST, Scheduled};
 use super::text::{Fixup, FixupKind};
 use crate::source::Span;
-
-/// Words of a fetch packet.
-const FETCH: u32 = FETCH_PACKET / 4;
-
-/// The longest `NOP`.
-const LONGEST: u32 = 9;
 
 /// A function in words.
 #[derive(Debug, Default)]

@@ -4,10 +4,10 @@
 //!
 //! 1. [`select`]: IR to instructions over virtual registers ([`code`]); [`forms`] says which forms of the table can do
 //!    what an instruction asks for.
-//! 2. [`predicate`]: short branches become conditions. [`turns`]: several turns of a short loop as one. [`sides`]: every register gets one of the two files; copies where an instruction reaches only one.
+//! 2. [`predicate`]: short branches become conditions. [`copies`]: what selection copied is read at its source. [`turns`]: several turns of a short loop as one. [`sides`]: every register gets one of the two files; copies where an instruction reaches only one.
 //! 3. [`live`], [`allocate`], [`spill`]: registers of the processor, those that survive a thread switch.
 //! 4. [`frame`], [`moves`], [`expand`]: calls, the stack, the beginning and the ends; regions of [`step`]s.
-//! 5. [`graph`], [`resources`], [`schedule`]: packets; [`pipeline`], [`modulo`]: those of loops whose turns overlap.
+//! 5. [`graph`], [`resources`], [`schedule`]: packets, [`refine`] makes them smaller; [`pipeline`], [`modulo`]: those of loops whose turns overlap.
 //! 6. [`layout`]: words, on fetch packets, with what the linker completes ([`text`]).
 //!
 //! Rules that all stages keep (`c67x.md`):
@@ -19,6 +19,7 @@
 mod abi;
 mod allocate;
 mod code;
+mod copies;
 mod expand;
 pub(crate) mod externs;
 mod forms;
@@ -28,8 +29,10 @@ mod layout;
 mod live;
 mod modulo;
 mod moves;
+mod packets;
 mod pipeline;
 mod predicate;
+mod refine;
 mod resources;
 mod schedule;
 mod select;
@@ -50,7 +53,8 @@ use crate::passes::Level;
 use crate::source::Span;
 use code::Code;
 use expand::TooLarge;
-use schedule::{Order, Scheduled};
+use packets::Scheduled;
+use schedule::Order;
 use text::Words;
 
 /// Writes the functions of a unit, one after another.
@@ -102,6 +106,7 @@ impl Generator {
         let mut code = select::select(context);
         if self.level != Level::None {
             predicate::run(&mut code);
+            copies::run(&mut code);
         }
         let attempt = self.best(ir, code).map_err(|why| match why {
             TooLarge::Frame => frame_too_large(ir.span, name),
@@ -153,7 +158,13 @@ impl Generator {
         let regions = if self.level == Level::Fast {
             pipeline::schedule(expanded.regions, expanded.labels)
         } else {
-            expanded.regions.into_iter().map(|region| schedule::schedule(region, order)).collect()
+            let mut at = 0;
+            let in_place = |region| {
+                let scheduled = schedule::schedule(region, order, at);
+                at = refine::end(&scheduled, at);
+                scheduled
+            };
+            expanded.regions.into_iter().map(in_place).collect()
         };
         Ok(Attempt { regions, code, frame: expanded.frame })
     }

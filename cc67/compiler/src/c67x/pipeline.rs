@@ -16,7 +16,9 @@ use super::code::Value;
 use super::expand::Region;
 use super::graph::BRANCH;
 use super::modulo::{self, Overlap};
-use super::schedule::{self, Issued, Order, Scheduled, Tail};
+use super::packets::{Issued, Scheduled};
+use super::refine;
+use super::schedule::{self, Order, Tail};
 use super::step::{Access, Step};
 
 /// The largest turn, in steps.
@@ -30,9 +32,9 @@ pub(super) fn schedule(regions: Vec<Region>, labels: u32) -> Vec<Scheduled> {
         if regions.iter().any(|region| back(region).is_some()) { live(&regions) } else { Vec::new() };
     let mut done = Vec::with_capacity(regions.len());
     let mut ends = Vec::new();
-    let mut labels = labels;
+    let (mut labels, mut at) = (labels, 0);
     for region in regions {
-        let plain = schedule::schedule(region.clone(), Order::Early);
+        let plain = schedule::schedule(region.clone(), Order::Early, at);
         let found = back(&region).and_then(|back| {
             let mut turns = Loop::new(&region, back, &entering, plain.cycles)?;
             turns.label = labels;
@@ -41,11 +43,15 @@ pub(super) fn schedule(regions: Vec<Region>, labels: u32) -> Vec<Scheduled> {
         });
         match found {
             Some((parts, after, next)) => {
+                at = parts.iter().fold(at, |at, part| refine::end(part, at));
                 done.extend(parts);
                 ends.extend(after);
                 labels = next;
             }
-            None => done.push(plain),
+            None => {
+                at = refine::end(&plain, at);
+                done.push(plain);
+            }
         }
     }
     done.extend(ends);
@@ -180,7 +186,7 @@ impl<'a> Loop<'a> {
         parts.push(self.packets(label));
         parts.push(self.last()?);
         let cycles = |parts: &[Scheduled]| parts.iter().map(|part| part.cycles).sum::<u32>();
-        let plain = schedule::schedule(self.region.clone(), Order::Early).cycles;
+        let plain = schedule::schedule(self.region.clone(), Order::Early, 0).cycles;
         let overlapped = cycles(&parts) + self.plan.period * (TURNS - 1).saturating_sub(depth as u32 - 1);
         (overlapped < plain * TURNS).then_some((parts, ends))
     }
@@ -241,7 +247,7 @@ impl<'a> Loop<'a> {
             branches,
             ..Region::new(label, self.region.weight / 8.0, self.region.span)
         };
-        schedule::schedule(region, Order::Early)
+        schedule::schedule(region, Order::Early, 0)
     }
 
     /// The branch out of the loop where there is no further turn.

@@ -27,6 +27,8 @@ pub(super) struct Resources {
     reads: Vec<(u32, Reg)>,
     /// After how many cycles everything repeats; 0 for never.
     period: u32,
+    /// Steps come in any order.
+    is_whole: bool,
 }
 
 /// Cycles that must lie between different long products of one unit.
@@ -39,6 +41,11 @@ impl Resources {
     /// The cycles of a turn, where the next one begins `period` cycles later.
     pub(super) fn periodic(period: u32) -> Self {
         Self { period, ..Self::default() }
+    }
+
+    /// A region whose steps come in any order.
+    pub(super) fn whole() -> Self {
+        Self { is_whole: true, ..Self::default() }
     }
 
     /// Forgets everything taken.
@@ -110,7 +117,7 @@ impl Resources {
     fn reads_fit(&self, inst: &Inst, cycle: u32) -> bool {
         inst.reads().all(|read| {
             let own = inst.reads().filter(|other| other.reg == read.reg).count();
-            let recent = if self.period == 0 { 32 } else { usize::MAX };
+            let recent = if self.period == 0 && !self.is_whole { 32 } else { usize::MAX };
             let others = self.reads.iter().rev().take(recent);
             let cycle = self.counted(cycle);
             others.filter(|(at, reg)| *at == cycle && *reg == read.reg).count() + own <= READS

@@ -6,34 +6,12 @@
 
 use c67x::Inst;
 
-use super::code::Value;
 use super::expand::Region;
 use super::graph::{self, BRANCH, Graph};
+use super::packets::{Issued, Scheduled};
+use super::refine::{self, Item};
 use super::resources::Resources;
 use super::step::{Access, Step};
-use crate::source::Span;
-
-/// An instruction with its cycle.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Issued {
-    pub(super) cycle: u32,
-    pub(super) inst: Inst,
-    pub(super) value: Option<Value>,
-    pub(super) span: Span,
-}
-
-/// A region whose instructions have their cycles.
-#[derive(Debug)]
-pub(super) struct Scheduled {
-    pub(super) label: u32,
-    /// Ascending by cycle.
-    pub(super) insts: Vec<Issued>,
-    /// Cycles of the region.
-    pub(super) cycles: u32,
-    /// How often it happens, as far as one can guess.
-    pub(super) weight: f32,
-    pub(super) span: Span,
-}
 
 /// How a region is scheduled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,8 +22,8 @@ pub(super) enum Order {
     Early,
 }
 
-/// Schedules a region.
-pub(super) fn schedule(region: Region, order: Order) -> Scheduled {
+/// Schedules a region that begins at the word `at`.
+pub(super) fn schedule(region: Region, order: Order, at: u32) -> Scheduled {
     let Region { label, steps, branches, late, span, weight, .. } = region;
     let graph = graph::build(&steps, &branches);
     let mut list = List::new(&graph, order);
@@ -54,7 +32,11 @@ pub(super) fn schedule(region: Region, order: Order) -> Scheduled {
         Some(branch) if !late.is_empty() => list.leave(steps.len(), branch, &late, end),
         _ => list.branches(&steps, &branches, end),
     };
-    let mut insts = list.issued;
+    let mut items = list.issued;
+    if order == Order::Early {
+        refine::run(&mut items, &graph, cycles, at);
+    }
+    let mut insts: Vec<Issued> = items.into_iter().map(|item| item.issued).collect();
     insts.sort_by_key(|issued| issued.cycle);
     Scheduled { label, insts, cycles, weight, span }
 }
@@ -81,7 +63,7 @@ pub(super) fn schedule_after(tail: &Tail, region: Region) -> Scheduled {
     let landing = tail.issued.iter().map(|(_, inst, cycle)| cycle + graph::landing(inst)).max();
     let end = list.steps(&steps).max(landing.unwrap_or(0)).max(tail.cycles);
     let cycles = list.branches(&steps, &branches, end) - tail.cycles;
-    let mut insts = list.issued;
+    let mut insts: Vec<Issued> = list.issued.into_iter().map(|item| item.issued).collect();
     insts.iter_mut().for_each(|issued| issued.cycle -= tail.cycles);
     insts.sort_by_key(|issued| issued.cycle);
     Scheduled { label, insts, cycles, weight, span }
@@ -92,7 +74,7 @@ struct List<'a> {
     earliest: Vec<u32>,
     waiting: Vec<u32>,
     resources: Resources,
-    issued: Vec<Issued>,
+    issued: Vec<Item<'a>>,
     order: Order,
     /// The last cycle with a load or store.
     last_access: u32,
@@ -115,7 +97,7 @@ impl<'a> List<'a> {
     }
 
     /// Issues all steps but the branches; the cycle in which the last result has landed.
-    fn steps(&mut self, steps: &[Step]) -> u32 {
+    fn steps(&mut self, steps: &'a [Step]) -> u32 {
         let mut ready: Vec<u32> =
             (self.first.0..steps.len() as u32).filter(|step| self.waiting[*step as usize] == 0).collect();
         let (mut cycle, mut end, mut left) = (self.first.1, 0, steps.len() - self.first.0 as usize);
@@ -144,7 +126,7 @@ impl<'a> List<'a> {
                 left -= 1;
                 taken = true;
                 end = end.max(cycle + graph::landing(&inst));
-                self.issue(own, inst, cycle);
+                self.issue(own, Some(step as usize), inst, cycle);
                 self.release(step, cycle, steps.len(), &mut ready);
             }
             cycle += 1;
@@ -157,12 +139,13 @@ impl<'a> List<'a> {
         step.forms.iter().copied().find(|inst| self.resources.fits(inst, cycle))
     }
 
-    fn issue(&mut self, step: &Step, inst: Inst, cycle: u32) {
+    fn issue(&mut self, step: &'a Step, node: Option<usize>, inst: Inst, cycle: u32) {
         self.resources.take(&inst, cycle);
         if step.access != Access::None {
             self.last_access = self.last_access.max(cycle);
         }
-        self.issued.push(Issued { cycle, inst, value: step.value, span: step.span });
+        let issued = Issued { cycle, inst, value: step.value, span: step.span };
+        self.issued.push(Item { step, issued, node });
     }
 
     /// What waited for a step may be ready now.
@@ -179,7 +162,7 @@ impl<'a> List<'a> {
     }
 
     /// Places the branches; the length of the region.
-    fn branches(&mut self, steps: &[Step], branches: &[Step], end: u32) -> u32 {
+    fn branches(&mut self, steps: &[Step], branches: &'a [Step], end: u32) -> u32 {
         let mut cycles = end;
         let mut from = end.saturating_sub(BRANCH).max(self.first.1);
         for (index, branch) in branches.iter().enumerate() {
@@ -193,7 +176,7 @@ impl<'a> List<'a> {
                 }
                 cycle += 1;
             };
-            self.issue(branch, inst, cycle);
+            self.issue(branch, Some(steps.len() + index), inst, cycle);
             from = cycle;
             cycles = cycles.max(cycle + BRANCH);
         }
@@ -202,13 +185,13 @@ impl<'a> List<'a> {
 
     /// Places the branch that leaves the function, and in its slots the load of the register that it reads and the
     /// step of the stack pointer after that: no interrupt comes between them. The length of the region.
-    fn leave(&mut self, branch_index: usize, branch: &Step, late: &[Step], end: u32) -> u32 {
+    fn leave(&mut self, branch_index: usize, branch: &'a Step, late: &'a [Step], end: u32) -> u32 {
         let mut cycle = self.earliest[branch_index].max(end.saturating_sub(BRANCH));
         let last_access = self.last_access;
         loop {
             let own = self.form(branch, cycle);
             let mut from = cycle;
-            let mut placed: Vec<(&Step, Inst, u32)> = Vec::with_capacity(late.len());
+            let mut placed: Vec<(&'a Step, Inst, u32)> = Vec::with_capacity(late.len());
             for step in late {
                 let is_access = step.access != Access::None;
                 let first = if is_access { from } else { from.max(cycle + 1).max(last_access) };
@@ -220,9 +203,9 @@ impl<'a> List<'a> {
                 placed.push((step, inst, at));
             }
             if let (Some(own), true) = (own, placed.len() == late.len()) {
-                self.issue(branch, own, cycle);
+                self.issue(branch, Some(branch_index), own, cycle);
                 for (step, inst, at) in placed {
-                    self.issue(step, inst, at);
+                    self.issue(step, None, inst, at);
                 }
                 return cycle + BRANCH;
             }

@@ -7,6 +7,7 @@
 mod call;
 mod constants;
 mod convert;
+mod early;
 mod float;
 mod integer;
 mod memory;
@@ -130,7 +131,8 @@ impl Selector<'_> {
             let block = &function.blocks[*id];
             let fused = terminate::fused_compare(function, block, &self.uses);
             let count = block.insts.len() - usize::from(fused.is_some());
-            for inst in block.insts.iter().take(count) {
+            let order = early::order(function, block, self.externs);
+            for inst in order.into_iter().filter(|index| *index < count).map(|index| &block.insts[index]) {
                 self.span = inst.span;
                 self.inst(&inst.kind);
             }

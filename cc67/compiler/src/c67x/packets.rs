@@ -1,0 +1,34 @@
+//! Instructions with their cycles: what is scheduled, and laid out.
+
+use c67x::{FETCH_PACKET, Inst};
+
+use super::code::Value;
+use crate::source::Span;
+
+/// Words of a fetch packet.
+pub(super) const FETCH: u32 = FETCH_PACKET / 4;
+
+/// The longest `NOP`.
+pub(super) const LONGEST: u32 = 9;
+
+/// An instruction with its cycle.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Issued {
+    pub(super) cycle: u32,
+    pub(super) inst: Inst,
+    pub(super) value: Option<Value>,
+    pub(super) span: Span,
+}
+
+/// A region whose instructions have their cycles.
+#[derive(Debug)]
+pub(super) struct Scheduled {
+    pub(super) label: u32,
+    /// Ascending by cycle.
+    pub(super) insts: Vec<Issued>,
+    /// Cycles of the region.
+    pub(super) cycles: u32,
+    /// How often it happens, as far as one can guess.
+    pub(super) weight: f32,
+    pub(super) span: Span,
+}

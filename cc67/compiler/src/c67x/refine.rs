@@ -1,0 +1,202 @@
+//! Steps that can wait move where they take no room: out of packets that would cross a fetch packet, into cycles
+//! where nothing else happens.
+//!
+//! No packet crosses a boundary of 32 bytes; what is left before it would be parallel `NOP`s. And a cycle in which
+//! nothing issues takes a `NOP`. No step moves beyond what waits for it, so the region keeps its length.
+
+use c67x::Inst;
+
+use super::graph::{self, Graph};
+use super::packets::{FETCH, Issued, LONGEST, Scheduled};
+use super::resources::Resources;
+use super::step::{Access, Step};
+
+/// The longest run of empty cycles that is filled.
+const GAP: u32 = 3;
+/// How far a step moves out of a packet that is too long.
+const FAR: u32 = 6;
+
+/// A step with its cycle.
+#[derive(Debug)]
+pub(super) struct Item<'a> {
+    pub(super) step: &'a Step,
+    pub(super) issued: Issued,
+    /// Its node in the graph; none if it stays where it is.
+    pub(super) node: Option<usize>,
+}
+
+/// Where the word after a region is, if it begins at the word `at`.
+pub(super) fn end(region: &Scheduled, mut at: u32) -> u32 {
+    let mut cycle = 0;
+    let mut insts = region.insts.iter().peekable();
+    while cycle < region.cycles {
+        let mut count = 0;
+        while insts.next_if(|issued| issued.cycle == cycle).is_some() {
+            count += 1;
+        }
+        if count > 0 {
+            at = after(at, count);
+            cycle += 1;
+        } else {
+            let next = insts.peek().map_or(region.cycles, |issued| issued.cycle);
+            at = after(at, (next - cycle).div_ceil(LONGEST));
+            cycle = next;
+        }
+    }
+    at
+}
+
+/// The word after a packet.
+const fn after(at: u32, count: u32) -> u32 {
+    let at = if at % FETCH + count > FETCH { at.next_multiple_of(FETCH) } else { at };
+    at + count
+}
+
+/// Moves what can wait. The region has `cycles` cycles and begins at the word `at`.
+pub(super) fn run(items: &mut [Item<'_>], graph: &Graph, cycles: u32, at: u32) {
+    let mut nodes = vec![usize::MAX; graph.after.len()];
+    for (index, item) in items.iter().enumerate() {
+        if let Some(node) = item.node {
+            nodes[node] = index;
+        }
+    }
+    let has_late = items.iter().any(|item| item.node.is_none());
+    let accesses = items.iter().filter(|item| item.step.access != Access::None);
+    let last_access = accesses.map(|item| item.issued.cycle).max().filter(|_| has_late);
+    let mut refiner = Refiner { items, graph, nodes, cycles, last_access };
+    refiner.fill();
+    refiner.shorten(at);
+}
+
+struct Refiner<'a, 'b> {
+    items: &'a mut [Item<'b>],
+    graph: &'a Graph,
+    /// The item of each node.
+    nodes: Vec<usize>,
+    cycles: u32,
+    /// The last cycle for loads and stores, if the stack pointer moves after it.
+    last_access: Option<u32>,
+}
+
+impl Refiner<'_, '_> {
+    fn count(&self, cycle: u32) -> usize {
+        self.items.iter().filter(|item| item.issued.cycle == cycle).count()
+    }
+
+    /// The last cycle in which an item may issue.
+    fn latest(&self, index: usize) -> u32 {
+        let item = &self.items[index];
+        let own = item.issued.cycle;
+        let Some(node) = item.node.filter(|_| item.issued.inst.branch().is_none()) else { return own };
+        let mut latest = self.cycles - graph::landing(&item.issued.inst);
+        for edge in &self.graph.after[node] {
+            let to = self.items[self.nodes[edge.to as usize]].issued.cycle;
+            latest = latest.min(to.saturating_sub(edge.cycles.into()));
+        }
+        if let Some(last) = self.last_access.filter(|_| item.step.access != Access::None) {
+            latest = latest.min(last);
+        }
+        latest.max(own)
+    }
+
+    /// The form in which an item can issue in a cycle.
+    fn form(&self, index: usize, cycle: u32) -> Option<Inst> {
+        let mut others = Resources::whole();
+        for (other, item) in self.items.iter().enumerate() {
+            if other != index && item.issued.cycle.abs_diff(cycle) < 16 {
+                others.take(&item.issued.inst, item.issued.cycle);
+            }
+        }
+        self.items[index].step.forms.iter().copied().find(|inst| others.fits(inst, cycle))
+    }
+
+    fn set(&mut self, index: usize, cycle: u32, inst: Inst) {
+        self.items[index].issued.cycle = cycle;
+        self.items[index].issued.inst = inst;
+    }
+
+    /// Fills short runs of empty cycles with what shares a packet before them, or leaves them as they are.
+    fn fill(&mut self) {
+        let mut cycle = 0;
+        while cycle < self.cycles {
+            let gap = (cycle..self.cycles).take_while(|cycle| self.count(*cycle) == 0).count() as u32;
+            if gap > 0 && gap <= GAP {
+                let before: Vec<(usize, u32, Inst)> = (self.items.iter().enumerate())
+                    .map(|(index, item)| (index, item.issued.cycle, item.issued.inst))
+                    .collect();
+                if !(cycle..cycle + gap).all(|cycle| self.fill_cycle(cycle)) {
+                    before.into_iter().for_each(|(index, cycle, inst)| self.set(index, cycle, inst));
+                }
+            }
+            cycle += gap.max(1);
+        }
+    }
+
+    fn fill_cycle(&mut self, cycle: u32) -> bool {
+        let mut found: Vec<usize> = (0..self.items.len())
+            .filter(|index| self.items[*index].issued.cycle < cycle && self.latest(*index) >= cycle)
+            .collect();
+        found.sort_by_key(|index| std::cmp::Reverse(self.items[*index].issued.cycle));
+        for index in found {
+            if self.count(self.items[index].issued.cycle) > 1
+                && let Some(inst) = self.form(index, cycle)
+            {
+                self.set(index, cycle, inst);
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Takes steps out of packets that do not fit what is left of their fetch packet.
+    fn shorten(&mut self, mut at: u32) {
+        let mut empty = 0;
+        for cycle in 0..self.cycles {
+            let count = self.count(cycle) as u32;
+            if count == 0 {
+                if empty % LONGEST == 0 {
+                    at = after(at, 1);
+                }
+                empty += 1;
+                continue;
+            }
+            empty = 0;
+            let room = FETCH - at % FETCH;
+            if room < count && room < FETCH {
+                self.move_out(cycle, count - room);
+            }
+            at = after(at, self.count(cycle) as u32);
+        }
+    }
+
+    /// Moves some steps of a packet to later ones, or none.
+    fn move_out(&mut self, cycle: u32, excess: u32) {
+        let before: Vec<(usize, u32, Inst)> = (self.items.iter().enumerate())
+            .map(|(index, item)| (index, item.issued.cycle, item.issued.inst))
+            .collect();
+        for _ in 0..excess {
+            if !self.move_one(cycle) {
+                before.into_iter().for_each(|(index, cycle, inst)| self.set(index, cycle, inst));
+                return;
+            }
+        }
+    }
+
+    fn move_one(&mut self, cycle: u32) -> bool {
+        let mut found: Vec<(u32, usize)> = (0..self.items.len())
+            .filter(|index| self.items[*index].issued.cycle == cycle)
+            .map(|index| (self.latest(index), index))
+            .filter(|(latest, _)| *latest > cycle)
+            .collect();
+        found.sort_by_key(|(latest, index)| (std::cmp::Reverse(*latest), *index));
+        for (latest, index) in found {
+            for to in cycle + 1..=latest.min(cycle + FAR) {
+                if let Some(inst) = self.form(index, to) {
+                    self.set(index, to, inst);
+                    return true;
+                }
+            }
+        }
+        false
+    }
+}
