@@ -28,7 +28,7 @@ pub(crate) struct CompileArguments {
     include: Vec<PathBuf>,
     define: Vec<(String, String)>,
     undefine: Vec<String>,
-    optimize: u8,
+    optimize: String,
     warnings: Vec<String>,
     std: String,
     firmware: Option<PathBuf>,
@@ -50,9 +50,15 @@ impl CompileArguments {
                 standard,
                 ..Options::default().preprocessor
             },
-            level: if self.optimize == 0 { Level::None } else { Level::Full },
+            level: match self.optimize.as_str() {
+                "0" => Level::None,
+                "1" => Level::Full,
+                "2" => Level::Fast,
+                "s" => Level::Small,
+                other => return Err(input(format!("optimize must be 0, 1, 2 or \"s\", not {other:?}"))),
+            },
             firmware: self.firmware()?,
-            gc_sections: self.optimize > 0,
+            gc_sections: self.optimize != "0",
             ..Options::default()
         })
     }

@@ -226,7 +226,11 @@ pub fn generate_code(unit: &Unit, sources: &SourceMap, level: Level, sink: &mut 
     let mut builder = UnitBuilder::new(unit, sources);
     let mut generator = c67x::Generator::new(builder.externs(), level);
     let definitions = lower::Definitions::new(unit, builder.signatures());
-    let mut candidates = Candidates::new(CODE_LEVELS);
+    let mut candidates = match level {
+        Level::Fast => Candidates::new(CODE_LEVELS),
+        Level::Full | Level::None => Candidates::new(0),
+        Level::Small => Candidates::small(),
+    };
     for function in &unit.functions {
         let mut ir = lower::lower(unit, function, &definitions, Timing::Fast, builder.signatures());
         optimize(&mut ir, level, &mut candidates, sources);

@@ -20,6 +20,9 @@ use crate::typed::SymbolId;
 /// The most instructions of a function that replaces its calls.
 const SMALL: usize = 40;
 
+/// The same where code must not grow: what a call and the ends of a function take, and what is used once.
+const SMALLEST: usize = 24;
+
 /// The most instructions of a function whose calls of itself are replaced.
 const SMALL_RECURSIVE: usize = 16;
 
@@ -34,6 +37,8 @@ const LARGEST: usize = 1500;
 pub struct Candidates {
     /// How often the calls of a function in itself are replaced.
     levels: usize,
+    /// The most instructions of a function that replaces its calls.
+    largest: usize,
     functions: BTreeMap<SymbolId, (u32, Function)>,
 }
 
@@ -47,12 +52,18 @@ impl Candidates {
     /// No candidates yet; the calls of a function in itself are replaced `levels` times.
     #[must_use]
     pub const fn new(levels: usize) -> Self {
-        Self { levels, functions: BTreeMap::new() }
+        Self { levels, largest: SMALL, functions: BTreeMap::new() }
+    }
+
+    /// The same for code that must not grow.
+    #[must_use]
+    pub const fn small() -> Self {
+        Self { levels: 0, largest: SMALLEST, functions: BTreeMap::new() }
     }
 
     /// Offers an optimised function of the source file `file`.
     pub fn offer(&mut self, function: &Function, file: u32) {
-        if size(function) <= SMALL && function.slots.is_empty() {
+        if size(function) <= self.largest && function.slots.is_empty() {
             self.functions.insert(function.symbol, (file, function.clone()));
         }
     }

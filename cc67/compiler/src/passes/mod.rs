@@ -22,6 +22,8 @@ use inline::Candidates;
 pub enum Level {
     /// Nothing: the code follows the source (`-O0`).
     None,
+    /// What makes code smaller (`-Os`): short functions alone replace their calls, and none calls of itself.
+    Small,
     /// Everything that makes code faster without making it much larger (`-O1`).
     #[default]
     Full,

@@ -21,7 +21,7 @@ class _Request(TypedDict):
     include: list[str]
     define: list[tuple[str, str]]
     undefine: list[str]
-    optimize: int
+    optimize: str
     warnings: list[str]
     std: str
     firmware: str | None
@@ -94,7 +94,7 @@ def compile(
     include: Iterable[PathLike] = (),
     define: Mapping[str, object] | Iterable[str] = (),
     undefine: Iterable[str] = (),
-    optimize: int = 1,
+    optimize: int | str = 1,
     warnings: Iterable[str] = (),
     std: str = "vendor",
     firmware: PathLike | None = None,
@@ -107,7 +107,8 @@ def compile(
         include: folders in which included files are searched, as `-I`.
         define: macros with their values, `{"SPEED": 20}`, or names, as `-D`. `True` and None define a macro as 1.
         undefine: predefined macros to undefine, as `-U`.
-        optimize: 0 nothing, 1 and 2 what makes programs faster, as `-O`.
+        optimize: 0 nothing, 1 what makes programs faster, 2 also what makes the controller's code larger, "s" what
+            makes it small, as `-O`.
         warnings: switches without `-W`: "error", "no-format", "error=format", "extra".
         std: how constants are read: "vendor", "c90", "c99", "c11", "c17".
         firmware: a firmware file whose symbols are used in place of the built-in ones of firmware 4.34.
@@ -133,13 +134,13 @@ def compile(
         "include": [os.fspath(folder) for folder in _several(include, "include")],
         "define": _macros(define),
         "undefine": list(_several(undefine, "undefine")),
-        "optimize": optimize,
+        "optimize": str(optimize),
         "warnings": _switches(warnings),
         "std": std,
         "firmware": None if firmware is None else os.fspath(firmware),
     }
-    if optimize not in (0, 1, 2):
-        raise InputError(f"optimize must be 0, 1 or 2, not {optimize!r}")
+    if optimize not in (0, 1, 2, "s"):
+        raise InputError(f"optimize must be 0, 1, 2 or \"s\", not {optimize!r}")
     native, found = _native.compile([str(path) for path in paths], request, thread or 1)
     diagnostics = [from_json(text) for text in found]
     if native is None:

@@ -33,9 +33,10 @@ pub(crate) struct CompilerArguments {
     /// Read constants as a C standard does: c99, c11, c17, or as the vendor's compiler
     #[arg(long, value_name = "STANDARD", default_value = "vendor", value_parser = standard)]
     std: Standard,
-    /// Optimisation: 0 none, 1 what makes programs faster, 2 also what makes the controller's code larger
-    #[arg(short = 'O', value_name = "LEVEL", default_value = "1", value_parser = clap::value_parser!(u8).range(0..=2))]
-    optimization: u8,
+    /// Optimisation: 0 none, 1 what makes programs faster, 2 also what makes the controller's code larger, s what
+    /// makes it small
+    #[arg(short = 'O', value_name = "LEVEL", default_value = "1", value_parser = level)]
+    optimization: Level,
     /// Whose code the board's time is counted for: vendor, as long as on the board; fast, a cycle or two for each
     /// instruction; cc67, the code that cc67 makes for the controller (not built yet)
     #[arg(long, value_name = "CODE", default_value = "vendor", value_parser = timing)]
@@ -105,14 +106,10 @@ impl CompilerArguments {
                 standard: self.std,
             },
             target: self.target().unwrap_or_default(),
-            level: match self.optimization {
-                0 => Level::None,
-                1 => Level::Full,
-                _ => Level::Fast,
-            },
+            level: self.optimization,
             timing: self.timing(),
             firmware: self.firmware()?,
-            gc_sections: self.gc_sections || (self.optimization > 0 && !self.no_gc_sections),
+            gc_sections: self.gc_sections || (self.optimization != Level::None && !self.no_gc_sections),
             addresses: SectionAddresses::default(),
         })
     }
@@ -167,6 +164,17 @@ impl CompilerArguments {
 /// The standard of `--std`.
 fn standard(name: &str) -> Result<Standard, String> {
     Standard::named(name).ok_or_else(|| "expected c90, c99, c11, c17 or vendor".to_owned())
+}
+
+/// The level of `-O`.
+fn level(text: &str) -> Result<Level, String> {
+    match text {
+        "0" => Ok(Level::None),
+        "1" => Ok(Level::Full),
+        "2" => Ok(Level::Fast),
+        "s" => Ok(Level::Small),
+        _ => Err("expected 0, 1, 2 or s".to_owned()),
+    }
 }
 
 /// The timing of `--timing`.

@@ -22,7 +22,7 @@ const PRINTED: &str = "\
 
 #[test]
 fn quotients_wide_integers_structures_and_many_arguments_are_right() {
-    for level in [Level::None, Level::Full, Level::Fast] {
+    for level in [Level::None, Level::Small, Level::Full, Level::Fast] {
         assert_eq!(machine::run(&build(SOURCE, level)).console, PRINTED, "{level:?}");
     }
 }
