@@ -133,6 +133,28 @@ fn a_loop_of_few_cycles_takes_no_interrupt() {
     assert!(rules(text).contains(&Rule::NotInterruptible));
 }
 
+/// A loop of six cycles whose sum takes what the turn before loaded, with what happens in its cycles 2, 3 and 5.
+fn overlapping([two, three, five]: [&str; 3]) -> Vec<Rule> {
+    rules(&format!(
+        "[B0] B .S1 pc+0\n[B0] ADD .L2 -1,B0,B0\n{two}\n{three}\nLDW .D1T1 *A4++[1],A6\n{five}"
+    ))
+}
+
+#[test]
+fn turns_of_a_loop_that_overlap_are_checked_across_the_branch_back() {
+    let sum = "ADD .L1 A5,A6,A5";
+    assert_eq!(overlapping(["NOP 1", sum, "NOP 1"]), []);
+    // The load of the turn before lands a cycle later, and an interrupt could come at the branch back.
+    assert_eq!(overlapping([sum, "NOP 1", "NOP 1"]), [Rule::EarlyRead(Reg::a(6))]);
+    assert_eq!(overlapping(["MV .L1 A7,A6", sum, "NOP 1"]), [Rule::TwoResults(Reg::a(6))]);
+    let product = "MPYDP .M2 B5:B4,B7:B6,B9:B8";
+    assert_eq!(overlapping(["NOP 1", sum, product]), []);
+    assert_eq!(
+        overlapping([product, sum, product]),
+        [Rule::UnitLocked(unit(UnitKind::M, Side::B)), Rule::UnitLocked(unit(UnitKind::M, Side::B))]
+    );
+}
+
 #[test]
 fn packets_lie_inside_fetch_packets() {
     let text = "NOP\nNOP\nNOP\nNOP\nNOP\nNOP\nNOP\nADD .L1 A1,A2,A3\n|| ADD .S1 A4,A5,A6";
