@@ -24,76 +24,81 @@ const LANE: u32 = 2;
 /// Groups of eight pins.
 const GROUPS: u32 = PINS as u32 / 8;
 
-/// A range of registers and what is known about it.
+/// A range of registers: what reading and writing one of them does.
 struct Registers {
     first: u32,
     last: u32,
-    kind: Kind,
+    reads: fn(&mut Fpga, &mut Behind<'_>, Access) -> u32,
+    /// A remark comes back where writing is in vain.
+    writes: fn(&mut Fpga, &mut Behind<'_>, Access, u32) -> Option<Message>,
 }
 
-/// What a register does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
-    /// Known to programs; here it only stores.
-    Storage,
-    /// Ones set latches.
-    BitSet,
-    /// Zeros clear latches.
-    BitClear,
-    /// Directions.
-    BitDirection,
-    /// Levels, read only.
-    BitRead,
-    /// Characters of the UART.
-    UartData,
-    /// The UART's status when read, its divisor when written.
-    UartStatus,
-    /// Values and switches of the PWM generators, one after another.
-    Pwm,
-    /// What the pins of the port carry.
-    Port,
+/// An access of a register.
+#[derive(Clone, Copy, Debug)]
+struct Access {
+    address: GuestAddr,
+    size: AccessSize,
+    /// The register's number in its range.
+    index: u32,
+}
+
+macro_rules! registers {
+    ($($(#[doc = $doc:literal])+ $first:tt $(+ $more:expr)?, $count:expr => $reads:ident, $writes:ident;)*) => {
+        /// The registers that programs know. Source: io.md section 5.
+        const REGISTERS: &[Registers] = &[$(Registers {
+            first: $first $(+ $more)?,
+            last: $first $(+ $more)? + $count - 1,
+            reads: Fpga::$reads,
+            writes: Fpga::$writes,
+        },)*];
+    };
+}
+
+// First number, how many, what reads, what writes; `stored` and `store` are memory.
+registers! {
     /// Filter and pins of the encoder inputs.
-    EncoderFilter,
-    /// Errors of the encoder inputs.
-    EncoderErrors,
+    ENCODER_FILTER, 1 => stored, set_encoder_filter;
     /// Length, polarity and pins of the step pulses.
-    StepPulse,
+    0x06, 1 => stored, set_step_pulse;
+    /// Errors of the encoder inputs; writing clears them.
+    0x08, 1 => encoder_errors, clear_encoder_errors;
+    /// Known to programs; here they only store.
+    0x09, 5 => stored, store;
+    /// The same.
+    0x10, 1 => stored, store;
+    /// The same.
+    0x28, 1 => stored, store;
+    /// The prescaler of the PWM generators.
+    PRESCALE, 1 => stored, set_pwm;
     /// The rate of a step generator, in four bytes; the last one makes it act.
-    StepRate,
+    STEP_RATE, 4 => stored, set_step_rate;
     /// Positions of the step generators, low and high byte of each.
-    StepPosition,
+    0x40, 16 => step_position, store;
+    /// Known to programs; here they only store.
+    0x80, 8 => stored, store;
     /// Outputs of Kanalog: opto outputs and drivers, general outputs.
-    KanalogOutputs,
-    /// Inputs of Kanalog: general inputs and opto inputs.
-    KanalogInputs,
+    0x88, 2 => kanalog_outputs, set_kanalog_outputs;
     /// Conversions of Kanalog's analog inputs.
-    KanalogAdc,
+    0x90, 8 => kanalog_conversion, ignore;
+    /// Inputs of Kanalog: general inputs and opto inputs.
+    0x98, 1 => kanalog_inputs, ignore;
+    /// What the pins of the port carry.
+    PORT_SELECT, 1 => stored, set_pwm;
+    /// Characters of the UART.
+    0xc0, 1 => uart_data, send_to_uart;
+    /// The UART's status when read, its divisor when written.
+    0xc1, 1 => uart_status, set_uart_divisor;
+    /// Values and switches of the PWM generators, one after another.
+    PWM, 2 * PWMS => stored, set_pwm;
+    /// Ones set latches.
+    0x100, GROUPS => stored, set_bits;
+    /// Zeros clear latches.
+    0x110, GROUPS => stored, clear_bits;
+    /// Directions.
+    0x120, GROUPS => directions, set_directions;
+    /// Levels.
+    0x130, GROUPS => levels, store;
 }
-
-/// The registers that programs know. Source: io.md section 5.
-const REGISTERS: &[Registers] = &[
-    Registers { first: ENCODER_FILTER, last: ENCODER_FILTER, kind: Kind::EncoderFilter },
-    Registers { first: 0x06, last: 0x06, kind: Kind::StepPulse },
-    Registers { first: 0x08, last: 0x08, kind: Kind::EncoderErrors },
-    Registers { first: 0x09, last: 0x0d, kind: Kind::Storage },
-    Registers { first: 0x10, last: 0x10, kind: Kind::Storage },
-    Registers { first: 0x28, last: 0x28, kind: Kind::Storage },
-    Registers { first: PRESCALE, last: PRESCALE, kind: Kind::Pwm },
-    Registers { first: STEP_RATE, last: STEP_RATE + 3, kind: Kind::StepRate },
-    Registers { first: 0x40, last: 0x4f, kind: Kind::StepPosition },
-    Registers { first: 0x80, last: 0x87, kind: Kind::Storage },
-    Registers { first: 0x88, last: 0x89, kind: Kind::KanalogOutputs },
-    Registers { first: 0x90, last: 0x97, kind: Kind::KanalogAdc },
-    Registers { first: 0x98, last: 0x98, kind: Kind::KanalogInputs },
-    Registers { first: PORT_SELECT, last: PORT_SELECT, kind: Kind::Port },
-    Registers { first: 0xc0, last: 0xc0, kind: Kind::UartData },
-    Registers { first: 0xc1, last: 0xc1, kind: Kind::UartStatus },
-    Registers { first: PWM, last: PWM + 2 * PWMS - 1, kind: Kind::Pwm },
-    Registers { first: 0x100, last: 0x100 + GROUPS - 1, kind: Kind::BitSet },
-    Registers { first: 0x110, last: 0x110 + GROUPS - 1, kind: Kind::BitClear },
-    Registers { first: 0x120, last: 0x120 + GROUPS - 1, kind: Kind::BitDirection },
-    Registers { first: 0x130, last: 0x130 + GROUPS - 1, kind: Kind::BitRead },
-];
 
 /// Values at power-up: step pulses of 32 clocks, encoder filter 7.
 const START: [(u32, u8); 2] = [(0x06, 32), (ENCODER_FILTER, 7)];
@@ -158,7 +163,7 @@ fn bits(first: i32, count: i32) -> impl Iterator<Item = Bit> {
 }
 
 /// Outputs of Kanalog that an access of a register reaches: 8 opto outputs and 8 drivers, or the 8 general ones.
-fn kanalog_outputs(index: u32, size: AccessSize) -> impl Iterator<Item = Bit> {
+fn reached_outputs(index: u32, size: AccessSize) -> impl Iterator<Item = Bit> {
     let count = if index == 0 && size != AccessSize::Byte { 16 } else { 8 };
     bits(KANALOG_OUTPUTS + 16 * index as i32, count)
 }
@@ -173,12 +178,12 @@ fn cut(word: u32, size: AccessSize) -> u32 {
     if size == AccessSize::Byte { word & 0xff } else { word }
 }
 
-/// The register at an address and what it does; the number within its range comes with it.
-fn register(address: GuestAddr) -> (u32, Option<(Kind, u32)>) {
+/// The register at an address, and what it does with its number within its range.
+fn register(address: GuestAddr) -> (u32, Option<(&'static Registers, u32)>) {
     let offset = address.get().wrapping_sub(FPGA.base.get());
     let number = offset / STRIDE;
     let range = REGISTERS.iter().find(|range| (range.first..=range.last).contains(&number));
-    (number, range.filter(|_| offset % STRIDE == LANE).map(|range| (range.kind, number - range.first)))
+    (number, range.filter(|_| offset % STRIDE == LANE).map(|range| (range, number - range.first)))
 }
 
 /// A remark on a pin that becomes an output while Kanalog is connected to JP7.
@@ -188,85 +193,158 @@ pub(crate) fn kanalog_pins(bit: Bit) -> Option<Message> {
 
 impl Fpga {
     /// Reads a register.
-    pub(crate) fn read(&mut self, behind: Behind<'_>, address: GuestAddr, size: AccessSize) -> u32 {
-        let Behind { pins, uart, kanalog, encoders, stepgens, now } = behind;
+    pub(crate) fn read(&mut self, mut behind: Behind<'_>, address: GuestAddr, size: AccessSize) -> u32 {
         match register(address).1 {
-            Some((Kind::BitRead, group)) => u32::from(pins.level_group(group)),
-            Some((Kind::BitDirection, group)) => u32::from(pins.direction_group(group)),
-            Some((Kind::UartData, _)) => uart.read(now).into(),
-            Some((Kind::UartStatus, _)) => uart.status(now).into(),
-            Some((Kind::EncoderErrors, _)) => encoders.errors().into(),
-            Some((Kind::StepPosition, byte)) => {
-                cut(u32::from(stepgens.register((byte / 2) as usize)) >> (8 * (byte % 2)), size)
-            }
-            Some((Kind::KanalogOutputs, index)) => {
-                let outputs = kanalog_outputs(index, AccessSize::Half);
-                cut(word(outputs.map(|bit| pins.written(bit))), size)
-            }
-            Some((Kind::KanalogInputs, _)) => {
-                cut(word(bits(KANALOG_INPUTS, 16).map(|bit| pins.input(bit))), size)
-            }
-            Some((Kind::KanalogAdc, channel)) => cut(kanalog.conversion(channel as usize), size),
-            _ => self.stored(address, size),
+            Some((range, index)) => (range.reads)(self, &mut behind, Access { address, size, index }),
+            None => self.at(address, size),
         }
     }
 
     /// Writes a register; a remark comes back when that is in vain.
     pub(crate) fn write(
         &mut self,
-        behind: Behind<'_>,
+        mut behind: Behind<'_>,
         address: GuestAddr,
         size: AccessSize,
         value: u32,
     ) -> Option<Message> {
-        let Behind { pins, uart, encoders, stepgens, now, kanalog: _ } = behind;
-        let (number, kind) = register(address);
-        let is_pwm = matches!(kind, Some((Kind::Pwm | Kind::Port, _)));
-        if is_pwm {
-            self.tell_pwm(pins, now);
+        match register(address) {
+            (_, Some((range, index))) => {
+                (range.writes)(self, &mut behind, Access { address, size, index }, value)
+            }
+            (number, None) => {
+                self.put(address, size, value);
+                Some(Message::UnknownRegister { number })
+            }
         }
-        match kind {
-            Some((Kind::BitSet, group)) => pins.set_group(group, value as u8, now),
-            Some((Kind::BitClear, group)) => pins.clear_group(group, value as u8, now),
-            Some((Kind::BitDirection, group)) => {
-                let new = value as u8 & !pins.direction_group(group);
-                pins.set_direction_group(group, value as u8, now);
-                let first = Bit::new((8 * group + new.trailing_zeros()) as i32).filter(|_| new != 0);
-                return first.filter(|_| self.serves_kanalog()).and_then(kanalog_pins);
-            }
-            Some((Kind::UartData, _)) => {
-                uart.send(value as u8, now);
-                return (!self.has_uart_pins()).then_some(Message::UartUnconnected {});
-            }
-            Some((Kind::UartStatus, _)) => uart.set_divisor(value as u8),
-            Some((Kind::EncoderErrors, _)) => encoders.clear_errors(),
-            Some((Kind::KanalogOutputs, index)) => {
-                for (at, bit) in kanalog_outputs(index, size).enumerate() {
-                    pins.write(bit, value >> at & 1 != 0, now);
-                }
-            }
-            Some((Kind::KanalogInputs | Kind::KanalogAdc, _)) => {}
-            _ => self.store(address, size, value),
+    }
+
+    fn stored(&mut self, _: &mut Behind<'_>, access: Access) -> u32 {
+        self.at(access.address, access.size)
+    }
+
+    fn store(&mut self, _: &mut Behind<'_>, access: Access, value: u32) -> Option<Message> {
+        self.put(access.address, access.size, value);
+        None
+    }
+
+    fn ignore(&mut self, _: &mut Behind<'_>, _: Access, _: u32) -> Option<Message> {
+        None
+    }
+
+    fn levels(&mut self, behind: &mut Behind<'_>, access: Access) -> u32 {
+        behind.pins.level_group(access.index).into()
+    }
+
+    fn set_bits(&mut self, behind: &mut Behind<'_>, access: Access, value: u32) -> Option<Message> {
+        behind.pins.set_group(access.index, value as u8, behind.now);
+        None
+    }
+
+    fn clear_bits(&mut self, behind: &mut Behind<'_>, access: Access, value: u32) -> Option<Message> {
+        behind.pins.clear_group(access.index, value as u8, behind.now);
+        None
+    }
+
+    fn directions(&mut self, behind: &mut Behind<'_>, access: Access) -> u32 {
+        behind.pins.direction_group(access.index).into()
+    }
+
+    fn set_directions(&mut self, behind: &mut Behind<'_>, access: Access, value: u32) -> Option<Message> {
+        let group = access.index;
+        let new = value as u8 & !behind.pins.direction_group(group);
+        behind.pins.set_direction_group(group, value as u8, behind.now);
+        let first = Bit::new((8 * group + new.trailing_zeros()) as i32).filter(|_| new != 0);
+        first.filter(|_| self.serves_kanalog()).and_then(kanalog_pins)
+    }
+
+    fn uart_data(&mut self, behind: &mut Behind<'_>, _: Access) -> u32 {
+        behind.uart.read(behind.now).into()
+    }
+
+    fn send_to_uart(&mut self, behind: &mut Behind<'_>, _: Access, value: u32) -> Option<Message> {
+        behind.uart.send(value as u8, behind.now);
+        (!self.has_uart_pins()).then_some(Message::UartUnconnected {})
+    }
+
+    fn uart_status(&mut self, behind: &mut Behind<'_>, _: Access) -> u32 {
+        behind.uart.status(behind.now).into()
+    }
+
+    fn set_uart_divisor(&mut self, behind: &mut Behind<'_>, _: Access, value: u32) -> Option<Message> {
+        behind.uart.set_divisor(value as u8);
+        None
+    }
+
+    fn encoder_errors(&mut self, behind: &mut Behind<'_>, _: Access) -> u32 {
+        behind.encoders.errors().into()
+    }
+
+    fn clear_encoder_errors(&mut self, behind: &mut Behind<'_>, _: Access, _: u32) -> Option<Message> {
+        behind.encoders.clear_errors();
+        None
+    }
+
+    fn set_encoder_filter(&mut self, behind: &mut Behind<'_>, access: Access, value: u32) -> Option<Message> {
+        self.put(access.address, access.size, value);
+        let filter = [ENCODER_FILTER * STRIDE + LANE, ENCODER_FILTER * STRIDE + LANE + 1];
+        let filter = filter.map(|at| self.bytes.get(at as usize).copied().unwrap_or_default());
+        behind.encoders.set_filter(u16::from_le_bytes(filter), behind.pins, behind.now);
+        None
+    }
+
+    fn set_step_pulse(&mut self, behind: &mut Behind<'_>, access: Access, value: u32) -> Option<Message> {
+        self.put(access.address, access.size, value);
+        behind.stepgens.set_up(value as u8, behind.pins, behind.now);
+        None
+    }
+
+    fn set_step_rate(&mut self, behind: &mut Behind<'_>, access: Access, value: u32) -> Option<Message> {
+        self.put(access.address, access.size, value);
+        if access.index == 3 {
+            let word: [u8; 4] = std::array::from_fn(|index| self.byte(STEP_RATE + index as u32));
+            behind.stepgens.command(u32::from_le_bytes(word), behind.pins, behind.now);
         }
-        match kind {
-            Some((Kind::EncoderFilter, _)) => {
-                let filter = [ENCODER_FILTER * STRIDE + LANE, ENCODER_FILTER * STRIDE + LANE + 1];
-                let filter = filter.map(|at| self.bytes.get(at as usize).copied().unwrap_or_default());
-                encoders.set_filter(u16::from_le_bytes(filter), pins, now);
-            }
-            Some((Kind::StepPulse, _)) => stepgens.set_up(value as u8, pins, now),
-            Some((Kind::StepRate, 3)) => {
-                let word: [u8; 4] = std::array::from_fn(|index| self.byte(STEP_RATE + index as u32));
-                stepgens.command(u32::from_le_bytes(word), pins, now);
-            }
-            _ => {}
+        None
+    }
+
+    fn step_position(&mut self, behind: &mut Behind<'_>, access: Access) -> u32 {
+        let position = u32::from(behind.stepgens.register((access.index / 2) as usize));
+        cut(position >> (8 * (access.index % 2)), access.size)
+    }
+
+    fn set_pwm(&mut self, behind: &mut Behind<'_>, access: Access, value: u32) -> Option<Message> {
+        self.tell_pwm(behind.pins, behind.now);
+        self.put(access.address, access.size, value);
+        self.drive_pwm_pins(behind.pins, behind.now);
+        self.tell_pwm(behind.pins, behind.now);
+        self.kstep.drive(self.moved_pwm(), behind.now);
+        None
+    }
+
+    fn kanalog_outputs(&mut self, behind: &mut Behind<'_>, access: Access) -> u32 {
+        let outputs = reached_outputs(access.index, AccessSize::Half);
+        cut(word(outputs.map(|bit| behind.pins.written(bit))), access.size)
+    }
+
+    fn set_kanalog_outputs(
+        &mut self,
+        behind: &mut Behind<'_>,
+        access: Access,
+        value: u32,
+    ) -> Option<Message> {
+        for (at, bit) in reached_outputs(access.index, access.size).enumerate() {
+            behind.pins.write(bit, value >> at & 1 != 0, behind.now);
         }
-        if is_pwm {
-            self.drive_pwm_pins(pins, now);
-            self.tell_pwm(pins, now);
-            self.kstep.drive(self.moved_pwm(), now);
-        }
-        kind.is_none().then_some(Message::UnknownRegister { number })
+        None
+    }
+
+    fn kanalog_inputs(&mut self, behind: &mut Behind<'_>, access: Access) -> u32 {
+        cut(word(bits(KANALOG_INPUTS, 16).map(|bit| behind.pins.input(bit))), access.size)
+    }
+
+    fn kanalog_conversion(&mut self, behind: &mut Behind<'_>, access: Access) -> u32 {
+        cut(behind.kanalog.conversion(access.index as usize), access.size)
     }
 
     /// Connects the UART to its pins.
@@ -289,13 +367,15 @@ impl Fpga {
         self.bytes[PORT_BYTE] & (UART_ON | KANALOG_ON) != 0
     }
 
-    fn stored(&self, address: GuestAddr, size: AccessSize) -> u32 {
+    /// What is stored at an address.
+    fn at(&self, address: GuestAddr, size: AccessSize) -> u32 {
         let start = address.get().wrapping_sub(FPGA.base.get()) as usize;
         let bytes = self.bytes.get(start..start + size.bytes() as usize).unwrap_or_default();
         bytes.iter().rev().fold(0, |value, &byte| value << 8 | u32::from(byte))
     }
 
-    fn store(&mut self, address: GuestAddr, size: AccessSize, value: u32) {
+    /// Stores at an address.
+    fn put(&mut self, address: GuestAddr, size: AccessSize, value: u32) {
         let start = address.get().wrapping_sub(FPGA.base.get()) as usize;
         if let Some(bytes) = self.bytes.get_mut(start..start + size.bytes() as usize) {
             bytes.copy_from_slice(&value.to_le_bytes()[..size.bytes() as usize]);
