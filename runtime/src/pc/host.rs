@@ -14,6 +14,7 @@ use vm::firmware::TickContext;
 use vm::memory::GuestMemory;
 
 use super::answers::{self, AnswerError, Answers};
+use super::requests::{Change, Deed, Rate, Way};
 use super::{gcode, requests};
 use crate::out::{EventKind, Message, Out};
 use crate::servo::coordinated::rate;
@@ -181,29 +182,32 @@ fn answer(host: &mut Host, out: &mut Out, context: &mut TickContext<'_>, code: i
         return result;
     }
     let number = f32::from_bits(parameters[0] as u32);
-    match code {
-        1 => emergency_stop(context),
-        2 => set_job(context.memory, false),
-        3 if host.answers.has_job => set_job(context.memory, true),
-        5 if !(0.001..=1000.0).contains(&number) => return INVALID,
-        5 | 6 | 54 | 55 => set_override(out, context, code, number),
-        7..=12 => host.answers.dros[code as usize - 7] = f64::from(number),
-        15 => message_box(host, out, context, parameters),
-        16 | 17 => return variables(host, context.memory, code == 17, parameters),
-        18 => mdi(host, out, context, parameters[0]),
-        19 => return store_floats(context.memory, parameters[0], &host.answers.resolutions),
-        23 | 24 | 30..=35 => return tool(host, context.memory, code, parameters),
-        25 => return store_words(context.memory, parameters[0], &host.answers.setup),
-        26 | 27 => return store_doubles(context.memory, parameters[0], &host.answers.dros),
-        29 => input_box(host, out, context, parameters[0]),
-        3 | 4 | 13 | 14 | 20..=22 | 28 | 36..=39 | 52 => {}
-        40..=45 => {
-            let value = host.jog_overrides[code as usize - 40];
-            context.memory.set(data(1), value.to_bits() as i32);
+    let memory = &mut *context.memory;
+    match requests::deed(code) {
+        None => return INVALID,
+        Some(Deed::Show) => {}
+        Some(Deed::EmergencyStop) => emergency_stop(context),
+        Some(Deed::EndJob) => set_job(memory, false),
+        Some(Deed::BeginJob) if host.answers.has_job => set_job(memory, true),
+        Some(Deed::BeginJob) => {}
+        Some(Deed::Override(Rate::Feed, Change::To)) if !(0.001..=1000.0).contains(&number) => {
+            return INVALID;
         }
-        46..=51 => host.jog_overrides[code as usize - 46] = number,
-        53 => return edit_cell(host, context.memory, parameters[0]),
-        _ => return INVALID,
+        Some(Deed::Override(rate, change)) => set_override(out, context, (rate, change), number),
+        Some(Deed::Display(axis)) => host.answers.dros[axis] = f64::from(number),
+        Some(Deed::MessageBox) => message_box(host, out, context, parameters),
+        Some(Deed::Variables(way)) => return variables(host, memory, way, parameters),
+        Some(Deed::Mdi) => mdi(host, out, context, parameters[0]),
+        Some(Deed::Resolutions) => return store_floats(memory, parameters[0], &host.answers.resolutions),
+        Some(Deed::Tool(kind, way)) => return tool(host, memory, (kind, way), parameters),
+        Some(Deed::Settings) => return store_words(memory, parameters[0], &host.answers.setup),
+        Some(Deed::Displays) => return store_doubles(memory, parameters[0], &host.answers.dros),
+        Some(Deed::InputBox) => input_box(host, out, context, parameters[0]),
+        Some(Deed::JogOverride(axis, Way::Get)) => {
+            memory.set(data(1), host.jog_overrides[axis].to_bits() as i32);
+        }
+        Some(Deed::JogOverride(axis, Way::Set)) => host.jog_overrides[axis] = number,
+        Some(Deed::Cell) => return edit_cell(host, memory, parameters[0]),
     }
     DONE
 }
@@ -219,21 +223,26 @@ fn emergency_stop(context: &mut TickContext<'_>) {
     context.memory.set(COORD_SYSTEM0, GuestAddr::NULL);
 }
 
-/// Sets the feed (5) or rapid (54) override, or changes it by a factor (6, 55).
-fn set_override(out: &mut Out, context: &mut TickContext<'_>, code: i32, number: f32) {
+/// Sets the feed or the rapid override, or changes it by a factor.
+fn set_override(out: &mut Out, context: &mut TickContext<'_>, (rate, change): (Rate, Change), number: f32) {
     let memory = &mut *context.memory;
     let time = nominal_change_time(memory);
-    let (name, value) = match code {
-        5 => ("feed", number),
-        6 => ("feed", memory.get(CS0_LAST_FRO) * number),
-        54 => ("rapid", number),
-        _ => ("rapid", memory.get(CS0_LAST_RAPID_FRO) * number),
+    let old = match (change, rate) {
+        (Change::To, _) => 1.0,
+        (Change::By, Rate::Feed) => memory.get(CS0_LAST_FRO),
+        (Change::By, Rate::Rapid) => memory.get(CS0_LAST_RAPID_FRO),
     };
-    if name == "feed" {
-        rate::set_feed(memory, value, time);
-    } else {
-        rate::set_rapid(memory, value, time);
-    }
+    let value = old * number;
+    let name = match rate {
+        Rate::Feed => {
+            rate::set_feed(memory, value, time);
+            "feed"
+        }
+        Rate::Rapid => {
+            rate::set_rapid(memory, value, time);
+            "rapid"
+        }
+    };
     say(out, context, format!("{name} override {value}"));
 }
 
@@ -299,36 +308,38 @@ fn mdi(host: &mut Host, out: &mut Out, context: &mut TickContext<'_>, offset: i3
 }
 
 /// Copies #variables to or from `UserData`.
-fn variables(host: &mut Host, memory: &mut GuestMemory, sets: bool, [first, count, index]: [i32; 3]) -> i32 {
+fn variables(host: &mut Host, memory: &mut GuestMemory, way: Way, [first, count, index]: [i32; 3]) -> i32 {
     let Some(place) = usize::try_from(count).ok().and_then(|count| doubles(index, count)) else {
         return INVALID;
     };
     for (number, offset) in (first..first.saturating_add(count)).zip((0..).step_by(8)) {
         let place = place.offset(offset);
-        if sets {
-            host.answers.variables.insert(number, memory.peek(place));
-        } else {
-            memory.poke(place, host.answers.variables.get(&number).copied().unwrap_or(0.0));
+        match way {
+            Way::Set => {
+                host.answers.variables.insert(number, memory.peek(place));
+            }
+            Way::Get => memory.poke(place, host.answers.variables.get(&number).copied().unwrap_or(0.0)),
         }
     }
     DONE
 }
 
 /// Gets or sets one entry of the tool table.
-fn tool(host: &mut Host, memory: &mut GuestMemory, code: i32, [tool, index, _]: [i32; 3]) -> i32 {
+fn tool(
+    host: &mut Host,
+    memory: &mut GuestMemory,
+    (kind, way): (i32, Way),
+    [tool, index, _]: [i32; 3],
+) -> i32 {
     if !(0..TOOLS).contains(&tool) {
         return BAD_TOOL;
     }
     let Some(place) = doubles(index, 1) else { return INVALID };
-    // Pairs of get and set: length 23, diameter 30, offsets 32 and 34.
-    let (kind, sets) = match code {
-        23 | 24 => (23, code == 24),
-        _ => (code & !1, code & 1 != 0),
-    };
-    if sets {
-        host.answers.tools.insert((kind, tool), memory.peek(place));
-    } else {
-        memory.poke(place, host.answers.tools.get(&(kind, tool)).copied().unwrap_or(0.0));
+    match way {
+        Way::Set => {
+            host.answers.tools.insert((kind, tool), memory.peek(place));
+        }
+        Way::Get => memory.poke(place, host.answers.tools.get(&(kind, tool)).copied().unwrap_or(0.0)),
     }
     DONE
 }

@@ -15,68 +15,122 @@ pub(super) enum Shown {
 
 use Shown::{Elsewhere, Nothing, Single, Whole};
 
-/// Number, name and shown parameter of every request. Source: gather-persist-console.md section 8.
-const REQUESTS: &[(i32, &str, Shown)] = &[
-    (1, "emergency stop", Nothing),
-    (2, "halt the job", Nothing),
-    (3, "execute the job", Nothing),
-    (4, "single step", Nothing),
-    (5, "feed override", Elsewhere),
-    (6, "feed override", Elsewhere),
-    (7, "set display X", Single),
-    (8, "set display Y", Single),
-    (9, "set display Z", Single),
-    (10, "set display A", Single),
-    (11, "set display B", Single),
-    (12, "set display C", Single),
-    (13, "user button", Whole),
-    (14, "M code", Whole),
-    (15, "message box", Elsewhere),
-    (16, "get G-code variables from", Whole),
-    (17, "set G-code variables from", Whole),
-    (18, "MDI", Elsewhere),
-    (19, "get resolutions", Nothing),
-    (20, "restart the job", Nothing),
-    (21, "set spindle override", Single),
-    (22, "change spindle override by", Single),
-    (23, "get length of tool", Whole),
-    (24, "set length of tool", Whole),
-    (25, "get settings", Nothing),
-    (26, "get machine coordinates", Nothing),
-    (27, "get displays", Nothing),
-    (28, "update fixture", Nothing),
-    (29, "input box", Elsewhere),
-    (30, "get diameter of tool", Whole),
-    (31, "set diameter of tool", Whole),
-    (32, "get X offset of tool", Whole),
-    (33, "set X offset of tool", Whole),
-    (34, "get Y offset of tool", Whole),
-    (35, "set Y offset of tool", Whole),
-    (36, "halt at the next line", Nothing),
-    (37, "enable jog keys", Nothing),
-    (38, "disable jog keys", Nothing),
-    (39, "reload geometric correction", Nothing),
-    (40, "get jog override X", Nothing),
-    (41, "get jog override Y", Nothing),
-    (42, "get jog override Z", Nothing),
-    (43, "get jog override A", Nothing),
-    (44, "get jog override B", Nothing),
-    (45, "get jog override C", Nothing),
-    (46, "set jog override X", Single),
-    (47, "set jog override Y", Single),
-    (48, "set jog override Z", Single),
-    (49, "set jog override A", Single),
-    (50, "set jog override B", Single),
-    (51, "set jog override C", Single),
-    (52, "recreate the dialog", Nothing),
-    (53, "get the text of cell", Whole),
-    (54, "rapid override", Elsewhere),
-    (55, "rapid override", Elsewhere),
+/// Whether a request reads what the PC has or writes it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Way {
+    Get,
+    Set,
+}
+
+/// Which rate a request overrides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Rate {
+    Feed,
+    Rapid,
+}
+
+/// Whether a rate is set, or multiplied.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Change {
+    To,
+    By,
+}
+
+/// What the PC does for a request.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Deed {
+    /// It is shown, no more.
+    Show,
+    /// Threads 2 to 7 and the path stop.
+    EmergencyStop,
+    EndJob,
+    BeginJob,
+    Override(Rate, Change),
+    /// Sets the display of an axis.
+    Display(usize),
+    MessageBox,
+    /// Copies #variables.
+    Variables(Way),
+    Mdi,
+    Resolutions,
+    /// An entry of the tool table; its kind is the number of the request that gets it.
+    Tool(i32, Way),
+    Settings,
+    Displays,
+    InputBox,
+    /// The jog override of an axis.
+    JogOverride(usize, Way),
+    /// The text of a screen cell.
+    Cell,
+}
+
+use Deed::{
+    BeginJob, Cell, Display, Displays, EmergencyStop, EndJob, InputBox, JogOverride, Mdi, MessageBox,
+    Override, Resolutions, Settings, Show, Tool, Variables,
+};
+
+/// Number, name, shown parameter and deed of every request. Source: gather-persist-console.md section 8.
+const REQUESTS: &[(i32, &str, Shown, Deed)] = &[
+    (1, "emergency stop", Nothing, EmergencyStop),
+    (2, "halt the job", Nothing, EndJob),
+    (3, "execute the job", Nothing, BeginJob),
+    (4, "single step", Nothing, Show),
+    (5, "feed override", Elsewhere, Override(Rate::Feed, Change::To)),
+    (6, "feed override", Elsewhere, Override(Rate::Feed, Change::By)),
+    (7, "set display X", Single, Display(0)),
+    (8, "set display Y", Single, Display(1)),
+    (9, "set display Z", Single, Display(2)),
+    (10, "set display A", Single, Display(3)),
+    (11, "set display B", Single, Display(4)),
+    (12, "set display C", Single, Display(5)),
+    (13, "user button", Whole, Show),
+    (14, "M code", Whole, Show),
+    (15, "message box", Elsewhere, MessageBox),
+    (16, "get G-code variables from", Whole, Variables(Way::Get)),
+    (17, "set G-code variables from", Whole, Variables(Way::Set)),
+    (18, "MDI", Elsewhere, Mdi),
+    (19, "get resolutions", Nothing, Resolutions),
+    (20, "restart the job", Nothing, Show),
+    (21, "set spindle override", Single, Show),
+    (22, "change spindle override by", Single, Show),
+    (23, "get length of tool", Whole, Tool(23, Way::Get)),
+    (24, "set length of tool", Whole, Tool(23, Way::Set)),
+    (25, "get settings", Nothing, Settings),
+    (26, "get machine coordinates", Nothing, Displays),
+    (27, "get displays", Nothing, Displays),
+    (28, "update fixture", Nothing, Show),
+    (29, "input box", Elsewhere, InputBox),
+    (30, "get diameter of tool", Whole, Tool(30, Way::Get)),
+    (31, "set diameter of tool", Whole, Tool(30, Way::Set)),
+    (32, "get X offset of tool", Whole, Tool(32, Way::Get)),
+    (33, "set X offset of tool", Whole, Tool(32, Way::Set)),
+    (34, "get Y offset of tool", Whole, Tool(34, Way::Get)),
+    (35, "set Y offset of tool", Whole, Tool(34, Way::Set)),
+    (36, "halt at the next line", Nothing, Show),
+    (37, "enable jog keys", Nothing, Show),
+    (38, "disable jog keys", Nothing, Show),
+    (39, "reload geometric correction", Nothing, Show),
+    (40, "get jog override X", Nothing, JogOverride(0, Way::Get)),
+    (41, "get jog override Y", Nothing, JogOverride(1, Way::Get)),
+    (42, "get jog override Z", Nothing, JogOverride(2, Way::Get)),
+    (43, "get jog override A", Nothing, JogOverride(3, Way::Get)),
+    (44, "get jog override B", Nothing, JogOverride(4, Way::Get)),
+    (45, "get jog override C", Nothing, JogOverride(5, Way::Get)),
+    (46, "set jog override X", Single, JogOverride(0, Way::Set)),
+    (47, "set jog override Y", Single, JogOverride(1, Way::Set)),
+    (48, "set jog override Z", Single, JogOverride(2, Way::Set)),
+    (49, "set jog override A", Single, JogOverride(3, Way::Set)),
+    (50, "set jog override B", Single, JogOverride(4, Way::Set)),
+    (51, "set jog override C", Single, JogOverride(5, Way::Set)),
+    (52, "recreate the dialog", Nothing, Show),
+    (53, "get the text of cell", Whole, Cell),
+    (54, "rapid override", Elsewhere, Override(Rate::Rapid, Change::To)),
+    (55, "rapid override", Elsewhere, Override(Rate::Rapid, Change::By)),
 ];
 
 /// How a request is shown, by its number and first parameter; `None` if what is done shows more.
 pub(super) fn shown(code: i32, parameter: i32) -> Option<String> {
-    let Some((_, name, shown)) = REQUESTS.iter().find(|(number, ..)| *number == code) else {
+    let Some((_, name, shown, _)) = REQUESTS.iter().find(|(number, ..)| *number == code) else {
         return Some(format!("request {code} is unknown"));
     };
     match shown {
@@ -85,6 +139,11 @@ pub(super) fn shown(code: i32, parameter: i32) -> Option<String> {
         Whole => Some(format!("{name} {parameter}")),
         Single => Some(format!("{name} {}", f32::from_bits(parameter.cast_unsigned()))),
     }
+}
+
+/// What is done for a request; `None` for a number that is not one.
+pub(super) fn deed(code: i32) -> Option<Deed> {
+    REQUESTS.iter().find(|(number, ..)| *number == code).map(|(.., deed)| *deed)
 }
 
 #[cfg(test)]
