@@ -28,14 +28,14 @@ const GROUPS: u32 = PINS as u32 / 8;
 struct Registers {
     first: u32,
     last: u32,
-    reads: fn(&mut Fpga, &mut Behind<'_>, Access) -> u32,
+    reads: fn(&mut Fpga, &mut Behind<'_>, RegisterAccess) -> u32,
     /// A remark comes back where writing is in vain.
-    writes: fn(&mut Fpga, &mut Behind<'_>, Access, u32) -> Option<Message>,
+    writes: fn(&mut Fpga, &mut Behind<'_>, RegisterAccess, u32) -> Option<Message>,
 }
 
 /// An access of a register.
 #[derive(Clone, Copy, Debug)]
-struct Access {
+struct RegisterAccess {
     address: GuestAddr,
     size: AccessSize,
     /// The register's number in its range.
@@ -195,7 +195,7 @@ impl Fpga {
     /// Reads a register.
     pub(crate) fn read(&mut self, mut behind: Behind<'_>, address: GuestAddr, size: AccessSize) -> u32 {
         match register(address).1 {
-            Some((range, index)) => (range.reads)(self, &mut behind, Access { address, size, index }),
+            Some((range, index)) => (range.reads)(self, &mut behind, RegisterAccess { address, size, index }),
             None => self.at(address, size),
         }
     }
@@ -210,7 +210,7 @@ impl Fpga {
     ) -> Option<Message> {
         match register(address) {
             (_, Some((range, index))) => {
-                (range.writes)(self, &mut behind, Access { address, size, index }, value)
+                (range.writes)(self, &mut behind, RegisterAccess { address, size, index }, value)
             }
             (number, None) => {
                 self.put(address, size, value);
@@ -219,38 +219,43 @@ impl Fpga {
         }
     }
 
-    fn stored(&mut self, _: &mut Behind<'_>, access: Access) -> u32 {
+    fn stored(&mut self, _: &mut Behind<'_>, access: RegisterAccess) -> u32 {
         self.at(access.address, access.size)
     }
 
-    fn store(&mut self, _: &mut Behind<'_>, access: Access, value: u32) -> Option<Message> {
+    fn store(&mut self, _: &mut Behind<'_>, access: RegisterAccess, value: u32) -> Option<Message> {
         self.put(access.address, access.size, value);
         None
     }
 
-    fn ignore(&mut self, _: &mut Behind<'_>, _: Access, _: u32) -> Option<Message> {
+    fn ignore(&mut self, _: &mut Behind<'_>, _: RegisterAccess, _: u32) -> Option<Message> {
         None
     }
 
-    fn levels(&mut self, behind: &mut Behind<'_>, access: Access) -> u32 {
+    fn levels(&mut self, behind: &mut Behind<'_>, access: RegisterAccess) -> u32 {
         behind.pins.level_group(access.index).into()
     }
 
-    fn set_bits(&mut self, behind: &mut Behind<'_>, access: Access, value: u32) -> Option<Message> {
+    fn set_bits(&mut self, behind: &mut Behind<'_>, access: RegisterAccess, value: u32) -> Option<Message> {
         behind.pins.set_group(access.index, value as u8, behind.now);
         None
     }
 
-    fn clear_bits(&mut self, behind: &mut Behind<'_>, access: Access, value: u32) -> Option<Message> {
+    fn clear_bits(&mut self, behind: &mut Behind<'_>, access: RegisterAccess, value: u32) -> Option<Message> {
         behind.pins.clear_group(access.index, value as u8, behind.now);
         None
     }
 
-    fn directions(&mut self, behind: &mut Behind<'_>, access: Access) -> u32 {
+    fn directions(&mut self, behind: &mut Behind<'_>, access: RegisterAccess) -> u32 {
         behind.pins.direction_group(access.index).into()
     }
 
-    fn set_directions(&mut self, behind: &mut Behind<'_>, access: Access, value: u32) -> Option<Message> {
+    fn set_directions(
+        &mut self,
+        behind: &mut Behind<'_>,
+        access: RegisterAccess,
+        value: u32,
+    ) -> Option<Message> {
         let group = access.index;
         let new = value as u8 & !behind.pins.direction_group(group);
         behind.pins.set_direction_group(group, value as u8, behind.now);
@@ -258,34 +263,49 @@ impl Fpga {
         first.filter(|_| self.serves_kanalog()).and_then(kanalog_pins)
     }
 
-    fn uart_data(&mut self, behind: &mut Behind<'_>, _: Access) -> u32 {
+    fn uart_data(&mut self, behind: &mut Behind<'_>, _: RegisterAccess) -> u32 {
         behind.uart.read(behind.now).into()
     }
 
-    fn send_to_uart(&mut self, behind: &mut Behind<'_>, _: Access, value: u32) -> Option<Message> {
+    fn send_to_uart(&mut self, behind: &mut Behind<'_>, _: RegisterAccess, value: u32) -> Option<Message> {
         behind.uart.send(value as u8, behind.now);
         (!self.has_uart_pins()).then_some(Message::UartUnconnected {})
     }
 
-    fn uart_status(&mut self, behind: &mut Behind<'_>, _: Access) -> u32 {
+    fn uart_status(&mut self, behind: &mut Behind<'_>, _: RegisterAccess) -> u32 {
         behind.uart.status(behind.now).into()
     }
 
-    fn set_uart_divisor(&mut self, behind: &mut Behind<'_>, _: Access, value: u32) -> Option<Message> {
+    fn set_uart_divisor(
+        &mut self,
+        behind: &mut Behind<'_>,
+        _: RegisterAccess,
+        value: u32,
+    ) -> Option<Message> {
         behind.uart.set_divisor(value as u8);
         None
     }
 
-    fn encoder_errors(&mut self, behind: &mut Behind<'_>, _: Access) -> u32 {
+    fn encoder_errors(&mut self, behind: &mut Behind<'_>, _: RegisterAccess) -> u32 {
         behind.encoders.errors().into()
     }
 
-    fn clear_encoder_errors(&mut self, behind: &mut Behind<'_>, _: Access, _: u32) -> Option<Message> {
+    fn clear_encoder_errors(
+        &mut self,
+        behind: &mut Behind<'_>,
+        _: RegisterAccess,
+        _: u32,
+    ) -> Option<Message> {
         behind.encoders.clear_errors();
         None
     }
 
-    fn set_encoder_filter(&mut self, behind: &mut Behind<'_>, access: Access, value: u32) -> Option<Message> {
+    fn set_encoder_filter(
+        &mut self,
+        behind: &mut Behind<'_>,
+        access: RegisterAccess,
+        value: u32,
+    ) -> Option<Message> {
         self.put(access.address, access.size, value);
         let filter = [ENCODER_FILTER * STRIDE + LANE, ENCODER_FILTER * STRIDE + LANE + 1];
         let filter = filter.map(|at| self.bytes.get(at as usize).copied().unwrap_or_default());
@@ -293,13 +313,23 @@ impl Fpga {
         None
     }
 
-    fn set_step_pulse(&mut self, behind: &mut Behind<'_>, access: Access, value: u32) -> Option<Message> {
+    fn set_step_pulse(
+        &mut self,
+        behind: &mut Behind<'_>,
+        access: RegisterAccess,
+        value: u32,
+    ) -> Option<Message> {
         self.put(access.address, access.size, value);
         behind.stepgens.set_up(value as u8, behind.pins, behind.now);
         None
     }
 
-    fn set_step_rate(&mut self, behind: &mut Behind<'_>, access: Access, value: u32) -> Option<Message> {
+    fn set_step_rate(
+        &mut self,
+        behind: &mut Behind<'_>,
+        access: RegisterAccess,
+        value: u32,
+    ) -> Option<Message> {
         self.put(access.address, access.size, value);
         if access.index == 3 {
             let word: [u8; 4] = std::array::from_fn(|index| self.byte(STEP_RATE + index as u32));
@@ -308,12 +338,12 @@ impl Fpga {
         None
     }
 
-    fn step_position(&mut self, behind: &mut Behind<'_>, access: Access) -> u32 {
+    fn step_position(&mut self, behind: &mut Behind<'_>, access: RegisterAccess) -> u32 {
         let position = u32::from(behind.stepgens.register((access.index / 2) as usize));
         cut(position >> (8 * (access.index % 2)), access.size)
     }
 
-    fn set_pwm(&mut self, behind: &mut Behind<'_>, access: Access, value: u32) -> Option<Message> {
+    fn set_pwm(&mut self, behind: &mut Behind<'_>, access: RegisterAccess, value: u32) -> Option<Message> {
         self.tell_pwm(behind.pins, behind.now);
         self.put(access.address, access.size, value);
         self.drive_pwm_pins(behind.pins, behind.now);
@@ -322,7 +352,7 @@ impl Fpga {
         None
     }
 
-    fn kanalog_outputs(&mut self, behind: &mut Behind<'_>, access: Access) -> u32 {
+    fn kanalog_outputs(&mut self, behind: &mut Behind<'_>, access: RegisterAccess) -> u32 {
         let outputs = reached_outputs(access.index, AccessSize::Half);
         cut(word(outputs.map(|bit| behind.pins.written(bit))), access.size)
     }
@@ -330,7 +360,7 @@ impl Fpga {
     fn set_kanalog_outputs(
         &mut self,
         behind: &mut Behind<'_>,
-        access: Access,
+        access: RegisterAccess,
         value: u32,
     ) -> Option<Message> {
         for (at, bit) in reached_outputs(access.index, access.size).enumerate() {
@@ -339,11 +369,11 @@ impl Fpga {
         None
     }
 
-    fn kanalog_inputs(&mut self, behind: &mut Behind<'_>, access: Access) -> u32 {
+    fn kanalog_inputs(&mut self, behind: &mut Behind<'_>, access: RegisterAccess) -> u32 {
         cut(word(bits(KANALOG_INPUTS, 16).map(|bit| behind.pins.input(bit))), access.size)
     }
 
-    fn kanalog_conversion(&mut self, behind: &mut Behind<'_>, access: Access) -> u32 {
+    fn kanalog_conversion(&mut self, behind: &mut Behind<'_>, access: RegisterAccess) -> u32 {
         cut(behind.kanalog.conversion(access.index as usize), access.size)
     }
 
