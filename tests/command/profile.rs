@@ -62,3 +62,13 @@ fn a_profile_changes_nothing_that_a_program_shows() {
         }
     }
 }
+
+#[test]
+fn real_code_has_a_profile_of_true_cycles() {
+    let output = run(&Scratch::new("profile-real"), &["--engine", "dsp", "--profile", "a.c"]);
+    assert_eq!((output.code, output.stdout.as_str()), (0, "3\n"), "{output:?}");
+    let table = &output.stderr;
+    for part in ["thread 1: computing", "main", "Delay_sec", "a.c:7", "a.c:13"] {
+        assert!(table.contains(part), "{part} is not in\n{table}");
+    }
+}

@@ -13,6 +13,7 @@
 //! - [`work`] is the one place that maps an instruction to what is executed, without a `_` arm.
 //! - A run depends on the words, the registers and the memory alone.
 
+mod account;
 mod alu;
 mod cache;
 mod core;
@@ -35,6 +36,7 @@ mod work;
 #[cfg(test)]
 mod tests;
 
+pub use self::account::{Account, Spender, Time};
 pub use self::core::{Core, Halt};
 pub use self::decode::is_code;
 pub use self::inspect::listing;

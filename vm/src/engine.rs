@@ -173,6 +173,9 @@ pub trait Executor: Default {
     /// Whether it makes code of the host; real images on the same machine are translated then, too.
     const TRANSLATES: bool = false;
 
+    /// Whether it keeps an account of where the time went; one of real images on the same machine is kept then, too.
+    const KEEPS_ACCOUNT: bool = false;
+
     /// All contexts as they were at an instant between two slices.
     type Snapshot: fmt::Debug;
 

@@ -98,7 +98,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
             threads: Threads::new(),
             loaded: Default::default(),
             longest_steps: Default::default(),
-            engines: Engines { programs: engine, images: DspEngine::new(E::TRANSLATES) },
+            engines: Engines { programs: engine, images: DspEngine::new(E::TRANSLATES, E::KEEPS_ACCOUNT) },
             firmware,
             tick: Ticks::default(),
             turn: Turn::Primary,

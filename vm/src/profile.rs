@@ -144,6 +144,8 @@ pub struct ProfilingSnapshot {
 }
 
 impl Executor for ProfilingEngine {
+    const KEEPS_ACCOUNT: bool = true;
+
     type Code = Program;
     type Snapshot = ProfilingSnapshot;
 

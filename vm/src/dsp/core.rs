@@ -107,6 +107,27 @@ impl Core {
         self.run_to_border(memory)
     }
 
+    /// As [`run`](Self::run), and says of each packet what it took: its address, cycles.
+    pub fn run_counted<M: Memory>(&mut self, memory: &mut M, count: &mut dyn FnMut(u32, i64)) -> Halt {
+        self.border = Border::Slice;
+        self.idle.forget();
+        loop {
+            if self.state.clock.is_over()
+                && let Some(halt) = self.at_border()
+            {
+                return halt;
+            }
+            let (pc, left) = (self.state.pc, self.state.clock.left());
+            if let Err(halt) = self.step(memory) {
+                return halt;
+            }
+            if self.state.is_idle {
+                self.wait();
+            }
+            count(pc, left - self.state.clock.left());
+        }
+    }
+
     /// Whether loops that wait are run through in one step by [`run_until`](Self::run_until); nothing else changes.
     pub const fn skip_waits(&mut self, whether: bool) {
         self.skips = whether;

@@ -11,6 +11,7 @@ use c67x::convention::{ARGUMENTS, LINK, RESULT, STACK};
 use kmotiondef::map::{BOARD_STACK_SIZE, BOARD_STACKS_BASE};
 use kmotiondef::{CodeAddr, Cycles, GuestAddr, ThreadId};
 
+use super::account::{Account, Spender};
 use super::core::{Core, Halt};
 use super::view::View;
 use crate::call::ArgumentList;
@@ -39,6 +40,7 @@ pub struct DspEngine {
     contexts: [Option<Processor>; ContextId::COUNT],
     /// Whether hot code is translated.
     translates: bool,
+    account: Option<Account>,
 }
 
 /// The contexts of a [`DspEngine`] as they were.
@@ -54,10 +56,16 @@ struct Processor {
 }
 
 impl DspEngine {
-    /// An engine that translates hot code to the host's, if it is built with that, or one that interprets all of it.
+    /// An engine that translates hot code to the host's, if it is built with that, and keeps an account, if wanted.
     #[must_use]
-    pub fn new(translates: bool) -> Self {
-        Self { translates, ..Self::default() }
+    pub(crate) fn new(translates: bool, keeps_account: bool) -> Self {
+        Self { translates, account: keeps_account.then(Account::default), ..Self::default() }
+    }
+
+    /// Where the time went, if that is kept.
+    #[must_use]
+    pub const fn account(&self) -> Option<&Account> {
+        self.account.as_ref()
     }
 
     /// The registers of `id`, and where it is; `None` if it was never started.
@@ -109,8 +117,12 @@ impl Executor for DspEngine {
 
     fn resume<F: Firmware + ?Sized>(&mut self, id: ContextId, slice: &mut Slice<'_, F>) -> Stop {
         let Some(context) = &mut self.contexts[id.index()] else { return Stop::Ended };
+        let account = &mut self.account;
+        if let Some(account) = account {
+            account.resume(id, slice.now());
+        }
         context
-            .run(id, slice)
+            .run(id, slice, account)
             .unwrap_or_else(|kind| Stop::Trapped(Trap { kind, at: context.place(), thread: id.thread() }))
     }
 
@@ -145,10 +157,17 @@ impl Processor {
         &mut self,
         id: ContextId,
         slice: &mut Slice<'_, F>,
+        account: &mut Option<Account>,
     ) -> Result<Stop, TrapKind> {
         loop {
             self.core.state.clock.set_left(slice.budget.get());
-            let halt = self.core.run(&mut View(slice));
+            let halt = match account {
+                Some(account) => self.core.run_counted(&mut View(slice), &mut |at, cycles| {
+                    let spender = Spender { context: id, at: code_at(at), firmware: None };
+                    account.compute(spender, Cycles::new(cycles));
+                }),
+                None => self.core.run(&mut View(slice)),
+            };
             slice.budget = Cycles::new(self.core.state.clock.left());
             match halt {
                 Halt::Preempted => {
@@ -157,7 +176,17 @@ impl Processor {
                 }
                 Halt::Left(CALLBACK_RETURN) if id == ContextId::CALLBACK => return Ok(Stop::Ended),
                 Halt::Left(address) => {
-                    if let Some(stop) = self.call(id, slice, GuestAddr::new(address))? {
+                    let address = GuestAddr::new(address);
+                    let (at, before) = (call_at(&self.core), slice.budget);
+                    let stop = self.call(id, slice, address)?;
+                    if let Some(account) = account {
+                        let spender = Spender { context: id, at, firmware: Some(address) };
+                        account.compute(spender, before - slice.budget);
+                        if let Some(Stop::Waiting(_)) = stop {
+                            account.wait(spender, slice.now());
+                        }
+                    }
+                    if let Some(stop) = stop {
                         return Ok(stop);
                     }
                 }
