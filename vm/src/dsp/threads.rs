@@ -56,7 +56,7 @@ struct Processor {
 }
 
 impl DspEngine {
-    /// An engine that translates hot code to the host's, if it is built with that, and keeps an account, if wanted.
+    /// An engine that translates hot code to the host's, if it is built with that; it may keep an account.
     #[must_use]
     pub(crate) fn new(translates: bool, keeps_account: bool) -> Self {
         Self { translates, account: keeps_account.then(Account::default), ..Self::default() }
