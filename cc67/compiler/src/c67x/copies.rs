@@ -24,7 +24,7 @@ pub(super) fn run(code: &mut Code) {
 }
 
 /// The most copies that are known at a time.
-const MOST: usize = 24;
+const MOST: usize = 256;
 
 /// What holds at a place of a block.
 struct Copies {

@@ -12,7 +12,6 @@ use super::code::{Arg, Base, Call, Code, End, Inst, Place, Target, Value};
 use super::forms::Kind;
 use super::frame::{self, Frame};
 use super::moves;
-use super::schedule::Order;
 use super::step::{Access, Final, Finalizer, Operands, Step, pred, step};
 use crate::ir::function::{Function, table};
 use crate::ir::inst::SlotId;
@@ -59,6 +58,15 @@ pub(super) struct Expanded {
     pub(super) frame: u32,
 }
 
+/// Where the return address is while calls change its register.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Back {
+    /// In a register that calls keep, if there is one.
+    Register,
+    /// In the frame: an instruction less, and five cycles more.
+    Frame,
+}
+
 /// Why a function cannot be expanded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum TooLarge {
@@ -73,14 +81,15 @@ pub(super) fn expand(
     function: &Function,
     code: &Code,
     assignment: &Assignment,
-    order: Order,
+    back: Back,
 ) -> Result<Expanded, TooLarge> {
     let calls = !code.calls.is_empty();
     let mut saved: Vec<Reg> = abi::registers(assignment.kept).collect();
+    let home = back;
     let mut back = abi::LINK;
     if calls {
         // A register that calls keep has the return address at once when the function ends.
-        let free = abi::registers(abi::KEPT & !assignment.kept).last().filter(|_| order == Order::Early);
+        let free = abi::registers(abi::KEPT & !assignment.kept).last().filter(|_| home == Back::Register);
         back = free.unwrap_or(abi::LINK);
         saved.push(back);
     }

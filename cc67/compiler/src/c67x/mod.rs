@@ -52,7 +52,7 @@ use crate::ir::function::{Function, Signatures};
 use crate::passes::Level;
 use crate::source::Span;
 use code::Code;
-use expand::TooLarge;
+use expand::{Back, TooLarge};
 use packets::Scheduled;
 use schedule::Order;
 use text::Words;
@@ -77,6 +77,11 @@ struct Attempt {
 }
 
 impl Attempt {
+    /// Its words.
+    fn words(&self) -> u32 {
+        self.regions.iter().fold(0, |at, region| refine::end(region, at))
+    }
+
     /// Its cycles, as far as one can guess how often each region happens.
     fn cost(&self) -> f32 {
         self.regions.iter().map(|region| region.weight * region.cycles as f32).sum()
@@ -129,12 +134,17 @@ impl Generator {
     /// and without, and the better ones stay.
     fn best(&self, ir: &Function, code: Code) -> Result<Attempt, TooLarge> {
         if self.level != Level::Fast {
-            return self.attempt(ir, code);
+            let frame = self.attempt(ir, code.clone(), Back::Frame);
+            if self.level == Level::None || code.calls.is_empty() {
+                return frame;
+            }
+            let register = self.attempt(ir, code, Back::Register)?;
+            return frame.map(|frame| if register.words() <= frame.words() { register } else { frame });
         }
         let with_turns = |skipped: u32| {
             let mut code = code.clone();
             let count = turns::run(&mut code, skipped);
-            (self.attempt(ir, code), count)
+            (self.attempt(ir, code, Back::Register), count)
         };
         let (mut best, count) = with_turns(0);
         let mut skipped = 0;
@@ -150,11 +160,11 @@ impl Generator {
     }
 
     /// Takes instructions over virtual registers through the stages that follow.
-    fn attempt(&self, ir: &Function, mut code: Code) -> Result<Attempt, TooLarge> {
+    fn attempt(&self, ir: &Function, mut code: Code, back: Back) -> Result<Attempt, TooLarge> {
         sides::assign(&mut code);
         let assignment = allocate::allocate(&mut code, self.level).ok_or(TooLarge::Code)?;
         let order = if self.level == Level::None { Order::Source } else { Order::Early };
-        let expanded = expand::expand(ir, &code, &assignment, order)?;
+        let expanded = expand::expand(ir, &code, &assignment, back)?;
         let regions = if self.level == Level::Fast {
             pipeline::schedule(expanded.regions, expanded.labels)
         } else {

@@ -150,11 +150,26 @@ impl Routine {
             "not pipelined: it calls"
         } else if blocks.len() > 1 {
             "not pipelined: it has branches inside"
+        } else if self.overlaps(&blocks[0]) {
+            "pipelined: its turns overlap"
         } else if self.is_filled(&blocks[0]) {
             "every cycle issues"
         } else {
             "its turns wait for results, or for its branch"
         }
+    }
+
+    /// Whether results are in flight from one turn to the next.
+    fn overlaps(&self, block: &Block) -> bool {
+        let packets = &self.packets[block.packets.clone()];
+        let cycles: u32 = packets.iter().map(|packet| packet.cycles).sum();
+        let mut at = 0;
+        packets.iter().any(|packet| {
+            let is_late = |inst: &c67x::Inst| inst.writes().any(|write| at + u32::from(write.stage) > cycles);
+            let found = packet.insts.iter().any(is_late);
+            at += packet.cycles;
+            found
+        })
     }
 
     fn is_filled(&self, block: &Block) -> bool {

@@ -11,7 +11,7 @@ unsigned __cc67_divf(unsigned a, unsigned b)
     int exponent, up, twice, size, divisor, steps;
     unsigned quotient, result;
 
-    if ((a >> 23 & 0xFF) - 1 >= 0xFE || (b >> 23 & 0xFF) - 1 >= 0xFE) return __cc67_specialf(a, b);
+    if ((a >> 23 & 0xFF) - 1 >= 0xFE | (b >> 23 & 0xFF) - 1 >= 0xFE) return __cc67_specialf(a, b);
     quotient = _divf(a & 0x7FFFFF | 0x3F800000, b & 0x7FFFFF | 0x3F800000);
     divisor = b & 0x7FFFFF | 0x800000;
     result = a & 0x7FFFFF | 0x800000;

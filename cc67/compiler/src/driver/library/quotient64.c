@@ -18,7 +18,7 @@ u64 __cc67_divd(u64 a, u64 b)
     int exponent, up, steps;
     u64 quotient, divisor, rest, size;
 
-    if ((high_a >> 20 & 0x7FF) - 1 >= 0x7FE || (high_b >> 20 & 0x7FF) - 1 >= 0x7FE) return __cc67_speciald(a, b);
+    if ((high_a >> 20 & 0x7FF) - 1 >= 0x7FE | (high_b >> 20 & 0x7FF) - 1 >= 0x7FE) return __cc67_speciald(a, b);
     quotient = _divd((u64)(high_a & 0xFFFFF | 0x3FF00000) << 32 | (unsigned)a,
                      (u64)(high_b & 0xFFFFF | 0x3FF00000) << 32 | (unsigned)b);
     fraction_a = high_a & 0xFFFFF;
@@ -31,7 +31,8 @@ u64 __cc67_divd(u64 a, u64 b)
     high = (unsigned)(quotient >> 32) - (unsigned)(1022 - up << 20);
     quotient = (u64)high << 32 | (unsigned)quotient;
     rest = ((u64)((unsigned)a << 20 + up) << 32) - quotient * divisor;
-    size = (int)(rest >> 32) < 0 ? -rest : rest;
+    size = rest;
+    if ((int)(rest >> 32) < 0) size = -rest;
     size = size << 1;
     steps = (size > divisor) + (size > (divisor << 1) + divisor) + (size > (divisor << 2) + divisor);
     if ((int)(rest >> 32) < 0) steps = -steps;
