@@ -31,8 +31,8 @@ pub(crate) fn start_move_to(
         profile::move_in_motion(point, target, limits)
     };
     run(memory, axis, &states);
-    // A move in motion goes through the jog planner, and says so.
-    let kind = if is_resting { kind } else { LastMotion::Jog };
+    // A move in motion goes through the jog planner, and says so unless it is one of several axes (recorded).
+    let kind = if is_resting || kind == LastMotion::Multi { kind } else { LastMotion::Jog };
     memory.set_axis(axis, Chan::LAST_MOTION_TYPE, kind.get());
     memory.set_axis(axis, Chan::LAST_MOTION_DEST, target);
 }
