@@ -243,6 +243,17 @@ fn traps_in_included_sources_name_their_file_and_line() {
 }
 
 #[test]
+fn functions_of_an_object_are_in_the_file_that_defines_them() {
+    let scratch = Scratch::new("object-files");
+    scratch
+        .write("a.c", "#include \"KMotionDef.h\"\n#include \"helper.c\"\nmain()\n{\n  half(4);\n}\n")
+        .write("helper.c", "int half(int x)\n{\n  return x / 2;\n}\n");
+    succeed(&scratch, &["build", "-c", "a.c"]);
+    let lines = succeed(&scratch, &["inspect", "--lines", "a.o"]);
+    assert!(lines.contains("half in helper.c\n") && lines.contains("main in a.c\n"), "{lines}");
+}
+
+#[test]
 fn a_body_that_is_included_counts_as_the_line_of_its_include() {
     let scratch = Scratch::new("body");
     scratch

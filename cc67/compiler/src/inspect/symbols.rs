@@ -68,11 +68,18 @@ pub enum Order {
 
 /// Everything of the symbol table that has a name and an address, by address.
 pub(super) fn collect(image: &Image) -> Vec<Entry> {
-    let mut entries = Vec::new();
-    let mut file = None;
+    let mut entries: Vec<Entry> = Vec::new();
+    let mut files = Vec::new();
     for symbol in &image.symbols {
         if symbol.class == StorageClass::FILE {
-            file = Some(symbol.name.to_string());
+            files.push(symbol.name.to_string());
+        }
+        // In an image a function is after its file; an object lists all files first, and a function says which is its.
+        if image.program.is_none() && symbol.class == StorageClass::FUNCTION && symbol.name.as_bytes() == b".bf" {
+            let number = symbol.aux.first().map(|aux| aux.as_boundary().tag.get() as usize);
+            if let Some((file, entry)) = number.and_then(|number| files.get(number)).zip(entries.last_mut()) {
+                entry.file = Some(file.clone());
+            }
         }
         let is_listed =
             matches!(symbol.class, StorageClass::EXTERNAL | StorageClass::STATIC | StorageClass::LABEL);
@@ -87,7 +94,7 @@ pub(super) fn collect(image: &Image) -> Vec<Entry> {
             section: section(image, symbol),
             kind,
             is_external: symbol.class == StorageClass::EXTERNAL,
-            file: file.clone().filter(|_| kind == Kind::Function),
+            file: files.last().filter(|_| kind == Kind::Function).cloned(),
         });
     }
     // Of several names for one address the one that says most comes last, where it is found.
