@@ -75,7 +75,10 @@ pub(super) fn collect(image: &Image) -> Vec<Entry> {
             files.push(symbol.name.to_string());
         }
         // In an image a function is after its file; an object lists all files first, and a function says which is its.
-        if image.program.is_none() && symbol.class == StorageClass::FUNCTION && symbol.name.as_bytes() == b".bf" {
+        if image.program.is_none()
+            && symbol.class == StorageClass::FUNCTION
+            && symbol.name.as_bytes() == b".bf"
+        {
             let number = symbol.aux.first().map(|aux| aux.as_boundary().tag.get() as usize);
             if let Some((file, entry)) = number.and_then(|number| files.get(number)).zip(entries.last_mut()) {
                 entry.file = Some(file.clone());
