@@ -13,6 +13,7 @@
 //! rows, and a row cut off from the others would be looked for in two places.
 
 use std::collections::BTreeMap;
+use std::num::NonZeroU16;
 use std::sync::LazyLock;
 
 use crate::GuestAddr;
@@ -133,12 +134,45 @@ pub fn function_named(name: &str) -> Option<usize> {
 }
 
 /// The number of the function that starts at `address`.
+///
+/// Every call of a program asks this, so it is a table of hashes that is made when cc67 is compiled.
 #[must_use]
 pub fn function_at(address: GuestAddr) -> Option<usize> {
-    static BY_ADDRESS: LazyLock<BTreeMap<GuestAddr, usize>> = LazyLock::new(|| {
-        FIRMWARE_FUNCTIONS.iter().zip(0..).map(|(function, n)| (function.address, n)).collect()
-    });
-    BY_ADDRESS.get(&address).copied()
+    let mut slot = slot(address);
+    loop {
+        let number = BY_ADDRESS[slot]?.get() as usize - 1;
+        if FIRMWARE_FUNCTIONS[number].address.get() == address.get() {
+            return Some(number);
+        }
+        slot = (slot + 1) % SLOTS;
+    }
+}
+
+/// Slots of the table; a power of two, and at least twice the functions.
+const SLOTS: usize = 1 << SLOT_BITS;
+const SLOT_BITS: u32 = 10;
+
+/// The number of a function and one, where its address leads or in the first free slot after that.
+static BY_ADDRESS: [Option<NonZeroU16>; SLOTS] = by_address();
+
+/// Multiplicative hashing: the golden ratio spreads addresses that lie close together.
+const fn slot(address: GuestAddr) -> usize {
+    (address.get().wrapping_mul(0x9E37_79B1) >> (u32::BITS - SLOT_BITS)) as usize
+}
+
+const fn by_address() -> [Option<NonZeroU16>; SLOTS] {
+    assert!(2 * FIRMWARE_FUNCTIONS.len() <= SLOTS);
+    let mut table = [None; SLOTS];
+    let mut number = 0;
+    while number < FIRMWARE_FUNCTIONS.len() {
+        let mut slot = slot(FIRMWARE_FUNCTIONS[number].address);
+        while table[slot].is_some() {
+            slot = (slot + 1) % SLOTS;
+        }
+        number += 1;
+        table[slot] = NonZeroU16::new(number as u16);
+    }
+    table
 }
 
 /// Hands every row of the table of firmware functions to the macro `$m`.

@@ -20,11 +20,6 @@ pub(crate) struct UartArguments {
 }
 
 impl UartArguments {
-    /// Whether one of them is given.
-    pub(crate) fn is_given(&self) -> bool {
-        self.uart_input.is_some() || self.uart_output.is_some() || self.uart.is_some()
-    }
-
     /// These, and where they say nothing the files of a machine file.
     pub(crate) fn or_those_of(&self, machine: &MachineFile) -> Self {
         let file = |name: &Option<String>| name.as_ref().map(PathBuf::from);

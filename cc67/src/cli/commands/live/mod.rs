@@ -20,6 +20,7 @@ use crate::cli::args::board::BoardArguments;
 use crate::cli::args::compiler::CompilerArguments;
 use crate::cli::args::program::assign;
 use crate::cli::args::time::seconds;
+use crate::cli::args::uart::UartArguments;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::terminal;
 use crate::cli::session::{Rig, Setup, Started, Work};
@@ -80,7 +81,8 @@ fn speed(text: &str) -> Result<f64, String> {
 
 /// Shows a board until it is interrupted.
 pub(super) fn live(arguments: &LiveArguments) -> Result<Exit> {
-    if arguments.board.uart.is_given() {
+    let UartArguments { uart_input, uart_output, uart } = &arguments.board.uart;
+    if uart_input.is_some() || uart_output.is_some() || uart.is_some() {
         bail!("`cc67 live`: the serial port cannot be connected yet");
     }
     if arguments.demo {
