@@ -15,7 +15,7 @@ use compiler::passes::Level;
 use compiler::pp::{Disk, Standard};
 use compiler::render::human::Color;
 use compiler::render::{self, Format};
-use compiler::{Compilation, Options, files, image, link_units, pp};
+use compiler::{Compilation, Options, files, link_units, pp};
 use kmotiondef::ThreadId;
 use pyo3::prelude::*;
 
