@@ -130,17 +130,18 @@ def compile(
         raise InputError("there is no file to compile")
     if thread is not None:
         _check_thread(thread)
+    level = str(optimize)
+    if level not in ("0", "1", "2", "s"):
+        raise InputError(f"optimize must be 0, 1, 2 or \"s\", not {optimize!r}")
     request: _Request = {
         "include": [os.fspath(folder) for folder in _several(include, "include")],
         "define": _macros(define),
         "undefine": list(_several(undefine, "undefine")),
-        "optimize": str(optimize),
+        "optimize": level,
         "warnings": _switches(warnings),
         "std": std,
         "firmware": None if firmware is None else os.fspath(firmware),
     }
-    if optimize not in (0, 1, 2, "s"):
-        raise InputError(f"optimize must be 0, 1, 2 or \"s\", not {optimize!r}")
     native, found = _native.compile([str(path) for path in paths], request, thread or 1)
     diagnostics = [from_json(text) for text in found]
     if native is None:
