@@ -10,7 +10,7 @@ use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, function_named};
 use kmotiondef::map::program_base;
 use kmotiondef::{ThreadId, Ticks};
 use runtime::stimulus::Stimulus;
-use runtime::trace::Request;
+use runtime::trace::TraceRequest;
 use runtime::{Board, Config};
 use vm::machine::Config as MachineConfig;
 use vm::text::assemble;
@@ -55,7 +55,7 @@ fn board_with(stimulus: &str) -> Board {
 
 fn devices(criterion: &mut Criterion) {
     let mut traced = board();
-    traced.record(Request { quantities: Vec::new(), every: 1, changes: true });
+    traced.record(TraceRequest { quantities: Vec::new(), every: 1, changes: true });
     let boards = [
         ("none", board()),
         ("wire", board_with("device wire from=8 to=12")),

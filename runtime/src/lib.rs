@@ -54,7 +54,7 @@ mod world;
 pub use board::machine_file::{MachineFile, MachineFileError};
 pub use board::{Board, BoardSnapshot, Config, RunEnd, debug, loader, machine_file, standing, surroundings};
 pub use io::flash::FLASH_SIZE;
-pub use io::konnect::{Board as KonnectBoard, Port};
+pub use io::konnect::{KonnectBoard, Port};
 pub use io::snapamp::{Quantity, Side};
 pub use kernel::{Kernel, pure_function};
 pub use out::{Event, EventKind, Message, REMARKS, Remark, RemarkRow, Severity, Speaker};

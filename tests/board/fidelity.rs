@@ -12,7 +12,7 @@ use cc67_host::{Session, Setup, UserProgram};
 use harness::Scratch;
 use kmotiondef::timing::Timing;
 use kmotiondef::{Cycles, ThreadId, Ticks};
-use runtime::trace::{Record, Request};
+use runtime::trace::{Record, TraceRequest};
 use runtime::{Event, EventKind};
 use serde_json::Value as Json;
 
@@ -179,7 +179,7 @@ impl<'l> Run<'l> {
         if !list.is_empty() {
             let quantities = session.quantities(&list.join(", "));
             let quantities = quantities.unwrap_or_else(|error| panic!("{name}: {error}"));
-            session.record(Request { quantities, every: 1, changes: false });
+            session.record(TraceRequest { quantities, every: 1, changes: false });
         }
         let start = session.tick().get();
         while session.user_data(0) != Some(1) {

@@ -39,7 +39,7 @@ pub use self::shared::SharedCode;
 pub(crate) use self::code::Piece;
 pub(crate) use self::piece::{Handover, LINES, MARK_BITS, Marks, Places, VALUES};
 
-use self::code::Code;
+use self::code::MachineCode;
 use self::context::{Context, Saved};
 use self::fiber::Fiber;
 use self::protected::ProtectedBlocks;
@@ -56,9 +56,9 @@ use crate::trap::{Trap, TrapKind};
 pub struct NativeEngine {
     contexts: [Option<Context>; ContextId::COUNT],
     /// The machine code of each program; `None` where it cannot be compiled.
-    code: Translations<Option<Arc<Code>>>,
+    code: Translations<Option<Arc<MachineCode>>>,
     /// A program whose machine code is part of this executable.
-    linked: Option<(Program, Arc<Code>)>,
+    linked: Option<(Program, Arc<MachineCode>)>,
     /// Code that this engine has in common with others.
     shared: Option<SharedCode>,
     protected: ProtectedBlocks,
@@ -97,9 +97,9 @@ impl NativeEngine {
     }
 
     /// The machine code of `program`.
-    fn code(&mut self, program: &Arc<Program>, pure: PureFunctions<'_>) -> Option<Arc<Code>> {
+    fn code(&mut self, program: &Arc<Program>, pure: PureFunctions<'_>) -> Option<Arc<MachineCode>> {
         let (linked, shared) = (&self.linked, &self.shared);
-        let compile = |program: &Program| Code::compile(program, pure).ok().map(Arc::new);
+        let compile = |program: &Program| MachineCode::compile(program, pure).ok().map(Arc::new);
         self.code.get(program, |program| match (linked, shared) {
             (Some((known, code)), _) if known == program => Some(Arc::clone(code)),
             (_, Some(shared)) => shared.get(program, compile),

@@ -21,7 +21,7 @@ use std::any::Any;
 
 use crate::kind::{Name, OpKind, Width};
 use crate::operand::{
-    Addr, Bits32, Class, Classes, Count, Count32, FuncRef, Imm, Imm16, Label, Off, Operand, Pool, RegF32,
+    Addr, Bits32, Class, Classes, Count, Count32, FuncRef, Imm, Imm16, Label, Off, OperandType, Pool, RegF32,
     RegF64, RegI32, RegI64, SigRef,
 };
 
@@ -503,7 +503,7 @@ impl Packer {
         Self { word, at: 2 }
     }
 
-    fn push<O: Operand>(&mut self, operand: O) {
+    fn push<O: OperandType>(&mut self, operand: O) {
         let bytes = operand.to_bits().to_le_bytes();
         self.word[self.at..self.at + O::SIZE].copy_from_slice(&bytes[..O::SIZE]);
         self.at += O::SIZE;
@@ -521,7 +521,7 @@ impl Unpacker {
         Self { word, at: 2 }
     }
 
-    fn pull<O: Operand>(&mut self) -> O {
+    fn pull<O: OperandType>(&mut self) -> O {
         let mut bytes = [0; 4];
         bytes[..O::SIZE].copy_from_slice(&self.word[self.at..self.at + O::SIZE]);
         self.at += O::SIZE;

@@ -2,7 +2,7 @@
 //!
 //! Every instruction is one word of eight bytes: two of opcode and six of operands, packed
 //! in the order of the table row, little endian, the rest zero. An operand type says how it
-//! is encoded and decoded ([`Operand`]); its `Display` says how it is printed.
+//! is encoded and decoded ([`OperandType`]); its `Display` says how it is printed.
 //!
 //! A register is one slot of a function's frame and holds one type of value for the whole
 //! function. The four register types of Rust make that visible in the table, so that the
@@ -62,7 +62,7 @@ impl fmt::Display for Class {
 }
 
 /// One operand of an instruction.
-pub trait Operand: Copy + fmt::Display {
+pub trait OperandType: Copy + fmt::Display {
     /// Bytes it takes in the instruction word.
     const SIZE: usize;
     /// The register class, if the operand is a register.
@@ -90,7 +90,7 @@ macro_rules! register {
             }
         }
 
-        impl Operand for $name {
+        impl OperandType for $name {
             const SIZE: usize = 2;
             const CLASS: Option<Class> = Some(Class::$class);
 
@@ -139,7 +139,7 @@ macro_rules! number {
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub struct $name(pub $repr);
 
-        impl Operand for $name {
+        impl OperandType for $name {
             const SIZE: usize = $size;
 
             fn to_bits(self) -> u32 {

@@ -56,7 +56,7 @@ pub(crate) fn program(number: i32, functions: &str) -> Program {
 
 /// The firmware functions, from address 0x1000_8000 on in steps of 8.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Function {
+enum TestFunction {
     /// `void note(int)`: puts time, thread and value into the log.
     Note,
     /// `void delay(int cycles)`.
@@ -79,9 +79,9 @@ enum Function {
     Missing,
 }
 
-impl Function {
+impl TestFunction {
     fn at(address: GuestAddr) -> Option<Self> {
-        use Function::{Delay, Done, Missing, NextSlice, Note, Pause, Resume, Scale, Start, WaitForFlag};
+        use TestFunction::{Delay, Done, Missing, NextSlice, Note, Pause, Resume, Scale, Start, WaitForFlag};
         let all = [Note, Delay, NextSlice, WaitForFlag, Done, Start, Pause, Resume, Scale, Missing];
         let offset = address.get().wrapping_sub(0x1000_8000);
         (offset.is_multiple_of(8)).then(|| all.get(offset as usize / 8).copied()).flatten()
@@ -146,10 +146,10 @@ impl Bus for Fake {
 impl Firmware for Fake {
     fn signature(&self, address: GuestAddr) -> Option<&Signature> {
         let [none, number, number_to_number, scale] = &self.signatures;
-        Function::at(address).map(|function| match function {
-            Function::Note | Function::Delay | Function::Start | Function::Pause => number,
-            Function::Resume => number_to_number,
-            Function::Scale => scale,
+        TestFunction::at(address).map(|function| match function {
+            TestFunction::Note | TestFunction::Delay | TestFunction::Start | TestFunction::Pause => number,
+            TestFunction::Resume => number_to_number,
+            TestFunction::Scale => scale,
             _ => none,
         })
     }
@@ -158,39 +158,39 @@ impl Firmware for Fake {
         let argument = caller.arguments.get::<i32>(0);
         let target = ThreadId::new(argument);
         let unit = Outcome::Done(Value::Unit);
-        Ok(match Function::at(address).ok_or(TrapKind::UnknownFirmwareFunction { addr: address })? {
-            Function::Note => {
+        Ok(match TestFunction::at(address).ok_or(TrapKind::UnknownFirmwareFunction { addr: address })? {
+            TestFunction::Note => {
                 self.note(caller.now(), caller.thread, &argument.to_string());
                 unit
             }
             _ if caller.woken == Some(Wake::NextSlice) => unit,
-            Function::Delay => match caller.woken {
+            TestFunction::Delay => match caller.woken {
                 Some(_) => unit,
                 None => Outcome::Wait(Wake::At(caller.now() + Cycles::new(i64::from(argument)))),
             },
-            Function::NextSlice => Outcome::Wait(Wake::NextSlice),
-            Function::WaitForFlag => match caller.memory.peek::<i32>(OUT.offset(4)) {
+            TestFunction::NextSlice => Outcome::Wait(Wake::NextSlice),
+            TestFunction::WaitForFlag => match caller.memory.peek::<i32>(OUT.offset(4)) {
                 0 => Outcome::Wait(Wake::Retry),
                 flag => Outcome::Done(Value::I32(flag)),
             },
-            Function::Done => Outcome::End,
-            Function::Start => {
+            TestFunction::Done => Outcome::End,
+            TestFunction::Start => {
                 let _ = target.map(|thread| caller.threads.start(thread));
                 unit
             }
-            Function::Pause if target == caller.thread => Outcome::Pause,
-            Function::Pause => {
+            TestFunction::Pause if target == caller.thread => Outcome::Pause,
+            TestFunction::Pause => {
                 let _ = target.map(|thread| caller.threads.pause(thread));
                 unit
             }
-            Function::Resume => {
+            TestFunction::Resume => {
                 let resumed = target.map(|thread| caller.threads.resume(thread));
                 Outcome::Done(Value::I32(i32::from(!matches!(resumed, Some(Ok(()))))))
             }
-            Function::Scale => {
+            TestFunction::Scale => {
                 Outcome::Done(Value::F64(f64::from(argument) * caller.arguments.get::<f64>(1)))
             }
-            Function::Missing => return Err(TrapKind::NotModelled { name: "Missing" }),
+            TestFunction::Missing => return Err(TrapKind::NotModelled { name: "Missing" }),
         })
     }
 

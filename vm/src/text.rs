@@ -13,8 +13,8 @@ use crate::for_each_op;
 use crate::guard;
 use crate::op::{Op, WORD};
 use crate::operand::{
-    Addr, Bits32, Classes, Count, Count32, FuncRef, Imm, Imm16, Label, Off, Operand, Pool, RegF32, RegF64,
-    RegI32, RegI64, SigRef,
+    Addr, Bits32, Classes, Count, Count32, FuncRef, Imm, Imm16, Label, Off, OperandType, Pool, RegF32,
+    RegF64, RegI32, RegI64, SigRef,
 };
 
 /// Why a line could not be assembled.
@@ -78,7 +78,7 @@ macro_rules! define_text {
 for_each_op!(define_text);
 
 /// Prints an operand after `separator` and yields the separator of the next.
-fn print_operand<O: Operand>(
+fn print_operand<O: OperandType>(
     f: &mut fmt::Formatter<'_>,
     separator: &str,
     operand: O,
@@ -115,7 +115,7 @@ pub fn disassemble(bytes: &[u8]) -> String {
 /// # Errors
 /// The first line that is wrong.
 pub fn assemble(text: &str) -> Result<Vec<u8>, AssembleError> {
-    let lines: Vec<_> = text.lines().zip(1..).map(|(line, number)| Line::read(number, line)).collect();
+    let lines: Vec<_> = text.lines().zip(1..).map(|(line, number)| TextLine::read(number, line)).collect();
     let labels = define_labels(&lines)?;
     let mut bytes = Vec::with_capacity(lines.len() * WORD);
     for line in &lines {
@@ -129,13 +129,13 @@ pub fn assemble(text: &str) -> Result<Vec<u8>, AssembleError> {
 }
 
 /// One line, taken apart.
-struct Line<'a> {
+struct TextLine<'a> {
     number: usize,
     label: Option<&'a str>,
     instruction: Option<&'a str>,
 }
 
-impl<'a> Line<'a> {
+impl<'a> TextLine<'a> {
     fn read(number: usize, line: &'a str) -> Self {
         let line = line.split(';').next().unwrap_or_default().trim();
         let labelled = line.strip_prefix('@').and_then(|line| line.split_once(':'));
@@ -145,7 +145,7 @@ impl<'a> Line<'a> {
 }
 
 /// The index of the word that each named label comes before.
-fn define_labels<'a>(lines: &[Line<'a>]) -> Result<BTreeMap<&'a str, usize>, AssembleError> {
+fn define_labels<'a>(lines: &[TextLine<'a>]) -> Result<BTreeMap<&'a str, usize>, AssembleError> {
     let mut labels = BTreeMap::new();
     let mut word = 0;
     for line in lines {

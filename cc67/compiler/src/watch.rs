@@ -57,7 +57,7 @@ pub struct Scope<'a> {
 }
 
 /// What an expression reads.
-pub trait Reader {
+pub trait ItemReader {
     /// The eight bytes from an address on; 0 outside the memory.
     fn bytes(&self, address: GuestAddr) -> [u8; 8];
 
@@ -274,13 +274,13 @@ impl Expression {
     }
 
     /// The value of an expression in it.
-    pub(crate) fn constant_of(&self, id: ExprId, reader: &dyn Reader) -> Option<Constant> {
+    pub(crate) fn constant_of(&self, id: ExprId, reader: &dyn ItemReader) -> Option<Constant> {
         self.constant(id, reader)
     }
 
     /// The value now; not a number where it divides an integer by 0.
     #[must_use]
-    pub fn value(&self, reader: &dyn Reader) -> f64 {
+    pub fn value(&self, reader: &dyn ItemReader) -> f64 {
         match self.constant(self.value, reader) {
             Some(Constant::Float(value)) => value,
             Some(Constant::Int(value)) => value as f64,
@@ -291,7 +291,7 @@ impl Expression {
     /// Where a value goes that is stored in it, and the bytes that are there then; `None` unless it is a place in
     /// memory. The value becomes one of the place's type as by an assignment.
     #[must_use]
-    pub fn store(&self, value: f64, reader: &dyn Reader) -> Option<(GuestAddr, Vec<u8>)> {
+    pub fn store(&self, value: f64, reader: &dyn ItemReader) -> Option<(GuestAddr, Vec<u8>)> {
         let place = self.stored_place()?;
         let ty = self.function.places[place].ty;
         let PlaceKind::Bits(unit, range) = self.function.places[place].kind else {
@@ -315,7 +315,7 @@ impl Expression {
         if let ExprKind::Load(place) = read { Some(*place) } else { None }
     }
 
-    fn constant(&self, id: ExprId, reader: &dyn Reader) -> Option<Constant> {
+    fn constant(&self, id: ExprId, reader: &dyn ItemReader) -> Option<Constant> {
         let expr = &self.function.exprs[id];
         let of = |id: ExprId| self.constant(id, reader);
         let is_true = |id: ExprId| of(id).map(Constant::is_true);
@@ -341,7 +341,7 @@ impl Expression {
         })
     }
 
-    fn call(&self, call: &Call, reader: &dyn Reader) -> Option<Constant> {
+    fn call(&self, call: &Call, reader: &dyn ItemReader) -> Option<Constant> {
         let Callee::Symbol(symbol) = call.callee else { return None };
         let Some(Meaning::Function(function)) = self.meanings.get(&symbol) else { return None };
         match self.constant(*call.arguments.first()?, reader)? {
@@ -350,7 +350,7 @@ impl Expression {
         }
     }
 
-    fn load(&self, id: PlaceId, reader: &dyn Reader) -> Option<Constant> {
+    fn load(&self, id: PlaceId, reader: &dyn ItemReader) -> Option<Constant> {
         let place = &self.function.places[id];
         if let PlaceKind::Symbol(symbol, _) = place.kind
             && let Some(Meaning::Item(index)) = self.meanings.get(&symbol)
@@ -369,7 +369,7 @@ impl Expression {
         Some(read(place.ty, reader.bytes(self.address(id, reader)?)))
     }
 
-    fn address(&self, id: PlaceId, reader: &dyn Reader) -> Option<GuestAddr> {
+    fn address(&self, id: PlaceId, reader: &dyn ItemReader) -> Option<GuestAddr> {
         let (base, offset) = match self.function.places[id].kind {
             PlaceKind::Symbol(symbol, offset) => match self.meanings.get(&symbol)? {
                 Meaning::Variable(address) => (address.get(), offset),
@@ -449,7 +449,7 @@ main() { int local; }
     /// A memory in which every byte is the lowest of its address, and items that count from 100.
     struct Pattern;
 
-    impl Reader for Pattern {
+    impl ItemReader for Pattern {
         fn bytes(&self, address: GuestAddr) -> [u8; 8] {
             match address.get() {
                 0x8005_0000 => 7_i64.to_le_bytes(),

@@ -34,7 +34,7 @@ use super::io::exit::Exit;
 use super::io::input::read;
 use super::io::pace::Pace;
 use flash::Flash;
-use line::Line;
+use line::SerialLine;
 
 /// Everything that the arguments ask for, read and compiled.
 #[derive(Debug)]
@@ -115,7 +115,13 @@ impl Setup {
     /// A board as the arguments want it, on an engine of the caller's choice.
     pub(crate) fn rig<E: Engine>(self, engine: E) -> Result<Rig<E>> {
         let session = self.session.session_on(engine)?;
-        Ok(Rig { session, engine: self.engine, uart: self.uart, line: Line::default(), flash: self.flash })
+        Ok(Rig {
+            session,
+            engine: self.engine,
+            uart: self.uart,
+            line: SerialLine::default(),
+            flash: self.flash,
+        })
     }
 
     /// The board for a debugger, on the engine that it can hold.
@@ -249,14 +255,14 @@ pub(crate) struct Rig<E> {
     pub(crate) session: Session<E>,
     engine: EngineName,
     uart: UartArguments,
-    line: Line,
+    line: SerialLine,
     flash: Flash,
 }
 
 impl<E: Engine> Rig<E> {
     /// Connects the serial port; a peer that has to be there is waited for.
     pub(crate) fn connect(&mut self) -> Result<()> {
-        self.line = Line::connect(&self.uart)?;
+        self.line = SerialLine::connect(&self.uart)?;
         Ok(())
     }
 

@@ -58,7 +58,7 @@ pub enum Sent {
 
 /// A line that the firmware sent, without its line end.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Line {
+pub struct SentLine {
     /// The cycle of its first byte, since power-up.
     pub cycle: u64,
     /// What it is.
@@ -83,7 +83,7 @@ pub struct BootedBoard {
     hardware: Hardware,
     /// Bytes of a line that is not complete, and the cycle of the first.
     unfinished: (u64, Vec<u8>),
-    lines: Vec<Line>,
+    lines: Vec<SentLine>,
     /// The cycle in which the timer's interrupt began to wait.
     waits_since: u64,
     /// What the axes move.
@@ -344,7 +344,7 @@ impl BootedBoard {
     }
 
     /// The lines that the firmware has completed since the last time.
-    pub fn take_lines(&mut self) -> Vec<Line> {
+    pub fn take_lines(&mut self) -> Vec<SentLine> {
         for (cycle, byte) in self.hardware.window.link.take_sent() {
             self.hear(cycle, byte);
         }
@@ -370,7 +370,7 @@ impl BootedBoard {
             [ESCAPE, rest @ ..] if line.last() == Some(&b'\n') => (Sent::Console, rest),
             _ => (Sent::Reply, text),
         };
-        self.lines.push(Line { cycle, kind, text: text.to_vec() });
+        self.lines.push(SentLine { cycle, kind, text: text.to_vec() });
     }
 
     /// Puts the sections of a linked program into memory, as a download does, and tells the firmware where it begins.

@@ -51,7 +51,7 @@ impl<E: Engine> Board<E> {
     }
 
     /// Records from now on what is asked for; the records come as events.
-    pub fn record(&mut self, request: trace::Request) {
+    pub fn record(&mut self, request: trace::TraceRequest) {
         let (kernel, context) = self.machine.firmware_mut();
         let Parts { world, io, .. } = &mut kernel.parts;
         world.record(request, io, context.memory);

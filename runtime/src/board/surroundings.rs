@@ -145,7 +145,7 @@ impl Surroundings {
     }
 
     /// Records from now on what is asked for; the records come as events.
-    pub fn record(&mut self, request: trace::Request, memory: &GuestMemory) {
+    pub fn record(&mut self, request: trace::TraceRequest, memory: &GuestMemory) {
         let Parts { world, io, .. } = &mut self.parts;
         world.record(request, io, memory);
     }

@@ -69,12 +69,12 @@ impl Message {
 
 /// A line being read.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Reader<'t> {
+pub(super) struct LineReader<'t> {
     text: &'t [u8],
     column: usize,
 }
 
-impl<'t> Reader<'t> {
+impl<'t> LineReader<'t> {
     /// Begins at a column.
     pub(super) const fn new(text: &'t [u8], column: usize) -> Self {
         Self { text, column }
@@ -171,7 +171,7 @@ impl<'t> Reader<'t> {
 
 /// One argument as it was read.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Value {
+enum ArgumentValue {
     Integer(i32),
     Real(f64),
     Word(u32),
@@ -182,21 +182,21 @@ enum Value {
 /// The table says what a command takes; asking for another kind, or for more, yields 0.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Values {
-    values: Vec<Value>,
+    values: Vec<ArgumentValue>,
     is_question: bool,
 }
 
 impl Values {
     /// Reads what `arguments` ask for.
-    pub(super) fn read(arguments: &[Argument], reader: &mut Reader<'_>) -> Result<Self, Mistake> {
+    pub(super) fn read(arguments: &[Argument], reader: &mut LineReader<'_>) -> Result<Self, Mistake> {
         let mut read = Self::default();
         for argument in arguments {
             let value = match *argument {
-                Argument::Integer(lo, hi) => Value::Integer(reader.integer(lo, hi)?),
-                Argument::Real => Value::Real(reader.real()?),
-                Argument::Limited(lo, hi) => Value::Real(reader.limited(lo, hi)?),
+                Argument::Integer(lo, hi) => ArgumentValue::Integer(reader.integer(lo, hi)?),
+                Argument::Real => ArgumentValue::Real(reader.real()?),
+                Argument::Limited(lo, hi) => ArgumentValue::Real(reader.limited(lo, hi)?),
                 Argument::OptionalHex if reader.is_at_end() => break,
-                Argument::Hex | Argument::OptionalHex => Value::Word(reader.hex()?),
+                Argument::Hex | Argument::OptionalHex => ArgumentValue::Word(reader.hex()?),
                 Argument::Assign if reader.is_at_end() => {
                     read.is_question = true;
                     break;
@@ -224,7 +224,7 @@ impl Values {
     /// An integer.
     pub(super) fn integer(&self, index: usize) -> i32 {
         match self.values.get(index) {
-            Some(Value::Integer(value)) => *value,
+            Some(ArgumentValue::Integer(value)) => *value,
             _ => 0,
         }
     }
@@ -237,8 +237,8 @@ impl Values {
     /// A real number; a hexadecimal one is the bits of a single.
     pub(super) fn real(&self, index: usize) -> f64 {
         match self.values.get(index) {
-            Some(Value::Real(value)) => *value,
-            Some(Value::Word(bits)) => f32::from_bits(*bits).into(),
+            Some(ArgumentValue::Real(value)) => *value,
+            Some(ArgumentValue::Word(bits)) => f32::from_bits(*bits).into(),
             _ => 0.0,
         }
     }
@@ -261,7 +261,7 @@ impl Values {
     /// A hexadecimal number, if it is there.
     pub(super) fn optional_word(&self, index: usize) -> Option<u32> {
         match self.values.get(index) {
-            Some(Value::Word(value)) => Some(*value),
+            Some(ArgumentValue::Word(value)) => Some(*value),
             _ => None,
         }
     }
@@ -293,12 +293,12 @@ mod tests {
 
     /// What is read from a text, or the column and the message.
     fn check(arguments: &[Argument], text: &str, expect: Result<&[f64], (usize, &str)>) {
-        let read = Values::read(arguments, &mut Reader::new(text.as_bytes(), 0));
+        let read = Values::read(arguments, &mut LineReader::new(text.as_bytes(), 0));
         let numbers = read.map(|read| {
             let number = |index| match read.values[index] {
-                Value::Integer(value) => value.into(),
-                Value::Real(value) => value,
-                Value::Word(value) => value.into(),
+                ArgumentValue::Integer(value) => value.into(),
+                ArgumentValue::Real(value) => value,
+                ArgumentValue::Word(value) => value.into(),
             };
             (0..read.values.len()).map(number).collect::<Vec<f64>>()
         });

@@ -8,7 +8,7 @@ use kmotiondef::variables::{READ_DISK_BUFFER, READ_DISK_BUFFER_STATUS};
 use vm::firmware::TickContext;
 use vm::memory::GuestMemory;
 
-use super::arguments::{Mistake, Reader};
+use super::arguments::{LineReader, Mistake};
 use crate::pc::Downloads;
 use crate::views::Typed;
 
@@ -21,7 +21,7 @@ const DISK_BYTES_PER_LINE: usize = 80;
 
 /// What the data is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum DataKind {
     /// Bytes of a program, which are stored.
     Program,
     /// Bytes of a new firmware, which are not.
@@ -32,7 +32,7 @@ pub(super) enum Kind {
     Disk,
 }
 
-impl Kind {
+impl DataKind {
     /// Numbers on a full line.
     const fn per_line(self) -> usize {
         match self {
@@ -46,7 +46,7 @@ impl Kind {
 /// A command that waits for data lines.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Data {
-    kind: Kind,
+    kind: DataKind,
     /// Where the first number goes.
     start: GuestAddr,
     /// Where the next one goes.
@@ -57,7 +57,7 @@ pub(super) struct Data {
 
 impl Data {
     /// `count` numbers that go to `start` and after.
-    pub(super) const fn new(kind: Kind, start: GuestAddr, count: usize) -> Self {
+    pub(super) const fn new(kind: DataKind, start: GuestAddr, count: usize) -> Self {
         Self { kind, start, place: start, left: count }
     }
 
@@ -68,14 +68,14 @@ impl Data {
 
     /// Takes one line; numbers before a mistake are stored.
     pub(super) fn line(&mut self, memory: &mut GuestMemory, line: &[u8]) -> Result<(), Mistake> {
-        let mut reader = Reader::new(line, 0);
+        let mut reader = LineReader::new(line, 0);
         for _ in 0..self.left.min(self.kind.per_line()) {
-            let size = if self.kind == Kind::Gather {
+            let size = if self.kind == DataKind::Gather {
                 memory.poke(self.place, reader.hex()?);
                 4
             } else {
                 let byte = reader.byte()?;
-                if self.kind != Kind::Firmware {
+                if self.kind != DataKind::Firmware {
                     memory.poke(self.place, byte);
                 }
                 1
@@ -89,17 +89,17 @@ impl Data {
     /// What follows from the data being complete.
     pub(super) fn finish(&self, downloads: &mut Downloads, context: &mut TickContext<'_>) {
         match self.kind {
-            Kind::Program => downloads.record(self.start, self.place),
-            Kind::Disk => {
+            DataKind::Program => downloads.record(self.start, self.place),
+            DataKind::Disk => {
                 context.memory.poke(self.place, 0_u8);
                 context.memory.set(READ_DISK_BUFFER_STATUS, 1);
             }
-            Kind::Firmware | Kind::Gather => {}
+            DataKind::Firmware | DataKind::Gather => {}
         }
     }
 
     /// Room for a line of a file.
     pub(super) fn disk(count: usize) -> Self {
-        Self::new(Kind::Disk, READ_DISK_BUFFER.address(), count)
+        Self::new(DataKind::Disk, READ_DISK_BUFFER.address(), count)
     }
 }

@@ -15,7 +15,7 @@ use vm::firmware::TickContext;
 use vm::memory::GuestMemory;
 
 use super::arguments::Values;
-use super::data::{Data, GATHER_WORDS, Kind, WORDS_PER_LINE};
+use super::data::{Data, DataKind, GATHER_WORDS, WORDS_PER_LINE};
 use super::memory::Experiment;
 use super::session::{Answer, Session};
 use crate::firmware::gather;
@@ -136,7 +136,7 @@ pub(super) fn get_hex(session: &mut Session<'_, '_>, values: &Values) -> Answer 
 
 pub(super) fn set_hex(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let start = word(session, values).address();
-    Answer::Data(Data::new(Kind::Gather, start, available(values)))
+    Answer::Data(Data::new(DataKind::Gather, start, available(values)))
 }
 
 /// The PC's answer to a request for a line of a file.

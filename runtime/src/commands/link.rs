@@ -9,7 +9,7 @@ use std::collections::VecDeque;
 use kmotiondef::limits::VERSION;
 use vm::firmware::TickContext;
 
-use super::arguments::{Message as MistakeText, Mistake, Reader, Values};
+use super::arguments::{LineReader, Message as MistakeText, Mistake, Values};
 use super::data::Data;
 use super::memory::{Experiment, Geometry};
 use super::session::{Answer, Session};
@@ -176,7 +176,7 @@ impl Turn<'_, '_> {
             }
             return self.mistake(part, &Mistake { column: 0, message: MistakeText::InvalidCommand });
         };
-        match Values::read(command.arguments, &mut Reader::new(part, length)) {
+        match Values::read(command.arguments, &mut LineReader::new(part, length)) {
             Ok(values) => self.execute(command, &values, part),
             Err(mistake) => self.mistake(part, &mistake),
         }

@@ -6,7 +6,7 @@ use kmotiondef::structs::Persist;
 use kmotiondef::variables::PERSIST;
 
 use super::arguments::Values;
-use super::data::{Data, Kind};
+use super::data::{Data, DataKind};
 use super::session::{Answer, Session};
 use crate::firmware::thread;
 use crate::out::Message;
@@ -56,7 +56,7 @@ pub(super) fn load_data(_: &mut Session<'_, '_>, values: &Values) -> Answer {
     if !is_inside {
         return Answer::Refused("invalid address");
     }
-    data(Kind::Program, start, count)
+    data(DataKind::Program, start, count)
 }
 
 /// Takes the data lines of a new firmware; there is nothing to do with them.
@@ -67,10 +67,10 @@ pub(super) fn load_flash(_: &mut Session<'_, '_>, values: &Values) -> Answer {
     if start < FLASH.base.get() || end > limit {
         return Answer::Refused("invalid address");
     }
-    data(Kind::Firmware, start, count)
+    data(DataKind::Firmware, start, count)
 }
 
-fn data(kind: Kind, start: u32, count: u32) -> Answer {
+fn data(kind: DataKind, start: u32, count: u32) -> Answer {
     if count == 0 {
         return Answer::Nothing;
     }

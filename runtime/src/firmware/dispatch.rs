@@ -121,7 +121,7 @@ impl<T: IntoOutcome> IntoOutcome for Result<T, TrapKind> {
 }
 
 /// A Rust function that takes `Parameters` after parts and caller.
-trait Function<Parameters> {
+trait FirmwareFunction<Parameters> {
     /// The classes of its arguments.
     const PARAMETERS: &'static [Class];
     /// The class of its result.
@@ -130,7 +130,7 @@ trait Function<Parameters> {
     fn invoke(self, parts: &mut Parts, caller: &mut Caller<'_>) -> Answer;
 }
 
-impl<F, R> Function<()> for F
+impl<F, R> FirmwareFunction<()> for F
 where
     F: Fn(&mut Parts, &mut Caller<'_>) -> R,
     R: IntoOutcome,
@@ -145,7 +145,7 @@ where
 
 macro_rules! functions {
     ($(($($parameter:ident)*);)*) => {$(
-        impl<F, R, $($parameter),*> Function<($($parameter,)*)> for F
+        impl<F, R, $($parameter),*> FirmwareFunction<($($parameter,)*)> for F
         where
             F: Fn(&mut Parts, &mut Caller<'_>, $($parameter),*) -> R,
             R: IntoOutcome,
@@ -184,7 +184,7 @@ macro_rules! handlers {
     )*) => {
         /// One handler a function, by its number in the table.
         pub(crate) const HANDLERS: &[Handler] =
-            &[$(|parts, caller| Function::invoke($group::$function, parts, caller)),*];
+            &[$(|parts, caller| FirmwareFunction::invoke($group::$function, parts, caller)),*];
 
         /// The signatures of the functions, by number.
         pub(crate) fn signatures() -> Vec<Signature> {
@@ -195,7 +195,7 @@ macro_rules! handlers {
 kmotiondef::for_each_firmware_fn!(handlers);
 
 /// The signature of a Rust function as classes.
-fn signature_of<P, F: Function<P>>(_: F) -> Signature {
+fn signature_of<P, F: FirmwareFunction<P>>(_: F) -> Signature {
     Signature { params: F::PARAMETERS.to_vec(), result: F::RESULT }
 }
 

@@ -17,7 +17,7 @@ use super::parts::Parts;
 use super::string::text;
 use crate::firmware::dispatch::Varargs;
 use crate::out::Message;
-use crate::pc::disk::{ARRIVED, ASKED, Request};
+use crate::pc::disk::{ARRIVED, ASKED, DiskRequest};
 use crate::text::{Arguments, format};
 use crate::views::Typed;
 
@@ -50,13 +50,18 @@ impl Arguments for Nothing {
 }
 
 /// A request as it is printed. Odd and kept: the text after the code is taken as a format a second time.
-fn printed(request: Request, text: &[u8]) -> Result<Vec<u8>, TrapKind> {
+fn printed(request: DiskRequest, text: &[u8]) -> Result<Vec<u8>, TrapKind> {
     let text = format(&[&[request.code()], text].concat(), &mut Nothing)?;
     Ok(cut(&text).to_vec())
 }
 
 /// Sends a request and returns `result` when the queue has taken it.
-fn send(parts: &mut Parts, caller: &Caller<'_>, request: Request, result: GuestAddr) -> Outcome<GuestAddr> {
+fn send(
+    parts: &mut Parts,
+    caller: &Caller<'_>,
+    request: DiskRequest,
+    result: GuestAddr,
+) -> Outcome<GuestAddr> {
     let outcome = put(parts, caller, &[request.code(), b'\n'], result.get().cast_signed());
     address(outcome)
 }
@@ -92,18 +97,18 @@ pub(crate) fn fopen(
     }
     let (path, mode) = (text(caller, path)?, text(caller, mode)?);
     let (request, handle) = match mode.first() {
-        Some(b'r') => (Request::Open, READING),
-        Some(b'a') => (Request::Append, WRITING),
-        _ => (Request::Create, WRITING),
+        Some(b'r') => (DiskRequest::Open, READING),
+        Some(b'a') => (DiskRequest::Append, WRITING),
+        _ => (DiskRequest::Create, WRITING),
     };
     let mut line = printed(request, &path)?;
     line.push(b'\n');
-    if request == Request::Open {
+    if request == DiskRequest::Open {
         caller.memory.set(READ_DISK_BUFFER_STATUS, ASKED);
     }
     let outcome = put(parts, caller, &line, handle.get().cast_signed());
     // The answer comes later than the request goes.
-    let waits = request == Request::Open && matches!(outcome, Outcome::Done(_));
+    let waits = request == DiskRequest::Open && matches!(outcome, Outcome::Done(_));
     Ok(if waits { Outcome::Wait(Wake::Retry) } else { address(outcome) })
 }
 
@@ -125,7 +130,7 @@ pub(crate) fn fclose(parts: &mut Parts, caller: &mut Caller<'_>, file: GuestAddr
     if let Some(outcome) = resumed(parts, caller) {
         return outcome;
     }
-    let request = if file == READING { Request::CloseReading } else { Request::CloseWriting };
+    let request = if file == READING { DiskRequest::CloseReading } else { DiskRequest::CloseWriting };
     put(parts, caller, &[request.code(), b'\n'], 0)
 }
 
@@ -163,7 +168,7 @@ pub(crate) fn fprintf(
         return Ok(outcome);
     }
     let text = formatted(caller, pattern, arguments)?;
-    let line = printed(Request::Write, cut(&text))?;
+    let line = printed(DiskRequest::Write, cut(&text))?;
     spend_queueing(caller, cut(&text));
     caller.spend(Cycles::new(55 * cut(&text).len() as i64));
     warn(parts, caller, &text);
@@ -194,7 +199,7 @@ pub(crate) fn fgets(
     line.truncate(usize::try_from(limit).unwrap_or(0));
     caller.memory.write_bytes(to, &line)?;
     caller.memory.set(READ_DISK_BUFFER_STATUS, ASKED);
-    Ok(send(parts, caller, Request::NextLine, to))
+    Ok(send(parts, caller, DiskRequest::NextLine, to))
 }
 
 /// Continues sending the request for the next line, if the call waits for that.
@@ -233,7 +238,7 @@ pub(crate) fn fscanf(
         return Ok(Outcome::Done(count));
     }
     caller.memory.set(READ_DISK_BUFFER_STATUS, ASKED);
-    Ok(put(parts, caller, &[Request::NextLine.code(), b'\n'], count))
+    Ok(put(parts, caller, &[DiskRequest::NextLine.code(), b'\n'], count))
 }
 
 /// 1 after a failed read or opening.

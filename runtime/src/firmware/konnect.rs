@@ -5,7 +5,7 @@ use vm::firmware::Caller;
 use vm::trap::TrapKind;
 
 use super::parts::Parts;
-use crate::io::konnect::{Board, Port, Service};
+use crate::io::konnect::{KonnectBoard, Port, Service};
 use crate::out::Message;
 
 /// Addresses on a port.
@@ -50,7 +50,7 @@ fn add(
         parts.out.diagnose(caller, Message::KonnectAddress { function, address });
     }
     // The address goes out on three lines.
-    let board = Board { port, address: (address & (ADDRESSES - 1)) as u8 };
+    let board = KonnectBoard { port, address: (address & (ADDRESSES - 1)) as u8 };
     if !parts.io.konnects.is_present(board) {
         parts.out.diagnose(caller, Message::KonnectAbsent { function, address });
     }
@@ -91,7 +91,7 @@ mod tests {
         let word: u64 = VIRTUAL_BITS.address().get().into();
         desk.kernel.parts.io.konnects.set_present(Port::Aux1, 0b01);
         for address in [0, 1] {
-            let board = Board { port: Port::Aux1, address };
+            let board = KonnectBoard { port: Port::Aux1, address };
             desk.kernel.parts.io.konnects.drive(board, 5, true);
             let inputs: u64 = VIRTUAL_BITS_EX.element(address.into()).address().get().into();
             desk.call("AddKonnect", &[address.into(), word, inputs]);
@@ -99,8 +99,8 @@ mod tests {
         desk.memory.set(VIRTUAL_BITS, 3);
         desk.run(4);
         let inputs = [0, 1].map(|board| desk.memory.get(VIRTUAL_BITS_EX.element(board)));
-        let outputs =
-            [0, 1].map(|address| desk.kernel.parts.io.konnects.outputs(Board { port: Port::Aux1, address }));
+        let outputs = [0, 1]
+            .map(|address| desk.kernel.parts.io.konnects.outputs(KonnectBoard { port: Port::Aux1, address }));
         assert_eq!((inputs, outputs), ([32, 0], [3, 0]));
         assert_eq!(desk.kernel.parts.out.take_events().len(), 1);
     }

@@ -19,7 +19,7 @@ use crate::servo::coordinated::system;
 use crate::servo::independent::{has_motion, is_planned, present, run, start, state, write};
 use crate::servo::input::turn_resolver;
 use crate::servo::moves::{limits, start_move_to};
-use crate::servo::profile::{self, LEAD, MAX_STATES, Mode, Ramp, State};
+use crate::servo::profile::{self, LEAD, MAX_STATES, Mode, MotionState, Ramp};
 use crate::servo::{four_phase, hold, switching, three_phase};
 use crate::views::{Typed, axis_at};
 
@@ -191,7 +191,7 @@ fn is_place(parts: &mut Parts, caller: &Caller<'_>, function: &'static str, valu
 }
 
 /// One of the four moves.
-struct Request {
+struct MoveRequest {
     function: &'static str,
     axis: i32,
     target: f64,
@@ -199,7 +199,7 @@ struct Request {
     velocity: Option<f32>,
 }
 
-fn request(parts: &mut Parts, caller: &mut Caller<'_>, request: &Request) -> Outcome<()> {
+fn request(parts: &mut Parts, caller: &mut Caller<'_>, request: &MoveRequest) -> Outcome<()> {
     let Some(axis) = checked(parts, caller, request.function, request.axis) else {
         return Outcome::Done(());
     };
@@ -236,14 +236,18 @@ fn no_limits(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, function: &'s
 }
 
 pub(crate) fn move_to(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32, x: f64) -> Outcome<()> {
-    request(parts, caller, &Request { function: "Move", axis, target: x, is_relative: false, velocity: None })
+    request(
+        parts,
+        caller,
+        &MoveRequest { function: "Move", axis, target: x, is_relative: false, velocity: None },
+    )
 }
 
 pub(crate) fn move_rel(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32, dx: f64) -> Outcome<()> {
     request(
         parts,
         caller,
-        &Request { function: "MoveRel", axis, target: dx, is_relative: true, velocity: None },
+        &MoveRequest { function: "MoveRel", axis, target: dx, is_relative: true, velocity: None },
     )
 }
 
@@ -255,7 +259,11 @@ pub(crate) fn move_at_vel(
     velocity: f32,
 ) -> Outcome<()> {
     let velocity = Some(velocity);
-    request(parts, caller, &Request { function: "MoveAtVel", axis, target: x, is_relative: false, velocity })
+    request(
+        parts,
+        caller,
+        &MoveRequest { function: "MoveAtVel", axis, target: x, is_relative: false, velocity },
+    )
 }
 
 pub(crate) fn move_rel_at_vel(
@@ -269,7 +277,7 @@ pub(crate) fn move_rel_at_vel(
     request(
         parts,
         caller,
-        &Request { function: "MoveRelAtVel", axis, target: dx, is_relative: true, velocity },
+        &MoveRequest { function: "MoveRelAtVel", axis, target: dx, is_relative: true, velocity },
     )
 }
 
@@ -332,8 +340,12 @@ pub(crate) fn move_exp(
     memory.set_axis(axis, Chan::EXP_MOTION_VC, vc);
     memory.set_axis(axis, Chan::EXP_MOTION_XC, (f64::from(vc) * tau) as f32);
     // Only mode, ratio and target of the first state are written; the rest keeps what stood there.
-    let first =
-        State { mode: Mode::Exponential, a: libm::exp(-TIMEBASE / tau), b: x, ..state(memory, axis, 0) };
+    let first = MotionState {
+        mode: Mode::Exponential,
+        a: libm::exp(-TIMEBASE / tau),
+        b: x,
+        ..state(memory, axis, 0)
+    };
     run(memory, axis, &[first]);
     memory.set_axis(axis, Chan::LAST_MOTION_TYPE, LastMotion::Exp.get());
     memory.set_axis(axis, Chan::LAST_MOTION_DEST, x);
@@ -458,7 +470,7 @@ pub(crate) fn setup_for_motion_pause(
     time: f64,
 ) {
     if let Some(axis) = pointed(parts, caller, "SetupForMotionPause", chan) {
-        write(caller.memory, axis, index(offset), &[State::hold(x, time)]);
+        write(caller.memory, axis, index(offset), &[MotionState::hold(x, time)]);
     }
 }
 
@@ -466,7 +478,7 @@ pub(crate) fn setup_for_motion_end(parts: &mut Parts, caller: &mut Caller<'_>, c
     if let Some(axis) = pointed(parts, caller, "SetupForMotionEnd", chan) {
         let before = index(offset).checked_sub(1).map(|before| state(caller.memory, axis, before));
         let end = before.map_or(0.0, |before| before.at(before.t).x);
-        write(caller.memory, axis, index(offset), &[State::off(0.0, end)]);
+        write(caller.memory, axis, index(offset), &[MotionState::off(0.0, end)]);
     }
 }
 

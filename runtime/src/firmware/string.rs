@@ -13,7 +13,7 @@ use super::parts::Parts;
 const LONGEST: u32 = 0x100_0000;
 
 type Text = Result<Vec<u8>, TrapKind>;
-type Place = Result<GuestAddr, TrapKind>;
+type AddressResult = Result<GuestAddr, TrapKind>;
 
 /// The string at an address, without its terminator; its length is charged.
 pub(crate) fn text(caller: &mut Caller<'_>, address: GuestAddr) -> Text {
@@ -68,7 +68,7 @@ pub(crate) fn memcpy(
     to: GuestAddr,
     from: GuestAddr,
     length: u32,
-) -> Place {
+) -> AddressResult {
     let is_alike = (to.get() ^ from.get()).is_multiple_of(4);
     caller.spend(copying(length, is_alike));
     caller.memory.copy(to, from, length)?;
@@ -81,11 +81,17 @@ pub(crate) fn memmove(
     to: GuestAddr,
     from: GuestAddr,
     length: u32,
-) -> Place {
+) -> AddressResult {
     memcpy(parts, caller, to, from, length)
 }
 
-pub(crate) fn memset(_: &mut Parts, caller: &mut Caller<'_>, to: GuestAddr, byte: i32, length: u32) -> Place {
+pub(crate) fn memset(
+    _: &mut Parts,
+    caller: &mut Caller<'_>,
+    to: GuestAddr,
+    byte: i32,
+    length: u32,
+) -> AddressResult {
     let length_cost = if length < 8 { 0 } else { 3 + i64::from(length) * 113 / 100 };
     caller.spend(Cycles::new(length_cost));
     caller.memory.fill(to, byte as u8, length)?;
@@ -99,7 +105,7 @@ pub(crate) fn memccpy(
     from: GuestAddr,
     byte: i32,
     length: i32,
-) -> Place {
+) -> AddressResult {
     for index in 0..u32::try_from(length).unwrap_or(0) {
         let copied: u8 = caller.memory.load(from.offset(index))?;
         caller.memory.store(to.offset(index), copied)?;
@@ -126,7 +132,7 @@ pub(crate) fn memchr(
     start: GuestAddr,
     byte: i32,
     length: u32,
-) -> Place {
+) -> AddressResult {
     let block = block(caller, start, length)?;
     Ok(found(start, block.iter().position(|&found| found == byte as u8)))
 }
@@ -137,7 +143,12 @@ pub(crate) fn strlen(_: &mut Parts, caller: &mut Caller<'_>, string: GuestAddr) 
     Ok(length as u32)
 }
 
-pub(crate) fn strcpy(parts: &mut Parts, caller: &mut Caller<'_>, to: GuestAddr, from: GuestAddr) -> Place {
+pub(crate) fn strcpy(
+    parts: &mut Parts,
+    caller: &mut Caller<'_>,
+    to: GuestAddr,
+    from: GuestAddr,
+) -> AddressResult {
     let text = text(caller, from)?;
     parts.check_room(caller, "strcpy", to, text.len() + 1);
     write_text(caller, to, text)?;
@@ -150,7 +161,7 @@ pub(crate) fn strncpy(
     to: GuestAddr,
     from: GuestAddr,
     limit: u32,
-) -> Place {
+) -> AddressResult {
     let mut text = text_up_to(caller, from, limit)?;
     let copied = text.len() as u32;
     text.truncate(limit as usize);
@@ -159,7 +170,12 @@ pub(crate) fn strncpy(
     Ok(to)
 }
 
-pub(crate) fn strcat(parts: &mut Parts, caller: &mut Caller<'_>, to: GuestAddr, from: GuestAddr) -> Place {
+pub(crate) fn strcat(
+    parts: &mut Parts,
+    caller: &mut Caller<'_>,
+    to: GuestAddr,
+    from: GuestAddr,
+) -> AddressResult {
     let (end, text) = (text(caller, to)?.len() as u32, text(caller, from)?);
     parts.check_room(caller, "strcat", to, end as usize + text.len() + 1);
     write_text(caller, to.offset(end), text)?;
@@ -172,7 +188,7 @@ pub(crate) fn strncat(
     to: GuestAddr,
     from: GuestAddr,
     limit: u32,
-) -> Place {
+) -> AddressResult {
     let end = text(caller, to)?.len() as u32;
     let text = text_up_to(caller, from, limit)?;
     write_text(caller, to.offset(end), text)?;
@@ -198,19 +214,24 @@ pub(crate) fn strncmp(
     Ok(order(&text_up_to(caller, a, limit)?, &text_up_to(caller, b, limit)?))
 }
 
-pub(crate) fn strchr(_: &mut Parts, caller: &mut Caller<'_>, string: GuestAddr, byte: i32) -> Place {
+pub(crate) fn strchr(_: &mut Parts, caller: &mut Caller<'_>, string: GuestAddr, byte: i32) -> AddressResult {
     let mut text = text(caller, string)?;
     text.push(0);
     Ok(found(string, text.iter().position(|&found| found == byte as u8)))
 }
 
-pub(crate) fn strrchr(_: &mut Parts, caller: &mut Caller<'_>, string: GuestAddr, byte: i32) -> Place {
+pub(crate) fn strrchr(_: &mut Parts, caller: &mut Caller<'_>, string: GuestAddr, byte: i32) -> AddressResult {
     let mut text = text(caller, string)?;
     text.push(0);
     Ok(found(string, text.iter().rposition(|&found| found == byte as u8)))
 }
 
-pub(crate) fn strstr(_: &mut Parts, caller: &mut Caller<'_>, string: GuestAddr, wanted: GuestAddr) -> Place {
+pub(crate) fn strstr(
+    _: &mut Parts,
+    caller: &mut Caller<'_>,
+    string: GuestAddr,
+    wanted: GuestAddr,
+) -> AddressResult {
     let (string_text, wanted) = (text(caller, string)?, text(caller, wanted)?);
     if wanted.is_empty() {
         return Ok(string);
@@ -240,7 +261,12 @@ pub(crate) fn strcspn(
     Ok(text.iter().take_while(|byte| !set.contains(byte)).count() as u32)
 }
 
-pub(crate) fn strpbrk(_: &mut Parts, caller: &mut Caller<'_>, string: GuestAddr, set: GuestAddr) -> Place {
+pub(crate) fn strpbrk(
+    _: &mut Parts,
+    caller: &mut Caller<'_>,
+    string: GuestAddr,
+    set: GuestAddr,
+) -> AddressResult {
     let (text, set) = (text(caller, string)?, text(caller, set)?);
     Ok(found(string, text.iter().position(|byte| set.contains(byte))))
 }
@@ -251,7 +277,7 @@ pub(crate) fn strtok(
     caller: &mut Caller<'_>,
     string: GuestAddr,
     separators: GuestAddr,
-) -> Place {
+) -> AddressResult {
     let start = if string.is_null() { parts.calls.token } else { string };
     if start.is_null() {
         return Ok(GuestAddr::NULL);

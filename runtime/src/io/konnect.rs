@@ -24,7 +24,7 @@ pub enum Port {
 
 /// A board: its port and the address set on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Board {
+pub struct KonnectBoard {
     /// The port.
     pub port: Port,
     /// The address, 0 to 7.
@@ -34,7 +34,7 @@ pub struct Board {
 /// The words of a served board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Service {
-    pub(crate) board: Board,
+    pub(crate) board: KonnectBoard,
     pub(crate) outputs: GuestAddr,
     pub(crate) inputs: GuestAddr,
 }
@@ -43,8 +43,8 @@ pub(crate) struct Service {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Konnects {
     services: Vec<Service>,
-    outputs: BTreeMap<Board, u16>,
-    inputs: BTreeMap<Board, u32>,
+    outputs: BTreeMap<KonnectBoard, u16>,
+    inputs: BTreeMap<KonnectBoard, u32>,
     /// Addresses that are not there, a bit for each; on JP4 and on JP6.
     absent: [u8; 2],
 }
@@ -56,17 +56,17 @@ impl Konnects {
     }
 
     /// Whether a board is there.
-    pub(crate) fn is_present(&self, board: Board) -> bool {
+    pub(crate) fn is_present(&self, board: KonnectBoard) -> bool {
         self.absent[board.port as usize] >> board.address & 1 == 0
     }
 
     /// The word that a board has taken.
-    pub(crate) fn outputs(&self, board: Board) -> u16 {
+    pub(crate) fn outputs(&self, board: KonnectBoard) -> u16 {
         self.outputs.get(&board).copied().unwrap_or(0)
     }
 
     /// The word that a board gives.
-    fn given(&self, board: Board) -> u32 {
+    fn given(&self, board: KonnectBoard) -> u32 {
         if self.is_present(board) { self.inputs.get(&board).copied().unwrap_or(0) } else { 0 }
     }
 
@@ -85,7 +85,7 @@ impl Konnects {
     }
 
     /// Gives an input of a board, 0 to 31, a level.
-    pub(crate) fn drive(&mut self, board: Board, input: u8, level: bool) {
+    pub(crate) fn drive(&mut self, board: KonnectBoard, input: u8, level: bool) {
         let word = self.inputs.entry(board).or_default();
         *word = *word & !(1 << input) | u32::from(level) << input;
     }
@@ -100,7 +100,7 @@ impl Konnects {
     }
 
     /// Exchanges the words of the board whose turn it is; the board whose outputs have changed by that.
-    pub(crate) fn tick(&mut self, memory: &mut GuestMemory, tick: Ticks) -> Option<(Board, u16)> {
+    pub(crate) fn tick(&mut self, memory: &mut GuestMemory, tick: Ticks) -> Option<(KonnectBoard, u16)> {
         let count = self.services.len() as u64;
         let turn = tick.get().checked_rem(count)?;
         let service = *self.services.get(turn as usize)?;

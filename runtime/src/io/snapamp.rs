@@ -100,14 +100,14 @@ impl Default for SideState {
 
 /// A board.
 #[derive(Clone, Debug, Default)]
-struct Board {
+struct SnapAmpBoard {
     /// Whether it is there: if not, it never reports a fault.
     is_present: bool,
     written: [u16; REGISTERS],
     sides: [SideState; 2],
 }
 
-impl Board {
+impl SnapAmpBoard {
     /// Whether more current flows on a side than its limit allows; without a limit any does.
     fn is_over(&self, side: usize) -> bool {
         let level = self.written[PEAK_LIMIT + side] & 0xf;
@@ -158,7 +158,7 @@ fn convert(counts: f64) -> u16 {
 
 /// The boards.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct SnapAmps([Board; BOARDS]);
+pub(crate) struct SnapAmps([SnapAmpBoard; BOARDS]);
 
 impl SnapAmps {
     /// Puts a board on the bus.

@@ -11,7 +11,7 @@ use super::Loads;
 use crate::io::changes::BitChange;
 use crate::io::fpga::Fpga;
 use crate::io::kanalog::Kanalog;
-use crate::io::konnect::Board;
+use crate::io::konnect::KonnectBoard;
 use crate::io::pins::Pins;
 use crate::io::uart::Uart;
 
@@ -52,7 +52,7 @@ pub(crate) trait Attached: Debug + Send + Copied {
     }
 
     /// The outputs of a Konnect board have changed.
-    fn konnect(&mut self, board: Board, outputs: u16, at: Cycles) {
+    fn konnect(&mut self, board: KonnectBoard, outputs: u16, at: Cycles) {
         let _ = (board, outputs, at);
     }
 

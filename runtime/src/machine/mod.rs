@@ -27,7 +27,7 @@ pub(crate) use plant::{COUNTS_PER_TICK, Drive, Plant};
 use crate::io::Io;
 use crate::io::bits::bit_state;
 use crate::io::changes::BitChange;
-use crate::io::konnect::Board;
+use crate::io::konnect::KonnectBoard;
 use crate::io::pins::Pins;
 use crate::io::snapamp::SnapAmps;
 use crate::machine::attached::{Attached, Outside};
@@ -160,7 +160,7 @@ impl Machine {
     }
 
     /// The outputs of a Konnect board have changed.
-    pub(crate) fn konnect(&mut self, board: Board, outputs: u16, at: Cycles) {
+    pub(crate) fn konnect(&mut self, board: KonnectBoard, outputs: u16, at: Cycles) {
         self.attached.iter_mut().for_each(|device| device.konnect(board, outputs, at));
     }
 

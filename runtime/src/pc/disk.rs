@@ -28,7 +28,7 @@ pub(crate) const NO_MORE: i32 = 3;
 
 /// What a program asks of the disk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Request {
+pub(crate) enum DiskRequest {
     /// Open for writing, and make empty.
     Create = 1,
     /// Write a line.
@@ -45,7 +45,7 @@ pub(crate) enum Request {
     Append = 7,
 }
 
-impl Request {
+impl DiskRequest {
     const ALL: [Self; 7] = [
         Self::Create,
         Self::Write,
@@ -70,7 +70,7 @@ impl Request {
 
 /// What the board is told.
 #[derive(Clone, Debug, PartialEq, Eq)]
-enum Answer {
+enum DiskReply {
     Line(Vec<u8>),
     End,
     Failure,
@@ -86,7 +86,7 @@ pub(crate) struct Disk {
     /// From a request to its answer.
     pub(crate) latency: Cycles,
     /// Answers on their way, and when they arrive.
-    answers: VecDeque<(Cycles, Answer)>,
+    answers: VecDeque<(Cycles, DiskReply)>,
 }
 
 impl Disk {
@@ -109,20 +109,20 @@ impl Disk {
     }
 
     /// Does what a request says; a remark if it cannot.
-    fn serve(&mut self, request: Request, text: &str, now: Cycles) -> Option<Message> {
+    fn serve(&mut self, request: DiskRequest, text: &str, now: Cycles) -> Option<Message> {
         match request {
-            Request::Create | Request::Append => {
-                let made = self.files.create(text, request == Request::Append);
+            DiskRequest::Create | DiskRequest::Append => {
+                let made = self.files.create(text, request == DiskRequest::Append);
                 self.writing = made.is_ok().then(|| text.to_owned());
                 made.err()
                     .map(|error| Message::FileNotMade { name: text.to_owned(), error: error.to_string() })
             }
-            Request::Write => self.write(text),
-            Request::CloseWriting => {
+            DiskRequest::Write => self.write(text),
+            DiskRequest::CloseWriting => {
                 self.writing = None;
                 None
             }
-            Request::Open => {
+            DiskRequest::Open => {
                 let opened = self.files.read(text);
                 let error = opened.as_ref().err().cloned();
                 self.reading = opened.ok().map(TextLines::new);
@@ -134,11 +134,11 @@ impl Disk {
                     Message::FileNotRead { name: text.to_owned(), error }
                 })
             }
-            Request::NextLine => {
+            DiskRequest::NextLine => {
                 self.answer(now);
                 None
             }
-            Request::CloseReading => {
+            DiskRequest::CloseReading => {
                 self.reading = None;
                 None
             }
@@ -154,23 +154,23 @@ impl Disk {
     /// Sends the next line, or says that there is none.
     fn answer(&mut self, now: Cycles) {
         let answer = match &mut self.reading {
-            None => Answer::Failure,
-            Some(lines) => lines.next().map_or(Answer::End, Answer::Line),
+            None => DiskReply::Failure,
+            Some(lines) => lines.next().map_or(DiskReply::End, DiskReply::Line),
         };
         self.answers.push_back((now + self.latency, answer));
     }
 
     /// The answer that has arrived by now.
-    fn arrived(&mut self, now: Cycles) -> Option<Answer> {
+    fn arrived(&mut self, now: Cycles) -> Option<DiskReply> {
         let is_due = self.answers.front().is_some_and(|(due, _)| *due <= now);
         if is_due { self.answers.pop_front().map(|(_, answer)| answer) } else { None }
     }
 
     /// Takes a console line that is a request; whether it was one.
     pub(crate) fn take(&mut self, out: &mut Out, line: &[u8], now: Cycles) -> bool {
-        let Some((request, text)) = Request::read(line) else { return false };
+        let Some((request, text)) = DiskRequest::read(line) else { return false };
         let text = String::from_utf8_lossy(text);
-        if matches!(request, Request::Create | Request::Append) {
+        if matches!(request, DiskRequest::Create | DiskRequest::Append) {
             out.forget_remarks(&["no-open-file"]);
         }
         if let Some(message) = self.serve(request, &text, now) {
@@ -184,9 +184,9 @@ impl Disk {
     pub(crate) fn slice(&mut self, context: &mut TickContext<'_>) -> bool {
         let Some(answer) = self.arrived(context.now) else { return false };
         match answer {
-            Answer::Line(line) => deliver(context.memory, &line),
-            Answer::End => context.memory.set(READ_DISK_BUFFER_STATUS, NO_MORE),
-            Answer::Failure => context.memory.set(READ_DISK_BUFFER_STATUS, FAILED),
+            DiskReply::Line(line) => deliver(context.memory, &line),
+            DiskReply::End => context.memory.set(READ_DISK_BUFFER_STATUS, NO_MORE),
+            DiskReply::Failure => context.memory.set(READ_DISK_BUFFER_STATUS, FAILED),
         }
         true
     }
@@ -247,10 +247,10 @@ mod tests {
 
     #[test]
     fn requests_are_told_from_console_lines_by_their_first_character() {
-        assert_eq!(Request::read(b"\x04a.txt"), Some((Request::Open, &b"a.txt"[..])));
-        assert_eq!(Request::read(b"\x07"), Some((Request::Append, &b""[..])));
+        assert_eq!(DiskRequest::read(b"\x04a.txt"), Some((DiskRequest::Open, &b"a.txt"[..])));
+        assert_eq!(DiskRequest::read(b"\x07"), Some((DiskRequest::Append, &b""[..])));
         for line in [&b"text"[..], b"", b"\x08", b"a\x02"] {
-            assert_eq!(Request::read(line), None);
+            assert_eq!(DiskRequest::read(line), None);
         }
     }
 }

@@ -8,7 +8,7 @@
 use kmotiondef::limits::TIMEBASE;
 use proptest::prelude::*;
 
-use super::profile::{FOREVER, Limits, Mode, Point, State, jog, move_from_rest, move_in_motion};
+use super::profile::{FOREVER, Limits, Mode, MotionState, Point, jog, move_from_rest, move_in_motion};
 use super::trajectory::{Cursor, Step, step};
 
 /// Planning time of the board in front of a motion planned while another is under way.
@@ -46,7 +46,7 @@ fn move_time(length: f64, limits: &Limits) -> f64 {
 }
 
 /// Seconds of a motion's states without the one tick at rest that the board appends, or the last without end.
-fn duration(states: &[State]) -> f64 {
+fn duration(states: &[MotionState]) -> f64 {
     let moving = states.iter().filter(|state| state.mode == Mode::Independent && state.t < FOREVER);
     moving.filter(|state| (state.a, state.b, state.c) != (0.0, 0.0, 0.0)).map(|state| state.t).sum()
 }
@@ -67,7 +67,7 @@ fn check_point(point: Point, fastest: f64, limits: &Limits) -> Result<(), TestCa
 
 /// Checks every state at its ends and between, and every tick of a short motion: limits, and no jump of place or
 /// speed. The result is where the last tick stands.
-fn check(start: Point, states: &[State], limits: &Limits, scale: f64) -> Result<f64, TestCaseError> {
+fn check(start: Point, states: &[MotionState], limits: &Limits, scale: f64) -> Result<f64, TestCaseError> {
     const SAMPLES: usize = 40;
     let fastest = limits.v.max(start.v.abs());
     let (mut x, mut v) = (start.x, start.v);
@@ -84,7 +84,7 @@ fn check(start: Point, states: &[State], limits: &Limits, scale: f64) -> Result<
         (x, v) = (end.x, end.v);
     }
     let (mut cursor, mut dest) = (Cursor { index: 0, t: 0.0 }, start.x);
-    let state = |index: usize| states.get(index).copied().unwrap_or(State::END);
+    let state = |index: usize| states.get(index).copied().unwrap_or(MotionState::END);
     for _ in 0..MOST_TICKS {
         let Step::Moving(next, ahead) = step(cursor, || unreachable!("no exponential state"), state) else {
             return Ok(dest);
@@ -147,7 +147,7 @@ proptest! {
         check(start, &states, &limits, scale)?;
         let expect = in_motion(start.v, distance - begun, &limits);
         prop_assert!(near(duration(&states), expect), "in motion: {} s instead of {}", duration(&states), expect);
-        let moving: Vec<&State> = states.iter().filter(|state| state.mode == Mode::Independent).collect();
+        let moving: Vec<&MotionState> = states.iter().filter(|state| state.mode == Mode::Independent).collect();
         let end = moving.last().map(|state| state.at(state.t).x).unwrap_or_default();
         prop_assert!((end - distance).abs() <= SINGLE * scale, "ends at {} instead of {}", end, distance);
     }

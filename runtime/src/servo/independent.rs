@@ -5,7 +5,7 @@ use kmotiondef::structs::{Chan, TripCoeff};
 use kmotiondef::{AxisId, GuestAddr, GuestType, Place};
 use vm::memory::GuestMemory;
 
-use super::profile::{LEAD, MAX_STATES, Mode, Point, State};
+use super::profile::{LEAD, MAX_STATES, Mode, MotionState, Point};
 use super::trajectory::{Approach, Cursor, Step, point, step};
 use crate::views::{AxisView, Typed, field_of};
 
@@ -16,13 +16,13 @@ fn list(memory: &GuestMemory, axis: AxisId) -> Place<[TripCoeff; MAX_STATES]> {
 
 /// Reads one state; beyond the list, and outside memory, it has ended.
 #[inline(always)]
-fn read(memory: &GuestMemory, base: GuestAddr, index: usize) -> State {
+fn read(memory: &GuestMemory, base: GuestAddr, index: usize) -> MotionState {
     const SIZE: usize = TripCoeff::SIZE as usize;
     let address = base.offset(TripCoeff::SIZE.wrapping_mul(index as u32));
     let Some(bytes) = memory.block::<SIZE>(address).filter(|_| index < MAX_STATES) else {
-        return State::END;
+        return MotionState::END;
     };
-    State {
+    MotionState {
         mode: Mode::from_number(field_of(bytes, TripCoeff::TRAJECTORY_MODE)),
         t: field_of(bytes, TripCoeff::T),
         a: field_of(bytes, TripCoeff::A),
@@ -33,7 +33,7 @@ fn read(memory: &GuestMemory, base: GuestAddr, index: usize) -> State {
 }
 
 /// Writes states into an axis' list from `offset` on, as many as fit.
-pub(crate) fn write(memory: &mut GuestMemory, axis: AxisId, offset: usize, states: &[State]) {
+pub(crate) fn write(memory: &mut GuestMemory, axis: AxisId, offset: usize, states: &[MotionState]) {
     let list = list(memory, axis);
     for (index, state) in (offset..MAX_STATES).zip(states) {
         let place = list.element(index);
@@ -47,7 +47,7 @@ pub(crate) fn write(memory: &mut GuestMemory, axis: AxisId, offset: usize, state
 }
 
 /// The state at an index of an axis' list.
-pub(crate) fn state(memory: &GuestMemory, axis: AxisId, index: usize) -> State {
+pub(crate) fn state(memory: &GuestMemory, axis: AxisId, index: usize) -> MotionState {
     read(memory, memory.axis(axis, Chan::C), index)
 }
 
@@ -59,7 +59,7 @@ pub(crate) fn start(memory: &mut GuestMemory, axis: AxisId) {
 }
 
 /// Replaces the motion of an axis.
-pub(crate) fn run(memory: &mut GuestMemory, axis: AxisId, states: &[State]) {
+pub(crate) fn run(memory: &mut GuestMemory, axis: AxisId, states: &[MotionState]) {
     write(memory, axis, 0, states);
     start(memory, axis);
 }

@@ -48,7 +48,7 @@ impl Mode {
 
 /// One state: position = a·t³ + b·t² + c·t + d for `t` from 0 to its duration.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct State {
+pub(crate) struct MotionState {
     /// What it is.
     pub(crate) mode: Mode,
     /// Duration in seconds.
@@ -63,7 +63,7 @@ pub(crate) struct State {
     pub(crate) d: f64,
 }
 
-impl State {
+impl MotionState {
     /// Rests at `position` for `duration`.
     pub(crate) fn hold(position: f64, duration: f64) -> Self {
         Self { mode: Mode::Independent, t: duration, a: 0.0, b: 0.0, c: 0.0, d: position }
@@ -131,7 +131,7 @@ impl Limits {
 /// A list under construction and the point it has reached.
 #[derive(Clone, Debug)]
 struct Path {
-    states: Vec<State>,
+    states: Vec<MotionState>,
     end: Point,
 }
 
@@ -155,8 +155,14 @@ impl Path {
     /// Appends `duration` seconds of constant `jerk`, even if they are none or, by rounding, less.
     fn append(&mut self, duration: f64, jerk: f64) {
         let Point { x, v, a } = self.end;
-        let state =
-            State { mode: Mode::Independent, t: duration, a: divide(jerk, 6.0), b: a / 2.0, c: v, d: x };
+        let state = MotionState {
+            mode: Mode::Independent,
+            t: duration,
+            a: divide(jerk, 6.0),
+            b: a / 2.0,
+            c: v,
+            d: x,
+        };
         self.end = state.at(duration);
         self.states.push(state);
     }
@@ -218,7 +224,7 @@ impl Path {
         self.push_at(ramp, -jerk, 0.0);
         self.push_at(constant, 0.0, -turn);
         self.push_at(ramp, jerk, -turn);
-        self.states.push(State::hold(target, TIMEBASE));
+        self.states.push(MotionState::hold(target, TIMEBASE));
         self.end = Point::rest(target);
     }
 }
@@ -264,23 +270,23 @@ impl Phases {
 }
 
 /// A move from rest, as a new axis or one standing still makes it.
-pub(crate) fn move_from_rest(from: f64, to: f64, limits: &Limits) -> Vec<State> {
+pub(crate) fn move_from_rest(from: f64, to: f64, limits: &Limits) -> Vec<MotionState> {
     if from.is_nan() {
         return move_from_nowhere(to, limits);
     }
     let mut path = Path::from(Point::rest(from));
     path.move_from_rest(to, limits);
-    path.states.push(State::END);
+    path.states.push(MotionState::END);
     path.states
 }
 
 /// A move of an axis whose destination is not a number: four phases of full length, and the last state that every move
 /// from rest has (coordinated-motion.md section 6).
-fn move_from_nowhere(to: f64, limits: &Limits) -> Vec<State> {
+fn move_from_nowhere(to: f64, limits: &Limits) -> Vec<MotionState> {
     let phase =
-        State { mode: Mode::Independent, t: limits.a / limits.j, a: 0.0, b: 0.0, c: 0.0, d: f64::NAN };
-    let last = State { t: TIMEBASE, d: to, ..phase };
-    vec![phase, phase, phase, phase, last, State::END]
+        MotionState { mode: Mode::Independent, t: limits.a / limits.j, a: 0.0, b: 0.0, c: 0.0, d: f64::NAN };
+    let last = MotionState { t: TIMEBASE, d: to, ..phase };
+    vec![phase, phase, phase, phase, last, MotionState::END]
 }
 
 /// How a half of a move changes its speed.
@@ -312,7 +318,7 @@ impl Ramp {
 }
 
 /// The states of a move from rest alone, each half with its own ramp.
-pub(crate) fn bare_move(from: f64, to: f64, ramps: [Ramp; 2], limits: &Limits) -> Vec<State> {
+pub(crate) fn bare_move(from: f64, to: f64, ramps: [Ramp; 2], limits: &Limits) -> Vec<MotionState> {
     if ramps == [Ramp::Smooth; 2] {
         let mut states = move_from_rest(from, to, limits);
         states.truncate(states.len() - 2);
@@ -347,7 +353,7 @@ fn peak_velocity(length: f64, ramps: [Ramp; 2], limits: &Limits) -> f64 {
 
 /// A move planned while the axis moves: 20 ticks continue as they are, then either the target is approached at full
 /// speed or the axis stops and starts again.
-pub(crate) fn move_in_motion(start: Point, to: f64, limits: &Limits) -> Vec<State> {
+pub(crate) fn move_in_motion(start: Point, to: f64, limits: &Limits) -> Vec<MotionState> {
     let mut path = lead(start);
     let mut stopped = path.clone();
     stopped.change(0.0, limits);
@@ -361,26 +367,30 @@ pub(crate) fn move_in_motion(start: Point, to: f64, limits: &Limits) -> Vec<Stat
     if sign * remaining < 0.0 {
         path = stopped;
         path.move_from_rest(to, limits);
-        path.states.push(State::END);
+        path.states.push(MotionState::END);
         return path.states;
     }
     direct.append(divide(remaining, sign * limits.v), 0.0);
     direct.change(0.0, limits);
-    direct.states.push(State::off(FOREVER, to));
+    direct.states.push(MotionState::off(FOREVER, to));
     direct.states
 }
 
 /// A jog: 20 ticks as before, then the change to the new velocity, which lasts.
-pub(crate) fn jog(start: Point, velocity: f64, limits: &Limits) -> Vec<State> {
+pub(crate) fn jog(start: Point, velocity: f64, limits: &Limits) -> Vec<MotionState> {
     let mut path = lead(start);
     path.change(velocity, limits);
-    path.states.push(if velocity == 0.0 { State::off(FOREVER, path.end.x) } else { constant(&path.end) });
+    path.states.push(if velocity == 0.0 {
+        MotionState::off(FOREVER, path.end.x)
+    } else {
+        constant(&path.end)
+    });
     path.states
 }
 
 /// Constant velocity without end.
-fn constant(point: &Point) -> State {
-    State { mode: Mode::Independent, t: FOREVER, a: 0.0, b: 0.0, c: point.v, d: point.x }
+fn constant(point: &Point) -> MotionState {
+    MotionState { mode: Mode::Independent, t: FOREVER, a: 0.0, b: 0.0, c: point.v, d: point.x }
 }
 
 /// The 20 ticks at constant velocity; the acceleration pauses meanwhile.

@@ -3,14 +3,14 @@
 use kmotiondef::limits::TIMEBASE;
 use serde_json::Value as Json;
 
-use super::profile::{FOREVER, Limits, Mode, Point, State, jog, move_from_rest, move_in_motion};
+use super::profile::{FOREVER, Limits, Mode, MotionState, Point, jog, move_from_rest, move_in_motion};
 use super::trajectory::{Approach, Cursor, Step, point, step};
 use crate::text::vectors::rows;
 
 /// An axis as the recording shows it.
 struct Axis {
     limits: Limits,
-    list: Vec<State>,
+    list: Vec<MotionState>,
     cursor: Option<Cursor>,
     dest: f64,
     last_vel: f32,
@@ -56,7 +56,7 @@ impl Axis {
         let moving = start.v != 0.0 || start.a != 0.0;
         match name {
             "Jog" if args[0] == 0.0 && self.cursor.is_none() => {
-                self.list = vec![State::END];
+                self.list = vec![MotionState::END];
                 return;
             }
             "Jog" => self.list = jog(start, args[0], &self.limits),
@@ -71,7 +71,8 @@ impl Axis {
         self.vc = (self.limits.a * tau) as f32;
         self.xc = (f64::from(self.vc) * tau) as f32;
         let ratio = libm::exp(-TIMEBASE / tau);
-        self.list = vec![State { mode: Mode::Exponential, t: 0.0, a: ratio, b: target, c: 0.0, d: 0.0 }];
+        self.list =
+            vec![MotionState { mode: Mode::Exponential, t: 0.0, a: ratio, b: target, c: 0.0, d: 0.0 }];
         self.cursor = Some(Cursor { index: 0, t: 0.0 });
     }
 }
@@ -97,7 +98,7 @@ fn largest(states: &[[f64; 5]], column: usize) -> f64 {
     states.iter().map(|state| state[column].abs()).filter(|&value| value < FOREVER).fold(0.0, f64::max)
 }
 
-fn check_states(row: &Json, call: &Json, found: &[State], problems: &mut Vec<String>) {
+fn check_states(row: &Json, call: &Json, found: &[MotionState], problems: &mut Vec<String>) {
     let list = call["states"].as_array().expect("states");
     let expect: Vec<[f64; 5]> =
         list.iter().map(|state| ["t", "a", "b", "c", "d"].map(|name| number(&state[name]))).collect();

@@ -6,7 +6,7 @@
 use kmotiondef::limits::TIMEBASE;
 
 use super::dsp::{divide, root};
-use super::profile::{Mode, Point, State};
+use super::profile::{Mode, MotionState, Point};
 
 /// Where a motion is in its list.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,7 +48,7 @@ pub(crate) enum Step {
 pub(crate) fn step(
     cursor: Cursor,
     approach: impl FnOnce() -> Approach,
-    state: impl Fn(usize) -> State,
+    state: impl Fn(usize) -> MotionState,
 ) -> Step {
     let (mut cursor, mut current) = (cursor, state(cursor.index));
     while current.mode == Mode::Independent && cursor.t >= current.t {
@@ -66,7 +66,7 @@ pub(crate) fn step(
 }
 
 /// Position, velocity and acceleration from which a new motion is planned.
-pub(crate) fn point(cursor: Cursor, dest: f64, velocity: f64, state: impl Fn(usize) -> State) -> Point {
+pub(crate) fn point(cursor: Cursor, dest: f64, velocity: f64, state: impl Fn(usize) -> MotionState) -> Point {
     let current = state(cursor.index);
     match current.mode {
         Mode::Independent => current.at(cursor.t),
@@ -80,7 +80,7 @@ pub(crate) fn point(cursor: Cursor, dest: f64, velocity: f64, state: impl Fn(usi
 ///
 /// Far away the acceleration limits speeding up only, since the velocity follows a root that brakes by itself. The
 /// board takes that root in singles.
-fn exponential(state: &State, approach: &Approach) -> f64 {
+fn exponential(state: &MotionState, approach: &Approach) -> f64 {
     let Approach { dest, velocity, vc, xc, v, a } = *approach;
     let sign = if state.b >= dest { 1.0 } else { -1.0 };
     let (present, step) = (sign * velocity, a * TIMEBASE);

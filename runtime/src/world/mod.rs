@@ -90,7 +90,7 @@ impl World {
     }
 
     /// Records from now on.
-    pub(crate) fn record(&mut self, request: trace::Request, io: &mut Io, memory: &GuestMemory) {
+    pub(crate) fn record(&mut self, request: trace::TraceRequest, io: &mut Io, memory: &GuestMemory) {
         if request.changes {
             io.pins.changes.switch_on(memory);
             self.hear_uart(io);

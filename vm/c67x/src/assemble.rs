@@ -16,7 +16,7 @@ use crate::table::Op;
 
 /// A line of assembler text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Line {
+pub struct AssemblyLine {
     /// The instruction.
     pub inst: Inst,
     /// Whether it executes in parallel with the instruction before it: `||`.
@@ -50,14 +50,14 @@ pub enum SyntaxError {
 ///
 /// # Errors
 /// The line is not an instruction of the table.
-pub fn assemble(line: &str, at: u32) -> Result<Line, SyntaxError> {
+pub fn assemble(line: &str, at: u32) -> Result<AssemblyLine, SyntaxError> {
     let (rest, joins_previous) = match line.trim().strip_prefix("||") {
         Some(rest) => (rest.trim_start(), true),
         None => (line.trim(), false),
     };
     if let Some((text, word)) = rest.strip_suffix('}').and_then(|rest| rest.split_once('{')) {
         let inst = word_in_braces(text.trim(), word, at).ok_or_else(|| SyntaxError::Word(word.to_owned()))?;
-        return Ok(Line { inst, joins_previous });
+        return Ok(AssemblyLine { inst, joins_previous });
     }
     let (pred, rest) = condition(rest)?;
     let (name, rest) = split_word(rest);
@@ -73,7 +73,7 @@ pub fn assemble(line: &str, at: u32) -> Result<Line, SyntaxError> {
         .map(|text| operand(text, name, at).ok_or_else(|| SyntaxError::Operand(text.to_owned())))
         .collect::<Result<Vec<_>, _>>()?;
     let inst = choose(name, unit, pred, &operands)?;
-    Ok(Line { inst, joins_previous })
+    Ok(AssemblyLine { inst, joins_previous })
 }
 
 /// The instruction of a word that is spelled out, if the text before it is the word's.

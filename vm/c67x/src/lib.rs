@@ -33,7 +33,7 @@ mod spelling;
 mod table;
 mod text;
 
-pub use assemble::{Line, SyntaxError, assemble};
+pub use assemble::{AssemblyLine, SyntaxError, assemble};
 pub use inst::{BadOperands, BadWord, Inst, PARALLEL};
 pub use kind::{Field, Isa, Kind, Mode, OffsetKind, Stages, Timing, Update};
 pub use mnemonic::Mnemonic;

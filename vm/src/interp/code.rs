@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use super::sequences::{self, BREAK};
 use crate::op::{Op, WORD};
-use crate::operand::Operand;
+use crate::operand::OperandType;
 use crate::program::{MAX_TEXT, Program};
 
 /// One instruction.
@@ -41,7 +41,7 @@ impl<'a> Operands<'a> {
 
     /// The next operand.
     #[inline(always)]
-    pub(super) fn take<O: Operand>(&mut self) -> O {
+    pub(super) fn take<O: OperandType>(&mut self) -> O {
         let first = self.at;
         self.at += O::SIZE / 2;
         let high = if O::SIZE == 4 { self.word[first + 1] } else { 0 };

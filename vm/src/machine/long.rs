@@ -17,7 +17,7 @@ use crate::thread::{Progress, ThreadState};
 const MOST_SLICES: u64 = 512;
 
 /// What a long slice consists of.
-struct Plan {
+struct LongSlice {
     thread: ThreadId,
     slices: u64,
     /// What each of them can spend.
@@ -47,7 +47,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
     }
 
     /// The next slices as a long one: every other tick, the primary thread has those between them.
-    fn plan_long_slice(&self, limit: Ticks) -> Option<Plan> {
+    fn plan_long_slice(&self, limit: Ticks) -> Option<LongSlice> {
         let active = self.threads.active();
         if active.len() != 1 || self.turn != Turn::Primary {
             return None;
@@ -65,11 +65,11 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         // No block may take a whole slice: it would be skipped.
         let longest = debt.max(self.longest_steps[thread.index()]);
         let is_callback_set = !self.firmware.callback(&self.memory).is_null();
-        (slices > 1 && longest < each && !is_callback_set).then_some(Plan { thread, slices, each, debt })
+        (slices > 1 && longest < each && !is_callback_set).then_some(LongSlice { thread, slices, each, debt })
     }
 
     /// Lets the thread compute; how it stopped, and what was spent with the debt.
-    fn compute(&mut self, plan: &Plan) -> (Stop, Cycles) {
+    fn compute(&mut self, plan: &LongSlice) -> (Stop, Cycles) {
         let all = Cycles::new(plan.each.get() * plan.slices as i64);
         let Some(loaded) = self.loaded[plan.thread.index()].as_ref() else {
             return (Stop::NeedsBoard, plan.debt);

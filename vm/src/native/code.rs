@@ -9,7 +9,7 @@ use cranelift_frontend::FunctionBuilderContext;
 use cranelift_jit::{ArenaMemoryProvider, JITBuilder, JITModule};
 use cranelift_module::{FuncId, Module, default_libcall_names};
 
-use super::compile::{CompileError, Job, Place, StackUse, compile, host_isa};
+use super::compile::{CodeDestination, CompileError, Job, StackUse, compile, host_isa};
 use super::entry::{Begin, RunPiece};
 use super::piece::{Handover, Marks, Places};
 use super::translate::{HostFunctions, PureFunctions};
@@ -41,7 +41,7 @@ pub(super) struct Entry {
 }
 
 /// The machine code of one program.
-pub(super) struct Code {
+pub(super) struct MachineCode {
     /// What the pointers point into; `None` where that is part of the executable.
     pub(super) _memory: Option<CodeMemory>,
     pub(super) begin: Begin,
@@ -50,11 +50,11 @@ pub(super) struct Code {
 }
 
 // SAFETY: nothing changes after `compile`; the pointers are to memory that any thread may read and execute.
-unsafe impl Send for Code {}
+unsafe impl Send for MachineCode {}
 // SAFETY: as above; the module, whose methods are not for several threads, is not used before it is dropped.
-unsafe impl Sync for Code {}
+unsafe impl Sync for MachineCode {}
 
-impl fmt::Debug for Code {
+impl fmt::Debug for MachineCode {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Code").field("entries", &self.entries.len()).finish_non_exhaustive()
     }
@@ -73,7 +73,7 @@ impl CodeMemory {
 
     /// Room for this many bytes of code.
     fn with_room(reserve: usize) -> Result<Self, CompileError> {
-        let mut builder = JITBuilder::with_isa(host_isa(Place::Memory)?, default_libcall_names());
+        let mut builder = JITBuilder::with_isa(host_isa(CodeDestination::Memory)?, default_libcall_names());
         // One piece, so that every call reaches its target.
         let arena =
             ArenaMemoryProvider::new_with_size(reserve).map_err(|error| CompileError::host(&error))?;
@@ -92,7 +92,7 @@ impl Drop for CodeMemory {
     }
 }
 
-impl Code {
+impl MachineCode {
     /// Compiles `program`, for a firmware that has the functions `pure`.
     pub(super) fn compile(program: &Program, pure: PureFunctions<'_>) -> Result<Self, CompileError> {
         let mut lengths = program.functions().iter().map(|function| function.body.len());

@@ -59,7 +59,7 @@ impl From<ModuleError> for CompileError {
 
 /// Where machine code is to be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Place {
+pub(super) enum CodeDestination {
     /// In memory, at addresses that are known.
     Memory,
     /// In a file, to be put anywhere.
@@ -67,12 +67,12 @@ pub(super) enum Place {
 }
 
 /// The code generator for this computer.
-pub(super) fn host_isa(place: Place) -> Result<OwnedTargetIsa, CompileError> {
+pub(super) fn host_isa(place: CodeDestination) -> Result<OwnedTargetIsa, CompileError> {
     let mut flags = settings::builder();
     let verify = if cfg!(debug_assertions) { "true" } else { "false" };
     for (name, value) in [
         ("opt_level", "speed"),
-        ("is_pic", if place == Place::File { "true" } else { "false" }),
+        ("is_pic", if place == CodeDestination::File { "true" } else { "false" }),
         ("use_colocated_libcalls", "false"),
         ("enable_probestack", "false"),
         ("enable_verifier", verify),

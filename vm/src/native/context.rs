@@ -29,7 +29,7 @@ enum Next {
 }
 
 /// What a request leads to.
-enum Step {
+enum NextStep {
     /// The context goes on at once.
     Go(Answer),
     /// It stops, to go on later as given.
@@ -154,7 +154,7 @@ impl Context {
         protected: &mut ProtectedBlocks,
     ) -> Result<Stop, TrapKind> {
         let mut step = match &self.next {
-            Next::Answer(answer) => Step::Go(*answer),
+            Next::Answer(answer) => NextStep::Go(*answer),
             Next::Request(request) => {
                 let request = *request;
                 self.answer(id, slice, request)?
@@ -167,8 +167,8 @@ impl Context {
         };
         loop {
             let answer = match step {
-                Step::Go(answer) => answer,
-                Step::Stop(stop, next) => {
+                NextStep::Go(answer) => answer,
+                NextStep::Stop(stop, next) => {
                     self.next = next;
                     return Ok(stop);
                 }
@@ -203,13 +203,13 @@ impl Context {
         id: ContextId,
         slice: &mut Slice<'_, F>,
         request: Request,
-    ) -> Result<Step, TrapKind> {
+    ) -> Result<NextStep, TrapKind> {
         let address = GuestAddr::new(request.a as u32);
         if slice.is_long && request.involves_board() {
-            return Ok(Step::Stop(Stop::NeedsBoard, Next::Request(request)));
+            return Ok(NextStep::Stop(Stop::NeedsBoard, Next::Request(request)));
         }
         let slot = match request.reason().unwrap_or(Reason::Unreachable) {
-            Reason::Preempted => return Ok(Step::Stop(Stop::Preempted, Next::Answer(Answer::Slot(0)))),
+            Reason::Preempted => return Ok(NextStep::Stop(Stop::Preempted, Next::Answer(Answer::Slot(0)))),
             Reason::Load => slice.load_slot(address, request.width().ok_or(TrapKind::Unreachable)?)?,
             Reason::Store => {
                 slice.store_slot(address, request.width().ok_or(TrapKind::Unreachable)?, request.b)?;
@@ -226,14 +226,14 @@ impl Context {
             }
             Reason::CallFirmware => return self.begin_firmware(id, slice, address, SigRef(request.b as u16)),
             Reason::CallPointer => {
-                return resolve(&self.program, slice, address, SigRef(request.b as u16)).map(Step::Go);
+                return resolve(&self.program, slice, address, SigRef(request.b as u16)).map(NextStep::Go);
             }
             Reason::NeedsBoard => 0,
             Reason::StackOverflow => return Err(self.overflow(request)),
             Reason::DivisionByZero => return Err(TrapKind::DivisionByZero),
             Reason::Unreachable => return Err(TrapKind::Unreachable),
         };
-        Ok(Step::Go(Answer::Slot(slot)))
+        Ok(NextStep::Go(Answer::Slot(slot)))
     }
 
     /// A call that the stack has no room for: it is its caller that is shown.
@@ -252,7 +252,7 @@ impl Context {
         slice: &mut Slice<'_, F>,
         address: GuestAddr,
         signature: SigRef,
-    ) -> Result<Step, TrapKind> {
+    ) -> Result<NextStep, TrapKind> {
         let stated = self.program.signature(signature);
         let Some(callee) = slice.firmware.signature(address) else {
             return Err(TrapKind::UnknownFirmwareFunction { addr: address });
@@ -268,17 +268,19 @@ impl Context {
         slice: &mut Slice<'_, F>,
         address: GuestAddr,
         signature: SigRef,
-    ) -> Result<Step, TrapKind> {
+    ) -> Result<NextStep, TrapKind> {
         let given = &self.fiber.state().exchange.arguments;
         let parameters = &self.program.signature(signature).params;
         let arguments = self.arguments.gather(parameters, |position, _| given[position].get());
         Ok(match slice.call_firmware(id, address, arguments, self.program.address_of(self.at))? {
-            Outcome::Done(value) => Step::Go(Answer::Slot(value.into_slot())),
-            Outcome::Wait(wake) => Step::Stop(Stop::Waiting(wake), Next::CallFirmware(address, signature)),
-            Outcome::End => Step::Stop(Stop::Ended, Next::Nothing(Stop::Ended)),
+            Outcome::Done(value) => NextStep::Go(Answer::Slot(value.into_slot())),
+            Outcome::Wait(wake) => {
+                NextStep::Stop(Stop::Waiting(wake), Next::CallFirmware(address, signature))
+            }
+            Outcome::End => NextStep::Stop(Stop::Ended, Next::Nothing(Stop::Ended)),
             Outcome::Pause => {
                 self.at += 1;
-                Step::Stop(Stop::Paused, Next::Answer(Answer::Slot(0)))
+                NextStep::Stop(Stop::Paused, Next::Answer(Answer::Slot(0)))
             }
         })
     }

@@ -15,7 +15,7 @@ use std::{fmt, ptr};
 use corosensei::stack::{DefaultStack, Stack as _, StackPointer};
 use corosensei::{Coroutine, CoroutineResult};
 
-use super::code::{Code, Entry};
+use super::code::{Entry, MachineCode};
 use super::entry;
 use super::protected::ProtectedBlocks;
 use super::request::{Reason, Request, Yielder};
@@ -114,7 +114,7 @@ pub(super) struct Fiber {
 /// What a fiber has besides what runs on it.
 #[derive(Clone)]
 struct Rest {
-    code: Arc<Code>,
+    code: Arc<MachineCode>,
     /// Where guest memory and the map of protected blocks are, as soon as it has begun.
     ram: Option<(*mut u8, *mut u8, *const u8)>,
     /// Whether the last request asked for the target of a call.
@@ -131,7 +131,7 @@ impl Fiber {
     /// A fiber that will call `function` of `code` on the guest stack `stack`; it has not begun.
     ///
     /// `old` is discarded, and its place used again if it is large enough.
-    pub(super) fn new(code: Arc<Code>, function: usize, stack: Stack, old: Option<Self>) -> Self {
+    pub(super) fn new(code: Arc<MachineCode>, function: usize, stack: Stack, old: Option<Self>) -> Self {
         let size = code.stack_size(stack.size());
         let kept = old.map(|old| Rc::clone(&old.place)).filter(|place| place.size >= size);
         let place = kept.unwrap_or_else(|| Home::new(size, stack));

@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicPtr, Ordering};
 
 use kmotiondef::{GuestAddr, ThreadId};
 
-use super::code::{Code, Entry, begin_at};
+use super::code::{Entry, MachineCode, begin_at};
 use super::compile::StackUse;
 use super::state::State;
 use super::translate::PureFunctions;
@@ -96,7 +96,7 @@ pub enum LinkedError {
 pub struct Linked {
     image: &'static [u8],
     thread: ThreadId,
-    code: Arc<Code>,
+    code: Arc<MachineCode>,
     host: Vec<(GuestAddr, &'static AtomicPtr<()>)>,
 }
 
@@ -126,7 +126,7 @@ impl Linked {
         let addresses = unsafe { table(description.host_addresses, description.host_count) };
         // SAFETY: the same for its table of pointers, which it alone keeps in memory that can be written.
         let pointers = unsafe { table(description.host_pointers, description.host_count) };
-        let code = Code {
+        let code = MachineCode {
             _memory: None,
             begin: begin_at(description.begin),
             entries: entries.to_vec(),
@@ -156,7 +156,7 @@ impl Linked {
         &self,
         program: &Program,
         pure: PureFunctions<'_>,
-    ) -> Result<Arc<Code>, LinkedError> {
+    ) -> Result<Arc<MachineCode>, LinkedError> {
         if self.code.entries.len() != program.functions().len() {
             return Err(LinkedError::Program);
         }

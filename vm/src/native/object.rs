@@ -16,7 +16,7 @@ use cranelift_object::{ObjectBuilder, ObjectModule};
 use kmotiondef::{CodeAddr, GuestAddr, ThreadId};
 
 use super::code::Entry;
-use super::compile::{CompileError, Functions, Job, Place, compile, host_isa};
+use super::compile::{CodeDestination, CompileError, Functions, Job, compile, host_isa};
 use super::linked::{Description, FORM};
 use super::translate::{HostFunctions, PureFunctions};
 use crate::program::{Function, Program};
@@ -47,7 +47,7 @@ pub struct Parts<'a> {
 /// # Errors
 /// Where there is no machine code for this computer, or none for a function.
 pub fn object(parts: Parts<'_>) -> Result<Vec<u8>, CompileError> {
-    let builder = ObjectBuilder::new(host_isa(Place::File)?, "cc67", default_libcall_names())?;
+    let builder = ObjectBuilder::new(host_isa(CodeDestination::File)?, "cc67", default_libcall_names())?;
     let mut writer = Writer { module: ObjectModule::new(builder) };
     let host = writer.declare()?;
     let used = RefCell::new(Vec::new());

@@ -2,14 +2,14 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::code::Code;
+use super::code::MachineCode;
 use crate::program::Program;
 
 /// Programs that are kept; the one that was used longest ago goes first.
 const MOST: usize = 32;
 
 /// A program, and its machine code; `None` where it cannot be compiled.
-type Known = (Program, Option<Arc<Code>>);
+type Known = (Program, Option<Arc<MachineCode>>);
 
 /// Machine code of the programs that were compiled last, for engines whose boards have the same firmware.
 ///
@@ -22,8 +22,8 @@ impl SharedCode {
     pub(super) fn get(
         &self,
         program: &Program,
-        compile: impl FnOnce(&Program) -> Option<Arc<Code>>,
-    ) -> Option<Arc<Code>> {
+        compile: impl FnOnce(&Program) -> Option<Arc<MachineCode>>,
+    ) -> Option<Arc<MachineCode>> {
         if let Some(code) = self.find(program) {
             return code;
         }
@@ -36,7 +36,7 @@ impl SharedCode {
         code
     }
 
-    fn find(&self, program: &Program) -> Option<Option<Arc<Code>>> {
+    fn find(&self, program: &Program) -> Option<Option<Arc<MachineCode>>> {
         let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let index = known.iter().position(|(known, _)| known == program)?;
         let found = known.remove(index);

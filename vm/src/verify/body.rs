@@ -7,7 +7,7 @@ use crate::kind::{Name, OpKind};
 use crate::meter;
 use crate::op::Op;
 use crate::operand::{
-    Addr, Bits32, Class, Classes, Count, Count32, FuncRef, Imm, Imm16, Label, Off, Operand, Pool, RegF32,
+    Addr, Bits32, Class, Classes, Count, Count32, FuncRef, Imm, Imm16, Label, Off, OperandType, Pool, RegF32,
     RegF64, RegI32, RegI64, SigRef,
 };
 use crate::program::{Function, Program};
@@ -188,7 +188,7 @@ const fn result(op: &Op) -> Option<Class> {
 }
 
 /// An operand that is checked by its type.
-trait Checked: Operand {
+trait Checked: OperandType {
     /// Whether the operand names something that exists.
     fn check(self, body: &Body<'_>) -> Result<(), VerifyErrorKind>;
 }

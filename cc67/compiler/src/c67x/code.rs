@@ -98,7 +98,7 @@ pub(super) enum Base {
 
 /// An address: base plus bytes, or base plus a register times the size of the access.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Place {
+pub(super) struct MemoryPlace {
     pub(super) base: Base,
     /// Bytes, if there is no index.
     pub(super) offset: i32,
@@ -108,7 +108,7 @@ pub(super) struct Place {
     pub(super) step: i32,
 }
 
-impl Place {
+impl MemoryPlace {
     pub(super) const fn new(base: Base, offset: i32) -> Self {
         Self { base, offset, index: None, step: 0 }
     }
@@ -127,7 +127,7 @@ pub(super) struct Inst {
     /// The constants of a bit field.
     pub(super) field: (u8, u8),
     /// The address of a load or store, or of which an address is made.
-    pub(super) place: Option<Place>,
+    pub(super) place: Option<MemoryPlace>,
     pub(super) condition: Condition,
     /// A number of a call or table.
     pub(super) number: u32,
@@ -183,7 +183,7 @@ impl Inst {
     /// The register that a load or store steps on.
     pub(super) fn stepped(&self) -> Option<VReg> {
         match self.place {
-            Some(Place { base: Base::Reg(reg), step, .. }) if step != 0 => Some(reg),
+            Some(MemoryPlace { base: Base::Reg(reg), step, .. }) if step != 0 => Some(reg),
             _ => None,
         }
     }

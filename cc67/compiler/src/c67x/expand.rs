@@ -8,7 +8,7 @@ use cranelift_entity::SecondaryMap;
 
 use super::abi;
 use super::allocate::Assignment;
-use super::code::{Arg, Base, Call, Code, End, Inst, Place, Target, Value};
+use super::code::{Arg, Base, Call, Code, End, Inst, MemoryPlace, Target, Value};
 use super::forms::Kind;
 use super::frame::{self, Frame};
 use super::moves;
@@ -121,7 +121,9 @@ fn escaping(function: &Function, code: &Code) -> SecondaryMap<SlotId, bool> {
         escaping[outgoing] = true;
     }
     for inst in code.blocks.iter().flat_map(|block| &block.insts) {
-        if let (Kind::FrameAddress, Some(Place { base: Base::Slot(slot), .. })) = (inst.kind, inst.place) {
+        if let (Kind::FrameAddress, Some(MemoryPlace { base: Base::Slot(slot), .. })) =
+            (inst.kind, inst.place)
+        {
             escaping[slot] = true;
         }
     }
@@ -191,7 +193,7 @@ impl Expander<'_> {
     /// A word of the frame that holds a saved register.
     fn saved_word(&mut self, kind: Kind, reg: Reg, index: u32) {
         let at = (self.frame.saved + 4 * index).cast_signed();
-        let place = Place::new(Base::Stack, at);
+        let place = MemoryPlace::new(Base::Stack, at);
         let Some(mem) = self.finalizer.mem(place, 4) else { return };
         let (dst, src2) =
             if kind.is_store() { (Final::None, Final::Reg(reg)) } else { (Final::Reg(reg), Final::None) };
@@ -263,7 +265,7 @@ impl Expander<'_> {
     }
 
     /// Whether a load of a pair can have this address: those of the frame reach 31 pairs.
-    fn reaches_pair(&self, place: Place) -> bool {
+    fn reaches_pair(&self, place: MemoryPlace) -> bool {
         if matches!(place.base, Base::Reg(_)) {
             return true;
         }
@@ -271,10 +273,10 @@ impl Expander<'_> {
         offset % 8 == 0 && (0..32).contains(&(offset / 8))
     }
 
-    fn load_halves(&mut self, inst: &Inst, place: Place) {
+    fn load_halves(&mut self, inst: &Inst, place: MemoryPlace) {
         let Arg::Reg(dst) = inst.dst else { return };
         for (dst, offset) in [(Arg::Low(dst), 0), (Arg::High(dst), 4)] {
-            let place = Place { offset: place.offset + offset, ..place };
+            let place = MemoryPlace { offset: place.offset + offset, ..place };
             self.ordinary(&Inst { kind: Kind::LoadWord, dst, place: Some(place), ..*inst });
         }
     }

@@ -74,14 +74,14 @@ pub(super) const BRANCH: u32 = 6;
 
 /// A step that reads a register, and the last stage in which it does.
 #[derive(Clone, Copy)]
-struct Reader {
+struct RegisterReader {
     step: u32,
     last: u8,
 }
 
 /// A step that writes a register, and the stage.
 #[derive(Clone, Copy)]
-struct Writer {
+struct RegisterWriter {
     step: u32,
     stage: u8,
 }
@@ -89,8 +89,8 @@ struct Writer {
 struct Builder {
     graph: Graph,
     /// Since the last result that replaced all others.
-    writers: Vec<Vec<Writer>>,
-    readers: Vec<Vec<Reader>>,
+    writers: Vec<Vec<RegisterWriter>>,
+    readers: Vec<Vec<RegisterReader>>,
     shared_store: Option<u32>,
     /// Whether the last such store may share the cycle of the one before.
     is_joined: bool,
@@ -121,26 +121,26 @@ impl Builder {
         let reads = inst.reads().map(|read| (read.reg, read.first, read.last));
         for (reg, first, last) in reads.chain(condition.map(|reg| (reg, 1, 1))) {
             for index in 0..self.writers[reg.index()].len() {
-                let Writer { step: writer, stage } = self.writers[reg.index()][index];
+                let RegisterWriter { step: writer, stage } = self.writers[reg.index()][index];
                 self.edge(writer, step, (stage + 1).saturating_sub(first).max(1));
             }
-            self.readers[reg.index()].push(Reader { step, last });
+            self.readers[reg.index()].push(RegisterReader { step, last });
         }
         for write in inst.writes() {
             let at = write.reg.index();
             for index in 0..self.readers[at].len() {
-                let Reader { step: reader, last } = self.readers[at][index];
+                let RegisterReader { step: reader, last } = self.readers[at][index];
                 self.edge(reader, step, last.saturating_sub(write.stage));
             }
             for index in 0..self.writers[at].len() {
-                let Writer { step: writer, stage } = self.writers[at][index];
+                let RegisterWriter { step: writer, stage } = self.writers[at][index];
                 self.edge(writer, step, (stage + 1).saturating_sub(write.stage));
             }
             if condition.is_none() {
                 self.writers[at].clear();
                 self.readers[at].clear();
             }
-            self.writers[at].push(Writer { step, stage: write.stage });
+            self.writers[at].push(RegisterWriter { step, stage: write.stage });
         }
     }
 

@@ -2,7 +2,7 @@
 //!
 //! A register whose only value is a constant is made again before every read instead.
 
-use super::code::{Arg, Base, Code, Info, Inst, Place, VReg, Value};
+use super::code::{Arg, Base, Code, Info, Inst, MemoryPlace, VReg, Value};
 use super::forms::Kind;
 use super::select::make;
 
@@ -159,12 +159,12 @@ impl Mover<'_> {
             Home::Constant(value) => out.extend(make(short.into(), value, span)),
             Home::Memory(first) if is_pair => {
                 let mut inst = Inst::new(Kind::LoadPair, short.into(), Arg::None, Arg::None, span);
-                inst.place = Some(Place::new(Base::Spill(first), 0));
+                inst.place = Some(MemoryPlace::new(Base::Spill(first), 0));
                 out.push(inst);
             }
             Home::Memory(first) => {
                 let mut inst = Inst::new(Kind::LoadWord, short.into(), Arg::None, Arg::None, span);
-                inst.place = Some(Place::new(Base::Spill(first), 0));
+                inst.place = Some(MemoryPlace::new(Base::Spill(first), 0));
                 out.push(inst);
             }
         }
@@ -175,7 +175,7 @@ impl Mover<'_> {
         let short = self.short(false);
         if let Home::Memory(first) = self.home {
             let mut inst = Inst::new(Kind::LoadWord, short.into(), Arg::None, Arg::None, span);
-            inst.place = Some(Place::new(Base::Spill(first), offset));
+            inst.place = Some(MemoryPlace::new(Base::Spill(first), offset));
             out.push(inst);
         }
         short
@@ -193,7 +193,7 @@ impl Mover<'_> {
     fn store_word(&mut self, arg: Arg, offset: i32, span: crate::source::Span, out: &mut Vec<Inst>) {
         if let Home::Memory(first) = self.home {
             let mut inst = Inst::new(Kind::StoreWord, Arg::None, Arg::None, arg, span);
-            inst.place = Some(Place::new(Base::Spill(first), offset));
+            inst.place = Some(MemoryPlace::new(Base::Spill(first), offset));
             out.push(inst);
         }
     }

@@ -5,7 +5,7 @@
 use c67x::{Inst, Mem, Offset, Operand, Pair, Pred, PredReg, Reg, Side, Update};
 
 use super::abi;
-use super::code::{self, Arg, Base, Place, Value};
+use super::code::{self, Arg, Base, MemoryPlace, Value};
 use super::forms::{Form, Kind};
 use crate::source::Span;
 
@@ -159,7 +159,7 @@ impl Finalizer<'_> {
     }
 
     /// Bytes above B15 of what an address counts from.
-    pub(super) fn offset(&self, place: Place) -> i32 {
+    pub(super) fn offset(&self, place: MemoryPlace) -> i32 {
         let base = match place.base {
             Base::Slot(slot) => self.frame.slots[slot],
             Base::Spill(first) => self.frame.spills + 4 * first,
@@ -169,7 +169,7 @@ impl Finalizer<'_> {
     }
 
     /// The address of an access of `bytes` bytes; `None` if no instruction reaches it.
-    pub(super) fn mem(&self, place: Place, bytes: u32) -> Option<Mem> {
+    pub(super) fn mem(&self, place: MemoryPlace, bytes: u32) -> Option<Mem> {
         let size = bytes.cast_signed();
         let Base::Reg(base) = place.base else {
             let offset = self.offset(place);
@@ -195,7 +195,7 @@ impl Finalizer<'_> {
     }
 
     /// What an access does to memory.
-    pub(super) fn access(&self, kind: Kind, place: Place, mem: Mem) -> Access {
+    pub(super) fn access(&self, kind: Kind, place: MemoryPlace, mem: Mem) -> Access {
         let (is_store, size) = (kind.is_store(), kind.bytes().unwrap_or(4));
         let at = self.offset(place);
         match place.base {

@@ -12,7 +12,7 @@ use super::value::{Data, DebugValue, Displayed};
 use super::{LocalModel, Model};
 use crate::diag::{Severity, Sink};
 use crate::driver::{front, on_large_stack};
-use crate::inspect::Kind;
+use crate::inspect::EntryKind;
 use crate::names::Names;
 use crate::pp::Disk;
 use crate::sema::constants::{self, Constant};
@@ -152,7 +152,7 @@ impl Model {
             value = inner;
         }
         let locals = self.locals_of(name, function, &sources, start);
-        let symbols = self.image.symbols.iter().filter(|entry| entry.kind == Kind::Object);
+        let symbols = self.image.symbols.iter().filter(|entry| entry.kind == EntryKind::Object);
         let symbols = symbols.map(|entry| (entry.name.clone(), GuestAddr::new(entry.address))).collect();
         let meanings = watch::meanings(&unit, index, value, (&symbols, &self.options), items)?;
         let function = unit.functions.swap_remove(index);
@@ -213,7 +213,7 @@ struct Inner<'a> {
     locals: &'a BTreeMap<LocalId, LocalModel>,
 }
 
-impl watch::Reader for Inner<'_> {
+impl watch::ItemReader for Inner<'_> {
     fn bytes(&self, address: GuestAddr) -> [u8; 8] {
         self.reader.bytes(address)
     }

@@ -20,7 +20,7 @@ use kmotiondef::ThreadId;
 
 use crate::driver::{Options, front_and_object, on_large_stack};
 use crate::image;
-use crate::inspect::{Inspection, Kind};
+use crate::inspect::{EntryKind, Inspection};
 use crate::link::Linked;
 use crate::names::Names;
 use crate::object::VariablePlaces;
@@ -142,7 +142,7 @@ impl Model {
                 .image
                 .symbols
                 .iter()
-                .find(|entry| entry.kind == Kind::Function && entry.name == symbol.name);
+                .find(|entry| entry.kind == EntryKind::Function && entry.name == symbol.name);
             let Some(index) = self.unit.functions.iter().position(|known| known.symbol == function.symbol)
             else {
                 continue;
@@ -262,7 +262,7 @@ impl Model {
     #[must_use]
     pub fn globals(&self) -> Vec<(String, String, u32)> {
         let mut globals = Vec::new();
-        for entry in self.image.symbols.iter().filter(|entry| entry.kind == Kind::Object) {
+        for entry in self.image.symbols.iter().filter(|entry| entry.kind == EntryKind::Object) {
             let symbol =
                 self.unit.symbols.values().find(|symbol| symbol.name == entry.name && !symbol.is_anonymous());
             if let Some(symbol) = symbol {
@@ -342,7 +342,7 @@ pub fn of_image(path: &Path, program: &[u8], options: &Options) -> Result<Model,
 /// That it is not there.
 pub fn source_of(path: &Path, program: &[u8]) -> Result<PathBuf, String> {
     let image = Inspection::read(program).map_err(|error| error.to_string())?;
-    let main = image.symbols.iter().find(|entry| entry.kind == Kind::Function && entry.name == "main");
+    let main = image.symbols.iter().find(|entry| entry.kind == EntryKind::Function && entry.name == "main");
     let file =
         main.and_then(|entry| entry.file.clone()).ok_or("the image does not say which source it is of")?;
     let beside = path.parent().unwrap_or(Path::new("")).join(&file);

@@ -132,18 +132,20 @@ impl Download {
         while let Some((line, number)) = lines.next() {
             last = number;
             let fail = |kind| DownloadError { line: number, kind };
-            let command = Command::parse(line).ok_or(fail(DownloadErrorKind::Command))?;
+            let command = DownloadCommand::parse(line).ok_or(fail(DownloadErrorKind::Command))?;
             match command {
-                Command::Kill(_) if thread.is_some() => return Err(fail(DownloadErrorKind::Incomplete)),
-                Command::Kill(killed) => thread = Some(killed),
-                Command::Load(address, count) => {
+                DownloadCommand::Kill(_) if thread.is_some() => {
+                    return Err(fail(DownloadErrorKind::Incomplete));
+                }
+                DownloadCommand::Kill(killed) => thread = Some(killed),
+                DownloadCommand::Load(address, count) => {
                     let bytes = lines.by_ref().take(count.div_ceil(N_BYTES_PER_LINE));
                     let bytes: Option<Vec<u8>> = bytes.flat_map(|(line, _)| numbers(line)).collect();
                     let bytes = bytes.filter(|bytes| bytes.len() == count);
                     writes.push((address, bytes.ok_or(fail(DownloadErrorKind::Bytes))?));
                 }
-                Command::EntryPoint(owner, address) if thread == Some(owner) => entry = Some(address),
-                Command::EntryPoint(..) => return Err(fail(DownloadErrorKind::Incomplete)),
+                DownloadCommand::EntryPoint(owner, address) if thread == Some(owner) => entry = Some(address),
+                DownloadCommand::EntryPoint(..) => return Err(fail(DownloadErrorKind::Incomplete)),
             }
         }
         match (thread, entry) {
@@ -194,13 +196,13 @@ impl Download {
 }
 
 /// A line that is not bytes.
-enum Command {
+enum DownloadCommand {
     Kill(ThreadId),
     Load(GuestAddr, usize),
     EntryPoint(ThreadId, GuestAddr),
 }
 
-impl Command {
+impl DownloadCommand {
     fn parse(line: &str) -> Option<Self> {
         let mut words = line.split_ascii_whitespace();
         let name = words.next()?.to_ascii_lowercase();

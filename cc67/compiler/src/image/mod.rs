@@ -31,7 +31,7 @@ use crate::object::{base_type, class, function_type, statement, to_u16, whole_li
 /// If the program exceeds what the format can count.
 pub fn write(linked: &Linked) -> Result<Vec<u8>, Error> {
     let mut image = bare(linked);
-    let mut table = Table::default();
+    let mut table = SymbolTable::default();
     table.functions(linked);
     table.objects(linked);
     table.markers(linked);
@@ -107,7 +107,7 @@ fn sections(linked: &Linked) -> Vec<coff::Section> {
 
 /// The symbol table and the line table while they grow.
 #[derive(Default)]
-struct Table {
+struct SymbolTable {
     symbols: Vec<Symbol>,
     lines: Vec<Line>,
     /// Entries so far, auxiliary ones included: the index of the next symbol as the format counts.
@@ -116,7 +116,7 @@ struct Table {
     first_lines: Vec<(usize, u32)>,
 }
 
-impl Table {
+impl SymbolTable {
     fn push(
         &mut self,
         name: &str,

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use coff::{Image, Line, Target};
 
 use super::Inspection;
-use super::symbols::{Entry, Kind};
+use super::symbols::{Entry, EntryKind};
 
 /// Where a source line begins in the code.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -51,7 +51,7 @@ pub(super) fn collect(image: &Image, symbols: &[Entry]) -> Vec<SourceLine> {
 fn is_function(image: &Image, entry: &Entry) -> bool {
     let is_static =
         || image.target == Target::C6000 && entry.section == ".text" && !entry.name.starts_with("L.");
-    entry.kind == Kind::Function || (entry.kind == Kind::Label && is_static())
+    entry.kind == EntryKind::Function || (entry.kind == EntryKind::Label && is_static())
 }
 
 /// The vendor's compiler pairs every address but a function's first with the line after the

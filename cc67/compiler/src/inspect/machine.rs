@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use c67x::{Branch, Inst, PARALLEL, Pred, Reg};
 
-use super::{Inspection, symbols::Kind};
+use super::{Inspection, symbols::EntryKind};
 use crate::c67x::text::constant;
 
 /// Cycles from the issue of a branch to that of its target.
@@ -79,14 +79,14 @@ pub(super) fn functions(inspection: &Inspection) -> Result<Vec<Routine>, String>
     let words: Vec<u32> =
         text.data().as_chunks::<4>().0.iter().map(|word| u32::from_le_bytes(*word)).collect();
     let end = text.address + words.len() as u32 * 4;
-    let functions = inspection.symbols.iter().filter(|entry| entry.kind == Kind::Function);
+    let functions = inspection.symbols.iter().filter(|entry| entry.kind == EntryKind::Function);
     let functions = functions.filter(|entry| (text.address..end).contains(&entry.address));
     let mut all = Vec::new();
     for function in functions {
         let next = inspection
             .symbols
             .iter()
-            .find(|other| other.kind == Kind::Function && other.address > function.address);
+            .find(|other| other.kind == EntryKind::Function && other.address > function.address);
         let limit = next.map_or(end, |next| next.address).min(end);
         let limit = function.size.map_or(limit, |size| limit.min(function.address + size));
         let index = |address: u32| ((address - text.address) / 4) as usize;

@@ -17,7 +17,7 @@ mod symbols;
 pub use compare::compare;
 pub use disassembly::Sources;
 pub use lines::SourceLine;
-pub use symbols::{Entry, Kind, Order};
+pub use symbols::{Entry, EntryKind, Order};
 
 use std::fmt::Write as _;
 

@@ -9,7 +9,7 @@ use super::Inspection;
 
 /// What a symbol names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum EntryKind {
     /// A function.
     Function,
     /// An object.
@@ -22,7 +22,7 @@ pub enum Kind {
     Undefined,
 }
 
-impl Kind {
+impl EntryKind {
     /// In one word.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -48,7 +48,7 @@ pub struct Entry {
     /// Its section, or where else it is.
     pub section: String,
     /// What it is.
-    pub kind: Kind,
+    pub kind: EntryKind,
     /// Whether other units see it.
     pub is_external: bool,
     /// The file of a function.
@@ -97,26 +97,26 @@ pub(super) fn collect(image: &Image) -> Vec<Entry> {
             section: section(image, symbol),
             kind,
             is_external: symbol.class == StorageClass::EXTERNAL,
-            file: files.last().filter(|_| kind == Kind::Function).cloned(),
+            file: files.last().filter(|_| kind == EntryKind::Function).cloned(),
         });
     }
     // Of several names for one address the one that says most comes last, where it is found.
-    entries.sort_by_key(|entry| (entry.address, entry.kind != Kind::Absolute, entry.size));
+    entries.sort_by_key(|entry| (entry.address, entry.kind != EntryKind::Absolute, entry.size));
     entries
 }
 
-fn kind(image: &Image, symbol: &Symbol) -> Kind {
+fn kind(image: &Image, symbol: &Symbol) -> EntryKind {
     if symbol.class == StorageClass::LABEL {
-        return Kind::Label;
+        return EntryKind::Label;
     }
     match symbol.section {
-        SectionNumber::UNDEFINED => Kind::Undefined,
-        SectionNumber::ABSOLUTE => Kind::Absolute,
-        SectionNumber(1) => Kind::Function,
-        _ if image.target == Target::CC67 => Kind::Object,
+        SectionNumber::UNDEFINED => EntryKind::Undefined,
+        SectionNumber::ABSOLUTE => EntryKind::Absolute,
+        SectionNumber(1) => EntryKind::Function,
+        _ if image.target == Target::CC67 => EntryKind::Object,
         // The vendor's compiler writes section 2 for everything; the address tells.
-        _ if inside(image, symbol.value) => Kind::Object,
-        _ => Kind::Absolute,
+        _ if inside(image, symbol.value) => EntryKind::Object,
+        _ => EntryKind::Absolute,
     }
 }
 
@@ -130,8 +130,8 @@ fn inside(image: &Image, address: u32) -> bool {
 }
 
 /// The vendor's compiler writes an entry without a size after everything but functions.
-fn size(image: &Image, symbol: &Symbol, kind: Kind) -> Option<u32> {
-    let has_size = image.target == Target::CC67 || kind == Kind::Function;
+fn size(image: &Image, symbol: &Symbol, kind: EntryKind) -> Option<u32> {
+    let has_size = image.target == Target::CC67 || kind == EntryKind::Function;
     symbol.size().filter(|_| has_size)
 }
 

@@ -180,7 +180,7 @@ pub fn link(objects: &[Object], options: &Options<'_>) -> Result<Linked, Vec<Lin
     let names = names::Names::collect(objects)?;
     let reached = reach::reach(objects, &names, options)?;
     let base = options.addresses.text.unwrap_or_else(|| program_base(options.thread));
-    let layout = text::Layout::new(objects, &reached, base)?;
+    let layout = text::TextLayout::new(objects, &reached, base)?;
     let code = base.offset(layout.guard);
     let placed = place::place(objects, &names, &reached, &layout, code, &options.addresses);
     let warnings = place::check_size(&placed, base)?;

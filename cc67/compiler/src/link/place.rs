@@ -6,7 +6,7 @@ use kmotiondef::map::{PROGRAM_BASE, PROGRAM_SIZE, STACK_BASE};
 use super::error::{LinkError, LinkErrorKind, LinkWarning};
 use super::names::Names;
 use super::reach::Reached;
-use super::text::Layout;
+use super::text::TextLayout;
 use super::{LinkedSymbol, Section, SectionAddresses};
 use crate::object::{Object, Symbol};
 
@@ -43,7 +43,7 @@ pub(super) fn place(
     objects: &[Object],
     names: &Names<'_>,
     reached: &Reached,
-    layout: &Layout,
+    layout: &TextLayout,
     base: GuestAddr,
     addresses: &SectionAddresses,
 ) -> Placed {
@@ -80,7 +80,7 @@ fn behind(end: u32) -> GuestAddr {
 }
 
 impl Placed {
-    fn data(&mut self, objects: &[Object], reached: &Reached, layout: &Layout) {
+    fn data(&mut self, objects: &[Object], reached: &Reached, layout: &TextLayout) {
         let mut at = self.data_address.get();
         for (index, object) in objects.iter().enumerate() {
             let needed = object.objects.iter().enumerate().filter(|(item, _)| reached.data[index][*item]);
@@ -102,7 +102,7 @@ impl Placed {
         objects: &[Object],
         names: &Names<'_>,
         reached: &Reached,
-        layout: &Layout,
+        layout: &TextLayout,
         start: GuestAddr,
     ) {
         let mut at = start.get();
@@ -124,7 +124,7 @@ fn linked(
     address: GuestAddr,
     size: u32,
     section: Section,
-    layout: &Layout,
+    layout: &TextLayout,
     object: usize,
 ) -> LinkedSymbol {
     LinkedSymbol {

@@ -8,7 +8,7 @@ use kmotiondef::GuestAddr;
 
 use super::error::{LinkError, LinkErrorKind};
 use super::reach::{Reached, Target};
-use super::text::{Addresses, Layout};
+use super::text::{Addresses, TextLayout};
 use crate::bytecode::RelocationKind;
 use crate::c67x::ALIGN;
 use crate::c67x::text::{FixupKind, branch, far_jump, half};
@@ -35,7 +35,7 @@ pub(super) fn check_targets(objects: &[Object]) -> Result<(), Vec<LinkError>> {
     }
 }
 
-impl Layout {
+impl TextLayout {
     /// Lays out the functions that are needed, after them the jumps.
     pub(super) fn processor(&mut self, objects: &[Object], reached: &Reached, base: GuestAddr) {
         self.word_bytes = WORD;
@@ -75,7 +75,7 @@ fn is_in_reach(base: u32, address: u32) -> bool {
 }
 
 /// The bytes of the text.
-pub(super) fn text(objects: &[Object], layout: &Layout, addresses: &Addresses<'_>) -> Vec<u8> {
+pub(super) fn text(objects: &[Object], layout: &TextLayout, addresses: &Addresses<'_>) -> Vec<u8> {
     let mut words = vec![0_u32; layout.words as usize];
     for (object, index, start) in &layout.functions {
         let unit = &objects[*object];

@@ -16,11 +16,11 @@ use crate::bytecode::text::{Numbers, call, call_firmware};
 use crate::bytecode::{Relocation, RelocationKind, WORD, head};
 use crate::ir::function::{Signature, Signatures};
 use crate::ir::inst::SignatureId;
-use crate::object::{Function, Object, SourceLine};
+use crate::object::{Object, ObjectFunction, SourceLine};
 
 /// The order of the text and the numbers that objects share in it.
 #[derive(Debug, Default)]
-pub(super) struct Layout {
+pub(super) struct TextLayout {
     /// The functions: object, index, number of the `func` word.
     pub(super) functions: Vec<(usize, u32, u32)>,
     /// Words of the text.
@@ -40,7 +40,7 @@ pub(super) struct Layout {
     signature_numbers: Vec<Vec<u16>>,
 }
 
-impl Layout {
+impl TextLayout {
     pub(super) fn new(
         objects: &[Object],
         reached: &Reached,
@@ -152,7 +152,7 @@ impl Addresses<'_> {
 /// The bytes of the text.
 pub(super) fn text(
     objects: &[Object],
-    layout: &Layout,
+    layout: &TextLayout,
     addresses: &Addresses<'_>,
 ) -> Result<Vec<u8>, Vec<LinkError>> {
     if layout.word_bytes != WORD as u32 {
@@ -170,7 +170,7 @@ pub(super) fn text(
 
 struct Writer<'a> {
     objects: &'a [Object],
-    layout: &'a Layout,
+    layout: &'a TextLayout,
     addresses: &'a Addresses<'a>,
     text: Vec<u8>,
     errors: Vec<LinkError>,
@@ -178,7 +178,7 @@ struct Writer<'a> {
 
 impl Writer<'_> {
     /// Appends a function whose `func` word has number `word` in the program.
-    fn function(&mut self, object: usize, function: &Function, word: u32) {
+    fn function(&mut self, object: usize, function: &ObjectFunction, word: u32) {
         let unit = &self.objects[object];
         let relocations = function.relocations.start as usize..function.relocations.end as usize;
         let mut relocations = unit.relocations[relocations].iter().peekable();
@@ -251,7 +251,7 @@ impl Writer<'_> {
 fn fail(
     object: usize,
     unit: &Object,
-    function: &Function,
+    function: &ObjectFunction,
     relocation: &Relocation,
     kind: LinkErrorKind,
 ) -> LinkError {
@@ -305,7 +305,7 @@ pub(super) fn data(objects: &[Object], addresses: &Addresses<'_>) -> Vec<u8> {
 }
 
 /// What is known about each function besides its symbol.
-pub(super) fn functions(objects: &[Object], layout: &Layout) -> Vec<LinkedFunction> {
+pub(super) fn functions(objects: &[Object], layout: &TextLayout) -> Vec<LinkedFunction> {
     let mut first_line = 0;
     let describe = |(object, index, _): &(usize, u32, u32)| {
         let function = &objects[*object].functions[*index as usize];
@@ -318,7 +318,7 @@ pub(super) fn functions(objects: &[Object], layout: &Layout) -> Vec<LinkedFuncti
 }
 
 /// The line table.
-pub(super) fn lines(objects: &[Object], layout: &Layout, base: GuestAddr) -> Vec<LinkedLine> {
+pub(super) fn lines(objects: &[Object], layout: &TextLayout, base: GuestAddr) -> Vec<LinkedLine> {
     let mut lines = Vec::new();
     for (object, index, word) in &layout.functions {
         let unit = &objects[*object];
@@ -335,8 +335,8 @@ pub(super) fn lines(objects: &[Object], layout: &Layout, base: GuestAddr) -> Vec
 }
 
 /// The function whose source a line is, if that is another one than it is compiled into.
-fn inlined(unit: &Object, around: &Function, place: SourceLine) -> Option<Arc<str>> {
-    let contains = |function: &&Function| {
+fn inlined(unit: &Object, around: &ObjectFunction, place: SourceLine) -> Option<Arc<str>> {
+    let contains = |function: &&ObjectFunction| {
         let begin = unit.symbols[function.symbol].place;
         begin.file == place.file && (begin.line..=function.end.line).contains(&place.line)
     };

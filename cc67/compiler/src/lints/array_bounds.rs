@@ -3,7 +3,7 @@
 //! Only whole objects count: beyond a member array there is the next member, which programs reach on purpose. An
 //! index that changes is followed through the simplest loops, where every turn is known.
 
-use super::program::Program;
+use super::program::AnalysedProgram;
 use super::walk::{Extent, Walk};
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::ty::TypeId;
@@ -13,7 +13,7 @@ use crate::typed::{
 };
 
 /// Reports loads and stores outside of arrays, at constant indexes and in loops that count.
-pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
+pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.whole_functions() {
         let search = Search { program, function };
         for place in function.exprs.values().flat_map(|expr| accesses(function, &expr.kind)) {
@@ -63,7 +63,7 @@ struct Counter {
 }
 
 struct Search<'a> {
-    program: &'a Program<'a>,
+    program: &'a AnalysedProgram<'a>,
     function: &'a Function,
 }
 

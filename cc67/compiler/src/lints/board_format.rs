@@ -3,12 +3,12 @@
 //! They are right on a PC and print or store something else on the board (`gather-persist-console.md` 4.1 and 4.2).
 //! Only what can be seen in the format is reported; a format that is not written in the call is not looked at.
 
-use super::format::{Function, literal_format};
-use super::program::Program;
+use super::format::{FormatFunction, literal_format};
+use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
 
 /// Looks at every format.
-pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
+pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.functions() {
         for (_, call) in function.calls() {
             let Some((taker, format)) = literal_format(program.unit, function, call) else { continue };
@@ -35,7 +35,7 @@ struct Finding {
 /// What the board does, and what to write.
 type Quirk = (&'static str, &'static str);
 
-fn findings(function: Function, format: &[u8]) -> Vec<Finding> {
+fn findings(function: FormatFunction, format: &[u8]) -> Vec<Finding> {
     let mut findings = Vec::new();
     let mut rest = format;
     while let Some(start) = rest.iter().position(|byte| *byte == b'%') {
@@ -203,7 +203,7 @@ mod tests {
     use super::*;
 
     fn check(function: &str, format: &str, expect: &[&str]) {
-        let function = Function::by_name(function).expect("known");
+        let function = FormatFunction::by_name(function).expect("known");
         let found: Vec<String> =
             findings(function, format.as_bytes()).into_iter().map(|finding| finding.spelled).collect();
         assert_eq!(found, expect, "{format}");

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use kmotiondef::waiting::waits_for;
 
 use super::call_graph::CallGraph;
-use super::program::Program;
+use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::typed::{Callee, ExprId, ExprKind, Function, PlaceId, PlaceKind, SymbolId};
 
@@ -13,7 +13,7 @@ use crate::typed::{Callee, ExprId, ExprKind, Function, PlaceId, PlaceKind, Symbo
 const VARIABLE: &str = "UserCallBack";
 
 /// Reports calls that may wait in the functions that the unit installs as call-back.
-pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
+pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     let Some(variable) = program.symbol(VARIABLE) else { return };
     let installed: BTreeSet<_> =
         program.functions().flat_map(|function| installed_functions(function, variable)).collect();
@@ -47,7 +47,11 @@ pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
 }
 
 /// The calls that lead from the call-back to a function, for people.
-fn path(program: &Program<'_>, reached: &BTreeMap<SymbolId, Option<SymbolId>>, to: SymbolId) -> String {
+fn path(
+    program: &AnalysedProgram<'_>,
+    reached: &BTreeMap<SymbolId, Option<SymbolId>>,
+    to: SymbolId,
+) -> String {
     let mut names = vec![program.name(to)];
     let mut symbol = to;
     while let Some(Some(caller)) = reached.get(&symbol) {

@@ -4,7 +4,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::program::Program;
+use super::program::AnalysedProgram;
 use crate::source::Span;
 use crate::typed::{Callee, Function, SymbolId};
 
@@ -15,7 +15,7 @@ pub(super) struct CallGraph<'a> {
 }
 
 impl<'a> CallGraph<'a> {
-    pub(super) fn new(program: &Program<'a>) -> Self {
+    pub(super) fn new(program: &AnalysedProgram<'a>) -> Self {
         let functions: BTreeMap<_, _> =
             program.functions().map(|function| (function.symbol, function)).collect();
         let calls =

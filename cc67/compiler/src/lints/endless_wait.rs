@@ -2,12 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use super::program::Program;
+use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::typed::{Definition, ExprId, ExprKind, Function, PlaceKind, Stmt, StmtKind, SymbolId};
 
 /// Reports loops whose condition reads one variable of the program that is never changed, and nothing else.
-pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
+pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     // A part that was not understood may change anything.
     if program.functions().any(|function| function.has_errors) {
         return;
@@ -31,7 +31,7 @@ pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
 }
 
 /// The variable that a loop waits for, and the condition.
-fn waited(program: &Program<'_>, function: &Function, stmt: &Stmt) -> Option<(SymbolId, ExprId)> {
+fn waited(program: &AnalysedProgram<'_>, function: &Function, stmt: &Stmt) -> Option<(SymbolId, ExprId)> {
     let StmtKind::Loop { condition: Some(condition), body, step: None, .. } = &stmt.kind else { return None };
     if leaves(body) {
         return None;
@@ -74,7 +74,7 @@ fn only_variable(function: &Function, condition: ExprId) -> Option<SymbolId> {
 }
 
 /// The variables that a statement changes, or whose address goes anywhere.
-fn changed(program: &Program<'_>) -> BTreeSet<SymbolId> {
+fn changed(program: &AnalysedProgram<'_>) -> BTreeSet<SymbolId> {
     let mut changed = BTreeSet::new();
     for symbol in program.unit.symbols.values() {
         if let Definition::Data(data) = &symbol.definition {

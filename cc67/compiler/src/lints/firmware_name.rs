@@ -2,12 +2,12 @@
 
 use kmotiondef::firmware::Origin;
 
-use super::program::Program;
+use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::typed::{Definition, Linkage, Symbol};
 
 /// Reports every definition that other units see and the firmware has as well.
-pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
+pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for symbol in program.unit.symbols.values() {
         if let Some(lint) = lint_for(program, symbol) {
             let message = format!("the firmware has a `{}` of its own", symbol.name);
@@ -23,7 +23,7 @@ pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
 
 /// Names that the header declares or that the firmware keeps for itself the vendor's linker refuses; functions of the C
 /// library that a program brings along are a matter of portability.
-fn lint_for(program: &Program<'_>, symbol: &Symbol) -> Option<Lint> {
+fn lint_for(program: &AnalysedProgram<'_>, symbol: &Symbol) -> Option<Lint> {
     if matches!(symbol.definition, Definition::None) || symbol.linkage == Linkage::Internal {
         return None;
     }

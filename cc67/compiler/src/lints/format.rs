@@ -4,14 +4,14 @@
 //! `unsigned` is fine, `%d` for a `double` is not (`dialect.md` 5). A format that is not
 //! written in the call is not looked at.
 
-use super::program::Program;
+use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::source::Span;
 use crate::ty::{TypeId, Types};
 use crate::typed::{self, Call, Callee, Definition, ExprId, ExprKind, PlaceKind, Unit};
 
 /// Compares every format with the arguments after it.
-pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
+pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.functions() {
         for (_, call) in function.calls() {
             let Some((taker, format)) = literal_format(program.unit, function, call) else { continue };
@@ -26,7 +26,7 @@ pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
 }
 
 /// An argument as the program has it: a `float` is passed as a `double`, but the message speaks of the `float`.
-fn written(function: &typed::Function, value: ExprId) -> Argument {
+fn written(function: &typed::Function, value: ExprId) -> PassedArgument {
     let expr = &function.exprs[value];
     match expr.kind {
         ExprKind::Convert(inner) if expr.ty == Types::DOUBLE && function.exprs[inner].ty == Types::FLOAT => {
@@ -41,10 +41,10 @@ pub(super) fn literal_format<'p>(
     unit: &'p Unit,
     function: &typed::Function,
     call: &Call,
-) -> Option<(Function, &'p [u8])> {
+) -> Option<(FormatFunction, &'p [u8])> {
     let Callee::Symbol(callee) = call.callee else { return None };
     let callee = &unit.symbols[callee];
-    let taker = Function::by_name(&callee.name)?;
+    let taker = FormatFunction::by_name(&callee.name)?;
     if !matches!(callee.definition, Definition::None) {
         return None;
     }
@@ -61,14 +61,14 @@ pub(super) fn literal_format<'p>(
 
 /// A function that takes a format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Function {
+pub(super) struct FormatFunction {
     /// Which argument is the format, counted from 0.
     pub(super) format: usize,
     /// It stores through its arguments instead of printing them.
     pub(super) is_scan: bool,
 }
 
-impl Function {
+impl FormatFunction {
     /// The function of this name, if it takes a format and variable arguments.
     pub(super) fn by_name(name: &str) -> Option<Self> {
         let (format, is_scan) = match name {
@@ -83,13 +83,13 @@ impl Function {
 }
 
 /// An argument after the format: its type after array and function names became pointers, and its place.
-type Argument = (TypeId, Span);
+type PassedArgument = (TypeId, Span);
 
 /// A mismatch.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Finding {
     /// The argument that does not fit; `None` if the format itself is wrong.
-    argument: Option<Argument>,
+    argument: Option<PassedArgument>,
     /// What is wrong.
     message: String,
     /// What would fit.
@@ -99,7 +99,7 @@ struct Finding {
 }
 
 impl Finding {
-    fn into_diagnostic(self, program: &Program<'_>, format: Span) -> Diagnostic {
+    fn into_diagnostic(self, program: &AnalysedProgram<'_>, format: Span) -> Diagnostic {
         let lint = if self.lacks_address { Lint::MissingAddress } else { Lint::Format };
         let diagnostic = match self.argument {
             Some((ty, span)) => {
@@ -115,7 +115,12 @@ impl Finding {
 }
 
 /// Compares a format with the arguments after it.
-fn compare(types: &Types, function: Function, format: &[u8], arguments: &[Argument]) -> Vec<Finding> {
+fn compare(
+    types: &Types,
+    function: FormatFunction,
+    format: &[u8],
+    arguments: &[PassedArgument],
+) -> Vec<Finding> {
     let mut findings = Vec::new();
     let mut left = arguments.iter();
     let mut rest = format;
@@ -171,7 +176,7 @@ fn compare(types: &Types, function: Function, format: &[u8], arguments: &[Argume
     findings
 }
 
-fn finding(argument: Option<Argument>, message: String, help: Option<String>) -> Finding {
+fn finding(argument: Option<PassedArgument>, message: String, help: Option<String>) -> Finding {
     Finding { argument, message, help, lacks_address: false }
 }
 
@@ -311,7 +316,7 @@ mod tests {
     use super::*;
 
     fn messages(function: &str, format: &str, arguments: &[TypeId], types: &Types) -> Vec<String> {
-        let function = Function::by_name(function).expect("known");
+        let function = FormatFunction::by_name(function).expect("known");
         let arguments: Vec<_> = arguments.iter().map(|ty| (*ty, Span::new(0, 0))).collect();
         compare(types, function, format.as_bytes(), &arguments)
             .into_iter()

@@ -6,7 +6,7 @@
 use kmotiondef::limits::VERSION;
 use kmotiondef::structs::{STRUCTURES, Structure};
 
-use super::program::Program;
+use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::source::SourceFile;
 
@@ -17,7 +17,7 @@ const HEADERS: [&str; 2] = ["KMotionDef.h", "PC-DSP.h"];
 const VERSION_MACRO: &str = "KMOTION_VER";
 
 /// Reports the first header from disk if its version or its structures are not the firmware's.
-pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
+pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     let files = program.sources.files().map(|(_, file)| file);
     let local: Vec<_> = files.filter(|file| is_header(file)).collect();
     let Some((name, span)) = local.first().and_then(|file| Some((&file.name, file.included_at?))) else {
@@ -58,7 +58,7 @@ fn version_in(text: &[u8]) -> Option<String> {
 }
 
 /// Where the program's structure of this name differs first, if it has one.
-fn difference(program: &Program<'_>, structure: &Structure) -> Option<String> {
+fn difference(program: &AnalysedProgram<'_>, structure: &Structure) -> Option<String> {
     let types = &program.unit.types;
     let (record, layout) = types.records().find_map(|(id, record)| {
         let name = record.name.filter(|name| program.names.get(*name) == structure.name);

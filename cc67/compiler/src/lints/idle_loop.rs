@@ -2,12 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use super::program::Program;
+use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::typed::{ExprId, ExprKind, Function, LocalId, PlaceId, PlaceKind, Stmt, StmtKind};
 
 /// Reports `for (;;) ;` and `while (n) ;`, where nothing changes `n`.
-pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
+pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.whole_functions() {
         function.each_stmt(&mut |stmt| sink.report_if(finding(function, stmt)));
     }

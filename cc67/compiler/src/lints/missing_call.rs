@@ -1,12 +1,12 @@
 //! `while (!CheckDone) ;`: the name of a function where its result is meant.
 
-use super::program::Program;
+use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::ty::Type;
 use crate::typed::{ExprId, ExprKind, Function, PlaceKind, StmtKind, SymbolId, UnaryOp};
 
 /// Reports functions that are tested or compared with a number, which their address always passes or never does.
-pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
+pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.functions() {
         let mut tested = tested(function);
         tested.sort_unstable();
@@ -45,7 +45,7 @@ fn tested(function: &Function) -> Vec<ExprId> {
 }
 
 /// The function whose name is all of an expression.
-fn named(program: &Program<'_>, function: &Function, expr: ExprId) -> Option<SymbolId> {
+fn named(program: &AnalysedProgram<'_>, function: &Function, expr: ExprId) -> Option<SymbolId> {
     let place = match function.exprs[expr].kind {
         ExprKind::Address(place) => place,
         // A comparison with a number converts.

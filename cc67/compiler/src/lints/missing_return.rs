@@ -5,13 +5,13 @@
 
 use std::collections::BTreeSet;
 
-use super::program::Program;
+use super::program::AnalysedProgram;
 use super::used_values;
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::typed::{Stmt, StmtKind};
 
 /// Reports every function but `main` whose end can be reached.
-pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
+pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     let used: BTreeSet<_> = program.functions().flat_map(used_values::used_in).collect();
     for function in program.whole_functions() {
         let name = program.name(function.symbol);

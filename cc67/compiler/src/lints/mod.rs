@@ -39,7 +39,7 @@ pub(crate) mod unused_value;
 pub(crate) mod user_data_alignment;
 pub(crate) mod user_data_index;
 
-use program::Program;
+use program::AnalysedProgram;
 
 use crate::diag::{Sink, for_each_lint};
 use crate::firmware::FirmwareNames;
@@ -48,7 +48,7 @@ use crate::source::SourceMap;
 use crate::typed::Unit;
 
 /// A search through a program.
-type Pass = fn(&Program<'_>, &mut Sink);
+type Pass = fn(&AnalysedProgram<'_>, &mut Sink);
 
 macro_rules! list_passes {
     ($($(#[doc = $doc:literal])+ $variant:ident = $name:literal, $preset:ident $(, pass $pass:ident)?;)*) => {
@@ -60,6 +60,6 @@ for_each_lint!(list_passes);
 
 /// Runs every pass over a program that was analysed.
 pub fn check(unit: &Unit, names: &Names, sources: &SourceMap, firmware: &dyn FirmwareNames, sink: &mut Sink) {
-    let program = Program { unit, names, sources, firmware };
+    let program = AnalysedProgram { unit, names, sources, firmware };
     PASSES.iter().for_each(|pass| pass(&program, sink));
 }

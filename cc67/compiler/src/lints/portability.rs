@@ -4,12 +4,12 @@ use std::collections::BTreeSet;
 
 use kmotiondef::firmware::Origin;
 
-use super::program::Program;
+use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::typed::{Callee, Definition};
 
 /// Reports the first call of each such function.
-pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
+pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     let mut seen = BTreeSet::new();
     for (expr, call) in program.functions().flat_map(|function| function.calls()) {
         let Callee::Symbol(callee) = call.callee else { continue };

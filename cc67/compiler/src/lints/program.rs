@@ -8,7 +8,7 @@ use crate::typed::{Function, SymbolId, Unit};
 
 /// A program after analysis.
 #[derive(Clone, Copy)]
-pub(super) struct Program<'a> {
+pub(super) struct AnalysedProgram<'a> {
     /// The typed tree.
     pub(super) unit: &'a Unit,
     /// The names in it.
@@ -19,7 +19,7 @@ pub(super) struct Program<'a> {
     pub(super) firmware: &'a dyn FirmwareNames,
 }
 
-impl<'a> Program<'a> {
+impl<'a> AnalysedProgram<'a> {
     /// Every function; where something was wrong, what could not be understood is left out of it.
     pub(super) fn functions(&self) -> impl Iterator<Item = &'a Function> + use<'a> {
         self.unit.functions.iter()

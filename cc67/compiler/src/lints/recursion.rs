@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 
 use super::call_graph::CallGraph;
-use super::program::Program;
+use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::source::Span;
 use crate::typed::SymbolId;
 
 /// Reports every function that is called while it runs, if `main` reaches it.
-pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
+pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     let Some(main) = program.symbol("main") else { return };
     for (callee, (caller, span)) in calls_back(&CallGraph::new(program), main) {
         let name = program.name(callee);

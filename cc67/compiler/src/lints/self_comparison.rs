@@ -1,11 +1,11 @@
 //! A floating-point value compared with itself.
 
-use super::program::Program;
+use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::typed::{CompareOp, ExprId, ExprKind, Function, PlaceKind};
 
 /// Reports `x == x` on variables.
-pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
+pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.functions() {
         for expr in function.exprs.values() {
             let ExprKind::Compare(op, a, b) = expr.kind else { continue };

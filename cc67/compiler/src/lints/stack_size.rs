@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 
 use super::call_graph::CallGraph;
-use super::program::Program;
+use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::source::Span;
 use crate::typed::{Function, Local, SymbolId};
@@ -19,7 +19,7 @@ const FRAME_LIMIT: u32 = 1024;
 const CHAIN_LIMIT: u32 = 1945;
 
 /// Reports large frames, and the deepest chain of calls if it is too deep.
-pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
+pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.functions() {
         let bytes = frame(program, function);
         if bytes > FRAME_LIMIT {
@@ -35,7 +35,7 @@ pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
 }
 
 /// The bytes that the vendor's compiler takes for a call of the function.
-fn frame(program: &Program<'_>, function: &Function) -> u32 {
+fn frame(program: &AnalysedProgram<'_>, function: &Function) -> u32 {
     const FIXED: u32 = 16;
     const PARAMETER: u32 = 8;
     let types = &program.unit.types;
@@ -56,7 +56,7 @@ fn variables(function: &Function) -> impl Iterator<Item = &Local> {
         .map(|(_, local)| local)
 }
 
-fn large_frame(program: &Program<'_>, function: &Function, bytes: u32) -> Diagnostic {
+fn large_frame(program: &AnalysedProgram<'_>, function: &Function, bytes: u32) -> Diagnostic {
     let name = program.name(function.symbol);
     let message = format!("`{name}` needs {bytes} bytes of the board's stack, which has 2048");
     let diagnostic = Diagnostic::warning(Lint::StackSize, function.span, message)
@@ -71,7 +71,7 @@ fn large_frame(program: &Program<'_>, function: &Function, bytes: u32) -> Diagno
 
 /// What the functions need together with those they call.
 struct Depths<'a> {
-    program: &'a Program<'a>,
+    program: &'a AnalysedProgram<'a>,
     graph: &'a CallGraph<'a>,
     /// Every function seen; `None` while it is looked at, so that one that calls itself counts once.
     known: BTreeMap<SymbolId, Option<Depth>>,

@@ -8,7 +8,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::flow::Flow;
-use super::program::Program;
+use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::source::Span;
 use crate::typed::{
@@ -16,7 +16,7 @@ use crate::typed::{
 };
 
 /// Reports every local that is read before anything is stored in it, once.
-pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
+pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     // What could not be read may have been the store.
     if sink.has_errors() {
         return;

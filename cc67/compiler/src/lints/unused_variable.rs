@@ -2,12 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use super::program::Program;
+use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::typed::PlaceKind;
 
 /// Reports every such variable; parameters are often there for the caller's sake.
-pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
+pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.whole_functions() {
         let mentioned: BTreeSet<_> = function
             .places

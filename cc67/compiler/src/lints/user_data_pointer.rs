@@ -1,13 +1,13 @@
 //! `*(float *)persist.UserData[10]`: the element is used as an address, and the element's own address is meant.
 
-use super::program::Program;
+use super::program::AnalysedProgram;
 use super::user_data_index;
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::ty::Types;
 use crate::typed::{ExprId, ExprKind, Function, PlaceId, PlaceKind};
 
 /// Reports elements through which a `float` is read, unless the program keeps addresses in elements.
-pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
+pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     if program.functions().any(|function| keeps_addresses(program, function)) {
         return;
     }
@@ -32,7 +32,7 @@ pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
 }
 
 /// The element whose value is all of an address.
-fn element(program: &Program<'_>, function: &Function, pointer: ExprId) -> Option<ExprId> {
+fn element(program: &AnalysedProgram<'_>, function: &Function, pointer: ExprId) -> Option<ExprId> {
     match function.exprs[pointer].kind {
         ExprKind::Convert(inner) => element(program, function, inner),
         ExprKind::Load(place) => is_element(program, function, place).then_some(pointer),
@@ -41,14 +41,14 @@ fn element(program: &Program<'_>, function: &Function, pointer: ExprId) -> Optio
 }
 
 /// Whether a place is an element of `persist.UserData` at a constant index.
-fn is_element(program: &Program<'_>, function: &Function, place: PlaceId) -> bool {
+fn is_element(program: &AnalysedProgram<'_>, function: &Function, place: PlaceId) -> bool {
     let PlaceKind::Symbol(symbol, offset) = function.places[place].kind else { return false };
     let (first, last) = user_data_index::range();
     program.name(symbol) == "persist" && (first..last).contains(&offset)
 }
 
 /// Whether an address is stored in an element.
-fn keeps_addresses(program: &Program<'_>, function: &Function) -> bool {
+fn keeps_addresses(program: &AnalysedProgram<'_>, function: &Function) -> bool {
     let types = &program.unit.types;
     let is_address = |value: ExprId| {
         let mut inner = value;

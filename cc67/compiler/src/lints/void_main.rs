@@ -1,10 +1,10 @@
 //! `void main`, which every KFLOP compiler accepts and no C standard knows.
 
-use super::program::Program;
+use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
 
 /// Reports a `main` without a result.
-pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
+pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.functions() {
         if program.name(function.symbol) == "main" && function.ty.result.is_void() {
             sink.report(

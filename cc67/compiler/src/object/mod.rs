@@ -49,7 +49,7 @@ pub struct Object {
     /// Where source lines begin, ascending by word.
     pub lines: Vec<Line>,
     /// The functions in the order of the text.
-    pub functions: Vec<Function>,
+    pub functions: Vec<ObjectFunction>,
     /// The bytes of all initialised objects.
     pub data: Vec<u8>,
     /// Words of the data that hold an address, ascending.
@@ -74,7 +74,7 @@ impl Object {
 
     /// The line of the unit's word `word` in `function`, in words.
     #[must_use]
-    pub fn describe_word(&self, function: &Function, word: u32) -> String {
+    pub fn describe_word(&self, function: &ObjectFunction, word: u32) -> String {
         let lines = &self.lines[function.lines.start as usize..function.lines.end as usize];
         let after = lines.partition_point(|line| line.word <= word);
         let line = after.checked_sub(1).and_then(|index| lines.get(index));
@@ -164,7 +164,7 @@ pub(crate) fn whole_lines<T>(places: &[T], line: impl Fn(&T) -> SourceLine) -> i
 
 /// One function.
 #[derive(Clone, Debug)]
-pub struct Function {
+pub struct ObjectFunction {
     /// Its symbol.
     pub symbol: SymbolId,
     /// Its signature.

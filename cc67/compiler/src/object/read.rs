@@ -9,7 +9,9 @@ use coff::{Contents, FileFlags, Image, Line as CoffLine, SectionNumber, StorageC
 use cranelift_entity::EntityRef;
 
 use super::write::{ADDRESS, BSS, CALL, CODE_WORD, DATA, HIGH, LOW, NEAR, OWN, TEXT};
-use super::{DataRelocation, Definition, Function, Initialized, Line, Object, SourceLine, Symbol, kind_of};
+use super::{
+    DataRelocation, Definition, Initialized, Line, Object, ObjectFunction, SourceLine, Symbol, kind_of,
+};
 use crate::bytecode::{Relocation, RelocationKind, Text, WORD, head};
 use crate::c67x::text::{FixupKind, constant};
 use crate::ir::function::Signature;
@@ -262,7 +264,7 @@ impl<'a> ObjectReader<'a> {
             let lines = self.lines(index, &words, self.object.symbols[symbol].place.file);
             let (signature, frame) = self.head_of(&words).ok_or(ReadError::Code)?;
             self.object.symbols[symbol].definition = Definition::Function(self.object.functions.len() as u32);
-            self.object.functions.push(Function {
+            self.object.functions.push(ObjectFunction {
                 symbol,
                 signature,
                 words,

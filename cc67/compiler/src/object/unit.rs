@@ -3,7 +3,7 @@
 //! The builder takes symbols and data of the typed tree over at once; functions follow one by one.
 
 use super::{
-    DataRelocation, Definition, Function, Initialized, Line, Object, SourceLine, Symbol, SymbolKind,
+    DataRelocation, Definition, Initialized, Line, Object, ObjectFunction, SourceLine, Symbol, SymbolKind,
 };
 use crate::bytecode::text::Added;
 use crate::bytecode::{Generated, Relocation, RelocationKind, Text};
@@ -64,7 +64,7 @@ impl<'a> UnitBuilder<'a> {
         self.lines(file, &added.spans);
         let object = &mut self.object;
         object.symbols[about.symbol].definition = Definition::Function(object.functions.len() as u32);
-        object.functions.push(Function {
+        object.functions.push(ObjectFunction {
             symbol: about.symbol,
             signature: about.signature,
             words: added.words,

@@ -23,7 +23,8 @@ use coff::{
 };
 
 use super::{
-    Definition, Function, Object, SourceLine, base_type, class, function_type, statement, to_u16, whole_lines,
+    Definition, Object, ObjectFunction, SourceLine, base_type, class, function_type, statement, to_u16,
+    whole_lines,
 };
 use crate::bytecode::{RelocationKind, WORD, head};
 use crate::c67x::text::{FixupKind, half};
@@ -161,7 +162,7 @@ impl<'a> Writer<'a> {
     }
 
     /// The six entries of a function, and its lines.
-    fn function(&mut self, name: Name, place: SourceLine, class: StorageClass, function: &Function) {
+    fn function(&mut self, name: Name, place: SourceLine, class: StorageClass, function: &ObjectFunction) {
         let next = self.entries + 6;
         let first_line = self.lines.len() as u32;
         self.lines.push(Line::Function(self.entries));

@@ -15,7 +15,7 @@ use super::{Parsed, Parser};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Words {
     /// `void`, `char`, `int`, `float`, `double` or `_Bool`; `None` for `unsigned`, `long` …
-    base: Option<Base>,
+    base: Option<BaseType>,
     short: u8,
     long: u8,
     signed: u8,
@@ -23,7 +23,7 @@ struct Words {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Base {
+enum BaseType {
     Void,
     Char,
     Int,
@@ -238,12 +238,12 @@ impl Parser<'_> {
     #[inline(never)]
     fn arithmetic_word(&mut self, name: Name, words: &mut Words) -> Parsed<bool> {
         let base = match name {
-            word::VOID => Base::Void,
-            word::CHAR => Base::Char,
-            word::INT => Base::Int,
-            word::FLOAT => Base::Float,
-            word::DOUBLE => Base::Double,
-            word::BOOL => Base::Bool,
+            word::VOID => BaseType::Void,
+            word::CHAR => BaseType::Char,
+            word::INT => BaseType::Int,
+            word::FLOAT => BaseType::Float,
+            word::DOUBLE => BaseType::Double,
+            word::BOOL => BaseType::Bool,
             _ => {
                 let count = match name {
                     word::SHORT => &mut words.short,
@@ -275,17 +275,19 @@ impl Parser<'_> {
         let is_plain = signed == 0 && unsigned == 0;
         let ty = match (base, short, long) {
             _ if signed > 0 && is_unsigned => None,
-            (Some(Base::Void), 0, 0) if is_plain => Some(BasicType::Void),
-            (Some(Base::Bool), 0, 0) if is_plain => Some(BasicType::Bool),
-            (Some(Base::Float), 0, 0) if is_plain => Some(BasicType::Float),
-            (Some(Base::Double), 0, 0) if is_plain => Some(BasicType::Double),
-            (Some(Base::Double), 0, 1) if is_plain => Some(BasicType::LongDouble),
-            (Some(Base::Char), 0, 0) if signed > 0 => Some(BasicType::SignedChar),
-            (Some(Base::Char), 0, 0) => Some(pick(BasicType::Char, BasicType::UnsignedChar)),
-            (None | Some(Base::Int), 1, 0) => Some(pick(BasicType::Short, BasicType::UnsignedShort)),
-            (None | Some(Base::Int), 0, 0) => Some(pick(BasicType::Int, BasicType::Unsigned)),
-            (None | Some(Base::Int), 0, 1) => Some(pick(BasicType::Long, BasicType::UnsignedLong)),
-            (None | Some(Base::Int), 0, 2) => Some(pick(BasicType::LongLong, BasicType::UnsignedLongLong)),
+            (Some(BaseType::Void), 0, 0) if is_plain => Some(BasicType::Void),
+            (Some(BaseType::Bool), 0, 0) if is_plain => Some(BasicType::Bool),
+            (Some(BaseType::Float), 0, 0) if is_plain => Some(BasicType::Float),
+            (Some(BaseType::Double), 0, 0) if is_plain => Some(BasicType::Double),
+            (Some(BaseType::Double), 0, 1) if is_plain => Some(BasicType::LongDouble),
+            (Some(BaseType::Char), 0, 0) if signed > 0 => Some(BasicType::SignedChar),
+            (Some(BaseType::Char), 0, 0) => Some(pick(BasicType::Char, BasicType::UnsignedChar)),
+            (None | Some(BaseType::Int), 1, 0) => Some(pick(BasicType::Short, BasicType::UnsignedShort)),
+            (None | Some(BaseType::Int), 0, 0) => Some(pick(BasicType::Int, BasicType::Unsigned)),
+            (None | Some(BaseType::Int), 0, 1) => Some(pick(BasicType::Long, BasicType::UnsignedLong)),
+            (None | Some(BaseType::Int), 0, 2) => {
+                Some(pick(BasicType::LongLong, BasicType::UnsignedLongLong))
+            }
             _ => None,
         };
         match ty {

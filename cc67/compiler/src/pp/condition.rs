@@ -14,12 +14,12 @@ use super::{limits, number, quoted};
 
 /// A value in 64 bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Value {
+struct ConditionValue {
     bits: i64,
     is_unsigned: bool,
 }
 
-impl Value {
+impl ConditionValue {
     const fn signed(bits: i64) -> Self {
         Self { bits, is_unsigned: false }
     }
@@ -36,7 +36,7 @@ impl Value {
 /// Says that the expression was reported to be wrong.
 struct Reported;
 
-type Evaluated = Result<Value, Reported>;
+type Evaluated = Result<ConditionValue, Reported>;
 
 impl Preprocessor<'_> {
     /// The truth of the expression on the rest of the line; false, with an error, if it is none.
@@ -119,7 +119,7 @@ impl Parser<'_, '_> {
             self.expect(TokenKind::Colon)?;
             let otherwise = self.when(!condition.is_true(), Self::conditional)?;
             let chosen = if condition.is_true() { then } else { otherwise };
-            Value { is_unsigned: then.is_unsigned || otherwise.is_unsigned, ..chosen }
+            ConditionValue { is_unsigned: then.is_unsigned || otherwise.is_unsigned, ..chosen }
         } else {
             condition
         };
@@ -156,9 +156,9 @@ impl Parser<'_, '_> {
         let mut value = self.primary()?;
         while let Some(operator) = operators.pop() {
             value = match operator {
-                TokenKind::Not => Value::truth(!value.is_true()),
-                TokenKind::Tilde => Value { bits: !value.bits, ..value },
-                TokenKind::Minus => Value { bits: value.bits.wrapping_neg(), ..value },
+                TokenKind::Not => ConditionValue::truth(!value.is_true()),
+                TokenKind::Tilde => ConditionValue { bits: !value.bits, ..value },
+                TokenKind::Minus => ConditionValue { bits: value.bits.wrapping_neg(), ..value },
                 _ => value,
             };
         }
@@ -176,7 +176,7 @@ impl Parser<'_, '_> {
         self.at += 1;
         match token.kind {
             TokenKind::Identifier if token.name == word::DEFINED => self.defined(token),
-            TokenKind::Identifier => Ok(Value::signed(0)),
+            TokenKind::Identifier => Ok(ConditionValue::signed(0)),
             TokenKind::Number => self.number(token),
             TokenKind::Character => {
                 let text = self.pp.spelling(token);
@@ -184,7 +184,7 @@ impl Parser<'_, '_> {
                 let broken = token.flags.has(Flags::BROKEN);
                 match problems.into_iter().next().filter(|_| !broken) {
                     Some(problem) => self.fail(Diagnostic::error(token.span, problem.message)),
-                    None => Ok(Value::signed(i64::from(value))),
+                    None => Ok(ConditionValue::signed(i64::from(value))),
                 }
             }
             TokenKind::LeftParen => {
@@ -210,7 +210,7 @@ impl Parser<'_, '_> {
         if has_paren {
             self.expect(TokenKind::RightParen)?;
         }
-        Ok(Value::truth(self.pp.is_defined(name.name)))
+        Ok(ConditionValue::truth(self.pp.is_defined(name.name)))
     }
 
     fn number(&mut self, token: Token) -> Evaluated {
@@ -222,7 +222,7 @@ impl Parser<'_, '_> {
             Ok(Number::Integer { literal, .. }) => {
                 let bits = literal.value.cast_signed();
                 let is_unsigned = literal.is_unsigned || bits < 0;
-                Ok(Value { bits, is_unsigned })
+                Ok(ConditionValue { bits, is_unsigned })
             }
             Ok(Number::Floating(_)) => {
                 let message = "floating constant in an `#if` expression";
@@ -232,7 +232,7 @@ impl Parser<'_, '_> {
         }
     }
 
-    fn apply(&mut self, operator: Token, left: Value, right: Value) -> Evaluated {
+    fn apply(&mut self, operator: Token, left: ConditionValue, right: ConditionValue) -> Evaluated {
         use TokenKind::{
             And, AndAnd, Comma, Equal, Greater, GreaterEqual, Less, LessEqual, Minus, NotEqual, Or, OrOr,
             Percent, Plus, ShiftLeft, ShiftRight, Slash, Star, Xor,
@@ -241,14 +241,14 @@ impl Parser<'_, '_> {
         let (a, b) = (left.bits, right.bits);
         let is_less = if is_unsigned { a.cast_unsigned() < b.cast_unsigned() } else { a < b };
         let bits = match operator.kind {
-            AndAnd => return Ok(Value::truth(left.is_true() && right.is_true())),
-            OrOr => return Ok(Value::truth(left.is_true() || right.is_true())),
-            Equal => return Ok(Value::truth(a == b)),
-            NotEqual => return Ok(Value::truth(a != b)),
-            Less => return Ok(Value::truth(is_less)),
-            GreaterEqual => return Ok(Value::truth(!is_less)),
-            Greater => return Ok(Value::truth(!is_less && a != b)),
-            LessEqual => return Ok(Value::truth(is_less || a == b)),
+            AndAnd => return Ok(ConditionValue::truth(left.is_true() && right.is_true())),
+            OrOr => return Ok(ConditionValue::truth(left.is_true() || right.is_true())),
+            Equal => return Ok(ConditionValue::truth(a == b)),
+            NotEqual => return Ok(ConditionValue::truth(a != b)),
+            Less => return Ok(ConditionValue::truth(is_less)),
+            GreaterEqual => return Ok(ConditionValue::truth(!is_less)),
+            Greater => return Ok(ConditionValue::truth(!is_less && a != b)),
+            LessEqual => return Ok(ConditionValue::truth(is_less || a == b)),
             Comma => return Ok(right),
             Slash | Percent if b == 0 => {
                 if self.is_evaluated {
@@ -267,11 +267,11 @@ impl Parser<'_, '_> {
             And => a & b,
             Or => a | b,
             Xor => a ^ b,
-            ShiftLeft => return Ok(Value { bits: shift(left, b), ..left }),
-            ShiftRight => return Ok(Value { bits: shift(left, b.wrapping_neg()), ..left }),
+            ShiftLeft => return Ok(ConditionValue { bits: shift(left, b), ..left }),
+            ShiftRight => return Ok(ConditionValue { bits: shift(left, b.wrapping_neg()), ..left }),
             _ => 0,
         };
-        Ok(Value { bits, is_unsigned })
+        Ok(ConditionValue { bits, is_unsigned })
     }
 
     /// Parses something whose value counts only under a condition.
@@ -317,7 +317,7 @@ impl Parser<'_, '_> {
 }
 
 /// `value << count`; to the right for a negative count.
-fn shift(value: Value, count: i64) -> i64 {
+fn shift(value: ConditionValue, count: i64) -> i64 {
     let distance = u32::try_from(count.unsigned_abs()).unwrap_or(u32::MAX);
     match (count >= 0, value.is_unsigned) {
         (true, _) => value.bits.checked_shl(distance).unwrap_or(0),

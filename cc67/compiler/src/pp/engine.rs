@@ -13,9 +13,9 @@ use crate::source::{FileId, SourceMap, Span};
 use super::conditional::Conditional;
 use super::expand::Frame;
 use super::guard::Guard;
-use super::lexer::{Context, Lexer};
+use super::lexer::{Lexer, LexerContext};
 use super::macros::Macros;
-use super::search::Reader;
+use super::search::FileReader;
 use super::token::{Flags, Token, TokenKind};
 use super::{Files, Options, limits};
 
@@ -45,7 +45,7 @@ pub(super) struct Preprocessor<'a> {
     pub(super) sources: &'a mut SourceMap,
     pub(super) names: &'a mut Names,
     pub(super) sink: &'a mut Sink,
-    pub(super) reader: Reader<'a>,
+    pub(super) reader: FileReader<'a>,
     pub(super) macros: Macros,
     /// Expansions being read, the innermost last.
     pub(super) frames: Vec<Frame>,
@@ -84,7 +84,7 @@ impl<'a> Preprocessor<'a> {
             sources,
             names,
             sink,
-            reader: Reader::new(files),
+            reader: FileReader::new(files),
             macros: Macros::default(),
             frames: Vec::new(),
             open: Vec::new(),
@@ -126,7 +126,7 @@ impl<'a> Preprocessor<'a> {
             if self.work.is_stopped {
                 return Token::new(TokenKind::End, Flags::LINE_START, file.lexer.end_span());
             }
-            let token = file.lexer.next(&mut Context { names: self.names, sink: self.sink });
+            let token = file.lexer.next(&mut LexerContext { names: self.names, sink: self.sink });
             if token.kind == TokenKind::Hash && token.flags.has(Flags::LINE_START) && !file.lexer.in_directive
             {
                 self.directive(token);
@@ -140,9 +140,9 @@ impl<'a> Preprocessor<'a> {
     }
 
     /// The innermost file with what its lexer needs.
-    pub(super) fn lexer(&mut self) -> Option<(&mut Lexer, Context<'_>)> {
+    pub(super) fn lexer(&mut self) -> Option<(&mut Lexer, LexerContext<'_>)> {
         let file = self.open.last_mut()?;
-        Some((&mut file.lexer, Context { names: self.names, sink: self.sink }))
+        Some((&mut file.lexer, LexerContext { names: self.names, sink: self.sink }))
     }
 
     /// Reports an exceeded limit and ends all sources of tokens.

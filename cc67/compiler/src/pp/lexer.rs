@@ -23,7 +23,7 @@ use crate::source::Span;
 use super::token::{Flags, Token, TokenKind};
 
 /// What the lexer needs from the rest of the preprocessor.
-pub(super) struct Context<'a> {
+pub(super) struct LexerContext<'a> {
     /// Where identifiers get their numbers.
     pub(super) names: &'a mut Names,
     /// Where diagnostics go.
@@ -90,7 +90,7 @@ impl Lexer {
     }
 
     /// Reads a token. At the end of the file or, in a directive, of the line: `End`, again and again.
-    pub(super) fn next(&mut self, cx: &mut Context<'_>) -> Token {
+    pub(super) fn next(&mut self, cx: &mut LexerContext<'_>) -> Token {
         loop {
             let flags = self.skip_space(cx);
             let lo = self.at;
@@ -159,7 +159,7 @@ impl Lexer {
         self.span_to(lo, self.at)
     }
 
-    fn identifier(&mut self, flags: Flags, cx: &mut Context<'_>) -> Token {
+    fn identifier(&mut self, flags: Flags, cx: &mut LexerContext<'_>) -> Token {
         let lo = self.at;
         let mut hash = SpellingHash::START;
         let mut length = 0;
@@ -195,7 +195,7 @@ impl Lexer {
     }
 
     /// A preprocessing number: digits, letters, dots, and signs after an exponent's letter.
-    fn number(&mut self, flags: Flags, cx: &mut Context<'_>) -> Token {
+    fn number(&mut self, flags: Flags, cx: &mut LexerContext<'_>) -> Token {
         let lo = self.at;
         let mut flags = flags;
         let mut last = 0;
@@ -214,7 +214,7 @@ impl Lexer {
     }
 
     /// Goes on over splices and the bytes that `belongs` accepts.
-    fn skip_spliced(&mut self, belongs: fn(u8) -> bool, cx: &mut Context<'_>) {
+    fn skip_spliced(&mut self, belongs: fn(u8) -> bool, cx: &mut LexerContext<'_>) {
         while belongs(self.byte(self.at)) || self.splice(cx) {
             if belongs(self.byte(self.at)) {
                 self.at += 1;
@@ -236,7 +236,7 @@ impl Lexer {
     }
 
     /// Joins the next line at a backslash; complains about blanks after it.
-    fn splice(&mut self, cx: &mut Context<'_>) -> bool {
+    fn splice(&mut self, cx: &mut LexerContext<'_>) -> bool {
         let behind = self.past_splices(self.at);
         if behind == self.at {
             return false;

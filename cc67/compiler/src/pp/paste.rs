@@ -6,7 +6,7 @@ use crate::diag::Diagnostic;
 use crate::source::{ExpansionId, Span};
 
 use super::engine::Preprocessor;
-use super::lexer::{Context, Lexer};
+use super::lexer::{Lexer, LexerContext};
 use super::token::{Flags, Token, TokenKind, token_text};
 use super::{LAX, limits};
 
@@ -58,7 +58,7 @@ impl Preprocessor<'_> {
         lexer.in_directive = true;
         // What is wrong with the joined text is said here or when the token is used.
         let mut quiet = crate::diag::Sink::new();
-        let joined = lexer.next(&mut Context { names: self.names, sink: &mut quiet });
+        let joined = lexer.next(&mut LexerContext { names: self.names, sink: &mut quiet });
         if joined.span.lo == span.lo && joined.span.hi == span.hi && !quiet.has_errors() {
             output.push(Token {
                 flags: first.flags.without(Flags::NO_EXPAND).without(Flags::SPLICED),

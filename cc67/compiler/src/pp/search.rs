@@ -20,7 +20,7 @@ pub(super) enum Found {
 }
 
 /// The file system, with everything remembered that was asked.
-pub(super) struct Reader<'a> {
+pub(super) struct FileReader<'a> {
     files: &'a dyn Files,
     texts: BTreeMap<PathBuf, Arc<Vec<u8>>>,
     listings: BTreeMap<PathBuf, Vec<String>>,
@@ -30,7 +30,7 @@ pub(super) struct Reader<'a> {
     pub(super) included: usize,
 }
 
-impl<'a> Reader<'a> {
+impl<'a> FileReader<'a> {
     pub(super) fn new(files: &'a dyn Files) -> Self {
         Self {
             files,

@@ -47,14 +47,14 @@ struct Message<'a> {
     level: &'a str,
     code: Option<&'a str>,
     message: &'a str,
-    spans: Vec<Place<'a>>,
+    spans: Vec<JsonSpan<'a>>,
     notes: Vec<String>,
     suggestion: Option<&'a str>,
     rendered: String,
 }
 
 #[derive(Serialize)]
-struct Place<'a> {
+struct JsonSpan<'a> {
     file: &'a str,
     byte_start: usize,
     byte_end: usize,
@@ -88,11 +88,11 @@ impl<'a> Renderer<'a> {
         serde_json::to_string(&message).expect("text, numbers and lists of them have a JSON form")
     }
 
-    fn place(&self, mark: Mark) -> Place<'a> {
+    fn place(&self, mark: Mark) -> JsonSpan<'a> {
         let file = self.sources.file(mark.file);
         let (line_start, column_start) = line_and_column(file, mark.range.start);
         let (line_end, column_end) = line_and_column(file, mark.range.end);
-        Place {
+        JsonSpan {
             file: &file.name,
             byte_start: mark.range.start,
             byte_end: mark.range.end,

@@ -2,7 +2,7 @@
 
 use super::Sema;
 use super::constants::Constant;
-use super::conversions::Target;
+use super::conversions::AssignmentTarget;
 use super::operands::Operand;
 use super::places::Located;
 use crate::ast::{BinaryOperator, Expression, ExpressionKind};
@@ -22,7 +22,7 @@ impl Sema<'_> {
             return self.assign_record(target, source, from.span, span);
         }
         let value = self.read(source, from.span)?;
-        let value = self.assigned(value, target.ty.ty, Target::Assignment, from.span)?;
+        let value = self.assigned(value, target.ty.ty, AssignmentTarget::Assignment, from.span)?;
         Some(Operand::Value(self.body.expr(ExprKind::Assign(target.place, value), target.ty.ty, span)))
     }
 
@@ -88,7 +88,7 @@ impl Sema<'_> {
         span: Span,
     ) -> Option<Operand> {
         let ty = target.ty.ty;
-        let from = self.record_source(source, ty, Target::Assignment, source_span)?;
+        let from = self.record_source(source, ty, AssignmentTarget::Assignment, source_span)?;
         if matches!(self.body.places[target.place].kind, PlaceKind::Local(..) | PlaceKind::Symbol(..)) {
             let copy = self.body.expr(ExprKind::Copy { to: target.place, from }, Types::VOID, span);
             return Some(self.made(copy, target.place, span));

@@ -5,7 +5,7 @@
 //! typed tree always fits the function it reaches.
 
 use super::Sema;
-use super::conversions::Target;
+use super::conversions::AssignmentTarget;
 use super::operands::Operand;
 use crate::ast::{Expression, ExpressionKind};
 use crate::diag::{Diagnostic, Lint};
@@ -155,7 +155,7 @@ impl Sema<'_> {
                     Operand::Value(self.assigned(
                         value,
                         ty.ty,
-                        Target::Argument(index + 1, Some(symbol)),
+                        AssignmentTarget::Argument(index + 1, Some(symbol)),
                         span,
                     )?)
                 }
@@ -271,7 +271,7 @@ impl Sema<'_> {
         for (index, (operand, span)) in values.into_iter().enumerate() {
             match types.get(index) {
                 Some(ty) => {
-                    let target = Target::Argument(index + 1, symbol);
+                    let target = AssignmentTarget::Argument(index + 1, symbol);
                     arguments.push(self.argument(operand, ty.ty, target, span));
                 }
                 None => variable.push(self.variable_argument(operand, symbol, span)),
@@ -316,7 +316,13 @@ impl Sema<'_> {
     }
 
     /// An argument in the type of its parameter; a structure is copied, and its address passed.
-    fn argument(&mut self, operand: Operand, ty: TypeId, target: Target, span: Span) -> Option<ExprId> {
+    fn argument(
+        &mut self,
+        operand: Operand,
+        ty: TypeId,
+        target: AssignmentTarget,
+        span: Span,
+    ) -> Option<ExprId> {
         if self.types.record_of(ty).is_none() {
             let value = self.read(operand, span)?;
             return self.assigned(value, ty, target, span);

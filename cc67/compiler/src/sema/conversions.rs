@@ -12,7 +12,7 @@ use crate::typed::{ExprId, ExprKind, PlaceKind, SymbolId};
 
 /// Where a value goes, for messages.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Target {
+pub(super) enum AssignmentTarget {
     /// `a = b`
     Assignment,
     /// `int a = b;`
@@ -80,7 +80,7 @@ impl Sema<'_> {
         &mut self,
         value: ExprId,
         to: TypeId,
-        target: Target,
+        target: AssignmentTarget,
         span: Span,
     ) -> Option<ExprId> {
         let from = self.body.ty(value);
@@ -118,8 +118,8 @@ impl Sema<'_> {
     }
 
     /// Whether a variable is passed for a parameter that points to its type.
-    fn is_pointee(&self, value: ExprId, to: TypeId, target: Target) -> bool {
-        matches!(target, Target::Argument(..))
+    fn is_pointee(&self, value: ExprId, to: TypeId, target: AssignmentTarget) -> bool {
+        matches!(target, AssignmentTarget::Argument(..))
             && matches!(self.body.exprs[value].kind, ExprKind::Load(_))
             && self.types.pointee(to).is_some_and(|to| to.ty == self.body.ty(value))
     }
@@ -165,7 +165,13 @@ impl Sema<'_> {
         self.body.convert(value, to, span)
     }
 
-    fn assigned_pointer(&mut self, value: ExprId, to: TypeId, target: Target, span: Span) -> Option<()> {
+    fn assigned_pointer(
+        &mut self,
+        value: ExprId,
+        to: TypeId,
+        target: AssignmentTarget,
+        span: Span,
+    ) -> Option<()> {
         let from = self.body.ty(value);
         let (Some(source), Some(aim)) = (self.types.pointee(from), self.types.pointee(to)) else {
             return Some(());
@@ -277,15 +283,15 @@ impl Sema<'_> {
         }
     }
 
-    fn describe(&self, target: Target) -> String {
+    fn describe(&self, target: AssignmentTarget) -> String {
         match target {
-            Target::Assignment => "assignment".to_owned(),
-            Target::Initializer => "initialiser".to_owned(),
-            Target::Return => "`return`".to_owned(),
-            Target::Argument(number, Some(function)) => {
+            AssignmentTarget::Assignment => "assignment".to_owned(),
+            AssignmentTarget::Initializer => "initialiser".to_owned(),
+            AssignmentTarget::Return => "`return`".to_owned(),
+            AssignmentTarget::Argument(number, Some(function)) => {
                 format!("argument {number} of `{}`", self.symbols.get(function).name)
             }
-            Target::Argument(number, None) => format!("argument {number}"),
+            AssignmentTarget::Argument(number, None) => format!("argument {number}"),
         }
     }
 
@@ -295,7 +301,7 @@ impl Sema<'_> {
         message: &str,
         value: ExprId,
         to: TypeId,
-        target: Target,
+        target: AssignmentTarget,
         span: Span,
     ) {
         let (from, to) = (self.spell(self.body.ty(value)), self.spell(to));
@@ -306,12 +312,18 @@ impl Sema<'_> {
         );
     }
 
-    pub(super) fn refuse_conversion(&mut self, from: TypeId, to: TypeId, target: Target, span: Span) {
+    pub(super) fn refuse_conversion(
+        &mut self,
+        from: TypeId,
+        to: TypeId,
+        target: AssignmentTarget,
+        span: Span,
+    ) {
         let refusal = self.refusal(from, to, target, span);
         self.report(refusal);
     }
 
-    fn refusal(&self, from: TypeId, to: TypeId, target: Target, span: Span) -> Diagnostic {
+    fn refusal(&self, from: TypeId, to: TypeId, target: AssignmentTarget, span: Span) -> Diagnostic {
         let help = self.conversion_help(from, to, target, span);
         let (from, to) = (self.spell(from), self.spell(to));
         let diagnostic =
@@ -324,7 +336,13 @@ impl Sema<'_> {
     }
 
     /// What was probably forgotten, or is too much, when a pointer and a number meet.
-    fn conversion_help(&self, from: TypeId, to: TypeId, target: Target, span: Span) -> Option<&'static str> {
+    fn conversion_help(
+        &self,
+        from: TypeId,
+        to: TypeId,
+        target: AssignmentTarget,
+        span: Span,
+    ) -> Option<&'static str> {
         let text = self.sources.text(span);
         if to.is_arithmetic() && text.starts_with(b"\"") {
             return Some("a number has no quotes");
@@ -338,7 +356,9 @@ impl Sema<'_> {
         }
         if from.is_arithmetic() && is_number(self.types.pointee(to)) {
             return Some(match target {
-                Target::Argument(..) => "write `&` before the name of a variable to pass its address",
+                AssignmentTarget::Argument(..) => {
+                    "write `&` before the name of a variable to pass its address"
+                }
                 _ => "write `*` before the pointer to store in what it points to",
             });
         }

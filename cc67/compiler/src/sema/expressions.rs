@@ -1,7 +1,7 @@
 //! Expressions: the dispatcher and the forms that have no file of their own.
 
 use super::Sema;
-use super::conversions::Target;
+use super::conversions::AssignmentTarget;
 use super::literals::character_type;
 use super::operands::Operand;
 use super::places::Located;
@@ -451,7 +451,7 @@ impl Sema<'_> {
         &mut self,
         operand: Operand,
         ty: TypeId,
-        target: Target,
+        target: AssignmentTarget,
         span: Span,
     ) -> Option<crate::typed::PlaceId> {
         match operand {

@@ -6,7 +6,7 @@
 //! objects turn leaves into bytes, locals into stores.
 
 use super::Sema;
-use super::conversions::Target;
+use super::conversions::AssignmentTarget;
 use super::literals::string_bytes;
 use super::operands::Operand;
 use super::places::Located;
@@ -470,10 +470,10 @@ impl Sema<'_> {
     fn fill_whole(&mut self, leaves: &mut Vec<Leaf>, slot: Slot, operand: Operand, span: Span) -> Option<()> {
         let Slot { ty, offset, bits } = slot;
         let value = if self.types.record_of(ty.ty).is_some() {
-            LeafValue::Record(self.record_source(operand, ty.ty, Target::Initializer, span)?)
+            LeafValue::Record(self.record_source(operand, ty.ty, AssignmentTarget::Initializer, span)?)
         } else {
             let value = self.read(operand, span)?;
-            LeafValue::Scalar(self.assigned(value, ty.ty, Target::Initializer, span)?)
+            LeafValue::Scalar(self.assigned(value, ty.ty, AssignmentTarget::Initializer, span)?)
         };
         leaves.push(Leaf { offset, ty: ty.ty, bits, value, span });
         Some(())

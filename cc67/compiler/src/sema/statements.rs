@@ -3,7 +3,7 @@
 use super::Sema;
 use super::body::LabelState;
 use super::constants::Constant;
-use super::conversions::Target;
+use super::conversions::AssignmentTarget;
 use super::operands::Operand;
 use crate::ast::{Expression, Statement, StatementKind};
 use crate::diag::Diagnostic;
@@ -304,14 +304,14 @@ impl Sema<'_> {
             return Some(self.body.comma(effect, zero, span));
         }
         let value = self.read(operand, span)?;
-        self.assigned(value, result, Target::Return, span)
+        self.assigned(value, result, AssignmentTarget::Return, span)
     }
 
     /// Copies a structure to where the caller wants it.
     fn return_record(&mut self, expression: &Expression) -> Option<ExprId> {
         let (result, span) = (self.body.result, expression.span);
         let operand = self.operand(expression)?;
-        let from = self.record_source(operand, result, Target::Return, span)?;
+        let from = self.record_source(operand, result, AssignmentTarget::Return, span)?;
         let pointer = self.body.load_local(self.body.hidden.result_pointer?, span);
         let to = self.body.place(PlaceKind::Pointer(pointer, 0), result, span);
         Some(self.body.expr(ExprKind::Copy { to, from }, Types::VOID, span))

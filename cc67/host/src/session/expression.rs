@@ -11,10 +11,10 @@ use std::sync::Arc;
 
 use compiler::Options;
 use compiler::files;
-use compiler::inspect::{Inspection, Kind};
+use compiler::inspect::{EntryKind, Inspection};
 use compiler::object::{SymbolKind, kind_of};
 use compiler::pp::Disk;
-use compiler::watch::{self, Expression, Reader, Scope};
+use compiler::watch::{self, Expression, ItemReader, Scope};
 use kmotiondef::limits::N_USER_DATA_VARS;
 use kmotiondef::structs::Persist;
 use kmotiondef::variables::PERSIST;
@@ -171,7 +171,7 @@ impl<E: Engine> Session<E> {
     }
 
     /// Records from now on what is asked for; the records come as events.
-    pub fn record(&mut self, request: runtime::trace::Request) {
+    pub fn record(&mut self, request: runtime::trace::TraceRequest) {
         self.board.record(request);
     }
 }
@@ -293,7 +293,7 @@ impl<'a> Vocabulary<'a> {
     /// Those of a program: its source, and where its image has the variables.
     fn of_program(program: &'a UserProgram) -> Result<Self, String> {
         let inspection = Inspection::read(&program.image).map_err(|error| error.to_string())?;
-        let objects = inspection.symbols.iter().filter(|entry| entry.kind == Kind::Object);
+        let objects = inspection.symbols.iter().filter(|entry| entry.kind == EntryKind::Object);
         let symbols = objects.map(|entry| (entry.name.clone(), GuestAddr::new(entry.address))).collect();
         let path = program.path.as_path();
         let text = match program.is_image {
@@ -336,7 +336,7 @@ impl<'a> Vocabulary<'a> {
 /// The variables of an image whose types it records: not structures and pointers.
 fn declarations(inspection: &Inspection) -> String {
     let mut text = "#include \"KMotionDef.h\"\n".to_owned();
-    let objects = inspection.symbols.iter().filter(|entry| entry.kind == Kind::Object);
+    let objects = inspection.symbols.iter().filter(|entry| entry.kind == EntryKind::Object);
     for entry in objects.filter(|entry| words(&entry.name).eq([entry.name.as_str()])) {
         let symbol =
             inspection.image.symbols.iter().find(|symbol| symbol.name.as_bytes() == entry.name.as_bytes());
@@ -376,7 +376,7 @@ struct OnBoard<'a, E> {
     items: &'a [Item],
 }
 
-impl<E: Engine> Reader for OnBoard<'_, E> {
+impl<E: Engine> ItemReader for OnBoard<'_, E> {
     fn bytes(&self, address: GuestAddr) -> [u8; 8] {
         eight(self.board.memory(), address)
     }
@@ -392,7 +392,7 @@ struct InView<'a> {
     items: &'a [Item],
 }
 
-impl Reader for InView<'_> {
+impl ItemReader for InView<'_> {
     fn bytes(&self, address: GuestAddr) -> [u8; 8] {
         eight(self.view.memory, address)
     }

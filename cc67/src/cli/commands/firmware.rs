@@ -18,11 +18,11 @@ use compiler::firmware;
 #[derive(Debug, Args)]
 pub(super) struct FirmwareArguments {
     #[command(subcommand)]
-    command: Command,
+    command: FirmwareCommand,
 }
 
 #[derive(Debug, Subcommand)]
-enum Command {
+enum FirmwareCommand {
     /// Write the names and addresses as a file that `--firmware` and other linkers read
     Export {
         /// Where to
@@ -40,9 +40,9 @@ enum Command {
 /// Does what is asked for.
 pub(super) fn firmware(arguments: &FirmwareArguments) -> Result<Exit> {
     match &arguments.command {
-        Command::Export { file } => output::write(file, &firmware::export()?)?,
-        Command::List { json: true } => output::print(&list_json())?,
-        Command::List { json: false } => output::print(&list())?,
+        FirmwareCommand::Export { file } => output::write(file, &firmware::export()?)?,
+        FirmwareCommand::List { json: true } => output::print(&list_json())?,
+        FirmwareCommand::List { json: false } => output::print(&list())?,
     }
     Ok(Exit::Success)
 }

@@ -25,9 +25,9 @@ use crate::cli::io::exit::Exit;
 use crate::cli::io::pace::Pace;
 use crate::cli::io::{interrupt, output, terminal};
 use crate::cli::report::profile;
-use crate::cli::report::screen::{Reader, Screen, Style, no_run};
+use crate::cli::report::screen::{Audience, Screen, Style, no_run};
 use crate::cli::report::seen::Seen;
-use crate::cli::report::state::State;
+use crate::cli::report::state::FinalState;
 use crate::cli::report::trace::{self, Trace};
 use crate::cli::session::{Rig, Setup, Started, Work};
 
@@ -145,9 +145,9 @@ impl RunArguments {
         let (board, ending) = (rig.session.board(), rig.session.ending());
         let (exit, why) = seen.exit(end, self.limit.is_some());
         let active = active(board);
-        let state = State::of(board);
+        let state = FinalState::of(board);
         screen.end(exit, why, board.tick(), &active, &ending, &state);
-        if screen.finish().map_err(|error| output::lost_output(&error))? == Reader::Gone {
+        if screen.finish().map_err(|error| output::lost_output(&error))? == Audience::Gone {
             return Ok(Exit::Success);
         }
         if let Some(trace) = trace {

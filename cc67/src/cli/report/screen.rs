@@ -11,7 +11,7 @@ use runtime::{Event, EventKind, Message, Remark, Severity};
 use serde::Serialize;
 
 use super::repeats::Repeats;
-use super::state::State;
+use super::state::FinalState;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::terminal;
 use cc67_host::{Ending, EndingAxis, EndingThread, SourceCall, remark};
@@ -32,7 +32,7 @@ pub(crate) struct Style {
 /// A line of `--json`.
 #[derive(Debug, Serialize)]
 #[serde(tag = "type", rename_all = "lowercase")]
-enum Line<'a> {
+enum JsonLine<'a> {
     /// A line of the console.
     Console { seconds: f64, text: &'a str },
     /// A thread or the call-back was stopped.
@@ -76,12 +76,12 @@ struct Summary<'a> {
     active: &'a [u8],
     /// In which state the board is left.
     #[serde(flatten)]
-    state: &'a State,
+    state: &'a FinalState,
 }
 
 /// The last line of `--json` of a run that did not come about.
 pub(crate) fn no_run(exit: Exit, reason: &str) -> String {
-    let line = Line::End(Summary {
+    let line = JsonLine::End(Summary {
         reason,
         exit: exit as u8,
         seconds: 0.0,
@@ -92,7 +92,7 @@ pub(crate) fn no_run(exit: Exit, reason: &str) -> String {
         threads: Vec::new(),
         used_axes: Vec::new(),
         active: &[],
-        state: &State::default(),
+        state: &FinalState::default(),
     });
     serde_json::to_string(&line).unwrap_or_default() + "\n"
 }
@@ -246,7 +246,7 @@ impl<W: Write> Screen<W> {
     fn write_line(&mut self, line: &[u8], at: Cycles) -> io::Result<()> {
         if self.style.json {
             let text = String::from_utf8_lossy(line);
-            return self.write_json(&Line::Console { seconds: seconds(at), text: &text });
+            return self.write_json(&JsonLine::Console { seconds: seconds(at), text: &text });
         }
         if self.style.time {
             write!(self.out, "{:.6} ", seconds(at))?;
@@ -273,21 +273,21 @@ impl<W: Write> Screen<W> {
         let seconds = seconds(event.at);
         let call;
         let line = match &event.kind {
-            EventKind::Trap(trap) => Line::Trap { seconds, thread: trap.thread.map(ThreadId::get), text },
-            EventKind::Host(_) => Line::Pc { seconds, text },
-            EventKind::Unmet(_) => Line::Unmet { seconds, text },
+            EventKind::Trap(trap) => JsonLine::Trap { seconds, thread: trap.thread.map(ThreadId::get), text },
+            EventKind::Host(_) => JsonLine::Pc { seconds, text },
+            EventKind::Unmet(_) => JsonLine::Unmet { seconds, text },
             EventKind::Remark(remark) => {
                 call = remark.place.and_then(|at| remark::place(at, &self.programs));
                 let place = call.as_ref().map(CallLeft::from);
-                Line::Remark { seconds, code: Some(remark.message.code()), place, text }
+                JsonLine::Remark { seconds, code: Some(remark.message.code()), place, text }
             }
-            _ => Line::Remark { seconds, code: None, place: None, text },
+            _ => JsonLine::Remark { seconds, code: None, place: None, text },
         };
         let written = self.write_json(&line);
         self.keep(written);
     }
 
-    fn write_json(&mut self, line: &Line<'_>) -> io::Result<()> {
+    fn write_json(&mut self, line: &JsonLine<'_>) -> io::Result<()> {
         if self.error.is_some() {
             return Ok(());
         }
@@ -309,7 +309,7 @@ impl<W: Write> Screen<W> {
         at: Ticks,
         active: &[u8],
         ending: &Ending,
-        state: &State,
+        state: &FinalState,
     ) {
         let mut last = self.repeats.summary();
         if !self.undriven.is_empty() {
@@ -323,7 +323,7 @@ impl<W: Write> Screen<W> {
         if !self.style.json {
             return;
         }
-        let line = Line::End(Summary {
+        let line = JsonLine::End(Summary {
             reason,
             exit: exit as u8,
             seconds: seconds(Cycles::new((at.get() as i64).saturating_mul(Cycles::PER_TICK.get()))),
@@ -344,13 +344,13 @@ impl<W: Write> Screen<W> {
     ///
     /// # Errors
     /// Why stdout cannot be written; a reader that has seen enough, as `head` has, is not a failure.
-    pub(crate) fn finish(&mut self) -> io::Result<Reader> {
+    pub(crate) fn finish(&mut self) -> io::Result<Audience> {
         let flushed = self.out.flush();
         self.keep(flushed);
         match self.error.take() {
-            Some(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(Reader::Gone),
+            Some(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(Audience::Gone),
             Some(error) => Err(error),
-            None => Ok(Reader::There),
+            None => Ok(Audience::There),
         }
     }
 }
@@ -358,7 +358,7 @@ impl<W: Write> Screen<W> {
 /// Whether somebody reads what is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
-pub(crate) enum Reader {
+pub(crate) enum Audience {
     There,
     Gone,
 }

@@ -13,7 +13,7 @@ use vm::engine::Engine;
 
 /// The state of a board.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub(crate) struct State {
+pub(crate) struct FinalState {
     /// Axes that are enabled or not at 0.
     axes: Vec<AxisState>,
     /// Bits that are 1.
@@ -32,7 +32,7 @@ struct AxisState {
     velocity: f64,
 }
 
-impl State {
+impl FinalState {
     /// The present state.
     pub(crate) fn of<E: Engine>(board: &Board<E>) -> Self {
         let bits = (0..=i32::from(Bit::MAX)).filter_map(Bit::new);

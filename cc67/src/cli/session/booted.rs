@@ -7,7 +7,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use anyhow::{Context, Result, bail};
-use boot::{BootedBoard, BootedSnapshot, FirmwareFile, Halted, Line, Sent};
+use boot::{BootedBoard, BootedSnapshot, FirmwareFile, Halted, Sent, SentLine};
 use cc67_host::session::resolve;
 use cc67_host::{End, UserProgram};
 use compiler::Options;
@@ -124,7 +124,7 @@ impl Booted {
         started: impl Into<Started<'a>>,
         board: &BoardArguments,
         compiler: &CompilerArguments,
-        request: Option<trace::Request>,
+        request: Option<trace::TraceRequest>,
     ) -> Result<bool> {
         let options = self.options(compiler)?;
         let described = Described::read(started, board, compiler, Given { options, image: None })?;
@@ -329,7 +329,7 @@ impl Booted {
         events.into_iter().for_each(sink);
     }
 
-    fn event(line: Line, at: Cycles) -> Event {
+    fn event(line: SentLine, at: Cycles) -> Event {
         let kind = match line.kind {
             Sent::Console => EventKind::ConsoleLine(line.text),
             Sent::Reply => EventKind::Reply(line.text),

@@ -153,7 +153,7 @@ impl Peer {
 
 /// The line from the board to whatever it is connected to; nothing, unless it is connected.
 #[derive(Debug, Default)]
-pub(super) struct Line {
+pub(super) struct SerialLine {
     peer: Option<Peer>,
     output: Option<Draft>,
     /// Why a character could not be written.
@@ -166,7 +166,7 @@ pub(super) struct Line {
     patience: Duration,
 }
 
-impl Line {
+impl SerialLine {
     /// The other end of the port, which is waited for if it has to be there.
     pub(super) fn connect(uart: &UartArguments) -> Result<Self> {
         let peer = uart.uart.as_deref().map(peer).transpose()?;

@@ -116,7 +116,7 @@ const TIME: std::ops::Range<usize> = 8..10;
 const TIME_LINE: &str = "00000001 00000000 00000000";
 
 /// A line as it was recorded; the time in the status depends on when it was asked.
-fn text(line: &crate::Line) -> String {
+fn text(line: &crate::SentLine) -> String {
     let escape = if line.kind == Sent::Reply { "" } else { "\u{1b}" };
     without_time(&format!("{escape}{}", String::from_utf8_lossy(&line.text)))
 }

@@ -4,7 +4,7 @@
 
 use super::MachineFileError;
 use super::read::{Read, Table, Value, Wrong};
-use crate::world::stimulus::{Form, KEYS, Place, Rule, Stimulus};
+use crate::world::stimulus::{Form, KEYS, Rule, StatementPlace, Stimulus};
 
 /// What messages about rules of a machine file call it.
 const SOURCE: &str = "machine file";
@@ -30,7 +30,7 @@ pub(super) fn rules(statements: Vec<Statement>, text: &str) -> Result<Vec<Rule>,
         let read = Stimulus::parse(&statement, SOURCE)
             .map_err(|error| Wrong::new(offset, error.message).in_text(text))?;
         let MachineFileError { line, column, .. } = Wrong::new(offset, "").in_text(text);
-        let place = Place { source: SOURCE.into(), line, column };
+        let place = StatementPlace { source: SOURCE.into(), line, column };
         rules.extend(read.rules.into_iter().map(|rule| Rule { place: place.clone(), ..rule }));
     }
     Ok(rules)

@@ -8,7 +8,7 @@ use kmotiondef::{Bit, Cycles};
 
 use crate::io::changes::BitChange;
 use crate::io::kanalog::conversion;
-use crate::io::konnect::{Board, Port};
+use crate::io::konnect::{KonnectBoard, Port};
 use crate::machine::attached::{Attached, Outside};
 use crate::world::attached::Settings;
 
@@ -19,7 +19,7 @@ const COUNTS_PER_VOLT: f64 = 204.8;
 #[derive(Clone, Copy, Debug)]
 enum Driver {
     Bits { high: Bit, low: Option<Bit> },
-    Konnect { board: Board, high: u32, low: Option<u32> },
+    Konnect { board: KonnectBoard, high: u32, low: Option<u32> },
 }
 
 /// A low pass.
@@ -54,7 +54,7 @@ impl Filter {
         let driver = match address {
             None => Driver::Bits { high, low },
             Some(address) => {
-                let board = Board { port: port.unwrap_or(Port::Aux1), address };
+                let board = KonnectBoard { port: port.unwrap_or(Port::Aux1), address };
                 let low = low.map(|low| u32::from(low.get()));
                 Driver::Konnect { board, high: u32::from(high.get()), low }
             }
@@ -101,7 +101,7 @@ impl Attached for Filter {
         }
     }
 
-    fn konnect(&mut self, board: Board, outputs: u16, at: Cycles) {
+    fn konnect(&mut self, board: KonnectBoard, outputs: u16, at: Cycles) {
         let Driver::Konnect { board: own, high, low } = self.driver else { return };
         if board == own {
             let is_set = |output: u32| u32::from(outputs) >> output & 1 != 0;
@@ -127,7 +127,7 @@ impl Attached for Filter {
 
 #[cfg(test)]
 mod tests {
-    use crate::io::konnect::{Board, Port};
+    use crate::io::konnect::{KonnectBoard, Port};
     use crate::world::outside::testing::{Bench, us};
 
     #[test]
@@ -147,12 +147,12 @@ mod tests {
     #[test]
     fn two_outputs_of_a_konnect_board_leave_it_alone_when_both_are_off() {
         let mut bench = Bench::new("rc konnect=3 aux=0 high=14 low=15 adc=0 volts=10");
-        let board = Board { port: Port::Aux0, address: 3 };
+        let board = KonnectBoard { port: Port::Aux0, address: 3 };
         bench.device.konnect(board, 1 << 14, us(0));
         bench.device.konnect(board, 0, us(50_000));
         bench.tick(90_000);
         assert_eq!(bench.adc(0), 2047);
-        bench.device.konnect(Board { port: Port::Aux1, address: 3 }, 1 << 15, us(90_000));
+        bench.device.konnect(KonnectBoard { port: Port::Aux1, address: 3 }, 1 << 15, us(90_000));
         bench.tick(100_000);
         assert_eq!(bench.adc(0), 2047);
     }

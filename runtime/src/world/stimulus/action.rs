@@ -16,7 +16,7 @@ use super::reader::StatementReader;
 use super::scene::Scene;
 use super::tokens::Mistake;
 use super::wave::Wave;
-use crate::io::konnect::Board;
+use crate::io::konnect::KonnectBoard;
 use crate::io::snapamp::{Quantity, Side};
 use crate::world::Stage;
 use crate::world::attached::DeviceSpec;
@@ -216,7 +216,7 @@ actions! {
         written { "device NAME KEY=VALUE" => options::read_device }
     }
     /// Gives an input of a Konnect board a level.
-    Konnect(board: Board, input: u8, level: bool) {
+    Konnect(board: KonnectBoard, input: u8, level: bool) {
         does options::konnect;
         written { "konnect N input I = 1" => options::read_konnect }
     }

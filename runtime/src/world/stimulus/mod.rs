@@ -56,7 +56,7 @@ use crate::world::trace::Formula;
 
 /// Where a statement stands.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct StatementPlace {
     /// The file, or the option that holds the text.
     pub source: Arc<str>,
     /// The line, from 1.
@@ -65,7 +65,7 @@ pub struct Place {
     pub column: usize,
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for StatementPlace {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "{}:{}:{}", self.source, self.line, self.column)
     }
@@ -75,7 +75,7 @@ impl fmt::Display for Place {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rule {
     /// Where it is.
-    pub place: Place,
+    pub place: StatementPlace,
     /// When it acts.
     pub trigger: Trigger,
     /// What it does.

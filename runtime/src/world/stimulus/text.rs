@@ -6,14 +6,14 @@ use kmotiondef::Cycles;
 
 use super::reader::StatementReader;
 use super::tokens::{Mistake, TokenKind, tokens};
-use super::{Action, Condition, Edge, Place, Rule, Trigger, action, expectation};
+use super::{Action, Condition, Edge, Rule, StatementPlace, Trigger, action, expectation};
 
 /// A statement that is wrong.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{place}: {message}")]
 pub struct StimulusError {
     /// Where.
-    pub place: Place,
+    pub place: StatementPlace,
     /// What is wrong.
     pub message: String,
 }
@@ -23,7 +23,7 @@ pub(super) fn parse(text: &str, source: &str) -> Result<Vec<Rule>, StimulusError
     let source: Arc<str> = source.into();
     let mut rules = Vec::new();
     for (number, line) in (1..).zip(text.lines()) {
-        let place = |column| Place { source: source.clone(), line: number, column };
+        let place = |column| StatementPlace { source: source.clone(), line: number, column };
         let fail = |(column, message): Mistake| StimulusError { place: place(column), message };
         let tokens = tokens(line).map_err(fail)?;
         let mut rest = tokens.as_slice();

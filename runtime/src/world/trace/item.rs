@@ -8,11 +8,11 @@ use kmotiondef::{AxisId, Bit};
 
 use super::{Formula, View};
 use crate::io::bits::bit_state;
-use crate::io::konnect::{Board, Port};
+use crate::io::konnect::{KonnectBoard, Port};
 use crate::views::Typed;
 
 /// A kind of value: a row of the table of kinds, which is all there is to be said of it.
-struct Kind {
+struct ItemKind {
     name: &'static str,
     /// How many there are, numbered from 0.
     count: usize,
@@ -24,12 +24,12 @@ struct Kind {
 }
 
 /// A kind that is numbered by axis and not a part of what `axisN` names.
-const OTHER: Kind = Kind { name: "", count: 8, unit: "", is_of_axes: false, read: |_, _| 0.0 };
+const OTHER: ItemKind = ItemKind { name: "", count: 8, unit: "", is_of_axes: false, read: |_, _| 0.0 };
 
 /// All kinds.
-const KINDS: &[Kind] = &[
+const KINDS: &[ItemKind] = &[
     // Where an axis is sent.
-    Kind {
+    ItemKind {
         name: "dest",
         unit: "units",
         is_of_axes: true,
@@ -37,7 +37,7 @@ const KINDS: &[Kind] = &[
         ..OTHER
     },
     // Where it is.
-    Kind {
+    ItemKind {
         name: "pos",
         unit: "units",
         is_of_axes: true,
@@ -45,60 +45,69 @@ const KINDS: &[Kind] = &[
         ..OTHER
     },
     // What drives it.
-    Kind {
+    ItemKind {
         name: "out",
         is_of_axes: true,
         read: |view, index| view.memory.axis(axis(index), Chan::OUTPUT).into(),
         ..OTHER
     },
     // How fast it is sent there.
-    Kind {
+    ItemKind {
         name: "vel",
         unit: "units/s",
         read: |view, index| view.memory.axis(axis(index), Chan::LAST_VEL).into(),
         ..OTHER
     },
     // Where its load is, in machine coordinates.
-    Kind { name: "load", unit: "units", read: |view, index| view.machine.loads[axis(index)].load, ..OTHER },
+    ItemKind {
+        name: "load",
+        unit: "units",
+        read: |view, index| view.machine.loads[axis(index)].load,
+        ..OTHER
+    },
     // A bit.
-    Kind { name: "bit", count: Bit::MAX as usize + 1, read: bit, ..OTHER },
+    ItemKind { name: "bit", count: Bit::MAX as usize + 1, read: bit, ..OTHER },
     // An analog input, -2048 to 2047.
-    Kind {
+    ItemKind {
         name: "adc",
         unit: "counts",
         read: |view, index| f64::from(view.memory.get(ADC_BUFFER_IN.element(index)) - 2048),
         ..OTHER
     },
     // An analog output, -2048 to 2047.
-    Kind { name: "dac", unit: "counts", read: dac, ..OTHER },
+    ItemKind { name: "dac", unit: "counts", read: dac, ..OTHER },
     // The word sent to an amplifier.
-    Kind {
+    ItemKind {
         name: "pwm",
         count: 16,
         read: |view, index| view.memory.get(LAST_PWM.element(index)).into(),
         ..OTHER
     },
     // The duty of an I/O PWM from 0 to 1, and its frequency; 0 while it is off.
-    Kind { name: "iopwm", read: |view, index| view.io.fpga.pwm(index as u32).unwrap_or_default().0, ..OTHER },
-    Kind {
+    ItemKind {
+        name: "iopwm",
+        read: |view, index| view.io.fpga.pwm(index as u32).unwrap_or_default().0,
+        ..OTHER
+    },
+    ItemKind {
         name: "iopwmhz",
         unit: "Hz",
         read: |view, index| view.io.fpga.pwm(index as u32).unwrap_or_default().1,
         ..OTHER
     },
     // Steps that a generator has made.
-    Kind { name: "step", unit: "steps", read: |view, index| view.io.stepgens.position(index), ..OTHER },
+    ItemKind { name: "step", unit: "steps", read: |view, index| view.io.stepgens.position(index), ..OTHER },
     // The outputs of a Konnect board: 0 to 7 on JP6, 8 to 15 on JP4.
-    Kind { name: "konnect", count: 16, read: konnect, ..OTHER },
+    ItemKind { name: "konnect", count: 16, read: konnect, ..OTHER },
     // The analog output of a KStep, as part of its supply.
-    Kind {
+    ItemKind {
         name: "kstep_analog",
         count: 1,
         read: |view, _| view.io.fpga.kstep_output().level(view.tick_start),
         ..OTHER
     },
     // An element of `persist.UserData`.
-    Kind { name: "persist", count: 200, read: user_data, ..OTHER },
+    ItemKind { name: "persist", count: 200, read: user_data, ..OTHER },
 ];
 
 /// Indexes are checked when a name is read.
@@ -117,7 +126,7 @@ fn dac(view: &View<'_>, index: usize) -> f64 {
 
 fn konnect(view: &View<'_>, index: usize) -> f64 {
     let port = if index < 8 { Port::Aux1 } else { Port::Aux0 };
-    view.io.konnects.outputs(Board { port, address: (index % 8) as u8 }).into()
+    view.io.konnects.outputs(KonnectBoard { port, address: (index % 8) as u8 }).into()
 }
 
 fn user_data(view: &View<'_>, index: usize) -> f64 {
@@ -159,7 +168,7 @@ impl Item {
         {
             return Ok(Self { kind, index });
         }
-        let is_near = |other: &&Kind| kind.is_none_or(|kind| KINDS[kind].name == other.name);
+        let is_near = |other: &&ItemKind| kind.is_none_or(|kind| KINDS[kind].name == other.name);
         let known: Vec<_> = KINDS
             .iter()
             .filter(is_near)
@@ -234,8 +243,8 @@ impl Formula for Item {
 impl fmt::Display for Item {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match KINDS[self.kind] {
-            Kind { name, count: 1, .. } => formatter.write_str(name),
-            Kind { name, .. } => write!(formatter, "{name}{}", self.index),
+            ItemKind { name, count: 1, .. } => formatter.write_str(name),
+            ItemKind { name, .. } => write!(formatter, "{name}{}", self.index),
         }
     }
 }

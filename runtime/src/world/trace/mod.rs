@@ -16,7 +16,7 @@ pub use crate::out::Record;
 
 /// What is to be recorded.
 #[derive(Clone, Debug)]
-pub struct Request {
+pub struct TraceRequest {
     /// Values to sample.
     pub quantities: Vec<Quantity>,
     /// Ticks from one sample to the next.

@@ -3,19 +3,19 @@
 use kmotiondef::structs::Chan;
 use kmotiondef::{AxisId, Ticks};
 
-use super::{Quantity, Record, Request, View};
+use super::{Quantity, Record, TraceRequest, View};
 use crate::views::Typed;
 
 /// A recording under way.
 #[derive(Clone, Debug)]
 pub(crate) struct Recorder {
-    request: Request,
+    request: TraceRequest,
     /// The values as bits, so that what is not a number is equal to itself, and the enabled axes.
     last: Option<(Vec<u64>, u8)>,
 }
 
 impl Recorder {
-    pub(crate) fn new(request: Request) -> Self {
+    pub(crate) fn new(request: TraceRequest) -> Self {
         Self { request, last: None }
     }
 
@@ -56,7 +56,7 @@ mod tests {
 
     #[test]
     fn ticks_are_sampled_at_multiples_also_when_they_are_skipped() {
-        let recorder = Recorder::new(Request { quantities: Vec::new(), every: 10, changes: false });
+        let recorder = Recorder::new(TraceRequest { quantities: Vec::new(), every: 10, changes: false });
         for (tick, count, expect) in [(10, 1, Some(10)), (11, 1, None), (35, 20, Some(30)), (29, 9, None)] {
             let sampled = recorder.sampled_tick(Ticks::new(tick), count).map(Ticks::get);
             assert_eq!(sampled, expect, "{tick} {count}");

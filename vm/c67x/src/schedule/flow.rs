@@ -73,7 +73,7 @@ struct Coming {
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-struct State {
+struct FlowState {
     at: u32,
     pending: Vec<Pending>,
     readings: Vec<Reading>,
@@ -98,7 +98,8 @@ pub(super) fn walk(base: u32, packets: &[Packet], entries: &[u32]) -> Vec<Violat
         at += packet.bytes();
     }
     let mut walk = Walk { code, range: base..at, found: BTreeSet::new() };
-    let mut open: Vec<State> = entries.iter().map(|at| State { at: *at, ..State::default() }).collect();
+    let mut open: Vec<FlowState> =
+        entries.iter().map(|at| FlowState { at: *at, ..FlowState::default() }).collect();
     let mut seen = BTreeSet::new();
     while let Some(state) = open.pop() {
         if seen.len() > MOST_STATES {
@@ -120,7 +121,7 @@ struct Walk<'a> {
 
 impl Walk<'_> {
     /// Issues the packet of a state; the states that can follow.
-    fn issue(&mut self, mut state: State) -> Vec<State> {
+    fn issue(&mut self, mut state: FlowState) -> Vec<FlowState> {
         let at = state.at;
         let Some(packet) = self.code.get(&at).copied() else {
             let rule = if self.range.contains(&at) { Rule::IntoPacket(at) } else { Rule::RunsOut };
@@ -145,7 +146,7 @@ impl Walk<'_> {
     }
 
     /// Lets the cycles of a packet pass; where a branch arrives, they end.
-    fn pass(&mut self, mut state: State, cycles: u32, at: u32) -> Vec<State> {
+    fn pass(&mut self, mut state: FlowState, cycles: u32, at: u32) -> Vec<FlowState> {
         for _ in 0..cycles {
             state.tick();
             let (arrived, coming): (Vec<_>, Vec<_>) =
@@ -159,7 +160,7 @@ impl Walk<'_> {
             let mut next = Vec::new();
             for coming in arrived {
                 match coming.target {
-                    Some(target) => next.push(State { at: target, ..state.clone() }),
+                    Some(target) => next.push(FlowState { at: target, ..state.clone() }),
                     None => self.leave(&state, at),
                 }
             }
@@ -173,13 +174,13 @@ impl Walk<'_> {
     }
 
     /// The code is left: everything must have landed.
-    fn leave(&mut self, state: &State, at: u32) {
+    fn leave(&mut self, state: &FlowState, at: u32) {
         let late = state.pending.iter().map(|pending| Violation { at, rule: Rule::InFlight(pending.reg) });
         self.found.extend(late);
     }
 }
 
-impl State {
+impl FlowState {
     fn interruptible(&mut self, rules: &mut Vec<Rule>) {
         if self.shadow == 0 {
             self.since = 0;

@@ -16,7 +16,7 @@ use super::super::state::{State, Window};
 use super::Translator;
 use super::accesses::Root;
 use super::strides::Stride;
-use super::turns::{Group, Place, Plan};
+use super::turns::{Group, Plan, TurnWord};
 use crate::kind::Width;
 use crate::operand::RegI32;
 
@@ -29,8 +29,8 @@ pub(super) struct Fast {
     /// The roots that have been checked, with the address in the host of the first byte of their group.
     checked: BTreeMap<Root, Value>,
     /// The same on all ways to a block that have been translated.
-    arriving: BTreeMap<Place, BTreeMap<Root, Value>>,
-    blocks: BTreeMap<Place, Block>,
+    arriving: BTreeMap<TurnWord, BTreeMap<Root, Value>>,
+    blocks: BTreeMap<TurnWord, Block>,
     /// The words at which the loop as it is takes over.
     bails: BTreeMap<usize, Block>,
 }
@@ -100,7 +100,7 @@ impl Translator<'_, '_> {
     }
 
     fn fast_blocks(&mut self, plan: Plan, first: Block) -> Fast {
-        let mut blocks: BTreeMap<Place, Block> =
+        let mut blocks: BTreeMap<TurnWord, Block> =
             plan.entries.keys().map(|place| (*place, self.builder.create_block())).collect();
         blocks.insert((0, plan.entry()), first);
         Fast {

@@ -39,10 +39,10 @@ const MAX_DISTANCE: u32 = 1 << 16;
 const MAX_TERMS: usize = 12;
 
 /// A place in the fast turns: the turn, and the word.
-pub(super) type Place = (usize, usize);
+pub(super) type TurnWord = (usize, usize);
 
 /// A register as a root and a distance from it.
-type Symbol = (Root, i32);
+type SymbolicValue = (Root, i32);
 
 /// What the accesses through one root have in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,9 +82,9 @@ pub(super) struct Plan {
     /// Whether it is a loop that is left in one place, as those that count are: most of their turns do not leave it.
     pub(super) is_counted: bool,
     /// The blocks that can be reached, with the cycles that were charged but not yet taken when they begin.
-    pub(super) entries: BTreeMap<Place, u32>,
+    pub(super) entries: BTreeMap<TurnWord, u32>,
     /// The accesses through registers.
-    pub(super) accesses: BTreeMap<Place, Access>,
+    pub(super) accesses: BTreeMap<TurnWord, Access>,
     /// By root, those of their accesses that one check can cover.
     pub(super) groups: BTreeMap<Root, Group>,
     /// The roots that lie at equal distances.
@@ -134,7 +134,7 @@ fn is_planned(plans: &BTreeMap<usize, Plan>, at: usize) -> bool {
 #[derive(Clone, Debug)]
 struct Known {
     spent: u32,
-    symbols: Vec<Symbol>,
+    symbols: Vec<SymbolicValue>,
 }
 
 /// How a root is made of others.
@@ -154,7 +154,7 @@ struct Planner<'a> {
     roots: Root,
     known_roots: BTreeMap<Made, Root>,
     sums: BTreeMap<Root, Vec<Root>>,
-    arriving: BTreeMap<Place, Known>,
+    arriving: BTreeMap<TurnWord, Known>,
     plan: Plan,
     registers: usize,
 }
@@ -202,7 +202,7 @@ impl<'a> Planner<'a> {
         })
     }
 
-    fn root(&mut self) -> Symbol {
+    fn root(&mut self) -> SymbolicValue {
         self.roots += 1;
         (self.roots, 0)
     }
@@ -278,7 +278,7 @@ impl<'a> Planner<'a> {
     /// What an instruction makes of the symbols of its operands.
     ///
     /// Equal sums and products of roots are the same root, and a constant in a factor is one in the product.
-    fn result(&mut self, op: &Op, symbols: &[Symbol]) -> Symbol {
+    fn result(&mut self, op: &Op, symbols: &[SymbolicValue]) -> SymbolicValue {
         let of = |register: RegI32| symbols[register.index()];
         // What is not followed makes a value of its own, which is right for every instruction.
         let (root, distance) = if let Op::MovI32 { src, .. } = *op {
@@ -303,7 +303,7 @@ impl<'a> Planner<'a> {
         if distance.unsigned_abs() < MAX_DISTANCE { (root, distance) } else { self.root() }
     }
 
-    fn product(&mut self, (root, distance): Symbol, factor: i32) -> Symbol {
+    fn product(&mut self, (root, distance): SymbolicValue, factor: i32) -> SymbolicValue {
         (self.made(Made::Product(root, factor)), distance.wrapping_mul(factor))
     }
 
@@ -368,7 +368,7 @@ impl<'a> Planner<'a> {
     }
 
     /// What is known where several ways meet is what is known on all of them.
-    fn arrive(&mut self, place: Place, known: Known) {
+    fn arrive(&mut self, place: TurnWord, known: Known) {
         let Some(mut met) = self.arriving.remove(&place) else {
             self.arriving.insert(place, known);
             return;
@@ -423,7 +423,7 @@ impl Plan {
     }
 
     /// Where a branch of `turn` to the word `to` continues, if that is in the fast turns.
-    pub(super) fn target(&self, turn: usize, to: usize) -> Option<Place> {
+    pub(super) fn target(&self, turn: usize, to: usize) -> Option<TurnWord> {
         if to == self.entry() {
             return (turn + 1 < self.turns).then_some((turn + 1, to));
         }

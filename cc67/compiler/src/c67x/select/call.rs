@@ -3,7 +3,7 @@
 use super::{Selector, is_pair};
 use crate::c67x::Externs;
 use crate::c67x::abi;
-use crate::c67x::code::{Arg, Base, Call, Inst, Place, Target, VReg};
+use crate::c67x::code::{Arg, Base, Call, Inst, MemoryPlace, Target, VReg};
 use crate::c67x::forms::Kind;
 use crate::ir::inst::{ArgumentRange, Callee, Class, Operand, SignatureId, ValueId};
 
@@ -58,7 +58,7 @@ impl Selector<'_> {
         if let Some((reg, class)) = last.filter(|(_, class)| !is_pair(*class)) {
             debug_assert!(!is_pair(class), "a pair has no place below the variable arguments");
             let mut inst = Inst::new(Kind::StoreWord, Arg::None, Arg::None, reg.into(), self.span);
-            inst.place = Some(Place::new(Base::Stack, 4));
+            inst.place = Some(MemoryPlace::new(Base::Stack, 4));
             self.out.push(inst);
         }
     }
@@ -68,10 +68,10 @@ impl Selector<'_> {
         let first = self.code.spills.next_multiple_of(2);
         self.code.spills = first + 2 * rest.len() as u32;
         for (index, (reg, class)) in (0..).zip(rest.iter().zip(classes)) {
-            let place = Place::new(Base::Spill(first), 8 * index);
+            let place = MemoryPlace::new(Base::Spill(first), 8 * index);
             if is_pair(*class) {
                 self.access(Kind::StoreWord, Arg::None, Arg::Low(*reg), place);
-                let next = Place::new(Base::Spill(first), 8 * index + 4);
+                let next = MemoryPlace::new(Base::Spill(first), 8 * index + 4);
                 self.access(Kind::StoreWord, Arg::None, Arg::High(*reg), next);
             } else {
                 self.access(Kind::StoreWord, Arg::None, (*reg).into(), place);
@@ -79,7 +79,7 @@ impl Selector<'_> {
         }
         let area = self.word();
         let mut inst = Inst::new(Kind::FrameAddress, area.into(), Arg::None, Arg::None, self.span);
-        inst.place = Some(Place::new(Base::Spill(first), 0));
+        inst.place = Some(MemoryPlace::new(Base::Spill(first), 0));
         self.out.push(inst);
         area
     }

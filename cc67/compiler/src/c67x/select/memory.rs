@@ -1,7 +1,7 @@
 //! Loads, stores, addresses, blocks of memory.
 
 use super::Selector;
-use crate::c67x::code::{Arg, Base, Inst, Place, VReg, Value};
+use crate::c67x::code::{Arg, Base, Inst, MemoryPlace, VReg, Value};
 use crate::c67x::forms::Kind;
 use crate::ir::inst::{self, Address, Class, Operand, SlotId, ValueId};
 use crate::ir::operators::Width;
@@ -42,55 +42,55 @@ impl Selector<'_> {
             // The processor has no store of a pair.
             Width::I64 | Width::F64 => {
                 let place = self.place_of_two(address);
-                let next = Place { offset: place.offset + 4, ..place };
+                let next = MemoryPlace { offset: place.offset + 4, ..place };
                 self.access(Kind::StoreWord, Arg::None, Arg::Low(src), place);
                 self.access(Kind::StoreWord, Arg::None, Arg::High(src), next);
             }
         }
     }
 
-    pub(super) fn access(&mut self, kind: Kind, dst: Arg, src: Arg, place: Place) {
+    pub(super) fn access(&mut self, kind: Kind, dst: Arg, src: Arg, place: MemoryPlace) {
         let mut inst = Inst::new(kind, dst, Arg::None, src, self.span);
         inst.place = Some(place);
         self.out.push(inst);
     }
 
     /// Loads a value of a class.
-    pub(super) fn load_value(&mut self, dst: VReg, class: Class, place: Place) {
+    pub(super) fn load_value(&mut self, dst: VReg, class: Class, place: MemoryPlace) {
         let kind = if super::is_pair(class) { Kind::LoadPair } else { Kind::LoadWord };
         self.access(kind, dst.into(), Arg::None, place);
     }
 
     /// An address that an access of `bytes` bytes can have.
-    fn place(&mut self, address: Address, bytes: u32) -> Place {
+    fn place(&mut self, address: Address, bytes: u32) -> MemoryPlace {
         let step = bytes.cast_signed();
         let (base, offset) = match address.base {
-            inst::Base::Slot(slot) => return Place::new(Base::Slot(slot), address.offset),
+            inst::Base::Slot(slot) => return MemoryPlace::new(Base::Slot(slot), address.offset),
             inst::Base::Absolute => (self.known(Value::Number(address.offset)), 0),
             inst::Base::Symbol(symbol) => (self.known(Value::Symbol(symbol, address.offset)), 0),
             inst::Base::Value(value) => (self.value(value), address.offset),
         };
         let fits = offset % step == 0 && (-31..=31).contains(&(offset / step));
         if fits {
-            return Place::new(Base::Reg(base), offset);
+            return MemoryPlace::new(Base::Reg(base), offset);
         }
         let sum = self.word();
         self.add_number(sum, base, offset);
-        Place::new(Base::Reg(sum), 0)
+        MemoryPlace::new(Base::Reg(sum), 0)
     }
 
     /// An address of a word or pair some bytes, a multiple of 8, after that in a register.
-    pub(super) fn beyond(&mut self, base: VReg, offset: i32) -> Place {
+    pub(super) fn beyond(&mut self, base: VReg, offset: i32) -> MemoryPlace {
         if offset / 4 <= 31 {
-            return Place::new(Base::Reg(base), offset);
+            return MemoryPlace::new(Base::Reg(base), offset);
         }
         let sum = self.word();
         self.add_number(sum, base, offset);
-        Place::new(Base::Reg(sum), 0)
+        MemoryPlace::new(Base::Reg(sum), 0)
     }
 
     /// An address of two words one after another.
-    fn place_of_two(&mut self, address: Address) -> Place {
+    fn place_of_two(&mut self, address: Address) -> MemoryPlace {
         let place = self.place(address, 4);
         if place.offset / 4 < 31 || !matches!(place.base, Base::Reg(_)) {
             return place;
@@ -98,7 +98,7 @@ impl Selector<'_> {
         let Base::Reg(base) = place.base else { return place };
         let sum = self.word();
         self.add_number(sum, base, place.offset);
-        Place::new(Base::Reg(sum), 0)
+        MemoryPlace::new(Base::Reg(sum), 0)
     }
 
     fn add_number(&mut self, dst: VReg, base: VReg, offset: i32) {
@@ -131,7 +131,7 @@ impl Selector<'_> {
     /// The address of an object in the frame.
     pub(super) fn frame_address(&mut self, dst: VReg, slot: SlotId, offset: i32) {
         let mut inst = Inst::new(Kind::FrameAddress, dst.into(), Arg::None, Arg::None, self.span);
-        inst.place = Some(Place::new(Base::Slot(slot), offset));
+        inst.place = Some(MemoryPlace::new(Base::Slot(slot), offset));
         self.out.push(inst);
     }
 

@@ -3,7 +3,7 @@
 use cranelift_entity::SecondaryMap;
 
 use super::Selector;
-use crate::c67x::code::{Arg, Base, End, Place, VReg, Value};
+use crate::c67x::code::{Arg, Base, End, MemoryPlace, VReg, Value};
 use crate::c67x::forms::Kind;
 use crate::ir::function::{Block, Function};
 use crate::ir::inst::{InstKind, Operand, Terminator, ValueId};
@@ -85,7 +85,7 @@ impl Selector<'_> {
         self.only_if(Some((is_inside, false)));
         let base = self.known(Value::Table(table));
         let address = self.word();
-        let at = Place { base: Base::Reg(base), offset: 0, index: Some(place), step: 0 };
+        let at = MemoryPlace { base: Base::Reg(base), offset: 0, index: Some(place), step: 0 };
         self.access(Kind::LoadWord, address.into(), Arg::None, at);
         let mut all = targets;
         all.push(default);

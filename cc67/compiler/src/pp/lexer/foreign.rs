@@ -8,7 +8,7 @@ use crate::names::is_name_byte;
 
 use super::super::LAX;
 use super::super::token::{Flags, Token, TokenKind};
-use super::{Context, Lexer};
+use super::{Lexer, LexerContext};
 
 /// What was already said about this file.
 #[derive(Debug, Default)]
@@ -27,7 +27,7 @@ enum Meaning {
 
 impl Lexer {
     /// Skips a space that is none in C.
-    pub(super) fn skip_foreign_space(&mut self, cx: &mut Context<'_>) -> bool {
+    pub(super) fn skip_foreign_space(&mut self, cx: &mut LexerContext<'_>) -> bool {
         let (character, length) = self.character();
         if !matches!(meaning(character), Meaning::Space) {
             return false;
@@ -48,7 +48,7 @@ impl Lexer {
     }
 
     /// Reads a name that goes on in other letters.
-    pub(super) fn foreign_name(&mut self, lo: usize, flags: Flags, cx: &mut Context<'_>) -> Token {
+    pub(super) fn foreign_name(&mut self, lo: usize, flags: Flags, cx: &mut LexerContext<'_>) -> Token {
         let mut first = None;
         loop {
             let (character, length) = self.character();
@@ -74,7 +74,7 @@ impl Lexer {
     }
 
     /// Reads a token that starts with a byte no token of C starts with; `None` if nothing is left of it.
-    pub(super) fn foreign(&mut self, flags: Flags, cx: &mut Context<'_>) -> Option<Token> {
+    pub(super) fn foreign(&mut self, flags: Flags, cx: &mut LexerContext<'_>) -> Option<Token> {
         let lo = self.at;
         let (character, length) = self.character();
         if character.is_ascii_control() {
@@ -99,7 +99,7 @@ impl Lexer {
     }
 
     /// NUL, Ctrl-Z and their kin.
-    fn control(&mut self, character: char, cx: &mut Context<'_>) {
+    fn control(&mut self, character: char, cx: &mut LexerContext<'_>) {
         let span = self.span_to(self.at, self.at + 1);
         self.at += 1;
         if self.complained.control {
@@ -126,7 +126,7 @@ impl Lexer {
         character: char,
         length: usize,
         flags: Flags,
-        cx: &mut Context<'_>,
+        cx: &mut LexerContext<'_>,
     ) -> Token {
         let lo = self.at;
         let opening = self.span_to(lo, lo + length);

@@ -2,7 +2,7 @@
 
 use crate::source::Span;
 
-use super::{Context, Lexer};
+use super::{Lexer, LexerContext};
 
 /// A file name as written.
 #[derive(Debug)]
@@ -19,7 +19,7 @@ pub(in super::super) struct HeaderName {
 
 impl Lexer {
     /// Reads a file name if one is next: `"name"`, `<name>`, or either without its end.
-    pub(in super::super) fn header_name(&mut self, cx: &mut Context<'_>) -> Option<HeaderName> {
+    pub(in super::super) fn header_name(&mut self, cx: &mut LexerContext<'_>) -> Option<HeaderName> {
         self.skip_space(cx);
         let lo = self.at;
         let closing = match self.byte(lo) {

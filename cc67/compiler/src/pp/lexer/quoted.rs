@@ -4,11 +4,11 @@ use crate::diag::Diagnostic;
 
 use super::super::LAX;
 use super::super::token::{Flags, Token, TokenKind};
-use super::{Context, Lexer};
+use super::{Lexer, LexerContext};
 
 impl Lexer {
     /// Reads a string or character constant that starts at `lo`; its quote is the next byte.
-    pub(super) fn quoted(&mut self, lo: usize, flags: Flags, cx: &mut Context<'_>) -> Token {
+    pub(super) fn quoted(&mut self, lo: usize, flags: Flags, cx: &mut LexerContext<'_>) -> Token {
         let quote = self.at;
         let delimiter = self.byte(quote);
         let kind = if delimiter == b'"' { TokenKind::String } else { TokenKind::Character };
@@ -51,7 +51,7 @@ impl Lexer {
         lo: usize,
         quote: usize,
         flags: Flags,
-        cx: &mut Context<'_>,
+        cx: &mut LexerContext<'_>,
     ) -> Token {
         let line_end = self.end_of_line(quote);
         let line = self.bytes(quote, line_end);

@@ -6,11 +6,11 @@ use crate::source::Span;
 
 use super::super::LAX;
 use super::super::token::Flags;
-use super::{Context, Lexer, is_blank};
+use super::{Lexer, LexerContext, is_blank};
 
 impl Lexer {
     /// Goes to the next token; in a directive no further than the end of the line.
-    pub(super) fn skip_space(&mut self, cx: &mut Context<'_>) -> Flags {
+    pub(super) fn skip_space(&mut self, cx: &mut LexerContext<'_>) -> Flags {
         let mut flags = if self.is_line_start { Flags::LINE_START } else { Flags::NONE };
         loop {
             match self.byte(self.at) {
@@ -32,7 +32,7 @@ impl Lexer {
     }
 
     /// Skips the rest of a directive's line. Quotes in it mean nothing.
-    pub(in super::super) fn skip_line(&mut self, cx: &mut Context<'_>) {
+    pub(in super::super) fn skip_line(&mut self, cx: &mut LexerContext<'_>) {
         loop {
             match self.byte(self.at) {
                 b'\n' => return,
@@ -60,7 +60,7 @@ impl Lexer {
     }
 
     /// Reads the name of a directive in text that is skipped; none if no name is next.
-    pub(in super::super) fn directive_name(&mut self, cx: &mut Context<'_>) -> Option<Name> {
+    pub(in super::super) fn directive_name(&mut self, cx: &mut LexerContext<'_>) -> Option<Name> {
         let flags = self.skip_space(cx);
         match self.byte(self.at) {
             b'a'..=b'z' | b'A'..=b'Z' | b'_' => Some(self.identifier(flags, cx).name),
@@ -69,7 +69,7 @@ impl Lexer {
     }
 
     /// Skips lines that `#if` leaves out up to the next directive, and its `#`; none before the end of the file.
-    pub(in super::super) fn skip_to_directive(&mut self, cx: &mut Context<'_>) -> Option<Span> {
+    pub(in super::super) fn skip_to_directive(&mut self, cx: &mut LexerContext<'_>) -> Option<Span> {
         self.in_directive = false;
         while self.at < self.end {
             let flags = self.skip_space(cx);
@@ -95,7 +95,7 @@ impl Lexer {
         Some(at + find_pair(self.bytes(at, self.end), *b"*/")? + 2)
     }
 
-    fn skip_comment(&mut self, cx: &mut Context<'_>) -> bool {
+    fn skip_comment(&mut self, cx: &mut LexerContext<'_>) -> bool {
         let second = self.past_splices(self.at + 1);
         match self.byte(second) {
             b'/' => self.skip_line_comment(second + 1, cx),
@@ -107,7 +107,7 @@ impl Lexer {
 
     /// A comment to the end of the line. It usually ends in a backslash because a path does, so unlike in
     /// standard C that does not continue it.
-    fn skip_line_comment(&mut self, text: usize, cx: &mut Context<'_>) {
+    fn skip_line_comment(&mut self, text: usize, cx: &mut LexerContext<'_>) {
         let newline = self.end_of_line(text);
         let line = self.bytes(text, newline);
         if line.trim_ascii_end().ends_with(b"\\") {
@@ -124,7 +124,7 @@ impl Lexer {
         self.at = newline;
     }
 
-    fn skip_block_comment(&mut self, text: usize, cx: &mut Context<'_>) {
+    fn skip_block_comment(&mut self, text: usize, cx: &mut LexerContext<'_>) {
         let opener = self.at;
         let Some(end) = self.end_of_comment(text) else {
             let span = self.span_to(opener, text);

@@ -33,9 +33,9 @@ const FETCH_PACKET: u32 = 32;
 
 /// What a command line asks for.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum Call {
+pub(super) enum Invocation {
     /// To compile.
-    Compile(Box<Request>),
+    Compile(Box<CompileRequest>),
     /// Nothing; help is due.
     Help,
     /// Where the compiler looks for its files.
@@ -44,7 +44,7 @@ pub(super) enum Call {
 
 /// What is to be compiled, and how.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(super) struct Request {
+pub(super) struct CompileRequest {
     /// The source file.
     pub(super) source: PathBuf,
     /// The firmware file.
@@ -84,7 +84,7 @@ enum Takes {
 
 /// What an option means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Meaning {
+enum OptionMeaning {
     Text,
     Data,
     Bss,
@@ -104,44 +104,44 @@ enum Meaning {
 }
 
 /// Every option; the first one that fits counts.
-const OPTIONS: &[(&str, Takes, Meaning)] = &[
-    ("-text", Takes::Next, Meaning::Text),
-    ("-data", Takes::Next, Meaning::Data),
-    ("-bss", Takes::Next, Meaning::Bss),
-    ("-bench", Takes::Nothing, Meaning::Nothing),
-    ("-bt", Takes::Next, Meaning::Nothing),
-    ("-b", Takes::Nothing, Meaning::Nothing),
-    ("-g", Takes::Nothing, Meaning::Symbols),
-    ("-nostdinc", Takes::Nothing, Meaning::Nothing),
-    ("-nostdlib", Takes::Nothing, Meaning::Nothing),
-    ("-print-search-dirs", Takes::Nothing, Meaning::SearchDirectories),
-    ("-rdynamic", Takes::Nothing, Meaning::Nothing),
-    ("-r", Takes::Nothing, Meaning::Nothing),
-    ("-shared", Takes::Nothing, Meaning::Nothing),
-    ("-static", Takes::Nothing, Meaning::Nothing),
-    ("-std=", Takes::Rest, Meaning::Standard),
-    ("-c", Takes::Nothing, Meaning::CompileOnly),
-    ("-o", Takes::RestOrNext, Meaning::Output),
-    ("-I", Takes::RestOrNext, Meaning::IncludeDirectory),
-    ("-D", Takes::RestOrNext, Meaning::Define),
-    ("-U", Takes::RestOrNext, Meaning::Undefine),
-    ("-L", Takes::RestOrNext, Meaning::Nothing),
-    ("-B", Takes::RestOrNext, Meaning::Nothing),
-    ("-l", Takes::RestOrNext, Meaning::Nothing),
-    ("-Wl,", Takes::Rest, Meaning::Linker),
-    ("-W", Takes::Rest, Meaning::Nothing),
-    ("-O", Takes::Rest, Meaning::Nothing),
-    ("-m", Takes::Rest, Meaning::Nothing),
-    ("-f", Takes::Rest, Meaning::Nothing),
+const OPTIONS: &[(&str, Takes, OptionMeaning)] = &[
+    ("-text", Takes::Next, OptionMeaning::Text),
+    ("-data", Takes::Next, OptionMeaning::Data),
+    ("-bss", Takes::Next, OptionMeaning::Bss),
+    ("-bench", Takes::Nothing, OptionMeaning::Nothing),
+    ("-bt", Takes::Next, OptionMeaning::Nothing),
+    ("-b", Takes::Nothing, OptionMeaning::Nothing),
+    ("-g", Takes::Nothing, OptionMeaning::Symbols),
+    ("-nostdinc", Takes::Nothing, OptionMeaning::Nothing),
+    ("-nostdlib", Takes::Nothing, OptionMeaning::Nothing),
+    ("-print-search-dirs", Takes::Nothing, OptionMeaning::SearchDirectories),
+    ("-rdynamic", Takes::Nothing, OptionMeaning::Nothing),
+    ("-r", Takes::Nothing, OptionMeaning::Nothing),
+    ("-shared", Takes::Nothing, OptionMeaning::Nothing),
+    ("-static", Takes::Nothing, OptionMeaning::Nothing),
+    ("-std=", Takes::Rest, OptionMeaning::Standard),
+    ("-c", Takes::Nothing, OptionMeaning::CompileOnly),
+    ("-o", Takes::RestOrNext, OptionMeaning::Output),
+    ("-I", Takes::RestOrNext, OptionMeaning::IncludeDirectory),
+    ("-D", Takes::RestOrNext, OptionMeaning::Define),
+    ("-U", Takes::RestOrNext, OptionMeaning::Undefine),
+    ("-L", Takes::RestOrNext, OptionMeaning::Nothing),
+    ("-B", Takes::RestOrNext, OptionMeaning::Nothing),
+    ("-l", Takes::RestOrNext, OptionMeaning::Nothing),
+    ("-Wl,", Takes::Rest, OptionMeaning::Linker),
+    ("-W", Takes::Rest, OptionMeaning::Nothing),
+    ("-O", Takes::Rest, OptionMeaning::Nothing),
+    ("-m", Takes::Rest, OptionMeaning::Nothing),
+    ("-f", Takes::Rest, OptionMeaning::Nothing),
 ];
 
 /// Reads a command line without the program's name.
 ///
 /// # Errors
 /// What is wrong with it, in the vendor's words where there are any.
-pub(super) fn parse(arguments: &[OsString]) -> Result<Call, String> {
+pub(super) fn parse(arguments: &[OsString]) -> Result<Invocation, String> {
     let mut reading = Reading {
-        request: Request { text: DEFAULT_TEXT, ..Request::default() },
+        request: CompileRequest { text: DEFAULT_TEXT, ..CompileRequest::default() },
         sources: Vec::new(),
         compile_only: false,
         search_directories: false,
@@ -170,8 +170,8 @@ pub(super) fn parse(arguments: &[OsString]) -> Result<Call, String> {
 }
 
 /// The row of the table that an option fits.
-fn find(word: &str) -> Option<(&'static str, Takes, Meaning)> {
-    let fits = |(name, takes, _): &&(&'static str, Takes, Meaning)| match takes {
+fn find(word: &str) -> Option<(&'static str, Takes, OptionMeaning)> {
+    let fits = |(name, takes, _): &&(&'static str, Takes, OptionMeaning)| match takes {
         Takes::Nothing | Takes::Next => word == *name,
         Takes::RestOrNext | Takes::Rest => word.starts_with(name),
     };
@@ -180,38 +180,38 @@ fn find(word: &str) -> Option<(&'static str, Takes, Meaning)> {
 
 /// A command line while it is read.
 struct Reading {
-    request: Request,
+    request: CompileRequest,
     sources: Vec<PathBuf>,
     compile_only: bool,
     search_directories: bool,
 }
 
 impl Reading {
-    fn option(&mut self, meaning: Meaning, value: &str) -> Result<(), String> {
+    fn option(&mut self, meaning: OptionMeaning, value: &str) -> Result<(), String> {
         let request = &mut self.request;
         match meaning {
-            Meaning::Text => request.text = text_address(value)?,
-            Meaning::Data => request.data = Some(address(value, "data")?),
-            Meaning::Bss => request.bss = Some(address(value, "bss")?),
-            Meaning::Symbols => request.has_symbols = true,
-            Meaning::IncludeDirectory => request.include_dirs.push(native(Path::new(value))),
-            Meaning::Define => {
+            OptionMeaning::Text => request.text = text_address(value)?,
+            OptionMeaning::Data => request.data = Some(address(value, "data")?),
+            OptionMeaning::Bss => request.bss = Some(address(value, "bss")?),
+            OptionMeaning::Symbols => request.has_symbols = true,
+            OptionMeaning::IncludeDirectory => request.include_dirs.push(native(Path::new(value))),
+            OptionMeaning::Define => {
                 let (name, body) = value.split_once('=').map_or((value, None), |(n, v)| (n, Some(v)));
                 request.defines.push((name.to_owned(), body.map(str::to_owned)));
             }
-            Meaning::Undefine => request.undefines.push(value.to_owned()),
-            Meaning::Output => request.output = Some(native(Path::new(value))),
-            Meaning::CompileOnly => self.compile_only = true,
-            Meaning::SearchDirectories => self.search_directories = true,
-            Meaning::Linker => {
+            OptionMeaning::Undefine => request.undefines.push(value.to_owned()),
+            OptionMeaning::Output => request.output = Some(native(Path::new(value))),
+            OptionMeaning::CompileOnly => self.compile_only = true,
+            OptionMeaning::SearchDirectories => self.search_directories = true,
+            OptionMeaning::Linker => {
                 // `-Wl,-Ttext,80050000`, or with `=`: the call of newer versions.
                 let mut words = value.split([',', '=']).skip_while(|word| *word != "-Ttext").skip(1);
                 if let Some(address) = words.next() {
                     request.text = text_address(address)?;
                 }
             }
-            Meaning::Standard => request.standard = Standard::named(value).unwrap_or_default(),
-            Meaning::Nothing => {}
+            OptionMeaning::Standard => request.standard = Standard::named(value).unwrap_or_default(),
+            OptionMeaning::Nothing => {}
         }
         Ok(())
     }
@@ -235,12 +235,12 @@ impl Reading {
         }
     }
 
-    fn finish(mut self) -> Result<Call, String> {
+    fn finish(mut self) -> Result<Invocation, String> {
         if self.search_directories {
-            return Ok(Call::SearchDirectories);
+            return Ok(Invocation::SearchDirectories);
         }
         let mut sources = self.sources.into_iter();
-        let Some(source) = sources.next() else { return Ok(Call::Help) };
+        let Some(source) = sources.next() else { return Ok(Invocation::Help) };
         if let Some(second) = sources.next() {
             let (first, second) = (source.display(), second.display());
             return Err(format!("one program at a time: '{first}' and '{second}' are given"));
@@ -249,7 +249,7 @@ impl Reading {
             return Err("option '-c' writes no file; without it the program is linked".to_owned());
         }
         self.request.source = source;
-        Ok(Call::Compile(Box::new(self.request)))
+        Ok(Invocation::Compile(Box::new(self.request)))
     }
 }
 
@@ -283,13 +283,13 @@ fn native(path: &Path) -> PathBuf {
 mod tests {
     use super::*;
 
-    fn call(words: &[&str]) -> Result<Call, String> {
+    fn call(words: &[&str]) -> Result<Invocation, String> {
         parse(&words.iter().map(OsString::from).collect::<Vec<_>>())
     }
 
-    fn request(words: &[&str]) -> Request {
+    fn request(words: &[&str]) -> CompileRequest {
         match call(words) {
-            Ok(Call::Compile(request)) => *request,
+            Ok(Invocation::Compile(request)) => *request,
             other => panic!("{words:?}: {other:?}"),
         }
     }
@@ -310,14 +310,14 @@ mod tests {
             "prog.c",
             "DSP dir/DSPKFLOP.out",
         ];
-        let expect = Request {
+        let expect = CompileRequest {
             source: "prog.c".into(),
             firmware: Some("DSP dir/DSPKFLOP.out".into()),
             output: Some("prog(1).out".into()),
             text: 0x8005_0000,
             has_symbols: true,
             include_dirs: vec!["DSP dir".into(), "source dir".into()],
-            ..Request::default()
+            ..CompileRequest::default()
         };
         assert_eq!(request(&words), expect);
     }
@@ -346,7 +346,7 @@ mod tests {
             "P.C",
             "-oP.out",
         ];
-        let expect = Request {
+        let expect = CompileRequest {
             source: "P.C".into(),
             firmware: Some("DSP/DSPKFLOP.out".into()),
             output: Some("P.out".into()),
@@ -354,7 +354,7 @@ mod tests {
             include_dirs: vec!["DSP".into()],
             defines: vec![("MILLS".to_owned(), Some("3".to_owned())), ("X".to_owned(), None)],
             undefines: vec!["Y".to_owned()],
-            ..Request::default()
+            ..CompileRequest::default()
         };
         assert_eq!(request(&words), expect);
     }
@@ -363,7 +363,7 @@ mod tests {
     fn addresses_are_hexadecimal_and_the_text_stands_at_a_multiple_of_32() {
         assert_eq!(request(&["a.c"]).text, 0x400);
         let words = ["-text", "0x80050020", "-data", "80052000", "-bss", "80053000", "a.c"];
-        let Request { text, data, bss, .. } = request(&words);
+        let CompileRequest { text, data, bss, .. } = request(&words);
         assert_eq!((text, data, bss), (0x8005_0020, Some(0x8005_2000), Some(0x8005_3000)));
     }
 
@@ -385,8 +385,8 @@ mod tests {
             let message = call(words).expect_err("the command line is wrong");
             assert!(message.contains(expect), "{words:?}: {message}");
         }
-        assert_eq!(call(&[]), Ok(Call::Help));
-        assert_eq!(call(&["-g", "F.out"]), Ok(Call::Help));
-        assert_eq!(call(&["-print-search-dirs"]), Ok(Call::SearchDirectories));
+        assert_eq!(call(&[]), Ok(Invocation::Help));
+        assert_eq!(call(&["-g", "F.out"]), Ok(Invocation::Help));
+        assert_eq!(call(&["-print-search-dirs"]), Ok(Invocation::SearchDirectories));
     }
 }

@@ -20,7 +20,7 @@ use std::sync::Arc;
 use kmotiondef::map::{PROGRAM_SIZE, program_base};
 use kmotiondef::{GuestAddr, ThreadId};
 
-use arguments::{Call, DEFAULT_TEXT, Request};
+use arguments::{CompileRequest, DEFAULT_TEXT, Invocation};
 
 use crate::cli::io::exit::Exit;
 use crate::cli::io::output;
@@ -54,12 +54,12 @@ pub(super) fn is_meant(arguments: &[OsString]) -> bool {
 pub(super) fn main(arguments: &[OsString]) -> ExitCode {
     let rest = arguments.get(1..).unwrap_or_default();
     let result = match arguments::parse(rest) {
-        Ok(Call::Compile(request)) => compile(&request),
-        Ok(Call::Help) => {
+        Ok(Invocation::Compile(request)) => compile(&request),
+        Ok(Invocation::Help) => {
             print(arguments::HELP);
             return Exit::Failure.into();
         }
-        Ok(Call::SearchDirectories) => {
+        Ok(Invocation::SearchDirectories) => {
             let program = arguments.first().map(Path::new).and_then(Path::parent);
             print(&format!("install: {}/\n", program.unwrap_or(Path::new("")).display()));
             return Exit::Success.into();
@@ -83,7 +83,7 @@ fn print(text: &str) {
 }
 
 /// Compiles, links and writes; the error is all that the compiler says.
-fn compile(request: &Request) -> Result<(), String> {
+fn compile(request: &CompileRequest) -> Result<(), String> {
     let text = files::read(&request.source)
         .map_err(|_| format!("tcc: file '{}' not found\n", request.source.display()))?;
     let firmware = request.firmware.as_deref().map(read_firmware).transpose()?;
@@ -115,7 +115,7 @@ const MISTAKEN: &str =
     "the KMotion library takes a board that is in use by another client for the older KMotion: try again";
 
 /// A program for the older board would be downloaded to a place where no thread of this one begins.
-fn refuse_other_boards(request: &Request) -> Result<(), String> {
+fn refuse_other_boards(request: &CompileRequest) -> Result<(), String> {
     let stem = request.firmware.as_deref().and_then(Path::file_stem).unwrap_or_default();
     if stem.eq_ignore_ascii_case(OTHER_FIRMWARE) {
         return Err(format!("tcc: {OTHER_FIRMWARE}.out is not the firmware of a KFLOP; {MISTAKEN}\n"));
@@ -142,7 +142,7 @@ fn read_firmware(path: &Path) -> Result<Firmware, String> {
     Ok(Firmware::File(Arc::new(file)))
 }
 
-fn options(request: &Request, firmware: Option<Firmware>) -> Options {
+fn options(request: &CompileRequest, firmware: Option<Firmware>) -> Options {
     let defines =
         request.defines.iter().map(|(name, value)| (name.clone(), value.clone().unwrap_or("1".to_owned())));
     Options {

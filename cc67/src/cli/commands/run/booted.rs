@@ -14,9 +14,9 @@ use super::RunArguments;
 use crate::cli::args::time::DEFAULT_LIMIT;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::{output, terminal};
-use crate::cli::report::screen::{Reader, Screen};
+use crate::cli::report::screen::{Audience, Screen};
 use crate::cli::report::seen::Seen;
-use crate::cli::report::state::State;
+use crate::cli::report::state::FinalState;
 use crate::cli::session::booted::Booted;
 
 /// Compiles the programs for the real processor, starts the firmware, runs them.
@@ -44,8 +44,8 @@ pub(super) fn run(arguments: &RunArguments, file: &Path) -> Result<Exit> {
         Ok(end) => seen.exit(*end, arguments.limit.is_some()),
         Err(Halted::Crashed(_)) => (Exit::Trapped, "trapped"),
     };
-    screen.end(exit, why, booted.tick(), &active, &Ending::default(), &State::default());
-    if screen.finish().map_err(|error| output::lost_output(&error))? == Reader::Gone {
+    screen.end(exit, why, booted.tick(), &active, &Ending::default(), &FinalState::default());
+    if screen.finish().map_err(|error| output::lost_output(&error))? == Audience::Gone {
         return Ok(Exit::Success);
     }
     match end {

@@ -17,8 +17,8 @@ pub(super) fn chart(title: &str, text: &str) -> Result<Chart> {
     let mut variables: Vec<&Variable> = dump.variables.values().collect();
     variables.sort_by_key(|variable| variable.order);
     let of = |kind| variables.iter().copied().filter(move |variable| variable.kind == kind);
-    let samples = samples(&of(Kind::Number).collect::<Vec<_>>(), end);
-    let mut strips: Vec<Strip> = of(Kind::Wire).map(|variable| strip(variable, end)).collect();
+    let samples = samples(&of(VariableKind::Number).collect::<Vec<_>>(), end);
+    let mut strips: Vec<Strip> = of(VariableKind::Wire).map(|variable| strip(variable, end)).collect();
     strips.splice(0..0, samples.strips());
     let panels = samples.panels();
     if panels.is_empty() && strips.is_empty() {
@@ -79,7 +79,7 @@ fn spaced(name: &str) -> String {
 
 /// What kind of values a variable has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+enum VariableKind {
     Wire,
     Number,
     Text,
@@ -91,7 +91,7 @@ struct Variable {
     /// Its number among all.
     order: usize,
     name: String,
-    kind: Kind,
+    kind: VariableKind,
     /// Seconds and values.
     changes: Vec<(f64, f64)>,
 }
@@ -135,10 +135,10 @@ impl Dump {
             ("$upscope", _) => drop(self.scopes.pop()),
             ("$var", [kind, width, id, name, ..]) => {
                 let kind = match (*kind, *width) {
-                    ("string", _) => Kind::Text,
-                    ("real" | "realtime", _) => Kind::Number,
-                    (_, "1") => Kind::Wire,
-                    _ => Kind::Number,
+                    ("string", _) => VariableKind::Text,
+                    ("real" | "realtime", _) => VariableKind::Number,
+                    (_, "1") => VariableKind::Wire,
+                    _ => VariableKind::Number,
                 };
                 let is_taken = self.variables.values().any(|other| other.name == *name);
                 let scope = self.scopes.last().filter(|_| is_taken);

@@ -20,7 +20,7 @@ use crate::cli::io::output;
 
 /// Where a profile is written to.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum Target {
+pub(crate) enum ProfileOutput {
     /// A table after the run.
     Table,
     /// The same, and a flame graph.
@@ -28,21 +28,21 @@ pub(crate) enum Target {
 }
 
 /// Reads the value of `--profile`.
-pub(crate) fn target(text: &str) -> Result<Target> {
+pub(crate) fn target(text: &str) -> Result<ProfileOutput> {
     if text.is_empty() {
-        return Ok(Target::Table);
+        return Ok(ProfileOutput::Table);
     }
     let path = PathBuf::from(text);
     if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svg")) {
         bail!("a flame graph is an SVG picture: `--profile=NAME.svg`");
     }
-    Ok(Target::Flame(path))
+    Ok(ProfileOutput::Flame(path))
 }
 
 /// Writes the flame graph, if one is wanted, and gives the table.
-pub(crate) fn report(board: &Board<ProfilingEngine>, target: &Target) -> Result<String> {
+pub(crate) fn report(board: &Board<ProfilingEngine>, target: &ProfileOutput) -> Result<String> {
     let spent = collect(board);
-    if let Target::Flame(path) = target {
+    if let ProfileOutput::Flame(path) = target {
         output::write(path, &flame::draw(&spent)?)?;
     }
     Ok(table::table(&spent, board.now()))
@@ -50,7 +50,7 @@ pub(crate) fn report(board: &Board<ProfilingEngine>, target: &Target) -> Result<
 
 /// A line of a function, or a firmware function called from one.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct Frame {
+struct ProfileFrame {
     function: String,
     file: String,
     line: Option<u32>,
@@ -58,28 +58,29 @@ struct Frame {
 
 /// A place in the source with the functions that led there.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct Place {
+struct ProfilePlace {
     /// The thread or the call-back.
     context: ContextId,
     /// The outermost function first.
-    frames: Vec<Frame>,
+    frames: Vec<ProfileFrame>,
     /// The firmware function in which the time was spent.
     firmware: Option<String>,
 }
 
 /// What was spent where.
-type Account = BTreeMap<Place, Spent>;
+type Account = BTreeMap<ProfilePlace, Spent>;
 
 /// Turns addresses into places; a segment becomes its lines.
 fn collect(board: &Board<ProfilingEngine>) -> Account {
     let mut account = Account::new();
     for (site, spent) in board.machine().engine().profile().sites() {
         let Some((head, callers)) = site.calls.split_first() else { continue };
-        let outer: Vec<Frame> = callers.iter().rev().flat_map(|call| frames(board, *call)).collect();
+        let outer: Vec<ProfileFrame> = callers.iter().rev().flat_map(|call| frames(board, *call)).collect();
         for (at, part) in parts(board, site, *head, spent) {
             let mut frames = outer.clone();
             frames.extend(self::frames(board, at));
-            let place = Place { context: site.context, frames, firmware: site.firmware.map(firmware_name) };
+            let place =
+                ProfilePlace { context: site.context, frames, firmware: site.firmware.map(firmware_name) };
             let entry = account.entry(place).or_default();
             entry.computing += part.computing;
             entry.waiting += part.waiting;
@@ -88,7 +89,8 @@ fn collect(board: &Board<ProfilingEngine>) -> Account {
     // Real code leaves no trace of its callers: a packet belongs to its own function.
     for (spender, time) in board.machine().images().account().into_iter().flat_map(vm::dsp::Account::spent) {
         let frames = frames(board, spender.at);
-        let place = Place { context: spender.context, frames, firmware: spender.firmware.map(firmware_name) };
+        let place =
+            ProfilePlace { context: spender.context, frames, firmware: spender.firmware.map(firmware_name) };
         let entry = account.entry(place).or_default();
         entry.computing += time.computing;
         entry.waiting += time.waiting;
@@ -138,8 +140,8 @@ fn program_of(board: &Board<ProfilingEngine>, address: CodeAddr) -> Option<&vm::
 }
 
 /// The function that an address lies in, and within it the one whose call it replaces.
-fn frames(board: &Board<ProfilingEngine>, address: CodeAddr) -> Vec<Frame> {
-    let frame = |function: &str, file: &str, line| Frame {
+fn frames(board: &Board<ProfilingEngine>, address: CodeAddr) -> Vec<ProfileFrame> {
+    let frame = |function: &str, file: &str, line| ProfileFrame {
         function: function.to_owned(),
         file: file.to_owned(),
         line,

@@ -7,14 +7,14 @@ use kmotiondef::Cycles;
 use vm::engine::ContextId;
 use vm::profile::Spent;
 
-use super::{Account, Place, context_name};
+use super::{Account, ProfilePlace, context_name};
 
 /// Rows of a table; what is after them took less.
 const ROWS: usize = 15;
 
 /// What a function took by itself, and with all that it called.
 #[derive(Clone, Copy, Default)]
-struct Function {
+struct FunctionTimes {
     own: Spent,
     total: Spent,
 }
@@ -30,7 +30,7 @@ pub(super) fn table(account: &Account, end: Cycles) -> String {
     text
 }
 
-fn of_context(text: &mut String, context: ContextId, places: &[(&Place, &Spent)], end: Cycles) {
+fn of_context(text: &mut String, context: ContextId, places: &[(&ProfilePlace, &Spent)], end: Cycles) {
     let all = places.iter().fold(Spent::default(), |sum, (_, spent)| plus(sum, **spent));
     let _ = writeln!(
         text,
@@ -60,8 +60,8 @@ fn of_context(text: &mut String, context: ContextId, places: &[(&Place, &Spent)]
 }
 
 /// The functions of the program and of the firmware, the longest first.
-fn functions(places: &[(&Place, &Spent)]) -> Vec<(String, Function)> {
-    let mut functions: BTreeMap<String, Function> = BTreeMap::new();
+fn functions(places: &[(&ProfilePlace, &Spent)]) -> Vec<(String, FunctionTimes)> {
+    let mut functions: BTreeMap<String, FunctionTimes> = BTreeMap::new();
     for (place, spent) in places {
         let mut names: Vec<String> = place.frames.iter().map(|frame| frame.function.clone()).collect();
         names.extend(place.firmware.as_ref().map(|name| format!("{name} (firmware)")));
@@ -79,7 +79,7 @@ fn functions(places: &[(&Place, &Spent)]) -> Vec<(String, Function)> {
 }
 
 /// The lines, with what the firmware functions they call took.
-fn lines(places: &[(&Place, &Spent)]) -> Vec<(String, Spent)> {
+fn lines(places: &[(&ProfilePlace, &Spent)]) -> Vec<(String, Spent)> {
     let mut lines: BTreeMap<String, Spent> = BTreeMap::new();
     for (place, spent) in places {
         let Some(frame) = place.frames.last() else { continue };

@@ -6,7 +6,7 @@ use std::path::Path;
 use anyhow::Result;
 use kmotiondef::{Cycles, Ticks};
 
-use super::{Entry, Sink, nanoseconds};
+use super::{Sink, TraceEntry, nanoseconds};
 use crate::cli::io::output::Draft;
 
 /// The table in the making.
@@ -22,8 +22,8 @@ impl Changes {
 }
 
 impl Sink for Changes {
-    fn note(&mut self, at: Cycles, entry: &Entry) -> io::Result<()> {
-        let Entry::Bit { bit, level, thread } = entry else { return Ok(()) };
+    fn note(&mut self, at: Cycles, entry: &TraceEntry) -> io::Result<()> {
+        let TraceEntry::Bit { bit, level, thread } = entry else { return Ok(()) };
         let (value, thread) = (u8::from(*level), thread.map_or(0, |thread| thread.get()));
         writeln!(self.0, "{},{bit},{value},{thread}", nanoseconds(at))
     }

@@ -13,7 +13,7 @@ use serde::Serialize;
 use serde_json::{Map, Value, json};
 
 use super::columns::Columns;
-use super::{Entry, Sink, nanoseconds};
+use super::{Sink, TraceEntry, nanoseconds};
 use crate::cli::io::output::Draft;
 
 /// The board as the viewer's process, and its tracks beside the threads, which have their own numbers.
@@ -128,15 +128,15 @@ impl Events {
 }
 
 impl Sink for Events {
-    fn note(&mut self, at: Cycles, entry: &Entry) -> io::Result<()> {
+    fn note(&mut self, at: Cycles, entry: &TraceEntry) -> io::Result<()> {
         match entry {
-            Entry::Bit { bit, level, .. } => {
+            TraceEntry::Bit { bit, level, .. } => {
                 if self.bits.insert(*bit) {
                     self.write(&Event::level(*bit, !level, Cycles::default()))?;
                 }
                 self.write(&Event::level(*bit, *level, at))
             }
-            Entry::Slice { thread, end } => {
+            TraceEntry::Slice { thread, end } => {
                 let (track, name) = (thread.get().into(), format!("thread {thread}"));
                 if self.threads.insert(*thread) {
                     self.write(&Event::track(track, &name))?;
@@ -144,12 +144,12 @@ impl Sink for Events {
                 let slice = Event::new("X", name, track, at);
                 self.write(&Event { dur: Some(microseconds(*end - at)), ..slice })
             }
-            Entry::Sample { values, enabled } => {
+            TraceEntry::Sample { values, enabled } => {
                 self.columns.note(*enabled);
                 self.sample(at, values)
             }
-            Entry::Line(line) => self.write(&Event::mark(line.clone(), CONSOLE, at)),
-            Entry::Sent(byte) => {
+            TraceEntry::Line(line) => self.write(&Event::mark(line.clone(), CONSOLE, at)),
+            TraceEntry::Sent(byte) => {
                 if !std::mem::replace(&mut self.has_sent, true) {
                     self.write(&Event::track(UART, "serial port"))?;
                 }

@@ -1,6 +1,6 @@
 //! What a trace shows: what was asked for, or else the items of axes that have been enabled.
 
-use runtime::trace::{Item, Quantity, Request};
+use runtime::trace::{Item, Quantity, TraceRequest};
 
 /// The quantities of a trace, each with its place in a sample.
 #[derive(Clone, Debug)]
@@ -14,7 +14,7 @@ pub(super) struct Columns {
 
 impl Columns {
     /// Nothing is enabled yet.
-    pub(super) fn new(request: &Request) -> Self {
+    pub(super) fn new(request: &TraceRequest) -> Self {
         let items: Vec<_> = request.quantities.iter().filter_map(Quantity::item).collect();
         let is_default = items == Item::of_axes();
         Self { quantities: request.quantities.clone(), is_default, enabled: 0 }

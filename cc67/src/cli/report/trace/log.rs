@@ -6,9 +6,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use kmotiondef::{Bit, Cycles, ThreadId};
-use runtime::trace::{Quantity, Request};
+use runtime::trace::{Quantity, TraceRequest};
 
-use super::Entry;
+use super::TraceEntry;
 use super::columns::Columns;
 
 /// Most samples.
@@ -35,7 +35,7 @@ pub(super) struct Log {
 
 impl Log {
     /// Nothing yet, of what was asked for.
-    pub(super) fn new(request: &Request) -> Self {
+    pub(super) fn new(request: &TraceRequest) -> Self {
         let every = i64::try_from(request.every).unwrap_or(i64::MAX);
         Self {
             columns: Columns::new(request),
@@ -49,18 +49,18 @@ impl Log {
     }
 
     /// Keeps an entry.
-    pub(super) fn note(&mut self, at: Cycles, entry: Entry) {
+    pub(super) fn note(&mut self, at: Cycles, entry: TraceEntry) {
         match entry {
-            Entry::Bit { bit, level, .. } => self.note_bit(bit, level, at),
-            Entry::Slice { thread, end } => self.threads.add(thread, at, end),
-            Entry::Sample { values, enabled } => {
+            TraceEntry::Bit { bit, level, .. } => self.note_bit(bit, level, at),
+            TraceEntry::Slice { thread, end } => self.threads.add(thread, at, end),
+            TraceEntry::Sample { values, enabled } => {
                 self.columns.note(enabled);
                 keep(&mut self.samples, self.step, (at, values));
                 if self.samples.len() > SAMPLES {
                     self.thin();
                 }
             }
-            Entry::Line(_) | Entry::Sent(_) => {}
+            TraceEntry::Line(_) | TraceEntry::Sent(_) => {}
         }
     }
 
@@ -175,10 +175,10 @@ mod tests {
 
     #[test]
     fn a_long_run_takes_no_more_memory_than_a_picture_needs() {
-        let mut log = Log::new(&Request { quantities: Vec::new(), every: 1, changes: true });
+        let mut log = Log::new(&TraceRequest { quantities: Vec::new(), every: 1, changes: true });
         let count = 5 * SAMPLES as i64;
         for tick in 1..=count {
-            log.note(ticks(tick), Entry::Sample { values: vec![tick as f64], enabled: 0 });
+            log.note(ticks(tick), TraceEntry::Sample { values: vec![tick as f64], enabled: 0 });
         }
         assert_eq!(log.step, ticks(8));
         assert!((SAMPLES / 2..=SAMPLES).contains(&log.samples.len()), "{}", log.samples.len());

@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Result, anyhow, bail};
 use cc67_host::{Session, WatchError};
 use kmotiondef::{Bit, Cycles, ThreadId, Ticks};
-use runtime::trace::{Item, Quantity, Record, Request};
+use runtime::trace::{Item, Quantity, Record, TraceRequest};
 use runtime::{Event, EventKind};
 use vm::engine::Engine;
 
@@ -37,7 +37,7 @@ use order::Order;
 pub(crate) fn request<E: Engine>(
     arguments: &TraceArguments,
     session: &Session<E>,
-) -> Result<Option<Request>> {
+) -> Result<Option<TraceRequest>> {
     let TraceArguments { trace, trace_bits, plot, trace_items, trace_every } = arguments;
     if trace.is_empty() && trace_bits.is_none() && plot.is_empty() {
         if trace_items.is_some() {
@@ -55,7 +55,7 @@ pub(crate) fn request<E: Engine>(
     };
     let is_table = |path: &PathBuf| !matches!(suffix(path).as_str(), "vcd" | "json");
     let changes = trace_bits.is_some() || !plot.is_empty() || !trace.iter().all(is_table);
-    Ok(Some(Request { quantities, every: *trace_every, changes }))
+    Ok(Some(TraceRequest { quantities, every: *trace_every, changes }))
 }
 
 /// A suffix that is known, or none.
@@ -76,7 +76,7 @@ fn suffix(path: &Path) -> String {
 
 /// Something that a trace shows; its instant comes with it.
 #[derive(Clone, Debug, PartialEq)]
-enum Entry {
+enum TraceEntry {
     /// A bit has changed, and the thread that did it.
     Bit { bit: Bit, level: bool, thread: Option<ThreadId> },
     /// A thread has the processor until then.
@@ -89,7 +89,7 @@ enum Entry {
     Sent(u8),
 }
 
-impl Entry {
+impl TraceEntry {
     /// What an event shows, if it belongs to a trace.
     fn of(event: &Event) -> Option<Self> {
         Some(match &event.kind {
@@ -110,7 +110,7 @@ impl Entry {
 /// A file that grows with a run.
 trait Sink {
     /// Takes up what has happened; instants never go back.
-    fn note(&mut self, at: Cycles, entry: &Entry) -> io::Result<()>;
+    fn note(&mut self, at: Cycles, entry: &TraceEntry) -> io::Result<()>;
 
     /// The run has ended with this tick.
     fn finish(self: Box<Self>, end: Ticks) -> Result<()>;
@@ -142,7 +142,7 @@ fn refused(error: WatchError) -> anyhow::Error {
 
 impl Trace {
     /// Begins all files.
-    pub(crate) fn begin(arguments: &TraceArguments, request: &Request) -> Result<Self> {
+    pub(crate) fn begin(arguments: &TraceArguments, request: &TraceRequest) -> Result<Self> {
         let mut sinks: Vec<Box<dyn Sink>> = Vec::new();
         for path in &arguments.trace {
             let columns = Columns::new(request);
@@ -189,7 +189,7 @@ impl Trace {
 
     /// Takes up an event, if it belongs to a trace.
     pub(crate) fn note(&mut self, event: &Event) {
-        if let Some(entry) = Entry::of(event) {
+        if let Some(entry) = TraceEntry::of(event) {
             self.order.add(event.at, entry);
             self.pass_on(false);
         }
@@ -222,9 +222,9 @@ mod testing {
     use super::*;
 
     /// What a run with a few records of each kind was asked for.
-    pub(crate) fn request() -> Request {
+    pub(crate) fn request() -> TraceRequest {
         let item = |name| Quantity::from(Item::new(name).expect("an item"));
-        Request { quantities: ["dest0", "bit46"].map(item).to_vec(), every: 2, changes: true }
+        TraceRequest { quantities: ["dest0", "bit46"].map(item).to_vec(), every: 2, changes: true }
     }
 
     /// Its records, as they come: not quite in order.
@@ -270,7 +270,7 @@ mod testing {
     pub(crate) fn log() -> Log {
         let mut log = Log::new(&request());
         for event in events() {
-            log.note(event.at, Entry::of(&event).expect("it belongs to a trace"));
+            log.note(event.at, TraceEntry::of(&event).expect("it belongs to a trace"));
         }
         log
     }

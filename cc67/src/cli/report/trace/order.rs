@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use kmotiondef::Cycles;
 
-use super::Entry;
+use super::TraceEntry;
 
 /// How much later than others something may be told.
 const WINDOW: Cycles = Cycles::new(4 * Cycles::PER_TICK.get());
@@ -12,7 +12,7 @@ const WINDOW: Cycles = Cycles::new(4 * Cycles::PER_TICK.get());
 /// Entries that wait for those before them.
 #[derive(Debug, Default)]
 pub(super) struct Order {
-    waiting: BTreeMap<(Cycles, u64), Entry>,
+    waiting: BTreeMap<(Cycles, u64), TraceEntry>,
     count: u64,
     newest: Cycles,
     /// The instant of the last one that was taken.
@@ -21,14 +21,14 @@ pub(super) struct Order {
 
 impl Order {
     /// Adds an entry; those of one instant stay in the order in which they came.
-    pub(super) fn add(&mut self, at: Cycles, entry: Entry) {
+    pub(super) fn add(&mut self, at: Cycles, entry: TraceEntry) {
         self.newest = self.newest.max(at);
         self.waiting.insert((at, self.count), entry);
         self.count += 1;
     }
 
     /// The next entry that nothing can come before any more; at the end simply the next one.
-    pub(super) fn take(&mut self, is_over: bool) -> Option<(Cycles, Entry)> {
+    pub(super) fn take(&mut self, is_over: bool) -> Option<(Cycles, TraceEntry)> {
         let next = self.waiting.first_entry()?;
         let at = next.key().0;
         if !is_over && at > self.newest - WINDOW {
@@ -48,12 +48,12 @@ mod tests {
         let mut order = Order::default();
         let tick = |ticks: i64| Cycles::new(ticks * Cycles::PER_TICK.get());
         for (at, byte) in [(5, b'b'), (4, b'a'), (5, b'c')] {
-            order.add(tick(at), Entry::Sent(byte));
+            order.add(tick(at), TraceEntry::Sent(byte));
         }
         assert_eq!(order.take(false), None);
-        order.add(tick(9), Entry::Sent(b'd'));
+        order.add(tick(9), TraceEntry::Sent(b'd'));
         let taken: Vec<_> = std::iter::from_fn(|| order.take(false)).map(|(_, entry)| entry).collect();
-        assert_eq!(taken, [b'a', b'b', b'c'].map(Entry::Sent));
-        assert_eq!(order.take(true), Some((tick(9), Entry::Sent(b'd'))));
+        assert_eq!(taken, [b'a', b'b', b'c'].map(TraceEntry::Sent));
+        assert_eq!(order.take(true), Some((tick(9), TraceEntry::Sent(b'd'))));
     }
 }

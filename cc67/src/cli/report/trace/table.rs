@@ -9,7 +9,7 @@ use anyhow::Result;
 use kmotiondef::{Cycles, Ticks};
 
 use super::columns::Columns;
-use super::{Entry, Sink};
+use super::{Sink, TraceEntry};
 use crate::cli::io::output::{Draft, Scratch};
 
 /// The table in the making. Samples are recorded when they change; between them the last one holds.
@@ -50,8 +50,8 @@ impl Table {
 }
 
 impl Sink for Table {
-    fn note(&mut self, at: Cycles, entry: &Entry) -> io::Result<()> {
-        let Entry::Sample { values, enabled } = entry else { return Ok(()) };
+    fn note(&mut self, at: Cycles, entry: &TraceEntry) -> io::Result<()> {
+        let TraceEntry::Sample { values, enabled } = entry else { return Ok(()) };
         while instant(self.tick) < at {
             self.line()?;
         }

@@ -13,7 +13,7 @@ use kmotiondef::{Bit, Cycles, ThreadId, Ticks};
 use runtime::trace::{Item, Quantity};
 
 use super::columns::Columns;
-use super::{Entry, Sink, nanoseconds};
+use super::{Sink, TraceEntry, nanoseconds};
 use crate::cli::io::output::{Draft, Scratch};
 
 /// What a variable shows; the head names them in this order.
@@ -135,27 +135,27 @@ impl Dump {
 }
 
 impl Sink for Dump {
-    fn note(&mut self, at: Cycles, entry: &Entry) -> io::Result<()> {
+    fn note(&mut self, at: Cycles, entry: &TraceEntry) -> io::Result<()> {
         match entry {
-            Entry::Bit { bit, level, .. } => {
+            TraceEntry::Bit { bit, level, .. } => {
                 let id = self.declare(Signal::Bit(*bit), if *level { "0" } else { "1" });
                 self.change(at, if *level { "1" } else { "0" }, &id)
             }
-            Entry::Slice { thread, end } => {
+            TraceEntry::Slice { thread, end } => {
                 let id = self.declare(Signal::Thread(*thread), "0");
                 self.change(at, "1", &id)?;
                 self.slice = Some((*thread, *end));
                 Ok(())
             }
-            Entry::Sample { values, enabled } => {
+            TraceEntry::Sample { values, enabled } => {
                 self.columns.note(*enabled);
                 self.sample(at, values)
             }
-            Entry::Line(line) => {
+            TraceEntry::Line(line) => {
                 let id = self.declare(Signal::Console, "");
                 self.change(at, &format!("s{} ", escape(line)), &id)
             }
-            Entry::Sent(_) => Ok(()),
+            TraceEntry::Sent(_) => Ok(()),
         }
     }
 

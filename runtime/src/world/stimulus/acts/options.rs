@@ -3,7 +3,7 @@
 use kmotiondef::variables::{KANALOG_PRESENT, SNAP_AMP_PRESENT};
 use vm::memory::GuestMemory;
 
-use crate::io::konnect::{Board, Port};
+use crate::io::konnect::{KonnectBoard, Port};
 use crate::io::snapamp::{Quantity, Side};
 use crate::machine::connect_snapamp;
 use crate::views::Typed;
@@ -46,16 +46,16 @@ pub(crate) fn announce_device(device: &DeviceSpec, _: &mut Stage<'_>, memory: &m
     }
 }
 
-pub(crate) fn read_konnect(reader: &mut StatementReader<'_>) -> Result<(Board, u8, bool), Mistake> {
+pub(crate) fn read_konnect(reader: &mut StatementReader<'_>) -> Result<(KonnectBoard, u8, bool), Mistake> {
     let address = reader.below("an address from 0 to 7", 8)? as u8;
     let port = if reader.accept("aux0") { Port::Aux0 } else { Port::Aux1 };
     reader.expect("input")?;
     let input = reader.below("an input from 0 to 31", 32)? as u8;
     reader.equals()?;
-    Ok((Board { port, address }, input, reader.level()?))
+    Ok((KonnectBoard { port, address }, input, reader.level()?))
 }
 
-pub(crate) fn konnect(scene: &mut Scene<'_, '_, '_>, board: Board, input: u8, level: bool) {
+pub(crate) fn konnect(scene: &mut Scene<'_, '_, '_>, board: KonnectBoard, input: u8, level: bool) {
     scene.stage.io.konnects.drive(board, input, level);
 }
 
