@@ -55,6 +55,10 @@ fn options_that_a_booted_board_does_not_know_are_named() {
     refused(&["--uart", "pty"], "--uart");
     refused(&["--profile"], "--profile");
     refused(&["--plot", "a.svg"], "--plot");
+    for (option, name) in [(&["--flash", "x"][..], "--flash"), (&["--live"], "--live")] {
+        let serve = [&["serve", "--boot", "x.out", "hello.c"], option].concat();
+        assert_refused(&cc67(&scratch, serve), &format!("`{name}` does not work with `--boot` yet"));
+    }
     let test = cc67(&scratch, ["compare", "hello.c"]);
     assert_refused(&test, "needs `--boot FILE`");
 }

@@ -130,7 +130,7 @@ pub(crate) const LAYERS: &[(&str, &[Row])] = &[
             ("server", &["server"]),
             ("board", &["board"]),
             ("desk", &["desk"]),
-            ("words", &["request", "names"]),
+            ("words", &["control", "request", "names"]),
         ],
     ),
     (

@@ -24,9 +24,9 @@ export function mountClock(bar, link) {
     link.ask(running ? "pause" : "run");
   }
 
+  const tick = step("Tick", "tick", "One servo tick of 90 µs"), slice = step("Slice", "slice", "To the end of the next slice");
   bar.append(
-    title, run, step("Tick", "tick", "One servo tick of 90 µs"), step("Slice", "slice", "To the end of the next slice"),
-    choose, time, speed, el("span", { className: "grow" }), reload, themeButton(),
+    title, run, tick, slice, choose, time, speed, el("span", { className: "grow" }), reload, themeButton(),
   );
   addEventListener("keydown", (event) => {
     if (!event.altKey || event.ctrlKey || event.metaKey) return;
@@ -38,6 +38,8 @@ export function mountClock(bar, link) {
   });
 
   link.on("hello", (hello) => {
+    // A board whose time passes as its clients need it has no clock to be set.
+    for (const control of [run, tick, slice, choose]) control.hidden = hello.time === "foreign";
     const names = hello.programs.map(({ file }) => file.split(/[\\/]/).pop()).join(", ");
     say(title, names || "cc67 live");
     title.title = hello.title;
@@ -50,7 +52,7 @@ export function mountClock(bar, link) {
     running = frame.running;
     say(run, running ? "Pause" : "Run");
     say(time, `${(frame.tick * 90e-6).toFixed(3)} s`);
-    say(speed, running ? `${frame.measured.toFixed(2)}×` : "stopped");
+    say(speed, frame.running ? `${frame.measured.toFixed(2)}×` : "stopped");
     const value = String(frame.asked);
     if (document.activeElement !== choose && choose.value !== value && SPEEDS.includes(frame.asked)) choose.value = value;
     attribute(run, "data-running", running);

@@ -46,6 +46,10 @@ export function mountTimeline(section, link) {
     say(state, frame.past ? "looking back: what you do now goes on from here" : "");
     section.classList.toggle("past", frame.past);
   });
+  // A board that others use does not go back.
+  link.on("hello", ({ time }) => {
+    for (const part of [section, document.getElementById("tab-timeline")]) part.hidden = time !== "full";
+  });
   link.on("state", () => { asked = null; });
   link.on("problem", () => { asked = null; });
 }

@@ -2,11 +2,13 @@
 //!
 //! A [`Server`] listens on this computer and hands out the page, which is part of the binary. It then
 //! [runs](Server::run) a [`Session`](cc67_host::Session) at the pace of a clock, on the thread of the caller. Pages are
-//! views: they are sent what the board does, and ask for what a person wants done.
+//! views: they are sent what the board does, and ask for what a person wants done. A session that somebody else runs is
+//! shown by a [`LiveView`].
 //!
 //! ```text
 //! server/    connections: the files of the page, the check of who asks, the sockets
 //! board/     the session under the clock: frames, signals, threads, messages
+//! control    what pages may do to the time of the board
 //! desk       what connections and the board share: requests in, messages and frames out
 //! request    what a page may ask for
 //! names      what the programs call their bits
@@ -22,11 +24,14 @@
 #![forbid(unsafe_code)]
 
 mod board;
+mod control;
 mod desk;
 mod names;
 mod request;
 mod server;
 
+pub use board::{LiveView, Wishes};
+pub use control::TimeControl;
 pub use server::{ListenError, Server};
 
 use std::path::PathBuf;
@@ -77,6 +82,8 @@ pub struct Show {
     pub command: PathBuf,
     /// What `cc67 run` has to be told for the same board.
     pub test_options: Vec<TestOption>,
+    /// What pages may do to its time.
+    pub time: TimeControl,
     /// Seconds of board time after which the board is closed; `None` for never.
     pub limit: Option<f64>,
 }

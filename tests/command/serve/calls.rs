@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use super::client::{
-    CHECK_FOR_READY, DISCONNECT, FAILED, LOCATION, SERVICE_CONSOLE, SET_CONSOLE, WRITE_LINE,
+    CHECK_FOR_READY, DISCONNECT, FAILED, LOCATION, LOCK_RECOVERY, SERVICE_CONSOLE, SET_CONSOLE, WRITE_LINE,
     WRITE_LINE_WITH_ECHO,
 };
 use super::{HELLO, Server, VERSION};
@@ -15,6 +15,12 @@ fn counter(lines: u32) -> String {
          persist.UserData[9] = 1;\n}}\n"
     )
 }
+
+/// Prints without end, and says in an element of UserData how far it is.
+const ENDLESS: &str = "#include \"KMotionDef.h\"\nmain()\n{\n  int i;\n  for (i = 0; ; i++) { printf(\"line %d\\n\", i); persist.UserData[9] = i; }\n}\n";
+
+/// Lines that the server keeps for the console (`cc67 --explain limits`).
+const LINES_KEPT: usize = 10_000;
 
 #[test]
 fn a_program_that_prints_goes_on_without_a_console_and_its_lines_are_thrown_away() {
@@ -137,6 +143,35 @@ fn the_token_is_a_counter_of_the_board() {
     second.release();
     assert_eq!(second.lock(), 0);
     assert_eq!(first.lock(), 1);
+    // Recovery asks for it as well, once, and opens a link that was given up.
+    assert_eq!(first.call(LOCK_RECOVERY, b"").0, 1);
+    second.release();
+    assert_eq!(first.call(DISCONNECT, b"").0, 0);
+    assert_eq!(first.call(LOCK_RECOVERY, b"").0, 0);
+    assert!(first.call(LOCATION, b"").0 > 0);
+    assert_eq!(second.lock(), 1);
+}
+
+#[test]
+fn a_program_waits_when_its_console_takes_no_lines_and_none_is_lost() {
+    let server = Server::fast("serve-backlog", ENDLESS);
+    let (mut console, mut other) = (server.client(), server.client());
+    assert_eq!(console.call(SET_CONSOLE, b"").0, 0);
+    let mut printed = || other.ask("GetPersistDec 9").parse::<usize>().expect("a number");
+    // The lines that the server keeps, and then the queue of the board.
+    while printed() < LINES_KEPT {}
+    for _ in 0..300 {
+        printed();
+    }
+    let stopped = printed();
+    assert!((LINES_KEPT..LINES_KEPT + 600).contains(&stopped), "{stopped}");
+    assert_eq!(printed(), stopped, "it waits");
+    while console.console.len() < stopped + 1000 {
+        assert_eq!(console.ask("Version"), VERSION);
+    }
+    for (number, line) in console.console.iter().enumerate() {
+        assert_eq!(*line, format!("line {number}"));
+    }
 }
 
 #[test]

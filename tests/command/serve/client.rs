@@ -12,6 +12,7 @@ pub(super) const DISCONNECT: i32 = 6;
 pub(super) const CHECK_FOR_READY: i32 = 8;
 pub(super) const LOCK: i32 = 9;
 pub(super) const LOCATION: i32 = 10;
+pub(super) const LOCK_RECOVERY: i32 = 11;
 pub(super) const RELEASE: i32 = 12;
 pub(super) const SERVICE_CONSOLE: i32 = 13;
 pub(super) const SET_CONSOLE: i32 = 14;

@@ -75,6 +75,27 @@ fn the_links_of_the_home_folder_are_compiler_and_server() {
 }
 
 #[test]
+fn the_programs_of_m_codes_are_linked_into_the_home_folder() {
+    let scratch = Scratch::new("serve-mcodes");
+    scratch
+        .write("mine/m3.c", "#include \"KMotionDef.h\"\n#include \"mine.h\"\nmain() { SetBit(SPINDLE); }\n");
+    scratch.write("mine/mine.h", "#define SPINDLE 46\n");
+    let words = ["serve", "--home", "home", "--mcodes", "mine", "--listen", "tcp:0", "--for", "0"];
+    assert_eq!(cc67(&scratch, words).code, 0);
+    let checked = cc67(&scratch, ["check", "home/MCodes/m3.c"]);
+    assert_eq!((checked.code, checked.stderr.as_str()), (0, ""), "with the files that it includes");
+    // One that is written later is there, and the server that the library starts needs no such option.
+    scratch.write("mine/m5.c", "main() { }\n");
+    assert!(scratch.path().join("home/MCodes/m5.c").is_file());
+    let options = fs::read_to_string(scratch.path().join("home/serve.options")).expect("it is there");
+    assert!(!options.contains("mine"), "{options}");
+    let words = ["serve", "--home", "home", "--mcodes", "none", "--listen", "tcp:0", "--for", "0"];
+    let wrong = cc67(&scratch, words);
+    assert_eq!(wrong.code, 2);
+    assert!(wrong.stderr.starts_with("cc67: `--mcodes none`: "), "{wrong:?}");
+}
+
+#[test]
 fn a_home_folder_that_cannot_be_made_says_why_and_can_be_made_later() {
     let scratch = Scratch::new("serve-no-home");
     scratch.write("home/bin/tcc67", "#!/bin/sh\n");

@@ -4,8 +4,11 @@
 mod calls;
 mod client;
 #[cfg(unix)]
+mod failures;
+#[cfg(unix)]
 mod home;
 mod hostile;
+mod page;
 
 use std::io::{BufRead, BufReader};
 use std::net::TcpStream;
@@ -72,6 +75,12 @@ impl Server {
     /// Waits for a line that has this text.
     fn says(&self, text: &str) {
         while !self.lines.recv().expect(text).contains(text) {}
+    }
+
+    /// Its folder, for another server.
+    #[cfg(unix)]
+    fn take_folder(&mut self) -> Scratch {
+        std::mem::replace(&mut self.scratch, Scratch::new("serve-none"))
     }
 
     /// Waits for the end.
@@ -249,10 +258,60 @@ fn a_server_ends_after_the_time_that_it_was_given() {
         (&["console", "--serve", "tcp:x"][..], "`--serve tcp:x`: `x` is not a port number"),
         (&["serve", "--listen", "usb:1"], "`--listen usb:1`: neither tcp:PORT nor the path of a socket"),
         (&["serve", "--pace", "0"], "expected a number from 0.01 to 1000, or `fast`"),
-        (&["serve", "--live"], "`--live`: a served board cannot be shown on a page yet"),
+        (&["serve", "--no-open"], "--live"),
     ] {
         let wrong = cc67(&scratch, arguments);
         assert_eq!(wrong.code, 2);
         assert!(wrong.stderr.contains(expect), "{arguments:?}: {}", wrong.stderr);
     }
+}
+
+#[test]
+fn clients_talk_to_the_users_own_firmware() {
+    let Some(firmware) = std::env::var_os("CC67_FIRMWARE") else {
+        println!("not run: CC67_FIRMWARE names no firmware file");
+        return;
+    };
+    let firmware = firmware.to_str().expect("a name of text").to_owned();
+    let words = ["serve", "--boot", &firmware, "--pace", "fast", "--listen", "tcp:0", "a.c"];
+    let server = Server::start("serve-boot", &words, HELLO, 1);
+    let mut client = server.client();
+    assert_eq!(client.call(client::SET_CONSOLE, b"").0, 0);
+    assert_eq!(client.ask("Version"), VERSION);
+    assert_eq!(client.ask("CheckThread1"), "1");
+    while client.console != ["hello"] {
+        assert_eq!(client.ask("Version"), VERSION);
+    }
+    client.write_line("SetGatherHex 5 2");
+    client.write_line("AB CD");
+    assert_eq!(client.ask("GetGatherHex 5 2"), "000000AB 000000CD");
+    assert_eq!(client.call(client::WRITE_LINE_WITH_ECHO, b"bogus\0").0, 0);
+    assert_eq!(client.call(client::CHECK_FOR_READY, b"").0, 3);
+    assert_eq!(client.call(client::DISCONNECT, b"").0, 0);
+    assert_eq!(client.ask("Version"), VERSION);
+}
+
+/// The first block of a kind in the chapter on PC applications, for another port than the usual one.
+fn of_the_book(kind: &str, port: &str) -> String {
+    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../cc67/book/src/pc-applications.md");
+    let page = std::fs::read_to_string(page).expect("the chapter is there");
+    let block = page.split(&format!("```{kind}\n")).nth(1).and_then(|rest| rest.split("```").next());
+    block.expect("a block").replace("57777", port)
+}
+
+#[cfg(unix)]
+#[test]
+fn the_clients_of_the_book_talk_to_the_board() {
+    let server = Server::fast("serve-book", HELLO);
+    let port = server.places[0].strip_prefix("tcp:").expect("a port");
+    let folder = server.scratch.path();
+    server.scratch.write("client.py", of_the_book("python", port));
+    let python = harness::run_in("python3", folder, ["client.py"]);
+    assert_eq!((python.code, python.stdout.as_str()), (0, format!("hello\n(0, b'{VERSION}')\n").as_str()));
+    server.scratch.write("client.c", of_the_book("c host", port));
+    let compiled = harness::run_in("cc", folder, ["-Wall", "-Werror", "-o", "client", "client.c"]);
+    assert_eq!((compiled.code, compiled.stderr.as_str()), (0, ""));
+    let client = folder.join("client");
+    let answer = harness::run_in(client.to_str().expect("a name in UTF-8"), folder, [""; 0]);
+    assert_eq!((answer.code, answer.stdout), (0, format!("{VERSION}\n")));
 }

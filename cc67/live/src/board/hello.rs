@@ -56,7 +56,7 @@ pub(super) fn hello(show: &Show) -> Value {
     json!({
         "kind": "hello", "title": show.title, "version": env!("CARGO_PKG_VERSION"),
         "tick": kmotiondef::limits::TIMEBASE, "axes": axes, "programs": programs,
-        "bits": bits(show), "switches": switches(show),
+        "bits": bits(show), "switches": switches(show), "time": show.time.word(),
     })
 }
 

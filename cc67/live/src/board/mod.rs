@@ -1,37 +1,39 @@
 //! The session under the clock: it goes as far as the clock says, does what pages ask for, and shows itself to them.
 //!
 //! A beat is: take what has come, run to the tick that is due, say what was said, send a frame to each page that is due
-//! one. All of it happens on one thread, so what pages ask for falls between two ticks.
+//! one. All of it happens on one thread, so what pages ask for falls between two ticks. A session that somebody else runs
+//! has the same beat without the second step: a [`LiveView`].
 
 mod clock;
 mod frame;
 mod hello;
+mod history;
 mod keep;
 mod log;
 mod programs;
 mod samples;
 mod saved;
 mod threads;
+mod view;
+
+pub use view::{LiveView, Wishes};
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
-use cc67_host::session::Input;
-use cc67_host::{History, Session, Timeline, UserProgram};
-use kmotiondef::limits::TIMEBASE;
+use cc67_host::{Session, Timeline, UserProgram};
 use kmotiondef::{ThreadId, Ticks};
 use runtime::Event;
 use serde_json::{Value, json};
 use vm::engine::Engine;
 
-use crate::Show;
 use crate::desk::{Desk, Incoming, Mailbox, PageId};
 use crate::request::PageRequest;
+use crate::{Show, TimeControl};
 use clock::{Clock, now};
 use frame::Moment;
-use keep::{Kept, Run};
 use log::{Log, Voice};
 use programs::Programs;
 use samples::Samples;
@@ -62,14 +64,23 @@ pub(crate) fn run<E: Engine>(
     requests: &Receiver<Incoming>,
 ) {
     let limit = show.limit.map(|seconds| session.tick_after(seconds));
-    let programs = Programs::watched(&show, session.options(), desk);
-    let mut stage = Stage::new(session, show, programs);
-    while limit.is_none_or(|limit| stage.session.tick() < limit) {
-        stage.take(requests);
-        stage.advance(limit);
-        stage.tell();
+    let mut stage = Stage::new(session, show, desk);
+    while limit.is_none_or(|limit| session.tick() < limit) {
+        stage.take(session, requests, BEAT);
+        stage.advance(session, limit);
+        stage.tell(session);
     }
-    stage.pages.values().for_each(|page| page.mailbox.close());
+    stage.close();
+}
+
+/// A session that somebody else runs, to be shown.
+pub(crate) fn view<E: Engine>(
+    session: &mut Session<E>,
+    show: Show,
+    desk: &Arc<Desk>,
+    requests: Receiver<Incoming>,
+) -> LiveView<E> {
+    LiveView::new(Stage::new(session, show, desk), requests)
 }
 
 /// A page that looks.
@@ -84,22 +95,26 @@ struct Page {
     generation: u32,
 }
 
-/// A session and what belongs to showing it.
-struct Stage<'a, E: Engine> {
-    session: &'a mut Session<E>,
+/// What belongs to showing a session.
+#[derive(Debug)]
+struct Stage<E: Engine> {
     show: Show,
     programs: Programs,
     clock: Clock,
-    timeline: Timeline<E>,
+    /// The past, if one can go back to it.
+    timeline: Option<Timeline<E>>,
     samples: Samples,
     log: Log,
     pages: BTreeMap<PageId, Page>,
     /// What pages know of threads, and when.
     told: (Vec<ThreadRow>, Instant),
+    /// For whoever else runs the session.
+    wishes: Wishes,
 }
 
-impl<'a, E: Engine> Stage<'a, E> {
-    fn new(session: &'a mut Session<E>, show: Show, programs: Programs) -> Self {
+impl<E: Engine> Stage<E> {
+    fn new(session: &mut Session<E>, show: Show, desk: &Arc<Desk>) -> Self {
+        let programs = Programs::watched(&show, session.options(), desk);
         let clock = Clock::new(session.tick(), show.speed, !show.is_paused);
         let mut samples = Samples::default();
         let list = if show.watch.is_empty() { SIGNALS } else { &show.watch };
@@ -107,9 +122,8 @@ impl<'a, E: Engine> Stage<'a, E> {
         if let Err(error) = samples.follow(session, list, clock.speed()) {
             log.say(session.tick(), Voice::Remark, format!("the scope: {error}"));
         }
-        let timeline = Timeline::new(session);
+        let timeline = (show.time == TimeControl::Full).then(|| Timeline::new(session));
         Self {
-            session,
             show,
             programs,
             clock,
@@ -118,38 +132,39 @@ impl<'a, E: Engine> Stage<'a, E> {
             log,
             pages: BTreeMap::new(),
             told: (Vec::new(), now()),
+            wishes: Wishes::default(),
         }
     }
 
-    /// Waits for a beat, and takes what comes.
-    fn take(&mut self, requests: &Receiver<Incoming>) {
+    /// Takes what comes within some time.
+    fn take(&mut self, session: &mut Session<E>, requests: &Receiver<Incoming>, patience: Duration) {
         let begin = now();
         for _ in 0..REQUESTS_AT_ONCE {
-            let rest = BEAT.saturating_sub(begin.elapsed());
+            let rest = patience.saturating_sub(begin.elapsed());
             match requests.recv_timeout(rest) {
-                Ok(incoming) => self.receive(incoming),
+                Ok(incoming) => self.receive(session, incoming),
                 Err(RecvTimeoutError::Timeout | RecvTimeoutError::Disconnected) => return,
             }
-            if rest.is_zero() {
+            if rest.is_zero() && !patience.is_zero() {
                 return;
             }
         }
     }
 
-    fn receive(&mut self, incoming: Incoming) {
+    fn receive(&mut self, session: &mut Session<E>, incoming: Incoming) {
         match incoming {
-            Incoming::Join(id, mailbox) => self.join(id, mailbox),
+            Incoming::Join(id, mailbox) => self.join(session, id, mailbox),
             Incoming::Leave(id) => {
                 self.pages.remove(&id);
             }
             Incoming::Ask(id, request) => {
-                if let Err(problem) = self.obey(id, request) {
+                if let Err(problem) = self.obey(session, id, request) {
                     self.answer(id, &json!({ "kind": "problem", "text": problem }));
                 }
             }
             Incoming::Saved(compiled) => {
                 let programs = self.programs.saved(*compiled);
-                self.load(programs);
+                self.load(session, programs);
                 self.broadcast(&hello::hello(&self.show));
                 self.broadcast(&hello::sources(&self.show));
                 self.broadcast(&self.programs.message());
@@ -158,7 +173,7 @@ impl<'a, E: Engine> Stage<'a, E> {
     }
 
     /// A page has connected: it receives everything.
-    fn join(&mut self, id: PageId, mailbox: Arc<Mailbox>) {
+    fn join(&mut self, session: &mut Session<E>, id: PageId, mailbox: Arc<Mailbox>) {
         let page = Page { mailbox, every: None, last: now(), next_row: 0, generation: 0 };
         self.pages.insert(id, page);
         self.answer(id, &hello::hello(&self.show));
@@ -166,7 +181,7 @@ impl<'a, E: Engine> Stage<'a, E> {
         self.answer(id, &self.programs.message());
         self.answer(id, &self.signals());
         self.answer(id, &json!({ "kind": "log", "entries": self.log.all() }));
-        self.answer(id, &json!({ "kind": "threads", "threads": threads::rows(self.session) }));
+        self.answer(id, &json!({ "kind": "threads", "threads": threads::rows(session) }));
     }
 
     fn signals(&self) -> Value {
@@ -175,7 +190,8 @@ impl<'a, E: Engine> Stage<'a, E> {
     }
 
     /// Does what a page asks for.
-    fn obey(&mut self, id: PageId, request: PageRequest) -> Result<(), String> {
+    fn obey(&mut self, session: &mut Session<E>, id: PageId, request: PageRequest) -> Result<(), String> {
+        self.show.time.allows(&request)?;
         match request {
             PageRequest::Rate { frames } => {
                 if let Some(page) = self.pages.get_mut(&id) {
@@ -184,219 +200,159 @@ impl<'a, E: Engine> Stage<'a, E> {
                 }
             }
             PageRequest::Run { speed } => {
-                self.go_on();
-                self.clock.run(self.session.tick(), speed);
-                self.samples.at_speed(self.session, self.clock.speed());
+                self.go_on(session);
+                self.clock.run(session.tick(), speed);
+                self.samples.at_speed(session, self.clock.speed());
             }
             PageRequest::Pause {} => self.clock.pause(),
             PageRequest::Tick {} => {
                 self.clock.pause();
-                let next = self.session.tick().next();
+                let next = session.tick().next();
                 // What has happened is shown again; nothing is dropped by looking.
-                if next <= self.timeline.end() {
-                    self.go_to(next)?;
+                if next <= self.end(session) {
+                    self.go_to(session, next)?;
                 } else {
-                    self.run_to(next);
+                    self.run_to(session, next);
                 }
             }
             PageRequest::Slice {} => {
                 self.clock.pause();
-                self.go_on();
-                self.slice();
+                self.go_on(session);
+                self.slice(session);
             }
-            PageRequest::Act { text } => self.act(&text)?,
-            PageRequest::Command { line } => self.command(&line)?,
-            PageRequest::Start { thread } => self.act(&format!("start thread {}", checked(thread)?))?,
-            PageRequest::Stop { thread } => self.act(&format!("stop thread {}", checked(thread)?))?,
+            PageRequest::Act { text } => self.act(session, &text)?,
+            PageRequest::Command { line } => self.command(session, &line)?,
+            PageRequest::Start { thread } => {
+                self.act(session, &format!("start thread {}", checked(thread)?))?;
+            }
+            PageRequest::Stop { thread } => {
+                self.act(session, &format!("stop thread {}", checked(thread)?))?;
+            }
             PageRequest::Reload {} => {
                 let programs = self.programs.reload();
-                self.load(programs);
+                self.load(session, programs);
                 self.broadcast(&self.programs.message());
             }
             PageRequest::Watch { list } => {
-                let followed = self.samples.follow(self.session, &list, self.clock.speed());
+                let followed = self.samples.follow(session, &list, self.clock.speed());
                 followed.map_err(|error| error.to_string())?;
                 self.broadcast(&self.signals());
             }
             PageRequest::Goto { tick } => {
                 self.clock.pause();
-                self.go_to(Ticks::new(tick))?;
+                self.go_to(session, Ticks::new(tick))?;
             }
-            PageRequest::Restart {} => self.restart()?,
-            PageRequest::Save { name } => self.save(id, &name)?,
+            PageRequest::Restart {} => self.restart(session)?,
+            PageRequest::Save { name } => self.save(session, id, &name)?,
             PageRequest::Write { expression, value } => {
-                self.session.write(&expression, value).map_err(|error| error.to_string())?;
-                self.keep();
+                session.write(&expression, value).map_err(|error| error.to_string())?;
+                self.keep(session);
             }
         }
         Ok(())
     }
 
     /// Does what a statement of a stimulus says.
-    fn act(&mut self, text: &str) -> Result<(), String> {
+    fn act(&mut self, session: &mut Session<E>, text: &str) -> Result<(), String> {
         if text.contains(char::is_control) {
             return Err("a statement is one line".to_owned());
         }
-        self.session.act(text).map_err(|error| error.to_string())?;
-        self.keep();
-        Ok(())
-    }
-
-    /// The timeline takes up what was done; in the past, the run continues from there.
-    fn keep(&mut self) {
-        if let History::New(_) = self.timeline.keep(self.session) {
-            self.cut();
+        session.act(text).map_err(|error| error.to_string())?;
+        if self.is_guest() {
+            self.wishes.acts.push(text.to_owned());
         }
-    }
-
-    /// Whether the board is shown as it was, and continued from there.
-    fn is_past(&self) -> bool {
-        self.session.tick() < self.timeline.end()
-    }
-
-    /// Shows the board as it was at a tick.
-    fn go_to(&mut self, tick: Ticks) -> Result<(), String> {
-        let tick = tick.min(self.timeline.end());
-        self.timeline.go_to(self.session, tick).map_err(|error| error.to_string())
-    }
-
-    /// The run continues from the moment that is shown.
-    fn go_on(&mut self) {
-        if self.is_past()
-            && let History::New(_) = self.timeline.branch(self.session)
-        {
-            self.cut();
-        }
-    }
-
-    /// What was later than the present moment is gone.
-    fn cut(&mut self) {
-        let tick = self.session.tick();
-        self.log.cut(tick);
-        let rows = self.samples.cut(tick);
-        self.pages.values_mut().for_each(|page| page.next_row = page.next_row.min(rows));
-        self.broadcast(&json!({ "kind": "cut", "tick": tick.get() }));
-    }
-
-    /// Begins again, with the programs as they are now.
-    fn restart(&mut self) -> Result<(), String> {
-        self.timeline.restore(self.session, 0).map_err(|error| error.to_string())?;
-        self.go_on();
-        for program in self.programs.loaded() {
-            self.session.load(program).map_err(|error| error.to_string())?;
-        }
-        self.keep();
-        self.clock.run(self.session.tick(), None);
-        Ok(())
-    }
-
-    /// Why a run with what was done by hand alone would not be the same; `None` if it would.
-    fn obstacle(&self) -> Option<String> {
-        let loads = self.session.journal().iter().filter_map(|(tick, input)| match input {
-            Input::Load(program) => Some((tick.get(), program.name())),
-            _ => None,
-        });
-        let loads: Vec<_> = loads.collect();
-        if let Some((tick, name)) = loads.iter().find(|(tick, _)| *tick > 0) {
-            let seconds = *tick as f64 * TIMEBASE;
-            return Some(format!("{name} was loaded at {seconds:.3} s: begin again with Restart"));
-        }
-        let is_whole = self.session.recording().is_complete() || !loads.is_empty();
-        (!is_whole).then(|| "a variable was written, which no stimulus does".to_owned())
-    }
-
-    /// Saves what was done by hand as a test.
-    fn save(&mut self, id: PageId, name: &str) -> Result<(), String> {
-        if let Some(obstacle) = self.obstacle() {
-            return Err(obstacle);
-        }
-        let tick = self.session.tick();
-        let seconds = tick.get() as f64 * TIMEBASE;
-        let console = self.log.console(tick);
-        let run = Run { stimulus: self.session.recording().text(), seconds, console };
-        let kept = Kept::new(name, &self.show, run)?;
-        if let Some(page) = self.pages.get(&id) {
-            kept.write(Arc::clone(&page.mailbox));
-        }
+        self.keep(session);
         Ok(())
     }
 
     /// Sends script commands, as the PC does.
-    fn command(&mut self, line: &str) -> Result<(), String> {
-        self.log.say(self.session.tick(), Voice::Command, line.to_owned());
+    fn command(&mut self, session: &mut Session<E>, line: &str) -> Result<(), String> {
+        self.log.say(session.tick(), Voice::Command, line.to_owned());
+        if self.is_guest() {
+            self.wishes.commands.push(line.to_owned());
+            return Ok(());
+        }
         let quoted = line.replace('\\', "\\\\").replace('"', "\\\"");
-        self.act(&format!("command \"{quoted}\""))
+        self.act(session, &format!("command \"{quoted}\""))
     }
 
     /// Loads and starts programs, and says so.
-    fn load(&mut self, programs: Vec<UserProgram>) {
+    fn load(&mut self, session: &mut Session<E>, programs: Vec<UserProgram>) {
         for program in programs {
             let (name, thread) = (program.name(), program.thread);
-            let said = match self.session.load(program) {
+            let said = match session.load(program) {
                 Ok(()) => format!("{name} is loaded into thread {thread} and started"),
                 Err(error) => error.to_string(),
             };
-            self.keep();
-            self.log.say(self.session.tick(), Voice::Remark, said);
+            self.keep(session);
+            self.log.say(session.tick(), Voice::Remark, said);
         }
     }
 
     /// Runs to the tick that is due, or as far as there is time for.
-    fn advance(&mut self, limit: Option<Ticks>) {
+    fn advance(&mut self, session: &mut Session<E>, limit: Option<Ticks>) {
         let begin = now();
-        let due = self.clock.due(self.session.tick());
+        let due = self.clock.due(session.tick());
         let due = limit.map_or(due, |limit| due.min(limit));
-        while self.session.tick() < due && begin.elapsed() < STRETCH {
-            self.run_to(due.min(Ticks::new(self.session.tick().get() + TICKS_AT_ONCE)));
+        while session.tick() < due && begin.elapsed() < STRETCH {
+            self.run_to(session, due.min(Ticks::new(session.tick().get() + TICKS_AT_ONCE)));
         }
     }
 
     /// Runs to a tick and takes note of what happens.
-    fn run_to(&mut self, tick: Ticks) {
+    fn run_to(&mut self, session: &mut Session<E>, tick: Ticks) {
         let mut events = Vec::new();
-        self.session.advance(tick, &mut |event| events.push(event));
-        self.note(&events);
+        session.advance(tick, &mut |event| events.push(event));
+        self.note(session, events);
     }
 
     /// Runs to the end of the next slice of a user thread.
-    fn slice(&mut self) {
-        let limit = Ticks::new(self.session.tick().get() + ROTATION);
+    fn slice(&mut self, session: &mut Session<E>) {
+        let limit = Ticks::new(session.tick().get() + ROTATION);
         let mut events = Vec::new();
         // That nobody has one is seen in the frame.
-        let _ = self.session.step_slice(limit, &mut |event| events.push(event));
-        self.note(&events);
+        let _ = session.step_slice(limit, &mut |event| events.push(event));
+        self.note(session, events);
     }
 
     /// Takes note of what happened while the board ran.
-    fn note(&mut self, events: &[Event]) {
-        events.iter().for_each(|event| self.log.note(self.session, event));
-        self.keep();
+    fn note(&mut self, session: &mut Session<E>, events: Vec<Event>) {
+        events.iter().for_each(|event| self.log.note(session, event));
+        self.keep(session);
+        if self.is_guest() {
+            self.wishes.events.extend(events);
+        }
+    }
+
+    /// Whether somebody else runs the session.
+    fn is_guest(&self) -> bool {
+        self.show.time != TimeControl::Full
     }
 
     /// Tells pages what is new.
-    fn tell(&mut self) {
+    fn tell(&mut self, session: &Session<E>) {
         let fresh = self.log.take_fresh();
         let entries = (!fresh.is_empty()).then(|| json!({ "kind": "log", "entries": fresh }));
         if let Some(entries) = entries {
             self.broadcast(&entries);
         }
         if !self.pages.is_empty() && self.told.1.elapsed() >= THREADS {
-            let rows = threads::rows(self.session);
+            let rows = threads::rows(session);
             if rows != self.told.0 {
                 self.broadcast(&json!({ "kind": "threads", "threads": rows }));
             }
             self.told = (rows, now());
         }
-        self.send_frames();
+        self.send_frames(session);
     }
 
     /// Sends a frame to each page that is due one and has taken the last.
-    fn send_frames(&mut self) {
-        let tick = self.session.tick();
+    fn send_frames(&mut self, session: &Session<E>) {
+        let tick = session.tick();
         let moment = Moment {
             is_running: self.clock.is_running(),
-            is_past: self.is_past(),
-            end: self.timeline.end(),
+            is_past: self.is_past(session),
+            end: self.end(session),
             speed: [self.clock.speed(), self.clock.measured(tick)],
         };
         for page in self.pages.values_mut() {
@@ -407,11 +363,16 @@ impl<'a, E: Engine> Stage<'a, E> {
             if page.generation != self.samples.generation {
                 (page.generation, page.next_row) = (self.samples.generation, 0);
             }
-            let (bytes, next) = frame::frame(self.session, moment, &self.samples, page.next_row);
+            let (bytes, next) = frame::frame(session, moment, &self.samples, page.next_row);
             page.next_row = next;
             page.last = now();
             page.mailbox.show(bytes);
         }
+    }
+
+    /// The board is shown no more.
+    fn close(&self) {
+        self.pages.values().for_each(|page| page.mailbox.close());
     }
 
     fn answer(&self, id: PageId, message: &Value) {

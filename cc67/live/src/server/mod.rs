@@ -17,7 +17,7 @@ use cc67_host::Session;
 use vm::engine::Engine;
 
 use crate::Show;
-use crate::board;
+use crate::board::{self, LiveView};
 use crate::desk::{Desk, Incoming};
 use gate::Gate;
 use http::{Head, HttpAnswer};
@@ -78,6 +78,11 @@ impl Server {
     /// Runs a board and shows it, until its time has passed.
     pub fn run<E: Engine>(self, session: &mut Session<E>, show: Show) {
         board::run(session, show, &self.desk, &self.requests);
+    }
+
+    /// Shows a board that somebody else runs.
+    pub fn view<E: Engine>(self, session: &mut Session<E>, show: Show) -> LiveView<E> {
+        board::view(session, show, &self.desk, self.requests)
     }
 }
 

@@ -33,6 +33,11 @@ impl PcArguments {
         self.host.as_ref()?.to_str()?.parse().ok()
     }
 
+    /// Whether a file of the flash is named here.
+    pub(crate) const fn has_flash(&self) -> bool {
+        self.flash.is_some()
+    }
+
     /// What the PC answers: what the machine file says, and then these.
     pub(crate) fn answers(&self, machine: &MachineFile) -> Result<Option<Answers>> {
         let mut answers = machine.pc.answers.clone();

@@ -106,7 +106,7 @@ pub const CLIENTS: &[Limit] = &[
     limit(
         "console lines of `cc67 serve` that its console has not received",
         serve::CONSOLE_LINES as u64,
-        "the oldest is lost; the server reports it",
+        "programs that print wait, as on a board the PC of which reads nothing",
     ),
 ];
 

@@ -25,6 +25,7 @@ use vm::engine::Engine;
 
 use input::{Input, Lines};
 use screen::Screen;
+pub(super) use words::ACTIONS;
 use words::Word;
 
 use super::serve::Terms;
@@ -98,6 +99,8 @@ impl ConsoleArguments {
             log: None,
             trace: &self.trace,
             title: self.programs.join(OsStr::new(", ")).to_string_lossy().into_owned(),
+            #[cfg(feature = "live")]
+            page: None,
         }
     }
 }

@@ -68,7 +68,7 @@ const ROWS: &[Row] = &[
 ];
 
 /// Words that statements of a stimulus begin with.
-const ACTIONS: &[&str] =
+pub(in crate::cli::commands) const ACTIONS: &[&str] =
     &["bit", "set", "clear", "toggle", "pulse", "adc", "axis", "encoder", "uart", "persist", "konnect"];
 
 /// The names of everything that a line may begin with.

@@ -11,7 +11,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 use anyhow::{Context, Result, bail};
-use cc67_live::{ListenError, Program, Server, Show, TestOption};
+use cc67_live::{ListenError, Program, Server, Show, TestOption, TimeControl};
 use clap::{Args, Parser};
 use vm::engine::Engine;
 
@@ -119,42 +119,80 @@ struct Demonstration {
 impl Work for &LiveArguments {
     fn on<E: Engine>(self, mut rig: Rig<E>) -> Result<Exit> {
         let show = self.show()?;
-        let server = self.listen()?;
-        if self.board.pc.address().is_some_and(|host| !host.is_loopback()) {
-            terminal::note("other computers can reach this page: whoever has the address moves the machine");
-        }
-        let mut out = io::stdout();
-        writeln!(out, "{}", server.url()).and_then(|()| out.flush()).context("cannot write the address")?;
-        if !self.no_open {
-            open(server.url());
-        }
+        let server = listen(self.port, &self.board)?;
+        announce(&server, &self.board, !self.no_open)?;
         server.run(&mut rig.session, show);
         rig.finish(&mut |_| ())?;
         Ok(Exit::Success)
     }
 }
 
+/// What a page shows beside a board: the programs, and what is connected.
+pub(super) fn show(
+    programs: &[OsString],
+    board: &BoardArguments,
+    compiler: &CompilerArguments,
+) -> Result<Show> {
+    let files = assign(&[programs, &board.load].concat())?;
+    let shown = files.into_iter().map(|file| Program {
+        thread: file.thread,
+        is_image: file.is_image(),
+        path: file.path,
+    });
+    Ok(Show {
+        title: programs.join(OsStr::new(", ")).to_string_lossy().into_owned(),
+        machine: board.machine_file()?,
+        programs: shown.collect(),
+        include_dirs: compiler.resolve()?.preprocessor.include_dirs,
+        watch: String::new(),
+        speed: 1.0,
+        is_paused: false,
+        reloads: false,
+        time: TimeControl::Full,
+        limit: None,
+        command: std::env::current_exe().context("cannot find the file of this command")?,
+        test_options: Vec::new(),
+    })
+}
+
+/// Listens for pages; on a port that is free if the usual one is taken and none is asked for.
+pub(super) fn listen(port: Option<u16>, board: &BoardArguments) -> Result<Server> {
+    let host = board.pc.address().unwrap_or(Ipv4Addr::LOCALHOST.into());
+    let listen = |port| Server::listen(host, port);
+    let server = match port {
+        Some(port) => listen(port),
+        None => listen(PORT).or_else(|error| match error {
+            ListenError::Address { .. } => listen(0),
+            ListenError::Random(_) => Err(error),
+        }),
+    };
+    Ok(server?)
+}
+
+/// Prints the address of the page, and opens it.
+pub(super) fn announce(server: &Server, board: &BoardArguments, opens: bool) -> Result<()> {
+    if board.pc.address().is_some_and(|host| !host.is_loopback()) {
+        terminal::note("other computers can reach this page: whoever has the address moves the machine");
+    }
+    let mut out = io::stdout();
+    writeln!(out, "{}", server.url()).and_then(|()| out.flush()).context("cannot write the address")?;
+    if opens {
+        open(server.url());
+    }
+    Ok(())
+}
+
 impl LiveArguments {
     /// What the page shows beside the board.
     fn show(&self) -> Result<Show> {
-        let files = assign(&[&self.programs[..], &self.board.load].concat())?;
-        let programs = files.into_iter().map(|file| Program {
-            thread: file.thread,
-            is_image: file.is_image(),
-            path: file.path,
-        });
         Ok(Show {
-            title: self.programs.join(OsStr::new(", ")).to_string_lossy().into_owned(),
-            machine: self.board.machine_file()?,
-            programs: programs.collect(),
-            include_dirs: self.compiler.resolve()?.preprocessor.include_dirs,
             watch: self.watch.clone(),
             speed: self.speed,
             is_paused: self.paused,
             reloads: self.reload,
             limit: self.limit,
-            command: std::env::current_exe().context("cannot find the file of this command")?,
             test_options: self.test_options(),
+            ..show(&self.programs, &self.board, &self.compiler)?
         })
     }
 
@@ -170,19 +208,6 @@ impl LiveArguments {
         });
         let assist = board.assist.then(|| TestOption::Text("--assist".to_owned()));
         machine.chain(settings).chain(stimuli).chain(assist).collect()
-    }
-
-    fn listen(&self) -> Result<Server> {
-        let host = self.board.pc.address().unwrap_or(Ipv4Addr::LOCALHOST.into());
-        let listen = |port| Server::listen(host, port);
-        let server = match self.port {
-            Some(port) => listen(port),
-            None => listen(PORT).or_else(|error| match error {
-                ListenError::Address { .. } => listen(0),
-                ListenError::Random(_) => Err(error),
-            }),
-        };
-        Ok(server?)
     }
 }
 

@@ -1,20 +1,19 @@
 //! The board that is served, with its link, its files and whatever is recorded of it.
 
 use anyhow::Result;
-use cc67_host::{End, remark};
+use cc67_host::session::EXCHANGE;
+use cc67_host::{End, REPLY_BYTES, remark};
 use kmotiondef::Ticks;
 use runtime::{Event, EventKind, Message};
-use vm::engine::Engine;
 
 use super::Terms;
 use super::link::{CONSOLE_LINES, Unread};
 use super::log::ExchangeLog;
+use super::served::{PageWishes, Served};
 use crate::cli::io::exit::Exit;
 use crate::cli::io::terminal;
 use crate::cli::report::seen::Seen;
-use crate::cli::report::trace::{self, Trace};
-use crate::cli::session::Rig;
-use cc67_host::REPLY_BYTES;
+use crate::cli::report::trace::Trace;
 
 /// What the board answers when flash is written.
 const FLASH_COMPLETE: &[u8] = b"Program Flash Image Complete";
@@ -22,8 +21,8 @@ const FLASH_COMPLETE: &[u8] = b"Program Flash Image Complete";
 const TAKEN_WITHIN: u64 = 11_111;
 
 /// A board under control, and what came over its link.
-pub(super) struct ServedBoard<'a, E> {
-    rig: Rig<E>,
+pub(super) struct ServedBoard<'a, B> {
+    board: B,
     terms: &'a Terms<'a>,
     pub(super) link: Unread,
     /// Whether a client is the console.
@@ -31,45 +30,40 @@ pub(super) struct ServedBoard<'a, E> {
     log: Option<ExchangeLog>,
     seen: Seen,
     trace: Option<Trace>,
-    /// Whether flash was written and is to be kept.
-    is_flashed: bool,
     has_told_replies: bool,
+    /// Whether what the board answers is for a page.
+    is_for_page: bool,
+    /// Whether programs that print wait, as too much waits for the console.
+    is_held_back: bool,
 }
 
-impl<'a, E: Engine> ServedBoard<'a, E> {
-    /// The board of a rig, recorded as the terms say.
-    pub(super) fn new(mut rig: Rig<E>, terms: &'a Terms<'a>) -> Result<Self> {
-        let request = trace::request(terms.trace, &rig.session)?;
-        if let Some(request) = &request {
-            rig.session.record(request.clone());
-        }
-        let trace = request.as_ref().map(|request| Trace::begin(terms.trace, request)).transpose()?;
+impl<'a, B: Served> ServedBoard<'a, B> {
+    /// A board, recorded as the terms say.
+    pub(super) fn new(board: B, trace: Option<Trace>, terms: &'a Terms<'a>) -> Result<Self> {
         let log = terms.log.map(ExchangeLog::new).transpose()?;
-        rig.session.stop_recording();
-        rig.session.listen(true);
-        rig.is_paced();
         Ok(Self {
-            rig,
+            board,
             terms,
             link: Unread::default(),
             is_heard: false,
             log,
             seen: Seen::default(),
             trace,
-            is_flashed: false,
             has_told_replies: false,
+            is_for_page: false,
+            is_held_back: false,
         })
     }
 
     /// Number of the last tick that has passed.
     pub(super) fn tick(&self) -> Ticks {
-        self.rig.session.tick()
+        self.board.tick()
     }
 
     /// Runs to the end of a tick.
     pub(super) fn advance(&mut self, limit: Ticks) {
         let mut events = Vec::new();
-        self.rig.advance(limit, &mut |event| events.push(event));
+        self.board.advance(limit, &mut |event| events.push(event));
         self.take(events);
     }
 
@@ -88,16 +82,50 @@ impl<'a, E: Engine> ServedBoard<'a, E> {
     /// Sends a line and lets the board take it. One with an escape is not echoed.
     pub(super) fn send(&mut self, before: &[u8], line: &[u8]) {
         if let Some(log) = &mut self.log {
-            log.line(self.rig.session.tick(), line, self.rig.session.board().is_in_command());
+            log.line(self.board.tick(), line, self.board.is_in_command());
         }
-        self.rig.session.receive(&[before, line, b"\r"].concat());
-        self.until(TAKEN_WITHIN, |board| !board.rig.session.board().is_receiving());
+        self.board.receive(&[before, line, b"\r"].concat());
+        self.until(TAKEN_WITHIN, |board| !board.board.is_receiving());
+    }
+
+    /// The same for a page, which alone sees what the board answers.
+    pub(super) fn send_for_page(&mut self, before: &[u8], line: &[u8]) {
+        self.log("page:");
+        self.is_for_page = true;
+        self.send(before, line);
+        self.until(EXCHANGE, |_| false);
+        self.is_for_page = false;
+    }
+
+    /// Whether a command waits for data lines.
+    pub(super) fn is_in_command(&self) -> bool {
+        self.board.is_in_command()
+    }
+
+    /// Shows the board on its page, if it has one, and does what is wished there; what is for the desk.
+    pub(super) fn show(&mut self) -> Option<PageWishes> {
+        let mut wishes = self.board.beat()?;
+        self.take(std::mem::take(&mut wishes.events));
+        if let Some(log) = &mut self.log {
+            wishes.acts.iter().for_each(|act| log.act(self.board.tick(), act, self.board.is_in_command()));
+        }
+        Some(wishes)
+    }
+
+    /// Has programs that print wait while too many lines wait for the console; `waiting` are those off the link.
+    pub(super) fn hold_back(&mut self, waiting: usize) {
+        let limit = if self.is_held_back { CONSOLE_LINES / 2 } else { CONSOLE_LINES };
+        let is_too_much = self.is_heard && waiting + self.link.console_lines() >= limit;
+        if is_too_much != self.is_held_back {
+            self.is_held_back = is_too_much;
+            self.board.listen(!is_too_much);
+        }
     }
 
     /// Notes in the log what a client asked and was answered.
     pub(super) fn log(&mut self, text: &str) {
         if let Some(log) = &mut self.log {
-            log.remark(self.rig.session.tick(), text, self.rig.session.board().is_in_command());
+            log.remark(self.board.tick(), text, self.board.is_in_command());
         }
     }
 
@@ -108,8 +136,8 @@ impl<'a, E: Engine> ServedBoard<'a, E> {
 
     /// Opens the link anew: what is under way is dropped on both ends.
     pub(super) fn reopen(&mut self) {
-        self.rig.session.receive(b"\x03");
-        self.until(TAKEN_WITHIN, |board| !board.rig.session.board().is_receiving());
+        self.board.receive(b"\x03");
+        self.until(TAKEN_WITHIN, |board| !board.board.is_receiving());
         self.link.clear();
     }
 
@@ -125,44 +153,49 @@ impl<'a, E: Engine> ServedBoard<'a, E> {
         if self.link.take_lost_replies() && !std::mem::replace(&mut self.has_told_replies, true) {
             terminal::note(&Message::RepliesLost { bytes: REPLY_BYTES }.to_string());
         }
-        if self.link.take_lost_console() {
-            terminal::note(&format!(
-                "more than {CONSOLE_LINES} console lines wait for their client: the oldest is lost"
-            ));
-        }
-        if std::mem::take(&mut self.is_flashed)
-            && let Err(error) = self.rig.keep_flash()
-        {
-            terminal::error(&error);
-        }
     }
 
     fn event(&mut self, event: Event) {
+        // A page shows what it has asked for itself, and not what others have.
+        if self.is_for_page || !matches!(event.kind, EventKind::Reply(_)) {
+            self.board.show(&event);
+        }
         match &event.kind {
             EventKind::Reply(line) => {
-                self.is_flashed |= line == FLASH_COMPLETE;
-                self.link.reply(line);
+                if line == FLASH_COMPLETE && !self.keep_flash() {
+                    // Whoever waits for the line is not to believe that it is kept.
+                    return;
+                }
+                if !self.is_for_page {
+                    self.link.reply(line);
+                }
             }
             EventKind::Echo(bytes) => self.link.echo(bytes),
             EventKind::ConsoleLine(line) => self.link.console(line.clone(), self.is_heard),
             EventKind::Aborted | EventKind::UartSent(_) | EventKind::Trace(_) | EventKind::Loaded(..) => {}
             EventKind::Remark(_) | EventKind::Trap(_) | EventKind::Unmet(_) | EventKind::Host(_) => {
-                let programs: Vec<_> = self.rig.session.debug().into_iter().map(|(_, debug)| debug).collect();
-                if let Some(text) = remark::describe(&event, &programs) {
+                if let Some(text) = remark::describe(&event, &self.board.programs()) {
                     terminal::note(&text);
                 }
             }
         }
     }
 
+    /// Keeps what flash memory holds; whether that could be done.
+    fn keep_flash(&mut self) -> bool {
+        let kept = self.board.keep_flash();
+        kept.map_err(|error| terminal::error(&error.context("the flash is not kept"))).is_ok()
+    }
+
     /// The board is served no more: files are written, and the exit code says how its programs fared.
     pub(super) fn finish(mut self) -> Result<Exit> {
         let mut events = Vec::new();
-        self.rig.finish(&mut |event| events.push(event))?;
+        let finished = self.board.finish(&mut |event| events.push(event));
         self.take(events);
         if let Some(trace) = self.trace.take() {
-            trace.finish(self.terms.trace, self.rig.session.tick(), &self.terms.title)?;
+            trace.finish(self.terms.trace, self.board.tick(), &self.terms.title)?;
         }
+        finished?;
         Ok(self.seen.exit(End::AllEnded, true).0)
     }
 }

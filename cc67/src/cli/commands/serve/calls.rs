@@ -4,15 +4,15 @@ use std::time::{Duration, Instant};
 
 use cc67_host::session::EXCHANGE;
 use cc67_host::{Lock, Readiness};
-use vm::engine::Engine;
 
 use super::desk::{Desk, Token, Waiting, Wanted};
-use super::link::{CONSOLE_LINES, LinkLine};
+use super::link::LinkLine;
 use super::message::{Call, Reply, Request};
+use super::served::Served;
 use crate::cli::io::terminal;
 
 /// Before a line that is not echoed.
-const SILENT: &[u8] = b"\x1b\x01";
+pub(super) const SILENT: &[u8] = b"\x1b\x01";
 /// How long the answer to a line is waited for, in milliseconds.
 const ANSWER_WITHIN: u32 = 3000;
 /// How long each line is waited for until `Ready` comes.
@@ -26,7 +26,7 @@ const TIMEOUT: i32 = 2;
 /// What a client hears of when it gives up the link.
 const FAILED: &str = "Read Failed - Auto Disconnect";
 
-impl<E: Engine> Desk<'_, E> {
+impl<B: Served> Desk<'_, B> {
     /// Does what a client asks for; its reply, if that is known already.
     pub(super) fn ask(&mut self, client: u64, request: &Request) -> Option<Reply> {
         if !request.is_for(&LOCATIONS) {
@@ -57,7 +57,7 @@ impl<E: Engine> Desk<'_, E> {
             Call::Release => self.token = Token::default(),
             Call::ServiceConsole => self.service_console(),
             Call::SetConsole => {
-                self.console = Some(client);
+                self.console.client = Some(client);
                 self.board.is_heard = true;
             }
         }
@@ -133,11 +133,8 @@ impl<E: Engine> Desk<'_, E> {
 
     /// A line for the console: without one it is thrown away.
     fn show(&mut self, line: Vec<u8>) {
-        if self.console.is_some() {
-            if self.console_lines.len() >= CONSOLE_LINES {
-                self.console_lines.pop_front();
-            }
-            self.console_lines.push_back(line);
+        if self.console.client.is_some() {
+            self.console.lines.push_back(line);
         }
     }
 

@@ -12,11 +12,12 @@ use anyhow::Result;
 use cc67_host::session::EXCHANGE;
 use kmotiondef::Ticks;
 use kmotiondef::limits::TIMEBASE;
-use vm::engine::Engine;
 
 use super::Terms;
 use super::board::ServedBoard;
+use super::calls::SILENT;
 use super::message::{self, Reply, Request};
+use super::served::Served;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::pace::{Pace, now};
 
@@ -28,6 +29,8 @@ const SHORT_BEAT: Duration = Duration::from_millis(1);
 const STRETCH: u64 = 111;
 /// Ticks that the board may be ahead of a clock at the board's own pace, before requests wait for the clock: 1 ms.
 const AHEAD: f64 = 11.0;
+/// How long a command from a page waits for a token that a client has.
+const TOKEN_PATIENCE: Duration = Duration::from_millis(500);
 /// Console lines that are sent before one reply at most.
 const LINES_AT_ONCE: usize = 10;
 
@@ -83,6 +86,15 @@ pub(super) struct Token {
     pub(super) has_told: bool,
 }
 
+/// Who receives the console.
+#[derive(Debug, Default)]
+pub(super) struct ConsoleClient {
+    /// The client, if one has registered.
+    pub(super) client: Option<u64>,
+    /// Lines that it has not received yet.
+    pub(super) lines: VecDeque<Vec<u8>>,
+}
+
 /// The link to the board, as clients find it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LinkState {
@@ -93,8 +105,8 @@ pub(super) struct LinkState {
 }
 
 /// The board and its clients.
-pub(super) struct Desk<'a, E> {
-    pub(super) board: ServedBoard<'a, E>,
+pub(super) struct Desk<'a, B> {
+    pub(super) board: ServedBoard<'a, B>,
     terms: &'a Terms<'a>,
     /// The clock, if the board keeps pace with one, and its speed.
     clock: Option<(Pace, f64)>,
@@ -104,17 +116,29 @@ pub(super) struct Desk<'a, E> {
     clients: BTreeMap<u64, Sender<Vec<Vec<u8>>>>,
     waiting: Vec<Waiting>,
     pub(super) token: Token,
-    /// The client that receives the console, and lines that it has not received yet.
-    pub(super) console: Option<u64>,
-    pub(super) console_lines: VecDeque<Vec<u8>>,
+    pub(super) console: ConsoleClient,
     pub(super) state: LinkState,
     /// Error texts for the next answer.
     pub(super) error_texts: Vec<String>,
+    pub(super) page: PageState,
 }
 
-impl<'a, E: Engine> Desk<'a, E> {
+/// What pages have done, and wish.
+#[derive(Debug, Default)]
+pub(super) struct PageState {
+    /// Since when the clock is stopped.
+    stopped: Option<Instant>,
+    /// Requests of clients that have come since.
+    held: Vec<Note>,
+    /// The speed that was last wished, and `None` for a clock that is stopped.
+    wished: Option<Option<f64>>,
+    /// Script commands, with the moment in which each was typed.
+    commands: VecDeque<(Instant, String)>,
+}
+
+impl<'a, B: Served> Desk<'a, B> {
     /// A desk for requests from `inbox`.
-    pub(super) fn new(board: ServedBoard<'a, E>, terms: &'a Terms<'a>, inbox: Receiver<Note>) -> Self {
+    pub(super) fn new(board: ServedBoard<'a, B>, terms: &'a Terms<'a>, inbox: Receiver<Note>) -> Self {
         let clock = terms.pace.map(|speed| (Pace::with_speed(board.tick(), speed), speed));
         Self {
             board,
@@ -125,24 +149,28 @@ impl<'a, E: Engine> Desk<'a, E> {
             clients: BTreeMap::new(),
             waiting: Vec::new(),
             token: Token::default(),
-            console: None,
-            console_lines: VecDeque::new(),
+            console: ConsoleClient::default(),
             state: LinkState { is_open: true, has_told_failure: false },
             error_texts: Vec::new(),
+            page: PageState::default(),
         }
     }
 
     /// Serves until somebody ends it, the board time is up, or the last client is gone and should be the last.
     pub(super) fn run(mut self) -> Result<Exit> {
         let limit = self.terms.limit.map_or(u64::MAX, |seconds| (seconds / TIMEBASE).round() as u64);
+        self.look_at_page();
         while self.board.tick().get() < limit {
             if let Some(note) = self.next_note()
                 && self.take(note) == Course::Leave
             {
                 break;
             }
-            self.catch_up(limit);
-            self.settle();
+            if self.page.stopped.is_none() {
+                self.catch_up(limit);
+                self.settle();
+            }
+            self.look_at_page();
         }
         self.board.finish()
     }
@@ -155,9 +183,11 @@ impl<'a, E: Engine> Desk<'a, E> {
         let first = self.waiting.iter().map(|waiting| waiting.until).min();
         let patience = match (&self.clock, first) {
             (Some(_), None) => BEAT,
+            (Some(_), Some(_)) if self.page.stopped.is_some() => BEAT,
             (Some(_), Some(_)) => SHORT_BEAT,
             (None, Some(_)) if self.ticks_wanted() > 0 => Duration::ZERO,
             (None, Some(until)) => until.saturating_duration_since(now()),
+            (None, None) if self.page.wished.is_some() => BEAT,
             // Time passes in exchanges only.
             (None, None) => return Some(self.inbox.recv().unwrap_or(Note::End)),
         };
@@ -175,6 +205,7 @@ impl<'a, E: Engine> Desk<'a, E> {
                 self.clients.insert(client, answers);
             }
             Note::Left(client) => return self.left(client),
+            Note::Asked(..) if self.page.stopped.is_some() => self.page.held.push(note),
             Note::Asked(client, request) => {
                 self.wait_for_clock();
                 if let Some(reply) = self.ask(client, &request) {
@@ -192,13 +223,13 @@ impl<'a, E: Engine> Desk<'a, E> {
     fn left(&mut self, client: u64) -> Course {
         self.clients.remove(&client);
         self.waiting.retain(|waiting| waiting.client != client);
+        self.page.held.retain(|note| !matches!(note, Note::Asked(other, _) if *other == client));
         if self.token.taken_by == Some(client) {
             self.token = Token::default();
         }
-        if self.console == Some(client) {
-            self.console = None;
+        if self.console.client == Some(client) {
+            self.console = ConsoleClient::default();
             self.board.is_heard = false;
-            self.console_lines.clear();
         }
         if self.terms.once && self.clients.is_empty() { Course::Leave } else { Course::Continue }
     }
@@ -207,14 +238,57 @@ impl<'a, E: Engine> Desk<'a, E> {
     pub(super) fn answer(&mut self, client: u64, reply: Reply) {
         let errors = self.error_texts.drain(..).map(|text| message::error_text(&text));
         let mut messages: Vec<_> = errors.collect();
-        if self.console == Some(client) {
-            let count = self.console_lines.len().min(LINES_AT_ONCE);
-            messages.extend(self.console_lines.drain(..count).map(|line| message::console_line(&line)));
+        if self.console.client == Some(client) {
+            let count = self.console.lines.len().min(LINES_AT_ONCE);
+            messages.extend(self.console.lines.drain(..count).map(|line| message::console_line(&line)));
         }
         messages.push(reply.bytes());
         if let Some(answers) = self.clients.get(&client) {
             // A client that is gone is taken out when its connection says so.
             let _ = answers.send(messages);
+        }
+        self.board.hold_back(self.console.lines.len());
+    }
+
+    /// Shows the board on its page, if it has one, and does what is wished there.
+    fn look_at_page(&mut self) {
+        self.board.hold_back(self.console.lines.len());
+        let Some(wishes) = self.board.show() else { return };
+        let time = now();
+        self.page.commands.extend(wishes.commands.into_iter().map(|line| (time, line)));
+        let before = self.page.wished.replace(wishes.speed);
+        let has_changed = before.map_or(wishes.speed.is_none(), |before| before != wishes.speed);
+        if self.is_clocked() && has_changed {
+            self.set_clock(wishes.speed, time);
+        }
+        self.send_commands(time);
+    }
+
+    /// Stops the clock, or starts it again; nothing that clients wait for passes meanwhile.
+    fn set_clock(&mut self, speed: Option<f64>, time: Instant) {
+        let Some(speed) = speed else {
+            self.page.stopped.get_or_insert(time);
+            return;
+        };
+        if let Some(since) = self.page.stopped.take() {
+            let stopped = time.saturating_duration_since(since);
+            self.waiting.iter_mut().for_each(|waiting| waiting.until += stopped);
+            self.notes.extend(self.page.held.drain(..));
+        }
+        self.clock = Some((Pace::with_speed(self.board.tick(), speed), speed));
+    }
+
+    /// Sends what pages have typed, when it comes between nobody's question and its answer.
+    fn send_commands(&mut self, time: Instant) {
+        while let Some((typed, _)) = self.page.commands.front() {
+            let is_taken = self.token.taken_by.is_some() && time < *typed + TOKEN_PATIENCE;
+            let is_busy = !self.waiting.is_empty() || self.board.is_in_command() || is_taken;
+            if is_busy || self.page.stopped.is_some() {
+                return;
+            }
+            if let Some((_, line)) = self.page.commands.pop_front() {
+                self.board.send_for_page(SILENT, line.as_bytes());
+            }
         }
     }
 

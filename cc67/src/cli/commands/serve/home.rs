@@ -7,7 +7,7 @@ use std::ffi::{OsStr, OsString};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, bail, ensure};
 use compiler::firmware;
 use kmotiondef::headers::EMBEDDED;
 
@@ -22,11 +22,17 @@ const FIRMWARE: [(&str, &str); 2] = [("DSP_KFLOP", "DSPKFLOP.out"), ("DSP_KMotio
 /// Variables of the G-code interpreter that it keeps from one run to the next: home positions, the offset of G92, the
 /// coordinate system in use, and the origins of nine (NIST RS274NGC, section 3.2.1).
 const VARIABLES: &str = "Data/emc.var";
+/// Options that make the folder, and are not for the server in it.
+const OURS: [&str; 2] = ["--home", "--mcodes"];
+/// Programs that M codes start.
+const PROGRAMS: &str = "MCodes";
 /// What the server was last to serve: the folder of that command line, and its words, one a line.
 const OPTIONS: &str = "serve.options";
 
 /// Makes what is missing in the folder.
-pub(super) fn make(folder: &Path) -> Result<PathBuf> {
+///
+/// `programs` is the folder of the programs that M codes start.
+pub(super) fn make(folder: &Path, programs: Option<&Path>) -> Result<PathBuf> {
     let folder = std::path::absolute(folder).context("--home")?;
     for part in ["bin", "Data", FIRMWARE[0].0, FIRMWARE[1].0] {
         let part = folder.join(part);
@@ -45,6 +51,13 @@ pub(super) fn make(folder: &Path) -> Result<PathBuf> {
         }
     }
     supply(&folder.join(VARIABLES), variables().as_bytes())?;
+    if let Some(programs) = programs {
+        let absolute = fs::canonicalize(programs).map_err(|error| {
+            anyhow::anyhow!("`--mcodes {}`: {}", programs.display(), compiler::files::reason(&error))
+        })?;
+        ensure!(absolute.is_dir(), "`--mcodes {}`: it is not a folder", programs.display());
+        link_folder(&absolute, &folder.join(PROGRAMS))?;
+    }
     Ok(folder)
 }
 
@@ -60,8 +73,9 @@ pub(super) fn remember(folder: &Path, words: impl Iterator<Item = OsString>) -> 
     let mut text = here.into_os_string();
     let mut skips = false;
     for word in words {
-        let is_ours = skips || word == "--home" || word.to_string_lossy().starts_with("--home=");
-        skips = !skips && word == "--home";
+        let shown = word.to_string_lossy().into_owned();
+        let is_ours = skips || OURS.iter().any(|name| is_option(&shown, name));
+        skips = !skips && OURS.contains(&shown.as_str());
         if !is_ours {
             text.push("\n");
             text.push(word);
@@ -69,6 +83,11 @@ pub(super) fn remember(folder: &Path, words: impl Iterator<Item = OsString>) -> 
     }
     text.push("\n");
     output::write(&folder.join(OPTIONS), text.as_encoded_bytes())
+}
+
+/// Whether a word is an option of this name, alone or with its value.
+fn is_option(word: &str, name: &str) -> bool {
+    word.strip_prefix(name).is_some_and(|rest| rest.is_empty() || rest.starts_with('='))
 }
 
 /// The command line that is meant when the command is called by the name of the vendor's server; `None` if it is not.
@@ -106,7 +125,27 @@ fn variables() -> String {
     numbers.iter().map(|number| format!("{number}\t{:.6}\n", f64::from(u8::from(*number == 5220)))).collect()
 }
 
-/// Makes a link to the command; one that is there is replaced, a file of another kind is not.
+/// Makes a link to a folder, so that a program is found there as soon as it is written, with the files that it includes.
+#[cfg(unix)]
+fn link_folder(folder: &Path, path: &Path) -> Result<()> {
+    link(folder, path)
+}
+
+/// Copies the files of a folder, where links are not everybody's.
+#[cfg(not(unix))]
+fn link_folder(folder: &Path, path: &Path) -> Result<()> {
+    fs::create_dir_all(path).map_err(|error| output::cannot_write(path, &error))?;
+    for entry in fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))? {
+        let from = entry?.path();
+        let to = path.join(from.file_name().unwrap_or_default());
+        if from.is_file() {
+            fs::copy(&from, &to).map_err(|error| output::cannot_write(&to, &error))?;
+        }
+    }
+    Ok(())
+}
+
+/// Makes a link to the command or to a folder; one that is there is replaced, a file of another kind is not.
 #[cfg(unix)]
 fn link(command: &Path, path: &Path) -> Result<()> {
     if let Ok(known) = fs::symlink_metadata(path) {

@@ -10,8 +10,9 @@ use cc67_host::REPLY_BYTES;
 
 /// Console lines that are kept while no client is the console; older ones are dropped.
 pub(in crate::cli::commands) const UNHEARD_LINES: usize = 256;
-/// Console lines that are kept for the client that is the console; older ones are lost.
-pub(in crate::cli::commands) const CONSOLE_LINES: usize = 1_000_000;
+/// Console lines that wait for the client that is the console; then the board is no longer read, and programs that print
+/// wait, as on a board the PC of which reads nothing.
+pub(in crate::cli::commands) const CONSOLE_LINES: usize = 10_000;
 
 /// A line of the board, without its end.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -33,7 +34,6 @@ pub(super) struct Unread {
     lines: u64,
     reply_bytes: usize,
     lost_replies: bool,
-    lost_console: bool,
 }
 
 impl Unread {
@@ -63,13 +63,16 @@ impl Unread {
 
     /// A console line came; some client is the console, or none.
     pub(super) fn console(&mut self, line: Vec<u8>, is_heard: bool) {
-        let limit = if is_heard { CONSOLE_LINES } else { UNHEARD_LINES };
-        while self.console.len() >= limit {
-            self.lost_console |= is_heard;
+        while !is_heard && self.console.len() >= UNHEARD_LINES {
             self.console.pop_front();
         }
         self.lines += 1;
         self.console.push_back((self.lines, line));
+    }
+
+    /// How many console lines wait.
+    pub(super) fn console_lines(&self) -> usize {
+        self.console.len()
     }
 
     /// Whether any line waits.
@@ -105,11 +108,6 @@ impl Unread {
     pub(super) fn take_lost_replies(&mut self) -> bool {
         mem::take(&mut self.lost_replies)
     }
-
-    /// Whether console lines were lost; says so once for each time of looking.
-    pub(super) fn take_lost_console(&mut self) -> bool {
-        mem::take(&mut self.lost_console)
-    }
 }
 
 #[cfg(test)]
@@ -139,7 +137,6 @@ mod tests {
             link.console(number.to_string().into_bytes(), false);
         }
         assert_eq!(link.next(), Some(LinkLine::Console(b"10".to_vec())));
-        assert!(!link.take_lost_console(), "nobody has registered for them");
         for _ in 0..=REPLY_BYTES / 1000 {
             link.reply(&[b'x'; 1000]);
         }

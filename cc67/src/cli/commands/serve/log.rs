@@ -12,6 +12,7 @@ use cc67_host::session::EXCHANGE;
 use kmotiondef::Ticks;
 use kmotiondef::limits::TIMEBASE;
 
+use super::super::console::ACTIONS;
 use crate::cli::io::output::cannot_write;
 use crate::cli::io::terminal;
 
@@ -36,16 +37,31 @@ impl ExchangeLog {
     pub(super) fn line(&mut self, tick: Ticks, line: &[u8], is_data: bool) {
         let mut text = Vec::new();
         if !is_data {
-            let pause = tick.get().saturating_sub(self.reached);
-            if pause > 0 {
-                text.extend(format!("wait {:.6}\n", pause as f64 * TIMEBASE).into_bytes());
-            }
-            self.reached = tick.get().max(self.reached) + EXCHANGE;
+            text.extend(self.pause(tick).into_bytes());
+            self.reached += EXCHANGE;
         }
         // The board takes upper and lower case alike, the words of the console are lower case.
         text.extend(line.iter().map(u8::to_ascii_uppercase).filter(|byte| *byte != b'\n'));
         text.push(b'\n');
         self.write(&text);
+    }
+
+    /// The words of the console that let the time pass until a tick.
+    fn pause(&mut self, tick: Ticks) -> String {
+        let pause = tick.get().saturating_sub(self.reached);
+        self.reached += pause;
+        if pause == 0 { String::new() } else { format!("wait {:.6}\n", pause as f64 * TIMEBASE) }
+    }
+
+    /// A page has done something to the world around the board: a statement of a stimulus. What the console has no word
+    /// for is a comment.
+    pub(super) fn act(&mut self, tick: Ticks, act: &str, is_in_command: bool) {
+        let is_word = |word: &str| ACTIONS.contains(&word);
+        if is_in_command || !act.split(' ').next().is_some_and(is_word) {
+            return self.remark(tick, &format!("page: {act}"), is_in_command);
+        }
+        let text = format!("{}{act}\n", self.pause(tick));
+        self.write(text.as_bytes());
     }
 
     /// What else there is to know; between data lines there is no place for it.

@@ -7,6 +7,9 @@
 //! desk      takes one request after another, keeps the board's time
 //! calls     what each request does
 //! board     the board under control, with what is written of it
+//! served    what is under control there: the modelled board
+//! page      the page of it
+//! own_firmware  the user's own firmware file in its place
 //! link      what the board has sent and nobody has read yet
 //! message   requests and replies as bytes
 //! log       the exchanges as a script for the console
@@ -21,12 +24,16 @@ mod link;
 mod listen;
 mod log;
 mod message;
+mod own_firmware;
+#[cfg(feature = "live")]
+mod page;
+mod served;
 
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Sender, channel};
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use clap::Args;
 use vm::engine::Engine;
 
@@ -41,6 +48,7 @@ use board::ServedBoard;
 use desk::{Desk, Note};
 pub(super) use link::{CONSOLE_LINES, UNHEARD_LINES};
 pub(super) use listen::MOST_CLIENTS;
+use served::Modelled;
 
 /// Where the vendor's server listens.
 const USUAL: &[&str] = if cfg!(unix) { &["/tmp/kmotionsocket", "tcp:57777"] } else { &["tcp:57777"] };
@@ -66,12 +74,15 @@ pub(super) struct ServeArguments {
     /// Make the folder that the vendor's library reads, with its compiler and its server, and say how to use it
     #[arg(long, value_name = "DIR")]
     home: Option<PathBuf>,
+    /// Folder of the C programs of your M codes, which is linked into that of --home as `MCodes`
+    #[arg(long, value_name = "DIR", requires = "home")]
+    mcodes: Option<PathBuf>,
     /// End after SECONDS of board time
     #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
     limit: Option<f64>,
-    /// Show the board on a page: not built yet
-    #[arg(long, hide = true)]
-    live: bool,
+    #[cfg(feature = "live")]
+    #[command(flatten)]
+    page: page::PageArguments,
     #[command(flatten)]
     board: BoardArguments,
     #[command(flatten)]
@@ -114,42 +125,49 @@ pub(super) struct Terms<'a> {
     /// What of the board is recorded, and the title of pictures.
     pub(super) trace: &'a TraceArguments,
     pub(super) title: String,
+    /// The page that shows it.
+    #[cfg(feature = "live")]
+    pub(super) page: Option<page::PagePlan<'a>>,
 }
 
 /// Serves clients until it is ended.
 pub(super) fn serve(arguments: &ServeArguments) -> Result<Exit> {
-    if arguments.live {
-        bail!("`--live`: a served board cannot be shown on a page yet");
-    }
-    let setup = Setup::new(&arguments.programs, &arguments.board, &arguments.compiler, None)?;
-    let Some(setup) = setup else { return Ok(Exit::Failure) };
     let given = arguments.listen.clone();
+    let pace = match arguments.pace {
+        PaceName::Clock(speed) => Some(speed),
+        PaceName::Exchanges => None,
+    };
     let usual = || USUAL.iter().map(|address| (*address).to_owned()).collect();
     let terms = Terms {
         addresses: if given.is_empty() { usual() } else { given },
         option: "--listen",
-        pace: match arguments.pace {
-            PaceName::Clock(speed) => Some(speed),
-            PaceName::Exchanges => None,
-        },
+        pace,
         once: arguments.once,
         limit: arguments.limit,
         log: arguments.log.as_deref(),
         trace: &arguments.trace,
         title: arguments.programs.join(OsStr::new(", ")).to_string_lossy().into_owned(),
+        #[cfg(feature = "live")]
+        page: page::PagePlan::wanted(arguments, pace),
     };
     if let Some(folder) = &arguments.home {
-        let folder = home::make(folder)?;
+        let folder = home::make(folder, arguments.mcodes.as_deref())?;
         home::remember(&folder, home::own_words())?;
         output::print(&home::lines(&folder))?;
     }
+    if let Some(file) = &arguments.board.boot {
+        return own_firmware::serve(arguments, file, &terms);
+    }
+    let setup = Setup::new(&arguments.programs, &arguments.board, &arguments.compiler, None)?;
+    let Some(setup) = setup else { return Ok(Exit::Failure) };
     setup.on_its_engine(&terms)
 }
 
 impl Work for &Terms<'_> {
     fn on<E: Engine>(self, mut rig: Rig<E>) -> Result<Exit> {
         rig.connect()?;
-        let board = ServedBoard::new(rig, self)?;
+        let (board, trace) = Modelled::new(rig, self)?;
+        let board = ServedBoard::new(board, trace, self)?;
         let (notes, inbox) = channel();
         end_on_signal(notes.clone())?;
         let places = listen::listen(&self.addresses, self.option, &notes)?;

@@ -1,0 +1,105 @@
+//! The past of a board that is shown: back to a moment and on from there, the beginning again, and what was done by hand
+//! as a test.
+
+use std::sync::Arc;
+
+use cc67_host::session::Input;
+use cc67_host::{History, Session, Timeline};
+use kmotiondef::Ticks;
+use kmotiondef::limits::TIMEBASE;
+use serde_json::json;
+use vm::engine::Engine;
+
+use super::Stage;
+use super::keep::{Kept, Run};
+use crate::desk::PageId;
+
+impl<E: Engine> Stage<E> {
+    /// The timeline takes up what was done; in the past, the run continues from there.
+    pub(super) fn keep(&mut self, session: &mut Session<E>) {
+        let history = self.timeline.as_mut().map(|timeline| timeline.keep(session));
+        if let Some(History::New(_)) = history {
+            self.cut(session);
+        }
+    }
+
+    /// Whether the board is shown as it was, and continued from there.
+    pub(super) fn is_past(&self, session: &Session<E>) -> bool {
+        session.tick() < self.end(session)
+    }
+
+    /// The last tick of the run.
+    pub(super) fn end(&self, session: &Session<E>) -> Ticks {
+        self.timeline.as_ref().map_or(session.tick(), Timeline::end)
+    }
+
+    /// Shows the board as it was at a tick.
+    pub(super) fn go_to(&mut self, session: &mut Session<E>, tick: Ticks) -> Result<(), String> {
+        let tick = tick.min(self.end(session));
+        let Some(timeline) = &mut self.timeline else { return Ok(()) };
+        timeline.go_to(session, tick).map_err(|error| error.to_string())
+    }
+
+    /// The run continues from the moment that is shown.
+    pub(super) fn go_on(&mut self, session: &mut Session<E>) {
+        if self.is_past(session)
+            && let Some(timeline) = &mut self.timeline
+            && let History::New(_) = timeline.branch(session)
+        {
+            self.cut(session);
+        }
+    }
+
+    /// What was later than the present moment is gone.
+    fn cut(&mut self, session: &Session<E>) {
+        let tick = session.tick();
+        self.log.cut(tick);
+        let rows = self.samples.cut(tick);
+        self.pages.values_mut().for_each(|page| page.next_row = page.next_row.min(rows));
+        self.broadcast(&json!({ "kind": "cut", "tick": tick.get() }));
+    }
+
+    /// Begins again, with the programs as they are now.
+    pub(super) fn restart(&mut self, session: &mut Session<E>) -> Result<(), String> {
+        let Some(timeline) = &mut self.timeline else { return Ok(()) };
+        timeline.restore(session, 0).map_err(|error| error.to_string())?;
+        self.go_on(session);
+        for program in self.programs.loaded() {
+            session.load(program).map_err(|error| error.to_string())?;
+        }
+        self.keep(session);
+        self.clock.run(session.tick(), None);
+        Ok(())
+    }
+
+    /// Why a run with what was done by hand alone would not be the same; `None` if it would.
+    fn obstacle(&self, session: &Session<E>) -> Option<String> {
+        let loads = session.journal().iter().filter_map(|(tick, input)| match input {
+            Input::Load(program) => Some((tick.get(), program.name())),
+            _ => None,
+        });
+        let loads: Vec<_> = loads.collect();
+        if let Some((tick, name)) = loads.iter().find(|(tick, _)| *tick > 0) {
+            let seconds = *tick as f64 * TIMEBASE;
+            return Some(format!("{name} was loaded at {seconds:.3} s: begin again with Restart"));
+        }
+        let is_whole = session.recording().is_complete() || !loads.is_empty();
+        (!is_whole).then(|| "a variable was written, which no stimulus does".to_owned())
+    }
+
+    /// Saves what was done by hand as a test.
+    pub(super) fn save(&mut self, session: &Session<E>, id: PageId, name: &str) -> Result<(), String> {
+        if let Some(obstacle) = self.obstacle(session) {
+            return Err(obstacle);
+        }
+        let tick = session.tick();
+        let seconds = tick.get() as f64 * TIMEBASE;
+        let console = self.log.console(tick);
+        let run = Run { stimulus: session.recording().text(), seconds, console };
+        let kept = Kept::new(name, &self.show, run)?;
+        if let Some(page) = self.pages.get(&id) {
+            kept.write(Arc::clone(&page.mailbox));
+        }
+        Ok(())
+    }
+}

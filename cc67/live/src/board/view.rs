@@ -1,0 +1,57 @@
+//! A session that somebody else runs, on the page: a server whose clients use the same board.
+
+use std::sync::mpsc::Receiver;
+use std::time::Duration;
+
+use cc67_host::Session;
+use runtime::Event;
+use vm::engine::Engine;
+
+use super::Stage;
+use crate::desk::Incoming;
+
+/// The page of a session that somebody else runs.
+#[derive(Debug)]
+pub struct LiveView<E: Engine> {
+    stage: Stage<E>,
+    requests: Receiver<Incoming>,
+}
+
+/// What pages want of whoever runs the session.
+#[derive(Debug, Default)]
+pub struct Wishes {
+    /// What happened in ticks that a page has let pass.
+    pub events: Vec<Event>,
+    /// Lines of script commands to be sent to the board.
+    pub commands: Vec<String>,
+    /// Statements of a stimulus that pages have had done.
+    pub acts: Vec<String>,
+    /// Seconds of board time in a second; `None` while the clock is stopped.
+    pub speed: Option<f64>,
+}
+
+impl<E: Engine> LiveView<E> {
+    pub(super) const fn new(stage: Stage<E>, requests: Receiver<Incoming>) -> Self {
+        Self { stage, requests }
+    }
+
+    /// Takes note of what has happened on the board.
+    pub fn hear(&mut self, session: &Session<E>, event: &Event) {
+        self.stage.log.note(session, event);
+    }
+
+    /// Does what pages have asked for since the last time, without waiting, and sends them what is new. To be called
+    /// about a hundred times in a second.
+    pub fn beat(&mut self, session: &mut Session<E>) -> Wishes {
+        self.stage.take(session, &self.requests, Duration::ZERO);
+        self.stage.tell(session);
+        let clock = &self.stage.clock;
+        let speed = clock.is_running().then(|| clock.speed());
+        Wishes { speed, ..std::mem::take(&mut self.stage.wishes) }
+    }
+
+    /// The session is over: pages are told.
+    pub fn close(&self) {
+        self.stage.close();
+    }
+}

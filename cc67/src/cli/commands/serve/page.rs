@@ -1,0 +1,53 @@
+//! `--live`: the page of a board that is served.
+
+use anyhow::{Context, Result};
+use cc67_host::Session;
+use cc67_live::{LiveView, Server, Show, TimeControl};
+use clap::Args;
+use vm::engine::Engine;
+
+use super::super::live;
+use super::ServeArguments;
+
+/// Whether there is a page, and where.
+#[derive(Debug, Args)]
+pub(super) struct PageArguments {
+    /// Show the board on a page in the browser as well
+    #[arg(long)]
+    pub(super) live: bool,
+    /// Port of the page; 0 picks a free one [default: 8067, or a free one if that is taken]
+    #[arg(long, value_name = "PORT", requires = "live")]
+    port: Option<u16>,
+    /// Do not open a browser
+    #[arg(long, requires = "live")]
+    no_open: bool,
+}
+
+/// A page to be opened.
+#[derive(Debug)]
+pub(in crate::cli::commands) struct PagePlan<'a> {
+    arguments: &'a ServeArguments,
+    /// Board time in a second; `None` if it passes in exchanges only.
+    speed: Option<f64>,
+}
+
+impl<'a> PagePlan<'a> {
+    /// The page that the arguments ask for.
+    pub(super) fn wanted(arguments: &'a ServeArguments, speed: Option<f64>) -> Option<Self> {
+        arguments.page.live.then_some(Self { arguments, speed })
+    }
+
+    /// Opens the page.
+    pub(super) fn open<E: Engine>(&self, session: &mut Session<E>) -> Result<LiveView<E>> {
+        let ServeArguments { programs, board, compiler, trace, page, .. } = self.arguments;
+        let show = Show {
+            watch: trace.trace_items.clone().unwrap_or_default(),
+            speed: self.speed.unwrap_or(1.0),
+            time: if self.speed.is_some() { TimeControl::Forward } else { TimeControl::Foreign },
+            ..live::show(programs, board, compiler)?
+        };
+        let server: Server = live::listen(page.port, board)?;
+        live::announce(&server, board, !page.no_open).context("--live")?;
+        Ok(server.view(session, show))
+    }
+}

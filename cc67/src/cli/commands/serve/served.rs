@@ -1,0 +1,138 @@
+//! What is served: the modelled board, shown on a page if that is wanted.
+
+use anyhow::Result;
+#[cfg(feature = "live")]
+use cc67_live::LiveView;
+use kmotiondef::Ticks;
+use runtime::Event;
+use runtime::debug::DebugInfo;
+use vm::engine::Engine;
+
+use crate::cli::report::trace::{self, Trace};
+use crate::cli::session::Rig;
+
+use super::Terms;
+
+/// A board that clients can use.
+pub(super) trait Served {
+    /// Number of the last tick that has passed.
+    fn tick(&self) -> Ticks;
+    /// Runs to the end of a tick.
+    fn advance(&mut self, limit: Ticks, sink: &mut dyn FnMut(Event));
+    /// Sends bytes over the link.
+    fn receive(&mut self, bytes: &[u8]);
+    /// Whether it has not taken all of them.
+    fn is_receiving(&self) -> bool;
+    /// Whether a command waits for data lines.
+    fn is_in_command(&self) -> bool;
+    /// Says whether anybody takes its console lines; while nobody does, programs that print wait.
+    fn listen(&mut self, listens: bool);
+    /// What is known about its programs.
+    fn programs(&self) -> Vec<DebugInfo>;
+    /// Keeps what flash memory holds in its file.
+    fn keep_flash(&mut self) -> Result<()>;
+    /// It is served no more.
+    fn finish(&mut self, sink: &mut dyn FnMut(Event)) -> Result<()>;
+    /// Shows something that happened.
+    fn show(&mut self, _: &Event) {}
+    /// Shows how it is now, and does what pages ask for; what else they wish, if there are any.
+    fn beat(&mut self) -> Option<PageWishes> {
+        None
+    }
+}
+
+/// What pages wish of the desk.
+#[derive(Debug, Default)]
+pub(super) struct PageWishes {
+    /// What happened in ticks that a page has let pass.
+    pub(super) events: Vec<Event>,
+    /// Lines of script commands.
+    pub(super) commands: Vec<String>,
+    /// What a page has done to the world, as statements.
+    pub(super) acts: Vec<String>,
+    /// Seconds of board time in a second; `None` while the clock is stopped.
+    pub(super) speed: Option<f64>,
+}
+
+/// The modelled board.
+pub(super) struct Modelled<E: Engine> {
+    rig: Rig<E>,
+    #[cfg(feature = "live")]
+    view: Option<LiveView<E>>,
+}
+
+impl<E: Engine> Modelled<E> {
+    /// The board of a rig, on a page if the terms say so; and the trace of it.
+    pub(super) fn new(mut rig: Rig<E>, terms: &Terms<'_>) -> Result<(Self, Option<Trace>)> {
+        let request = trace::request(terms.trace, &rig.session)?;
+        if let Some(request) = &request {
+            rig.session.record(request.clone());
+        }
+        let trace = request.as_ref().map(|request| Trace::begin(terms.trace, request)).transpose()?;
+        rig.session.stop_recording();
+        rig.session.listen(true);
+        rig.is_paced();
+        #[cfg(feature = "live")]
+        let view = terms.page.as_ref().map(|page| page.open(&mut rig.session)).transpose()?;
+        let board = Self {
+            rig,
+            #[cfg(feature = "live")]
+            view,
+        };
+        Ok((board, trace))
+    }
+}
+
+impl<E: Engine> Served for Modelled<E> {
+    fn tick(&self) -> Ticks {
+        self.rig.session.tick()
+    }
+
+    fn advance(&mut self, limit: Ticks, sink: &mut dyn FnMut(Event)) {
+        self.rig.advance(limit, sink);
+    }
+
+    fn receive(&mut self, bytes: &[u8]) {
+        self.rig.session.receive(bytes);
+    }
+
+    fn is_receiving(&self) -> bool {
+        self.rig.session.board().is_receiving()
+    }
+
+    fn is_in_command(&self) -> bool {
+        self.rig.session.board().is_in_command()
+    }
+
+    fn listen(&mut self, listens: bool) {
+        self.rig.session.listen(listens);
+    }
+
+    fn programs(&self) -> Vec<DebugInfo> {
+        self.rig.session.debug().into_iter().map(|(_, debug)| debug).collect()
+    }
+
+    fn keep_flash(&mut self) -> Result<()> {
+        self.rig.keep_flash()
+    }
+
+    fn finish(&mut self, sink: &mut dyn FnMut(Event)) -> Result<()> {
+        #[cfg(feature = "live")]
+        self.view.iter().for_each(LiveView::close);
+        self.rig.finish(sink)
+    }
+
+    #[cfg(feature = "live")]
+    fn show(&mut self, event: &Event) {
+        if let Some(view) = &mut self.view {
+            view.hear(&self.rig.session, event);
+        }
+    }
+
+    #[cfg(feature = "live")]
+    fn beat(&mut self) -> Option<PageWishes> {
+        let wishes = self.view.as_mut()?.beat(&mut self.rig.session);
+        let cc67_live::Wishes { events, commands, acts, speed } = wishes;
+        Some(PageWishes { events, commands, acts, speed })
+    }
+}
