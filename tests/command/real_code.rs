@@ -1,6 +1,7 @@
 //! `--engine dsp`: sources become code of the controller's processor, and what goes wrong in it is said in words.
 
 use harness::{Output, Scratch, cc67, cc67_with_input};
+use serde_json::Value;
 
 /// Runs the text as code of the processor.
 fn run(name: &str, source: &str) -> Output {
@@ -14,10 +15,15 @@ fn run_words(name: &str, words: &str) -> Output {
     run(name, &format!("unsigned code[] = {{ {words} }};\nmain()\n{{\n    ((void (*)(void))code)();\n}}\n"))
 }
 
-/// The message of a run that stops its thread.
-fn trap(output: &Output) -> &str {
+/// The message of a run that stops its thread, with registers and code after its first line.
+fn trap_and_scene(output: &Output) -> &str {
     assert_eq!(output.code, 3, "{output:?}");
     output.stderr.trim_end().rsplit_once("cc67: thread 1 stopped at ").expect("a trap").1
+}
+
+/// The message of a run that stops its thread.
+fn trap(output: &Output) -> &str {
+    trap_and_scene(output).lines().next().expect("a line")
 }
 
 const SUM: &str = "int main()\n{\n    int i; double sum = 0;\n    for (i = 0; i < 5; i++)\n        sum += i * 0.5;\n    printf(\"%g\\n\", sum);\n    return 0;\n}\n";
@@ -114,4 +120,29 @@ fn a_remark_names_the_line_of_the_call() {
         output.stderr,
         "cc67: thread 1 at a.c:4:5 in `main`: MoveRel: axis 2 is disabled, nothing moves\n"
     );
+}
+
+#[test]
+fn a_trap_shows_registers_and_the_code_around_it() {
+    let scratch = Scratch::new("dsp-scene");
+    scratch.write("a.c", "int *p = (int *)0x12345678;\nmain()\n{\n    *p = 7;\n}\n");
+    let output = cc67(&scratch, ["run", "--engine", "dsp", "a.c"]);
+    assert_eq!(trap(&output), "a.c:4:5 in `main`: write of the unmapped address 0x12345678");
+    let lines: Vec<&str> = trap_and_scene(&output).lines().skip(1).collect();
+    let registers: Vec<&str> = lines.iter().flat_map(|line| line.split_whitespace()).collect();
+    assert!(registers.contains(&"A14=00000001"), "{}", output.stderr);
+    assert!(registers.iter().any(|register| register.ends_with("=12345678")), "{}", output.stderr);
+    let mut marked = lines.iter().filter(|line| line.starts_with("> 8005"));
+    assert!(marked.next().is_some_and(|line| line.contains("STW .D")), "{}", output.stderr);
+    assert!(marked.next().is_none(), "one place: {}", output.stderr);
+
+    let output = cc67(&scratch, ["run", "--engine", "dsp", "--json", "a.c"]);
+    let line: Value = serde_json::from_str(output.stdout.lines().next().expect("a line")).expect("JSON");
+    assert_eq!((&line["type"], &line["registers"]["A14"]), (&Value::from("trap"), &Value::from(1)), "{line}");
+    let code = line["code"].as_array().expect("words around the place");
+    let place = code.iter().find(|word| word["at"] == line["at"]).expect("the place is among them");
+    assert!(place["text"].as_str().is_some_and(|text| text.contains("STW .D")), "{line}");
+    // Code that is not the processor's has neither.
+    let output = cc67(&scratch, ["run", "--engine", "bytecode", "--json", "a.c"]);
+    assert!(output.stdout.contains("\"type\":\"trap\"") && !output.stdout.contains("registers"), "{output:?}");
 }

@@ -39,7 +39,6 @@ mod tests;
 pub use self::account::{Account, Spender, Time};
 pub use self::core::{Core, Halt};
 pub use self::decode::is_code;
-pub use self::inspect::listing;
 pub use self::memory::{Clock, Memory};
 pub use self::pipeline::State;
 pub use self::threads::{DspEngine, DspSnapshot};

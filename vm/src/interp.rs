@@ -151,7 +151,7 @@ impl Executor for BytecodeEngine {
         };
         stop.unwrap_or_else(|kind| {
             let at = code.program.address_of(context.calls.pc);
-            Stop::Trapped(Trap { kind, at, thread: id.thread() })
+            Stop::Trapped(Trap::new(kind, at, id.thread()))
         })
     }
 

@@ -299,7 +299,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
             self.engines.start(id, loaded, address, stack, &self.firmware)
         });
         if let Err(kind) = started {
-            self.report_trap(begin, Trap { kind, at: code_at(address), thread: None });
+            self.report_trap(begin, Trap::new(kind, code_at(address), None));
             return Some(Cycles::default());
         }
         self.resume_callback(address, begin, CALLBACK_LIMIT)
@@ -332,12 +332,15 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
                 self.held = Some(Held::Callback { address, begin, left });
                 return None;
             }
-            Stop::Trapped(trap) => trap.kind,
+            Stop::Trapped(trap) => {
+                self.report_trap(begin, trap);
+                return Some(spent);
+            }
             Stop::Waiting(_) | Stop::Paused => TrapKind::CallbackWaits,
             Stop::Preempted | Stop::NeedsBoard => TrapKind::CallbackEndless { limit: CALLBACK_TICKS },
         };
         let at = self.engines.backtrace(id, loaded).first().copied().unwrap_or_else(|| code_at(address));
-        self.report_trap(begin, Trap { kind, at, thread: None });
+        self.report_trap(begin, Trap::new(kind, at, None));
         Some(spent)
     }
 
@@ -378,7 +381,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         loaded
             .ok_or(TrapKind::BadCallTarget { addr: entry })
             .and_then(|loaded| self.engines.start(id, loaded, entry, stack, &self.firmware))
-            .map_err(|kind| Trap { kind, at: code_at(entry), thread: Some(thread) })?;
+            .map_err(|kind| Trap::new(kind, code_at(entry), Some(thread)))?;
         self.firmware.begins(thread, &mut self.memory);
         Ok(())
     }

@@ -139,7 +139,7 @@ impl Executor for NativeEngine {
             return self.bytecode.resume(id, slice);
         };
         context.run(id, slice, &mut self.protected).unwrap_or_else(|kind| {
-            let trap = Trap { kind, at: context.address(), thread: id.thread() };
+            let trap = Trap::new(kind, context.address(), id.thread());
             context.end(Stop::Trapped(trap))
         })
     }

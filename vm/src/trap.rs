@@ -4,12 +4,14 @@
 //! the engine adds the place and the thread.
 
 mod processor;
+mod scene;
 
 use std::fmt;
 
 use kmotiondef::{CodeAddr, GuestAddr, ThreadId};
 
 pub use self::processor::Fault;
+pub use self::scene::Scene;
 
 /// Direction of a memory access.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -117,6 +119,16 @@ pub struct Trap {
     pub at: CodeAddr,
     /// The thread it stops; `None` for the call-back.
     pub thread: Option<ThreadId>,
+    /// Registers and code around the place, of code of the real processor.
+    pub scene: Option<Box<Scene>>,
+}
+
+impl Trap {
+    /// A trap of which no more than the place is known.
+    #[must_use]
+    pub const fn new(kind: TrapKind, at: CodeAddr, thread: Option<ThreadId>) -> Self {
+        Self { kind, at, thread, scene: None }
+    }
 }
 
 impl fmt::Display for Trap {
@@ -137,11 +149,9 @@ mod tests {
 
     #[test]
     fn a_trap_names_thread_place_and_cause() {
-        let trap = Trap {
-            kind: TrapKind::Unmapped { addr: GuestAddr::new(0x1234), access: Access::Write },
-            at: CodeAddr::new(0x8005_0010).expect("a multiple of 8"),
-            thread: ThreadId::new(1),
-        };
+        let kind = TrapKind::Unmapped { addr: GuestAddr::new(0x1234), access: Access::Write };
+        let at = CodeAddr::new(0x8005_0010).expect("a multiple of 8");
+        let trap = Trap::new(kind, at, ThreadId::new(1));
         assert_eq!(trap.to_string(), "thread 1 at 0x80050010: write of the unmapped address 0x00001234");
     }
 }

@@ -366,8 +366,12 @@ impl<'a, 'b> Teller<'a, 'b> {
     fn tell(&mut self, event: &Event) {
         match &event.kind {
             EventKind::ConsoleLine(line) => (self.output)(&format!("{}\n", String::from_utf8_lossy(line))),
-            // It is the reason of the stop.
-            EventKind::Trap(_) => {}
+            // Its text is the reason of the stop.
+            EventKind::Trap(_) => {
+                if let Some(scene) = remark::scene(event) {
+                    (self.output)(&scene.to_string());
+                }
+            }
             _ => {
                 if let Some(text) = remark::describe(event, &self.infos) {
                     (self.output)(&format!("cc67: {text}\n"));

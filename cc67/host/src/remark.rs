@@ -5,7 +5,7 @@ use std::fmt;
 use kmotiondef::{Bit, CodeAddr};
 use runtime::debug::{DebugInfo, SourcePlace};
 use runtime::{Event, EventKind, Message, Remark, Severity, Speaker};
-use vm::trap::{Trap, TrapKind};
+use vm::trap::{Scene, Trap, TrapKind};
 
 /// A place in a source.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -55,6 +55,14 @@ pub fn describe(event: &Event, programs: &[DebugInfo]) -> Option<String> {
         }
         EventKind::Host(text) | EventKind::Unmet(text) => Some(text.clone()),
         EventKind::Trap(trap) => Some(describe_trap(trap, programs)),
+    }
+}
+
+/// Registers and code around the place where code of the real processor has stopped; `None` for other events.
+pub fn scene(event: &Event) -> Option<&Scene> {
+    match &event.kind {
+        EventKind::Trap(trap) => trap.scene.as_deref(),
+        _ => None,
     }
 }
 

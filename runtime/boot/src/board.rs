@@ -6,7 +6,7 @@ use coff::{Contents, Image};
 use kmotiondef::map::{FLASH, IRAM, SDRAM};
 use kmotiondef::structs::Chan;
 use kmotiondef::{AxisId, GuestAddr, ThreadId};
-use vm::dsp::{Core, Halt, listing};
+use vm::dsp::{Core, Halt};
 use vm::memory::GuestMemory;
 use vm::memory::snapshot::MemorySnapshot;
 
@@ -42,8 +42,6 @@ const USER: u32 = 0x10_0000;
 /// Begins a line for the console; begins a command without echo, with any byte after it.
 const ESCAPE: u8 = 0x1B;
 const NO_ECHO: u8 = 1;
-/// Words shown before and after the place of a crash.
-const AROUND: u32 = 8 * 4;
 
 /// What kind of line the firmware sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -307,7 +305,6 @@ impl BootedBoard {
     /// Does not move from here on.
     fn crash(&mut self, reason: String) -> Halted {
         let pc = self.core.state.pc();
-        let from = (pc & !3).saturating_sub(AROUND);
         let thread = self.file.address("CurrentThread").map(|at| self.hardware.memory.peek::<u32>(at));
         let crash = Box::new(Crash {
             reason,
@@ -315,8 +312,7 @@ impl BootedBoard {
             pc,
             function: self.file.function_at(pc),
             thread,
-            registers: self.core.registers(),
-            listing: listing(from..(pc & !3).saturating_add(AROUND), |at| self.hardware.word(at)),
+            scene: self.core.scene(pc, |at| self.hardware.word(at)),
         });
         self.crash = Some(crash.clone());
         Halted::Crashed(crash)

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use vm::trap::Scene;
+
 /// The processor has stopped for good: why, when and where, its registers, and the code around the place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Crash {
@@ -15,10 +17,8 @@ pub struct Crash {
     pub function: Option<(String, u32)>,
     /// The thread that was running, 0 for the firmware's own; `None` if the firmware has no such variable.
     pub thread: Option<u32>,
-    /// Registers by name.
-    pub registers: Vec<(String, u32)>,
-    /// Words around the place as text.
-    pub listing: Vec<(u32, String)>,
+    /// Registers and code around the place.
+    pub scene: Scene,
 }
 
 impl fmt::Display for Crash {
@@ -33,14 +33,6 @@ impl fmt::Display for Crash {
             None => {}
         }
         writeln!(f, ", board time {:.6} s: {}", self.cycle as f64 * 5e-9, self.reason)?;
-        for row in self.registers.chunks(8) {
-            let cells = row.iter().map(|(name, value)| format!("{name:>4}={value:08X}"));
-            writeln!(f, "  {}", cells.collect::<Vec<_>>().join(" "))?;
-        }
-        for (at, text) in &self.listing {
-            let mark = if *at == self.pc { '>' } else { ' ' };
-            writeln!(f, "{mark} {at:08X}  {text}")?;
-        }
-        Ok(())
+        self.scene.fmt(f)
     }
 }

@@ -3,9 +3,12 @@
 use c67x::{Control, Inst, PARALLEL, Reg};
 
 use super::core::Core;
+use crate::trap::Scene;
 
 /// The stack pointer at the start of a board.
 const STACK: Reg = Reg::b(15);
+/// Bytes shown before a place, and from it on.
+const AROUND: u32 = 8 * 4;
 /// CSR at power-up: little endian, interrupts off.
 const POWER_UP: u32 = 0x100;
 
@@ -37,11 +40,18 @@ impl Core {
         ];
         plain.chain(control.map(|(name, control)| (name.to_owned(), state.control(control)))).collect()
     }
+
+    /// The registers, and the code around the word at `at`, as far as `fetch` has it.
+    #[must_use]
+    pub fn scene(&self, at: u32, fetch: impl Fn(u32) -> Option<u32>) -> Scene {
+        let at = at & !3;
+        let code = listing(at.saturating_sub(AROUND)..at.saturating_add(AROUND), fetch);
+        Scene { at, registers: self.registers(), code }
+    }
 }
 
 /// A line of text for each word of `range` that `fetch` has.
-#[must_use]
-pub fn listing(range: std::ops::Range<u32>, fetch: impl Fn(u32) -> Option<u32>) -> Vec<(u32, String)> {
+fn listing(range: std::ops::Range<u32>, fetch: impl Fn(u32) -> Option<u32>) -> Vec<(u32, String)> {
     let mut follows = false;
     let mut lines = Vec::new();
     for at in range.step_by(4) {

@@ -123,7 +123,13 @@ impl Executor for DspEngine {
         }
         context
             .run(id, slice, account)
-            .unwrap_or_else(|kind| Stop::Trapped(Trap { kind, at: context.place(), thread: id.thread() }))
+            .unwrap_or_else(|kind| {
+                let at = context.place();
+                let memory = &*slice.memory;
+                let word = |at| Image::is_code(at).then(|| memory.peek(GuestAddr::new(at)));
+                let scene = context.core.scene(at.as_guest_addr().get(), word);
+                Stop::Trapped(Trap { scene: Some(Box::new(scene)), ..Trap::new(kind, at, id.thread()) })
+            })
     }
 
     fn snapshot(&self) -> DspSnapshot {

@@ -259,7 +259,10 @@ impl<W: Write> Server<'_, W> {
                     wire.output("stdout", &format!("{}\n", String::from_utf8_lossy(line)))
                 }
                 _ => match remark::describe(event, &infos) {
-                    Some(text) => wire.output("console", &format!("{text}\n")),
+                    Some(text) => {
+                        let scene = remark::scene(event).map_or(String::new(), ToString::to_string);
+                        wire.output("console", &format!("{text}\n{scene}"))
+                    }
                     None => Ok(()),
                 },
             };

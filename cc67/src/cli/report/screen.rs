@@ -3,12 +3,14 @@
 //! With `--json` each line is an object with a `type`, and the last one, of type `end`, sums the run up. Texts that are
 //! not UTF-8 have the replacement character where they are not.
 
+use std::collections::BTreeMap;
 use std::io::{self, Write};
 
 use kmotiondef::{Bit, Cycles, ThreadId, Ticks};
 use runtime::debug::DebugInfo;
 use runtime::{Event, EventKind, Message, Remark, Severity};
 use serde::Serialize;
+use vm::trap::Scene;
 
 use super::repeats::Repeats;
 use super::state::FinalState;
@@ -36,7 +38,14 @@ enum JsonLine<'a> {
     /// A line of the console.
     Console { seconds: f64, text: &'a str },
     /// A thread or the call-back was stopped.
-    Trap { seconds: f64, thread: Option<u8>, text: &'a str },
+    Trap {
+        seconds: f64,
+        thread: Option<u8>,
+        text: &'a str,
+        /// Of code of the real processor.
+        #[serde(flatten, skip_serializing_if = "Option::is_none")]
+        scene: Option<SceneLeft<'a>>,
+    },
     /// The PC did something for a program.
     Pc { seconds: f64, text: &'a str },
     /// An expectation of the stimulus was not met.
@@ -53,6 +62,34 @@ enum JsonLine<'a> {
     },
     /// The run is over.
     End(Summary<'a>),
+}
+
+/// Registers and code around the place of a trap.
+#[derive(Clone, Debug, Serialize)]
+struct SceneLeft<'a> {
+    /// The address of the instruction.
+    at: u32,
+    /// Values by the names of the registers.
+    registers: BTreeMap<&'a str, u32>,
+    /// Words around the place.
+    code: Vec<CodeLeft<'a>>,
+}
+
+/// A word of code.
+#[derive(Clone, Debug, Serialize)]
+struct CodeLeft<'a> {
+    /// Its address.
+    at: u32,
+    /// The word and the instruction in it.
+    text: &'a str,
+}
+
+impl<'a> From<&'a Scene> for SceneLeft<'a> {
+    fn from(scene: &'a Scene) -> Self {
+        let registers = scene.registers.iter().map(|(name, value)| (name.as_str(), *value)).collect();
+        let code = scene.code.iter().map(|(at, text)| CodeLeft { at: *at, text }).collect();
+        Self { at: scene.at, registers, code }
+    }
 }
 
 /// What a run came to.
@@ -268,12 +305,19 @@ impl<W: Write> Screen<W> {
             // What was printed before stands before it on a terminal that shows both.
             let flushed = self.out.flush();
             self.keep(flushed);
-            return terminal::note(text);
+            terminal::note(text);
+            if let Some(scene) = remark::scene(event) {
+                terminal::aside(&scene.to_string());
+            }
+            return;
         }
         let seconds = seconds(event.at);
         let call;
         let line = match &event.kind {
-            EventKind::Trap(trap) => JsonLine::Trap { seconds, thread: trap.thread.map(ThreadId::get), text },
+            EventKind::Trap(trap) => {
+                let scene = trap.scene.as_deref().map(SceneLeft::from);
+                JsonLine::Trap { seconds, thread: trap.thread.map(ThreadId::get), text, scene }
+            }
             EventKind::Host(_) => JsonLine::Pc { seconds, text },
             EventKind::Unmet(_) => JsonLine::Unmet { seconds, text },
             EventKind::Remark(remark) => {

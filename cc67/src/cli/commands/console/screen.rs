@@ -76,7 +76,8 @@ impl Screen {
             }
             _ => {
                 if let Some(text) = remark::describe(event, &self.programs) {
-                    self.note(&text);
+                    let scene = remark::scene(event).map_or(String::new(), |scene| format!("\n{scene}"));
+                    self.note(format!("{text}{scene}").trim_end());
                 }
             }
         }

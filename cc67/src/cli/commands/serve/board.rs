@@ -176,6 +176,9 @@ impl<'a, B: Served> ServedBoard<'a, B> {
             EventKind::Remark(_) | EventKind::Trap(_) | EventKind::Unmet(_) | EventKind::Host(_) => {
                 if let Some(text) = remark::describe(&event, &self.board.programs()) {
                     terminal::note(&text);
+                    if let Some(scene) = remark::scene(&event) {
+                        terminal::aside(&scene.to_string());
+                    }
                 }
             }
         }
