@@ -4,8 +4,9 @@
 //! needs no search. Pages of 4 KiB say which packet begins at each word, and which lines of 32 bytes hold words that
 //! were decoded: a store to such a line drops the packets of it and no others.
 
-use super::decode::{Micro, NoPacket, Packet, decode};
+use super::decode::{Decoded, FORESEEN, Micro, NoPacket, Packet, STEADY, decode};
 use super::memory::Memory;
+use super::work::Work;
 
 /// Packets decoded at once.
 const RUN: usize = 64;
@@ -81,6 +82,13 @@ const fn line_bit(at: u32) -> u128 {
     1 << (at % PAGE / LINE)
 }
 
+/// Changes each product of doubles of a packet.
+fn each_product(packet: &mut Packet, micros: &mut [Micro], change: impl Fn(&mut Micro)) {
+    let first = packet.first as usize;
+    let own = micros[first..first + usize::from(packet.count)].iter_mut();
+    own.chain([&mut packet.lone]).filter(|micro| micro.work == Work::Mpydp).for_each(change);
+}
+
 impl Cache {
     /// The packet with this index.
     #[inline(always)]
@@ -127,19 +135,30 @@ impl Cache {
         let start = self.packets.len();
         let mut next = at;
         while self.packets.len() < start + RUN && self.known(next).is_none() {
-            let packet = match decode(memory, next, &mut self.micros) {
+            let Decoded { packet, writes } = match decode(memory, next, &mut self.micros) {
                 Ok(packet) => packet,
                 Err(reason) if self.packets.len() == start => return Err(reason),
                 Err(_) => break,
             };
             self.note(next, packet.end);
             next = packet.end;
-            if let Some(previous) = self.packets[start..].last_mut() {
-                previous.is_linked = !previous.is_idle;
+            if self.packets.len() > start {
+                self.link_last(writes);
             }
             self.packets.push(packet);
         }
         Ok(start as u32)
+    }
+
+    /// The last packet is followed by one that writes these registers in E1.
+    fn link_last(&mut self, writes: u64) {
+        let Some(last) = self.packets.last_mut() else { return };
+        last.is_linked = !last.is_idle;
+        let writes = if last.cycles == 1 { writes } else { 0 };
+        each_product(last, &mut self.micros, |micro| {
+            let is_foreseen = micro.flags & STEADY != 0 && writes >> (micro.a | 1) & 1 == 0;
+            micro.extra = if is_foreseen { FORESEEN } else { 0 };
+        });
     }
 
     /// The next packet begins at `at`, and its words end before `end`.
@@ -183,7 +202,9 @@ impl Cache {
             if let Some(index) = self.known(word) {
                 self.page_mut(word).packets[(word % PAGE / 4) as usize] = NONE;
                 if let Some(previous) = index.checked_sub(1) {
-                    self.packets[previous as usize].is_linked = false;
+                    let previous = &mut self.packets[previous as usize];
+                    previous.is_linked = false;
+                    each_product(previous, &mut self.micros, |micro| micro.extra = 0);
                 }
             }
         }

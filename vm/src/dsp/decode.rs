@@ -33,8 +33,11 @@ pub(super) const UPDATES: u8 = 32;
 /// The address is the base as it was.
 pub(super) const AFTER: u8 = 64;
 
-/// No instruction of the packet changes a high word that a double instruction reads a cycle later.
+/// No instruction of the packet changes a high word that a double instruction reads a cycle later; of a product, two.
 pub(super) const STEADY: u8 = 128;
+
+/// In `extra` of a [steady](STEADY) product: the packet that follows in memory does not change its words either.
+pub(super) const FORESEEN: u8 = 1;
 
 /// Most instructions of a packet.
 const MOST: usize = 8;
@@ -98,6 +101,13 @@ pub(super) struct Packet {
     pub(super) end: u32,
 }
 
+/// A packet, and what the one before it has to know.
+pub(super) struct Decoded {
+    pub(super) packet: Packet,
+    /// The registers that it writes in E1, as bits.
+    pub(super) writes: u64,
+}
+
 /// Whether bytes look like code of this processor: the first words are instructions.
 #[must_use]
 pub fn is_code(bytes: &[u8]) -> bool {
@@ -121,12 +131,13 @@ pub(super) fn places<M: Memory>(memory: &M, at: u32) -> Vec<u32> {
 }
 
 /// Decodes the packet at `at`; its instructions are appended to `micros`.
-pub(super) fn decode<M: Memory>(memory: &M, at: u32, micros: &mut Vec<Micro>) -> Result<Packet, NoPacket> {
+pub(super) fn decode<M: Memory>(memory: &M, at: u32, micros: &mut Vec<Micro>) -> Result<Decoded, NoPacket> {
     let (insts, end) = fetch(memory, at)?;
     let cycles = insts.iter().map(|(_, inst)| inst.cycles()).max().unwrap_or(1);
     let first = micros.len() as u32;
     micros.extend(order(&insts).map_err(NoPacket::Fault)?.into_iter().map(|(_, micro)| micro));
-    Ok(Packet {
+    let writes = insts.iter().fold(0, |writes, (_, inst)| writes | written(*inst, 1));
+    let packet = Packet {
         lone: micros.get(first as usize).copied().unwrap_or(NOTHING),
         first,
         count: (micros.len() as u32 - first) as u8,
@@ -138,7 +149,8 @@ pub(super) fn decode<M: Memory>(memory: &M, at: u32, micros: &mut Vec<Micro>) ->
         is_linked: false,
         is_idle: insts.iter().any(|(_, inst)| plan(*inst).work == Work::Idle),
         end,
-    })
+    };
+    Ok(Decoded { packet, writes })
 }
 
 /// The instructions of the packet at `at` with their addresses, and the address after it.
@@ -181,7 +193,7 @@ fn order(insts: &[(u32, Inst)]) -> Result<Vec<(u32, Micro)>, Fault> {
             micro: resolve(*at, *inst),
             inst: *inst,
             reads: reads(*inst),
-            writes: bits(inst.writes().filter(|write| write.stage == 1).map(|write| write.reg)),
+            writes: written(*inst, 1),
         })
         .collect();
     // A load sees memory before the packet's stores.
@@ -189,7 +201,8 @@ fn order(insts: &[(u32, Inst)]) -> Result<Vec<(u32, Micro)>, Fault> {
     defer_shared(&mut open)?;
     for index in 0..open.len() {
         let later = bits(open[index].inst.reads().filter(|read| read.first > 1).map(|read| read.reg));
-        if open.iter().all(|other| other.writes & later == 0) {
+        let until = if open[index].micro.work == Work::Mpydp { 2 } else { 1 };
+        if open.iter().all(|other| written(other.inst, until) & later == 0) {
             open[index].micro.flags |= STEADY;
         }
     }
@@ -235,6 +248,11 @@ fn defer_shared(open: &mut [Ordered]) -> Result<(), Fault> {
 
 fn bits(regs: impl Iterator<Item = Reg>) -> u64 {
     regs.fold(0, |bits, reg| bits | 1 << reg.index())
+}
+
+/// The registers that an instruction writes up to a stage, as bits.
+fn written(inst: Inst, until: u8) -> u64 {
+    bits(inst.writes().filter(|write| write.stage <= until).map(|write| write.reg))
 }
 
 /// Everything an instruction may read in the cycle of its issue, its condition included.

@@ -1,6 +1,6 @@
 //! The instructions, one arm each.
 
-use super::decode::{AFTER, DEFERRED, LONG1, LONG2, Micro, NEGATIVE, STEADY, UNSIGNED, UPDATES};
+use super::decode::{AFTER, DEFERRED, FORESEEN, LONG1, LONG2, Micro, NEGATIVE, STEADY, UNSIGNED, UPDATES};
 use super::memory::Memory;
 use super::pipeline::{Late, State};
 use super::work::Work;
@@ -182,10 +182,6 @@ impl State {
         self.push(2, m.dst | 1, (value >> 32) as u32);
     }
 
-    fn double1(&self, m: &Micro) -> u64 {
-        self.pair(m.a)
-    }
-
     fn double2(&self, m: &Micro) -> u64 {
         self.pair(m.b)
     }
@@ -238,13 +234,22 @@ impl State {
 
     /// A double instruction that reads its high words after E1: at once where nothing can change them.
     fn start_double(&mut self, m: &Micro, low1: u32, low2: u32) {
-        let late =
-            Late { due: self.clock.cycle + 1, issued: self.clock.cycle, micro: *m, low1, low2, high2: None };
-        let is_steady = m.flags & STEADY != 0 && m.work != Work::Mpydp && !self.lands_next(m.a | 1, m.b | 1);
-        if is_steady {
-            self.finish_double(late, self.double1(m), self.double2(m));
+        let is_product = m.work == Work::Mpydp;
+        let is_known = m.flags & STEADY != 0
+            && (!is_product || m.extra & FORESEEN != 0 && !self.branches_next());
+        if is_known {
+            let later = if is_product { 2 } else { 1 };
+            let (high1, high2) = (self.after(later, m.a | 1), self.after(1, m.b | 1));
+            self.finish_double(m, 0, join(low1, high1), join(low2, high2));
         } else {
-            self.push_late(late);
+            self.push_late(Late {
+                due: self.clock.cycle + 1,
+                issued: self.clock.cycle,
+                micro: *m,
+                low1,
+                low2,
+                high2: None,
+            });
         }
     }
 
@@ -252,26 +257,24 @@ impl State {
     pub(super) fn continue_late(&mut self, late: Late) {
         let high1 = self.regs[usize::from(late.micro.a | 1)];
         let high2 = self.regs[usize::from(late.micro.b | 1)];
-        let join = |low: u32, high: u32| u64::from(low) | u64::from(high) << 32;
         if late.micro.work == Work::Mpydp && late.high2.is_none() {
             self.push_late(Late { due: self.clock.cycle + 1, high2: Some(high2), ..late });
             return;
         }
         let s2 = join(late.low2, late.high2.unwrap_or(high2));
-        self.finish_double(late, join(late.low1, high1), s2);
+        self.finish_double(&late.micro, self.clock.cycle - late.issued, join(late.low1, high1), s2);
     }
 
-    /// Computes with all words there.
-    fn finish_double(&mut self, late: Late, s1: u64, s2: u64) {
-        let dst = late.micro.dst;
-        let passed = self.clock.cycle - late.issued;
+    /// Computes with all words there, `passed` cycles after the issue.
+    fn finish_double(&mut self, m: &Micro, passed: u64, s1: u64, s2: u64) {
+        let dst = m.dst;
         let (a, b) = (float::double(s1), float::double(s2));
-        match late.micro.work {
+        match m.work {
             Work::Adddp => self.push_pair(6 - passed, 7 - passed, dst, float::adddp(s1, s2)),
             Work::Subdp => self.push_pair(6 - passed, 7 - passed, dst, float::subdp(s1, s2)),
             Work::Mpydp => self.push_pair(9 - passed, 10 - passed, dst, float::mpydp(s1, s2)),
             Work::Mpyspdp => {
-                self.push_pair(6 - passed, 7 - passed, dst, float::mpyspdp(late.low1, s2));
+                self.push_pair(6 - passed, 7 - passed, dst, float::mpyspdp(s1 as u32, s2));
             }
             Work::Cmpgtdp => self.push(2 - passed, dst, u32::from(a > b)),
             Work::Cmpltdp => self.push(2 - passed, dst, u32::from(a < b)),
@@ -279,6 +282,10 @@ impl State {
             _ => self.push(2 - passed, dst, u32::from(a == b)),
         }
     }
+}
+
+fn join(low: u32, high: u32) -> u64 {
+    u64::from(low) | u64::from(high) << 32
 }
 
 fn signed(value: u32) -> i64 {

@@ -308,10 +308,18 @@ impl State {
         self.push(high_delay, reg | 1, (value >> 32) as u32);
     }
 
-    /// Whether one of two registers receives a result in the next cycle.
+    /// A register in `cycles` cycles, if nothing but what is on its way changes it.
     #[inline(always)]
-    pub(super) fn lands_next(&self, one: u8, other: u8) -> bool {
-        self.flight.masks[self.slot(1)] & (bit(one) | bit(other)) != 0
+    pub(super) fn after(&self, cycles: u64, reg: u8) -> u32 {
+        let landing = (1..=cycles).rev().map(|delay| self.slot(delay));
+        let slot = landing.into_iter().find(|slot| self.flight.masks[*slot] & bit(reg) != 0);
+        slot.map_or(self.regs[usize::from(reg)], |slot| self.flight.values[slot][usize::from(reg & 63)])
+    }
+
+    /// Whether a branch arrives in the next cycle.
+    #[inline(always)]
+    pub(super) const fn branches_next(&self) -> bool {
+        self.flight.branches >> self.slot(1) & 1 != 0
     }
 
     /// Remembers a double instruction whose high words are read later.
