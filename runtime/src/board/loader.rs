@@ -6,7 +6,7 @@
 
 use coff::{Contents, FileFlags, Image, Line, Section, SectionFlags, SectionNumber, StorageClass, Target};
 use kmotiondef::limits::{VERSION, VERSION_STAMP};
-use kmotiondef::map::{PROGRAM_BASE, PROGRAM_SIZE, STACK_BASE, program_base};
+use kmotiondef::map::{PROGRAM_BASE, PROGRAM_LIMIT, PROGRAM_SIZE, program_base};
 use kmotiondef::{GuestAddr, ThreadId};
 use vm::loaded::Loaded as Code;
 use vm::verify::VerifyError;
@@ -222,7 +222,7 @@ fn check_sections(
     let mut ranges = Vec::new();
     for section in image.sections.iter().filter(|section| is_loaded(section)) {
         let (start, end) = (u64::from(section.address), u64::from(section.address) + section.size());
-        if start < u64::from(program_base(thread).get()) || end > u64::from(STACK_BASE) {
+        if start < u64::from(program_base(thread).get()) || end > u64::from(PROGRAM_LIMIT) {
             return Err(outside(section));
         }
         for other in ThreadId::all().filter(|other| holds(*other)) {
@@ -276,7 +276,7 @@ fn debug(image: &Image) -> DebugInfo {
                 functions.push(FunctionInfo { name, file: file.clone(), start, end });
             }
             StorageClass::EXTERNAL | StorageClass::STATIC
-                if symbol.section.0 > 1 && (PROGRAM_BASE..STACK_BASE).contains(&symbol.value) =>
+                if symbol.section.0 > 1 && (PROGRAM_BASE..PROGRAM_LIMIT).contains(&symbol.value) =>
             {
                 objects.push(ObjectInfo { name, start: symbol.value, size });
             }

@@ -1,7 +1,7 @@
 //! Gives everything its address.
 
-use kmotiondef::GuestAddr;
-use kmotiondef::map::{PROGRAM_BASE, PROGRAM_SIZE, STACK_BASE};
+use kmotiondef::{GuestAddr, ThreadId};
+use kmotiondef::map::{PROGRAM_BASE, PROGRAM_LIMIT, PROGRAM_SIZE};
 
 use super::error::{LinkError, LinkErrorKind, LinkWarning};
 use super::names::Names;
@@ -141,12 +141,12 @@ fn linked(
 /// Compares the program's end with the space there is (specification, `dialect.md` section 7). A program
 /// whose text is not in the space of the board's user programs is for another board.
 pub(super) fn check_size(placed: &Placed, text: GuestAddr) -> Result<Vec<LinkWarning>, Vec<LinkError>> {
-    if !(PROGRAM_BASE..STACK_BASE).contains(&text.get()) {
+    if !(PROGRAM_BASE..PROGRAM_LIMIT).contains(&text.get()) {
         return Ok(Vec::new());
     }
     let end = placed.bss_address.get().saturating_add(placed.bss_size);
-    if end > STACK_BASE {
-        let (excess, space) = (end - STACK_BASE, STACK_BASE - text.get());
+    if end > PROGRAM_LIMIT {
+        let (excess, space) = (end - PROGRAM_LIMIT, PROGRAM_LIMIT - text.get());
         let kind = LinkErrorKind::TooLarge { excess, space, largest: largest(placed) };
         return Err(vec![LinkError::global(kind)]);
     }
@@ -156,8 +156,12 @@ pub(super) fn check_size(placed: &Placed, text: GuestAddr) -> Result<Vec<LinkWar
     if end <= own_end {
         return Ok(Vec::new());
     }
-    let last = (end - 1 - PROGRAM_BASE) / PROGRAM_SIZE + 1;
-    let entered = (own as u8 + 1..=last as u8).collect();
+    // What comes after the space of the last thread is nobody else's.
+    let last = ((end - 1 - PROGRAM_BASE) / PROGRAM_SIZE + 1).min(u32::from(ThreadId::MAX));
+    let entered: Vec<u8> = (own as u8 + 1..=last as u8).collect();
+    if entered.is_empty() {
+        return Ok(Vec::new());
+    }
     let excess = end - own_end;
     Ok(vec![LinkWarning::EntersOtherThreads { excess, entered, largest: largest(placed) }])
 }

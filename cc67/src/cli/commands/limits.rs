@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 
 use kmotiondef::ThreadId;
 use kmotiondef::limits::MAX_NSTRINGS;
-use kmotiondef::map::{PROGRAM_BASE, PROGRAM_SIZE, STACK_BASE, STACK_SIZE};
+use kmotiondef::map::{PROGRAM_BASE, PROGRAM_LIMIT, PROGRAM_SIZE, STACK_SIZE};
 
 use super::serve::{self, MOST_CLIENTS, UNHEARD_LINES};
 use crate::cli::report::SHOWN_REMARKS;
@@ -76,7 +76,7 @@ pub const BOARD: &[Limit] = &[
     ),
     limit(
         "bytes of a program and its data from thread 1 on",
-        (STACK_BASE - PROGRAM_BASE) as u64,
+        (PROGRAM_LIMIT - PROGRAM_BASE) as u64,
         "an error that names the largest parts",
     ),
     limit("bytes of a thread's stack", STACK_SIZE as u64, "the thread traps"),
