@@ -55,7 +55,7 @@ fn board_with(stimulus: &str) -> Board {
 
 fn devices(criterion: &mut Criterion) {
     let mut traced = board();
-    traced.record(TraceRequest { quantities: Vec::new(), every: 1, changes: true });
+    traced.record(TraceRequest { quantities: Vec::new(), every: 1, changes: true, packets: None });
     let boards = [
         ("none", board()),
         ("wire", board_with("device wire from=8 to=12")),

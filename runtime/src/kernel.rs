@@ -10,7 +10,7 @@ use kmotiondef::variables::{
 };
 use kmotiondef::{AxisId, Bit, Cycles, GuestAddr, ThreadId};
 use vm::bus::{AccessSize, Bus};
-use vm::firmware::{Caller, Firmware, Outcome, Pure, Signature, TickContext, Value};
+use vm::firmware::{Caller, ExecutedPacket, Firmware, Outcome, Pure, Signature, TickContext, Value};
 use vm::memory::GuestMemory;
 use vm::scheduler::Turn;
 use vm::trap::{Trap, TrapKind};
@@ -374,6 +374,15 @@ impl Firmware for Kernel {
         if self.parts.world.records_changes() {
             self.parts.out.tell(start, EventKind::Trace(Record::Slice { thread, end }));
         }
+    }
+
+    fn follows_packets(&self, thread: Option<ThreadId>) -> bool {
+        self.parts.world.records_packets(thread)
+    }
+
+    fn packet_ran(&mut self, packet: ExecutedPacket) {
+        let ExecutedPacket { thread, at: address, start, cycles, text } = packet;
+        self.parts.out.tell(start, EventKind::Trace(Record::Packet { thread, address, cycles, text }));
     }
 
     fn trapped(&mut self, trap: &Trap, context: &mut TickContext<'_>) {

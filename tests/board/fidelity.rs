@@ -179,7 +179,7 @@ impl<'l> Run<'l> {
         if !list.is_empty() {
             let quantities = session.quantities(&list.join(", "));
             let quantities = quantities.unwrap_or_else(|error| panic!("{name}: {error}"));
-            session.record(TraceRequest { quantities, every: 1, changes: false });
+            session.record(TraceRequest { quantities, every: 1, changes: false, packets: None });
         }
         let start = session.tick().get();
         while session.user_data(0) != Some(1) {

@@ -222,6 +222,21 @@ pub struct TickContext<'a> {
     pub now: Cycles,
 }
 
+/// A packet of real code that was executed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ExecutedPacket {
+    /// The thread; `None` for the call-back.
+    pub thread: Option<ThreadId>,
+    /// Its address.
+    pub at: CodeAddr,
+    /// The instant at which it began.
+    pub start: Cycles,
+    /// What it took.
+    pub cycles: Cycles,
+    /// Its instructions, bars between them.
+    pub text: String,
+}
+
 /// The firmware as the machine sees it.
 ///
 /// In each tick the machine calls, in this order: [`callback`](Self::callback) (and runs what it
@@ -295,6 +310,17 @@ pub trait Firmware: Bus {
     /// A thread has run in its slice, from `start` to `end`.
     fn slice_ran(&mut self, thread: ThreadId, start: Cycles, end: Cycles) {
         let _ = (thread, start, end);
+    }
+
+    /// Whether packets of real code of this thread, of the call-back for `None`, are to be reported one by one.
+    fn follows_packets(&self, thread: Option<ThreadId>) -> bool {
+        let _ = thread;
+        false
+    }
+
+    /// A packet of real code was executed; reported when the thread loses the processor.
+    fn packet_ran(&mut self, packet: ExecutedPacket) {
+        let _ = packet;
     }
 
     /// A thread was stopped by a trap, or the call-back, which the kernel must then take out.

@@ -1,6 +1,6 @@
 //! What a recording of a run holds: levels, slices, values over time.
 
-use kmotiondef::{Bit, Cycles, ThreadId};
+use kmotiondef::{Bit, CodeAddr, Cycles, ThreadId};
 
 /// One thing that was recorded; the event around it says when.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,6 +20,17 @@ pub enum Record {
         thread: ThreadId,
         /// Until when.
         end: Cycles,
+    },
+    /// Real code has executed a packet.
+    Packet {
+        /// The thread; `None` for the call-back.
+        thread: Option<ThreadId>,
+        /// The address of the packet.
+        address: CodeAddr,
+        /// What it took.
+        cycles: Cycles,
+        /// Its instructions, bars between them.
+        text: String,
     },
     /// The quantities have these values, some of which are new.
     Sample {

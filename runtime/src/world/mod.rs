@@ -8,7 +8,7 @@ pub mod trace;
 
 pub(crate) use stage::{Moment, Stage};
 
-use kmotiondef::Cycles;
+use kmotiondef::{Cycles, ThreadId};
 use vm::firmware::TickContext;
 use vm::memory::GuestMemory;
 use vm::scheduler::Turn;
@@ -121,6 +121,11 @@ impl World {
     /// Whether levels and slices are recorded.
     pub(crate) fn records_changes(&self) -> bool {
         self.recorder.as_ref().is_some_and(|recorder| recorder.records_changes())
+    }
+
+    /// Whether the packets of a thread are recorded, of the call-back for `None`.
+    pub(crate) fn records_packets(&self, thread: Option<ThreadId>) -> bool {
+        self.recorder.as_ref().is_some_and(|recorder| recorder.records_packets(thread))
     }
 
     /// Whether what is recorded changes even when nothing happens.

@@ -7,6 +7,8 @@ use crate::trap::Scene;
 
 /// The stack pointer at the start of a board.
 const STACK: Reg = Reg::b(15);
+/// Most instructions of a packet.
+const MOST: u32 = 8;
 /// Bytes shown before a place, and from it on.
 const AROUND: u32 = 8 * 4;
 /// CSR at power-up: little endian, interrupts off.
@@ -48,6 +50,20 @@ impl Core {
         let code = listing(at.saturating_sub(AROUND)..at.saturating_add(AROUND), fetch);
         Scene { at, registers: self.registers(), code }
     }
+}
+
+/// The instructions of the packet at `at`, bars between them, as far as `fetch` has them.
+pub(super) fn packet_text(at: u32, fetch: impl Fn(u32) -> Option<u32>) -> String {
+    let mut text = String::new();
+    for at in (at..at.saturating_add(4 * MOST)).step_by(4) {
+        let Some(word) = fetch(at) else { break };
+        text += &Inst::decode(word).map_or_else(|_| "(no instruction)".to_owned(), |inst| inst.text(at));
+        if word & PARALLEL == 0 {
+            break;
+        }
+        text += " || ";
+    }
+    text
 }
 
 /// A line of text for each word of `range` that `fetch` has.

@@ -13,10 +13,11 @@ use kmotiondef::{CodeAddr, Cycles, GuestAddr, ThreadId};
 
 use super::account::{Account, Spender};
 use super::core::{Core, Halt};
+use super::inspect::packet_text;
 use super::view::View;
 use crate::call::ArgumentList;
 use crate::engine::{ContextId, Executor, ForeignSnapshot, Slice, Stack, Stop};
-use crate::firmware::{Firmware, Outcome, Value};
+use crate::firmware::{ExecutedPacket, Firmware, Outcome, Value};
 use crate::loaded::Image;
 use crate::memory::GuestMemory;
 use crate::operand::Class;
@@ -121,15 +122,13 @@ impl Executor for DspEngine {
         if let Some(account) = account {
             account.resume(id, slice.now());
         }
-        context
-            .run(id, slice, account)
-            .unwrap_or_else(|kind| {
-                let at = context.place();
-                let memory = &*slice.memory;
-                let word = |at| Image::is_code(at).then(|| memory.peek(GuestAddr::new(at)));
-                let scene = context.core.scene(at.as_guest_addr().get(), word);
-                Stop::Trapped(Trap { scene: Some(Box::new(scene)), ..Trap::new(kind, at, id.thread()) })
-            })
+        context.run(id, slice, account).unwrap_or_else(|kind| {
+            let at = context.place();
+            let memory = &*slice.memory;
+            let word = |at| Image::is_code(at).then(|| memory.peek(GuestAddr::new(at)));
+            let scene = context.core.scene(at.as_guest_addr().get(), word);
+            Stop::Trapped(Trap { scene: Some(Box::new(scene)), ..Trap::new(kind, at, id.thread()) })
+        })
     }
 
     fn snapshot(&self) -> DspSnapshot {
@@ -167,12 +166,11 @@ impl Processor {
     ) -> Result<Stop, TrapKind> {
         loop {
             self.core.state.clock.set_left(slice.budget.get());
-            let halt = match account {
-                Some(account) => self.core.run_counted(&mut View(slice), &mut |at, cycles| {
-                    let spender = Spender { context: id, at: code_at(at), firmware: None };
-                    account.compute(spender, Cycles::new(cycles));
-                }),
-                None => self.core.run(&mut View(slice)),
+            let follows = slice.firmware.follows_packets(id.thread());
+            let halt = if account.is_some() || follows {
+                self.run_counted(id, slice, account, follows)
+            } else {
+                self.core.run(&mut View(slice))
             };
             slice.budget = Cycles::new(self.core.state.clock.left());
             match halt {
@@ -199,6 +197,34 @@ impl Processor {
                 Halt::Faulted(kind) => return Err(kind),
             }
         }
+    }
+
+    /// Executes packets one by one: for the account, and for whoever follows them.
+    fn run_counted<F: Firmware + ?Sized>(
+        &mut self,
+        id: ContextId,
+        slice: &mut Slice<'_, F>,
+        account: &mut Option<Account>,
+        follows: bool,
+    ) -> Halt {
+        let mut start = slice.now();
+        let mut ran = Vec::new();
+        let halt = self.core.run_counted(&mut View(slice), &mut |at, cycles| {
+            let (at, cycles) = (code_at(at), Cycles::new(cycles));
+            if let Some(account) = account {
+                account.compute(Spender { context: id, at, firmware: None }, cycles);
+            }
+            if follows {
+                ran.push((at, cycles));
+            }
+        });
+        for (at, cycles) in ran {
+            let word = |at| Image::is_code(at).then(|| slice.memory.peek(GuestAddr::new(at)));
+            let text = packet_text(at.as_guest_addr().get(), word);
+            slice.firmware.packet_ran(ExecutedPacket { thread: id.thread(), at, start, cycles, text });
+            start += cycles;
+        }
+        halt
     }
 
     /// Makes the firmware call of an address; the stop, if the program does not go on at once.

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use kmotiondef::ThreadId;
 
 /// What to trace.
 #[derive(Debug, Args)]
@@ -13,6 +14,9 @@ pub(crate) struct TraceArguments {
     /// Write every change of a bit with its nanosecond and thread to FILE (CSV)
     #[arg(long, value_name = "FILE")]
     pub(crate) trace_bits: Option<PathBuf>,
+    /// Write every packet of real code with its cycle, address and instructions to FILE (CSV); of thread N alone
+    #[arg(long, value_name = "[N:]FILE", value_parser = PacketFile::parse)]
+    pub(crate) trace_packets: Option<PacketFile>,
     /// Draw what moved: .svg, .png, or .html for a page with zoom and cursor
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Vec<PathBuf>,
@@ -25,12 +29,37 @@ pub(crate) struct TraceArguments {
     pub(crate) trace_every: u64,
 }
 
+/// Where packets are written to, and whose.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct PacketFile {
+    /// The thread; all if there is none.
+    pub(crate) thread: Option<ThreadId>,
+    /// The file.
+    pub(crate) path: PathBuf,
+}
+
+impl PacketFile {
+    fn parse(text: &str) -> Result<Self, String> {
+        let Some((number, path)) = text.split_once(':').filter(|(number, _)| is_number(number)) else {
+            return Ok(Self { thread: None, path: text.into() });
+        };
+        let thread = number.parse().ok().and_then(ThreadId::new);
+        let thread = thread.ok_or_else(|| format!("there is no thread {number}: threads are 1 to 7"))?;
+        Ok(Self { thread: Some(thread), path: path.into() })
+    }
+}
+
+fn is_number(text: &str) -> bool {
+    !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit())
+}
+
 impl TraceArguments {
     /// The first of these options that is given.
     pub(crate) fn first_given(&self) -> Option<&'static str> {
         let given = [
             (!self.trace.is_empty(), "--trace"),
             (self.trace_bits.is_some(), "--trace-bits"),
+            (self.trace_packets.is_some(), "--trace-packets"),
             (!self.plot.is_empty(), "--plot"),
             (self.trace_items.is_some(), "--trace-items"),
         ];

@@ -14,6 +14,8 @@ pub(crate) use recorder::Recorder;
 
 pub use crate::out::Record;
 
+use kmotiondef::ThreadId;
+
 /// What is to be recorded.
 #[derive(Clone, Debug)]
 pub struct TraceRequest {
@@ -23,4 +25,15 @@ pub struct TraceRequest {
     pub every: u64,
     /// Whether levels and slices are recorded as well.
     pub changes: bool,
+    /// Whose packets of real code are recorded as well.
+    pub packets: Option<Packets>,
+}
+
+/// Whose packets are recorded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Packets {
+    /// Those of all threads, and of the call-back.
+    All,
+    /// Those of a thread.
+    Of(ThreadId),
 }

@@ -1,9 +1,9 @@
 //! Samples the quantities that were asked for.
 
 use kmotiondef::structs::Chan;
-use kmotiondef::{AxisId, Ticks};
+use kmotiondef::{AxisId, ThreadId, Ticks};
 
-use super::{Quantity, Record, TraceRequest, View};
+use super::{Packets, Quantity, Record, TraceRequest, View};
 use crate::views::Typed;
 
 /// A recording under way.
@@ -22,6 +22,14 @@ impl Recorder {
     /// Whether levels and slices are recorded.
     pub(crate) fn records_changes(&self) -> bool {
         self.request.changes
+    }
+
+    /// Whether the packets of a thread are recorded, of the call-back for `None`.
+    pub(crate) fn records_packets(&self, thread: Option<ThreadId>) -> bool {
+        self.request.packets.is_some_and(|packets| match packets {
+            Packets::All => true,
+            Packets::Of(one) => thread == Some(one),
+        })
     }
 
     /// Whether an item is sampled.
@@ -56,7 +64,8 @@ mod tests {
 
     #[test]
     fn ticks_are_sampled_at_multiples_also_when_they_are_skipped() {
-        let recorder = Recorder::new(TraceRequest { quantities: Vec::new(), every: 10, changes: false });
+        let recorder =
+            Recorder::new(TraceRequest { quantities: Vec::new(), every: 10, changes: false, packets: None });
         for (tick, count, expect) in [(10, 1, Some(10)), (11, 1, None), (35, 20, Some(30)), (29, 9, None)] {
             let sampled = recorder.sampled_tick(Ticks::new(tick), count).map(Ticks::get);
             assert_eq!(sampled, expect, "{tick} {count}");

@@ -60,7 +60,7 @@ impl Log {
                     self.thin();
                 }
             }
-            TraceEntry::Line(_) | TraceEntry::Sent(_) => {}
+            TraceEntry::Line(_) | TraceEntry::Sent(_) | TraceEntry::Packet { .. } => {}
         }
     }
 
@@ -175,7 +175,8 @@ mod tests {
 
     #[test]
     fn a_long_run_takes_no_more_memory_than_a_picture_needs() {
-        let mut log = Log::new(&TraceRequest { quantities: Vec::new(), every: 1, changes: true });
+        let mut log =
+            Log::new(&TraceRequest { quantities: Vec::new(), every: 1, changes: true, packets: None });
         let count = 5 * SAMPLES as i64;
         for tick in 1..=count {
             log.note(ticks(tick), TraceEntry::Sample { values: vec![tick as f64], enabled: 0 });

@@ -10,6 +10,7 @@ mod chrome;
 mod columns;
 mod log;
 mod order;
+mod packets;
 mod picture;
 mod table;
 mod unit;
@@ -20,7 +21,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Result, anyhow, bail};
 use cc67_host::{Session, WatchError};
-use kmotiondef::{Bit, Cycles, ThreadId, Ticks};
+use kmotiondef::{Bit, CodeAddr, Cycles, ThreadId, Ticks};
 use runtime::trace::{Item, Quantity, Record, TraceRequest};
 use runtime::{Event, EventKind};
 use vm::engine::Engine;
@@ -38,8 +39,8 @@ pub(crate) fn request<E: Engine>(
     arguments: &TraceArguments,
     session: &Session<E>,
 ) -> Result<Option<TraceRequest>> {
-    let TraceArguments { trace, trace_bits, plot, trace_items, trace_every } = arguments;
-    if trace.is_empty() && trace_bits.is_none() && plot.is_empty() {
+    let TraceArguments { trace, trace_bits, trace_packets, plot, trace_items, trace_every } = arguments;
+    if trace.is_empty() && trace_bits.is_none() && trace_packets.is_none() && plot.is_empty() {
         if trace_items.is_some() {
             bail!("`--watch` says what is shown; `--plot FILE.svg` or `--trace FILE.csv` says where");
         }
@@ -55,7 +56,8 @@ pub(crate) fn request<E: Engine>(
     };
     let is_table = |path: &PathBuf| !matches!(suffix(path).as_str(), "vcd" | "json");
     let changes = trace_bits.is_some() || !plot.is_empty() || !trace.iter().all(is_table);
-    Ok(Some(TraceRequest { quantities, every: *trace_every, changes }))
+    let packets = trace_packets.as_ref().map(|file| packets::wanted(file, session)).transpose()?;
+    Ok(Some(TraceRequest { quantities, every: *trace_every, changes, packets }))
 }
 
 /// A suffix that is known, or none.
@@ -81,6 +83,8 @@ enum TraceEntry {
     Bit { bit: Bit, level: bool, thread: Option<ThreadId> },
     /// A thread has the processor until then.
     Slice { thread: ThreadId, end: Cycles },
+    /// Real code has executed a packet.
+    Packet { thread: Option<ThreadId>, address: CodeAddr, cycles: Cycles, text: String },
     /// Items have these values; the axes that are enabled.
     Sample { values: Vec<f64>, enabled: u8 },
     /// A console line.
@@ -97,6 +101,9 @@ impl TraceEntry {
                 Self::Bit { bit: *bit, level: *level, thread: *thread }
             }
             EventKind::Trace(Record::Slice { thread, end }) => Self::Slice { thread: *thread, end: *end },
+            EventKind::Trace(Record::Packet { thread, address, cycles, text }) => {
+                Self::Packet { thread: *thread, address: *address, cycles: *cycles, text: text.clone() }
+            }
             EventKind::Trace(Record::Sample { values, enabled }) => {
                 Self::Sample { values: values.clone(), enabled: *enabled }
             }
@@ -154,6 +161,9 @@ impl Trace {
         }
         if let Some(path) = &arguments.trace_bits {
             sinks.push(Box::new(bits::Changes::new(path)?));
+        }
+        if let Some(file) = &arguments.trace_packets {
+            sinks.push(Box::new(packets::PacketTable::new(&file.path)?));
         }
         let log = (!arguments.plot.is_empty()).then(|| Log::new(request));
         Ok(Self { order: Order::default(), sinks, log, failed: None })
@@ -224,7 +234,12 @@ mod testing {
     /// What a run with a few records of each kind was asked for.
     pub(crate) fn request() -> TraceRequest {
         let item = |name| Quantity::from(Item::new(name).expect("an item"));
-        TraceRequest { quantities: ["dest0", "bit46"].map(item).to_vec(), every: 2, changes: true }
+        TraceRequest {
+            quantities: ["dest0", "bit46"].map(item).to_vec(),
+            every: 2,
+            changes: true,
+            packets: None,
+        }
     }
 
     /// Its records, as they come: not quite in order.
@@ -251,6 +266,7 @@ mod testing {
         let arguments = TraceArguments {
             trace: if is_bits { Vec::new() } else { vec![path.clone()] },
             trace_bits: is_bits.then(|| path.clone()),
+            trace_packets: None,
             plot: Vec::new(),
             trace_items: None,
             trace_every: 2,

@@ -155,7 +155,7 @@ impl Sink for Dump {
                 let id = self.declare(Signal::Console, "");
                 self.change(at, &format!("s{} ", escape(line)), &id)
             }
-            TraceEntry::Sent(_) => Ok(()),
+            TraceEntry::Sent(_) | TraceEntry::Packet { .. } => Ok(()),
         }
     }
 

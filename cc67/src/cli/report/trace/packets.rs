@@ -1,0 +1,64 @@
+//! Packets of real code as a table: `cycle,thread,address,cycles,packet`, thread 0 for the call-back.
+//!
+//! `cycle` is the board time at which the packet began, in cycles of 5 ns since power-up; `cycles` is what it took.
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use anyhow::{Result, bail};
+use cc67_host::Session;
+use kmotiondef::{Cycles, ThreadId, Ticks};
+use runtime::trace::Packets;
+use vm::engine::Engine;
+use vm::loaded::Loaded;
+
+use super::{Sink, TraceEntry};
+use crate::cli::args::trace::PacketFile;
+use crate::cli::io::output::Draft;
+
+/// Whose packets are to be recorded.
+///
+/// # Errors
+/// The thread that is named has a program that is not real code, or no thread has any.
+pub(super) fn wanted<E: Engine>(file: &PacketFile, session: &Session<E>) -> Result<Packets> {
+    let machine = session.board().machine();
+    let all = ThreadId::all().filter(|thread| file.thread.is_none_or(|wanted| wanted == *thread));
+    let loaded: Vec<_> = all.filter_map(|thread| Some((thread, machine.loaded(thread)?))).collect();
+    let has_real_code = loaded.iter().any(|(_, loaded)| matches!(loaded, Loaded::Image(_)));
+    // Where nothing is loaded yet, real code may be later.
+    if let (Some((thread, _)), false) = (loaded.first(), has_real_code) {
+        bail!(
+            "`--trace-packets`: thread {thread} runs bytecode, which has no packets; `--engine dsp` compiles for the \
+             controller's processor"
+        );
+    }
+    Ok(file.thread.map_or(Packets::All, Packets::Of))
+}
+
+/// The table in the making.
+pub(super) struct PacketTable(Draft);
+
+impl PacketTable {
+    /// Begins it.
+    pub(super) fn new(path: &Path) -> Result<Self> {
+        let mut draft = Draft::new(path)?;
+        writeln!(draft, "cycle,thread,address,cycles,packet")?;
+        Ok(Self(draft))
+    }
+}
+
+impl Sink for PacketTable {
+    fn note(&mut self, at: Cycles, entry: &TraceEntry) -> io::Result<()> {
+        let TraceEntry::Packet { thread, address, cycles, text } = entry else { return Ok(()) };
+        let thread = thread.map_or(0, |thread| thread.get());
+        writeln!(self.0, "{},{thread},{address},{},\"{text}\"", at.get(), cycles.get())
+    }
+
+    fn finish(self: Box<Self>, _: Ticks) -> Result<()> {
+        self.0.commit()
+    }
+
+    fn path(&self) -> &Path {
+        self.0.path()
+    }
+}
