@@ -1,10 +1,11 @@
-//! A board goes back to any instant and continues from there as it continued then, on both engines.
+//! A board goes back to any instant and continues from there as it continued then, on all engines.
 
 use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
 use cc67_host::{Session, Setup, UserProgram};
+use compiler::target::Target;
 use harness::root;
 use kmotiondef::{Cycles, ThreadId, Ticks};
 use runtime::stimulus::Stimulus;
@@ -58,10 +59,11 @@ impl Numbers {
 }
 
 /// A program with what is beside it, and with those that its first line names for other threads.
-fn setup(name: &str) -> Setup {
+fn setup(name: &str, target: Target) -> Setup {
     let path = root().join("c-programs").join(name).with_extension("c");
     let beside = |suffix: &str| fs::read_to_string(path.with_extension(suffix)).ok();
     let mut setup = Setup::default();
+    setup.options.target = target;
     if let Some(text) = beside("toml") {
         setup.config.machine_file = MachineFile::parse(&text).expect(name);
     }
@@ -133,8 +135,8 @@ impl Run {
 }
 
 /// Runs a program straight on, then with snapshots at random instants, and then from each of them.
-fn check<E: Engine>(name: &str, numbers: &mut Numbers) {
-    let session = || setup(name).session_on(E::default()).expect(name);
+fn check<E: Engine>(name: &str, target: Target, numbers: &mut Numbers) {
+    let session = || setup(name, target).session_on(E::default()).expect(name);
     let mut straight = session();
     let mut events = Vec::new();
     let _ = straight.run(Ticks::new(LONGEST), &mut |event| events.push(event));
@@ -171,27 +173,38 @@ fn check<E: Engine>(name: &str, numbers: &mut Numbers) {
     }
 }
 
-fn check_all<E: Engine>() {
+fn check_all<E: Engine>(target: Target) {
     let mut numbers = Numbers(0x5EED_0019);
     for name in PROGRAMS {
-        check::<E>(name, &mut numbers);
+        check::<E>(name, target, &mut numbers);
     }
 }
 
 #[test]
 fn boards_go_on_from_any_instant_on_the_interpreter() {
-    check_all::<BytecodeEngine>();
+    check_all::<BytecodeEngine>(Target::Sim);
 }
 
 #[test]
 fn boards_go_on_from_any_instant_on_the_native_engine() {
-    check_all::<NativeEngine>();
+    check_all::<NativeEngine>(Target::Sim);
+}
+
+#[test]
+fn boards_with_real_code_go_on_from_any_instant_interpreted() {
+    check_all::<BytecodeEngine>(Target::C67x);
+}
+
+#[test]
+fn boards_with_real_code_go_on_from_any_instant_translated() {
+    check_all::<NativeEngine>(Target::C67x);
 }
 
 #[test]
 #[expect(clippy::disallowed_methods, reason = "measures what the host takes")]
 fn a_snapshot_of_a_board_takes_little_time_and_memory() {
-    let mut session = setup("machine/thread").session_on(NativeEngine::default()).expect("it is right");
+    let mut session =
+        setup("machine/thread", Target::Sim).session_on(NativeEngine::default()).expect("it is right");
     session.advance(Ticks::new(5000), &mut |_| ());
     let first = session.snapshot();
     session.advance(Ticks::new(5100), &mut |_| ());
