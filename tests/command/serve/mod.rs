@@ -129,6 +129,29 @@ fn a_client_over_tcp_talks_to_the_board() {
     assert_eq!(server.client().ask("Version"), VERSION);
 }
 
+#[test]
+fn real_code_is_served_and_taken_as_a_download() {
+    let scratch = Scratch::new("serve-real");
+    scratch.write("a.c", HELLO);
+    scratch
+        .write("b.c", "#include \"KMotionDef.h\"\nint n;\nmain()\n{\n  printf(\"again %d\\n\", n++);\n}\n");
+    assert_eq!(cc67(&scratch, ["build", "b.c", "--thread", "3", "--emit", "download"]).code, 0);
+    let download = std::fs::read_to_string(scratch.path().join("b(3).kmd")).expect("it is written");
+    let arguments = ["serve", "--engine", "dsp", "--pace", "fast", "--listen", "tcp:0", "a.c"];
+    let server = Server::start_in(scratch, &arguments, 1);
+    let mut client = server.client();
+    assert_eq!(client.call(client::SET_CONSOLE, b"").0, 0);
+    assert_eq!(client.ask("Version"), VERSION);
+    assert_ne!(client.ask("GetPersistDec 9"), "0");
+    download.lines().for_each(|line| client.write_line(line));
+    for _ in 0..2 {
+        client.write_line("Execute3");
+        while client.ask("CheckThread3") != "0" {}
+    }
+    assert_eq!(client.ask("Version"), VERSION);
+    assert_eq!(client.console, ["hello", "again 0", "again 1"]);
+}
+
 #[cfg(unix)]
 #[test]
 fn clients_over_a_socket_share_the_board_by_its_token() {
