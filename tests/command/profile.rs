@@ -72,3 +72,38 @@ fn real_code_has_a_profile_of_true_cycles() {
         assert!(table.contains(part), "{part} is not in\n{table}");
     }
 }
+
+#[test]
+fn functions_of_real_code_have_their_callers() {
+    let scratch = Scratch::new("profile-callers");
+    let source = "#include \"KMotionDef.h\"\ndouble table[200];\nint depth;\n\
+                  double Half(double x)\n{\n    int i;\n    for (i = 0; i < 50; i++)\n        depth += i & 3;\n    \
+                  return x * 0.5;\n}\nvoid Fill(int n)\n{\n    int i;\n    for (i = 0; i < n; i++)\n        \
+                  table[i] = Half(i) + Half(n);\n    if (n > 195)\n        Fill(n - 1);\n}\nmain()\n{\n    \
+                  for (;;)\n    {\n        Fill(200);\n        if (depth > 2000)\n            break;\n    }\n    \
+                  Half(1);\n}\n";
+    scratch.write("a.c", source);
+    let output = cc67(&scratch, ["run", "--engine", "dsp", "-O0", "--profile=a.svg", "a.c"]);
+    assert_eq!(output.code, 0, "{output:?}");
+    let row = |name: &str| {
+        let line = output.stderr.lines().find(|line| line.ends_with(&format!("  {name}"))).expect(name);
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let seconds = |at: usize| {
+            let unit = match words[at + 1] {
+                "s" => 1.0,
+                "ms" => 1e-3,
+                _ => 1e-6,
+            };
+            words[at].parse::<f64>().expect("a number") * unit
+        };
+        // Nothing of it waits, which is one word.
+        (seconds(0), seconds(3))
+    };
+    let (main, fill, half) = (row("main"), row("Fill"), row("Half"));
+    assert!(half.0 == half.1, "Half calls nothing: {half:?}");
+    // Recursion counts once; only one call of Half is main's own.
+    assert!((fill.1 - fill.0 - half.1).abs() < half.1 * 0.001, "{fill:?} {half:?}");
+    assert!((main.1 - main.0 - fill.1).abs() < fill.1 * 0.001, "{main:?} {fill:?}");
+    let picture = fs::read_to_string(scratch.path().join("a.svg")).expect("it was written");
+    assert!(picture.contains("main:") && picture.contains("Half:"), "calls are towers");
+}

@@ -36,7 +36,7 @@ mod work;
 #[cfg(test)]
 mod tests;
 
-pub use self::account::{Account, Spender, Time};
+pub use self::account::{Account, Callers, Spender, Time};
 pub use self::core::{Core, Halt};
 pub use self::decode::is_code;
 pub use self::memory::{Clock, Memory};

@@ -22,9 +22,10 @@ pub(super) fn program(bytes: &[u8], base: GuestAddr) -> Result<Code, VerifyError
     verify_image(bytes, base).map(|program| Code::Program(program.into()))
 }
 
-/// Code of the real processor, `length` bytes from `base` on.
-pub(super) fn image(base: GuestAddr, length: u32) -> Code {
-    Code::Image(Image::new(base..base.offset(length), *THREAD_DONE).into())
+/// Code of the real processor, `length` bytes from `base` on, and where its functions begin.
+pub(super) fn image(base: GuestAddr, length: u32, functions: Vec<u32>) -> Code {
+    let image = Image::new(base..base.offset(length), *THREAD_DONE);
+    Code::Image(image.with_functions(functions).into())
 }
 
 /// Code of whatever kind that came without an image around it.

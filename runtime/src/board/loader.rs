@@ -138,7 +138,7 @@ pub fn prepare(
     check_sections(&image, thread, holds)?;
     let base = GuestAddr::new(text.address);
     let code = match image.target {
-        Target::C6000 => code::image(base, text.data().len() as u32),
+        Target::C6000 => code::image(base, text.data().len() as u32, functions(&image)),
         _ => code::program(text.data(), base).map_err(LoadError::Refused)?,
     };
     let entry = GuestAddr::new(header.entry);
@@ -249,6 +249,15 @@ fn check_sections(
         }
     }
     Ok(())
+}
+
+/// Where functions begin.
+fn functions(image: &Image) -> Vec<u32> {
+    let functions = image.symbols.iter().filter(|symbol| {
+        matches!(symbol.class, StorageClass::EXTERNAL | StorageClass::STATIC)
+            && symbol.section == SectionNumber(1)
+    });
+    functions.map(|symbol| symbol.value).collect()
 }
 
 fn place(section: &Section) -> Placed {

@@ -1,12 +1,20 @@
 //! Where the time of real images went: for each packet, and for each call of the firmware, what it took.
 //!
 //! Nothing is sampled: packets are executed one at a time, and a run is the same, cycle by cycle, as without an account.
+//!
+//! Real code keeps no list of its callers. The account makes one: a branch to the beginning of a function is a call if
+//! the return address in B3 is near after the branch, and that call ends where the return address is reached.
 
 use std::collections::BTreeMap;
 
 use kmotiondef::{CodeAddr, Cycles, GuestAddr};
 
 use crate::engine::ContextId;
+
+/// Bytes from a call to its return address at most: six packets.
+const LONGEST_CALL: u32 = 6 * 32;
+/// Most calls that have not returned; code without returns makes no more.
+const DEEPEST: usize = 256;
 
 /// What time was spent on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -17,7 +25,13 @@ pub struct Spender {
     pub at: CodeAddr,
     /// The firmware function that it calls, if the time was spent there.
     pub firmware: Option<GuestAddr>,
+    /// The calls that led there.
+    pub callers: Callers,
 }
+
+/// Calls that led to a place, see [`Account::calls`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Callers(usize);
 
 /// What was spent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -28,12 +42,46 @@ pub struct Time {
     pub waiting: Cycles,
 }
 
+/// A context, a packet of it, and the firmware function that this calls.
+pub(super) type Spot = (ContextId, CodeAddr, Option<GuestAddr>);
+
+/// How the packet after another is reached, if by a branch.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Branch {
+    /// The packet of the last branch that was taken.
+    pub(super) from: CodeAddr,
+    /// B3.
+    pub(super) link: u32,
+    /// Whether a function begins at the packet that is reached.
+    pub(super) enters: bool,
+}
+
+/// A call that has not returned.
+#[derive(Clone, Copy, Debug)]
+struct Open {
+    /// Where it returns to.
+    back: u32,
+    /// The callers before it.
+    outer: Callers,
+}
+
+/// The calls of a context that have not returned.
+#[derive(Clone, Debug, Default)]
+struct Trail {
+    open: Vec<Open>,
+    callers: Callers,
+}
+
 /// Where the time went.
 #[derive(Clone, Debug, Default)]
 pub struct Account {
     spent: BTreeMap<Spender, Time>,
     /// What each waiting context waits in, and since when.
     waits: [Option<(Spender, Cycles)>; ContextId::COUNT],
+    /// Each list of calls as the list before it and the last call; the list 0 is empty.
+    lists: Vec<(Callers, CodeAddr)>,
+    known: BTreeMap<(Callers, CodeAddr), Callers>,
+    trails: [Trail; ContextId::COUNT],
 }
 
 impl Account {
@@ -42,13 +90,52 @@ impl Account {
         self.spent.iter().map(|(spender, time)| (*spender, *time))
     }
 
-    pub(super) fn compute(&mut self, spender: Spender, computing: Cycles) {
+    /// The packets that made the calls, innermost first.
+    pub fn calls(&self, callers: Callers) -> impl Iterator<Item = CodeAddr> {
+        let entry = |callers: Callers| callers.0.checked_sub(1).and_then(|index| self.lists.get(index));
+        std::iter::successors(entry(callers), move |(outer, _)| entry(*outer)).map(|(_, call)| *call)
+    }
+
+    /// A context begins anew.
+    pub(super) fn begin(&mut self, context: ContextId) {
+        self.trails[context.index()] = Trail::default();
+    }
+
+    /// A packet of a context has ended, and `next` is the next one.
+    pub(super) fn follow(&mut self, context: ContextId, next: u32, branch: Branch) {
+        let trail = &mut self.trails[context.index()];
+        if let Some(call) = trail.open.pop_if(|call| call.back == next) {
+            trail.callers = call.outer;
+            return;
+        }
+        // A jump to the beginning of a function that is under way is not a call, nor is one from its end to another.
+        let is_new = trail.open.last().is_none_or(|call| call.back != branch.link);
+        let is_call = branch.enters && is_new && is_return_of(branch.link, branch.from.as_guest_addr().get());
+        if !is_call || trail.open.len() >= DEEPEST {
+            return;
+        }
+        let list = (trail.callers, branch.from);
+        let lists = &mut self.lists;
+        let callers = *self.known.entry(list).or_insert_with(|| {
+            lists.push(list);
+            Callers(lists.len())
+        });
+        trail.open.push(Open { back: branch.link, outer: trail.callers });
+        trail.callers = callers;
+    }
+
+    fn spender(&self, (context, at, firmware): Spot) -> Spender {
+        Spender { context, at, firmware, callers: self.trails[context.index()].callers }
+    }
+
+    pub(super) fn compute(&mut self, place: Spot, computing: Cycles) {
+        let spender = self.spender(place);
         self.spent.entry(spender).or_default().computing += computing;
     }
 
     /// A context begins to wait.
-    pub(super) fn wait(&mut self, spender: Spender, now: Cycles) {
-        self.waits[spender.context.index()] = Some((spender, now));
+    pub(super) fn wait(&mut self, place: Spot, now: Cycles) {
+        self.waits[place.0.index()] = Some((self.spender(place), now));
     }
 
     /// A context continues.
@@ -57,4 +144,9 @@ impl Account {
             self.spent.entry(spender).or_default().waiting += now - since;
         }
     }
+}
+
+/// Whether `back` may be the return address of a call at `at`.
+pub(super) const fn is_return_of(back: u32, at: u32) -> bool {
+    back.wrapping_sub(at) <= LONGEST_CALL
 }

@@ -107,8 +107,12 @@ impl Core {
         self.run_to_border(memory)
     }
 
-    /// As [`run`](Self::run), and says of each packet what it took: its address, cycles.
-    pub fn run_counted<M: Memory>(&mut self, memory: &mut M, count: &mut dyn FnMut(u32, i64)) -> Halt {
+    /// As [`run`](Self::run), and says of each packet what it took: its address, cycles, the state after it.
+    pub fn run_counted<M: Memory>(
+        &mut self,
+        memory: &mut M,
+        count: &mut dyn FnMut(u32, i64, &State),
+    ) -> Halt {
         self.border = Border::Slice;
         self.idle.forget();
         loop {
@@ -124,7 +128,7 @@ impl Core {
             if self.state.is_idle {
                 self.wait();
             }
-            count(pc, left - self.state.clock.left());
+            count(pc, left - self.state.clock.left(), &self.state);
         }
     }
 
@@ -295,14 +299,14 @@ impl Core {
     /// Executes a packet; whether the next of the cache follows.
     #[inline(always)]
     fn packet<M: Memory>(&mut self, index: u32, memory: &mut M) -> Result<bool, TrapKind> {
-        let packet = *self.cache.packet(index);
+        let packet = self.cache.packet(index);
         let state = &mut self.state;
         let idle = &mut self.idle;
         let mut memory = Watched { inner: memory, cache: &self.cache, idle, hits: [None; 2] };
         if packet.has_branch {
             state.hold_interrupts();
         }
-        for (number, micro) in self.cache.micros(&packet).iter().enumerate() {
+        for (number, micro) in self.cache.micros(packet).iter().enumerate() {
             if (state.regs[usize::from(micro.pred)] == 0) != micro.inverted {
                 continue;
             }
@@ -312,18 +316,19 @@ impl Core {
             }
         }
         let hits = memory.hits;
+        let (end, cycles, is_linked) = (packet.end, packet.cycles, packet.is_linked);
         self.packets += 1;
         if packet.moves_stack && self.stack.is_some() {
             self.check_stack()?;
         }
         self.state.refuse_undefined()?;
-        self.state.pc = packet.end;
-        let passed = self.state.advance(packet.cycles);
+        self.state.pc = end;
+        let passed = self.state.advance(cycles);
         if hits[0].is_some() {
             hits.into_iter().flatten().for_each(|at| self.cache.drop_line(at));
             return Ok(false);
         }
-        Ok(packet.is_linked && passed == Passed::Through)
+        Ok(is_linked && passed == Passed::Through)
     }
 
     /// Waits for the interrupt.

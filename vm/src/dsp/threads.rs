@@ -11,7 +11,7 @@ use c67x::convention::{ARGUMENTS, LINK, RESULT, STACK};
 use kmotiondef::map::{BOARD_STACK_SIZE, BOARD_STACKS_BASE};
 use kmotiondef::{CodeAddr, Cycles, GuestAddr, ThreadId};
 
-use super::account::{Account, Spender};
+use super::account::{Account, Branch, is_return_of};
 use super::core::{Core, Halt};
 use super::inspect::packet_text;
 use super::view::View;
@@ -28,9 +28,6 @@ const A14: Reg = Reg::a(14);
 
 /// Where a call-back returns to: no code and no function is there.
 const CALLBACK_RETURN: u32 = 0xFFFF_FFE0;
-
-/// Bytes from a call to its return address at most: six packets.
-const LONGEST_CALL: u32 = 6 * 32;
 
 /// What a register holds that a firmware function may change: a value that shows itself.
 const CHANGED: u32 = 0xC4A7_6ED0;
@@ -54,6 +51,7 @@ struct Processor {
     /// B15 at the start.
     top: u32,
     arguments: ArgumentList,
+    image: Arc<Image>,
 }
 
 impl DspEngine {
@@ -112,7 +110,11 @@ impl Executor for DspEngine {
         core.state.set_reg(LINK, returns_to);
         core.watch_stack(base, top);
         core.translate(self.translates);
-        self.contexts[id.index()] = Some(Processor { core, top, arguments: ArgumentList::default() });
+        if let Some(account) = &mut self.account {
+            account.begin(id);
+        }
+        let (arguments, image) = (ArgumentList::default(), Arc::clone(code));
+        self.contexts[id.index()] = Some(Processor { core, top, arguments, image });
         Ok(())
     }
 
@@ -184,7 +186,7 @@ impl Processor {
                     let (at, before) = (call_at(&self.core), slice.budget);
                     let stop = self.call(id, slice, address)?;
                     if let Some(account) = account {
-                        let spender = Spender { context: id, at, firmware: Some(address) };
+                        let spender = (id, at, Some(address));
                         account.compute(spender, before - slice.budget);
                         if let Some(Stop::Waiting(_)) = stop {
                             account.wait(spender, slice.now());
@@ -209,10 +211,17 @@ impl Processor {
     ) -> Halt {
         let mut start = slice.now();
         let mut ran = Vec::new();
-        let halt = self.core.run_counted(&mut View(slice), &mut |at, cycles| {
+        let Self { core, image, .. } = self;
+        let halt = core.run_counted(&mut View(slice), &mut |at, cycles, state| {
             let (at, cycles) = (code_at(at), Cycles::new(cycles));
             if let Some(account) = account {
-                account.compute(Spender { context: id, at, firmware: None }, cycles);
+                account.compute((id, at, None), cycles);
+                let (next, from, link) = (state.pc(), state.branched_at()[0], state.reg(LINK));
+                account.follow(
+                    id,
+                    next,
+                    Branch { from: code_at(from), link, enters: image.begins_function(next) },
+                );
             }
             if follows {
                 ran.push((at, cycles));
@@ -286,7 +295,7 @@ impl Processor {
 fn call_at(core: &Core) -> CodeAddr {
     let [last, before] = core.state.branched_at();
     let back = core.state.reg(LINK);
-    let is_call = |at: u32| back.wrapping_sub(at) <= LONGEST_CALL;
+    let is_call = |at: u32| is_return_of(back, at);
     code_at(if is_call(before) && !is_call(last) { before } else { last })
 }
 

@@ -1,6 +1,7 @@
 //! A program of the real processor, as a thread is loaded with it.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use kmotiondef::GuestAddr;
 use kmotiondef::map::{PROGRAM_BASE, PROGRAM_LIMIT};
@@ -11,19 +12,39 @@ pub struct Image {
     code: Range<GuestAddr>,
     is_protected: bool,
     returns_to: GuestAddr,
+    /// Where functions begin, in ascending order; what its symbols say.
+    functions: Arc<[u32]>,
 }
 
 impl Image {
     /// Code at `text`, whose outermost function returns to the firmware function at `returns_to`.
     #[must_use]
-    pub const fn new(text: Range<GuestAddr>, returns_to: GuestAddr) -> Self {
-        Self { code: text, is_protected: true, returns_to }
+    pub fn new(text: Range<GuestAddr>, returns_to: GuestAddr) -> Self {
+        Self::among(text, true, returns_to)
     }
 
     /// Code among `code` whose data may be there as well.
     #[must_use]
-    pub const fn unprotected(code: Range<GuestAddr>, returns_to: GuestAddr) -> Self {
-        Self { code, is_protected: false, returns_to }
+    pub fn unprotected(code: Range<GuestAddr>, returns_to: GuestAddr) -> Self {
+        Self::among(code, false, returns_to)
+    }
+
+    fn among(code: Range<GuestAddr>, is_protected: bool, returns_to: GuestAddr) -> Self {
+        Self { code, is_protected, returns_to, functions: Arc::default() }
+    }
+
+    /// The same with the addresses at which its functions begin.
+    #[must_use]
+    pub fn with_functions(mut self, mut addresses: Vec<u32>) -> Self {
+        addresses.sort_unstable();
+        self.functions = addresses.into();
+        self
+    }
+
+    /// Whether one of the functions that are known begins at an address.
+    #[must_use]
+    pub fn begins_function(&self, address: u32) -> bool {
+        self.functions.binary_search(&address).is_ok()
     }
 
     /// The addresses that its code lies among.

@@ -86,9 +86,11 @@ fn collect(board: &Board<ProfilingEngine>) -> Account {
             entry.waiting += part.waiting;
         }
     }
-    // Real code leaves no trace of its callers: a packet belongs to its own function.
-    for (spender, time) in board.machine().images().account().into_iter().flat_map(vm::dsp::Account::spent) {
-        let frames = frames(board, spender.at);
+    let Some(images) = board.machine().images().account() else { return account };
+    for (spender, time) in images.spent() {
+        let calls: Vec<CodeAddr> = images.calls(spender.callers).collect();
+        let outer = calls.iter().rev().flat_map(|call| frames(board, *call));
+        let frames = outer.chain(frames(board, spender.at)).collect();
         let place =
             ProfilePlace { context: spender.context, frames, firmware: spender.firmware.map(firmware_name) };
         let entry = account.entry(place).or_default();

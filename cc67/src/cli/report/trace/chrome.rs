@@ -155,7 +155,7 @@ impl Sink for Events {
                 }
                 self.write(&Event::mark(byte.escape_ascii().to_string(), UART, at))
             }
-            Entry::Packet { .. } => Ok(()),
+            TraceEntry::Packet { .. } => Ok(()),
         }
     }
 
