@@ -7,6 +7,7 @@
 //!
 //! ```sh
 //! CC67_FIRMWARE=DSPKFLOP.out cargo bench -p cc67-boot --features native
+//! cargo bench -p cc67-boot --features native -- double       # those with this in their names
 //! ```
 
 use std::sync::Arc;
@@ -106,6 +107,9 @@ fn show(name: &str, began: Duration, cycles: u64, packets: u64) {
 }
 
 fn kernel(name: &str, words: &str, arguments: &[(c67x::Reg, u32)]) {
+    if std::env::args().skip(1).any(|argument| !argument.starts_with('-') && !name.contains(&argument)) {
+        return;
+    }
     let mut ram = Ram(GuestMemory::new());
     for (at, word) in (CODE..).step_by(4).zip(words.split_whitespace()) {
         ram.0.poke(GuestAddr::new(at), u32::from_str_radix(word, 16).expect("a word"));

@@ -84,13 +84,17 @@ impl State {
             Work::Rsqrsp => self.give(m, float::rsqrsp(s2)),
             Work::Rcpdp => self.give_double(m, float::rcpdp(self.double2(m))),
             Work::Rsqrdp => self.give_double(m, float::rsqrdp(self.double2(m))),
-            Work::Adddp
-            | Work::Subdp
-            | Work::Cmpeqdp
-            | Work::Cmpgtdp
-            | Work::Cmpltdp
-            | Work::Mpydp
-            | Work::Mpyspdp => self.start_double(m, s1, s2),
+            Work::Adddp => match self.words(m, 1, s1, s2) {
+                Some((s1, s2)) => self.push_pair(6, 7, m.dst, float::adddp(s1, s2)),
+                None => self.start_double(m, s1, s2),
+            },
+            Work::Mpydp => match self.product_words(m, s1, s2) {
+                Some((s1, s2)) => self.push_pair(9, 10, m.dst, float::mpydp(s1, s2)),
+                None => self.start_double(m, s1, s2),
+            },
+            Work::Subdp | Work::Cmpeqdp | Work::Cmpgtdp | Work::Cmpltdp | Work::Mpyspdp => {
+                self.start_double(m, s1, s2);
+            }
             Work::Mpysp2dp => self.push_pair(4, 5, m.dst, float::mpysp2dp(s1, s2)),
             Work::Ldbu => {
                 let addr = self.address(m, s1, s2);
@@ -120,7 +124,7 @@ impl State {
             Work::Lddw => {
                 let addr = self.address(m, s1, s2) & !7;
                 let value = memory.load64(addr, &mut self.clock)?;
-                self.push_pair(5, 5, m.dst, value);
+                self.push_both(5, m.dst, value);
             }
             Work::Stb => {
                 let addr = self.address(m, s1, s2);
@@ -232,24 +236,38 @@ impl State {
         }
     }
 
-    /// A double instruction that reads its high words after E1: at once where nothing can change them.
+    /// All words of a double instruction that reads the high one of s1 after `cycles` cycles, and that of s2 after one;
+    /// `None` if it is not known yet what they will be.
+    #[inline(always)]
+    fn words(&self, m: &Micro, cycles: u64, low1: u32, low2: u32) -> Option<(u64, u64)> {
+        if m.flags & STEADY == 0 {
+            return None;
+        }
+        let (high1, high2) = (self.after(cycles, m.a | 1), self.after(1, m.b | 1));
+        Some((join(low1, high1), join(low2, high2)))
+    }
+
+    /// The same of a product, which the next packet may change.
+    #[inline(always)]
+    fn product_words(&self, m: &Micro, low1: u32, low2: u32) -> Option<(u64, u64)> {
+        let is_foreseen = m.extra & FORESEEN != 0 && !self.branches_next();
+        if is_foreseen { self.words(m, 2, low1, low2) } else { None }
+    }
+
+    /// A double instruction that reads its high words after E1: at once where it is known what they will be.
     fn start_double(&mut self, m: &Micro, low1: u32, low2: u32) {
         let is_product = m.work == Work::Mpydp;
-        let is_known = m.flags & STEADY != 0
-            && (!is_product || m.extra & FORESEEN != 0 && !self.branches_next());
-        if is_known {
-            let later = if is_product { 2 } else { 1 };
-            let (high1, high2) = (self.after(later, m.a | 1), self.after(1, m.b | 1));
-            self.finish_double(m, 0, join(low1, high1), join(low2, high2));
-        } else {
-            self.push_late(Late {
+        let words = if is_product { None } else { self.words(m, 1, low1, low2) };
+        match words {
+            Some((s1, s2)) => self.finish_double(m, 0, s1, s2),
+            None => self.push_late(Late {
                 due: self.clock.cycle + 1,
                 issued: self.clock.cycle,
                 micro: *m,
                 low1,
                 low2,
                 high2: None,
-            });
+            }),
         }
     }
 

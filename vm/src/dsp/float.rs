@@ -53,8 +53,28 @@ pub(super) fn mpysp(s1: u32, s2: u32) -> u32 {
     from_single(single(s1) * single(s2))
 }
 
+/// Whether bits are those of a number that is neither 0 nor denormal nor infinite.
+#[inline(always)]
+const fn is_usual(bits: u64) -> bool {
+    (bits >> 52 & 0x7FF).wrapping_sub(1) < 0x7FE
+}
+
+/// A result of the host, if sources and result are such that the processor has the same.
+#[inline(always)]
+fn usual(s1: u64, s2: u64, result: f64) -> Option<u64> {
+    let bits = result.to_bits();
+    (is_usual(s1) & is_usual(s2) & is_usual(bits)).then_some(bits)
+}
+
 /// `s1 + s2`
+#[inline(always)]
 pub(super) fn adddp(s1: u64, s2: u64) -> u64 {
+    let sum = usual(s1, s2, f64::from_bits(s1) + f64::from_bits(s2));
+    sum.unwrap_or_else(|| unusual_sum(s1, s2))
+}
+
+#[cold]
+fn unusual_sum(s1: u64, s2: u64) -> u64 {
     from_double(double(s1) + double(s2))
 }
 
@@ -64,7 +84,14 @@ pub(super) fn subdp(s1: u64, s2: u64) -> u64 {
 }
 
 /// `s1 * s2`
+#[inline(always)]
 pub(super) fn mpydp(s1: u64, s2: u64) -> u64 {
+    let product = usual(s1, s2, f64::from_bits(s1) * f64::from_bits(s2));
+    product.unwrap_or_else(|| unusual_product(s1, s2))
+}
+
+#[cold]
+fn unusual_product(s1: u64, s2: u64) -> u64 {
     from_double(double(s1) * double(s2))
 }
 

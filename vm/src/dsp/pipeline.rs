@@ -316,6 +316,19 @@ impl State {
         slot.map_or(self.regs[usize::from(reg)], |slot| self.flight.values[slot][usize::from(reg & 63)])
     }
 
+    /// Lets both words of a result land in the same cycle.
+    #[inline(always)]
+    pub(super) fn push_both(&mut self, delay: u64, reg: u8, value: u64) {
+        let slot = self.slot(delay);
+        let (low, high) = (usize::from(reg & 62), usize::from(reg & 62) | 1);
+        let mask = 3 << low;
+        self.undefined.conflicts |= self.flight.masks[slot] & mask;
+        self.flight.masks[slot] |= mask;
+        self.flight.values[slot][low] = value as u32;
+        self.flight.values[slot][high] = (value >> 32) as u32;
+        self.flight.busy |= 1 << slot;
+    }
+
     /// Whether a branch arrives in the next cycle.
     #[inline(always)]
     pub(super) const fn branches_next(&self) -> bool {
