@@ -144,5 +144,87 @@ fn a_trap_shows_registers_and_the_code_around_it() {
     assert!(place["text"].as_str().is_some_and(|text| text.contains("STW .D")), "{line}");
     // Code that is not the processor's has neither.
     let output = cc67(&scratch, ["run", "--engine", "bytecode", "--json", "a.c"]);
-    assert!(output.stdout.contains("\"type\":\"trap\"") && !output.stdout.contains("registers"), "{output:?}");
+    assert!(
+        output.stdout.contains("\"type\":\"trap\"") && !output.stdout.contains("registers"),
+        "{output:?}"
+    );
+}
+
+/// Runs a program for 0.1 s and keeps its packets; the lines of the file without the first.
+fn packets(scratch: &Scratch, arguments: &[&str]) -> Vec<String> {
+    let output = cc67(scratch, ["run"].iter().chain(arguments));
+    assert_eq!(output.code, 0, "{output:?}");
+    let text = std::fs::read_to_string(scratch.path().join("p.csv")).expect("the file");
+    let mut lines = text.lines().map(str::to_owned);
+    assert_eq!(lines.next().as_deref(), Some("cycle,thread,address,cycles,packet"));
+    lines.collect()
+}
+
+#[test]
+fn packets_are_traced_with_cycle_address_and_text() {
+    let scratch = Scratch::new("dsp-packets");
+    scratch.write("a.c", format!("#include \"KMotionDef.h\"\n{SUM}"));
+    let lines = packets(&scratch, &["--engine", "dsp", "--trace-packets", "p.csv", "a.c"]);
+    let first: Vec<&str> = lines[0].splitn(5, ',').collect();
+    assert_eq!((first[1], first[2]), ("1", "0x80050000"), "{}", lines[0]);
+    assert!(lines.iter().any(|line| line.contains(" || ")), "packets have several instructions");
+    assert!(lines.iter().any(|line| line.contains("ADDDP .")), "{lines:#?}");
+    // One after another, but where the firmware has worked or another thread had its turn.
+    let times: Vec<(i64, i64)> = lines
+        .iter()
+        .map(|line| {
+            let fields: Vec<&str> = line.splitn(5, ',').collect();
+            (fields[0].parse().expect("a cycle"), fields[3].parse().expect("cycles"))
+        })
+        .collect();
+    assert!(times.windows(2).all(|pair| pair[0].0 + pair[0].1 <= pair[1].0), "{lines:#?}");
+    let gaps = times.windows(2).filter(|pair| pair[0].0 + pair[0].1 != pair[1].0).count();
+    assert!(gaps > 0 && gaps < 5, "{gaps} gaps");
+    let one = packets(&scratch, &["--engine", "dsp", "--trace-packets", "1:p.csv", "a.c"]);
+    assert_eq!(one, lines, "there is no other thread");
+}
+
+#[test]
+fn packets_of_bytecode_are_refused_by_name() {
+    let scratch = Scratch::new("dsp-no-packets");
+    scratch.write("a.c", format!("#include \"KMotionDef.h\"\n{SUM}"));
+    assert_eq!(cc67(&scratch, ["build", "--thread", "2", "a.c"]).code, 0);
+    let run = |arguments: &[&str]| cc67(&scratch, ["run", "--trace-packets"].iter().chain(arguments));
+    for (arguments, thread) in [(&["p.csv", "a.c"][..], 1), (&["1:p.csv", "a.c", "2:a(2).out"], 1)] {
+        let output = run(arguments);
+        assert_eq!(output.code, 2, "{output:?}");
+        assert!(output.stderr.contains(&format!("thread {thread} runs bytecode")), "{}", output.stderr);
+    }
+    assert!(run(&["9:p.csv", "a.c"]).stderr.contains("there is no thread 9"));
+    // Beside bytecode, only the real code has packets.
+    let lines = packets(&scratch, &["--trace-packets", "p.csv", "a.c", "2:a(2).out"]);
+    assert!(!lines.is_empty() && lines.iter().all(|line| line.contains(",2,0x8006")), "{lines:#?}");
+}
+
+#[test]
+fn a_program_of_thread_7_has_all_the_space_that_the_board_has() {
+    let scratch = Scratch::new("dsp-thread-7");
+    let large = "#include \"KMotionDef.h\"\nchar big[300000];\nmain()\n{\n    int i, bad = 0;\n    \
+                 for (i = 0; i < 300000; i++)\n        big[i] = i * 7;\n    persist.UserData[5] = 1;\n    \
+                 while (persist.UserData[5] != 2)\n        WaitNextTimeSlice();\n    for (i = 0; i < 300000; i++)\n        \
+                 bad += big[i] != (char)(i * 7);\n    printf(\"%d bad up to %p\\n\", bad, big + 300000);\n}\n";
+    let deep = "#include \"KMotionDef.h\"\nint Sum(int n)\n{\n    int a[100];\n    a[n] = n;\n    \
+                return n ? Sum(n - 1) + a[n] : 0;\n}\nmain()\n{\n    while (persist.UserData[5] != 1)\n        \
+                WaitNextTimeSlice();\n    printf(\"%d\\n\", Sum(60));\n    persist.UserData[5] = 2;\n}\n";
+    scratch.write("large.c", large);
+    scratch.write("deep.c", deep);
+    let built = cc67(&scratch, ["build", "--thread", "7", "large.c"]);
+    assert_eq!((built.code, built.stderr.as_str()), (0, ""));
+    // The stack of bytecode in thread 1 was where this program is.
+    let output = cc67(&scratch, ["run", "1:deep.c", "7:large(7).out"]);
+    assert_eq!(output.code, 0, "{output:?}");
+    assert!(output.stdout.starts_with("1830\n0 bad up to 800f"), "{output:?}");
+    scratch.write("larger.c", large.replace("300000", "330000"));
+    let built = cc67(&scratch, ["build", "--thread", "7", "larger.c"]);
+    assert_eq!(built.code, 1, "{built:?}");
+    assert!(
+        built.stderr.contains("bytes too large for the 327680 bytes after its address"),
+        "{}",
+        built.stderr
+    );
 }

@@ -1,7 +1,7 @@
 //! Gives everything its address.
 
-use kmotiondef::{GuestAddr, ThreadId};
 use kmotiondef::map::{PROGRAM_BASE, PROGRAM_LIMIT, PROGRAM_SIZE};
+use kmotiondef::{GuestAddr, ThreadId};
 
 use super::error::{LinkError, LinkErrorKind, LinkWarning};
 use super::names::Names;
