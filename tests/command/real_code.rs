@@ -228,3 +228,26 @@ fn a_program_of_thread_7_has_all_the_space_that_the_board_has() {
         built.stderr
     );
 }
+
+/// Accesses of several lines whose instructions share packets; that of one of them goes wrong.
+fn shared_packets(wrong: usize) -> String {
+    format!(
+        "int x, y;\ndouble d;\nint g(int *a, int *b, int *c, int *e)\n{{\n    *a = 1;\n    *b = 2;\n    x = *c;\n    \
+         *e = 4;\n    y = x * 3;\n    d = d + x;\n    return x + y;\n}}\nmain()\n{{\n    int l[4], i;\n    int *q[4];\n    \
+         for (i = 0; i < 4; i++)\n        q[i] = &l[i];\n    q[{wrong}] = (int *)0x12345678;\n    \
+         y = g(q[0], q[1], q[2], q[3]);\n}}\n"
+    )
+}
+
+#[test]
+fn an_access_is_named_by_its_own_line_whatever_shares_its_packet() {
+    for (wrong, line) in [(0, 5), (1, 6), (2, 7), (3, 8)] {
+        for level in ["-O0", "-O1", "-O2", "-Os"] {
+            let scratch = Scratch::new(&format!("dsp-shared-{wrong}{level}"));
+            scratch.write("a.c", shared_packets(wrong));
+            let output = cc67(&scratch, ["run", "--engine", "dsp", level, "a.c"]);
+            let message = trap(&output);
+            assert!(message.starts_with(&format!("a.c:{line}:")), "{level}: {message}");
+        }
+    }
+}

@@ -75,11 +75,12 @@ impl Layout {
                 cycle += gap;
                 continue;
             }
-            // A call belongs to its own line, whatever shares its packet.
-            let branch = packet.iter().find(|issued| issued.inst.branch().is_some());
-            let first = branch.or(packet.first()).map_or(region.span, |issued| issued.span);
+            // A call belongs to its own line, whatever shares its packet: it comes first there.
+            let mut packet: Vec<&Issued> = packet.iter().collect();
+            packet.sort_by_key(|issued| issued.inst.branch().is_none());
+            let first = packet.first().map_or(region.span, |issued| issued.span);
             self.begin(count as u32, &mut label, blocks, first);
-            self.packet(packet);
+            self.packet(&packet);
             cycle += 1;
         }
         if let Some(label) = label {
@@ -104,6 +105,11 @@ impl Layout {
                 self.laid.entries.push(at);
             }
         }
+        self.mark(at, span);
+    }
+
+    /// What begins at a word is of this place in the source.
+    fn mark(&mut self, at: u32, span: Span) {
         if self.laid.spans.last().is_none_or(|(_, last)| *last != span) {
             match self.laid.spans.last_mut() {
                 Some((word, last)) if *word == at => *last = span,
@@ -122,11 +128,15 @@ impl Layout {
         }
     }
 
-    fn packet(&mut self, packet: &[Issued]) {
+    fn packet(&mut self, packet: &[&Issued]) {
         let last = packet.len() - 1;
         for (index, issued) in packet.iter().enumerate() {
             if let Some(value) = issued.value.filter(|value| !matches!(value, Value::Number(_))) {
                 self.open.push((self.at(), value));
+            }
+            // An access that fails is named by its own line.
+            if index > 0 && issued.inst.mem().is_some() {
+                self.mark(self.at(), issued.span);
             }
             self.laid.words.push(issued.inst.encode(index < last));
         }
