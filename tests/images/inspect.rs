@@ -90,6 +90,28 @@ fn recursion_has_no_worst_chain() {
 }
 
 #[test]
+fn code_of_the_controller_has_stack_calls_and_cycles() {
+    let scratch = Scratch::new("inspect-code");
+    scratch.write("p.c", PROGRAM);
+    succeed(&scratch, &["build", "-O0", "p.c"]);
+    let text = succeed(&scratch, &["inspect", "--calls", "--stack", "p(1).out"]);
+    assert!(text.contains("main\n  calls sum\n  firmware SetBit, printf\n"), "{text}");
+    let chain = text.lines().last().expect("a line");
+    let (names, rest) = chain.split_once(" = ").expect("a sum");
+    let frame =
+        |text: &str| text.rsplit('(').next().and_then(|text| text.strip_suffix(')')?.parse::<u32>().ok());
+    let (main, sum) = names.split_once(" → ").expect("two functions");
+    let total = frame(main).expect("bytes of main") + frame(sum).expect("bytes of sum");
+    assert!(main.starts_with("worst chain: main (") && sum.starts_with("sum ("), "{chain}");
+    assert!(rest.starts_with(&format!("{total} of the board's 2048 bytes")), "{chain}");
+    // What a run uses beyond that is the firmware's.
+    assert!(frame(sum) >= Some(16), "an array of four integers: {chain}");
+    let listing = succeed(&scratch, &["inspect", "-d=sum", "p(1).out"]);
+    let head = listing.lines().find(|line| line.starts_with("sum: ;")).expect("a head");
+    assert!(head.contains(&format!("{} of stack, ", frame(sum).expect("bytes"))), "{head}");
+}
+
+#[test]
 fn an_image_of_the_vendors_compiler_shows_its_parts() {
     let scratch = Scratch::new("inspect-vendor");
     scratch.write("tiny(1).out", vendor::image());

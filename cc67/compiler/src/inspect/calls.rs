@@ -8,6 +8,7 @@ use vm::operand::SigRef;
 use vm::program::Program;
 
 use super::Inspection;
+use super::machine::{self, Called};
 use crate::bytecode::references::{Reference, reference};
 
 /// A function and what it calls.
@@ -63,6 +64,34 @@ impl Calls {
             node
         });
         Self { nodes: nodes.collect() }
+    }
+
+    /// The functions of code for the processor.
+    ///
+    /// # Errors
+    /// Why they are not known.
+    pub(super) fn of_code(inspection: &Inspection) -> Result<Self, String> {
+        let routines = machine::functions(inspection)?;
+        let nodes = routines.iter().map(|routine| {
+            let mut node = Node {
+                name: routine.name.clone(),
+                address: routine.address,
+                frame: routine.frame(),
+                calls: BTreeSet::new(),
+                through_pointers: BTreeSet::new(),
+                firmware: BTreeSet::new(),
+            };
+            for call in routine.blocks.iter().filter_map(|block| block.call) {
+                let Called::At(address) = call else { continue };
+                let address = machine::beyond(&inspection.image, address);
+                match routines.iter().position(|other| other.address == address) {
+                    Some(number) => drop(node.calls.insert(number)),
+                    None => drop(node.firmware.insert(firmware_name(inspection, address))),
+                }
+            }
+            node
+        });
+        Ok(Self { nodes: nodes.collect() })
     }
 
     /// The call graph, a paragraph for each function.

@@ -93,6 +93,13 @@ impl Inspection {
     }
 }
 
+/// "7 cycles, 0.04%" or "7–20 cycles, 0.11%".
+fn cycles(own: (u32, u32)) -> String {
+    let text = span(own);
+    let (cycles, share) = text.trim_start().split_once(' ').unwrap_or_default();
+    format!("{cycles} cycles, {}", share.trim_start())
+}
+
 /// "7" or "7–20" cycles, and the share of a slice.
 fn span((least, most): (u32, u32)) -> String {
     let cycles = if least == most { most.to_string() } else { format!("{least}–{most}") };
@@ -192,11 +199,12 @@ impl Listing<'_> {
         // Writing to a string cannot fail.
         let _ = writeln!(
             self.out,
-            "{}: ; {:08x}, {} bytes, {} cycles",
+            "{}: ; {:08x}, {} bytes, {} of stack, {} of the cycles between two interrupts",
             code.name,
             code.address,
             code.bytes,
-            span(own).trim_start()
+            code.frame(),
+            cycles(own),
         );
         let mut last = None;
         let loops = code.loops();

@@ -3,7 +3,6 @@
 use coff::Contents;
 use serde_json::{Value, json};
 
-use super::calls::Calls;
 use super::{Inspection, Order};
 
 impl Inspection {
@@ -75,10 +74,9 @@ impl Inspection {
         self.lines.iter().map(line).collect()
     }
 
-    /// Functions with their calls; none for code that is not the machine's.
+    /// Functions with their calls; none for code that nothing here can run.
     fn functions_json(&self) -> Vec<Value> {
-        let Ok(program) = &self.program else { return Vec::new() };
-        let calls = Calls::of(self, program);
+        let Ok(calls) = self.call_graph() else { return Vec::new() };
         let names = |numbers: &std::collections::BTreeSet<usize>| -> Vec<&str> {
             numbers.iter().filter_map(|index| Some(calls.nodes.get(*index)?.name.as_str())).collect()
         };

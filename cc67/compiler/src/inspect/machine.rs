@@ -7,7 +7,7 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use c67x::{Branch, Inst, PARALLEL, Pred, Reg};
+use c67x::{Branch, Inst, Mnemonic, Offset, Operand, PARALLEL, Pred, Reg, Update};
 
 use super::{Inspection, symbols::EntryKind};
 use crate::c67x::text::constant;
@@ -15,8 +15,9 @@ use crate::c67x::text::constant;
 /// Cycles from the issue of a branch to that of its target.
 const BRANCH: u32 = 6;
 
-/// The register of the return address.
+/// The register of the return address, and the stack pointer.
 const LINK: Reg = c67x::convention::LINK;
+const STACK: Reg = c67x::convention::STACK;
 
 /// Instructions that issue together.
 #[derive(Clone, Debug)]
@@ -113,6 +114,12 @@ impl Routine {
         };
         own.find_blocks(&words[words.len() - table..]);
         Ok(own)
+    }
+
+    /// Bytes that it takes of the stack: what its beginning takes off the stack pointer before anything is given back.
+    pub(super) fn frame(&self) -> u32 {
+        let moves = self.packets.iter().flat_map(|packet| &packet.insts).filter_map(stack_move);
+        moves.take_while(|bytes| *bytes < 0).map(i32::unsigned_abs).sum()
     }
 
     /// The packet that is issued at a time, or the first after it.
@@ -231,6 +238,29 @@ impl Routine {
             }
         }
         None
+    }
+}
+
+/// By how many bytes an instruction moves the stack pointer, where that is a constant.
+fn stack_move(inst: &Inst) -> Option<i32> {
+    if !inst.writes().any(|write| write.reg == STACK) {
+        return None;
+    }
+    if let Some(mem) = inst.mem() {
+        let Offset::Const(offset) = mem.offset else { return None };
+        let bytes = i32::from(offset) * inst.mnemonic().bytes().unwrap_or(1).cast_signed();
+        return (mem.update != Update::None).then_some(if mem.negative { -bytes } else { bytes });
+    }
+    let constant = inst.operands().find_map(|operand| match operand {
+        Operand::Const(value) => Some(value),
+        _ => None,
+    })?;
+    match inst.mnemonic() {
+        Mnemonic::Addk | Mnemonic::Add => Some(constant),
+        Mnemonic::Sub => Some(-constant),
+        Mnemonic::Addaw => Some(4 * constant),
+        Mnemonic::Subaw => Some(-4 * constant),
+        _ => None,
     }
 }
 

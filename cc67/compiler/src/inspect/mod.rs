@@ -96,8 +96,8 @@ impl Inspection {
     /// Who calls whom.
     #[must_use]
     pub fn calls(&self) -> String {
-        match &self.program {
-            Ok(program) => Calls::of(self, program).render(),
+        match self.call_graph() {
+            Ok(calls) => calls.render(),
             Err(reason) => format!("no call graph: {reason}\n"),
         }
     }
@@ -105,9 +105,17 @@ impl Inspection {
     /// The guest stack that each function needs, and the worst chain of calls.
     #[must_use]
     pub fn stack(&self) -> String {
-        match &self.program {
-            Ok(program) => stack::render(self, &Calls::of(self, program)),
+        match self.call_graph() {
+            Ok(calls) => stack::render(self, &calls),
             Err(reason) => format!("no stack depth: {reason}\n"),
+        }
+    }
+
+    fn call_graph(&self) -> Result<Calls, String> {
+        match &self.program {
+            Ok(program) => Ok(Calls::of(self, program)),
+            Err(_) if self.image.target == Target::C6000 => Calls::of_code(self),
+            Err(reason) => Err(reason.clone()),
         }
     }
 }

@@ -1,11 +1,13 @@
 //! How deep the guest stack can get: frames along chains of calls.
 //!
 //! A frame holds what has an address: arrays, structures, locals with `&`. Everything else
-//! lives in registers of the machine and costs no stack.
+//! lives in registers of the machine and costs no stack. In code for the controller's processor a frame also holds
+//! registers and arguments; what firmware functions take comes on top.
 
 use std::fmt::Write as _;
 
-use kmotiondef::map::STACK_SIZE;
+use coff::Target;
+use kmotiondef::map::{BOARD_STACK_SIZE, STACK_SIZE};
 
 use super::Inspection;
 use super::calls::Calls;
@@ -35,7 +37,15 @@ pub(super) fn render(inspection: &Inspection, calls: &Calls) -> String {
     let Some(main) = calls.nodes.iter().position(|node| Some(node.address) == entry) else { return out };
     let _ = match depths.get(main) {
         Some(Depth::Bytes(bytes, _)) => {
-            writeln!(out, "worst chain: {} = {bytes} of {STACK_SIZE} bytes", chain(calls, &depths, main))
+            let names = chain(calls, &depths, main);
+            match inspection.image.target {
+                Target::C6000 => writeln!(
+                    out,
+                    "worst chain: {names} = {bytes} of the board's {BOARD_STACK_SIZE} bytes, without what firmware functions \
+                     and interrupts take"
+                ),
+                _ => writeln!(out, "worst chain: {names} = {bytes} of {STACK_SIZE} bytes"),
+            }
         }
         _ => writeln!(out, "worst chain: unknown, the program is recursive"),
     };
