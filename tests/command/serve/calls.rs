@@ -207,3 +207,13 @@ fn a_thread_without_a_program_is_reported_when_it_is_to_start() {
     assert_eq!(client.ask("CheckThread3"), "0");
     server.says("Execute3: no program is loaded in thread 3, and nothing starts");
 }
+
+#[test]
+fn a_board_that_cannot_keep_up_answers_all_the_same() {
+    let arguments = ["serve", "--pace", "1000", "--listen", "tcp:0", "a.c"];
+    let server = Server::start("serve-late", &arguments, ENDLESS, 1);
+    let mut client = server.client();
+    for _ in 0..50 {
+        assert_eq!(client.ask("Version"), VERSION);
+    }
+}

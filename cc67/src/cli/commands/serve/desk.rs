@@ -29,6 +29,10 @@ const SHORT_BEAT: Duration = Duration::from_millis(1);
 const STRETCH: u64 = 111;
 /// Ticks that the board may be ahead of a clock at the board's own pace, before requests wait for the clock: 1 ms.
 const AHEAD: f64 = 11.0;
+/// How long the board runs at once until it is looked whether a client asks something.
+const AT_ONCE: Duration = Duration::from_millis(25);
+/// Seconds of the clock by which a board may be late; one that is later does not catch up.
+const PATIENCE: f64 = 0.25;
 /// How long a command from a page waits for a token that a client has.
 const TOKEN_PATIENCE: Duration = Duration::from_millis(500);
 /// Console lines that are sent before one reply at most.
@@ -303,16 +307,26 @@ impl<'a, B: Served> Desk<'a, B> {
         self.catch_up(u64::MAX);
     }
 
-    /// Brings the board up to the clock, unless something comes that is to be taken first.
+    /// Brings the board up to the clock, unless something comes that is to be taken first, or it takes too long: a board
+    /// that cannot keep up is not chased.
     fn catch_up(&mut self, limit: u64) {
-        let Some((pace, _)) = &self.clock else { return self.run_for_clients() };
-        let due = pace.due().get().min(limit);
+        let Some((pace, speed)) = &self.clock else { return self.run_for_clients() };
+        let (due, speed) = (pace.due().get().min(limit), *speed);
+        let begin = now();
         loop {
-            let tick = self.board.tick().get();
-            if tick >= due {
+            self.board.hold_back(self.console.lines.len());
+            let tick = self.board.tick();
+            if tick.get() >= due {
                 return;
             }
-            self.board.advance(Ticks::new(due.min(tick + STRETCH)));
+            if begin.elapsed() >= AT_ONCE {
+                let behind = (due - tick.get()) as f64 * TIMEBASE;
+                if behind > PATIENCE * speed {
+                    self.clock = Some((Pace::with_speed(tick, speed), speed));
+                }
+                return;
+            }
+            self.board.advance(Ticks::new(due.min(tick.get() + STRETCH)));
             self.notes.extend(self.inbox.try_iter());
             if !self.notes.is_empty() {
                 return;
