@@ -75,9 +75,11 @@ fn server(name: &str, arguments: &[&str]) -> (Server, Page) {
 
 #[test]
 fn clients_and_page_use_the_same_board() {
-    let (server, mut page) = server("serve-live", &["--log", "log.txt"]);
+    let (server, mut page) = server("serve-live", &["--log", "log.txt", "--watch", "bit46,persist.9"]);
     let time = page.message(|message| (message["kind"] == "hello").then(|| message["time"].clone()));
     assert_eq!(time, "forward");
+    let names = page.message(|message| (message["kind"] == "signals").then(|| message["names"].clone()));
+    assert_eq!(names, serde_json::json!(["bit46", "persist9"]));
     let mut client = server.client();
     assert_eq!(client.ask("ReadBit136"), "0");
     page.ask(r#"{"do":"act","text":"bit 136 = 1"}"#);

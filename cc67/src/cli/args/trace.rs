@@ -54,6 +54,12 @@ fn is_number(text: &str) -> bool {
 }
 
 impl TraceArguments {
+    /// Whether nothing is to be written.
+    #[cfg(feature = "live")]
+    pub(crate) const fn is_unwritten(&self) -> bool {
+        self.trace.is_empty() && self.trace_bits.is_none() && self.plot.is_empty()
+    }
+
     /// The first of these options that is given.
     pub(crate) fn first_given(&self) -> Option<&'static str> {
         let given = [

@@ -31,6 +31,8 @@ const STRETCH: u64 = 111;
 const AHEAD: f64 = 11.0;
 /// How long the board runs at once until it is looked whether a client asks something.
 const AT_ONCE: Duration = Duration::from_millis(25);
+/// The same while a request waits.
+const BEFORE_ANSWER: Duration = Duration::from_millis(5);
 /// Seconds of the clock by which a board may be late; one that is later does not catch up.
 const PATIENCE: f64 = 0.25;
 /// How long a command from a page waits for a token that a client has.
@@ -171,7 +173,7 @@ impl<'a, B: Served> Desk<'a, B> {
                 break;
             }
             if self.page.stopped.is_none() {
-                self.catch_up(limit);
+                self.catch_up(limit, AT_ONCE);
                 self.settle();
             }
             self.look_at_page();
@@ -304,12 +306,12 @@ impl<'a, B: Served> Desk<'a, B> {
                 pace.wait(self.board.tick());
             }
         }
-        self.catch_up(u64::MAX);
+        self.catch_up(u64::MAX, BEFORE_ANSWER);
     }
 
     /// Brings the board up to the clock, unless something comes that is to be taken first, or it takes too long: a board
     /// that cannot keep up is not chased.
-    fn catch_up(&mut self, limit: u64) {
+    fn catch_up(&mut self, limit: u64, at_once: Duration) {
         let Some((pace, speed)) = &self.clock else { return self.run_for_clients() };
         let (due, speed) = (pace.due().get().min(limit), *speed);
         let begin = now();
@@ -319,7 +321,7 @@ impl<'a, B: Served> Desk<'a, B> {
             if tick.get() >= due {
                 return;
             }
-            if begin.elapsed() >= AT_ONCE {
+            if begin.elapsed() >= at_once {
                 let behind = (due - tick.get()) as f64 * TIMEBASE;
                 if behind > PATIENCE * speed {
                     self.clock = Some((Pace::with_speed(tick, speed), speed));

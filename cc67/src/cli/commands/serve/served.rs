@@ -64,7 +64,12 @@ pub(super) struct Modelled<E: Engine> {
 impl<E: Engine> Modelled<E> {
     /// The board of a rig, on a page if the terms say so; and the trace of it.
     pub(super) fn new(mut rig: Rig<E>, terms: &Terms<'_>) -> Result<(Self, Option<Trace>)> {
-        let request = trace::request(terms.trace, &rig.session)?;
+        // A page shows signals without a file of them.
+        #[cfg(feature = "live")]
+        let is_shown_only = terms.page.is_some() && terms.trace.is_unwritten();
+        #[cfg(not(feature = "live"))]
+        let is_shown_only = false;
+        let request = if is_shown_only { None } else { trace::request(terms.trace, &rig.session)? };
         if let Some(request) = &request {
             rig.session.record(request.clone());
         }
