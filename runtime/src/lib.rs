@@ -59,6 +59,6 @@ pub use io::snapamp::{Quantity, Side};
 pub use kernel::{Kernel, pure_function};
 pub use out::{Event, EventKind, Message, REMARKS, Remark, RemarkRow, Severity, Speaker};
 pub use pc::files::{Directory, FILE_BYTES, FileError, HostFiles, NoFiles, Overlay};
-pub use pc::{ANSWERS_HELP, AnswerError, Answers};
+pub use pc::{ANSWERS_HELP, AnswerError, Answers, OpenBox};
 pub use world::attached::DeviceSpec;
 pub use world::{stimulus, trace};

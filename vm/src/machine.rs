@@ -30,7 +30,7 @@ use crate::trap::{Trap, TrapKind};
 use crate::wake::Wake;
 
 /// Bytes of the board's stacks that a program can use: each interrupt takes 128 of the 2048.
-const BOARD_STACK_USABLE: u32 = BOARD_STACK_SIZE - 128;
+pub const BOARD_STACK_USABLE: u32 = BOARD_STACK_SIZE - 128;
 
 /// How long a call-back may run before it counts as endless: the board would stop.
 const CALLBACK_TICKS: i64 = 100;
@@ -449,10 +449,16 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
         }
     }
 
+    /// The most bytes of its stack that a thread has had in use since it was started.
+    #[must_use]
+    pub fn stack_used(&self, thread: ThreadId) -> u32 {
+        let loaded = self.loaded[thread.index()].as_ref();
+        loaded.map_or(0, |loaded| self.engines.stack_used(ContextId::of(thread), loaded))
+    }
+
     /// Tells the firmware when a thread's stack first holds more than the board's could.
     fn report_stack(&mut self, thread: ThreadId) {
-        let loaded = self.loaded[thread.index()].as_ref();
-        let used = loaded.map_or(0, |loaded| self.engines.stack_used(ContextId::of(thread), loaded));
+        let used = self.stack_used(thread);
         if used > BOARD_STACK_USABLE && !self.stack_reported.contains(thread) {
             self.stack_reported = self.stack_reported.with(thread);
             self.firmware.stack_exceeded(thread, used);

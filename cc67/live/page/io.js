@@ -1,6 +1,7 @@
 // Inputs as switches, outputs as lamps, analog inputs as sliders.
 
 import { attribute, el, head, mark, say } from "./dom.js";
+import { mountGather } from "./gather.js";
 import { mountPersist } from "./persist.js";
 import { mountWheels } from "./wheels.js";
 
@@ -18,6 +19,7 @@ export function mountIo(section, link) {
   section.append(body);
   mountWheels(body, link);
   mountPersist(body, link);
+  mountGather(body, link);
   let bits = [], known = "", wanted = [];
   const channels = Array.from({ length: 8 }, (_, index) => new Channel(index, link, sliders));
 

@@ -1,5 +1,6 @@
 // The page: every panel in its place, then the link to the board.
 
+import { mountAsks } from "./asks.js";
 import { mountAxes } from "./axes.js";
 import { mountClock } from "./clock.js";
 import { mountConsole } from "./console.js";
@@ -18,6 +19,7 @@ const sources = new Sources();
 
 mountTabs(at("tabs"), at("panels"));
 mountClock(at("bar"), link);
+mountAsks(at("asks"), link);
 mountAxes(at("axes"), link);
 mountScope(at("scope"), link);
 mountPath(at("path"), link);

@@ -1,11 +1,27 @@
-// The threads: what each does and waits for, at which line; start and stop.
+// The threads: what each does and waits for, at which line, its stack, and the slices of the last ticks; start and stop.
 
-import { el } from "./dom.js";
+import { attribute, el } from "./dom.js";
+import { color } from "./plot.js";
 
 export function mountThreads(section, link, sources, openSource) {
   const body = el("div", { className: "body" });
-  section.append(body);
-  let programs = new Map(), rows = [];
+  const strip = el("div", { className: "turns", role: "img", "aria-label": "Slices of the last ticks", hidden: true });
+  section.append(strip, body);
+  let programs = new Map(), rows = [], known = "";
+
+  /** A mark for each of the last ticks, in the colour of its thread; the primary thread has none. */
+  function slices(turns) {
+    strip.hidden = turns.length === 0;
+    while (strip.childElementCount < turns.length) strip.append(el("span"));
+    while (strip.childElementCount > turns.length) strip.lastElementChild.remove();
+    turns.forEach((thread, index) => {
+      strip.children[index].style.background = thread ? color(thread - 1) : "";
+    });
+    const counts = new Map();
+    for (const thread of turns) counts.set(thread, (counts.get(thread) ?? 0) + 1);
+    const parts = [...counts].sort(([a], [b]) => a - b).map(([thread, count]) => `${thread ? `thread ${thread}` : "primary thread"}: ${count}`);
+    attribute(strip, "title", `The last ${turns.length} ticks. ${parts.join(", ")}`);
+  }
 
   function show() {
     const used = rows.filter((row) => row.state !== "empty" || programs.has(row.thread));
@@ -13,14 +29,18 @@ export function mountThreads(section, link, sources, openSource) {
     if (!used.length) body.append(el("p", { className: "quiet" }, "No program is loaded."));
   }
 
-  function thread({ thread, state, waits, stack }) {
+  function thread({ thread, state, waits, stack, stack_used: used, stack_size: size }) {
     const place = stack[0];
     const isActive = state === "running" || state === "waiting";
     const act = (what) => el("button", { type: "button", "aria-label": `${what} thread ${thread}`, onclick: () => link.ask(what.toLowerCase(), { thread }) }, what);
     const row = el("div", { className: "thread" },
-      el("strong", {}, String(thread)),
+      el("strong", { style: `color: ${color(thread - 1)}` }, String(thread)),
       el("span", {}, el("span", { className: "mono" }, programs.get(thread) ?? ""), " ", el("span", { className: `badge ${state}` }, label(state, waits))),
       el("span", {}, act("Start"), " ", isActive ? act("Stop") : ""));
+    if (used) {
+      row.append(el("span", { className: "where quiet", title: "The most bytes of its stack in use so far, of those that a board has" },
+        el("span", { className: used > size ? "bad" : "" }, `worst stack ${used} of ${size} bytes`)));
+    }
     if (place?.line) {
       const text = sources.line(place.file, place.line).trim();
       row.append(el("span", { className: "where" },
@@ -35,7 +55,14 @@ export function mountThreads(section, link, sources, openSource) {
     show();
   });
   link.on("sources", show);
-  link.on("threads", ({ threads }) => {
+  addEventListener("themechange", show);
+  link.on("threads", ({ threads, turns }) => {
+    // Without a word about them, those of a moment ago stay.
+    if (turns) slices(turns);
+    // What has not changed is left alone, so that a button keeps the focus.
+    const text = JSON.stringify(threads);
+    if (text === known) return;
+    known = text;
     rows = threads;
     show();
   });

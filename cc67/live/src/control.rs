@@ -44,6 +44,7 @@ impl TimeControl {
             | PageRequest::Stop { .. }
             | PageRequest::Reload {}
             | PageRequest::Watch { .. }
+            | PageRequest::Gather { .. }
             | PageRequest::Write { .. } => None,
         };
         refused.map_or(Ok(()), |why| Err(why.to_owned()))

@@ -61,6 +61,15 @@ pub(crate) enum PageRequest {
         /// Its name.
         name: String,
     },
+    /// Show a part of the gather buffer.
+    Gather {
+        /// The first number of it, counted in numbers of this kind.
+        from: u32,
+        /// How many numbers, at most 10,000.
+        count: u32,
+        /// `double`, `float` or `int`.
+        kind: String,
+    },
     /// Store a value in a variable.
     Write {
         /// The variable, in the words of a program.

@@ -5,6 +5,7 @@ use vm::engine::Engine;
 
 use super::Board;
 use crate::firmware::parts::Parts;
+use crate::pc::OpenBox;
 use crate::servo::independent;
 use crate::world::stimulus::Stimulus;
 use crate::world::trace;
@@ -35,6 +36,12 @@ impl<E: Engine> Board<E> {
     #[must_use]
     pub fn is_in_command(&self) -> bool {
         self.machine.firmware().scripts.is_in_command()
+    }
+
+    /// The box that a program has opened on the PC and that waits for an answer, where boxes do (`boxes=wait`).
+    #[must_use]
+    pub fn open_box(&self) -> Option<OpenBox> {
+        self.machine.firmware().parts.pc.host.open_box(self.machine.memory())
     }
 
     /// Lets the world around the board act as a stimulus says, from now on.

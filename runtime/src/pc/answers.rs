@@ -8,6 +8,7 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 pub const HELP: &str = "\
 msgbox=BUTTON          ok, cancel, abort, retry, ignore, yes, no or its number
 input=NUMBER|cancel    what is typed into an input box
+boxes=wait             boxes for which no answer is given stay open until one is, and each answer is for one box
 mdi=NUMBER             result of an MDI line, 0 for success
 request.N=NUMBER|never answer to request N, negative for failure, or none at all
 var.N=NUMBER           G-code variable #N
@@ -37,7 +38,7 @@ pub enum AnswerError {
     NotASetting(String),
     /// The key is none of [`HELP`].
     #[error(
-        "there is no answer `{0}`; there are msgbox, input, mdi, request.N, var.N, tool.N.KIND, dro.AXIS, resolution.AXIS, cell.N, setup and job"
+        "there is no answer `{0}`; there are msgbox, input, boxes, mdi, request.N, var.N, tool.N.KIND, dro.AXIS, resolution.AXIS, cell.N, setup and job"
     )]
     UnknownKey(String),
     /// The value does not fit the key.
@@ -63,18 +64,43 @@ impl<T> Default for Turns<T> {
 }
 
 impl<T: Copy> Turns<T> {
+    /// Whether there is none.
+    pub(super) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
     /// The next answer; the last one stays. `None` if there was never one.
     pub(super) fn next(&mut self) -> Option<T> {
         if self.0.len() > 1 { self.0.pop_front() } else { self.0.front().copied() }
     }
 }
 
-/// What the PC answers, and what it holds.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Answers {
+/// What is done with message and input boxes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Boxes {
     pub(super) buttons: Turns<i32>,
     /// Numbers typed; `None` for the cancel button.
     pub(super) inputs: Turns<Option<f32>>,
+    /// Whether a box that has no answer waits for one, and each answer is for one box.
+    pub(super) waits: bool,
+}
+
+impl Boxes {
+    /// The button that is pressed next.
+    pub(super) fn press(&mut self) -> Option<i32> {
+        if self.waits { self.buttons.0.pop_front() } else { self.buttons.next() }
+    }
+
+    /// What is typed next; `Some(None)` for the cancel button.
+    pub(super) fn type_in(&mut self) -> Option<Option<f32>> {
+        if self.waits { self.inputs.0.pop_front() } else { self.inputs.next() }
+    }
+}
+
+/// What the PC answers, and what it holds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Answers {
+    pub(super) boxes: Boxes,
     pub(super) mdi: Turns<i32>,
     /// Answers to requests by number, instead of doing what they ask for.
     pub(super) results: BTreeMap<i32, i32>,
@@ -93,8 +119,7 @@ pub struct Answers {
 impl Default for Answers {
     fn default() -> Self {
         Self {
-            buttons: Turns::default(),
-            inputs: Turns::default(),
+            boxes: Boxes::default(),
             mdi: Turns::default(),
             results: BTreeMap::new(),
             silent: BTreeSet::new(),
@@ -125,8 +150,8 @@ impl Answers {
     /// What is wrong with it.
     pub fn set_next(&mut self, setting: &str) -> Result<(), AnswerError> {
         match setting.split('=').next().map(str::trim) {
-            Some("msgbox" | "message_box") => self.buttons.0.clear(),
-            Some("input") => self.inputs.0.clear(),
+            Some("msgbox" | "message_box") => self.boxes.buttons.0.clear(),
+            Some("input") => self.boxes.inputs.0.clear(),
             Some("mdi") => self.mdi.0.clear(),
             _ => {}
         }
@@ -151,9 +176,13 @@ impl Answers {
         let number = |text: &str| text.parse::<i32>().map_err(|_| unknown());
         let axis = |text: &str| LETTERS.iter().position(|letter| *letter == text).ok_or_else(unknown);
         match parts[..] {
-            ["msgbox"] => self.buttons.0.push_back(button(value).ok_or_else(|| bad("a button, as `yes`"))?),
-            ["input"] if value == "cancel" => self.inputs.0.push_back(None),
-            ["input"] => self.inputs.0.push_back(Some(real()? as f32)),
+            ["msgbox"] => {
+                self.boxes.buttons.0.push_back(button(value).ok_or_else(|| bad("a button, as `yes`"))?);
+            }
+            ["input"] if value == "cancel" => self.boxes.inputs.0.push_back(None),
+            ["input"] => self.boxes.inputs.0.push_back(Some(real()? as f32)),
+            ["boxes"] if value == "wait" => self.boxes.waits = true,
+            ["boxes"] => return Err(bad("`wait`")),
             ["mdi"] => self.mdi.0.push_back(whole()?),
             ["request", request] if value == "never" => {
                 self.silent.insert(number(request)?);
@@ -212,9 +241,9 @@ mod tests {
         for line in ["# buttons", "", "msgbox = no", "msgbox=YES", "input=1.5", "input=cancel"] {
             answers.line(line).expect(line);
         }
-        let pressed: Vec<_> = (0..3).map(|_| answers.buttons.next()).collect();
+        let pressed: Vec<_> = (0..3).map(|_| answers.boxes.buttons.next()).collect();
         assert_eq!(pressed, [Some(7), Some(6), Some(6)]);
-        let typed: Vec<_> = (0..3).map(|_| answers.inputs.next()).collect();
+        let typed: Vec<_> = (0..3).map(|_| answers.boxes.inputs.next()).collect();
         assert_eq!(typed, [Some(Some(1.5)), Some(None), Some(None)]);
         assert_eq!(answers.mdi.next(), None);
     }
@@ -224,7 +253,7 @@ mod tests {
         let mut answers = Answers::default();
         answers.line("msgbox=no").expect("an answer");
         answers.set_next("msgbox=yes").expect("an answer");
-        assert_eq!(answers.buttons.next(), Some(6));
+        assert_eq!(answers.boxes.buttons.next(), Some(6));
     }
 
     #[test]
@@ -238,6 +267,7 @@ mod tests {
             ("request.14=1", "0, a negative number or `never`"),
             ("setup=1,2", "four whole numbers"),
             ("var.x=1", "there is no answer `var.x`"),
+            ("boxes=shut", "`shut` is not what `boxes` takes: `wait`"),
         ] {
             let error = Answers::default().set(setting).expect_err(setting).to_string();
             assert!(error.contains(expect), "{setting}: {error}");

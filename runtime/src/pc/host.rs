@@ -13,7 +13,8 @@ use kmotiondef::{Cycles, GuestAddr, Place, ThreadId};
 use vm::firmware::TickContext;
 use vm::memory::GuestMemory;
 
-use super::answers::{self, AnswerError, Answers};
+use super::answers::{self, AnswerError, Answers, Boxes};
+use super::boxes::OpenBox;
 use super::requests::{Change, Deed, Rate, Way};
 use super::{gcode, requests};
 use crate::out::{EventKind, Message, Out};
@@ -47,7 +48,7 @@ pub(crate) struct Host {
     /// What it answers and holds.
     answers: Answers,
     jog_overrides: [f32; 6],
-    /// The request that is never answered and was shown.
+    /// The request that is not answered and was shown.
     unanswered: i32,
     /// Since when a request waits for a PC that is not there; `None` once that was said.
     waits_since: Option<Cycles>,
@@ -95,7 +96,25 @@ impl Host {
     /// Whether a program waits for an answer that will come.
     pub(crate) fn is_asked(&self, memory: &GuestMemory) -> bool {
         let code = memory.get(data(0));
-        self.is_connected && code > 0 && !self.answers.silent.contains(&code)
+        self.is_connected && code > 0 && !self.answers.silent.contains(&code) && !self.is_for_person(code)
+    }
+
+    /// The box that waits for a person, if there is one that the PC has shown.
+    pub(crate) fn open_box(&self, memory: &GuestMemory) -> Option<OpenBox> {
+        let code = memory.get(data(0));
+        if !self.is_connected || self.unanswered != code || !self.is_for_person(code) {
+            return None;
+        }
+        Some(opened(memory, code))
+    }
+
+    /// Whether a request opens a box, the answer to which a person still has to give.
+    fn is_for_person(&self, code: i32) -> bool {
+        let Boxes { waits, buttons, inputs } = &self.answers.boxes;
+        let is_open = requests::deed(code).is_some_and(|deed| {
+            (deed == Deed::MessageBox && buttons.is_empty()) || (deed == Deed::InputBox && inputs.is_empty())
+        });
+        *waits && is_open && !self.answers.results.contains_key(&code)
     }
 
     /// How many ticks it leaves the board alone.
@@ -151,12 +170,29 @@ pub(crate) fn slice(host: &mut Host, out: &mut Out, context: &mut TickContext<'_
             host.unanswered = code;
             say(out, context, format!("request {code} gets no answer"));
         }
+    } else if host.is_for_person(code) {
+        if host.unanswered != code {
+            host.unanswered = code;
+            let text = opened(context.memory, code).shown();
+            say(out, context, text);
+        }
     } else {
+        host.unanswered = 0;
         let answer = answer(host, out, context, code);
         context.memory.set(data(0), answer);
         return true;
     }
     false
+}
+
+/// The box that a request opens.
+fn opened(memory: &GuestMemory, code: i32) -> OpenBox {
+    let text = string(memory, memory.get(data(1)));
+    if requests::deed(code) == Some(Deed::InputBox) {
+        OpenBox::Input { text }
+    } else {
+        OpenBox::message(text, memory.get(data(2)))
+    }
 }
 
 /// Says of a request that waits for a PC which is not there that it does.
@@ -271,7 +307,7 @@ fn message_box(host: &mut Host, out: &mut Out, context: &mut TickContext<'_>, [o
         5 => 4,
         _ => 1,
     };
-    let named = host.answers.buttons.next();
+    let named = host.answers.boxes.press();
     let answer = named.map_or(String::new(), |button| format!(" ({})", answers::button_name(button)));
     say(out, context, format!("message box: {text}{answer}"));
     context.memory.set(data(3), named.unwrap_or(default));
@@ -280,7 +316,7 @@ fn message_box(host: &mut Host, out: &mut Out, context: &mut TickContext<'_>, [o
 /// Shows a prompt and types the number that was named for it, or 0.
 fn input_box(host: &mut Host, out: &mut Out, context: &mut TickContext<'_>, offset: i32) {
     let prompt = string(context.memory, offset);
-    let (answer, typed) = match host.answers.inputs.next() {
+    let (answer, typed) = match host.answers.boxes.type_in() {
         Some(None) => (" (cancel)".to_owned(), None),
         Some(Some(number)) => (format!(" ({number})"), Some(number)),
         None => (String::new(), Some(0.0)),

@@ -1,6 +1,7 @@
 //! The PC that the board is connected to: its disk, what it answers to programs, and the bytes it sends.
 
 mod answers;
+mod boxes;
 pub(crate) mod disk;
 mod downloads;
 pub(crate) mod files;
@@ -10,6 +11,7 @@ mod link;
 mod requests;
 
 pub use answers::{AnswerError, Answers, HELP as ANSWERS_HELP};
+pub use boxes::OpenBox;
 pub(crate) use downloads::Downloads;
 pub(crate) use link::{Arrival, ByteLink, END, ESCAPE};
 

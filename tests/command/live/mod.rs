@@ -1,6 +1,8 @@
 //! `cc67 live`: the page in a real browser, and clients that mean no good.
 
+mod asks;
 mod browser;
+mod firefox;
 mod hostile;
 mod page;
 mod panels;

@@ -10,7 +10,7 @@ use super::Live;
 use super::browser::Browser;
 
 /// Runs to a switch that somebody has to close, and from there to 250.
-const PROGRAM: &str = "\
+pub(super) const PROGRAM: &str = "\
 #include \"KMotionDef.h\"
 #define HOME 136
 #define ESTOP 137
@@ -34,17 +34,17 @@ main()
 ";
 
 /// What is true when a text is in a part of the page.
-fn shows(part: &str, text: &str) -> String {
+pub(super) fn shows(part: &str, text: &str) -> String {
     format!("document.querySelector('{part}').textContent.includes({text:?})")
 }
 
 /// The number in a column of the first axis.
-fn axis(column: &str) -> String {
+pub(super) fn axis(column: &str) -> String {
     format!("Number(document.querySelector('#axes tbody td[data-label={column}]').textContent)")
 }
 
 /// The button with a text.
-fn press(browser: &mut Browser, text: &str) {
+pub(super) fn press(browser: &mut Browser, text: &str) {
     let script = format!(
         "[...document.querySelectorAll('button')].find((one) => one.textContent === {text:?}).setAttribute('data-test', {text:?})"
     );

@@ -6,6 +6,7 @@
 
 mod clock;
 mod frame;
+mod gather;
 mod hello;
 mod history;
 mod keep;
@@ -14,6 +15,7 @@ mod programs;
 mod samples;
 mod saved;
 mod threads;
+mod turns;
 mod view;
 
 pub use view::{LiveView, Wishes};
@@ -25,9 +27,10 @@ use std::time::{Duration, Instant};
 
 use cc67_host::{Session, Timeline, UserProgram};
 use kmotiondef::{ThreadId, Ticks};
-use runtime::Event;
+use runtime::{Event, OpenBox};
 use serde_json::{Value, json};
 use vm::engine::Engine;
+use vm::scheduler::Turn;
 
 use crate::desk::{Desk, Incoming, Mailbox, PageId};
 use crate::request::PageRequest;
@@ -38,6 +41,7 @@ use log::{Log, Voice};
 use programs::Programs;
 use samples::Samples;
 use threads::ThreadRow;
+use turns::Turns;
 
 /// How often the board is brought up to the clock.
 const BEAT: Duration = Duration::from_millis(8);
@@ -108,6 +112,10 @@ struct Stage<E: Engine> {
     pages: BTreeMap<PageId, Page>,
     /// What pages know of threads, and when.
     told: (Vec<ThreadRow>, Instant),
+    /// Which thread had each of the last ticks.
+    turns: Turns,
+    /// The box that pages know of.
+    open_box: Option<OpenBox>,
     /// For whoever else runs the session.
     wishes: Wishes,
 }
@@ -122,6 +130,11 @@ impl<E: Engine> Stage<E> {
         if let Err(error) = samples.follow(session, list, clock.speed()) {
             log.say(session.tick(), Voice::Remark, format!("the scope: {error}"));
         }
+        if show.time == TimeControl::Full {
+            // Boxes are answered here; the statement is recorded, so that a test waits as well.
+            let waits = session.act("answer \"boxes=wait\"");
+            debug_assert!(waits.is_ok(), "it is a statement: {waits:?}");
+        }
         let timeline = (show.time == TimeControl::Full).then(|| Timeline::new(session));
         Self {
             show,
@@ -132,6 +145,8 @@ impl<E: Engine> Stage<E> {
             log,
             pages: BTreeMap::new(),
             told: (Vec::new(), now()),
+            turns: Turns::default(),
+            open_box: None,
             wishes: Wishes::default(),
         }
     }
@@ -181,7 +196,8 @@ impl<E: Engine> Stage<E> {
         self.answer(id, &self.programs.message());
         self.answer(id, &self.signals());
         self.answer(id, &json!({ "kind": "log", "entries": self.log.all() }));
-        self.answer(id, &json!({ "kind": "threads", "threads": threads::rows(session) }));
+        self.answer(id, &json!({ "kind": "threads", "threads": threads::rows(session), "turns": [] }));
+        self.answer(id, &asks(self.open_box.as_ref()));
     }
 
     fn signals(&self) -> Value {
@@ -244,6 +260,9 @@ impl<E: Engine> Stage<E> {
             }
             PageRequest::Restart {} => self.restart(session)?,
             PageRequest::Save { name } => self.save(session, id, &name)?,
+            PageRequest::Gather { from, count, kind } => {
+                self.answer(id, &gather::numbers(session, from, count, &kind)?);
+            }
             PageRequest::Write { expression, value } => {
                 session.write(&expression, value).map_err(|error| error.to_string())?;
                 self.keep(session);
@@ -302,17 +321,20 @@ impl<E: Engine> Stage<E> {
     /// Runs to a tick and takes note of what happens.
     fn run_to(&mut self, session: &mut Session<E>, tick: Ticks) {
         let mut events = Vec::new();
-        session.advance(tick, &mut |event| events.push(event));
+        let looks = !self.pages.is_empty() && self.told.1.elapsed() >= THREADS;
+        self.turns.advance(session, tick, looks, &mut |event| events.push(event));
         self.note(session, events);
     }
 
     /// Runs to the end of the next slice of a user thread.
     fn slice(&mut self, session: &mut Session<E>) {
-        let limit = Ticks::new(session.tick().get() + ROTATION);
-        let mut events = Vec::new();
+        for _ in 0..ROTATION {
+            self.run_to(session, session.tick().next());
+            if let Turn::User(_) = session.board().machine().turn() {
+                return;
+            }
+        }
         // That nobody has one is seen in the frame.
-        let _ = session.step_slice(limit, &mut |event| events.push(event));
-        self.note(session, events);
     }
 
     /// Takes note of what happened while the board ran.
@@ -338,10 +360,18 @@ impl<E: Engine> Stage<E> {
         }
         if !self.pages.is_empty() && self.told.1.elapsed() >= THREADS {
             let rows = threads::rows(session);
-            if rows != self.told.0 {
-                self.broadcast(&json!({ "kind": "threads", "threads": rows }));
+            if rows != self.told.0 || self.clock.is_running() {
+                // Those of a moment ago do while the board runs.
+                let turns = self.turns.until(session.tick());
+                let turns = if self.clock.is_running() { turns } else { Some(turns.unwrap_or_default()) };
+                self.broadcast(&json!({ "kind": "threads", "threads": rows, "turns": turns }));
             }
             self.told = (rows, now());
+            let open_box = session.board().open_box();
+            if open_box != self.open_box {
+                self.broadcast(&asks(open_box.as_ref()));
+                self.open_box = open_box;
+            }
         }
         self.send_frames(session);
     }
@@ -385,6 +415,15 @@ impl<E: Engine> Stage<E> {
         let text: Arc<str> = message.to_string().into();
         self.pages.values().for_each(|page| page.mailbox.post(&text));
     }
+}
+
+/// The box that waits for an answer, as a message to pages.
+fn asks(open_box: Option<&OpenBox>) -> Value {
+    let shown = open_box.map(|open_box| match open_box {
+        OpenBox::Message { text, buttons } => json!({ "text": text, "buttons": buttons }),
+        OpenBox::Input { text } => json!({ "text": text }),
+    });
+    json!({ "kind": "asks", "box": shown })
 }
 
 fn checked(thread: i32) -> Result<ThreadId, String> {

@@ -4,6 +4,7 @@ use cc67_host::Session;
 use kmotiondef::{Cycles, ThreadId};
 use serde::Serialize;
 use vm::engine::Engine;
+use vm::machine::BOARD_STACK_USABLE;
 use vm::thread::{Progress, ThreadState};
 use vm::wake::Wake;
 
@@ -15,6 +16,9 @@ pub(super) struct ThreadRow {
     state: &'static str,
     /// What it waits for.
     waits: String,
+    /// The most bytes of its stack in use so far, and those that the board has.
+    stack_used: u32,
+    stack_size: u32,
     /// The calls it is in, the innermost first.
     stack: Vec<CallRow>,
 }
@@ -59,7 +63,8 @@ fn row<E: Engine>(session: &Session<E>, thread: ThreadId) -> ThreadRow {
         Some(CallRow { function, file, line: place.line })
     };
     let stack = places.iter().take(CALLS).filter_map(call).collect();
-    ThreadRow { thread: thread.get(), state, waits, stack }
+    let stack_used = session.board().machine().stack_used(thread);
+    ThreadRow { thread: thread.get(), state, waits, stack_used, stack_size: BOARD_STACK_USABLE, stack }
 }
 
 /// What a wake is, in words.

@@ -36,6 +36,8 @@ files! {
     "/clock.js" = SCRIPT "clock.js";
     "/axes.js" = SCRIPT "axes.js";
     "/io.js" = SCRIPT "io.js";
+    "/asks.js" = SCRIPT "asks.js";
+    "/gather.js" = SCRIPT "gather.js";
     "/persist.js" = SCRIPT "persist.js";
     "/wheels.js" = SCRIPT "wheels.js";
     "/console.js" = SCRIPT "console.js";

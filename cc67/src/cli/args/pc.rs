@@ -33,6 +33,11 @@ impl PcArguments {
         self.host.as_ref()?.to_str()?.parse().ok()
     }
 
+    /// The answers that are given one by one, as they were typed.
+    pub(crate) fn single_answers(&self) -> &[String] {
+        &self.answer
+    }
+
     /// Whether a file of the flash is named here.
     pub(crate) const fn has_flash(&self) -> bool {
         self.flash.is_some()

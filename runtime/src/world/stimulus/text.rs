@@ -299,7 +299,7 @@ mod tests {
             ("bit 0=1; kill 8", "x.stim:1:15: expected a thread from 1 to 7, found `8`"),
             (
                 "answer \"box=no\"",
-                "x.stim:1:8: there is no answer `box`; there are msgbox, input, mdi, request.N, var.N, tool.N.KIND, dro.AXIS, resolution.AXIS, cell.N, setup and job",
+                "x.stim:1:8: there is no answer `box`; there are msgbox, input, boxes, mdi, request.N, var.N, tool.N.KIND, dro.AXIS, resolution.AXIS, cell.N, setup and job",
             ),
             (
                 "expect axis 0 place = 1",

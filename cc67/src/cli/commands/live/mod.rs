@@ -206,8 +206,9 @@ impl LiveArguments {
             true => TestOption::File("--stim", stimulus.into()),
             false => text("--stim", stimulus),
         });
+        let answers = board.pc.single_answers().iter().map(|answer| text("--answer", answer));
         let assist = board.assist.then(|| TestOption::Text("--assist".to_owned()));
-        machine.chain(settings).chain(stimuli).chain(assist).collect()
+        machine.chain(settings).chain(stimuli).chain(answers).chain(assist).collect()
     }
 }
 
