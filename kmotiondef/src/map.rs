@@ -51,6 +51,31 @@ regions! {
     FPGA = "FPGA registers" at 0x9100_0000, size 0x1000, Device;
 }
 
+/// Bytes of the internal ROM, which begins at address 0.
+pub const ROM_SIZE: u32 = 0x6_0000;
+
+/// Places outside the map that the real board answers: loads give 0, stores do nothing. Base and size of each.
+///
+/// The ROM, the control of the program cache, the clock, the pins of both serial ports, the control of the memory bus
+/// (`dsp-board.md` section 3).
+pub const SILENT: [(u32, u32); 6] = [
+    (0, ROM_SIZE),
+    (0x2000_0000, 0x1000),
+    (0x4100_0000, 0x1000),
+    (0x4400_0000, 0x1000),
+    (0x4500_0000, 0x1000),
+    (0xF000_0000, 0x1000),
+];
+
+/// The bytes from `addr` to the end of the silent place around it; `None` if there is none.
+#[must_use]
+pub fn silent_from(addr: GuestAddr) -> Option<u32> {
+    SILENT.iter().find_map(|(base, size)| {
+        let offset = addr.get().wrapping_sub(*base);
+        (offset < *size).then(|| size - offset)
+    })
+}
+
 /// TIMER0, a free-running 50 MHz counter of 32 bits.
 pub const TIMER0: GuestAddr = GuestAddr::new(0x4200_0010);
 

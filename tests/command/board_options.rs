@@ -22,6 +22,46 @@ const CASES: &[(&[&str], &str)] = &[
     (&["--machine", "a.machine"], "0 1\n"),
 ];
 
+/// Reads and writes through a pointer that is 0, and a word across its border.
+const FAULTS: &str = "\
+#include \"KMotionDef.h\"
+struct S { int a; double d; };
+int g[4] = {1, 2, 3, 4};
+main()
+{
+  volatile int *p = 0;
+  struct S *s = 0, t;
+  char *q = (char *)g;
+  t.a = 5;
+  t = *s;
+  printf(\"%d %d %d\\n\", *p, p[5], s->a);
+  *p = 7;
+  s->d = 1.5;
+  printf(\"%d %g %d\\n\", *p, s->d, t.a);
+  *(int *)(q + 6) = 9;
+  printf(\"%d %d %d\\n\", g[1], *(int *)(q + 7), *(volatile short *)(q + 5));
+  p = (volatile int *)0x70000000;
+  printf(\"%d\\n\", *p);
+}
+";
+
+#[test]
+fn a_board_answers_where_a_simulated_one_stops_if_that_is_asked_for() {
+    let scratch = Scratch::new("board-options-faults");
+    scratch.write("a.c", FAULTS).write("a.machine", "[cpu]\nboard_faults = true\n");
+    for engine in ["bytecode", "native", "dsp"] {
+        let stopped = cc67(&scratch, ["run", "a.c", "--engine", engine]);
+        assert_eq!((stopped.code, stopped.stdout.as_str()), (3, ""), "{engine}");
+        assert!(stopped.stderr.contains("a.c:10:3 in `main`: read of the unmapped address 0x00000000"));
+        for option in [&["--board-faults"][..], &["--machine", "a.machine"]] {
+            let answered = cc67(&scratch, [&["run", "a.c", "--engine", engine], option].concat());
+            assert_eq!(answered.stdout, "0 0 0\n0 0 0\n9 9 9\n", "{engine} {option:?}: {}", answered.stderr);
+            let beyond = "a.c:18:3 in `main`: read of the unmapped address 0x70000000";
+            assert!(answered.code == 3 && answered.stderr.contains(beyond), "{engine}: {}", answered.stderr);
+        }
+    }
+}
+
 fn scratch(name: &str, arguments: &[&str], expect: &str) -> Scratch {
     let scratch = Scratch::new(name);
     let test = format!("// cc67: run {}\n{PROGRAM}", arguments.join(" "));

@@ -65,6 +65,7 @@ impl<F: Firmware + ?Sized> Slice<'_, F> {
         if !is_on_bus(addr, Access::Read) {
             return Err(kind);
         }
+        let addr = self.memory.aligned(addr, T::LOAD_ALIGN);
         if !addr.get().is_multiple_of(T::LOAD_ALIGN) {
             return Err(TrapKind::Misaligned { addr, size: T::SIZE, access: Access::Read });
         }
@@ -84,6 +85,7 @@ impl<F: Firmware + ?Sized> Slice<'_, F> {
         if !is_on_bus(addr, Access::Write) {
             return Err(kind);
         }
+        let addr = self.memory.aligned(addr, T::STORE_ALIGN);
         if !addr.get().is_multiple_of(T::STORE_ALIGN) {
             return Err(TrapKind::Misaligned { addr, size: T::SIZE, access: Access::Write });
         }

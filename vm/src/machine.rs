@@ -22,7 +22,7 @@ use crate::engine::{ContextId, Engine, Slice, Stop};
 use crate::firmware::{Firmware, TickContext};
 use crate::interp::BytecodeEngine;
 use crate::loaded::Loaded;
-use crate::memory::GuestMemory;
+use crate::memory::{Faults, GuestMemory};
 use crate::program::Program;
 use crate::scheduler::{self, ThreadSet, Turn};
 use crate::thread::{NotLoaded, Progress, ThreadState, Threads};
@@ -48,11 +48,13 @@ pub struct Config {
     pub shortcuts: bool,
     /// Stacks as small as the board's.
     pub strict_stack: bool,
+    /// What accesses do that a program should not make.
+    pub faults: Faults,
 }
 
 impl Default for Config {
     fn default() -> Self {
-        Self { servo: None, shortcuts: true, strict_stack: false }
+        Self { servo: None, shortcuts: true, strict_stack: false, faults: Faults::Trap }
     }
 }
 
@@ -92,9 +94,11 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
 
     /// A machine at power-up that runs bytecode on `engine`.
     pub fn with_engine(firmware: F, config: Config, engine: E) -> Self {
+        let mut memory = GuestMemory::new();
+        memory.set_faults(config.faults);
         Self {
             config,
-            memory: GuestMemory::new(),
+            memory,
             threads: Threads::new(),
             loaded: Default::default(),
             longest_steps: Default::default(),

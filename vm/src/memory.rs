@@ -22,7 +22,7 @@ pub mod snapshot;
 
 use std::ops::Range;
 
-use kmotiondef::map::{FLASH, IRAM, REGIONS, RegionKind, SDRAM};
+use kmotiondef::map::{FLASH, IRAM, REGIONS, ROM_SIZE, RegionKind, SDRAM, silent_from};
 use kmotiondef::{GuestAddr, ThreadId};
 
 use self::flash::Flash;
@@ -36,6 +36,20 @@ const IRAM_SIZE: usize = 0x2_0000;
 const SDRAM_BASE: u32 = SDRAM.base.get();
 const IRAM_BASE: u32 = IRAM.base.get();
 const FLASH_BASE: u32 = FLASH.base.get();
+
+/// What accesses do that a program of the simulated board should not make.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Faults {
+    /// They stop the thread.
+    #[default]
+    Trap,
+    /// What the real board does: ROM and control registers read 0 and ignore stores, low bits of a misaligned address
+    /// are ignored. Everywhere else, and for stores into program text, they stop the thread all the same.
+    Board,
+}
+
+/// What ROM, the largest of the silent places, and control registers read as.
+static SILENCE: [u8; index_const(ROM_SIZE)] = [0; index_const(ROM_SIZE)];
 
 /// A type that one load or store moves.
 pub trait Scalar: sealed::Sealed + Copy + Default {
@@ -106,6 +120,7 @@ pub struct GuestMemory {
     iram: Box<[u8; IRAM_SIZE]>,
     flash: Flash,
     protection: Protection,
+    faults: Faults,
     /// Whether on-chip RAM may have been written, see [`GuestMemory::take_touched`].
     is_touched: bool,
     /// What the last snapshot has, for the next one to share.
@@ -139,9 +154,15 @@ impl GuestMemory {
             iram: filled(0),
             flash: Flash::default(),
             protection: Protection::default(),
+            faults: Faults::default(),
             is_touched: true,
             last: None,
         }
+    }
+
+    /// Chooses what accesses do that a program should not make.
+    pub const fn set_faults(&mut self, faults: Faults) {
+        self.faults = faults;
     }
 
     /// Whether on-chip RAM, where the variables of the firmware are, may have been written since this was last asked.
@@ -190,13 +211,20 @@ impl GuestMemory {
 
     #[cold]
     fn load_elsewhere<T: Scalar>(&self, addr: GuestAddr) -> Result<T, TrapKind> {
-        let address = addr.get();
-        self.bytes(addr, T::SIZE)?;
-        if address & (T::LOAD_ALIGN - 1) != 0 {
+        let addr = self.aligned(addr, T::LOAD_ALIGN);
+        let bytes = self.bytes(addr, T::SIZE)?;
+        if addr.get() & (T::LOAD_ALIGN - 1) != 0 {
             return Err(TrapKind::Misaligned { addr, size: T::SIZE, access: Access::Read });
         }
-        T::get(self.flash.bytes(), index(address.wrapping_sub(FLASH_BASE)))
-            .ok_or(TrapKind::Unmapped { addr, access: Access::Read })
+        T::get(bytes, 0).ok_or(TrapKind::Unmapped { addr, access: Access::Read })
+    }
+
+    /// The address that an access of `addr` reaches: the board ignores the bits below `align`.
+    pub(crate) const fn aligned(&self, addr: GuestAddr, align: u32) -> GuestAddr {
+        match self.faults {
+            Faults::Trap => addr,
+            Faults::Board => GuestAddr::new(addr.get() & !(align - 1)),
+        }
     }
 
     /// Stores a value on behalf of a program.
@@ -206,11 +234,15 @@ impl GuestMemory {
     /// [`TrapKind::WriteProtected`].
     #[inline]
     pub fn store<T: Scalar>(&mut self, addr: GuestAddr, value: T) -> Result<(), TrapKind> {
+        let addr = self.aligned(addr, T::STORE_ALIGN);
         let address = addr.get();
-        if address & (T::STORE_ALIGN - 1) == 0 && !self.protection.covers(address, T::SIZE) {
-            return self.write_ram(address, value).ok_or_else(|| self.store_refusal(addr, T::SIZE));
+        if address & (T::STORE_ALIGN - 1) == 0
+            && !self.protection.covers(address, T::SIZE)
+            && self.write_ram(address, value).is_some()
+        {
+            return Ok(());
         }
-        Err(self.store_refusal(addr, T::SIZE))
+        self.refuse_store(addr, T::SIZE)
     }
 
     /// Stores a value on behalf of a program as [`store`](Self::store), but only at a multiple of its size in RAM;
@@ -233,13 +265,14 @@ impl GuestMemory {
         Some(())
     }
 
-    /// Why a store was refused.
+    /// Why a store was refused; a silent place takes it without a trace.
     #[cold]
-    fn store_refusal(&self, addr: GuestAddr, size: u32) -> TrapKind {
-        if let Err(kind) = self.check_writable(addr, size) {
-            return kind;
+    fn refuse_store(&self, addr: GuestAddr, size: u32) -> Result<(), TrapKind> {
+        self.check_writable(addr, size)?;
+        if self.silent(addr).is_some() {
+            return Ok(());
         }
-        TrapKind::Misaligned { addr, size, access: Access::Write }
+        Err(TrapKind::Misaligned { addr, size, access: Access::Write })
     }
 
     /// Reads a value for the kernel: no alignment; bytes outside the map read as 0.
@@ -289,6 +322,9 @@ impl GuestMemory {
     /// # Errors
     /// [`TrapKind::Unmapped`]; nothing is written then.
     pub fn poke_bytes(&mut self, addr: GuestAddr, bytes: &[u8]) -> Result<(), TrapKind> {
+        if self.is_silent(addr, length(bytes)) {
+            return Ok(());
+        }
         self.bytes_mut(addr, length(bytes))?.copy_from_slice(bytes);
         Ok(())
     }
@@ -357,7 +393,9 @@ impl GuestMemory {
     /// [`TrapKind::Unmapped`] or [`TrapKind::WriteProtected`]; nothing is written then.
     pub fn fill(&mut self, addr: GuestAddr, byte: u8, len: u32) -> Result<(), TrapKind> {
         self.check_writable(addr, len)?;
-        self.bytes_mut(addr, len)?.fill(byte);
+        if !self.is_silent(addr, len) {
+            self.bytes_mut(addr, len)?.fill(byte);
+        }
         Ok(())
     }
 
@@ -438,9 +476,24 @@ impl GuestMemory {
             self.sdram.get(offset..)
         } else if let Some(offset) = offset_in(addr, IRAM_BASE, IRAM_SIZE) {
             self.iram.get(offset..)
+        } else if let Some(offset) = offset_in(addr, FLASH_BASE, flash::SIZE) {
+            self.flash.bytes().get(offset..)
         } else {
-            self.flash.bytes().get(offset_in(addr, FLASH_BASE, flash::SIZE)?..)
+            self.silent(addr)
         }
+    }
+
+    /// The bytes from `addr` to the end of the place around it that the board answers with 0, if this board does so.
+    fn silent(&self, addr: GuestAddr) -> Option<&[u8]> {
+        match self.faults {
+            Faults::Trap => None,
+            Faults::Board => SILENCE.get(..index(silent_from(addr)?)),
+        }
+    }
+
+    /// Whether a store of `len` bytes at `addr` stays without a trace.
+    fn is_silent(&self, addr: GuestAddr, len: u32) -> bool {
+        self.silent(addr).is_some_and(|bytes| bytes.len() >= index(len))
     }
 }
 

@@ -177,6 +177,7 @@ impl Described {
         let starting = if before.is_empty() { 0..programs.len() } else { programs.len()..programs.len() + 1 };
         loaded.iter_mut().enumerate().for_each(|(index, program)| program.starts = starting.contains(&index));
 
+        machine_file.cpu.board_faults |= board.board_faults;
         let machine = MachineConfig { shortcuts: !board.no_shortcuts, ..MachineConfig::default() };
         let disk = board.files(&machine_file);
         let flashed = flash.contents();

@@ -1,7 +1,7 @@
 //! Which address is whose (`dsp-board.md` 3).
 
 use kmotiondef::GuestAddr;
-use kmotiondef::map::{FLASH, FPGA, IRAM, SDRAM};
+use kmotiondef::map::{FLASH, FPGA, IRAM, ROM_SIZE, SDRAM};
 use vm::dsp::{Clock, Memory};
 use vm::memory::GuestMemory;
 use vm::trap::{Access, TrapKind};
@@ -11,8 +11,6 @@ use super::flash::Chip;
 use super::timer::Timer;
 use super::window::Window;
 
-/// Bytes of the internal ROM: reads 0, writes do nothing.
-const ROM: u32 = 0x6_0000;
 /// The timer.
 const TIMER: u32 = 0x4200_0000;
 const TIMER_SIZE: u32 = 0x100;
@@ -50,7 +48,7 @@ impl Hardware {
         if Control::has(addr) {
             return Ok(self.control.read(addr));
         }
-        if addr < ROM || self.forgives { Ok(0) } else { Err(unmapped(addr, Access::Read)) }
+        if addr < ROM_SIZE || self.forgives { Ok(0) } else { Err(unmapped(addr, Access::Read)) }
     }
 
     fn flash(&mut self, offset: u32, bytes: u32, now: u64) -> u32 {
@@ -88,7 +86,7 @@ impl Hardware {
             self.chip.write(offset & !1, value, &mut self.memory, now);
         } else if Control::has(addr) {
             self.control.write(addr, value);
-        } else if addr >= ROM && !self.forgives {
+        } else if addr >= ROM_SIZE && !self.forgives {
             return Err(unmapped(addr, Access::Write));
         }
         Ok(())

@@ -30,7 +30,7 @@ use kmotiondef::{Cycles, GuestAddr, ThreadId, Ticks};
 use vm::engine::Engine;
 use vm::interp::BytecodeEngine;
 use vm::machine::{Config as MachineConfig, Machine};
-use vm::memory::GuestMemory;
+use vm::memory::{Faults, GuestMemory};
 use vm::thread::ThreadState;
 
 use crate::board::debug::{CodeDetail, DebugInfo};
@@ -144,6 +144,7 @@ impl<E: Engine> Board<E> {
         let settings = MachineConfig {
             servo: config.machine.servo.or(servo),
             strict_stack: config.machine.strict_stack || connected.cpu.strict_stack,
+            faults: if connected.cpu.board_faults { Faults::Board } else { config.machine.faults },
             ..config.machine
         };
         let machine = Machine::with_engine(kernel, settings, engine);

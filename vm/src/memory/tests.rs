@@ -50,6 +50,34 @@ fn alignment_is_checked_for_programs_and_not_for_the_kernel() {
 }
 
 #[test]
+fn a_board_that_answers_has_silent_places_and_ignores_low_bits() {
+    let mut memory = GuestMemory::new();
+    memory.set_faults(Faults::Board);
+    assert_eq!(memory.load::<i32>(at(0)), Ok(0));
+    assert_eq!(memory.load::<f64>(at(ROM_SIZE - 3)), Ok(0.0), "the last double of the ROM");
+    assert_eq!(memory.load::<u8>(at(ROM_SIZE)), unmapped(ROM_SIZE, Access::Read));
+    assert_eq!(memory.store(at(8), 7_u32).and_then(|()| memory.load::<u32>(at(8))), Ok(0));
+    assert_eq!(memory.store(at(ROM_SIZE), 7_u32), unmapped(ROM_SIZE, Access::Write));
+    assert_eq!(memory.fill(at(0), 1, ROM_SIZE), Ok(()));
+    assert_eq!(memory.fill(at(0), 1, ROM_SIZE + 1), unmapped(ROM_SIZE, Access::Write));
+    assert_eq!(memory.read_c_string(at(0), 80), Ok(Vec::new()));
+    assert_eq!(memory.copy(at(SDRAM_BASE), at(0), 8), Ok(()));
+    assert_eq!(memory.store(at(SDRAM_BASE + 6), 0x0102_0304_u32), Ok(()));
+    assert_eq!(memory.peek::<u32>(at(SDRAM_BASE + 4)), 0x0102_0304);
+    assert_eq!(memory.load::<i16>(at(SDRAM_BASE + 7)), Ok(0x0102));
+    assert_eq!(memory.load::<u64>(at(SDRAM_BASE + 5)), Ok(0x0102_0304 << 32));
+}
+
+#[test]
+fn a_board_that_answers_protects_program_text_all_the_same() {
+    let mut memory = GuestMemory::new();
+    memory.set_faults(Faults::Board);
+    memory.protect(ThreadId::new(1).expect("1 is a thread"), at(PROGRAM_BASE)..at(PROGRAM_BASE + 32));
+    let protected = Err(TrapKind::WriteProtected { addr: at(PROGRAM_BASE + 28) });
+    assert_eq!(memory.store(at(PROGRAM_BASE + 30), 0_u32), protected);
+}
+
+#[test]
 fn program_text_is_protected_from_programs() {
     let mut memory = GuestMemory::new();
     let thread = ThreadId::new(1).expect("1 is a thread");

@@ -40,6 +40,9 @@ pub(crate) struct BoardArguments {
     /// Simulate every tick and every wait; the results are the same
     #[arg(long)]
     pub(crate) no_shortcuts: bool,
+    /// Answer accesses of ROM, control registers and misaligned addresses as the board does; otherwise they stop the thread
+    #[arg(long)]
+    pub(crate) board_faults: bool,
     /// What executes the programs
     #[arg(long, value_enum, default_value_t)]
     pub(crate) engine: EngineName,

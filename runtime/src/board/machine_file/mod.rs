@@ -120,6 +120,8 @@ pub struct Cpu {
     pub bss_fill: u8,
     /// Whether stacks are as small as the board's.
     pub strict_stack: bool,
+    /// Whether ROM, control registers and misaligned addresses answer as on the board; otherwise they trap.
+    pub board_faults: bool,
 }
 
 impl Default for Cpu {
@@ -131,6 +133,7 @@ impl Default for Cpu {
             fresh_globals: false,
             bss_fill: 0,
             strict_stack: false,
+            board_faults: false,
         }
     }
 }

@@ -324,6 +324,7 @@ fn cpu(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
             }
             machine.cpu.ns_per_instruction = time;
         };
+        "board_faults" => machine.cpu.board_faults = value.flag()?;
         "plan_ticks" => machine.cpu.plan_ticks = value.whole(100_000)?;
         "fresh_globals" => machine.cpu.fresh_globals = value.flag()?;
     });
