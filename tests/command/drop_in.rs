@@ -230,6 +230,16 @@ fn errors_have_file_and_line_and_come_before_warnings() {
 }
 
 #[test]
+fn faults_of_the_vendors_compiler_are_warned_of_after_an_error() {
+    let source = "set(int *x) { *x = 1; }\nf(int a) { set(&a); }\nmain()\n{\n  y = 5;\n}\n";
+    let output = call(&folder("faults", source), CALL);
+    let found = "prog.c:5: `y` is not declared\nprog.c:2: warning: the vendor's compiler takes a wrong address for the parameter `a`";
+    assert!(output.stderr.starts_with(found), "{}", output.stderr);
+    let fine = source.replace("  y = 5;\n", "");
+    assert_eq!(call(&folder("faults-alone", &fine), CALL), SILENCE);
+}
+
+#[test]
 fn errors_in_included_files_name_the_including_ones() {
     let scratch = folder("included", "\n#include \"sub/helper.c\"\nmain() { }\n");
     scratch.write("sub/helper.c", "int a\nint b;\n");

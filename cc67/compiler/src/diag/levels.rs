@@ -77,18 +77,26 @@ impl Levels {
         Ok(())
     }
 
+    /// Shows a lint as `-WNAME` does.
+    pub fn show(&mut self, lint: Lint) {
+        self.entry(lint).shown = Some(true);
+    }
+
     /// Obeys `-w`: no warning at all.
     pub fn silence(&mut self) {
         self.is_silent = true;
     }
 
     fn named(&mut self, name: &str) -> Result<&mut Named, UnknownLint> {
-        let lint = Lint::named(name)?;
+        Lint::named(name).map(|lint| self.entry(lint))
+    }
+
+    fn entry(&mut self, lint: Lint) -> &mut Named {
         let index = self.named.iter().position(|named| named.lint == lint).unwrap_or(self.named.len());
         if index == self.named.len() {
             self.named.push(Named { lint, shown: None, as_error: None });
         }
-        Ok(&mut self.named[index])
+        &mut self.named[index]
     }
 
     /// The diagnostic as it is to be shown; `None` if its lint is off.
@@ -114,6 +122,7 @@ impl Levels {
             Preset::On => self.all.unwrap_or(true),
             Preset::All => self.all.unwrap_or(false),
             Preset::Extra => self.extra.unwrap_or(false),
+            Preset::Own => false,
         }
     }
 }

@@ -12,6 +12,8 @@ pub enum Preset {
     All,
     /// `-Wextra`: it asks for more care than most programs need.
     Extra,
+    /// Its own name, and the command line of the vendor's compiler.
+    Own,
 }
 
 /// Hands every row of the lint table to the macro `$m`.
@@ -112,6 +114,8 @@ macro_rules! for_each_lint {
             EndlessWait = "endless-wait", On, pass endless_wait;
             /// A signed and an unsigned value are compared.
             SignCompare = "sign-compare", Extra;
+            /// The vendor's compiler accepts it and translates it wrongly.
+            Vendor = "vendor", Own, pass vendor;
             /// Standard C does not allow it, and the vendor's compiler accepts it.
             Extension = "extension", On;
         }
@@ -176,6 +180,7 @@ impl Lint {
             Preset::On => "on",
             Preset::All => "off; also switched on by `-Wall`",
             Preset::Extra => "off; also switched on by `-Wextra`",
+            Preset::Own => "off; on when cc67 is called as `tcc67`",
         };
         format!(
             "## Switches\n\n`-W{name}` on, `-Wno-{name}` off, `-Werror={name}` on and an error. Default: {default}.\n"

@@ -14,6 +14,7 @@ use crate::ast::{
     Expression, ExpressionKind, Initializer, InitializerItem, RecordKind, StringLiteral, TypeName,
 };
 use crate::diag::{Diagnostic, Lint};
+use crate::lints::vendor;
 use crate::source::Span;
 use crate::ty::{BitRange, QualifiedType, RecordId, Type, TypeId, Types};
 use crate::typed::{ExprId, ExprKind, LocalId, PlaceId, PlaceKind, StaticData};
@@ -172,6 +173,10 @@ impl Sema<'_> {
         let size = self.types.size_of(whole.ty.ty).unwrap_or(0);
         if !self.covers(leaves, size) {
             stores.push(self.body.expr(ExprKind::Clear(whole.place), Types::VOID, span));
+            let values: usize = leaves.iter().filter_map(|leaf| self.parts(leaf.ty)).sum();
+            if self.parts(whole.ty.ty).is_none_or(|parts| values < parts) {
+                self.report(vendor::partly_initialised(span));
+            }
         }
         for leaf in leaves {
             let part = self.part(whole, leaf.offset, QualifiedType::plain(leaf.ty), leaf.span).place;
@@ -195,6 +200,21 @@ impl Sema<'_> {
             });
         }
         stores
+    }
+
+    /// How many values fill an object of this type; one initialises a union.
+    fn parts(&self, ty: TypeId) -> Option<usize> {
+        if let Some((element, length)) = self.types.array(ty) {
+            return self.parts(element.ty)?.checked_mul(usize::try_from(length?).ok()?);
+        }
+        let Some(record) = self.types.record_of(ty).map(|record| self.types.record(record)) else {
+            return Some(1);
+        };
+        let mut parts = record.layout.as_ref()?.members.iter().map(|member| self.parts(member.ty.ty));
+        match record.kind {
+            RecordKind::Union => Some(1),
+            RecordKind::Struct => parts.try_fold(0_usize, |sum, parts| sum.checked_add(parts?)),
+        }
     }
 
     /// Whether the leaves, in their order, leave no byte out.

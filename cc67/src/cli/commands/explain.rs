@@ -134,6 +134,7 @@ fn warnings() -> String {
         (Preset::On, "On by default, also named by -Wall:"),
         (Preset::All, "Switched on by -Wall:"),
         (Preset::Extra, "Switched on by -Wextra:"),
+        (Preset::Own, "Switched on by its own name:"),
     ] {
         let lints = Lint::ALL.iter().filter(|lint| lint.preset() == preset);
         let rows = lints.fold(String::new(), |mut rows, lint| {

@@ -25,7 +25,7 @@ use arguments::{CompileRequest, DEFAULT_TEXT, Invocation};
 use crate::cli::io::exit::Exit;
 use crate::cli::io::output;
 use compiler::diag::levels::Levels;
-use compiler::diag::{Diagnostic, Severity};
+use compiler::diag::{Diagnostic, Lint, Severity};
 use compiler::firmware::{Firmware, FirmwareFile};
 use compiler::link::SectionAddresses;
 use compiler::passes::Level;
@@ -173,7 +173,8 @@ fn thread(text: u32) -> Option<ThreadId> {
 
 /// What there is to say about a compilation, if it has errors.
 fn silent_without_errors(compilation: &Compilation) -> Result<(), String> {
-    let levels = Levels::default();
+    let mut levels = Levels::default();
+    levels.show(Lint::Vendor);
     let shown: Vec<_> =
         compilation.diagnostics().into_iter().filter_map(|diagnostic| levels.apply(diagnostic)).collect();
     if shown.iter().any(|diagnostic| diagnostic.severity == Severity::Error) {
