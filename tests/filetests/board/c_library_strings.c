@@ -79,4 +79,4 @@ main()
     printf("%d ", snprintf(other, 0, "none"));
     printf("%s\n", other);
 }
-//@ cycles: 95077
+//@ cycles: 101196

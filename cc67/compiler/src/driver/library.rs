@@ -20,6 +20,8 @@ const FILES: &[(&str, &str)] = &[
     ("ctype.c", include_str!("library/ctype.c")),
     ("stdlib.c", include_str!("library/stdlib.c")),
     ("math.c", include_str!("library/math.c")),
+    ("math99.c", include_str!("library/math99.c")),
+    ("stdio.c", include_str!("library/stdio.c")),
     ("qsort.c", include_str!("library/qsort.c")),
     ("bsearch.c", include_str!("library/bsearch.c")),
     ("atexit.c", include_str!("library/atexit.c")),

@@ -347,6 +347,8 @@ fn compile_library(member: &library::Member<'_>, target: Target, timing: Timing)
 #[cfg(test)]
 mod tests {
     use super::*;
+    use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, Origin};
+
     use crate::diag::Lint;
     use crate::object::Definition;
 
@@ -356,7 +358,8 @@ mod tests {
             let compilation = compile_library(&member, Target::Sim, Timing::default());
             let mut said = compilation.diagnostics();
             // The names are the firmware's on purpose, and so is the test for what is not a number.
-            let on_purpose = [Lint::Portability, Lint::SelfComparison, Lint::Redeclared, Lint::Vendor].map(Some);
+            let on_purpose =
+                [Lint::Portability, Lint::SelfComparison, Lint::Redeclared, Lint::Vendor].map(Some);
             said.retain(|diagnostic| !on_purpose.contains(&diagnostic.lint));
             assert!(said.is_empty(), "{}: {said:?}", member.names);
             let object = compilation.object.expect("no errors");
@@ -365,6 +368,14 @@ mod tests {
                     |symbol: &object::Symbol| symbol.name == name && symbol.definition != Definition::None;
                 assert!(object.symbols.values().any(is_defined), "{name}");
             }
+        }
+    }
+
+    #[test]
+    fn what_firmware_4_34_lacks_is_code_of_the_library() {
+        let defined: Vec<_> = library::members().flat_map(|member| member.names()).collect();
+        for function in FIRMWARE_FUNCTIONS.iter().filter(|function| function.origin == Origin::Library) {
+            assert!(defined.contains(&function.name), "a board has no `{}`", function.name);
         }
     }
 }

@@ -98,4 +98,119 @@ double frexp(double x, int *exponent);
 float frexpf(float x, int *exponent);
 double ldexp(double x, int exponent);
 float ldexpf(float x, int exponent);
+double log1p(double x);
+float log1pf(float x);
+double expm1(double x);
+float expm1f(float x);
+double asinh(double x);
+float asinhf(float x);
+double acosh(double x);
+float acoshf(float x);
+double atanh(double x);
+float atanhf(float x);
+double erf(double x);
+float erff(float x);
+double erfc(double x);
+float erfcf(float x);
+double tgamma(double x);
+float tgammaf(float x);
+double lgamma(double x);
+float lgammaf(float x);
+double logb(double x);
+float logbf(float x);
+float cbrtf(float x);
+float rintf(float x);
+float nearbyintf(float x);
+double remainder(double x, double y);
+float remainderf(float x, float y);
+double nextafter(double x, double y);
+float nextafterf(float x, float y);
+double fdim(double x, double y);
+float fdimf(float x, float y);
+double remquo(double x, double y, int *quotient);
+float remquof(float x, float y, int *quotient);
+double fma(double x, double y, double z);
+float fmaf(float x, float y, float z);
+double nan(const char *tag);
+float nanf(const char *tag);
+double scalbn(double x, int exponent);
+float scalbnf(float x, int exponent);
+double scalbln(double x, long exponent);
+float scalblnf(float x, long exponent);
+int ilogb(double x);
+int ilogbf(float x);
+long lrintf(float x);
+long lroundf(float x);
+long long llrint(double x);
+long long llrintf(float x);
+long long llround(double x);
+long long llroundf(float x);
+#define FP_ILOGB0 (-0x7fffffff)
+#define FP_ILOGBNAN 0x7fffffff
+#define isgreater(x, y) ((x) > (y))
+#define isgreaterequal(x, y) ((x) >= (y))
+#define isless(x, y) ((x) < (y))
+#define islessequal(x, y) ((x) <= (y))
+#define islessgreater(x, y) ((x) < (y) || (x) > (y))
+#define isunordered(x, y) (isnan(x) || isnan(y))
+// `long double` is `double`.
+#define acosl acos
+#define asinl asin
+#define atanl atan
+#define atan2l atan2
+#define cosl cos
+#define sinl sin
+#define tanl tan
+#define acoshl acosh
+#define asinhl asinh
+#define atanhl atanh
+#define coshl cosh
+#define sinhl sinh
+#define tanhl tanh
+#define expl exp
+#define exp2l exp2
+#define expm1l expm1
+#define frexpl frexp
+#define ilogbl ilogb
+#define ldexpl ldexp
+#define logl log
+#define log10l log10
+#define log1pl log1p
+#define log2l log2
+#define logbl logb
+#define modfl modf
+#define scalbnl scalbn
+#define scalblnl scalbln
+#define cbrtl cbrt
+#define fabsl fabs
+#define hypotl hypot
+#define powl pow
+#define sqrtl sqrt
+#define erfl erf
+#define erfcl erfc
+#define lgammal lgamma
+#define tgammal tgamma
+#define ceill ceil
+#define floorl floor
+#define nearbyintl nearbyint
+#define rintl rint
+#define lrintl lrint
+#define llrintl llrint
+#define roundl round
+#define lroundl lround
+#define llroundl llround
+#define truncl trunc
+#define fmodl fmod
+#define remainderl remainder
+#define remquol remquo
+#define copysignl copysign
+#define nanl nan
+#define nextafterl nextafter
+#define fdiml fdim
+#define fmaxl fmax
+#define fminl fmin
+#define fmal fma
+#define nexttoward nextafter
+#define nexttowardf(x, y) nextafterf(x, (float)(y))
+#define nexttowardl nextafter
 #endif
