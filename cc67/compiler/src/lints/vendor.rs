@@ -5,7 +5,7 @@
 
 use std::collections::BTreeSet;
 
-use super::program::Program;
+use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::source::Span;
 use crate::ty::{TypeId, Types};
@@ -17,7 +17,7 @@ use crate::typed::{
 const NEGATIVE: u32 = 0x8000_0000;
 
 /// Looks at every function.
-pub(super) fn check(program: &Program<'_>, sink: &mut Sink) {
+pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.functions() {
         if function.hidden.result_pointer.is_some() {
             sink.report(structure_result(program, function));
@@ -50,7 +50,7 @@ fn warning(span: Span, fault: &str) -> Diagnostic {
     Diagnostic::warning(Lint::Vendor, span, format!("the vendor's compiler {fault}"))
 }
 
-fn structure_result(program: &Program<'_>, function: &Function) -> Diagnostic {
+fn structure_result(program: &AnalysedProgram<'_>, function: &Function) -> Diagnostic {
     let message = format!("returns the structure of `{}` to a wrong address", program.name(function.symbol));
     warning(function.span, &message).help("pass the address of the result, and store through it")
 }
@@ -75,7 +75,7 @@ fn parameter_at(function: &Function, place: PlaceId) -> Option<LocalId> {
 }
 
 /// `<` and the like of unsigned values one of which may have its highest bit set.
-fn signed_comparison(program: &Program<'_>, function: &Function, expr: &Expr) -> Option<Diagnostic> {
+fn signed_comparison(program: &AnalysedProgram<'_>, function: &Function, expr: &Expr) -> Option<Diagnostic> {
     let ExprKind::Compare(op, a, b) = expr.kind else { return None };
     let is_ordered = !matches!(op, CompareOp::Equal | CompareOp::NotEqual);
     let ty = function.exprs[a].ty;
@@ -140,7 +140,7 @@ fn is_low(function: &Function, expr: ExprId) -> bool {
 }
 
 /// `a->x = a->y = … = 0` with more targets than the vendor's compiler survives.
-fn long_chain(program: &Program<'_>, function: &Function, head: ExprId) -> Option<Diagnostic> {
+fn long_chain(program: &AnalysedProgram<'_>, function: &Function, head: ExprId) -> Option<Diagnostic> {
     let mut targets = Vec::new();
     let mut at = head;
     while let ExprKind::Assign(place, value) = function.exprs[at].kind {
