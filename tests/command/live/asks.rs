@@ -7,6 +7,7 @@ use harness::{Scratch, cc67};
 use super::Live;
 use super::browser::Browser;
 use super::page::{press, shows};
+use super::panels::assert_accessible;
 
 /// Asks two questions, the texts of which come after 2000 words of samples in the gather buffer.
 const PROGRAM: &str = "\
@@ -56,9 +57,11 @@ fn a_question_waits_for_its_answer_and_the_answer_is_part_of_the_test() {
     press(&mut browser, "Read gather buffer");
     browser.until(&shows(".gather", "1000 numbers, from 0 to 499.50"));
 
+    assert_accessible(&mut browser);
     press(&mut browser, "No");
     browser.until(&shows("#console", "the answer is 7"));
     browser.until(&shows("#asks", "Depth"));
+    assert_accessible(&mut browser);
     browser.value("document.querySelector('[aria-label=Depth]').value = '2.5'");
     press(&mut browser, "OK");
     browser.until(&shows("#console", "the depth is 2.5"));
