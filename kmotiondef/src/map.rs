@@ -97,6 +97,12 @@ pub const BOARD_STACKS_BASE: u32 = 0x1001_3488;
 /// Bytes of one thread's stack on the real board.
 pub const BOARD_STACK_SIZE: u32 = 2048;
 
+/// Bytes of it that the interrupts of the servo need, rounded up: 172 to 192 were measured.
+pub const INTERRUPT_STACK: u32 = 256;
+
+/// Bytes of it for the functions of a thread: without those of the interrupts and the 16 above the first frame.
+pub const THREAD_STACK: u32 = BOARD_STACK_SIZE - 16 - INTERRUPT_STACK;
+
 /// Where thread `thread`'s program starts.
 #[must_use]
 pub fn program_base(thread: ThreadId) -> GuestAddr {

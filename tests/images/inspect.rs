@@ -86,7 +86,7 @@ fn recursion_has_no_worst_chain() {
     scratch.write("r.c", "int f(int n) { return n ? f(n - 1) : 0; }\nmain() { return f(3); }\n");
     succeed(&scratch, &["build", "--target", "sim", "r.c"]);
     let text = succeed(&scratch, &["inspect", "--stack", "r(1).out"]);
-    assert!(text.contains("worst chain: unknown, the program is recursive"), "{text}");
+    assert!(text.contains("worst chain: unknown: `f` → `f` is recursive"), "{text}");
 }
 
 #[test]
@@ -95,20 +95,21 @@ fn code_of_the_controller_has_stack_calls_and_cycles() {
     scratch.write("p.c", PROGRAM);
     succeed(&scratch, &["build", "-O0", "p.c"]);
     let text = succeed(&scratch, &["inspect", "--calls", "--stack", "p(1).out"]);
-    assert!(text.contains("main\n  calls sum\n  firmware SetBit, printf\n"), "{text}");
-    let chain = text.lines().last().expect("a line");
-    let (names, rest) = chain.split_once(" = ").expect("a sum");
-    let frame =
-        |text: &str| text.rsplit('(').next().and_then(|text| text.strip_suffix(')')?.parse::<u32>().ok());
-    let (main, sum) = names.split_once(" → ").expect("two functions");
-    let total = frame(main).expect("bytes of main") + frame(sum).expect("bytes of sum");
-    assert!(main.starts_with("worst chain: main (") && sum.starts_with("sum ("), "{chain}");
-    assert!(rest.starts_with(&format!("{total} of the board's 2048 bytes")), "{chain}");
-    // What a run uses beyond that is the firmware's.
-    assert!(frame(sum) >= Some(16), "an array of four integers: {chain}");
+    assert!(
+        text.contains("main\n  calls sum\n  through pointers sum\n  firmware SetBit, printf\n"),
+        "{text}"
+    );
+    let frame = |name: &str| {
+        let row = text.lines().find(|line| line.ends_with(&format!("  {name}"))).expect("a row");
+        row.split_whitespace().next().and_then(|bytes| bytes.parse::<u32>().ok()).expect("bytes")
+    };
+    let (main, sum) = (frame("main"), frame("sum"));
+    assert!(sum >= 16, "an array of four integers: {text}");
+    let worst = format!("worst chain: main ({main}) → printf (up to 945) = {} of 1776 bytes\n", main + 945);
+    assert!(text.contains(&worst), "{text}");
     let listing = succeed(&scratch, &["inspect", "-d=sum", "p(1).out"]);
     let head = listing.lines().find(|line| line.starts_with("sum: ;")).expect("a head");
-    assert!(head.contains(&format!("{} of stack, ", frame(sum).expect("bytes"))), "{head}");
+    assert!(head.contains(&format!("{sum} of stack, ")), "{head}");
 }
 
 #[test]
@@ -200,4 +201,40 @@ fn the_firmware_is_listed_for_people_and_tools() {
     let json: serde_json::Value = serde_json::from_str(&json).expect("it is JSON");
     assert!(json["functions"].as_array().is_some_and(|list| list.len() > 100));
     assert!(json["variables"].as_array().is_some_and(|list| list.len() > 50));
+}
+
+const DEEP: &str = r#"#include "KMotionDef.h"
+int table[3];
+int leaf(int n) { return n * 3; }
+int (*pointed)(int) = leaf;
+void fill(int *to, int n) { volatile int some[40]; some[n] = n; to[0] = some[n]; }
+main()
+{
+    int many[100];
+    fill(many, 2);
+    printf("%d %d\n", many[0], pointed(table[1]));
+}
+"#;
+
+#[test]
+fn the_stack_on_the_controller_is_that_of_the_code() {
+    let scratch = Scratch::new("inspect-real-stack");
+    scratch.write("deep.c", DEEP);
+    let text = succeed(&scratch, &["check", "--stack", "deep.c"]);
+    insta::assert_snapshot!(text);
+    succeed(&scratch, &["build", "deep.c"]);
+    assert_eq!(succeed(&scratch, &["inspect", "--stack", "deep(1).out"]), text);
+    let calls = succeed(&scratch, &["inspect", "--calls", "deep(1).out"]);
+    assert!(calls.contains("main\n  calls fill\n  through pointers leaf\n  firmware printf\n"), "{calls}");
+}
+
+#[test]
+fn recursion_on_the_controller_names_the_circle() {
+    let scratch = Scratch::new("inspect-real-recursion");
+    scratch.write(
+        "f.c",
+        "int f(int n) { return n > 1 ? f(n - 1) * n + f(n - 2) : 1; }\nmain() { return f(3); }\n",
+    );
+    let text = succeed(&scratch, &["check", "--stack", "f.c"]);
+    assert!(text.contains("worst chain: unknown: `f` → `f` is recursive\n"), "{text}");
 }

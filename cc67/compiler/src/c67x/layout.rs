@@ -177,10 +177,12 @@ impl Layout {
                 Value::Symbol(symbol, offset) => (Some(symbol), offset),
                 _ => (None, (own.unwrap_or(0) * 4).cast_signed()),
             };
-            let kind = match inst.op() {
-                Op::Mvk => FixupKind::Low(offset),
-                Op::Mvkh => FixupKind::High(offset),
-                _ => FixupKind::Near,
+            let kind = if inst.op() == Op::Mvk {
+                FixupKind::Low(offset)
+            } else if inst.op() == Op::Mvkh {
+                FixupKind::High(offset)
+            } else {
+                FixupKind::Near
             };
             self.laid.fixups.push(Fixup { word, kind, symbol });
         }

@@ -8,7 +8,6 @@ use vm::operand::SigRef;
 use vm::program::Program;
 
 use super::Inspection;
-use super::machine::{self, Called};
 use crate::bytecode::references::{Reference, reference};
 
 /// A function and what it calls.
@@ -18,12 +17,14 @@ pub(super) struct Node {
     pub(super) name: String,
     /// Its address.
     pub(super) address: u32,
-    /// Bytes of its frame in guest memory.
-    pub(super) frame: u32,
+    /// Bytes of its frame in guest memory; `None` if its code does not say.
+    pub(super) frame: Option<u32>,
     /// The functions of the program that it calls, by number.
     pub(super) calls: BTreeSet<usize>,
     /// The functions that its calls through pointers may reach.
     pub(super) through_pointers: BTreeSet<usize>,
+    /// Whether there are such calls.
+    pub(super) calls_pointers: bool,
     /// The firmware's functions that it calls.
     pub(super) firmware: BTreeSet<String>,
 }
@@ -43,9 +44,10 @@ impl Calls {
             let mut node = Node {
                 name: name(inspection, address),
                 address,
-                frame: function.frame,
+                frame: Some(function.frame),
                 calls: BTreeSet::new(),
                 through_pointers: BTreeSet::new(),
+                calls_pointers: false,
                 firmware: BTreeSet::new(),
             };
             for word in function.body.clone() {
@@ -54,7 +56,10 @@ impl Calls {
                     Reference::Firmware(address) => {
                         node.firmware.insert(firmware_name(inspection, address));
                     }
-                    Reference::Pointer(sig) => node.through_pointers.extend(candidates(program, sig, &taken)),
+                    Reference::Pointer(sig) => {
+                        node.calls_pointers = true;
+                        node.through_pointers.extend(candidates(program, sig, &taken));
+                    }
                     Reference::Number(_)
                     | Reference::Float(_)
                     | Reference::Single(_)
@@ -64,34 +69,6 @@ impl Calls {
             node
         });
         Self { nodes: nodes.collect() }
-    }
-
-    /// The functions of code for the processor.
-    ///
-    /// # Errors
-    /// Why they are not known.
-    pub(super) fn of_code(inspection: &Inspection) -> Result<Self, String> {
-        let routines = machine::functions(inspection)?;
-        let nodes = routines.iter().map(|routine| {
-            let mut node = Node {
-                name: routine.name.clone(),
-                address: routine.address,
-                frame: routine.frame(),
-                calls: BTreeSet::new(),
-                through_pointers: BTreeSet::new(),
-                firmware: BTreeSet::new(),
-            };
-            for call in routine.blocks.iter().filter_map(|block| block.call) {
-                let Called::At(address) = call else { continue };
-                let address = machine::beyond(&inspection.image, address);
-                match routines.iter().position(|other| other.address == address) {
-                    Some(number) => drop(node.calls.insert(number)),
-                    None => drop(node.firmware.insert(firmware_name(inspection, address))),
-                }
-            }
-            node
-        });
-        Ok(Self { nodes: nodes.collect() })
     }
 
     /// The call graph, a paragraph for each function.

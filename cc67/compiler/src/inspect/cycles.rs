@@ -203,7 +203,7 @@ impl Listing<'_> {
             code.name,
             code.address,
             code.bytes,
-            code.frame(),
+            super::frames::deepest(code).map_or_else(|| "unknown".to_owned(), |bytes| bytes.to_string()),
             cycles(own),
         );
         let mut last = None;

@@ -7,7 +7,7 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use c67x::{Branch, Inst, Mnemonic, Offset, Operand, PARALLEL, Pred, Reg, Update};
+use c67x::{Branch, Inst, PARALLEL, Pred, Reg};
 
 use super::{Inspection, symbols::EntryKind};
 use crate::c67x::text::constant;
@@ -15,9 +15,8 @@ use crate::c67x::text::constant;
 /// Cycles from the issue of a branch to that of its target.
 const BRANCH: u32 = 6;
 
-/// The register of the return address, and the stack pointer.
+/// The register of the return address.
 const LINK: Reg = c67x::convention::LINK;
-const STACK: Reg = c67x::convention::STACK;
 
 /// Instructions that issue together.
 #[derive(Clone, Debug)]
@@ -116,12 +115,6 @@ impl Routine {
         Ok(own)
     }
 
-    /// Bytes that it takes of the stack: what its beginning takes off the stack pointer before anything is given back.
-    pub(super) fn frame(&self) -> u32 {
-        let moves = self.packets.iter().flat_map(|packet| &packet.insts).filter_map(stack_move);
-        moves.take_while(|bytes| *bytes < 0).map(i32::unsigned_abs).sum()
-    }
-
     /// The packet that is issued at a time, or the first after it.
     fn at_time(&self, time: u32) -> usize {
         self.packets.partition_point(|packet| packet.time < time)
@@ -173,6 +166,10 @@ impl Routine {
                 || others.map(|(_, other, _)| other).any(|other| other.pred().excludes(inst.pred()));
             let targets: Vec<usize> = match (self.target(*packet, inst), inst.branch()) {
                 (Some(target), _) => match self.at_address(target) {
+                    Some(0) if self.sets_link(*packet) => {
+                        blocks[from].call = Some(Called::At(target));
+                        continue;
+                    }
                     Some(target) => vec![number(target)],
                     None if self.sets_link(*packet) => {
                         blocks[from].call = Some(Called::At(target));
@@ -180,7 +177,7 @@ impl Routine {
                     }
                     None => Vec::new(),
                 },
-                (None, Some(Branch::Register(reg))) if reg != LINK => {
+                (None, Some(Branch::Register(reg))) if reg != LINK && !self.keeps_link(*packet, reg) => {
                     if self.sets_link(*packet) {
                         blocks[from].call =
                             Some(self.pointed(*packet, reg).map_or(Called::Pointer, Called::At));
@@ -223,6 +220,24 @@ impl Routine {
         self.packets[from..to].iter().flat_map(|packet| &packet.insts).any(sets)
     }
 
+    /// Whether a register keeps the return address before a packet: it gets copies of the link register, and at the ends
+    /// of the function what it held before.
+    fn keeps_link(&self, packet: usize, reg: Reg) -> bool {
+        let before = self.packets[..packet].iter().flat_map(|packet| &packet.insts);
+        let mut copies = 0;
+        for inst in before.filter(|inst| inst.writes().any(|write| write.reg == reg)) {
+            let is_restored =
+                inst.is_load() && inst.mem().is_some_and(|mem| mem.base == c67x::convention::STACK);
+            let mut reads = inst.reads().map(|read| read.reg);
+            let is_copy = inst.mem().is_none() && reads.next() == Some(LINK) && reads.next().is_none();
+            if !is_copy && !is_restored {
+                return false;
+            }
+            copies += usize::from(is_copy);
+        }
+        copies > 0
+    }
+
     /// The constant that a register holds at a packet: of an `MVK` and an `MVKH` before it.
     fn pointed(&self, packet: usize, reg: Reg) -> Option<u32> {
         let mut high = None;
@@ -238,29 +253,6 @@ impl Routine {
             }
         }
         None
-    }
-}
-
-/// By how many bytes an instruction moves the stack pointer, where that is a constant.
-fn stack_move(inst: &Inst) -> Option<i32> {
-    if !inst.writes().any(|write| write.reg == STACK) {
-        return None;
-    }
-    if let Some(mem) = inst.mem() {
-        let Offset::Const(offset) = mem.offset else { return None };
-        let bytes = i32::from(offset) * inst.mnemonic().bytes().unwrap_or(1).cast_signed();
-        return (mem.update != Update::None).then_some(if mem.negative { -bytes } else { bytes });
-    }
-    let constant = inst.operands().find_map(|operand| match operand {
-        Operand::Const(value) => Some(value),
-        _ => None,
-    })?;
-    match inst.mnemonic() {
-        Mnemonic::Addk | Mnemonic::Add => Some(constant),
-        Mnemonic::Sub => Some(-constant),
-        Mnemonic::Addaw => Some(4 * constant),
-        Mnemonic::Subaw => Some(-4 * constant),
-        _ => None,
     }
 }
 

@@ -5,9 +5,11 @@
 //! packets in their place, from which the listing and the cycles follow. The modules beside this one put parts of it into words.
 
 mod calls;
+mod code_calls;
 mod compare;
 mod cycles;
 mod disassembly;
+mod frames;
 mod json;
 mod lines;
 mod machine;
@@ -102,7 +104,7 @@ impl Inspection {
         }
     }
 
-    /// The guest stack that each function needs, and the worst chain of calls.
+    /// The stack that each function needs, and the worst chain of calls.
     #[must_use]
     pub fn stack(&self) -> String {
         match self.call_graph() {
@@ -112,10 +114,10 @@ impl Inspection {
     }
 
     fn call_graph(&self) -> Result<Calls, String> {
-        match &self.program {
-            Ok(program) => Ok(Calls::of(self, program)),
-            Err(_) if self.image.target == Target::C6000 => Calls::of_code(self),
-            Err(reason) => Err(reason.clone()),
+        match (&self.program, self.image.target) {
+            (Ok(program), _) => Ok(Calls::of(self, program)),
+            (Err(_), Target::C6000) => Calls::of_code(self),
+            (Err(reason), _) => Err(reason.clone()),
         }
     }
 }

@@ -1,110 +1,181 @@
-//! How deep the guest stack can get: frames along chains of calls.
+//! How deep the stack can get: frames along chains of calls.
 //!
-//! A frame holds what has an address: arrays, structures, locals with `&`. Everything else
-//! lives in registers of the machine and costs no stack. In code for the controller's processor a frame also holds
-//! registers and arguments; what firmware functions take comes on top.
+//! In bytecode a frame holds what has an address: arrays, structures, locals with `&`. Everything else lives in
+//! registers of the machine and costs no stack. In code for the controller's processor a frame is what the code takes
+//! from the stack pointer; the interrupts of the servo use the same stack, and so do the firmware's functions.
 
 use std::fmt::Write as _;
 
-use coff::Target;
-use kmotiondef::map::{BOARD_STACK_SIZE, STACK_SIZE};
+use kmotiondef::map::{INTERRUPT_STACK, STACK_SIZE, THREAD_STACK};
 
 use super::Inspection;
-use super::calls::Calls;
+use super::calls::{Calls, Node};
+
+/// Bytes that firmware functions were measured to need at most, with the caller's part (`c67x.md` section 6.3).
+const FIRMWARE: &[(&str, u32)] = &[("printf", 945), ("sprintf", 840)];
 
 /// The most stack that a function and what it calls can need.
 #[derive(Clone, Debug)]
 enum Depth {
-    /// This many bytes, and the function called next on the way there.
-    Bytes(u32, Option<usize>),
-    /// A call leads back to a function that is still at work.
-    Recursive,
+    /// This many bytes, and what is called on the way there.
+    Bytes(u32, Next),
+    /// A call leads back to a function that is still at work, or to one of which nothing is known.
+    Unknown,
+}
+
+/// What is called at the deepest place.
+#[derive(Clone, Copy, Debug)]
+enum Next {
+    Nothing,
+    Function(usize),
+    Firmware(&'static str, u32),
 }
 
 /// Frame and depth of each function, and the worst chain.
 pub(super) fn render(inspection: &Inspection, calls: &Calls) -> String {
-    let depths = depths(calls);
+    let is_real = inspection.image.target == coff::Target::C6000;
+    let depths = Depths { calls, is_real }.all();
     let mut out = String::from("   frame    stack  function\n");
     for (node, depth) in calls.nodes.iter().zip(&depths) {
         let total = match depth {
             Depth::Bytes(bytes, _) => bytes.to_string(),
-            Depth::Recursive => "recursive".to_owned(),
+            Depth::Unknown => "unknown".to_owned(),
         };
+        let frame = node.frame.map_or_else(|| "unknown".to_owned(), |frame| frame.to_string());
         // Writing to a string cannot fail.
-        let _ = writeln!(out, "{:8} {total:>9}  {}", node.frame, node.name);
+        let _ = writeln!(out, "{frame:>8} {total:>9}  {}", node.name);
     }
     let entry = inspection.main();
     let Some(main) = calls.nodes.iter().position(|node| Some(node.address) == entry) else { return out };
+    let limit = if is_real { THREAD_STACK } else { STACK_SIZE };
     let _ = match depths.get(main) {
         Some(Depth::Bytes(bytes, _)) => {
-            let names = chain(calls, &depths, main);
-            match inspection.image.target {
-                Target::C6000 => writeln!(
-                    out,
-                    "worst chain: {names} = {bytes} of the board's {BOARD_STACK_SIZE} bytes, without what firmware functions \
-                     and interrupts take"
-                ),
-                _ => writeln!(out, "worst chain: {names} = {bytes} of {STACK_SIZE} bytes"),
-            }
+            let much = if *bytes > limit { ": too much" } else { "" };
+            writeln!(out, "worst chain: {} = {bytes} of {limit} bytes{much}", chain(calls, &depths, main))
         }
-        _ => writeln!(out, "worst chain: unknown, the program is recursive"),
+        _ => writeln!(out, "worst chain: unknown: {}", reason(calls, main)),
     };
+    if is_real {
+        let _ = writeln!(
+            out,
+            "of a thread's 2048 bytes, {INTERRUPT_STACK} are kept for the interrupts of the servo"
+        );
+    }
+    for node in calls.nodes.iter().filter(|node| node.calls_pointers && node.through_pointers.is_empty()) {
+        let _ = writeln!(out, "not counted: what `{}` calls through a pointer", node.name);
+    }
     out
 }
 
-/// The depth of every function. Callees are done before their callers; the graph of calls is
-/// walked with a stack of its own, because programs may nest deeper than our own stack.
-fn depths(calls: &Calls) -> Vec<Depth> {
-    let mut depths: Vec<Option<Depth>> = vec![None; calls.nodes.len()];
-    let mut at_work = vec![false; calls.nodes.len()];
-    for start in 0..calls.nodes.len() {
-        let mut path = vec![start];
-        while let Some(index) = path.last().copied() {
-            let Some(node) = calls.nodes.get(index) else { break };
-            let mut callees = node.calls.union(&node.through_pointers);
-            at_work[index] = true;
-            match callees.find(|callee| depths[**callee].is_none() && !at_work[**callee]) {
-                Some(next) if depths[index].is_none() => path.push(*next),
-                _ => {
-                    path.pop();
-                    at_work[index] = false;
-                    if depths[index].is_none() {
-                        depths[index] = Some(depth(calls, index, &depths));
+struct Depths<'a> {
+    calls: &'a Calls,
+    /// Whether it is code for the processor, where the firmware's functions are on the same stack.
+    is_real: bool,
+}
+
+impl Depths<'_> {
+    /// The depth of every function. Callees are done before their callers; the graph of calls is walked with a stack of
+    /// its own, because programs may nest deeper than our own stack.
+    fn all(&self) -> Vec<Depth> {
+        let calls = self.calls;
+        let mut depths: Vec<Option<Depth>> = vec![None; calls.nodes.len()];
+        let mut at_work = vec![false; calls.nodes.len()];
+        for start in 0..calls.nodes.len() {
+            let mut path = vec![start];
+            while let Some(index) = path.last().copied() {
+                let Some(node) = calls.nodes.get(index) else { break };
+                let mut callees = callees(node);
+                at_work[index] = true;
+                match callees.find(|callee| depths[*callee].is_none() && !at_work[*callee]) {
+                    Some(next) if depths[index].is_none() => path.push(next),
+                    _ => {
+                        path.pop();
+                        at_work[index] = false;
+                        if depths[index].is_none() {
+                            depths[index] = Some(self.of(node, &depths));
+                        }
                     }
                 }
             }
         }
+        depths.into_iter().map(|depth| depth.unwrap_or(Depth::Unknown)).collect()
     }
-    depths.into_iter().map(|depth| depth.unwrap_or(Depth::Recursive)).collect()
+
+    /// The depth of one function from those of its callees; one without depth is still at work.
+    fn of(&self, node: &Node, depths: &[Option<Depth>]) -> Depth {
+        let Some(frame) = node.frame else { return Depth::Unknown };
+        let mut deepest = (0, Next::Nothing);
+        for (name, bytes) in FIRMWARE.iter().filter(|(name, _)| self.is_real && node.firmware.contains(*name))
+        {
+            if *bytes > deepest.0 {
+                deepest = (*bytes, Next::Firmware(name, *bytes));
+            }
+        }
+        for callee in callees(node) {
+            let Some(Some(Depth::Bytes(bytes, _))) = depths.get(callee) else { return Depth::Unknown };
+            if matches!(deepest.1, Next::Nothing) || *bytes > deepest.0 {
+                deepest = (*bytes, Next::Function(callee));
+            }
+        }
+        Depth::Bytes(frame.saturating_add(deepest.0), deepest.1)
+    }
 }
 
-/// The depth of one function from those of its callees; one without depth is still at work.
-fn depth(calls: &Calls, index: usize, depths: &[Option<Depth>]) -> Depth {
-    let Some(node) = calls.nodes.get(index) else { return Depth::Recursive };
-    let mut deepest = (0, None);
-    for callee in node.calls.union(&node.through_pointers) {
-        match depths.get(*callee) {
-            Some(Some(Depth::Bytes(bytes, _))) if deepest.1.is_none() || *bytes > deepest.0 => {
-                deepest = (*bytes, Some(*callee));
-            }
-            Some(Some(Depth::Bytes(..))) => {}
-            _ => return Depth::Recursive,
-        }
-    }
-    Depth::Bytes(node.frame.saturating_add(deepest.0), deepest.1)
+/// The functions that one can call, by number.
+fn callees(node: &Node) -> impl Iterator<Item = usize> {
+    node.calls.union(&node.through_pointers).copied()
 }
 
 /// The names along the deepest way, `main (16) → read (120)`.
 fn chain(calls: &Calls, depths: &[Depth], start: usize) -> String {
     let mut names = Vec::new();
-    let mut next = Some(start);
-    while let Some(index) = next {
-        let Some(node) = calls.nodes.get(index) else { break };
-        names.push(format!("{} ({})", node.name, node.frame));
-        next = match depths.get(index) {
-            Some(Depth::Bytes(_, next)) => *next,
-            _ => None,
-        };
+    let mut next = Next::Function(start);
+    loop {
+        match next {
+            Next::Nothing => break,
+            Next::Firmware(name, bytes) => {
+                names.push(format!("{name} (up to {bytes})"));
+                break;
+            }
+            Next::Function(index) => {
+                let Some(node) = calls.nodes.get(index) else { break };
+                names.push(format!("{} ({})", node.name, node.frame.unwrap_or_default()));
+                next = match depths.get(index) {
+                    Some(Depth::Bytes(_, next)) => *next,
+                    _ => Next::Nothing,
+                };
+            }
+        }
     }
     names.join(" → ")
+}
+
+/// Why the depth of a function is not known: the first circle of calls that it reaches, or a frame without a size.
+fn reason(calls: &Calls, start: usize) -> String {
+    let mut path =
+        vec![(start, calls.nodes.get(start).map(|node| callees(node).collect()).unwrap_or_default())];
+    let mut seen = vec![false; calls.nodes.len()];
+    while let Some((index, open)) = path.last_mut() {
+        let open: &mut Vec<usize> = open;
+        let Some(node) = calls.nodes.get(*index) else { break };
+        if node.frame.is_none() {
+            return format!(
+                "`{}` moves the stack pointer by an amount that its code does not say",
+                node.name
+            );
+        }
+        let Some(next) = open.pop() else {
+            path.pop();
+            continue;
+        };
+        if let Some(from) = path.iter().position(|(index, _)| *index == next) {
+            let circle = path[from..].iter().map(|(index, _)| *index).chain([next]);
+            let names = circle.filter_map(|index| Some(format!("`{}`", calls.nodes.get(index)?.name)));
+            return format!("{} is recursive", names.collect::<Vec<_>>().join(" → "));
+        }
+        if !std::mem::replace(&mut seen[next], true) {
+            path.push((next, calls.nodes.get(next).map(|node| callees(node).collect()).unwrap_or_default()));
+        }
+    }
+    "the program is recursive".to_owned()
 }

@@ -100,7 +100,9 @@ impl Search<'_> {
         let last = match op {
             CompareOp::Less => end - 1,
             CompareOp::LessEqual => *end,
-            _ => return None,
+            CompareOp::Equal | CompareOp::NotEqual | CompareOp::Greater | CompareOp::GreaterEqual => {
+                return None;
+            }
         };
         let counts = update.op == BinaryOp::Add && self.register(update.place) == Some(local) && *step > 0;
         if !counts || self.loaded(tested) != Some(local) || last < *first {
@@ -220,7 +222,13 @@ impl Search<'_> {
                     BinaryOp::Add => a.checked_add(b),
                     BinaryOp::Subtract => a.checked_sub(b),
                     BinaryOp::Multiply => a.checked_mul(b),
-                    _ => None,
+                    BinaryOp::Divide
+                    | BinaryOp::Remainder
+                    | BinaryOp::And
+                    | BinaryOp::Or
+                    | BinaryOp::Xor
+                    | BinaryOp::ShiftLeft
+                    | BinaryOp::ShiftRight => None,
                 }
             }
             _ => None,

@@ -167,7 +167,16 @@ impl Sema<'_> {
                 BinaryOp::And | BinaryOp::Or | BinaryOp::Xor | BinaryOp::Remainder if is_integers => {
                     self.in_common_type(ty, value, span)
                 }
-                _ => return self.refuse_update(operator, ty, from, span),
+                BinaryOp::ShiftLeft
+                | BinaryOp::ShiftRight
+                | BinaryOp::Add
+                | BinaryOp::Subtract
+                | BinaryOp::Multiply
+                | BinaryOp::Divide
+                | BinaryOp::And
+                | BinaryOp::Or
+                | BinaryOp::Xor
+                | BinaryOp::Remainder => return self.refuse_update(operator, ty, from, span),
             }
         };
         let update = Update { place: target.place, op, operand, computed, result };

@@ -150,7 +150,12 @@ macro_rules! binary_float {
                 BinaryOp::Subtract => a - b,
                 BinaryOp::Multiply => a * b,
                 BinaryOp::Divide => a / b,
-                _ => return None,
+                BinaryOp::Remainder
+                | BinaryOp::And
+                | BinaryOp::Or
+                | BinaryOp::Xor
+                | BinaryOp::ShiftLeft
+                | BinaryOp::ShiftRight => return None,
             })
         }
     };

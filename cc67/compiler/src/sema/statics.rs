@@ -103,23 +103,19 @@ impl Sema<'_> {
             ExprKind::Convert(inner) if self.types.size_of(expr.ty) == Some(4) && !expr.ty.is_floating() => {
                 self.static_value(inner, depth)
             }
-            ExprKind::Binary(op @ (BinaryOp::Add | BinaryOp::Subtract), a, b) => {
-                match (op, self.static_value(a, depth)?, self.static_value(b, depth)?) {
-                    (
-                        BinaryOp::Add,
-                        StaticValue::Address(symbol, addend),
-                        StaticValue::Constant(Constant::Int(by)),
-                    )
-                    | (
-                        BinaryOp::Add,
-                        StaticValue::Constant(Constant::Int(by)),
-                        StaticValue::Address(symbol, addend),
-                    ) => Ok(StaticValue::Address(symbol, addend.wrapping_add(by as i32))),
-                    (
-                        BinaryOp::Subtract,
-                        StaticValue::Address(symbol, addend),
-                        StaticValue::Constant(Constant::Int(by)),
-                    ) => Ok(StaticValue::Address(symbol, addend.wrapping_sub(by as i32))),
+            ExprKind::Binary(op, a, b) if [BinaryOp::Add, BinaryOp::Subtract].contains(&op) => {
+                use StaticValue::{Address, Constant as Known};
+                let is_sum = op == BinaryOp::Add;
+                match (self.static_value(a, depth)?, self.static_value(b, depth)?) {
+                    (Address(symbol, addend), Known(Constant::Int(by)))
+                    | (Known(Constant::Int(by)), Address(symbol, addend))
+                        if is_sum =>
+                    {
+                        Ok(Address(symbol, addend.wrapping_add(by as i32)))
+                    }
+                    (Address(symbol, addend), Known(Constant::Int(by))) => {
+                        Ok(Address(symbol, addend.wrapping_sub(by as i32)))
+                    }
                     _ => Err(value),
                 }
             }

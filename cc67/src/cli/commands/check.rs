@@ -9,8 +9,12 @@ use kmotiondef::ThreadId;
 use crate::cli::args::compiler::CompilerArguments;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::input::read;
+use crate::cli::io::output;
 use crate::cli::report::diagnostics;
+use compiler::image;
+use compiler::inspect::Inspection;
 use compiler::pp::Disk;
+use compiler::target::Target;
 
 /// Arguments of `cc67 check`.
 #[derive(Debug, Args)]
@@ -18,13 +22,19 @@ pub(super) struct CheckArguments {
     /// The programs
     #[arg(required_unless_present = "explain", value_name = "FILE")]
     files: Vec<PathBuf>,
+    /// Show the stack that each function takes on the controller, and the worst chain of calls
+    #[arg(long)]
+    stack: bool,
     #[command(flatten)]
     compiler: CompilerArguments,
 }
 
 /// Compiles every program and reports what is wrong with it.
 pub(super) fn check(arguments: &CheckArguments) -> Result<Exit> {
-    let options = arguments.compiler.resolve()?;
+    let mut options = arguments.compiler.resolve()?;
+    if arguments.stack {
+        options.target = arguments.compiler.target().unwrap_or(Target::C67x);
+    }
     let levels = arguments.compiler.levels()?;
     let mut has_errors = false;
     for path in &arguments.files {
@@ -32,8 +42,13 @@ pub(super) fn check(arguments: &CheckArguments) -> Result<Exit> {
         let mut compilation = compiler::compile(path, text, &options, &Disk);
         // Which thread it would run in makes no difference to what can be wrong.
         let thread = ThreadId::all().next().context("the board has threads")?;
-        compilation.link(thread, &options);
+        let linked = compilation.link(thread, &options);
         has_errors |= diagnostics::report(&compilation, &levels, arguments.compiler.format());
+        if let Some(linked) = linked.filter(|_| arguments.stack) {
+            let name =
+                if arguments.files.len() > 1 { format!("{}\n", path.display()) } else { String::new() };
+            output::print(&(name + &Inspection::read(&image::write(&linked)?)?.stack()))?;
+        }
     }
     Ok(if has_errors { Exit::Failure } else { Exit::Success })
 }

@@ -28,44 +28,42 @@ impl Selector<'_> {
 
     pub(super) fn binary_i64(&mut self, op: BinaryOp, dst: ValueId, a: Operand, b: Operand) {
         let to = self.value(dst);
-        match op {
-            BinaryOp::ShiftLeft | BinaryOp::ShiftRight | BinaryOp::ShiftRightUnsigned => {
-                return self.shift_i64(op, to, a, b);
-            }
+        let (low, high) = match op {
+            BinaryOp::ShiftLeft => return self.shift_i64(op, "__cc67_shl64", to, a, b),
+            BinaryOp::ShiftRight => return self.shift_i64(op, "__cc67_shr64", to, a, b),
+            BinaryOp::ShiftRightUnsigned => return self.shift_i64(op, "__cc67_shru64", to, a, b),
             BinaryOp::Divide => return self.helper_i64("__cc67_div64", to, a, b),
             BinaryOp::DivideUnsigned => return self.helper_i64("__cc67_divu64", to, a, b),
             BinaryOp::Remainder => return self.helper_i64("__cc67_rem64", to, a, b),
             BinaryOp::RemainderUnsigned => return self.helper_i64("__cc67_remu64", to, a, b),
-            BinaryOp::Add
-            | BinaryOp::Subtract
-            | BinaryOp::Multiply
-            | BinaryOp::And
-            | BinaryOp::Or
-            | BinaryOp::Xor => {}
-        }
-        let (a, b) = (self.operand(a), self.operand(b));
-        let (low, high) = match op {
-            BinaryOp::Add => {
-                let low = self.make(Kind::Add, Arg::Low(a), Arg::Low(b));
-                let carry = self.make(Kind::CmpLtu, low, Arg::Low(a));
-                let high = self.make(Kind::Add, Arg::High(a), Arg::High(b));
-                (low, self.make(Kind::Add, high, carry))
-            }
-            BinaryOp::Subtract => {
-                let low = self.make(Kind::Sub, Arg::Low(a), Arg::Low(b));
-                let borrow = self.make(Kind::CmpLtu, Arg::Low(a), Arg::Low(b));
-                let high = self.make(Kind::Sub, Arg::High(a), Arg::High(b));
-                (low, self.make(Kind::Sub, high, borrow))
-            }
+            BinaryOp::Add => self.sum(a, b),
+            BinaryOp::Subtract => self.difference(a, b),
             BinaryOp::Multiply => self.product(a, b),
             BinaryOp::And => self.by_words(Kind::And, a, b),
             BinaryOp::Or => self.by_words(Kind::Or, a, b),
-            _ => self.by_words(Kind::Xor, a, b),
+            BinaryOp::Xor => self.by_words(Kind::Xor, a, b),
         };
         self.join(to, low, high);
     }
 
-    fn by_words(&mut self, kind: Kind, a: VReg, b: VReg) -> (VReg, VReg) {
+    fn sum(&mut self, a: Operand, b: Operand) -> (VReg, VReg) {
+        let (a, b) = (self.operand(a), self.operand(b));
+        let low = self.make(Kind::Add, Arg::Low(a), Arg::Low(b));
+        let carry = self.make(Kind::CmpLtu, low, Arg::Low(a));
+        let high = self.make(Kind::Add, Arg::High(a), Arg::High(b));
+        (low, self.make(Kind::Add, high, carry))
+    }
+
+    fn difference(&mut self, a: Operand, b: Operand) -> (VReg, VReg) {
+        let (a, b) = (self.operand(a), self.operand(b));
+        let low = self.make(Kind::Sub, Arg::Low(a), Arg::Low(b));
+        let borrow = self.make(Kind::CmpLtu, Arg::Low(a), Arg::Low(b));
+        let high = self.make(Kind::Sub, Arg::High(a), Arg::High(b));
+        (low, self.make(Kind::Sub, high, borrow))
+    }
+
+    fn by_words(&mut self, kind: Kind, a: Operand, b: Operand) -> (VReg, VReg) {
+        let (a, b) = (self.operand(a), self.operand(b));
         (self.make(kind, Arg::Low(a), Arg::Low(b)), self.make(kind, Arg::High(a), Arg::High(b)))
     }
 
@@ -76,7 +74,8 @@ impl Selector<'_> {
 
     /// The low 64 bits of a product. The processor multiplies signed words to 64 bits; a factor whose top bit is set
     /// counts 2³² too little.
-    fn product(&mut self, a: VReg, b: VReg) -> (VReg, VReg) {
+    fn product(&mut self, a: Operand, b: Operand) -> (VReg, VReg) {
+        let (a, b) = (self.operand(a), self.operand(b));
         let whole = self.pair();
         self.push(Kind::Mpyid, whole, Arg::Low(a), Arg::Low(b));
         let cross1 = self.make(Kind::Mpyi, Arg::Low(a), Arg::High(b));
@@ -94,14 +93,10 @@ impl Selector<'_> {
         (low, high)
     }
 
-    fn shift_i64(&mut self, op: BinaryOp, dst: VReg, a: Operand, b: Operand) {
+    /// A shift; `name` is the function for a count that is not known.
+    fn shift_i64(&mut self, op: BinaryOp, name: &'static str, dst: VReg, a: Operand, b: Operand) {
         let a = self.operand(a);
         let Some(count) = b.as_int() else {
-            let name = match op {
-                BinaryOp::ShiftLeft => "__cc67_shl64",
-                BinaryOp::ShiftRight => "__cc67_shr64",
-                _ => "__cc67_shru64",
-            };
             let count = self.operand(b);
             return self.helper(name, &[a, count], dst);
         };
