@@ -2,6 +2,7 @@
 
 use crate::diag::Diagnostic;
 use crate::source::Span;
+use crate::words::foreign;
 
 /// Why the program cannot be linked.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -95,11 +96,13 @@ impl LinkError {
             Some(users) => diagnostic.note(format!("used by {}", enumerate(users))),
         };
         match &self.kind {
-            LinkErrorKind::Undefined { name, suggestion: Some(near) } => {
-                diagnostic.undefined(name).help(format!("did you mean `{near}`?"))
-            }
-            LinkErrorKind::Undefined { name, suggestion: None } => {
-                diagnostic.undefined(name).at("neither the program nor the firmware defines it")
+            LinkErrorKind::Undefined { name, suggestion } => {
+                let diagnostic = diagnostic.undefined(name);
+                match (foreign::word(name), suggestion) {
+                    (Some(word), _) => diagnostic.help(word.advice),
+                    (None, Some(near)) => diagnostic.help(format!("did you mean `{near}`?")),
+                    (None, None) => diagnostic.at("neither the program nor the firmware defines it"),
+                }
             }
             LinkErrorKind::TooLarge { largest, .. } => diagnostic
                 .note(format!("the largest parts in bytes: {}", largest.join(", ")))

@@ -56,6 +56,13 @@ use Origin::{Arduino, Board, Computer, Console, Cpp, Example, Script};
 const PC_REQUESTS: &str =
     "take it from the manual's example `KFLOPtoPCCmdExamples.c`, or `#include` a file that defines it";
 
+const NO_KEYBOARD: &str = "a program has no keyboard; `persist.UserData` holds what the PC sends";
+
+const TEXT_FILES: &str = "files of the PC are text: `fprintf` writes them, `fgets` and `fscanf` read them";
+
+const NO_JUMPS: &str =
+    "not built yet: cc67 has no jumps out of a function; let the functions in between return a value";
+
 /// Every word, by origin.
 const WORDS: &[Word] = &[
     lead("delay", Arduino, "`Delay_sec(0.1)` waits a tenth of a second"),
@@ -77,7 +84,7 @@ const WORDS: &[Word] = &[
     companion("OUTPUT", Arduino, "`SetBitDirection(46, 1)` makes bit 46 an output"),
     companion("INPUT", Arduino, "`SetBitDirection(46, 0)` makes bit 46 an input"),
     lead("cout", Cpp, "`printf(\"%f\\n\", value)` writes to the console"),
-    lead("cin", Cpp, "a program has no keyboard; `persist.UserData` holds what the PC sends"),
+    lead("cin", Cpp, NO_KEYBOARD),
     companion("endl", Cpp, "a line ends in `\\n`"),
     companion("std", Cpp, "C has no namespaces"),
     lead("new", Cpp, "give an array a fixed size, such as `double samples[100];`"),
@@ -88,6 +95,20 @@ const WORDS: &[Word] = &[
     lead("sleep", Computer, "`Delay_sec(1.0)` waits a second"),
     lead("Sleep", Computer, "`Delay_sec(1.0)` waits a second"),
     lead("usleep", Computer, "`Delay_sec(0.001)` waits a millisecond"),
+    lead("clock", Computer, "`Time_sec()` is the time in seconds"),
+    lead("getchar", Computer, NO_KEYBOARD),
+    lead("gets", Computer, NO_KEYBOARD),
+    lead("scanf", Computer, NO_KEYBOARD),
+    lead("stdin", Computer, NO_KEYBOARD),
+    lead("stdout", Computer, "`printf` writes to the console"),
+    lead("stderr", Computer, "`printf` writes to the console"),
+    lead("fputs", Computer, "`fprintf(file, \"%s\", text)` writes to a file of the PC"),
+    lead("fread", Computer, TEXT_FILES),
+    lead("fwrite", Computer, TEXT_FILES),
+    lead("fseek", Computer, TEXT_FILES),
+    lead("setjmp", Computer, NO_JUMPS),
+    lead("longjmp", Computer, NO_JUMPS),
+    lead("strtof", Computer, "`strtod` reads a number"),
     lead("None", Script, "write `NULL`, or 0 for a number"),
     lead("True", Script, "use `TRUE` of `KMotionDef.h`, or 1"),
     lead("False", Script, "use `FALSE` of `KMotionDef.h`, or 0"),
