@@ -34,6 +34,7 @@ impl PcArguments {
     }
 
     /// The answers that are given one by one, as they were typed.
+    #[cfg(feature = "live")]
     pub(crate) fn single_answers(&self) -> &[String] {
         &self.answer
     }
