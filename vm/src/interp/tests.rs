@@ -123,8 +123,8 @@ fn loads_and_stores_extend_and_truncate() {
         "copy r1, r1, 8 | add_i32_imm r3, r1, -4 | copy r3, r1, 8 | load_i32 r0, r1, +0",
         0x8081_f283_u32.cast_signed(),
     );
-    check_i32("frame_addr r1, 8 | const_i32 r2, 5 | store_i32 r2, r1, +4 | load_i32_at r0, 0x800c7ffc", 0);
-    check_i32("frame_addr r0, 8", 0x800c_7fe8_u32.cast_signed());
+    check_i32("frame_addr r1, 8 | const_i32 r2, 5 | store_i32 r2, r1, +4 | load_i32_at r0, 0x80007ffc", 0);
+    check_i32("frame_addr r0, 8", 0x8000_7fe8_u32.cast_signed());
 }
 
 #[test]

@@ -165,15 +165,16 @@ fn a_program_larger_than_its_space_enters_the_next_ones() {
     assert!(warning.ends_with("enters the space of thread 3, 4, 5"), "{warning}");
     let notes = linked.warnings.first().map(|warning| warning.to_diagnostic().notes).unwrap_or_default();
     assert!(notes[0].starts_with("the largest parts in bytes: a (200000), main ("), "{notes:?}");
-    let errors = try_link(&[source], 5, true).expect_err("does not fit");
+    let source = "char a[400000]; main() { a[0] = 1; }";
+    let errors = try_link(&[source], 7, true).expect_err("does not fit");
     let message = errors[0].to_diagnostic();
     assert!(
-        message.message.ends_with("bytes too large for the 196608 bytes after its address"),
+        message.message.ends_with("bytes too large for the 327680 bytes after its address"),
         "{}",
         message.message
     );
     assert!(
-        message.notes[0].starts_with("the largest parts in bytes: a (200000), main ("),
+        message.notes[0].starts_with("the largest parts in bytes: a (400000), main ("),
         "{:?}",
         message.notes
     );
