@@ -2,6 +2,7 @@
 
 mod c_interface;
 mod cost;
+mod cost_calls;
 mod devices;
 mod disk_files;
 mod fidelity;

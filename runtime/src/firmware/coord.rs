@@ -5,6 +5,7 @@ use kmotiondef::variables::CS0_STOPPING_STATE;
 use vm::firmware::{Caller, Outcome, Wake};
 
 use super::calls::Continuation;
+use super::costs;
 use super::parts::Parts;
 use crate::out::Message;
 use crate::servo::coordinated::feedhold::HoldState;
@@ -120,6 +121,12 @@ fn stop_later(parts: &mut Parts, caller: &Caller<'_>, left: Vec<AxisId>) -> Outc
 }
 
 pub(crate) fn update_stopping_state(_: &mut Parts, caller: &mut Caller<'_>) {
+    let cycles = match HoldState::of(caller.memory) {
+        HoldState::Running => -40,
+        HoldState::StoppingPath | HoldState::StoppingAxes => 0,
+        HoldState::PathStopped | HoldState::AxesStopped => 195,
+    };
+    costs::spend(caller, cycles);
     hold::update_state(caller.memory);
 }
 

@@ -6,6 +6,7 @@ use kmotiondef::limits::{MAX_PWM_VALUE, MAX_PWMC_VALUE, MAX_PWMR_VALUE};
 use kmotiondef::variables::{ADC_BUFFER_IN, KSTEP_PRESENT};
 use vm::firmware::Caller;
 
+use super::costs;
 use super::parts::Parts;
 use crate::io::amplifiers::{antiphase, current, recirculate, store_pwm};
 use crate::io::fpga::kanalog_pins;
@@ -24,6 +25,7 @@ fn checked(parts: &mut Parts, caller: &Caller<'_>, function: &'static str, bit: 
 }
 
 pub(crate) fn set_bit_direction(parts: &mut Parts, caller: &mut Caller<'_>, bit: i32, direction: i32) {
+    costs::spend_bit(caller, if direction == 0 { costs::TO_INPUT } else { costs::TO_OUTPUT }, bit);
     let Some(bit) = checked(parts, caller, "SetBitDirection", bit) else { return };
     let (is_output, now) = (direction != 0, caller.now());
     if is_output && (parts.io.pins.is_declared(bit) || parts.machine.mechanics.contact(bit).is_some()) {
@@ -54,14 +56,17 @@ pub(crate) fn get_bit_direction(parts: &mut Parts, caller: &mut Caller<'_>, bit:
 }
 
 pub(crate) fn set_bit(parts: &mut Parts, caller: &mut Caller<'_>, bit: i32) {
+    costs::spend_bit(caller, costs::SET_BIT, bit);
     write(parts, caller, "SetBit", bit, true);
 }
 
 pub(crate) fn clear_bit(parts: &mut Parts, caller: &mut Caller<'_>, bit: i32) {
+    costs::spend_bit(caller, costs::CLEAR_BIT, bit);
     write(parts, caller, "ClearBit", bit, false);
 }
 
 pub(crate) fn set_state_bit(parts: &mut Parts, caller: &mut Caller<'_>, bit: i32, state: i32) {
+    costs::spend_bit(caller, if state == 0 { costs::RESET_STATE_BIT } else { costs::SET_STATE_BIT }, bit);
     write(parts, caller, "SetStateBit", bit, state != 0);
 }
 
@@ -102,6 +107,7 @@ fn check_read(parts: &mut Parts, caller: &Caller<'_>, bit: Bit) {
 }
 
 pub(crate) fn read_bit(parts: &mut Parts, caller: &mut Caller<'_>, bit: i32) -> i32 {
+    costs::spend_bit(caller, costs::READ_BIT, bit);
     let Some(bit) = checked(parts, caller, "ReadBit", bit) else { return 0 };
     let (level, is_input) = bits::bit_state(&parts.io, caller.memory, bit);
     if !is_input || range_of(bit).is_none() {

@@ -4,6 +4,7 @@ pub(crate) mod calls;
 pub(crate) mod changed;
 pub(crate) mod console;
 pub(crate) mod coord;
+mod costs;
 pub(crate) mod dispatch;
 pub(crate) mod files;
 pub(crate) mod gather;

@@ -10,6 +10,7 @@ use vm::memory::GuestMemory;
 use vm::trap::TrapKind;
 
 use super::calls::Continuation;
+use super::costs;
 use super::parts::Parts;
 use crate::io::stepgen::generator_of;
 use crate::machine::Drive;
@@ -225,7 +226,11 @@ fn request(parts: &mut Parts, caller: &mut Caller<'_>, request: &MoveRequest) ->
     }
     notice_hurry(parts, caller, axis, request.function);
     match limits(caller.memory, axis, request.velocity) {
-        Some(limits) => start_move_to(caller.memory, axis, target, &limits, LastMotion::Move),
+        Some(limits) => {
+            if start_move_to(caller.memory, axis, target, &limits, LastMotion::Move) {
+                costs::spend(caller, costs::FULL_SPEED);
+            }
+        }
         None => no_limits(parts, caller, axis, request.function),
     }
     Outcome::Done(())
@@ -373,7 +378,9 @@ pub(crate) fn move_xyzabc(
     for (axis, target) in moves {
         if may_move(parts, caller, axis, "MoveXYZABC") && is_place(parts, caller, "MoveXYZABC", target) {
             match limits(caller.memory, axis, None) {
-                Some(limits) => start_move_to(caller.memory, axis, target, &limits, LastMotion::Multi),
+                Some(limits) => {
+                    start_move_to(caller.memory, axis, target, &limits, LastMotion::Multi);
+                }
                 None => no_limits(parts, caller, axis, "MoveXYZABC"),
             }
         }

@@ -4,9 +4,10 @@ use kmotiondef::GuestAddr;
 use vm::firmware::{Caller, Outcome};
 use vm::trap::TrapKind;
 
+use super::costs::{self, IntegerReading};
 use super::not_modelled;
 use super::parts::Parts;
-use super::string::text;
+use super::string::LONGEST;
 use crate::out::Message;
 use crate::text::{float_prefix, integer_prefix};
 
@@ -29,6 +30,7 @@ pub(crate) fn calloc(
         return Ok(GuestAddr::NULL);
     };
     caller.memory.fill(block, 0, bytes)?;
+    costs::spend(caller, 24 + i64::from(bytes) * 3 / 4);
     Ok(block)
 }
 
@@ -78,19 +80,26 @@ fn blanks(text: &[u8]) -> usize {
 }
 
 /// An integer in text, and where it ends.
-fn integer(caller: &mut Caller<'_>, string: GuestAddr, base: u32) -> Result<(i64, GuestAddr), TrapKind> {
-    let text = text(caller, string)?;
+fn integer(
+    caller: &mut Caller<'_>,
+    string: GuestAddr,
+    base: u32,
+    reading: IntegerReading,
+) -> Result<(i64, GuestAddr), TrapKind> {
+    let text = caller.memory.read_c_string(string, LONGEST)?;
     let start = blanks(&text);
     let (value, used) = integer_prefix(&text[start..], base);
+    costs::spend(caller, costs::of_integer(reading, start, &text[start..start + used]));
     let end = if used == 0 { 0 } else { start + used };
     Ok((value, string.offset(end as u32)))
 }
 
 /// A double in text, and where it ends.
 fn float(caller: &mut Caller<'_>, string: GuestAddr) -> Result<(f64, GuestAddr), TrapKind> {
-    let text = text(caller, string)?;
+    let text = caller.memory.read_c_string(string, LONGEST)?;
     let start = blanks(&text);
     let (value, used) = float_prefix(&text[start..]);
+    costs::spend(caller, costs::of_double(&text[start..start + used]));
     let end = if used == 0 { 0 } else { start + used };
     Ok((value, string.offset(end as u32)))
 }
@@ -101,7 +110,7 @@ fn store_end(caller: &mut Caller<'_>, place: GuestAddr, end: GuestAddr) -> Resul
 }
 
 pub(crate) fn atoi(_: &mut Parts, caller: &mut Caller<'_>, string: GuestAddr) -> Result<i32, TrapKind> {
-    Ok(integer(caller, string, 10)?.0 as i32)
+    Ok(integer(caller, string, 10, IntegerReading::Plain)?.0 as i32)
 }
 
 pub(crate) fn atol(parts: &mut Parts, caller: &mut Caller<'_>, string: GuestAddr) -> Result<i32, TrapKind> {
@@ -119,20 +128,31 @@ pub(crate) fn strtol(
     end: GuestAddr,
     base: i32,
 ) -> Result<i32, TrapKind> {
+    Ok(in_base(caller, string, end, base, IntegerReading::Signed)? as i32)
+}
+
+/// An integer in a base that the program gives; its end is stored.
+fn in_base(
+    caller: &mut Caller<'_>,
+    string: GuestAddr,
+    end: GuestAddr,
+    base: i32,
+    reading: IntegerReading,
+) -> Result<i64, TrapKind> {
     let base = u32::try_from(base).ok().filter(|&base| base == 0 || (2..=36).contains(&base));
-    let (value, stopped) = integer(caller, string, base.unwrap_or(10))?;
+    let (value, stopped) = integer(caller, string, base.unwrap_or(10), reading)?;
     store_end(caller, end, stopped)?;
-    Ok(value as i32)
+    Ok(value)
 }
 
 pub(crate) fn strtoul(
-    parts: &mut Parts,
+    _: &mut Parts,
     caller: &mut Caller<'_>,
     string: GuestAddr,
     end: GuestAddr,
     base: i32,
 ) -> Result<u32, TrapKind> {
-    Ok(strtol(parts, caller, string, end, base)? as u32)
+    Ok(in_base(caller, string, end, base, IntegerReading::Unsigned)? as u32)
 }
 
 pub(crate) fn strtod(

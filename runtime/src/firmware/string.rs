@@ -10,7 +10,7 @@ use vm::trap::TrapKind;
 use super::parts::Parts;
 
 /// Longest string that is read: all of SDRAM.
-const LONGEST: u32 = 0x100_0000;
+pub(super) const LONGEST: u32 = 0x100_0000;
 
 type Text = Result<Vec<u8>, TrapKind>;
 type AddressResult = Result<GuestAddr, TrapKind>;

@@ -15,14 +15,14 @@ pub(crate) fn limits(memory: &GuestMemory, axis: AxisId, velocity: Option<f32>) 
     Limits::new(velocity, memory.axis(axis, Chan::ACCEL), memory.axis(axis, Chan::JERK))
 }
 
-/// Starts a move to `target`, from rest or in motion.
+/// Starts a move to `target`, from rest or in motion; whether it reaches its full speed.
 pub(crate) fn start_move_to(
     memory: &mut GuestMemory,
     axis: AxisId,
     target: f64,
     limits: &Limits,
     kind: LastMotion,
-) {
+) -> bool {
     let point = present(memory, axis);
     let is_resting = point.v == 0.0 && point.a == 0.0;
     let states = if is_resting {
@@ -35,4 +35,5 @@ pub(crate) fn start_move_to(
     let kind = if is_resting || kind == LastMotion::Multi { kind } else { LastMotion::Jog };
     memory.set_axis(axis, Chan::LAST_MOTION_TYPE, kind.get());
     memory.set_axis(axis, Chan::LAST_MOTION_DEST, target);
+    states.iter().any(|state| state.b == 0.0 && state.t > 0.0 && state.c.abs() >= limits.v * (1.0 - 1e-9))
 }

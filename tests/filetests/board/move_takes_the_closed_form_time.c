@@ -18,4 +18,4 @@ main()
     printf("%.2f\n", Time_sec() - start);
     printf("%.1f %d\n", ch0->Dest, CheckDone(0));
 }
-//@ cycles: 239955711
+//@ cycles: 239955698

@@ -21,4 +21,4 @@ main()
     word |= 0xf << 2;
     printf("%d set, 0x%x\n", n, word);
 }
-//@ cycles: 39367
+//@ cycles: 39145

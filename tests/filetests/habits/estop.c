@@ -20,4 +20,4 @@ main()
     }
     ClearBit(ESTOP_BIT);
 }
-//@ cycles: 6845
+//@ cycles: 6917
