@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use cc67_host::{Session, UserProgram};
-use compiler::debug::{FunctionModel, Model};
+use compiler::debug::{CodeScope, FunctionModel, Model};
 use compiler::files;
 use compiler::pp::Disk;
 use kmotiondef::ThreadId;
@@ -23,6 +23,20 @@ pub(crate) struct Statement {
     pub(crate) address: u32,
     pub(crate) line: u32,
     pub(crate) function: String,
+    /// The inlined call that it is of, by its index.
+    pub(crate) call: Option<usize>,
+}
+
+/// A function of the source that is being executed, by a call or inlined.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Activation<'a> {
+    pub(crate) thread: ThreadId,
+    pub(crate) model: &'a Arc<Model>,
+    /// The function whose code it is in.
+    pub(crate) around: &'a FunctionModel,
+    /// The function itself, and the line in it.
+    pub(crate) scope: CodeScope<'a>,
+    pub(crate) is_inlined: bool,
 }
 
 impl Programs {
@@ -55,6 +69,29 @@ impl Programs {
         self.all().find_map(|(thread, model)| Some((thread, model, model.function_at(address)?)))
     }
 
+    /// The functions that an instruction is in: inlined ones, the innermost first, then the function
+    /// itself.
+    pub(crate) fn activations(&self, address: u32) -> Vec<Activation<'_>> {
+        let Some((thread, model, around)) = self.at(address) else { return Vec::new() };
+        let Some(mut line) = model.line_at(address) else { return Vec::new() };
+        let activation = |function, line, locals, is_inlined| {
+            let scope = CodeScope { function, line, locals };
+            Activation { thread, model, around, scope, is_inlined }
+        };
+        let mut found = Vec::new();
+        for call in around.calls_at(address) {
+            found.push(activation(call.function.as_str(), line, call.locals.as_slice(), true));
+            line = call.line;
+        }
+        found.push(activation(&around.name, line, &around.locals, false));
+        found
+    }
+
+    /// How many of them there are; 1 where nothing is known.
+    pub(crate) fn depth(&self, address: u32) -> usize {
+        self.at(address).map_or(1, |(_, _, function)| 1 + function.calls_at(address).count())
+    }
+
     /// All that are known.
     pub fn all(&self) -> impl Iterator<Item = (ThreadId, &Arc<Model>)> {
         self.known.iter().filter_map(|(thread, (_, model))| Some((*thread, model.as_ref().ok()?)))
@@ -76,13 +113,14 @@ impl Programs {
                     address: *address,
                     line: *line,
                     function: known.name.clone(),
+                    call: known.call_at(*address),
                 })
             })
             .collect()
     }
 
-    /// Where to stop for a line of a file: in each function that has the line, its first statement; without code on it,
-    /// the same for the next line that has some. The second is the line that was taken.
+    /// Where to stop for a line of a file: in each function that has the line, and in each inlined call of it, its first
+    /// statement; without code on it, the same for the next line that has some. The second is the line that was taken.
     pub(crate) fn at_line(
         &self,
         file: Option<&str>,
@@ -104,8 +142,11 @@ impl Programs {
             return (Vec::new(), line);
         };
         all.retain(|one| one.line == taken);
+        all.sort_by_key(|one| (one.thread, one.call, one.address));
+        all.dedup_by(|later, first| {
+            (later.thread, &later.function, later.call) == (first.thread, &first.function, first.call)
+        });
         all.sort_by_key(|one| one.address);
-        all.dedup_by(|later, first| later.thread == first.thread && later.function == first.function);
         (all, taken)
     }
 
@@ -114,15 +155,19 @@ impl Programs {
         let mut found = Vec::new();
         for (number, model) in self.all().filter(|(number, _)| thread.is_none_or(|thread| thread == *number))
         {
-            let Some(function) = model.function_named(name) else { continue };
+            if model.function_named(name).is_none() {
+                continue;
+            }
             found.extend(self.statements(number, Some(name)).into_iter().next());
-            // Where its calls have become parts of their callers it begins with its first line.
-            let inside = self.statements(number, None).into_iter().filter(|one| {
-                one.function != name && (function.lines.start..=function.lines.end).contains(&one.line)
-            });
-            let mut inside: Vec<_> = inside.collect();
-            let first = inside.iter().map(|one| one.line).min();
-            inside.retain(|one| Some(one.line) == first);
+            // And in each inlined call of it.
+            let is_its = |one: &Statement| {
+                let around = model.function_at(one.address);
+                let call = around.and_then(|around| around.inlined.get(one.call?));
+                call.is_some_and(|call| call.function == name)
+            };
+            let mut inside: Vec<_> = self.statements(number, None).into_iter().filter(is_its).collect();
+            inside.sort_by_key(|one| (one.function.clone(), one.call, one.address));
+            inside.dedup_by(|later, first| (&later.function, later.call) == (&first.function, first.call));
             found.extend(inside);
         }
         found

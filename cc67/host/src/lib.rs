@@ -53,8 +53,8 @@ pub use error::{CompileError, HostError};
 pub use message::fill;
 pub use remark::SourceCall;
 pub use session::{
-    End, Ending, EndingAxis, EndingThread, History, Input, Interrupter, Session, Setup, Snapshot, Timeline,
-    TimelineError, Until, UserProgram, Watch, WatchError,
+    Attendant, End, Ending, EndingAxis, EndingThread, History, Idle, Input, Interrupter, Session, Setup,
+    Snapshot, Timeline, TimelineError, Until, UserProgram, Watch, WatchError,
 };
 pub use state::{CONSOLE_LINES, REPLY_BYTES, Status};
 

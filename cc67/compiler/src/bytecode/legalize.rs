@@ -14,10 +14,9 @@ use cranelift_entity::{PrimaryMap, SecondaryMap};
 use super::operators;
 use crate::ir::function::{Function, table};
 use crate::ir::inst::{
-    Address, Base, BlockId, Callee, Class, Constant, Inst, InstKind, Operand, SlotId, ValueId,
+    Address, Base, BlockId, Callee, Class, CodeOrigin, Constant, Inst, InstKind, Operand, SlotId, ValueId,
 };
 use crate::ir::operators::{BinaryOp, UnaryOp};
-use crate::source::Span;
 
 /// The frame in guest memory.
 #[derive(Clone, Debug)]
@@ -56,7 +55,7 @@ pub(super) fn legalize(function: &mut Function) -> FrameLayout {
         early: Vec::new(),
         prologue: Vec::new(),
         out: Vec::new(),
-        span: function.span,
+        origin: CodeOrigin::of(function.span),
     };
     let in_loop = blocks_in_loops(function);
     let mut before = None;
@@ -70,11 +69,11 @@ pub(super) fn legalize(function: &mut Function) -> FrameLayout {
         let insts = std::mem::take(&mut function.blocks[id].insts);
         legalizer.out = Vec::with_capacity(insts.len() + insts.len() / 2);
         for inst in &insts {
-            legalizer.span = inst.span;
+            legalizer.origin = inst.origin;
             legalizer.inst(inst.kind);
         }
         let block = &mut function.blocks[id];
-        legalizer.span = block.span;
+        legalizer.origin = block.origin;
         if let Some(operand) = block.terminator.operand_mut() {
             *operand = legalizer.value(*operand).into();
         }
@@ -87,7 +86,7 @@ pub(super) fn legalize(function: &mut Function) -> FrameLayout {
         // The base is the address of the frame's beginning, whatever object stands there.
         let offset = legalizer.offsets[slot].cast_signed().wrapping_neg();
         let kind = InstKind::FrameAddress { dst: base, slot, offset };
-        prologue.push(Inst { kind, span: function.span });
+        prologue.push(Inst { kind, origin: CodeOrigin::of(function.span) });
     }
     FrameLayout { size, offsets: legalizer.offsets, prologue }
 }
@@ -180,7 +179,7 @@ struct Legalizer {
     early: Vec<(Constant, ValueId)>,
     prologue: Vec<Inst>,
     out: Vec<Inst>,
-    span: Span,
+    origin: CodeOrigin,
 }
 
 impl Legalizer {
@@ -191,7 +190,7 @@ impl Legalizer {
     }
 
     fn push(&mut self, kind: InstKind) {
-        self.out.push(Inst { kind, span: self.span });
+        self.out.push(Inst { kind, origin: self.origin });
     }
 
     fn inst(&mut self, kind: InstKind) {
@@ -335,7 +334,7 @@ impl Legalizer {
         let kind = InstKind::Copy { dst: value, src: operand };
         if self.is_in_loop && self.early.len() < MAX_EARLY {
             self.early.push((constant, value));
-            self.prologue.push(Inst { kind, span: self.span });
+            self.prologue.push(Inst { kind, origin: self.origin });
             return value;
         }
         self.push(kind);

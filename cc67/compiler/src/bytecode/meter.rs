@@ -44,6 +44,9 @@ pub(super) fn insert_charges(code: &mut Code) {
     for (word, _) in &mut code.spans {
         *word = head(*word);
     }
+    for (word, _) in &mut code.calls {
+        *word = head(*word);
+    }
     for word in &mut code.insts {
         *word = head(*word);
     }

@@ -22,7 +22,7 @@ pub(crate) mod show;
 mod tests;
 
 pub use text::Text;
-pub use variables::{Location, VariablePlaces};
+pub use variables::{InlinedPlaces, Location, VariablePlaces};
 pub(crate) use vm::op::WORD;
 
 use vm::verify::MAX_REGISTERS;
@@ -70,6 +70,8 @@ pub(crate) struct Generated {
     pub(crate) frame: u32,
     /// Where the source's locals are.
     pub(crate) variables: Vec<VariablePlaces>,
+    /// The inlined calls.
+    pub(crate) inlined: Vec<InlinedPlaces>,
 }
 
 /// Writes the functions of a unit, one after another.
@@ -102,10 +104,10 @@ impl Generator {
             return Err(too_large(ir.span, name));
         }
         meter::insert_charges(&mut code);
-        let places = std::mem::take(&mut code.insts);
+        let places = variables::PlacedWords::take(&mut code);
         let added = self.text.append(ir.signature, &registers, size, code);
-        let variables = variables::collect(&ir, &frame, &registers, &places, &added.words);
-        Ok(Generated { added, frame: size, variables })
+        let (variables, inlined) = places.collect(&ir, &frame, &registers, &added.words);
+        Ok(Generated { added, frame: size, variables, inlined })
     }
 
     /// The words of all functions so far.

@@ -82,9 +82,11 @@ pub(super) fn assign(function: &Function, prologue: &[Inst], keeps_variables: bo
         scan.mention(value, 0, entry.into(), Mention::Read);
     }
     let kept = || {
-        function.variables.iter().filter(|_| keeps_variables).filter_map(|variable| match variable.home {
-            VariableHome::Value(value, _) | VariableHome::Pointer(value) => Some(value),
-            VariableHome::Slot(_) => None,
+        function.source.variables.iter().filter(|_| keeps_variables).filter_map(|variable| {
+            match variable.home {
+                VariableHome::Value(value, _) | VariableHome::Pointer(value) => Some(value),
+                VariableHome::Slot(_) | VariableHome::Constant(_) => None,
+            }
         })
     };
     for value in kept() {
@@ -195,7 +197,8 @@ impl Scan {
             classes: Vec::new(),
             spans: SecondaryMap::new(),
         };
-        for value in self.order.iter().filter(|_| !function.variables.is_empty()) {
+        let is_wanted = !function.source.variables.is_empty() || !function.source.inlined.is_empty();
+        for value in self.order.iter().filter(|_| is_wanted) {
             let Interval { start, end, .. } = self.intervals[*value];
             registers.spans[*value] = (start, end);
         }

@@ -5,6 +5,7 @@
 //! function in.
 
 use cranelift_entity::SecondaryMap;
+use cranelift_entity::packed_option::PackedOption;
 use vm::op::Op;
 use vm::operand::{
     Addr, Bits32, Count, Count32, Imm, Imm16, Label, Off, RegF32, RegF64, RegI32, RegI64, SigRef,
@@ -18,8 +19,8 @@ use super::registers::Registers;
 use super::{Relocation, RelocationKind};
 use crate::ir::function::{Function, table};
 use crate::ir::inst::{
-    Address, ArgumentRange, Base, BlockId, Callee, Class, Constant, InstKind, Operand, SignatureId,
-    Terminator, ValueId,
+    Address, ArgumentRange, Base, BlockId, Callee, Class, CodeOrigin, Constant, InlineId, InstKind, Operand,
+    SignatureId, Terminator, ValueId,
 };
 use crate::ir::operators::{BinaryOp, CompareOp, ConvertOp, UnaryOp, Width};
 use crate::source::Span;
@@ -34,6 +35,8 @@ pub(super) struct Code {
     pub(super) relocations: Vec<Relocation>,
     /// The first word of each run of words that belong to one statement.
     pub(super) spans: Vec<(u32, Span)>,
+    /// The first word of each run of words of one inlined call, or of none.
+    pub(super) calls: Vec<(u32, PackedOption<InlineId>)>,
     /// The first word of each instruction of the function, and of the end of each block.
     pub(super) insts: Vec<u32>,
     /// A table or count is larger than an instruction can hold.
@@ -77,7 +80,7 @@ struct Selector<'a> {
 impl Selector<'_> {
     fn function(&mut self) {
         let function = self.function;
-        self.at(function.span);
+        self.at(CodeOrigin::of(function.span));
         for inst in &self.frame.prologue {
             self.inst(&inst.kind);
         }
@@ -86,11 +89,11 @@ impl Selector<'_> {
             let block = &function.blocks[id];
             for inst in &block.insts {
                 self.code.insts.push(self.code.ops.len() as u32);
-                self.at(inst.span);
+                self.at(inst.origin);
                 self.inst(&inst.kind);
             }
             self.code.insts.push(self.code.ops.len() as u32);
-            self.at(block.span);
+            self.at(block.origin);
             self.terminator(&block.terminator, function.layout.get(index + 1).copied());
         }
         for at in &self.branches {
@@ -100,14 +103,11 @@ impl Selector<'_> {
         }
     }
 
-    /// What follows belongs to `span`.
-    fn at(&mut self, span: Span) {
+    /// What follows was this in the source.
+    fn at(&mut self, origin: CodeOrigin) {
         let word = self.code.ops.len() as u32;
-        match self.code.spans.last_mut() {
-            Some((_, last)) if *last == span => {}
-            Some((at, last)) if *at == word => *last = span,
-            _ => self.code.spans.push((word, span)),
-        }
+        begin(&mut self.code.spans, word, origin.span);
+        begin(&mut self.code.calls, word, origin.call);
     }
 
     fn push(&mut self, op: Op) {
@@ -446,5 +446,14 @@ impl Selector<'_> {
             Class::F32 => Op::RetF32 { src: self.single(value) },
             Class::F64 => Op::RetF64 { src: self.double(value) },
         });
+    }
+}
+
+/// From this word on the words are of `what`, if those before are of something else.
+fn begin<T: PartialEq>(runs: &mut Vec<(u32, T)>, word: u32, what: T) {
+    match runs.last_mut() {
+        Some((_, last)) if *last == what => {}
+        Some((at, last)) if *at == word => *last = what,
+        _ => runs.push((word, what)),
     }
 }

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use super::legalize;
 use super::{Generated, Relocation, RelocationKind, Text};
 use crate::ir::function::{Block, Function, Signatures};
-use crate::ir::inst::Terminator;
+use crate::ir::inst::{CodeOrigin, Terminator};
 use crate::ir::text::{self, SymbolNames};
 
 /// A function whose instructions the machine has: its frame as a comment, what is computed once as a block of its own
@@ -13,8 +13,8 @@ use crate::ir::text::{self, SymbolNames};
 pub(crate) fn legalized(mut function: Function, signatures: &Signatures, names: &dyn SymbolNames) -> String {
     let frame = legalize::legalize(&mut function);
     if let (false, Some(&entry)) = (frame.prologue.is_empty(), function.layout.first()) {
-        let (terminator, span) = (Terminator::Jump(entry), function.span);
-        let block = function.blocks.push(Block { insts: frame.prologue, terminator, span });
+        let (terminator, origin) = (Terminator::Jump(entry), CodeOrigin::of(function.span));
+        let block = function.blocks.push(Block { insts: frame.prologue, terminator, origin });
         function.layout.insert(0, block);
     }
     let mut shown = match frame.size {

@@ -3,10 +3,15 @@
 use std::fmt;
 use std::ops::Range;
 
+use cranelift_entity::packed_option::PackedOption;
+
 use super::legalize::FrameLayout;
 use super::registers::Registers;
-use crate::ir::function::{Function, VariableHome};
-use crate::typed::LocalId;
+use super::select::Code;
+use crate::ir::function::{Function, SourceVariable, VariableHome};
+use crate::ir::inst::{InlineId, ValueId};
+use crate::source::Span;
+use crate::typed::{LocalId, SymbolId};
 
 /// A local of the source.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -15,6 +20,21 @@ pub struct VariablePlaces {
     pub local: LocalId,
     /// Words of the unit before which it is where; before others it is optimised out.
     pub places: Vec<(Range<u32>, Location)>,
+}
+
+/// An inlined call.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct InlinedPlaces {
+    /// The called function.
+    pub callee: SymbolId,
+    /// The statement that called it.
+    pub call: Span,
+    /// The inlined call that this statement is of, by its index.
+    pub inside: Option<u32>,
+    /// Its words of the unit, without those of calls in it.
+    pub words: Vec<Range<u32>>,
+    /// Where its locals are.
+    pub variables: Vec<VariablePlaces>,
 }
 
 /// Where a local is.
@@ -26,6 +46,8 @@ pub enum Location {
     Frame(u32),
     /// In memory, at the address in a register.
     Pointer(u16),
+    /// Nowhere: it is always this, the bits of a register.
+    Constant(u64),
 }
 
 impl fmt::Display for Location {
@@ -34,44 +56,112 @@ impl fmt::Display for Location {
             Self::Register(register) => write!(f, "register {register}"),
             Self::Frame(offset) => write!(f, "frame + {offset}"),
             Self::Pointer(register) => write!(f, "at the address in register {register}"),
+            Self::Constant(bits) => write!(f, "always {bits:#x}"),
         }
     }
 }
 
-/// Where the locals of a function are that was generated; `insts` are the first words of its instructions within the
-/// function, whose `words` are those of the unit.
-pub(super) fn collect(
-    function: &Function,
-    frame: &FrameLayout,
-    registers: &Registers,
-    insts: &[u32],
-    words: &Range<u32>,
-) -> Vec<VariablePlaces> {
-    let head = 1 + (registers.classes.len() as u32).div_ceil(super::head::CLASSES as u32);
-    let start = words.start + head;
-    let word_at = |position: u32| {
+/// Where instructions and calls were placed within a function that is generated, as its words are numbered there.
+#[derive(Debug)]
+pub(super) struct PlacedWords {
+    /// The first word of each instruction, and of the end of each block.
+    insts: Vec<u32>,
+    /// The first word of each run of words of one inlined call, or of none.
+    calls: Vec<(u32, PackedOption<InlineId>)>,
+}
+
+impl PlacedWords {
+    /// Takes it out of the code.
+    pub(super) fn take(code: &mut Code) -> Self {
+        Self { insts: std::mem::take(&mut code.insts), calls: std::mem::take(&mut code.calls) }
+    }
+
+    /// Where the locals of a function are, and those of its inlined calls; its `words` are those
+    /// of the unit.
+    pub(super) fn collect(
+        &self,
+        function: &Function,
+        frame: &FrameLayout,
+        registers: &Registers,
+        words: &Range<u32>,
+    ) -> (Vec<VariablePlaces>, Vec<InlinedPlaces>) {
+        let head = 1 + (registers.classes.len() as u32).div_ceil(super::head::CLASSES as u32);
+        let finder = Finder { placed: self, function, frame, registers, words, start: words.start + head };
+        let variables = finder.variables(&function.source.variables);
+        let inlined = function.source.inlined.iter().map(|(id, call)| InlinedPlaces {
+            callee: call.callee,
+            call: call.origin.span,
+            inside: call.origin.call.expand().map(InlineId::as_u32),
+            words: finder.words_of(id),
+            variables: finder.variables(&call.variables),
+        });
+        (variables, inlined.collect())
+    }
+}
+
+/// Finds where locals are.
+struct Finder<'a> {
+    placed: &'a PlacedWords,
+    function: &'a Function,
+    frame: &'a FrameLayout,
+    registers: &'a Registers,
+    words: &'a Range<u32>,
+    /// The first word after those that enter the function.
+    start: u32,
+}
+
+impl Finder<'_> {
+    /// The places of each local; one that may be in several has them in the order in which to look.
+    fn variables(&self, variables: &[SourceVariable]) -> Vec<VariablePlaces> {
+        let mut found: Vec<VariablePlaces> = Vec::with_capacity(variables.len());
+        for variable in variables {
+            let place = self.place(variable.home).filter(|(range, _)| !range.is_empty());
+            match found.last_mut() {
+                Some(last) if last.local == variable.local => last.places.extend(place),
+                _ => {
+                    let places = place.into_iter().collect();
+                    found.push(VariablePlaces { local: variable.local, places });
+                }
+            }
+        }
+        found
+    }
+
+    fn place(&self, home: VariableHome) -> Option<(Range<u32>, Location)> {
+        let all = self.start..self.words.end;
+        match home {
+            VariableHome::Slot(slot) => Some((all, Location::Frame(self.frame.offsets[slot]))),
+            VariableHome::Pointer(value) => {
+                Some((self.range(value)?, Location::Pointer(self.registers.of(value))))
+            }
+            // Where a write is gone, the register may hold an older value.
+            VariableHome::Value(value, writes) if self.function.writes(value) == writes => {
+                Some((self.range(value)?, Location::Register(self.registers.of(value))))
+            }
+            VariableHome::Value(..) => None,
+            VariableHome::Constant(bits) => Some((all, Location::Constant(bits))),
+        }
+    }
+
+    /// The words before which a value is in its register.
+    fn range(&self, value: ValueId) -> Option<Range<u32>> {
+        let (from, to) = self.registers.span(value)?;
+        let begin = if from == 0 { self.start } else { self.word_at(from) };
+        // The last one that mentions it is still to be executed.
+        Some(begin..(self.word_at(to) + 1).min(self.words.end))
+    }
+
+    fn word_at(&self, position: u32) -> u32 {
         // Position 2 is that of the first instruction; what an instruction writes is there from the next one on.
         let index = (position.div_ceil(2) as usize).saturating_sub(1);
-        insts.get(index).map_or(words.end, |word| start + word)
-    };
-    let range = |value| {
-        let (from, to) = registers.span(value)?;
-        let begin = if from == 0 { start } else { word_at(from) };
-        // The last one that mentions it is still to be executed.
-        Some(begin..(word_at(to) + 1).min(words.end))
-    };
-    let place = |home: VariableHome| match home {
-        VariableHome::Slot(slot) => Some((start..words.end, Location::Frame(frame.offsets[slot]))),
-        VariableHome::Pointer(value) => Some((range(value)?, Location::Pointer(registers.of(value)))),
-        // Where a write is gone, the register may hold an older value.
-        VariableHome::Value(value, writes) if function.writes(value) == writes => {
-            Some((range(value)?, Location::Register(registers.of(value))))
-        }
-        VariableHome::Value(..) => None,
-    };
-    let variable = |variable: &crate::ir::function::SourceVariable| VariablePlaces {
-        local: variable.local,
-        places: place(variable.home).into_iter().filter(|(range, _)| !range.is_empty()).collect(),
-    };
-    function.variables.iter().map(variable).collect()
+        self.placed.insts.get(index).map_or(self.words.end, |word| self.start + word)
+    }
+
+    /// The words of an inlined call, without those of calls in it.
+    fn words_of(&self, id: InlineId) -> Vec<Range<u32>> {
+        let calls = &self.placed.calls;
+        let ends = calls.iter().skip(1).map(|(word, _)| self.start + word).chain([self.words.end]);
+        let runs = calls.iter().zip(ends).filter(|((_, call), _)| call.expand() == Some(id));
+        runs.map(|((word, _), end)| self.start + word..end).filter(|run| !run.is_empty()).collect()
+    }
 }

@@ -42,6 +42,17 @@ pub trait DebugReader {
     fn local(&self, local: &LocalModel) -> Option<LocalPlace>;
 }
 
+/// A line of a function, for the names that mean something there.
+#[derive(Clone, Copy, Debug)]
+pub struct CodeScope<'a> {
+    /// The function.
+    pub function: &'a str,
+    /// The line.
+    pub line: u32,
+    /// The function's locals: those of its own code, or of an inlined call of it.
+    pub locals: &'a [LocalModel],
+}
+
 /// An expression that was compiled for a place in a program.
 #[derive(Debug)]
 pub struct Probe {
@@ -69,7 +80,7 @@ impl Model {
     /// If the system cannot start a thread.
     pub fn probe(
         &self,
-        place: Option<(&str, u32)>,
+        place: Option<CodeScope<'_>>,
         expression: &str,
         items: &[&str],
     ) -> Result<Probe, String> {
@@ -81,7 +92,7 @@ impl Model {
 
     fn probe_as(
         &self,
-        place: Option<(&str, u32)>,
+        place: Option<CodeScope<'_>>,
         expression: &str,
         items: &[&str],
         is_address: bool,
@@ -89,38 +100,36 @@ impl Model {
         let items_text: String = items.iter().map(|item| format!("extern double {item}; ")).collect();
         let inserted = format!("{BEFORE}{items_text}{expression}{BEHIND}");
         let mut text = self.text.clone();
-        let inside = place.and_then(|(function, line)| self.place_in(function, line));
-        let (from, name, inside) = match inside {
-            Some((at, name)) => {
+        let inside = place.and_then(|place| Some((self.place_in(place.function, place.line)?, place)));
+        let (from, until, name, locals) = match inside {
+            Some((at, place)) => {
                 text.splice(at..at, inserted.bytes());
-                (at, name, true)
+                (at, at + inserted.len(), place.function, place.locals)
             }
             None => {
                 let name = "__cc67_probe";
                 let from = text.len();
                 text.extend(format!("\nvoid {name}(void) {{{inserted}}}\n").bytes());
-                (from, name.to_owned(), false)
+                (from, text.len(), name, [].as_slice())
             }
         };
-        let until = if inside { from + inserted.len() } else { text.len() };
-        self.compile(text, from as u32..until as u32, &name, items, is_address)
+        self.compile(text, from as u32..until as u32, (name, locals), items, is_address)
     }
 
     /// Where to insert an expression that is about a line of a function.
-    fn place_in(&self, function: &str, line: u32) -> Option<(usize, String)> {
+    fn place_in(&self, function: &str, line: u32) -> Option<usize> {
         let function = self.functions.iter().find(|known| known.name == function)?;
         let head = scope::begin_of_line(&self.text, function.lines.start);
         let body = scope::begin_of_body(&self.text, head)?;
         let from = scope::begin_of_line(&self.text, line).max(body);
-        let end = scope::end_of_block(&self.text, from)?;
-        Some((end, function.name.clone()))
+        scope::end_of_block(&self.text, from)
     }
 
     fn compile(
         &self,
         text: Vec<u8>,
         inserted: std::ops::Range<u32>,
-        name: &str,
+        (name, locals): (&str, &[LocalModel]),
         items: &[&str],
         is_address: bool,
     ) -> Result<Probe, String> {
@@ -151,34 +160,13 @@ impl Model {
             }
             value = inner;
         }
-        let locals = self.locals_of(name, function, &sources, start);
+        let locals = locals_of(locals, function, &sources, start);
         let symbols = self.image.symbols.iter().filter(|entry| entry.kind == EntryKind::Object);
         let symbols = symbols.map(|entry| (entry.name.clone(), GuestAddr::new(entry.address))).collect();
         let meanings = watch::meanings(&unit, index, value, (&symbols, &self.options), items)?;
         let function = unit.functions.swap_remove(index);
         let expression = Expression::new(function, value, meanings);
         Ok(Probe { unit, names, expression, value, is_address, locals })
-    }
-
-    /// The locals of the compilation with an expression as those of the program.
-    fn locals_of(
-        &self,
-        name: &str,
-        function: &crate::typed::Function,
-        sources: &SourceMap,
-        start: u32,
-    ) -> BTreeMap<LocalId, LocalModel> {
-        let Some(known) = self.function_named(name) else { return BTreeMap::new() };
-        let mut locals = BTreeMap::new();
-        for (id, local) in &function.locals {
-            let declared = sources.call_site(local.span).lo.wrapping_sub(start);
-            let same =
-                known.locals.iter().find(|known| known.name == local.name && known.declared == declared);
-            if let Some(same) = same {
-                locals.insert(id, same.clone());
-            }
-        }
-        locals
     }
 
     /// The value of a local, if it has one at present.
@@ -205,6 +193,24 @@ impl Model {
         let shown = Displayed { types: &self.unit.types, names: &self.names, reader };
         Some((DebugValue { ty: symbol.ty, data: Data::Memory(GuestAddr::new(address)) }, shown))
     }
+}
+
+/// The locals of the compilation with an expression as those of the program.
+fn locals_of(
+    known: &[LocalModel],
+    function: &crate::typed::Function,
+    sources: &SourceMap,
+    start: u32,
+) -> BTreeMap<LocalId, LocalModel> {
+    let mut locals = BTreeMap::new();
+    for (id, local) in &function.locals {
+        let declared = sources.call_site(local.span).lo.wrapping_sub(start);
+        let same = known.iter().find(|known| known.name == local.name && known.declared == declared);
+        if let Some(same) = same {
+            locals.insert(id, same.clone());
+        }
+    }
+    locals
 }
 
 /// A reader as an expression wants it.

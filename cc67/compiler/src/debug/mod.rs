@@ -9,7 +9,7 @@ mod eval;
 mod scope;
 mod value;
 
-pub use eval::{DebugReader, LocalPlace, Probe};
+pub use eval::{CodeScope, DebugReader, LocalPlace, Probe};
 pub use value::{Child, DebugValue, Displayed};
 
 use std::fmt::Write as _;
@@ -23,7 +23,7 @@ use crate::image;
 use crate::inspect::{EntryKind, Inspection};
 use crate::link::Linked;
 use crate::names::Names;
-use crate::object::VariablePlaces;
+use crate::object::{InlinedPlaces, Object, ObjectFunction, VariablePlaces};
 use crate::passes::Level;
 use crate::pp::Files;
 use crate::source::SourceMap;
@@ -60,6 +60,37 @@ pub struct FunctionModel {
     pub statements: Vec<(u32, u32)>,
     /// Parameters and variables in the order of their declarations.
     pub locals: Vec<LocalModel>,
+    /// The inlined calls.
+    pub inlined: Vec<InlinedModel>,
+}
+
+/// An inlined call.
+#[derive(Debug)]
+pub struct InlinedModel {
+    /// The called function.
+    pub function: String,
+    /// The line of the call.
+    pub line: u32,
+    /// The inlined call that this line is of, by its index.
+    pub inside: Option<usize>,
+    /// Its code, without that of calls in it.
+    pub ranges: Vec<Range<u32>>,
+    /// Parameters and variables of the called function.
+    pub locals: Vec<LocalModel>,
+}
+
+impl FunctionModel {
+    /// The inlined calls that an instruction is of, the innermost first.
+    pub fn calls_at(&self, address: u32) -> impl Iterator<Item = &InlinedModel> {
+        let innermost = self.call_at(address).and_then(|index| self.inlined.get(index));
+        std::iter::successors(innermost, |call| self.inlined.get(call.inside?))
+    }
+
+    /// The innermost inlined call that an instruction is of, by its index.
+    #[must_use]
+    pub fn call_at(&self, address: u32) -> Option<usize> {
+        self.inlined.iter().position(|call| call.ranges.iter().any(|range| range.contains(&address)))
+    }
 }
 
 /// A parameter or variable of a function.
@@ -134,7 +165,7 @@ impl Model {
         Ok(model)
     }
 
-    fn functions_of(&self, object: &crate::object::Object, sources: &SourceMap) -> Vec<FunctionModel> {
+    fn functions_of(&self, object: &Object, sources: &SourceMap) -> Vec<FunctionModel> {
         let mut functions = Vec::new();
         for function in &object.functions {
             let symbol = &object.symbols[function.symbol];
@@ -147,7 +178,7 @@ impl Model {
             else {
                 continue;
             };
-            let lines = symbol.place.line..function.end.line.max(symbol.place.line);
+            let lines = lines_of(object, function);
             let Some(entry) = entry else {
                 functions.push(self.without_code(symbol.name.clone(), lines));
                 continue;
@@ -155,14 +186,31 @@ impl Model {
             let size = (function.words.end - function.words.start) * 8;
             let addresses = entry.address..entry.address + size;
             let address = |word: u32| entry.address + (word - function.words.start) * 8;
-            let local =
-                |variable: &VariablePlaces| self.local_model(index, variable, sources, &lines, &address);
+            let locals = |index: usize, lines: &Range<u32>, variables: &[VariablePlaces]| {
+                let local = |variable| self.local_model(index, variable, sources, lines, &address);
+                variables.iter().filter_map(local).collect::<Vec<_>>()
+            };
+            let inlined = |call: &InlinedPlaces| {
+                let callee = object.functions.iter().find(|known| known.symbol == call.callee);
+                let typed = self.unit.functions.iter().position(|known| known.symbol == call.callee);
+                let locals = callee
+                    .zip(typed)
+                    .map(|(callee, typed)| locals(typed, &lines_of(object, callee), &call.variables));
+                InlinedModel {
+                    function: object.symbols[call.callee].name.clone(),
+                    line: sources.place(call.call).map_or(lines.start, |place| place.line),
+                    inside: call.inside.map(|index| index as usize),
+                    ranges: call.words.iter().map(|run| address(run.start)..address(run.end)).collect(),
+                    locals: locals.unwrap_or_default(),
+                }
+            };
             functions.push(FunctionModel {
                 name: symbol.name.clone(),
                 statements: self.statements(&addresses, &lines),
                 addresses,
                 file: object.files.get(symbol.place.file as usize).cloned().unwrap_or_default(),
-                locals: function.variables.iter().filter_map(local).collect(),
+                locals: locals(index, &lines, &function.variables),
+                inlined: function.inlined.iter().map(inlined).collect(),
                 lines: lines.clone(),
             });
         }
@@ -173,7 +221,15 @@ impl Model {
     /// A function that has no code of its own: all its calls have become parts of their callers, where its lines are.
     fn without_code(&self, name: String, lines: Range<u32>) -> FunctionModel {
         let file = self.path.to_string_lossy().into_owned();
-        FunctionModel { name, addresses: 0..0, file, lines, statements: Vec::new(), locals: Vec::new() }
+        FunctionModel {
+            name,
+            addresses: 0..0,
+            file,
+            lines,
+            statements: Vec::new(),
+            locals: Vec::new(),
+            inlined: Vec::new(),
+        }
     }
 
     /// Where the statements of a function begin; the first follows the words that enter it.
@@ -289,25 +345,37 @@ impl Model {
                 "{start:08x}-{end:08x} {}() in {} lines {first}-{last}",
                 function.name, function.file
             );
-            for local in &function.locals {
-                let _ = writeln!(
-                    out,
-                    "  {}: {}, lines {}-{}",
-                    local.name,
-                    local.ty,
-                    local.lines.start,
-                    local.lines.end.saturating_sub(1)
-                );
-                if local.places.is_empty() {
-                    let _ = writeln!(out, "    optimised out");
+            table_of(&function.locals, "  ", &mut out);
+            for call in &function.inlined {
+                let _ = writeln!(out, "  {}() inlined in line {}", call.function, call.line);
+                for Range { start, end } in &call.ranges {
+                    let _ = writeln!(out, "    {start:08x}-{end:08x}");
                 }
-                for (range, location) in &local.places {
-                    let _ = writeln!(out, "    {:08x}-{:08x} {location}", range.start, range.end);
-                }
+                table_of(&call.locals, "    ", &mut out);
             }
         }
         out
     }
+}
+
+/// Where locals are, as lines of a table.
+fn table_of(locals: &[LocalModel], indent: &str, out: &mut String) {
+    for local in locals {
+        let (first, last) = (local.lines.start, local.lines.end.saturating_sub(1));
+        let _ = writeln!(out, "{indent}{}: {}, lines {first}-{last}", local.name, local.ty);
+        if local.places.is_empty() {
+            let _ = writeln!(out, "{indent}  optimised out");
+        }
+        for (range, location) in &local.places {
+            let _ = writeln!(out, "{indent}  {:08x}-{:08x} {location}", range.start, range.end);
+        }
+    }
+}
+
+/// The line of a function's name, and that of its closing brace.
+fn lines_of(object: &Object, function: &ObjectFunction) -> Range<u32> {
+    let first = object.symbols[function.symbol].place.line;
+    first..function.end.line.max(first)
 }
 
 /// Debug information of an image file, of the source beside it.

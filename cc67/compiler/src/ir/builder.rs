@@ -8,8 +8,8 @@ use cranelift_entity::packed_option::PackedOption;
 
 use super::function::{Block, FrameSlot, Function};
 use super::inst::{
-    Address, ArgumentRange, BlockId, Callee, Class, Inst, InstKind, Operand, SignatureId, SlotId, Terminator,
-    ValueId,
+    Address, ArgumentRange, BlockId, Callee, Class, CodeOrigin, Inst, InstKind, Operand, SignatureId, SlotId,
+    Terminator, ValueId,
 };
 use super::operators::{BinaryOp, CompareOp, ConvertOp, UnaryOp, Width};
 use crate::source::Span;
@@ -31,29 +31,29 @@ pub struct Builder {
     cost: Option<usize>,
     /// Blocks that are placed before others, with those.
     ways: Vec<(BlockId, BlockId)>,
-    span: Span,
+    origin: CodeOrigin,
 }
 
 impl Builder {
     /// Starts with the function's entry block open.
     #[must_use]
     pub fn new(function: Function) -> Self {
-        let span = function.span;
-        let mut builder = Self { function, open: None, cost: None, ways: Vec::new(), span };
+        let origin = CodeOrigin::of(function.span);
+        let mut builder = Self { function, open: None, cost: None, ways: Vec::new(), origin };
         let entry = builder.block();
         builder.open(entry);
         builder
     }
 
     /// The statement that what follows belongs to.
-    pub const fn set_span(&mut self, span: Span) {
-        self.span = span;
+    pub fn set_span(&mut self, span: Span) {
+        self.origin = CodeOrigin::of(span);
     }
 
     /// The statement that instructions belong to at present.
     #[must_use]
     pub const fn span(&self) -> Span {
-        self.span
+        self.origin.span
     }
 
     /// Whether what is appended now can be reached.
@@ -74,8 +74,8 @@ impl Builder {
 
     /// A new block, to be opened later.
     pub fn block(&mut self) -> BlockId {
-        let span = self.span;
-        self.function.blocks.push(Block { insts: Vec::new(), terminator: Terminator::Unreachable, span })
+        let origin = self.origin;
+        self.function.blocks.push(Block { insts: Vec::new(), terminator: Terminator::Unreachable, origin })
     }
 
     /// Opens a block; the one before, if still open, goes on there.
@@ -90,9 +90,9 @@ impl Builder {
 
     /// A block that only costs and continues at `to`; it is before it, if that is still to be opened.
     pub fn way(&mut self, to: BlockId, cycles: u32) -> BlockId {
-        let span = self.span;
-        let insts = vec![Inst { kind: InstKind::Cost { cycles }, span }];
-        let way = self.function.blocks.push(Block { insts, terminator: Terminator::Jump(to), span });
+        let origin = self.origin;
+        let insts = vec![Inst { kind: InstKind::Cost { cycles }, origin }];
+        let way = self.function.blocks.push(Block { insts, terminator: Terminator::Jump(to), origin });
         if self.function.layout.contains(&to) {
             self.function.layout.push(way);
         } else {
@@ -104,10 +104,10 @@ impl Builder {
     /// Ends the open block.
     pub fn terminate(&mut self, terminator: Terminator) {
         if let Some(block) = self.open.take() {
-            let span = self.span;
+            let origin = self.origin;
             let block = &mut self.function.blocks[block];
             block.terminator = terminator;
-            block.span = span;
+            block.origin = origin;
         }
     }
 
@@ -131,7 +131,7 @@ impl Builder {
     /// Puts `dst = src` in at a place that was passed before.
     pub fn insert_copy(&mut self, point: Point, dst: ValueId, src: Operand) {
         if let Some(block) = point.block.expand() {
-            let inst = Inst { kind: InstKind::Copy { dst, src }, span: self.span };
+            let inst = Inst { kind: InstKind::Copy { dst, src }, origin: self.origin };
             let index = point.index as usize;
             self.function.blocks[block].insts.insert(index, inst);
             if let Some(cost) = self.cost.as_mut().filter(|cost| self.open == Some(block) && index <= **cost)
@@ -152,7 +152,7 @@ impl Builder {
         }
         self.cost = Some(insts.len());
         let kind = InstKind::Cost { cycles: 0_u32.saturating_add_signed(cycles) };
-        insts.push(Inst { kind, span: self.span });
+        insts.push(Inst { kind, origin: self.origin });
     }
 
     /// Appends an instruction.
@@ -161,7 +161,7 @@ impl Builder {
             self.cost = None;
         }
         if let Some(block) = self.open {
-            self.function.blocks[block].insts.push(Inst { kind, span: self.span });
+            self.function.blocks[block].insts.push(Inst { kind, origin: self.origin });
         }
     }
 

@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 
 use cranelift_entity::{EntityRef, PrimaryMap, SecondaryMap};
 
-use super::inst::{BlockId, Class, Inst, Operand, SignatureId, SlotId, Terminator, ValueId};
+use super::inst::{
+    BlockId, Class, CodeOrigin, InlineId, Inst, Operand, SignatureId, SlotId, Terminator, ValueId,
+};
 use crate::source::Span;
 use crate::typed::{LocalId, SymbolId};
 
@@ -79,7 +81,7 @@ pub struct Block {
     /// How it ends.
     pub terminator: Terminator,
     /// The statement that the end belongs to.
-    pub span: Span,
+    pub origin: CodeOrigin,
 }
 
 /// A local of the source, and where it is.
@@ -100,6 +102,28 @@ pub enum VariableHome {
     Slot(SlotId),
     /// Where a value points.
     Pointer(ValueId),
+    /// Nowhere: it is always this, the bits of a register.
+    Constant(u64),
+}
+
+/// An inlined call.
+#[derive(Clone, Debug)]
+pub struct InlinedCall {
+    /// The called function.
+    pub callee: SymbolId,
+    /// Where it was called.
+    pub origin: CodeOrigin,
+    /// Where its locals are.
+    pub variables: Vec<SourceVariable>,
+}
+
+/// The locals of the source in a function.
+#[derive(Clone, Debug, Default)]
+pub struct SourceLocals {
+    /// Where its own are.
+    pub variables: Vec<SourceVariable>,
+    /// The inlined calls, with theirs.
+    pub inlined: PrimaryMap<InlineId, InlinedCall>,
 }
 
 /// A function.
@@ -127,8 +151,8 @@ pub struct Function {
     pub span: Span,
     /// Its closing brace.
     pub end: Span,
-    /// Where the source's locals are.
-    pub variables: Vec<SourceVariable>,
+    /// What debuggers look for.
+    pub source: SourceLocals,
 }
 
 impl Function {
@@ -147,7 +171,7 @@ impl Function {
             arguments: Vec::new(),
             span,
             end,
-            variables: Vec::new(),
+            source: SourceLocals::default(),
         }
     }
 

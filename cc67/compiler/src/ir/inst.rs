@@ -18,6 +18,8 @@ index! {
     SlotId, "slot";
     /// A signature of the unit.
     SignatureId, "sig";
+    /// An inlined call.
+    InlineId, "call";
 }
 
 named! {
@@ -73,6 +75,18 @@ pub enum Constant {
 }
 
 impl Constant {
+    /// The bits of a register that holds it; `None` for an address, which the linker knows.
+    #[must_use]
+    pub const fn bits(self) -> Option<u64> {
+        match self {
+            Self::I32(value) => Some(value.cast_unsigned() as u64),
+            Self::I64(value) => Some(value.cast_unsigned()),
+            Self::F32(bits) => Some(bits as u64),
+            Self::F64(bits) => Some(bits),
+            Self::Symbol(..) => None,
+        }
+    }
+
     /// The number `value` in a class; an integer is cut to the width of the class.
     #[must_use]
     pub const fn number(class: Class, value: i64) -> Self {
@@ -224,7 +238,24 @@ pub struct Inst {
     /// What it does.
     pub kind: InstKind,
     /// The source that a trap in it names.
+    pub origin: CodeOrigin,
+}
+
+/// What code was in the source.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CodeOrigin {
+    /// The statement.
     pub span: Span,
+    /// The inlined call that it is of; none for code of the function itself.
+    pub call: PackedOption<InlineId>,
+}
+
+impl CodeOrigin {
+    /// Code of the function itself.
+    #[must_use]
+    pub fn of(span: Span) -> Self {
+        Self { span, call: PackedOption::default() }
+    }
 }
 
 /// What an instruction does.

@@ -179,7 +179,7 @@ impl Lowering<'_> {
             };
             SourceVariable { local, home }
         });
-        function.variables = variables.collect();
+        function.source.variables = variables.collect();
     }
 
     /// Gives every local its home and takes the arguments in.

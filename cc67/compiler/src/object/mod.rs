@@ -21,7 +21,7 @@ use std::ops::Range;
 
 use cranelift_entity::PrimaryMap;
 
-pub use crate::bytecode::{Location, VariablePlaces};
+pub use crate::bytecode::{InlinedPlaces, Location, VariablePlaces};
 use crate::bytecode::{Relocation, Text};
 use crate::ir::function::Signatures;
 use crate::ir::inst::SignatureId;
@@ -181,6 +181,8 @@ pub struct ObjectFunction {
     pub end: SourceLine,
     /// Where its locals are; unknown in an object that comes from a file.
     pub variables: Vec<VariablePlaces>,
+    /// The inlined calls; unknown in an object that comes from a file.
+    pub inlined: Vec<InlinedPlaces>,
 }
 
 /// One initialised object.

@@ -273,6 +273,7 @@ impl<'a> ObjectReader<'a> {
                 frame,
                 end,
                 variables: Vec::new(),
+                inlined: Vec::new(),
             });
         }
         relocations.next().map_or(Ok(()), |left| Err(misplaced(".text", left.address)))

@@ -56,7 +56,7 @@ impl<'a> UnitBuilder<'a> {
 
     /// Adds a function that was generated.
     pub(crate) fn function(&mut self, about: About, generated: Generated) {
-        let Generated { added, frame, variables } = generated;
+        let Generated { added, frame, variables, inlined } = generated;
         let file = self.object.symbols[about.symbol].place.file;
         let end = self.place(about.end);
         let (relocations, lines) = (self.object.relocations.len() as u32, self.object.lines.len() as u32);
@@ -73,6 +73,7 @@ impl<'a> UnitBuilder<'a> {
             frame,
             end,
             variables,
+            inlined,
         });
     }
 
@@ -106,7 +107,8 @@ impl<'a> UnitBuilder<'a> {
             symbol: fixup.symbol.unwrap_or(about.symbol),
         });
         let added = Added { words, relocations: relocations.collect(), spans };
-        self.function(about, Generated { added, frame, variables: Vec::new() });
+        let generated = Generated { added, frame, variables: Vec::new(), inlined: Vec::new() };
+        self.function(about, generated);
     }
 
     /// The object with the controller's code of its functions, and the names that this needs besides.

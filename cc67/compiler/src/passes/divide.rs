@@ -50,7 +50,7 @@ fn block(function: &mut Function, id: BlockId) {
 fn expand(function: &mut Function, inst: &Inst, division: &Division, out: &mut Vec<Inst>) {
     let mut emit = |op, dst: Option<ValueId>, a: Operand, b: Operand| {
         let dst = dst.unwrap_or_else(|| function.values.push(Class::I32));
-        out.push(Inst { kind: InstKind::Binary { op, dst, a, b }, span: inst.span });
+        out.push(Inst { kind: InstKind::Binary { op, dst, a, b }, origin: inst.origin });
         Operand::Value(dst)
     };
     let log = Operand::int(division.log.cast_signed());

@@ -10,10 +10,12 @@
 use std::collections::BTreeMap;
 
 use cranelift_entity::SecondaryMap;
+use cranelift_entity::packed_option::PackedOption;
 
-use crate::ir::function::{Block, Function};
+use crate::ir::function::{Block, Function, InlinedCall, SourceVariable, VariableHome, table};
 use crate::ir::inst::{
-    Address, ArgumentRange, Base, BlockId, Callee, Class, Inst, InstKind, Operand, Terminator, ValueId,
+    Address, ArgumentRange, Base, BlockId, Callee, Class, CodeOrigin, InlineId, Inst, InstKind, Operand,
+    Terminator, ValueId,
 };
 use crate::typed::SymbolId;
 
@@ -115,6 +117,7 @@ fn replace_calls<'a>(function: &mut Function, find: impl Fn(SymbolId) -> Option<
         return false;
     }
     let mut total = size(function);
+    let writes = writes(function);
     let mut is_changed = false;
     let mut layout = Vec::new();
     for id in std::mem::take(&mut function.layout) {
@@ -132,7 +135,7 @@ fn replace_calls<'a>(function: &mut Function, find: impl Fn(SymbolId) -> Option<
             total += size(callee);
             is_changed = true;
             let behind = split(function, block);
-            Copier::new(function, callee).copy(block, inst, behind, &mut layout);
+            Copier::new(function, callee, &writes).copy(block, inst, behind, &mut layout);
             layout.push(behind);
             block = behind;
         }
@@ -141,23 +144,38 @@ fn replace_calls<'a>(function: &mut Function, find: impl Fn(SymbolId) -> Option<
     is_changed
 }
 
+/// How often each value of a function is written.
+fn writes(function: &Function) -> SecondaryMap<ValueId, u32> {
+    let mut writes: SecondaryMap<ValueId, u32> = table(function.values.len());
+    let insts = function.layout.iter().flat_map(|id| &function.blocks[*id].insts);
+    for dst in insts.filter_map(|inst| inst.kind.dst()) {
+        writes[dst] += 1;
+    }
+    writes
+}
+
 /// A new block that ends as `block` did.
 fn split(function: &mut Function, block: BlockId) -> BlockId {
-    let span = function.blocks[block].span;
+    let origin = function.blocks[block].origin;
     let terminator = std::mem::replace(&mut function.blocks[block].terminator, Terminator::Unreachable);
-    function.blocks.push(Block { insts: Vec::new(), terminator, span })
+    function.blocks.push(Block { insts: Vec::new(), terminator, origin })
 }
 
 /// Copies one function into another.
 struct Copier<'a> {
     to: &'a mut Function,
     from: &'a Function,
+    /// How often each value of the calling function is written.
+    writes: &'a SecondaryMap<ValueId, u32>,
     values: SecondaryMap<ValueId, ValueId>,
     blocks: SecondaryMap<BlockId, BlockId>,
+    /// The call that is replaced, and those in the called function, as they are known there.
+    call: PackedOption<InlineId>,
+    inner: SecondaryMap<InlineId, PackedOption<InlineId>>,
 }
 
 impl<'a> Copier<'a> {
-    fn new(to: &'a mut Function, from: &'a Function) -> Self {
+    fn new(to: &'a mut Function, from: &'a Function, writes: &'a SecondaryMap<ValueId, u32>) -> Self {
         // Entity 0 stands where nothing is copied; every one that is mentioned is.
         let (mut values, mut blocks) = (
             SecondaryMap::with_default(ValueId::from_u32(0)),
@@ -167,24 +185,27 @@ impl<'a> Copier<'a> {
             values[value] = to.values.push(*class);
         }
         for id in &from.layout {
-            let span = from.blocks[*id].span;
+            // Which inlined call it is of is known when the block is copied.
+            let origin = from.blocks[*id].origin;
             blocks[*id] =
-                to.blocks.push(Block { insts: Vec::new(), terminator: Terminator::Unreachable, span });
+                to.blocks.push(Block { insts: Vec::new(), terminator: Terminator::Unreachable, origin });
         }
-        Self { to, from, values, blocks }
+        let (call, inner) = (PackedOption::default(), SecondaryMap::new());
+        Self { to, from, writes, values, blocks, call, inner }
     }
 
     /// Copies the function between `before`, which is to end with `call`, and `behind`.
     fn copy(mut self, before: BlockId, call: Inst, behind: BlockId, layout: &mut Vec<BlockId>) {
         let InstKind::Call { arguments, dst, .. } = call.kind else { return };
+        self.note(call.origin, arguments);
         for (index, param) in arguments.range().zip(&self.from.params) {
             let src = self.to.arguments[index];
             let kind = InstKind::Copy { dst: self.values[*param], src };
-            self.to.blocks[before].insts.push(Inst { kind, span: call.span });
+            self.to.blocks[before].insts.push(Inst { kind, origin: call.origin });
         }
         let Some(&entry) = self.from.layout.first() else { return };
         self.to.blocks[before].terminator = Terminator::Jump(self.blocks[entry]);
-        self.to.blocks[before].span = call.span;
+        self.to.blocks[before].origin = call.origin;
         for id in &self.from.layout {
             let block = &self.from.blocks[*id];
             let mut insts: Vec<_> = block.insts.iter().map(|inst| self.inst(*inst)).collect();
@@ -193,7 +214,8 @@ impl<'a> Copier<'a> {
                     if let Some(dst) = dst.expand() {
                         let class: Class = self.to.values[dst];
                         let src = value.map_or(class.zero().into(), |value| self.operand(value));
-                        insts.push(Inst { kind: InstKind::Copy { dst, src }, span: block.span });
+                        let kind = InstKind::Copy { dst, src };
+                        insts.push(Inst { kind, origin: self.origin(block.origin) });
                     }
                     Terminator::Jump(behind)
                 }
@@ -202,8 +224,65 @@ impl<'a> Copier<'a> {
             let copy = self.blocks[*id];
             self.to.blocks[copy].insts = insts;
             self.to.blocks[copy].terminator = terminator;
+            self.to.blocks[copy].origin = self.origin(block.origin);
             layout.push(copy);
         }
+    }
+
+    /// Notes for debuggers which call is replaced, and where the called function's locals are then.
+    fn note(&mut self, origin: CodeOrigin, arguments: ArgumentRange) {
+        let variables = self.variables(&self.from.source.variables, arguments);
+        let call = InlinedCall { callee: self.from.symbol, origin, variables };
+        self.call = self.to.source.inlined.push(call).into();
+        for (id, inner) in &self.from.source.inlined {
+            let variables = inner.variables.iter().map(|variable| self.moved(*variable)).collect();
+            let call = InlinedCall { callee: inner.callee, origin: self.origin(inner.origin), variables };
+            self.inner[id] = self.to.source.inlined.push(call).into();
+        }
+    }
+
+    /// Where locals of the called function are: where they were copied to, and a parameter that is never written also
+    /// where its argument is.
+    fn variables(&self, of: &[SourceVariable], arguments: ArgumentRange) -> Vec<SourceVariable> {
+        let mut variables = Vec::new();
+        for variable in of {
+            let VariableHome::Value(value, writes) = variable.home else {
+                variables.push(self.moved(*variable));
+                continue;
+            };
+            let Some(index) = self.from.params.iter().position(|param| *param == value) else {
+                variables.push(self.moved(*variable));
+                continue;
+            };
+            // The copy of the argument is one more.
+            let home = VariableHome::Value(self.values[value], writes + 1);
+            variables.push(SourceVariable { home, ..*variable });
+            let argument = arguments.range().nth(index).and_then(|index| self.to.arguments.get(index));
+            let home = match argument.filter(|_| writes == 0) {
+                Some(Operand::Value(value)) => Some(VariableHome::Value(*value, self.writes[*value])),
+                Some(Operand::Constant(constant)) => constant.bits().map(VariableHome::Constant),
+                None => None,
+            };
+            variables.extend(home.map(|home| SourceVariable { home, ..*variable }));
+        }
+        variables
+    }
+
+    /// A local of the called function after it was copied.
+    fn moved(&self, variable: SourceVariable) -> SourceVariable {
+        let home = match variable.home {
+            VariableHome::Value(value, writes) => VariableHome::Value(self.values[value], writes),
+            VariableHome::Pointer(value) => VariableHome::Pointer(self.values[value]),
+            // What has objects in the frame is not copied.
+            home @ (VariableHome::Slot(_) | VariableHome::Constant(_)) => home,
+        };
+        SourceVariable { home, ..variable }
+    }
+
+    /// What copied code was in the source.
+    fn origin(&self, origin: CodeOrigin) -> CodeOrigin {
+        let call = origin.call.expand().map_or(self.call, |inner| self.inner[inner]);
+        CodeOrigin { span: origin.span, call }
     }
 
     fn terminator(&self, mut terminator: Terminator) -> Terminator {
@@ -274,6 +353,6 @@ impl<'a> Copier<'a> {
                 InstKind::Call { callee, arguments: self.arguments(arguments), signature, dst }
             }
         };
-        Inst { kind, span: inst.span }
+        Inst { kind, origin: self.origin(inst.origin) }
     }
 }

@@ -40,10 +40,10 @@ fn thread(function: &mut Function) {
             && function.blocks[to].insts.is_empty()
             && let Terminator::Return(value) = function.blocks[to].terminator
         {
-            let span = function.blocks[to].span;
+            let origin = function.blocks[to].origin;
             let block = &mut function.blocks[id];
             block.terminator = Terminator::Return(value);
-            block.span = span;
+            block.origin = origin;
         }
     }
 }
@@ -109,11 +109,11 @@ fn join(function: &mut Function) {
             }
             let mut insts = std::mem::take(&mut function.blocks[to].insts);
             let terminator = std::mem::replace(&mut function.blocks[to].terminator, Terminator::Unreachable);
-            let span = function.blocks[to].span;
+            let origin = function.blocks[to].origin;
             let block = &mut function.blocks[head];
             block.insts.append(&mut insts);
             block.terminator = terminator;
-            block.span = span;
+            block.origin = origin;
         }
     }
     function.layout.retain(|id| !appended.contains(*id));

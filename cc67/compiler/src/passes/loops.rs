@@ -186,8 +186,8 @@ impl<'a> Worker<'a> {
         let insts = std::mem::take(&mut self.before);
         let function = &mut *self.function;
         let header = function.layout[stretch.first];
-        let span = function.blocks[header].span;
-        let block = function.blocks.push(Block { insts, terminator: Terminator::Jump(header), span });
+        let origin = function.blocks[header].origin;
+        let block = function.blocks.push(Block { insts, terminator: Terminator::Jump(header), origin });
         for (place, id) in function.layout.iter().enumerate() {
             if !(stretch.first..=stretch.last).contains(&place) {
                 function.blocks[*id].terminator.visit_targets(|target| {

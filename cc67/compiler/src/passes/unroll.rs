@@ -218,7 +218,7 @@ impl<'a> Unroller<'a> {
                 .iter()
                 .map(|body| {
                     let empty =
-                        Block { insts: Vec::new(), terminator: Terminator::Unreachable, span: body.span };
+                        Block { insts: Vec::new(), terminator: Terminator::Unreachable, origin: body.origin };
                     self.function.blocks.push(empty)
                 })
                 .collect();
@@ -277,14 +277,14 @@ impl<'a> Unroller<'a> {
             insts
         };
         let before = turns(self, plan.before);
-        let span = body.span;
+        let origin = body.origin;
         if plan.is_whole {
-            self.function.blocks[id] = Block { insts: before, terminator: Terminator::Jump(outside), span };
+            self.function.blocks[id] = Block { insts: before, terminator: Terminator::Jump(outside), origin };
             return;
         }
         self.function.blocks[id].insts = turns(self, plan.copies);
         if plan.before > 0 {
-            let block = Block { insts: before, terminator: Terminator::Jump(id), span };
+            let block = Block { insts: before, terminator: Terminator::Jump(id), origin };
             let block = self.function.blocks.push(block);
             self.enter(id, block);
             self.function.layout.insert(self.stretch.first, block);

@@ -91,18 +91,18 @@ fn push_option(key: &str, value: &Value, line: &mut Vec<OsString>) -> Result<(),
     Ok(())
 }
 
-/// What the server can do.
-pub(super) fn capabilities() -> Value {
+/// What the server can do; `is_own` for a board that it launches, which can go back and begin again.
+pub(super) fn capabilities(is_own: bool) -> Value {
     json!({
         "supportsConfigurationDoneRequest": true,
         "supportsFunctionBreakpoints": true,
         "supportsConditionalBreakpoints": true,
         "supportsHitConditionalBreakpoints": true,
         "supportsEvaluateForHovers": true,
-        "supportsStepBack": true,
+        "supportsStepBack": is_own,
         "supportsSetVariable": true,
         "supportsSetExpression": true,
-        "supportsRestartRequest": true,
+        "supportsRestartRequest": is_own,
         "supportsExceptionInfoRequest": true,
         "supportsLogPoints": true,
         "supportsDataBreakpoints": true,
@@ -112,7 +112,7 @@ pub(super) fn capabilities() -> Value {
         "supportsInstructionBreakpoints": true,
         "supportsSteppingGranularity": true,
         "supportsCompletionsRequest": true,
-        "supportsTerminateRequest": true,
+        "supportsTerminateRequest": is_own,
         "supportsBreakpointLocationsRequest": true,
         "supportsDelayedStackTraceLoading": true,
         "exceptionBreakpointFilters": [

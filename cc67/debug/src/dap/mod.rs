@@ -6,11 +6,14 @@
 //!
 //! Source: <https://microsoft.github.io/debug-adapter-protocol/specification>.
 
+mod attach;
 mod breakpoints;
 mod launch;
 mod look;
+mod relay;
 mod wire;
 
+pub use attach::AttachPoint;
 pub use launch::Launch;
 
 use std::io::{self, BufRead, Write};
@@ -24,7 +27,7 @@ use runtime::{Event, EventKind};
 use serde_json::{Value, json};
 use vm::engine::ContextId;
 
-use crate::debugger::{DebugError, Debugger, Reason, Stop};
+use crate::debugger::{DebugError, Debugger, Goal, ONLY_FORWARD, Reason, Stop, Way};
 use look::Handle;
 use wire::ClientWire;
 
@@ -48,18 +51,20 @@ pub fn serve(
 ) -> io::Result<()> {
     let interrupt = Arc::new(AtomicBool::new(false));
     let requests = read(input, Arc::clone(&interrupt));
-    let mut server = Server {
-        wire: ClientWire::new(output),
-        launcher,
-        interrupt,
-        debugger: None,
-        asked: Launch::default(),
-        handles: Vec::new(),
-        set: Vec::new(),
-        has_trapped: false,
-        is_over: false,
-    };
+    let mut server = Server::new(output, Some(launcher), interrupt);
+    let mut greeting = Value::Null;
     while let Ok(request) = requests.recv() {
+        match request["command"].as_str() {
+            Some("initialize") => greeting = request.clone(),
+            Some("attach") => match relay::connect(&request["arguments"], &greeting) {
+                Ok(board) => return relay::relay(board, requests, server.wire, &request),
+                Err(error) => {
+                    server.wire.respond(&request, Err(error))?;
+                    continue;
+                }
+            },
+            _ => {}
+        }
         server.answer(&request)?;
         if server.is_over {
             break;
@@ -89,7 +94,10 @@ fn read(mut input: impl BufRead + Send + 'static, interrupt: Arc<AtomicBool>) ->
 /// The state of a conversation.
 struct Server<'a, W> {
     wire: ClientWire<W>,
-    launcher: Launcher<'a>,
+    /// What makes a debugger; none where the board is somebody else's, and the debugger is there from the beginning.
+    launcher: Option<Launcher<'a>>,
+    /// Where the board of somebody else goes; `None` while it is stopped.
+    goal: Option<Goal>,
     interrupt: Arc<AtomicBool>,
     debugger: Option<Debugger>,
     asked: Launch,
@@ -104,15 +112,28 @@ struct Server<'a, W> {
 /// What a client lets the board do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Move {
-    On,
-    Into,
-    Over,
-    Out,
-    Instruction,
+    Forward(Way),
     Back,
     BackInstruction,
     BackOn,
     Again,
+}
+
+impl<'a, W: Write> Server<'a, W> {
+    fn new(output: W, launcher: Option<Launcher<'a>>, interrupt: Arc<AtomicBool>) -> Self {
+        Self {
+            wire: ClientWire::new(output),
+            launcher,
+            goal: Some(Goal::None),
+            interrupt,
+            debugger: None,
+            asked: Launch::default(),
+            handles: Vec::new(),
+            set: Vec::new(),
+            has_trapped: false,
+            is_over: false,
+        }
+    }
 }
 
 impl<W: Write> Server<'_, W> {
@@ -126,13 +147,14 @@ impl<W: Write> Server<'_, W> {
         let is_ok = reply.is_ok();
         self.wire.respond(request, reply)?;
         match command.as_str() {
-            "launch" if is_ok => self.wire.event("initialized", json!({})),
+            "launch" | "attach" if is_ok => self.wire.event("initialized", json!({})),
             "configurationDone" if is_ok => self.begin(),
             "disconnect" | "terminate" => {
                 self.is_over = command == "disconnect";
                 if self.is_over { Ok(()) } else { self.wire.event("terminated", json!({})) }
             }
             "setVariable" | "setExpression" | "writeMemory" | "evaluate" => self.tell_messages(),
+            "pause" if self.launcher.is_none() => self.halt(Reason::Interrupted),
             "pause" => {
                 // A run was interrupted already; a board that stands stays.
                 self.interrupt.store(false, Ordering::Relaxed);
@@ -145,11 +167,11 @@ impl<W: Write> Server<'_, W> {
     fn move_of(&self, command: &str, arguments: &Value) -> Option<Move> {
         let is_instruction = arguments["granularity"] == "instruction";
         Some(match command {
-            "continue" => Move::On,
-            "next" | "stepIn" if is_instruction => Move::Instruction,
-            "next" => Move::Over,
-            "stepIn" => Move::Into,
-            "stepOut" => Move::Out,
+            "continue" => Move::Forward(Way::On),
+            "next" | "stepIn" if is_instruction => Move::Forward(Way::Instruction),
+            "next" => Move::Forward(Way::Over),
+            "stepIn" => Move::Forward(Way::Into),
+            "stepOut" => Move::Forward(Way::Out),
             "stepBack" if is_instruction => Move::BackInstruction,
             "stepBack" => Move::Back,
             "reverseContinue" => Move::BackOn,
@@ -161,9 +183,9 @@ impl<W: Write> Server<'_, W> {
     /// The response to a request that lets no time pass.
     fn reply(&mut self, command: &str, arguments: &Value) -> Reply {
         match command {
-            "initialize" => Ok(launch::capabilities()),
+            "initialize" => Ok(launch::capabilities(self.launcher.is_some())),
             "launch" => self.launch(arguments),
-            "attach" => Err("cc67 debugs what it launches; use \"request\": \"launch\"".into()),
+            "attach" => self.attach(arguments),
             "configurationDone" | "pause" | "disconnect" | "terminate" => Ok(json!({})),
             "setBreakpoints" => self.set_breakpoints(arguments),
             "setFunctionBreakpoints" => self.set_function_breakpoints(arguments),
@@ -191,9 +213,18 @@ impl<W: Write> Server<'_, W> {
 
     fn launch(&mut self, arguments: &Value) -> Reply {
         self.asked = Launch(arguments.clone());
-        let mut debugger = (self.launcher)(&self.asked)?;
+        let launcher = self.launcher.as_mut();
+        let launcher = launcher.ok_or("a board runs here already; use \"request\": \"attach\"")?;
+        let mut debugger = launcher(&self.asked)?;
         debugger.interrupted_by(Arc::clone(&self.interrupt));
         self.debugger = Some(debugger);
+        Ok(json!({}))
+    }
+
+    fn attach(&mut self, arguments: &Value) -> Reply {
+        self.asked = Launch(arguments.clone());
+        let debugger = self.debugger()?;
+        debugger.look_around();
         Ok(json!({}))
     }
 
@@ -205,10 +236,41 @@ impl<W: Write> Server<'_, W> {
     fn begin(&mut self) -> io::Result<()> {
         if self.asked.0["stopOnEntry"] == true {
             let stop = self.debugger.as_ref().map(|debugger| debugger.stop().clone());
+            if self.launcher.is_none() {
+                return self.halt(Reason::Begin);
+            }
             return stop.map_or(Ok(()), |stop| self.tell_stop(&stop));
         }
-        let result = self.run(Move::On)?;
+        if self.launcher.is_none() {
+            return Ok(());
+        }
+        let result = self.run(Move::Forward(Way::On))?;
         self.tell_result(result)
+    }
+
+    /// Stops the board of somebody else where it is.
+    fn halt(&mut self, reason: Reason) -> io::Result<()> {
+        if self.goal.take().is_none() {
+            return Ok(());
+        }
+        let stop = self.debugger.as_mut().map(|debugger| debugger.halt(reason));
+        stop.map_or(Ok(()), |stop| self.tell_stop(&stop))
+    }
+
+    /// Lets the board of somebody else go a way, as its owner lets time pass.
+    fn let_go(&mut self, kind: Move) -> io::Result<()> {
+        self.handles.clear();
+        let goal = match kind {
+            Move::Forward(way) => self.debugger().and_then(|debugger| debugger.goal(way)),
+            Move::Back | Move::BackInstruction | Move::BackOn | Move::Again => Err(ONLY_FORWARD.into()),
+        };
+        match goal {
+            Ok(goal) => {
+                self.goal = Some(goal);
+                Ok(())
+            }
+            Err(error) => self.tell_result(Err(error)),
+        }
     }
 
     fn do_move(&mut self, request: &Value, kind: Move) -> io::Result<()> {
@@ -229,6 +291,9 @@ impl<W: Write> Server<'_, W> {
             return self.wire.respond(request, Err(error));
         }
         self.wire.respond(request, Ok(json!({ "allThreadsContinued": true })))?;
+        if self.launcher.is_none() {
+            return self.let_go(kind);
+        }
         let result = self.run(kind)?;
         self.tell_result(result)
     }
@@ -250,37 +315,21 @@ impl<W: Write> Server<'_, W> {
     fn run(&mut self, kind: Move) -> io::Result<Result<Stop, DebugError>> {
         self.handles.clear();
         let Some(debugger) = &mut self.debugger else { return Ok(Err("nothing is launched yet".into())) };
-        let infos: Vec<_> = debugger.session().debug().into_iter().map(|(_, info)| info).collect();
-        let (wire, mut failed, mut has_trapped) = (&mut self.wire, None, false);
-        let mut tell = |event: &Event| {
-            has_trapped |= matches!(event.kind, EventKind::Trap(_));
-            let told = match &event.kind {
-                EventKind::ConsoleLine(line) => {
-                    wire.output("stdout", &format!("{}\n", String::from_utf8_lossy(line)))
-                }
-                _ => match remark::describe(event, &infos) {
-                    Some(text) => {
-                        let scene = remark::scene(event).map_or(String::new(), ToString::to_string);
-                        wire.output("console", &format!("{text}\n{scene}"))
-                    }
-                    None => Ok(()),
-                },
-            };
-            failed = failed.take().or(told.err());
-        };
+        let mut herald = Herald::new(&mut self.wire, debugger);
+        let mut tell = |event: &Event| herald.tell(event);
         let result = match kind {
-            Move::On => Ok(debugger.go_on(&mut tell)),
-            Move::Into => debugger.step(&mut tell),
-            Move::Over => debugger.next(&mut tell),
-            Move::Out => debugger.finish(&mut tell),
-            Move::Instruction => debugger.step_instruction(&mut tell),
+            Move::Forward(Way::On) => Ok(debugger.go_on(&mut tell)),
+            Move::Forward(Way::Into) => debugger.step(&mut tell),
+            Move::Forward(Way::Over) => debugger.next(&mut tell),
+            Move::Forward(Way::Out) => debugger.finish(&mut tell),
+            Move::Forward(Way::Instruction) => debugger.step_instruction(&mut tell),
             Move::Back => debugger.reverse_next(),
             Move::BackInstruction => Ok(debugger.reverse_step_instruction()),
             Move::BackOn => Ok(debugger.reverse_continue()),
             Move::Again => debugger.restart().map(|_| debugger.go_on(&mut tell)),
         };
-        self.has_trapped |= has_trapped;
-        match failed {
+        self.has_trapped |= herald.has_trapped;
+        match herald.failed {
             Some(error) => Err(error),
             None => Ok(result),
         }
@@ -337,6 +386,38 @@ impl<W: Write> Server<'_, W> {
             body["hitBreakpointIds"] = json!([id]);
         }
         self.wire.event("stopped", body)
+    }
+}
+
+/// Tells a client what the board says while it runs.
+struct Herald<'a, W> {
+    wire: &'a mut ClientWire<W>,
+    infos: Vec<runtime::debug::DebugInfo>,
+    failed: Option<io::Error>,
+    has_trapped: bool,
+}
+
+impl<'a, W: Write> Herald<'a, W> {
+    fn new(wire: &'a mut ClientWire<W>, debugger: &Debugger) -> Self {
+        let infos = debugger.session().debug().into_iter().map(|(_, info)| info).collect();
+        Self { wire, infos, failed: None, has_trapped: false }
+    }
+
+    fn tell(&mut self, event: &Event) {
+        self.has_trapped |= matches!(event.kind, EventKind::Trap(_));
+        let told = match &event.kind {
+            EventKind::ConsoleLine(line) => {
+                self.wire.output("stdout", &format!("{}\n", String::from_utf8_lossy(line)))
+            }
+            _ => match remark::describe(event, &self.infos) {
+                Some(text) => {
+                    let scene = remark::scene(event).map_or(String::new(), ToString::to_string);
+                    self.wire.output("console", &format!("{text}\n{scene}"))
+                }
+                None => Ok(()),
+            },
+        };
+        self.failed = self.failed.take().or(told.err());
     }
 }
 

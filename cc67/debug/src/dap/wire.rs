@@ -69,13 +69,23 @@ impl<W: Write> ClientWire<W> {
         self.event("output", json!({ "category": category, "output": text }))
     }
 
+    /// Passes a message on, with a number of this way.
+    pub(super) fn forward(&mut self, message: Value) -> io::Result<()> {
+        self.send(message)
+    }
+
     fn send(&mut self, mut message: Value) -> io::Result<()> {
         self.sequence += 1;
         message["seq"] = json!(self.sequence);
-        let text = message.to_string();
-        write!(self.output, "Content-Length: {}\r\n\r\n{text}", text.len())?;
-        self.output.flush()
+        write(&mut self.output, &message)
     }
+}
+
+/// Writes a message as it is.
+pub(super) fn write(output: &mut impl Write, message: &Value) -> io::Result<()> {
+    let text = message.to_string();
+    write!(output, "Content-Length: {}\r\n\r\n{text}", text.len())?;
+    output.flush()
 }
 
 const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";

@@ -4,20 +4,22 @@ mod run;
 mod travel;
 mod values;
 
+pub(crate) use run::{Goal, Way};
+pub(crate) use travel::ONLY_FORWARD;
 pub use values::ShownVariable;
 
 use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use cc67_host::{History, Session, Snapshot, Timeline};
+use cc67_host::{History, HostError, Session, Setup, Snapshot, Timeline};
 use compiler::debug::Probe;
 use kmotiondef::{CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
 use runtime::Event;
 use vm::engine::ContextId;
 use vm::interp::{BytecodeEngine, FrameView};
 
-use crate::programs::{Programs, Statement};
+use crate::programs::{Activation, Programs, Statement};
 
 /// Why a request is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -47,7 +49,7 @@ pub struct CodePlace {
     pub file: String,
     /// The line.
     pub line: u32,
-    /// The code is in another function, of which the call has become a part.
+    /// The call is inlined.
     pub is_inlined: bool,
 }
 
@@ -59,6 +61,10 @@ pub struct StackFrame {
     /// Where that is in the source, if that is known.
     pub place: Option<CodePlace>,
     pub(crate) view: FrameView,
+    /// Which call of the machine it is part of, counted from the innermost.
+    pub(crate) real: usize,
+    /// Which of the functions in it, counted from the innermost; all but the last are inlined.
+    pub(crate) level: usize,
 }
 
 /// What a breakpoint is about.
@@ -184,7 +190,8 @@ pub struct Catches {
 #[derive(Debug)]
 pub struct Debugger {
     session: Session,
-    timeline: Timeline<BytecodeEngine>,
+    /// The past; none of a board that somebody else runs.
+    timeline: Option<Timeline<BytecodeEngine>>,
     programs: Programs,
     breakpoints: Vec<Breakpoint>,
     next_id: u32,
@@ -206,6 +213,18 @@ impl Debugger {
     #[must_use]
     pub fn new(mut session: Session, limit: Ticks) -> Self {
         let timeline = Timeline::new(&mut session);
+        Self::with(session, Some(timeline), limit)
+    }
+
+    /// A debugger of a board that somebody else runs and [lends](Self::swap) it; such a board does not go back.
+    ///
+    /// # Errors
+    /// There is no board to keep the place of the other one.
+    pub fn of_lent() -> Result<Self, HostError> {
+        Ok(Self::with(Setup::default().session()?, None, Ticks::new(u64::MAX)))
+    }
+
+    fn with(session: Session, timeline: Option<Timeline<BytecodeEngine>>, limit: Ticks) -> Self {
         let mut programs = Programs::default();
         programs.update(&session);
         let first = session.programs().iter().find(|program| program.starts).map(|program| program.thread);
@@ -231,6 +250,26 @@ impl Debugger {
     #[must_use]
     pub const fn session(&self) -> &Session {
         &self.session
+    }
+
+    /// Lends it a board, or takes it back: what it had until then is in `session` afterwards.
+    pub fn swap(&mut self, session: &mut Session) {
+        std::mem::swap(&mut self.session, session);
+    }
+
+    /// The board under control, for whoever has lent it.
+    pub(crate) const fn session_mut(&mut self) -> &mut Session {
+        &mut self.session
+    }
+
+    /// Looks at what is loaded now, and at a thread that has a program.
+    pub(crate) fn look_around(&mut self) {
+        self.programs.update(&self.session);
+        if self.programs.of(self.thread).is_err()
+            && let Some((thread, _)) = self.programs.all().next()
+        {
+            self.thread = thread;
+        }
     }
 
     /// The board as it is at this instant, to compare it with another instant.
@@ -281,12 +320,14 @@ impl Debugger {
     /// Bytes of memory that the recorded past takes beside the board, and how many snapshots it has.
     #[must_use]
     pub fn history(&self) -> (usize, usize) {
-        (self.timeline.bytes(), self.timeline.len())
+        self.timeline.as_ref().map_or((0, 0), |timeline| (timeline.bytes(), timeline.len()))
     }
 
     /// Records the past with a snapshot after so much work; see [`Timeline::keep_every`].
     pub fn keep_every(&mut self, work: u64) {
-        self.timeline.keep_every(work);
+        if let Some(timeline) = &mut self.timeline {
+            timeline.keep_every(work);
+        }
     }
 
     /// Looks at a thread, or at another call.
@@ -317,33 +358,35 @@ impl Debugger {
         if !is_live {
             return Vec::new();
         }
-        let frame = |view: FrameView| StackFrame { address: view.at, place: self.place(view.at.get()), view };
-        self.session.frames(context).into_iter().map(frame).collect()
+        let mut frames = Vec::new();
+        for (real, view) in self.session.frames(context).into_iter().enumerate() {
+            let address = view.at;
+            let places: Vec<_> = self.programs.activations(address.get()).iter().map(place_of).collect();
+            if places.is_empty() {
+                frames.push(StackFrame { address, place: None, view, real, level: 0 });
+                continue;
+            }
+            frames.extend(places.into_iter().enumerate().map(|(level, place)| StackFrame {
+                address,
+                place: Some(place),
+                view: view.clone(),
+                real,
+                level,
+            }));
+        }
+        frames
+    }
+
+    /// How many calls of the source are in progress.
+    pub(crate) fn depth(&self, context: ContextId) -> usize {
+        let frames = self.session.frames(context);
+        frames.iter().map(|view| self.programs.depth(view.at.get())).sum()
     }
 
     /// Where an instruction is in its source.
     #[must_use]
     pub fn place(&self, address: u32) -> Option<CodePlace> {
-        let (thread, model, function) = self.programs.at(address)?;
-        let line = model.line_at(address)?;
-        let same = std::path::Path::new(&function.file).file_name() == model.path.file_name();
-        let file = if same {
-            model.path.clone()
-        } else {
-            model.path.parent().unwrap_or(std::path::Path::new("")).join(&function.file)
-        };
-        // Code of a function that has taken a call's place belongs to that function.
-        let is_own = (function.lines.start..=function.lines.end).contains(&line);
-        let inlined =
-            model.functions.iter().find(|other| (other.lines.start..=other.lines.end).contains(&line));
-        let named = if is_own { function } else { inlined.unwrap_or(function) };
-        Some(CodePlace {
-            thread,
-            function: named.name.clone(),
-            file: file.to_string_lossy().into_owned(),
-            line,
-            is_inlined: named.name != function.name,
-        })
+        self.programs.activations(address).first().map(place_of)
     }
 
     /// Sets a breakpoint at `FILE:LINE`, `LINE`, `FUNCTION` or `*ADDRESS`, of the program in one thread or of all that have it;
@@ -464,7 +507,7 @@ impl Debugger {
             let (thread, _, function) = found.ok_or_else(|| format!("no code at {address:#x}"))?;
             let line = self.place(address).map_or(0, |place| place.line);
             return Ok((
-                vec![Statement { thread, address, line, function: function.name.clone() }],
+                vec![Statement { thread, address, line, function: function.name.clone(), call: None }],
                 String::new(),
             ));
         }
@@ -544,10 +587,10 @@ impl Debugger {
 
     /// Tells the timeline that a person has changed something; says so if that makes another history.
     pub(crate) fn changed(&mut self) {
-        let history = if self.session.held().is_some() {
-            self.timeline.branch(&mut self.session)
-        } else {
-            self.timeline.keep(&mut self.session)
+        let history = match &mut self.timeline {
+            Some(timeline) if self.session.held().is_some() => timeline.branch(&mut self.session),
+            Some(timeline) => timeline.keep(&mut self.session),
+            None => History::Same,
         };
         if history != History::Same {
             let seconds = self.now().get() as f64 / Cycles::PER_SECOND.get() as f64;
@@ -556,6 +599,24 @@ impl Debugger {
             ));
         }
         self.refresh_watches();
+    }
+}
+
+/// Where a function is at present.
+fn place_of(activation: &Activation<'_>) -> CodePlace {
+    let Activation { thread, model, around, scope, is_inlined } = *activation;
+    let same = std::path::Path::new(&around.file).file_name() == model.path.file_name();
+    let file = if same {
+        model.path.clone()
+    } else {
+        model.path.parent().unwrap_or(std::path::Path::new("")).join(&around.file)
+    };
+    CodePlace {
+        thread,
+        function: scope.function.to_owned(),
+        file: file.to_string_lossy().into_owned(),
+        line: scope.line,
+        is_inlined,
     }
 }
 

@@ -18,8 +18,10 @@ pub(crate) enum Goal {
     /// Nothing.
     None,
     /// The next line of a context: from which line and depth it comes, and whether calls are followed.
-    Line { context: ContextId, line: u32, function: String, depth: usize, into: bool },
-    /// A call with fewer calls around it, at one of these addresses.
+    Line { context: ContextId, line: u32, depth: usize, into: bool },
+    /// The end of an inlined call of this depth.
+    Leave { context: ContextId, depth: usize },
+    /// A call of the machine with fewer calls around it, at one of these addresses.
     Above { context: ContextId, depth: usize, at: Vec<u32> },
     /// One of these addresses.
     Address(Vec<u32>),
@@ -29,10 +31,54 @@ pub(crate) enum Goal {
     Tick(Ticks),
 }
 
+/// A way forward.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Way {
+    /// To the next stop.
+    On,
+    /// To the next line, into functions.
+    Into,
+    /// To the next line, over functions.
+    Over,
+    /// Out of the function.
+    Out,
+    /// One instruction.
+    Instruction,
+}
+
 impl Debugger {
     /// Goes on to the next stop.
     pub fn go_on(&mut self, events: Events<'_>) -> Stop {
         self.run(&Goal::None, events)
+    }
+
+    /// What ends a run that goes a way.
+    ///
+    /// # Errors
+    /// Why it cannot go that way.
+    pub(crate) fn goal(&self, way: Way) -> Result<Goal, DebugError> {
+        match way {
+            Way::On => Ok(Goal::None),
+            Way::Into => self.line_goal(true),
+            Way::Over => self.line_goal(false),
+            Way::Out => self.outer_goal(),
+            Way::Instruction => {
+                self.must_be_active()?;
+                Ok(Goal::Instruction(self.context()))
+            }
+        }
+    }
+
+    /// Goes on to the goal, but no further than to the end of a tick: [`Reason::Time`] there. For a board that somebody
+    /// else runs, and continues later.
+    pub(crate) fn proceed(&mut self, goal: &Goal, limit: Ticks, events: Events<'_>) -> Stop {
+        self.limit = limit;
+        self.run(goal, events)
+    }
+
+    /// Stops where the board is, between two ticks.
+    pub(crate) fn halt(&mut self, reason: Reason) -> Stop {
+        self.stopped(reason, None)
     }
 
     /// Goes on to the next line of the thread that is looked at, into the functions that it calls.
@@ -40,7 +86,7 @@ impl Debugger {
     /// # Errors
     /// The thread runs nothing, or nothing is known about its program.
     pub fn step(&mut self, events: Events<'_>) -> Result<Stop, DebugError> {
-        let goal = self.line_goal(true)?;
+        let goal = self.goal(Way::Into)?;
         Ok(self.run(&goal, events))
     }
 
@@ -49,7 +95,7 @@ impl Debugger {
     /// # Errors
     /// As [`step`](Self::step).
     pub fn next(&mut self, events: Events<'_>) -> Result<Stop, DebugError> {
-        let goal = self.line_goal(false)?;
+        let goal = self.goal(Way::Over)?;
         Ok(self.run(&goal, events))
     }
 
@@ -58,13 +104,21 @@ impl Debugger {
     /// # Errors
     /// It is the outermost.
     pub fn finish(&mut self, events: Events<'_>) -> Result<Stop, DebugError> {
+        let goal = self.goal(Way::Out)?;
+        Ok(self.run(&goal, events))
+    }
+
+    fn outer_goal(&self) -> Result<Goal, DebugError> {
         let context = self.context();
         let frames = self.frames(context);
         let caller = frames.get(self.frame + 1);
         let caller = caller.ok_or("\"finish\" not meaningful in the outermost frame.")?;
-        let at = vec![caller.address.get() + WORD];
-        let goal = Goal::Above { context, depth: frames.len() - self.frame - 1, at };
-        Ok(self.run(&goal, events))
+        let is_inlined = frames.get(self.frame).is_some_and(|frame| frame.real == caller.real);
+        if is_inlined {
+            return Ok(Goal::Leave { context, depth: frames.len() - self.frame });
+        }
+        let depth = frames.last().map_or(0, |last| last.real + 1) - caller.real;
+        Ok(Goal::Above { context, depth, at: vec![caller.address.get() + WORD] })
     }
 
     /// Executes one instruction of the thread that is looked at.
@@ -72,8 +126,8 @@ impl Debugger {
     /// # Errors
     /// The thread is not active.
     pub fn step_instruction(&mut self, events: Events<'_>) -> Result<Stop, DebugError> {
-        self.must_be_active()?;
-        Ok(self.run(&Goal::Instruction(self.context()), events))
+        let goal = self.goal(Way::Instruction)?;
+        Ok(self.run(&goal, events))
     }
 
     /// Goes on to a place: `FILE:LINE`, `LINE`, `FUNCTION` or `*ADDRESS`.
@@ -123,8 +177,7 @@ impl Debugger {
         let context = self.context();
         let frames = self.frames(context);
         let place = frames.first().and_then(|frame| frame.place.clone());
-        let (line, function) = place.map_or((0, String::new()), |place| (place.line, place.function));
-        Ok(Goal::Line { context, line, function, depth: frames.len(), into })
+        Ok(Goal::Line { context, line: place.map_or(0, |place| place.line), depth: frames.len(), into })
     }
 
     /// Where contexts are held for breakpoints and a goal.
@@ -143,7 +196,7 @@ impl Debugger {
             }
         }
         match goal {
-            Goal::Line { .. } => addresses.extend(self.statements()),
+            Goal::Line { .. } | Goal::Leave { .. } => addresses.extend(self.statements()),
             Goal::Above { at, .. } | Goal::Address(at) => addresses.extend(at),
             Goal::None | Goal::Instruction(_) | Goal::Tick(_) => {}
         }
@@ -184,9 +237,8 @@ impl Debugger {
             }
             let before = self.active();
             let bits = self.bits();
-            self.timeline.redo(&mut self.session);
             let mut caught = None;
-            let step = self.timeline.next_input().map_or(limit, |next| next.min(limit));
+            let step = self.next_tick(limit);
             let mut programs_changed = false;
             self.session.step(step, &mut |event| {
                 programs_changed |= matches!(event.kind, EventKind::Loaded(..));
@@ -199,7 +251,9 @@ impl Debugger {
                 self.programs.update(&self.session);
                 infos = self.session.debug().into_iter().map(|(_, info)| info).collect();
             }
-            let _ = self.timeline.keep(&mut self.session);
+            if let Some(timeline) = &mut self.timeline {
+                let _ = timeline.keep(&mut self.session);
+            }
             if let Some(hold) = self.session.take_hold() {
                 if let Some(reason) = self.judge(hold, goal, true) {
                     return self.stopped(reason, Some(hold.context));
@@ -220,11 +274,19 @@ impl Debugger {
             if self.session.tick() >= limit {
                 return self.stopped(Reason::Time, None);
             }
-            if self.session.has_ended() && !matches!(goal, Goal::Tick(_)) {
+            let is_own = self.timeline.is_some();
+            if is_own && self.session.has_ended() && !matches!(goal, Goal::Tick(_)) {
                 self.session.finish(&mut |event| events(&event));
                 return self.stopped(Reason::AllEnded, None);
             }
         }
+    }
+
+    /// Does what was done at this instant before, and says how far the board runs until there is more of it.
+    pub(super) fn next_tick(&mut self, limit: Ticks) -> Ticks {
+        let Some(timeline) = &mut self.timeline else { return limit };
+        timeline.redo(&mut self.session);
+        timeline.next_input().map_or(limit, |next| next.min(limit))
     }
 
     fn active(&self) -> Vec<ThreadId> {
@@ -245,10 +307,11 @@ impl Debugger {
         let now = self.active();
         let mut ended = before.iter().filter(|thread| !now.contains(thread));
         let stepped = match goal {
-            Goal::Line { context, .. } | Goal::Above { context, .. } | Goal::Instruction(context) => {
-                context.thread()
-            }
-            _ => None,
+            Goal::Line { context, .. }
+            | Goal::Leave { context, .. }
+            | Goal::Above { context, .. }
+            | Goal::Instruction(context) => context.thread(),
+            Goal::None | Goal::Address(_) | Goal::Tick(_) => None,
         };
         let is_meant = |thread: &&ThreadId| self.catches.ends || stepped == Some(**thread);
         if let Some(thread) = ended.find(is_meant) {
@@ -394,17 +457,15 @@ impl Debugger {
     }
 
     fn is_reached(&self, goal: &Goal, context: ContextId, at: u32) -> bool {
-        let depth = || self.session.frames(context).len();
         match goal {
-            Goal::Line { context: of, line, function, depth: from, into } => {
+            Goal::Line { context: of, line, depth: from, into } => {
                 let Some(place) = self.place(at).filter(|_| *of == context) else { return false };
-                let now = depth();
-                // A function that has become a part of this one is a call all the same.
-                let is_followed = *into || !place.is_inlined || place.function == *function;
-                now < *from || (now == *from && place.line != *line && is_followed) || (now > *from && *into)
+                let now = self.depth(context);
+                now < *from || (now == *from && place.line != *line) || (now > *from && *into)
             }
+            Goal::Leave { context: of, depth: from } => *of == context && self.depth(context) < *from,
             Goal::Above { context: of, depth: wanted, at: addresses } => {
-                *of == context && addresses.contains(&at) && depth() <= *wanted
+                *of == context && addresses.contains(&at) && self.session.frames(context).len() <= *wanted
             }
             Goal::Address(addresses) => addresses.contains(&at),
             Goal::None | Goal::Instruction(_) | Goal::Tick(_) => false,

@@ -6,15 +6,19 @@
 
 use std::sync::atomic::Ordering;
 
+use cc67_host::Timeline;
 use kmotiondef::Ticks;
 use vm::engine::ContextId;
 
 use super::run::{Goal, catch};
-use super::{CodePlace, DebugError, Debugger, Position, Reason, Stop};
+use super::{DebugError, Debugger, Position, Reason, Stop};
 
 /// Ticks that are searched for a step at first, and how many times as many then.
 const WINDOW: u64 = 2;
 const WIDER: u64 = 6;
+
+/// Why a board without a past does not go there.
+pub(crate) const ONLY_FORWARD: &str = "others use this board: it does not go back";
 
 /// What is wanted of the past.
 #[derive(Clone, Debug)]
@@ -22,8 +26,8 @@ enum Wanted {
     /// The last stop of a breakpoint or the like.
     Stop,
     /// The beginning of the last line with at most this many calls around it.
-    Line { context: ContextId, depth: usize, function: Option<String> },
-    /// The call of a function.
+    Line { context: ContextId, depth: usize },
+    /// The call of a function, at this depth of the machine's calls.
     Call { context: ContextId, depth: usize, at: u32 },
     /// The last instruction.
     Instruction(ContextId),
@@ -34,9 +38,7 @@ impl Wanted {
     fn goal(&self) -> Goal {
         match self {
             Self::Stop => Goal::None,
-            Self::Line { context, .. } => {
-                Goal::Line { context: *context, line: 0, function: String::new(), depth: 0, into: true }
-            }
+            Self::Line { context, .. } => Goal::Line { context: *context, line: 0, depth: 0, into: true },
             Self::Call { at, .. } => Goal::Address(vec![*at]),
             Self::Instruction(context) => Goal::Instruction(*context),
         }
@@ -67,7 +69,7 @@ impl Debugger {
     /// Nothing is known about the thread's program.
     pub fn reverse_step(&mut self) -> Result<Stop, DebugError> {
         self.programs.of(self.thread)?;
-        Ok(self.back(&Wanted::Line { context: self.context(), depth: usize::MAX, function: None }))
+        Ok(self.back(&Wanted::Line { context: self.context(), depth: usize::MAX }))
     }
 
     /// The same, over functions that it called.
@@ -78,8 +80,7 @@ impl Debugger {
         self.programs.of(self.thread)?;
         let depth = self.frames(self.context()).len();
         let depth = if depth == 0 { usize::MAX } else { depth };
-        let function = self.present().map(|place| place.function);
-        Ok(self.back(&Wanted::Line { context: self.context(), depth, function }))
+        Ok(self.back(&Wanted::Line { context: self.context(), depth }))
     }
 
     /// Goes back to the call of the function.
@@ -90,7 +91,14 @@ impl Debugger {
         let context = self.context();
         let frames = self.frames(context);
         let caller = frames.get(self.frame + 1).ok_or("\"finish\" not meaningful in the outermost frame.")?;
-        let wanted = Wanted::Call { context, depth: frames.len() - self.frame - 1, at: caller.address.get() };
+        let is_inlined = frames.get(self.frame).is_some_and(|frame| frame.real == caller.real);
+        let wanted = if is_inlined {
+            // The line of the call, from its beginning.
+            Wanted::Line { context, depth: frames.len() - self.frame - 1 }
+        } else {
+            let depth = frames.last().map_or(0, |last| last.real + 1) - caller.real;
+            Wanted::Call { context, depth, at: caller.address.get() }
+        };
         Ok(self.back(&wanted))
     }
 
@@ -105,7 +113,8 @@ impl Debugger {
     /// It lies before the beginning.
     pub fn go_to(&mut self, tick: Ticks) -> Result<Stop, DebugError> {
         self.disarm();
-        self.timeline.go_to(&mut self.session, tick).map_err(|error| error.to_string())?;
+        let timeline = self.timeline.as_mut().ok_or(ONLY_FORWARD)?;
+        timeline.go_to(&mut self.session, tick).map_err(|error| error.to_string())?;
         Ok(self.stopped(Reason::Time, None))
     }
 
@@ -115,16 +124,23 @@ impl Debugger {
     /// The snapshots are of another board.
     pub fn restart(&mut self) -> Result<Stop, DebugError> {
         self.disarm();
-        self.timeline.restore(&mut self.session, 0).map_err(|error| error.to_string())?;
+        let timeline = self.timeline.as_mut().ok_or(ONLY_FORWARD)?;
+        timeline.restore(&mut self.session, 0).map_err(|error| error.to_string())?;
         Ok(self.stopped(Reason::Begin, None))
+    }
+
+    /// Puts the board where a snapshot was taken; whether it can be.
+    fn restore(&mut self, index: usize) -> bool {
+        let timeline = self.timeline.as_mut();
+        timeline.is_some_and(|timeline| timeline.restore(&mut self.session, index).is_ok())
     }
 
     fn back(&mut self, wanted: &Wanted) -> Stop {
         let here = self.position();
         let mut bound = here;
-        let marks = self.timeline.len();
+        let marks = self.timeline.as_ref().map_or(0, Timeline::len);
         for index in (0..marks).rev() {
-            if self.timeline.restore(&mut self.session, index).is_err() {
+            if !self.restore(index) {
                 break;
             }
             let begin = self.position();
@@ -143,7 +159,7 @@ impl Debugger {
             bound = begin;
         }
         self.disarm();
-        if self.timeline.restore(&mut self.session, 0).is_err() {
+        if !self.restore(0) {
             self.messages.push_back("the beginning of the past cannot be reached".to_owned());
         }
         self.stopped(Reason::BeginOfHistory, None)
@@ -182,11 +198,11 @@ impl Debugger {
         number: Option<u64>,
     ) -> (Found, Option<Reason>) {
         self.disarm();
-        if self.timeline.restore(&mut self.session, index).is_err() {
+        if !self.restore(index) {
             return (Found::default(), None);
         }
-        if from > self.session.tick() {
-            self.timeline.replay(&mut self.session, from);
+        if let Some(timeline) = self.timeline.as_mut().filter(|_| from > self.session.tick()) {
+            timeline.replay(&mut self.session, from);
         }
         self.refresh_watches();
         let goal = wanted.goal();
@@ -212,8 +228,7 @@ impl Debugger {
             if is_at_end || self.session.tick() > bound.tick {
                 return (found, None);
             }
-            self.timeline.redo(&mut self.session);
-            let limit = self.timeline.next_input().map_or(bound.tick, |next| next.min(bound.tick));
+            let limit = self.next_tick(bound.tick);
             let mut caught = None;
             self.session.step(limit, &mut |event| {
                 if caught.is_none() && wanted.is_stop() {
@@ -230,23 +245,10 @@ impl Debugger {
                 (Some(hold), Wanted::Instruction(context)) => {
                     (hold.context == *context).then_some(Reason::Step)
                 }
-                (Some(hold), Wanted::Line { context, depth, function }) if hold.context == *context => {
-                    let frames = self.session.frames(hold.context);
-                    let here = frames
-                        .first()
-                        .and_then(|frame| Some((self.place(frame.at.get())?.line, frames.len())));
-                    let place = frames.first().and_then(|frame| self.place(frame.at.get()));
-                    let is_own = |place: &CodePlace| {
-                        !place.is_inlined
-                            || function.as_ref().is_none_or(|function| *function == place.function)
-                    };
-                    let is_meant = frames.len() <= *depth
-                        && place.as_ref().is_some_and(is_own)
-                        && frames.first().is_some_and(|frame| self.is_statement(frame.at.get()));
-                    let is_new = is_meant && here.is_some() && here != last;
-                    if is_meant {
-                        last = here;
-                    }
+                (Some(hold), Wanted::Line { context, depth }) if hold.context == *context => {
+                    let here = self.line_and_depth(hold.context).filter(|(_, now)| now <= depth);
+                    let is_new = here.is_some() && here != last;
+                    last = here.or(last);
                     is_new.then_some(Reason::Step)
                 }
                 (Some(hold), Wanted::Call { context, depth, at }) => {
@@ -269,6 +271,13 @@ impl Debugger {
                 }
             }
         }
+    }
+
+    /// The line that begins where a context is, if one does, and how many calls are in progress.
+    fn line_and_depth(&self, context: ContextId) -> Option<(u32, usize)> {
+        let at = self.session.frames(context).first()?.at.get();
+        let place = self.place(at).filter(|_| self.is_statement(at))?;
+        Some((place.line, self.depth(context)))
     }
 
     fn is_statement(&self, address: u32) -> bool {

@@ -5,8 +5,8 @@ use kmotiondef::GuestAddr;
 use vm::engine::ContextId;
 use vm::interp::FrameView;
 
-use super::{DebugError, Debugger, WatchedExpression};
-use crate::programs::Programs;
+use super::{DebugError, Debugger, StackFrame, WatchedExpression};
+use crate::programs::{Activation, Programs};
 use cc67_host::Session;
 
 /// A variable for show.
@@ -50,6 +50,7 @@ impl DebugReader for At<'_> {
             Location::Register(number) => LocalPlace::Slot(register(number)?),
             Location::Frame(offset) => LocalPlace::Memory(view.frame.offset(offset)),
             Location::Pointer(number) => LocalPlace::Memory(GuestAddr::new(register(number)? as u32)),
+            Location::Constant(bits) => LocalPlace::Slot(bits),
         })
     }
 }
@@ -63,12 +64,13 @@ fn items_in(expression: &str, session: &Session) -> Vec<String> {
     items
 }
 
-/// Compiles an expression for an instruction, or outside of functions for a thread's program.
+/// Compiles an expression for an instruction, in one of the functions that it is in, or outside of functions for a
+/// thread's program.
 fn compile(
     programs: &Programs,
     session: &Session,
     thread: kmotiondef::ThreadId,
-    at: Option<u32>,
+    at: Option<(u32, usize)>,
     expression: &str,
 ) -> Result<(Probe, Vec<String>), DebugError> {
     let (thread, expression) = match expression.split_once(':') {
@@ -78,13 +80,13 @@ fn compile(
         _ => (thread, expression),
     };
     let expression = Session::spelled(expression);
-    let found = at.and_then(|address| programs.at(address)).filter(|(number, ..)| *number == thread);
+    let found = at.and_then(|(address, level)| programs.activations(address).into_iter().nth(level));
+    let place = found.filter(|found| found.thread == thread).map(|found| found.scope);
     let any = || programs.all().next().map(|(_, model)| model);
     let model = match programs.of(thread) {
         Ok(model) => model,
         Err(why) => any().ok_or(why)?,
     };
-    let place = found.and_then(|(_, model, function)| Some((function.name.as_str(), model.line_at(at?)?)));
     match model.probe(place, &expression, &[]) {
         Ok(probe) => Ok((probe, Vec::new())),
         Err(error) => {
@@ -102,12 +104,17 @@ fn compile(
 }
 
 impl Debugger {
+    /// The call that is looked at.
+    fn call(&self) -> Option<StackFrame> {
+        self.frames(self.context()).into_iter().nth(self.frame)
+    }
+
     fn view(&self) -> Option<FrameView> {
-        self.frames(self.context()).into_iter().nth(self.frame).map(|frame| frame.view)
+        self.call().map(|frame| frame.view)
     }
 
     pub(crate) fn probe(&self, expression: &str) -> Result<(Probe, Vec<String>), DebugError> {
-        let at = self.view().map(|view| view.at.get());
+        let at = self.call().map(|frame| (frame.address.get(), frame.level));
         compile(&self.programs, &self.session, self.thread, at, expression)
     }
 
@@ -117,7 +124,7 @@ impl Debugger {
         expression: &str,
     ) -> Result<(Probe, Vec<String>), DebugError> {
         let thread = self.programs.at(address).map_or(self.thread, |(thread, ..)| thread);
-        compile(&self.programs, &self.session, thread, Some(address), expression)
+        compile(&self.programs, &self.session, thread, Some((address, 0)), expression)
     }
 
     fn with_value<T>(
@@ -166,14 +173,13 @@ impl Debugger {
     /// The locals that are visible where the call that is looked at stands.
     #[must_use]
     pub fn locals(&self) -> Vec<ShownVariable> {
-        let Some(view) = self.view() else { return Vec::new() };
-        let Some((_, model, function)) = self.programs.at(view.at.get()) else { return Vec::new() };
-        let line = model.line_at(view.at.get()).unwrap_or(0);
-        let at = At { session: &self.session, view: Some(&view), items: Vec::new() };
-        let is_own = (function.lines.start..=function.lines.end).contains(&line);
-        let visible = |local: &&LocalModel| !is_own || local.lines.contains(&line);
+        let Some(call) = self.call() else { return Vec::new() };
+        let activations = self.programs.activations(call.address.get());
+        let Some(Activation { model, scope, .. }) = activations.get(call.level) else { return Vec::new() };
+        let at = At { session: &self.session, view: Some(&call.view), items: Vec::new() };
+        let visible = |local: &&LocalModel| local.lines.contains(&scope.line);
         let mut shown: Vec<ShownVariable> = Vec::new();
-        for local in function.locals.iter().filter(visible) {
+        for local in scope.locals.iter().filter(visible) {
             // A name that is declared again hides the one before.
             shown.retain(|known| known.name != local.name);
             shown.push(match model.local(local, &at) {
@@ -234,7 +240,8 @@ impl Debugger {
                 slot[bytes.len()..4].fill(0xff);
             }
             let context = self.context();
-            self.session.set_register(context, self.frame, register, u64::from_le_bytes(slot));
+            let real = self.call().map_or(0, |call| call.real);
+            self.session.set_register(context, real, register, u64::from_le_bytes(slot));
         } else {
             let address = address
                 .ok_or_else(|| format!("`{expression}` is not a variable, so nothing can be stored in it"))?;
@@ -302,7 +309,9 @@ impl Debugger {
         let last = shown.text(&value);
         let ranges: Vec<_> =
             value.address().map(|address| (address, shown.size_of(&value))).into_iter().collect();
-        let frame = view.is_some().then(|| (self.context(), self.frames(self.context()).len() - self.frame));
+        let real = self.call().map_or(0, |call| call.real);
+        let frame =
+            view.is_some().then(|| (self.context(), self.session.frames(self.context()).len() - real));
         if ranges.is_empty() && probe.as_local().is_none() {
             return Err(format!("`{expression}` is not a variable; watch one of those in it").into());
         }

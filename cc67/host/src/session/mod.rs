@@ -68,6 +68,7 @@
 //! call the board has moved on. A session is deterministic: the same setup and the same calls at the same ticks give the
 //! same events and the same memory, on either engine.
 
+mod attendant;
 mod by_hand;
 mod condition;
 mod control;
@@ -82,6 +83,7 @@ mod timeline;
 mod until;
 mod user_program;
 
+pub use attendant::{Attendant, Idle};
 pub use by_hand::Recording;
 pub use control::{End, Interrupter};
 pub use ending::{Ending, EndingAxis, EndingThread};

@@ -133,13 +133,13 @@ impl Selector<'_> {
             let count = block.insts.len() - usize::from(fused.is_some());
             let order = early::order(function, block, self.externs);
             for inst in order.into_iter().filter(|index| *index < count).map(|index| &block.insts[index]) {
-                self.span = inst.span;
+                self.span = inst.origin.span;
                 self.inst(&inst.kind);
             }
-            self.span = block.span;
+            self.span = block.origin.span;
             let end = self.terminator(&block.terminator, fused);
             let insts = std::mem::take(&mut self.out);
-            self.code.blocks.push(Block { insts, end, depth, turns: 1, span: block.span });
+            self.code.blocks.push(Block { insts, end, depth, turns: 1, span: block.origin.span });
         }
         self.enter();
     }

@@ -6,7 +6,9 @@ use cranelift_entity::{EntityRef, PrimaryMap};
 
 use super::super::classes::Classes;
 use super::super::function::{Block, FrameSlot, Function, Signature, Signatures};
-use super::super::inst::{BlockId, Class, Inst, InstKind, Operand, SignatureId, SlotId, Terminator, ValueId};
+use super::super::inst::{
+    BlockId, Class, CodeOrigin, Inst, InstKind, Operand, SignatureId, SlotId, Terminator, ValueId,
+};
 use super::super::verify;
 use super::cursor::{Cursor, number};
 use super::inst::{self, Content};
@@ -100,10 +102,10 @@ impl Body {
         let block = self.blocks.entry(id).or_default();
         block.numbers.push(at);
         match content {
-            Content::Inst(kind) => block.insts.push(Inst { kind, span: NOWHERE }),
+            Content::Inst(kind) => block.insts.push(Inst { kind, origin: CodeOrigin::of(NOWHERE) }),
             Content::Call(kind, result) => {
                 block.calls.push((block.insts.len(), result));
-                block.insts.push(Inst { kind, span: NOWHERE });
+                block.insts.push(Inst { kind, origin: CodeOrigin::of(NOWHERE) });
             }
             Content::Terminator(terminator) => {
                 block.terminator = Some(terminator);
@@ -241,10 +243,10 @@ impl Body {
             // Numbers that the text does not use are blocks outside of the layout.
             while function.blocks.len() <= id.index() {
                 let (insts, terminator) = (Vec::new(), Terminator::Unreachable);
-                function.blocks.push(Block { insts, terminator, span: NOWHERE });
+                function.blocks.push(Block { insts, terminator, origin: CodeOrigin::of(NOWHERE) });
             }
             let terminator = block.terminator.unwrap_or(Terminator::Unreachable);
-            function.blocks[id] = Block { insts: block.insts, terminator, span: NOWHERE };
+            function.blocks[id] = Block { insts: block.insts, terminator, origin: CodeOrigin::of(NOWHERE) };
             numbers.insert(id, block.numbers);
         }
         numbers

@@ -54,7 +54,7 @@ impl Worker<'_> {
             count += 1;
             let start = self.start(&linear, Operand::Value(dst), inst);
             let carried = self.function.values.push(Class::I32);
-            self.push_before(Inst { kind: InstKind::Copy { dst: carried, src: start }, span: inst.span });
+            self.push_before(Inst { kind: InstKind::Copy { dst: carried, src: start }, origin: inst.origin });
             let step = counters[&sum.counter].wrapping_mul(sum.scale);
             steps.entry(sum.counter).or_default().push((carried, step));
             inst.kind = InstKind::Copy { dst, src: carried.into() };
@@ -185,7 +185,7 @@ impl Worker<'_> {
         let InstKind::Binary { op, a, b, .. } = sum.kind else { return operand };
         let (a, b) = (self.start(linear, a, inst), self.start(linear, b, inst));
         let dst = self.function.values.push(Class::I32);
-        self.push_before(Inst { kind: InstKind::Binary { op, dst, a, b }, span: inst.span });
+        self.push_before(Inst { kind: InstKind::Binary { op, dst, a, b }, origin: inst.origin });
         dst.into()
     }
 
@@ -206,7 +206,7 @@ impl Worker<'_> {
                         b: Operand::int(*step),
                     };
                     self.writes[*sum] += 1;
-                    out.push(Inst { kind, span: inst.span });
+                    out.push(Inst { kind, origin: inst.origin });
                 }
             }
             self.function.blocks[id].insts = out;

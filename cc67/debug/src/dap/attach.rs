@@ -1,0 +1,173 @@
+//! A debugger of a board that somebody else runs: a server for programs of the PC, a page.
+//!
+//! The owner of the session lets time pass through an [`AttachPoint`]. An editor that connects to its port has the board
+//! for as long as it stops it; then the owner's clock and clients wait. When it goes, its breakpoints go with it.
+
+use std::io::{self, BufReader};
+use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError, channel};
+use std::thread;
+use std::time::Duration;
+
+use cc67_host::{Attendant, Idle, Session};
+use kmotiondef::Ticks;
+use runtime::Event;
+use serde_json::Value;
+use vm::interp::BytecodeEngine;
+
+use super::{Herald, Server, read};
+use crate::debugger::{Debugger, Reason};
+
+/// How long a board that is stopped waits for the next request at once.
+const PATIENCE: Duration = Duration::from_millis(10);
+
+/// Where editors attach, one after another.
+#[derive(Debug)]
+pub struct AttachPoint {
+    address: SocketAddr,
+    clients: Receiver<TcpStream>,
+    visitor: Option<Visitor>,
+}
+
+impl AttachPoint {
+    /// Listens on a port of this computer; 0 is one that is free.
+    ///
+    /// # Errors
+    /// The port is taken.
+    pub fn listen(port: u16) -> io::Result<Self> {
+        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
+        let address = listener.local_addr()?;
+        let (sender, clients) = channel();
+        thread::spawn(move || {
+            for stream in listener.incoming().filter_map(Result::ok) {
+                if sender.send(stream).is_err() {
+                    return;
+                }
+            }
+        });
+        Ok(Self { address, clients, visitor: None })
+    }
+
+    /// Where it listens.
+    #[must_use]
+    pub const fn address(&self) -> SocketAddr {
+        self.address
+    }
+}
+
+impl Attendant<BytecodeEngine> for AttachPoint {
+    fn advance(
+        &mut self,
+        session: &mut Session,
+        limit: Ticks,
+        events: &mut dyn FnMut(Event),
+        idle: Idle<'_, BytecodeEngine>,
+    ) {
+        if self.visitor.is_none() {
+            // One that is gone before it is taken was none.
+            self.visitor = self.clients.try_recv().ok().and_then(|stream| Visitor::new(stream).ok());
+        }
+        let Some(visitor) = &mut self.visitor else { return session.advance(limit, events) };
+        visitor.swap(session);
+        let stays = visitor.advance(limit, events, idle);
+        visitor.swap(session);
+        if stays {
+            return;
+        }
+        self.visitor = None;
+        // A tick that was held goes on to its end.
+        let limit = if session.held().is_some() { limit.max(session.tick().next()) } else { limit };
+        session.advance(limit, events);
+    }
+}
+
+/// An editor that is attached.
+struct Visitor {
+    server: Server<'static, TcpStream>,
+    requests: Receiver<Value>,
+}
+
+impl std::fmt::Debug for Visitor {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str("Visitor")
+    }
+}
+
+impl Visitor {
+    fn new(stream: TcpStream) -> io::Result<Self> {
+        stream.set_nodelay(true)?;
+        let requests = read(BufReader::new(stream.try_clone()?), Arc::new(AtomicBool::new(false)));
+        let mut server = Server::new(stream, None, Arc::default());
+        server.debugger = Some(Debugger::of_lent().map_err(io::Error::other)?);
+        Ok(Self { server, requests })
+    }
+
+    /// Takes the board, or gives it back.
+    fn swap(&mut self, session: &mut Session) {
+        if let Some(debugger) = &mut self.server.debugger {
+            debugger.swap(session);
+        }
+    }
+
+    /// Serves the editor and runs the board; whether the editor stays.
+    fn advance(
+        &mut self,
+        limit: Ticks,
+        events: &mut dyn FnMut(Event),
+        idle: Idle<'_, BytecodeEngine>,
+    ) -> bool {
+        loop {
+            match self.answer() {
+                Ok(true) => {}
+                Ok(false) | Err(_) => return false,
+            }
+            let server = &mut self.server;
+            let Some(debugger) = &mut server.debugger else { return false };
+            let Some(goal) = server.goal.clone() else {
+                if idle(debugger.session_mut()).is_break() {
+                    return false;
+                }
+                match self.requests.recv_timeout(PATIENCE) {
+                    Ok(request) if server.answer(&request).is_ok() => {}
+                    Err(RecvTimeoutError::Timeout) => {}
+                    Ok(_) | Err(RecvTimeoutError::Disconnected) => return false,
+                }
+                continue;
+            };
+            if debugger.session().held().is_none() && debugger.session().tick() >= limit {
+                return true;
+            }
+            let mut herald = Herald::new(&mut server.wire, debugger);
+            let stop = debugger.proceed(&goal, limit, &mut |event| {
+                herald.tell(event);
+                events(event.clone());
+            });
+            if herald.failed.is_some() {
+                return false;
+            }
+            if stop.reason == Reason::Time {
+                return server.tell_messages().is_ok();
+            }
+            server.goal = None;
+            if server.tell_stop(&stop).is_err() {
+                return false;
+            }
+        }
+    }
+
+    /// Answers what has come; whether the editor stays.
+    fn answer(&mut self) -> io::Result<bool> {
+        loop {
+            if self.server.is_over {
+                return Ok(false);
+            }
+            match self.requests.try_recv() {
+                Ok(request) => self.server.answer(&request)?,
+                Err(TryRecvError::Empty) => return Ok(true),
+                Err(TryRecvError::Disconnected) => return Ok(false),
+            }
+        }
+    }
+}
