@@ -1,5 +1,6 @@
 //! The command as people, scripts and editors meet it: what it prints, what it writes and how it exits.
 
+mod attach;
 mod beside;
 mod board_options;
 mod boot;

@@ -9,9 +9,11 @@ mod flash;
 mod line;
 
 use std::ffi::OsString;
+use std::ops::ControlFlow;
 
 use anyhow::{Context, Result};
-use cc67_host::{End, Session, UserProgram};
+use cc67_debug::dap::AttachPoint;
+use cc67_host::{Attendant, End, Idle, Session, UserProgram};
 use compiler::Options;
 use kmotiondef::Ticks;
 use runtime::stimulus::Stimulus;
@@ -112,6 +114,14 @@ impl Setup {
         }
     }
 
+    /// The same on the engine that a debugger can hold, if editors may attach one.
+    pub(crate) fn debugged(self, debugger: Option<AttachPoint>, work: impl Work) -> Result<Exit> {
+        let Some(debugger) = debugger else { return self.on_its_engine(work) };
+        let mut rig = self.rig(BytecodeEngine::default())?;
+        rig.attendant = Some(Box::new(debugger));
+        work.on(rig)
+    }
+
     /// A board as the arguments want it, on an engine of the caller's choice.
     pub(crate) fn rig<E: Engine>(self, engine: E) -> Result<Rig<E>> {
         let session = self.session.session_on(engine)?;
@@ -121,6 +131,7 @@ impl Setup {
             uart: self.uart,
             line: SerialLine::default(),
             flash: self.flash,
+            attendant: None,
         })
     }
 
@@ -251,13 +262,15 @@ fn compile(
 
 /// A session as the arguments want it, with what they connect to its board: the serial port, the file of the flash.
 #[derive(Debug)]
-pub(crate) struct Rig<E> {
+pub(crate) struct Rig<E: Engine> {
     /// The board under control.
     pub(crate) session: Session<E>,
     engine: EngineName,
     uart: UartArguments,
     line: SerialLine,
     flash: Flash,
+    /// Who may stop the board.
+    pub(crate) attendant: Option<Box<dyn Attendant<E>>>,
 }
 
 impl<E: Engine> Rig<E> {
@@ -296,7 +309,16 @@ impl<E: Engine> Rig<E> {
 
     /// Runs to the end of a tick, also when everything has ended.
     pub(crate) fn advance(&mut self, limit: Ticks, sink: &mut dyn FnMut(Event)) {
-        self.line.advance(&mut self.session, limit, sink);
+        self.advance_attended(limit, sink, &mut |_| ControlFlow::Continue(()));
+    }
+
+    /// The same with somebody who may stop the board; `idle` is what is done meanwhile.
+    pub(crate) fn advance_attended(&mut self, limit: Ticks, sink: &mut dyn FnMut(Event), idle: Idle<'_, E>) {
+        let attendant = &mut self.attendant;
+        self.line.advance(&mut self.session, limit, sink, &mut |session, part, sink| match attendant {
+            Some(attendant) => attendant.advance(session, part, sink, idle),
+            None => session.advance(part, sink),
+        });
     }
 
     /// Sends a line to the board, and lets pass the time it takes.

@@ -21,11 +21,12 @@ mod view;
 pub use view::{LiveView, Wishes};
 
 use std::collections::BTreeMap;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
-use cc67_host::{Session, Timeline, UserProgram};
+use cc67_host::{Attendant, Session, Timeline, UserProgram};
 use kmotiondef::{ThreadId, Ticks};
 use runtime::{Event, OpenBox};
 use serde_json::{Value, json};
@@ -64,11 +65,12 @@ const ROTATION: u64 = 30;
 pub(crate) fn run<E: Engine>(
     session: &mut Session<E>,
     show: Show,
-    desk: &Arc<Desk>,
-    requests: &Receiver<Incoming>,
+    attendant: Option<Box<dyn Attendant<E>>>,
+    (desk, requests): (&Arc<Desk>, &Receiver<Incoming>),
 ) {
     let limit = show.limit.map(|seconds| session.tick_after(seconds));
     let mut stage = Stage::new(session, show, desk);
+    stage.attendant = attendant;
     while limit.is_none_or(|limit| session.tick() < limit) {
         stage.take(session, requests, BEAT);
         stage.advance(session, limit);
@@ -118,6 +120,8 @@ struct Stage<E: Engine> {
     open_box: Option<OpenBox>,
     /// For whoever else runs the session.
     wishes: Wishes,
+    /// Who may stop the board.
+    attendant: Option<Box<dyn Attendant<E>>>,
 }
 
 impl<E: Engine> Stage<E> {
@@ -148,6 +152,7 @@ impl<E: Engine> Stage<E> {
             turns: Turns::default(),
             open_box: None,
             wishes: Wishes::default(),
+            attendant: None,
         }
     }
 
@@ -310,6 +315,9 @@ impl<E: Engine> Stage<E> {
 
     /// Runs to the tick that is due, or as far as there is time for.
     fn advance(&mut self, session: &mut Session<E>, limit: Option<Ticks>) {
+        if self.attendant.is_some() {
+            self.run_to(session, session.tick());
+        }
         let begin = now();
         let due = self.clock.due(session.tick());
         let due = limit.map_or(due, |limit| due.min(limit));
@@ -322,7 +330,15 @@ impl<E: Engine> Stage<E> {
     fn run_to(&mut self, session: &mut Session<E>, tick: Ticks) {
         let mut events = Vec::new();
         let looks = !self.pages.is_empty() && self.told.1.elapsed() >= THREADS;
-        self.turns.advance(session, tick, looks, &mut |event| events.push(event));
+        if let Some(mut attendant) = self.attendant.take() {
+            attendant.advance(session, tick, &mut |event| events.push(event), &mut |session| {
+                self.tell(session);
+                ControlFlow::Continue(())
+            });
+            self.attendant = Some(attendant);
+        } else {
+            self.turns.advance(session, tick, looks, &mut |event| events.push(event));
+        }
         self.note(session, events);
     }
 

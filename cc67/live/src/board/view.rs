@@ -50,6 +50,11 @@ impl<E: Engine> LiveView<E> {
         Wishes { speed, ..std::mem::take(&mut self.stage.wishes) }
     }
 
+    /// Sends pages what is new while nothing may be asked for.
+    pub fn show(&mut self, session: &Session<E>) {
+        self.stage.tell(session);
+    }
+
     /// The session is over: pages are told.
     pub fn close(&self) {
         self.stage.close();

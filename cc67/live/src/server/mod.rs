@@ -13,7 +13,7 @@ use std::sync::mpsc::Receiver;
 use std::thread;
 use std::time::Duration;
 
-use cc67_host::Session;
+use cc67_host::{Attendant, Session};
 use vm::engine::Engine;
 
 use crate::Show;
@@ -75,9 +75,14 @@ impl Server {
         &self.url
     }
 
-    /// Runs a board and shows it, until its time has passed.
-    pub fn run<E: Engine>(self, session: &mut Session<E>, show: Show) {
-        board::run(session, show, &self.desk, &self.requests);
+    /// Runs a board and shows it, until its time has passed; an attendant may stop it.
+    pub fn run<E: Engine>(
+        self,
+        session: &mut Session<E>,
+        show: Show,
+        attendant: Option<Box<dyn Attendant<E>>>,
+    ) {
+        board::run(session, show, attendant, (&self.desk, &self.requests));
     }
 
     /// Shows a board that somebody else runs.

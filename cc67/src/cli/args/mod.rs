@@ -2,6 +2,7 @@
 //!
 //! An option of a board is one field in [`board`]; every command that has a board has the option.
 
+pub(crate) mod attach;
 pub(crate) mod beside;
 pub(crate) mod board;
 pub(crate) mod compiler;

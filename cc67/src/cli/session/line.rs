@@ -151,6 +151,9 @@ impl Peer {
     }
 }
 
+/// Runs a session to the end of a tick.
+type PartRunner<'a, E> = &'a mut dyn FnMut(&mut Session<E>, Ticks, &mut dyn FnMut(Event));
+
 /// The line from the board to whatever it is connected to; nothing, unless it is connected.
 #[derive(Debug, Default)]
 pub(super) struct SerialLine {
@@ -217,20 +220,24 @@ impl SerialLine {
         }
     }
 
-    /// Runs the board to the end of a tick, also when its programs have ended, and the line beside it.
+    /// Runs the board to the end of a tick, also when its programs have ended, and the line beside it; `run` runs a part.
     pub(super) fn advance<E: Engine>(
         &mut self,
         session: &mut Session<E>,
         limit: Ticks,
         sink: &mut dyn FnMut(Event),
+        run: PartRunner<'_, E>,
     ) {
-        while session.tick() < limit {
+        loop {
             let part = self.part(session.tick(), limit, false);
-            session.advance(part, &mut |event| {
+            run(session, part, &mut |event| {
                 self.note(&event);
                 sink(event);
             });
             self.exchange(session);
+            if session.tick() >= limit {
+                return;
+            }
         }
     }
 

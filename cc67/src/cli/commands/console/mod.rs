@@ -29,6 +29,7 @@ pub(super) use words::ACTIONS;
 use words::Word;
 
 use super::serve::Terms;
+use crate::cli::args::attach::AttachArguments;
 use crate::cli::args::board::BoardArguments;
 use crate::cli::args::compiler::CompilerArguments;
 use crate::cli::args::program::{ProgramFile, assign};
@@ -60,6 +61,9 @@ pub(super) struct ConsoleArguments {
     /// Serve programs of the PC instead of a person, as `cc67 serve --listen ADDRESS`
     #[arg(long, value_name = "ADDRESS", conflicts_with = "time")]
     serve: Option<String>,
+    /// With --serve, let an editor attach its debugger at a port of this computer, 0 for a free one
+    #[arg(long, value_name = "PORT", requires = "serve")]
+    debug: Option<u16>,
     /// After the last line, run at most SECONDS more of board time
     #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
     limit: Option<f64>,
@@ -82,7 +86,10 @@ pub(super) fn console(arguments: &ConsoleArguments) -> Result<Exit> {
     let setup = Setup::new(&arguments.programs, &arguments.board, &arguments.compiler, None)?;
     let Some(setup) = setup else { return Ok(Exit::Failure) };
     match &arguments.serve {
-        Some(address) => setup.on_its_engine(&arguments.terms(address)),
+        Some(address) => {
+            let debugger = AttachArguments { debug: arguments.debug }.open(&arguments.board)?;
+            setup.debugged(debugger, &arguments.terms(address))
+        }
         None => setup.on_its_engine(arguments),
     }
 }
@@ -121,7 +128,7 @@ enum Flow {
 }
 
 /// A board, and the person or script that talks to it.
-struct Console<'a, E> {
+struct Console<'a, E: Engine> {
     arguments: &'a ConsoleArguments,
     rig: Rig<E>,
     shown: Shown<'a>,

@@ -15,6 +15,7 @@ use cc67_live::{ListenError, Program, Server, Show, TestOption, TimeControl};
 use clap::{Args, Parser};
 use vm::engine::Engine;
 
+use crate::cli::args::attach::AttachArguments;
 use crate::cli::args::beside::BesideArguments;
 use crate::cli::args::board::BoardArguments;
 use crate::cli::args::compiler::CompilerArguments;
@@ -61,6 +62,8 @@ pub(super) struct LiveArguments {
     #[command(flatten)]
     beside: BesideArguments,
     #[command(flatten)]
+    attach: AttachArguments,
+    #[command(flatten)]
     board: BoardArguments,
     #[command(flatten)]
     compiler: CompilerArguments,
@@ -91,7 +94,8 @@ pub(super) fn live(arguments: &LiveArguments) -> Result<Exit> {
     let started = Started { programs: &arguments.programs, first: &arguments.beside.first };
     let setup = Setup::new(started, &arguments.board, &arguments.compiler, None)?;
     let Some(setup) = setup else { return Ok(Exit::Failure) };
-    setup.on_its_engine(arguments)
+    let debugger = arguments.attach.open(&arguments.board)?;
+    setup.debugged(debugger, arguments)
 }
 
 /// Shows the demonstration, with those of the arguments that are about the page.
@@ -121,7 +125,8 @@ impl Work for &LiveArguments {
         let show = self.show()?;
         let server = listen(self.port, &self.board)?;
         announce(&server, &self.board, !self.no_open)?;
-        server.run(&mut rig.session, show);
+        let attendant = rig.attendant.take();
+        server.run(&mut rig.session, show, attendant);
         rig.finish(&mut |_| ())?;
         Ok(Exit::Success)
     }

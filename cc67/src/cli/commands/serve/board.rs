@@ -60,6 +60,11 @@ impl<'a, B: Served> ServedBoard<'a, B> {
         self.board.tick()
     }
 
+    /// Whether a debugger may be attached, or is.
+    pub(super) fn is_attended(&self) -> bool {
+        self.board.is_attended()
+    }
+
     /// Runs to the end of a tick.
     pub(super) fn advance(&mut self, limit: Ticks) {
         let mut events = Vec::new();
@@ -104,6 +109,9 @@ impl<'a, B: Served> ServedBoard<'a, B> {
 
     /// Shows the board on its page, if it has one, and does what is wished there; what is for the desk.
     pub(super) fn show(&mut self) -> Option<PageWishes> {
+        let mut events = Vec::new();
+        self.board.attend(&mut |event| events.push(event));
+        self.take(events);
         let mut wishes = self.board.beat()?;
         self.take(std::mem::take(&mut wishes.events));
         if let Some(log) = &mut self.log {

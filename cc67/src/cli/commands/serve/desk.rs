@@ -193,7 +193,7 @@ impl<'a, B: Served> Desk<'a, B> {
             (Some(_), Some(_)) => SHORT_BEAT,
             (None, Some(_)) if self.ticks_wanted() > 0 => Duration::ZERO,
             (None, Some(until)) => until.saturating_duration_since(now()),
-            (None, None) if self.page.wished.is_some() => BEAT,
+            (None, None) if self.page.wished.is_some() || self.board.is_attended() => BEAT,
             // Time passes in exchanges only.
             (None, None) => return Some(self.inbox.recv().unwrap_or(Note::End)),
         };

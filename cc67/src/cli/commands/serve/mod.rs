@@ -31,12 +31,15 @@ mod served;
 
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Sender, channel};
 
 use anyhow::{Context, Result};
 use clap::Args;
 use vm::engine::Engine;
 
+use crate::cli::args::attach::AttachArguments;
 use crate::cli::args::board::BoardArguments;
 use crate::cli::args::compiler::CompilerArguments;
 use crate::cli::args::time::seconds;
@@ -83,6 +86,8 @@ pub(super) struct ServeArguments {
     #[cfg(feature = "live")]
     #[command(flatten)]
     page: page::PageArguments,
+    #[command(flatten)]
+    attach: AttachArguments,
     #[command(flatten)]
     board: BoardArguments,
     #[command(flatten)]
@@ -155,21 +160,23 @@ pub(super) fn serve(arguments: &ServeArguments) -> Result<Exit> {
         home::remember(&folder, home::own_words())?;
         output::print(&home::lines(&folder))?;
     }
+    let debugger = arguments.attach.open(&arguments.board)?;
     if let Some(file) = &arguments.board.boot {
         return own_firmware::serve(arguments, file, &terms);
     }
     let setup = Setup::new(&arguments.programs, &arguments.board, &arguments.compiler, None)?;
     let Some(setup) = setup else { return Ok(Exit::Failure) };
-    setup.on_its_engine(&terms)
+    setup.debugged(debugger, &terms)
 }
 
 impl Work for &Terms<'_> {
     fn on<E: Engine>(self, mut rig: Rig<E>) -> Result<Exit> {
         rig.connect()?;
-        let (board, trace) = Modelled::new(rig, self)?;
+        let is_ending = Arc::default();
+        let (board, trace) = Modelled::new(rig, self, Arc::clone(&is_ending))?;
         let board = ServedBoard::new(board, trace, self)?;
         let (notes, inbox) = channel();
-        end_on_signal(notes.clone())?;
+        end_on_signal(notes.clone(), is_ending)?;
         let places = listen::listen(&self.addresses, self.option, &notes)?;
         drop(notes);
         let exit = Desk::new(board, self, inbox).run();
@@ -179,8 +186,9 @@ impl Work for &Terms<'_> {
 }
 
 /// Has Ctrl-C, and a request of the system to end, end the server.
-fn end_on_signal(desk: Sender<Note>) -> Result<()> {
+fn end_on_signal(desk: Sender<Note>, is_ending: Arc<AtomicBool>) -> Result<()> {
     let end = move || {
+        is_ending.store(true, Ordering::Relaxed);
         // A desk that is closed has ended.
         let _ = desk.send(Note::End);
     };

@@ -1,6 +1,7 @@
 //! `cc67 serve --boot FILE`: the user's own firmware file is what clients talk to.
 
 use std::path::Path;
+use std::sync::Arc;
 use std::sync::mpsc::channel;
 
 use anyhow::{Result, bail};
@@ -32,7 +33,7 @@ pub(super) fn serve(arguments: &ServeArguments, file: &Path, terms: &Terms<'_>) 
         terms,
     )?;
     let (notes, inbox) = channel();
-    end_on_signal(notes.clone())?;
+    end_on_signal(notes.clone(), Arc::default())?;
     let places = listen::listen(&terms.addresses, terms.option, &notes)?;
     drop(notes);
     let exit = Desk::new(board, terms, inbox).run();

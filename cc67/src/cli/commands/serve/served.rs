@@ -1,5 +1,9 @@
 //! What is served: the modelled board, shown on a page if that is wanted.
 
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use anyhow::Result;
 #[cfg(feature = "live")]
 use cc67_live::LiveView;
@@ -33,6 +37,12 @@ pub(super) trait Served {
     fn keep_flash(&mut self) -> Result<()>;
     /// It is served no more.
     fn finish(&mut self, sink: &mut dyn FnMut(Event)) -> Result<()>;
+    /// Whether a debugger may be attached, or is.
+    fn is_attended(&self) -> bool {
+        false
+    }
+    /// Serves a debugger while no time passes.
+    fn attend(&mut self, _: &mut dyn FnMut(Event)) {}
     /// Shows something that happened.
     fn show(&mut self, _: &Event) {}
     /// Shows how it is now, and does what pages ask for; what else they wish, if there are any.
@@ -57,13 +67,19 @@ pub(super) struct PageWishes {
 /// The modelled board.
 pub(super) struct Modelled<E: Engine> {
     rig: Rig<E>,
+    /// The server is to end, even where a debugger has stopped the board.
+    is_ending: Arc<AtomicBool>,
     #[cfg(feature = "live")]
     view: Option<LiveView<E>>,
 }
 
 impl<E: Engine> Modelled<E> {
     /// The board of a rig, on a page if the terms say so; and the trace of it.
-    pub(super) fn new(mut rig: Rig<E>, terms: &Terms<'_>) -> Result<(Self, Option<Trace>)> {
+    pub(super) fn new(
+        mut rig: Rig<E>,
+        terms: &Terms<'_>,
+        is_ending: Arc<AtomicBool>,
+    ) -> Result<(Self, Option<Trace>)> {
         // A page shows signals without a file of them.
         #[cfg(feature = "live")]
         let is_shown_only = terms.page.is_some() && terms.trace.is_unwritten();
@@ -81,6 +97,7 @@ impl<E: Engine> Modelled<E> {
         let view = terms.page.as_ref().map(|page| page.open(&mut rig.session)).transpose()?;
         let board = Self {
             rig,
+            is_ending,
             #[cfg(feature = "live")]
             view,
         };
@@ -94,7 +111,26 @@ impl<E: Engine> Served for Modelled<E> {
     }
 
     fn advance(&mut self, limit: Ticks, sink: &mut dyn FnMut(Event)) {
-        self.rig.advance(limit, sink);
+        let is_ending = &self.is_ending;
+        #[cfg(feature = "live")]
+        let view = &mut self.view;
+        self.rig.advance_attended(limit, sink, &mut |_session| {
+            #[cfg(feature = "live")]
+            if let Some(view) = view {
+                view.show(_session);
+            }
+            if is_ending.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+    }
+
+    fn is_attended(&self) -> bool {
+        self.rig.attendant.is_some()
+    }
+
+    fn attend(&mut self, sink: &mut dyn FnMut(Event)) {
+        if self.is_attended() {
+            self.advance(self.tick(), sink);
+        }
     }
 
     fn receive(&mut self, bytes: &[u8]) {
