@@ -1,0 +1,145 @@
+//! What it costs that one can go back: memory of a long run, and time of a run without a breakpoint.
+//!
+//! The board works meanwhile: a servo axis with a motor and two more axes move, two programs run, and each move is
+//! printed. `CC67_LONG=1` takes an hour of board time.
+
+#![cfg(target_os = "linux")]
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use cc67_debug::Debugger;
+use cc67_host::{Session, Setup, UserProgram};
+use kmotiondef::limits::TIMEBASE;
+use kmotiondef::{ThreadId, Ticks};
+use runtime::MachineFile;
+
+/// Moves three axes to and fro, the first with a controller.
+const MOVES: &str = r#"
+    #include "KMotionDef.h"
+    int rounds;
+    main()
+    {
+        int axis;
+        ch0->InputMode = ENCODER_MODE;
+        ch0->OutputMode = DC_SERVO_MODE;
+        ch0->OutputChan0 = 0;
+        ch0->P = 1; ch0->D = 50; ch0->MaxOutput = 230; ch0->MaxFollowingError = 1e6;
+        for (axis = 0; axis < 3; axis++)
+        {
+            if (axis > 0) { chan[axis].InputMode = NO_INPUT_MODE; chan[axis].OutputMode = NO_OUTPUT_MODE; }
+            chan[axis].Vel = 1000; chan[axis].Accel = 5000; chan[axis].Jerk = 50000;
+            EnableAxisDest(axis, 0);
+        }
+        for (;;)
+        {
+            for (axis = 0; axis < 3; axis++) Move(axis, rounds % 2 ? 0 : 200 * (axis + 1));
+            while (!CheckDone(0) || !CheckDone(1) || !CheckDone(2)) WaitNextTimeSlice();
+            rounds = rounds + 1;
+            printf("%d: %f\n", rounds, ch0->Position);
+        }
+    }
+"#;
+
+/// Watches an input and keeps what it has seen.
+const WATCHES: &str = r#"
+    #include "KMotionDef.h"
+    double history[5000];
+    main()
+    {
+        int n = 0;
+        for (;;)
+        {
+            history[n] = ReadBit(136) + ch0->Dest;
+            persist.UserData[20] = n;
+            n = (n + 1) % 5000;
+            WaitNextTimeSlice();
+        }
+    }
+"#;
+
+fn tick(seconds: f64) -> Ticks {
+    Ticks::new((seconds / TIMEBASE).round() as u64)
+}
+
+/// Where the programs are; a debugger reads them there.
+fn folder() -> PathBuf {
+    std::env::temp_dir().join(format!("cc67-debug-cost-{}", std::process::id()))
+}
+
+fn session() -> Session {
+    let folder = folder();
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let mut setup = Setup::default();
+    let machine = "[axis.0]\nmodel = \"motor\"\nku = 435\ntau_s = 0.02\n";
+    setup.config.machine_file = MachineFile::parse(machine).expect("it is right");
+    for ((name, text), thread) in
+        [("moves.c", MOVES), ("watches.c", WATCHES)].into_iter().zip(ThreadId::all())
+    {
+        let file: PathBuf = folder.join(name);
+        std::fs::write(&file, text).expect("a file");
+        let program = UserProgram::compile(&file, thread, &setup.options).expect("it compiles");
+        setup.programs.push(program.started());
+    }
+    setup.session().expect("a board")
+}
+
+/// Bytes of memory of this process.
+fn resident() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").expect("Linux has it");
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).expect("it is listed");
+    line.split_whitespace().next().and_then(|kib| kib.parse::<u64>().ok()).expect("a number") << 10
+}
+
+#[expect(clippy::disallowed_methods, reason = "measures what the host takes")]
+fn time(work: impl FnOnce()) -> Duration {
+    let begin = Instant::now();
+    work();
+    begin.elapsed()
+}
+
+/// How much longer runs take in a debugger without a breakpoint, the median of pairs of runs.
+fn ratio(pairs: usize, seconds: f64) -> f64 {
+    let end = tick(seconds);
+    let mut ratios: Vec<f64> = (0..pairs)
+        .map(|_| {
+            let mut plain = session();
+            let plain = time(|| plain.advance(end, &mut |_| ()));
+            let mut debugger = Debugger::new(session(), end);
+            let debugged = time(|| _ = debugger.go_on(&mut |_| ()));
+            debugged.as_secs_f64() / plain.as_secs_f64()
+        })
+        .collect();
+    ratios.sort_by(f64::total_cmp);
+    ratios[pairs / 2]
+}
+
+/// What is measured, and what it may be. One test, as other work in the process would be measured as well.
+#[test]
+fn a_past_of_hours_takes_little_memory_and_little_time() {
+    let is_long = std::env::var_os("CC67_LONG").is_some();
+    let (minutes, pairs, seconds, most) = if is_long { (60.0, 15, 20.0, 1.1) } else { (0.5, 3, 2.0, 1.6) };
+
+    let before = resident();
+    let mut debugger = Debugger::new(session(), tick(1e6));
+    let length = time(|| _ = debugger.run_to(tick(60.0 * minutes), &mut |_| ()));
+    let rounds = debugger.evaluate("rounds").expect("it is a variable").text;
+    let (bytes, snapshots) = debugger.history();
+    let all = resident().saturating_sub(before);
+    println!(
+        "{minutes} minutes of board time in {length:.1?}: {rounds} rounds, {snapshots} snapshots with {} MB of pages, \
+         {} MB with the board",
+        bytes / 1_000_000,
+        all / 1_000_000
+    );
+    assert!(rounds.parse::<f64>().expect("a number") > minutes * 20.0, "the board works: {rounds}");
+    assert!(all < 500_000_000, "{all} bytes");
+    drop(debugger);
+
+    let ratio = ratio(pairs, seconds);
+    println!(
+        "a run in a debugger takes {ratio:.3} times a plain one, the median of {pairs} pairs of {seconds} s"
+    );
+    assert!(ratio < most, "{ratio}");
+    std::fs::remove_dir_all(folder()).expect("the folder is ours");
+}
