@@ -82,6 +82,8 @@ macro_rules! for_each_lint {
             ArrayBounds = "array-bounds", On, pass array_bounds;
             /// `persist.UserData` is indexed outside 0..199.
             UserDataIndex = "user-data-index", On;
+            /// A constant is beyond what an output takes.
+            ValueRange = "value-range", On, pass value_range;
             /// A `double` lies at an odd index of `persist.UserData`.
             UserDataAlignment = "user-data-alignment", On;
             /// A frame or a chain of calls is larger than the board's small stack.

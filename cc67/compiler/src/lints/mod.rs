@@ -38,6 +38,7 @@ pub(crate) mod sign_compare;
 pub(crate) mod unused_value;
 pub(crate) mod user_data_alignment;
 pub(crate) mod user_data_index;
+pub(crate) mod value_range;
 pub(crate) mod vendor;
 
 use program::AnalysedProgram;

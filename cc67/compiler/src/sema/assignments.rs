@@ -7,9 +7,10 @@ use super::operands::Operand;
 use super::places::Located;
 use crate::ast::{BinaryOperator, Expression, ExpressionKind};
 use crate::diag::{Diagnostic, Lint};
+use crate::lints::value_range;
 use crate::source::Span;
 use crate::ty::{TypeId, Types, convert};
-use crate::typed::{BinaryOp, ExprId, ExprKind, PlaceKind, Update, UpdateResult};
+use crate::typed::{BinaryOp, ExprId, ExprKind, PlaceId, PlaceKind, Update, UpdateResult};
 
 impl Sema<'_> {
     /// `to = from`
@@ -22,8 +23,29 @@ impl Sema<'_> {
             return self.assign_record(target, source, from.span, span);
         }
         let value = self.read(source, from.span)?;
+        if let Some(word) = self.body.dac_words.remove(&value)
+            && self.is_symbol(target.place, value_range::DAC_WORDS)
+        {
+            self.report_finding(word.finding(span));
+        }
         let value = self.assigned(value, target.ty.ty, AssignmentTarget::Assignment, from.span)?;
         Some(Operand::Value(self.body.expr(ExprKind::Assign(target.place, value), target.ty.ty, span)))
+    }
+
+    /// Whether a place is a variable of this name, or a part of it.
+    fn is_symbol(&self, place: PlaceId, name: &str) -> bool {
+        match self.body.places[place].kind {
+            PlaceKind::Symbol(symbol, _) => self.symbols.get(symbol).name == name,
+            PlaceKind::Pointer(pointer, _) => match self.body.exprs[pointer].kind {
+                ExprKind::Address(place) => self.is_symbol(place, name),
+                ExprKind::Binary(BinaryOp::Add, base, _) => match self.body.exprs[base].kind {
+                    ExprKind::Address(place) => self.is_symbol(place, name),
+                    _ => false,
+                },
+                _ => false,
+            },
+            PlaceKind::Local(..) | PlaceKind::Bits(..) => false,
+        }
     }
 
     /// Reports `if (f() = 1)`, which cannot be meant as it is written.

@@ -7,6 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use cranelift_entity::PrimaryMap;
 
 use super::constants::{self, Constant};
+use crate::lints::value_range::DacWord;
 use crate::names::Name;
 use crate::source::Span;
 use crate::ty::{TypeId, Types};
@@ -35,6 +36,8 @@ pub(super) struct Body {
     pub(super) jumps: Jumps,
     /// Integer constants that a division cut off on the way, with the first such division.
     pub(super) cut: BTreeMap<ExprId, (i64, i64)>,
+    /// Integer constants that are computed as the word of an analog output is.
+    pub(super) dac_words: BTreeMap<ExprId, DacWord>,
     /// Undeclared names that were reported in this function.
     pub(super) undeclared: BTreeSet<Name>,
 }
@@ -77,6 +80,7 @@ impl Body {
             places: PrimaryMap::new(),
             jumps: Jumps::default(),
             cut: BTreeMap::new(),
+            dac_words: BTreeMap::new(),
             undeclared: BTreeSet::new(),
         }
     }
@@ -202,6 +206,9 @@ impl Body {
                 let cut = self.division_cut(op, a, b);
                 let value = self.constant(constant, ty, span);
                 self.cut.extend(cut.map(|cut| (value, cut)));
+                let word = self.as_int(a).zip(self.as_int(b));
+                let word = word.and_then(|(x, y)| DacWord::after(op, (x, self.dac_words.get(&a)), y));
+                self.dac_words.extend(word.map(|word| (value, word)));
                 value
             }
             None => self.expr(ExprKind::Binary(op, a, b), ty, span),

@@ -1,0 +1,75 @@
+//! Constants beyond what an output of the board takes.
+
+use kmotiondef::limits::{MAX_PWM_VALUE, MAX_PWMC_VALUE, MAX_PWMR_VALUE};
+
+use super::program::AnalysedProgram;
+use crate::diag::{Diagnostic, Lint, Sink};
+use crate::source::Span;
+use crate::typed::{BinaryOp, Callee, ExprKind};
+
+/// Functions whose second argument is a value, which goes from minus this to this.
+const LIMITS: &[(&str, i32)] =
+    &[("WritePWM", MAX_PWM_VALUE), ("WritePWMR", MAX_PWMR_VALUE), ("WritePWMC", MAX_PWMC_VALUE)];
+
+/// The words of the analog outputs.
+pub(crate) const DAC_WORDS: &str = "DAC_Buffer";
+
+/// The bits of such a word, which the macro `DAC` cuts its value to.
+const DAC_BITS: i64 = 0xfff;
+
+/// What 0 is in such a word.
+const DAC_ZERO: i64 = 2048;
+
+/// A constant that is computed as the macro `DAC` does: `(value - 2048) & 0xfff`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct DacWord {
+    value: i64,
+    is_cut: bool,
+}
+
+impl DacWord {
+    /// What the constant `x op y` is, if `x` is what it is.
+    pub(crate) fn after(op: BinaryOp, (x, word): (i64, Option<&Self>), y: i64) -> Option<Self> {
+        match (op, word) {
+            (BinaryOp::Subtract, _) if y == DAC_ZERO => Some(Self { value: x, is_cut: false }),
+            (BinaryOp::And, Some(word)) if y == DAC_BITS => Some(Self { is_cut: true, ..*word }),
+            _ => None,
+        }
+    }
+
+    /// What is said where it is stored.
+    pub(crate) fn finding(self, span: Span) -> Option<Diagnostic> {
+        let value = self.value;
+        if !self.is_cut || (-DAC_ZERO..DAC_ZERO).contains(&value) {
+            return None;
+        }
+        let wrapped = ((value + DAC_ZERO) & DAC_BITS) - DAC_ZERO;
+        let message = format!("`DAC` takes values from -{DAC_ZERO} to {}, and this is {value}", DAC_ZERO - 1);
+        Some(
+            Diagnostic::warning(Lint::ValueRange, span, message)
+                .at(format!("the output has 12 bits and is set to {wrapped}")),
+        )
+    }
+}
+
+/// Reports calls with constants that are cut.
+pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
+    for function in program.functions() {
+        for (_, call) in function.calls() {
+            let Callee::Symbol(callee) = call.callee else { continue };
+            let name = program.name(callee);
+            let Some((_, most)) = LIMITS.iter().find(|(known, _)| *known == name) else { continue };
+            let Some(argument) = call.arguments.get(1).map(|argument| &function.exprs[*argument]) else {
+                continue;
+            };
+            let ExprKind::Int(value) = argument.kind else { continue };
+            if value.unsigned_abs() > u64::from(most.unsigned_abs()) {
+                let message = format!("`{name}` takes values from -{most} to {most}, and this is {value}");
+                sink.report(
+                    Diagnostic::warning(Lint::ValueRange, argument.span, message)
+                        .at(format!("the board limits it to {}", i64::from(*most) * value.signum())),
+                );
+            }
+        }
+    }
+}
