@@ -3,6 +3,7 @@
 mod book;
 mod commands;
 mod messages;
+mod mistakes;
 mod programs;
 
 #[path = "../tidy/tokens.rs"]

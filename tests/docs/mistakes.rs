@@ -1,0 +1,97 @@
+//! The chapter of mistakes is made of the tests of mistakes: each program with what is said of it.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+
+use crate::book::check_list;
+
+/// What comes before the first mistake.
+const HEAD: &str = "# Mistakes
+
+Programs that compile and do something else than was meant, each with what `cc67` says. Each is a test, and no
+program of `c-programs/` is told any of this.
+";
+
+/// Those that come to light in the servo interrupt or on the PC, where nobody knows a line.
+const WITHOUT_LINE: &[&str] = &[
+    "axis_that_runs_away",
+    "file_written_without_being_open",
+    "jog_that_nobody_stops",
+    "path_with_a_disabled_axis",
+    "text_without_a_newline",
+];
+
+/// A mistake as its file has it.
+struct Mistake {
+    name: String,
+    /// The arguments before the name of the file.
+    command: String,
+    program: String,
+    says: Vec<String>,
+}
+
+impl Mistake {
+    fn read(path: &Path) -> Self {
+        let text = fs::read_to_string(path).expect("programs are UTF-8");
+        let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
+        let (directives, lines): (Vec<_>, Vec<_>) = text.lines().partition(|line| line.starts_with("//@ "));
+        let head = text.lines().take_while(|line| line.starts_with("//@ ")).count();
+        assert_eq!(head, directives.len(), "{name}: directives are at its beginning");
+        let all = |what: &str| {
+            let values = directives.iter().filter_map(|line| line.strip_prefix("//@ ")?.strip_prefix(what));
+            values.map(str::to_owned).collect::<Vec<_>>()
+        };
+        let arguments = all("args: ").pop().unwrap_or_default();
+        let is_run = !arguments.starts_with("check");
+        let words = ["cc67", if is_run { "run" } else { "" }, &arguments, &format!("{name}.c")];
+        let command = words.iter().filter(|word| !word.is_empty()).copied().collect::<Vec<_>>().join(" ");
+        let says = all("says: ").into_iter().map(|line| without_directives(&line, &name, head)).collect();
+        let program = lines.join("\n").trim().to_owned();
+        Self { name, command, program, says }
+    }
+
+    /// As a section of the chapter.
+    fn section(&self) -> String {
+        let words = self.name.replace('_', " ");
+        let title: String =
+            words.chars().take(1).flat_map(char::to_uppercase).chain(words.chars().skip(1)).collect();
+        format!(
+            "\n## {title}\n\n```c mistake\n{}\n```\n\n`{}`:\n\n```text\n{}\n```\n",
+            self.program,
+            self.command,
+            self.says.join("\n")
+        )
+    }
+}
+
+/// What is said, with the lines that the program has without its directives.
+fn without_directives(said: &str, name: &str, directives: usize) -> String {
+    let file = format!("{name}.c:");
+    let mut parts = said.split(file.as_str());
+    let mut out = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let digits = part.len() - part.trim_start_matches(|c: char| c.is_ascii_digit()).len();
+        let line: usize = part[..digits].parse().expect("a line");
+        let _ = write!(out, "{file}{}{}", line - directives, &part[digits..]);
+    }
+    out
+}
+
+#[test]
+fn the_chapter_of_mistakes_has_each() {
+    let folder = harness::root().join("tests/filetests/mistakes");
+    let files =
+        fs::read_dir(&folder).expect("the folder is there").map(|entry| entry.expect("a file").path());
+    let mut files: Vec<_> = files.filter(|path| path.extension().is_some_and(|kind| kind == "c")).collect();
+    files.sort();
+    let mistakes: Vec<_> = files.iter().map(|path| Mistake::read(path)).collect();
+    assert!(mistakes.len() >= 60, "there are {}", mistakes.len());
+    for mistake in &mistakes {
+        let file = format!("{}.c:", mistake.name);
+        let has_line = mistake.says.iter().any(|line| line.contains(&file));
+        assert!(has_line != WITHOUT_LINE.contains(&mistake.name.as_str()), "{}: which line?", mistake.name);
+    }
+    let text: String = mistakes.iter().map(Mistake::section).collect();
+    check_list("mistakes.md", &(HEAD.to_owned() + &text));
+}
