@@ -237,6 +237,9 @@ pub fn generate_code(unit: &Unit, sources: &SourceMap, level: Level, sink: &mut 
         if level != Level::None {
             passes::loops_again(&mut ir);
         }
+        if matches!(level, Level::Fast | Level::Small) {
+            passes::evaluate(&mut ir);
+        }
         if level == Level::Fast {
             passes::unroll(&mut ir);
         }

@@ -88,6 +88,25 @@ pub(super) fn find(function: &Function, places: &SecondaryMap<BlockId, u32>) -> 
     loops
 }
 
+/// The block that leads into a loop, if it is the only one and leads to its first block.
+pub(super) fn entrance(
+    function: &Function,
+    places: &SecondaryMap<BlockId, u32>,
+    stretch: Stretch,
+) -> Option<BlockId> {
+    let header = function.layout[stretch.first];
+    let is_inside = |id: BlockId| (stretch.first as u32..=stretch.last as u32).contains(&places[id]);
+    let mut entrance = None;
+    for id in function.layout.iter().filter(|id| !is_inside(**id)) {
+        for target in function.blocks[*id].terminator.targets().filter(|target| is_inside(*target)) {
+            if target != header || entrance.replace(*id).is_some() {
+                return None;
+            }
+        }
+    }
+    entrance
+}
+
 /// What is known about the whole function, and of the loop that is worked on.
 struct Worker<'a> {
     function: &'a mut Function,

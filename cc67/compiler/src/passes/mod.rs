@@ -6,6 +6,7 @@
 
 pub mod dead;
 pub mod divide;
+pub mod evaluate;
 pub mod fold;
 pub mod inline;
 pub mod jumps;
@@ -22,7 +23,8 @@ use inline::Candidates;
 pub enum Level {
     /// Nothing: the code follows the source (`-O0`).
     None,
-    /// What makes code smaller (`-Os`): short functions alone replace their calls, and none calls of itself.
+    /// What makes code smaller (`-Os`): short functions alone replace their calls, and none calls of itself; loops that
+    /// only compute with known numbers are their last values.
     Small,
     /// Everything that makes code faster without making it much larger (`-O1`).
     #[default]
@@ -42,6 +44,7 @@ pub const ALL: &[(&str, Pass)] = &[
     ("loops", |unit| unit.iter_mut().for_each(|function| _ = loops::run(function))),
     ("dead", |unit| unit.iter_mut().for_each(dead::run)),
     ("divide", |unit| unit.iter_mut().for_each(divide::run)),
+    ("evaluate", |unit| unit.iter_mut().for_each(|function| _ = evaluate::run(function))),
     ("unroll", |unit| unit.iter_mut().for_each(|function| _ = unroll::run(function))),
     ("inline", inline_all),
 ];
@@ -75,6 +78,15 @@ pub fn run(function: &mut Function, level: Level) {
 pub fn loops_again(function: &mut Function) {
     if loops::run(function) {
         fold::run(function);
+        reuse::run(function);
+        fold::run(function);
+        dead::run(function);
+    }
+}
+
+/// Replaces loops that only compute with known numbers by their last values, and cleans up after it.
+pub fn evaluate(function: &mut Function) {
+    if evaluate::run(function) {
         reuse::run(function);
         fold::run(function);
         dead::run(function);

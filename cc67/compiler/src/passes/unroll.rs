@@ -151,24 +151,15 @@ fn turns(function: &Function, places: &SecondaryMap<BlockId, u32>, stretch: Stre
 fn entrance(function: &Function, places: &SecondaryMap<BlockId, u32>, stretch: Stretch) -> Option<BlockId> {
     let (header, latch) = (function.layout[stretch.first], function.layout[stretch.last]);
     let is_inside = |id: BlockId| (stretch.first as u32..=stretch.last as u32).contains(&places[id]);
-    let mut entrance = None;
-    for id in &function.layout {
+    for id in &function.layout[stretch.first..stretch.last] {
         let terminator = &function.blocks[*id].terminator;
-        if is_inside(*id) {
-            let leaves = matches!(terminator, Terminator::Return(_) | Terminator::Unreachable)
-                || terminator.targets().any(|target| target == header || !is_inside(target));
-            if leaves && *id != latch {
-                return None;
-            }
-        } else {
-            for target in terminator.targets().filter(|target| is_inside(*target)) {
-                if target != header || entrance.replace(*id).is_some() {
-                    return None;
-                }
-            }
+        let leaves = matches!(terminator, Terminator::Return(_) | Terminator::Unreachable)
+            || terminator.targets().any(|target| target == header || !is_inside(target));
+        if leaves && *id != latch {
+            return None;
         }
     }
-    entrance
+    loops::entrance(function, places, stretch)
 }
 
 const fn holds(op: CompareOp, a: i32, b: i32) -> bool {

@@ -1,0 +1,194 @@
+//! Loops that only compute with known numbers: the compiler does what the processor would.
+//!
+//! A loop is taken if one block alone leads into it, everything that it reads is known there, and it neither reads nor
+//! writes memory nor calls. Its turns are computed as the machine computes them, up to a limit; what is left of it are
+//! its last values. A loop with more turns, such as one that is meant to take time, stays.
+
+use std::collections::BTreeMap;
+
+use super::loops::{self, Stretch};
+use super::strength::{self, Simplified};
+use crate::ir::function::{Block, Function};
+use crate::ir::inst::{BlockId, Constant, Inst, InstKind, Operand, Terminator, ValueId};
+
+/// The most instructions that are computed for one loop, and for a function.
+const MOST: u32 = 20_000;
+const MOST_OF_ALL: u32 = 60_000;
+/// Blocks before a loop in which a first value is looked for.
+const BEFORE: usize = 8;
+/// The largest function, in blocks, that is worked on.
+const LARGEST: usize = 400;
+
+/// Replaces loops by their last values; returns whether anything changed.
+pub fn run(function: &mut Function) -> bool {
+    let mut is_changed = false;
+    let mut budget = MOST_OF_ALL;
+    while budget > 0 && function.layout.len() <= LARGEST && once(function, &mut budget) {
+        is_changed = true;
+        super::jumps::run(function);
+        super::fold::run(function);
+        super::jumps::run(function);
+    }
+    is_changed
+}
+
+/// Replaces the first loop that can be, the largest first.
+fn once(function: &mut Function, budget: &mut u32) -> bool {
+    let places = loops::places(function);
+    let mut found = loops::find(function, &places);
+    found.sort_by_key(|stretch| std::cmp::Reverse(stretch.last - stretch.first));
+    for stretch in found {
+        let Some(entrance) = loops::entrance(function, &places, stretch) else { continue };
+        let mut machine = Machine { function, entrance, values: BTreeMap::new() };
+        let most = MOST.min(*budget);
+        let mut steps = most;
+        let outside = machine.run(function.layout[stretch.first], &mut steps, |id| {
+            (stretch.first as u32..=stretch.last as u32).contains(&places[id])
+        });
+        *budget -= most - steps;
+        if let Some(outside) = outside {
+            let values = machine.values;
+            replace(function, stretch, outside, &values);
+            return true;
+        }
+    }
+    false
+}
+
+/// A block with the last values takes the place of a loop.
+fn replace(
+    function: &mut Function,
+    stretch: Stretch,
+    outside: BlockId,
+    values: &BTreeMap<ValueId, Option<Constant>>,
+) {
+    let header = function.layout[stretch.first];
+    let span = function.blocks[header].span;
+    let known = values.iter().filter_map(|(dst, value)| Some((*dst, (*value)?)));
+    let insts = known.map(|(dst, value)| Inst { kind: InstKind::Copy { dst, src: value.into() }, span });
+    let insts = insts.collect();
+    let block = function.blocks.push(Block { insts, terminator: Terminator::Jump(outside), span });
+    for id in function.layout.iter().filter(|id| **id != header) {
+        function.blocks[*id].terminator.visit_targets(|target| {
+            if *target == header {
+                *target = block;
+            }
+        });
+    }
+    function.layout.insert(stretch.first, block);
+}
+
+/// Computes as the program would.
+struct Machine<'a> {
+    function: &'a Function,
+    entrance: BlockId,
+    /// What was looked up or written so far; `None` where it is not known.
+    values: BTreeMap<ValueId, Option<Constant>>,
+}
+
+impl Machine<'_> {
+    /// Follows a loop from its first block; the block outside where it ends.
+    fn run(
+        &mut self,
+        header: BlockId,
+        steps: &mut u32,
+        is_inside: impl Fn(BlockId) -> bool,
+    ) -> Option<BlockId> {
+        let mut id = header;
+        loop {
+            let block = &self.function.blocks[id];
+            *steps = steps.checked_sub(block.insts.len() as u32 + 1)?;
+            for inst in &block.insts {
+                self.inst(&inst.kind)?;
+            }
+            let next = self.next(&block.terminator)?;
+            if !is_inside(next) {
+                return Some(next);
+            }
+            id = next;
+        }
+    }
+
+    fn inst(&mut self, kind: &InstKind) -> Option<()> {
+        let (dst, simplified) = match *kind {
+            InstKind::Copy { dst, src } => (dst, Simplified::Operand(self.known(src)?)),
+            InstKind::Unary { op, dst, src } => (dst, strength::unary(op, self.known(src)?)),
+            InstKind::Binary { op, dst, a, b } => {
+                let class = self.function.values[dst];
+                (dst, strength::binary(op, self.known(a)?, self.known(b)?, class))
+            }
+            InstKind::Compare { op, dst, a, b } => {
+                (dst, strength::compare(op, self.known(a)?, self.known(b)?))
+            }
+            InstKind::Convert { op, dst, src } => (dst, strength::convert(op, self.known(src)?)),
+            InstKind::Load { .. }
+            | InstKind::Store { .. }
+            | InstKind::FrameAddress { .. }
+            | InstKind::CopyMemory { .. }
+            | InstKind::ClearMemory { .. }
+            | InstKind::Call { .. }
+            | InstKind::Cost { .. } => return None,
+        };
+        let Simplified::Operand(Operand::Constant(value)) = simplified else { return None };
+        self.values.insert(dst, Some(value));
+        Some(())
+    }
+
+    fn next(&mut self, terminator: &Terminator) -> Option<BlockId> {
+        match terminator {
+            Terminator::Jump(to) => Some(*to),
+            Terminator::Branch { condition, then, otherwise } => {
+                let condition = self.number(*condition)?;
+                Some(if condition == 0 { *otherwise } else { *then })
+            }
+            Terminator::Table { index, targets, default } => {
+                let index = self.number(*index)?;
+                Some(targets.get(index.cast_unsigned() as usize).copied().unwrap_or(*default))
+            }
+            Terminator::Return(_) | Terminator::Unreachable => None,
+        }
+    }
+
+    fn number(&mut self, operand: Operand) -> Option<i32> {
+        self.known(operand)?.as_int()
+    }
+
+    /// The constant that an operand is.
+    fn known(&mut self, operand: Operand) -> Option<Operand> {
+        let value = match operand {
+            Operand::Constant(Constant::Symbol(..)) => return None,
+            Operand::Constant(_) => return Some(operand),
+            Operand::Value(value) => value,
+        };
+        if let Some(known) = self.values.get(&value) {
+            return known.map(Operand::from);
+        }
+        let first = self.first(value);
+        self.values.insert(value, first);
+        first.map(Operand::from)
+    }
+
+    /// What a value is when the loop begins.
+    fn first(&self, value: ValueId) -> Option<Constant> {
+        let mut id = self.entrance;
+        for _ in 0..BEFORE {
+            let insts = &self.function.blocks[id].insts;
+            if let Some(inst) = insts.iter().rev().find(|inst| inst.kind.dst() == Some(value)) {
+                let InstKind::Copy { src: Operand::Constant(constant), .. } = inst.kind else { return None };
+                return (!matches!(constant, Constant::Symbol(..))).then_some(constant);
+            }
+            id = self.only_before(id)?;
+        }
+        None
+    }
+
+    /// The only block that leads to another.
+    fn only_before(&self, id: BlockId) -> Option<BlockId> {
+        if self.function.layout.first() == Some(&id) {
+            return None;
+        }
+        let leads = |other: &&BlockId| self.function.blocks[**other].terminator.targets().any(|to| to == id);
+        let mut before = self.function.layout.iter().filter(leads);
+        before.next().copied().filter(|_| before.next().is_none())
+    }
+}
