@@ -98,6 +98,8 @@ macro_rules! for_each_lint {
             MisleadingIndentation = "misleading-indentation", On;
             /// A function that may wait is called in the call-back of the servo interrupt.
             CallBackWait = "call-back-wait", On, pass call_back_wait;
+            /// The call-back of the servo interrupt takes longer than the servo leaves it.
+            SlowCallback = "slow-callback", On, pass slow_callback;
             /// A local copy of `KMotionDef.h` belongs to another firmware.
             HeaderMismatch = "header-mismatch", On, pass header_mismatch;
             /// A variable of a function is never used.

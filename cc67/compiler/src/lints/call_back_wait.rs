@@ -14,12 +14,9 @@ const VARIABLE: &str = "UserCallBack";
 
 /// Reports calls that may wait in the functions that the unit installs as call-back.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
-    let Some(variable) = program.symbol(VARIABLE) else { return };
-    let installed: BTreeSet<_> =
-        program.functions().flat_map(|function| installed_functions(function, variable)).collect();
     let graph = CallGraph::new(program);
     let mut seen = BTreeSet::new();
-    for root in installed {
+    for root in call_backs(program) {
         let reached = graph.reached_from(root);
         let Some(call_back) = graph.function(root) else { continue };
         for function in reached.keys().filter_map(|symbol| graph.function(*symbol)) {
@@ -44,6 +41,12 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
             }
         }
     }
+}
+
+/// The functions that the unit installs as call-back.
+pub(super) fn call_backs(program: &AnalysedProgram<'_>) -> BTreeSet<SymbolId> {
+    let Some(variable) = program.symbol(VARIABLE) else { return BTreeSet::new() };
+    program.functions().flat_map(|function| installed_functions(function, variable)).collect()
 }
 
 /// The calls that lead from the call-back to a function, for people.

@@ -23,6 +23,7 @@ mod missing_return;
 mod portability;
 mod recursion;
 mod self_comparison;
+mod slow_callback;
 mod stack_size;
 mod uninitialized;
 mod unused_variable;

@@ -52,7 +52,7 @@ impl Walk<'_> {
     }
 
     /// Hands over an expression and its parts.
-    fn expr(self, expr: ExprId, visit: &mut dyn FnMut(ExprId)) {
+    pub(super) fn expr(self, expr: ExprId, visit: &mut dyn FnMut(ExprId)) {
         visit(expr);
         let all = self.extent == Extent::All;
         match &self.function.exprs[expr].kind {
