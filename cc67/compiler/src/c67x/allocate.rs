@@ -126,17 +126,46 @@ impl<'a> Scan<'a> {
         if let Some(hint) = info.hint.filter(|hint| is_free(*hint)) {
             return Some(hint);
         }
-        let is_spread = self.is_wide && {
-            let next = self.liveness.loops.partition_point(|(_, end)| *end < start);
-            self.liveness.loops.get(next).is_some_and(|(first, _)| *first <= start)
-        };
+        let around = self.loop_at(start).filter(|_| self.is_wide);
+        let is_long = self.is_wide && !info.is_pair && self.lives_through_loop(reg);
         let key = |at: &Reg| {
             let whole = self.whole(reg, *at);
-            let is_new = !is_spread && whole & abi::KEPT & !self.used != 0;
+            let is_new = around.is_none() && whole & abi::KEPT & !self.used != 0;
             let is_rare = !info.is_condition && whole & abi::CONDITIONS != 0;
-            (is_new, is_rare, self.taken[at.index()], at.index())
+            let is_shared = info.is_pair && around.is_some_and(|first| self.joins(whole, first));
+            let breaks = is_long && self.breaks_pair(reg, *at, start);
+            (is_new, is_shared, is_rare, breaks, self.taken[at.index()], at.index())
         };
         abi::registers(allowed).filter(|at| is_free(*at)).min_by_key(key)
+    }
+
+    /// Whether a pair in a loop that begins at `first` would share its registers with another value of a turn, or leave
+    /// none of its side for what is tested: turns overlap no closer than two results of one register.
+    fn joins(&self, whole: u64, first: u32) -> bool {
+        let is_taken = |one: Reg| self.taken[one.index()] >= first;
+        let side = abi::registers(whole).next().map_or(0, |one| abi::file(one.side()));
+        let tested = side & abi::CONDITIONS;
+        abi::registers(whole).any(is_taken)
+            || whole & tested != 0 && abi::registers(tested & !whole).all(is_taken)
+    }
+
+    /// The beginning of the loop at a position, if there is one.
+    fn loop_at(&self, position: u32) -> Option<u32> {
+        let next = self.liveness.loops.partition_point(|(_, end)| *end < position);
+        self.liveness.loops.get(next).map(|(first, _)| *first).filter(|first| *first <= position)
+    }
+
+    /// Whether a register is needed in every turn of a loop.
+    fn lives_through_loop(&self, reg: VReg) -> bool {
+        let interval = self.liveness.intervals[reg];
+        self.liveness.loops.iter().any(|(first, end)| interval.start <= *first && *end <= interval.end)
+    }
+
+    /// Whether a word at `at` leaves half of a pair that was free.
+    fn breaks_pair(&self, reg: VReg, at: Reg, start: u32) -> bool {
+        let pair = at.pair();
+        let other = if pair.low() == at { pair.high() } else { pair.low() };
+        !self.code.regs[reg].is_pair && self.taken[other.index()] < start
     }
 
     fn take(&mut self, reg: VReg, at: Reg, end: u32) {

@@ -4,7 +4,7 @@
 //! has landed, never while it is in flight, because an interrupt would make it land early (`c67x.md` 2.5); results of
 //! one register land in order. Memory: accesses that others may see keep their order; loads may share a cycle.
 
-use c67x::{Inst, Reg};
+use c67x::{Inst, Pred, Reg};
 
 use super::abi;
 use super::step::{Access, Step};
@@ -84,6 +84,13 @@ struct RegisterReader {
 struct RegisterWriter {
     step: u32,
     stage: u8,
+    /// Its condition, and how often the register of that was written before.
+    pred: (Pred, u32),
+}
+
+/// Whether of two steps only one is executed: their conditions are opposite, and of the same value.
+fn excludes((one, version): (Pred, u32), (other, own): (Pred, u32)) -> bool {
+    version == own && one.excludes(other)
 }
 
 struct Builder {
@@ -118,10 +125,14 @@ impl Builder {
 
     fn registers(&mut self, step: u32, inst: &Inst) {
         let condition = inst.pred().reg();
+        let pred = (inst.pred(), condition.map_or(0, |reg| self.versions[reg.index()]));
         let reads = inst.reads().map(|read| (read.reg, read.first, read.last));
         for (reg, first, last) in reads.chain(condition.map(|reg| (reg, 1, 1))) {
             for index in 0..self.writers[reg.index()].len() {
-                let RegisterWriter { step: writer, stage } = self.writers[reg.index()][index];
+                let RegisterWriter { step: writer, stage, pred: other } = self.writers[reg.index()][index];
+                if excludes(other, pred) && Some(reg) != condition {
+                    continue;
+                }
                 self.edge(writer, step, (stage + 1).saturating_sub(first).max(1));
             }
             self.readers[reg.index()].push(RegisterReader { step, last });
@@ -133,14 +144,17 @@ impl Builder {
                 self.edge(reader, step, last.saturating_sub(write.stage));
             }
             for index in 0..self.writers[at].len() {
-                let RegisterWriter { step: writer, stage } = self.writers[at][index];
+                let RegisterWriter { step: writer, stage, pred: other } = self.writers[at][index];
+                if stage == write.stage && excludes(other, pred) {
+                    continue;
+                }
                 self.edge(writer, step, (stage + 1).saturating_sub(write.stage));
             }
             if condition.is_none() {
                 self.writers[at].clear();
                 self.readers[at].clear();
             }
-            self.writers[at].push(RegisterWriter { step, stage: write.stage });
+            self.writers[at].push(RegisterWriter { step, stage: write.stage, pred });
         }
     }
 

@@ -25,6 +25,8 @@ use super::step::{Access, Step};
 const LARGEST: usize = 120;
 /// Turns that must be enough for a loop to win.
 const TURNS: u32 = 5;
+/// How often a loop ends before all stages have a turn, at a guess.
+const RARE: f32 = 0.1;
 
 /// Schedules all regions; loops overlap. `labels` is the first label that is free.
 pub(super) fn schedule(regions: Vec<Region>, labels: u32) -> Vec<Scheduled> {
@@ -266,7 +268,9 @@ impl<'a> Loop<'a> {
     fn end_of(&self, turns: i64, label: u32) -> Option<Scheduled> {
         let step = &self.steps[self.branch()];
         let out = branch_to(step.forms.first()?, Pred::Always, self.outside, step)?;
-        Some(self.plain(label, &self.endings(turns), vec![out]))
+        let mut end = self.plain(label, &self.endings(turns), vec![out]);
+        end.weight *= RARE;
+        Some(end)
     }
 
     /// The packets of the loop itself.

@@ -114,7 +114,7 @@ impl<'a> List<'a> {
                 let step = ready[index];
                 let own = &steps[step as usize];
                 let may = self.earliest[step as usize] <= cycle && !(taken && self.order == Order::Source);
-                let form = if may { self.form(own, cycle) } else { None };
+                let form = if may { self.considerate(own, &ready[index + 1..], steps, cycle) } else { None };
                 let Some(inst) = form else {
                     if self.order == Order::Source {
                         break;
@@ -137,6 +137,26 @@ impl<'a> List<'a> {
     /// The form that can issue in a cycle.
     fn form(&mut self, step: &Step, cycle: u32) -> Option<Inst> {
         step.forms.iter().copied().find(|inst| self.resources.fits(inst, cycle))
+    }
+
+    /// The form that can issue in a cycle, if there is a choice not on a unit that alone can execute one of `others`.
+    fn considerate(&mut self, step: &Step, others: &[u32], steps: &[Step], cycle: u32) -> Option<Inst> {
+        let first = self.form(step, cycle)?;
+        if step.forms.len() == 1 || self.order == Order::Source {
+            return Some(first);
+        }
+        let bit = |inst: &Inst| inst.unit().map_or(0, |unit| 1_u32 << unit.index());
+        let mut wanted = 0;
+        for other in others.iter().filter(|other| self.earliest[**other as usize] <= cycle) {
+            if let [only] = steps[*other as usize].forms.as_slice() {
+                wanted |= bit(only);
+            }
+        }
+        if bit(&first) & wanted == 0 {
+            return Some(first);
+        }
+        let free = step.forms.iter().find(|inst| bit(inst) & wanted == 0 && self.resources.fits(inst, cycle));
+        Some(free.copied().unwrap_or(first))
     }
 
     fn issue(&mut self, step: &'a Step, node: Option<usize>, inst: Inst, cycle: u32) {

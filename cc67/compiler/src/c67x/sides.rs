@@ -5,13 +5,17 @@
 //! few operands cross and both sides have as much to do.
 
 use c67x::Side;
+use cranelift_entity::SecondaryMap;
+use cranelift_entity::packed_option::PackedOption;
 
 use super::abi;
-use super::code::{Arg, Base, Code, Info, Inst, VReg};
+use super::code::{Arg, Base, Code, Info, Inst, MemoryPlace, VReg};
 use super::forms::{Crossing, Kind};
 
 /// What a source on the other side costs, in instructions of imbalance.
 const CROSS: i32 = 3;
+/// The most that imbalance counts: less than a source on the other side, of which only one can be reached in a cycle.
+const IMBALANCE: i32 = 2;
 /// The same where it takes a copy.
 const COPY: i32 = 6;
 /// What a side costs on which a register does not stay where it is wanted.
@@ -22,8 +26,10 @@ pub(super) fn assign(code: &mut Code) {
     for (reg, at) in &code.params {
         code.regs[*reg].side = Some(at.side());
     }
+    spread_bases(code);
+    let indexes = indexes(code);
     for block in &code.blocks {
-        let mut load = [0_i32; 2];
+        let mut load = Load { indexes: &indexes, insts: [0; 2], pairs: [0; 2] };
         for inst in &block.insts {
             place(&mut code.regs, inst, &mut load);
         }
@@ -41,16 +47,52 @@ pub(super) fn assign(code: &mut Code) {
     }
 }
 
+/// Gives both sides their part of the accesses of a short loop: the unit that makes one is that of its base.
+fn spread_bases(code: &mut Code) {
+    for (number, block) in (0..).zip(&code.blocks) {
+        if !block.end.targets().any(|to| to == number) {
+            continue;
+        }
+        let mut bases: Vec<(VReg, i32)> = Vec::new();
+        for inst in block.insts.iter().filter(|inst| inst.kind.bytes().is_some()) {
+            let Some(MemoryPlace { base: Base::Reg(base), index: None, .. }) = inst.place else { continue };
+            match bases.iter_mut().find(|(known, _)| *known == base) {
+                Some((_, count)) => *count += 1,
+                None => bases.push((base, 1)),
+            }
+        }
+        if bases.len() < 2 {
+            continue;
+        }
+        let mut accesses = [0; 2];
+        for (base, count) in &bases {
+            if let Some(side) = code.regs[*base].side {
+                accesses[side.bit() as usize] += count;
+            }
+        }
+        bases.sort_by_key(|(_, count)| -count);
+        for (base, count) in bases {
+            let info = &mut code.regs[base];
+            if info.side.is_none() && info.hint.is_none() {
+                let side = lighter(&accesses);
+                info.side = Some(side);
+                accesses[side.bit() as usize] += count;
+            }
+        }
+    }
+}
+
 type Regs = cranelift_entity::PrimaryMap<VReg, Info>;
 
 /// Chooses the side of an instruction's result if it has none yet.
-fn place(regs: &mut Regs, inst: &Inst, load: &mut [i32; 2]) {
+fn place(regs: &mut Regs, inst: &Inst, load: &mut Load<'_>) {
     let is_nothing = matches!(inst.kind, Kind::Begin | Kind::Call);
     let side = match (inst.dst.reg(), inst.place) {
         (_, Some(place)) if inst.kind.bytes().is_some() => {
             if let Some(dst) = inst.dst.reg() {
                 let info = &mut regs[dst];
-                let wanted = info.hint.map_or(lighter(load), |reg| reg.side());
+                let lighter = lighter(if info.is_pair { &load.pairs } else { &load.insts });
+                let wanted = info.hint.map_or(lighter, |reg| reg.side());
                 info.side.get_or_insert(wanted);
             }
             match place.base {
@@ -61,7 +103,7 @@ fn place(regs: &mut Regs, inst: &Inst, load: &mut [i32; 2]) {
         (Some(dst), _) => match regs[dst].side {
             Some(side) => side,
             None => {
-                let side = best(regs, inst, dst, *load);
+                let side = best(regs, inst, dst, load);
                 regs[dst].side = Some(side);
                 side
             }
@@ -69,24 +111,57 @@ fn place(regs: &mut Regs, inst: &Inst, load: &mut [i32; 2]) {
         (None, _) => Side::A,
     };
     if !is_nothing {
-        load[side.bit() as usize] += 1;
+        load.insts[side.bit() as usize] += 1;
     }
+    if let Some(dst) = inst.dst.reg()
+        && regs[dst].is_pair
+        && let Some(side) = regs[dst].side
+    {
+        load.pairs[side.bit() as usize] += 1;
+    }
+}
+
+/// What the sides have in a block so far.
+#[derive(Debug)]
+struct Load<'a> {
+    /// The index that each constant base of an access is used with.
+    indexes: &'a SecondaryMap<VReg, PackedOption<VReg>>,
+    insts: [i32; 2],
+    /// Results that are pairs, of which there are few registers.
+    pairs: [i32; 2],
 }
 
 fn lighter(load: &[i32; 2]) -> Side {
     if load[1] < load[0] { Side::B } else { Side::A }
 }
 
-fn best(regs: &Regs, inst: &Inst, dst: VReg, load: [i32; 2]) -> Side {
+/// The index that each constant base of an access is used with: both have to be on one side.
+fn indexes(code: &Code) -> SecondaryMap<VReg, PackedOption<VReg>> {
+    let mut indexes = SecondaryMap::new();
+    for place in code.blocks.iter().flat_map(|block| &block.insts).filter_map(|inst| inst.place) {
+        if let (Base::Reg(base), Some(index)) = (place.base, place.index)
+            && code.regs[base].constant.is_some()
+        {
+            indexes[base] = index.into();
+        }
+    }
+    indexes
+}
+
+fn best(regs: &Regs, inst: &Inst, dst: VReg, load: &Load<'_>) -> Side {
     let cost = |side: Side| {
-        let own = load[side.bit() as usize];
-        let other = load[side.other().bit() as usize];
-        let mut cost = (own - other).clamp(-4, 4);
+        let own = load.insts[side.bit() as usize];
+        let other = load.insts[side.other().bit() as usize];
+        let mut cost = (own - other).clamp(-IMBALANCE, IMBALANCE);
         for arg in [inst.src1, inst.src2] {
             let Some(source) = arg.reg() else { continue };
             if regs[source].side.is_some_and(|source| source != side) {
                 cost += if inst.kind.crossing() == Crossing::Neither { COPY } else { CROSS };
             }
+        }
+        let index = load.indexes[dst].expand().and_then(|index| regs[index].side);
+        if index.is_some_and(|index| index != side) {
+            cost += COPY;
         }
         if regs[dst].hint.is_some_and(|reg| reg.side() != side) {
             cost += HINT;

@@ -54,41 +54,51 @@ impl Selector<'_> {
 
     /// A register to test, and whether 0 means yes.
     fn tested(&mut self, condition: Operand, fused: Option<Compare>) -> (VReg, bool) {
-        let tested = self.condition();
         let Some(Compare { op, a, b }) = fused else {
-            let condition = self.operand(condition);
-            self.copy_word(tested, condition);
-            return (tested, false);
+            return (self.in_condition(condition), false);
         };
         let is_zero = |operand: Operand| operand.as_int() == Some(0);
         if matches!(op, CompareOp::Equal | CompareOp::NotEqual) && (is_zero(a) || is_zero(b)) {
-            let value = self.operand(if is_zero(b) { a } else { b });
-            self.copy_word(tested, value);
+            let tested = self.in_condition(if is_zero(b) { a } else { b });
             return (tested, op == CompareOp::Equal);
         }
+        let tested = self.condition();
         let is_inverted = self.compare(op, tested, a, b);
         (tested, is_inverted)
     }
 
+    /// A register with a word that is tested: its own if this block has just made it and nothing else wants it.
+    fn in_condition(&mut self, operand: Operand) -> VReg {
+        let value = operand.as_value().filter(|value| self.uses[*value] == 1);
+        let own = self.operand(operand);
+        let is_last =
+            self.out.last().is_some_and(|inst| inst.dst == Arg::Reg(own) && inst.condition.is_none());
+        if value.is_some() && is_last && self.code.regs[own].hint.is_none() {
+            self.code.regs[own].is_condition = true;
+            return own;
+        }
+        let tested = self.condition();
+        self.copy_word(tested, own);
+        tested
+    }
+
     /// A jump through a table of addresses; the block is cut where the index is found too large.
     fn table(&mut self, index: Operand, targets: Vec<u32>, default: u32) -> End {
-        let index = self.operand(index);
         let table = self.code.tables.len() as u32;
         let count = targets.len() as i32;
         let is_inside = self.condition();
-        let limit = self.known(Value::Number(count));
-        self.push(Kind::CmpLtu, is_inside, index, limit);
-        // The index that is too large becomes that of the default, which stands last.
-        let place = self.word();
-        self.copy_word(place, limit);
-        self.copy_word(place, index);
-        self.only_if(Some((is_inside, false)));
+        self.less(is_inside, index, Operand::int(count), true);
+        // The address of the default is the first: where an index that is too large becomes 0.
+        let (place, index) = (self.word(), self.operand(index));
+        self.push(Kind::Add, place, Arg::number(1), index);
+        self.push(Kind::And, place, Arg::number(0), place);
+        self.only_if(Some((is_inside, true)));
         let base = self.known(Value::Table(table));
         let address = self.word();
         let at = MemoryPlace { base: Base::Reg(base), offset: 0, index: Some(place), step: 0 };
         self.access(Kind::LoadWord, address.into(), Arg::None, at);
         let mut all = targets;
-        all.push(default);
+        all.insert(0, default);
         self.code.tables.push(all.clone());
         End::Table { address, targets: all }
     }

@@ -92,13 +92,44 @@ pub(super) struct Run {
     pub(super) cycles: u64,
 }
 
-/// Runs `main` to its end; panics for whatever a program must not do.
-pub(super) fn run(linked: &Linked) -> Run {
+/// A call of a function of a program, with nothing around it.
+pub(super) struct Call {
+    pub(super) core: Core,
+    pub(super) ram: Ram,
+}
+
+impl Call {
+    /// Is before the first packet of the function, with rubbish in the registers.
+    pub(super) fn new(linked: &Linked, name: &str) -> Self {
+        let function = linked.symbols.iter().find(|symbol| symbol.name == name).expect("a function");
+        let mut core = Core::new(function.address.get());
+        scramble(&mut core, !0, 1);
+        core.state.set_reg(c67x::Reg::b(15), STACK);
+        core.state.set_reg(c67x::Reg::b(3), THREAD_DONE);
+        Self { core, ram: loaded(linked) }
+    }
+
+    /// The cycles up to the return.
+    pub(super) fn run(&mut self) -> u64 {
+        self.core.state.clock.set_left(MOST_CYCLES);
+        assert_eq!(self.core.run(&mut self.ram), Halt::Left(THREAD_DONE));
+        self.core.state.cycle()
+    }
+}
+
+/// Memory with a program.
+fn loaded(linked: &Linked) -> Ram {
     let mut ram = Ram::default();
     let (text, data) = (&linked.text, &linked.data);
     ram.set_bytes(text.address.get(), &text.bytes);
     ram.set_bytes(data.address.get(), &data.bytes);
     ram.code = text.address.get()..text.address.get() + text.bytes.len() as u32;
+    ram
+}
+
+/// Runs `main` to its end; panics for whatever a program must not do.
+pub(super) fn run(linked: &Linked) -> Run {
+    let mut ram = loaded(linked);
     let mut core = Core::new(linked.entry.get());
     let mut firmware = firmware::Firmware::new(linked);
     scramble(&mut core, !0, 1);

@@ -1,6 +1,7 @@
 //! The whole way from C to words, executed on the processor's own engine with a firmware of a few lines.
 
 mod firmware;
+mod kernels;
 mod language;
 mod machine;
 mod programs;

@@ -52,14 +52,14 @@ fn all(level: Level) -> (String, f64, f64) {
 fn recorded_programs_give_what_was_recorded() {
     let (table, cycles, bytes) = all(Level::Full);
     println!("{table}");
-    assert!(cycles <= 0.18 && bytes <= 0.33, "slower or larger than it was:\n{table}");
+    assert!(cycles <= 0.172 && bytes <= 0.33, "slower or larger than it was:\n{table}");
 }
 
 #[test]
 fn recorded_programs_are_faster_at_the_level_that_makes_code_larger() {
     let (table, cycles, _) = all(Level::Fast);
     println!("{table}");
-    assert!(cycles <= 0.067, "slower than it was:\n{table}");
+    assert!(cycles <= 0.066, "slower than it was:\n{table}");
 }
 
 #[test]
@@ -67,7 +67,7 @@ fn recorded_programs_are_smallest_at_the_level_for_that() {
     let (table, cycles, bytes) = all(Level::Small);
     let (_, _, full) = all(Level::Full);
     println!("{table}");
-    assert!(cycles <= 0.085 && bytes < full, "not smaller, or slower than it was:\n{table}");
+    assert!(cycles <= 0.083 && bytes < full, "not smaller, or slower than it was:\n{table}");
 }
 
 #[test]
