@@ -2,8 +2,8 @@
 //!
 //! Where `CC67_FIRMWARE` names a file, programs run on it; where not, this is said.
 
-use std::env;
 use std::path::PathBuf;
+use std::{env, fs};
 
 use harness::{Output, Scratch, cc67, cc67_with_input};
 
@@ -49,15 +49,16 @@ fn options_that_a_booted_board_does_not_know_are_named() {
     let scratch = scratch("boot-options");
     let refused = |option: &[&str], name: &str| {
         let all = [&["run", "--boot", "x.out", "hello.c"], option].concat();
-        assert_refused(&cc67(&scratch, all), &format!("`{name}` does not work with `--boot` yet"));
+        assert_refused(&cc67(&scratch, all), &format!("`{name}` does not work with `--boot`"));
     };
     refused(&["--assist"], "--assist");
-    refused(&["--uart", "pty"], "--uart");
+    refused(&["--engine", "bytecode"], "--engine");
+    refused(&["--flash", "x"], "--flash");
     refused(&["--profile"], "--profile");
-    refused(&["--plot", "a.svg"], "--plot");
+    refused(&["--trace-packets", "a.csv"], "--trace-packets");
     for (option, name) in [(&["--flash", "x"][..], "--flash"), (&["--live"], "--live")] {
         let serve = [&["serve", "--boot", "x.out", "hello.c"], option].concat();
-        assert_refused(&cc67(&scratch, serve), &format!("`{name}` does not work with `--boot` yet"));
+        assert_refused(&cc67(&scratch, serve), &format!("`{name}` does not work with `--boot`"));
     }
     let test = cc67(&scratch, ["compare", "hello.c"]);
     assert_refused(&test, "needs `--boot FILE`");
@@ -96,3 +97,94 @@ fn a_program_that_takes_the_firmware_away_is_told_with_registers_and_code() {
         assert!(output.stderr.contains(part), "{part} in {}", output.stderr);
     }
 }
+
+/// An axis of steps that moves by 100, with a bit that says so.
+const MOVE: &str = "\
+#include \"KMotionDef.h\"
+main()
+{
+    ch0->InputMode = NO_INPUT_MODE;
+    ch0->OutputMode = STEP_DIR_MODE;
+    ch0->OutputChan0 = 8;
+    ch0->Vel = 1000;
+    ch0->Accel = 1e5;
+    ch0->Jerk = 1e7;
+    SetBitDirection(45, 1);
+    EnableAxisDest(0, 0);
+    SetBit(45);
+    Move(0, 100);
+    while (!CheckDone(0)) ;
+    ClearBit(45);
+    persist.UserData[5] = 42;
+    printf(\"took %.3f s\\n\", Time_sec());
+}
+";
+
+fn read(scratch: &Scratch, name: &str) -> String {
+    fs::read_to_string(scratch.path().join(name)).expect("it was written")
+}
+
+/// The last value of each column of a table.
+fn last_row(table: &str) -> Vec<(String, String)> {
+    let names = table.lines().next().expect("a head").split(',');
+    let values = table.lines().next_back().expect("a row").split(',');
+    names.zip(values).map(|(name, value)| (name.to_owned(), value.to_owned())).collect()
+}
+
+#[test]
+fn a_run_on_the_real_firmware_is_traced_and_drawn_as_on_the_model() {
+    let Some(file) = firmware() else { return };
+    let scratch = scratch("boot-trace");
+    scratch.write("move.c", MOVE);
+    let items = "dest0,pos0,step0,bit45,persist.5,ch0->Enable";
+    let trace = |name: &str, boot: &[&str]| {
+        let outputs = ["--plot", "a.svg", "--trace-bits", "bits.csv", "--trace", name, "--watch", items];
+        let output = cc67(&scratch, [&["run"], boot, &outputs, &["move.c"]].concat());
+        assert_eq!(output.code, 0, "{output:?}");
+        read(&scratch, name)
+    };
+    let (booted, model) = (trace("a.csv", &["--boot", &file]), trace("b.csv", &[]));
+    let (last, expect) = (last_row(&booted), last_row(&model));
+    for ((name, value), (other, expected)) in last.iter().zip(&expect).skip(1) {
+        let numbers: [f64; 2] = [value, expected].map(|text| text.parse().expect("a number"));
+        assert!(name == other && (numbers[0] - numbers[1]).abs() < 0.13, "{name}: {numbers:?}");
+    }
+    assert!(last.iter().any(|(_, value)| value.trim() == "100"), "{booted}");
+    let changes = read(&scratch, "bits.csv");
+    assert!(changes.lines().any(|line| line.ends_with(",45,1,1")), "{changes}");
+    assert!(read(&scratch, "a.svg").contains("<svg"));
+    let command = ["run", "--boot", &file, "--trace", "c.csv", "--watch", "konnect3", "move.c"];
+    assert_refused(&cc67(&scratch, command), "`konnect3` belongs to an option board that is not served");
+}
+
+#[test]
+fn slices_of_threads_are_in_a_trace_of_the_real_firmware() {
+    let Some(file) = firmware() else { return };
+    let scratch = scratch("boot-slices");
+    scratch.write("move.c", MOVE);
+    let command = ["run", "--boot", &file, "--trace", "a.json", "1:move.c", "2:hello.c"];
+    assert_eq!(cc67(&scratch, command).code, 0);
+    let trace = read(&scratch, "a.json");
+    assert!(trace.contains("thread 1") && trace.contains("thread 2"), "{}", &trace[..1000]);
+}
+
+#[test]
+fn the_state_at_the_end_is_that_of_the_real_firmware() {
+    let Some(file) = firmware() else { return };
+    let scratch = scratch("boot-state");
+    scratch.write("move.c", MOVE);
+    let output = cc67(&scratch, ["run", "--boot", &file, "--state", "move.c"]);
+    for part in ["axis 0 enabled, dest 100, ", "persist 5 = 42"] {
+        assert!(output.stderr.contains(part), "{part} in {output:?}");
+    }
+}
+
+#[test]
+fn inputs_of_the_real_firmware_are_driven_at_the_prompt() {
+    let Some(file) = firmware() else { return };
+    let scratch = scratch("boot-press");
+    let script = "ReadBit15\npress 15\nwait 0.001\nReadBit15\nrelease 15\nwait 0.001\nReadBit15\n";
+    let output = cc67_with_input(&scratch, ["console", "--boot", &file], script);
+    assert_eq!((output.code, output.stdout.as_str()), (0, "0\n1\n0\n"), "{output:?}");
+}
+

@@ -151,7 +151,8 @@ impl Setup {
 pub(crate) struct Described {
     /// The board and its programs.
     pub(crate) session: cc67_host::Setup,
-    uart: UartArguments,
+    /// What its serial port is connected to.
+    pub(crate) uart: UartArguments,
     /// Its flash.
     pub(crate) flash: Flash,
 }

@@ -47,6 +47,9 @@ const KSTEP_INPUTS: i32 = 168;
 /// Steps that a load can be moved by in a tick: as many as a generator makes.
 const ANY_STEPS: f64 = f64::MAX;
 
+/// The shortest interrupt: no thread has done what came earlier in a tick.
+const INTERRUPT: Cycles = Cycles::new(2006);
+
 /// What a stimulus asks of the board.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Asked {
@@ -133,6 +136,23 @@ impl Surroundings {
         });
     }
 
+    /// Acts as a stimulus says from now on, beside what it does already.
+    pub fn play(&mut self, stimulus: Stimulus, memory: &mut GuestMemory, now: Cycles) {
+        let (world, mut stage) = self.parts.stage(now);
+        world.play(stimulus, &mut stage, memory);
+    }
+
+    /// Puts characters on the line to the serial port; they arrive one after another at its rate.
+    pub fn send_to_uart(&mut self, bytes: &[u8], now: Cycles) {
+        self.parts.io.uart.arrive(bytes, now);
+    }
+
+    /// Characters on the line to the serial port that have not arrived yet.
+    #[must_use]
+    pub fn uart_backlog(&self) -> usize {
+        self.parts.io.uart.backlog()
+    }
+
     /// What waits on the line to the serial port, and whether every character that the port sends is told.
     pub fn connect_uart(&mut self, waiting: &[u8], is_heard: bool) {
         if !waiting.is_empty() {
@@ -148,6 +168,12 @@ impl Surroundings {
     pub fn record(&mut self, request: trace::TraceRequest, memory: &GuestMemory) {
         let Parts { world, io, .. } = &mut self.parts;
         world.record(request, io, memory);
+    }
+
+    /// The present value of something that can be recorded.
+    #[must_use]
+    pub fn value(&self, item: trace::Item, memory: &GuestMemory) -> f64 {
+        self.parts.view(memory).item(item)
     }
 
     /// What a register shows; `None` where the board itself answers.
@@ -179,7 +205,8 @@ impl Surroundings {
         self.conversions = std::array::from_fn(|channel| self.parts.io.kanalog.conversion(channel) as u16);
         let active = active(instant.memory, self.active);
         self.follow_threads(active);
-        let moment = Moment { turn: Turn::Primary, slice_start: now };
+        self.parts.io.stepgens.follow(instant.steps, &mut self.parts.io.pins, now);
+        let moment = self.slice(instant);
         let mut context =
             TickContext { memory: instant.memory, threads: &mut self.threads, tick: instant.tick, now };
         let (world, mut stage) = self.parts.stage(now);
@@ -196,6 +223,20 @@ impl Surroundings {
         self.show(instant);
         self.sample(instant);
         self.ask(active);
+    }
+
+    /// Whose slice ends with a tick: that of the thread that the interrupt before has left the processor to.
+    ///
+    fn slice(&mut self, instant: &Instant<'_>) -> Moment {
+        let start = instant.now - Cycles::PER_TICK;
+        let Some(thread) = ThreadId::new(instant.memory.get(CURRENT_THREAD)) else {
+            return Moment { turn: Turn::Primary, slice_start: instant.now };
+        };
+        let Parts { world, out, .. } = &mut self.parts;
+        if world.records_changes() && start >= Cycles::default() {
+            out.tell(start, EventKind::Trace(trace::Record::Slice { thread, end: instant.now }));
+        }
+        Moment { turn: Turn::User(thread), slice_start: start + INTERRUPT }
     }
 
     /// The threads as the firmware has them.

@@ -165,6 +165,17 @@ impl StepGenerators {
         }
     }
 
+    /// The generators of a board that counts for itself have made this many steps when a tick ends.
+    pub(crate) fn follow(&mut self, made: [f64; GENERATORS], pins: &mut Pins, now: Cycles) {
+        for (generator, made) in made.into_iter().enumerate() {
+            let steps = made - self.generators[generator].position;
+            if steps != 0.0 {
+                self.advance(generator, steps, pins, now);
+                self.generators[generator].position = made;
+            }
+        }
+    }
+
     /// Adds the steps of a tick, and makes their pulses for who watches them.
     fn advance(&mut self, generator: usize, steps: f64, pins: &mut Pins, now: Cycles) {
         let from = self.generators[generator].position;

@@ -6,6 +6,7 @@
 
 use std::fmt::Write as _;
 
+use compiler::Options;
 use kmotiondef::structs::Persist;
 use kmotiondef::variables::PERSIST;
 use kmotiondef::{Bit, Cycles, ThreadId, Ticks};
@@ -13,7 +14,7 @@ use runtime::stimulus::{Stimulus, StimulusError};
 use vm::engine::Engine;
 
 use super::setup::resolve;
-use super::{Input, Session};
+use super::{Input, Session, UserProgram};
 use crate::HostError;
 
 /// What messages call the text of a statement.
@@ -75,6 +76,21 @@ fn statement(tick: Ticks, action: &str) -> String {
     format!("at {}us {action}", (tick.get() + 1).saturating_mul(us.unsigned_abs()))
 }
 
+/// What a statement without a moment does at the beginning of the tick after this one, in the words of these programs.
+///
+/// # Errors
+/// What is wrong with it, and at which character.
+pub fn by_hand(
+    tick: Ticks,
+    action: &str,
+    programs: &[UserProgram],
+    options: &Options,
+) -> Result<Stimulus, StimulusError> {
+    let mut stimulus = Stimulus::parse(&statement(tick, action), SOURCE)?;
+    resolve(&mut stimulus, programs, options)?;
+    Ok(stimulus)
+}
+
 /// Bytes between quotation marks, as statements have them.
 fn quoted(bytes: &[u8]) -> String {
     let mut text = String::from("\"");
@@ -121,8 +137,7 @@ impl<E: Engine> Session<E> {
     /// ```
     pub fn act(&mut self, action: &str) -> Result<(), StimulusError> {
         let tick = self.tick();
-        let mut stimulus = Stimulus::parse(&statement(tick, action), SOURCE)?;
-        resolve(&mut stimulus, &self.programs, &self.options)?;
+        let stimulus = by_hand(tick, action, &self.programs, &self.options)?;
         self.board.play(stimulus);
         self.recording.add(tick, action);
         self.note(Input::Act(action.to_owned()));

@@ -36,7 +36,9 @@ impl Interrupter {
         self.0.store(true, Ordering::Relaxed);
     }
 
-    fn take(&self) -> bool {
+    /// Whether somebody has interrupted the run; said once.
+    #[must_use]
+    pub fn take(&self) -> bool {
         self.0.load(Ordering::Relaxed) && self.0.swap(false, Ordering::Relaxed)
     }
 }

@@ -107,14 +107,7 @@ impl<E: Engine> Session<E> {
     /// # Errors
     /// What is wrong with it.
     pub fn watch(&self, text: &str) -> Result<Watch, WatchError> {
-        match Item::new(text) {
-            Ok(item) => Ok(Watch(Watched::Item(item))),
-            // A number that is too high is not the name of a variable.
-            Err(error) if Item::is_kind(text.trim_end_matches(|c: char| c.is_ascii_digit())) => {
-                Err(error.into())
-            }
-            Err(_) => formula(text, &self.programs, &self.options),
-        }
+        watch(text, &self.programs, &self.options)
     }
 
     /// What a list names, commas in between, for a [recording](Self::record): `axis0` is all of an axis.
@@ -122,17 +115,7 @@ impl<E: Engine> Session<E> {
     /// # Errors
     /// What is wrong with one of them.
     pub fn quantities(&self, list: &str) -> Result<Vec<Quantity>, WatchError> {
-        let mut quantities = Vec::new();
-        for name in expressions(list) {
-            if let Some(number) = name.strip_prefix("axis").filter(|number| is_number(number)) {
-                let axis =
-                    Item::new(&format!("dest{number}"))?.axis().and_then(|axis| AxisId::new(axis as i32));
-                quantities.extend(axis.into_iter().flat_map(Item::of_axis).map(Quantity::from));
-                continue;
-            }
-            quantities.push(self.watch(name)?.into_quantity());
-        }
-        Ok(quantities)
+        quantities(list, &self.programs, &self.options)
     }
 
     /// The present value of what is watched; not a number where it divides an integer by 0.
@@ -174,6 +157,36 @@ impl<E: Engine> Session<E> {
     pub fn record(&mut self, request: runtime::trace::TraceRequest) {
         self.board.record(request);
     }
+}
+
+fn watch(text: &str, programs: &[UserProgram], options: &Options) -> Result<Watch, WatchError> {
+    match Item::new(text) {
+        Ok(item) => Ok(Watch(Watched::Item(item))),
+        // A number that is too high is not the name of a variable.
+        Err(error) if Item::is_kind(text.trim_end_matches(|c: char| c.is_ascii_digit())) => Err(error.into()),
+        Err(_) => formula(text, programs, options),
+    }
+}
+
+/// What a list names in the words of these programs, commas in between, for a recording: `axis0` is all of an axis.
+///
+/// # Errors
+/// What is wrong with one of them.
+pub fn quantities(
+    list: &str,
+    programs: &[UserProgram],
+    options: &Options,
+) -> Result<Vec<Quantity>, WatchError> {
+    let mut quantities = Vec::new();
+    for name in expressions(list) {
+        if let Some(number) = name.strip_prefix("axis").filter(|number| is_number(number)) {
+            let axis = Item::new(&format!("dest{number}"))?.axis().and_then(|axis| AxisId::new(axis as i32));
+            quantities.extend(axis.into_iter().flat_map(Item::of_axis).map(Quantity::from));
+            continue;
+        }
+        quantities.push(watch(name, programs, options)?.into_quantity());
+    }
+    Ok(quantities)
 }
 
 /// The element of `persist.UserData` at an address.
@@ -362,6 +375,10 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
 impl Formula for Compiled {
     fn value(&self, view: &View<'_>) -> f64 {
         self.expression.value(&InView { view, items: &self.items })
+    }
+
+    fn items(&self) -> &[Item] {
+        &self.items
     }
 }
 

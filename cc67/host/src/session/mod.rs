@@ -84,10 +84,10 @@ mod until;
 mod user_program;
 
 pub use attendant::{Attendant, Idle};
-pub use by_hand::Recording;
+pub use by_hand::{Recording, by_hand};
 pub use control::{End, Interrupter};
 pub use ending::{Ending, EndingAxis, EndingThread};
-pub use expression::{Watch, WatchError, expressions};
+pub use expression::{Watch, WatchError, expressions, quantities};
 pub use journal::Input;
 pub use setup::{Setup, resolve};
 pub use signals::SubscriptionId;

@@ -64,8 +64,7 @@ impl BoardArguments {
         let own = [
             (self.assist, "--assist"),
             (self.engine != EngineName::default(), "--engine"),
-            (self.uart.uart.is_some(), "--uart"),
-            (self.uart.uart_output.is_some(), "--uart-output"),
+            (self.pc.has_flash(), "--flash"),
         ];
         own.into_iter().find(|(is_given, _)| *is_given).map(|(_, name)| name)
     }

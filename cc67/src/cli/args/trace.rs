@@ -60,15 +60,8 @@ impl TraceArguments {
         self.trace.is_empty() && self.trace_bits.is_none() && self.plot.is_empty()
     }
 
-    /// The first of these options that is given.
-    pub(crate) fn first_given(&self) -> Option<&'static str> {
-        let given = [
-            (!self.trace.is_empty(), "--trace"),
-            (self.trace_bits.is_some(), "--trace-bits"),
-            (self.trace_packets.is_some(), "--trace-packets"),
-            (!self.plot.is_empty(), "--plot"),
-            (self.trace_items.is_some(), "--trace-items"),
-        ];
-        given.into_iter().find(|(is_given, _)| *is_given).map(|(_, name)| name)
+    /// The first of these options given that a board with the user's own firmware does not know.
+    pub(crate) fn left_out_by_boot(&self) -> Option<&'static str> {
+        self.trace_packets.as_ref().map(|_| "--trace-packets")
     }
 }

@@ -6,7 +6,7 @@ use clap::Args;
 use runtime::MachineFile;
 
 /// What the serial port is connected to.
-#[derive(Clone, Debug, Args)]
+#[derive(Clone, Debug, Default, Args)]
 pub(crate) struct UartArguments {
     /// Characters that the serial port receives, from the moment the program first looks for them
     #[arg(long, value_name = "FILE", conflicts_with = "uart")]

@@ -110,7 +110,7 @@ pub(super) fn compare(arguments: &CompareArguments) -> Result<Exit> {
         bail!("`cc67 compare` needs `--boot FILE`, your firmware file")
     };
     if let Some(option) = arguments.board.left_out_by_boot() {
-        bail!("`{option}` does not work with `--boot` yet");
+        bail!("`{option}` does not work with `--boot`");
     }
     let mut ready = Booted::new(file)?.into_ready();
     let mut table = String::new();
@@ -178,7 +178,7 @@ impl CompareArguments {
             Some(super::Command::Compare(mut own)) => {
                 own.board.keeps_files = true;
                 if let Some(option) = own.board.left_out_by_boot() {
-                    bail!("`{option}` does not work with `--boot` yet");
+                    bail!("`{option}` does not work with `--boot`");
                 }
                 Ok((own, programs))
             }
@@ -204,7 +204,7 @@ impl CompareArguments {
     /// Its axes are looked at in the tick in which the model ended: an axis that nobody stops continues.
     fn firmware(&self, programs: &[OsString], ready: &mut Ready, at: Ticks) -> Result<Option<Outcome>> {
         let mut booted = ready.fresh();
-        if !booted.begin(self.started(programs), &self.board, &self.compiler, None)? {
+        if booted.begin(self.started(programs), &self.board, &self.compiler, None)?.is_none() {
             return Ok(None);
         }
         let mut outcome = Outcome::default();
@@ -217,9 +217,9 @@ impl CompareArguments {
         let ticks = self.tolerance / TIMEBASE;
         let step = |(now, before): (&(f64, f64), &(f64, f64))| (now.0 - before.0).abs() * ticks;
         outcome.reach = outcome.axes.iter().zip(&before).map(step).collect();
-        let ended = booted.run(self.ticks(), &mut |event| outcome.note(&event));
+        let ended = booted.run(self.ticks(), None, &mut |event| outcome.note(&event));
         outcome.last_axes = booted.axes();
-        booted.finish(&mut |event| outcome.note(&event));
+        booted.finish(&mut |event| outcome.note(&event))?;
         outcome.end = match ended {
             Ok(End::AllEnded | End::Interrupted) => "ended".to_owned(),
             Ok(End::Limit) => "still running".to_owned(),

@@ -3,13 +3,14 @@
 use std::collections::BTreeMap;
 
 use kmotiondef::limits::N_USER_DATA_VARS;
-use kmotiondef::structs::Chan;
-use kmotiondef::variables::CHAN;
+use kmotiondef::structs::{Chan, Persist};
+use kmotiondef::variables::{CHAN, PERSIST};
 use kmotiondef::{AxisId, Bit};
 use runtime::Board;
 use runtime::trace::Item;
 use serde::Serialize;
 use vm::engine::Engine;
+use vm::memory::GuestMemory;
 
 /// The state of a board.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -35,11 +36,17 @@ struct AxisState {
 impl FinalState {
     /// The present state.
     pub(crate) fn of<E: Engine>(board: &Board<E>) -> Self {
+        Self::seen(board.memory(), |item| board.value(item))
+    }
+
+    /// The state of a board with this memory and these values of items.
+    pub(crate) fn seen(memory: &GuestMemory, value: impl Fn(Item) -> f64) -> Self {
         let bits = (0..=i32::from(Bit::MAX)).filter_map(Bit::new);
-        let elements = (0..N_USER_DATA_VARS).filter_map(|index| Some((index, board.user_data(index)?)));
+        let data = PERSIST.field(Persist::USER_DATA);
+        let elements = (0..N_USER_DATA_VARS).map(|index| (index, memory.peek(data.element(index).address())));
         Self {
-            axes: AxisId::all().filter_map(|axis| AxisState::of(board, axis)).collect(),
-            bits: bits.filter(|bit| board.bit(*bit)).map(Bit::get).collect(),
+            axes: AxisId::all().filter_map(|axis| AxisState::of(memory, &value, axis)).collect(),
+            bits: bits.filter(|bit| value(Item::of_bit(*bit)) != 0.0).map(Bit::get).collect(),
             persist: elements.filter(|(_, value)| *value != 0).collect(),
         }
     }
@@ -66,10 +73,10 @@ impl FinalState {
 }
 
 impl AxisState {
-    fn of<E: Engine>(board: &Board<E>, axis: AxisId) -> Option<Self> {
-        let value = |kind: &str| Item::new(&format!("{kind}{axis}")).map_or(0.0, |item| board.value(item));
+    fn of(memory: &GuestMemory, value: impl Fn(Item) -> f64, axis: AxisId) -> Option<Self> {
+        let value = |kind: &str| Item::new(&format!("{kind}{axis}")).map_or(0.0, &value);
         let place = CHAN.element(axis.index()).field(Chan::ENABLE);
-        let enabled = board.memory().peek::<u32>(place.address()) != 0;
+        let enabled = memory.peek::<u32>(place.address()) != 0;
         let state = Self {
             axis: axis.get(),
             enabled,

@@ -8,24 +8,34 @@ use std::sync::Arc;
 
 use anyhow::{Context, Result, bail};
 use boot::{BootedBoard, BootedSnapshot, FirmwareFile, Halted, Sent, SentLine};
-use cc67_host::session::resolve;
-use cc67_host::{End, UserProgram};
+use cc67_host::session::{by_hand, quantities, resolve};
+use cc67_host::{End, Interrupter, UserProgram};
 use compiler::Options;
 use compiler::firmware::{Firmware, FirmwareFile as Symbols};
 use compiler::target::Target;
-use kmotiondef::variables::{CHAN, PERSIST, READ_DISK_BUFFER, VIRTUAL_BITS};
-use kmotiondef::{AxisId, Cycles, GuestAddr, ThreadId, Ticks};
+use kmotiondef::variables::{
+    ADC_BUFFER_IN, CHAN, CURRENT_THREAD, DAC_BUFFER, HOST_STATUS, KSTEP_PRESENT, LAST_PWM, PERSIST,
+    READ_DISK_BUFFER, VIRTUAL_BITS, VIRTUAL_BITS_EX,
+};
+use kmotiondef::{AxisId, Bit, Cycles, GuestAddr, ThreadId, Ticks};
 use runtime::surroundings::{Asked, Surroundings};
-use runtime::{Event, EventKind, MachineFile, trace};
+use runtime::trace::{Item, TraceRequest};
+use runtime::{Event, EventKind, MachineFile};
 
 use super::around::Attached;
+use super::line::{PART, SerialLine};
 use super::{Described, Given, Started};
 use crate::cli::args::board::BoardArguments;
 
 use crate::cli::args::compiler::CompilerArguments;
 use crate::cli::args::program::ProgramFile;
+use crate::cli::args::trace::TraceArguments;
+use crate::cli::args::uart::UartArguments;
 use crate::cli::compile::images;
 use crate::cli::io::input::read;
+use crate::cli::io::pace::Pace;
+use crate::cli::report::state::FinalState;
+use crate::cli::report::trace;
 
 /// Cycles of a tick, and of a second.
 const TICK: u64 = Cycles::PER_TICK.get() as u64;
@@ -42,8 +52,21 @@ pub(crate) struct Booted {
     pub(crate) board: BootedBoard,
     firmware: Firmware,
     origin: u64,
-    /// Programs that a stimulus may load.
+    /// Programs in the threads, and those that a stimulus may load.
+    programs: Vec<UserProgram>,
     offered: Vec<UserProgram>,
+    /// How programs were compiled.
+    options: Options,
+    uart: UartArguments,
+    line: SerialLine,
+    interrupter: Interrupter,
+}
+
+/// Programs that are about to run.
+#[derive(Debug)]
+pub(crate) struct Begun {
+    /// What is recorded, if anything.
+    pub(crate) request: Option<TraceRequest>,
 }
 
 /// A firmware that has started, to run programs on again and again from there.
@@ -58,12 +81,10 @@ impl Ready {
     /// The board as it was when the firmware was ready.
     pub(crate) fn fresh(&mut self) -> Booted {
         let origin = self.snapshot.cycle();
-        let mut booted = self.booted.take().unwrap_or_else(|| Booted {
-            board: self.snapshot.board(),
-            firmware: self.firmware.clone(),
-            origin,
-            offered: Vec::new(),
-        });
+        let mut booted = self
+            .booted
+            .take()
+            .unwrap_or_else(|| Booted::around(self.snapshot.board(), self.firmware.clone()));
         booted.board.restore(&self.snapshot);
         booted.origin = origin;
         booted
@@ -89,8 +110,33 @@ impl Booted {
         let file = FirmwareFile::read(&bytes).with_context(shown)?;
         let symbols = Symbols::read(&bytes).with_context(shown)?;
         let board = BootedBoard::booted(Arc::new(file)).with_context(shown)?;
-        let origin = board.cycle();
-        Ok(Self { board, firmware: Firmware::File(Arc::new(symbols)), origin, offered: Vec::new() })
+        Ok(Self::around(board, Firmware::File(Arc::new(symbols))))
+    }
+
+    /// A board that is ready, without programs.
+    fn around(board: BootedBoard, firmware: Firmware) -> Self {
+        Self {
+            origin: board.cycle(),
+            board,
+            firmware,
+            programs: Vec::new(),
+            offered: Vec::new(),
+            options: Options::default(),
+            uart: UartArguments::default(),
+            line: SerialLine::default(),
+            interrupter: Interrupter::default(),
+        }
+    }
+
+    /// What ends a run from elsewhere.
+    pub(crate) fn interrupter(&self) -> Interrupter {
+        self.interrupter.clone()
+    }
+
+    /// Connects the serial port; a peer that has to be there is waited for.
+    pub(crate) fn connect(&mut self) -> Result<()> {
+        self.line = SerialLine::connect(&self.uart)?;
+        Ok(())
     }
 
     /// Compiles and loads programs, and starts the first of them; whether their sources have no errors.
@@ -104,6 +150,8 @@ impl Booted {
         let Some(programs) = images::programs_with(files, compiler, &options)? else { return Ok(false) };
         programs.iter().try_for_each(|program| self.take(program))?;
         programs.iter().take(starts).for_each(|program| self.board.execute(program.thread));
+        self.programs.retain(|known| programs.iter().all(|program| program.thread != known.thread));
+        self.programs.extend(programs);
         Ok(true)
     }
 
@@ -118,18 +166,22 @@ impl Booted {
     }
 
     /// Connects what the arguments describe, loads their programs, and starts those that are to start, all in one
-    /// slice: board time begins there. Whether the sources have no errors.
+    /// slice: board time begins there. What is recorded from then on, nothing if the sources have errors.
     pub(crate) fn begin<'a>(
         &mut self,
         started: impl Into<Started<'a>>,
         board: &BoardArguments,
         compiler: &CompilerArguments,
-        request: Option<trace::TraceRequest>,
-    ) -> Result<bool> {
+        traced: Option<&TraceArguments>,
+    ) -> Result<Option<Begun>> {
         let options = self.options(compiler)?;
         let described = Described::read(started, board, compiler, Given { options, image: None })?;
-        let Some(Described { session, .. }) = described else { return Ok(false) };
+        let Some(Described { session, uart, .. }) = described else { return Ok(None) };
         let cc67_host::Setup { mut config, options, programs, offered, values, mut stimulus, .. } = session;
+        let request = traced.map(|traced| {
+            trace::request_of_booted(traced, |list| quantities(list, &programs, &options))
+        });
+        let request = request.transpose()?.flatten();
         self.store(&values)?;
         programs.iter().try_for_each(|program| self.take(program))?;
         let starting = programs.iter().filter(|program| program.starts).map(|program| program.thread);
@@ -145,15 +197,18 @@ impl Booted {
             let mut surroundings = Surroundings::new(config, active);
             surroundings.begin(&machine, stimulus, self.board.memory_mut());
             surroundings.connect_uart(&session.uart_input, session.hears_uart);
-            if let Some(request) = request {
-                surroundings.record(request, self.board.memory());
+            if let Some(request) = &request {
+                surroundings.record(request.clone(), self.board.memory());
             }
             self.board.connect(Box::new(Attached { surroundings, origin: self.origin }));
-        } else if !stimulus.is_empty() || config.machine_file != MachineFile::default() {
-            bail!("nothing can be connected: this firmware keeps its variables in other places than 4.34");
+        } else if !stimulus.is_empty() || config.machine_file != MachineFile::default() || request.is_some() {
+            bail!(
+                "nothing can be connected or recorded: this firmware keeps its variables in other places than 4.34"
+            );
         }
-        self.offered = offered;
-        Ok(true)
+        (self.programs, self.offered) = (programs, offered);
+        (self.options, self.uart) = (options, uart);
+        Ok(Some(Begun { request }))
     }
 
     /// Lets the firmware read what was sent, and start threads in the next tick; time is 0 a tick before.
@@ -173,7 +228,14 @@ impl Booted {
         let places = [
             ("chan", CHAN.address()),
             ("persist", PERSIST.address()),
+            ("CurrentThread", CURRENT_THREAD.address()),
+            ("HostStatus", HOST_STATUS.address()),
+            ("KStepPresent", KSTEP_PRESENT.address()),
             ("VirtualBits", VIRTUAL_BITS.address()),
+            ("VirtualBitsEx", VIRTUAL_BITS_EX.address()),
+            ("ADC_BufferIn", ADC_BUFFER_IN.address()),
+            ("DAC_Buffer", DAC_BUFFER.address()),
+            ("LastPWM", LAST_PWM.address()),
             ("read_disk_buffer", READ_DISK_BUFFER.address()),
         ];
         let file = self.board.file();
@@ -185,6 +247,14 @@ impl Booted {
     fn surroundings(&mut self) -> Option<&mut Surroundings> {
         let attached: &mut Attached = self.board.around()?.as_any().downcast_mut()?;
         Some(&mut attached.surroundings)
+    }
+
+    /// The state that the board is in; empty for a firmware with its variables in other places.
+    pub(crate) fn state(&mut self) -> FinalState {
+        let (around, memory) = self.board.around_and_memory();
+        let attached = around.and_then(|around| around.as_any().downcast_mut::<Attached>());
+        let Some(Attached { surroundings, .. }) = attached else { return FinalState::default() };
+        FinalState::seen(memory, |item| surroundings.value(item, memory))
     }
 
     /// Does what the stimulus has asked for.
@@ -206,8 +276,41 @@ impl Booted {
         }
     }
 
-    /// The run is over: what the stimulus expects then is checked.
-    pub(crate) fn finish(&mut self, sink: &mut dyn FnMut(Event)) {
+    /// Does what a statement of a stimulus says at the beginning of the next tick.
+    ///
+    /// # Errors
+    /// What is wrong with it, or nothing is connected to this firmware.
+    pub(crate) fn act(&mut self, action: &str) -> Result<()> {
+        let stimulus = by_hand(self.tick(), action, &self.programs, &self.options)?;
+        let now = self.now();
+        let (around, memory) = self.board.around_and_memory();
+        let attached = around.and_then(|around| around.as_any().downcast_mut::<Attached>());
+        let Attached { surroundings, .. } = attached.context("nothing is connected to this firmware")?;
+        surroundings.play(stimulus, memory, now);
+        Ok(())
+    }
+
+    /// The level of a bit; low where nothing is connected to this firmware.
+    pub(crate) fn bit(&mut self, bit: Bit) -> bool {
+        let (around, memory) = self.board.around_and_memory();
+        let attached = around.and_then(|around| around.as_any().downcast_mut::<Attached>());
+        attached.is_some_and(|attached| attached.surroundings.value(Item::of_bit(bit), memory) != 0.0)
+    }
+
+    /// Gives the peer of the serial port what was sent, and takes what it sends.
+    fn exchange_serial(&mut self) {
+        let now = self.now();
+        let backlog = self.surroundings().map_or(0, |surroundings| surroundings.uart_backlog());
+        let came = self.line.take(backlog);
+        if let Some(surroundings) = self.surroundings()
+            && !came.is_empty()
+        {
+            surroundings.send_to_uart(&came, now);
+        }
+    }
+
+    /// The run is over: what the stimulus expects then is checked, the file of the serial port is written.
+    pub(crate) fn finish(&mut self, sink: &mut dyn FnMut(Event)) -> Result<()> {
         let now = self.now();
         let (around, memory) = self.board.around_and_memory();
         let attached = around.and_then(|around| around.as_any().downcast_mut::<Attached>());
@@ -215,6 +318,7 @@ impl Booted {
             surroundings.finish(memory, now);
             surroundings.take_events().into_iter().for_each(sink);
         }
+        self.line.finish()
     }
 
     /// Stores start values of `persist.UserData`, wherever this firmware has it.
@@ -254,11 +358,22 @@ impl Booted {
     ///
     /// # Errors
     /// The firmware ran away; what it has sent before was handed over.
-    pub(crate) fn run(&mut self, limit: Ticks, sink: &mut dyn FnMut(Event)) -> Result<End, Halted> {
+    pub(crate) fn run(
+        &mut self,
+        limit: Ticks,
+        pace: Option<&Pace>,
+        sink: &mut dyn FnMut(Event),
+    ) -> Result<End, Halted> {
         let mut quiet = 0;
         let mut axes = self.commands();
         while self.tick() < limit {
+            if self.interrupter.take() {
+                return Ok(End::Interrupted);
+            }
             let has_sent = self.advance(TICK, sink)?;
+            if let Some(pace) = pace {
+                pace.wait(self.tick());
+            }
             let moved = std::mem::replace(&mut axes, self.commands());
             let is_awaited = self.is_awaited() || self.board.is_starting();
             let is_busy = has_sent
@@ -305,7 +420,11 @@ impl Booted {
     /// # Errors
     /// The firmware ran away.
     pub(crate) fn advance(&mut self, cycles: u64, sink: &mut dyn FnMut(Event)) -> Result<bool, Halted> {
+        let before = self.tick().get();
         let result = self.board.run_to(self.board.cycle() + cycles);
+        if before / PART != self.tick().get() / PART {
+            self.exchange_serial();
+        }
         let lines = self.board.take_lines();
         let has_sent = !lines.is_empty();
         for line in lines {
@@ -326,7 +445,10 @@ impl Booted {
     /// Hands over what has happened around the board.
     fn tell(&mut self, sink: &mut dyn FnMut(Event)) {
         let events = self.surroundings().map(Surroundings::take_events).unwrap_or_default();
-        events.into_iter().for_each(sink);
+        for event in events {
+            self.line.note(&event);
+            sink(event);
+        }
     }
 
     fn event(line: SentLine, at: Cycles) -> Event {

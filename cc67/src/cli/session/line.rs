@@ -23,7 +23,7 @@ use crate::cli::io::pace::Pace;
 use crate::cli::io::terminal;
 
 /// Ticks that a run with a peer goes on before it looks for what has come: 9.99 ms.
-const PART: u64 = 111;
+pub(super) const PART: u64 = 111;
 /// Pieces that a peer may be ahead with, and characters that wait on the line, before it has to wait.
 const AHEAD: usize = 16;
 const BACKLOG: usize = 4096;
@@ -256,7 +256,7 @@ impl SerialLine {
     }
 
     /// Gives the peer what was sent and takes what it sends, for as long as a part of the run lasts.
-    fn take(&mut self, backlog: usize) -> Vec<u8> {
+    pub(super) fn take(&mut self, backlog: usize) -> Vec<u8> {
         let Some(peer) = &mut self.peer else { return Vec::new() };
         let fresh = std::mem::take(&mut self.fresh);
         let written = peer.outgoing.0.write_all(&fresh).and_then(|()| peer.outgoing.0.flush());

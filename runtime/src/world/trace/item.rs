@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use kmotiondef::bits::{BitKind, range_of};
 use kmotiondef::structs::{Chan, Persist};
 use kmotiondef::variables::{ADC_BUFFER_IN, DAC_BUFFER, LAST_PWM, PERSIST};
 use kmotiondef::{AxisId, Bit};
@@ -180,6 +181,12 @@ impl Item {
         Err(UnknownItem { name: name.clone(), known: known.join(", ") })
     }
 
+    /// The item that a bit is.
+    #[must_use]
+    pub fn of_bit(bit: Bit) -> Self {
+        Self { kind: KINDS.iter().position(|kind| kind.name == "bit").unwrap_or_default(), index: bit.index() }
+    }
+
     /// Whether there are items of this name with a number after it.
     #[must_use]
     pub fn is_kind(name: &str) -> bool {
@@ -229,6 +236,13 @@ impl Item {
         Bit::new(i32::try_from(self.index).ok()?).filter(|_| self.kind() == "bit")
     }
 
+    /// Whether it belongs to an option board that only the modelled firmware serves: a Konnect, a SnapAmp.
+    #[must_use]
+    pub fn is_only_modelled(self) -> bool {
+        let is_snapamp = |bit| range_of(bit).is_some_and(|range| range.kind == BitKind::SnapGpio);
+        self.kind() == "konnect" || self.bit().is_some_and(is_snapamp)
+    }
+
     pub(crate) fn read(self, view: &View<'_>) -> f64 {
         (KINDS[self.kind].read)(view, self.index)
     }
@@ -237,6 +251,10 @@ impl Item {
 impl Formula for Item {
     fn value(&self, view: &View<'_>) -> f64 {
         self.read(view)
+    }
+
+    fn items(&self) -> &[Item] {
+        std::slice::from_ref(self)
     }
 }
 

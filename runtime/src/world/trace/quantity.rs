@@ -23,6 +23,9 @@ pub enum Quantity {
 pub trait Formula: fmt::Debug + Send + Sync {
     /// The value now.
     fn value(&self, view: &View<'_>) -> f64;
+
+    /// The items that it is computed from.
+    fn items(&self) -> &[Item];
 }
 
 /// The board as somebody sees it who only looks.
@@ -61,6 +64,15 @@ impl Quantity {
         match self {
             Self::Item(item) => Some(*item),
             Self::Formula(..) => None,
+        }
+    }
+
+    /// The items that it is, or is computed from.
+    #[must_use]
+    pub fn items(&self) -> &[Item] {
+        match self {
+            Self::Item(item) => item.items(),
+            Self::Formula(_, formula) => formula.items(),
         }
     }
 

@@ -2,35 +2,41 @@
 //!
 //! Lines come from the keyboard or from a script; board time passes as they need it, and as `wait` says.
 
+use std::collections::BTreeMap;
 use std::io::{self, IsTerminal};
 use std::path::Path;
 
 use anyhow::{Context, Result, bail};
 use boot::Halted;
+use cc67_host::End;
 use kmotiondef::limits::TIMEBASE;
-use kmotiondef::{Cycles, ThreadId, Ticks};
+use kmotiondef::{Bit, Cycles, ThreadId, Ticks};
 
 use super::input::{self, Input};
 use super::screen::Screen;
 use super::words::{self, Word};
-use super::{ConsoleArguments, Flow};
+use super::{ConsoleArguments, Flow, Shown};
 use crate::cli::args::program::{ProgramFile, assign};
 use crate::cli::args::time::DEFAULT_LIMIT;
 use crate::cli::io::exit::Exit;
-use crate::cli::session::booted::Booted;
+use crate::cli::report::seen::Seen;
+use crate::cli::report::trace::Trace;
+use crate::cli::session::booted::{Begun, Booted};
 
 /// Talks to the firmware until the input ends.
 pub(super) fn console(arguments: &ConsoleArguments, file: &Path) -> Result<Exit> {
     if let Some(option) = left_out(arguments) {
-        bail!("`{option}` does not work with `--boot` yet");
+        bail!("`{option}` does not work with `--boot`");
     }
     let mut booted = Booted::new(file)?;
     let programs = arguments.programs.as_slice();
-    if !booted.begin(programs, &arguments.board, &arguments.compiler, None)? {
-        return Ok(Exit::Failure);
-    }
-    let mut console =
-        Console { arguments, booted, screen: Screen::new(arguments.time, false), has_crashed: false };
+    let begun = booted.begin(programs, &arguments.board, &arguments.compiler, Some(&arguments.trace))?;
+    let Some(Begun { request }) = begun else { return Ok(Exit::Failure) };
+    let trace = request.as_ref().map(|request| Trace::begin(&arguments.trace, request)).transpose()?;
+    booted.connect()?;
+    let shown =
+        Shown { screen: Screen::new(arguments.time, false), seen: Seen::default(), trace, arguments };
+    let mut console = Console { arguments, booted, shown, pressed: BTreeMap::new(), has_crashed: false };
     if io::stdin().is_terminal() && io::stdout().is_terminal() {
         console.keyboard()
     } else {
@@ -42,21 +48,23 @@ pub(super) fn console(arguments: &ConsoleArguments, file: &Path) -> Result<Exit>
 fn left_out(arguments: &ConsoleArguments) -> Option<&'static str> {
     let own = [(arguments.realtime, "--realtime"), (arguments.serve.is_some(), "--serve")];
     let given = own.into_iter().find(|(is_given, _)| *is_given).map(|(_, name)| name);
-    given.or_else(|| arguments.board.left_out_by_boot())
+    given.or(arguments.trace.left_out_by_boot()).or_else(|| arguments.board.left_out_by_boot())
 }
 
 /// The firmware, and the person or script that talks to it.
 struct Console<'a> {
     arguments: &'a ConsoleArguments,
     booted: Booted,
-    screen: Screen,
+    shown: Shown<'a>,
+    /// Inputs that are pressed, and the level of each before.
+    pressed: BTreeMap<Bit, bool>,
     has_crashed: bool,
 }
 
 impl Console<'_> {
     fn keyboard(&mut self) -> Result<Exit> {
         let (lines, printer) = input::keyboard()?;
-        self.screen.print_through(printer);
+        self.shown.screen.print_through(printer);
         while let Ok(Input::Line(line)) = lines.next() {
             if self.line(&line) == Flow::Leave {
                 break;
@@ -70,14 +78,14 @@ impl Console<'_> {
     fn script(&mut self) -> Result<Exit> {
         for line in io::stdin().lines() {
             let line = line.context("cannot read the script")?;
-            if self.line(&line) == Flow::Leave || self.screen.is_closed() {
+            if self.line(&line) == Flow::Leave || self.shown.screen.is_closed() {
                 return self.leave();
             }
         }
         let seconds = self.arguments.limit.unwrap_or(DEFAULT_LIMIT);
         let limit = Ticks::new(self.booted.tick().get() + (seconds / TIMEBASE) as u64);
-        let screen = &mut self.screen;
-        let end = self.booted.run(limit, &mut |event| screen.show(&event));
+        let shown = &mut self.shown;
+        let end = self.booted.run(limit, None, &mut |event| shown.note(&event));
         if let Err(halted) = end {
             self.tell(&halted);
         }
@@ -85,8 +93,10 @@ impl Console<'_> {
     }
 
     fn leave(&mut self) -> Result<Exit> {
-        self.screen.finish().context("cannot write to standard output")?;
-        Ok(if self.has_crashed { Exit::Trapped } else { Exit::Success })
+        let shown = &mut self.shown;
+        self.booted.finish(&mut |event| shown.note(&event))?;
+        shown.finish(self.booted.tick())?;
+        Ok(if self.has_crashed { Exit::Trapped } else { shown.seen.exit(End::AllEnded, true).0 })
     }
 
     fn line(&mut self, line: &str) -> Flow {
@@ -98,7 +108,7 @@ impl Console<'_> {
             Some(Ok(Word::Quit)) => return Flow::Leave,
             Some(Ok(word)) => word,
             Some(Err(error)) => {
-                self.screen.note(&error.to_string());
+                self.shown.screen.note(&error.to_string());
                 return Flow::Continue;
             }
             None => {
@@ -107,7 +117,7 @@ impl Console<'_> {
             }
         };
         if let Err(error) = self.obey(&word) {
-            self.screen.note(&format!("{error:#}"));
+            self.shown.screen.note(&format!("{error:#}"));
         }
         Flow::Continue
     }
@@ -115,7 +125,7 @@ impl Console<'_> {
     /// Does what one of the console's own words says.
     fn obey(&mut self, word: &Word) -> Result<()> {
         match word {
-            Word::Help(name) => self.screen.text(&words::help(name.as_deref())),
+            Word::Help(name) => self.shown.screen.text(&words::help(name.as_deref())),
             Word::Kill { except } => {
                 for thread in ThreadId::all().filter(|thread| Some(*thread) != *except) {
                     self.send(&format!("Kill{thread}"));
@@ -127,19 +137,26 @@ impl Console<'_> {
             }
             Word::Time => {
                 let seconds = self.booted.now().get() as f64 / Cycles::PER_SECOND.get() as f64;
-                self.screen.text(&format!("{seconds:.6}\n"));
+                self.shown.screen.text(&format!("{seconds:.6}\n"));
             }
             Word::Wait(seconds) => {
                 let cycles = (seconds * Cycles::PER_SECOND.get() as f64) as u64;
-                let screen = &mut self.screen;
-                let passed = self.booted.advance(cycles, &mut |event| screen.show(&event));
+                let shown = &mut self.shown;
+                let passed = self.booted.advance(cycles, &mut |event| shown.note(&event));
                 if let Err(halted) = passed {
                     self.tell(&halted);
                 }
             }
-            Word::Press(_) | Word::Release(_) | Word::Act(_) => {
-                bail!("inputs of a booted firmware cannot be driven at the prompt yet");
+            Word::Press(bit) => {
+                let level = self.booted.bit(*bit);
+                self.pressed.entry(*bit).or_insert(level);
+                self.booted.act(&format!("bit {bit} = {}", u8::from(!level)))?;
             }
+            Word::Release(bit) => {
+                let level = self.pressed.remove(bit).unwrap_or(false);
+                self.booted.act(&format!("bit {bit} = {}", u8::from(level)))?;
+            }
+            Word::Act(statement) => self.booted.act(statement)?,
             Word::Quit => {}
         }
         Ok(())
@@ -150,8 +167,8 @@ impl Console<'_> {
     }
 
     fn send(&mut self, line: &str) {
-        let screen = &mut self.screen;
-        let answered = self.booted.exchange(line, &mut |event| screen.show(&event));
+        let shown = &mut self.shown;
+        let answered = self.booted.exchange(line, &mut |event| shown.note(&event));
         if let Err(halted) = answered {
             self.tell(&halted);
         }
@@ -160,6 +177,6 @@ impl Console<'_> {
     /// The firmware ran away; the command line continues.
     fn tell(&mut self, halted: &Halted) {
         self.has_crashed = true;
-        self.screen.note(halted.to_string().trim_end());
+        self.shown.screen.note(halted.to_string().trim_end());
     }
 }

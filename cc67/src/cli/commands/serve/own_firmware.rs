@@ -16,20 +16,23 @@ use super::served::Served;
 use super::{ServeArguments, Terms, end_on_signal, listen};
 use crate::cli::io::exit::Exit;
 use crate::cli::io::terminal;
-use crate::cli::session::booted::Booted;
+use crate::cli::report::trace::Trace;
+use crate::cli::session::booted::{Begun, Booted};
 
 /// Starts the firmware and serves clients until it is ended.
 pub(super) fn serve(arguments: &ServeArguments, file: &Path, terms: &Terms<'_>) -> Result<Exit> {
     if let Some(option) = left_out(arguments) {
-        bail!("`{option}` does not work with `--boot` yet");
+        bail!("`{option}` does not work with `--boot`");
     }
     let mut booted = Booted::new(file)?;
-    if !booted.begin(&arguments.programs, &arguments.board, &arguments.compiler, None)? {
-        return Ok(Exit::Failure);
-    }
+    let begun =
+        booted.begin(&arguments.programs, &arguments.board, &arguments.compiler, Some(&arguments.trace))?;
+    let Some(Begun { request }) = begun else { return Ok(Exit::Failure) };
+    let trace = request.as_ref().map(|request| Trace::begin(&arguments.trace, request)).transpose()?;
+    booted.connect()?;
     let board = ServedBoard::new(
         OwnFirmware { booted, crashed: None, is_deaf: false, has_told: false },
-        None,
+        trace,
         terms,
     )?;
     let (notes, inbox) = channel();
@@ -47,9 +50,8 @@ fn left_out(arguments: &ServeArguments) -> Option<&'static str> {
     let is_live = arguments.page.live;
     #[cfg(not(feature = "live"))]
     let is_live = false;
-    let own = [(is_live, "--live"), (arguments.board.pc.has_flash(), "--flash")];
-    let given = own.into_iter().find(|(is_given, _)| *is_given).map(|(_, name)| name);
-    given.or_else(|| arguments.trace.first_given()).or_else(|| arguments.board.left_out_by_boot())
+    let live = is_live.then_some("--live");
+    live.or(arguments.trace.left_out_by_boot()).or_else(|| arguments.board.left_out_by_boot())
 }
 
 /// A board that runs the user's firmware.
@@ -117,7 +119,6 @@ impl Served for OwnFirmware {
     }
 
     fn finish(&mut self, sink: &mut dyn FnMut(Event)) -> Result<()> {
-        self.booted.finish(sink);
-        Ok(())
+        self.booted.finish(sink)
     }
 }

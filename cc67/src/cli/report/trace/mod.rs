@@ -22,7 +22,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Result, anyhow, bail};
 use cc67_host::{Session, WatchError};
 use kmotiondef::{Bit, CodeAddr, Cycles, ThreadId, Ticks};
-use runtime::trace::{Item, Quantity, Record, TraceRequest};
+use runtime::trace::{Item, Packets, Quantity, Record, TraceRequest};
 use runtime::{Event, EventKind};
 use vm::engine::Engine;
 
@@ -39,6 +39,32 @@ pub(crate) fn request<E: Engine>(
     arguments: &TraceArguments,
     session: &Session<E>,
 ) -> Result<Option<TraceRequest>> {
+    let packets = arguments.trace_packets.as_ref().map(|file| packets::wanted(file, session)).transpose()?;
+    requested(arguments, packets, |list| session.quantities(list))
+}
+
+/// What a board with the user's own firmware is to record; `None` if nothing is traced.
+///
+/// # Errors
+/// Something is wrong with what is asked for, or only the modelled firmware has it.
+pub(crate) fn request_of_booted(
+    arguments: &TraceArguments,
+    quantities: impl FnOnce(&str) -> Result<Vec<Quantity>, WatchError>,
+) -> Result<Option<TraceRequest>> {
+    let request = requested(arguments, None, quantities)?;
+    for quantity in request.iter().flat_map(|request| &request.quantities) {
+        if let Some(item) = quantity.items().iter().find(|item| item.is_only_modelled()) {
+            bail!("`--watch {quantity}`: `{item}` belongs to an option board that is not served with `--boot`");
+        }
+    }
+    Ok(request)
+}
+
+fn requested(
+    arguments: &TraceArguments,
+    packets: Option<Packets>,
+    quantities: impl FnOnce(&str) -> Result<Vec<Quantity>, WatchError>,
+) -> Result<Option<TraceRequest>> {
     let TraceArguments { trace, trace_bits, trace_packets, plot, trace_items, trace_every } = arguments;
     if trace.is_empty() && trace_bits.is_none() && trace_packets.is_none() && plot.is_empty() {
         if trace_items.is_some() {
@@ -52,11 +78,10 @@ pub(crate) fn request<E: Engine>(
     }
     let quantities = match trace_items {
         None => Item::of_axes().into_iter().map(Quantity::from).collect(),
-        Some(list) => session.quantities(list).map_err(refused)?,
+        Some(list) => quantities(list).map_err(refused)?,
     };
     let is_table = |path: &PathBuf| !matches!(suffix(path).as_str(), "vcd" | "json");
     let changes = trace_bits.is_some() || !plot.is_empty() || !trace.iter().all(is_table);
-    let packets = trace_packets.as_ref().map(|file| packets::wanted(file, session)).transpose()?;
     Ok(Some(TraceRequest { quantities, every: *trace_every, changes, packets }))
 }
 
