@@ -188,3 +188,15 @@ fn inputs_of_the_real_firmware_are_driven_at_the_prompt() {
     assert_eq!((output.code, output.stdout.as_str()), (0, "0\n1\n0\n"), "{output:?}");
 }
 
+#[test]
+fn times_that_programs_print_may_differ_within_the_tolerance() {
+    let Some(file) = firmware() else { return };
+    let scratch = scratch("boot-numbers");
+    scratch.write("time.c", "#include \"KMotionDef.h\"\nmain()\n{\n  double t = Time_sec();\n  Delay_sec(0.01);\n  printf(\"took %.7f s\\n\", Time_sec() - t);\n}\n");
+    let compare = cc67(&scratch, ["compare", "--boot", &file, "time.c"]);
+    assert_eq!(compare.code, 0, "{compare:?}");
+    assert!(compare.stdout.contains("time.c: line 1: its numbers differ by"), "{compare:?}");
+    let exact = cc67(&scratch, ["compare", "--boot", &file, "--exact", "time.c"]);
+    assert_eq!(exact.code, 5, "{exact:?}");
+}
+

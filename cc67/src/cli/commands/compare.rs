@@ -4,6 +4,8 @@
 //! it. Compared are console, replies and what the PC does line by line, expectations, the board time of each line within
 //! a tolerance, `persist.UserData`, where the axes end, and the pins that are outputs.
 
+mod outcome;
+
 use std::ffi::OsString;
 use std::fmt::Write as _;
 
@@ -12,9 +14,7 @@ use boot::Halted;
 use cc67_host::End;
 use clap::{Args, Parser};
 use kmotiondef::limits::TIMEBASE;
-use kmotiondef::structs::{Chan, Persist};
-use kmotiondef::variables::{CHAN, PERSIST};
-use kmotiondef::{AxisId, Bit, Cycles, Ticks};
+use kmotiondef::Ticks;
 use runtime::{Event, EventKind};
 use vm::engine::Engine;
 
@@ -24,17 +24,10 @@ use crate::cli::args::compiler::CompilerArguments;
 use crate::cli::args::time::{DEFAULT_LIMIT, seconds};
 use crate::cli::io::exit::Exit;
 use crate::cli::io::{output, terminal};
+use crate::cli::report::numbers::Tolerance;
 use crate::cli::session::booted::{Booted, Ready};
 use crate::cli::session::{Rig, Setup, Started, Work};
-
-/// Pins of the board.
-const PINS: i32 = 48;
-/// Pins of step generators: the level of a pulse is not modelled at register level.
-const STEP_PINS: [std::ops::Range<usize>; 2] = [8..16, 36..44];
-/// Pins that the firmware turns while there is a KStep: they select its inputs.
-const KSTEP_PINS: std::ops::Range<usize> = 2..4;
-/// Digits of positions that are compared: a thousandth.
-const POSITION: f64 = 1e-3;
+use outcome::Outcome;
 
 /// Arguments of `cc67 compare`.
 #[derive(Debug, Args)]
@@ -48,6 +41,12 @@ pub(super) struct CompareArguments {
     /// Differences of board times up to this are none, in seconds; more of them are reported, not failed
     #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "0.001")]
     tolerance: f64,
+    /// Printed numbers may differ by N; those before a unit of time by --tolerance
+    #[arg(long, value_name = "N", default_value = "0.001")]
+    numbers: f64,
+    /// Printed numbers may not differ at all
+    #[arg(long, conflicts_with = "numbers")]
+    exact: bool,
     /// Fail on board times beyond the tolerance, too
     #[arg(long)]
     strict_times: bool,
@@ -60,48 +59,6 @@ pub(super) struct CompareArguments {
     /// All words of the command line.
     #[arg(skip)]
     pub(super) words: Vec<OsString>,
-}
-
-/// What a line is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum LineKind {
-    Console,
-    Reply,
-    /// What the PC does.
-    Host,
-    /// An expectation of the stimulus that is not met.
-    Unmet,
-}
-
-/// What a run came to, on either board.
-#[derive(Clone, Debug, Default, PartialEq)]
-struct Outcome {
-    /// Board time in seconds, what it is, text.
-    lines: Vec<(f64, LineKind, String)>,
-    /// How it ended.
-    end: String,
-    /// When it ended.
-    ticks: Ticks,
-    user_data: Vec<u32>,
-    /// Commanded and measured position of each axis.
-    axes: Vec<(f64, f64)>,
-    /// How far each axis is commanded within the tolerance of time, where it is still moving.
-    reach: Vec<f64>,
-    /// Where the axes are at its very end: what came to rest a little later.
-    last_axes: Vec<(f64, f64)>,
-    /// Pins that are high.
-    pins: Vec<bool>,
-    /// Whether a KStep is there.
-    has_kstep: bool,
-}
-
-/// A difference: what, on the model, on the firmware, and the page that says how it is meant.
-#[derive(Clone, Debug, PartialEq)]
-struct Difference {
-    what: String,
-    model: String,
-    firmware: String,
-    page: &'static str,
 }
 
 /// Compares all programs; exit code 5 if any differs.
@@ -121,7 +78,7 @@ pub(super) fn compare(arguments: &CompareArguments) -> Result<Exit> {
         let Some(firmware) = own.firmware(&programs, &mut ready, model.ticks)? else {
             return Ok(Exit::Failure);
         };
-        let differences = model.differences(&firmware);
+        let (differences, near) = model.differences(&firmware, own.allowed());
         let late = model.latest(&firmware);
         let is_late = arguments.strict_times && late > arguments.tolerance;
         unequal += usize::from(!differences.is_empty() || is_late);
@@ -131,6 +88,9 @@ pub(super) fn compare(arguments: &CompareArguments) -> Result<Exit> {
                 "{name}: {}\n  model:    {}\n  firmware: {}\n  see {}\n",
                 first.what, first.model, first.firmware, first.page
             ))?;
+        }
+        if let Some(near) = near.any() {
+            output::print(&format!("{name}: {near}\n"))?;
         }
         let verdict = if differences.is_empty() { "equal".to_owned() } else { plural(differences.len()) };
         let times = if late > arguments.tolerance { "  (times beyond the tolerance)" } else { "" };
@@ -184,6 +144,11 @@ impl CompareArguments {
             }
             _ => bail!("the words of this command are not its own"),
         }
+    }
+
+    /// By how much printed numbers may differ.
+    fn allowed(&self) -> Option<Tolerance> {
+        (!self.exact).then_some(Tolerance { seconds: self.tolerance, number: self.numbers })
     }
 
     fn started<'a>(&'a self, programs: &'a [OsString]) -> Started<'a> {
@@ -258,102 +223,7 @@ impl Work for Model<'_> {
             (None, End::Limit) => "still running".to_owned(),
             (None, End::AllEnded | End::Interrupted) => "ended".to_owned(),
         };
-        let session = &rig.session;
-        outcome.ticks = session.tick();
-        let memory = session.board().memory();
-        let data = PERSIST.field(Persist::USER_DATA).address();
-        outcome.user_data = (0..200).map(|index| memory.peek(data.offset(4 * index))).collect();
-        outcome.axes = AxisId::all()
-            .map(|axis| {
-                let base = CHAN.address().offset(Chan::STRUCTURE.size * axis.index() as u32);
-                (
-                    memory.peek(base.offset(Chan::DEST.offset())),
-                    memory.peek(base.offset(Chan::POSITION.offset())),
-                )
-            })
-            .collect();
-        outcome.pins = (0..PINS).filter_map(Bit::new).map(|bit| session.bit(bit)).collect();
+        outcome.look_at_model(&rig);
         Ok(Exit::Success)
-    }
-}
-
-impl Outcome {
-    fn note(&mut self, event: &Event) {
-        let seconds = event.at.get() as f64 / Cycles::PER_SECOND.get() as f64;
-        let (kind, text) = match &event.kind {
-            EventKind::ConsoleLine(text) => (LineKind::Console, String::from_utf8_lossy(text)),
-            EventKind::Reply(text) => (LineKind::Reply, String::from_utf8_lossy(text)),
-            EventKind::Host(text) => (LineKind::Host, text.into()),
-            EventKind::Unmet(text) => (LineKind::Unmet, text.into()),
-            _ => return,
-        };
-        self.lines.push((seconds, kind, text.into_owned()));
-    }
-
-    fn look_at_firmware(&mut self, booted: &Booted) {
-        let board = &booted.board;
-        if let Some(persist) = board.file().address("persist") {
-            let data = persist.offset(Persist::USER_DATA.offset());
-            self.user_data = (0..200).map(|index| board.memory().peek(data.offset(4 * index))).collect();
-        }
-        let kstep = board.file().address("KStepPresent").map(|at| board.memory().peek::<u32>(at));
-        self.has_kstep = kstep.is_some_and(|present| present != 0);
-        self.pins = (0..PINS as usize).map(|pin| board.is_output(pin) && board.is_high(pin)).collect();
-    }
-
-    /// The largest difference between the times of lines, the first ones set to each other.
-    fn latest(&self, other: &Self) -> f64 {
-        let pairs = self.lines.iter().zip(&other.lines);
-        pairs.map(|(one, two)| (one.0 - two.0).abs()).fold(0.0, f64::max)
-    }
-
-    /// What differs, in the order in which it is met.
-    fn differences(&self, firmware: &Self) -> Vec<Difference> {
-        let mut found = Vec::new();
-        let mut differ = |what: String, model: String, firmware: String, page| {
-            found.push(Difference { what, model, firmware, page });
-        };
-        let longest = self.lines.len().max(firmware.lines.len());
-        let line = |lines: &[(f64, LineKind, String)], index: usize| {
-            let shown = |(at, _, text): &(f64, LineKind, String)| format!("{at:.6} s  {text}");
-            lines.get(index).map_or("(no more lines)".to_owned(), shown)
-        };
-        for index in 0..longest {
-            let (one, two) = (self.lines.get(index), firmware.lines.get(index));
-            if one.map(|one| (one.1, &one.2)) != two.map(|two| (two.1, &two.2)) {
-                let (model, firmware) = (line(&self.lines, index), line(&firmware.lines, index));
-                differ(
-                    format!("line {}", index + 1),
-                    model,
-                    firmware,
-                    "gather-persist-console.md, threads-and-time.md",
-                );
-            }
-        }
-        if self.end != firmware.end {
-            differ("how it ended".to_owned(), self.end.clone(), firmware.end.clone(), "threads-and-time.md");
-        }
-        for (index, (one, two)) in self.user_data.iter().zip(&firmware.user_data).enumerate() {
-            if one != two {
-                let hex = |word: &u32| format!("0x{word:08X}");
-                differ(format!("persist.UserData[{index}]"), hex(one), hex(two), "gather-persist-console.md");
-            }
-        }
-        for (axis, (one, two)) in self.axes.iter().zip(&firmware.axes).enumerate() {
-            let last = firmware.last_axes.get(axis).map_or(two.0, |last| last.0);
-            let reach = POSITION + firmware.reach.get(axis).copied().unwrap_or(0.0);
-            if (one.0 - two.0).abs() > reach && (one.0 - last).abs() > POSITION {
-                let shown = |axis: &(f64, f64)| format!("Dest {:.6}", axis.0);
-                differ(format!("axis {axis}"), shown(one), shown(two), "axes-and-motion.md");
-            }
-        }
-        for (pin, (one, two)) in self.pins.iter().zip(&firmware.pins).enumerate() {
-            let is_pulsed = STEP_PINS.iter().any(|pins| pins.contains(&pin))
-                || firmware.has_kstep && KSTEP_PINS.contains(&pin);
-            if one != two && !is_pulsed {
-                differ(format!("bit {pin}"), u8::from(*one).to_string(), u8::from(*two).to_string(), "io.md");
-            }
-        }
-        found
     }
 }

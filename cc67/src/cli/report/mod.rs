@@ -1,6 +1,7 @@
 //! What commands show: the screen of a run, diagnostics, traces, plots, profiles.
 
 pub(crate) mod diagnostics;
+pub(crate) mod numbers;
 pub(crate) mod plot;
 pub(crate) mod profile;
 mod repeats;

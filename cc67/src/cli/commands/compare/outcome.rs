@@ -1,0 +1,287 @@
+//! What a run comes to on either board, and what of it differs.
+
+use std::fmt;
+
+use kmotiondef::structs::{Chan, Persist};
+use kmotiondef::variables::{CHAN, PERSIST};
+use kmotiondef::{AxisId, Bit, Cycles, Ticks};
+use runtime::{Event, EventKind};
+use vm::engine::Engine;
+
+use crate::cli::report::numbers::{Deviation, Tolerance, deviation};
+use crate::cli::session::Rig;
+use crate::cli::session::booted::Booted;
+
+/// Pins of the board.
+const PINS: i32 = 48;
+/// Pins of step generators: the level of a pulse is not modelled at register level.
+const STEP_PINS: [std::ops::Range<usize>; 2] = [8..16, 36..44];
+/// Pins that the firmware turns while there is a KStep: they select its inputs.
+const KSTEP_PINS: std::ops::Range<usize> = 2..4;
+/// Digits of positions that are compared: a thousandth.
+const POSITION: f64 = 1e-3;
+
+/// What a line is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum LineKind {
+    Console,
+    Reply,
+    /// What the PC does.
+    Host,
+    /// An expectation of the stimulus that is not met.
+    Unmet,
+}
+
+/// What a run came to, on either board.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Outcome {
+    /// Board time in seconds, what it is, text.
+    pub(super) lines: Vec<(f64, LineKind, String)>,
+    /// How it ended.
+    pub(super) end: String,
+    /// When it ended.
+    pub(super) ticks: Ticks,
+    /// What the serial port has sent, if somebody listens.
+    serial: Vec<u8>,
+    user_data: Vec<u32>,
+    /// Commanded and measured position of each axis.
+    pub(super) axes: Vec<(f64, f64)>,
+    /// How far each axis is commanded within the tolerance of time, where it is still moving.
+    pub(super) reach: Vec<f64>,
+    /// Where the axes are at its very end: what came to rest a little later.
+    pub(super) last_axes: Vec<(f64, f64)>,
+    /// Pins that are high.
+    pins: Vec<bool>,
+    /// Whether a KStep is there.
+    has_kstep: bool,
+}
+
+/// A difference: what, on the model, on the firmware, and the page that says how it is meant.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Difference {
+    pub(super) what: String,
+    pub(super) model: String,
+    pub(super) firmware: String,
+    pub(super) page: &'static str,
+}
+
+impl Outcome {
+    /// Takes up a line of an event.
+    pub(super) fn note(&mut self, event: &Event) {
+        if let EventKind::UartSent(byte) = event.kind {
+            self.serial.push(byte);
+        }
+        let seconds = event.at.get() as f64 / Cycles::PER_SECOND.get() as f64;
+        let (kind, text) = match &event.kind {
+            EventKind::ConsoleLine(text) => (LineKind::Console, String::from_utf8_lossy(text)),
+            EventKind::Reply(text) => (LineKind::Reply, String::from_utf8_lossy(text)),
+            EventKind::Host(text) => (LineKind::Host, text.into()),
+            EventKind::Unmet(text) => (LineKind::Unmet, text.into()),
+            _ => return,
+        };
+        self.lines.push((seconds, kind, text.into_owned()));
+    }
+
+    /// What the modelled board is left with.
+    pub(super) fn look_at_model<E: Engine>(&mut self, rig: &Rig<E>) {
+        let session = &rig.session;
+        self.ticks = session.tick();
+        let memory = session.board().memory();
+        let data = PERSIST.field(Persist::USER_DATA).address();
+        self.user_data = (0..200).map(|index| memory.peek(data.offset(4 * index))).collect();
+        self.axes = AxisId::all()
+            .map(|axis| {
+                let base = CHAN.address().offset(Chan::STRUCTURE.size * axis.index() as u32);
+                (
+                    memory.peek(base.offset(Chan::DEST.offset())),
+                    memory.peek(base.offset(Chan::POSITION.offset())),
+                )
+            })
+            .collect();
+        self.pins = (0..PINS).filter_map(Bit::new).map(|bit| session.bit(bit)).collect();
+    }
+
+    /// What the board with the firmware file is left with.
+    pub(super) fn look_at_firmware(&mut self, booted: &Booted) {
+        let board = &booted.board;
+        if let Some(persist) = board.file().address("persist") {
+            let data = persist.offset(Persist::USER_DATA.offset());
+            self.user_data = (0..200).map(|index| board.memory().peek(data.offset(4 * index))).collect();
+        }
+        let kstep = board.file().address("KStepPresent").map(|at| board.memory().peek::<u32>(at));
+        self.has_kstep = kstep.is_some_and(|present| present != 0);
+        self.pins = (0..PINS as usize).map(|pin| board.is_output(pin) && board.is_high(pin)).collect();
+    }
+
+    /// The largest difference between the times of lines, the first ones set to each other.
+    pub(super) fn latest(&self, other: &Self) -> f64 {
+        let pairs = self.lines.iter().zip(&other.lines);
+        pairs.map(|(one, two)| (one.0 - two.0).abs()).fold(0.0, f64::max)
+    }
+
+    /// What differs, in the order in which it is met, and what is near enough.
+    pub(super) fn differences(&self, firmware: &Self, allowed: Option<Tolerance>) -> (Vec<Difference>, Near) {
+        let mut near = Near::default();
+        let mut found = self.lines_that_differ(firmware, allowed, &mut near);
+        if self.end != firmware.end {
+            let page = "threads-and-time.md";
+            found.push(Difference::new("how it ended", &self.end, &firmware.end, page));
+        }
+        if self.serial != firmware.serial {
+            let shown = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+            let (one, two) = (shown(&self.serial), shown(&firmware.serial));
+            found.push(Difference::new("serial port", one, two, "devices.md"));
+        }
+        for (index, (one, two)) in self.user_data.iter().zip(&firmware.user_data).enumerate() {
+            if one != two {
+                let hex = |word: &u32| format!("0x{word:08X}");
+                let what = format!("persist.UserData[{index}]");
+                found.push(Difference::new(what, hex(one), hex(two), "gather-persist-console.md"));
+            }
+        }
+        found.extend(self.axes_that_differ(firmware));
+        found.extend(self.pins_that_differ(firmware));
+        (found, near)
+    }
+
+    fn lines_that_differ(
+        &self,
+        firmware: &Self,
+        allowed: Option<Tolerance>,
+        near: &mut Near,
+    ) -> Vec<Difference> {
+        let mut found = Vec::new();
+        for index in 0..self.lines.len().max(firmware.lines.len()) {
+            let (one, two) = (self.lines.get(index), firmware.lines.get(index));
+            if one.map(|one| (one.1, &one.2)) == two.map(|two| (two.1, &two.2)) {
+                continue;
+            }
+            if let (Some(one), Some(two), Some(allowed)) = (one, two, allowed)
+                && one.1 == two.1
+                && let Some(deviation) = deviation(&one.2, &two.2, allowed)
+            {
+                near.note(index + 1, deviation);
+                continue;
+            }
+            let shown = |line: Option<&(f64, LineKind, String)>| match line {
+                Some((at, _, text)) => format!("{at:.6} s  {text}"),
+                None => "(no more lines)".to_owned(),
+            };
+            let page = "gather-persist-console.md, threads-and-time.md";
+            found.push(Difference::new(format!("line {}", index + 1), shown(one), shown(two), page));
+        }
+        found
+    }
+
+    fn axes_that_differ(&self, firmware: &Self) -> Vec<Difference> {
+        let mut found = Vec::new();
+        for (axis, (one, two)) in self.axes.iter().zip(&firmware.axes).enumerate() {
+            let last = firmware.last_axes.get(axis).map_or(two.0, |last| last.0);
+            let reach = POSITION + firmware.reach.get(axis).copied().unwrap_or(0.0);
+            if (one.0 - two.0).abs() > reach && (one.0 - last).abs() > POSITION {
+                let shown = |axis: &(f64, f64)| format!("Dest {:.6}", axis.0);
+                let what = format!("axis {axis}");
+                found.push(Difference::new(what, shown(one), shown(two), "axes-and-motion.md"));
+            }
+        }
+        found
+    }
+
+    fn pins_that_differ(&self, firmware: &Self) -> Vec<Difference> {
+        let mut found = Vec::new();
+        for (pin, (one, two)) in self.pins.iter().zip(&firmware.pins).enumerate() {
+            let is_pulsed = STEP_PINS.iter().any(|pins| pins.contains(&pin))
+                || firmware.has_kstep && KSTEP_PINS.contains(&pin);
+            if one != two && !is_pulsed {
+                let shown = |level: &bool| u8::from(*level).to_string();
+                found.push(Difference::new(format!("bit {pin}"), shown(one), shown(two), "io.md"));
+            }
+        }
+        found
+    }
+}
+
+impl Difference {
+    fn new(
+        what: impl Into<String>,
+        model: impl Into<String>,
+        firmware: impl Into<String>,
+        page: &'static str,
+    ) -> Self {
+        Self { what: what.into(), model: model.into(), firmware: firmware.into(), page }
+    }
+}
+
+/// Lines whose numbers differ within the tolerance.
+#[derive(Debug, Default)]
+pub(super) struct Near {
+    count: usize,
+    /// The first one.
+    first: usize,
+    /// The most of all.
+    most: Deviation,
+}
+
+impl Near {
+    /// Itself, if there are any.
+    pub(super) fn any(&self) -> Option<&Self> {
+        (self.count > 0).then_some(self)
+    }
+
+    fn note(&mut self, line: usize, deviation: Deviation) {
+        if self.count == 0 {
+            self.first = line;
+        }
+        // A number that is spelled differently is the same number.
+        if !deviation.is_none() {
+            self.count += 1;
+            self.most = self.most.max(deviation);
+        }
+    }
+}
+
+impl fmt::Display for Near {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.count {
+            1 => write!(f, "line {}: its numbers differ by {}", self.first, self.most),
+            count => write!(
+                f,
+                "line {} and {} more: their numbers differ by {} at most",
+                self.first,
+                count - 1,
+                self.most
+            ),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ALLOWED: Tolerance = Tolerance { seconds: 0.001, number: 0.001 };
+
+    fn of_lines(lines: &[&str]) -> Outcome {
+        let lines = lines.iter().map(|line| (0.0, LineKind::Console, (*line).to_owned()));
+        Outcome { lines: lines.collect(), ..Outcome::default() }
+    }
+
+    #[test]
+    fn lines_whose_times_are_near_are_told_but_do_not_differ() {
+        let model = of_lines(&["wound 4 layers", "took 3.200123 s", "in 3.2003 s"]);
+        let firmware = of_lines(&["wound 4 layers", "took 3.200126 s", "in 3.2004 s"]);
+        let (found, near) = model.differences(&firmware, Some(ALLOWED));
+        assert_eq!(found, []);
+        assert_eq!(near.to_string(), "line 2 and 1 more: their numbers differ by 100 µs at most");
+        assert_eq!(model.differences(&firmware, None).0.len(), 2);
+        assert!(model.differences(&model, None).1.any().is_none());
+    }
+
+    #[test]
+    fn other_lines_and_missing_ones_differ() {
+        let (found, near) = of_lines(&["4 layers", "end"]).differences(&of_lines(&["5 layers"]), Some(ALLOWED));
+        let what: Vec<_> = found.iter().map(|difference| difference.what.as_str()).collect();
+        assert_eq!((what, near.any().is_none()), (vec!["line 1", "line 2"], true));
+        assert_eq!(found[1].firmware, "(no more lines)");
+    }
+}
