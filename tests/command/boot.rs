@@ -200,3 +200,18 @@ fn times_that_programs_print_may_differ_within_the_tolerance() {
     assert_eq!(exact.code, 5, "{exact:?}");
 }
 
+#[test]
+fn tests_of_a_project_run_on_the_real_firmware() {
+    let Some(file) = firmware() else { return };
+    let scratch = scratch("boot-test");
+    scratch.write("move.c", MOVE);
+    scratch.write("assist.c", format!("// cc67: run --assist\n{HELLO}"));
+    for (name, text) in [("hello", "hello\n"), ("assist", "hello\n"), ("move", "other\n")] {
+        scratch.write(&format!("{name}.expected"), text);
+    }
+    let test = cc67(&scratch, ["test", "--boot", &file, "."]);
+    assert_eq!(test.code, 1, "{test:?}");
+    let skipped = "skipped  assist: `--assist` does not work with `--boot`\n";
+    assert!(test.stdout.starts_with(skipped), "{}", test.stdout);
+    assert!(test.stdout.ends_with("1 passed, 1 failed, 1 skipped\n"), "{}", test.stdout);
+}

@@ -1,6 +1,7 @@
 //! Runs the tests, several at a time.
 
-use std::path::Path;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -11,6 +12,7 @@ use anyhow::{Context, Result};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::case::Case;
+use super::firmware;
 use super::golden::{self, Shown};
 use super::this_command;
 use crate::cli::args::engine::EngineName;
@@ -29,23 +31,63 @@ pub(super) enum Verdict {
     Refused(Shown),
     /// There is no expected text.
     Unknown,
+    /// It needs what the firmware file does not have: what that is.
+    Skipped(String),
     /// The engines agree on something else.
     Differs(Shown),
     /// An engine did not show what the first one did.
-    Disagrees(Shown, EngineName, Shown),
+    Disagrees(Shown, Executor, Shown),
 }
 
 impl Verdict {
-    /// Whether the test is as it should be.
+    /// Whether the test has failed.
+    pub(super) fn is_bad(&self) -> bool {
+        !self.is_good() && !matches!(self, Self::Skipped(_))
+    }
+
+    /// Whether the test was run and is as it should be.
     pub(super) fn is_good(&self) -> bool {
         matches!(self, Self::Passed | Self::Blessed)
+    }
+}
+
+/// What executes a test.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Executor {
+    /// An engine, with the modelled firmware.
+    Engine(EngineName),
+    /// The user's own firmware file.
+    Boot(PathBuf),
+}
+
+impl Executor {
+    /// A firmware file; tests run in folders of their own.
+    pub(super) fn firmware(path: &Path) -> Result<Self> {
+        let whole = path.canonicalize().with_context(|| format!("cannot read {}", path.display()))?;
+        Ok(Self::Boot(whole))
+    }
+
+    /// Options of `cc67 run` that ask for it.
+    fn options(&self) -> [OsString; 2] {
+        match self {
+            Self::Engine(engine) => ["--engine".into(), engine.name().into()],
+            Self::Boot(path) => ["--boot".into(), path.into()],
+        }
+    }
+
+    /// What reports call it.
+    pub(super) fn name(&self) -> &'static str {
+        match self {
+            Self::Engine(engine) => engine.name(),
+            Self::Boot(_) => "firmware",
+        }
     }
 }
 
 /// Runs all cases on all engines, `jobs` runs at a time; the verdicts have the order of the cases.
 pub(super) fn all(
     cases: &[Case],
-    engines: &[EngineName],
+    executors: &[Executor],
     options: &[String],
     bless: bool,
     jobs: usize,
@@ -53,15 +95,15 @@ pub(super) fn all(
     let command = this_command()?;
     let runs: Vec<_> = cases
         .iter()
-        .flat_map(|case| engines.iter().map(move |engine| (case, *engine)))
+        .flat_map(|case| executors.iter().map(move |executor| (case, executor)))
         .zip(0..)
-        .map(|((case, engine), scratch)| Run { command: &command, case, engine, options, scratch })
+        .map(|((case, executor), scratch)| Run { command: &command, case, executor, options, scratch })
         .collect();
     let shown = execute(&runs, jobs)?;
-    let took = shown.chunks(engines.len().max(1)).map(|runs| runs.iter().map(|shown| shown.took).sum());
+    let took = shown.chunks(executors.len().max(1)).map(|runs| runs.iter().map(|shown| shown.took).sum());
     let took = took.collect();
     let mut shown = shown.into_iter();
-    let of_case = |case: &Case| verdict(case, engines.iter().copied().zip(shown.by_ref()), bless);
+    let of_case = |case: &Case| verdict(case, executors.iter().zip(shown.by_ref()), bless);
     Ok((cases.iter().map(of_case).collect::<Result<_>>()?, took))
 }
 
@@ -93,14 +135,17 @@ fn execute(runs: &[Run<'_>], jobs: usize) -> Result<Vec<Shown>> {
 }
 
 /// What the runs of a case say, the first engine first.
-fn verdict(case: &Case, runs: impl Iterator<Item = (EngineName, Shown)>, bless: bool) -> Result<Verdict> {
+fn verdict<'a>(case: &Case, runs: impl Iterator<Item = (&'a Executor, Shown)>, bless: bool) -> Result<Verdict> {
     let mut first: Option<Shown> = None;
     let mut verdict = None;
-    for (engine, shown) in runs {
+    for (executor, shown) in runs {
+        if let Executor::Boot(_) = executor {
+            return Ok(firmware::verdict(case, shown));
+        }
         match &first {
             None => first = Some(shown),
             Some(first) if first.golden != shown.golden => {
-                verdict.get_or_insert(Verdict::Disagrees(first.clone(), engine, shown));
+                verdict.get_or_insert(Verdict::Disagrees(first.clone(), executor.clone(), shown));
             }
             Some(_) => {}
         }
@@ -133,11 +178,11 @@ fn claim(next: &AtomicUsize, count: usize) -> Option<usize> {
     (index < count).then_some(index)
 }
 
-/// One test about to be run on one engine.
+/// One test about to be run on one engine, or on the firmware file.
 struct Run<'a> {
     command: &'a Path,
     case: &'a Case,
-    engine: EngineName,
+    executor: &'a Executor,
     options: &'a [String],
     /// A number of its own, for the name of its temporary folder.
     scratch: usize,
@@ -149,7 +194,7 @@ impl Run<'_> {
         let files = env::temp_dir().join(format!("cc67-test-{}-{}", process::id(), self.scratch));
         let name = self.case.source.file_name().unwrap_or_default();
         let mut command = Command::new(self.command);
-        command.arg("run").arg("--no-sidecar").arg("--engine").arg(self.engine.name());
+        command.arg("run").arg("--no-sidecar").args(self.executor.options());
         if !self.case.options.iter().any(|option| option.starts_with("--files")) {
             command.arg("--files").arg(&files);
         }
@@ -184,7 +229,8 @@ mod tests {
             also: Vec::new(),
         };
         let shown = shown.map(|text| golden::shown(text.as_bytes(), b"", Some(0)));
-        let runs = [EngineName::Bytecode, EngineName::Native].into_iter().zip(shown);
+        let engines = [EngineName::Bytecode, EngineName::Native].map(Executor::Engine);
+        let runs = engines.iter().zip(shown);
         let verdict = verdict(&case, runs, false).map(|verdict| format!("{verdict:?}"));
         let verdict = verdict.expect("nothing is written");
         assert!(verdict.starts_with(expect), "{verdict}");

@@ -18,13 +18,25 @@ pub(super) struct Shown {
 impl Shown {
     /// What the golden holds beside a console: remarks of the board, traps, what is not as expected.
     pub(super) fn notes(&self) -> &str {
-        let begin = |mark: &str| match self.golden.starts_with(mark) {
-            true => Some(0),
-            false => self.golden.find(&format!("\n{mark}")).map(|at| at + 1),
-        };
         let marks = ["---- notes\n", "---- exit ", "---- killed\n"];
-        let first = marks.iter().filter_map(|mark| begin(mark)).min();
+        let first = marks.iter().filter_map(|mark| find(&self.golden, mark)).min();
         first.and_then(|at| self.golden.get(at..)).unwrap_or_default()
+    }
+}
+
+/// A golden text without messages: the console, and how the run ended.
+pub(super) fn without_notes(golden: &str) -> String {
+    let Some(at) = find(golden, "---- notes\n") else { return golden.to_owned() };
+    let (console, rest) = golden.split_at(at);
+    let end = ["---- exit ", "---- killed\n"].iter().filter_map(|mark| find(rest, mark)).max();
+    console.to_owned() + end.and_then(|at| rest.get(at..)).unwrap_or_default()
+}
+
+/// Where the line that begins with a mark is.
+fn find(text: &str, mark: &str) -> Option<usize> {
+    match text.starts_with(mark) {
+        true => Some(0),
+        false => text.find(&format!("\n{mark}")).map(|at| at + 1),
     }
 }
 

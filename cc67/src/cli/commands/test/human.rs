@@ -13,7 +13,7 @@ const CONTEXT: usize = 3;
 /// All results.
 pub(super) fn report(cases: &[Case], verdicts: &[Verdict], color: Color) -> String {
     let mut text = String::new();
-    let (mut passed, mut blessed, mut failed) = (0, 0, 0);
+    let (mut passed, mut blessed, mut failed, mut skipped) = (0, 0, 0, 0);
     for (case, verdict) in cases.iter().zip(verdicts) {
         let paint = Paint { color };
         match verdict {
@@ -21,6 +21,10 @@ pub(super) fn report(cases: &[Case], verdicts: &[Verdict], color: Color) -> Stri
             Verdict::Blessed => {
                 blessed += 1;
                 text.push_str(&format!("written  {}\n", case.golden().display()));
+            }
+            Verdict::Skipped(why) => {
+                skipped += 1;
+                text.push_str(&format!("skipped  {}: {why}\n", case.name()));
             }
             bad => {
                 failed += 1;
@@ -32,6 +36,9 @@ pub(super) fn report(cases: &[Case], verdicts: &[Verdict], color: Color) -> Stri
     if blessed > 0 {
         text.push_str(&format!(", {blessed} written"));
     }
+    if skipped > 0 {
+        text.push_str(&format!(", {skipped} skipped"));
+    }
     text.push('\n');
     text
 }
@@ -40,7 +47,7 @@ fn failure(case: &Case, verdict: &Verdict, paint: &Paint) -> String {
     let name = case.name();
     let failed = paint.red("FAILED");
     match verdict {
-        Verdict::Passed | Verdict::Blessed => String::new(),
+        Verdict::Passed | Verdict::Blessed | Verdict::Skipped(_) => String::new(),
         Verdict::Refused(shown) => {
             let why = match shown.code {
                 Some(1) => "it does not compile",
@@ -69,10 +76,10 @@ fn failure(case: &Case, verdict: &Verdict, paint: &Paint) -> String {
             let head = format!("{failed}   {name}: - expected, + shown now\n");
             head + &messages(shown) + &diff(expected, &shown.golden, paint)
         }
-        Verdict::Disagrees(first, engine, second) => {
+        Verdict::Disagrees(first, executor, second) => {
             let head = format!(
                 "{failed}   {name}: the engines disagree, which is a defect of cc67; - the first, + {}\n",
-                engine.name()
+                executor.name()
             );
             head + &messages(second) + &diff(&first.golden, &second.golden, paint)
         }

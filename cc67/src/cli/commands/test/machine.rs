@@ -14,7 +14,14 @@ use super::human;
 struct Report<'a> {
     passed: usize,
     failed: usize,
+    #[serde(skip_serializing_if = "is_zero")]
+    skipped: usize,
     tests: Vec<Test<'a>>,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks so")]
+const fn is_zero(count: &usize) -> bool {
+    *count == 0
 }
 
 /// One test of the report.
@@ -39,6 +46,7 @@ fn test<'a>(case: &'a Case, verdict: &'a Verdict) -> Test<'a> {
     match verdict {
         Verdict::Passed => plain("passed"),
         Verdict::Blessed => plain("written"),
+        Verdict::Skipped(why) => Test { messages: why, ..plain("skipped") },
         Verdict::Refused(shown) | Verdict::Asked(shown) => {
             Test { shown: Some(&shown.golden), messages: &shown.messages, ..plain("not written") }
         }
@@ -49,8 +57,8 @@ fn test<'a>(case: &'a Case, verdict: &'a Verdict) -> Test<'a> {
             messages: &shown.messages,
             ..plain("differs")
         },
-        Verdict::Disagrees(first, engine, second) => Test {
-            engine: Some(engine.name()),
+        Verdict::Disagrees(first, executor, second) => Test {
+            engine: Some(executor.name()),
             expected: Some(&first.golden),
             shown: Some(&second.golden),
             messages: &second.messages,
@@ -61,9 +69,11 @@ fn test<'a>(case: &'a Case, verdict: &'a Verdict) -> Test<'a> {
 
 /// One JSON object: `passed`, `failed` and `tests`.
 pub(super) fn json(cases: &[Case], verdicts: &[Verdict]) -> String {
-    let passed = verdicts.iter().filter(|verdict| verdict.is_good()).count();
+    let count = |is: fn(&Verdict) -> bool| verdicts.iter().filter(|verdict| is(verdict)).count();
+    let (passed, failed) = (count(Verdict::is_good), count(Verdict::is_bad));
+    let skipped = verdicts.len() - passed - failed;
     let tests = cases.iter().zip(verdicts).map(|(case, verdict)| test(case, verdict)).collect();
-    let report = Report { passed, failed: verdicts.len() - passed, tests };
+    let report = Report { passed, failed, skipped, tests };
     let mut text = serde_json::to_string_pretty(&report).unwrap_or_default();
     text.push('\n');
     text
@@ -73,7 +83,7 @@ pub(super) fn json(cases: &[Case], verdicts: &[Verdict]) -> String {
 ///
 /// The class of a test is its folder; its time that of its runs on the clock.
 pub(super) fn junit(cases: &[Case], verdicts: &[Verdict], took: &[Duration]) -> String {
-    let failed = verdicts.iter().filter(|verdict| !verdict.is_good()).count();
+    let failed = verdicts.iter().filter(|verdict| verdict.is_bad()).count();
     let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
     let total: Duration = took.iter().sum();
     text.push_str(&format!(
@@ -93,6 +103,11 @@ pub(super) fn junit(cases: &[Case], verdicts: &[Verdict], took: &[Duration]) -> 
         );
         if verdict.is_good() {
             text.push_str(&format!("{head}/>\n"));
+            continue;
+        }
+        if let Verdict::Skipped(why) = verdict {
+            let why = escape(why);
+            text.push_str(&format!("{head}>\n    <skipped message=\"{why}\"/>\n  </testcase>\n"));
             continue;
         }
         let (expected, shown) = (test.expected.unwrap_or_default(), test.shown.unwrap_or_default());
