@@ -75,6 +75,23 @@ fn a_program_prints_on_the_real_firmware_and_as_on_the_model() {
     assert!(compare.stdout.contains("equal"), "{compare:?}");
 }
 
+/// A thousand where `CC67_LONG` is set.
+#[test]
+fn random_motions_end_where_they_end_on_the_real_firmware() {
+    let Some(file) = firmware() else { return };
+    let count = if harness::is_long() { 1000 } else { 4 };
+    let scratch = Scratch::new("boot-motions");
+    let names: Vec<String> = (0..count).map(|seed| format!("m{seed:04}.c")).collect();
+    for (seed, name) in (0..).zip(&names) {
+        scratch.write(name, harness::motions::program(seed));
+    }
+    for some in names.chunks(50) {
+        let fixed = ["compare", "--for", "60", "--boot", file.as_str()];
+        let output = cc67(&scratch, fixed.into_iter().chain(some.iter().map(String::as_str)));
+        assert_eq!(output.code, 0, "{}", output.stdout);
+    }
+}
+
 #[test]
 fn script_commands_are_answered_by_the_real_firmware() {
     let Some(file) = firmware() else { return };

@@ -5,6 +5,7 @@ pub mod csv;
 pub mod filetest;
 pub mod generate;
 mod measure;
+pub mod motions;
 pub mod oracles;
 pub mod stages;
 pub mod usage;
