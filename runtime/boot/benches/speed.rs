@@ -3,7 +3,8 @@
 //! `kernel/integer`, `kernel/memory` and `kernel/double` are the loops of `c67x.md` 7 by hand, those of `cc67` what the
 //! compiler makes; `translated` are the same as code of the host. Goals: 150 million cycles a second interpreted, 600
 //! translated. Where `CC67_FIRMWARE`
-//! names a firmware file, `boot` is its start (goal: 0.3 s) and `idle` a board second after it (goal: 1 s).
+//! names a firmware file, `boot` is its start (goal: 0.3 s), `idle` a board second after it, `eight axes` one in which all
+//! move, and `seven threads` one in which seven threads wait besides (goal: 1 s each).
 //!
 //! ```sh
 //! CC67_FIRMWARE=DSPKFLOP.out cargo bench -p cc67-boot --features native
@@ -14,7 +15,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use boot::{BootedBoard, FirmwareFile};
-use kmotiondef::GuestAddr;
+use kmotiondef::{GuestAddr, ThreadId};
 use vm::dsp::{Clock, Core, Halt, Memory};
 use vm::memory::GuestMemory;
 use vm::trap::{Access, TrapKind};
@@ -133,6 +134,27 @@ fn kernel(name: &str, words: &str, arguments: &[(c67x::Reg, u32)]) {
     show(name, began, core.state.cycle(), core.packets());
 }
 
+/// Starts seven threads that wait for their next slice again and again.
+fn start_waiting(board: &mut BootedBoard) {
+    let wait = board.file().address("WaitNextTimeSlice").expect("it has the function").get();
+    for thread in ThreadId::all() {
+        let start = CODE + 0x1_0000 * (u32::from(thread.get()) - 1);
+        let constant = |value: u32, reg: &str| {
+            format!("MVK .S2 {},{reg}\nMVKH .S2 0x{value:08X},{reg}\n", i32::from(value as u16 as i16))
+        };
+        // Eight words to the return address: two constants, the branch and its delay.
+        let text = constant(wait, "B5") + &constant(start + 32, "B3") + "B .S2 B5\nNOP 5\nNOP 1\nNOP 1\n";
+        let text = text + &format!("B .S1 0x{start:08X}\nNOP 5\n");
+        for (at, line) in (start..).step_by(4).zip(text.lines()) {
+            let inst = c67x::assemble(line, at).expect("an instruction").inst;
+            board.memory_mut().poke(GuestAddr::new(at), inst.encode(false));
+        }
+        board.send_line(format!("EntryPoint{thread} {start:X}").as_bytes());
+        board.execute(thread);
+    }
+    board.run_to(board.cycle() + 20_000_000).expect("it runs");
+}
+
 fn main() {
     let (a, b) = (c67x::Reg::a, c67x::Reg::b);
     let (first, second) = (0x8006_0000, 0x8007_0000);
@@ -162,4 +184,10 @@ fn main() {
     board.run_to(cycles + 200_000_000).expect("it runs");
     show("eight axes", began, board.cycle() - cycles, board.packets() - packets);
     println!("steps of generator 3: {:.3}", board.steps(3).0);
+    start_waiting(&mut board);
+    let (began, cycles, packets) = (cpu(), board.cycle(), board.packets());
+    board.run_to(cycles + 200_000_000).expect("it runs");
+    show("eight axes, seven threads", began, board.cycle() - cycles, board.packets() - packets);
+    let active = ThreadId::all().filter(|thread| board.is_active(*thread) == Some(true)).count();
+    println!("threads that wait: {active}");
 }
