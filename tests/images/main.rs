@@ -5,5 +5,6 @@ mod formats;
 mod inspect;
 mod loader;
 mod loading;
+mod own_firmware;
 #[cfg(feature = "native")]
 mod stand_alone;

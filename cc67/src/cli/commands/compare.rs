@@ -13,8 +13,8 @@ use anyhow::{Context, Result, bail};
 use boot::Halted;
 use cc67_host::End;
 use clap::{Args, Parser};
-use kmotiondef::limits::TIMEBASE;
 use kmotiondef::Ticks;
+use kmotiondef::limits::TIMEBASE;
 use runtime::{Event, EventKind};
 use vm::engine::Engine;
 

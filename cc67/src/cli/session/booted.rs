@@ -178,9 +178,8 @@ impl Booted {
         let described = Described::read(started, board, compiler, Given { options, image: None })?;
         let Some(Described { session, uart, .. }) = described else { return Ok(None) };
         let cc67_host::Setup { mut config, options, programs, offered, values, mut stimulus, .. } = session;
-        let request = traced.map(|traced| {
-            trace::request_of_booted(traced, |list| quantities(list, &programs, &options))
-        });
+        let request = traced
+            .map(|traced| trace::request_of_booted(traced, |list| quantities(list, &programs, &options)));
         let request = request.transpose()?.flatten();
         self.store(&values)?;
         programs.iter().try_for_each(|program| self.take(program))?;

@@ -184,7 +184,10 @@ impl Item {
     /// The item that a bit is.
     #[must_use]
     pub fn of_bit(bit: Bit) -> Self {
-        Self { kind: KINDS.iter().position(|kind| kind.name == "bit").unwrap_or_default(), index: bit.index() }
+        Self {
+            kind: KINDS.iter().position(|kind| kind.name == "bit").unwrap_or_default(),
+            index: bit.index(),
+        }
     }
 
     /// Whether there are items of this name with a number after it.

@@ -279,7 +279,8 @@ mod tests {
 
     #[test]
     fn other_lines_and_missing_ones_differ() {
-        let (found, near) = of_lines(&["4 layers", "end"]).differences(&of_lines(&["5 layers"]), Some(ALLOWED));
+        let (found, near) =
+            of_lines(&["4 layers", "end"]).differences(&of_lines(&["5 layers"]), Some(ALLOWED));
         let what: Vec<_> = found.iter().map(|difference| difference.what.as_str()).collect();
         assert_eq!((what, near.any().is_none()), (vec!["line 1", "line 2"], true));
         assert_eq!(found[1].firmware, "(no more lines)");

@@ -34,8 +34,7 @@ pub(super) fn console(arguments: &ConsoleArguments, file: &Path) -> Result<Exit>
     let Some(Begun { request }) = begun else { return Ok(Exit::Failure) };
     let trace = request.as_ref().map(|request| Trace::begin(&arguments.trace, request)).transpose()?;
     booted.connect()?;
-    let shown =
-        Shown { screen: Screen::new(arguments.time, false), seen: Seen::default(), trace, arguments };
+    let shown = Shown { screen: Screen::new(arguments.time, false), seen: Seen::default(), trace, arguments };
     let mut console = Console { arguments, booted, shown, pressed: BTreeMap::new(), has_crashed: false };
     if io::stdin().is_terminal() && io::stdout().is_terminal() {
         console.keyboard()

@@ -135,7 +135,11 @@ fn execute(runs: &[Run<'_>], jobs: usize) -> Result<Vec<Shown>> {
 }
 
 /// What the runs of a case say, the first engine first.
-fn verdict<'a>(case: &Case, runs: impl Iterator<Item = (&'a Executor, Shown)>, bless: bool) -> Result<Verdict> {
+fn verdict<'a>(
+    case: &Case,
+    runs: impl Iterator<Item = (&'a Executor, Shown)>,
+    bless: bool,
+) -> Result<Verdict> {
     let mut first: Option<Shown> = None;
     let mut verdict = None;
     for (executor, shown) in runs {

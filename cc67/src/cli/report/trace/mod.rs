@@ -54,7 +54,9 @@ pub(crate) fn request_of_booted(
     let request = requested(arguments, None, quantities)?;
     for quantity in request.iter().flat_map(|request| &request.quantities) {
         if let Some(item) = quantity.items().iter().find(|item| item.is_only_modelled()) {
-            bail!("`--watch {quantity}`: `{item}` belongs to an option board that is not served with `--boot`");
+            bail!(
+                "`--watch {quantity}`: `{item}` belongs to an option board that is not served with `--boot`"
+            );
         }
     }
     Ok(request)

@@ -1,0 +1,144 @@
+//! A firmware of our own, written in C and compiled for the real processor, on the board that boots firmware files. What
+//! no C says is assembled: the start, the interrupt's vector, and what keeps the registers around the C function.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use boot::{BootedBoard, FirmwareFile, Halted, Sent};
+use coff::{
+    Contents, Image, Name, Program, Section, SectionFlags, SectionNumber, StorageClass, Symbol, SymbolType,
+};
+use compiler::pp::MemoryFiles;
+use compiler::target::Target;
+use compiler::{Options, compile};
+use kmotiondef::ThreadId;
+
+const SOURCE: &str = include_str!("own_firmware.c");
+/// Where the assembled parts are, and the end of the stack.
+const START: u32 = 0x8000_0000;
+const HANDLER: u32 = 0x8000_1000;
+const VECTOR: u32 = 0x1000_0080;
+const STACK: u32 = 0x8007_FFF0;
+/// Bytes that the registers take, a multiple of 8.
+const KEPT: u32 = 64 * 4 + 8;
+/// Cycles of a tick.
+const TICK: u64 = 18_000;
+
+fn constant(value: u32, reg: &str) -> String {
+    format!("MVK .S2 {},{reg}\nMVKH .S2 0x{value:08X},{reg}\n", i32::from(value as u16 as i16))
+}
+
+/// The words of a text, an instruction a packet.
+fn code(text: &str, base: u32) -> Vec<u8> {
+    let words = text.lines().zip((base..).step_by(4)).map(|(line, at)| {
+        c67x::assemble(line, at).unwrap_or_else(|error| panic!("{line}: {error}")).inst.encode(false)
+    });
+    words.flat_map(u32::to_le_bytes).collect()
+}
+
+/// The stack, the vectors and the interrupts; then C.
+fn start(main: u32) -> String {
+    let control = |value: u32, name: &str| constant(value, "B20") + &format!("MVC .S2 B20,{name}\n");
+    let set = control(0x1000_0000, "ISTP") + &control(0x13, "IER") + &control(0x103, "CSR");
+    constant(STACK, "B15") + &set + &constant(main, "B20") + "B .S2 B20\nNOP 5\n"
+}
+
+/// Keeps all registers, calls C, and goes back.
+fn handler(tick: u32) -> String {
+    let registers = || (0..32).flat_map(|number| [('A', number), ('B', number)]);
+    let each = |op: &str| {
+        let kept = registers().filter(|register| *register != ('B', 15));
+        let lines = kept.map(|(file, number)| {
+            let (path, slot) = if file == 'A' { (1, 2 + number) } else { (2, 34 + number) };
+            match op {
+                "STW" => format!("STW .D2T{path} {file}{number},*+B15[{slot}]\n"),
+                _ => format!("LDW .D2T{path} *+B15[{slot}],{file}{number}\n"),
+            }
+        });
+        lines.collect::<String>()
+    };
+    let keep = format!("ADDK .S2 -{KEPT},B15\n") + &each("STW") + &constant(tick, "B5");
+    let back = HANDLER + 4 * (keep.lines().count() as u32 + 4);
+    let call = constant(back, "B3") + "B .S2 B5\nNOP 5\n";
+    keep + &call + &each("LDW") + &format!("NOP 4\nADDK .S2 {KEPT},B15\nB .S2 IRP\nNOP 5\n")
+}
+
+fn section(name: &str, address: u32, text: &str) -> Section {
+    Section {
+        name: Name::from(name),
+        physical: address,
+        address,
+        flags: SectionFlags::TEXT,
+        page: 0,
+        contents: Contents::Data(code(text, address)),
+        relocations: Vec::new(),
+        lines: Vec::new(),
+    }
+}
+
+/// The C, linked as a program of thread 1.
+fn compiled() -> Image {
+    let options = Options { target: Target::C67x, ..Options::default() };
+    let mut compilation = compile(Path::new("own_firmware.c"), SOURCE.into(), &options, &MemoryFiles::new());
+    let linked = compilation.link(ThreadId::new(1).expect("there is a thread 1"), &options);
+    let linked = linked.unwrap_or_else(|| panic!("{:?}", compilation.diagnostics()));
+    let bytes = compiler::image::write(&linked).expect("the image can be written");
+    Image::read(&bytes).expect("it is one")
+}
+
+fn address(image: &Image, name: &str) -> u32 {
+    let named = |symbol: &&Symbol| symbol.name.to_str().trim_start_matches('_') == name;
+    image.symbols.iter().find(named).unwrap_or_else(|| panic!("there is a {name}")).value
+}
+
+fn firmware() -> Vec<u8> {
+    let mut image = compiled();
+    let (main, tick) = (address(&image, "main"), address(&image, "tick"));
+    let jump = constant(HANDLER, "B31") + "B .S2 B31\nNOP 5\n";
+    image.sections.push(section("start", START, &start(main)));
+    image.sections.push(section("vectors", VECTOR, &jump));
+    image.sections.push(section("handler", HANDLER, &handler(tick)));
+    let places = [("_c_int00", START), ("_main", main), ("_persist", START), ("_chan", START)];
+    image.symbols.retain(|symbol| symbol.name.to_str() != "_main");
+    image.symbols.extend(places.map(|(name, value)| Symbol {
+        name: Name::from(name),
+        value,
+        section: SectionNumber(1),
+        ty: SymbolType::default(),
+        class: StorageClass::EXTERNAL,
+        aux: Vec::new(),
+    }));
+    image.program = Some(Program { entry: START, ..image.program.unwrap_or_default() });
+    image.write().expect("it can be written")
+}
+
+fn booted() -> BootedBoard {
+    let file = FirmwareFile::read(&firmware()).unwrap_or_else(|error| panic!("{error}"));
+    BootedBoard::booted(Arc::new(file)).unwrap_or_else(|Halted::Crashed(crash)| panic!("{crash}"))
+}
+
+#[test]
+fn a_firmware_in_c_answers_its_timer_prints_and_moves_a_generator() {
+    let mut board = booted();
+    board.run_to(board.cycle() + 25 * TICK).unwrap_or_else(|halted| panic!("{halted}"));
+    let lines: Vec<_> = board.take_lines().into_iter().map(|line| (line.kind, line.text)).collect();
+    assert_eq!(lines, ["tick 10", "tick 20"].map(|text| (Sent::Console, text.as_bytes().to_vec())));
+    let (steps, rate) = board.steps(2);
+    assert!((rate - 2_083_333.333).abs() < 0.01, "{rate}");
+    assert!((steps / rate - 20.0 * 90e-6).abs() < 100e-6, "{steps} steps since the fifth tick");
+}
+
+#[test]
+fn a_firmware_in_c_echoes_while_it_is_interrupted() {
+    let mut board = booted();
+    let text: Vec<u8> = (0..200).map(|number| b'a' + number % 26).collect();
+    for part in text.chunks(7) {
+        board.send(part);
+        board.run_to(board.cycle() + TICK / 2).unwrap_or_else(|halted| panic!("{halted}"));
+    }
+    let bytes: Vec<u8> = board.take_bytes().into_iter().map(|(_, byte)| byte).collect();
+    // What the interrupt prints comes at any place in between.
+    let all = String::from_utf8(bytes).expect("it is text");
+    let (one, rest) = all.split_once("\x1btick 10\r\n").expect("a tenth tick");
+    assert_eq!(one.to_owned() + rest, String::from_utf8_lossy(&text));
+}
