@@ -63,11 +63,11 @@ fn replace(
     values: &BTreeMap<ValueId, Option<Constant>>,
 ) {
     let header = function.layout[stretch.first];
-    let span = function.blocks[header].span;
+    let origin = function.blocks[header].origin;
     let known = values.iter().filter_map(|(dst, value)| Some((*dst, (*value)?)));
-    let insts = known.map(|(dst, value)| Inst { kind: InstKind::Copy { dst, src: value.into() }, span });
+    let insts = known.map(|(dst, value)| Inst { kind: InstKind::Copy { dst, src: value.into() }, origin });
     let insts = insts.collect();
-    let block = function.blocks.push(Block { insts, terminator: Terminator::Jump(outside), span });
+    let block = function.blocks.push(Block { insts, terminator: Terminator::Jump(outside), origin });
     for id in function.layout.iter().filter(|id| **id != header) {
         function.blocks[*id].terminator.visit_targets(|target| {
             if *target == header {
