@@ -3,6 +3,7 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{LazyLock, Mutex, PoisonError, TryLockError};
 use std::thread::{self, ThreadId};
+use std::time::{Duration, Instant};
 
 use cc67_host::Until;
 use kmotiondef::Bit;
@@ -24,6 +25,9 @@ static NUMBERS: AtomicU64 = AtomicU64::new(1);
 
 /// What the native engines of all boards have compiled: a sweep makes a thousand boards of one program.
 static COMPILED: LazyLock<SharedCode> = LazyLock::new(SharedCode::default);
+
+/// How long a run goes on without a look at Python's signals.
+const LOOK: Duration = Duration::from_millis(20);
 
 /// A column of a trace.
 type Column<'py> = Bound<'py, PyArray1<f64>>;
@@ -84,7 +88,10 @@ impl Board {
         result.ok_or_else(|| Error::new_err("the thread of the board has ended, which is a defect of cc67"))
     }
 
-    /// A run in portions, with a look at signals after each; whether what it waited for came true.
+    /// A run in portions, with a look at signals every [`LOOK`]; whether what it waited for came true.
+    ///
+    /// The board's thread goes from one portion to the next by itself: changing threads after each would cost more than
+    /// many a portion does. Where it looks changes nothing that a program can see.
     fn run_in_portions(
         &self,
         py: Python<'_>,
@@ -92,7 +99,15 @@ impl Board {
     ) -> PyResult<bool> {
         loop {
             let portion = portion.clone();
-            let Portion { is_over, is_met, fault } = self.call(py, portion)?;
+            let Portion { is_over, is_met, fault } = self.call(py, move |control| {
+                let begin = Instant::now();
+                loop {
+                    let done = portion(control);
+                    if done.is_over || done.fault.is_some() || begin.elapsed() >= LOOK {
+                        return done;
+                    }
+                }
+            })?;
             if let Some(fault) = fault {
                 return Err(exception(fault));
             }

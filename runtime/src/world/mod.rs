@@ -53,7 +53,8 @@ impl World {
     }
 
     fn play_tick(&mut self, stage: &mut Stage<'_>, context: &mut TickContext<'_>, moment: Moment) -> bool {
-        if !stage.io.pins.changes.is_on() && !self.hears_uart {
+        let hears_now = self.hears_uart && stage.io.uart.is_sending();
+        if !stage.io.pins.changes.is_on() && !hears_now {
             return false;
         }
         stage.io.pins.changes.sweep(context.memory, stage.now);

@@ -16,7 +16,7 @@ pub(crate) use log::{Fault, Log, Said};
 
 use crate::trace::{Columns, Recorder};
 
-/// Steps of a board in a portion of a run: some milliseconds, after which Python looks at signals.
+/// Steps of a board in a portion of a run: at most some milliseconds, after which the clock is looked at.
 const STEPS: usize = 4000;
 
 /// Ticks of a portion in which a condition is looked at.
