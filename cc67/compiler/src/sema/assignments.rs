@@ -4,6 +4,7 @@ use super::Sema;
 use super::constants::Constant;
 use super::conversions::AssignmentTarget;
 use super::operands::Operand;
+use super::operators::{Class, classify};
 use super::places::Located;
 use crate::ast::{BinaryOperator, Expression, ExpressionKind};
 use crate::diag::{Diagnostic, Lint};
@@ -233,17 +234,8 @@ impl Sema<'_> {
 
 /// The operator of a compound assignment; `None` for those that cannot be one.
 const fn update_op(operator: BinaryOperator) -> Option<BinaryOp> {
-    Some(match operator {
-        BinaryOperator::Multiply => BinaryOp::Multiply,
-        BinaryOperator::Divide => BinaryOp::Divide,
-        BinaryOperator::Remainder => BinaryOp::Remainder,
-        BinaryOperator::Add => BinaryOp::Add,
-        BinaryOperator::Subtract => BinaryOp::Subtract,
-        BinaryOperator::ShiftLeft => BinaryOp::ShiftLeft,
-        BinaryOperator::ShiftRight => BinaryOp::ShiftRight,
-        BinaryOperator::And => BinaryOp::And,
-        BinaryOperator::Xor => BinaryOp::Xor,
-        BinaryOperator::Or => BinaryOp::Or,
-        _ => return None,
-    })
+    match classify(operator) {
+        Class::Arithmetic(op) | Class::Bitwise(op) | Class::Shift(op) => Some(op),
+        Class::Compare(_) | Class::Logical(_) => None,
+    }
 }

@@ -3,7 +3,7 @@
 use super::Sema;
 use super::constants::Constant;
 use super::operands::Operand;
-use crate::ast::{BinaryOperator, Expression, ExpressionKind};
+use crate::ast::{BinaryOperator, Expression, ExpressionKind, for_each_binary_operator};
 use crate::diag::{Diagnostic, Lint};
 use crate::lints::{assignment_condition, sign_compare};
 use crate::source::Span;
@@ -11,7 +11,7 @@ use crate::ty::{QualifiedType, TypeId, Types, convert};
 use crate::typed::{BinaryOp, CompareOp, ExprId, ExprKind};
 
 /// What a binary operator of C is in the typed tree.
-enum Class {
+pub(super) enum Class {
     /// Arithmetic, and pointer steps with `+` and `-`.
     Arithmetic(BinaryOp),
     /// Integers only.
@@ -24,28 +24,19 @@ enum Class {
     Logical(bool),
 }
 
-const fn classify(operator: BinaryOperator) -> Class {
-    match operator {
-        BinaryOperator::Multiply => Class::Arithmetic(BinaryOp::Multiply),
-        BinaryOperator::Divide => Class::Arithmetic(BinaryOp::Divide),
-        BinaryOperator::Add => Class::Arithmetic(BinaryOp::Add),
-        BinaryOperator::Subtract => Class::Arithmetic(BinaryOp::Subtract),
-        BinaryOperator::Remainder => Class::Bitwise(BinaryOp::Remainder),
-        BinaryOperator::And => Class::Bitwise(BinaryOp::And),
-        BinaryOperator::Xor => Class::Bitwise(BinaryOp::Xor),
-        BinaryOperator::Or => Class::Bitwise(BinaryOp::Or),
-        BinaryOperator::ShiftLeft => Class::Shift(BinaryOp::ShiftLeft),
-        BinaryOperator::ShiftRight => Class::Shift(BinaryOp::ShiftRight),
-        BinaryOperator::Less => Class::Compare(CompareOp::Less),
-        BinaryOperator::Greater => Class::Compare(CompareOp::Greater),
-        BinaryOperator::LessEqual => Class::Compare(CompareOp::LessEqual),
-        BinaryOperator::GreaterEqual => Class::Compare(CompareOp::GreaterEqual),
-        BinaryOperator::Equal => Class::Compare(CompareOp::Equal),
-        BinaryOperator::NotEqual => Class::Compare(CompareOp::NotEqual),
-        BinaryOperator::LogicalAnd => Class::Logical(false),
-        BinaryOperator::LogicalOr => Class::Logical(true),
-    }
+macro_rules! define_classes {
+    ($(
+        $operator:ident $text:literal = $token:ident $binding:literal $(, $assignment:ident)? => $class:ident($of:expr);
+    )*) => {
+        pub(super) const fn classify(operator: BinaryOperator) -> Class {
+            match operator {
+                $(BinaryOperator::$operator => Class::$class($of),)*
+            }
+        }
+    };
 }
+
+for_each_binary_operator!(define_classes);
 
 impl Sema<'_> {
     /// A tree of binary operators. A long sum leans to the left; its spine is walked without recursion.
