@@ -7,6 +7,7 @@ mod arrows;
 mod circles;
 mod imports;
 mod layers;
+mod options;
 mod shapes;
 mod tokens;
 mod wildcards;
