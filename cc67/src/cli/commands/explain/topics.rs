@@ -15,6 +15,7 @@ const PAGES: &[(&str, &str)] = &[
     ("persist", include_str!("../pages/topics/persist.md")),
     ("flash", include_str!("../pages/topics/flash.md")),
     ("analog", include_str!("../pages/topics/analog.md")),
+    ("uart", include_str!("../pages/topics/uart.md")),
     ("pc", include_str!("../pages/topics/pc.md")),
     ("call-back", include_str!("../pages/topics/call-back.md")),
     ("exit", include_str!("../pages/topics/exit.md")),
