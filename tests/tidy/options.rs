@@ -27,8 +27,7 @@ fn uses(tokens: &[Token], name: &str) -> bool {
 
 #[test]
 fn every_option_has_an_effect() {
-    let command: Vec<_> =
-        sources().into_iter().filter(|(file, _)| file.starts_with("cc67/src/")).collect();
+    let command: Vec<_> = sources().into_iter().filter(|(file, _)| file.starts_with("cc67/src/")).collect();
     let options: Vec<_> = command.iter().flat_map(|(file, tokens)| options(file, tokens)).collect();
     assert!(options.len() > 100, "options are not found: {}", options.len());
     let idle: Vec<_> =
