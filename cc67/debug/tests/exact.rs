@@ -42,18 +42,17 @@ struct Extent {
     instants: u64,
     /// Ticks of a run.
     ticks: u64,
+    /// Work between snapshots: so much that they are thinned out, some while one goes back.
+    interval: u64,
 }
 
 fn extent() -> Extent {
     if std::env::var_os("CC67_LONG").is_some() {
-        Extent { programs: PROGRAMS.len(), instants: 200, ticks: 8000 }
+        Extent { programs: PROGRAMS.len(), instants: 200, ticks: 8000, interval: 40_000 }
     } else {
-        Extent { programs: 5, instants: 10, ticks: 900 }
+        Extent { programs: 5, instants: 10, ticks: 900, interval: 500 }
     }
 }
-
-/// Work between snapshots, so that short runs have some, too.
-const INTERVAL: u64 = 40_000;
 
 /// Numbers that look random and are the same in every run.
 struct Numbers(u64);
@@ -77,7 +76,7 @@ struct Instant {
     lines: usize,
 }
 
-fn debugger(machine: &str, files: &[&str]) -> Debugger {
+fn debugger(machine: &str, files: &[&str], interval: u64) -> Debugger {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../c-programs");
     let mut setup = Setup::default();
     if !machine.is_empty() {
@@ -90,7 +89,7 @@ fn debugger(machine: &str, files: &[&str]) -> Debugger {
     }
     let mut debugger = Debugger::new(setup.session().expect("a board"), Ticks::new(1_000_000));
     debugger.catches.no_traps = true;
-    debugger.keep_every(INTERVAL);
+    debugger.keep_every(interval);
     debugger
 }
 
@@ -155,8 +154,8 @@ fn assert_same(expect: &str, found: &str, what: &str) {
 
 /// How many instants within a tick were compared.
 fn compare(machine: &str, files: &[&str], extent: &Extent, numbers: &mut Numbers) -> usize {
-    let (instants, lines) = forwards(&mut debugger(machine, files), extent, numbers);
-    let mut back = debugger(machine, files);
+    let (instants, lines) = forwards(&mut debugger(machine, files, extent.interval), extent, numbers);
+    let mut back = debugger(machine, files, extent.interval);
     back.run_to(Ticks::new(extent.ticks), &mut |_| ());
     let mut compared = 0;
     for instant in instants.iter().rev() {
@@ -186,7 +185,9 @@ fn a_state_reached_backwards_is_the_one_reached_forwards() {
     let extent = extent();
     let mut within = 0;
     for (number, (machine, files)) in PROGRAMS.iter().take(extent.programs).enumerate() {
-        within += compare(machine, files, &extent, &mut Numbers(number as u64 + 1));
+        let compared = compare(machine, files, &extent, &mut Numbers(number as u64 + 1));
+        println!("{files:?}: the same at {} instants, {compared} of them within a tick", extent.instants);
+        within += compared;
     }
     assert!(within > 0, "no instant within a tick was compared");
 }

@@ -289,8 +289,10 @@ impl Debugger {
         timeline.next_input().map_or(limit, |next| next.min(limit))
     }
 
-    fn active(&self) -> Vec<ThreadId> {
-        ThreadId::all().filter(|thread| self.session.thread(*thread).is_active()).collect()
+    /// The threads that are active, a bit for each.
+    fn active(&self) -> u8 {
+        let active = ThreadId::all().filter(|thread| self.session.thread(*thread).is_active());
+        active.fold(0, |set, thread| set | bit_of(thread))
     }
 
     fn bits(&self) -> Vec<bool> {
@@ -298,14 +300,18 @@ impl Debugger {
     }
 
     /// What is to stop at the end of a tick.
-    fn between_ticks(&mut self, goal: &Goal, before: Vec<ThreadId>, bits: &[bool]) -> Option<Reason> {
+    fn between_ticks(&mut self, goal: &Goal, before: u8, bits: &[bool]) -> Option<Reason> {
         if let Some(index) = self.session.take_change()
             && let Some(reason) = self.judge_change(index, "the servo or the firmware".to_owned(), true)
         {
             return Some(reason);
         }
         let now = self.active();
-        let mut ended = before.iter().filter(|thread| !now.contains(thread));
+        if before == now && bits.is_empty() {
+            return None;
+        }
+        let changed =
+            |from: u8, to: u8| ThreadId::all().filter(move |thread| from & !to & bit_of(*thread) != 0);
         let stepped = match goal {
             Goal::Line { context, .. }
             | Goal::Leave { context, .. }
@@ -313,14 +319,14 @@ impl Debugger {
             | Goal::Instruction(context) => context.thread(),
             Goal::None | Goal::Address(_) | Goal::Tick(_) => None,
         };
-        let is_meant = |thread: &&ThreadId| self.catches.ends || stepped == Some(**thread);
-        if let Some(thread) = ended.find(is_meant) {
-            return Some(Reason::Ended(*thread));
+        let is_meant = |thread: &ThreadId| self.catches.ends || stepped == Some(*thread);
+        if let Some(thread) = changed(before, now).find(is_meant) {
+            return Some(Reason::Ended(thread));
         }
         if self.catches.starts
-            && let Some(thread) = now.iter().find(|thread| !before.contains(thread))
+            && let Some(thread) = changed(now, before).next()
         {
-            return Some(Reason::Started(*thread));
+            return Some(Reason::Started(thread));
         }
         let changed = self.bits().iter().zip(bits).position(|(now, before)| now != before)?;
         let level = u8::from(self.bits()[changed]);
@@ -471,6 +477,11 @@ impl Debugger {
             Goal::None | Goal::Instruction(_) | Goal::Tick(_) => false,
         }
     }
+}
+
+/// A thread in a set of threads.
+const fn bit_of(thread: ThreadId) -> u8 {
+    1 << (thread.get() - 1)
 }
 
 /// Whether an event is to stop the board, and whose it is.

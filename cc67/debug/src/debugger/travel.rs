@@ -6,7 +6,6 @@
 
 use std::sync::atomic::Ordering;
 
-use cc67_host::Timeline;
 use kmotiondef::Ticks;
 use vm::engine::ContextId;
 
@@ -129,25 +128,31 @@ impl Debugger {
         Ok(self.stopped(Reason::Begin, None))
     }
 
-    /// Puts the board where a snapshot was taken; whether it can be.
-    fn restore(&mut self, index: usize) -> bool {
+    /// Puts the board where the snapshot of a place was taken, or the last one before it; whether it can be.
+    fn restore(&mut self, place: u64) -> bool {
         let timeline = self.timeline.as_mut();
-        timeline.is_some_and(|timeline| timeline.restore(&mut self.session, index).is_ok())
+        timeline.is_some_and(|timeline| timeline.restore_place(&mut self.session, place).is_ok())
+    }
+
+    /// The place of the last snapshot before another one, or of all.
+    fn snapshot_before(&self, place: Option<u64>) -> Option<u64> {
+        self.timeline.as_ref()?.before(place)
     }
 
     fn back(&mut self, wanted: &Wanted) -> Stop {
         let here = self.position();
         let mut bound = here;
-        let marks = self.timeline.as_ref().map_or(0, Timeline::len);
-        for index in (0..marks).rev() {
-            if !self.restore(index) {
+        let mut next = self.snapshot_before(None);
+        while let Some(place) = next {
+            if !self.restore(place) {
                 break;
             }
             let begin = self.position();
+            next = self.snapshot_before(Some(place));
             if !is_before(&begin, &bound) {
                 continue;
             }
-            if let Some(reason) = self.search(index, &begin, &bound, wanted) {
+            if let Some(reason) = self.search(place, &begin, &bound, wanted) {
                 self.disarm();
                 self.refresh_watches();
                 return self.stopped(reason, None);
@@ -166,20 +171,14 @@ impl Debugger {
     }
 
     /// Searches one stretch of the past; the session is where it was found then.
-    fn search(
-        &mut self,
-        index: usize,
-        begin: &Position,
-        bound: &Position,
-        wanted: &Wanted,
-    ) -> Option<Reason> {
+    fn search(&mut self, place: u64, begin: &Position, bound: &Position, wanted: &Wanted) -> Option<Reason> {
         let mut window = if wanted.is_stop() { u64::MAX } else { WINDOW };
         loop {
             let from = Ticks::new(bound.tick.get().saturating_sub(window)).max(begin.tick);
             let is_all = from == begin.tick;
-            let found = self.way(index, from, bound, wanted, None).0;
+            let found = self.way(place, from, bound, wanted, None).0;
             if found.number > 0 && (is_all || !found.is_first) {
-                return self.way(index, from, bound, wanted, Some(found.number)).1;
+                return self.way(place, from, bound, wanted, Some(found.number)).1;
             }
             if is_all {
                 return None;
@@ -191,14 +190,14 @@ impl Debugger {
     /// Executes a stretch again, held from the end of tick `from` on; to the hold of a number, or else to its end.
     fn way(
         &mut self,
-        index: usize,
+        place: u64,
         from: Ticks,
         bound: &Position,
         wanted: &Wanted,
         number: Option<u64>,
     ) -> (Found, Option<Reason>) {
         self.disarm();
-        if !self.restore(index) {
+        if !self.restore(place) {
             return (Found::default(), None);
         }
         if let Some(timeline) = self.timeline.as_mut().filter(|_| from > self.session.tick()) {

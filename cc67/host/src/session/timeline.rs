@@ -186,6 +186,24 @@ impl<E: Engine> Timeline<E> {
         Ok(())
     }
 
+    /// The last snapshot before another one, or of all, by its place: how much work it is from the beginning. Snapshots
+    /// come and go while the past is executed again; what is known by its place stays the same one.
+    #[must_use]
+    pub fn before(&self, place: Option<u64>) -> Option<u64> {
+        let count =
+            place.map_or(self.marks.len(), |place| self.marks.partition_point(|mark| mark.place < place));
+        self.marks.get(count.checked_sub(1)?).map(|mark| mark.place)
+    }
+
+    /// Puts the session where the snapshot of a place was taken, or the last one before it if that is gone.
+    ///
+    /// # Errors
+    /// [`ForeignSnapshot`].
+    pub fn restore_place(&mut self, session: &mut Session<E>, place: u64) -> Result<(), ForeignSnapshot> {
+        let count = self.marks.partition_point(|mark| mark.place <= place);
+        self.restore(session, count.saturating_sub(1))
+    }
+
     /// Lets the session go on to the end of a tick, and does on the way what was done there.
     pub fn replay(&mut self, session: &mut Session<E>, tick: Ticks) {
         loop {
@@ -267,6 +285,9 @@ impl<E: Engine> Timeline<E> {
     /// Takes a snapshot if the one before is so much work away.
     fn mark_after(&mut self, session: &mut Session<E>, distance: u64) {
         let place = self.place(session);
+        if self.marks.last().is_some_and(|last| (last.place..last.place + distance).contains(&place)) {
+            return;
+        }
         let next = self.marks.partition_point(|mark| mark.place <= place);
         let is_far = |mark: &Mark<E>| mark.place.abs_diff(place) >= distance;
         let before = next.checked_sub(1).and_then(|index| self.marks.get(index));
