@@ -22,6 +22,7 @@ use runtime::stimulus::Stimulus;
 use runtime::{Board, Config, Event, EventKind, MachineFile, RunEnd};
 use vm::engine::Engine;
 use vm::interp::BytecodeEngine;
+use vm::machine::Config as MachineConfig;
 
 use crate::choices::Choices;
 use crate::{generate, vendor};
@@ -42,6 +43,7 @@ pub const TARGETS: &[Target] = &[
     Target { name: "image", run: changed_file },
     Target { name: "execution", run: changed_program },
     Target { name: "processor", run: changed_code },
+    Target { name: "translated", run: translated_code },
     Target { name: "program", run: program },
     Target { name: "machine_file", run: machine_file },
     Target { name: "stimulus", run: stimulus },
@@ -51,6 +53,8 @@ pub const TARGETS: &[Target] = &[
 
 /// The board time that a program of unknown intentions gets.
 const SHORT: Ticks = Ticks::new(40);
+/// The board time of one that is tried very often.
+const FEW: Ticks = Ticks::new(3);
 
 fn thread_1() -> ThreadId {
     ThreadId::new(1).expect("1 is a thread")
@@ -387,21 +391,43 @@ pub fn changed_program(bytes: &[u8]) {
     let _ = execute_everywhere(&image, SHORT);
 }
 
-/// A program for the processor whose image was changed in some bits: it is refused, or does the same whether its code
-/// is interpreted or translated.
-pub fn changed_code(bytes: &[u8]) {
-    static IMAGE: LazyLock<Vec<u8>> = LazyLock::new(|| {
-        let text = VICTIM.replace("i < 40", "i < 2000");
-        build_for(compiler::target::Target::C67x, text.as_bytes(), Level::Full).expect("it is a program")
-    });
-    let mut image = IMAGE.clone();
+/// The image of [`VICTIM`] for the processor, its loop with this many turns.
+fn victim_code(turns: u32) -> Vec<u8> {
+    let text = VICTIM.replace("i < 40", &format!("i < {turns}"));
+    build_for(compiler::target::Target::C67x, text.as_bytes(), Level::Full).expect("it is a program")
+}
+
+/// The image with a few bits changed: most changes end a program early.
+fn with_changed_bits(image: &[u8], bytes: &[u8]) -> Vec<u8> {
+    let mut image = image.to_vec();
     let mut choices = Choices::new(bytes);
-    // Few changes: most of them end a program early.
     for _ in 0..choices.byte() % 4 {
         let at = choices.below(image.len());
         image[at] ^= 1 << (choices.byte() & 7);
     }
-    let _ = execute_everywhere(&image, SHORT);
+    image
+}
+
+/// A program for the processor whose image was changed in some bits: it is refused, or interpreted, the same with and
+/// without shortcuts.
+///
+/// A fuzzer tries very many of them, so each has few cycles and nothing looks at all of memory.
+pub fn changed_code(bytes: &[u8]) {
+    static IMAGE: LazyLock<Vec<u8>> = LazyLock::new(|| victim_code(40));
+    let image = with_changed_bits(&IMAGE, bytes);
+    let [with, without] = [true, false].map(|shortcuts| {
+        let machine = MachineConfig { shortcuts, ..MachineConfig::default() };
+        let run = execute::<BytecodeEngine>(&image, FEW, Config { machine, ..counting() });
+        run.map(|(seen, _)| seen).ok()
+    });
+    assert_eq!(with, without, "shortcuts change what is seen");
+}
+
+/// A longer program for the processor whose image was changed in some bits: it is refused, or does the same whether its
+/// code is interpreted or translated.
+pub fn translated_code(bytes: &[u8]) {
+    static IMAGE: LazyLock<Vec<u8>> = LazyLock::new(|| victim_code(2000));
+    let _ = execute_everywhere(&with_changed_bits(&IMAGE, bytes), SHORT);
 }
 
 /// A generated program of defined behaviour, optimised and not, on every engine.
