@@ -105,7 +105,7 @@ fn compare(seeds: &[u64]) -> usize {
             let optimised = run(*seed, &compile(*seed, &source, Level::Full, Target::Sim));
             let plain = run(*seed, &compile(*seed, &source, Level::None, Target::Sim));
             assert_eq!(optimised, plain, "seed {seed}: optimised and not");
-            for level in [Level::Fast, Level::Full, Level::None] {
+            for level in [Level::Fast, Level::Full, Level::Small, Level::None] {
                 let code = run_code(*seed, &compile(*seed, &source, level, Target::C67x));
                 assert_eq!(code, plain, "seed {seed}: code for the processor at {level:?}");
             }
