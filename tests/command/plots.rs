@@ -51,6 +51,18 @@ fn texts(svg: &[u8]) -> Vec<String> {
 }
 
 #[test]
+fn axes_have_the_names_of_the_machine_file() {
+    let scratch = Scratch::new("plot-names");
+    scratch.write("m.toml", "[axis.0]\nname = \"X\"\n");
+    let output = run(&scratch, &["run", "--machine", "m.toml", "--plot", "a.svg", "a.c"]);
+    assert_eq!((output.code, output.stderr.as_str()), (0, ""));
+    let texts = texts(&fs::read(scratch.path().join("a.svg")).expect("it was written"));
+    for expect in ["axis 0 (X): Dest and Position (units)", "Dest X", "Position X"] {
+        assert!(texts.iter().any(|text| text == expect), "{expect}: {texts:?}");
+    }
+}
+
+#[test]
 fn a_run_is_drawn_with_titles_and_units() {
     let (_, svg) = plot("svg", "a.svg", &[]);
     let texts = texts(&svg);

@@ -150,7 +150,8 @@ impl RunArguments {
         if screen.finish().map_err(|error| output::lost_output(&error))? == Audience::Gone {
             return Ok(Exit::Success);
         }
-        if let Some(trace) = trace {
+        if let Some(mut trace) = trace {
+            trace.name_axes(ending.axes.iter().map(|axis| (axis.axis, axis.name.as_str())));
             let title = self.programs.join(OsStr::new(", "));
             trace.finish(&self.trace, board.tick(), &title.to_string_lossy())?;
         }

@@ -28,7 +28,7 @@ pub(super) fn chart(title: &str, text: &str) -> Result<Chart> {
     let rows = times.iter().copied().zip(table.rows.into_iter().map(|row| row[first..].to_vec())).collect();
     let end = times.last().copied().unwrap_or_default();
     // Every value is in the table: none has to be held.
-    let samples = Samples { columns, rows, step: f64::INFINITY, end };
+    let samples = Samples { columns, rows, step: f64::INFINITY, end, ..Samples::default() };
     let panels = if has_time { samples.panels() } else { samples.plain_panels() };
     let strips = if has_time { samples.strips() } else { Vec::new() };
     if panels.is_empty() && strips.is_empty() {

@@ -4,6 +4,8 @@
 //! as they ever change. Everything else that is not a bit gets a panel of its own. Values are known when they change; in
 //! between the last one holds.
 
+use std::collections::BTreeMap;
+
 use super::chart::{Line, Panel, Strip};
 
 /// Axes of the board.
@@ -36,6 +38,8 @@ pub(in crate::cli) struct Samples {
     pub(in crate::cli) step: f64,
     /// Until when the last values hold, in seconds.
     pub(in crate::cli) end: f64,
+    /// What axes are called that have a name.
+    pub(in crate::cli) names: BTreeMap<usize, String>,
 }
 
 impl Samples {
@@ -97,12 +101,15 @@ impl Samples {
     /// The panels of an axis.
     fn of_axis(&self, axis: usize) -> Vec<Panel> {
         let (dest, position) = (self.named(&format!("dest{axis}")), self.named(&format!("pos{axis}")));
+        let name = self.names.get(&axis);
+        let label = name.map_or_else(|| axis.to_string(), Clone::clone);
+        let whole = name.map_or_else(|| format!("axis {axis}"), |name| format!("axis {axis} ({name})"));
         let panel = |title: &str, unit: &str, lines: Vec<(&str, Points)>| Panel {
-            title: format!("axis {axis}: {title}"),
+            title: format!("{whole}: {title}"),
             unit: unit.to_owned(),
             lines: lines
                 .into_iter()
-                .map(|(name, points)| Line { name: format!("{name} {axis}"), points })
+                .map(|(name, points)| Line { name: format!("{name} {label}"), points })
                 .collect(),
         };
         let mut panels = Vec::new();
@@ -192,9 +199,10 @@ mod tests {
             rows: vec![(0.0, vec![1.0, 2.0, 0.0, 3.0, 4.0]), (1.0, vec![1.0, 3.0, 1.0, 3.0, 4.0])],
             step: 1.0,
             end: 2.0,
+            names: BTreeMap::from([(2, "Z".to_owned())]),
         };
         let titles: Vec<_> = samples.panels().into_iter().map(|panel| panel.title).collect();
-        assert_eq!(titles, ["axis 2: Dest", "axis 2: velocity", "speed", "bitter"]);
+        assert_eq!(titles, ["axis 2 (Z): Dest", "axis 2 (Z): velocity", "speed", "bitter"]);
         assert_eq!(samples.strips(), [Strip { name: "bit 7".to_owned(), spans: vec![(1.0, 2.0)] }]);
     }
 }

@@ -46,7 +46,7 @@ fn samples(variables: &[&Variable], end: f64) -> Samples {
     }
     let gaps = rows.windows(2).map(|pair| pair[1].0 - pair[0].0);
     let step = gaps.fold(f64::INFINITY, f64::min);
-    Samples { columns, rows, step, end }
+    Samples { columns, rows, step, end, ..Samples::default() }
 }
 
 fn strip(variable: &Variable, end: f64) -> Strip {

@@ -16,12 +16,13 @@ mod table;
 mod unit;
 mod vcd;
 
+use std::collections::BTreeMap;
 use std::io;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Result, anyhow, bail};
 use cc67_host::{Session, WatchError};
-use kmotiondef::{Bit, CodeAddr, Cycles, ThreadId, Ticks};
+use kmotiondef::{AxisId, Bit, CodeAddr, Cycles, ThreadId, Ticks};
 use runtime::trace::{Item, Packets, Quantity, Record, TraceRequest};
 use runtime::{Event, EventKind};
 use vm::engine::Engine;
@@ -158,6 +159,8 @@ pub(crate) struct Trace {
     order: Order,
     sinks: Vec<Box<dyn Sink>>,
     log: Option<Log>,
+    /// What axes are called in pictures.
+    names: BTreeMap<usize, String>,
     /// The first file that could not be written, and why.
     failed: Option<(PathBuf, io::Error)>,
 }
@@ -193,7 +196,13 @@ impl Trace {
             sinks.push(Box::new(packets::PacketTable::new(&file.path)?));
         }
         let log = (!arguments.plot.is_empty()).then(|| Log::new(request));
-        Ok(Self { order: Order::default(), sinks, log, failed: None })
+        Ok(Self { order: Order::default(), sinks, log, names: BTreeMap::new(), failed: None })
+    }
+
+    /// Pictures call axes as the machine file does.
+    pub(crate) fn name_axes<'a>(&mut self, axes: impl IntoIterator<Item = (AxisId, &'a str)>) {
+        let named = axes.into_iter().filter(|(_, name)| !name.is_empty());
+        self.names.extend(named.map(|(axis, name)| (axis.index(), name.to_owned())));
     }
 
     /// Completes all files; `end` is the last tick of the run, `title` what pictures are called.
@@ -218,7 +227,7 @@ impl Trace {
         }
         for path in &arguments.plot {
             let Some(log) = &self.log else { continue };
-            let chart = picture::chart(log, title.to_owned(), end);
+            let chart = picture::chart(log, title.to_owned(), end, &self.names);
             plot::write(&chart, Form::of(path)?, path)?;
         }
         Ok(())

@@ -2,6 +2,8 @@
 //!
 //! What was sampled becomes panels; bits and the slices of the threads become strips.
 
+use std::collections::BTreeMap;
+
 use kmotiondef::{Bit, Cycles, Ticks};
 use runtime::trace::{Item, Quantity};
 
@@ -13,8 +15,8 @@ use crate::cli::report::plot::samples::{Column, Samples};
 /// Strips in a picture; a program that moves more bits than that is looked at with `--trace`.
 const STRIPS: usize = 16;
 
-/// The chart of a run up to a tick.
-pub(super) fn chart(log: &Log, title: String, end: Ticks) -> Chart {
+/// The chart of a run up to a tick, with the names of axes.
+pub(super) fn chart(log: &Log, title: String, end: Ticks, names: &BTreeMap<usize, String>) -> Chart {
     let end = Cycles::new((end.get() as i64).saturating_mul(Cycles::PER_TICK.get()));
     let columns = log.columns();
     let column = |(_, quantity): &(usize, &Quantity)| Column {
@@ -30,6 +32,7 @@ pub(super) fn chart(log: &Log, title: String, end: Ticks) -> Chart {
         rows: log.samples.iter().map(row).collect(),
         step: seconds(log.step),
         end: seconds(end),
+        names: names.clone(),
     };
     let panels = samples.panels();
     let mut strips = bits(log, end);
@@ -98,7 +101,7 @@ mod tests {
     #[test]
     fn a_value_holds_between_its_samples() {
         let log = super::super::testing::log();
-        let chart = chart(&log, String::new(), Ticks::new(7));
+        let chart = chart(&log, String::new(), Ticks::new(7), &BTreeMap::new());
         let lines: Vec<_> = chart.panels.iter().flat_map(|panel| &panel.lines).collect();
         assert_eq!(lines[0].name, "Dest 0");
         assert_eq!(chart.abscissa, "time (µs)");
