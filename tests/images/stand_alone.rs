@@ -101,6 +101,26 @@ main() { for (;;) { WaitNextTimeSlice(); persist.UserData[0]++; if (persist.User
 }
 
 #[test]
+fn an_executable_is_small_and_interprets_what_runs_beside_it() {
+    if !has_linker() {
+        return;
+    }
+    let scratch = Scratch::new("stand-alone-small");
+    scratch.write("prog.c", "#include \"KMotionDef.h\"\nmain() { Delay_sec(0.01); printf(\"one\\n\"); }\n");
+    scratch.write("other.c", "#include \"KMotionDef.h\"\nmain() { printf(\"two\\n\"); }\n");
+    let made = build(scratch.path(), &["prog.c"]);
+    assert_eq!(made.code, 0, "{}", made.stderr);
+    let program = scratch.path().join("prog");
+    let size = fs::metadata(&program).expect("it is there").len();
+    println!("{size} bytes");
+    // What tests are built with is not optimised.
+    let most = if cfg!(debug_assertions) { 100_000_000 } else { 10_000_000 };
+    assert!(size <= most, "{size} bytes");
+    let both = run_in(program.to_str().expect("a name"), scratch.path(), ["2:other.c"]);
+    assert_eq!((both.code, both.stdout.as_str()), (0, "two\none\n"), "{}", both.stderr);
+}
+
+#[test]
 fn example_programs_do_the_same() {
     if !has_linker() {
         return;

@@ -37,6 +37,7 @@ mod work;
 mod tests;
 
 pub use self::account::{Account, Callers, Spender, Time};
+pub(crate) use self::core::HotCode;
 pub use self::core::{Core, Halt};
 pub use self::decode::is_code;
 pub use self::memory::{Clock, Memory};

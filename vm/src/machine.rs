@@ -17,7 +17,7 @@ use kmotiondef::{CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
 use self::engines::Engines;
 use self::held::Held;
 pub use self::snapshot::Snapshot;
-use crate::dsp::DspEngine;
+use crate::dsp::{DspEngine, HotCode};
 use crate::engine::{ContextId, Engine, Slice, Stop};
 use crate::firmware::{Firmware, TickContext};
 use crate::interp::BytecodeEngine;
@@ -96,13 +96,15 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
     pub fn with_engine(firmware: F, config: Config, engine: E) -> Self {
         let mut memory = GuestMemory::new();
         memory.set_faults(config.faults);
+        // Known when this is compiled, so that what never translates has no code generator.
+        let hot = if E::TRANSLATES { HotCode::HERE } else { None };
         Self {
             config,
             memory,
             threads: Threads::new(),
             loaded: Default::default(),
             longest_steps: Default::default(),
-            engines: Engines { programs: engine, images: DspEngine::new(E::TRANSLATES, E::KEEPS_ACCOUNT) },
+            engines: Engines { programs: engine, images: DspEngine::new(hot, E::KEEPS_ACCOUNT) },
             firmware,
             tick: Ticks::default(),
             turn: Turn::Primary,

@@ -21,6 +21,7 @@ mod flash;
 pub mod snapshot;
 
 use std::ops::Range;
+use std::sync::LazyLock;
 
 use kmotiondef::map::{FLASH, IRAM, REGIONS, ROM_SIZE, RegionKind, SDRAM, silent_from};
 use kmotiondef::{GuestAddr, ThreadId};
@@ -49,7 +50,7 @@ pub enum Faults {
 }
 
 /// What ROM, the largest of the silent places, and control registers read as.
-static SILENCE: [u8; index_const(ROM_SIZE)] = [0; index_const(ROM_SIZE)];
+static SILENCE: LazyLock<Box<[u8]>> = LazyLock::new(|| vec![0; index(ROM_SIZE)].into_boxed_slice());
 
 /// A type that one load or store moves.
 pub trait Scalar: sealed::Sealed + Copy + Default {

@@ -51,9 +51,15 @@ use crate::program::Program;
 use crate::translations::Translations;
 use crate::trap::{Trap, TrapKind};
 
-/// Runs programs as machine code.
+/// Runs programs as machine code, which it makes of them when they are started.
+pub type NativeEngine = MachineCodeEngine<true>;
+
+/// Runs the machine code that is part of this executable; other programs are interpreted. No code generator is needed.
+pub type LinkedEngine = MachineCodeEngine<false>;
+
+/// Runs programs as machine code; `COMPILES` if it makes it of them.
 #[derive(Debug, Default)]
-pub struct NativeEngine {
+pub struct MachineCodeEngine<const COMPILES: bool> {
     contexts: [Option<Context>; ContextId::COUNT],
     /// The machine code of each program; `None` where it cannot be compiled.
     code: Translations<Option<Arc<MachineCode>>>,
@@ -76,7 +82,7 @@ pub struct NativeSnapshot {
     identity: Rc<()>,
 }
 
-impl NativeEngine {
+impl<const COMPILES: bool> MachineCodeEngine<COMPILES> {
     /// An engine that runs the code of `linked` wherever a thread starts `program`, which is that of its image.
     ///
     /// # Errors
@@ -99,7 +105,10 @@ impl NativeEngine {
     /// The machine code of `program`.
     fn code(&mut self, program: &Arc<Program>, pure: PureFunctions<'_>) -> Option<Arc<MachineCode>> {
         let (linked, shared) = (&self.linked, &self.shared);
-        let compile = |program: &Program| MachineCode::compile(program, pure).ok().map(Arc::new);
+        // Known when this is compiled, so that an executable of its own has no code generator.
+        let compile = |program: &Program| {
+            if COMPILES { MachineCode::compile(program, pure).ok().map(Arc::new) } else { None }
+        };
         self.code.get(program, |program| match (linked, shared) {
             (Some((known, code)), _) if known == program => Some(Arc::clone(code)),
             (_, Some(shared)) => shared.get(program, compile),
@@ -108,8 +117,8 @@ impl NativeEngine {
     }
 }
 
-impl Executor for NativeEngine {
-    const TRANSLATES: bool = true;
+impl<const COMPILES: bool> Executor for MachineCodeEngine<COMPILES> {
+    const TRANSLATES: bool = COMPILES;
 
     type Code = Program;
     type Snapshot = NativeSnapshot;

@@ -45,9 +45,6 @@ pub(crate) struct Setup {
     engine: EngineName,
     uart: UartArguments,
     flash: Flash,
-    /// The native engine, which may know the code of the first program already.
-    #[cfg(feature = "native")]
-    native: NativeEngine,
 }
 
 /// What a command does with a board, whichever engine executes the programs.
@@ -81,20 +78,13 @@ impl Setup {
         options.firmware.check_version().context("`--firmware`")?;
         let described = Described::read(started, board, compiler, Given { options, image: first })?;
         let Some(Described { session, uart, flash }) = described else { return Ok(None) };
-        Ok(Some(Self {
-            session,
-            engine: board.engine,
-            uart,
-            flash,
-            #[cfg(feature = "native")]
-            native: NativeEngine::default(),
-        }))
+        Ok(Some(Self { session, engine: board.engine, uart, flash }))
     }
 
-    /// The same with a native engine that knows the code of the first program.
+    /// The engine that was asked for.
     #[cfg(feature = "native")]
-    pub(crate) fn with_native(self, native: NativeEngine) -> Self {
-        Self { native, ..self }
+    pub(crate) const fn engine(&self) -> EngineName {
+        self.engine
     }
 
     /// Does the work of a command on the engine that was asked for.
@@ -104,11 +94,7 @@ impl Setup {
         match engine {
             EngineName::Bytecode | EngineName::Dsp => work.on(self.rig(BytecodeEngine::default())?),
             #[cfg(feature = "native")]
-            EngineName::Native => {
-                let mut arranged = self;
-                let engine = std::mem::take(&mut arranged.native);
-                work.on(arranged.rig(engine)?)
-            }
+            EngineName::Native => work.on(self.rig(NativeEngine::default())?),
             #[cfg(not(feature = "native"))]
             EngineName::Native => anyhow::bail!("this cc67 is built without the native engine"),
         }

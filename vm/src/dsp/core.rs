@@ -5,7 +5,7 @@ use super::decode::{NoPacket, STACK, places};
 use super::idle::{Arrival, Idle};
 use super::memory::{Clock, Memory};
 #[cfg(feature = "native")]
-use super::native::Account;
+use super::native::{Account, RegionTranslator, TRANSLATOR};
 use super::pipeline::{Passed, State};
 use crate::trap::{Fault, TrapKind};
 
@@ -24,6 +24,24 @@ pub enum Halt {
     Left(u32),
     /// A packet could not be executed.
     Faulted(TrapKind),
+}
+
+/// How hot code becomes code of the host.
+#[cfg(feature = "native")]
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct HotCode(RegionTranslator);
+
+/// It never does without that.
+#[cfg(not(feature = "native"))]
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum HotCode {}
+
+impl HotCode {
+    /// What this is built with.
+    #[cfg(feature = "native")]
+    pub(crate) const HERE: Option<Self> = Some(Self(TRANSLATOR));
+    #[cfg(not(feature = "native"))]
+    pub(crate) const HERE: Option<Self> = None;
 }
 
 /// Where a core stops when its cycles are over.
@@ -180,12 +198,17 @@ impl Core {
 
     /// Whether hot code is translated to code of the host, where this is built with it; nothing else changes.
     pub fn translate(&mut self, whether: bool) {
+        self.translate_hot(if whether { HotCode::HERE } else { None });
+    }
+
+    /// The same by somebody else's choice.
+    pub(super) fn translate_hot(&mut self, hot: Option<HotCode>) {
         #[cfg(feature = "native")]
         {
-            self.native = whether.then(Box::default);
+            self.native = hot.map(|HotCode(translator)| Box::new(super::native::Native::new(translator)));
         }
         #[cfg(not(feature = "native"))]
-        let _ = whether;
+        let _ = hot;
     }
 
     /// Packets that were executed as code of the host.

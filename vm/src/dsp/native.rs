@@ -15,7 +15,7 @@ mod region;
 use std::collections::BTreeMap;
 
 use self::flying::Flying;
-use self::region::{Find, LONGEST, Region, translate};
+use self::region::{Find, LONGEST, NoRegion, Region};
 use super::cache::Cache;
 use super::memory::Memory;
 use super::pipeline::State;
@@ -33,9 +33,19 @@ const MOST: usize = 512;
 /// How often code may change before nothing is translated any more.
 const MOST_CHANGES: u32 = 64;
 
+/// What makes a region of what is reached from an address.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RegionTranslator(Translate);
+
+type Translate = fn(u32, Vec<Flying>, &mut Find<'_>) -> Result<Region, NoRegion>;
+
+/// The one that makes code of this computer.
+pub(super) const TRANSLATOR: RegionTranslator = RegionTranslator(region::translate);
+
 /// The places where branches arrive, and what is translated there.
 #[derive(Debug)]
 pub(super) struct Native {
+    translator: RegionTranslator,
     /// Places, and how often they were reached.
     places: Box<[(u32, u32)]>,
     regions: BTreeMap<u32, Vec<Region>>,
@@ -49,9 +59,11 @@ pub(super) struct Native {
     packets: u64,
 }
 
-impl Default for Native {
-    fn default() -> Self {
+impl Native {
+    /// Nothing is known yet.
+    pub(super) fn new(translator: RegionTranslator) -> Self {
         Self {
+            translator,
             places: vec![(0, 0); PLACES].into_boxed_slice(),
             regions: BTreeMap::new(),
             count: 0,
@@ -67,7 +79,7 @@ impl Default for Native {
 /// A copy knows nothing yet, like the decoded packets of a copy.
 impl Clone for Native {
     fn clone(&self) -> Self {
-        Self::default()
+        Self::new(self.translator)
     }
 }
 
@@ -157,7 +169,7 @@ impl Native {
             let packet = *cache.packet(index);
             Some((packet, cache.micros(&packet).to_vec()))
         };
-        let Ok(region) = translate(pc, self.flying.clone(), find) else {
+        let Ok(region) = (self.translator.0)(pc, self.flying.clone(), find) else {
             place.1 = COLD;
             return None;
         };

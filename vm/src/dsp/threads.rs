@@ -12,7 +12,7 @@ use kmotiondef::map::{BOARD_STACK_SIZE, BOARD_STACKS_BASE};
 use kmotiondef::{CodeAddr, Cycles, GuestAddr, ThreadId};
 
 use super::account::{Account, Branch, is_return_of};
-use super::core::{Core, Halt};
+use super::core::{Core, Halt, HotCode};
 use super::inspect::packet_text;
 use super::view::View;
 use crate::call::ArgumentList;
@@ -36,8 +36,8 @@ const CHANGED: u32 = 0xC4A7_6ED0;
 #[derive(Debug, Default)]
 pub struct DspEngine {
     contexts: [Option<Processor>; ContextId::COUNT],
-    /// Whether hot code is translated.
-    translates: bool,
+    /// How hot code is translated, if it is.
+    hot: Option<HotCode>,
     account: Option<Account>,
 }
 
@@ -55,10 +55,10 @@ struct Processor {
 }
 
 impl DspEngine {
-    /// An engine that translates hot code to the host's, if it is built with that; it may keep an account.
+    /// An engine that may translate hot code to the host's, and may keep an account.
     #[must_use]
-    pub(crate) fn new(translates: bool, keeps_account: bool) -> Self {
-        Self { translates, account: keeps_account.then(Account::default), ..Self::default() }
+    pub(crate) fn new(hot: Option<HotCode>, keeps_account: bool) -> Self {
+        Self { hot, account: keeps_account.then(Account::default), ..Self::default() }
     }
 
     /// Where the time went, if that is kept.
@@ -109,7 +109,7 @@ impl Executor for DspEngine {
         core.state.set_reg(STACK, top);
         core.state.set_reg(LINK, returns_to);
         core.watch_stack(base, top);
-        core.translate(self.translates);
+        core.translate_hot(self.hot);
         if let Some(account) = &mut self.account {
             account.begin(id);
         }

@@ -1,5 +1,7 @@
 //! The bytes of flash memory, which take no memory of the host until something is written.
 
+use std::sync::LazyLock;
+
 use super::filled;
 
 /// Bytes of flash memory.
@@ -8,8 +10,8 @@ pub(super) const SIZE: usize = 0x20_0000;
 /// What erased flash reads as.
 pub(super) const ERASED_BYTE: u8 = 0xff;
 
-/// Flash to which nothing was ever written; a board of a few milliseconds should not have to fill two megabytes.
-static ERASED: [u8; SIZE] = [ERASED_BYTE; SIZE];
+/// Flash to which nothing was ever written, once for all boards; it is filled when somebody looks at it.
+static ERASED: LazyLock<Box<[u8; SIZE]>> = LazyLock::new(|| filled(ERASED_BYTE));
 
 /// Flash memory.
 #[derive(Clone, Debug, Default)]

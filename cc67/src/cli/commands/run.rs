@@ -13,12 +13,16 @@ use kmotiondef::{AxisId, ThreadId, Ticks};
 use runtime::Board;
 use vm::engine::Engine;
 #[cfg(feature = "native")]
-use vm::native::NativeEngine;
+use vm::interp::BytecodeEngine;
+#[cfg(feature = "native")]
+use vm::native::LinkedEngine;
 use vm::profile::ProfilingEngine;
 
 use crate::cli::args::beside::BesideArguments;
 use crate::cli::args::board::BoardArguments;
 use crate::cli::args::compiler::CompilerArguments;
+#[cfg(feature = "native")]
+use crate::cli::args::engine::EngineName;
 use crate::cli::args::time::{DEFAULT_LIMIT, seconds};
 use crate::cli::args::trace::TraceArguments;
 use crate::cli::io::exit::Exit;
@@ -87,14 +91,24 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit> {
 
 /// The same, where the image of the first program is at hand, and its code is known to a native engine.
 #[cfg(feature = "native")]
-pub(super) fn run_held(arguments: &RunArguments, image: &[u8], native: NativeEngine) -> Result<Exit> {
+pub(super) fn run_held(arguments: &RunArguments, image: &[u8], linked: LinkedEngine) -> Result<Exit> {
     let setup = Setup::new(arguments.started(), &arguments.board, &arguments.compiler, Some(image))?;
     let Some(setup) = setup else { return Ok(Exit::Failure) };
-    run_setup(arguments, setup.with_native(native))
+    match &arguments.profile {
+        Some(target) => run_profiled(arguments, setup, target),
+        None if setup.engine() == EngineName::Native => arguments.execute(&mut setup.rig(linked)?),
+        None => arguments.execute(&mut setup.rig(BytecodeEngine::default())?),
+    }
 }
 
 fn run_setup(arguments: &RunArguments, setup: Setup) -> Result<Exit> {
-    let Some(target) = &arguments.profile else { return setup.on_its_engine(arguments) };
+    match &arguments.profile {
+        Some(target) => run_profiled(arguments, setup, target),
+        None => setup.on_its_engine(arguments),
+    }
+}
+
+fn run_profiled(arguments: &RunArguments, setup: Setup, target: &str) -> Result<Exit> {
     let target = profile::target(target)?;
     let mut rig = setup.rig(ProfilingEngine::default())?;
     let exit = arguments.execute(&mut rig)?;

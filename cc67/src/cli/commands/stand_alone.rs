@@ -8,7 +8,7 @@ use std::path::Path;
 use anyhow::{Context, Result};
 use clap::Parser;
 use runtime::loader::prepare;
-use vm::native::{Linked, LinkedError, NativeEngine};
+use vm::native::{Linked, LinkedEngine, LinkedError};
 
 use super::{explain, run};
 use crate::cli::io::exit::Exit;
@@ -46,7 +46,7 @@ fn run(arguments: impl IntoIterator<Item = OsString>, linked: &Linked) -> Result
     let (image, thread) = (linked.image(), linked.thread());
     let prepared = prepare(image, thread, |_| false).context("the image in this executable")?;
     let program = prepared.code.program().context("the image in this executable is not bytecode")?;
-    let engine = NativeEngine::with_linked(linked, (**program).clone(), &runtime::pure_function)?;
+    let engine = LinkedEngine::with_linked(linked, (**program).clone(), &runtime::pure_function)?;
 
     let mut arguments = arguments.into_iter();
     let own = arguments.next().unwrap_or_default();

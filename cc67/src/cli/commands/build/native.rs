@@ -19,11 +19,12 @@ use compiler::files::reason;
 /// The simulator library's file.
 const LIBRARY: &str = if cfg!(windows) { "cc67board.lib" } else { "libcc67board.a" };
 
-/// What the library needs of the system, and how what it does not need is left out.
+/// What the library needs of the system, and how what it does not need, and names for debuggers, are left out; at a
+/// fixed address it needs no table of what to move.
 const SYSTEM: &[&str] = if cfg!(target_os = "linux") {
-    &["-Wl,--gc-sections", "-lpthread", "-ldl", "-lm"]
+    &["-s", "-no-pie", "-Wl,--gc-sections", "-lpthread", "-ldl", "-lm"]
 } else if cfg!(target_os = "macos") {
-    &["-Wl,-dead_strip", "-liconv", "-lm"]
+    &["-Wl,-dead_strip", "-Wl,-x", "-liconv", "-lm"]
 } else {
     &["-lm"]
 };
