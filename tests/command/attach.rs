@@ -160,7 +160,7 @@ fn a_board_that_is_served_stops_at_a_breakpoint_and_continues_when_the_editor_is
     assert_eq!((&stop["reason"], &stop["threadId"]), (&"breakpoint".into(), &1.into()));
     let first = editor.rounds();
 
-    // It stands for as long as it is stopped, and goes on by steps.
+    // While it is stopped it does not move; steps move it.
     assert_eq!(editor.rounds(), first);
     editor.ask("next", json!({ "threadId": 1 }));
     assert_eq!((editor.event("stopped")["reason"].as_str(), editor.rounds()), (Some("step"), first + 1));

@@ -9,8 +9,8 @@ use crate::book::check_list;
 /// What comes before the first mistake.
 const HEAD: &str = "# Mistakes
 
-Programs that compile and do something else than was meant, each with what `cc67` says. Each is a test, and no
-program of `c-programs/` is told any of this.
+Programs that compile and do something else than was meant, each with what `cc67` says. Each is a test, and
+none of it is said of a program of `c-programs/`.
 ";
 
 /// Those that come to light in the servo interrupt or on the PC, where nobody knows a line.

@@ -1,19 +1,20 @@
 //! What going back costs, and what it costs that one can.
 //!
 //! `back/...`: one step back of a thread after a minute of board time. `run/...`: ten seconds of the same program in a
-//! session, and in a debugger without a breakpoint. Before them, what the past of a run takes in memory is said: ten
-//! minutes of board time, with `CC67_LONG=1` an hour.
+//! session, and in a debugger without a breakpoint. The test `cost` measures the memory that the past takes.
 //!
 //! `cargo bench -p cc67-debug`
 
-use std::hint::black_box;
-use std::path::PathBuf;
+#[path = "../tests/boards/mod.rs"]
+mod boards;
 
+use std::hint::black_box;
+
+use boards::{board, tick};
 use cc67_debug::Debugger;
-use cc67_host::{Session, Setup, UserProgram};
+use cc67_host::Session;
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
-use kmotiondef::limits::TIMEBASE;
-use kmotiondef::{ThreadId, Ticks};
+use kmotiondef::ThreadId;
 
 /// Moves to and fro and prints, as jobs do.
 const MOVES: &str = r#"
@@ -52,23 +53,9 @@ const WATCHES: &str = r#"
     }
 "#;
 
-fn tick(seconds: f64) -> Ticks {
-    Ticks::new((seconds / TIMEBASE).round() as u64)
-}
-
 fn session() -> Session {
     let folder = std::env::temp_dir().join(format!("cc67-travel-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).expect("a folder");
-    let mut setup = Setup::default();
-    for ((name, text), thread) in
-        [("moves.c", MOVES), ("watches.c", WATCHES)].into_iter().zip(ThreadId::all())
-    {
-        let file: PathBuf = folder.join(name);
-        std::fs::write(&file, text).expect("a file");
-        let program = UserProgram::compile(&file, thread, &setup.options).expect("it compiles");
-        setup.programs.push(program.started());
-    }
-    setup.session().expect("a board")
+    board(&folder, "", &[("moves.c", MOVES), ("watches.c", WATCHES)])
 }
 
 fn debugger(seconds: f64) -> Debugger {
@@ -77,28 +64,7 @@ fn debugger(seconds: f64) -> Debugger {
     debugger
 }
 
-/// Bytes of memory of this process, where the system says so.
-fn resident() -> Option<u64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
-    line.split_whitespace().next()?.parse::<u64>().ok().map(|kib| kib << 10)
-}
-
-fn memory() {
-    let minutes = if std::env::var_os("CC67_LONG").is_some() { 60.0 } else { 10.0 };
-    let before = resident().unwrap_or(0);
-    let debugger = debugger(60.0 * minutes);
-    let (bytes, snapshots) = debugger.history();
-    let all = resident().map_or(0, |now| now.saturating_sub(before));
-    println!(
-        "the past of {minutes} minutes: {snapshots} snapshots, {} MB of pages, {} MB in all with the board",
-        bytes / 1_000_000,
-        all / 1_000_000
-    );
-}
-
 fn back(c: &mut Criterion) {
-    memory();
     let mut group = c.benchmark_group("back");
     group.sample_size(10);
     let mut debugger = debugger(60.0);

@@ -26,7 +26,7 @@ static NUMBERS: AtomicU64 = AtomicU64::new(1);
 /// What the native engines of all boards have compiled: a sweep makes a thousand boards of one program.
 static COMPILED: LazyLock<SharedCode> = LazyLock::new(SharedCode::default);
 
-/// How long a run goes on without a look at Python's signals.
+/// How long a run continues before Python's signals are checked.
 const LOOK: Duration = Duration::from_millis(20);
 
 /// A column of a trace.

@@ -77,7 +77,7 @@ impl Attendant<BytecodeEngine> for AttachPoint {
             return;
         }
         self.visitor = None;
-        // A tick that was held goes on to its end.
+        // A tick that was held is finished first.
         let limit = if session.held().is_some() { limit.max(session.tick().next()) } else { limit };
         session.advance(limit, events);
     }
