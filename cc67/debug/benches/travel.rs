@@ -80,12 +80,12 @@ fn run(c: &mut Criterion) {
     group.sample_size(10);
     let end = tick(10.0);
     group.bench_function("plain", |b| {
-        b.iter_batched(session, |mut session| session.advance(end, &mut |_| ()), BatchSize::PerIteration);
+        b.iter_batched_ref(session, |session| session.advance(end, &mut |_| ()), BatchSize::PerIteration);
     });
     group.bench_function("debugged", |b| {
-        b.iter_batched(
+        b.iter_batched_ref(
             || Debugger::new(session(), end),
-            |mut debugger| debugger.go_on(&mut |_| ()),
+            |debugger| debugger.go_on(&mut |_| ()),
             BatchSize::PerIteration,
         );
     });

@@ -231,11 +231,12 @@ impl Debugger {
         let limit = if let Goal::Tick(tick) = goal { *tick } else { self.limit };
         let mut infos: Vec<_> = self.session.debug().into_iter().map(|(_, info)| info).collect();
         let catches = self.catches.clone();
+        let mut active = self.active();
         loop {
-            if self.interrupt.swap(false, Ordering::Relaxed) {
+            if self.is_interrupted() {
                 return self.stopped(Reason::Interrupted, None);
             }
-            let before = self.active();
+            let before = active;
             let bits = self.bits();
             let mut caught = None;
             let step = self.next_tick(limit);
@@ -258,12 +259,14 @@ impl Debugger {
                 if let Some(reason) = self.judge(hold, goal, true) {
                     return self.stopped(reason, Some(hold.context));
                 }
+                active = self.active();
                 continue;
             }
             if let Some((reason, thread)) = caught {
                 return self.stopped(reason, thread.map(ContextId::of));
             }
-            if let Some(reason) = self.between_ticks(goal, before, &bits) {
+            active = self.active();
+            if let Some(reason) = self.between_ticks(goal, (before, active), &bits) {
                 let context = if let Reason::Started(thread) | Reason::Ended(thread) = &reason {
                     Some(ContextId::of(*thread))
                 } else {
@@ -275,11 +278,17 @@ impl Debugger {
                 return self.stopped(Reason::Time, None);
             }
             let is_own = self.timeline.is_some();
-            if is_own && self.session.has_ended() && !matches!(goal, Goal::Tick(_)) {
+            if active == 0 && is_own && self.session.has_ended() && !matches!(goal, Goal::Tick(_)) {
                 self.session.finish(&mut |event| events(&event));
                 return self.stopped(Reason::AllEnded, None);
             }
         }
+    }
+
+    /// Whether somebody has asked it to stop since the last time; once for each time.
+    fn is_interrupted(&self) -> bool {
+        // To exchange a value takes a processor much longer than to read it, and this is asked every tick.
+        self.interrupt.load(Ordering::Relaxed) && self.interrupt.swap(false, Ordering::Relaxed)
     }
 
     /// Does what was done at this instant before, and says how far the board runs until there is more of it.
@@ -299,14 +308,13 @@ impl Debugger {
         self.catches.bits.iter().map(|bit| Bit::new(*bit).is_some_and(|bit| self.session.bit(bit))).collect()
     }
 
-    /// What is to stop at the end of a tick.
-    fn between_ticks(&mut self, goal: &Goal, before: u8, bits: &[bool]) -> Option<Reason> {
+    /// What is to stop at the end of a tick; with the threads that were and are active.
+    fn between_ticks(&mut self, goal: &Goal, (before, now): (u8, u8), bits: &[bool]) -> Option<Reason> {
         if let Some(index) = self.session.take_change()
             && let Some(reason) = self.judge_change(index, "the servo or the firmware".to_owned(), true)
         {
             return Some(reason);
         }
-        let now = self.active();
         if before == now && bits.is_empty() {
             return None;
         }

@@ -12,7 +12,7 @@ use vm::engine::{Engine, ForeignSnapshot};
 use super::{Input, Session, Snapshot};
 
 /// Work between two snapshots: some hundredths of a second of a usual computer.
-const INTERVAL: u64 = 20_000_000;
+const INTERVAL: u64 = 60_000_000;
 
 /// Into how many parts the snapshots of a replay cut an interval.
 const PARTS: u64 = 8;
@@ -44,7 +44,7 @@ pub enum History {
 /// A snapshot, and how much work it is from the beginning of the line.
 #[derive(Debug)]
 struct Mark<E: Engine> {
-    snapshot: Snapshot<E>,
+    snapshot: Box<Snapshot<E>>,
     place: u64,
     /// Nothing before it leads to it by the journal alone.
     is_needed: bool,
@@ -86,7 +86,7 @@ impl<E: Engine> Timeline<E> {
     pub fn new(session: &mut Session<E>) -> Self {
         let journal = session.journal().to_vec();
         let (work, end) = (session.board().machine().work(), session.tick());
-        let first = Mark { snapshot: session.snapshot(), place: 0, is_needed: true };
+        let first = Mark { snapshot: Box::new(session.snapshot()), place: 0, is_needed: true };
         Self { marks: vec![first], done: journal.len(), journal, end, base: (work, 0), interval: INTERVAL }
     }
 
@@ -157,7 +157,7 @@ impl<E: Engine> Timeline<E> {
         self.forget(place);
         self.journal.truncate(self.done);
         self.end = tick;
-        self.marks.push(Mark { snapshot: session.snapshot(), place, is_needed: true });
+        self.marks.push(Mark { snapshot: Box::new(session.snapshot()), place, is_needed: true });
         if is_past || noted != History::Same { History::New(tick) } else { History::Same }
     }
 
@@ -285,14 +285,20 @@ impl<E: Engine> Timeline<E> {
     /// Takes a snapshot if the one before is so much work away.
     fn mark_after(&mut self, session: &mut Session<E>, distance: u64) {
         let place = self.place(session);
-        if self.marks.last().is_some_and(|last| (last.place..last.place + distance).contains(&place)) {
-            return;
+        if !self.marks.last().is_some_and(|last| (last.place..last.place + distance).contains(&place)) {
+            self.mark_at(session, place, distance);
         }
+    }
+
+    /// Takes a snapshot if no other is near. Apart from the question above, which is asked every tick: a snapshot on its
+    /// way is so large that to make room for it on the stack takes longer than to ask.
+    #[inline(never)]
+    fn mark_at(&mut self, session: &mut Session<E>, place: u64, distance: u64) {
         let next = self.marks.partition_point(|mark| mark.place <= place);
         let is_far = |mark: &Mark<E>| mark.place.abs_diff(place) >= distance;
         let before = next.checked_sub(1).and_then(|index| self.marks.get(index));
         if before.is_none_or(is_far) && self.marks.get(next).is_none_or(is_far) {
-            self.marks.insert(next, Mark { snapshot: session.snapshot(), place, is_needed: false });
+            self.marks.insert(next, Mark { snapshot: Box::new(session.snapshot()), place, is_needed: false });
             self.thin();
         }
     }
