@@ -81,11 +81,19 @@ impl Builder {
     /// Opens a block; the one before, if still open, goes on there.
     pub fn open(&mut self, block: BlockId) {
         self.terminate(Terminator::Jump(block));
-        let layout = &mut self.function.layout;
-        layout.extend(self.ways.extract_if(.., |(to, _)| *to == block).map(|(_, way)| way));
-        layout.push(block);
+        self.place_ways(block);
+        self.function.layout.push(block);
         self.open = Some(block);
         self.cost = None;
+    }
+
+    /// Places the blocks that only cost before the block that they lead to; there may be such blocks before those.
+    fn place_ways(&mut self, to: BlockId) {
+        let ways: Vec<_> = self.ways.extract_if(.., |(leads_to, _)| *leads_to == to).collect();
+        for (_, way) in ways {
+            self.place_ways(way);
+            self.function.layout.push(way);
+        }
     }
 
     /// A block that only costs and continues at `to`; it is before it, if that is still to be opened.

@@ -2,6 +2,8 @@
 //!
 //! A finding is a defect of the compiler, never of the user's program.
 
+use cranelift_entity::EntitySet;
+
 use super::function::{Function, Signatures};
 use super::inst::{Address, Base, BlockId, Callee, Class, InstKind, Operand, Terminator};
 
@@ -22,7 +24,11 @@ pub struct Malformed {
 /// # Errors
 /// The first finding.
 pub fn verify(function: &Function, signatures: &Signatures) -> Result<(), Malformed> {
-    let checker = Checker { function, signatures };
+    let mut placed = EntitySet::new();
+    for &block in &function.layout {
+        placed.insert(block);
+    }
+    let checker = Checker { function, signatures, placed };
     for &block in &function.layout {
         let data = &function.blocks[block];
         for (index, inst) in data.insts.iter().enumerate() {
@@ -37,6 +43,8 @@ pub fn verify(function: &Function, signatures: &Signatures) -> Result<(), Malfor
 struct Checker<'a> {
     function: &'a Function,
     signatures: &'a Signatures,
+    /// The blocks of the layout.
+    placed: EntitySet<BlockId>,
 }
 
 impl Checker<'_> {
@@ -95,8 +103,7 @@ impl Checker<'_> {
     }
 
     fn terminator(&self, terminator: &Terminator) -> Result<(), String> {
-        let blocks = self.function.blocks.len();
-        check(terminator.targets().all(|to| (to.as_u32() as usize) < blocks), "no such block")?;
+        check(terminator.targets().all(|to| self.placed.contains(to)), "no such block")?;
         match *terminator {
             Terminator::Branch { condition, .. } => self.expect(condition, Some(Class::I32)),
             Terminator::Table { index, .. } => self.expect(index, Some(Class::I32)),
