@@ -2,8 +2,8 @@
 
 import { el, head, short } from "./dom.js";
 import { color, fit, steps } from "./plot.js";
+import { Trail } from "./trail.js";
 
-const KEPT = 30_000;
 const VIEWS = { XY: [0, 1], XZ: [0, 2], YZ: [1, 2], "3D": null };
 
 export function mountPath(section, link) {
@@ -13,12 +13,12 @@ export function mountPath(section, link) {
   const canvas = el("canvas", { className: "plot", role: "img", "aria-label": "Path of the tool", tabIndex: 0 });
   const where = el("p", { className: "readout mono" });
   section.append(el("div", { className: "canvas" }, canvas), where);
-  const trail = new Float64Array(KEPT * 4);
-  let first = 0, count = 0, axes = [], switches = [], latest = null, dirty = false;
+  const trail = new Trail();
+  let axes = [], switches = [], latest = null, dirty = false;
   const turn = { around: -0.6, up: 0.5 };
 
   function clear() {
-    first = count = 0;
+    trail.clear();
     request();
   }
 
@@ -34,27 +34,13 @@ export function mountPath(section, link) {
   const chosen = () => choices.map((choice) => Number(choice.value));
   const position = (frame, axis) => (frame.axes[axis].hasFeedback ? frame.axes[axis].position : frame.axes[axis].dest);
 
-  function add(frame) {
-    const point = chosen().map((axis) => position(frame, axis));
-    const last = ((first + count - 1 + KEPT) % KEPT) * 4;
-    if (count && point.every((value, index) => trail[last + 1 + index] === value)) return false;
-    trail.set([frame.tick, ...point], ((first + count) % KEPT) * 4);
-    if (count < KEPT) count++;
-    else first = (first + 1) % KEPT;
-    return true;
-  }
-
   /** What there is to be seen, in the coordinates of the machine. */
   function bounds() {
-    const box = [[Infinity, -Infinity], [Infinity, -Infinity], [Infinity, -Infinity]];
+    const { box } = trail;
     const widen = (dimension, value) => {
       box[dimension][0] = Math.min(box[dimension][0], value);
       box[dimension][1] = Math.max(box[dimension][1], value);
     };
-    for (let index = 0; index < count; index++) {
-      const at = ((first + index) % KEPT) * 4;
-      for (let dimension = 0; dimension < 3; dimension++) widen(dimension, trail[at + 1 + dimension]);
-    }
     chosen().forEach((axis, dimension) => {
       const { negative, positive } = latest.axes[axis];
       if (negative > -1e29) widen(dimension, negative);
@@ -73,7 +59,7 @@ export function mountPath(section, link) {
   }
 
   /** A point of the machine on the canvas. */
-  function projection(box, width, height) {
+  function projection(box, width, height, left) {
     const flat = VIEWS[view.value];
     const middle = box.map(([low, high]) => (low + high) / 2);
     const project = flat
@@ -86,11 +72,17 @@ export function mountPath(section, link) {
     const corners = [];
     for (const x of box[0]) for (const y of box[1]) for (const z of box[2]) corners.push(project([x, y, z]));
     const [w, h] = [0, 1].map((side) => Math.max(1e-9, 2 * Math.max(...corners.map((corner) => Math.abs(corner[side])))));
-    const scale = Math.min((width - 60) / w, (height - 50) / h);
+    const scale = Math.min((width - left - 24) / w, (height - 50) / h);
     return (point) => {
       const [x, y] = project(point);
-      return [width / 2 + x * scale, height / 2 - y * scale];
+      return [(width + left - 24) / 2 + x * scale, height / 2 - y * scale];
     };
+  }
+
+  /** What the labels at the left take. */
+  function margin(context, box) {
+    const { values, digits } = steps(...box[(VIEWS[view.value] ?? [0, 1])[1]], 4);
+    return Math.max(24, ...values.map((value) => context.measureText(value.toFixed(digits)).width + 12));
   }
 
   function paint() {
@@ -100,10 +92,10 @@ export function mountPath(section, link) {
     const [line, quiet, bad] = ["--line", "--quiet", "--bad"].map((name) => css.getPropertyValue(name));
     context.clearRect(0, 0, width, height);
     context.font = "11px system-ui, sans-serif";
-    const box = bounds(), at = projection(box, width, height);
+    const box = bounds(), at = projection(box, width, height, margin(context, box));
     grid(context, box, at, line, quiet);
     edges(context, box, at, bad);
-    way(context, at);
+    trail.draw(context, at, [view.value, turn, box], color(0));
     const tool = at(chosen().map((axis) => position(latest, axis)));
     context.fillStyle = bad;
     context.beginPath();
@@ -170,20 +162,6 @@ export function mountPath(section, link) {
     });
   }
 
-  function way(context, at) {
-    context.strokeStyle = color(0);
-    context.lineWidth = 1.6;
-    context.beginPath();
-    for (let index = 0; index < count; index++) {
-      const from = ((first + index) % KEPT) * 4;
-      const point = at([trail[from + 1], trail[from + 2], trail[from + 3]]);
-      if (index) context.lineTo(...point);
-      else context.moveTo(...point);
-    }
-    context.stroke();
-    context.lineWidth = 1;
-  }
-
   canvas.addEventListener("pointermove", (event) => {
     if (!(event.buttons & 1)) return;
     turn.around += event.movementX / 120;
@@ -209,13 +187,11 @@ export function mountPath(section, link) {
     });
     clear();
   });
-  link.on("cut", ({ tick }) => {
-    while (count && trail[((first + count - 1) % KEPT) * 4] > tick) count--;
-  });
+  link.on("cut", ({ tick }) => trail.cut(tick));
   link.on("frame", (frame) => {
     const before = latest?.tick;
     latest = frame;
-    if (!frame.past && add(frame)) request();
+    if (!frame.past && trail.add(frame.tick, chosen().map((axis) => position(frame, axis)))) request();
     else if (frame.tick !== before) request();
     where.textContent = chosen().map((axis) => `${axes[axis]?.name ?? axis} ${short(position(frame, axis))}`).join("   ");
   });

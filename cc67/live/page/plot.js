@@ -1,5 +1,7 @@
 // Curves on a canvas: lanes one above the other, each with its own scale, over one axis of time.
 
+import { Pen } from "./pen.js";
+
 const COLORS = {
   light: ["#1a5fd0", "#c2410c", "#0f766e", "#9333ea", "#b91c1c", "#4d7c0f", "#be185d", "#0e7490"],
   dark: ["#6ea8ff", "#ff9d5c", "#4fd1c5", "#c79bff", "#ff8a80", "#b5e36b", "#ff8ac4", "#67d8ef"],
@@ -163,33 +165,38 @@ function drawCurve(context, layout, lane, signal) {
   if (last < first) return;
   context.strokeStyle = color(signal);
   context.lineWidth = 1.4;
-  context.lineJoin = "round";
+  context.lineJoin = "bevel";
   context.beginPath();
-  let column = null, low = 0, high = 0, before = null;
+  const pen = new Pen(context), scale = devicePixelRatio || 1;
+  let column = null, low = 0, high = 0, x = 0, y = 0, before = null;
   const flush = () => {
     if (column === null) return;
-    context.lineTo(column, low);
-    if (high !== low) context.lineTo(column, high);
+    const [from, to] = before === null || before < y ? [low, high] : [high, low];
+    const turns = before === null || low < Math.min(before, y) || high > Math.max(before, y);
+    if (turns && low !== high) {
+      pen.to(x, from);
+      pen.to(x, to);
+    }
+    pen.to(x, y);
+    before = y;
   };
   for (let row = first; row <= last; row++) {
-    const x = layout.x(history.tick(row)), y = layout.y(lane, history.value(row, signal));
-    const at = Math.round(x * 2) / 2;
-    if (lane.digital && before !== null && before !== y) {
-      flush();
-      column = null;
-      context.lineTo(x, before);
-    }
+    const [nextX, nextY] = [layout.x(history.tick(row)), layout.y(lane, history.value(row, signal))];
+    const at = Math.round(nextX * scale);
     if (at === column) {
-      low = Math.min(low, y);
-      high = Math.max(high, y);
+      low = Math.min(low, nextY);
+      high = Math.max(high, nextY);
+      // An edge of a bit stays upright.
+      if (!lane.digital) x = nextX;
     } else {
       flush();
-      [column, low, high] = [at, y, y];
-      if (row === first) context.moveTo(x, y);
+      if (lane.digital && before !== null) pen.to(nextX, before);
+      [column, low, high, x] = [at, nextY, nextY, nextX];
     }
-    before = y;
+    y = nextY;
   }
   flush();
+  pen.end();
   context.stroke();
   context.lineWidth = 1;
 }

@@ -95,6 +95,7 @@ struct Page {
     mailbox: Arc<Mailbox>,
     /// The time from one frame to the next; `None` for no frames.
     every: Option<Duration>,
+    /// When the last frame was due.
     last: Instant,
     /// The row of samples that it needs next, and of which list.
     next_row: u64,
@@ -402,8 +403,9 @@ impl<E: Engine> Stage<E> {
             speed: [self.clock.speed(), self.clock.measured(tick)],
         };
         for page in self.pages.values_mut() {
-            let is_due = page.every.is_some_and(|every| page.last.elapsed() + BEAT / 2 >= every);
-            if !is_due || !page.mailbox.wants_frame() {
+            let Some(every) = page.every else { continue };
+            let since = page.last.elapsed();
+            if since + BEAT / 2 < every || !page.mailbox.wants_frame() {
                 continue;
             }
             if page.generation != self.samples.generation {
@@ -411,7 +413,8 @@ impl<E: Engine> Stage<E> {
             }
             let (bytes, next) = frame::frame(session, moment, &self.samples, page.next_row);
             page.next_row = next;
-            page.last = now();
+            // A frame that is a beat late does not move those after it, so that as many come as a page asks for.
+            page.last = if since < 2 * every { page.last + every } else { now() };
             page.mailbox.show(bytes);
         }
     }

@@ -44,9 +44,11 @@ files! {
     "/threads.js" = SCRIPT "threads.js";
     "/scope.js" = SCRIPT "scope.js";
     "/plot.js" = SCRIPT "plot.js";
+    "/pen.js" = SCRIPT "pen.js";
     "/history.js" = SCRIPT "history.js";
     "/export.js" = SCRIPT "export.js";
     "/path.js" = SCRIPT "path.js";
+    "/trail.js" = SCRIPT "trail.js";
     "/timeline.js" = SCRIPT "timeline.js";
     "/source.js" = SCRIPT "source.js";
     "/tabs.js" = SCRIPT "tabs.js";
