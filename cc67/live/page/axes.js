@@ -99,6 +99,7 @@ class Row {
     const [atDest, at, error, velocity, limits] = this.cells;
     say(atDest, short(dest));
     say(at, short(hasFeedback ? position : load));
+    mark(at, "load", !hasFeedback);
     attribute(at, "title", hasFeedback ? "Measured position" : "Open loop: where the load is");
     say(error, hasFeedback ? short(dest - position) : "–");
     say(velocity, short(this.#velocity));

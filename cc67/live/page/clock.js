@@ -17,7 +17,7 @@ export function mountClock(bar, link) {
     { "aria-label": "Speed", onchange: () => link.ask("run", { speed: Number(choose.value) }) },
     ...SPEEDS.map((factor) => el("option", { value: String(factor) }, `${factor}×`)),
   );
-  const reload = el("button", { type: "button", title: "Compile, load and start the programs (Alt+R)", onclick: () => link.ask("reload") }, "Reload");
+  const reload = el("button", { type: "button", className: "far", title: "Compile, load and start the programs (Alt+R)", onclick: () => link.ask("reload") }, "Reload");
   let running = true;
 
   function toggle() {

@@ -9,7 +9,7 @@ import { mountWheels } from "./wheels.js";
 const HOLD = 400;
 
 export function mountIo(section, link) {
-  const add = el("input", { type: "number", min: "0", max: "2047", "aria-label": "Show bit", placeholder: "bit", style: "width:7em" });
+  const add = el("input", { type: "number", min: "0", max: "2047", "aria-label": "Show bit", placeholder: "show bit", style: "width:7em" });
   head(section, el("span", { className: "grow" }), add);
   const inputs = el("div", { className: "bits" }), outputs = el("div", { className: "bits" });
   const sliders = el("div", { className: "sliders" });

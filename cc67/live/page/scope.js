@@ -46,7 +46,7 @@ class Scope {
       ...[0.01, 0.1, 1, 2, 5, 10, 30, 120, 600].map((seconds) => el("option", { value: String(seconds), selected: seconds === 5 }, `${seconds} s`)));
     this.trigger = el("select", { "aria-label": "Trigger" }, el("option", { value: "none" }, "none"));
     this.edge = el("select", { "aria-label": "Trigger edge" }, el("option", { value: "1" }, "↑"), el("option", { value: "-1" }, "↓"));
-    this.level = el("input", { type: "number", value: "0.5", step: "any", "aria-label": "Trigger level", style: "width:6em" });
+    this.level = el("input", { type: "number", value: "0.5", step: "any", "aria-label": "Trigger level", style: "width:5em" });
     for (const control of [this.trigger, this.edge, this.level]) control.addEventListener("input", () => this.#request());
     this.pause = el("button", { type: "button", "aria-pressed": "false", onclick: () => this.#hold() }, "Hold");
     const files = (name, make) => el("button", { type: "button", "aria-label": `Save ${name}`, onclick: () => make() }, name);

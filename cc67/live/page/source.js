@@ -2,6 +2,9 @@
 
 import { el, head } from "./dom.js";
 
+/** Remarks and traps that are shown, the last ones. */
+const REMARKS = 200;
+
 /** The files as the board has sent them. */
 export class Sources {
   files = new Map();
@@ -37,7 +40,7 @@ export function mountSource(section, link, sources) {
   const body = el("div", { className: "body", tabIndex: 0, "aria-label": "Text of the file" }, code);
   body.style.padding = "0";
   section.append(body);
-  let file = "", rows = [], threads = [], errors = [], remarks = new Map();
+  let file = "", rows = [], threads = [], errors = [], known = "", remarks = new Map();
 
   function show(name) {
     if (!sources.files.has(name)) return;
@@ -48,6 +51,7 @@ export function mountSource(section, link, sources) {
       return { who, element: el("div", { className: "row" }, el("span", { className: "number" }, String(index + 1)), who, text) };
     });
     code.replaceChildren(...rows.map((row) => row.element));
+    known = "";
     annotate();
     places();
   }
@@ -75,7 +79,11 @@ export function mountSource(section, link, sources) {
       const place = stack.find((call) => call.line && sources.find(call.file) === file);
       if (place) here.set(place.line, [...(here.get(place.line) ?? []), thread]);
     }
-    rows.forEach((row, index) => {
+    const now = JSON.stringify([...here]);
+    // Threads are heard of ten times a second, and mostly stay where they are.
+    const isNew = now !== known;
+    known = now;
+    if (isNew) rows.forEach((row, index) => {
       const mine = here.get(index + 1);
       row.element.classList.toggle("here", Boolean(mine));
       row.who.replaceChildren(...(mine ?? []).map((thread) => el("span", { title: `thread ${thread}`, role: "img", "aria-label": `thread ${thread}`, "data-thread": thread })));
@@ -101,7 +109,9 @@ export function mountSource(section, link, sources) {
 
   link.on("sources", (message) => {
     sources.files = new Map(message.sources.map(({ file, text }) => [file, text.split(/\r?\n/)]));
-    choose.replaceChildren(...[...sources.files.keys()].map((name) => el("option", { value: name }, name)));
+    const names = [...sources.files.keys()], last = (name) => normal(name).split("/").pop();
+    const isOne = (name) => names.filter((other) => last(other) === last(name)).length === 1;
+    choose.replaceChildren(...names.map((name) => el("option", { value: name, title: name }, isOne(name) ? last(name) : name)));
     show(sources.files.has(file) ? file : [...sources.files.keys()][0]);
   });
   link.on("threads", (message) => {
@@ -109,8 +119,10 @@ export function mountSource(section, link, sources) {
     places();
   });
   link.on("log", ({ entries }) => {
-    for (const entry of entries) if (entry.file && entry.line) remarks.set(`${entry.file}:${entry.line}`, entry);
-    annotate();
+    const placed = entries.filter((entry) => entry.file && entry.line);
+    for (const entry of placed) remarks.set(`${entry.file}:${entry.line}:${entry.text}`, entry);
+    while (remarks.size > REMARKS) remarks.delete(remarks.keys().next().value);
+    if (placed.length) annotate();
   });
   link.on("programs", (message) => {
     errors = message.errors;

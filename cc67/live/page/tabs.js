@@ -17,6 +17,7 @@ export function mountTabs(parent, panels) {
       section.classList.toggle("shown", section.id === id);
       attribute(tabs[index], "aria-selected", section.id === id);
       tabs[index].tabIndex = section.id === id ? 0 : -1;
+      if (section.id === id) tabs[index].scrollIntoView({ block: "nearest", inline: "nearest" });
     });
     dispatchEvent(new Event("resize"));
   }

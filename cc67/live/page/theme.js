@@ -22,5 +22,5 @@ export function themeButton() {
   };
   system.addEventListener("change", apply);
   apply();
-  return el("button", { type: "button", title: "Light or dark", "aria-label": "Theme", onclick: flip }, "◐");
+  return el("button", { type: "button", className: "far", title: "Light or dark", "aria-label": "Theme", onclick: flip }, "◐");
 }
