@@ -4,6 +4,8 @@ mod asks;
 mod browser;
 mod firefox;
 mod hostile;
+#[cfg(target_os = "linux")]
+mod lasting;
 mod page;
 mod panels;
 
