@@ -4,15 +4,36 @@ use std::fmt;
 
 use kmotiondef::{AxisId, Bit};
 
-/// How an axis' load moves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Model {
+macro_rules! models {
+    ($($(#[doc = $doc:literal])+ $name:ident = $word:literal,)*) => {
+        /// How an axis' load moves.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum Model {
+            $($(#[doc = $doc])+ $name,)*
+        }
+
+        impl Model {
+            /// All of them, as a machine file calls them.
+            pub const NAMED: &[(&str, Self)] = &[$(($word, Self::$name)),*];
+        }
+
+        impl fmt::Display for Model {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(match self {
+                    $(Self::$name => $word,)*
+                })
+            }
+        }
+    };
+}
+
+models! {
     /// Goes where the axis commands, whatever its gains.
-    Follow,
+    Follow = "follow",
     /// Is driven by what the board really outputs.
-    Motor,
+    Motor = "motor",
     /// Nothing moves it.
-    None,
+    None = "none",
 }
 
 /// Whether an axis' load turns its encoder.
@@ -268,14 +289,4 @@ pub struct Wire {
     pub invert: bool,
     /// The delay of the input.
     pub delay_s: f64,
-}
-
-impl fmt::Display for Model {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Follow => "follow",
-            Self::Motor => "motor",
-            Self::None => "none",
-        })
-    }
 }

@@ -1,4 +1,4 @@
-//! The subcommands: one file each, one row each in [`Command`].
+//! The subcommands: one file each, one row each, of which [`Command`] is made.
 //!
 //! A subcommand has arguments, does its work with what is below it, and says by an exit code how that went.
 
@@ -56,77 +56,69 @@ struct Arguments {
 /// Our version and that of the firmware which the simulated board models.
 const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (models KFLOP firmware 4.34)");
 
-#[derive(Debug, Subcommand)]
-enum Command {
-    /// Compile programs into threads, execute them on the simulated board, print the console
-    Run(Box<run::RunArguments>),
-    /// Compile and link a program for a thread into an image, FILE(N).out
-    Build(build::BuildArguments),
-    /// Compile programs and report what is wrong with them
-    Check(check::CheckArguments),
-    /// Talk to a simulated board: script commands, programs, what they print; interactive or from a script
-    Console(Box<console::ConsoleArguments>),
-    /// Serve a simulated board to programs that use the vendor's client library, in place of its server
-    Serve(Box<serve::ServeArguments>),
-    /// Show a simulated board on a page in the browser: axes, inputs and outputs, console, threads, signals
-    #[cfg(feature = "live")]
-    Live(Box<live::LiveArguments>),
-    /// Debug programs, also backwards: in the terminal, from a script, or for an editor (--dap)
-    Debug(Box<debug::DebugArguments>),
-    /// Show what is in an image: headers, symbols, lines, instructions, calls, stack
-    Inspect(inspect::InspectArguments),
-    /// Show what functions and loops cost on the controller's processor, from the code itself
-    Cycles(cycles::CyclesArguments),
-    /// Run programs on the modelled firmware and on your own firmware file, and show where they differ
-    Compare(Box<compare::CompareArguments>),
-    /// Show how two images differ
-    Diff(diff::DiffArguments),
-    /// The simulated firmware as a file to link against, and as a list
-    Firmware(firmware::FirmwareArguments),
-    /// Run programs and compare their consoles with what is expected
-    Test(test::TestArguments),
-    /// Make a project folder ready for an editor and for CI
-    Init(init::InitArguments),
-    /// List the example programs, or copy one that stands alone
-    Examples(examples::ExamplesArguments),
-    /// Draw saved data over time: columns of numbers, traces (.csv, .vcd)
-    Plot(plot::PlotArguments),
-    /// Run programs many times over parameters, FILE.toml, and make a table; needs the Python package
-    Sweep(package::PackageArguments),
-    /// Step and frequency response, following error, tolerance of a program; needs the Python package
-    Study(package::PackageArguments),
-    /// Print a script that completes commands and options in a shell
-    Completions(shell::CompletionArguments),
-    /// Write manual pages
-    Man(shell::ManArguments),
+macro_rules! subcommands {
+    ($(
+        $(#[doc = $doc:literal])+
+        $(#[cfg($condition:meta)])?
+        $name:ident($kind:ty) as $arguments:ident => $run:expr;
+    )*) => {
+        #[derive(Debug, Subcommand)]
+        enum Command {
+            $($(#[doc = $doc])+ $(#[cfg($condition)])? $name($kind),)*
+        }
+
+        impl Command {
+            fn run(&self) -> Result<Exit> {
+                match self {
+                    $($(#[cfg($condition)])? Self::$name($arguments) => $run,)*
+                }
+            }
+        }
+    };
 }
 
-impl Command {
-    fn run(&self) -> Result<Exit> {
-        match self {
-            Self::Run(arguments) => run::run(arguments),
-            Self::Build(arguments) => build::build(arguments),
-            Self::Check(arguments) => check::check(arguments),
-            Self::Console(arguments) => console::console(arguments),
-            Self::Serve(arguments) => serve::serve(arguments),
-            #[cfg(feature = "live")]
-            Self::Live(arguments) => live::live(arguments),
-            Self::Debug(arguments) => debug::debug(arguments),
-            Self::Inspect(arguments) => inspect::inspect(arguments),
-            Self::Cycles(arguments) => cycles::cycles(arguments),
-            Self::Compare(arguments) => compare::compare(arguments),
-            Self::Diff(arguments) => diff::diff(arguments),
-            Self::Firmware(arguments) => firmware::firmware(arguments),
-            Self::Test(arguments) => test::test(arguments),
-            Self::Init(arguments) => init::init(arguments),
-            Self::Examples(arguments) => examples::examples(arguments),
-            Self::Plot(arguments) => plot::plot(arguments),
-            Self::Sweep(arguments) => package::run("sweep", arguments),
-            Self::Study(arguments) => package::run("study", arguments),
-            Self::Completions(arguments) => shell::completions(arguments, Arguments::command()),
-            Self::Man(arguments) => shell::man(arguments, Arguments::command()),
-        }
-    }
+subcommands! {
+    /// Compile programs into threads, execute them on the simulated board, print the console
+    Run(Box<run::RunArguments>) as arguments => run::run(arguments);
+    /// Compile and link a program for a thread into an image, FILE(N).out
+    Build(build::BuildArguments) as arguments => build::build(arguments);
+    /// Compile programs and report what is wrong with them
+    Check(check::CheckArguments) as arguments => check::check(arguments);
+    /// Talk to a simulated board: script commands, programs, what they print; interactive or from a script
+    Console(Box<console::ConsoleArguments>) as arguments => console::console(arguments);
+    /// Serve a simulated board to programs that use the vendor's client library, in place of its server
+    Serve(Box<serve::ServeArguments>) as arguments => serve::serve(arguments);
+    /// Show a simulated board on a page in the browser: axes, inputs and outputs, console, threads, signals
+    #[cfg(feature = "live")]
+    Live(Box<live::LiveArguments>) as arguments => live::live(arguments);
+    /// Debug programs, also backwards: in the terminal, from a script, or for an editor (--dap)
+    Debug(Box<debug::DebugArguments>) as arguments => debug::debug(arguments);
+    /// Show what is in an image: headers, symbols, lines, instructions, calls, stack
+    Inspect(inspect::InspectArguments) as arguments => inspect::inspect(arguments);
+    /// Show what functions and loops cost on the controller's processor, from the code itself
+    Cycles(cycles::CyclesArguments) as arguments => cycles::cycles(arguments);
+    /// Run programs on the modelled firmware and on your own firmware file, and show where they differ
+    Compare(Box<compare::CompareArguments>) as arguments => compare::compare(arguments);
+    /// Show how two images differ
+    Diff(diff::DiffArguments) as arguments => diff::diff(arguments);
+    /// The simulated firmware as a file to link against, and as a list
+    Firmware(firmware::FirmwareArguments) as arguments => firmware::firmware(arguments);
+    /// Run programs and compare their consoles with what is expected
+    Test(test::TestArguments) as arguments => test::test(arguments);
+    /// Make a project folder ready for an editor and for CI
+    Init(init::InitArguments) as arguments => init::init(arguments);
+    /// List the example programs, or copy one that stands alone
+    Examples(examples::ExamplesArguments) as arguments => examples::examples(arguments);
+    /// Draw saved data over time: columns of numbers, traces (.csv, .vcd)
+    Plot(plot::PlotArguments) as arguments => plot::plot(arguments);
+    /// Run programs many times over parameters, FILE.toml, and make a table; needs the Python package
+    Sweep(package::PackageArguments) as arguments => package::run("sweep", arguments);
+    /// Step and frequency response, following error, tolerance of a program; needs the Python package
+    Study(package::PackageArguments) as arguments => package::run("study", arguments);
+    /// Print a script that completes commands and options in a shell
+    Completions(shell::CompletionArguments) as arguments => shell::completions(arguments, Arguments::command());
+    /// Write manual pages
+    Man(shell::ManArguments) as arguments => shell::man(arguments, Arguments::command());
 }
 
 /// `-std=c99`, as other compilers take it, is `--std=c99` here.

@@ -71,11 +71,7 @@ fn axes(machine: &mut MachineFile, table: &Table<'_>) -> Read<()> {
 fn axis(axis: &mut Axis, table: &Table<'_>) -> Read<()> {
     keys!(table, |key, value| {
         "name" => value.text()?.clone_into(&mut axis.name);
-        "model" => {
-            let models = [Model::Follow, Model::Motor, Model::None].map(|model| (model.to_string(), model));
-            let named: Vec<(&str, Model)> = models.iter().map(|(name, model)| (name.as_str(), *model)).collect();
-            axis.model = value.choice(&named)?;
-        };
+        "model" => axis.model = value.choice(Model::NAMED)?;
         "units" => value.text()?.clone_into(&mut axis.units);
         "counts_per_unit" => axis.counts_per_unit = not_zero(&value)?;
         "encoder" => {
