@@ -8,6 +8,7 @@ mod circles;
 mod imports;
 mod layers;
 mod options;
+mod remarks;
 mod shapes;
 mod tokens;
 mod wildcards;
