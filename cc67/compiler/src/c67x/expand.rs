@@ -305,6 +305,13 @@ impl Expander<'_> {
         }
         let operands =
             Operands { dst, src1: self.finalizer.arg(inst.src1), src2, mem, field: inst.field, pred };
+        let is_large =
+            matches!(inst.src1, Arg::Value(Value::Number(number)) if !(-16..=15).contains(&number));
+        if is_large && inst.kind == Kind::Add && step(Kind::Add, &operands, access, inst.span).is_none() {
+            // The register does not count on any more, as it did where this was selected.
+            self.emit(Kind::Mvk, &Operands { src2: Final::None, ..operands }, Access::None);
+            return self.emit(Kind::Add, &Operands { src1: dst, ..operands }, Access::None);
+        }
         self.emit(inst.kind, &operands, access);
     }
 

@@ -40,8 +40,8 @@ kinds! {
     Call = [];
     /// The address of an object in the frame.
     FrameAddress = [];
-    /// `dst = src1 + src2`; a constant is src1.
-    Add = [AddLRXrR, AddSRXrR, AddDRRR, AddLRXrR swapped, AddSRXrR swapped, AddLC5XrR, AddSC5XrR, AddDU5RR];
+    /// `dst = src1 + src2`; a constant of 16 bits is src1.
+    Add = [AddLRXrR, AddSRXrR, AddDRRR, AddLRXrR swapped, AddSRXrR swapped, AddLC5XrR, AddSC5XrR, AddDU5RR, Addk];
     /// `dst = src1 - src2`; a constant is src1.
     Sub = [SubLRXrR, SubSRXrR, SubLXrRR, SubDRRR swapped, SubLC5XrR, SubSC5XrR];
     /// `dst = src2`; src1 is the constant 0.

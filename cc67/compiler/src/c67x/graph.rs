@@ -14,6 +14,9 @@ use super::step::{Access, Step};
 pub(super) struct Edge {
     pub(super) to: u32,
     pub(super) cycles: u8,
+    /// The cycles where no interrupt comes between the two: fewer, if the result of `to` may be in flight when the
+    /// step before reads its register.
+    pub(super) sheltered: i8,
 }
 
 /// The edges of a region; branches are the last nodes.
@@ -111,15 +114,22 @@ struct Builder {
 
 impl Builder {
     fn edge(&mut self, from: u32, to: u32, cycles: u8) {
+        self.edge_sheltered(from, to, cycles.cast_signed());
+    }
+
+    /// An edge whose cycles are at least 0 only where an interrupt may come.
+    fn edge_sheltered(&mut self, from: u32, to: u32, sheltered: i8) {
         if from == to {
             return;
         }
+        let cycles = sheltered.max(0).cast_unsigned();
         let edges = &mut self.graph.after[from as usize];
         if let Some(known) = edges.iter_mut().find(|edge| edge.to == to) {
             known.cycles = known.cycles.max(cycles);
+            known.sheltered = known.sheltered.max(sheltered);
             return;
         }
-        edges.push(Edge { to, cycles });
+        edges.push(Edge { to, cycles, sheltered });
         self.graph.before[to as usize] += 1;
     }
 
@@ -141,7 +151,7 @@ impl Builder {
             let at = write.reg.index();
             for index in 0..self.readers[at].len() {
                 let RegisterReader { step: reader, last } = self.readers[at][index];
-                self.edge(reader, step, last.saturating_sub(write.stage));
+                self.edge_sheltered(reader, step, last.cast_signed() - write.stage.cast_signed());
             }
             for index in 0..self.writers[at].len() {
                 let RegisterWriter { step: writer, stage, pred: other } = self.writers[at][index];

@@ -4,14 +4,15 @@
 //!
 //! 1. [`select`]: IR to instructions over virtual registers ([`code`]); [`forms`] says which forms of the table can do
 //!    what an instruction asks for.
-//! 2. [`predicate`]: short branches become conditions. [`copies`]: what selection copied is read at its source. [`turns`]: several turns of a short loop as one. [`sides`]: every register gets one of the two files; copies where an instruction reaches only one.
+//! 2. [`predicate`]: short branches become conditions. [`copies`]: what selection copied is read at its source. [`turns`]: several turns of a short loop as one. [`counters`]: what loops count is tested itself. [`sides`]: every register gets one of the two files; copies where an instruction reaches only one.
 //! 3. [`live`], [`allocate`], [`spill`]: registers of the processor, those that survive a thread switch.
 //! 4. [`frame`], [`moves`], [`expand`]: calls, the stack, the beginning and the ends; regions of [`step`]s.
 //! 5. [`graph`], [`resources`], [`schedule`]: packets, [`refine`] makes them smaller; [`pipeline`], [`modulo`]: those of loops whose turns overlap.
 //! 6. [`layout`]: words, on fetch packets, with what the linker completes ([`text`]).
 //!
 //! Rules that all stages keep (`c67x.md`):
-//! - no register is read while a result for it is in flight: an interrupt would make it land early;
+//! - no register is read while a result for it is in flight, for an interrupt would make it land early; except between
+//!   packets of a loop where none is taken, in the slots of its branch ([`modulo`]);
 //! - accesses to memory that others can see keep their order;
 //! - at the end of a region nothing is in flight, so calls, returns and jumps are safe whatever follows;
 //! - nothing that the program needs is at B15 or below, and B15 is a multiple of 8.
@@ -20,6 +21,7 @@ mod abi;
 mod allocate;
 mod code;
 mod copies;
+mod counters;
 mod expand;
 pub(crate) mod externs;
 mod forms;
@@ -55,6 +57,7 @@ use code::Code;
 use expand::{Back, TooLarge};
 use packets::Scheduled;
 use schedule::Order;
+use sides::Policy;
 use text::Words;
 
 /// Writes the functions of a unit, one after another.
@@ -85,6 +88,12 @@ impl Attempt {
     /// Its cycles, as far as one can guess how often each region happens.
     fn cost(&self) -> f32 {
         self.regions.iter().map(|region| region.weight * region.cycles as f32).sum()
+    }
+
+    /// The same of what is in loops.
+    fn loop_cost(&self) -> f32 {
+        let inside = self.regions.iter().filter(|region| region.weight > 1.0);
+        inside.map(|region| region.weight * region.cycles as f32).sum()
     }
 }
 
@@ -131,37 +140,55 @@ impl Generator {
     }
 
     /// The packets of a function. At the level that makes code larger, short loops are tried with several turns as one
-    /// and without, and the better ones stay.
+    /// and without, and all loops with other sides for their registers; the better ones stay.
     fn best(&self, ir: &Function, code: Code) -> Result<Attempt, TooLarge> {
         if self.level != Level::Fast {
-            let frame = self.attempt(ir, code.clone(), Back::Frame);
+            let frame = self.attempt(ir, code.clone(), Back::Frame, Policy::USUAL);
             if self.level == Level::None || code.calls.is_empty() {
                 return frame;
             }
-            let register = self.attempt(ir, code, Back::Register)?;
+            let register = self.attempt(ir, code, Back::Register, Policy::USUAL)?;
             return frame.map(|frame| if register.words() <= frame.words() { register } else { frame });
         }
-        let with_turns = |skipped: u32| {
+        let has_loop = (0..).zip(&code.blocks).any(|(own, block)| block.end.targets().any(|to| to == own));
+        let with_turns = |skipped: u32, policy: Policy| {
             let mut code = code.clone();
             let count = turns::run(&mut code, skipped);
-            (self.attempt(ir, code, Back::Register), count)
+            (self.attempt(ir, code, Back::Register, policy), count)
         };
-        let (mut best, count) = with_turns(0);
+        let (mut best, count) = with_turns(0, Policy::USUAL);
         let mut skipped = 0;
         for index in 0..count.min(MOST_TRIED) {
-            let (other, _) = with_turns(skipped | 1 << index);
+            let (other, _) = with_turns(skipped | 1 << index, Policy::USUAL);
             if other.as_ref().is_ok_and(|other| best.as_ref().map_or(true, |best| other.cost() < best.cost()))
             {
                 best = other;
                 skipped |= 1 << index;
             }
         }
+        for policy in Policy::OTHERS.into_iter().filter(|_| has_loop) {
+            let (other, _) = with_turns(skipped, policy);
+            let costs = |attempt: &Attempt| (attempt.loop_cost(), attempt.cost());
+            if other.as_ref().is_ok_and(|other| best.as_ref().map_or(true, |best| costs(other) < costs(best)))
+            {
+                best = other;
+            }
+        }
         best
     }
 
     /// Takes instructions over virtual registers through the stages that follow.
-    fn attempt(&self, ir: &Function, mut code: Code, back: Back) -> Result<Attempt, TooLarge> {
-        sides::assign(&mut code);
+    fn attempt(
+        &self,
+        ir: &Function,
+        mut code: Code,
+        back: Back,
+        policy: Policy,
+    ) -> Result<Attempt, TooLarge> {
+        if self.level != Level::None {
+            counters::run(&mut code);
+        }
+        sides::assign(&mut code, policy);
         let assignment = allocate::allocate(&mut code, self.level).ok_or(TooLarge::Code)?;
         let order = if self.level == Level::None { Order::Source } else { Order::Early };
         let expanded = expand::expand(ir, &code, &assignment, back)?;

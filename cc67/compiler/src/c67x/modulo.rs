@@ -2,8 +2,9 @@
 //!
 //! Iterative modulo scheduling: steps take their cycles one by one, those first that most depends on; one that finds
 //! no room takes that of others, which are placed again. What a step waits for is what [`graph`] says of two turns one
-//! after another, so no register is read while a result for it is in flight, and an interrupt between any two packets
-//! changes nothing. The branch has its place: six cycles before the next turn begins.
+//! after another. A register is read while a result for it is in flight only where the result's step and the reading one
+//! are in the slots of one branch, where no interrupt is taken (`c67x.md` 2.5); so an interrupt changes nothing. The branch
+//! has its place: six cycles before the next turn begins.
 
 use c67x::Inst;
 
@@ -26,6 +27,8 @@ pub(super) struct Overlap {
     pub(super) commit: u32,
     /// The cycle of each step and its form; the branch is last.
     pub(super) places: Vec<(u32, Inst)>,
+    /// Whether a step may issue before one that reads what its register had until then.
+    pub(super) is_sheltered: bool,
 }
 
 impl Overlap {
@@ -47,6 +50,8 @@ struct Wait {
     to: usize,
     cycles: i64,
     turns: i64,
+    /// The cycles where no interrupt comes between the two; below `cycles` if `to` may come before `from`.
+    sheltered: i64,
 }
 
 /// Finds the shortest period below `limit`. The last of the steps is the branch; `is_certain` says what must not happen
@@ -55,11 +60,15 @@ pub(super) fn search(steps: &[Step], is_certain: impl Fn(usize) -> bool, limit: 
     let waits = waits(steps);
     let is_certain: Vec<bool> = (0..steps.len()).map(is_certain).collect();
     let least = (steps.len() as u32).div_ceil(8).max(BRANCH);
+    // Waits that count everywhere lead to a place with fewer tries.
+    let exposed: Vec<Wait> = waits.iter().map(|wait| Wait { sheltered: wait.cycles, ..*wait }).collect();
     (least..limit).find_map(|period| {
-        (0..2).find_map(|commit| {
-            let search = Finder { steps, waits: &waits, is_certain: &is_certain, period, commit };
+        let ways = [(0, false), (1, false), (0, true), (1, true)];
+        ways.into_iter().find_map(|(commit, is_sheltered)| {
+            let waits = if is_sheltered { &waits } else { &exposed };
+            let search = Finder { steps, waits, is_certain: &is_certain, period, commit };
             let places = search.run()?;
-            Some(Overlap { period, commit, places })
+            Some(Overlap { period, commit, places, is_sheltered })
         })
     })
 }
@@ -74,7 +83,8 @@ fn waits(steps: &[Step]) -> Vec<Wait> {
         for edge in edges {
             let to = edge.to as usize;
             let turns = i64::from(to >= count);
-            waits.push(Wait { from, to: to % count, cycles: edge.cycles.into(), turns });
+            let (cycles, sheltered) = (edge.cycles.into(), edge.sheltered.into());
+            waits.push(Wait { from, to: to % count, cycles, turns, sheltered });
         }
     }
     waits
@@ -140,7 +150,7 @@ impl Finder<'_> {
         for _ in 0..=self.steps.len() {
             let mut is_changed = false;
             for wait in self.waits {
-                let height = heights[wait.to] + wait.cycles - wait.turns * i64::from(self.period);
+                let height = heights[wait.to] + wait.sheltered - wait.turns * i64::from(self.period);
                 if height > heights[wait.from] {
                     heights[wait.from] = height;
                     is_changed = true;
@@ -166,29 +176,51 @@ impl Finder<'_> {
         is_before
     }
 
-    fn earliest(&self, step: usize, placed: &Slots) -> u32 {
+    /// The first cycle of a step, if what it waits for counts as `cycles` says.
+    fn earliest(&self, step: usize, placed: &Slots, cycles: impl Fn(&Wait) -> i64) -> u32 {
         let first = if self.is_certain[step] { self.commit * self.period } else { 0 };
         let waits = self.waits.iter().filter(|wait| wait.to == step && wait.from != step);
         let after = waits.filter_map(|wait| {
             let (at, _) = placed.places[wait.from]?;
-            Some(i64::from(at) + wait.cycles - wait.turns * i64::from(self.period))
+            Some(i64::from(at) + cycles(wait) - wait.turns * i64::from(self.period))
         });
         after.fold(first, |first, cycle| first.max(u32::try_from(cycle).unwrap_or(0)))
     }
 
+    /// Whether a step that waits comes late enough.
+    fn is_met(&self, wait: &Wait, from: u32, to: u32) -> bool {
+        let to = i64::from(to) + wait.turns * i64::from(self.period);
+        let apart = to - i64::from(from);
+        apart >= wait.cycles || apart >= wait.sheltered && self.is_sheltered(to, -apart)
+    }
+
+    /// Whether no interrupt is taken between a packet and the one `cycles` later: both are in the slots of the branch.
+    fn is_sheltered(&self, packet: i64, cycles: i64) -> bool {
+        let period = i64::from(self.period);
+        let own = packet.rem_euclid(period);
+        own >= period - i64::from(BRANCH) && own + cycles < period
+    }
+
+    /// Whether a step can have this cycle after all that it waits for.
+    fn is_after(&self, step: usize, cycle: u32, placed: &Slots) -> bool {
+        let mut waits = self.waits.iter().filter(|wait| wait.to == step && wait.from != step);
+        waits.all(|wait| placed.places[wait.from].is_none_or(|(from, _)| self.is_met(wait, from, cycle)))
+    }
+
     fn place(&self, step: usize, placed: &mut Slots, tried: &mut [Option<u32>]) -> Option<()> {
-        let earliest = self.earliest(step, placed);
+        let earliest = self.earliest(step, placed, |wait| wait.sheltered);
+        let exposed = self.earliest(step, placed, |wait| wait.cycles);
         let forms = &self.steps[step].forms;
-        let free = (earliest..earliest + self.period).find_map(|cycle| {
+        let free = (earliest..exposed + self.period).find_map(|cycle| {
             let inst = forms.iter().copied().find(|inst| placed.resources.fits(inst, cycle))?;
-            Some((cycle, inst))
+            self.is_after(step, cycle, placed).then_some((cycle, inst))
         });
         let (cycle, inst) = match free {
             Some((cycle, inst)) if tried[step].is_none_or(|last| cycle > last || cycle == earliest) => {
                 (cycle, inst)
             }
             _ => {
-                let cycle = tried[step].map_or(earliest, |last| earliest.max(last + 1));
+                let cycle = tried[step].map_or(exposed, |last| exposed.max(last + 1));
                 let inst = *forms.first()?;
                 self.make_room(&inst, cycle, placed)?;
                 (cycle, inst)
@@ -230,8 +262,7 @@ impl Finder<'_> {
     fn remove_broken(&self, step: usize, cycle: u32, placed: &mut Slots) -> Option<()> {
         for wait in self.waits.iter().filter(|wait| wait.from == step) {
             let Some((at, _)) = placed.places[wait.to] else { continue };
-            let first = i64::from(cycle) + wait.cycles - wait.turns * i64::from(self.period);
-            if i64::from(at) < first {
+            if !self.is_met(wait, cycle, at) {
                 if wait.to == self.steps.len() - 1 || wait.to == step {
                     return None;
                 }

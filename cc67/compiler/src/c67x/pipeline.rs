@@ -6,8 +6,8 @@
 //! be known, and no load or store happens that the source does not ask for. Only steps without effect that nobody
 //! reads after the loop happen for a turn that never comes.
 //!
-//! The packets of the loop wait for results as if an interrupt could come anywhere; so they can be entered with
-//! nothing in flight, and one branch in six or more cycles leaves a place where it does come.
+//! No result is in flight where an interrupt may come and an earlier one of its register is still needed; the first
+//! packet is such a place, so the packets of the loop can be entered with nothing in flight.
 
 use c67x::{Inst, Pred};
 
@@ -171,6 +171,7 @@ impl<'a> Loop<'a> {
                 rest = own.extract_if(.., |one| one.turn >= first_unknown && one.cycle >= at).collect();
             }
             now.extend(own);
+            self.sort(&mut now);
             let mut branches = Vec::new();
             if branch {
                 let end = self.fresh();
@@ -214,6 +215,16 @@ impl<'a> Loop<'a> {
         Instance { cycle: i64::from(self.plan.places[step].0) + turn * self.period(), turn, step }
     }
 
+    /// Puts steps in an order in which they could happen one by one: that of their cycles, or, where one may issue before
+    /// another that reads what its register had until then, that of the source.
+    fn sort(&self, list: &mut [Instance]) {
+        if self.plan.is_sheltered {
+            list.sort_unstable_by_key(|one| (one.turn, one.step));
+        } else {
+            list.sort_unstable();
+        }
+    }
+
     /// What happens in some of the passes before every stage has a turn, the branches excepted.
     fn beginnings(&self, passes: std::ops::Range<i64>) -> Vec<Instance> {
         let mut found = Vec::new();
@@ -223,7 +234,7 @@ impl<'a> Loop<'a> {
                 passes.clone().filter(|pass| *pass >= stage).map(|pass| self.instance(step, pass - stage)),
             );
         }
-        found.sort_unstable();
+        self.sort(&mut found);
         found
     }
 
@@ -235,7 +246,7 @@ impl<'a> Loop<'a> {
             let left = (0..turns).filter(|back| stage > i64::from(self.plan.commit) + back);
             found.extend(left.map(|back| self.instance(step, -back)));
         }
-        found.sort_unstable();
+        self.sort(&mut found);
         found
     }
 
@@ -302,7 +313,7 @@ impl<'a> Loop<'a> {
             let near = turns.map(|turn| self.instance(step, turn));
             tail.extend(near.filter(|one| (start..end).contains(&one.cycle)));
         }
-        tail.sort_unstable();
+        self.sort(&mut tail);
         let issued: Vec<(Step, Inst, u32)> = tail
             .iter()
             .filter_map(|one| {

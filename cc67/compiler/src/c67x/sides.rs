@@ -20,16 +20,44 @@ const IMBALANCE: i32 = 2;
 const COPY: i32 = 6;
 /// What a side costs on which a register does not stay where it is wanted.
 const HINT: i32 = 4;
+/// What a side costs from which the instruction that reads the result must fetch it.
+const READER: i32 = 2;
+/// The most that imbalance counts where a register is loaded.
+const LOADS: i32 = 4;
+
+/// What counts in loops of one block besides the number of instructions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Policy {
+    /// For how many cycles an instruction has its unit for itself.
+    weighs_units: bool,
+    /// Where the result of an instruction that reads another's is, if that is decided.
+    follows_readers: bool,
+    /// How many registers each side loads.
+    counts_loads: bool,
+}
+
+impl Policy {
+    /// What is best most often.
+    pub(super) const USUAL: Self = Self { weighs_units: true, follows_readers: true, counts_loads: false };
+    /// What may be better.
+    pub(super) const OTHERS: [Self; 3] = [
+        Self { counts_loads: true, ..Self::USUAL },
+        Self { weighs_units: false, ..Self::USUAL },
+        Self { weighs_units: false, follows_readers: false, counts_loads: false },
+    ];
+}
 
 /// Places all registers and inserts copies.
-pub(super) fn assign(code: &mut Code) {
+pub(super) fn assign(code: &mut Code, policy: Policy) {
     for (reg, at) in &code.params {
         code.regs[*reg].side = Some(at.side());
     }
     spread_bases(code);
-    let indexes = indexes(code);
-    for block in &code.blocks {
-        let mut load = Load { indexes: &indexes, insts: [0; 2], pairs: [0; 2] };
+    let (indexes, readers) = (indexes(code), readers(code));
+    for (number, block) in (0..).zip(&code.blocks) {
+        let policy = block.end.targets().any(|to| to == number).then_some(policy);
+        let (indexes, readers) = (&indexes, &readers);
+        let mut load = Load { indexes, readers, policy, insts: [0; 2], pairs: [0; 2], loads: [0; 2] };
         for inst in &block.insts {
             place(&mut code.regs, inst, &mut load);
         }
@@ -90,10 +118,9 @@ fn place(regs: &mut Regs, inst: &Inst, load: &mut Load<'_>) {
     let side = match (inst.dst.reg(), inst.place) {
         (_, Some(place)) if inst.kind.bytes().is_some() => {
             if let Some(dst) = inst.dst.reg() {
-                let info = &mut regs[dst];
-                let lighter = lighter(if info.is_pair { &load.pairs } else { &load.insts });
-                let wanted = info.hint.map_or(lighter, |reg| reg.side());
-                info.side.get_or_insert(wanted);
+                let wanted = load.loaded(regs, dst);
+                let side = *regs[dst].side.get_or_insert(wanted);
+                load.loads[side.bit() as usize] += 1;
             }
             match place.base {
                 Base::Reg(base) => *regs[base].side.get_or_insert(Side::A),
@@ -111,7 +138,7 @@ fn place(regs: &mut Regs, inst: &Inst, load: &mut Load<'_>) {
         (None, _) => Side::A,
     };
     if !is_nothing {
-        load.insts[side.bit() as usize] += 1;
+        load.insts[side.bit() as usize] += load.weight(inst.kind);
     }
     if let Some(dst) = inst.dst.reg()
         && regs[dst].is_pair
@@ -126,9 +153,60 @@ fn place(regs: &mut Regs, inst: &Inst, load: &mut Load<'_>) {
 struct Load<'a> {
     /// The index that each constant base of an access is used with.
     indexes: &'a SecondaryMap<VReg, PackedOption<VReg>>,
+    /// The result of an instruction that reads each register.
+    readers: &'a SecondaryMap<VReg, PackedOption<VReg>>,
+    /// What counts, if the block jumps to itself.
+    policy: Option<Policy>,
     insts: [i32; 2],
     /// Results that are pairs, of which there are few registers.
     pairs: [i32; 2],
+    /// Registers that were loaded.
+    loads: [i32; 2],
+}
+
+impl Load<'_> {
+    /// Where a register is best loaded.
+    fn loaded(&self, regs: &Regs, dst: VReg) -> Side {
+        let info = &regs[dst];
+        if let Some(hint) = info.hint {
+            return hint.side();
+        }
+        let load = match self.policy {
+            Some(Policy { counts_loads: true, .. }) => &self.loads,
+            Some(_) | None if info.is_pair => &self.pairs,
+            Some(_) | None => &self.insts,
+        };
+        let ahead = (load[1] - load[0]).clamp(-LOADS, LOADS);
+        let on_b = ahead + self.reader(regs, dst, Side::B);
+        if on_b < self.reader(regs, dst, Side::A) { Side::B } else { Side::A }
+    }
+
+    /// What it costs the reader of a result if that is on a side.
+    fn reader(&self, regs: &Regs, dst: VReg, side: Side) -> i32 {
+        if !self.policy.is_some_and(|policy| policy.follows_readers) {
+            return 0;
+        }
+        let reader = self.readers[dst].expand().and_then(|reader| regs[reader].side);
+        if reader.is_some_and(|reader| reader != side) { READER } else { 0 }
+    }
+
+    /// What an instruction counts.
+    fn weight(&self, kind: Kind) -> i32 {
+        let forms = kind.forms().iter().filter(|_| self.policy.is_some_and(|policy| policy.weighs_units));
+        forms.map(|form| form.op.row().timing.stages().unit.into()).next().unwrap_or(1)
+    }
+}
+
+/// The result of an instruction that reads each register, if one does and has its place from elsewhere.
+fn readers(code: &Code) -> SecondaryMap<VReg, PackedOption<VReg>> {
+    let mut readers = SecondaryMap::new();
+    for inst in code.blocks.iter().flat_map(|block| &block.insts) {
+        let Some(dst) = inst.dst.reg() else { continue };
+        for source in [inst.src1, inst.src2].into_iter().filter_map(Arg::reg).filter(|reg| *reg != dst) {
+            readers[source] = dst.into();
+        }
+    }
+    readers
 }
 
 fn lighter(load: &[i32; 2]) -> Side {
@@ -166,7 +244,7 @@ fn best(regs: &Regs, inst: &Inst, dst: VReg, load: &Load<'_>) -> Side {
         if regs[dst].hint.is_some_and(|reg| reg.side() != side) {
             cost += HINT;
         }
-        cost
+        cost + load.reader(regs, dst, side)
     };
     if cost(Side::B) < cost(Side::A) { Side::B } else { Side::A }
 }

@@ -86,6 +86,10 @@ fn unit_side(operands: &Operands) -> Option<Side> {
 }
 
 fn build(form: Form, side: Option<Side>, operands: &Operands) -> Option<Inst> {
+    // It has no source: what it adds to is its destination.
+    if form.op == c67x::Op::Addk && !matches!(operands.src2, Final::None) && operands.src2 != operands.dst {
+        return None;
+    }
     let row = form.op.row();
     let (src1, src2) =
         if form.is_swapped { (operands.src2, operands.src1) } else { (operands.src1, operands.src2) };

@@ -67,9 +67,11 @@ impl Selector<'_> {
         self.push(kind, dst, b, a);
     }
 
-    /// `dst = a + b`; a constant is b.
+    /// `dst = a + b`; a constant is b. Where a register counts on, more constants need no register.
     pub(super) fn add(&mut self, dst: VReg, a: Operand, b: Operand) {
-        let (b, a) = (self.small(b, C5), self.operand(a));
+        let a = self.operand(a);
+        let range = if a == dst { i16::MIN.into()..=i16::MAX.into() } else { C5 };
+        let b = self.small(b, range);
         self.push(Kind::Add, dst, b, a);
     }
 

@@ -110,21 +110,30 @@ fn the_page_of_benches_has_the_cycles_of_the_kernels() {
     }
 }
 
-/// What is farther from the code by hand than 1.3 times, which is the aim, with its cycles.
-///
-/// The code by hand reads registers while results for them are in flight, which the compiler never does: a product of
-/// doubles then takes 9 cycles of a register, not 6.
-const FAR: &[(&str, u64)] = &[("96, 12 a turn", 141), ("16", 121), ("64", 337)];
+/// The cycles of the worked examples, each the best of the levels. None is farther from the code by hand than 1.3 times.
+const REACHED: &[(&str, u64)] = &[
+    ("sum of 1 integer", 14),
+    ("of 12", 55),
+    ("of 96", 307),
+    ("the same, 12 a turn", 19),
+    ("96, 12 a turn", 74),
+    ("2 products of doubles, two sums", 37),
+    ("16", 98),
+    ("64", 242),
+    ("switch, a case", 19),
+    ("switch, the default", 19),
+];
 
 #[test]
 fn worked_examples_are_near_the_code_by_hand() {
-    let mut far = Vec::new();
+    let mut reached = Vec::new();
     for kernel in KERNELS {
         let Some(by_hand) = kernel.by_hand else { continue };
         let best = LEVELS.map(|level| cycles(kernel, level)).into_iter().min().unwrap_or(u64::MAX);
-        if best * 10 > by_hand * 13 {
-            far.push((kernel.what, best));
-        }
+        assert!(best * 10 <= by_hand * 13, "{}: {best} cycles, {by_hand} by hand", kernel.what);
+        reached.push((kernel.what, best));
     }
-    assert_eq!(far, FAR);
+    let is_no_slower =
+        reached.iter().zip(REACHED).all(|(now, before)| now.0 == before.0 && now.1 <= before.1);
+    assert!(is_no_slower && reached.len() == REACHED.len(), "slower than it was: {reached:?}");
 }

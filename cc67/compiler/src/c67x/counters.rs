@@ -1,0 +1,68 @@
+//! What a loop counts and tests needs no second register to be tested in.
+//!
+//! Selection copies a value that others read too to a register that can be tested, of which there are six. At the end of
+//! a loop of one block that copy costs a step of every turn, between the count and the branch. Where nothing after the
+//! loop reads the count, the count itself is tested.
+
+use cranelift_entity::SecondaryMap;
+
+use super::code::{Arg, Code, End, VReg};
+use super::forms::Kind;
+
+/// Registers that are tested inside a turn, at most.
+const TESTED: usize = 2;
+
+/// Rewrites the loops of one block.
+pub(super) fn run(code: &mut Code) {
+    for number in 0..code.blocks.len() {
+        let Some((at, count)) = copied(code, number) else { continue };
+        code.regs[count].is_condition = true;
+        let block = &mut code.blocks[number];
+        block.insts.remove(at);
+        if let Some(tested) = block.end.read_mut() {
+            *tested = count;
+        }
+    }
+}
+
+/// The copy that the branch back to a block tests, and what it copies, if that can be tested instead.
+fn copied(code: &Code, number: usize) -> Option<(usize, VReg)> {
+    let block = &code.blocks[number];
+    let End::Branch { condition, then, otherwise, .. } = block.end else { return None };
+    if then != number as u32 && otherwise != number as u32 {
+        return None;
+    }
+    let at = block.insts.iter().rposition(|inst| inst.written().is_some_and(|(reg, _)| reg == condition))?;
+    let inst = &block.insts[at];
+    let Arg::Reg(count) = inst.src2 else { return None };
+    let is_copy = inst.kind == Kind::Move && inst.condition.is_none() && !code.regs[count].is_pair;
+    let changes = |inst: &super::code::Inst| inst.written().is_some_and(|(reg, _)| reg == count);
+    let before = block.insts[..at].iter().filter(|inst| changes(inst)).count();
+    let is_last = before == 1 && !block.insts[at + 1..].iter().any(changes);
+    let mut tested: Vec<VReg> = Vec::new();
+    for (reg, _) in block.insts.iter().filter_map(|inst| inst.condition) {
+        if !tested.contains(&reg) {
+            tested.push(reg);
+        }
+    }
+    let is_own = is_copy && is_last && tested.len() <= TESTED && !tested.contains(&condition);
+    (is_own && !is_read_elsewhere(code, number, at, [count, condition])).then_some((at, count))
+}
+
+/// Whether the count is read outside of the block, or its copy anywhere but by the branch.
+fn is_read_elsewhere(code: &Code, number: usize, copy: usize, [count, condition]: [VReg; 2]) -> bool {
+    let mut found = SecondaryMap::with_default(false);
+    for (other, block) in code.blocks.iter().enumerate() {
+        let is_own = other == number;
+        for inst in
+            block.insts.iter().enumerate().filter(|(at, _)| !is_own || *at != copy).map(|(_, inst)| inst)
+        {
+            inst.visit_reads(|reg| found[reg] |= reg == condition || reg == count && !is_own);
+        }
+        if let Some(reg) = block.end.read().filter(|_| !is_own) {
+            found[reg] = true;
+        }
+    }
+    let mut arguments = code.calls.iter().flat_map(|call| &call.arguments);
+    found[count] || found[condition] || arguments.any(|(reg, _)| *reg == count || *reg == condition)
+}
