@@ -1,6 +1,6 @@
 //! Kernels: what a call of each takes, beside the vendor's compiler, code by hand and what the processor allows.
 //!
-//! The table is a section of `cc67/benches/README.md`; `CC67_WRITE_BOOK=1` writes it anew.
+//! The tables are a section of `cc67/benches/README.md`; `CC67_WRITE_BOOK=1` writes them anew.
 
 use std::fmt::Write as _;
 
@@ -50,7 +50,7 @@ const KERNELS: &[Kernel] = &[
     kernel!("sum", "of 96", [FIRST, 96], Some(9186), Some(583), 65),
     kernel!("sum12", "the same, 12 a turn", [FIRST, 1], Some(1206), Some(23), 23),
     kernel!("sum12", "96, 12 a turn", [FIRST, 8], Some(9186), Some(65), 65),
-    kernel!("dot", "64 products of doubles, one sum", [FIRST, SECOND, 64], None, None, 7 * 64),
+    kernel!("dot", "64 products of doubles, one sum", [FIRST, SECOND, 64], None, None, 6 * 64),
     kernel!("dot2", "2 products of doubles, two sums", [FIRST, SECOND, 2], Some(380), Some(36), 36),
     kernel!("dot2", "16", [FIRST, SECOND, 16], Some(2508), Some(78), 78),
     kernel!("dot2", "64", [FIRST, SECOND, 64], Some(9804), Some(222), 222),
@@ -58,6 +58,50 @@ const KERNELS: &[Kernel] = &[
     kernel!("sw", "switch, the default", [9], Some(123), Some(15), 15),
     kernel!("copy", "copy of a string of 40 bytes", [SECOND, STRING], None, None, 11 * 40),
     kernel!("crc16", "CRC-16 of 16 bytes", [FIRST, 16], None, None, 16 * 16),
+];
+
+/// A program of `vm/benches/kernels`, with less to do.
+struct Whole {
+    /// The file.
+    name: &'static str,
+    source: &'static str,
+    /// What it does here, for people.
+    what: &'static str,
+    /// Texts of the source, and what they become.
+    less: &'static [(&'static str, &'static str)],
+    /// Cycles of the longest chain of results that wait for each other, where one can be named.
+    limit: Option<u64>,
+}
+
+macro_rules! whole {
+    ($name:literal, $what:literal, $limit:expr, [$($less:expr),*]) => {
+        Whole {
+            name: $name,
+            source: include_str!(concat!("../../../../../vm/benches/kernels/", $name, ".c")),
+            what: $what,
+            less: &[$($less),*],
+            limit: $limit,
+        }
+    };
+}
+
+/// A sample of the filter waits for 19 sums and products of singles, one after another; a step of a sequence for three
+/// instructions; a point's next one for two products and a sum; a term of a matrix product for the sum before.
+const WHOLE: &[Whole] = &[
+    whole!("filter", "100 samples", Some(100 * 19 * 4), [("20000000", "100")]),
+    whole!("integer", "sequences of 1 to 99, 3117 steps", Some(3117 * 3), [("1500000", "100")]),
+    whole!(
+        "mandelbrot",
+        "144 points, 1940 steps",
+        Some(1940 * 24),
+        [("1200", "12"), ("400.0", "4.0"), ("n < 500", "n < 50")]
+    ),
+    whole!("matrix", "two products of 12 by 12", Some(2 * 12 * 12 * 12 * 6), [("120", "12"), ("400", "2")]),
+    whole!("nbody", "20 steps of five bodies", None, [("4000000", "20")]),
+    whole!("recursion", "Fibonacci of 15, Ackermann of 2 and 25", None, [("41", "15"), ("400", "1")]),
+    whole!("sieve", "up to 3000", None, [("300000 - round", "3000"), ("800", "1")]),
+    whole!("text", "100 words", None, [("1000000", "100")]),
+    whole!("trajectory", "two moves", None, [("2500", "2"), ("0.00018", "0.018")]),
 ];
 
 const LEVELS: [Level; 3] = [Level::Small, Level::Full, Level::Fast];
@@ -95,18 +139,41 @@ fn table() -> String {
     table
 }
 
+/// The table of whole programs.
+fn table_of_programs() -> String {
+    let mut table = "| program | limit | `-Os` | `-O1` | `-O2` |\n|---|---:|---:|---:|---:|\n".to_owned();
+    for Whole { name, source, what, less, limit } in WHOLE {
+        let source = less.iter().fold((*source).to_owned(), |source, (from, to)| {
+            assert!(source.contains(from), "{name} has {from}");
+            source.replace(from, to)
+        });
+        let runs = LEVELS.map(|level| machine::run(&build(&source, level)));
+        assert!(runs.iter().all(|run| run.console == runs[0].console), "{name}: {runs:?}");
+        let [small, full, fast] = runs.map(|run| run.cycles);
+        let limit = limit.map_or(String::new(), |cycles| cycles.to_string());
+        // Writing to a string cannot fail.
+        let _ = writeln!(table, "| `{name}`: {what} | {limit} | {small} | {full} | {fast} |");
+    }
+    table
+}
+
+/// The page with a table in place of the one that begins with `head`.
+fn with_table(page: &str, head: &str, table: &str) -> String {
+    let start = page.find(head).expect("the table");
+    let end = start + page[start..].find("\n\n").expect("a text after the table") + 1;
+    format!("{}{table}{}", &page[..start], &page[end..])
+}
+
 #[test]
 fn the_page_of_benches_has_the_cycles_of_the_kernels() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../benches/README.md");
     let page = std::fs::read_to_string(path).expect("the page");
-    let start = page.find("| kernel | vendor |").expect("the table");
-    let end = start + page[start..].find("\n\n").expect("a text after the table") + 1;
-    let table = table();
+    let written = with_table(&page, "| kernel | vendor |", &table());
+    let written = with_table(&written, "| program | limit |", &table_of_programs());
     if std::env::var_os("CC67_WRITE_BOOK").is_some() {
-        let written = format!("{}{table}{}", &page[..start], &page[end..]);
         std::fs::write(path, written).expect("the page can be written");
     } else {
-        assert_eq!(&page[start..end], table, "CC67_WRITE_BOOK=1 writes it anew");
+        assert!(page == written, "CC67_WRITE_BOOK=1 writes it anew");
     }
 }
 
