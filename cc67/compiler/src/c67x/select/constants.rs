@@ -39,8 +39,12 @@ impl Selector<'_> {
     }
 
     fn wide_constant(&mut self, bits: u64) -> VReg {
+        if let Some((_, reg)) = self.early.wide_constants.iter().find(|(known, _)| *known == bits) {
+            return *reg;
+        }
         let reg = self.pair();
         if self.depth > 0 && self.early.insts.len() < MAX_EARLY {
+            self.early.wide_constants.push((bits, reg));
             // Made once, in front of everything.
             let here = std::mem::take(&mut self.out);
             self.wide_in(reg, bits);

@@ -102,6 +102,8 @@ struct Early {
     insts: Vec<Inst>,
     /// Constants that are in registers from there on.
     constants: Vec<(Value, VReg)>,
+    /// Pairs that hold constants from there on.
+    wide_constants: Vec<(u64, VReg)>,
 }
 
 pub(super) struct Selector<'a> {
