@@ -7,6 +7,7 @@ mod devices;
 mod disk_files;
 mod fidelity;
 mod host;
+mod released;
 mod session;
 mod snapshots;
 mod threads;

@@ -1,0 +1,318 @@
+//! What was recorded of the released firmware, asked of the firmware itself: threads, motion, servo and outputs.
+//!
+//! The vectors were measured on it in another emulator, so what does not depend on the compiler of a program comes out to
+//! the last bit here. Where `CC67_FIRMWARE` names no file, this is said.
+
+mod motion;
+mod outputs;
+mod protection;
+mod servo;
+mod threads;
+
+use std::path::Path;
+use std::sync::{Arc, Mutex, OnceLock};
+use std::{env, fs};
+
+use boot::{Around, AtMatch, BootedBoard, FirmwareFile};
+use coff::{Image, Symbol};
+use compiler::firmware::{Firmware, FirmwareFile as Symbols};
+use compiler::target::Target;
+use compiler::{Options, compile, image, pp};
+use kmotiondef::structs::{Chan, Iir};
+use kmotiondef::{CType, GuestAddr, ThreadId};
+use serde_json::Value as Json;
+use vm::memory::GuestMemory;
+
+/// Cycles of a tick.
+const TICK: u64 = 18_000;
+/// Ticks after which a line that was sent has been carried out and answered.
+const ANSWER: u32 = 40;
+/// Digits with which single precision was recorded.
+const SINGLE: usize = 9;
+/// Cycles that every interrupt takes at least.
+const SHORTEST: u64 = 1500;
+/// Cycles between two looks for its end: nothing of a slice is done in them.
+const STEP: u64 = 20;
+
+/// The rows of a recording.
+fn rows(name: &str) -> Vec<Json> {
+    let path = harness::root().join("tests/data/vectors").join(name);
+    let text = fs::read_to_string(path).expect("the measurements are there");
+    text.lines().map(|line| serde_json::from_str(&quoted(line)).expect("each line is JSON")).collect()
+}
+
+/// A line with its fractions as texts: the reader of JSON rounds the last of 17 digits, as a comparison to the bit cannot.
+fn quoted(line: &str) -> String {
+    let mut quoted = String::new();
+    for (index, part) in line.split('"').enumerate() {
+        if index % 2 == 1 {
+            quoted.push_str(&format!("\"{part}\""));
+            continue;
+        }
+        for token in part.split_inclusive(|c| ", []{}:".contains(c)) {
+            let number = token.trim_end_matches(|c| ", []{}:".contains(c));
+            let is_fraction = number.contains(['.', 'e']) && number.parse::<f64>().is_ok();
+            quoted.push_str(&if is_fraction {
+                token.replacen(number, &format!("\"{number}\""), 1)
+            } else {
+                token.to_owned()
+            });
+        }
+    }
+    quoted
+}
+
+fn number(value: &Json) -> f64 {
+    let fraction = value.as_str().and_then(|text| text.parse().ok());
+    fraction.or(value.as_f64()).unwrap_or_else(|| panic!("{value} is a number"))
+}
+
+/// Whether a number is the recorded one to the last bit: single precision was recorded with nine digits.
+fn is_same(found: f64, expect: &Json) -> bool {
+    let digits = expect.as_str().map_or(0, |text| {
+        let mantissa = text.split('e').next().unwrap_or_default();
+        let digits = mantissa.trim_start_matches(['-', '0', '.']);
+        digits.chars().filter(char::is_ascii_digit).count()
+    });
+    let expect = number(expect);
+    if digits <= SINGLE { found as f32 == expect as f32 } else { found == expect }
+}
+
+fn text(value: &Json) -> &str {
+    value.as_str().expect("text")
+}
+
+fn list(value: &Json) -> &[Json] {
+    value.as_array().expect("a list")
+}
+
+fn thread(number: u64) -> ThreadId {
+    ThreadId::new(i32::try_from(number).expect("small")).expect("a thread")
+}
+
+/// Nothing around the board; it counts accesses of the FPGA and keeps what is written.
+#[derive(Clone, Debug, Default)]
+struct Nothing {
+    writes: Vec<(usize, u16)>,
+    accesses: u64,
+}
+
+impl Around for Nothing {
+    fn read(&mut self, _: usize, _: bool, _: u64) -> Option<u16> {
+        self.accesses += 1;
+        None
+    }
+
+    fn write(&mut self, register: usize, _: bool, value: u16, _: u64) {
+        self.accesses += 1;
+        self.writes.push((register, value));
+    }
+
+    fn tick(&mut self, _: &mut AtMatch<'_>) {}
+
+    fn copied(&self) -> Box<dyn Around> {
+        Box::new(self.clone())
+    }
+
+    fn as_any(&mut self) -> &mut dyn std::any::Any {
+        self
+    }
+}
+
+/// A board with the released firmware, and what programs for it are linked against.
+#[derive(Clone)]
+struct Released {
+    board: BootedBoard,
+    symbols: Arc<Symbols>,
+}
+
+/// A board that has just booted, with nothing around it.
+fn released() -> Option<Released> {
+    static BOARD: OnceLock<Option<Mutex<Released>>> = OnceLock::new();
+    let boot = || {
+        let Some(path) = env::var_os("CC67_FIRMWARE") else {
+            println!("not run: CC67_FIRMWARE names no firmware file");
+            return None;
+        };
+        let bytes = fs::read(path).expect("CC67_FIRMWARE names a file");
+        let file = FirmwareFile::read(&bytes).unwrap_or_else(|error| panic!("{error}"));
+        let mut board = BootedBoard::booted(Arc::new(file)).unwrap_or_else(|crash| panic!("{crash}"));
+        board.connect(Box::<Nothing>::default());
+        let symbols = Arc::new(Symbols::read(&bytes).unwrap_or_else(|error| panic!("{error}")));
+        let mut released = Released { board, symbols };
+        released.ticks(10);
+        Some(Mutex::new(released))
+    };
+    let board = BOARD.get_or_init(boot).as_ref()?;
+    Some(board.lock().expect("no test holds it while it fails").clone())
+}
+
+/// The place of a field of an axis, and its type, as recordings name it: `P`, `iir0__A1`, `iir0.d0`.
+fn field(axis: u8, name: &str) -> (u32, CType) {
+    let base = u32::from(axis) * Chan::STRUCTURE.size;
+    let parts: Vec<&str> = name.split("__").flat_map(|part| part.split('.')).collect();
+    if let [filter, coefficient] = parts[..] {
+        let number = filter.trim_start_matches("iir").parse().expect("a filter");
+        let field = Iir::STRUCTURE.fields.iter().find(|field| field.name == coefficient).expect(name);
+        return (base + Chan::IIR.element(number).offset() + field.offset, field.ty);
+    }
+    let field = Chan::STRUCTURE.fields.iter().find(|field| field.name == name).expect(name);
+    (base + field.offset, field.ty)
+}
+
+impl Released {
+    fn address(&self, name: &str) -> GuestAddr {
+        self.board.file().address(name).unwrap_or_else(|| panic!("the firmware has {name}"))
+    }
+
+    /// Memory, data only.
+    fn memory(&mut self) -> &mut GuestMemory {
+        self.board.around_and_memory().1
+    }
+
+    fn peek_axis(&self, axis: u8, name: &str) -> f64 {
+        let (offset, ty) = field(axis, name);
+        let (at, memory) = (self.address("chan").offset(offset), self.board.memory());
+        match ty {
+            CType::Float => f64::from(memory.peek::<f32>(at)),
+            CType::Double => memory.peek(at),
+            _ => f64::from(memory.peek::<i32>(at)),
+        }
+    }
+
+    fn peek(&self, name: &str) -> f64 {
+        self.peek_axis(0, name)
+    }
+
+    fn poke_axis(&mut self, axis: u8, name: &str, value: f64) {
+        let (offset, ty) = field(axis, name);
+        let at = self.address("chan").offset(offset);
+        match ty {
+            CType::Float => self.memory().poke(at, value as f32),
+            CType::Double => self.memory().poke(at, value),
+            _ => self.memory().poke(at, value as i32),
+        }
+    }
+
+    fn poke(&mut self, name: &str, value: f64) {
+        self.poke_axis(0, name, value);
+    }
+
+    /// Sets fields of axis 0.
+    fn set(&mut self, fields: &Json) {
+        for (name, value) in fields.as_object().expect("fields") {
+            self.poke(name, number(value));
+        }
+    }
+
+    fn int(&self, name: &str) -> i32 {
+        self.board.memory().peek(self.address(name))
+    }
+
+    /// Whether a field of an axis is what was recorded of it, to the last bit of what was written down.
+    fn is(&self, axis: u8, name: &str, expect: &Json) -> bool {
+        let found = self.peek_axis(axis, name);
+        if expect.is_boolean() { (found != 0.0) == *expect } else { is_same(found, expect) }
+    }
+
+    /// Runs to the end of the next interrupt, except for a few cycles.
+    fn interrupt(&mut self) {
+        self.reach_match();
+        self.run(SHORTEST);
+        while self.is_in_interrupt() {
+            self.run(STEP);
+        }
+    }
+
+    /// Runs through an interrupt and the slice after it, from one match of the timer to the next.
+    fn next_match(&mut self) {
+        self.run(1);
+        self.reach_match();
+    }
+
+    /// Runs to the next match of the timer; the interrupt is not taken yet.
+    fn reach_match(&mut self) {
+        let next = self.board.next_tick();
+        self.board.run_to(next).unwrap_or_else(|crash| panic!("{crash}"));
+    }
+
+    fn run(&mut self, cycles: u64) {
+        self.board.run_to(self.board.cycle() + cycles).unwrap_or_else(|crash| panic!("{crash}"));
+    }
+
+    fn ticks(&mut self, count: u32) {
+        (0..count).for_each(|_| self.run(TICK));
+    }
+
+    fn is_in_interrupt(&self) -> bool {
+        let registers = self.board.registers();
+        registers.iter().any(|(name, value)| name == "CSR" && value & 1 == 0)
+    }
+
+    /// Sends a line; what the firmware has sent when it has carried it out.
+    fn command(&mut self, line: &str) -> String {
+        self.board.take_bytes();
+        self.board.send_line(line.as_bytes());
+        self.ticks(ANSWER);
+        self.said()
+    }
+
+    /// What was sent since the last time.
+    fn said(&mut self) -> String {
+        let bytes: Vec<u8> = self.board.take_bytes().into_iter().map(|(_, byte)| byte).collect();
+        String::from_utf8_lossy(&bytes).into_owned()
+    }
+
+    /// What was written to registers since the last time, and the number of accesses.
+    fn accesses(&mut self) -> Nothing {
+        let around = self.board.around().expect("it is connected").as_any();
+        std::mem::take(around.downcast_mut::<Nothing>().expect("nothing is around it"))
+    }
+
+    /// Compiles a program and puts it into a thread's space.
+    fn load(&mut self, thread: ThreadId, source: &str) -> Program {
+        let firmware = Firmware::File(Arc::clone(&self.symbols));
+        let options = Options { target: Target::C67x, firmware, ..Options::default() };
+        let source = format!("#include \"KMotionDef.h\"\n{source}");
+        let mut compilation = compile(Path::new("program.c"), source.into(), &options, &pp::Disk);
+        let linked = compilation.link(thread, &options);
+        let linked = linked.unwrap_or_else(|| panic!("{:?}", compilation.diagnostics()));
+        let bytes = image::write(&linked).expect("an image");
+        self.board.load_program(thread, &bytes).unwrap_or_else(|error| panic!("{error}"));
+        Program(Image::read(&bytes).expect("it is one"))
+    }
+
+    /// Starts threads and runs until `persist.UserData[9]` is set, for this many ticks at most.
+    fn run_threads(&mut self, threads: &[ThreadId], most: u32) {
+        let started = self.board.execute_together(threads);
+        started.unwrap_or_else(|crash| panic!("{crash}"));
+        for _ in 0..most {
+            if self.user_data(9) != 0 {
+                return;
+            }
+            self.ticks(1);
+        }
+        panic!("the program does not end");
+    }
+
+    fn user_data(&self, index: usize) -> i32 {
+        let offset = kmotiondef::structs::Persist::USER_DATA.element(index).offset();
+        self.board.memory().peek(self.address("persist").offset(offset))
+    }
+}
+
+/// A program, for the places of its variables.
+struct Program(Image);
+
+impl Program {
+    fn variable(&self, name: &str) -> GuestAddr {
+        let named = |symbol: &&Symbol| symbol.name.to_str().trim_start_matches('_') == name;
+        GuestAddr::new(self.0.symbols.iter().find(named).unwrap_or_else(|| panic!("there is a {name}")).value)
+    }
+}
+
+/// Fails with all that differs.
+fn report(wrong: &[String], count: usize) {
+    println!("{} of {count} rows agree", count - wrong.len());
+    assert!(wrong.is_empty(), "{} of {count} rows differ:\n{}", wrong.len(), wrong.join("\n"));
+}
