@@ -10,6 +10,7 @@
 //! | [`bits`] | the runtime, to find what answers a bit number |
 //! | [`map`] | the loader and guest memory |
 //! | [`limits`], [`modes`] | the servo and the devices |
+//! | [`jumps`] | the linker, the interpreter |
 //! | [`headers`] | the preprocessor |
 //! | [`waiting`] | the warning about waits in the call-back, `--explain` |
 //! | [`hidden`] | the warning about names that the vendor's linker refuses |
@@ -24,6 +25,7 @@ pub mod firmware;
 pub mod headers;
 pub mod hidden;
 mod ids;
+pub mod jumps;
 pub mod limits;
 pub mod map;
 pub mod modes;

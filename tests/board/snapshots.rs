@@ -17,7 +17,7 @@ use vm::native::NativeEngine;
 
 /// Programs of `c-programs/`; together they have motors, switches, a gantry, a spindle, option boards, the serial
 /// port, a call-back, several threads, flash, recordings and a path of the coordinate system.
-const PROGRAMS: [&str; 20] = [
+const PROGRAMS: [&str; 21] = [
     "flash/start_up",
     "gather/log",
     "homing/gantry",
@@ -38,6 +38,7 @@ const PROGRAMS: [&str; 20] = [
     "spindle/orient",
     "threads/callback",
     "threads/mutex",
+    "util/recover",
 ];
 
 /// Instants of a program: random ones between power-up and the tick in which it has ended.

@@ -12,6 +12,7 @@ mod golden;
 mod init;
 #[cfg(unix)]
 mod interrupt;
+mod jumps;
 mod keyboard;
 #[cfg(feature = "live")]
 mod live;

@@ -14,7 +14,7 @@ pub(crate) const LAYERS: &[(&str, &[Row])] = &[
             ("lists", &["firmware", "variables", "map", "headers", "hidden", "modes", "waiting"]),
             ("structures", &["structs"]),
             ("places", &["place", "limits"]),
-            ("types", &["ctype", "bits", "start", "timing"]),
+            ("types", &["ctype", "bits", "jumps", "start", "timing"]),
             ("numbers", &["ids"]),
         ],
     ),

@@ -12,11 +12,13 @@ mod context;
 mod control;
 mod dispatch;
 mod holds;
+mod jumps;
 mod memory;
 mod sequences;
 
 use std::sync::Arc;
 
+use kmotiondef::jumps::JumpFunction;
 use kmotiondef::{CodeAddr, Cycles, GuestAddr};
 
 use self::activation::{Exit, State};
@@ -283,6 +285,9 @@ fn call_firmware<F: Firmware + ?Sized>(
     missing: TrapKind,
 ) -> Result<Option<Stop>, TrapKind> {
     let called = program.signature(called);
+    if let Some(function) = JumpFunction::at(address) {
+        return jumps::call(id, function, called, context, slice).map(|()| None);
+    }
     slice.firmware.signature(address).ok_or(missing)?.check_call(address, called)?;
     let arguments = CallArguments::from_slots(context.arguments(called.params.len()));
     let stop = match slice.call_firmware(id, address, arguments, program.address_of(context.calls.pc))? {

@@ -87,6 +87,30 @@ pub enum TrapKind {
         /// The address called.
         addr: GuestAddr,
     },
+    /// `longjmp` to a place that no `setjmp` has filled.
+    #[error("`longjmp` to the place at {addr}, which no `setjmp` has filled")]
+    NoJumpPlace {
+        /// Address of the `jmp_buf`.
+        addr: GuestAddr,
+    },
+    /// `longjmp` to a place that another thread has filled.
+    #[error("`longjmp` to the place at {addr}, which another thread has filled: threads have a stack each")]
+    ForeignJumpPlace {
+        /// Address of the `jmp_buf`.
+        addr: GuestAddr,
+    },
+    /// `longjmp` into a call that is over.
+    #[error("`longjmp` to the place at {addr}, but the function that called `setjmp` there has returned")]
+    JumpAfterReturn {
+        /// Address of the `jmp_buf`.
+        addr: GuestAddr,
+    },
+    /// More places than are kept.
+    #[error("`setjmp` has filled more than {most} places in functions that have not returned")]
+    TooManyJumpPlaces {
+        /// How many are kept.
+        most: usize,
+    },
     /// A firmware function that exists on the board only.
     #[error("calls `{name}`, whose behaviour the simulated board does not model yet")]
     NotModelled {

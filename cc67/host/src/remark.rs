@@ -130,7 +130,10 @@ fn address(kind: &TrapKind) -> Option<kmotiondef::GuestAddr> {
     match kind {
         TrapKind::Unmapped { addr, .. }
         | TrapKind::WriteProtected { addr }
-        | TrapKind::Misaligned { addr, .. } => Some(*addr),
+        | TrapKind::Misaligned { addr, .. }
+        | TrapKind::NoJumpPlace { addr }
+        | TrapKind::ForeignJumpPlace { addr }
+        | TrapKind::JumpAfterReturn { addr } => Some(*addr),
         _ => None,
     }
 }

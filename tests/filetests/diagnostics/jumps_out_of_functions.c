@@ -1,12 +1,11 @@
 //@ exit: 1
 //@ snapshot
 #include "KMotionDef.h"
-#include <setjmp.h>
-
-jmp_buf place;
 
 main()
 {
+    int place[16];
+
     if (setjmp(place)) return;
     longjmp(place, 1);
 }

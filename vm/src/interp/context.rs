@@ -4,6 +4,7 @@ use std::cell::Cell;
 
 use kmotiondef::{CodeAddr, GuestAddr};
 
+use super::jumps::{JumpPoint, Jumps};
 use crate::engine::Stack;
 use crate::operand::FuncRef;
 use crate::program::{Program, body_of};
@@ -33,6 +34,8 @@ struct Frame {
     base: usize,
     /// Number of registers.
     registers: u16,
+    /// Tells the call from others, once `setjmp` was called in it; else 0.
+    mark: u16,
     /// Address of the frame in guest memory.
     stack_pointer: u32,
 }
@@ -46,6 +49,7 @@ pub(super) struct Calls {
     current: Frame,
     stack: Stack,
     lowest: u32,
+    jumps: Jumps,
     /// The instruction to execute next, or the one that stopped the context.
     pub(super) pc: usize,
     /// Result of the last call, as a slot.
@@ -88,7 +92,7 @@ impl Calls {
         let stack_pointer = self.current.stack_pointer - bytes;
         self.lowest = self.lowest.min(stack_pointer);
         self.pc = body_of(function, count);
-        self.current = Frame { pc: self.pc, base, registers: count, stack_pointer };
+        self.current = Frame { pc: self.pc, base, registers: count, mark: 0, stack_pointer };
         Some(window)
     }
 
@@ -178,9 +182,10 @@ impl Context {
             registers: vec![0; WINDOW],
             calls: Calls {
                 frames: Vec::new(),
-                current: Frame { pc: 0, base: 0, registers: 0, stack_pointer: 0 },
+                current: Frame { pc: 0, base: 0, registers: 0, mark: 0, stack_pointer: 0 },
                 stack: Stack { limit: 0, top: 0 },
                 lowest: 0,
+                jumps: Jumps::default(),
                 pc: 0,
                 result: 0,
             },
@@ -192,9 +197,10 @@ impl Context {
     pub(super) fn reset(&mut self, function: FuncRef, stack: Stack) {
         let calls = &mut self.calls;
         calls.frames.clear();
-        calls.current = Frame { pc: 0, base: 0, registers: 0, stack_pointer: stack.top };
+        calls.current = Frame { pc: 0, base: 0, registers: 0, mark: 0, stack_pointer: stack.top };
         calls.stack = stack;
         calls.lowest = stack.top;
+        calls.jumps.forget();
         calls.pc = function.0 as usize;
         calls.result = 0;
         self.pending = Some(function);
@@ -240,6 +246,44 @@ impl Context {
     /// Sets a register of the current call.
     pub(super) fn set(&mut self, register: u16, slot: u64) {
         self.registers[self.calls.current.base + usize::from(register)] = slot;
+    }
+
+    /// Keeps the place after the current instruction, a call of `setjmp` that fills `place`; what the place is known by.
+    ///
+    /// # Errors
+    /// [`TrapKind::TooManyJumpPlaces`]
+    pub(super) fn set_jump(&mut self, place: GuestAddr) -> Result<u32, TrapKind> {
+        let Calls { frames, current, jumps, pc, .. } = &mut self.calls;
+        let depth = frames.len();
+        jumps.retain(|point| {
+            let frame = if point.depth == depth { Some(&*current) } else { frames.get(point.depth) };
+            frame.is_some_and(|frame| frame.mark == point.mark)
+        });
+        if current.mark == 0 {
+            current.mark = jumps.free_mark();
+        }
+        let registers = &self.registers[current.base..current.base + usize::from(current.registers)];
+        let point = JumpPoint { place, mark: current.mark, depth, pc: *pc + 1, registers: registers.into() };
+        jumps.keep(point)
+    }
+
+    /// Continues at the place that is known by `number`, in the call that it is of; whether that call has not returned.
+    #[must_use]
+    pub(super) fn long_jump(&mut self, number: u32) -> bool {
+        let Calls { frames, current, jumps, pc, .. } = &mut self.calls;
+        let Some(point) = jumps.find(number) else { return false };
+        if point.depth < frames.len() {
+            if frames[point.depth].mark != point.mark {
+                return false;
+            }
+            *current = frames[point.depth];
+            frames.truncate(point.depth);
+        } else if point.depth > frames.len() || current.mark != point.mark {
+            return false;
+        }
+        *pc = point.pc;
+        self.registers[current.base..current.base + point.registers.len()].copy_from_slice(&point.registers);
+        true
     }
 
     /// The calls in progress, innermost first.

@@ -11,12 +11,15 @@ use cranelift_codegen::isa::OwnedTargetIsa;
 use cranelift_codegen::settings::{self, Configurable};
 use cranelift_frontend::FunctionBuilderContext;
 use cranelift_module::{FuncId, Linkage, Module, ModuleError};
+use kmotiondef::GuestAddr;
+use kmotiondef::jumps::JumpFunction;
 
 use super::state::BYTES_PER_CALL;
 use super::translate::{
     HostFunctions, PureFunctions, Translation, begin_signature, function_signature, request_signature,
     thunk_signature, translate, translate_begin, translate_request, translate_thunk,
 };
+use crate::op::Op;
 use crate::operand::Class;
 use crate::program::{Function, Program};
 
@@ -40,6 +43,9 @@ pub enum CompileError {
     /// A function is so long that to translate it takes longer than to interpret it.
     #[error("a function of {0} words takes longer to translate than to interpret")]
     TooLong(usize),
+    /// Machine code of the host has its calls on a native stack, which nothing can leave in the middle.
+    #[error("a program with `setjmp` or `longjmp` is interpreted")]
+    Jumps,
     /// A function is beyond a limit of Cranelift's.
     #[error(transparent)]
     Module(#[from] Box<ModuleError>),
@@ -117,6 +123,11 @@ pub(super) struct StackUse {
 
 /// Compiles all functions of a program, and the ways into them, into `module`.
 pub(super) fn compile(module: &mut dyn Module, job: Job<'_>) -> Result<Functions, CompileError> {
+    let jumps =
+        |op: &Op| matches!(op, Op::CallFw { addr, .. } if JumpFunction::at(GuestAddr::new(addr.0)).is_some());
+    if job.program.ops().iter().any(jumps) {
+        return Err(CompileError::Jumps);
+    }
     let mut compiler = Compiler { context: module.make_context(), module, builder: Default::default() };
     let functions = compiler.declare_functions(job)?;
     let request = compiler.request()?;

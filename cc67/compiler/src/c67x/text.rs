@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use c67x::assemble;
 use c67x::{Inst, Op, Operand, Pred, Side};
 
 use super::abi;
@@ -57,6 +58,14 @@ pub(crate) const fn constant(word: u32) -> u32 {
 pub(crate) const fn branch(word: u32, at: u32, target: u32) -> u32 {
     let bytes = target.wrapping_sub(at & !(c67x::FETCH_PACKET - 1)).cast_signed();
     word & !(0x1F_FFFF << 7) | ((bytes >> 2).cast_unsigned() & 0x1F_FFFF) << 7
+}
+
+/// The words of assembler text, an instruction a line.
+pub(crate) fn assembled(text: &str) -> Vec<u32> {
+    let lines = text.lines().filter(|line| !line.trim().is_empty());
+    let lines: Vec<_> = lines.filter_map(|line| assemble(line, 0).ok()).collect();
+    let joins = |next: usize| lines.get(next).is_some_and(|line| line.joins_previous);
+    lines.iter().enumerate().map(|(index, line)| line.inst.encode(joins(index + 1))).collect()
 }
 
 /// Words that go on at any address; they change the register of indirect calls alone.

@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use std::io;
 use std::path::Path;
 
-use crate::object::{Definition, Object};
+use crate::object::{Definition, Object, Symbol};
 use crate::pp::Files;
 use crate::typed::Linkage;
 
@@ -103,6 +103,18 @@ fn needed_by(users: &[Object], all: &[Object]) -> Vec<Member<'static>> {
         .collect();
     let is_used = |member: &Member<'_>| member.asked().any(|name| used.contains(name));
     members().filter(|member| is_used(member) && !member.names().any(|name| defined.contains(name))).collect()
+}
+
+/// Whether one of `objects` uses one of `names`, and none defines any.
+pub(super) fn uses(objects: &[Object], names: &[&str]) -> bool {
+    let defines = |object: &Object| {
+        let is_external = |symbol: &&Symbol| symbol.linkage == Linkage::External;
+        let symbols = object.symbols.values().filter(is_external);
+        symbols
+            .filter(|symbol| symbol.definition != Definition::None)
+            .any(|symbol| names.contains(&symbol.name.as_str()))
+    };
+    objects.iter().flat_map(used_by).any(|name| names.contains(&name)) && !objects.iter().any(defines)
 }
 
 /// The names that an object leaves to others.

@@ -4,6 +4,7 @@
 //! what commands call. Expressions that are watched take the same [`front`].
 
 mod includers;
+mod jumps;
 mod library;
 mod no_main;
 
@@ -13,6 +14,7 @@ use std::path::Path;
 use std::thread;
 
 use kmotiondef::ThreadId;
+use kmotiondef::jumps::JumpFunction;
 use kmotiondef::timing::Timing;
 
 use includers::includers;
@@ -307,6 +309,9 @@ pub fn link_units(units: &mut [Compilation], thread: ThreadId, options: &Options
     let mut objects: Vec<Object> = units.iter_mut().filter_map(|unit| unit.object.take()).collect();
     let target = objects.first().map_or(options.target, Object::target);
     library::add_needed(&mut objects, |member| compile_library(member, target, options.timing).object);
+    if target == Target::C67x && library::uses(&objects, &JumpFunction::ALL.map(JumpFunction::name)) {
+        objects.push(jumps::object());
+    }
     let firmware = &options.firmware;
     let options = link::Options { thread, firmware, gc: options.gc_sections, addresses: options.addresses };
     match link::link(&objects, &options) {

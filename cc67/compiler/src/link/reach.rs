@@ -7,13 +7,16 @@ use std::collections::{BTreeMap, VecDeque};
 
 use cranelift_entity::SecondaryMap;
 use kmotiondef::GuestAddr;
+use kmotiondef::jumps::JumpFunction;
 
 use super::error::{LinkError, LinkErrorKind};
 use super::names::{Defined, Names};
 use super::{Import, Options};
 use crate::firmware::{FirmwareKind, FirmwareSymbol};
 use crate::ir::function::Signature;
+use crate::ir::inst::Class;
 use crate::object::Object;
+use crate::target;
 use crate::typed::SymbolId;
 use crate::words::suggest;
 
@@ -164,11 +167,24 @@ impl Walk<'_> {
                 FirmwareKind::Variable => Target::Variable(address),
                 FirmwareKind::Function(signature) => Target::Function(address, signature),
             }
+        } else if let Some(function) = self.jump(&symbol.name) {
+            let (name, address) = (symbol.name.clone(), function.address());
+            let import = Import { name, address, is_function: true };
+            self.imports.entry(&symbol.name).or_insert(import);
+            let params = vec![Class::I32; function.parameters()];
+            let result = function.has_result().then_some(Class::I32);
+            Target::Function(address, Some(Signature { params, result }))
         } else {
             self.miss(object, id, user);
             Target::Unknown
         };
         self.reached.targets[object][id] = target;
+    }
+
+    /// `setjmp` or `longjmp`, which the engines of bytecode have.
+    fn jump(&self, name: &str) -> Option<JumpFunction> {
+        JumpFunction::named(name)
+            .filter(|_| self.objects.iter().all(|object| object.target() == target::Target::Sim))
     }
 
     /// Records an undefined symbol, once for each name, with everyone who needs it.

@@ -40,6 +40,8 @@ pub(super) struct Body {
     pub(super) dac_words: BTreeMap<ExprId, DacWord>,
     /// Undeclared names that were reported in this function.
     pub(super) undeclared: BTreeSet<Name>,
+    /// It calls `setjmp`, which returns again after what came between.
+    pub(super) returns_twice: bool,
 }
 
 /// Where statements of a function can go.
@@ -82,6 +84,7 @@ impl Body {
             cut: BTreeMap::new(),
             dac_words: BTreeMap::new(),
             undeclared: BTreeSet::new(),
+            returns_twice: false,
         }
     }
 
@@ -134,6 +137,16 @@ impl Body {
             ExprKind::Int(value) => Some(value),
             _ => None,
         }
+    }
+
+    /// Keeps all locals in memory: after a second return of `setjmp` they are what they were last, in whichever way the
+    /// function came there. A function with something in its frame does not become a part of others, either.
+    pub(super) fn keep_in_memory(&mut self, span: Span) {
+        let hidden = [self.hidden.result_pointer, self.hidden.variable_arguments];
+        for (id, local) in &mut self.locals {
+            local.in_memory |= !local.by_pointer && !hidden.contains(&Some(id));
+        }
+        self.temporary(Types::INT, true, span);
     }
 
     /// Adds a temporary.

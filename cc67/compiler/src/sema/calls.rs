@@ -4,6 +4,8 @@
 //! where another prototype, or none, is in sight (`dialect.md` 2.2, 2.3). So a call in the
 //! typed tree always fits the function it reaches.
 
+use kmotiondef::jumps::JumpFunction;
+
 use super::Sema;
 use super::conversions::AssignmentTarget;
 use super::operands::Operand;
@@ -11,7 +13,7 @@ use crate::ast::{Expression, ExpressionKind};
 use crate::diag::{Diagnostic, Lint};
 use crate::source::Span;
 use crate::ty::{FunctionType, ParameterTypes, QualifiedType, Type, TypeId, Types, convert};
-use crate::typed::{Call, Callee, ExprId, ExprKind, PlaceId, SymbolId};
+use crate::typed::{Call, Callee, ExprId, ExprKind, Linkage, PlaceId, SymbolId};
 
 /// An argument that was looked at.
 type Argument = (Operand, Span);
@@ -77,6 +79,7 @@ impl Sema<'_> {
         if self.unevaluated == 0 {
             self.symbols.mark_used(symbol, span);
         }
+        self.body.returns_twice |= self.unevaluated == 0 && self.is_setjmp(symbol);
         let given = values.len();
         let definition = self.symbols.facts(symbol).definer.as_ref().map(|definer| &definer.call);
         match definition {
@@ -90,6 +93,14 @@ impl Sema<'_> {
                 self.call_unfitting(symbol, definition, visible, values, span)
             }
         }
+    }
+
+    /// Whether a function is the C library's `setjmp`.
+    fn is_setjmp(&self, symbol: SymbolId) -> bool {
+        let entry = self.symbols.get(symbol);
+        entry.linkage == Linkage::External
+            && JumpFunction::named(&entry.name) == Some(JumpFunction::Set)
+            && self.symbols.facts(symbol).definer.is_none()
     }
 
     /// A call of a function that this unit does not define.

@@ -189,6 +189,9 @@ impl Sema<'_> {
         self.scopes.leave();
         self.scopes.leave();
         self.check_labels();
+        if self.body.returns_twice {
+            self.body.keep_in_memory(span);
+        }
         let body = std::mem::replace(&mut self.body, Body::new(String::new(), Types::VOID));
         let end = Span { lo: definition.span.hi.saturating_sub(1), ..definition.span };
         Some(Function {

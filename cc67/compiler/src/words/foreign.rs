@@ -60,8 +60,7 @@ const NO_KEYBOARD: &str = "a program has no keyboard; `persist.UserData` holds w
 
 const TEXT_FILES: &str = "files of the PC are text: `fprintf` writes them, `fgets` and `fscanf` read them";
 
-const NO_JUMPS: &str =
-    "not built yet: cc67 has no jumps out of a function; let the functions in between return a value";
+const JUMPS: &str = "`#include <setjmp.h>` declares it";
 
 /// Every word, by origin.
 const WORDS: &[Word] = &[
@@ -106,8 +105,8 @@ const WORDS: &[Word] = &[
     lead("fread", Computer, TEXT_FILES),
     lead("fwrite", Computer, TEXT_FILES),
     lead("fseek", Computer, TEXT_FILES),
-    lead("setjmp", Computer, NO_JUMPS),
-    lead("longjmp", Computer, NO_JUMPS),
+    lead("setjmp", Computer, JUMPS),
+    lead("longjmp", Computer, JUMPS),
     lead("strtof", Computer, "`strtod` reads a number"),
     lead("None", Script, "write `NULL`, or 0 for a number"),
     lead("True", Script, "use `TRUE` of `KMotionDef.h`, or 1"),

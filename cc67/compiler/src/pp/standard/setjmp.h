@@ -1,4 +1,3 @@
-// The board has no setjmp: a program that calls it does not link.
 #ifndef _SETJMP_H
 #define _SETJMP_H
 typedef int jmp_buf[16];

@@ -1,0 +1,11 @@
+//@ exit: 3
+//@ says: which no `setjmp` has filled
+#include <setjmp.h>
+
+jmp_buf place;
+
+main()
+{
+    longjmp(place, 1);
+}
+//@ cycles: 26
