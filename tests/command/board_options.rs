@@ -62,6 +62,32 @@ fn a_board_answers_where_a_simulated_one_stops_if_that_is_asked_for() {
     }
 }
 
+/// Divides by a variable that is 0.
+const DIVISIONS: &str = "\
+#include \"KMotionDef.h\"
+int a[4] = {0, 5, -5, 65535};
+int zero; unsigned none;
+main()
+{
+  int i;
+  for (i = 0; i < 4; i++) printf(\"%d %d %u %u\\n\", a[i] / zero, a[i] % zero, a[i] / none, a[i] % none);
+}
+";
+
+#[test]
+fn a_division_by_zero_yields_what_the_board_yields_if_that_is_asked_for() {
+    let scratch = Scratch::new("board-options-divisions");
+    scratch.write("a.c", DIVISIONS);
+    let board = "1 0 1 0\n15 5 15 5\n-15 -5 4294967295 0\n131071 32767 131071 32767\n";
+    for engine in ["bytecode", "native", "dsp"] {
+        let stopped = cc67(&scratch, ["run", "a.c", "--engine", engine]);
+        assert_eq!((stopped.code, stopped.stdout.as_str()), (3, ""), "{engine}");
+        assert!(stopped.stderr.contains("integer division by zero"), "{engine}: {}", stopped.stderr);
+        let answered = cc67(&scratch, ["run", "a.c", "--engine", engine, "--board-faults"]);
+        assert_eq!((answered.code, answered.stdout.as_str()), (0, board), "{engine}: {}", answered.stderr);
+    }
+}
+
 fn scratch(name: &str, arguments: &[&str], expect: &str) -> Scratch {
     let scratch = Scratch::new(name);
     let test = format!("// cc67: run {}\n{PROGRAM}", arguments.join(" "));

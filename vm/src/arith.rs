@@ -94,6 +94,53 @@ pub const fn rem_i32_u(a: i32, b: i32) -> Option<i32> {
     if b == 0 { None } else { Some((a.cast_unsigned() % b.cast_unsigned()).cast_signed()) }
 }
 
+/// A division of 32 bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WordDivision {
+    /// [`div_i32_s`]
+    Quotient,
+    /// [`div_i32_u`]
+    UnsignedQuotient,
+    /// [`rem_i32_s`]
+    Remainder,
+    /// [`rem_i32_u`]
+    UnsignedRemainder,
+}
+
+impl WordDivision {
+    /// All of them.
+    pub const ALL: [Self; 4] =
+        [Self::Quotient, Self::UnsignedQuotient, Self::Remainder, Self::UnsignedRemainder];
+
+    /// What the firmware's routine makes of a division of `a` by zero.
+    ///
+    /// It subtracts and shifts once more often than the dividend has bits, and zero can always be subtracted
+    /// (`c67-subset.md` section 7; measured for what that section does not list).
+    #[must_use]
+    pub const fn by_zero(self, a: i32) -> i32 {
+        let (quotient, remainder) = ones(a.unsigned_abs());
+        let (quotient_u, remainder_u) = ones(a.cast_unsigned());
+        match self {
+            Self::Quotient | Self::Remainder if a == i32::MIN => 0,
+            Self::Quotient if a < 0 => quotient.wrapping_neg().cast_signed(),
+            Self::Quotient => quotient.cast_signed(),
+            Self::UnsignedQuotient => quotient_u.cast_signed(),
+            Self::Remainder if a < 0 => remainder.wrapping_neg().cast_signed(),
+            Self::Remainder => remainder.cast_signed(),
+            Self::UnsignedRemainder => remainder_u.cast_signed(),
+        }
+    }
+}
+
+/// Quotient and remainder after as many steps as `a` has bits, and one.
+const fn ones(a: u32) -> (u32, u32) {
+    let steps = u32::BITS - a.leading_zeros() + 1;
+    if steps >= u32::BITS {
+        return (u32::MAX, 0);
+    }
+    ((1 << steps) - 1, a << steps >> steps)
+}
+
 /// The shift count that the processor sees: modulo 64, and whether it reaches the width of 32.
 const fn shift_count(count: i32) -> (u32, bool) {
     let count = count.cast_unsigned() & 63;
@@ -214,6 +261,35 @@ pub fn i64_from_f64_u(value: f64) -> i64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_division_by_zero_yields_what_the_released_firmware_yields() {
+        // Each by zero: dividend, quotient, remainder, unsigned quotient, unsigned remainder.
+        const MEASURED: [[u32; 5]; 16] = [
+            [0, 1, 0, 1, 0],
+            [1, 3, 1, 3, 1],
+            [5, 0xF, 5, 0xF, 5],
+            [8, 0x1F, 8, 0x1F, 8],
+            [0x64, 0xFF, 0x64, 0xFF, 0x64],
+            [0xFFFF_FFFF, 0xFFFF_FFFD, 0xFFFF_FFFF, 0xFFFF_FFFF, 0],
+            [0xFFFF_FFFB, 0xFFFF_FFF1, 0xFFFF_FFFB, 0xFFFF_FFFF, 0],
+            [0xFFFF_FF9C, 0xFFFF_FF01, 0xFFFF_FF9C, 0xFFFF_FFFF, 0],
+            [0xFFFF, 0x1_FFFF, 0x7FFF, 0x1_FFFF, 0x7FFF],
+            [0x1_0000, 0x3_FFFF, 0, 0x3_FFFF, 0],
+            [0x3FFF_FFFF, 0x7FFF_FFFF, 1, 0x7FFF_FFFF, 1],
+            [0x4000_0000, 0xFFFF_FFFF, 0, 0xFFFF_FFFF, 0],
+            [0x7FFF_FFFF, 0xFFFF_FFFF, 0, 0xFFFF_FFFF, 0],
+            [0x8000_0000, 0, 0, 0xFFFF_FFFF, 0],
+            [0x8000_0001, 1, 0, 0xFFFF_FFFF, 0],
+            [0xC000_0000, 1, 0, 0xFFFF_FFFF, 0],
+        ];
+        use WordDivision::{Quotient, Remainder, UnsignedQuotient, UnsignedRemainder};
+        for [a, quotient, remainder, unsigned, rest] in MEASURED {
+            let of = |op: WordDivision| op.by_zero(a.cast_signed()).cast_unsigned();
+            let found = [Quotient, Remainder, UnsignedQuotient, UnsignedRemainder].map(of);
+            assert_eq!(found, [quotient, remainder, unsigned, rest], "{a:#x}");
+        }
+    }
 
     #[test]
     fn division_is_toward_zero_and_never_overflows() {

@@ -28,6 +28,7 @@ use kmotiondef::{GuestAddr, ThreadId};
 
 use self::flash::Flash;
 use self::snapshot::Regions;
+use crate::arith::WordDivision;
 use crate::protection::Protection;
 use crate::trap::{Access, TrapKind};
 
@@ -38,13 +39,13 @@ const SDRAM_BASE: u32 = SDRAM.base.get();
 const IRAM_BASE: u32 = IRAM.base.get();
 const FLASH_BASE: u32 = FLASH.base.get();
 
-/// What accesses do that a program of the simulated board should not make.
+/// What accesses and divisions do that a program of the simulated board should not make.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Faults {
     /// They stop the thread.
     #[default]
     Trap,
-    /// What the real board does: ROM and control registers read 0 and ignore stores, low bits of a misaligned address
+    /// What the real board does: an integer division by zero yields a meaningless value, ROM and control registers read 0 and ignore stores, low bits of a misaligned address
     /// are ignored. Everywhere else, and for stores into program text, they stop the thread all the same.
     Board,
 }
@@ -161,9 +162,21 @@ impl GuestMemory {
         }
     }
 
-    /// Chooses what accesses do that a program should not make.
+    /// Chooses what accesses and divisions do that a program should not make.
     pub const fn set_faults(&mut self, faults: Faults) {
         self.faults = faults;
+    }
+
+    /// What an integer division of `a` by zero comes to.
+    ///
+    /// # Errors
+    /// [`TrapKind::DivisionByZero`], unless programs get what the board yields.
+    #[cold]
+    pub const fn divided_by_zero(&self, op: WordDivision, a: i32) -> Result<i32, TrapKind> {
+        match self.faults {
+            Faults::Trap => Err(TrapKind::DivisionByZero),
+            Faults::Board => Ok(op.by_zero(a)),
+        }
     }
 
     /// Whether on-chip RAM, where the variables of the firmware are, may have been written since this was last asked.

@@ -1,7 +1,7 @@
 //! Mathematics, from `libm` so that every host computes the same.
 
 use kmotiondef::GuestAddr;
-use vm::arith::{canonical_f32, canonical_f64};
+use vm::arith::{self, WordDivision, canonical_f32, canonical_f64};
 use vm::firmware::{Caller, PureFunction};
 use vm::trap::TrapKind;
 
@@ -236,23 +236,30 @@ pub(crate) fn ldexpf(_: &mut Parts, _: &mut Caller<'_>, x: f32, n: i32) -> f32 {
 }
 
 /// Quotient of two ints.
-pub(crate) fn divi(_: &mut Parts, _: &mut Caller<'_>, a: i32, b: i32) -> Result<i32, TrapKind> {
-    if b == 0 { Err(TrapKind::DivisionByZero) } else { Ok(a.wrapping_div(b)) }
+pub(crate) fn divi(_: &mut Parts, caller: &mut Caller<'_>, a: i32, b: i32) -> Result<i32, TrapKind> {
+    or_by_zero(caller, arith::div_i32_s(a, b), WordDivision::Quotient, a)
 }
 
 /// Quotient of two unsigned ints.
-pub(crate) fn divu(_: &mut Parts, _: &mut Caller<'_>, a: u32, b: u32) -> Result<u32, TrapKind> {
-    a.checked_div(b).ok_or(TrapKind::DivisionByZero)
+pub(crate) fn divu(_: &mut Parts, caller: &mut Caller<'_>, a: u32, b: u32) -> Result<u32, TrapKind> {
+    let (a, b) = (a.cast_signed(), b.cast_signed());
+    or_by_zero(caller, arith::div_i32_u(a, b), WordDivision::UnsignedQuotient, a).map(i32::cast_unsigned)
 }
 
 /// Remainder of two ints.
-pub(crate) fn remi(_: &mut Parts, _: &mut Caller<'_>, a: i32, b: i32) -> Result<i32, TrapKind> {
-    if b == 0 { Err(TrapKind::DivisionByZero) } else { Ok(a.wrapping_rem(b)) }
+pub(crate) fn remi(_: &mut Parts, caller: &mut Caller<'_>, a: i32, b: i32) -> Result<i32, TrapKind> {
+    or_by_zero(caller, arith::rem_i32_s(a, b), WordDivision::Remainder, a)
 }
 
 /// Remainder of two unsigned ints.
-pub(crate) fn remu(_: &mut Parts, _: &mut Caller<'_>, a: u32, b: u32) -> Result<u32, TrapKind> {
-    a.checked_rem(b).ok_or(TrapKind::DivisionByZero)
+pub(crate) fn remu(_: &mut Parts, caller: &mut Caller<'_>, a: u32, b: u32) -> Result<u32, TrapKind> {
+    let (a, b) = (a.cast_signed(), b.cast_signed());
+    or_by_zero(caller, arith::rem_i32_u(a, b), WordDivision::UnsignedRemainder, a).map(i32::cast_unsigned)
+}
+
+/// The result of a division of `a`, which is none if it is by zero.
+fn or_by_zero(caller: &Caller<'_>, result: Option<i32>, op: WordDivision, a: i32) -> Result<i32, TrapKind> {
+    result.map_or_else(|| caller.memory.divided_by_zero(op, a), Ok)
 }
 
 /// Quotient of two floats; by zero the not-a-number with the sign of the dividend, as on the board.

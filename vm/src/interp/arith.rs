@@ -4,16 +4,18 @@ use std::convert::identity;
 use std::ops::{BitAnd, BitOr, BitXor, Neg};
 
 use super::activation::Activation;
-use crate::arith;
+use crate::arith::{self, WordDivision};
 use crate::operand::{Bits32, Imm, Imm16, Pool, RegF32, RegF64, RegI32, RegI64};
 use crate::slot::Slot;
 use crate::trap::TrapKind;
 
 /// `name: operand classes -> class = function of the operands`, total or `None` for division by zero.
+/// Of 32 bits, what the firmware makes of that is said, too.
 macro_rules! operations {
     (unary { $($un:ident: $un_src:ident -> $un_dst:ident = $un_fn:expr;)* }
      binary { $($bin:ident: $bin_a:ident, $bin_b:ident -> $bin_dst:ident = $bin_fn:expr;)* }
-     divide { $($div:ident: $div_reg:ident = $div_fn:expr;)* }) => {
+     divide { $($div:ident = $div_fn:expr, by zero $op:ident;)* }
+     divide_long { $($long:ident = $long_fn:expr;)* }) => {
         impl Activation<'_, '_> {
             $(#[inline(always)]
             pub(super) fn $un(&mut self, dst: $un_dst, src: $un_src) {
@@ -26,8 +28,18 @@ macro_rules! operations {
             })*
 
             $(#[inline(always)]
-            pub(super) fn $div(&mut self, dst: $div_reg, a: $div_reg, b: $div_reg) -> Result<(), TrapKind> {
-                let result = $div_fn(self.get(a), self.get(b)).ok_or(TrapKind::DivisionByZero)?;
+            pub(super) fn $div(&mut self, dst: RegI32, a: RegI32, b: RegI32) -> Result<(), TrapKind> {
+                let result = match $div_fn(self.get(a), self.get(b)) {
+                    Some(result) => result,
+                    None => self.state.memory.divided_by_zero(WordDivision::$op, self.get(a))?,
+                };
+                self.set(dst, result);
+                Ok(())
+            })*
+
+            $(#[inline(always)]
+            pub(super) fn $long(&mut self, dst: RegI64, a: RegI64, b: RegI64) -> Result<(), TrapKind> {
+                let result = $long_fn(self.get(a), self.get(b)).ok_or(TrapKind::DivisionByZero)?;
                 self.set(dst, result);
                 Ok(())
             })*
@@ -115,14 +127,16 @@ operations! {
         le_f64: RegF64, RegF64 -> RegI32 = |a: f64, b: f64| i32::from(a <= b);
     }
     divide {
-        div_i32_s: RegI32 = arith::div_i32_s;
-        div_i32_u: RegI32 = arith::div_i32_u;
-        rem_i32_s: RegI32 = arith::rem_i32_s;
-        rem_i32_u: RegI32 = arith::rem_i32_u;
-        div_i64_s: RegI64 = arith::div_i64_s;
-        div_i64_u: RegI64 = arith::div_i64_u;
-        rem_i64_s: RegI64 = arith::rem_i64_s;
-        rem_i64_u: RegI64 = arith::rem_i64_u;
+        div_i32_s = arith::div_i32_s, by zero Quotient;
+        div_i32_u = arith::div_i32_u, by zero UnsignedQuotient;
+        rem_i32_s = arith::rem_i32_s, by zero Remainder;
+        rem_i32_u = arith::rem_i32_u, by zero UnsignedRemainder;
+    }
+    divide_long {
+        div_i64_s = arith::div_i64_s;
+        div_i64_u = arith::div_i64_u;
+        rem_i64_s = arith::rem_i64_s;
+        rem_i64_u = arith::rem_i64_u;
     }
 }
 

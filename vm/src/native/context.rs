@@ -13,6 +13,7 @@ use crate::engine::{ContextId, Slice, Stack, Stop};
 use crate::firmware::{Firmware, Outcome};
 use crate::operand::{FuncRef, SigRef};
 use crate::program::Program;
+use crate::slot::Slot;
 use crate::trap::TrapKind;
 
 /// How a context continues when it is resumed.
@@ -230,7 +231,10 @@ impl Context {
             }
             Reason::NeedsBoard => 0,
             Reason::StackOverflow => return Err(self.overflow(request)),
-            Reason::DivisionByZero => return Err(TrapKind::DivisionByZero),
+            Reason::DivisionByZero => {
+                let op = request.division().ok_or(TrapKind::DivisionByZero)?;
+                slice.memory.divided_by_zero(op, i32::from_slot(request.a))?.into_slot()
+            }
             Reason::Unreachable => return Err(TrapKind::Unreachable),
         };
         Ok(NextStep::Go(Answer::Slot(slot)))

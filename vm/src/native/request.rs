@@ -6,6 +6,7 @@
 
 use kmotiondef::map::SDRAM;
 
+use crate::arith::WordDivision;
 use crate::kind::Width;
 
 /// A request as it leaves compiled code. The layout is that of C, because compiled code writes the fields.
@@ -69,7 +70,8 @@ codes! {
         NeedsBoard,
         /// The stack has no room for the `a` bytes of a call; `stack_pointer` is that of the caller.
         StackOverflow,
-        /// An integer division by zero.
+        /// An integer division of the slot `a` by zero, which one as [`Request::of_division`] says; the answer is what it
+        /// comes to.
         DivisionByZero,
         /// An `unreachable` was reached.
         Unreachable,
@@ -113,6 +115,16 @@ impl Request {
             )
             | None => false,
         }
+    }
+
+    /// The operand that names a division; `None` for one of 64 bits, which no board has.
+    pub(super) fn of_division(op: Option<WordDivision>) -> i64 {
+        op.map_or(0, |op| op as i64 + 1)
+    }
+
+    /// The division that is asked about.
+    pub(super) fn division(&self) -> Option<WordDivision> {
+        WordDivision::ALL.get(usize::try_from(self.b).ok()?.checked_sub(1)?).copied()
     }
 
     /// What a load or store is to move.

@@ -40,7 +40,8 @@ pub(crate) struct BoardArguments {
     /// Simulate every tick and every wait; the results are the same
     #[arg(long)]
     pub(crate) no_shortcuts: bool,
-    /// Answer accesses of ROM, control registers and misaligned addresses as the board does; otherwise they stop the thread
+    /// Answer accesses of ROM, control registers and misaligned addresses, and integer divisions by zero, as the board does;
+    /// otherwise they stop the thread
     #[arg(long)]
     pub(crate) board_faults: bool,
     /// What executes the programs

@@ -10,12 +10,12 @@ use std::mem::offset_of;
 
 use cranelift_codegen::ir::condcodes::{FloatCC, IntCC};
 use cranelift_codegen::ir::immediates::{Ieee32, Ieee64};
-use cranelift_codegen::ir::{AbiParam, InstBuilder, Signature, Value, types};
+use cranelift_codegen::ir::{AbiParam, Block, InstBuilder, Signature, Value, types};
 
-use super::super::request::Reason;
+use super::super::request::{Reason, Request};
 use super::super::state::State;
 use super::{Register, Translator, type_of};
-use crate::arith::{canonical_f32, canonical_f64};
+use crate::arith::{WordDivision, canonical_f32, canonical_f64};
 use crate::operand::{Bits32, Class, Imm, Imm16, Pool, RegF32, RegF64, RegI32, RegI64};
 
 /// Instructions that are one or two of Cranelift's: `name: operands -> result = function`.
@@ -26,7 +26,7 @@ macro_rules! operations {
      float { $($float:ident: $float_reg:ident = $float_fn:ident;)* }
      compare { $($cmp:ident: $cmp_reg:ident = $code:expr;)* }
      compare_float { $($fcmp:ident: $fcmp_reg:ident = $fcode:expr;)* }
-     divide { $($div:ident: $div_reg:ident = $div_fn:ident;)* }) => {
+     divide { $($div:ident: $div_reg:ident = $div_fn:ident, by zero $op:expr;)* }) => {
         impl Translator<'_, '_> {
             $(pub(super) fn $un(&mut self, dst: $un_dst, src: $un_src) {
                 let src = self.get(src);
@@ -70,8 +70,9 @@ macro_rules! operations {
 
             $(pub(super) fn $div(&mut self, dst: $div_reg, a: $div_reg, b: $div_reg) {
                 let (a, b) = (self.get(a), self.get(b));
-                self.trap_if_zero(b);
+                let answered = self.ask_if_zero($div_reg::CLASS, $op, a, b);
                 let value = self.$div_fn(a, b);
+                let value = self.or_answer(answered, value);
                 self.set(dst, value);
             })*
         }
@@ -182,14 +183,14 @@ operations! {
         le_f64: RegF64 = FloatCC::LessThanOrEqual;
     }
     divide {
-        div_i32_s: RegI32 = divide_signed;
-        div_i32_u: RegI32 = divide_unsigned;
-        rem_i32_s: RegI32 = remainder_signed;
-        rem_i32_u: RegI32 = remainder_unsigned;
-        div_i64_s: RegI64 = divide_signed;
-        div_i64_u: RegI64 = divide_unsigned;
-        rem_i64_s: RegI64 = remainder_signed;
-        rem_i64_u: RegI64 = remainder_unsigned;
+        div_i32_s: RegI32 = divide_signed, by zero Some(WordDivision::Quotient);
+        div_i32_u: RegI32 = divide_unsigned, by zero Some(WordDivision::UnsignedQuotient);
+        rem_i32_s: RegI32 = remainder_signed, by zero Some(WordDivision::Remainder);
+        rem_i32_u: RegI32 = remainder_unsigned, by zero Some(WordDivision::UnsignedRemainder);
+        div_i64_s: RegI64 = divide_signed, by zero None;
+        div_i64_u: RegI64 = divide_unsigned, by zero None;
+        rem_i64_s: RegI64 = remainder_signed, by zero None;
+        rem_i64_u: RegI64 = remainder_unsigned, by zero None;
     }
 }
 
@@ -293,19 +294,35 @@ impl Translator<'_, '_> {
         self.builder.ins().ireduce(types::I32, wide)
     }
 
-    fn trap_if_zero(&mut self, divisor: Value) {
+    /// Asks what a division by zero comes to, if it is one: the block after the division, whose parameter is the
+    /// answer. `None` in fast turns, which leave it to the loop as it is.
+    fn ask_if_zero(&mut self, class: Class, op: Option<WordDivision>, a: Value, b: Value) -> Option<Block> {
+        let go_on = self.builder.create_block();
         if let Some(bail) = self.bail() {
-            let go_on = self.builder.create_block();
-            self.builder.ins().brif(divisor, go_on, &[], bail, &[]);
+            self.builder.ins().brif(b, go_on, &[], bail, &[]);
             self.finish_edges();
-            return self.enter(go_on);
+            self.enter(go_on);
+            return None;
         }
-        let (zero, go_on) = (self.builder.create_block(), self.builder.create_block());
-        self.builder.ins().brif(divisor, go_on, &[], zero, &[]);
+        let (zero, done) = (self.builder.create_block(), self.builder.create_block());
+        self.builder.append_block_param(done, type_of(class));
+        self.builder.ins().brif(b, go_on, &[], zero, &[]);
         self.enter_cold(zero);
-        let none = self.builder.ins().iconst(types::I64, 0);
-        self.trap(Reason::DivisionByZero, none);
+        let a = self.slot(class, a);
+        let op = self.builder.ins().iconst(types::I64, Request::of_division(op));
+        let slot = self.request(Reason::DivisionByZero.code(), self.at, a, op);
+        let answer = self.unslot(class, slot);
+        self.builder.ins().jump(done, &[answer.into()]);
         self.enter(go_on);
+        Some(done)
+    }
+
+    /// The answer or `value`, whichever there is.
+    fn or_answer(&mut self, answered: Option<Block>, value: Value) -> Value {
+        let Some(done) = answered else { return value };
+        self.builder.ins().jump(done, &[value.into()]);
+        self.enter(done);
+        self.builder.block_params(done)[0]
     }
 
     /// A quotient that never overflows: by -1 it is the negative.
