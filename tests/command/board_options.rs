@@ -88,6 +88,33 @@ fn a_division_by_zero_yields_what_the_board_yields_if_that_is_asked_for() {
     }
 }
 
+#[test]
+fn the_time_of_cc67s_code_is_that_of_the_code_for_the_controller_on_every_engine() {
+    let scratch = Scratch::new("board-options-timing");
+    scratch.write(
+        "a.c",
+        "#include \"KMotionDef.h\"\ndouble a[50], s;\nmain()\n{\n  int i, n; double t; WaitNextTimeSlice();\n  \
+         t = Time_sec();\n  for (n = 0; n < 3; n++) for (i = 0; i < 50; i++) s += a[i] * 0.5;\n  \
+         printf(\"%.8f\\n\", Time_sec() - t);\n}\n",
+    );
+    let time = |options: &[&str]| {
+        let output = cc67(&scratch, [&["run", "a.c"], options].concat());
+        assert_eq!(output.code, 0, "{options:?}: {}", output.stderr);
+        output.stdout.trim().parse::<f64>().expect("a number")
+    };
+    for level in ["-O0", "-O1", "-O2"] {
+        let own = time(&["--engine", "dsp", level]);
+        for engine in ["bytecode", "native", "dsp"] {
+            let found = time(&["--timing", "cc67", "--engine", engine, level]);
+            assert!((found - own).abs() < 1e-9, "{engine} {level}: {found}, {own}");
+        }
+    }
+    assert!(time(&["--timing", "cc67", "-O2"]) < 0.5 * time(&["--timing", "vendor", "-O2"]));
+    let refused = cc67(&scratch, ["run", "a.c", "--timing", "cc67", "--target", "sim"]);
+    assert_eq!(refused.code, 2);
+    assert!(refused.stderr.contains("`--target sim` makes none"), "{}", refused.stderr);
+}
+
 fn scratch(name: &str, arguments: &[&str], expect: &str) -> Scratch {
     let scratch = Scratch::new(name);
     let test = format!("// cc67: run {}\n{PROGRAM}", arguments.join(" "));

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, bail, ensure};
 use clap::{Args, ValueEnum};
 
 use compiler::diag::levels::Levels;
@@ -37,10 +37,9 @@ pub(crate) struct CompilerArguments {
     /// makes it small
     #[arg(short = 'O', value_name = "LEVEL", default_value = "1", value_parser = level)]
     optimization: Level,
-    /// Whose code the board's time is counted for: vendor, as long as on the board; fast, a cycle or two for each
-    /// instruction; cc67, the code that cc67 makes for the controller (not built yet)
-    #[arg(long, value_name = "CODE", default_value = "vendor", value_parser = timing)]
-    timing: Timing,
+    /// Whose code the board's time is counted for
+    #[arg(long, value_name = "CODE", value_enum, default_value_t)]
+    timing: TimedCode,
     /// What memory makes the processor wait: none, io44 (registers, as the firmware sets them), io44_sd20 (and 20 for
     /// 32 bits of SDRAM), or the cycles for SDRAM
     #[arg(long, value_name = "WAITS", value_parser = wait_states)]
@@ -66,6 +65,18 @@ pub(crate) struct CompilerArguments {
     /// Form of the diagnostics
     #[arg(long, value_name = "FORMAT", value_enum, default_value_t = FormatName::Human)]
     message_format: FormatName,
+}
+
+/// Timings by name.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+enum TimedCode {
+    /// The vendor's: a program takes as long as on the board
+    #[default]
+    Vendor,
+    /// What cc67 makes for the controller: that code is executed, in its true cycles, on every engine
+    Cc67,
+    /// No real one: a cycle or two for each instruction
+    Fast,
 }
 
 /// Targets by name.
@@ -97,6 +108,10 @@ impl CompilerArguments {
         for name in &self.undefines {
             check_macro_name(name)?;
         }
+        ensure!(
+            (self.timing, self.target) != (TimedCode::Cc67, Some(TargetName::Sim)),
+            "`--timing cc67` counts the cycles of code for the controller: `--target sim` makes none"
+        );
         Ok(Options {
             preprocessor: pp::Options {
                 include_dirs: self.include_dirs.clone(),
@@ -116,18 +131,19 @@ impl CompilerArguments {
 
     /// Whose code the board's time is counted for, and with which memory.
     pub(crate) fn timing(&self) -> Timing {
-        match (self.timing, self.wait_states) {
-            (Timing::Vendor(_), Some(waits)) => Timing::Vendor(waits),
-            (timing, _) => timing,
+        match self.timing {
+            TimedCode::Vendor | TimedCode::Cc67 => self.wait_states.map_or(Timing::VENDOR, Timing::Vendor),
+            TimedCode::Fast => Timing::Fast,
         }
     }
 
-    /// What the code is for, if the command line says so.
+    /// What the code is for, if the command line says so: the code of which the cycles are counted has to be there.
     pub(crate) fn target(&self) -> Option<Target> {
-        self.target.map(|target| match target {
-            TargetName::C67x => Target::C67x,
-            TargetName::Sim => Target::Sim,
-        })
+        match (self.target, self.timing) {
+            (Some(TargetName::C67x), _) | (None, TimedCode::Cc67) => Some(Target::C67x),
+            (Some(TargetName::Sim), _) => Some(Target::Sim),
+            (None, TimedCode::Vendor | TimedCode::Fast) => None,
+        }
     }
 
     /// The firmware to link against.
@@ -174,20 +190,6 @@ fn level(text: &str) -> Result<Level, String> {
         "2" => Ok(Level::Fast),
         "s" => Ok(Level::Small),
         _ => Err("expected 0, 1, 2 or s".to_owned()),
-    }
-}
-
-/// The timing of `--timing`.
-fn timing(name: &str) -> Result<Timing, String> {
-    match name {
-        "vendor" => Ok(Timing::VENDOR),
-        "fast" => Ok(Timing::Fast),
-        "cc67" => {
-            Err("the times of cc67's own code are not built yet; `cc67 build` and `cc67 run FILE.out` \
-                       execute that code in its own cycles"
-                .to_owned())
-        }
-        _ => Err("expected vendor, fast or cc67".to_owned()),
     }
 }
 
