@@ -3,6 +3,8 @@
 mod c_interface;
 mod cost;
 mod cost_calls;
+mod cost_statements;
+mod cost_threads;
 mod devices;
 mod disk_files;
 mod fidelity;
