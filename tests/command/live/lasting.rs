@@ -73,7 +73,7 @@ struct Trial {
 /// Beside other tests and builds there is no pace to rely on.
 const MOMENT: Trial = Trial { readings: 4, every: Duration::from_secs(1), frames: 0.2, growth: 24.0 };
 /// The page asks for 30 frames a second.
-const HOUR: Trial = Trial { readings: 60, every: Duration::from_secs(60), frames: 29.5, growth: 2.0 };
+const HOUR: Trial = Trial { readings: 60, every: Duration::from_secs(60), frames: 29.5, growth: 4.0 };
 /// The part of a core that server and board may take at the pace of the real board.
 const CORE: f64 = 0.6;
 
