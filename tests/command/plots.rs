@@ -51,13 +51,13 @@ fn texts(svg: &[u8]) -> Vec<String> {
 }
 
 #[test]
-fn axes_have_the_names_of_the_machine_file() {
+fn axes_have_the_names_and_units_of_the_machine_file() {
     let scratch = Scratch::new("plot-names");
-    scratch.write("m.toml", "[axis.0]\nname = \"X\"\n");
+    scratch.write("m.toml", "[axis.0]\nname = \"X\"\nunits = \"mm\"\n");
     let output = run(&scratch, &["run", "--machine", "m.toml", "--plot", "a.svg", "a.c"]);
     assert_eq!((output.code, output.stderr.as_str()), (0, ""));
     let texts = texts(&fs::read(scratch.path().join("a.svg")).expect("it was written"));
-    for expect in ["axis 0 (X): Dest and Position (units)", "Dest X", "Position X"] {
+    for expect in ["axis 0 (X): Dest and load (mm)", "Dest X", "load X", "axis 0 (X): velocity (mm/s)"] {
         assert!(texts.iter().any(|text| text == expect), "{expect}: {texts:?}");
     }
 }
@@ -68,9 +68,9 @@ fn a_run_is_drawn_with_titles_and_units() {
     let texts = texts(&svg);
     for expect in [
         "a.c",
-        "axis 0: Dest and Position (units)",
+        "axis 0: Dest and load (units)",
         "Dest 0",
-        "Position 0",
+        "load 0",
         "axis 0: velocity (units/s)",
         "1000",
         "bit 46",
@@ -79,6 +79,34 @@ fn a_run_is_drawn_with_titles_and_units() {
     ] {
         assert!(texts.iter().any(|text| text == expect), "`{expect}` is not among {texts:?}");
     }
+}
+
+#[test]
+fn an_axis_that_is_measured_is_drawn_where_it_was_measured() {
+    let scratch = Scratch::new("plot-measured");
+    scratch.write("b.c", PROGRAM.replace("NO_INPUT_MODE", "ENCODER_MODE"));
+    let output = cc67(&scratch, ["run", "--plot", "b.svg", "--trace", "b.csv", "b.c"]);
+    assert_eq!((output.code, output.stderr.as_str()), (0, ""));
+    let texts = texts(&fs::read(scratch.path().join("b.svg")).expect("it was written"));
+    for expect in ["axis 0: Dest and Position (units)", "Position 0", "axis 0: following error (units)"] {
+        assert!(texts.iter().any(|text| text == expect), "`{expect}` is not among {texts:?}");
+    }
+    let table = fs::read_to_string(scratch.path().join("b.csv")).expect("it was written");
+    assert!(
+        table.starts_with("time,dest0,pos0,out0\n"),
+        "a table beside a picture has what it has alone: {table}"
+    );
+}
+
+#[test]
+fn a_picture_in_which_nothing_moves_is_refused() {
+    let scratch = Scratch::new("plot-empty");
+    scratch.write("b.c", "main() { int i; for (i = 0; i < 1000; i++) ; }\n");
+    let output = cc67(&scratch, ["run", "--plot", "b.svg", "b.c"]);
+    let expect =
+        "cc67: b.svg would be empty: no axis was enabled, no bit changed, and no value was recorded\n";
+    assert_eq!((output.code, output.stderr.as_str()), (2, expect));
+    assert!(!scratch.path().join("b.svg").exists());
 }
 
 #[test]

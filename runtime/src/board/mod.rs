@@ -120,8 +120,8 @@ pub struct Board<E = BytecodeEngine> {
     bss_fill: u8,
     /// What an instruction takes, in units of what it takes on the board.
     price: f64,
-    /// What the machine file calls the axes.
-    names: [String; N_CHANNELS],
+    /// What the machine file calls the axes, and their units; an empty unit is the one that nobody named.
+    names: [(String, String); N_CHANNELS],
 }
 
 impl<E: Engine> Board<E> {
@@ -150,7 +150,7 @@ impl<E: Engine> Board<E> {
         let machine = Machine::with_engine(kernel, settings, engine);
         let bss_fill = if config.bss_fill == 0 { connected.cpu.bss_fill } else { config.bss_fill };
         let price = connected.cpu.ns_per_instruction / NS_PER_INSTRUCTION;
-        let names = std::array::from_fn(|axis| connected.axes[axis].name.clone());
+        let names = std::array::from_fn(|axis| connected.axes[axis].names());
         let mut board = Self { machine, programs: Arc::default(), bss_fill, price, names };
         if let Some(flash) = config.flash {
             let stored = board.machine.memory_mut().poke_bytes(FLASH.base, &flash);

@@ -5,7 +5,7 @@
 use std::fmt;
 
 use kmotiondef::bits::{BitDirection, BitKind, range_of};
-use kmotiondef::modes::OutputMode;
+use kmotiondef::modes::{InputMode, OutputMode};
 use kmotiondef::structs::Chan;
 use kmotiondef::variables::{COORD_SYSTEM0, CS0_STOPPING_STATE};
 use kmotiondef::{AxisId, Bit, CodeAddr, Cycles, ThreadId};
@@ -91,6 +91,10 @@ pub struct StandingAxis {
     pub axis: AxisId,
     /// What the machine file calls it; empty for nothing.
     pub name: String,
+    /// What the machine file calls its unit; empty for nothing.
+    pub units: String,
+    /// Whether its position is measured: its `InputMode` is not `NO_INPUT_MODE`.
+    pub is_measured: bool,
     /// Whether it is enabled.
     pub is_enabled: bool,
     /// Its commanded position.
@@ -216,9 +220,12 @@ impl<E: Engine> Board<E> {
         let memory = self.memory();
         let is_enabled = memory.axis(axis, Chan::ENABLE) != 0;
         let velocity = if is_enabled { f64::from(memory.axis(axis, Chan::LAST_VEL)) } else { 0.0 };
+        let (name, units) = self.names[axis.index()].clone();
         StandingAxis {
             axis,
-            name: self.names[axis.index()].clone(),
+            name,
+            units,
+            is_measured: memory.axis(axis, Chan::INPUT_MODE) != InputMode::None.get(),
             is_enabled,
             dest: memory.axis(axis, Chan::DEST),
             position: memory.axis(axis, Chan::POSITION),

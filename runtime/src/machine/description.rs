@@ -47,6 +47,9 @@ pub enum Encoder {
     Absent,
 }
 
+/// The unit of an axis that has no other.
+const COUNTS: &str = "counts";
+
 /// One axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
@@ -76,12 +79,20 @@ pub struct Axis {
     pub index: Option<Index>,
 }
 
+impl Axis {
+    /// What it is called, and its unit; empty where nobody has named them.
+    pub(crate) fn names(&self) -> (String, String) {
+        let units = if self.units == COUNTS { String::new() } else { self.units.clone() };
+        (self.name.clone(), units)
+    }
+}
+
 impl Default for Axis {
     fn default() -> Self {
         Self {
             name: String::new(),
             model: Model::Follow,
-            units: "counts".to_owned(),
+            units: COUNTS.to_owned(),
             counts_per_unit: 1.0,
             encoder: Encoder::Auto,
             lag_s: 0.000_5,

@@ -221,7 +221,7 @@ fn bit_words(bit: Bit, level: u8, source: &Source) -> String {
 }
 
 fn ending_axis(standing: StandingAxis) -> EndingAxis {
-    let StandingAxis { axis, name, is_enabled: enabled, dest, position, velocity, reasons } = standing;
+    let StandingAxis { axis, name, is_enabled: enabled, dest, position, velocity, reasons, .. } = standing;
     let why = reasons.iter().map(ToString::to_string).collect();
     EndingAxis { axis, name, enabled, dest, position, velocity, why }
 }

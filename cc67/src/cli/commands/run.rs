@@ -165,7 +165,7 @@ impl RunArguments {
             return Ok(Exit::Success);
         }
         if let Some(mut trace) = trace {
-            trace.name_axes(ending.axes.iter().map(|axis| (axis.axis, axis.name.as_str())));
+            trace.know_axes(board.standing_axes());
             let title = self.programs.join(OsStr::new(", "));
             trace.finish(&self.trace, board.tick(), &title.to_string_lossy())?;
         }

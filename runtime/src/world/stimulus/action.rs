@@ -242,6 +242,7 @@ actions! {
 
 /// Reads an action.
 pub(super) fn read(reader: &mut StatementReader<'_>) -> Result<Action, Mistake> {
+    without_set(reader)?;
     let word = reader.peek().unwrap_or_default();
     let named = || WRITTEN.iter().copied().flatten().filter(|written| written.word() == word);
     let Some(Written { read, .. }) = named().find(|written| written.fits(reader)).or_else(|| named().next())
@@ -250,6 +251,14 @@ pub(super) fn read(reader: &mut StatementReader<'_>) -> Result<Action, Mistake> 
     };
     reader.advance();
     read(reader)
+}
+
+/// Refuses `set` before what is written without it, as in `set adc 3 = 950`.
+fn without_set(reader: &mut StatementReader<'_>) -> Result<(), Mistake> {
+    let meant = reader.word(1).filter(|word| reader.peek() == Some("set") && *word != "bit");
+    let meant = meant.and_then(|word| WRITTEN.iter().copied().flatten().find(|form| form.word() == word));
+    let Some(Written { usage, .. }) = meant else { return Ok(()) };
+    Err((reader.column(), format!("`{usage}` is written without `set`")))
 }
 
 /// The words that actions begin with, for a message.

@@ -290,6 +290,7 @@ mod tests {
             ("at -1s set bit 3", "x.stim:1:4: expected a time such as 1.5s, 20ms or 90us, found `-1s`"),
             ("at 1s set bit", "x.stim:1:14: expected a bit from 0 to 2047, found the end of the statement"),
             ("set bit 5 now", "x.stim:1:11: expected 0 or 1, found `now`"),
+            ("set adc 3 = 950", "x.stim:1:1: `adc N = VALUE` is written without `set`"),
             ("set bit 5 =", "x.stim:1:12: expected 0 or 1, found the end of the statement"),
             ("bit 5 = 2", "x.stim:1:9: expected 0 or 1, found `2`"),
             ("bit 5 = 1 now", "x.stim:1:11: expected the end of the statement, found `now`"),

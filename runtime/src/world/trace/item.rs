@@ -209,6 +209,12 @@ impl Item {
         kinds.map(|(kind, _)| Self { kind, index: axis.index() }).collect()
     }
 
+    /// Where the load of every axis is, in machine coordinates.
+    #[must_use]
+    pub fn of_loads() -> Vec<Self> {
+        AxisId::all().flat_map(|axis| Self::new(&format!("load{axis}"))).collect()
+    }
+
     /// What kind of value it is: its name without the number.
     #[must_use]
     pub fn kind(self) -> &'static str {

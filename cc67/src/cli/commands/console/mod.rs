@@ -232,7 +232,7 @@ impl<'a, E: Engine> Console<'a, E> {
         self.rig.finish(&mut |event| shown.note(&event))?;
         let axes = self.rig.session.board().standing_axes();
         if let Some(trace) = &mut self.shown.trace {
-            trace.name_axes(axes.iter().map(|axis| (axis.axis, axis.name.as_str())));
+            trace.know_axes(axes);
         }
         self.shown.finish(self.rig.session.tick())?;
         Ok(self.shown.seen.exit(End::AllEnded, true).0)

@@ -1,15 +1,14 @@
 //! Draws a chart as a picture, with the same code as SVG and as PNG.
 
 use std::fmt::Write as _;
-use std::sync::Once;
 
 use anyhow::{Result, anyhow};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{FontStyle, register_font};
 
 use super::chart::{Chart, Line, Panel, Strip};
+use super::letters::{self, Pixels};
 
 /// Width of the picture in pixels.
 const WIDTH: u32 = 1000;
@@ -102,7 +101,7 @@ pub(super) fn png(chart: &Chart) -> Result<Vec<u8>> {
     let mut pixels = vec![255; (width * height * 3) as usize];
     draw(
         chart,
-        &BitMapBackend::with_buffer(&mut pixels, (width, height)).into_drawing_area(),
+        &Pixels(BitMapBackend::with_buffer(&mut pixels, (width, height))).into_drawing_area(),
         Curves::Drawn,
     )?;
     let mut file = Vec::new();
@@ -118,19 +117,10 @@ fn height(chart: &Chart) -> u32 {
     TITLE + PANEL * panels + STRIP * strips + FOOT
 }
 
-/// Letters of our own, so that a picture does not depend on what fonts a computer has.
-fn register_letters() {
-    static ONCE: Once = Once::new();
-    ONCE.call_once(|| {
-        let registered = register_font("sans-serif", FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT);
-        debug_assert!(registered.is_ok(), "the font is valid");
-    });
-}
-
 type Area<B> = DrawingArea<B, Shift>;
 
 fn draw<B: DrawingBackend>(chart: &Chart, area: &Area<B>, curves: Curves) -> Result<()> {
-    register_letters();
+    letters::register();
     let drawn = (|| -> Result<(), String> {
         area.fill(&WHITE).map_err(text_of)?;
         let (title, mut rest) = area.split_vertically(TITLE);

@@ -5,6 +5,7 @@
 pub(crate) mod chart;
 mod csv;
 mod draw;
+mod letters;
 mod page;
 pub(crate) mod samples;
 mod vcd;

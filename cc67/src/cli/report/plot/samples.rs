@@ -38,15 +38,26 @@ pub(in crate::cli) struct Samples {
     pub(in crate::cli) step: f64,
     /// Until when the last values hold, in seconds.
     pub(in crate::cli) end: f64,
-    /// What axes are called that have a name.
-    pub(in crate::cli) names: BTreeMap<usize, String>,
+    /// The axes by number: name, unit, and whether their position is measured.
+    pub(in crate::cli) axes: BTreeMap<usize, PlottedAxis>,
+}
+
+/// What pictures say of an axis.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(in crate::cli) struct PlottedAxis {
+    /// What it is called; empty for its number.
+    pub(in crate::cli) name: String,
+    /// What its unit is called; empty for `units`.
+    pub(in crate::cli) units: String,
+    /// Whether its position is measured: if not, where its load is says where it is.
+    pub(in crate::cli) is_measured: bool,
 }
 
 impl Samples {
     /// The panels of all quantities but bits.
     pub(in crate::cli) fn panels(&self) -> Vec<Panel> {
         let mut panels: Vec<Panel> = (0..AXES).flat_map(|axis| self.of_axis(axis)).collect();
-        let is_other = |name: &str| is_numbered(name, &["dest", "pos", "out", "bit"]).is_none();
+        let is_other = |name: &str| is_numbered(name, &["dest", "pos", "load", "out", "bit"]).is_none();
         panels.extend(self.plain(is_other));
         panels
     }
@@ -100,10 +111,14 @@ impl Samples {
 
     /// The panels of an axis.
     fn of_axis(&self, axis: usize) -> Vec<Panel> {
-        let (dest, position) = (self.named(&format!("dest{axis}")), self.named(&format!("pos{axis}")));
-        let name = self.names.get(&axis);
-        let label = name.map_or_else(|| axis.to_string(), Clone::clone);
-        let whole = name.map_or_else(|| format!("axis {axis}"), |name| format!("axis {axis} ({name})"));
+        let of = |kind: &str| self.named(&format!("{kind}{axis}"));
+        let (dest, position, load) = (of("dest"), of("pos"), of("load"));
+        let PlottedAxis { name, units, .. } = self.axes.get(&axis).cloned().unwrap_or_default();
+        let units = if units.is_empty() { "units".to_owned() } else { units };
+        let [label, whole] = match name.as_str() {
+            "" => [axis.to_string(), format!("axis {axis}")],
+            name => [name.to_owned(), format!("axis {axis} ({name})")],
+        };
         let panel = |title: &str, unit: &str, lines: Vec<(&str, Points)>| Panel {
             title: format!("{whole}: {title}"),
             unit: unit.to_owned(),
@@ -113,25 +128,34 @@ impl Samples {
                 .collect(),
         };
         let mut panels = Vec::new();
-        let velocity = dest.as_ref().or(position.as_ref()).map(slope);
+        let velocity = dest.as_ref().or(position.as_ref()).or(load.as_ref()).map(slope);
         let error = dest.as_ref().zip(position.as_ref()).map(|(dest, position)| difference(dest, position));
-        let path: Vec<_> = [("Dest", dest), ("Position", position)]
+        let path: Vec<_> = [("Dest", dest), ("Position", position), ("load", load)]
             .into_iter()
             .filter_map(|(name, points)| Some((name, points?)))
             .collect();
         if !path.is_empty() {
             let names: Vec<_> = path.iter().map(|(name, _)| *name).collect();
-            panels.push(panel(&names.join(" and "), "units", path));
+            panels.push(panel(&in_words(&names), &units, path));
         }
         for (title, unit, points) in [
-            ("velocity", "units/s", velocity),
-            ("following error", "units", error),
-            ("output", "", self.named(&format!("out{axis}"))),
+            ("velocity", format!("{units}/s"), velocity),
+            ("following error", units.clone(), error),
+            ("output", String::new(), of("out")),
         ] {
             let Some(points) = points.filter(changes) else { continue };
-            panels.push(panel(title, unit, vec![(title, points)]));
+            panels.push(panel(title, &unit, vec![(title, points)]));
         }
         panels
+    }
+}
+
+/// `Dest, Position and load`.
+fn in_words(names: &[&str]) -> String {
+    match names {
+        [] => String::new(),
+        [name] => (*name).to_owned(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
     }
 }
 
@@ -199,10 +223,13 @@ mod tests {
             rows: vec![(0.0, vec![1.0, 2.0, 0.0, 3.0, 4.0]), (1.0, vec![1.0, 3.0, 1.0, 3.0, 4.0])],
             step: 1.0,
             end: 2.0,
-            names: BTreeMap::from([(2, "Z".to_owned())]),
+            axes: BTreeMap::from([(
+                2,
+                PlottedAxis { name: "Z".to_owned(), units: "mm".to_owned(), is_measured: true },
+            )]),
         };
-        let titles: Vec<_> = samples.panels().into_iter().map(|panel| panel.title).collect();
-        assert_eq!(titles, ["axis 2 (Z): Dest", "axis 2 (Z): velocity", "speed", "bitter"]);
+        let titles: Vec<_> = samples.panels().into_iter().map(|panel| panel.heading()).collect();
+        assert_eq!(titles, ["axis 2 (Z): Dest (mm)", "axis 2 (Z): velocity (mm/s)", "speed", "bitter"]);
         assert_eq!(samples.strips(), [Strip { name: "bit 7".to_owned(), spans: vec![(1.0, 2.0)] }]);
     }
 }

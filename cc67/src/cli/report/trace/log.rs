@@ -87,9 +87,9 @@ impl Log {
         }
     }
 
-    /// What to show, and where each is in a sample.
-    pub(super) fn columns(&self) -> Vec<(usize, &Quantity)> {
-        self.columns.shown().collect()
+    /// What to show, and where each is in a sample; of axes that are not measured the load.
+    pub(super) fn columns(&self, is_measured: impl Fn(usize) -> bool) -> Vec<(usize, &Quantity)> {
+        self.columns.pictured(is_measured)
     }
 
     /// Bits that have changed, in ascending order.

@@ -22,13 +22,15 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Result, anyhow, bail};
 use cc67_host::{Session, WatchError};
-use kmotiondef::{AxisId, Bit, CodeAddr, Cycles, ThreadId, Ticks};
+use kmotiondef::{Bit, CodeAddr, Cycles, ThreadId, Ticks};
+use runtime::standing::StandingAxis;
 use runtime::trace::{Item, Packets, Quantity, Record, TraceRequest};
 use runtime::{Event, EventKind};
 use vm::engine::Engine;
 
 use crate::cli::args::trace::TraceArguments;
 use crate::cli::io::{output, terminal};
+use crate::cli::report::plot::samples::PlottedAxis;
 use crate::cli::report::plot::{self, Form};
 use columns::Columns;
 use log::Log;
@@ -80,7 +82,8 @@ fn requested(
         Form::of(picture)?;
     }
     let quantities = match trace_items {
-        None => Item::of_axes().into_iter().map(Quantity::from).collect(),
+        None if plot.is_empty() => Item::of_axes().into_iter().map(Quantity::from).collect(),
+        None => Columns::of_pictures().into_iter().map(Quantity::from).collect(),
         Some(list) => quantities(list).map_err(refused)?,
     };
     let is_table = |path: &PathBuf| !matches!(suffix(path).as_str(), "vcd" | "json");
@@ -159,8 +162,8 @@ pub(crate) struct Trace {
     order: Order,
     sinks: Vec<Box<dyn Sink>>,
     log: Option<Log>,
-    /// What axes are called in pictures.
-    names: BTreeMap<usize, String>,
+    /// What pictures say of axes.
+    axes: BTreeMap<usize, PlottedAxis>,
     /// The first file that could not be written, and why.
     failed: Option<(PathBuf, io::Error)>,
 }
@@ -196,13 +199,16 @@ impl Trace {
             sinks.push(Box::new(packets::PacketTable::new(&file.path)?));
         }
         let log = (!arguments.plot.is_empty()).then(|| Log::new(request));
-        Ok(Self { order: Order::default(), sinks, log, names: BTreeMap::new(), failed: None })
+        Ok(Self { order: Order::default(), sinks, log, axes: BTreeMap::new(), failed: None })
     }
 
-    /// Pictures call axes as the machine file does.
-    pub(crate) fn name_axes<'a>(&mut self, axes: impl IntoIterator<Item = (AxisId, &'a str)>) {
-        let named = axes.into_iter().filter(|(_, name)| !name.is_empty());
-        self.names.extend(named.map(|(axis, name)| (axis.index(), name.to_owned())));
+    /// Pictures call axes as the machine file does, and show the loads of those that are not measured.
+    pub(crate) fn know_axes(&mut self, axes: Vec<StandingAxis>) {
+        let plotted = |axis: StandingAxis| {
+            let StandingAxis { axis, name, units, is_measured, .. } = axis;
+            (axis.index(), PlottedAxis { name, units, is_measured })
+        };
+        self.axes.extend(axes.into_iter().map(plotted));
     }
 
     /// Completes all files; `end` is the last tick of the run, `title` what pictures are called.
@@ -227,7 +233,7 @@ impl Trace {
         }
         for path in &arguments.plot {
             let Some(log) = &self.log else { continue };
-            let chart = picture::chart(log, title.to_owned(), end, &self.names);
+            let chart = picture::chart(log, title.to_owned(), end, &self.axes);
             plot::write(&chart, Form::of(path)?, path)?;
         }
         Ok(())

@@ -10,15 +10,15 @@ use runtime::trace::{Item, Quantity};
 use super::log::Log;
 use super::unit;
 use crate::cli::report::plot::chart::{Chart, Strip};
-use crate::cli::report::plot::samples::{Column, Samples};
+use crate::cli::report::plot::samples::{Column, PlottedAxis, Samples};
 
 /// Strips in a picture; a program that moves more bits than that is looked at with `--trace`.
 const STRIPS: usize = 16;
 
-/// The chart of a run up to a tick, with the names of axes.
-pub(super) fn chart(log: &Log, title: String, end: Ticks, names: &BTreeMap<usize, String>) -> Chart {
+/// The chart of a run up to a tick; `axes` says how each is named and measured.
+pub(super) fn chart(log: &Log, title: String, end: Ticks, axes: &BTreeMap<usize, PlottedAxis>) -> Chart {
     let end = Cycles::new((end.get() as i64).saturating_mul(Cycles::PER_TICK.get()));
-    let columns = log.columns();
+    let columns = log.columns(|axis| axes.get(&axis).is_none_or(|known| known.is_measured));
     let column = |(_, quantity): &(usize, &Quantity)| Column {
         name: quantity.to_string(),
         unit: unit::of(quantity).to_owned(),
@@ -32,12 +32,15 @@ pub(super) fn chart(log: &Log, title: String, end: Ticks, names: &BTreeMap<usize
         rows: log.samples.iter().map(row).collect(),
         step: seconds(log.step),
         end: seconds(end),
-        names: names.clone(),
+        axes: axes.clone(),
     };
     let panels = samples.panels();
     let mut strips = bits(log, end);
     strips.truncate(STRIPS);
-    strips.extend(threads(log));
+    // When threads had the processor is beside what they did; alone it is no picture of a motion.
+    if !(panels.is_empty() && strips.is_empty()) {
+        strips.extend(threads(log));
+    }
     let chart = Chart { title, abscissa: "time (s)".to_owned(), panels, strips, range: (0.0, seconds(end)) };
     in_readable_units(chart)
 }
@@ -64,7 +67,7 @@ fn seconds(at: Cycles) -> f64 {
 
 /// When each bit was high: those that are watched, else those that changed.
 fn bits(log: &Log, end: Cycles) -> Vec<Strip> {
-    let columns = log.columns();
+    let columns = log.columns(|_| true);
     let watched: Vec<(usize, Bit)> =
         columns.iter().filter_map(|(column, quantity)| Some((*column, bit(quantity)?))).collect();
     if watched.is_empty() {

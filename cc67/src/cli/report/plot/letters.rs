@@ -1,0 +1,157 @@
+//! Letters of our own, so that a picture does not depend on what fonts a computer has; in pictures of pixels they are
+//! set here.
+//!
+//! What draws the rest begins every letter at a whole pixel, without the room that the font wants to its left: `136`
+//! would be read as `1 36`.
+
+use std::sync::{LazyLock, Once};
+
+use ab_glyph::{Font, FontRef, PxScale, ScaleFont, point};
+use epaint_default_fonts::UBUNTU_LIGHT;
+use plotters::prelude::{BitMapBackend, DrawingBackend};
+use plotters::style::text_anchor::{HPos, VPos};
+use plotters::style::{FontStyle, register_font};
+use plotters_backend::{BackendColor, BackendCoord, BackendStyle, BackendTextStyle, DrawingErrorKind};
+
+static FONT: LazyLock<FontRef<'static>> =
+    LazyLock::new(|| FontRef::try_from_slice(UBUNTU_LIGHT).expect("the font is valid"));
+
+/// Makes the letters known to what measures texts, and writes them in pictures of lines.
+pub(super) fn register() {
+    static ONCE: Once = Once::new();
+    ONCE.call_once(|| {
+        let registered = register_font("sans-serif", FontStyle::Normal, UBUNTU_LIGHT);
+        debug_assert!(registered.is_ok(), "the font is valid");
+    });
+}
+
+/// A picture of pixels whose letters are where the font wants them, between pixels as well.
+pub(super) struct Pixels<'a>(pub(super) BitMapBackend<'a>);
+
+type Drawn<'a> = Result<(), DrawingErrorKind<<BitMapBackend<'a> as DrawingBackend>::ErrorType>>;
+
+impl<'a> DrawingBackend for Pixels<'a> {
+    type ErrorType = <BitMapBackend<'a> as DrawingBackend>::ErrorType;
+
+    fn get_size(&self) -> (u32, u32) {
+        self.0.get_size()
+    }
+
+    fn ensure_prepared(&mut self) -> Drawn<'a> {
+        self.0.ensure_prepared()
+    }
+
+    fn present(&mut self) -> Drawn<'a> {
+        self.0.present()
+    }
+
+    fn draw_pixel(&mut self, at: BackendCoord, color: BackendColor) -> Drawn<'a> {
+        self.0.draw_pixel(at, color)
+    }
+
+    fn draw_line<S: BackendStyle>(&mut self, from: BackendCoord, to: BackendCoord, style: &S) -> Drawn<'a> {
+        self.0.draw_line(from, to, style)
+    }
+
+    fn draw_rect<S: BackendStyle>(
+        &mut self,
+        from: BackendCoord,
+        to: BackendCoord,
+        style: &S,
+        fill: bool,
+    ) -> Drawn<'a> {
+        self.0.draw_rect(from, to, style, fill)
+    }
+
+    fn draw_text<S: BackendTextStyle>(&mut self, text: &str, style: &S, at: BackendCoord) -> Drawn<'a> {
+        let size = style.size() as f32;
+        let (width, height) = (width(text, size), size / 1.24);
+        let left = match style.anchor().h_pos {
+            HPos::Left => 0.0,
+            HPos::Center => -width / 2.0,
+            HPos::Right => -width,
+        };
+        let up = match style.anchor().v_pos {
+            VPos::Top => 0.0,
+            VPos::Center => -height / 2.0,
+            VPos::Bottom => -height,
+        };
+        // The line on which letters stand lies between two rows of pixels: flat feet are sharp then.
+        let foot = libm::roundf(at.1 as f32 + up + BASELINE * size);
+        self.letters(text, size, (at.0 as f32 + left, foot), style.color())
+    }
+}
+
+/// How far below the top of a text its letters stand, as part of its size.
+const BASELINE: f32 = 0.75;
+
+impl<'a> Pixels<'a> {
+    /// Draws letters one after another from a place on their line.
+    fn letters(&mut self, text: &str, size: f32, (left, foot): (f32, f32), color: BackendColor) -> Drawn<'a> {
+        for (letter, along) in places(text, size) {
+            let glyph = letter.with_scale_and_position(PxScale::from(size), point(left + along, foot));
+            let Some(outline) = FONT.outline_glyph(glyph) else { continue };
+            let corner = outline.px_bounds().min;
+            let mut covered = Vec::new();
+            outline.draw(|x, y, part| covered.push((x as i32, y as i32, part)));
+            for (x, y, part) in covered {
+                self.draw_pixel((corner.x as i32 + x, corner.y as i32 + y), color.mix(part.into()))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The letters of a text, and how far each is from its beginning, in pixels.
+fn places(text: &str, size: f32) -> Vec<(ab_glyph::GlyphId, f32)> {
+    let font = FONT.as_scaled(size);
+    let (mut along, mut before) = (0.0, None);
+    let place = |character| {
+        let letter = font.glyph_id(character);
+        along += before.map_or(0.0, |before| font.kern(before, letter));
+        before = Some(letter);
+        let place = (letter, along);
+        along += font.h_advance(letter);
+        place
+    };
+    text.chars().map(place).collect()
+}
+
+/// How wide a text is, in pixels.
+fn width(text: &str, size: f32) -> f32 {
+    let last = places(text, size).pop();
+    last.map_or(0.0, |(letter, along)| along + FONT.as_scaled(size).h_advance(letter))
+}
+
+#[cfg(test)]
+mod tests {
+    use plotters::style::{IntoFont, TextStyle};
+
+    use super::*;
+
+    /// The columns of pixels that a text of 13 pixels covers.
+    fn covered(text: &str) -> Vec<u32> {
+        let (width, height) = (60, 20);
+        let mut pixels = vec![255; (width * height * 3) as usize];
+        let mut picture = Pixels(BitMapBackend::with_buffer(&mut pixels, (width, height)));
+        register();
+        let style = TextStyle::from(("sans-serif", 13).into_font());
+        picture.draw_text(text, &style, (5, 2)).expect("it fits");
+        drop(picture);
+        let is_dark = |x: &u32| (0..height).any(|y| pixels[((y * width + x) * 3) as usize] < 128);
+        (0..width).filter(is_dark).collect()
+    }
+
+    #[test]
+    fn letters_are_as_far_from_each_other_as_the_font_says() {
+        // Three stems, a digit's width apart: 0.559 of the size for this font's figures.
+        let stems = covered("111");
+        let groups = stems.chunk_by(|a, b| b - a == 1).map(|group| group[group.len() - 1]);
+        let right_edges: Vec<u32> = groups.collect();
+        let [first, second, third] = right_edges[..] else { panic!("three letters: {stems:?}") };
+        let apart = width("1", 13.0);
+        for (steps, found) in [(1.0, second - first), (2.0, third - first)] {
+            assert!((found as f32 - steps * apart).abs() <= 1.0, "{stems:?} with {apart} between them");
+        }
+    }
+}
