@@ -108,6 +108,11 @@ const LEVELS: [Level; 3] = [Level::Small, Level::Full, Level::Fast];
 
 /// Cycles of a call, from the first packet of the function to the first after its return.
 fn cycles(kernel: &Kernel, level: Level) -> u64 {
+    call(kernel, level).run()
+}
+
+/// A call, before its first packet.
+fn call(kernel: &Kernel, level: Level) -> machine::Call {
     let keep = format!("void *keep = (void *){};\nint main(void) {{ return keep != 0; }}\n", kernel.name);
     let linked = build(&(kernel.source.to_owned() + &keep), level);
     let mut call = machine::Call::new(&linked, kernel.name);
@@ -119,7 +124,7 @@ fn cycles(kernel: &Kernel, level: Level) -> u64 {
     for (value, reg) in kernel.arguments.iter().zip(abi::ARGUMENTS) {
         call.core.state.set_reg(reg, *value);
     }
-    call.run()
+    call
 }
 
 /// The table, as Markdown.
@@ -203,4 +208,18 @@ fn worked_examples_are_near_the_code_by_hand() {
     let is_no_slower =
         reached.iter().zip(REACHED).all(|(now, before)| now.0 == before.0 && now.1 <= before.1);
     assert!(is_no_slower && reached.len() == REACHED.len(), "slower than it was: {reached:?}");
+}
+
+#[test]
+fn an_interrupt_wherever_one_is_taken_changes_no_result() {
+    for kernel in KERNELS {
+        for level in LEVELS {
+            let (mut plain, mut interrupted) = (call(kernel, level), call(kernel, level));
+            plain.run();
+            interrupted.run_interrupted();
+            let high = if kernel.name.starts_with("dot") { abi::RESULT.pair().high() } else { abi::RESULT };
+            let result = |call: &machine::Call| [abi::RESULT, high].map(|reg| call.core.state.reg(reg));
+            assert_eq!(result(&plain), result(&interrupted), "{} at {level:?}", kernel.what);
+        }
+    }
 }

@@ -115,6 +115,16 @@ impl Call {
         assert_eq!(self.core.run(&mut self.ram), Halt::Left(THREAD_DONE));
         self.core.state.cycle()
     }
+
+    /// Runs up to the return; wherever an interrupt is taken, everything in flight lands.
+    pub(super) fn run_interrupted(&mut self) {
+        while self.core.state.pc() != THREAD_DONE {
+            assert_eq!(self.core.step(&mut self.ram), Ok(()));
+            if self.core.state.is_interruptible() {
+                self.core.state.settle();
+            }
+        }
+    }
 }
 
 /// Memory with a program.
