@@ -189,7 +189,7 @@ fn a_flashed_board_boots_with_its_programs_and_keeps_what_was_flashed() {
     let script = "run a.c\nwait 0.01\nSetPersistDec 7 77;Vel3=1234;EnableAxis3\nSetStartupThread1 1\nFlash\nwait 0.1\n\
                   SetPersistDec 7 1;Vel3=1\nReboot!\nwait 0.1\nVel3;Enabled3;GetPersistDec 7;CheckThread1\n";
     let output = cc67_with_input(&scratch, arguments, script);
-    let expect = "count 5, data 0\nProgram Flash Image Complete\ncount 6, data 77\n1234.000000\n0\n77\n0\n---- exit 0\n";
+    let expect = "count 5, data 0\nProgram Flash Image Complete\nVerify Complete\ncount 6, data 77\n1234.000000\n0\n77\n0\n---- exit 0\n";
     assert_eq!(output.render(), expect);
     // The next power-up: no PC says anything, no program is named.
     for _ in 0..2 {

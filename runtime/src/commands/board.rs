@@ -11,6 +11,8 @@ use crate::views::Typed;
 
 /// What the board replies when flash is written (host-protocol.md section 9).
 const FLASH_COMPLETE: &str = "Program Flash Image Complete";
+/// What it prints when it has read back what `Flash` has written (dsp-board.md section 2.4).
+const VERIFIED: &str = "Verify Complete";
 /// Characters of `Echo` and the one after it.
 const ECHO: usize = 5;
 /// The UART's clock, 16 of whose periods make the shortest bit.
@@ -34,7 +36,7 @@ pub(super) fn reboot(session: &mut Session<'_, '_>, _: &Values) -> Answer {
 
 pub(super) fn flash(session: &mut Session<'_, '_>, _: &Values) -> Answer {
     session.parts.out.ask(Request::Flash);
-    FLASH_COMPLETE.to_owned().into()
+    Answer::LineAndConsole(FLASH_COMPLETE, VERIFIED)
 }
 
 pub(super) fn clear_flash_image(session: &mut Session<'_, '_>, _: &Values) -> Answer {

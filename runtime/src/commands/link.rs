@@ -204,6 +204,10 @@ impl Turn<'_, '_> {
                 self.out.extend(lines.into_iter().map(|line| Output::Reply(line.into())));
             }
             Answer::Console(line) => self.out.push(Output::Console(line)),
+            Answer::LineAndConsole(line, console) => {
+                self.out.push(Output::Reply(line.into()));
+                self.out.push(Output::Console(console.into()));
+            }
             Answer::Data(data) => self.link.data = Some(data),
             Answer::Refused(text) => {
                 self.out.push(Output::Console(text.into()));

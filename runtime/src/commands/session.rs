@@ -21,6 +21,8 @@ pub(super) enum Answer {
     Lines(Vec<String>),
     /// A console line.
     Console(Vec<u8>),
+    /// A reply of one line, and after it a console line.
+    LineAndConsole(&'static str, &'static str),
     /// The command continues with data lines.
     Data(Data),
     /// A console line that says why nothing is done.

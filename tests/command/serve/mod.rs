@@ -234,7 +234,7 @@ fn flash_is_kept_as_soon_as_a_client_has_it_written() {
     let mut server = Server::start("serve-flash", &arguments, HELLO, 1);
     let mut client = server.client();
     client.write_line("SetPersistDec 7 77");
-    assert_eq!(client.ask("Flash"), "Program Flash Image Complete", "a reply, and no console line");
+    assert_eq!(client.ask("Flash"), "Program Flash Image Complete", "a reply, and then a console line");
     assert_eq!(client.ask("GetPersistDec 7"), "77");
     // A server that is killed now has lost nothing.
     server.child.kill().expect("it runs");

@@ -17,6 +17,8 @@ use crate::cli::report::trace::Trace;
 
 /// What the board answers when flash is written.
 const FLASH_COMPLETE: &[u8] = b"Program Flash Image Complete";
+/// What it prints after that.
+const FLASH_VERIFIED: &[u8] = b"Verify Complete";
 /// Ticks in which the board takes a line at the latest.
 const TAKEN_WITHIN: u64 = 11_111;
 
@@ -35,6 +37,8 @@ pub(super) struct ServedBoard<'a, B> {
     is_for_page: bool,
     /// Whether programs that print wait, as too much waits for the console.
     is_held_back: bool,
+    /// Whether the flash could not be kept when it was last written.
+    has_lost_flash: bool,
 }
 
 impl<'a, B: Served> ServedBoard<'a, B> {
@@ -52,6 +56,7 @@ impl<'a, B: Served> ServedBoard<'a, B> {
             has_told_replies: false,
             is_for_page: false,
             is_held_back: false,
+            has_lost_flash: false,
         })
     }
 
@@ -170,7 +175,10 @@ impl<'a, B: Served> ServedBoard<'a, B> {
         }
         match &event.kind {
             EventKind::Reply(line) => {
-                if line == FLASH_COMPLETE && !self.keep_flash() {
+                if line == FLASH_COMPLETE {
+                    self.has_lost_flash = !self.keep_flash();
+                }
+                if line == FLASH_COMPLETE && self.has_lost_flash {
                     // Whoever waits for the line is not to believe that it is kept.
                     return;
                 }
@@ -179,6 +187,7 @@ impl<'a, B: Served> ServedBoard<'a, B> {
                 }
             }
             EventKind::Echo(bytes) => self.link.echo(bytes),
+            EventKind::ConsoleLine(line) if line == FLASH_VERIFIED && self.has_lost_flash => {}
             EventKind::ConsoleLine(line) => self.link.console(line.clone(), self.is_heard),
             EventKind::Aborted | EventKind::UartSent(_) | EventKind::Trace(_) | EventKind::Loaded(..) => {}
             EventKind::Remark(_) | EventKind::Trap(_) | EventKind::Unmet(_) | EventKind::Host(_) => {
