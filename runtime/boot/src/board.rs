@@ -1,9 +1,13 @@
-//! The board in one time: processor, timer, link, restarts, programs.
+//! The board in one time: processor, timer, link, programs.
+
+mod power;
+
+pub use power::FlashError;
 
 use std::sync::Arc;
 
+use c67x::Control;
 use coff::{Contents, Image};
-use kmotiondef::map::{FLASH, IRAM, SDRAM};
 use kmotiondef::structs::Chan;
 use kmotiondef::{AxisId, GuestAddr, ThreadId};
 use vm::dsp::{Core, Halt};
@@ -23,22 +27,10 @@ const SECOND: u64 = 200_000_000;
 const OVERHEAD: u64 = 11;
 /// Longest interrupt of a board without motion, with room.
 const INTERRUPT: u64 = 8000;
-/// Longest start: many times what any version takes.
-const LONGEST_START: u64 = 3 * SECOND;
 /// Longest time for which the timer's interrupt may wait.
 const LONGEST_SHADOW: u64 = SECOND / 5;
-/// Where a board with flash starts, and its stack there.
-const FLASH_START: u32 = 0x1000_1000;
-const FLASH_STACK: u32 = 0x1000_0440;
-/// Flash content and where it is copied to when the board starts: offset, address, bytes.
-const PIECES: [(u32, u32, u32); 4] = [
-    (0, 0x1000_0000, 0x1000),
-    (0x1000, 0x8000_0000, 0xF000),
-    (0x1_0000, 0x1000_1000, 0x1_F000),
-    (0x2_F000, 0x8000_F000, 0xD_1000),
-];
-/// The users' half of the flash, erased.
-const USER: u32 = 0x10_0000;
+/// The bit of CSR that allows interrupts.
+const GIE: u32 = 1;
 /// Begins a line for the console; begins a command without echo, with any byte after it.
 const ESCAPE: u8 = 0x1B;
 const NO_ECHO: u8 = 1;
@@ -63,6 +55,17 @@ pub struct SentLine {
     pub kind: Sent,
     /// Its text.
     pub text: Vec<u8>,
+}
+
+/// What the processor is about to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Doing {
+    /// The address of the next packet.
+    pub pc: u32,
+    /// The thread that has the processor, 0 for the firmware's own; `None` if the firmware does not say.
+    pub thread: Option<u32>,
+    /// Interrupts are switched off, as they are in an interrupt.
+    pub is_masked: bool,
 }
 
 /// Why the board does not move.
@@ -133,48 +136,16 @@ impl BootedBoard {
         self.core.skipped()
     }
 
-    /// A board at power-up: the sections are in memory, the processor is before the entry.
-    #[must_use]
-    pub fn new(file: Arc<FirmwareFile>) -> Self {
-        let mut hardware = Hardware::default();
-        file.load(&mut hardware.memory);
-        fill_flash(&mut hardware.memory);
-        let mut core = Core::at_power_up(file.entry(), 0, 0);
-        core.skip_waits(true);
-        let unfinished = (0, Vec::new());
-        let (lines, loads) = (Vec::new(), Loads::default());
-        Self { file, core, hardware, unfinished, lines, waits_since: 0, loads, skips: true, crash: None }
-    }
-
-    /// The board that a firmware file makes, when it first looks for what the PC sends.
-    ///
-    /// # Errors
-    /// The firmware never comes to that.
-    pub fn booted(file: Arc<FirmwareFile>) -> Result<Self, Halted> {
-        let mut board = Self::new(file);
-        board.boot()?;
-        Ok(board)
-    }
-
-    /// Runs until the firmware first looks for what the PC sends.
-    ///
-    /// # Errors
-    /// It never comes to that.
-    pub fn boot(&mut self) -> Result<(), Halted> {
-        while self.hardware.first_look.is_none() {
-            if self.cycle() >= LONGEST_START {
-                let reason = "it has not begun to wait for the PC within 3 s of its start";
-                return Err(self.crash(reason.to_owned()));
-            }
-            self.run_events(self.cycle() + SECOND / 100)?;
-        }
-        Ok(())
-    }
-
     /// The file that it was made of.
     #[must_use]
     pub fn file(&self) -> &FirmwareFile {
         &self.file
+    }
+
+    /// The same, for another board of it.
+    #[must_use]
+    pub fn shared_file(&self) -> Arc<FirmwareFile> {
+        self.file.clone()
     }
 
     /// Cycles of 5 ns since power-up.
@@ -205,6 +176,14 @@ impl BootedBoard {
     #[must_use]
     pub fn registers(&self) -> Vec<(String, u32)> {
         self.core.registers()
+    }
+
+    /// What the processor is about to do.
+    #[must_use]
+    pub fn doing(&self) -> Doing {
+        let thread = self.file.address("CurrentThread").map(|at| self.hardware.memory.peek::<u32>(at));
+        let is_masked = self.core.state.control(Control::Csr) & GIE == 0;
+        Doing { pc: self.core.state.pc(), thread, is_masked }
     }
 
     /// Memory.
@@ -251,7 +230,6 @@ impl BootedBoard {
             }
             self.core.run_to_interrupt(&mut self.hardware, until)
         } else {
-            self.waits_since = self.cycle();
             self.core.run_until(&mut self.hardware, until)
         };
         match halt {
@@ -280,26 +258,11 @@ impl BootedBoard {
             self.loads.tick(chan, memory, window, now);
         }
         if self.hardware.timer.take_match() {
+            if !self.core.state.has_timer_flag() {
+                self.waits_since = now;
+            }
             self.core.state.raise_timer();
         }
-    }
-
-    /// A reset: everything but flash and link as at power-up.
-    fn restart(&mut self) {
-        let Hardware { memory, window, forgives, .. } = std::mem::take(&mut self.hardware);
-        self.hardware = Hardware { memory, window, forgives, ..Hardware::default() };
-        self.hardware.window.reset();
-        let memory = &mut self.hardware.memory;
-        for region in [IRAM, SDRAM] {
-            let zeros = vec![0; region.size as usize];
-            let stored = memory.poke_bytes(region.base, &zeros);
-            debug_assert!(stored.is_ok(), "both RAMs are mapped");
-        }
-        for (offset, address, size) in PIECES {
-            copy(memory, FLASH.base.get() + offset, address, size);
-        }
-        self.core = Core::at_power_up(FLASH_START, FLASH_STACK, self.cycle());
-        self.core.skip_waits(self.skips);
     }
 
     /// Does not move from here on.
@@ -332,6 +295,12 @@ impl BootedBoard {
     #[must_use]
     pub fn has_read_all(&self) -> bool {
         self.hardware.window.link.is_read()
+    }
+
+    /// How often the firmware has looked for a byte of the PC: while it obeys a command it does not.
+    #[must_use]
+    pub const fn looks(&self) -> u64 {
+        self.hardware.window.link.looks()
     }
 
     /// The bytes that the firmware sent since this or [`take_lines`](Self::take_lines) was last called, with their cycles.
@@ -549,21 +518,4 @@ impl BootedBoard {
         *self = snapshot.board.clone();
         self.hardware.memory = memory;
     }
-}
-
-/// Copies bytes inside of guest memory; both places are mapped.
-fn copy(memory: &mut GuestMemory, from: u32, to: u32, size: u32) {
-    let bytes = memory.read_bytes(GuestAddr::new(from), size).map(<[u8]>::to_vec).unwrap_or_default();
-    let stored = memory.poke_bytes(GuestAddr::new(to), &bytes);
-    debug_assert!(stored.is_ok(), "{to:X} is mapped");
-}
-
-/// A board as it leaves the factory: the system's half as loaded, the users' half erased.
-fn fill_flash(memory: &mut GuestMemory) {
-    for (offset, address, size) in PIECES {
-        copy(memory, address, FLASH.base.get() + offset, size);
-    }
-    let erased = vec![0xFF; (FLASH.size - USER) as usize];
-    let stored = memory.poke_bytes(FLASH.base.offset(USER), &erased);
-    debug_assert!(stored.is_ok(), "the flash is mapped");
 }

@@ -34,6 +34,6 @@ mod uart;
 mod window;
 
 pub use around::{Around, AtMatch};
-pub use board::{BootedBoard, BootedSnapshot, Halted, Sent, SentLine};
+pub use board::{BootedBoard, BootedSnapshot, Doing, FlashError, Halted, Sent, SentLine};
 pub use crash::Crash;
 pub use file::{FirmwareError, FirmwareFile};

@@ -8,12 +8,14 @@ use coff::{
     SymbolType, Target,
 };
 
-use crate::{BootedBoard, FirmwareError, FirmwareFile, Halted, Sent};
+use crate::{BootedBoard, FirmwareError, FirmwareFile, FlashError, Halted, Sent};
 
 /// Where the code is, the interrupt's vector, and what the interrupt executes.
 const START: u32 = 0x8000_0000;
 const VECTOR: u32 = 0x1000_0080;
 const HANDLER: u32 = 0x8000_1000;
+/// Where a board with flash starts.
+const FROM_FLASH: u32 = 0x1000_1000;
 
 /// Two instructions that load a constant.
 fn constant(unit: &str, value: u32, reg: &str) -> String {
@@ -41,6 +43,11 @@ fn code(text: &str, base: u32) -> Vec<u8> {
 
 /// Vectors, a timer of 90 µs, interrupts on, and then a loop that echoes.
 fn start() -> String {
+    start_at(START)
+}
+
+/// The same from this address on.
+fn start_at(base: u32) -> String {
     let timer = |offset: u32, value: u32| store("STW", 0x4200_0000 + offset, value);
     let set = [(0x18, 1), (0x38, 1), (0x0C, 1), (0x50, 4500), (0x54, 4500), (0x80, 1), (0x00, 3)];
     let control = |value: u32, name: &str| constant(".S2", value, "B20") + &format!("MVC .S2 B20,{name}\n");
@@ -48,7 +55,7 @@ fn start() -> String {
     set.iter().for_each(|(offset, value)| text += &timer(*offset, *value));
     text += &control(0x103, "CSR");
     text += &(constant(".S1", 0x9100_0012, "A4") + &constant(".S1", 0x9100_0016, "A5"));
-    let echo = START + 4 * text.lines().count() as u32;
+    let echo = base + 4 * text.lines().count() as u32;
     text += "LDBU .D1T1 *A4,A1\nNOP 4\n";
     text += &format!("[!A1] B .S1 0x{echo:08X}\nNOP 5\nLDBU .D1T1 *A5,A6\nNOP 4\nSTB .D1T1 A6,*A4\n");
     text + &format!("B .S1 0x{echo:08X}\nNOP 5\n")
@@ -70,6 +77,10 @@ fn handler() -> String {
     text + "B .S2 IRP\nNOP 5\n"
 }
 
+fn goes_to(place: u32) -> String {
+    constant(".S2", place, "B31") + "B .S2 B31\nNOP 5\n"
+}
+
 fn section(name: &str, address: u32, bytes: Vec<u8>) -> Section {
     Section {
         name: Name::from(name),
@@ -84,7 +95,7 @@ fn section(name: &str, address: u32, bytes: Vec<u8>) -> Section {
 }
 
 fn image(start: &str) -> Image {
-    let jump = constant(".S2", HANDLER, "B31") + "B .S2 B31\nNOP 5\n";
+    let jump = goes_to(HANDLER);
     let symbols =
         [("_c_int00", START), ("_main", START), ("_persist", START), ("_chan", START), ("_handler", HANDLER)];
     let symbol = |(name, value): (&str, u32)| Symbol {
@@ -104,6 +115,7 @@ fn image(start: &str) -> Image {
             section(".text", START, code(start, START)),
             section("vectors", VECTOR, code(&jump, VECTOR)),
             section(".tick", HANDLER, code(&handler(), HANDLER)),
+            section(".bstart", FROM_FLASH, code(&goes_to(START), FROM_FLASH)),
         ],
         symbols: symbols.map(symbol).to_vec(),
     }
@@ -177,6 +189,34 @@ fn a_snapshot_goes_on_as_the_board_did() {
     assert_eq!(on(&mut snapshot.board()), first);
 }
 
+#[test]
+fn a_board_starts_from_what_its_flash_held_if_that_is_of_this_firmware() {
+    let before = booted();
+    let mut flash = before.flash().to_vec();
+    flash[0x18_0000] = 7;
+    let from = |flash: &[u8]| BootedBoard::booted_from(file(&start()), flash);
+    let mut board = from(&flash).expect("it starts");
+    assert!(board.flash() == flash);
+    board.run_to(board.cycle() + 20 * 18_000).expect("it runs");
+    assert_eq!(board.take_lines().len(), 1);
+    for other in [vec![0xFF; flash.len()], flash[..1000].to_vec()] {
+        assert_eq!(from(&other).expect_err("it is refused"), FlashError::OtherFirmware);
+    }
+}
+
+#[test]
+fn what_the_processor_does_is_seen_in_the_interrupt_and_outside() {
+    let mut board = booted();
+    let outside = board.doing();
+    assert!(!outside.is_masked && outside.pc < HANDLER, "{outside:?}");
+    board.run_to(board.next_tick() + 40).expect("it runs");
+    let inside = board.doing();
+    assert!(inside.is_masked && inside.thread.is_none(), "{inside:?}");
+    let looks = board.looks();
+    board.run_to(board.cycle() + 1000).expect("it runs");
+    assert!(board.looks() > looks, "it looks for the PC all the while");
+}
+
 /// The text of the crash of a firmware that starts so.
 fn crash(start: &str) -> String {
     let Err(Halted::Crashed(crash)) = BootedBoard::booted(file(start)) else { panic!("it starts") };
@@ -193,6 +233,16 @@ fn a_firmware_that_runs_away_is_stopped_with_registers_and_code() {
     let text = crash(&wild);
     assert!(text.contains("write of the unmapped address 0x70000000"), "{text}");
     assert!(text.contains("STW .D1T1 A21,*"), "{text}");
+}
+
+#[test]
+fn a_start_without_interrupts_may_be_long_and_be_run_through_at_once() {
+    // 0.3 s of a loop before the timer is set.
+    let wait = constant(".S1", 9_000_000, "A1") + "ADD .L1 -1,A1,A1\n[A1] B .S1 0x80000008\nNOP 5\n";
+    let base = START + 4 * wait.lines().count() as u32;
+    let mut board = BootedBoard::new(file(&(wait + &start_at(base))));
+    board.run_to(100_000_000).expect("it runs");
+    assert_eq!(board.take_lines().len(), 1);
 }
 
 #[test]
