@@ -53,13 +53,11 @@ fn options_that_a_booted_board_does_not_know_are_named() {
     };
     refused(&["--assist"], "--assist");
     refused(&["--engine", "bytecode"], "--engine");
-    refused(&["--flash", "x"], "--flash");
-    refused(&["--profile"], "--profile");
     refused(&["--trace-packets", "a.csv"], "--trace-packets");
-    for (option, name) in [(&["--flash", "x"][..], "--flash"), (&["--live"], "--live")] {
-        let serve = [&["serve", "--boot", "x.out", "hello.c"], option].concat();
-        assert_refused(&cc67(&scratch, serve), &format!("`{name}` does not work with `--boot`"));
-    }
+    let serve = ["serve", "--boot", "x.out", "hello.c", "--live"];
+    assert_refused(&cc67(&scratch, serve), "`--live` does not work with `--boot`");
+    let compare = ["compare", "--boot", "x.out", "--flash", "x", "hello.c"];
+    assert_refused(&cc67(&scratch, compare), "`--flash` does not work with `cc67 compare`");
     let test = cc67(&scratch, ["compare", "hello.c"]);
     assert_refused(&test, "needs `--boot FILE`");
 }
@@ -106,6 +104,15 @@ fn script_commands_are_answered_by_the_real_firmware() {
     let output = cc67_with_input(&scratch, ["console", "--boot", &file], script);
     assert_eq!(output.code, 0, "{output:?}");
     assert_eq!(output.stdout, "0\n7\nFOO\n^\nerror, invalid command\nhello\n7\n", "{output:?}");
+}
+
+#[test]
+fn the_real_firmware_keeps_pace_with_the_clock() {
+    let Some(file) = firmware() else { return };
+    let scratch = scratch("boot-pace");
+    let console = ["console", "--boot", &file, "--realtime"];
+    let output = cc67_with_input(&scratch, console, "run hello.c\nwait 0.01\nGetPersistDec 3\n");
+    assert_eq!(output, Output { code: 0, stdout: "hello\n7\n".into(), stderr: String::new() });
 }
 
 #[test]
@@ -199,6 +206,49 @@ fn the_state_at_the_end_is_that_of_the_real_firmware() {
     for part in ["axis 0 enabled, dest 100, ", "persist 5 = 42"] {
         assert!(output.stderr.contains(part), "{part} in {output:?}");
     }
+}
+
+const COUNT: &str = "#include \"KMotionDef.h\"\nint count = 5;\nmain()\n{\n  printf(\"count %d, data %d\\n\", count++, \
+                     persist.UserData[7]);\n}\n";
+
+#[test]
+fn the_real_firmware_starts_from_the_flash_that_it_has_written() {
+    let Some(file) = firmware() else { return };
+    let scratch = scratch("boot-flash");
+    scratch.write("a.c", COUNT);
+    let script = "run a.c\nwait 0.01\nSetPersistDec 7 77;Vel3=1234\nSetStartupThread1 1\nFlash\n\
+                  SetPersistDec 7 1;Vel3=1\nReboot!\nwait 0.5\nVel3;GetPersistDec 7\n";
+    let console = ["console", "--boot", &file, "--flash", "board.flash"];
+    let output = cc67_with_input(&scratch, console, script);
+    assert_eq!(output.code, 0, "{output:?}");
+    let expect =
+        "count 5, data 0\nProgram Flash Image Complete\nVerify Complete\ncount 6, data 77\n1234.000000\n77\n";
+    assert_eq!(output.stdout, expect, "{output:?}");
+    // The next power-up: no PC says anything, no program is named.
+    for _ in 0..2 {
+        let output = cc67(&scratch, ["run", "--boot", &file, "--flash", "board.flash"]);
+        let expect = "count 6, data 77\n".to_owned();
+        assert_eq!(output, Output { code: 0, stdout: expect, stderr: String::new() });
+    }
+    scratch.write("other.flash", vec![0xFF; 1 << 21]);
+    let other = cc67(&scratch, ["run", "--boot", &file, "--flash", "other.flash", "hello.c"]);
+    assert_refused(&other, "the flash other.flash does not work with `--boot`: it is of the modelled board");
+}
+
+#[test]
+fn a_profile_of_the_real_firmware_has_its_functions_and_the_lines_of_programs() {
+    let Some(file) = firmware() else { return };
+    let scratch = scratch("boot-profile");
+    let work = "#include \"KMotionDef.h\"\nint sum;\nmain()\n{\n  int i;\n  for (i = 0; i < 100000; ++i)\n    sum += i * i;\n  Delay_sec(0.01);\n}\n";
+    scratch.write("work.c", work);
+    let output = cc67(&scratch, ["run", "--boot", &file, "--profile=flame.svg", "work.c"]);
+    assert_eq!(output.code, 0, "{output:?}");
+    for part in
+        ["thread 1: computing", "work.c:7 in main", "Delay_sec", "the firmware's own thread", "the servo"]
+    {
+        assert!(output.stderr.contains(part), "{part} in {}", output.stderr);
+    }
+    assert!(read(&scratch, "flame.svg").contains("<svg"));
 }
 
 #[test]

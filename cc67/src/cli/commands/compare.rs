@@ -66,9 +66,7 @@ pub(super) fn compare(arguments: &CompareArguments) -> Result<Exit> {
     let Some(file) = &arguments.board.boot else {
         bail!("`cc67 compare` needs `--boot FILE`, your firmware file")
     };
-    if let Some(option) = arguments.board.left_out_by_boot() {
-        bail!("`{option}` does not work with `--boot`");
-    }
+    arguments.refuse()?;
     let mut ready = Booted::new(file)?.into_ready();
     let mut table = String::new();
     let mut unequal = 0;
@@ -116,6 +114,16 @@ fn together(program: &OsString) -> Result<Vec<OsString>> {
 }
 
 impl CompareArguments {
+    /// Refuses what one of the boards does not know, and a flash, which is of one of them.
+    fn refuse(&self) -> Result<()> {
+        let flash = self.board.pc.has_flash().then_some("--flash");
+        match flash.or_else(|| self.board.left_out_by_boot()) {
+            Some("--flash") => bail!("`--flash` does not work with `cc67 compare`: a flash is of one board"),
+            Some(option) => bail!("`{option}` does not work with `--boot`"),
+            None => Ok(()),
+        }
+    }
+
     fn ticks(&self) -> Ticks {
         Ticks::new((self.limit.min(DEFAULT_LIMIT * 1000.0) / TIMEBASE).round() as u64)
     }
@@ -137,9 +145,7 @@ impl CompareArguments {
         match super::Arguments::try_parse_from(words)?.command {
             Some(super::Command::Compare(mut own)) => {
                 own.board.keeps_files = true;
-                if let Some(option) = own.board.left_out_by_boot() {
-                    bail!("`{option}` does not work with `--boot`");
-                }
+                own.refuse()?;
                 Ok((own, programs))
             }
             _ => bail!("the words of this command are not its own"),

@@ -3,6 +3,10 @@
 //!
 //! Time is counted from the moment in which the firmware has started and looks for the first byte of the PC.
 
+mod samples;
+
+pub(crate) use samples::Samples;
+
 use std::path::Path;
 use std::sync::Arc;
 
@@ -23,6 +27,7 @@ use runtime::trace::{Item, TraceRequest};
 use runtime::{Event, EventKind, MachineFile};
 
 use super::around::Attached;
+use super::flash::Flash;
 use super::line::{PART, SerialLine};
 use super::{Described, Given, Started};
 use crate::cli::args::board::BoardArguments;
@@ -42,8 +47,10 @@ const TICK: u64 = Cycles::PER_TICK.get() as u64;
 const SECOND: u64 = Cycles::PER_SECOND.get() as u64;
 /// Ticks without a byte and without motion after which nothing more is to come.
 const QUIET: u32 = 22;
-/// Longest time for which the answer to a line is waited for: a command of many lines sends all the while.
+/// Longest time for which the firmware is waited for.
 const ANSWER: u64 = 2 * SECOND;
+/// Longest time that a command takes: `Flash` 6.4 s; one of many lines sends all the while.
+const COMMAND: u64 = 10 * SECOND;
 
 /// The board, and what programs for it are linked against.
 #[derive(Debug)]
@@ -60,6 +67,37 @@ pub(crate) struct Booted {
     uart: UartArguments,
     line: SerialLine,
     interrupter: Interrupter,
+    flash: Flash,
+    /// Lines that programs have sent which the flash has started, before time begins.
+    early: Vec<SentLine>,
+    /// What a profile is made of, where one is wanted.
+    samples: Option<Samples>,
+}
+
+/// How long nothing has happened.
+struct Silence {
+    ticks: u32,
+    /// How often the firmware had looked for the PC when it began.
+    looks: u64,
+}
+
+impl Silence {
+    const fn new(board: &BootedBoard) -> Self {
+        Self { ticks: 0, looks: board.looks() }
+    }
+
+    /// One more tick.
+    const fn note(&mut self, is_busy: bool, board: &BootedBoard) {
+        self.ticks += 1;
+        if is_busy {
+            *self = Self::new(board);
+        }
+    }
+
+    /// Whether nothing more is to come: nothing came for long, and the firmware obeys no command.
+    const fn is_over(&self, board: &BootedBoard) -> bool {
+        self.ticks >= QUIET && board.looks() > self.looks
+    }
 }
 
 /// Programs that are about to run.
@@ -125,6 +163,9 @@ impl Booted {
             uart: UartArguments::default(),
             line: SerialLine::default(),
             interrupter: Interrupter::default(),
+            flash: Flash::default(),
+            early: Vec::new(),
+            samples: None,
         }
     }
 
@@ -161,8 +202,22 @@ impl Booted {
     }
 
     fn take(&mut self, program: &UserProgram) -> Result<()> {
+        self.stop(program.thread)?;
         let loaded = self.board.load_program(program.thread, &program.image);
         loaded.with_context(|| program.path.display().to_string())
+    }
+
+    /// Stops a thread that is active: another program is to come into it.
+    fn stop(&mut self, thread: ThreadId) -> Result<(), Halted> {
+        let is_active = |board: &BootedBoard| board.is_active(thread).unwrap_or(false);
+        if is_active(&self.board) {
+            self.board.send_line(format!("Kill{thread}").as_bytes());
+        }
+        let end = self.board.cycle() + ANSWER;
+        while is_active(&self.board) && self.board.cycle() < end {
+            self.board.run_to(self.board.cycle() + TICK)?;
+        }
+        Ok(())
     }
 
     /// Connects what the arguments describe, loads their programs, and starts those that are to start, all in one
@@ -176,7 +231,11 @@ impl Booted {
     ) -> Result<Option<Begun>> {
         let options = self.options(compiler)?;
         let described = Described::read(started, board, compiler, Given { options, image: None })?;
-        let Some(Described { session, uart, .. }) = described else { return Ok(None) };
+        let Some(Described { session, uart, flash }) = described else { return Ok(None) };
+        // What a run that is compared changes stays in memory.
+        if !board.keeps_files {
+            self.start_from(flash)?;
+        }
         let cc67_host::Setup { mut config, options, programs, offered, values, mut stimulus, .. } = session;
         let request = traced
             .map(|traced| trace::request_of_booted(traced, |list| quantities(list, &programs, &options)));
@@ -210,6 +269,38 @@ impl Booted {
         Ok(Some(Begun { request }))
     }
 
+    /// Starts the firmware anew from what the flash holds, if there is a file of it.
+    fn start_from(&mut self, mut flash: Flash) -> Result<()> {
+        if let Some((path, bytes)) = flash.held() {
+            let file = self.board.shared_file();
+            self.board = BootedBoard::booted_from(file, bytes)
+                .with_context(|| format!("the flash {} does not work with `--boot`", path.display()))?;
+        }
+        flash.begins_with(self.board.flash());
+        self.flash = flash;
+        Ok(())
+    }
+
+    /// Keeps what flash memory holds now in its file.
+    pub(crate) fn keep_flash(&mut self) -> Result<()> {
+        self.flash.keep(self.board.flash())
+    }
+
+    /// Looks what the processor does, from now on.
+    pub(crate) fn sample(&mut self) {
+        self.samples = Some(Samples::new(self.board.cycle()));
+    }
+
+    /// What was seen, where a profile is made.
+    pub(crate) const fn samples(&self) -> Option<&Samples> {
+        self.samples.as_ref()
+    }
+
+    /// The programs in the threads.
+    pub(crate) fn programs(&self) -> &[UserProgram] {
+        &self.programs
+    }
+
     /// Lets the firmware read what was sent, and start threads in the next tick; time is 0 a tick before.
     fn settle(&mut self, starting: &[ThreadId]) -> Result<()> {
         let end = self.board.cycle() + ANSWER;
@@ -218,7 +309,8 @@ impl Booted {
         }
         self.board.execute_together(starting)?;
         self.origin = self.board.next_tick() - TICK;
-        self.board.take_lines();
+        let lines = self.board.take_lines();
+        self.early = lines.into_iter().filter(|line| line.kind == Sent::Console).collect();
         Ok(())
     }
 
@@ -317,7 +409,8 @@ impl Booted {
             surroundings.finish(memory, now);
             surroundings.take_events().into_iter().for_each(sink);
         }
-        self.line.finish()
+        self.line.finish()?;
+        self.keep_flash()
     }
 
     /// Stores start values of `persist.UserData`, wherever this firmware has it.
@@ -363,7 +456,7 @@ impl Booted {
         pace: Option<&Pace>,
         sink: &mut dyn FnMut(Event),
     ) -> Result<End, Halted> {
-        let mut quiet = 0;
+        let mut silence = Silence::new(&self.board);
         let mut axes = self.commands();
         while self.tick() < limit {
             if self.interrupter.take() {
@@ -380,8 +473,8 @@ impl Booted {
                 || moved != axes
                 || !self.board.has_read_all()
                 || !self.active().is_empty();
-            quiet = if is_busy { 0 } else { quiet + 1 };
-            if quiet >= QUIET {
+            silence.note(is_busy, &self.board);
+            if silence.is_over(&self.board) {
                 return Ok(End::AllEnded);
             }
         }
@@ -420,11 +513,16 @@ impl Booted {
     /// The firmware ran away.
     pub(crate) fn advance(&mut self, cycles: u64, sink: &mut dyn FnMut(Event)) -> Result<bool, Halted> {
         let before = self.tick().get();
-        let result = self.board.run_to(self.board.cycle() + cycles);
+        let end = self.board.cycle() + cycles;
+        let result = match &mut self.samples {
+            Some(samples) => samples.run(&mut self.board, end),
+            None => self.board.run_to(end),
+        };
         if before / PART != self.tick().get() / PART {
             self.exchange_serial();
         }
-        let lines = self.board.take_lines();
+        let mut lines = std::mem::take(&mut self.early);
+        lines.extend(self.board.take_lines());
         let has_sent = !lines.is_empty();
         for line in lines {
             let at = self.since_ready(line.cycle);
@@ -470,11 +568,11 @@ impl Booted {
     /// The firmware ran away.
     pub(crate) fn exchange(&mut self, line: &str, sink: &mut dyn FnMut(Event)) -> Result<(), Halted> {
         self.board.send_line(line.as_bytes());
-        let end = self.board.cycle() + ANSWER;
-        let mut quiet = 0;
-        while quiet < QUIET && self.board.cycle() < end {
+        let end = self.board.cycle() + COMMAND;
+        let mut silence = Silence::new(&self.board);
+        while !silence.is_over(&self.board) && self.board.cycle() < end {
             let has_sent = self.advance(TICK, sink)?;
-            quiet = if has_sent || !self.board.has_read_all() { 0 } else { quiet + 1 };
+            silence.note(has_sent || !self.board.has_read_all(), &self.board);
         }
         Ok(())
     }

@@ -1,6 +1,6 @@
 //! The file that a board's flash memory is kept in.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
 use runtime::FLASH_SIZE;
@@ -9,7 +9,7 @@ use crate::cli::io::input::read;
 use crate::cli::io::output;
 
 /// A file of flash memory, if there is one, and what it holds.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct Flash {
     path: Option<PathBuf>,
     /// What it held at the start, or was written to it since; nothing if it was not there.
@@ -34,6 +34,18 @@ impl Flash {
     /// What a board begins with.
     pub(super) fn contents(&self) -> Option<Vec<u8>> {
         self.before.clone()
+    }
+
+    /// A board holds this from the start: only something else is kept.
+    pub(super) fn begins_with(&mut self, now: &[u8]) {
+        if self.path.is_some() && self.before.is_none() {
+            self.before = Some(now.to_vec());
+        }
+    }
+
+    /// The file and what it holds, if it is there.
+    pub(super) fn held(&self) -> Option<(&Path, &[u8])> {
+        self.path.as_deref().zip(self.before.as_deref())
     }
 
     /// Keeps what flash memory holds now, if that is another than before.

@@ -1,10 +1,11 @@
 //! `cc67 console --boot FILE`: script commands to the user's own firmware file.
 //!
-//! Lines come from the keyboard or from a script; board time passes as they need it, and as `wait` says.
+//! By hand the board keeps pace with the clock; from a script board time passes as its lines need it, and as `wait` says.
 
 use std::collections::BTreeMap;
 use std::io::{self, IsTerminal};
 use std::path::Path;
+use std::sync::mpsc::RecvTimeoutError;
 
 use anyhow::{Context, Result, bail};
 use boot::Halted;
@@ -12,13 +13,14 @@ use cc67_host::End;
 use kmotiondef::limits::TIMEBASE;
 use kmotiondef::{Bit, Cycles, ThreadId, Ticks};
 
-use super::input::{self, Input};
+use super::input::{self, Input, Lines};
 use super::screen::Screen;
 use super::words::{self, Word};
-use super::{ConsoleArguments, Flow, Shown};
+use super::{BEAT, ConsoleArguments, Flow, STRETCH, Shown};
 use crate::cli::args::program::{ProgramFile, assign};
 use crate::cli::args::time::DEFAULT_LIMIT;
 use crate::cli::io::exit::Exit;
+use crate::cli::io::pace::Pace;
 use crate::cli::report::seen::Seen;
 use crate::cli::report::trace::Trace;
 use crate::cli::session::booted::{Begun, Booted};
@@ -38,6 +40,8 @@ pub(super) fn console(arguments: &ConsoleArguments, file: &Path) -> Result<Exit>
     let mut console = Console { arguments, booted, shown, pressed: BTreeMap::new(), has_crashed: false };
     if io::stdin().is_terminal() && io::stdout().is_terminal() {
         console.keyboard()
+    } else if arguments.realtime {
+        console.keep_pace(&input::script_beside())
     } else {
         console.script()
     }
@@ -45,9 +49,8 @@ pub(super) fn console(arguments: &ConsoleArguments, file: &Path) -> Result<Exit>
 
 /// The first option given that a booted board does not know.
 fn left_out(arguments: &ConsoleArguments) -> Option<&'static str> {
-    let own = [(arguments.realtime, "--realtime"), (arguments.serve.is_some(), "--serve")];
-    let given = own.into_iter().find(|(is_given, _)| *is_given).map(|(_, name)| name);
-    given.or(arguments.trace.left_out_by_boot()).or_else(|| arguments.board.left_out_by_boot())
+    let serve = arguments.serve.as_ref().map(|_| "--serve");
+    serve.or(arguments.trace.left_out_by_boot()).or_else(|| arguments.board.left_out_by_boot())
 }
 
 /// The firmware, and the person or script that talks to it.
@@ -64,6 +67,9 @@ impl Console<'_> {
     fn keyboard(&mut self) -> Result<Exit> {
         let (lines, printer) = input::keyboard()?;
         self.shown.screen.print_through(printer);
+        if !self.arguments.fast {
+            return self.keep_pace(&lines);
+        }
         while let Ok(Input::Line(line)) = lines.next() {
             if self.line(&line) == Flow::Leave {
                 break;
@@ -71,6 +77,24 @@ impl Console<'_> {
             lines.ready();
         }
         self.leave()
+    }
+
+    /// Takes lines as they come while the board keeps pace with the clock.
+    fn keep_pace(&mut self, lines: &Lines) -> Result<Exit> {
+        let pace = Pace::new(self.booted.tick());
+        loop {
+            match lines.within(BEAT) {
+                Ok(Input::Line(line)) if self.line(&line) == Flow::Continue => lines.ready(),
+                Ok(_) | Err(RecvTimeoutError::Disconnected) => return self.leave(),
+                Err(RecvTimeoutError::Timeout) if self.shown.screen.is_closed() => return self.leave(),
+                Err(RecvTimeoutError::Timeout) => {}
+            }
+            // A firmware that falls behind leaves room for the keyboard.
+            let end = pace.due().min(Ticks::new(self.booted.tick().get() + STRETCH));
+            while self.booted.tick() < end && !self.has_crashed {
+                self.advance(Cycles::PER_TICK);
+            }
+        }
     }
 
     /// Takes the lines of a script one after another; then the programs continue to their end.
@@ -139,12 +163,7 @@ impl Console<'_> {
                 self.shown.screen.text(&format!("{seconds:.6}\n"));
             }
             Word::Wait(seconds) => {
-                let cycles = (seconds * Cycles::PER_SECOND.get() as f64) as u64;
-                let shown = &mut self.shown;
-                let passed = self.booted.advance(cycles, &mut |event| shown.note(&event));
-                if let Err(halted) = passed {
-                    self.tell(&halted);
-                }
+                self.advance(Cycles::new((seconds * Cycles::PER_SECOND.get() as f64) as i64));
             }
             Word::Press(bit) => {
                 let level = self.booted.bit(*bit);
@@ -159,6 +178,15 @@ impl Console<'_> {
             Word::Quit => {}
         }
         Ok(())
+    }
+
+    /// Lets time pass.
+    fn advance(&mut self, time: Cycles) {
+        let shown = &mut self.shown;
+        let passed = self.booted.advance(time.get().unsigned_abs(), &mut |event| shown.note(&event));
+        if let Err(halted) = passed {
+            self.tell(&halted);
+        }
     }
 
     fn load(&mut self, files: &[ProgramFile], starts: usize) -> Result<bool> {

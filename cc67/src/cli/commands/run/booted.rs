@@ -15,6 +15,7 @@ use crate::cli::args::time::DEFAULT_LIMIT;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::pace::Pace;
 use crate::cli::io::{interrupt, output, terminal};
+use crate::cli::report::profile::{self, ProfileOutput, Sampled};
 use crate::cli::report::screen::{Audience, Screen, no_run};
 use crate::cli::report::seen::Seen;
 use crate::cli::report::trace::Trace;
@@ -29,7 +30,8 @@ pub(super) fn run(arguments: &RunArguments, file: &Path) -> Result<Exit> {
     let trace = Some(&arguments.trace);
     let begun = booted.begin(arguments.started(), &arguments.board, &arguments.compiler, trace)?;
     if let Some(begun) = begun {
-        return execute(arguments, booted, &begun);
+        let target = arguments.profile.as_deref().map(profile::target).transpose()?;
+        return execute(arguments, booted, &begun, target.as_ref());
     }
     if arguments.json {
         output::print(&no_run(Exit::Failure, "compile error"))?;
@@ -38,7 +40,15 @@ pub(super) fn run(arguments: &RunArguments, file: &Path) -> Result<Exit> {
 }
 
 /// Runs the board and shows what happens.
-fn execute(arguments: &RunArguments, mut booted: Booted, begun: &Begun) -> Result<Exit> {
+fn execute(
+    arguments: &RunArguments,
+    mut booted: Booted,
+    begun: &Begun,
+    profiled: Option<&ProfileOutput>,
+) -> Result<Exit> {
+    if profiled.is_some() {
+        booted.sample();
+    }
     let out = BufWriter::new(io::stdout().lock());
     let mut screen = Screen::new(out, arguments.style(), Vec::new(), Vec::new());
     let request = begun.request.as_ref();
@@ -78,11 +88,14 @@ fn execute(arguments: &RunArguments, mut booted: Booted, begun: &Begun) -> Resul
         Ok(End::Limit) if exit == Exit::StillRunning => terminal::note(&super::still_running(&active, &[])),
         Ok(_) => {}
     }
+    if let Some((samples, target)) = booted.samples().zip(profiled) {
+        let of = Sampled { programs: booted.programs(), file: booted.board.file(), end: booted.now() };
+        terminal::aside(&of.report(samples.seen(), target)?);
+    }
     Ok(exit)
 }
 
 /// The first option given that a booted board does not know.
 fn left_out(arguments: &RunArguments) -> Option<&'static str> {
-    let profile = arguments.profile.as_ref().map(|_| "--profile");
-    profile.or(arguments.trace.left_out_by_boot()).or_else(|| arguments.board.left_out_by_boot())
+    arguments.trace.left_out_by_boot().or_else(|| arguments.board.left_out_by_boot())
 }

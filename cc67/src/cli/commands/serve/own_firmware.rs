@@ -115,7 +115,7 @@ impl Served for OwnFirmware {
     }
 
     fn keep_flash(&mut self) -> Result<()> {
-        Ok(())
+        self.booted.keep_flash()
     }
 
     fn finish(&mut self, sink: &mut dyn FnMut(Event)) -> Result<()> {

@@ -3,7 +3,7 @@
 use anyhow::{Context, Result};
 use inferno::flamegraph::{self, Options};
 
-use super::{Account, context_name};
+use super::Account;
 
 /// Cycles in a microsecond.
 const CYCLES_PER_US: i64 = 200;
@@ -25,7 +25,7 @@ pub(super) fn draw(account: &Account) -> Result<Vec<u8>> {
 fn folded(account: &Account) -> Vec<String> {
     let mut lines = Vec::new();
     for (place, spent) in account {
-        let mut tower = vec![context_name(place.context)];
+        let mut tower = vec![place.whose.to_string()];
         tower.extend(place.frames.iter().map(|frame| match frame.line {
             Some(line) => format!("{}:{line}", frame.function),
             None => frame.function.clone(),

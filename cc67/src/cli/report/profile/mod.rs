@@ -4,9 +4,13 @@
 //! spread over the instructions of the segment, whose lines the image knows.
 
 mod flame;
+mod sampled;
 mod table;
 
+pub(crate) use sampled::Sampled;
+
 use std::collections::BTreeMap;
+use std::fmt;
 use std::path::PathBuf;
 
 use anyhow::{Result, bail};
@@ -41,11 +45,26 @@ pub(crate) fn target(text: &str) -> Result<ProfileOutput> {
 
 /// Writes the flame graph, if one is wanted, and gives the table.
 pub(crate) fn report(board: &Board<ProfilingEngine>, target: &ProfileOutput) -> Result<String> {
-    let spent = collect(board);
+    finish(&collect(board), board.now(), target)
+}
+
+/// Draws an account, if that is wanted, and makes a table of it.
+fn finish(account: &Account, end: Cycles, target: &ProfileOutput) -> Result<String> {
     if let ProfileOutput::Flame(path) = target {
-        output::write(path, &flame::draw(&spent)?)?;
+        output::write(path, &flame::draw(account)?)?;
     }
-    Ok(table::table(&spent, board.now()))
+    Ok(table::table(account, end))
+}
+
+/// Whose time it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Whose {
+    /// A thread's or the call-back's.
+    Program(ContextId),
+    /// That of the firmware's own thread.
+    Firmware,
+    /// That of code which no interrupt comes into: the servo.
+    Interrupt,
 }
 
 /// A line of a function, or a firmware function called from one.
@@ -59,8 +78,7 @@ struct ProfileFrame {
 /// A place in the source with the functions that led there.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct ProfilePlace {
-    /// The thread or the call-back.
-    context: ContextId,
+    whose: Whose,
     /// The outermost function first.
     frames: Vec<ProfileFrame>,
     /// The firmware function in which the time was spent.
@@ -79,8 +97,10 @@ fn collect(board: &Board<ProfilingEngine>) -> Account {
         for (at, part) in parts(board, site, *head, spent) {
             let mut frames = outer.clone();
             frames.extend(self::frames(board, at));
-            let place =
-                ProfilePlace { context: site.context, frames, firmware: site.firmware.map(firmware_name) };
+            let place = {
+                let whose = Whose::Program(site.context);
+                ProfilePlace { whose, frames, firmware: site.firmware.map(firmware_name) }
+            };
             let entry = account.entry(place).or_default();
             entry.computing += part.computing;
             entry.waiting += part.waiting;
@@ -91,8 +111,10 @@ fn collect(board: &Board<ProfilingEngine>) -> Account {
         let calls: Vec<CodeAddr> = images.calls(spender.callers).collect();
         let outer = calls.iter().rev().flat_map(|call| frames(board, *call));
         let frames = outer.chain(frames(board, spender.at)).collect();
-        let place =
-            ProfilePlace { context: spender.context, frames, firmware: spender.firmware.map(firmware_name) };
+        let place = {
+            let whose = Whose::Program(spender.context);
+            ProfilePlace { whose, frames, firmware: spender.firmware.map(firmware_name) }
+        };
         let entry = account.entry(place).or_default();
         entry.computing += time.computing;
         entry.waiting += time.waiting;
@@ -162,7 +184,15 @@ fn firmware_name(address: GuestAddr) -> String {
     known.map_or_else(|| address.to_string(), |function| function.name.to_owned())
 }
 
-/// "thread 1" or "call-back".
-fn context_name(context: ContextId) -> String {
-    context.thread().map_or_else(|| "call-back".to_owned(), |thread| format!("thread {thread}"))
+impl fmt::Display for Whose {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Program(context) => match context.thread() {
+                Some(thread) => write!(f, "thread {thread}"),
+                None => f.write_str("call-back"),
+            },
+            Self::Firmware => f.write_str("the firmware's own thread"),
+            Self::Interrupt => f.write_str("the servo and what no interrupt comes into"),
+        }
+    }
 }

@@ -4,10 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
 use kmotiondef::Cycles;
-use vm::engine::ContextId;
 use vm::profile::Spent;
 
-use super::{Account, ProfilePlace, context_name};
+use super::{Account, ProfilePlace, Whose};
 
 /// Rows of a table; what is after them took less.
 const ROWS: usize = 15;
@@ -22,20 +21,20 @@ struct FunctionTimes {
 /// The tables of all threads.
 pub(super) fn table(account: &Account, end: Cycles) -> String {
     let mut text = format!("Where {} of board time went\n", time(end));
-    let contexts: BTreeSet<ContextId> = account.keys().map(|place| place.context).collect();
-    for context in contexts {
-        let places: Vec<_> = account.iter().filter(|(place, _)| place.context == context).collect();
-        of_context(&mut text, context, &places, end);
+    let all: BTreeSet<Whose> = account.keys().map(|place| place.whose).collect();
+    for whose in all {
+        let places: Vec<_> = account.iter().filter(|(place, _)| place.whose == whose).collect();
+        of_one(&mut text, whose, &places, end);
     }
     text
 }
 
-fn of_context(text: &mut String, context: ContextId, places: &[(&ProfilePlace, &Spent)], end: Cycles) {
+fn of_one(text: &mut String, whose: Whose, places: &[(&ProfilePlace, &Spent)], end: Cycles) {
     let all = places.iter().fold(Spent::default(), |sum, (_, spent)| plus(sum, **spent));
     let _ = writeln!(
         text,
         "\n{}: computing {} ({}), waiting {} ({}), the rest went to the servo and to others",
-        context_name(context),
+        whose,
         time(all.computing),
         percent(all.computing, end),
         time(all.waiting),
