@@ -19,6 +19,7 @@ mod cache;
 mod core;
 mod decode;
 mod execute;
+mod flight;
 mod float;
 mod idle;
 mod inspect;

@@ -83,27 +83,28 @@ const fn line_bit(at: u32) -> u128 {
 }
 
 /// Changes each product of doubles of a packet.
-fn each_product(packet: &mut Packet, micros: &mut [Micro], change: impl Fn(&mut Micro)) {
+fn each_product(packet: Packet, micros: &mut [Micro], change: impl Fn(&mut Micro)) {
     let first = packet.first as usize;
     let own = micros[first..first + usize::from(packet.count)].iter_mut();
-    own.chain([&mut packet.lone]).filter(|micro| micro.work == Work::Mpydp).for_each(change);
+    own.filter(|micro| micro.work == Work::Mpydp).for_each(change);
 }
 
 impl Cache {
-    /// The packet with this index.
+    /// The packets from this index on, and the instructions from the first of these on: those of a packet follow those of
+    /// the packet before it.
     #[inline(always)]
-    pub(super) fn packet(&self, index: u32) -> &Packet {
-        &self.packets[index as usize]
+    pub(super) fn follow(&self, index: u32) -> (&[Packet], &[Micro]) {
+        let packets = &self.packets[index as usize..];
+        let first = packets.first().map_or(0, |packet| packet.first as usize);
+        (packets, &self.micros[first..])
     }
 
-    /// The instructions of a packet.
-    #[inline(always)]
-    pub(super) fn micros<'a>(&'a self, packet: &'a Packet) -> &'a [Micro] {
-        if packet.count == 1 {
-            return std::slice::from_ref(&packet.lone);
-        }
+    /// The packet with this index, and its instructions.
+    #[cfg(feature = "native")]
+    pub(super) fn packet(&self, index: u32) -> (Packet, &[Micro]) {
+        let packet = self.packets[index as usize];
         let first = packet.first as usize;
-        &self.micros[first..first + usize::from(packet.count)]
+        (packet, &self.micros[first..first + usize::from(packet.count)])
     }
 
     /// The index of the packet at an address, decoded if need be.
@@ -155,7 +156,7 @@ impl Cache {
         let Some(last) = self.packets.last_mut() else { return };
         last.is_linked = !last.is_idle;
         let writes = if last.cycles == 1 { writes } else { 0 };
-        each_product(last, &mut self.micros, |micro| {
+        each_product(*last, &mut self.micros, |micro| {
             let is_foreseen = micro.flags & STEADY != 0 && writes >> (micro.a | 1) & 1 == 0;
             micro.extra = if is_foreseen { FORESEEN } else { 0 };
         });
@@ -204,7 +205,7 @@ impl Cache {
                 if let Some(previous) = index.checked_sub(1) {
                     let previous = &mut self.packets[previous as usize];
                     previous.is_linked = false;
-                    each_product(previous, &mut self.micros, |micro| micro.extra = 0);
+                    each_product(*previous, &mut self.micros, |micro| micro.extra = 0);
                 }
             }
         }

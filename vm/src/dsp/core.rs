@@ -1,7 +1,7 @@
 //! One processor context: packet after packet, until something ends it.
 
 use super::cache::Cache;
-use super::decode::{NoPacket, STACK, places};
+use super::decode::{Micro, NoPacket, STACK, places};
 use super::idle::{Arrival, Idle};
 use super::memory::{Clock, Memory};
 #[cfg(feature = "native")]
@@ -62,8 +62,7 @@ pub struct Core {
     /// Registers and what is on its way to them.
     pub state: State,
     cache: Cache,
-    stack: Option<StackRange>,
-    lowest_stack: Option<u32>,
+    stack: Option<StackWatch>,
     packets: u64,
     /// The instruction of the last fault.
     faulted_at: Option<u32>,
@@ -76,9 +75,11 @@ pub struct Core {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct StackRange {
+struct StackWatch {
     limit: u32,
     top: u32,
+    /// The lowest stack pointer so far.
+    lowest: Option<u32>,
 }
 
 impl Core {
@@ -92,13 +93,16 @@ impl Core {
 
     /// Watches B15: below `limit` is a fault; bytes are counted from `top` down.
     pub const fn watch_stack(&mut self, limit: u32, top: u32) {
-        self.stack = Some(StackRange { limit, top });
+        self.stack = Some(StackWatch { limit, top, lowest: self.lowest_stack() });
     }
 
     /// The lowest B15 while it was watched.
     #[must_use]
     pub const fn lowest_stack(&self) -> Option<u32> {
-        self.lowest_stack
+        match self.stack {
+            Some(stack) => stack.lowest,
+            None => None,
+        }
     }
 
     /// The instruction of the last fault, if one of the packet that the core is before is known to have caused it.
@@ -135,7 +139,7 @@ impl Core {
         self.idle.forget();
         loop {
             if self.state.clock.is_over()
-                && let Some(halt) = self.at_border()
+                && let Some(halt) = self.border.halt(&self.state)
             {
                 return halt;
             }
@@ -187,8 +191,11 @@ impl Core {
                 Err(NoPacket::Fault(fault)) => return Halt::Faulted(fault.into()),
             };
             let from = self.state.pc;
-            if let Some(halt) = self.run_from(index, memory) {
+            if let Err(halt) = self.run_from::<true, M>(index, memory) {
                 return halt;
+            }
+            if self.state.is_idle {
+                self.wait();
             }
             if self.state.pc <= from && self.skips {
                 self.went_back(memory);
@@ -229,12 +236,14 @@ impl Core {
         }
         let Some(native) = &mut self.native else { return };
         let stack = self.stack.map_or((0, u32::MAX), |stack| (stack.limit, stack.top));
-        let mut account =
-            Account { stack, lowest: self.lowest_stack.unwrap_or(u32::MAX), packets: self.packets };
+        let lowest = self.stack.and_then(|stack| stack.lowest).unwrap_or(u32::MAX);
+        let mut account = Account { stack, lowest, packets: self.packets };
         native.run(&mut self.state, &mut self.cache, memory, &mut account);
         self.packets = account.packets;
-        if self.stack.is_some() && account.lowest != u32::MAX {
-            self.lowest_stack = Some(account.lowest);
+        if account.lowest != u32::MAX
+            && let Some(stack) = &mut self.stack
+        {
+            stack.lowest = Some(account.lowest);
         }
     }
 
@@ -244,7 +253,7 @@ impl Core {
     /// Why it could not be executed, or where the context has no code.
     pub fn step<M: Memory>(&mut self, memory: &mut M) -> Result<(), Halt> {
         match self.find(memory) {
-            Ok(index) => self.packet(index, memory).map(drop).map_err(Halt::Faulted),
+            Ok(index) => self.run_from::<false, M>(index, memory),
             Err(NoPacket::Outside) => Err(Halt::Left(self.state.pc)),
             Err(NoPacket::Fault(fault)) => Err(Halt::Faulted(fault.into())),
         }
@@ -280,78 +289,53 @@ impl Core {
         self.cache.find(self.state.pc, memory)
     }
 
-    /// Executes packets that follow each other in memory; `None` where the next must be searched.
+    /// Executes a packet, or all that follow each other in memory, up to where the next must be searched.
     #[inline(always)]
-    fn run_from<M: Memory>(&mut self, mut index: u32, memory: &mut M) -> Option<Halt> {
-        loop {
-            if self.state.clock.is_over()
-                && let Some(halt) = self.at_border()
+    fn run_from<const ALL: bool, M: Memory>(&mut self, index: u32, memory: &mut M) -> Result<(), Halt> {
+        let Self { state, cache, idle, .. } = self;
+        let (packets, mut micros) = cache.follow(index);
+        let mut memory = Watched { inner: memory, cache, idle, hits: [None; 2] };
+        for packet in packets {
+            if ALL
+                && state.clock.is_over()
+                && let Some(halt) = self.border.halt(state)
             {
-                return Some(halt);
+                return Err(halt);
             }
-            match self.packet(index, memory) {
-                Ok(true) => index += 1,
-                Ok(false) => {
-                    if self.state.is_idle {
-                        self.wait();
-                    }
-                    return None;
+            state.flight.expect(u32::from(packet.delays));
+            if packet.has_branch {
+                state.hold_interrupts();
+            }
+            let (own, rest) = micros.split_at(usize::from(packet.count));
+            micros = rest;
+            for micro in own {
+                if (state.regs[usize::from(micro.pred)] == 0) != micro.inverted {
+                    continue;
                 }
-                Err(kind) => return Some(Halt::Faulted(kind)),
+                if let Err(kind) = state.execute(micro, &mut memory) {
+                    self.faulted_at = instruction(&*memory.inner, state.pc, own, micro);
+                    return Err(Halt::Faulted(kind));
+                }
             }
-        }
-    }
-
-    /// The cycles are over: why the core stops here, if it does.
-    fn at_border(&self) -> Option<Halt> {
-        let is_interruptible = self.state.is_interruptible();
-        match self.border {
-            Border::Slice if is_interruptible => Some(Halt::Preempted),
-            Border::Slice if self.state.clock.left() <= -LONGEST_SHADOW => {
-                let cycles = LONGEST_SHADOW.unsigned_abs();
-                Some(Halt::Faulted(Fault::NoInterrupts { cycles }.into()))
+            self.packets += 1;
+            if packet.moves_stack
+                && let Some(stack) = &mut self.stack
+            {
+                stack.check(state).map_err(Halt::Faulted)?;
             }
-            Border::Slice => None,
-            Border::Next => Some(Halt::Preempted),
-            Border::Interrupt(until) => {
-                (is_interruptible || self.state.clock.cycle >= until).then_some(Halt::Preempted)
-            }
-        }
-    }
-
-    /// Executes a packet; whether the next of the cache follows.
-    #[inline(always)]
-    fn packet<M: Memory>(&mut self, index: u32, memory: &mut M) -> Result<bool, TrapKind> {
-        let packet = self.cache.packet(index);
-        let state = &mut self.state;
-        let idle = &mut self.idle;
-        let mut memory = Watched { inner: memory, cache: &self.cache, idle, hits: [None; 2] };
-        if packet.has_branch {
-            state.hold_interrupts();
-        }
-        for (number, micro) in self.cache.micros(packet).iter().enumerate() {
-            if (state.regs[usize::from(micro.pred)] == 0) != micro.inverted {
-                continue;
-            }
-            if let Err(kind) = state.execute(micro, &mut memory) {
-                self.faulted_at = instruction(&*memory.inner, state.pc, number);
-                return Err(kind);
+            state.refuse_undefined().map_err(|fault| Halt::Faulted(fault.into()))?;
+            state.pc = packet.end;
+            if state.advance(packet.cycles) == Passed::Branched
+                || !ALL
+                || !packet.is_linked
+                || memory.hits[0].is_some()
+            {
+                break;
             }
         }
         let hits = memory.hits;
-        let (end, cycles, is_linked) = (packet.end, packet.cycles, packet.is_linked);
-        self.packets += 1;
-        if packet.moves_stack && self.stack.is_some() {
-            self.check_stack()?;
-        }
-        self.state.refuse_undefined()?;
-        self.state.pc = end;
-        let passed = self.state.advance(cycles);
-        if hits[0].is_some() {
-            hits.into_iter().flatten().for_each(|at| self.cache.drop_line(at));
-            return Ok(false);
-        }
-        Ok(is_linked && passed == Passed::Through)
+        hits.into_iter().flatten().for_each(|at| self.cache.drop_line(at));
+        Ok(())
     }
 
     /// Waits for the interrupt.
@@ -361,22 +345,44 @@ impl Core {
         let left = self.state.clock.left();
         self.state.clock.cycle += left.max(0).cast_unsigned();
     }
+}
 
-    fn check_stack(&mut self) -> Result<(), TrapKind> {
-        let Some(stack) = self.stack else { return Ok(()) };
-        let pointer = self.state.regs[usize::from(STACK)];
-        self.lowest_stack = Some(self.lowest_stack.map_or(pointer, |lowest| lowest.min(pointer)));
-        if pointer < stack.limit || pointer > stack.top {
-            let used = stack.top.wrapping_sub(pointer);
-            return Err(TrapKind::StackOverflow { used, size: stack.top - stack.limit });
+impl Border {
+    /// The cycles are over: why the core stops here, if it does.
+    fn halt(self, state: &State) -> Option<Halt> {
+        let is_interruptible = state.is_interruptible();
+        match self {
+            Self::Slice if is_interruptible => Some(Halt::Preempted),
+            Self::Slice if state.clock.left() <= -LONGEST_SHADOW => {
+                let cycles = LONGEST_SHADOW.unsigned_abs();
+                Some(Halt::Faulted(Fault::NoInterrupts { cycles }.into()))
+            }
+            Self::Slice => None,
+            Self::Next => Some(Halt::Preempted),
+            Self::Interrupt(until) => {
+                (is_interruptible || state.clock.cycle >= until).then_some(Halt::Preempted)
+            }
+        }
+    }
+}
+
+impl StackWatch {
+    /// Notes the stack pointer, which has to be within its bounds.
+    fn check(&mut self, state: &State) -> Result<(), TrapKind> {
+        let pointer = state.regs[usize::from(STACK)];
+        self.lowest = Some(self.lowest.map_or(pointer, |lowest| lowest.min(pointer)));
+        if pointer < self.limit || pointer > self.top {
+            let used = self.top.wrapping_sub(pointer);
+            return Err(TrapKind::StackOverflow { used, size: self.top - self.limit });
         }
         Ok(())
     }
 }
 
-/// The address of an instruction by its number in the order of execution.
+/// The address of one of the instructions of a packet.
 #[cold]
-fn instruction<M: Memory>(memory: &M, packet: u32, number: usize) -> Option<u32> {
+fn instruction<M: Memory>(memory: &M, packet: u32, micros: &[Micro], micro: &Micro) -> Option<u32> {
+    let number = micros.iter().position(|other| std::ptr::eq(other, micro))?;
     places(memory, packet).get(number).copied()
 }
 

@@ -8,6 +8,7 @@
 use c67x::{Branch, Field, Inst, Kind, Offset, Operand, PARALLEL, Reg, Update, target};
 
 use super::memory::Memory;
+use super::pipeline::BRANCH;
 use super::work::{Plan, Work, plan};
 use crate::trap::Fault;
 
@@ -65,28 +66,15 @@ pub(super) struct Micro {
     pub(super) imm: u32,
 }
 
-/// What a packet without instructions that do something does.
-const NOTHING: Micro = Micro {
-    work: Work::Nop,
-    pred: TRUE,
-    inverted: false,
-    a: ZERO,
-    b: ZERO,
-    dst: ZERO,
-    extra: 0,
-    flags: 0,
-    imm: 0,
-};
-
 /// A packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Packet {
-    /// Its first instruction that does something.
-    pub(super) lone: Micro,
-    /// The place of that among all of the cache.
+    /// The place of its first instruction that does something among all of the cache.
     pub(super) first: u32,
     /// Number of instructions that do something.
     pub(super) count: u8,
+    /// The delays after which something that it sends on its way may happen, as bits.
+    pub(super) delays: u16,
     /// Cycles it lasts, if no branch ends it.
     pub(super) cycles: u8,
     /// Whether it writes the stack pointer.
@@ -138,7 +126,7 @@ pub(super) fn decode<M: Memory>(memory: &M, at: u32, micros: &mut Vec<Micro>) ->
     micros.extend(order(&insts).map_err(NoPacket::Fault)?.into_iter().map(|(_, micro)| micro));
     let writes = insts.iter().fold(0, |writes, (_, inst)| writes | written(*inst, 1));
     let packet = Packet {
-        lone: micros.get(first as usize).copied().unwrap_or(NOTHING),
+        delays: delays(&insts, &micros[first as usize..]),
         first,
         count: (micros.len() as u32 - first) as u8,
         cycles: cycles as u8,
@@ -151,6 +139,16 @@ pub(super) fn decode<M: Memory>(memory: &M, at: u32, micros: &mut Vec<Micro>) ->
         end,
     };
     Ok(Decoded { packet, writes })
+}
+
+/// The delays after which results, branches and later reads of a packet may happen, as bits.
+fn delays(insts: &[(u32, Inst)], micros: &[Micro]) -> u16 {
+    let results = insts.iter().flat_map(|(_, inst)| inst.writes()).map(|write| u32::from(write.stage));
+    let results = results.filter(|stage| *stage > 1).fold(0, |bits, stage| bits | 1 << stage);
+    let has_branch = insts.iter().any(|(_, inst)| inst.branch().is_some());
+    let reads_later = insts.iter().any(|(_, inst)| inst.reads().any(|read| read.first > 1));
+    let is_deferred = micros.iter().any(|micro| micro.flags & DEFERRED != 0);
+    results | u16::from(has_branch) << BRANCH | u16::from(reads_later || is_deferred) << 1
 }
 
 /// The instructions of the packet at `at` with their addresses, and the address after it.

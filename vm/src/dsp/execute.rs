@@ -1,8 +1,9 @@
 //! The instructions, one arm each.
 
 use super::decode::{AFTER, DEFERRED, FORESEEN, LONG1, LONG2, Micro, NEGATIVE, STEADY, UNSIGNED, UPDATES};
+use super::flight::Late;
 use super::memory::Memory;
-use super::pipeline::{Late, State};
+use super::pipeline::State;
 use super::work::Work;
 use super::{alu, float, product};
 use crate::trap::TrapKind;
@@ -191,7 +192,8 @@ impl State {
     }
 
     fn pair(&self, low: u8) -> u64 {
-        u64::from(self.regs[usize::from(low)]) | u64::from(self.regs[usize::from(low | 1)]) << 32
+        let low = usize::from(low & !1);
+        join(self.regs[low], self.regs[low + 1])
     }
 
     /// s1 of 40-bit arithmetic.
@@ -242,6 +244,10 @@ impl State {
     fn words(&self, m: &Micro, cycles: u64, low1: u32, low2: u32) -> Option<(u64, u64)> {
         if m.flags & STEADY == 0 {
             return None;
+        }
+        if !self.arrives_within(cycles, m.a | 1, m.b | 1) {
+            let [high1, high2] = [m.a, m.b].map(|low| self.regs[usize::from(low | 1)]);
+            return Some((join(low1, high1), join(low2, high2)));
         }
         let (high1, high2) = (self.after(cycles, m.a | 1), self.after(1, m.b | 1));
         Some((join(low1, high1), join(low2, high2)))

@@ -7,6 +7,9 @@ const NAN_SINGLE: u32 = 0x7FFF_FFFF;
 const NAN_DOUBLE: u64 = 0x7FFF_FFFF_FFFF_FFFF;
 const SIGN_SINGLE: u32 = 1 << 31;
 const SIGN_DOUBLE: u64 = 1 << 63;
+const EXPONENT_DOUBLE: u64 = 0x7FF << 52;
+/// The exponent from which on sums are not looked at closely: 2^-900.
+pub(super) const SUM_EXPONENT: u64 = 1023 - 900;
 
 /// A single as a source.
 pub(super) fn single(bits: u32) -> f32 {
@@ -53,24 +56,16 @@ pub(super) fn mpysp(s1: u32, s2: u32) -> u32 {
     from_single(single(s1) * single(s2))
 }
 
-/// Whether bits are those of a number that is neither 0 nor denormal nor infinite.
+/// Whether bits are those of a finite number with this exponent or a greater one.
 #[inline(always)]
-const fn is_usual(bits: u64) -> bool {
-    (bits >> 52 & 0x7FF).wrapping_sub(1) < 0x7FE
-}
-
-/// A result of the host, if sources and result are such that the processor has the same.
-#[inline(always)]
-fn usual(s1: u64, s2: u64, result: f64) -> Option<u64> {
-    let bits = result.to_bits();
-    (is_usual(s1) & is_usual(s2) & is_usual(bits)).then_some(bits)
+const fn is_finite_from(least: u64, bits: u64) -> bool {
+    (bits >> 52 & 0x7FF).wrapping_sub(least) < 0x7FF - least
 }
 
 /// `s1 + s2`
 #[inline(always)]
 pub(super) fn adddp(s1: u64, s2: u64) -> u64 {
-    let sum = usual(s1, s2, f64::from_bits(s1) + f64::from_bits(s2));
-    sum.unwrap_or_else(|| unusual_sum(s1, s2))
+    usual_sum(f64::from_bits(s1) + f64::from_bits(s2)).unwrap_or_else(|| unusual_sum(s1, s2))
 }
 
 #[cold]
@@ -78,16 +73,29 @@ fn unusual_sum(s1: u64, s2: u64) -> u64 {
     from_double(double(s1) + double(s2))
 }
 
+/// The host's sum if the processor's is the same: a denormal source changes none that is so much greater.
+#[inline(always)]
+fn usual_sum(sum: f64) -> Option<u64> {
+    is_finite_from(SUM_EXPONENT, sum.to_bits()).then_some(sum.to_bits())
+}
+
 /// `s1 - s2`
+#[inline(always)]
 pub(super) fn subdp(s1: u64, s2: u64) -> u64 {
+    usual_sum(f64::from_bits(s1) - f64::from_bits(s2)).unwrap_or_else(|| unusual_difference(s1, s2))
+}
+
+#[cold]
+fn unusual_difference(s1: u64, s2: u64) -> u64 {
     from_double(double(s1) - double(s2))
 }
 
 /// `s1 * s2`
 #[inline(always)]
 pub(super) fn mpydp(s1: u64, s2: u64) -> u64 {
-    let product = usual(s1, s2, f64::from_bits(s1) * f64::from_bits(s2));
-    product.unwrap_or_else(|| unusual_product(s1, s2))
+    let bits = (f64::from_bits(s1) * f64::from_bits(s2)).to_bits();
+    let is_usual = is_finite_from(1, bits) & (s1 & EXPONENT_DOUBLE != 0) & (s2 & EXPONENT_DOUBLE != 0);
+    if is_usual { bits } else { unusual_product(s1, s2) }
 }
 
 #[cold]

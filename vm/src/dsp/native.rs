@@ -166,8 +166,8 @@ impl Native {
         cache.mark_lines();
         let find: &mut Find<'_> = &mut |at| {
             let index = cache.find(at, memory).ok()?;
-            let packet = *cache.packet(index);
-            Some((packet, cache.micros(&packet).to_vec()))
+            let (packet, micros) = cache.packet(index);
+            Some((packet, micros.to_vec()))
         };
         let Ok(region) = (self.translator.0)(pc, self.flying.clone(), find) else {
             place.1 = COLD;

@@ -6,14 +6,13 @@
 
 use c67x::Reg;
 
-use super::decode::{Micro, TRUE};
+use super::decode::TRUE;
+use super::flight::{ANY, Flight, Late, SLOTS};
 use super::memory::Clock;
 use crate::trap::Fault;
 
-/// Slots; more than the longest latency.
-pub(super) const SLOTS: usize = 16;
 /// Cycles from a branch to its target.
-const BRANCH: u64 = 6;
+pub(super) const BRANCH: u64 = 6;
 
 /// Bits of CSR and IER.
 const GIE: u32 = 1;
@@ -29,23 +28,6 @@ const VECTORS: u32 = !0x3FF;
 const VECTOR_BYTES: u32 = 32;
 const IRP: usize = 6;
 const NRP: usize = 7;
-
-/// A double instruction that has not read all of its sources.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Late {
-    /// The cycle of its next read.
-    pub(super) due: u64,
-    /// The cycle of its issue.
-    pub(super) issued: u64,
-    /// The instruction.
-    pub(super) micro: Micro,
-    /// Low word of s1, or all of a single.
-    pub(super) low1: u32,
-    /// Low word of s2.
-    pub(super) low2: u32,
-    /// High word of s2, once read.
-    pub(super) high2: Option<u32>,
-}
 
 /// Registers, control registers and everything in flight.
 #[derive(Clone, Debug)]
@@ -65,31 +47,6 @@ pub struct State {
     pub(super) shadow: u64,
     /// Whether an `IDLE` waits.
     pub(super) is_idle: bool,
-}
-
-/// What is on its way: results, branches, double instructions that have more to read.
-#[derive(Clone, Debug)]
-pub(super) struct Flight {
-    /// Slots that have something to do, a bit each.
-    pub(super) busy: u16,
-    pub(super) masks: [u64; SLOTS],
-    pub(super) values: Box<[[u32; 64]; SLOTS]>,
-    pub(super) branches: u16,
-    pub(super) targets: [u32; SLOTS],
-    pub(super) late: Vec<Late>,
-}
-
-impl Default for Flight {
-    fn default() -> Self {
-        Self {
-            busy: 0,
-            masks: [0; SLOTS],
-            values: Box::new([[0; 64]; SLOTS]),
-            branches: 0,
-            targets: [0; SLOTS],
-            late: Vec::new(),
-        }
-    }
 }
 
 /// What a packet did whose outcome the processor leaves open.
@@ -213,7 +170,10 @@ impl State {
     pub(super) fn picture(&self) -> Picture {
         let mut regs = [0; 64];
         regs.copy_from_slice(&self.regs[..64]);
-        let delays = (1..=SLOTS as u64).filter(|delay| self.flight.busy >> self.slot(*delay) & 1 != 0);
+        let delays = (1..=SLOTS as u64).filter(|delay| {
+            let slot = self.slot(*delay);
+            self.flight.masks[slot] != 0 || self.flight.branches >> slot & 1 != 0
+        });
         let flight = delays.map(|delay| {
             let slot = self.slot(delay);
             let mut values = self.flight.values[slot];
@@ -271,34 +231,47 @@ impl State {
     ///
     /// Branches that are on their way are lost; where an interrupt is possible there are none.
     pub fn settle(&mut self) {
-        if self.flight.busy == 0 {
+        if self.flight.is_empty() {
             return;
         }
         self.flight.branches = 0;
         let now = self.clock.cycle;
         for _ in 0..SLOTS {
-            self.clock.cycle += 1;
-            self.land();
+            let _ = self.pass();
         }
         self.clock.cycle = now;
-        self.flight.busy = 0;
+        self.flight.due = 0;
     }
 
     /// Writes a result of E1.
     #[inline(always)]
     pub(super) fn write(&mut self, reg: u8, value: u32) {
-        self.undefined.conflicts |= self.flight.masks[self.slot(1)] & bit(reg);
         self.regs[usize::from(reg)] = value;
+        self.refuse_second(self.flight.masks[self.slot(1)] & bit(reg));
     }
 
-    /// Lets a result land in `delay` cycles from now.
+    /// Lets a result land in `delay` cycles from now, when something is [expected](Flight::expect).
     #[inline(always)]
     pub(super) fn push(&mut self, delay: u64, reg: u8, value: u32) {
         let slot = self.slot(delay);
-        self.undefined.conflicts |= self.flight.masks[slot] & bit(reg);
-        self.flight.masks[slot] |= bit(reg);
+        let mask = self.flight.masks[slot];
+        self.flight.masks[slot] = mask | bit(reg);
         self.flight.values[slot][usize::from(reg & 63)] = value;
-        self.flight.busy |= 1 << slot;
+        self.refuse_second(mask & bit(reg));
+    }
+
+    /// Notes registers that have two results in one cycle.
+    #[inline(always)]
+    fn refuse_second(&mut self, regs: u64) {
+        if regs != 0 {
+            self.note_second(regs);
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    const fn note_second(&mut self, regs: u64) {
+        self.undefined.conflicts |= regs;
     }
 
     /// Lets the low and the high word of a result land.
@@ -306,6 +279,13 @@ impl State {
     pub(super) fn push_pair(&mut self, low_delay: u64, high_delay: u64, reg: u8, value: u64) {
         self.push(low_delay, reg, value as u32);
         self.push(high_delay, reg | 1, (value >> 32) as u32);
+    }
+
+    /// Whether a result for one of two registers arrives within one or two cycles.
+    #[inline(always)]
+    pub(super) fn arrives_within(&self, cycles: u64, reg1: u8, reg2: u8) -> bool {
+        let masks = (1..=cycles).fold(0, |masks, delay| masks | self.flight.masks[self.slot(delay)]);
+        masks & (bit(reg1) | bit(reg2)) != 0
     }
 
     /// A register in `cycles` cycles, if nothing but what is on its way changes it.
@@ -321,12 +301,11 @@ impl State {
     pub(super) fn push_both(&mut self, delay: u64, reg: u8, value: u64) {
         let slot = self.slot(delay);
         let (low, high) = (usize::from(reg & 62), usize::from(reg & 62) | 1);
-        let mask = 3 << low;
-        self.undefined.conflicts |= self.flight.masks[slot] & mask;
-        self.flight.masks[slot] |= mask;
+        let mask = self.flight.masks[slot];
+        self.flight.masks[slot] = mask | 3 << low;
         self.flight.values[slot][low] = value as u32;
         self.flight.values[slot][high] = (value >> 32) as u32;
-        self.flight.busy |= 1 << slot;
+        self.refuse_second(mask & 3 << low);
     }
 
     /// Whether a branch arrives in the next cycle.
@@ -337,7 +316,6 @@ impl State {
 
     /// Remembers a double instruction whose high words are read later.
     pub(super) fn push_late(&mut self, late: Late) {
-        self.flight.busy |= 1 << (late.due as usize % SLOTS);
         self.flight.late.push(late);
     }
 
@@ -358,7 +336,6 @@ impl State {
         self.flight.branches |= 1 << slot;
         self.flight.targets[slot] = target;
         self.branched_at = [self.pc, self.branched_at[0]];
-        self.flight.busy |= 1 << slot;
     }
 
     /// Returns from an interrupt: where to.
@@ -397,53 +374,38 @@ impl State {
     /// Lets up to `cycles` cycles pass; they end where a branch arrives.
     #[inline(always)]
     pub(super) fn advance(&mut self, cycles: u8) -> Passed {
-        if self.flight.busy == 0 {
-            self.clock.cycle += u64::from(cycles);
-            return Passed::Through;
-        }
-        if cycles == 1 {
-            self.clock.cycle += 1;
-            let slot = self.clock.cycle as usize % SLOTS;
-            return if self.flight.busy >> slot & 1 == 0 { Passed::Through } else { self.arrive(slot) };
-        }
-        self.advance_far(cycles)
+        if cycles == 1 { self.pass() } else { self.advance_far(u32::from(cycles)) }
     }
 
     /// Lets several cycles pass.
-    fn advance_far(&mut self, cycles: u8) -> Passed {
-        let end = self.clock.cycle + u64::from(cycles);
-        while self.clock.cycle < end {
-            let ahead = u32::from(self.flight.busy.rotate_right(self.slot(1) as u32));
-            let window = ahead & ((1 << (end - self.clock.cycle)) - 1);
-            if window == 0 {
-                self.clock.cycle = end;
-                break;
-            }
-            self.clock.cycle += u64::from(window.trailing_zeros()) + 1;
-            if self.arrive(self.clock.cycle as usize % SLOTS) == Passed::Branched {
+    fn advance_far(&mut self, mut cycles: u32) -> Passed {
+        loop {
+            let next = (self.flight.due >> 1).trailing_zeros() + 1;
+            let passed = next.min(cycles);
+            self.clock.cycle += u64::from(passed);
+            self.flight.due >>= passed;
+            if next == passed && self.arrive() == Passed::Branched {
                 return Passed::Branched;
             }
+            cycles -= passed;
+            if cycles == 0 {
+                return Passed::Through;
+            }
         }
-        Passed::Through
     }
 
-    /// What is due in the slot of this cycle lands.
+    /// Lets a cycle pass.
     #[inline(always)]
-    fn arrive(&mut self, slot: usize) -> Passed {
-        self.land();
-        if self.flight.branches & 1 << slot == 0 {
-            return Passed::Through;
-        }
-        self.flight.branches &= !(1 << slot);
-        self.pc = self.flight.targets[slot];
-        Passed::Branched
+    fn pass(&mut self) -> Passed {
+        self.clock.cycle += 1;
+        self.flight.due >>= 1;
+        if self.flight.due & 1 == 0 { Passed::Through } else { self.arrive() }
     }
 
-    /// Applies what is due in this cycle.
+    /// What is due in this cycle happens.
     #[inline(always)]
-    fn land(&mut self) {
-        let slot = self.clock.cycle as usize % SLOTS;
-        self.flight.busy &= !(1 << slot);
+    fn arrive(&mut self) -> Passed {
+        let slot = self.slot(0);
         let mut mask = std::mem::take(&mut self.flight.masks[slot]);
         let values = &self.flight.values[slot];
         while mask != 0 {
@@ -454,6 +416,12 @@ impl State {
         if !self.flight.late.is_empty() {
             self.read_late();
         }
+        if self.flight.branches >> slot & 1 == 0 {
+            return Passed::Through;
+        }
+        self.flight.branches &= !(1 << slot);
+        self.pc = self.flight.targets[slot];
+        Passed::Branched
     }
 
     #[cold]
@@ -462,6 +430,7 @@ impl State {
         while let Some(late) = self.flight.late.get(index).copied() {
             if late.due == self.clock.cycle {
                 self.flight.late.swap_remove(index);
+                self.flight.expect(ANY);
                 self.continue_late(late);
             } else {
                 index += 1;

@@ -5,7 +5,8 @@
 //! another list says what the values are that it leaves.
 
 use super::super::decode::Micro;
-use super::super::pipeline::{Late, SLOTS, State};
+use super::super::flight::{Late, SLOTS};
+use super::super::pipeline::State;
 use crate::native::{Handover, VALUES};
 
 /// Something that is on its way.
@@ -58,12 +59,12 @@ impl State {
     /// Lists what is on its way; `false` where that is not what a translation begins with.
     pub(super) fn list_flying(&self, flying: &mut Vec<Flying>) -> bool {
         flying.clear();
-        if self.flight.busy == 0 {
+        if self.flight.is_empty() {
             return true;
         }
         for due in 1..SLOTS as u8 {
             let slot = self.slot(u64::from(due));
-            if self.flight.busy >> slot & 1 == 0 {
+            if self.flight.due >> due & 1 == 0 {
                 continue;
             }
             let mut mask = self.flight.masks[slot];
@@ -109,7 +110,7 @@ impl State {
                 }
             }
         }
-        self.flight.busy = 0;
+        self.flight.due = 0;
         self.flight.masks = [0; SLOTS];
         self.flight.branches = 0;
         self.flight.late.clear();
@@ -125,6 +126,7 @@ impl State {
             if !arrives {
                 continue;
             }
+            self.flight.expect(1 << one.due);
             let due = u64::from(one.due);
             match one.what {
                 Arriving::Result(reg) => self.push(due, reg, own[0]),
@@ -169,6 +171,5 @@ impl State {
         let slot = self.slot(due);
         self.flight.branches |= 1 << slot;
         self.flight.targets[slot] = target;
-        self.flight.busy |= 1 << slot;
     }
 }

@@ -1,0 +1,69 @@
+//! What is on its way: results, branches, double instructions that have more to read.
+//!
+//! Results wait in sixteen slots, the slot of a cycle being its number modulo 16. When something may happen is kept
+//! apart from that, so that cycles in which nothing lands pass at once.
+
+use super::decode::Micro;
+
+/// Slots; more than the longest latency.
+pub(super) const SLOTS: usize = 16;
+/// All delays there are.
+pub(super) const ANY: u32 = (1 << SLOTS) - 2;
+
+/// A double instruction that has not read all of its sources.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Late {
+    /// The cycle of its next read.
+    pub(super) due: u64,
+    /// The cycle of its issue.
+    pub(super) issued: u64,
+    /// The instruction.
+    pub(super) micro: Micro,
+    /// Low word of s1, or all of a single.
+    pub(super) low1: u32,
+    /// Low word of s2.
+    pub(super) low2: u32,
+    /// High word of s2, once read.
+    pub(super) high2: Option<u32>,
+}
+
+/// What is on its way: results, branches, double instructions that have more to read.
+#[derive(Clone, Debug)]
+pub(super) struct Flight {
+    /// When something may happen, relative to the present cycle: bit k is set if in k cycles; bit 0 says nothing.
+    ///
+    /// What a packet may send on its way is known when it is decoded, so this changes once a packet and not with each
+    /// result; a bit may be set for an instruction that was not executed.
+    pub(super) due: u32,
+    pub(super) masks: [u64; SLOTS],
+    pub(super) values: Box<[[u32; 64]; SLOTS]>,
+    pub(super) branches: u16,
+    pub(super) targets: [u32; SLOTS],
+    pub(super) late: Vec<Late>,
+}
+
+impl Flight {
+    /// Whether nothing is on its way.
+    pub(super) const fn is_empty(&self) -> bool {
+        self.due >> 1 == 0
+    }
+
+    /// Says that something may happen after each of these delays.
+    #[inline(always)]
+    pub(super) const fn expect(&mut self, delays: u32) {
+        self.due |= delays;
+    }
+}
+
+impl Default for Flight {
+    fn default() -> Self {
+        Self {
+            due: 0,
+            masks: [0; SLOTS],
+            values: Box::new([[0; 64]; SLOTS]),
+            branches: 0,
+            targets: [0; SLOTS],
+            late: Vec::new(),
+        }
+    }
+}
