@@ -75,7 +75,7 @@ impl Translator<'_, '_> {
             let scratch = self.builder.ins().iadd_imm_s(self.pointers.handover, place);
             let made = self.builder.create_block();
             self.builder.ins().brif(condition, made, &[], after, &[scratch.into()]);
-            self.builder.switch_to_block(made);
+            self.continue_in(made);
         }
         let (elsewhere, side) = (self.cold(), self.side(doing));
         self.in_region(
@@ -86,7 +86,7 @@ impl Translator<'_, '_> {
             is_store,
             [elsewhere, side, after],
         );
-        self.builder.switch_to_block(elsewhere);
+        self.continue_in(elsewhere);
         let lines = SDRAM.size >> MARK_BITS;
         self.in_region(
             address,
@@ -96,7 +96,7 @@ impl Translator<'_, '_> {
             is_store,
             [side, side, after],
         );
-        self.builder.switch_to_block(after);
+        self.continue_in(after);
         self.builder.block_params(after)[0]
     }
 
@@ -121,7 +121,7 @@ impl Translator<'_, '_> {
         }
         let inside = self.builder.create_block();
         self.builder.ins().brif(is_inside, inside, &[], outside, &[]);
-        self.builder.switch_to_block(inside);
+        self.continue_in(inside);
         let line = self.builder.ins().ushr_imm_u(wide, i64::from(MARK_BITS));
         let line = self.builder.ins().iadd(self.pointers.marks, line);
         let mark = self.builder.ins().uload8(types::I32, self.own, line, first_mark.cast_signed());

@@ -7,7 +7,7 @@ use super::super::decode::{LONG1, LONG2, Micro, UNSIGNED};
 use super::super::product::Halves;
 use super::super::work::Work;
 use super::packet::Doing;
-use super::region::{Stopped, Translator};
+use super::region::{PairWord, Stopped, Translator};
 
 /// Bits of a long.
 const LONG: i64 = 40;
@@ -399,11 +399,20 @@ impl Translator<'_, '_> {
     pub(super) fn split(&mut self, value: Value) -> (Value, Value) {
         let low = self.builder.ins().ireduce(types::I32, value);
         let high = self.builder.ins().ushr_imm_u(value, 32);
-        (low, self.builder.ins().ireduce(types::I32, high))
+        let high = self.builder.ins().ireduce(types::I32, high);
+        self.halves.insert(low, (value, PairWord::Low));
+        self.halves.insert(high, (value, PairWord::High));
+        (low, high)
     }
 
-    /// 64 bits of two words.
+    /// 64 bits of two words; those that the words are of, if they are both of the same.
     pub(super) fn join(&mut self, low: Value, high: Value) -> Value {
+        let of = |word| self.halves.get(&self.builder.func.dfg.resolve_aliases(word));
+        if let (Some((whole, PairWord::Low)), Some((other, PairWord::High))) = (of(low), of(high))
+            && whole == other
+        {
+            return *whole;
+        }
         let low = self.builder.ins().uextend(types::I64, low);
         let high = self.builder.ins().uextend(types::I64, high);
         let high = self.builder.ins().ishl_imm_u(high, 32);

@@ -4,6 +4,7 @@ use cranelift_codegen::ir::condcodes::{FloatCC, IntCC};
 use cranelift_codegen::ir::{InstBuilder, MemFlagsData, Type, Value, types};
 
 use super::super::decode::Micro;
+use super::super::float::SUM_EXPONENT;
 use super::super::work::Work;
 use super::packet::Doing;
 use super::region::{Stopped, Translator};
@@ -14,8 +15,6 @@ const NAN_SINGLE: i64 = 0x7FFF_FFFF;
 const EXPONENT_DOUBLE: i64 = 0x7FF0_0000_0000_0000;
 const SIGN_DOUBLE: i64 = i64::MIN;
 const NAN_DOUBLE: i64 = i64::MAX;
-/// The exponent from which on sums are not looked at closely: 2^-900.
-const SUM_EXPONENT: i64 = 1023 - 900;
 
 impl Translator<'_, '_> {
     fn constant(&mut self, ty: Type, value: i64) -> Value {
@@ -229,17 +228,17 @@ impl Translator<'_, '_> {
             })
         } else {
             // A denormal number changes no sum that is so much greater.
-            self.is_outside(bits, SUM_EXPONENT)
+            self.is_outside(bits, SUM_EXPONENT.cast_signed())
         };
         let (slow, after) = (self.cold(), self.builder.create_block());
         self.builder.append_block_param(after, types::I64);
         self.builder.ins().brif(any, slow, &[], after, &[bits.into()]);
-        self.builder.switch_to_block(slow);
+        self.continue_in(slow);
         let [one, two] = [bits1, bits2].map(|bits| self.double_source(bits));
         let value = self.operate(work, one, two);
         let bits = self.float_result(value);
         self.builder.ins().jump(after, &[bits.into()]);
-        self.builder.switch_to_block(after);
+        self.continue_in(after);
         self.builder.block_params(after)[0]
     }
 

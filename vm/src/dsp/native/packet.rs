@@ -75,7 +75,7 @@ impl Translator<'_, '_> {
     pub(super) fn refuse_if(&mut self, doing: &mut Doing, is_wrong: Value) {
         let (side, inside) = (self.side(doing), self.builder.create_block());
         self.builder.ins().brif(is_wrong, side, &[], inside, &[]);
-        self.builder.switch_to_block(inside);
+        self.continue_in(inside);
     }
 
     /// The value that says if an instruction is executed; `None` if it always is.
@@ -310,7 +310,7 @@ impl Translator<'_, '_> {
         let rest = flight.condition.map(|condition| {
             let (taken, rest) = (self.builder.create_block(), self.builder.create_block());
             self.builder.ins().brif(condition, taken, &[], rest, &[]);
-            self.builder.switch_to_block(taken);
+            self.continue_in(taken);
             rest
         });
         match known {
@@ -318,7 +318,7 @@ impl Translator<'_, '_> {
             None => self.exit(border, Some(flight.values[0]), true),
         }
         if let Some(rest) = rest {
-            self.builder.switch_to_block(rest);
+            self.continue_in(rest);
         }
         rest.is_none()
     }

@@ -2,13 +2,15 @@
 //!
 //! A block of it begins at a packet with a list of what is on its way there; the same packet with another list is
 //! another block. It follows the packets as they follow each other, and ends where a branch arrives. What is on its way
-//! from block to block goes as parameters of the blocks; the registers of the processor are variables, and each new
-//! value of one is stored as well, so that wherever the function ends the registers are what they should be.
+//! from block to block goes as parameters of the blocks, the words of a pair as one; the registers of the processor are
+//! variables, and each new value of one is stored as well, so that wherever the function ends the registers are what
+//! they should be.
 //!
 //! The function ends before a packet, never within one: all that can go wrong is tested before anything of the packet
 //! is stored. The interpreter executes what the function does not: accesses of devices, stores among code, control
 //! registers, faults. It ends likewise where less time is left than a block may take, so that no packet begins too late.
 
+use std::collections::BTreeMap;
 use std::mem::offset_of;
 
 use cranelift_codegen::ir::condcodes::IntCC;
@@ -112,9 +114,12 @@ pub(super) struct Border {
 }
 
 /// A block of the region.
+#[derive(Clone)]
 struct Node {
     pc: u32,
     flying: Vec<Flying>,
+    /// Words of what is on its way that come together, by their numbers among all values.
+    pairs: Vec<[usize; 2]>,
     block: Block,
 }
 
@@ -125,6 +130,15 @@ pub(super) struct Counters {
     pub(super) packets: Variable,
     pub(super) shadow: Variable,
     pub(super) branched_at: [Variable; 2],
+}
+
+/// Which of the two words of 64 bits a value is.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum PairWord {
+    /// Bits 31..0.
+    Low,
+    /// Bits 63..32.
+    High,
 }
 
 /// Pointers that the function holds.
@@ -147,6 +161,8 @@ pub(super) struct Translator<'a, 'f> {
     /// Whatever the function reads and writes is there; the guest's bytes have its order.
     pub(super) own: MemFlagsData,
     pub(super) guest: MemFlagsData,
+    /// Words of which it is known what they are a half of.
+    pub(super) halves: BTreeMap<Value, (Value, PairWord)>,
     nodes: Vec<Node>,
     translated: u32,
     exits: Vec<Exit>,
@@ -205,6 +221,7 @@ impl<'a, 'f> Translator<'a, 'f> {
             pointers,
             own,
             guest,
+            halves: BTreeMap::new(),
             nodes: Vec::new(),
             translated: 0,
             exits: Vec::new(),
@@ -230,9 +247,8 @@ impl<'a, 'f> Translator<'a, 'f> {
             values.push(self.builder.ins().load(types::I32, self.own, self.pointers.handover, place));
         }
         let node = self.node(pc, entry);
-        let block = self.nodes[node].block;
-        let arguments: Vec<BlockArg> = values.into_iter().map(BlockArg::from).collect();
-        self.builder.ins().jump(block, &arguments);
+        let flights = flights(entry, &mut values.into_iter());
+        self.jump(node, &flights);
         let mut next = 0;
         while next < self.nodes.len() {
             self.block(next)?;
@@ -250,31 +266,40 @@ impl<'a, 'f> Translator<'a, 'f> {
         if let Some(known) = self.nodes.iter().position(|node| node.pc == pc && node.flying == flying) {
             return known;
         }
-        let block = self.builder.create_block();
-        for one in flying {
-            if one.is_conditional {
-                self.builder.append_block_param(block, types::I8);
-            }
-            for _ in 0..one.what.values() {
-                self.builder.append_block_param(block, types::I32);
-            }
+        let (block, pairs) = (self.builder.create_block(), pairs(flying));
+        for _ in &pairs {
+            self.builder.append_block_param(block, types::I64);
         }
-        self.nodes.push(Node { pc, flying: flying.to_vec(), block });
+        for _ in flying.iter().filter(|one| one.is_conditional) {
+            self.builder.append_block_param(block, types::I8);
+        }
+        let words = flying.iter().map(|one| one.what.values()).sum::<usize>() - 2 * pairs.len();
+        for _ in 0..words {
+            self.builder.append_block_param(block, types::I32);
+        }
+        self.nodes.push(Node { pc, flying: flying.to_vec(), pairs, block });
         self.nodes.len() - 1
+    }
+
+    /// Jumps to a block with what is on its way.
+    fn jump(&mut self, node: usize, flights: &[Flight]) {
+        let Node { pairs, block, .. } = self.nodes[node].clone();
+        let values: Vec<Value> = flights.iter().flat_map(|flight| flight.values.iter().copied()).collect();
+        let mut arguments = Vec::new();
+        for [low, high] in &pairs {
+            arguments.push(BlockArg::from(self.join(values[*low], values[*high])));
+        }
+        arguments.extend(flights.iter().filter_map(|flight| flight.condition).map(BlockArg::from));
+        let single = |index: &usize| pairs.iter().all(|pair| !pair.contains(index));
+        arguments.extend((0..values.len()).filter(single).map(|index| BlockArg::from(values[index])));
+        self.builder.ins().jump(block, &arguments);
     }
 
     /// Translates a block: packets until a branch arrives, or enough of them.
     fn block(&mut self, index: usize) -> Result<(), Unusual> {
-        let Node { pc, block, .. } = self.nodes[index];
-        let flying = self.nodes[index].flying.clone();
-        self.builder.switch_to_block(block);
-        let mut parameters = self.builder.block_params(block).to_vec().into_iter();
-        let flights = flying.into_iter().map(|flying| Flight {
-            condition: flying.is_conditional.then(|| parameters.next()).flatten(),
-            values: parameters.by_ref().take(flying.what.values()).collect(),
-            flying,
-        });
-        let mut border = Border { pc, cycles: 0, packets: 0, flights: flights.collect() };
+        let node = self.nodes[index].clone();
+        self.builder.switch_to_block(node.block);
+        let mut border = Border { pc: node.pc, cycles: 0, packets: 0, flights: self.arrived(&node) };
         self.leave_if_late(&border);
         loop {
             let is_known = border.packets > 0 && {
@@ -302,6 +327,27 @@ impl<'a, 'f> Translator<'a, 'f> {
         }
     }
 
+    /// What is on its way at the beginning of a block.
+    fn arrived(&mut self, node: &Node) -> Vec<Flight> {
+        let mut parameters = self.builder.block_params(node.block).to_vec().into_iter();
+        let wholes: Vec<Value> = parameters.by_ref().take(node.pairs.len()).collect();
+        let mut words = BTreeMap::new();
+        for ([low, high], whole) in node.pairs.iter().zip(wholes) {
+            let halves = self.split(whole);
+            words.extend([(*low, halves.0), (*high, halves.1)]);
+        }
+        let conditional = node.flying.iter().filter(|one| one.is_conditional).count();
+        let mut conditions = parameters.by_ref().take(conditional).collect::<Vec<_>>().into_iter();
+        let count = node.flying.iter().map(|one| one.what.values()).sum();
+        let values: Vec<Value> =
+            (0..count).filter_map(|index| words.get(&index).copied().or_else(|| parameters.next())).collect();
+        let mut flights = flights(&node.flying, &mut values.into_iter());
+        for flight in flights.iter_mut().filter(|flight| flight.flying.is_conditional) {
+            flight.condition = conditions.next();
+        }
+        flights
+    }
+
     /// Ends the function where less time is left than a block may take.
     fn leave_if_late(&mut self, border: &Border) {
         let cycle = self.builder.use_var(self.counters.cycle);
@@ -311,9 +357,9 @@ impl<'a, 'f> Translator<'a, 'f> {
         let is_late = self.builder.ins().icmp_imm_s(IntCC::SignedLessThan, left, i64::from(LONGEST));
         let (late, inside) = (self.cold(), self.builder.create_block());
         self.builder.ins().brif(is_late, late, &[], inside, &[]);
-        self.builder.switch_to_block(late);
+        self.continue_in(late);
         self.exit(border, None, false);
-        self.builder.switch_to_block(inside);
+        self.continue_in(inside);
     }
 
     /// A block that is seldom reached.
@@ -321,6 +367,14 @@ impl<'a, 'f> Translator<'a, 'f> {
         let block = self.builder.create_block();
         self.builder.set_cold_block(block);
         block
+    }
+
+    /// Continues in a block that everything that leads to it has been written of.
+    ///
+    /// So a register that no way there has changed is the same value as before, and words of a pair are known as such.
+    pub(super) fn continue_in(&mut self, block: Block) {
+        self.builder.seal_block(block);
+        self.builder.switch_to_block(block);
     }
 
     /// Continues at a border in its own block, or ends the function there if there are too many.
@@ -331,16 +385,10 @@ impl<'a, 'f> Translator<'a, 'f> {
             return self.exit(border, None, true);
         }
         let node = self.node(border.pc, &flying);
-        let block = self.nodes[node].block;
         let (cycle, packets) = self.counts(border);
         self.builder.def_var(self.counters.cycle, cycle);
         self.builder.def_var(self.counters.packets, packets);
-        let mut arguments = Vec::new();
-        for flight in &border.flights {
-            arguments.extend(flight.condition.map(BlockArg::from));
-            arguments.extend(flight.values.iter().copied().map(BlockArg::from));
-        }
-        self.builder.ins().jump(block, &arguments);
+        self.jump(node, &border.flights);
     }
 
     /// Cycle and packets at a border.
@@ -405,6 +453,39 @@ pub(super) enum Stopped {
 /// What is on its way, without the values.
 fn shape(flights: &[Flight]) -> Vec<Flying> {
     flights.iter().map(|flight| flight.flying).collect()
+}
+
+/// What is on its way with its values, without conditions.
+fn flights(flying: &[Flying], values: &mut impl Iterator<Item = Value>) -> Vec<Flight> {
+    let with_values = |flying: &Flying| Flight {
+        flying: *flying,
+        condition: None,
+        values: values.by_ref().take(flying.what.values()).collect(),
+    };
+    flying.iter().map(with_values).collect()
+}
+
+/// The results that are likely to be the words of one value, by the numbers of their values: those for an even register
+/// and for the next one that land in the same cycle, or the second a cycle later.
+fn pairs(flying: &[Flying]) -> Vec<[usize; 2]> {
+    let mut values = 0;
+    let mut results = Vec::new();
+    for one in flying {
+        if let (Arriving::Result(reg), false) = (one.what, one.is_conditional) {
+            results.push((one.due, reg, values));
+        }
+        values += one.what.values();
+    }
+    let mut pairs: Vec<[usize; 2]> = Vec::new();
+    for (due, reg, low) in results.iter().filter(|(_, reg, _)| reg & 1 == 0) {
+        let high = [*due, *due + 1].into_iter().find_map(|due| {
+            results.iter().find(|other| other.0 == due && other.1 == reg | 1).map(|other| other.2)
+        });
+        if let Some(high) = high.filter(|high| pairs.iter().all(|pair| !pair.contains(high))) {
+            pairs.push([*low, high]);
+        }
+    }
+    pairs
 }
 
 /// Puts what is on its way in its order.
