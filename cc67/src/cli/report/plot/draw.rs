@@ -60,7 +60,7 @@ fn curves(chart: &Chart) -> String {
     for (panel, top) in chart.panels.iter().zip((TITLE..).step_by(PANEL as usize)) {
         for (index, line) in panel.lines.iter().enumerate() {
             let points = points(chart, panel, line);
-            let width = thickness(points.len());
+            let width = thickness(&points);
             let (red, green, blue) = COLORS[index % COLORS.len()];
             let places: Vec<String> =
                 points.iter().map(|(x, y)| format!("{},{}", short(*x), short(y + f64::from(top)))).collect();
@@ -90,9 +90,16 @@ fn points(chart: &Chart, panel: &Panel, line: &Line) -> Vec<(f64, f64)> {
     without_flat(shown.map(|(time, value)| (place(chart, time), up(value))).collect())
 }
 
-/// A thick line has spikes where it turns back within a pixel, as noise does.
-const fn thickness(points: usize) -> u32 {
-    if points > (WIDTH - LEFT - RIGHT) as usize { 1 } else { 2 }
+/// Turns within a pixel in a line that is still drawn thick: those of a few jolts, but not of noise.
+const TURNS: usize = 40;
+
+/// A thick line has a spike at each place where it turns back within a pixel, as noise does all the time.
+fn thickness(points: &[(f64, f64)]) -> u32 {
+    let turns = points.windows(3).filter(|three| {
+        let (before, after) = (three[1].1 - three[0].1, three[2].1 - three[1].1);
+        before * after < 0.0 && before.abs().min(after.abs()) > 1.0 && three[2].0 - three[0].0 < 2.0
+    });
+    if turns.count() > TURNS { 1 } else { 2 }
 }
 
 /// The chart as a PNG picture.
@@ -234,9 +241,9 @@ fn draw_panel<B: DrawingBackend>(
         return Ok(());
     }
     for (index, shown) in panel.lines.iter().enumerate() {
-        let points = points(chart, panel, shown).into_iter();
-        let points: Vec<(i32, i32)> = points.map(|(x, y)| (x as i32, y as i32)).collect();
-        let width = thickness(points.len());
+        let points = points(chart, panel, shown);
+        let width = thickness(&points);
+        let points: Vec<(i32, i32)> = points.into_iter().map(|(x, y)| (x as i32, y as i32)).collect();
         area.draw(&PathElement::new(points, color(index).stroke_width(width))).map_err(text_of)?;
     }
     Ok(())
@@ -336,5 +343,14 @@ mod tests {
         check((-3.0, 12.0), &["0", "5", "10"]);
         check((0.0, 0.0), &["0"]);
         check((0.0, 3e9), &["0", "1e9", "2e9", "3e9"]);
+    }
+
+    #[test]
+    fn noise_is_drawn_thin_and_a_long_move_is_not() {
+        let wave = |period: usize| -> Vec<(f64, f64)> {
+            (0..4000).map(|i| (i as f64 / 4.0, if i / period % 2 == 0 { 10.0 } else { 90.0 })).collect()
+        };
+        assert_eq!(thickness(&wave(1)), 1);
+        assert_eq!(thickness(&wave(400)), 2);
     }
 }
