@@ -348,7 +348,9 @@ mod tests {
     #[test]
     fn noise_is_drawn_thin_and_a_long_move_is_not() {
         let wave = |period: usize| -> Vec<(f64, f64)> {
-            (0..4000).map(|i| (i as f64 / 4.0, if i / period % 2 == 0 { 10.0 } else { 90.0 })).collect()
+            (0..4000)
+                .map(|i| (i as f64 / 4.0, if (i / period).is_multiple_of(2) { 10.0 } else { 90.0 }))
+                .collect()
         };
         assert_eq!(thickness(&wave(1)), 1);
         assert_eq!(thickness(&wave(400)), 2);
