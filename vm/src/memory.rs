@@ -452,6 +452,12 @@ impl GuestMemory {
         Ok(())
     }
 
+    /// Whether nothing was ever written to flash memory. To ask first saves the host its two megabytes of erased bytes.
+    #[must_use]
+    pub const fn is_flash_erased(&self) -> bool {
+        self.flash.is_erased()
+    }
+
     /// The `len` bytes from `addr` on; none of them need be mapped if there are none.
     fn bytes(&self, addr: GuestAddr, len: u32) -> Result<&[u8], TrapKind> {
         if len == 0 {

@@ -319,7 +319,7 @@ impl<E: Engine> Rig<E> {
 
     /// Keeps what flash memory holds now in its file.
     pub(crate) fn keep_flash(&mut self) -> Result<()> {
-        self.flash.keep(self.session.board().flash())
+        self.flash.keep(|| self.session.board().flash())
     }
 
     /// The run is over: what is held comes out, the files of the serial port and of the flash are written.

@@ -64,7 +64,9 @@ pub(crate) fn save(memory: &mut GuestMemory, texts: impl Fn(ThreadId) -> Option<
 
 /// Whether something was saved.
 pub(crate) fn is_saved(memory: &GuestMemory) -> bool {
-    memory.read_bytes(FLASH.base, MAGIC.len() as u32).is_ok_and(|bytes| bytes == MAGIC)
+    let begins_with_magic =
+        || memory.read_bytes(FLASH.base, MAGIC.len() as u32).is_ok_and(|bytes| bytes == MAGIC);
+    !memory.is_flash_erased() && begins_with_magic()
 }
 
 /// Brings back what was saved.

@@ -146,7 +146,7 @@ impl CompareArguments {
             Some(super::Command::Compare(mut own)) => {
                 own.board.keeps_files = true;
                 own.refuse()?;
-                Ok((own, programs))
+                Ok((own.0, programs))
             }
             _ => bail!("the words of this command are not its own"),
         }

@@ -8,6 +8,7 @@ mod compare;
 mod console;
 mod cycles;
 mod debug;
+mod deferred;
 mod diff;
 mod drop_in;
 mod examples;
@@ -36,6 +37,7 @@ use clap::error::{ContextKind, ContextValue};
 use clap::{CommandFactory, Parser, Subcommand};
 use compiler::words::suggest;
 
+use self::deferred::Deferred;
 use super::args::beside::Beside;
 use super::io::exit::Exit;
 use super::io::terminal;
@@ -64,7 +66,7 @@ macro_rules! subcommands {
     )*) => {
         #[derive(Debug, Subcommand)]
         enum Command {
-            $($(#[doc = $doc])+ $(#[cfg($condition)])? $name($kind),)*
+            $($(#[doc = $doc])+ $(#[cfg($condition)])? $name(Deferred<$kind>),)*
         }
 
         impl Command {
@@ -79,26 +81,26 @@ macro_rules! subcommands {
 
 subcommands! {
     /// Compile programs into threads, execute them on the simulated board, print the console
-    Run(Box<run::RunArguments>) as arguments => run::run(arguments);
+    Run(run::RunArguments) as arguments => run::run(arguments);
     /// Compile and link a program for a thread into an image, FILE(N).out
     Build(build::BuildArguments) as arguments => build::build(arguments);
     /// Compile programs and report what is wrong with them
     Check(check::CheckArguments) as arguments => check::check(arguments);
     /// Talk to a simulated board: script commands, programs, what they print; interactive or from a script
-    Console(Box<console::ConsoleArguments>) as arguments => console::console(arguments);
+    Console(console::ConsoleArguments) as arguments => console::console(arguments);
     /// Serve a simulated board to programs that use the vendor's client library, in place of its server
-    Serve(Box<serve::ServeArguments>) as arguments => serve::serve(arguments);
+    Serve(serve::ServeArguments) as arguments => serve::serve(arguments);
     /// Show a simulated board on a page in the browser: axes, inputs and outputs, console, threads, signals
     #[cfg(feature = "live")]
-    Live(Box<live::LiveArguments>) as arguments => live::live(arguments);
+    Live(live::LiveArguments) as arguments => live::live(arguments);
     /// Debug programs, also backwards: in the terminal, from a script, or for an editor (--dap)
-    Debug(Box<debug::DebugArguments>) as arguments => debug::debug(arguments);
+    Debug(debug::DebugArguments) as arguments => debug::debug(arguments);
     /// Show what is in an image: headers, symbols, lines, instructions, calls, stack
     Inspect(inspect::InspectArguments) as arguments => inspect::inspect(arguments);
     /// Show what functions and loops cost on the controller's processor, from the code itself
     Cycles(cycles::CyclesArguments) as arguments => cycles::cycles(arguments);
     /// Run programs on the modelled firmware and on your own firmware file, and show where they differ
-    Compare(Box<compare::CompareArguments>) as arguments => compare::compare(arguments);
+    Compare(compare::CompareArguments) as arguments => compare::compare(arguments);
     /// Show how two images differ
     Diff(diff::DiffArguments) as arguments => diff::diff(arguments);
     /// The simulated firmware as a file to link against, and as a list
@@ -210,7 +212,8 @@ impl Arguments {
 
 /// Whether a subcommand has an option, by its long or short name.
 fn knows(subcommand: &str, option: &str) -> bool {
-    let command = Arguments::command();
+    let mut command = Arguments::command();
+    command.build();
     let Some(subcommand) = command.find_subcommand(subcommand) else { return false };
     subcommand.get_arguments().any(|argument| {
         let long = argument.get_long_and_visible_aliases().unwrap_or_default();

@@ -283,7 +283,7 @@ impl Booted {
 
     /// Keeps what flash memory holds now in its file.
     pub(crate) fn keep_flash(&mut self) -> Result<()> {
-        self.flash.keep(self.board.flash())
+        self.flash.keep(|| self.board.flash())
     }
 
     /// Looks what the processor does, from now on.

@@ -48,16 +48,15 @@ impl Flash {
         self.path.as_deref().zip(self.before.as_deref())
     }
 
-    /// Keeps what flash memory holds now, if that is another than before.
-    pub(crate) fn keep(&mut self, now: &[u8]) -> Result<()> {
+    /// Keeps what flash memory holds now, if that is another than before; only looks at it if there is a file.
+    pub(crate) fn keep<'m>(&mut self, now: impl FnOnce() -> &'m [u8]) -> Result<()> {
+        let Some(path) = &self.path else { return Ok(()) };
+        let now = now();
         let is_erased = || now.iter().all(|byte| *byte == 0xFF);
-        match &self.path {
-            Some(path) if self.before.as_ref().map_or_else(|| !is_erased(), |before| before != now) => {
-                output::write(path, now)?;
-                self.before = Some(now.to_vec());
-                Ok(())
-            }
-            _ => Ok(()),
+        if self.before.as_ref().map_or_else(|| !is_erased(), |before| before != now) {
+            output::write(path, now)?;
+            self.before = Some(now.to_vec());
         }
+        Ok(())
     }
 }
