@@ -7,7 +7,8 @@
 //! their sources before any of them writes; a result of stage Ek lands k cycles after the
 //! issue; until then the old value is read. What differs from a plain queue is only speed:
 //! results in flight wait in sixteen [`pipeline`] slots, one a cycle, and packets are decoded
-//! once ([`decode`]) and kept by address ([`cache`]).
+//! once ([`decode`]) and kept by address ([`cache`]). Loops are executed with their registers renamed, so that nothing
+//! waits there ([`loops`]), or as code of the host.
 //!
 //! Invariants:
 //! - [`work`] is the one place that maps an instruction to what is executed, without a `_` arm.
@@ -23,6 +24,7 @@ mod flight;
 mod float;
 mod idle;
 mod inspect;
+mod loops;
 #[cfg(feature = "native")]
 mod marks;
 mod memory;
@@ -32,6 +34,7 @@ mod pipeline;
 mod product;
 mod threads;
 mod view;
+mod watched;
 mod work;
 
 #[cfg(test)]

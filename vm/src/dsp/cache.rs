@@ -43,7 +43,6 @@ pub(super) struct Cache {
     micros: Vec<Micro>,
     pages: Box<[Option<Box<Page>>]>,
     /// How often decoded packets were dropped.
-    #[cfg(feature = "native")]
     generation: u64,
     #[cfg(feature = "native")]
     marks: super::marks::LineMarks,
@@ -56,7 +55,6 @@ impl Default for Cache {
             packets: Vec::new(),
             micros: Vec::new(),
             pages,
-            #[cfg(feature = "native")]
             generation: 0,
             #[cfg(feature = "native")]
             marks: Default::default(),
@@ -100,7 +98,6 @@ impl Cache {
     }
 
     /// The packet with this index, and its instructions.
-    #[cfg(feature = "native")]
     pub(super) fn packet(&self, index: u32) -> (Packet, &[Micro]) {
         let packet = self.packets[index as usize];
         let first = packet.first as usize;
@@ -195,10 +192,7 @@ impl Cache {
     #[cold]
     pub(super) fn drop_line(&mut self, at: u32) {
         let line = at & !(LINE - 1);
-        #[cfg(feature = "native")]
-        {
-            self.generation += 1;
-        }
+        self.generation += 1;
         for word in (line.wrapping_sub(BEFORE)..line.wrapping_add(LINE)).step_by(4) {
             if let Some(index) = self.known(word) {
                 self.page_mut(word).packets[(word % PAGE / 4) as usize] = NONE;
@@ -214,14 +208,10 @@ impl Cache {
 
     /// Forgets everything.
     pub(super) fn clear(&mut self) {
-        let cleared = Self::default();
-        #[cfg(feature = "native")]
-        let cleared = Self { generation: self.generation + 1, ..cleared };
-        *self = cleared;
+        *self = Self { generation: self.generation + 1, ..Self::default() };
     }
 
     /// A number that is another one once decoded packets were dropped.
-    #[cfg(feature = "native")]
     pub(super) const fn generation(&self) -> u64 {
         self.generation
     }

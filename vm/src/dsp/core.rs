@@ -3,10 +3,12 @@
 use super::cache::Cache;
 use super::decode::{Micro, NoPacket, STACK, places};
 use super::idle::{Arrival, Idle};
-use super::memory::{Clock, Memory};
+use super::loops::Loops;
+use super::memory::Memory;
 #[cfg(feature = "native")]
 use super::native::{Account, RegionTranslator, TRANSLATOR};
 use super::pipeline::{Passed, State};
+use super::watched::Watched;
 use crate::trap::{Fault, TrapKind};
 
 /// Cycles after which code that never allows an interrupt is held to be endless: 1 ms.
@@ -69,13 +71,14 @@ pub struct Core {
     border: Border,
     idle: Idle,
     skips: bool,
+    loops: Loops,
     /// Hot code as code of the host, where that is wanted.
     #[cfg(feature = "native")]
     native: Option<Box<super::native::Native>>,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct StackWatch {
+pub(super) struct StackWatch {
     limit: u32,
     top: u32,
     /// The lowest stack pointer so far.
@@ -197,8 +200,12 @@ impl Core {
             if self.state.is_idle {
                 self.wait();
             }
-            if self.state.pc <= from && self.skips {
-                self.went_back(memory);
+            if self.state.pc <= from {
+                if self.skips {
+                    self.went_back(memory);
+                } else if let Err(halt) = self.run_loop(memory) {
+                    return halt;
+                }
             }
         }
     }
@@ -282,6 +289,24 @@ impl Core {
         self.idle.skipped += turns * period;
     }
 
+    /// A branch has gone back: executes the loop that begins here, if it is known.
+    fn run_loop<M: Memory>(&mut self, memory: &mut M) -> Result<(), Halt> {
+        #[cfg(feature = "native")]
+        if self.native.is_some() {
+            return Ok(());
+        }
+        let Self { state, cache, idle, loops, stack, .. } = self;
+        let Some(found) = loops.find(state, cache, memory) else { return Ok(()) };
+        let mut memory = Watched::new(memory, cache, idle);
+        let ran = found.run(state, &mut memory, stack.as_mut(), &mut self.packets);
+        let Watched { inner, hits, .. } = memory;
+        if let Err((_, Some(number))) = ran {
+            self.faulted_at = places(inner, state.pc).get(number).copied();
+        }
+        hits.into_iter().flatten().for_each(|at| cache.drop_line(at));
+        ran.map_err(|(kind, _)| Halt::Faulted(kind))
+    }
+
     fn find<M: Memory>(&mut self, memory: &M) -> Result<u32, NoPacket> {
         if self.state.pc & 3 != 0 {
             return Err(NoPacket::Fault(Fault::OddBranch { target: self.state.pc }));
@@ -294,7 +319,7 @@ impl Core {
     fn run_from<const ALL: bool, M: Memory>(&mut self, index: u32, memory: &mut M) -> Result<(), Halt> {
         let Self { state, cache, idle, .. } = self;
         let (packets, mut micros) = cache.follow(index);
-        let mut memory = Watched { inner: memory, cache, idle, hits: [None; 2] };
+        let mut memory = Watched::new(memory, cache, idle);
         for packet in packets {
             if ALL
                 && state.clock.is_over()
@@ -309,10 +334,10 @@ impl Core {
             let (own, rest) = micros.split_at(usize::from(packet.count));
             micros = rest;
             for micro in own {
-                if (state.regs[usize::from(micro.pred)] == 0) != micro.inverted {
+                if !micro.is_executed(&state.regs) {
                     continue;
                 }
-                if let Err(kind) = state.execute(micro, &mut memory) {
+                if let Err(kind) = state.execute::<false, _>(micro, &mut memory) {
                     self.faulted_at = instruction(&*memory.inner, state.pc, own, micro);
                     return Err(Halt::Faulted(kind));
                 }
@@ -321,7 +346,7 @@ impl Core {
             if packet.moves_stack
                 && let Some(stack) = &mut self.stack
             {
-                stack.check(state).map_err(Halt::Faulted)?;
+                stack.check(state.regs[usize::from(STACK)]).map_err(Halt::Faulted)?;
             }
             state.refuse_undefined().map_err(|fault| Halt::Faulted(fault.into()))?;
             state.pc = packet.end;
@@ -336,6 +361,18 @@ impl Core {
         let hits = memory.hits;
         hits.into_iter().flatten().for_each(|at| self.cache.drop_line(at));
         Ok(())
+    }
+
+    /// Executes packet by packet what would be executed as a loop; nothing else changes.
+    #[cfg(test)]
+    pub(super) const fn keep_to_packets(&mut self) {
+        self.loops.turn_off();
+    }
+
+    /// Packets that were executed as those of loops.
+    #[cfg(test)]
+    pub(super) fn looped(&self) -> u64 {
+        self.loops.packets()
     }
 
     /// Waits for the interrupt.
@@ -368,8 +405,7 @@ impl Border {
 
 impl StackWatch {
     /// Notes the stack pointer, which has to be within its bounds.
-    fn check(&mut self, state: &State) -> Result<(), TrapKind> {
-        let pointer = state.regs[usize::from(STACK)];
+    pub(super) fn check(&mut self, pointer: u32) -> Result<(), TrapKind> {
         self.lowest = Some(self.lowest.map_or(pointer, |lowest| lowest.min(pointer)));
         if pointer < self.limit || pointer > self.top {
             let used = self.top.wrapping_sub(pointer);
@@ -384,69 +420,4 @@ impl StackWatch {
 fn instruction<M: Memory>(memory: &M, packet: u32, micros: &[Micro], micro: &Micro) -> Option<u32> {
     let number = micros.iter().position(|other| std::ptr::eq(other, micro))?;
     places(memory, packet).get(number).copied()
-}
-
-/// Memory, with an eye on stores among decoded packets.
-struct Watched<'a, M> {
-    inner: &'a mut M,
-    cache: &'a Cache,
-    idle: &'a mut Idle,
-    /// Where the packet has changed words that were decoded: it has two stores at most.
-    hits: [Option<u32>; 2],
-}
-
-impl<M: Memory> Watched<'_, M> {
-    #[inline(always)]
-    fn notice(&mut self, addr: u32) {
-        if self.idle.is_watching {
-            self.idle.store(addr & !3, self.inner.fetch(addr & !3));
-        }
-        if self.cache.is_code(addr) {
-            self.hits = [Some(addr), self.hits[0]];
-        }
-    }
-}
-
-impl<M: Memory> Memory for Watched<'_, M> {
-    fn fetch(&self, addr: u32) -> Option<u32> {
-        self.inner.fetch(addr)
-    }
-
-    #[inline(always)]
-    fn load8(&mut self, addr: u32, clock: &mut Clock) -> Result<u32, TrapKind> {
-        self.inner.load8(addr, clock)
-    }
-
-    #[inline(always)]
-    fn load16(&mut self, addr: u32, clock: &mut Clock) -> Result<u32, TrapKind> {
-        self.inner.load16(addr, clock)
-    }
-
-    #[inline(always)]
-    fn load32(&mut self, addr: u32, clock: &mut Clock) -> Result<u32, TrapKind> {
-        self.inner.load32(addr, clock)
-    }
-
-    #[inline(always)]
-    fn load64(&mut self, addr: u32, clock: &mut Clock) -> Result<u64, TrapKind> {
-        self.inner.load64(addr, clock)
-    }
-
-    #[inline(always)]
-    fn store8(&mut self, addr: u32, value: u32, clock: &mut Clock) -> Result<(), TrapKind> {
-        self.notice(addr);
-        self.inner.store8(addr, value, clock)
-    }
-
-    #[inline(always)]
-    fn store16(&mut self, addr: u32, value: u32, clock: &mut Clock) -> Result<(), TrapKind> {
-        self.notice(addr);
-        self.inner.store16(addr, value, clock)
-    }
-
-    #[inline(always)]
-    fn store32(&mut self, addr: u32, value: u32, clock: &mut Clock) -> Result<(), TrapKind> {
-        self.notice(addr);
-        self.inner.store32(addr, value, clock)
-    }
 }

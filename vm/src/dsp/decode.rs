@@ -56,6 +56,10 @@ pub(super) struct Micro {
     pub(super) a: u8,
     /// s2; the offset register of an address.
     pub(super) b: u8,
+    /// The high word of s1, if that is a pair.
+    pub(super) a_high: u8,
+    /// The high word of s2, if that is a pair.
+    pub(super) b_high: u8,
     /// The destination; the register that is stored; a control register.
     pub(super) dst: u8,
     /// Shift of a scaled source or offset, halves of a product.
@@ -116,6 +120,12 @@ pub(super) fn places<M: Memory>(memory: &M, at: u32) -> Vec<u32> {
     fetch(memory, at)
         .and_then(|(insts, _)| order(&insts).map_err(NoPacket::Fault))
         .map_or_else(|_| Vec::new(), |ordered| ordered.into_iter().map(|(at, _)| at).collect())
+}
+
+/// The instructions of the packet at `at` that do something, in the order in which they are executed.
+pub(super) fn instructions<M: Memory>(memory: &M, at: u32) -> Vec<Inst> {
+    let words = places(memory, at).into_iter().filter_map(|at| memory.fetch(at));
+    words.filter_map(|word| Inst::decode(word).ok()).collect()
 }
 
 /// Decodes the packet at `at`; its instructions are appended to `micros`.
@@ -268,6 +278,8 @@ fn resolve(at: u32, inst: Inst) -> Micro {
         inverted: matches!(inst.pred(), c67x::Pred::Unless(_)),
         a: ZERO,
         b: ZERO,
+        a_high: ZERO,
+        b_high: ZERO,
         dst: ZERO,
         extra,
         flags: if is_unsigned { UNSIGNED } else { 0 },
@@ -287,10 +299,17 @@ fn resolve(at: u32, inst: Inst) -> Micro {
     if swaps {
         std::mem::swap(&mut micro.a, &mut micro.b);
     }
+    (micro.a_high, micro.b_high) = (micro.a | 1, micro.b | 1);
     micro
 }
 
 impl Micro {
+    /// Whether its condition holds.
+    #[inline(always)]
+    pub(super) fn is_executed(&self, regs: &[u32; 256]) -> bool {
+        self.pred == TRUE || (regs[usize::from(self.pred)] == 0) == self.inverted
+    }
+
     fn set(&mut self, field: Field, kind: Kind, operand: Operand, inst: Inst) {
         match (field, operand) {
             (Field::Src1, Operand::Reg(reg)) => self.a = reg.index() as u8,

@@ -9,134 +9,143 @@ use super::{alu, float, product};
 use crate::trap::TrapKind;
 
 impl State {
-    /// Executes an instruction whose condition holds.
+    /// Executes an instruction whose condition holds; `RENAMED` if its results have places of their own, so that they
+    /// are written at once ([`loops`](super::loops)).
     #[inline(always)]
-    pub(super) fn execute<M: Memory>(&mut self, m: &Micro, memory: &mut M) -> Result<(), TrapKind> {
+    pub(super) fn execute<const RENAMED: bool, M: Memory>(
+        &mut self,
+        m: &Micro,
+        memory: &mut M,
+    ) -> Result<(), TrapKind> {
         let s1 = self.regs[usize::from(m.a)].wrapping_add(m.imm);
         let s2 = self.regs[usize::from(m.b)];
         match m.work {
-            Work::Add => self.give(m, s1.wrapping_add(s2)),
-            Work::Sub => self.give(m, s1.wrapping_sub(s2)),
-            Work::AddScaled => self.give(m, s2.wrapping_add(s1 << m.extra)),
-            Work::SubScaled => self.give(m, s2.wrapping_sub(s1 << m.extra)),
-            Work::And => self.give(m, s1 & s2),
-            Work::Or => self.give(m, s1 | s2),
-            Work::Xor => self.give(m, s1 ^ s2),
-            Work::Cmpeq => self.give(m, u32::from(s1 == s2)),
-            Work::Cmpgt => self.give(m, u32::from(s1.cast_signed() > s2.cast_signed())),
-            Work::Cmplt => self.give(m, u32::from(s1.cast_signed() < s2.cast_signed())),
-            Work::Cmpgtu => self.give(m, u32::from(s1 > s2)),
-            Work::Cmpltu => self.give(m, u32::from(s1 < s2)),
-            Work::Abs => self.give(m, alu::abs(s2)),
-            Work::Lmbd => self.give(m, alu::lmbd(s1, s2)),
-            Work::Norm => self.give(m, alu::norm(s2)),
-            Work::Sadd => self.give(m, alu::saturate(signed(s1) + signed(s2))),
-            Work::Ssub => self.give(m, alu::saturate(signed(s1) - signed(s2))),
-            Work::Subc => self.give(m, alu::subc(s1, s2)),
-            Work::Add2 => self.give(m, alu::add2(s1, s2)),
-            Work::Sub2 => self.give(m, alu::sub2(s1, s2)),
-            Work::Clr => self.give(m, alu::clr(s1, s2)),
-            Work::Set => self.give(m, alu::set(s1, s2)),
-            Work::Ext => self.give(m, alu::ext(s1, s2)),
-            Work::Extu => self.give(m, alu::extu(s1, s2)),
-            Work::Shl => self.give(m, alu::shl(s1, s2)),
-            Work::Shr => self.give(m, alu::shr(s1, s2)),
-            Work::Shru => self.give(m, alu::shru(s1, s2)),
-            Work::Sshl => self.give(m, alu::sshl(s1, s2)),
-            Work::Mvk => self.give(m, m.imm),
-            Work::Mvkh => self.give(m, m.imm | self.regs[usize::from(m.dst)] & 0xFFFF),
-            Work::AddLong => self.give_long(m, self.long1(m) + self.long2(m)),
-            Work::SubLong => self.give_long(m, self.long1(m) - self.long2(m)),
-            Work::SaddLong => self.give_long(m, alu::saturate_long(self.long1(m) + self.long2(m))),
-            Work::SsubLong => self.give_long(m, alu::saturate_long(self.long1(m) - self.long2(m))),
-            Work::AbsLong => self.give_long(m, self.long2(m).abs()),
-            Work::CmpeqLong => self.give(m, u32::from(self.long1(m) == self.long2(m))),
-            Work::CmpgtLong => self.give(m, u32::from(self.long1(m) > self.long2(m))),
-            Work::CmpltLong => self.give(m, u32::from(self.long1(m) < self.long2(m))),
-            Work::CmpgtuLong => self.give(m, u32::from(unsigned(self.long1(m)) > unsigned(self.long2(m)))),
-            Work::CmpltuLong => self.give(m, u32::from(unsigned(self.long1(m)) < unsigned(self.long2(m)))),
-            Work::NormLong => self.give(m, alu::norm_long(self.long2(m))),
-            Work::SatLong => self.give(m, alu::saturate(self.long2(m))),
-            Work::ShlLong => self.give_long(m, alu::shl_long(i64::from(s1), self.long2(m))),
-            Work::ShrLong => self.give_long(m, alu::shr_long(i64::from(s1), self.long2(m))),
-            Work::ShruLong => self.give_long(m, alu::shru_long(i64::from(s1), self.long2(m))),
-            Work::Product => self.push(2, m.dst, product::multiply(m.extra, s1, s2)),
-            Work::Mpyi => self.push(9, m.dst, s1.wrapping_mul(s2)),
-            Work::Mpyid => self.push_pair(9, 10, m.dst, (signed(s1) * signed(s2)).cast_unsigned()),
-            Work::Addsp => self.push(4, m.dst, float::addsp(s1, s2)),
-            Work::Subsp => self.push(4, m.dst, float::subsp(s1, s2)),
-            Work::Mpysp => self.push(4, m.dst, float::mpysp(s1, s2)),
-            Work::Intsp => self.push(4, m.dst, float::intsp(s2)),
-            Work::Intspu => self.push(4, m.dst, float::intspu(s2)),
-            Work::Spint => self.push(4, m.dst, float::spint(s2)),
-            Work::Sptrunc => self.push(4, m.dst, float::sptrunc(s2)),
-            Work::Dpint => self.push(4, m.dst, float::dpint(self.double2(m))),
-            Work::Dptrunc => self.push(4, m.dst, float::dptrunc(self.double2(m))),
-            Work::Dpsp => self.push(4, m.dst, float::dpsp(self.double2(m))),
-            Work::Intdp => self.push_pair(4, 5, m.dst, float::intdp(s2)),
-            Work::Intdpu => self.push_pair(4, 5, m.dst, float::intdpu(s2)),
-            Work::Spdp => self.give_double(m, float::spdp(s2)),
-            Work::Abssp => self.give(m, s2 & 0x7FFF_FFFF),
-            Work::Absdp => self.give_double(m, self.double2(m) & !(1 << 63)),
-            Work::Cmpeqsp => self.give(m, u32::from(float::single(s1) == float::single(s2))),
-            Work::Cmpgtsp => self.give(m, u32::from(float::single(s1) > float::single(s2))),
-            Work::Cmpltsp => self.give(m, u32::from(float::single(s1) < float::single(s2))),
-            Work::Rcpsp => self.give(m, float::rcpsp(s2)),
-            Work::Rsqrsp => self.give(m, float::rsqrsp(s2)),
-            Work::Rcpdp => self.give_double(m, float::rcpdp(self.double2(m))),
-            Work::Rsqrdp => self.give_double(m, float::rsqrdp(self.double2(m))),
-            Work::Adddp => match self.words(m, 1, s1, s2) {
-                Some((s1, s2)) => self.push_pair(6, 7, m.dst, float::adddp(s1, s2)),
-                None => self.start_double(m, s1, s2),
+            Work::Add => self.give::<RENAMED>(m, s1.wrapping_add(s2)),
+            Work::Sub => self.give::<RENAMED>(m, s1.wrapping_sub(s2)),
+            Work::AddScaled => self.give::<RENAMED>(m, s2.wrapping_add(s1 << m.extra)),
+            Work::SubScaled => self.give::<RENAMED>(m, s2.wrapping_sub(s1 << m.extra)),
+            Work::And => self.give::<RENAMED>(m, s1 & s2),
+            Work::Or => self.give::<RENAMED>(m, s1 | s2),
+            Work::Xor => self.give::<RENAMED>(m, s1 ^ s2),
+            Work::Cmpeq => self.give::<RENAMED>(m, u32::from(s1 == s2)),
+            Work::Cmpgt => self.give::<RENAMED>(m, u32::from(s1.cast_signed() > s2.cast_signed())),
+            Work::Cmplt => self.give::<RENAMED>(m, u32::from(s1.cast_signed() < s2.cast_signed())),
+            Work::Cmpgtu => self.give::<RENAMED>(m, u32::from(s1 > s2)),
+            Work::Cmpltu => self.give::<RENAMED>(m, u32::from(s1 < s2)),
+            Work::Abs => self.give::<RENAMED>(m, alu::abs(s2)),
+            Work::Lmbd => self.give::<RENAMED>(m, alu::lmbd(s1, s2)),
+            Work::Norm => self.give::<RENAMED>(m, alu::norm(s2)),
+            Work::Sadd => self.give::<RENAMED>(m, alu::saturate(signed(s1) + signed(s2))),
+            Work::Ssub => self.give::<RENAMED>(m, alu::saturate(signed(s1) - signed(s2))),
+            Work::Subc => self.give::<RENAMED>(m, alu::subc(s1, s2)),
+            Work::Add2 => self.give::<RENAMED>(m, alu::add2(s1, s2)),
+            Work::Sub2 => self.give::<RENAMED>(m, alu::sub2(s1, s2)),
+            Work::Clr => self.give::<RENAMED>(m, alu::clr(s1, s2)),
+            Work::Set => self.give::<RENAMED>(m, alu::set(s1, s2)),
+            Work::Ext => self.give::<RENAMED>(m, alu::ext(s1, s2)),
+            Work::Extu => self.give::<RENAMED>(m, alu::extu(s1, s2)),
+            Work::Shl => self.give::<RENAMED>(m, alu::shl(s1, s2)),
+            Work::Shr => self.give::<RENAMED>(m, alu::shr(s1, s2)),
+            Work::Shru => self.give::<RENAMED>(m, alu::shru(s1, s2)),
+            Work::Sshl => self.give::<RENAMED>(m, alu::sshl(s1, s2)),
+            Work::Mvk => self.give::<RENAMED>(m, m.imm),
+            Work::Mvkh => self.give::<RENAMED>(m, m.imm | self.regs[usize::from(m.dst)] & 0xFFFF),
+            Work::AddLong => self.give_long::<RENAMED>(m, self.long1(m) + self.long2(m)),
+            Work::SubLong => self.give_long::<RENAMED>(m, self.long1(m) - self.long2(m)),
+            Work::SaddLong => self.give_long::<RENAMED>(m, alu::saturate_long(self.long1(m) + self.long2(m))),
+            Work::SsubLong => self.give_long::<RENAMED>(m, alu::saturate_long(self.long1(m) - self.long2(m))),
+            Work::AbsLong => self.give_long::<RENAMED>(m, self.long2(m).abs()),
+            Work::CmpeqLong => self.give::<RENAMED>(m, u32::from(self.long1(m) == self.long2(m))),
+            Work::CmpgtLong => self.give::<RENAMED>(m, u32::from(self.long1(m) > self.long2(m))),
+            Work::CmpltLong => self.give::<RENAMED>(m, u32::from(self.long1(m) < self.long2(m))),
+            Work::CmpgtuLong => {
+                self.give::<RENAMED>(m, u32::from(unsigned(self.long1(m)) > unsigned(self.long2(m))));
+            }
+            Work::CmpltuLong => {
+                self.give::<RENAMED>(m, u32::from(unsigned(self.long1(m)) < unsigned(self.long2(m))));
+            }
+            Work::NormLong => self.give::<RENAMED>(m, alu::norm_long(self.long2(m))),
+            Work::SatLong => self.give::<RENAMED>(m, alu::saturate(self.long2(m))),
+            Work::ShlLong => self.give_long::<RENAMED>(m, alu::shl_long(i64::from(s1), self.long2(m))),
+            Work::ShrLong => self.give_long::<RENAMED>(m, alu::shr_long(i64::from(s1), self.long2(m))),
+            Work::ShruLong => self.give_long::<RENAMED>(m, alu::shru_long(i64::from(s1), self.long2(m))),
+            Work::Product => self.land::<RENAMED>(2, m.dst, product::multiply(m.extra, s1, s2)),
+            Work::Mpyi => self.land::<RENAMED>(9, m.dst, s1.wrapping_mul(s2)),
+            Work::Mpyid => self.land_pair::<RENAMED>(9, 10, m.dst, (signed(s1) * signed(s2)).cast_unsigned()),
+            Work::Addsp => self.land::<RENAMED>(4, m.dst, float::addsp(s1, s2)),
+            Work::Subsp => self.land::<RENAMED>(4, m.dst, float::subsp(s1, s2)),
+            Work::Mpysp => self.land::<RENAMED>(4, m.dst, float::mpysp(s1, s2)),
+            Work::Intsp => self.land::<RENAMED>(4, m.dst, float::intsp(s2)),
+            Work::Intspu => self.land::<RENAMED>(4, m.dst, float::intspu(s2)),
+            Work::Spint => self.land::<RENAMED>(4, m.dst, float::spint(s2)),
+            Work::Sptrunc => self.land::<RENAMED>(4, m.dst, float::sptrunc(s2)),
+            Work::Dpint => self.land::<RENAMED>(4, m.dst, float::dpint(self.double2(m))),
+            Work::Dptrunc => self.land::<RENAMED>(4, m.dst, float::dptrunc(self.double2(m))),
+            Work::Dpsp => self.land::<RENAMED>(4, m.dst, float::dpsp(self.double2(m))),
+            Work::Intdp => self.land_pair::<RENAMED>(4, 5, m.dst, float::intdp(s2)),
+            Work::Intdpu => self.land_pair::<RENAMED>(4, 5, m.dst, float::intdpu(s2)),
+            Work::Spdp => self.give_double::<RENAMED>(m, float::spdp(s2)),
+            Work::Abssp => self.give::<RENAMED>(m, s2 & 0x7FFF_FFFF),
+            Work::Absdp => self.give_double::<RENAMED>(m, self.double2(m) & !(1 << 63)),
+            Work::Cmpeqsp => self.give::<RENAMED>(m, u32::from(float::single(s1) == float::single(s2))),
+            Work::Cmpgtsp => self.give::<RENAMED>(m, u32::from(float::single(s1) > float::single(s2))),
+            Work::Cmpltsp => self.give::<RENAMED>(m, u32::from(float::single(s1) < float::single(s2))),
+            Work::Rcpsp => self.give::<RENAMED>(m, float::rcpsp(s2)),
+            Work::Rsqrsp => self.give::<RENAMED>(m, float::rsqrsp(s2)),
+            Work::Rcpdp => self.give_double::<RENAMED>(m, float::rcpdp(self.double2(m))),
+            Work::Rsqrdp => self.give_double::<RENAMED>(m, float::rsqrdp(self.double2(m))),
+            Work::Adddp => match self.words::<RENAMED>(m, 1, s1, s2) {
+                Some((s1, s2)) => self.land_pair::<RENAMED>(6, 7, m.dst, float::adddp(s1, s2)),
+                None => self.start_double::<RENAMED>(m, s1, s2),
             },
-            Work::Mpydp => match self.product_words(m, s1, s2) {
-                Some((s1, s2)) => self.push_pair(9, 10, m.dst, float::mpydp(s1, s2)),
-                None => self.start_double(m, s1, s2),
+            Work::Mpydp => match self.product_words::<RENAMED>(m, s1, s2) {
+                Some((s1, s2)) => self.land_pair::<RENAMED>(9, 10, m.dst, float::mpydp(s1, s2)),
+                None => self.start_double::<RENAMED>(m, s1, s2),
             },
             Work::Subdp | Work::Cmpeqdp | Work::Cmpgtdp | Work::Cmpltdp | Work::Mpyspdp => {
-                self.start_double(m, s1, s2);
+                self.start_double::<RENAMED>(m, s1, s2);
             }
-            Work::Mpysp2dp => self.push_pair(4, 5, m.dst, float::mpysp2dp(s1, s2)),
+            Work::Mpysp2dp => self.land_pair::<RENAMED>(4, 5, m.dst, float::mpysp2dp(s1, s2)),
             Work::Ldbu => {
-                let addr = self.address(m, s1, s2);
+                let addr = self.address::<RENAMED>(m, s1, s2);
                 let value = memory.load8(addr, &mut self.clock)?;
-                self.push(5, m.dst, value);
+                self.land::<RENAMED>(5, m.dst, value);
             }
             Work::Ldb => {
-                let addr = self.address(m, s1, s2);
+                let addr = self.address::<RENAMED>(m, s1, s2);
                 let value = memory.load8(addr, &mut self.clock)?;
-                self.push(5, m.dst, value as u8 as i8 as u32);
+                self.land::<RENAMED>(5, m.dst, value as u8 as i8 as u32);
             }
             Work::Ldhu => {
-                let addr = self.address(m, s1, s2) & !1;
+                let addr = self.address::<RENAMED>(m, s1, s2) & !1;
                 let value = memory.load16(addr, &mut self.clock)?;
-                self.push(5, m.dst, value);
+                self.land::<RENAMED>(5, m.dst, value);
             }
             Work::Ldh => {
-                let addr = self.address(m, s1, s2) & !1;
+                let addr = self.address::<RENAMED>(m, s1, s2) & !1;
                 let value = memory.load16(addr, &mut self.clock)?;
-                self.push(5, m.dst, value as u16 as i16 as u32);
+                self.land::<RENAMED>(5, m.dst, value as u16 as i16 as u32);
             }
             Work::Ldw => {
-                let addr = self.address(m, s1, s2) & !3;
+                let addr = self.address::<RENAMED>(m, s1, s2) & !3;
                 let value = memory.load32(addr, &mut self.clock)?;
-                self.push(5, m.dst, value);
+                self.land::<RENAMED>(5, m.dst, value);
             }
             Work::Lddw => {
-                let addr = self.address(m, s1, s2) & !7;
+                let addr = self.address::<RENAMED>(m, s1, s2) & !7;
                 let value = memory.load64(addr, &mut self.clock)?;
-                self.push_both(5, m.dst, value);
+                self.land_both::<RENAMED>(5, m.dst, value);
             }
             Work::Stb => {
-                let addr = self.address(m, s1, s2);
+                let addr = self.address::<RENAMED>(m, s1, s2);
                 memory.store8(addr, self.regs[usize::from(m.dst)], &mut self.clock)?;
             }
             Work::Sth => {
-                let addr = self.address(m, s1, s2) & !1;
+                let addr = self.address::<RENAMED>(m, s1, s2) & !1;
                 memory.store16(addr, self.regs[usize::from(m.dst)], &mut self.clock)?;
             }
             Work::Stw => {
-                let addr = self.address(m, s1, s2) & !3;
+                let addr = self.address::<RENAMED>(m, s1, s2) & !3;
                 memory.store32(addr, self.regs[usize::from(m.dst)], &mut self.clock)?;
             }
             Work::BranchTo => self.branch(m.imm),
@@ -151,7 +160,7 @@ impl State {
             }
             Work::ReadControl => {
                 let value = self.read_control(m.extra);
-                self.give(m, value);
+                self.give::<RENAMED>(m, value);
             }
             Work::WriteControl => self.write_control(m.extra, s2),
             Work::Idle => self.is_idle = true,
@@ -160,46 +169,74 @@ impl State {
         Ok(())
     }
 
+    /// A result that lands in `delay` cycles from now.
+    #[inline(always)]
+    fn land<const RENAMED: bool>(&mut self, delay: u64, reg: u8, value: u32) {
+        if RENAMED {
+            self.regs[usize::from(reg)] = value;
+        } else {
+            self.push(delay, reg, value);
+        }
+    }
+
+    /// The low and the high word of a result.
+    #[inline(always)]
+    fn land_pair<const RENAMED: bool>(&mut self, low_delay: u64, high_delay: u64, reg: u8, value: u64) {
+        self.land::<RENAMED>(low_delay, reg, value as u32);
+        self.land::<RENAMED>(high_delay, reg | 1, (value >> 32) as u32);
+    }
+
+    /// Both words of a result that land in the same cycle.
+    #[inline(always)]
+    fn land_both<const RENAMED: bool>(&mut self, delay: u64, reg: u8, value: u64) {
+        if RENAMED {
+            // As is known to be even, both words are written at once.
+            self.land_pair::<RENAMED>(delay, delay, reg & !1, value);
+        } else {
+            self.push_both(delay, reg, value);
+        }
+    }
+
     /// A result of E1.
     #[inline(always)]
-    fn give(&mut self, m: &Micro, value: u32) {
-        if m.flags & DEFERRED == 0 {
-            self.write(m.dst, value);
+    fn give<const RENAMED: bool>(&mut self, m: &Micro, value: u32) {
+        self.write_or_defer::<RENAMED>(m, m.dst, value);
+    }
+
+    #[inline(always)]
+    fn write_or_defer<const RENAMED: bool>(&mut self, m: &Micro, reg: u8, value: u32) {
+        if RENAMED || m.flags & DEFERRED != 0 {
+            self.land::<RENAMED>(1, reg, value);
         } else {
-            self.push(1, m.dst, value);
+            self.write(reg, value);
         }
     }
 
     /// A 40-bit result of E1.
-    fn give_long(&mut self, m: &Micro, value: i64) {
+    fn give_long<const RENAMED: bool>(&mut self, m: &Micro, value: i64) {
         let value = alu::to_unsigned_long(value);
-        if m.flags & DEFERRED == 0 {
-            self.write(m.dst, value as u32);
-            self.write(m.dst | 1, (value >> 32) as u32);
-        } else {
-            self.push_pair(1, 1, m.dst, value);
-        }
+        self.write_or_defer::<RENAMED>(m, m.dst, value as u32);
+        self.write_or_defer::<RENAMED>(m, m.dst | 1, (value >> 32) as u32);
     }
 
     /// A double whose low word is there in E1, the high one in E2.
-    fn give_double(&mut self, m: &Micro, value: u64) {
-        self.give(m, value as u32);
-        self.push(2, m.dst | 1, (value >> 32) as u32);
+    fn give_double<const RENAMED: bool>(&mut self, m: &Micro, value: u64) {
+        self.give::<RENAMED>(m, value as u32);
+        self.land::<RENAMED>(2, m.dst | 1, (value >> 32) as u32);
     }
 
     fn double2(&self, m: &Micro) -> u64 {
-        self.pair(m.b)
+        self.pair(m.b, m.b_high)
     }
 
-    fn pair(&self, low: u8) -> u64 {
-        let low = usize::from(low & !1);
-        join(self.regs[low], self.regs[low + 1])
+    fn pair(&self, low: u8, high: u8) -> u64 {
+        join(self.regs[usize::from(low)], self.regs[usize::from(high)])
     }
 
     /// s1 of 40-bit arithmetic.
     fn long1(&self, m: &Micro) -> i64 {
         if m.flags & LONG1 != 0 {
-            return alu::to_long(self.pair(m.a).cast_signed());
+            return alu::to_long(self.pair(m.a, m.a_high).cast_signed());
         }
         widen(m, self.regs[usize::from(m.a)].wrapping_add(m.imm))
     }
@@ -207,14 +244,14 @@ impl State {
     /// s2 of 40-bit arithmetic.
     fn long2(&self, m: &Micro) -> i64 {
         if m.flags & LONG2 != 0 {
-            return alu::to_long(self.pair(m.b).cast_signed());
+            return alu::to_long(self.pair(m.b, m.b_high).cast_signed());
         }
         widen(m, self.regs[usize::from(m.b)])
     }
 
     /// The address of a load or store; the base changes.
     #[inline(always)]
-    fn address(&mut self, m: &Micro, base_and_constant: u32, offset: u32) -> u32 {
+    fn address<const RENAMED: bool>(&mut self, m: &Micro, base_and_constant: u32, offset: u32) -> u32 {
         let offset = offset << m.extra;
         let sum = if m.flags & NEGATIVE == 0 {
             base_and_constant.wrapping_add(offset)
@@ -225,47 +262,38 @@ impl State {
             return sum;
         }
         let base = self.regs[usize::from(m.a)];
-        self.give_base(m, sum);
+        self.write_or_defer::<RENAMED>(m, m.a, sum);
         if m.flags & AFTER == 0 { sum } else { base }
-    }
-
-    #[inline(always)]
-    fn give_base(&mut self, m: &Micro, value: u32) {
-        if m.flags & DEFERRED == 0 {
-            self.write(m.a, value);
-        } else {
-            self.push(1, m.a, value);
-        }
     }
 
     /// All words of a double instruction that reads the high one of s1 after `cycles` cycles, and that of s2 after one;
     /// `None` if it is not known yet what they will be.
     #[inline(always)]
-    fn words(&self, m: &Micro, cycles: u64, low1: u32, low2: u32) -> Option<(u64, u64)> {
-        if m.flags & STEADY == 0 {
+    fn words<const RENAMED: bool>(&self, m: &Micro, cycles: u64, low1: u32, low2: u32) -> Option<(u64, u64)> {
+        if !RENAMED && m.flags & STEADY == 0 {
             return None;
         }
-        if !self.arrives_within(cycles, m.a | 1, m.b | 1) {
-            let [high1, high2] = [m.a, m.b].map(|low| self.regs[usize::from(low | 1)]);
+        if RENAMED || !self.arrives_within(cycles, m.a_high, m.b_high) {
+            let [high1, high2] = [m.a_high, m.b_high].map(|high| self.regs[usize::from(high)]);
             return Some((join(low1, high1), join(low2, high2)));
         }
-        let (high1, high2) = (self.after(cycles, m.a | 1), self.after(1, m.b | 1));
+        let (high1, high2) = (self.after(cycles, m.a_high), self.after(1, m.b_high));
         Some((join(low1, high1), join(low2, high2)))
     }
 
     /// The same of a product, which the next packet may change.
     #[inline(always)]
-    fn product_words(&self, m: &Micro, low1: u32, low2: u32) -> Option<(u64, u64)> {
-        let is_foreseen = m.extra & FORESEEN != 0 && !self.branches_next();
-        if is_foreseen { self.words(m, 2, low1, low2) } else { None }
+    fn product_words<const RENAMED: bool>(&self, m: &Micro, low1: u32, low2: u32) -> Option<(u64, u64)> {
+        let is_foreseen = RENAMED || m.extra & FORESEEN != 0 && !self.branches_next();
+        if is_foreseen { self.words::<RENAMED>(m, 2, low1, low2) } else { None }
     }
 
     /// A double instruction that reads its high words after E1: at once where it is known what they will be.
-    fn start_double(&mut self, m: &Micro, low1: u32, low2: u32) {
+    fn start_double<const RENAMED: bool>(&mut self, m: &Micro, low1: u32, low2: u32) {
         let is_product = m.work == Work::Mpydp;
-        let words = if is_product { None } else { self.words(m, 1, low1, low2) };
+        let words = if is_product { None } else { self.words::<RENAMED>(m, 1, low1, low2) };
         match words {
-            Some((s1, s2)) => self.finish_double(m, 0, s1, s2),
+            Some((s1, s2)) => self.finish_double::<RENAMED>(m, 0, s1, s2),
             None => self.push_late(Late {
                 due: self.clock.cycle + 1,
                 issued: self.clock.cycle,
@@ -279,31 +307,31 @@ impl State {
 
     /// The next read of a double instruction.
     pub(super) fn continue_late(&mut self, late: Late) {
-        let high1 = self.regs[usize::from(late.micro.a | 1)];
-        let high2 = self.regs[usize::from(late.micro.b | 1)];
+        let high1 = self.regs[usize::from(late.micro.a_high)];
+        let high2 = self.regs[usize::from(late.micro.b_high)];
         if late.micro.work == Work::Mpydp && late.high2.is_none() {
             self.push_late(Late { due: self.clock.cycle + 1, high2: Some(high2), ..late });
             return;
         }
         let s2 = join(late.low2, late.high2.unwrap_or(high2));
-        self.finish_double(&late.micro, self.clock.cycle - late.issued, join(late.low1, high1), s2);
+        self.finish_double::<false>(&late.micro, self.clock.cycle - late.issued, join(late.low1, high1), s2);
     }
 
     /// Computes with all words there, `passed` cycles after the issue.
-    fn finish_double(&mut self, m: &Micro, passed: u64, s1: u64, s2: u64) {
+    fn finish_double<const RENAMED: bool>(&mut self, m: &Micro, passed: u64, s1: u64, s2: u64) {
         let dst = m.dst;
         let (a, b) = (float::double(s1), float::double(s2));
         match m.work {
-            Work::Adddp => self.push_pair(6 - passed, 7 - passed, dst, float::adddp(s1, s2)),
-            Work::Subdp => self.push_pair(6 - passed, 7 - passed, dst, float::subdp(s1, s2)),
-            Work::Mpydp => self.push_pair(9 - passed, 10 - passed, dst, float::mpydp(s1, s2)),
+            Work::Adddp => self.land_pair::<RENAMED>(6 - passed, 7 - passed, dst, float::adddp(s1, s2)),
+            Work::Subdp => self.land_pair::<RENAMED>(6 - passed, 7 - passed, dst, float::subdp(s1, s2)),
+            Work::Mpydp => self.land_pair::<RENAMED>(9 - passed, 10 - passed, dst, float::mpydp(s1, s2)),
             Work::Mpyspdp => {
-                self.push_pair(6 - passed, 7 - passed, dst, float::mpyspdp(s1 as u32, s2));
+                self.land_pair::<RENAMED>(6 - passed, 7 - passed, dst, float::mpyspdp(s1 as u32, s2));
             }
-            Work::Cmpgtdp => self.push(2 - passed, dst, u32::from(a > b)),
-            Work::Cmpltdp => self.push(2 - passed, dst, u32::from(a < b)),
+            Work::Cmpgtdp => self.land::<RENAMED>(2 - passed, dst, u32::from(a > b)),
+            Work::Cmpltdp => self.land::<RENAMED>(2 - passed, dst, u32::from(a < b)),
             // Only these seven start so; see `start_double`.
-            _ => self.push(2 - passed, dst, u32::from(a == b)),
+            _ => self.land::<RENAMED>(2 - passed, dst, u32::from(a == b)),
         }
     }
 }

@@ -274,13 +274,6 @@ impl State {
         self.undefined.conflicts |= regs;
     }
 
-    /// Lets the low and the high word of a result land.
-    #[inline(always)]
-    pub(super) fn push_pair(&mut self, low_delay: u64, high_delay: u64, reg: u8, value: u64) {
-        self.push(low_delay, reg, value as u32);
-        self.push(high_delay, reg | 1, (value >> 32) as u32);
-    }
-
     /// Whether a result for one of two registers arrives within one or two cycles.
     #[inline(always)]
     pub(super) fn arrives_within(&self, cycles: u64, reg1: u8, reg2: u8) -> bool {
@@ -335,7 +328,20 @@ impl State {
         }
         self.flight.branches |= 1 << slot;
         self.flight.targets[slot] = target;
-        self.branched_at = [self.pc, self.branched_at[0]];
+        self.note_branch(self.pc);
+    }
+
+    /// Notes that the packet at `from` has taken a branch.
+    #[inline(always)]
+    pub(super) const fn note_branch(&mut self, from: u32) {
+        self.branched_at = [from, self.branched_at[0]];
+    }
+
+    /// Lets a branch arrive that was issued before.
+    pub(super) const fn set_branch(&mut self, due: u64, target: u32) {
+        let slot = self.slot(due);
+        self.flight.branches |= 1 << slot;
+        self.flight.targets[slot] = target;
     }
 
     /// Returns from an interrupt: where to.

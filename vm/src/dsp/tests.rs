@@ -2,6 +2,5 @@
 
 mod faults;
 mod flat;
-#[cfg(feature = "native")]
 mod translated;
 mod vectors;

@@ -165,11 +165,4 @@ impl State {
         self.shadow = handover.time.shadow;
         self.branched_at = handover.branched_at;
     }
-
-    /// Lets a branch arrive that was issued before.
-    fn set_branch(&mut self, due: u64, target: u32) {
-        let slot = self.slot(due);
-        self.flight.branches |= 1 << slot;
-        self.flight.targets[slot] = target;
-    }
 }

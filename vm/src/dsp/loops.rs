@@ -1,0 +1,262 @@
+//! Loops with their registers renamed.
+//!
+//! In software-pipelined code something lands in every cycle, and most of what the interpreter of single packets does is
+//! to keep what is on its way. A loop that is reached often is therefore planned once ([`plan`]): a result is written to a
+//! place that nobody reads, and instructions are renamed to find it there from the cycle on in which it lands
+//! ([`renaming`]). What executes them is the same as ever. Where the loop is left, for whatever reason, everything is
+//! brought back: nobody can see a difference but the clock of the computer.
+
+mod plan;
+mod renaming;
+
+use std::collections::BTreeMap;
+
+use self::plan::{Arrival, Planned, plan};
+use self::renaming::{Flying, list};
+use super::cache::Cache;
+use super::core::StackWatch;
+use super::decode::instructions;
+use super::memory::Memory;
+use super::pipeline::State;
+use super::watched::Watched;
+use crate::trap::TrapKind;
+
+/// Arrivals after which a loop is planned.
+const HOT: u32 = 64;
+/// A place that is not planned any more.
+const COLD: u32 = u32::MAX;
+/// Places that are counted, a power of two.
+const PLACES: usize = 256;
+/// Most loops of one place, most loops.
+const MOST_HERE: usize = 4;
+const MOST: usize = 128;
+/// How often code may change before nothing is planned any more.
+const MOST_CHANGES: u32 = 64;
+/// A loop is entered if there is time for as many cycles.
+const LEAST: i64 = 64;
+/// A loop that after this many entries has executed fewer packets in each is not worth its entry.
+const TRIAL: u64 = 64;
+const WORTH: u64 = 32;
+
+/// The places where branches go back to, and the loops there.
+#[derive(Debug)]
+pub(super) struct Loops {
+    /// Places, and how often they were reached.
+    places: Box<[(u32, u32); PLACES]>,
+    known: BTreeMap<u32, Vec<RenamedLoop>>,
+    count: usize,
+    /// The state of the code that the loops are of.
+    generation: u64,
+    changes: u32,
+    flying: Vec<Flying>,
+    is_off: bool,
+}
+
+/// A loop that is entered at one place with one list of what is on its way.
+#[derive(Debug)]
+pub(super) struct RenamedLoop {
+    flying: Vec<Flying>,
+    planned: Planned,
+    entries: u64,
+    /// Packets executed.
+    packets: u64,
+}
+
+impl Default for Loops {
+    fn default() -> Self {
+        Self {
+            places: Box::new([(0, 0); PLACES]),
+            known: BTreeMap::new(),
+            count: 0,
+            generation: 0,
+            changes: 0,
+            flying: Vec::new(),
+            is_off: false,
+        }
+    }
+}
+
+/// A copy knows nothing yet, like the decoded packets of a copy.
+impl Clone for Loops {
+    fn clone(&self) -> Self {
+        Self { is_off: self.is_off, ..Self::default() }
+    }
+}
+
+impl Loops {
+    /// No loop is planned any more.
+    #[cfg(test)]
+    pub(super) const fn turn_off(&mut self) {
+        self.is_off = true;
+    }
+
+    /// Packets that the loops known now have executed.
+    #[cfg(test)]
+    pub(super) fn packets(&self) -> u64 {
+        self.known.values().flatten().map(|known| known.packets).sum()
+    }
+
+    /// The loop that begins where a branch has arrived.
+    pub(super) fn find<M: Memory>(
+        &mut self,
+        state: &State,
+        cache: &mut Cache,
+        memory: &M,
+    ) -> Option<&mut RenamedLoop> {
+        if self.is_off || state.is_idle || state.clock.left() < LEAST {
+            return None;
+        }
+        if self.generation != cache.generation() {
+            self.forget(cache.generation());
+        }
+        let pc = state.pc();
+        let place = &mut self.places[pc as usize / 4 % PLACES];
+        if place.0 != pc {
+            *place = (pc, 0);
+        }
+        if place.1 < HOT {
+            place.1 += 1;
+            return None;
+        }
+        if place.1 == COLD || !list(state, &mut self.flying) {
+            return None;
+        }
+        let here = self.known.entry(pc).or_default();
+        let index = match here.iter().position(|known| known.flying == self.flying) {
+            Some(index) => index,
+            None if here.len() < MOST_HERE && self.count < MOST => {
+                match plan_with(state, &self.flying, cache, memory) {
+                    Some(planned) => {
+                        let flying = self.flying.clone();
+                        here.push(RenamedLoop { flying, planned, entries: 0, packets: 0 });
+                        self.count += 1;
+                        here.len() - 1
+                    }
+                    None => {
+                        place.1 = COLD;
+                        return None;
+                    }
+                }
+            }
+            None => {
+                place.1 = COLD;
+                return None;
+            }
+        };
+        let found = here.get_mut(index)?;
+        found.entries += 1;
+        if found.entries == TRIAL && found.packets < TRIAL * WORTH {
+            place.1 = COLD;
+        }
+        Some(found)
+    }
+
+    /// The code has changed.
+    #[cold]
+    fn forget(&mut self, generation: u64) {
+        self.generation = generation;
+        self.known.clear();
+        self.count = 0;
+        self.changes += 1;
+        let heat = if self.changes > MOST_CHANGES { COLD } else { 0 };
+        self.places.iter_mut().for_each(|place| place.1 = heat);
+    }
+}
+
+/// Plans the loop where a branch has arrived.
+#[cold]
+fn plan_with<M: Memory>(state: &State, flying: &[Flying], cache: &mut Cache, memory: &M) -> Option<Planned> {
+    let generation = cache.generation();
+    let planned = plan(state.pc(), state.branched_at()[0], flying, &mut |at| {
+        if at & 3 != 0 {
+            return None;
+        }
+        let index = cache.find(at, memory).ok()?;
+        let (packet, micros) = cache.packet(index);
+        let insts = instructions(memory, at);
+        (insts.len() == micros.len())
+            .then(|| (packet, insts.into_iter().zip(micros.iter().copied()).collect()))
+    });
+    // Too many packets were decoded, and all were forgotten.
+    planned.filter(|_| generation == cache.generation())
+}
+
+impl RenamedLoop {
+    /// Executes packets until the loop is left.
+    ///
+    /// # Errors
+    /// What a packet did wrong, and the number of the instruction if it was one.
+    #[inline(never)]
+    pub(super) fn run<M: Memory>(
+        &mut self,
+        state: &mut State,
+        memory: &mut Watched<'_, M>,
+        mut stack: Option<&mut StackWatch>,
+        packets: &mut u64,
+    ) -> Result<(), (TrapKind, Option<usize>)> {
+        let Planned { packets: planned, micros, borders } = &self.planned;
+        borders[0].before.enter(state);
+        let began = *packets;
+        let mut at = 0;
+        while !state.clock.is_over() {
+            let packet = &planned[at as usize];
+            let own = &micros[packet.first as usize..][..usize::from(packet.count)];
+            for micro in own {
+                if !micro.is_executed(&state.regs) {
+                    continue;
+                }
+                if let Err(kind) = state.execute::<true, _>(micro, memory) {
+                    let number = own.iter().position(|other| std::ptr::eq(other, micro));
+                    self.leave_within(at, number.unwrap_or(0), state);
+                    return Err((kind, number));
+                }
+            }
+            *packets += 1;
+            if !packet.is_special {
+                state.clock.cycle += u64::from(packet.cycles);
+                at = packet.next;
+                continue;
+            }
+            if let Some(place) = packet.stack
+                && let Some(stack) = &mut stack
+                && let Err(kind) = stack.check(state.regs[usize::from(place)])
+            {
+                self.leave_within(at, own.len(), state);
+                return Err((kind, None));
+            }
+            state.clock.cycle += u64::from(packet.cycles);
+            at = packet.arrival.and_then(|arrival| arrival.target(state)).unwrap_or(packet.next);
+            if planned[at as usize].is_exit || memory.hits[0].is_some() {
+                break;
+            }
+        }
+        borders[at as usize].before.leave(state);
+        state.pc = planned[at as usize].pc;
+        self.packets += *packets - began;
+        Ok(())
+    }
+
+    /// Leaves the loop within a packet, before the instruction with this number.
+    #[cold]
+    fn leave_within(&self, at: u32, number: usize, state: &mut State) {
+        self.planned.borders[at as usize].before_instruction(number).leave(state);
+        state.pc = self.planned.packets[at as usize].pc;
+    }
+}
+
+impl Arrival {
+    /// The packet that it leads to; further cycles pass where it is not taken.
+    #[inline(always)]
+    fn target(self, state: &mut State) -> Option<u32> {
+        if let Some(decider) = self.decider
+            && !decider.holds(&state.regs)
+        {
+            state.clock.cycle += u64::from(self.rest);
+            return None;
+        }
+        if let Some(from) = self.from {
+            state.note_branch(from);
+        }
+        Some(self.to)
+    }
+}

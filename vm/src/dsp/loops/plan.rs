@@ -1,0 +1,297 @@
+//! The packets of a loop with their registers renamed, each once for every renaming that it is reached with.
+//!
+//! Results that come later than in the first stage and only under a condition, branches to the address in a register,
+//! double instructions whose high words are not on their way yet: the loop is left before such a packet, and the
+//! interpreter of single packets continues.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::ops::RangeInclusive;
+
+use c67x::Inst;
+
+use super::super::decode::{DEFERRED, FORESEEN, Micro, Packet, STACK, STEADY, TRUE, UPDATES, ZERO};
+use super::super::pipeline::BRANCH;
+use super::super::work::Work;
+use super::renaming::{Decider, Flying, Jump, Landing, Renaming, Spares, Width};
+
+/// Most packets of a loop, counted once for each renaming.
+const MOST: usize = 512;
+/// Bytes from a branch that goes back to the end of the packets that are executed before it arrives.
+const SHADOW: u32 = 6 * 32;
+
+/// A packet with its registers renamed, or a place where the loop is left.
+#[derive(Debug)]
+pub(super) struct RenamedPacket {
+    pub(super) pc: u32,
+    /// The place of its first instruction among all of the loop.
+    pub(super) first: u32,
+    pub(super) count: u8,
+    pub(super) cycles: u8,
+    /// Whether the loop is left before it.
+    pub(super) is_exit: bool,
+    /// Whether more is to be done after it than to go on at the next one.
+    pub(super) is_special: bool,
+    /// The place of the stack pointer if it is written.
+    pub(super) stack: Option<u8>,
+    /// The packet that follows if no branch arrives.
+    pub(super) next: u32,
+    /// The branch that arrives at its end.
+    pub(super) arrival: Option<Arrival>,
+}
+
+/// A branch that arrives.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Arrival {
+    /// What it depends on.
+    pub(super) decider: Option<Decider>,
+    pub(super) to: u32,
+    /// Its packet, if that is to be noted.
+    pub(super) from: Option<u32>,
+    /// Cycles that pass after it if it is not taken.
+    pub(super) rest: u8,
+}
+
+/// Where registers are at a packet.
+#[derive(Debug)]
+pub(super) struct Borders {
+    /// Before the packet.
+    pub(super) before: Renaming,
+    /// In the cycle of the packet, with all that it has sent on its way.
+    issued: Renaming,
+    /// How many of the landings are there before each instruction.
+    counts: Vec<usize>,
+    /// The number of the instruction that is a branch.
+    branch: Option<usize>,
+}
+
+/// A loop as planned.
+#[derive(Debug, Default)]
+pub(super) struct Planned {
+    pub(super) packets: Vec<RenamedPacket>,
+    pub(super) micros: Vec<Micro>,
+    pub(super) borders: Vec<Borders>,
+}
+
+/// A packet, and its instructions in the order in which they are executed.
+pub(super) type Found = Option<(Packet, Vec<(Inst, Micro)>)>;
+
+/// Finds the packet at an address.
+pub(super) type Find<'a> = dyn FnMut(u32) -> Found + 'a;
+
+struct Planner<'a, 'f> {
+    find: &'a mut Find<'f>,
+    /// Where packets of the loop begin.
+    range: RangeInclusive<u32>,
+    found: BTreeMap<u32, Found>,
+    spares: Spares,
+    planned: Planned,
+    known: BTreeMap<(u32, Renaming), u32>,
+    open: VecDeque<u32>,
+}
+
+/// Plans the loop that is entered at `pc` with this on its way, and whose last branch is in the packet at `last`; `None`
+/// if its first packet is not one.
+pub(super) fn plan(pc: u32, last: u32, flying: &[Flying], find: &mut Find<'_>) -> Option<Planned> {
+    let mut spares = Spares::new();
+    let entry = Renaming::at_entry(flying, &mut spares)?;
+    let mut planner = Planner {
+        find,
+        range: pc..=last.saturating_add(SHADOW),
+        found: BTreeMap::new(),
+        spares,
+        planned: Planned::default(),
+        known: BTreeMap::new(),
+        open: VecDeque::new(),
+    };
+    planner.packet_at(pc, entry);
+    while let Some(index) = planner.open.pop_front() {
+        if planner.planned.packets.len() < MOST {
+            planner.fill(index as usize);
+        }
+    }
+    let mut planned = planner.planned;
+    for index in 0..planned.packets.len() {
+        let next = planned.packets[index].next as usize;
+        planned.packets[index].is_special |= planned.packets[next].is_exit;
+    }
+    planned.packets.first().is_some_and(|packet| !packet.is_exit).then_some(planned)
+}
+
+impl Borders {
+    /// Where registers are before the packet's instruction with this number, with what those before it have issued.
+    pub(super) fn before_instruction(&self, number: usize) -> Renaming {
+        let mut renaming = self.issued.clone();
+        renaming.landings.truncate(self.counts.get(number).copied().unwrap_or(usize::MAX));
+        if self.branch.is_some_and(|branch| branch >= number) {
+            renaming.jumps.retain(|jump| u64::from(jump.due) != BRANCH);
+        }
+        renaming
+    }
+}
+
+impl Planner<'_, '_> {
+    /// The index of a packet with a renaming, which is filled in later.
+    fn packet_at(&mut self, pc: u32, renaming: Renaming) -> u32 {
+        let Planned { packets, borders, .. } = &mut self.planned;
+        *self.known.entry((pc, renaming)).or_insert_with_key(|(pc, renaming)| {
+            let index = packets.len() as u32;
+            packets.push(RenamedPacket {
+                pc: *pc,
+                first: 0,
+                count: 0,
+                cycles: 0,
+                is_exit: true,
+                is_special: false,
+                stack: None,
+                next: index,
+                arrival: None,
+            });
+            borders.push(Borders {
+                before: renaming.clone(),
+                issued: renaming.clone(),
+                counts: Vec::new(),
+                branch: None,
+            });
+            self.open.push_back(index);
+            index
+        })
+    }
+
+    /// Fills a packet in if it is one of the loop.
+    fn fill(&mut self, index: usize) -> Option<()> {
+        let pc = self.planned.packets[index].pc;
+        if !self.range.contains(&pc) {
+            return None;
+        }
+        let (packet, insts) = self.found.entry(pc).or_insert_with(|| (self.find)(pc)).clone()?;
+        if packet.is_idle {
+            return None;
+        }
+        let before = self.planned.borders[index].before.clone();
+        let mut issued = before.clone();
+        let (mut micros, mut counts) = (Vec::new(), Vec::new());
+        for (inst, micro) in &insts {
+            counts.push(issued.landings.len());
+            micros.push(self.instruction(pc, &before, &mut issued, *inst, *micro)?);
+        }
+        if packet.has_branch {
+            issued.hold_interrupts();
+        }
+        let (cycles, next, arrival) = self.follow(&packet, issued.clone())?;
+        let has_store = insts.iter().any(|(inst, _)| inst.is_store());
+        let first = self.planned.micros.len() as u32;
+        self.planned.packets[index] = RenamedPacket {
+            pc,
+            first,
+            count: micros.len() as u8,
+            cycles,
+            is_exit: false,
+            is_special: has_store || packet.moves_stack || arrival.is_some(),
+            stack: packet.moves_stack.then(|| before.place(STACK)),
+            next,
+            arrival,
+        };
+        self.planned.micros.extend(micros);
+        let branch = insts.iter().position(|(inst, _)| inst.branch().is_some());
+        self.planned.borders[index] = Borders { before, issued, counts, branch };
+        Some(())
+    }
+
+    /// How many cycles pass after a packet, which one follows, and the branch that arrives.
+    fn follow(&mut self, packet: &Packet, mut renaming: Renaming) -> Option<(u8, u32, Option<Arrival>)> {
+        renaming.sort();
+        for cycle in 1..=packet.cycles {
+            let Some(Jump { target: pc, decider, from, .. }) = renaming.pass() else { continue };
+            let to = self.packet_at(pc, renaming.clone());
+            if decider.is_none() {
+                return Some((cycle, to, Some(Arrival { decider, to, from, rest: 0 })));
+            }
+            let rest = packet.cycles - cycle;
+            // Another branch within the same packet is rare.
+            let is_through = (0..rest).all(|_| renaming.pass().is_none());
+            let next = is_through.then(|| self.packet_at(packet.end, renaming))?;
+            return Some((cycle, next, Some(Arrival { decider, to, from, rest })));
+        }
+        Some((packet.cycles, self.packet_at(packet.end, renaming), None))
+    }
+
+    /// An instruction with its registers renamed; what it sends on its way is added to `issued`.
+    fn instruction(
+        &mut self,
+        pc: u32,
+        before: &Renaming,
+        issued: &mut Renaming,
+        inst: Inst,
+        micro: Micro,
+    ) -> Option<Micro> {
+        if inst.branch().is_some() {
+            return self.branch(pc, before, issued, micro);
+        }
+        let mut renamed = micro;
+        for reg in [&mut renamed.pred, &mut renamed.a, &mut renamed.b, &mut renamed.dst] {
+            *reg = before.place(*reg);
+        }
+        let [cycles1, cycles2] = later_reads(before, inst, micro)?;
+        renamed.a_high = before.after(cycles1, micro.a_high);
+        renamed.b_high = before.after(cycles2, micro.b_high);
+        let base = (micro.flags & UPDATES != 0).then_some(micro.a);
+        let mut results: Vec<(u8, u8)> =
+            inst.writes().map(|write| (write.reg.index() as u8, write.stage)).collect();
+        let is_deferred = micro.flags & DEFERRED != 0;
+        if let Some(base) = base {
+            // The address is written to the register's own place, as every result of one word of the first stage.
+            results.retain(|result| *result != (base, 1));
+            if is_deferred || issued.has_result(1, base) {
+                return None;
+            }
+        }
+        match results[..] {
+            [] => return Some(renamed),
+            [(reg, 1)] if !is_deferred => return (!issued.has_result(1, reg)).then_some(renamed),
+            _ => {}
+        }
+        // `MVKH` reads what it writes.
+        if micro.pred != TRUE || micro.work == Work::Mvkh {
+            return None;
+        }
+        let width = if results.len() == 1 { Width::Word } else { Width::Pair };
+        renamed.dst = self.spares.find(issued, micro.dst, width)?;
+        for (reg, due) in results {
+            if reg & !1 != micro.dst & !1 || issued.has_result(due, reg) {
+                return None;
+            }
+            issued.landings.push(Landing { due, reg, place: renamed.dst & !1 | reg & 1 });
+        }
+        Some(renamed)
+    }
+
+    /// A branch: what executes it keeps its condition for when it arrives.
+    fn branch(&mut self, pc: u32, before: &Renaming, issued: &mut Renaming, micro: Micro) -> Option<Micro> {
+        let due = BRANCH as u8;
+        if micro.work != Work::BranchTo || issued.has_branch(due) {
+            return None;
+        }
+        let constant = Micro { pred: TRUE, inverted: false, a: ZERO, b: ZERO, dst: ZERO, imm: 0, ..micro };
+        let (decider, renamed) = if micro.pred == TRUE {
+            (None, Micro { work: Work::Nop, ..constant })
+        } else {
+            let place = self.spares.find_decider(issued)?;
+            let copied = Micro { work: Work::Add, a: before.place(micro.pred), dst: place, ..constant };
+            (Some(Decider { place, inverted: micro.inverted }), copied)
+        };
+        issued.jumps.insert(0, Jump { due, target: micro.imm, decider, from: Some(pc) });
+        Some(renamed)
+    }
+}
+
+/// After how many cycles an instruction reads the high words of s1 and of s2; `None` if that is not known to be what is
+/// on its way before its packet.
+fn later_reads(before: &Renaming, inst: Inst, micro: Micro) -> Option<[u8; 2]> {
+    if inst.reads().all(|read| read.first == 1) {
+        return Some([0, 0]);
+    }
+    let is_product = micro.work == Work::Mpydp;
+    let is_foreseen = !is_product || micro.extra & FORESEEN != 0 && !before.has_branch(1);
+    let is_known = micro.flags & STEADY != 0 && is_foreseen;
+    is_known.then_some(if is_product { [2, 1] } else { [1, 1] })
+}
