@@ -28,13 +28,13 @@ const COLD: u32 = u32::MAX;
 /// Places that are counted, a power of two.
 const PLACES: usize = 256;
 /// Most loops of one place, most loops.
-const MOST_HERE: usize = 4;
+const MOST_HERE: usize = 8;
 const MOST: usize = 128;
 /// How often code may change before nothing is planned any more.
 const MOST_CHANGES: u32 = 64;
 /// A loop is entered if there is time for as many cycles.
 const LEAST: i64 = 64;
-/// A loop that after this many entries has executed fewer packets in each is not worth its entry.
+/// A loop that in this many entries or more has executed fewer packets in each than `WORTH` is not entered any more.
 const TRIAL: u64 = 64;
 const WORTH: u64 = 32;
 
@@ -124,28 +124,21 @@ impl Loops {
         let here = self.known.entry(pc).or_default();
         let index = match here.iter().position(|known| known.flying == self.flying) {
             Some(index) => index,
-            None if here.len() < MOST_HERE && self.count < MOST => {
-                match plan_with(state, &self.flying, cache, memory) {
-                    Some(planned) => {
-                        let flying = self.flying.clone();
-                        here.push(RenamedLoop { flying, planned, entries: 0, packets: 0 });
-                        self.count += 1;
-                        here.len() - 1
-                    }
-                    None => {
-                        place.1 = COLD;
-                        return None;
-                    }
-                }
-            }
+            // Something else is on its way after an interrupt, but not for long.
+            None if here.len() >= MOST_HERE || self.count >= MOST => return None,
             None => {
-                place.1 = COLD;
-                return None;
+                let Some(planned) = plan_with(state, &self.flying, cache, memory) else {
+                    place.1 = COLD;
+                    return None;
+                };
+                here.push(RenamedLoop { flying: self.flying.clone(), planned, entries: 0, packets: 0 });
+                self.count += 1;
+                here.len() - 1
             }
         };
         let found = here.get_mut(index)?;
         found.entries += 1;
-        if found.entries == TRIAL && found.packets < TRIAL * WORTH {
+        if found.entries >= TRIAL && found.packets < found.entries * WORTH {
             place.1 = COLD;
         }
         Some(found)
