@@ -8,6 +8,7 @@ mod circles;
 mod imports;
 mod layers;
 mod options;
+mod passes;
 mod remarks;
 mod shapes;
 mod tokens;
