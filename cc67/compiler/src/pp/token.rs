@@ -5,6 +5,8 @@
 //! source map's scratch space, so that a span is enough for every token.
 
 use std::borrow::Cow;
+use std::cmp::Reverse;
+use std::sync::LazyLock;
 
 use cranelift_entity::EntityRef;
 use cranelift_entity::packed_option::ReservedValue;
@@ -122,8 +124,32 @@ macro_rules! token_kinds {
                     _ => None,
                 }
             }
+
+            /// Every punctuator with its text.
+            const PUNCTUATORS: &[Spelled] = &[$(($text.as_bytes(), Self::$punctuator),)*];
         }
     };
+}
+
+/// A punctuator and its text.
+type Spelled = (&'static [u8], TokenKind);
+
+/// The punctuators that begin with each byte, the longest first.
+static BY_FIRST_BYTE: LazyLock<Vec<Vec<Spelled>>> = LazyLock::new(|| {
+    let from = |first: u8| {
+        let all = TokenKind::PUNCTUATORS.iter().copied();
+        let mut list: Vec<_> = all.filter(|(text, _)| text.first() == Some(&first)).collect();
+        list.sort_by_key(|(text, _)| Reverse(text.len()));
+        list
+    };
+    (0..=u8::MAX).map(from).collect()
+});
+
+impl TokenKind {
+    /// The punctuators that begin with a byte, the longest first.
+    pub(super) fn punctuators_from(first: u8) -> &'static [Spelled] {
+        BY_FIRST_BYTE.get(usize::from(first)).map_or(&[], Vec::as_slice)
+    }
 }
 
 token_kinds! {
