@@ -111,6 +111,7 @@ pub(crate) const LAYERS: &[(&str, &[Row])] = &[
             ("parse", &["parse"]),
             ("preprocessor", &["pp"]),
             ("tree", &["ast"]),
+            ("operators", &["operators"]),
             ("diagnostics", &["diag"]),
             ("words", &["words", "names", "files", "source", "index", "target"]),
         ],

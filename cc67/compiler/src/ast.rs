@@ -4,6 +4,7 @@
 //! declarators that was written. Implicit `int` appears as an empty specifier list.
 
 use crate::names::Name;
+use crate::operators::BinaryOperator;
 use crate::source::Span;
 
 /// A whole translation unit.
@@ -628,58 +629,3 @@ pub enum UnaryOperator {
     /// `!`
     Not,
 }
-
-/// Hands every binary operator of C to the macro `$m`: its text and token, how tight it binds (larger is tighter), the token of its
-/// assignment if it has one, and what it is in the typed tree.
-macro_rules! for_each_binary_operator {
-    ($m:ident) => {
-        $m! {
-            Multiply "*" = Star 12, StarAssign => Arithmetic(BinaryOp::Multiply);
-            Divide "/" = Slash 12, SlashAssign => Arithmetic(BinaryOp::Divide);
-            Remainder "%" = Percent 12, PercentAssign => Bitwise(BinaryOp::Remainder);
-            Add "+" = Plus 11, PlusAssign => Arithmetic(BinaryOp::Add);
-            Subtract "-" = Minus 11, MinusAssign => Arithmetic(BinaryOp::Subtract);
-            ShiftLeft "<<" = ShiftLeft 10, ShiftLeftAssign => Shift(BinaryOp::ShiftLeft);
-            ShiftRight ">>" = ShiftRight 10, ShiftRightAssign => Shift(BinaryOp::ShiftRight);
-            Less "<" = Less 9 => Compare(CompareOp::Less);
-            Greater ">" = Greater 9 => Compare(CompareOp::Greater);
-            LessEqual "<=" = LessEqual 9 => Compare(CompareOp::LessEqual);
-            GreaterEqual ">=" = GreaterEqual 9 => Compare(CompareOp::GreaterEqual);
-            Equal "==" = Equal 8 => Compare(CompareOp::Equal);
-            NotEqual "!=" = NotEqual 8 => Compare(CompareOp::NotEqual);
-            And "&" = And 7, AndAssign => Bitwise(BinaryOp::And);
-            Xor "^" = Xor 6, XorAssign => Bitwise(BinaryOp::Xor);
-            Or "|" = Or 5, OrAssign => Bitwise(BinaryOp::Or);
-            LogicalAnd "&&" = AndAnd 4 => Logical(false);
-            LogicalOr "||" = OrOr 3 => Logical(true);
-        }
-    };
-}
-pub(crate) use for_each_binary_operator;
-
-macro_rules! define_binary_operators {
-    ($(
-        $operator:ident $text:literal = $token:ident $binding:literal $(, $assignment:ident)? => $class:ident($of:expr);
-    )*) => {
-        /// Binary operators.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-        pub enum BinaryOperator {
-            $(
-                #[doc = concat!("`", $text, "`")]
-                $operator,
-            )*
-        }
-
-        impl BinaryOperator {
-            /// The operator as it is written.
-            #[must_use]
-            pub const fn spelling(self) -> &'static str {
-                match self {
-                    $(Self::$operator => $text,)*
-                }
-            }
-        }
-    };
-}
-
-for_each_binary_operator!(define_binary_operators);

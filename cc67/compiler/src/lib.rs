@@ -24,7 +24,7 @@
 //! | [`lower`], [`passes`] | typed tree to IR, IR to better IR |
 //! | [`sema`], [`lints`], [`firmware`] | types and meaning; searches for mistakes; what the firmware declares |
 //! | [`ir`], [`typed`], [`ty`] | the two forms in the middle, and the types of C; IR prints and parses |
-//! | [`parse`], [`pp`], [`ast`] | the front |
+//! | [`parse`], [`pp`], [`ast`], [`operators`] | the front; the operators of C with what they compute |
 //! | [`diag`], [`words`], [`names`], [`files`], [`source`], `index` | messages, spelling, interned names, places in texts, typed numbers |
 //!
 //! A room names only rooms of its own line or of lines below it (`tests/tidy/layers.rs`).
@@ -62,6 +62,7 @@ pub mod lints;
 pub mod lower;
 pub mod names;
 pub mod object;
+pub mod operators;
 pub mod parse;
 pub mod passes;
 pub mod pp;

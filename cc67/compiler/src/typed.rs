@@ -13,6 +13,7 @@
 use cranelift_entity::PrimaryMap;
 
 use crate::index::index;
+use crate::operators::{BinaryOp, CompareOp};
 use crate::source::Span;
 use crate::ty::{BitRange, FunctionType, TypeId, Types};
 
@@ -427,49 +428,6 @@ pub enum UnaryOp {
     Complement,
     /// `a == 0`, of type `int` whatever the operand's type
     Not,
-}
-
-/// Binary operators; signedness follows from the type. On pointers only `Add` and `Subtract` of an `int` byte
-/// count occur.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum BinaryOp {
-    /// `a + b`
-    Add,
-    /// `a - b`
-    Subtract,
-    /// `a * b`
-    Multiply,
-    /// `a / b`
-    Divide,
-    /// `a % b`
-    Remainder,
-    /// `a & b`
-    And,
-    /// `a | b`
-    Or,
-    /// `a ^ b`
-    Xor,
-    /// `a << b`
-    ShiftLeft,
-    /// `a >> b`
-    ShiftRight,
-}
-
-/// Comparisons; signedness follows from the operands' type.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CompareOp {
-    /// `a == b`
-    Equal,
-    /// `a != b`
-    NotEqual,
-    /// `a < b`
-    Less,
-    /// `a <= b`
-    LessEqual,
-    /// `a > b`
-    Greater,
-    /// `a >= b`
-    GreaterEqual,
 }
 
 /// Storage.

@@ -9,6 +9,7 @@
 //! Constants are operands, not instructions. Memory is reached only by `load`, `store`,
 //! `copy_memory`, `clear_memory` and calls; no pass may drop, merge or move one of these.
 
+mod arithmetic;
 pub mod builder;
 mod classes;
 pub mod function;

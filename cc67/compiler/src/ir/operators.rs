@@ -5,6 +5,7 @@
 //! operator is in its row.
 
 use super::inst::Class;
+use crate::operators::{self, for_each_binary_op};
 
 /// An enum whose variants have names in the text form.
 macro_rules! named {
@@ -136,6 +137,27 @@ binary_operators! {
     /// `a >> b`, logical, the count modulo 64
     ShiftRightUnsigned = "shr_u": Shift;
 }
+
+macro_rules! machine_operators {
+    ($(
+        #[doc = $doc:literal]
+        $op:ident $text:literal = $machine:ident $signed:expr
+            $(, unsigned $machine_unsigned:ident $unsigned:expr)? $(, exact $exact:expr)?;
+    )*) => {
+        impl BinaryOp {
+            /// The machine's operator for an operation of C.
+            #[must_use]
+            pub(crate) const fn of(op: operators::BinaryOp, is_unsigned: bool) -> Self {
+                match op {
+                    $($(operators::BinaryOp::$op if is_unsigned => Self::$machine_unsigned,)?
+                    operators::BinaryOp::$op => Self::$machine,)*
+                }
+            }
+        }
+    };
+}
+
+for_each_binary_op!(machine_operators);
 
 impl BinaryOp {
     /// Whether there is such an operator on values of a class.

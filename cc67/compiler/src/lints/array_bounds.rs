@@ -6,10 +6,10 @@
 use super::program::AnalysedProgram;
 use super::walk::{Extent, Walk};
 use crate::diag::{Diagnostic, Lint, Sink};
+use crate::operators::{BinaryOp, CompareOp};
 use crate::ty::TypeId;
 use crate::typed::{
-    BinaryOp, CompareOp, ExprId, ExprKind, Function, LocalId, LoopTest, PlaceId, PlaceKind, Stmt, StmtKind,
-    SymbolId,
+    ExprId, ExprKind, Function, LocalId, LoopTest, PlaceId, PlaceKind, Stmt, StmtKind, SymbolId,
 };
 
 /// Reports loads and stores outside of arrays, at constant indexes and in loops that count.
@@ -216,21 +216,7 @@ impl Search<'_> {
             ExprKind::Load(_) => {
                 value.filter(|(local, _)| self.loaded(expr) == Some(*local)).map(|(_, number)| number)
             }
-            ExprKind::Binary(op, a, b) => {
-                let (a, b) = (self.number(a, value)?, self.number(b, value)?);
-                match op {
-                    BinaryOp::Add => a.checked_add(b),
-                    BinaryOp::Subtract => a.checked_sub(b),
-                    BinaryOp::Multiply => a.checked_mul(b),
-                    BinaryOp::Divide
-                    | BinaryOp::Remainder
-                    | BinaryOp::And
-                    | BinaryOp::Or
-                    | BinaryOp::Xor
-                    | BinaryOp::ShiftLeft
-                    | BinaryOp::ShiftRight => None,
-                }
-            }
+            ExprKind::Binary(op, a, b) => op.exactly(self.number(a, value)?, self.number(b, value)?),
             _ => None,
         }
     }

@@ -1,7 +1,8 @@
 //! `if (a = b)`, where `if ((a = b))` says that it is meant.
 
-use crate::ast::{BinaryOperator, Expression, ExpressionKind};
+use crate::ast::{Expression, ExpressionKind};
 use crate::diag::{Diagnostic, Lint};
+use crate::operators::OperatorMeaning;
 
 /// What is said of a condition that is an assignment.
 pub(crate) fn finding(condition: &Expression) -> Option<Diagnostic> {
@@ -17,21 +18,9 @@ pub(crate) fn finding(condition: &Expression) -> Option<Diagnostic> {
     )
     .help("write `==` to compare, or a second pair of parentheses if this is meant");
     Some(match &from.kind {
-        ExpressionKind::Binary(operator, ..) if is_comparison(*operator) => {
+        ExpressionKind::Binary(operator, ..) if matches!(operator.meaning(), OperatorMeaning::Compare(_)) => {
             diagnostic.note(format!("`{}` is computed first: its result is assigned", operator.spelling()))
         }
         _ => diagnostic,
     })
-}
-
-const fn is_comparison(operator: BinaryOperator) -> bool {
-    matches!(
-        operator,
-        BinaryOperator::Less
-            | BinaryOperator::Greater
-            | BinaryOperator::LessEqual
-            | BinaryOperator::GreaterEqual
-            | BinaryOperator::Equal
-            | BinaryOperator::NotEqual
-    )
 }

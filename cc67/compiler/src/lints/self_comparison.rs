@@ -2,7 +2,8 @@
 
 use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
-use crate::typed::{CompareOp, ExprId, ExprKind, Function, PlaceKind};
+use crate::operators::CompareOp;
+use crate::typed::{ExprId, ExprKind, Function, PlaceKind};
 
 /// Reports `x == x` on variables.
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {

@@ -13,8 +13,9 @@ use super::call_graph::CallGraph;
 use super::program::AnalysedProgram;
 use super::walk::{Extent, Walk};
 use crate::diag::{Diagnostic, Lint, Sink};
+use crate::operators::CompareOp;
 use crate::typed::{
-    Callee, CompareOp, ExprId, ExprKind, Function, LoopTest, PlaceId, PlaceKind, Stmt, StmtKind, SymbolId,
+    Callee, ExprId, ExprKind, Function, LoopTest, PlaceId, PlaceKind, Stmt, StmtKind, SymbolId,
 };
 
 /// Cycles between two interrupts: 90 µs at 200 MHz.

@@ -1,7 +1,8 @@
 //! Statements that compute a value and drop it.
 
-use crate::ast::{BinaryOperator, Expression, ExpressionKind, UnaryOperator};
+use crate::ast::{Expression, ExpressionKind, UnaryOperator};
 use crate::diag::{Diagnostic, Lint};
+use crate::operators::BinaryOperator;
 
 /// What is said of an expression statement whose value nobody sees; `is_function` if it only names one.
 pub(crate) fn finding(expression: &Expression, is_function: bool) -> Option<Diagnostic> {

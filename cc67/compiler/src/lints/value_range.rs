@@ -4,8 +4,9 @@ use kmotiondef::limits::{MAX_PWM_VALUE, MAX_PWMC_VALUE, MAX_PWMR_VALUE};
 
 use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
+use crate::operators::BinaryOp;
 use crate::source::Span;
-use crate::typed::{BinaryOp, Callee, ExprKind};
+use crate::typed::{Callee, ExprKind};
 
 /// Functions whose second argument is a value, which goes from minus this to this.
 const LIMITS: &[(&str, i32)] =

@@ -7,11 +7,10 @@ use std::collections::BTreeSet;
 
 use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
+use crate::operators::{BinaryOp, CompareOp};
 use crate::source::Span;
 use crate::ty::{TypeId, Types};
-use crate::typed::{
-    BinaryOp, CompareOp, Expr, ExprId, ExprKind, Function, LocalId, PlaceId, PlaceKind, UnaryOp,
-};
+use crate::typed::{Expr, ExprId, ExprKind, Function, LocalId, PlaceId, PlaceKind, UnaryOp};
 
 /// The first address of RAM that counts as negative when addresses are compared as signed numbers.
 const NEGATIVE: u32 = 0x8000_0000;

@@ -3,6 +3,7 @@
 use super::{Lowering, prices, types};
 use crate::ir::inst::{BlockId, Class, Operand};
 use crate::ir::operators::{CompareOp, Width};
+use crate::operators;
 use crate::ty::Types;
 use crate::typed::{self, ExprId, ExprKind, UnaryOp};
 
@@ -57,11 +58,11 @@ impl Lowering<'_> {
                 self.effect(first);
                 self.branch(second, sense, then, otherwise);
             }
-            ExprKind::Compare(typed::CompareOp::Equal, a, b) if self.is_word_zero(b) => {
+            ExprKind::Compare(operators::CompareOp::Equal, a, b) if self.is_word_zero(b) => {
                 self.price_zero_test();
                 self.branch(a, sense, otherwise, then);
             }
-            ExprKind::Compare(typed::CompareOp::NotEqual, a, b) if self.is_word_zero(b) => {
+            ExprKind::Compare(operators::CompareOp::NotEqual, a, b) if self.is_word_zero(b) => {
                 self.price_zero_test();
                 self.branch(a, sense, then, otherwise);
             }

@@ -9,6 +9,7 @@ use super::places::Storage;
 use super::{Lowering, prices, types};
 use crate::ir::inst::{Address, Class, Constant, InstKind, Operand, ValueId};
 use crate::ir::operators::{BinaryOp, CompareOp, UnaryOp, Width};
+use crate::operators;
 use crate::ty::TypeId;
 use crate::typed::{self, ExprId, ExprKind, PlaceId, Update, UpdateResult};
 
@@ -281,7 +282,7 @@ impl Lowering<'_> {
         left
     }
 
-    fn compare(&mut self, op: typed::CompareOp, a: ExprId, b: ExprId, into: Option<ValueId>) -> Operand {
+    fn compare(&mut self, op: operators::CompareOp, a: ExprId, b: ExprId, into: Option<ValueId>) -> Operand {
         let is_unsigned = types::is_unsigned(&self.unit.types, self.function.exprs[a].ty);
         let first = self.value(a);
         let held = self.hold(first);
@@ -350,35 +351,21 @@ impl Lowering<'_> {
     }
 
     /// The machine's operator for operands of type `ty`.
-    fn binary_op(&self, op: typed::BinaryOp, ty: TypeId) -> BinaryOp {
+    fn binary_op(&self, op: operators::BinaryOp, ty: TypeId) -> BinaryOp {
         let is_unsigned = types::is_unsigned(&self.unit.types, ty);
-        match op {
-            typed::BinaryOp::Add => BinaryOp::Add,
-            typed::BinaryOp::Subtract => BinaryOp::Subtract,
-            typed::BinaryOp::Multiply => BinaryOp::Multiply,
-            typed::BinaryOp::Divide if is_unsigned => BinaryOp::DivideUnsigned,
-            typed::BinaryOp::Divide => BinaryOp::Divide,
-            typed::BinaryOp::Remainder if is_unsigned => BinaryOp::RemainderUnsigned,
-            typed::BinaryOp::Remainder => BinaryOp::Remainder,
-            typed::BinaryOp::And => BinaryOp::And,
-            typed::BinaryOp::Or => BinaryOp::Or,
-            typed::BinaryOp::Xor => BinaryOp::Xor,
-            typed::BinaryOp::ShiftLeft => BinaryOp::ShiftLeft,
-            typed::BinaryOp::ShiftRight if is_unsigned => BinaryOp::ShiftRightUnsigned,
-            typed::BinaryOp::ShiftRight => BinaryOp::ShiftRight,
-        }
+        BinaryOp::of(op, is_unsigned)
     }
 }
 
 /// The machine's comparison, and whether the operands change places.
-const fn compare_op(op: typed::CompareOp, is_unsigned: bool) -> (CompareOp, bool) {
+const fn compare_op(op: operators::CompareOp, is_unsigned: bool) -> (CompareOp, bool) {
     let (op, is_swapped) = match op {
-        typed::CompareOp::Equal => return (CompareOp::Equal, false),
-        typed::CompareOp::NotEqual => return (CompareOp::NotEqual, false),
-        typed::CompareOp::Less => (CompareOp::Less, false),
-        typed::CompareOp::LessEqual => (CompareOp::LessEqual, false),
-        typed::CompareOp::Greater => (CompareOp::Less, true),
-        typed::CompareOp::GreaterEqual => (CompareOp::LessEqual, true),
+        operators::CompareOp::Equal => return (CompareOp::Equal, false),
+        operators::CompareOp::NotEqual => return (CompareOp::NotEqual, false),
+        operators::CompareOp::Less => (CompareOp::Less, false),
+        operators::CompareOp::LessEqual => (CompareOp::LessEqual, false),
+        operators::CompareOp::Greater => (CompareOp::Less, true),
+        operators::CompareOp::GreaterEqual => (CompareOp::LessEqual, true),
     };
     match (op, is_unsigned) {
         (CompareOp::Less, true) => (CompareOp::LessUnsigned, is_swapped),

@@ -3,8 +3,9 @@
 use super::{Held, Home, Lowering, types};
 use crate::ir::inst::{Address, Base, Class, Constant, InstKind, Operand, ValueId};
 use crate::ir::operators::{BinaryOp, Width};
+use crate::operators;
 use crate::ty::{BitRange, TypeId};
-use crate::typed::{self, ExprId, ExprKind, PlaceId, PlaceKind};
+use crate::typed::{ExprId, ExprKind, PlaceId, PlaceKind};
 
 /// Storage that has been worked out.
 #[derive(Clone, Copy, Debug)]
@@ -71,7 +72,7 @@ impl Lowering<'_> {
             let expr = &self.function.exprs[pointer];
             match expr.kind {
                 ExprKind::Address(place) => return self.address(place).plus(offset),
-                ExprKind::Binary(typed::BinaryOp::Add, base, step) => {
+                ExprKind::Binary(operators::BinaryOp::Add, base, step) => {
                     let ExprKind::Int(step) = self.function.exprs[step].kind else { break };
                     offset = offset.wrapping_add(step as i32);
                     pointer = base;

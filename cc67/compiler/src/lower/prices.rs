@@ -3,7 +3,7 @@
 //! [`super::pricing`] says where each is charged.
 
 use crate::ir::inst::Class;
-use crate::typed::BinaryOp;
+use crate::operators::BinaryOp;
 
 /// A branch, taken or not; `goto`, `break`, `continue`, `return`.
 pub(super) const BRANCH: i32 = 8;

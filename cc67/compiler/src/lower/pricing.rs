@@ -12,7 +12,8 @@ use super::{Lowering, types};
 use crate::firmware::{BuiltIn, FirmwareSymbols};
 use crate::ir::function::table;
 use crate::ir::inst::{BlockId, Class};
-use crate::typed::{self, BinaryOp, ExprId, ExprKind, LocalId, PlaceId, PlaceKind, SymbolId, UnaryOp};
+use crate::operators::BinaryOp;
+use crate::typed::{self, ExprId, ExprKind, LocalId, PlaceId, PlaceKind, SymbolId, UnaryOp};
 
 /// Where SDRAM begins: what is below is inside of the processor.
 const SDRAM: u32 = 0x8000_0000;

@@ -391,7 +391,7 @@ impl Parser<'_> {
                     | TokenKind::And
                     | TokenKind::Minus
             ),
-            kind => super::operators::compound_assignment(kind).is_some(),
+            kind => kind.compound_assignment().is_some(),
         }
     }
 

@@ -1,6 +1,6 @@
 //! The operators between two operands, and how tight they bind.
 
-use crate::ast::{BinaryOperator, for_each_binary_operator};
+use crate::operators::BinaryOperator;
 use crate::pp::TokenKind;
 
 /// An operator after an operand, with another operand after it.
@@ -31,31 +31,7 @@ pub(super) fn infix(kind: TokenKind) -> Option<(Infix, u8)> {
         TokenKind::Comma => Some((Infix::Comma, COMMA)),
         TokenKind::Assign => Some((Infix::Assign, ASSIGNMENT)),
         TokenKind::Question => Some((Infix::Conditional, CONDITIONAL)),
-        _ => compound_assignment(kind).map(|operator| (Infix::AssignWith(operator), ASSIGNMENT)),
+        _ => kind.compound_assignment().map(|operator| (Infix::AssignWith(operator), ASSIGNMENT)),
     };
-    other.or_else(|| binary(kind).map(|(operator, binding)| (Infix::Binary(operator), binding)))
+    other.or_else(|| kind.binary_operator().map(|operator| (Infix::Binary(operator), operator.binding())))
 }
-
-macro_rules! define_tokens {
-    ($(
-        $operator:ident $text:literal = $token:ident $binding:literal $(, $assignment:ident)? => $class:ident($of:expr);
-    )*) => {
-        /// The binary operator of a token, and how tight it binds.
-        fn binary(kind: TokenKind) -> Option<(BinaryOperator, u8)> {
-            match kind {
-                $(TokenKind::$token => Some((BinaryOperator::$operator, $binding)),)*
-                _ => None,
-            }
-        }
-
-        /// The operator of a compound assignment.
-        pub(super) fn compound_assignment(kind: TokenKind) -> Option<BinaryOperator> {
-            match kind {
-                $($(TokenKind::$assignment => Some(BinaryOperator::$operator),)?)*
-                _ => None,
-            }
-        }
-    };
-}
-
-for_each_binary_operator!(define_tokens);

@@ -3,8 +3,6 @@
 //! Constants are computed by [`vm::arith`], as the machine does; what would trap is left
 //! alone.
 
-use std::ops::{Add, Div, Mul, Sub};
-
 use vm::arith;
 
 use crate::ir::inst::{Class, Constant, Operand};
@@ -178,7 +176,7 @@ fn floating(op: BinaryOp, a: Operand, b: Constant) -> Simplified {
 
 fn binary_constant(op: BinaryOp, a: Constant, b: Constant) -> Option<Constant> {
     match (a, b) {
-        (Constant::I32(a), Constant::I32(b)) => binary_i32(op, a, b).map(Constant::I32),
+        (Constant::I32(a), Constant::I32(b)) => op.on_i32(a, b).map(Constant::I32),
         (Constant::Symbol(symbol, offset), Constant::I32(bytes))
         | (Constant::I32(bytes), Constant::Symbol(symbol, offset))
             if op == BinaryOp::Add =>
@@ -188,93 +186,18 @@ fn binary_constant(op: BinaryOp, a: Constant, b: Constant) -> Option<Constant> {
         (Constant::Symbol(symbol, offset), Constant::I32(bytes)) if op == BinaryOp::Subtract => {
             Some(Constant::Symbol(symbol, offset.wrapping_sub(bytes)))
         }
-        (Constant::I64(a), Constant::I64(b)) => binary_i64(op, a, b).map(Constant::I64),
-        (Constant::I64(a), Constant::I32(count)) => shift_i64(op, a, count).map(Constant::I64),
+        (Constant::I64(a), Constant::I64(b)) => op.on_i64(a, b).map(Constant::I64),
+        (Constant::I64(a), Constant::I32(count)) => op.shifted_i64(a, count).map(Constant::I64),
         (Constant::F32(a), Constant::F32(b)) => {
-            let value = binary_float(op, f32::from_bits(a), f32::from_bits(b))?;
+            let value = op.on_floats(f32::from_bits(a), f32::from_bits(b))?;
             // The bits of a NaN are the machine's business.
             (!value.is_nan()).then(|| Constant::F32(value.to_bits()))
         }
         (Constant::F64(a), Constant::F64(b)) => {
-            let value = binary_float(op, f64::from_bits(a), f64::from_bits(b))?;
+            let value = op.on_floats(f64::from_bits(a), f64::from_bits(b))?;
             (!value.is_nan()).then(|| Constant::F64(value.to_bits()))
         }
         _ => None,
-    }
-}
-
-/// The operators that floats have.
-fn binary_float<T>(op: BinaryOp, a: T, b: T) -> Option<T>
-where
-    T: Add<Output = T> + Sub<Output = T> + Mul<Output = T> + Div<Output = T>,
-{
-    match op {
-        BinaryOp::Add => Some(a + b),
-        BinaryOp::Subtract => Some(a - b),
-        BinaryOp::Multiply => Some(a * b),
-        BinaryOp::Divide => Some(a / b),
-        BinaryOp::DivideUnsigned
-        | BinaryOp::Remainder
-        | BinaryOp::RemainderUnsigned
-        | BinaryOp::And
-        | BinaryOp::Or
-        | BinaryOp::Xor
-        | BinaryOp::ShiftLeft
-        | BinaryOp::ShiftRight
-        | BinaryOp::ShiftRightUnsigned => None,
-    }
-}
-
-/// The shifts of a 64-bit value.
-fn shift_i64(op: BinaryOp, a: i64, count: i32) -> Option<i64> {
-    match op {
-        BinaryOp::ShiftLeft => Some(arith::shl_i64(a, count)),
-        BinaryOp::ShiftRight => Some(arith::shr_i64_s(a, count)),
-        BinaryOp::ShiftRightUnsigned => Some(arith::shr_i64_u(a, count)),
-        BinaryOp::Add
-        | BinaryOp::Subtract
-        | BinaryOp::Multiply
-        | BinaryOp::Divide
-        | BinaryOp::DivideUnsigned
-        | BinaryOp::Remainder
-        | BinaryOp::RemainderUnsigned
-        | BinaryOp::And
-        | BinaryOp::Or
-        | BinaryOp::Xor => None,
-    }
-}
-
-fn binary_i32(op: BinaryOp, a: i32, b: i32) -> Option<i32> {
-    match op {
-        BinaryOp::Add => Some(a.wrapping_add(b)),
-        BinaryOp::Subtract => Some(a.wrapping_sub(b)),
-        BinaryOp::Multiply => Some(a.wrapping_mul(b)),
-        BinaryOp::Divide => arith::div_i32_s(a, b),
-        BinaryOp::DivideUnsigned => arith::div_i32_u(a, b),
-        BinaryOp::Remainder => arith::rem_i32_s(a, b),
-        BinaryOp::RemainderUnsigned => arith::rem_i32_u(a, b),
-        BinaryOp::And => Some(a & b),
-        BinaryOp::Or => Some(a | b),
-        BinaryOp::Xor => Some(a ^ b),
-        BinaryOp::ShiftLeft => Some(arith::shl_i32(a, b)),
-        BinaryOp::ShiftRight => Some(arith::shr_i32_s(a, b)),
-        BinaryOp::ShiftRightUnsigned => Some(arith::shr_i32_u(a, b)),
-    }
-}
-
-fn binary_i64(op: BinaryOp, a: i64, b: i64) -> Option<i64> {
-    match op {
-        BinaryOp::Add => Some(a.wrapping_add(b)),
-        BinaryOp::Subtract => Some(a.wrapping_sub(b)),
-        BinaryOp::Multiply => Some(a.wrapping_mul(b)),
-        BinaryOp::Divide => arith::div_i64_s(a, b),
-        BinaryOp::DivideUnsigned => arith::div_i64_u(a, b),
-        BinaryOp::Remainder => arith::rem_i64_s(a, b),
-        BinaryOp::RemainderUnsigned => arith::rem_i64_u(a, b),
-        BinaryOp::And => Some(a & b),
-        BinaryOp::Or => Some(a | b),
-        BinaryOp::Xor => Some(a ^ b),
-        BinaryOp::ShiftLeft | BinaryOp::ShiftRight | BinaryOp::ShiftRightUnsigned => None,
     }
 }
 

@@ -5,6 +5,7 @@
 
 use crate::diag::Diagnostic;
 use crate::names::word;
+use crate::operators::{BinaryOp, BinaryOperator, OperatorMeaning};
 use crate::source::Span;
 
 use super::engine::Preprocessor;
@@ -35,6 +36,9 @@ impl ConditionValue {
 
 /// Says that the expression was reported to be wrong.
 struct Reported;
+
+/// The binding of `,`, looser than that of any operator.
+const COMMA: u8 = 0;
 
 type Evaluated = Result<ConditionValue, Reported>;
 
@@ -131,15 +135,21 @@ impl Parser<'_, '_> {
     fn binary(&mut self, least: u8) -> Evaluated {
         let mut left = self.unary()?;
         while let Some(token) = self.peek() {
-            let Some(binding) = binding(token.kind).filter(|binding| *binding >= least) else { break };
+            let operator = token.kind.binary_operator();
+            let is_comma = token.kind == TokenKind::Comma;
+            let binding = operator.map(BinaryOperator::binding).or(is_comma.then_some(COMMA));
+            let Some(binding) = binding.filter(|binding| *binding >= least) else { break };
             self.at += 1;
-            let is_needed = match token.kind {
-                TokenKind::AndAnd => left.is_true(),
-                TokenKind::OrOr => !left.is_true(),
-                _ => true,
+            let meaning = operator.map(BinaryOperator::meaning);
+            let is_decided = matches!(
+                meaning,
+                Some(OperatorMeaning::Logical(decides)) if left.is_true() == decides
+            );
+            let right = self.when(!is_decided, |parser| parser.binary(binding + 1))?;
+            left = match meaning {
+                Some(meaning) => self.apply(meaning, token.span, left, right)?,
+                None => right,
             };
-            let right = self.when(is_needed, |parser| parser.binary(binding + 1))?;
-            left = self.apply(token, left, right)?;
         }
         Ok(left)
     }
@@ -232,44 +242,35 @@ impl Parser<'_, '_> {
         }
     }
 
-    fn apply(&mut self, operator: Token, left: ConditionValue, right: ConditionValue) -> Evaluated {
-        use TokenKind::{
-            And, AndAnd, Comma, Equal, Greater, GreaterEqual, Less, LessEqual, Minus, NotEqual, Or, OrOr,
-            Percent, Plus, ShiftLeft, ShiftRight, Slash, Star, Xor,
-        };
+    fn apply(
+        &mut self,
+        meaning: OperatorMeaning,
+        span: Span,
+        left: ConditionValue,
+        right: ConditionValue,
+    ) -> Evaluated {
         let is_unsigned = left.is_unsigned || right.is_unsigned;
         let (a, b) = (left.bits, right.bits);
-        let is_less = if is_unsigned { a.cast_unsigned() < b.cast_unsigned() } else { a < b };
-        let bits = match operator.kind {
-            AndAnd => return Ok(ConditionValue::truth(left.is_true() && right.is_true())),
-            OrOr => return Ok(ConditionValue::truth(left.is_true() || right.is_true())),
-            Equal => return Ok(ConditionValue::truth(a == b)),
-            NotEqual => return Ok(ConditionValue::truth(a != b)),
-            Less => return Ok(ConditionValue::truth(is_less)),
-            GreaterEqual => return Ok(ConditionValue::truth(!is_less)),
-            Greater => return Ok(ConditionValue::truth(!is_less && a != b)),
-            LessEqual => return Ok(ConditionValue::truth(is_less || a == b)),
-            Comma => return Ok(right),
-            Slash | Percent if b == 0 => {
-                if self.is_evaluated {
-                    return self
-                        .fail(Diagnostic::error(operator.span, "division by zero in `#if` expression"));
-                }
-                0
+        let bits = match meaning {
+            OperatorMeaning::Logical(decides) => {
+                let is_decided = left.is_true() == decides || right.is_true() == decides;
+                return Ok(ConditionValue::truth(is_decided == decides));
             }
-            Slash if is_unsigned => (a.cast_unsigned() / b.cast_unsigned()).cast_signed(),
-            Percent if is_unsigned => (a.cast_unsigned() % b.cast_unsigned()).cast_signed(),
-            Slash => a.wrapping_div(b),
-            Percent => a.wrapping_rem(b),
-            Star => a.wrapping_mul(b),
-            Plus => a.wrapping_add(b),
-            Minus => a.wrapping_sub(b),
-            And => a & b,
-            Or => a | b,
-            Xor => a ^ b,
-            ShiftLeft => return Ok(ConditionValue { bits: shift(left, b), ..left }),
-            ShiftRight => return Ok(ConditionValue { bits: shift(left, b.wrapping_neg()), ..left }),
-            _ => 0,
+            OperatorMeaning::Compare(op) => {
+                let unsigned = a.cast_unsigned().cmp(&b.cast_unsigned());
+                let order = if is_unsigned { unsigned } else { a.cmp(&b) };
+                return Ok(ConditionValue::truth(op.holds(Some(order))));
+            }
+            OperatorMeaning::Shift(op) => return Ok(ConditionValue { bits: shift(op, left, b), ..left }),
+            OperatorMeaning::Arithmetic(op) | OperatorMeaning::Bitwise(op) => {
+                match op.in_64_bits(is_unsigned)(a, b) {
+                    Some(bits) => bits,
+                    None if self.is_evaluated => {
+                        return self.fail(Diagnostic::error(span, "division by zero in `#if` expression"));
+                    }
+                    None => 0,
+                }
+            }
         };
         Ok(ConditionValue { bits, is_unsigned })
     }
@@ -316,30 +317,16 @@ impl Parser<'_, '_> {
     }
 }
 
-/// `value << count`; to the right for a negative count.
-fn shift(value: ConditionValue, count: i64) -> i64 {
+/// `value op count`; to the other side for a negative count.
+fn shift(op: BinaryOp, value: ConditionValue, count: i64) -> i64 {
+    if (0..i64::from(i64::BITS)).contains(&count) {
+        return op.in_64_bits(value.is_unsigned)(value.bits, count).unwrap_or_default();
+    }
+    let is_left = (op == BinaryOp::ShiftLeft) == (count >= 0);
     let distance = u32::try_from(count.unsigned_abs()).unwrap_or(u32::MAX);
-    match (count >= 0, value.is_unsigned) {
+    match (is_left, value.is_unsigned) {
         (true, _) => value.bits.checked_shl(distance).unwrap_or(0),
         (false, true) => value.bits.cast_unsigned().checked_shr(distance).unwrap_or(0).cast_signed(),
         (false, false) => value.bits >> distance.min(63),
     }
-}
-
-/// How tight a binary operator binds.
-fn binding(kind: TokenKind) -> Option<u8> {
-    Some(match kind {
-        TokenKind::Comma => 0,
-        TokenKind::OrOr => 1,
-        TokenKind::AndAnd => 2,
-        TokenKind::Or => 3,
-        TokenKind::Xor => 4,
-        TokenKind::And => 5,
-        TokenKind::Equal | TokenKind::NotEqual => 6,
-        TokenKind::Less | TokenKind::LessEqual | TokenKind::Greater | TokenKind::GreaterEqual => 7,
-        TokenKind::ShiftLeft | TokenKind::ShiftRight => 8,
-        TokenKind::Plus | TokenKind::Minus => 9,
-        TokenKind::Star | TokenKind::Slash | TokenKind::Percent => 10,
-        _ => return None,
-    })
 }

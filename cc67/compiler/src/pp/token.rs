@@ -12,6 +12,7 @@ use cranelift_entity::EntityRef;
 use cranelift_entity::packed_option::ReservedValue;
 
 use crate::names::Name;
+use crate::operators::{BinaryOperator, for_each_binary_operator};
 use crate::source::{SourceMap, Span};
 
 use super::lexer::without_splices;
@@ -184,6 +185,34 @@ token_kinds! {
     And = "&", AndAnd = "&&", AndAssign = "&=", Or = "|", OrOr = "||", OrAssign = "|=",
     Xor = "^", XorAssign = "^=", Hash = "#", HashHash = "##",
 }
+
+macro_rules! tokens_of_operators {
+    ($(
+        $operator:ident $text:literal = $token:ident $binding:literal $(, $assignment:ident)? => $meaning:ident($of:expr);
+    )*) => {
+        impl TokenKind {
+            /// The binary operator that the token is.
+            #[must_use]
+            pub(crate) const fn binary_operator(self) -> Option<BinaryOperator> {
+                match self {
+                    $(Self::$token => Some(BinaryOperator::$operator),)*
+                    _ => None,
+                }
+            }
+
+            /// The operator of the compound assignment that the token is.
+            #[must_use]
+            pub(crate) const fn compound_assignment(self) -> Option<BinaryOperator> {
+                match self {
+                    $($(Self::$assignment => Some(BinaryOperator::$operator),)?)*
+                    _ => None,
+                }
+            }
+        }
+    };
+}
+
+for_each_binary_operator!(tokens_of_operators);
 
 #[cfg(test)]
 mod tests {

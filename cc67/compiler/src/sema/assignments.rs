@@ -4,14 +4,14 @@ use super::Sema;
 use super::constants::Constant;
 use super::conversions::AssignmentTarget;
 use super::operands::Operand;
-use super::operators::{Class, classify};
 use super::places::Located;
-use crate::ast::{BinaryOperator, Expression, ExpressionKind};
+use crate::ast::{Expression, ExpressionKind};
 use crate::diag::{Diagnostic, Lint};
 use crate::lints::value_range;
+use crate::operators::{BinaryOp, BinaryOperator, OperatorMeaning};
 use crate::source::Span;
 use crate::ty::{TypeId, Types, convert};
-use crate::typed::{BinaryOp, ExprId, ExprKind, PlaceId, PlaceKind, Update, UpdateResult};
+use crate::typed::{ExprId, ExprKind, PlaceId, PlaceKind, Update, UpdateResult};
 
 impl Sema<'_> {
     /// `to = from`
@@ -178,28 +178,17 @@ impl Sema<'_> {
         } else {
             let is_integers = ty.is_integer() && from.is_integer();
             let is_arithmetic = ty.is_arithmetic() && from.is_arithmetic();
-            match op {
-                BinaryOp::ShiftLeft | BinaryOp::ShiftRight if is_integers => {
+            match operator.meaning() {
+                OperatorMeaning::Shift(_) if is_integers => {
                     (convert::promoted(ty), self.shift_count(value, ty, span))
                 }
-                BinaryOp::Add | BinaryOp::Subtract | BinaryOp::Multiply | BinaryOp::Divide
-                    if is_arithmetic =>
-                {
-                    self.in_common_type(ty, value, span)
-                }
-                BinaryOp::And | BinaryOp::Or | BinaryOp::Xor | BinaryOp::Remainder if is_integers => {
-                    self.in_common_type(ty, value, span)
-                }
-                BinaryOp::ShiftLeft
-                | BinaryOp::ShiftRight
-                | BinaryOp::Add
-                | BinaryOp::Subtract
-                | BinaryOp::Multiply
-                | BinaryOp::Divide
-                | BinaryOp::And
-                | BinaryOp::Or
-                | BinaryOp::Xor
-                | BinaryOp::Remainder => return self.refuse_update(operator, ty, from, span),
+                OperatorMeaning::Arithmetic(_) if is_arithmetic => self.in_common_type(ty, value, span),
+                OperatorMeaning::Bitwise(_) if is_integers => self.in_common_type(ty, value, span),
+                OperatorMeaning::Arithmetic(_)
+                | OperatorMeaning::Bitwise(_)
+                | OperatorMeaning::Shift(_)
+                | OperatorMeaning::Compare(_)
+                | OperatorMeaning::Logical(_) => return self.refuse_update(operator, ty, from, span),
             }
         };
         let update = Update { place: target.place, op, operand, computed, result };
@@ -234,8 +223,10 @@ impl Sema<'_> {
 
 /// The operator of a compound assignment; `None` for those that cannot be one.
 const fn update_op(operator: BinaryOperator) -> Option<BinaryOp> {
-    match classify(operator) {
-        Class::Arithmetic(op) | Class::Bitwise(op) | Class::Shift(op) => Some(op),
-        Class::Compare(_) | Class::Logical(_) => None,
+    match operator.meaning() {
+        OperatorMeaning::Arithmetic(op) | OperatorMeaning::Bitwise(op) | OperatorMeaning::Shift(op) => {
+            Some(op)
+        }
+        OperatorMeaning::Compare(_) | OperatorMeaning::Logical(_) => None,
     }
 }

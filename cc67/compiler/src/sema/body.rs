@@ -9,11 +9,11 @@ use cranelift_entity::PrimaryMap;
 use super::constants::{self, Constant};
 use crate::lints::value_range::DacWord;
 use crate::names::Name;
+use crate::operators::{BinaryOp, CompareOp};
 use crate::source::Span;
 use crate::ty::{TypeId, Types};
 use crate::typed::{
-    BinaryOp, CompareOp, Expr, ExprId, ExprKind, Hidden, Label, LabelId, Local, LocalId, Place, PlaceId,
-    PlaceKind, UnaryOp,
+    Expr, ExprId, ExprKind, Hidden, Label, LabelId, Local, LocalId, Place, PlaceId, PlaceKind, UnaryOp,
 };
 
 /// The parts of a function that are being built, and what its statements must know.

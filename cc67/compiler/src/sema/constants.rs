@@ -6,8 +6,10 @@
 
 use vm::arith;
 
+use crate::ir::operators as machine;
+use crate::operators::{BinaryOp, CompareOp};
 use crate::ty::{TypeId, Types};
-use crate::typed::{BinaryOp, CompareOp, UnaryOp};
+use crate::typed::UnaryOp;
 
 /// The value of a constant; its type is known beside it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -93,75 +95,24 @@ pub(crate) fn unary(op: UnaryOp, constant: Constant, ty: TypeId) -> Option<Const
 pub(crate) fn binary(op: BinaryOp, a: Constant, b: Constant, ty: TypeId) -> Option<Constant> {
     match (a, b) {
         (Constant::Int(a), Constant::Int(b)) => {
-            let value = if ty.is_long_long() { binary_i64(op, a, b, ty)? } else { binary_i32(op, a, b, ty)? };
+            let op = machine::BinaryOp::of(op, ty != Types::INT && ty != Types::LONG_LONG);
+            let value = match ty.is_long_long() {
+                true if op.is_shift() => op.shifted_i64(a, b as i32)?,
+                true => op.on_i64(a, b)?,
+                false => i64::from(op.on_i32(a as i32, b as i32)?),
+            };
             Some(Constant::Int(wrap(value, ty)))
         }
-        (Constant::Float(a), Constant::Float(b)) if ty == Types::FLOAT => {
-            Some(Constant::Float(f64::from(binary_f32(op, a as f32, b as f32)?)))
+        (Constant::Float(a), Constant::Float(b)) => {
+            let op = machine::BinaryOp::of(op, false);
+            Some(Constant::Float(match ty == Types::FLOAT {
+                true => f64::from(op.on_floats(a as f32, b as f32)?),
+                false => op.on_floats(a, b)?,
+            }))
         }
-        (Constant::Float(a), Constant::Float(b)) => Some(Constant::Float(binary_f64(op, a, b)?)),
         _ => None,
     }
 }
-
-fn binary_i32(op: BinaryOp, a: i64, b: i64, ty: TypeId) -> Option<i64> {
-    let (a, b, is_unsigned) = (a as i32, b as i32, ty != Types::INT);
-    Some(i64::from(match op {
-        BinaryOp::Add => a.wrapping_add(b),
-        BinaryOp::Subtract => a.wrapping_sub(b),
-        BinaryOp::Multiply => a.wrapping_mul(b),
-        BinaryOp::Divide if is_unsigned => arith::div_i32_u(a, b)?,
-        BinaryOp::Divide => arith::div_i32_s(a, b)?,
-        BinaryOp::Remainder if is_unsigned => arith::rem_i32_u(a, b)?,
-        BinaryOp::Remainder => arith::rem_i32_s(a, b)?,
-        BinaryOp::And => a & b,
-        BinaryOp::Or => a | b,
-        BinaryOp::Xor => a ^ b,
-        BinaryOp::ShiftLeft => arith::shl_i32(a, b),
-        BinaryOp::ShiftRight if is_unsigned => arith::shr_i32_u(a, b),
-        BinaryOp::ShiftRight => arith::shr_i32_s(a, b),
-    }))
-}
-
-fn binary_i64(op: BinaryOp, a: i64, b: i64, ty: TypeId) -> Option<i64> {
-    let is_unsigned = ty == Types::UNSIGNED_LONG_LONG;
-    Some(match op {
-        BinaryOp::Add => a.wrapping_add(b),
-        BinaryOp::Subtract => a.wrapping_sub(b),
-        BinaryOp::Multiply => a.wrapping_mul(b),
-        BinaryOp::Divide if is_unsigned => arith::div_i64_u(a, b)?,
-        BinaryOp::Divide => arith::div_i64_s(a, b)?,
-        BinaryOp::Remainder if is_unsigned => arith::rem_i64_u(a, b)?,
-        BinaryOp::Remainder => arith::rem_i64_s(a, b)?,
-        BinaryOp::And => a & b,
-        BinaryOp::Or => a | b,
-        BinaryOp::Xor => a ^ b,
-        BinaryOp::ShiftLeft => arith::shl_i64(a, b as i32),
-        BinaryOp::ShiftRight if is_unsigned => arith::shr_i64_u(a, b as i32),
-        BinaryOp::ShiftRight => arith::shr_i64_s(a, b as i32),
-    })
-}
-
-macro_rules! binary_float {
-    ($name:ident, $ty:ty) => {
-        fn $name(op: BinaryOp, a: $ty, b: $ty) -> Option<$ty> {
-            Some(match op {
-                BinaryOp::Add => a + b,
-                BinaryOp::Subtract => a - b,
-                BinaryOp::Multiply => a * b,
-                BinaryOp::Divide => a / b,
-                BinaryOp::Remainder
-                | BinaryOp::And
-                | BinaryOp::Or
-                | BinaryOp::Xor
-                | BinaryOp::ShiftLeft
-                | BinaryOp::ShiftRight => return None,
-            })
-        }
-    };
-}
-binary_float!(binary_f32, f32);
-binary_float!(binary_f64, f64);
 
 /// A comparison of two constants of type `ty`.
 pub(crate) fn compare(op: CompareOp, a: Constant, b: Constant, ty: TypeId) -> Option<bool> {
@@ -173,14 +124,7 @@ pub(crate) fn compare(op: CompareOp, a: Constant, b: Constant, ty: TypeId) -> Op
         (Constant::Float(a), Constant::Float(b)) => a.partial_cmp(&b),
         _ => return None,
     };
-    Some(match op {
-        CompareOp::Equal => order.is_some_and(|order| order.is_eq()),
-        CompareOp::NotEqual => order.is_none_or(|order| order.is_ne()),
-        CompareOp::Less => order.is_some_and(|order| order.is_lt()),
-        CompareOp::LessEqual => order.is_some_and(|order| order.is_le()),
-        CompareOp::Greater => order.is_some_and(|order| order.is_gt()),
-        CompareOp::GreaterEqual => order.is_some_and(|order| order.is_ge()),
-    })
+    Some(op.holds(order))
 }
 
 #[cfg(test)]

@@ -3,40 +3,13 @@
 use super::Sema;
 use super::constants::Constant;
 use super::operands::Operand;
-use crate::ast::{BinaryOperator, Expression, ExpressionKind, for_each_binary_operator};
+use crate::ast::{Expression, ExpressionKind};
 use crate::diag::{Diagnostic, Lint};
 use crate::lints::{assignment_condition, sign_compare};
+use crate::operators::{BinaryOp, BinaryOperator, OperatorMeaning};
 use crate::source::Span;
 use crate::ty::{QualifiedType, TypeId, Types, convert};
-use crate::typed::{BinaryOp, CompareOp, ExprId, ExprKind};
-
-/// What a binary operator of C is in the typed tree.
-pub(super) enum Class {
-    /// Arithmetic, and pointer steps with `+` and `-`.
-    Arithmetic(BinaryOp),
-    /// Integers only.
-    Bitwise(BinaryOp),
-    /// Integers, each promoted by itself.
-    Shift(BinaryOp),
-    /// A comparison.
-    Compare(CompareOp),
-    /// `&&` or `||`: the value of the left side that decides alone.
-    Logical(bool),
-}
-
-macro_rules! define_classes {
-    ($(
-        $operator:ident $text:literal = $token:ident $binding:literal $(, $assignment:ident)? => $class:ident($of:expr);
-    )*) => {
-        pub(super) const fn classify(operator: BinaryOperator) -> Class {
-            match operator {
-                $(BinaryOperator::$operator => Class::$class($of),)*
-            }
-        }
-    };
-}
-
-for_each_binary_operator!(define_classes);
+use crate::typed::{ExprId, ExprKind};
 
 impl Sema<'_> {
     /// A tree of binary operators. A long sum leans to the left; its spine is walked without recursion.
@@ -64,28 +37,30 @@ impl Sema<'_> {
         span: Span,
     ) -> Option<ExprId> {
         let is_numbers = self.body.ty(a).is_arithmetic() && self.body.ty(b).is_arithmetic();
-        match classify(operator) {
-            Class::Arithmetic(op) if is_numbers => {
+        match operator.meaning() {
+            OperatorMeaning::Arithmetic(op) if is_numbers => {
                 let (a, b) = self.usual(a, b, span);
                 Some(self.body.binary(op, a, b, span))
             }
-            Class::Arithmetic(BinaryOp::Add) => self.pointer_add(a, b, span),
-            Class::Arithmetic(BinaryOp::Subtract) => self.pointer_subtract(a, b, span),
-            Class::Arithmetic(_) => self.refuse_operands(operator, a, b, span),
-            Class::Bitwise(op) if self.are_integers(a, b) => {
+            OperatorMeaning::Arithmetic(BinaryOp::Add) => self.pointer_add(a, b, span),
+            OperatorMeaning::Arithmetic(BinaryOp::Subtract) => self.pointer_subtract(a, b, span),
+            OperatorMeaning::Arithmetic(_) => self.refuse_operands(operator, a, b, span),
+            OperatorMeaning::Bitwise(op) if self.are_integers(a, b) => {
                 let (a, b) = self.usual(a, b, span);
                 Some(self.body.binary(op, a, b, span))
             }
-            Class::Shift(op) if self.are_integers(a, b) => {
+            OperatorMeaning::Shift(op) if self.are_integers(a, b) => {
                 let (a, b) = (self.promote(a, span), self.shift_count(b, self.body.ty(a), span));
                 Some(self.body.binary(op, a, b, span))
             }
-            Class::Bitwise(_) | Class::Shift(_) => self.refuse_operands(operator, a, b, span),
-            Class::Compare(op) => {
+            OperatorMeaning::Bitwise(_) | OperatorMeaning::Shift(_) => {
+                self.refuse_operands(operator, a, b, span)
+            }
+            OperatorMeaning::Compare(op) => {
                 let (a, b) = self.comparable(operator, a, b, span)?;
                 Some(self.body.compare(op, a, b, span))
             }
-            Class::Logical(decides) => Some(self.logical(decides, a, b, span)),
+            OperatorMeaning::Logical(decides) => Some(self.logical(decides, a, b, span)),
         }
     }
 

@@ -5,9 +5,10 @@
 //! goes through arithmetic on its address.
 
 use super::Sema;
+use crate::operators::BinaryOp;
 use crate::source::Span;
 use crate::ty::{Member, QualifiedType, TypeId, Types};
-use crate::typed::{BinaryOp, ExprId, ExprKind, LocalId, PlaceId, PlaceKind, SymbolId};
+use crate::typed::{ExprId, ExprKind, LocalId, PlaceId, PlaceKind, SymbolId};
 
 /// A place with its C type.
 #[derive(Clone, Copy, Debug)]

@@ -8,8 +8,8 @@ use std::fmt::Write;
 use crate::names::Names;
 use crate::ty::{TypeId, Types};
 use crate::typed::{
-    BinaryOp, Call, Callee, CompareOp, Definition, ExprId, ExprKind, Function, LocalId, LoopTest, PlaceId,
-    PlaceKind, Stmt, StmtKind, UnaryOp, Unit, UpdateResult,
+    Call, Callee, Definition, ExprId, ExprKind, Function, LocalId, LoopTest, PlaceId, PlaceKind, Stmt,
+    StmtKind, UnaryOp, Unit, UpdateResult,
 };
 
 /// A unit: its data, then its functions.
@@ -157,7 +157,7 @@ impl Printer<'_> {
                 let (place, operand) = (self.place(update.place), self.expr(update.operand));
                 let computed = self.ty(update.computed);
                 let old = if update.result == UpdateResult::Old { "old " } else { "" };
-                format!("{old}{place} {}= {operand} in {computed}", binary(update.op))
+                format!("{old}{place} {}= {operand} in {computed}", update.op.spelling())
             }
             ExprKind::Copy { to, from } => format!("copy {} <- {}", self.place(*to), self.place(*from)),
             ExprKind::Clear(place) => format!("clear {}", self.place(*place)),
@@ -169,8 +169,8 @@ impl Printer<'_> {
                 };
                 format!("{op}{}", self.expr(*value))
             }
-            ExprKind::Binary(op, a, b) => format!("({} {} {})", self.expr(*a), binary(*op), self.expr(*b)),
-            ExprKind::Compare(op, a, b) => format!("({} {} {})", self.expr(*a), compare(*op), self.expr(*b)),
+            ExprKind::Binary(op, a, b) => format!("({} {} {})", self.expr(*a), op.spelling(), self.expr(*b)),
+            ExprKind::Compare(op, a, b) => format!("({} {} {})", self.expr(*a), op.spelling(), self.expr(*b)),
             ExprKind::And(a, b) => format!("({} && {})", self.expr(*a), self.expr(*b)),
             ExprKind::Or(a, b) => format!("({} || {})", self.expr(*a), self.expr(*b)),
             ExprKind::Conditional(test, a, b) => {
@@ -225,31 +225,5 @@ impl Printer<'_> {
             }
             PlaceKind::Bits(unit, bits) => format!("{}<{}+{}>", self.place(unit), bits.shift, bits.width),
         }
-    }
-}
-
-const fn binary(op: BinaryOp) -> &'static str {
-    match op {
-        BinaryOp::Add => "+",
-        BinaryOp::Subtract => "-",
-        BinaryOp::Multiply => "*",
-        BinaryOp::Divide => "/",
-        BinaryOp::Remainder => "%",
-        BinaryOp::And => "&",
-        BinaryOp::Or => "|",
-        BinaryOp::Xor => "^",
-        BinaryOp::ShiftLeft => "<<",
-        BinaryOp::ShiftRight => ">>",
-    }
-}
-
-const fn compare(op: CompareOp) -> &'static str {
-    match op {
-        CompareOp::Equal => "==",
-        CompareOp::NotEqual => "!=",
-        CompareOp::Less => "<",
-        CompareOp::LessEqual => "<=",
-        CompareOp::Greater => ">",
-        CompareOp::GreaterEqual => ">=",
     }
 }

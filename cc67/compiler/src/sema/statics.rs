@@ -7,10 +7,11 @@ use super::constants::Constant;
 use super::declarators::MAX_SEARCH;
 use super::initializers::{Leaf, LeafValue};
 use crate::diag::Diagnostic;
+use crate::operators::BinaryOp;
 use crate::source::Span;
 use crate::ty::layout::MAX_OBJECT_SIZE;
 use crate::ty::{BitRange, TypeId, Types};
-use crate::typed::{AddressWord, BinaryOp, ExprId, ExprKind, PlaceKind, StaticData, SymbolId};
+use crate::typed::{AddressWord, ExprId, ExprKind, PlaceKind, StaticData, SymbolId};
 
 /// A value that is known before the program runs.
 #[derive(Clone, Copy, Debug)]
