@@ -187,19 +187,18 @@ impl RenamedLoop {
         mut stack: Option<&mut StackWatch>,
         packets: &mut u64,
     ) -> Result<(), (TrapKind, Option<usize>)> {
-        let Planned { packets: planned, micros, borders } = &self.planned;
+        let Planned { packets: planned, borders } = &self.planned;
         borders[0].before.enter(state);
         let began = *packets;
         let mut at = 0;
         while !state.clock.is_over() {
             let packet = &planned[at as usize];
-            let own = &micros[packet.first as usize..][..usize::from(packet.count)];
-            for micro in own {
+            for micro in &packet.micros {
                 if !micro.is_executed(&state.regs) {
                     continue;
                 }
                 if let Err(kind) = state.execute::<true, _>(micro, memory) {
-                    let number = own.iter().position(|other| std::ptr::eq(other, micro));
+                    let number = packet.micros.iter().position(|other| std::ptr::eq(other, micro));
                     self.leave_within(at, number.unwrap_or(0), state);
                     return Err((kind, number));
                 }
@@ -214,7 +213,7 @@ impl RenamedLoop {
                 && let Some(stack) = &mut stack
                 && let Err(kind) = stack.check(state.regs[usize::from(place)])
             {
-                self.leave_within(at, own.len(), state);
+                self.leave_within(at, packet.micros.len(), state);
                 return Err((kind, None));
             }
             state.clock.cycle += u64::from(packet.cycles);

@@ -23,9 +23,8 @@ const SHADOW: u32 = 6 * 32;
 #[derive(Debug)]
 pub(super) struct RenamedPacket {
     pub(super) pc: u32,
-    /// The place of its first instruction among all of the loop.
-    pub(super) first: u32,
-    pub(super) count: u8,
+    /// Its instructions, in the order in which they are executed.
+    pub(super) micros: Box<[Micro]>,
     pub(super) cycles: u8,
     /// Whether the loop is left before it.
     pub(super) is_exit: bool,
@@ -68,7 +67,6 @@ pub(super) struct Borders {
 #[derive(Debug, Default)]
 pub(super) struct Planned {
     pub(super) packets: Vec<RenamedPacket>,
-    pub(super) micros: Vec<Micro>,
     pub(super) borders: Vec<Borders>,
 }
 
@@ -137,8 +135,7 @@ impl Planner<'_, '_> {
             let index = packets.len() as u32;
             packets.push(RenamedPacket {
                 pc: *pc,
-                first: 0,
-                count: 0,
+                micros: Box::default(),
                 cycles: 0,
                 is_exit: true,
                 is_special: false,
@@ -179,11 +176,9 @@ impl Planner<'_, '_> {
         }
         let (cycles, next, arrival) = self.follow(&packet, issued.clone())?;
         let has_store = insts.iter().any(|(inst, _)| inst.is_store());
-        let first = self.planned.micros.len() as u32;
         self.planned.packets[index] = RenamedPacket {
             pc,
-            first,
-            count: micros.len() as u8,
+            micros: micros.into_boxed_slice(),
             cycles,
             is_exit: false,
             is_special: has_store || packet.moves_stack || arrival.is_some(),
@@ -191,7 +186,6 @@ impl Planner<'_, '_> {
             next,
             arrival,
         };
-        self.planned.micros.extend(micros);
         let branch = insts.iter().position(|(inst, _)| inst.branch().is_some());
         self.planned.borders[index] = Borders { before, issued, counts, branch };
         Some(())
