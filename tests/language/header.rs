@@ -10,6 +10,7 @@ use compiler::diag::Severity;
 
 use compiler::pp::Disk;
 use harness::csv::{self, Row};
+use kmotiondef::structs::{STRUCTURES, StructureField};
 
 fn table(name: &str) -> Vec<Row> {
     csv::read(&harness::root().join("tests/data/api").join(name))
@@ -82,6 +83,71 @@ fn structures_have_the_sizes_and_offsets_of_the_board() {
         }
     }
     assert_compiles(&checks);
+}
+
+/// Whether a line of a structure declares a field.
+fn declares(line: &str, field: &str) -> bool {
+    let code = line.split("//").next().unwrap_or_default().trim_end();
+    let names = code.strip_suffix(';').unwrap_or_default().split('[').next().unwrap_or_default();
+    names.rsplit(|c: char| !c.is_alphanumeric() && c != '_').next() == Some(field)
+}
+
+/// The line of a field, its comment below that of the line before it.
+fn line_of(field: &StructureField, before: &str) -> String {
+    let declaration = format!("    {};", field.ty.declare(field.name));
+    let column = before.find("//").unwrap_or_default().max(declaration.len() + 1);
+    let (first, rest) = field.doc.split_at(1);
+    let doc = format!("{}{}", first.to_lowercase(), rest.trim_end_matches('.'));
+    format!("{declaration:<column$}// {doc}")
+}
+
+/// The header with a line for each field that has a row and no line.
+fn completed(header: &str) -> String {
+    let mut lines: Vec<String> = header.split('\n').map(str::to_owned).collect();
+    for structure in STRUCTURES {
+        let end = format!("}} {};", structure.name);
+        let is_end = |line: &String| *line == end;
+        // Else it is one of the other header.
+        let Some(last) = lines.iter().position(is_end) else { continue };
+        let mut at =
+            lines[..last].iter().rposition(|line| line.starts_with("typedef struct")).expect("it begins");
+        for field in structure.fields {
+            let rest = lines[at + 1..].iter().take_while(|line| !is_end(line));
+            if let Some(found) = rest.clone().position(|line| declares(line, field.name)) {
+                at += 1 + found;
+            } else {
+                let comment = rest.take_while(|line| line.trim_start().starts_with("//")).count();
+                let line = line_of(field, &lines[at]);
+                at += 1 + comment;
+                lines.insert(at, line);
+            }
+        }
+    }
+    lines.join("\n")
+}
+
+#[test]
+fn every_field_has_its_line() {
+    for header in ["KMotionDef.h", "PC-DSP.h"] {
+        let path = harness::root().join("kmotiondef/include").join(header);
+        let read = || std::fs::read_to_string(&path).expect("the header is there");
+        let expect = completed(&read());
+        if std::env::var_os("CC67_WRITE_HEADER").is_some() {
+            std::fs::write(&path, &expect).expect("the header is writable");
+        }
+        let found = read();
+        let is_new = |line: &&str| !found.lines().any(|known| known == *line);
+        let missing: Vec<_> = expect.lines().filter(is_new).collect();
+        assert!(found == expect, "run this test with CC67_WRITE_HEADER=1 to write these lines: {missing:#?}");
+    }
+}
+
+#[test]
+fn a_missing_line_is_written_as_its_neighbours_are() {
+    let path = harness::root().join("kmotiondef/include/KMotionDef.h");
+    let header = std::fs::read_to_string(path).expect("the header is there");
+    let line = header.lines().find(|line| declares(line, "FFVel")).expect("the field has its line");
+    assert_eq!(completed(&header.replace(&format!("{line}\n"), "")), header);
 }
 
 #[test]
