@@ -9,8 +9,8 @@ use kmotiondef::map::SDRAM;
 
 use crate::protection::Texts;
 
-/// Bytes of one block, as a power of two.
-pub(super) const BLOCK_BITS: u32 = 6;
+/// Bytes of one block, as a power of two: data begins at a multiple of 32, so that no block holds both text and data of a program.
+pub(super) const BLOCK_BITS: u32 = 5;
 
 /// One byte for each block of SDRAM.
 pub(super) type Marks = [u8; (SDRAM.size >> BLOCK_BITS) as usize];
@@ -98,11 +98,12 @@ mod tests {
     fn blocks_that_hold_text_are_marked() {
         let mut protected = ProtectedBlocks::default();
         let mut texts: Texts = Default::default();
-        texts[2] = 0x8007_0000..0x8007_0048;
+        let block = 1 << BLOCK_BITS;
+        texts[2] = 0x8007_0000..0x8007_0008 + block;
         protected.follow(&texts);
         let first = 0x7_0000 >> BLOCK_BITS;
         assert_eq!(protected.marks()[first - 1..first + 3], [0, 1, 1, 0]);
-        texts[2] = 0x8007_0040..0x8007_0048;
+        texts[2] = 0x8007_0000 + block..0x8007_0008 + block;
         protected.follow(&texts);
         assert_eq!(protected.marks()[first - 1..first + 3], [0, 0, 1, 0]);
         texts[2] = 0..0xffff_ffff;
