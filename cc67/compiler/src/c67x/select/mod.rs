@@ -255,8 +255,11 @@ impl Selector<'_> {
         self.push(Kind::Move, dst, Arg::number(0), src);
     }
 
-    /// `dst = src`, of a pair.
+    /// `dst = src`, of a pair. Nothing if they are the same: what begins is not read before it is written.
     fn copy_pair(&mut self, dst: VReg, src: VReg) {
+        if dst == src {
+            return;
+        }
         self.begin(dst);
         self.copy_word(Arg::Low(dst), Arg::Low(src));
         self.copy_word(Arg::High(dst), Arg::High(src));
