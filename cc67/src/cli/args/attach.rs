@@ -10,7 +10,7 @@ use crate::cli::io::terminal;
 /// Whether editors may attach a debugger.
 #[derive(Debug, Args)]
 pub(crate) struct AttachArguments {
-    /// Let an editor attach its debugger at a port of this computer, 0 for a free one; the programs are interpreted then
+    /// Let an editor attach its debugger at this port (0: a free one); programs are then interpreted
     #[arg(long, value_name = "PORT")]
     pub(crate) debug: Option<u16>,
 }

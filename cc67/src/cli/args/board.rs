@@ -16,38 +16,39 @@ use crate::cli::io::input::read;
 /// The options of a board, of every command that has one.
 #[derive(Debug, Args)]
 pub(crate) struct BoardArguments {
-    /// Load a program without starting it, for another one to start
+    /// Load a program without starting it, so that another program can start it
     #[arg(long, value_name = "N:FILE")]
     pub(crate) load: Vec<OsString>,
-    /// Start value `persist.N=VALUE`, an integer, 0x… , f:1.5 a float, d:1.5 a double; or a key of the machine file
+    /// Set a start value, `persist.N=VALUE` (an integer, 0x…, a float f:1.5 or a double d:1.5), or a key of the machine
+    /// file
     #[arg(long, value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,
-    /// What is connected to the board: motors, switches, probes, encoders; a TOML file
+    /// Machine file (TOML): what is connected to the board, such as motors, switches, probes, encoders
     #[arg(long, value_name = "FILE")]
     pub(crate) machine: Option<PathBuf>,
-    /// Folder of the files that programs open on the PC; `cc67-files` if neither this nor the machine file names one
+    /// Folder for the files that programs open on the PC [default: that of the machine file, or cc67-files]
     #[arg(long, value_name = "DIR")]
     files: Option<PathBuf>,
-    /// What the world does and when: a file of statements, or statements such as "t=0.5 bit 136=1"
+    /// Stimulus: what happens around the board, and when; a file, or statements such as "t=0.5 bit 136=1"
     #[arg(long, alias = "stimulus", value_name = "FILE|TEXT")]
     pub(crate) stim: Vec<String>,
-    /// Switch a remark of the board off, or on again: `-R no-CODE`, `-R CODE`; `--explain remarks` lists the codes
+    /// Switch a remark off (`-R no-CODE`) or on again (`-R CODE`); `--explain remarks` lists the codes
     #[arg(short = 'R', value_name = "no-CODE")]
     remarks: Vec<String>,
-    /// Play an operator: when all programs wait for inputs, toggle those inputs one at a time
+    /// Act as an operator: when all programs wait for inputs, toggle those inputs one at a time
     #[arg(long)]
     pub(crate) assist: bool,
-    /// Simulate every tick and every wait; the results are the same
+    /// Simulate every tick and every wait in full; slower, with the same results
     #[arg(long)]
     pub(crate) no_shortcuts: bool,
-    /// Answer accesses of ROM, control registers and misaligned addresses, and integer divisions by zero, as the board does;
-    /// otherwise they stop the thread
+    /// Behave like the board on accesses to ROM, control registers and misaligned addresses, and on integer division by
+    /// zero; without this they stop the thread
     #[arg(long)]
     pub(crate) board_faults: bool,
-    /// What executes the programs
+    /// The engine that executes the programs
     #[arg(long, value_enum, default_value_t)]
     pub(crate) engine: EngineName,
-    /// Run the programs on your own firmware file, executed, in place of the modelled firmware
+    /// Execute your own firmware file in place of the modelled firmware
     #[arg(long, value_name = "FILE")]
     pub(crate) boot: Option<PathBuf>,
     /// Whether what programs write to files is only seen by them.

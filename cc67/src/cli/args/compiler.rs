@@ -24,33 +24,33 @@ pub(crate) struct CompilerArguments {
     /// Search DIR for included files
     #[arg(short = 'I', value_name = "DIR")]
     include_dirs: Vec<PathBuf>,
-    /// Define a macro, as 1 without a value
+    /// Define a macro; without a value it is 1
     #[arg(short = 'D', value_name = "NAME[=VALUE]")]
     defines: Vec<String>,
     /// Undefine a predefined macro
     #[arg(short = 'U', value_name = "NAME")]
     undefines: Vec<String>,
-    /// Read constants as a C standard does: c99, c11, c17, or as the vendor's compiler
+    /// Rules for constants: a C standard (c99, c11, c17) or the vendor's compiler
     #[arg(long, value_name = "STANDARD", default_value = "vendor", value_parser = standard)]
     std: Standard,
-    /// Optimisation: 0 none, 1 what makes programs faster, 2 also what makes the controller's code larger, s what
-    /// makes it small
+    /// Optimisation level: 0 none; 1 for speed; 2 for more speed, with larger code for the controller; s for small code
     #[arg(short = 'O', value_name = "LEVEL", default_value = "1", value_parser = level)]
     optimization: Level,
-    /// Whose code the board's time is counted for
+    /// The code whose execution time the board counts
     #[arg(long, value_name = "CODE", value_enum, default_value_t)]
     timing: TimedCode,
-    /// What memory makes the processor wait: none, io44 (registers, as the firmware sets them), io44_sd20 (and 20 for
-    /// 32 bits of SDRAM), or the cycles for SDRAM
+    /// Memory waits of the processor: none, io44 (44 cycles for a register access), io44_sd20 (also 20 for 32 bits of
+    /// SDRAM), or a number of cycles for SDRAM
     #[arg(long, value_name = "WAITS", value_parser = wait_states)]
     wait_states: Option<WaitStates>,
-    /// Switch a warning on (NAME), off (no-NAME), make it an error (error=NAME), or all of them (all, extra, error)
+    /// Switch a warning on (NAME) or off (no-NAME), or make it an error (error=NAME); all, extra and error set many at
+    /// once
     #[arg(short = 'W', value_name = "WARNING")]
     warnings: Vec<String>,
     /// Show no warnings
     #[arg(short = 'w')]
     silent: bool,
-    /// What the code is for: `c67x`, the controller's processor, or `sim`, the simulated board's engines alone
+    /// The target of the code: the controller's processor, or only the simulated board
     #[arg(long, value_name = "TARGET", value_enum)]
     target: Option<TargetName>,
     /// Link against the symbols of a firmware file in place of firmware 4.34's
@@ -59,10 +59,10 @@ pub(crate) struct CompilerArguments {
     /// Leave out functions and objects that `main` cannot reach, at -O0 too
     #[arg(long, overrides_with = "no_gc_sections")]
     gc_sections: bool,
-    /// Keep them
+    /// Keep unreachable functions and objects
     #[arg(long, overrides_with = "gc_sections")]
     no_gc_sections: bool,
-    /// Form of the diagnostics
+    /// Format of the diagnostics
     #[arg(long, value_name = "FORMAT", value_enum, default_value_t = FormatName::Human)]
     message_format: FormatName,
 }
@@ -70,21 +70,21 @@ pub(crate) struct CompilerArguments {
 /// Timings by name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 enum TimedCode {
-    /// The vendor's: a program takes as long as on the board
+    /// The vendor's code: a program takes as long as on the board
     #[default]
     Vendor,
-    /// What cc67 makes for the controller: that code is executed, in its true cycles, on every engine
+    /// cc67's code for the controller: its true cycles are counted, on every engine
     Cc67,
-    /// No real one: a cycle or two for each instruction
+    /// Simplified: one or two cycles for each instruction
     Fast,
 }
 
 /// Targets by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum TargetName {
-    /// The controller's processor; the simulated board executes its code too. The default of `build`
+    /// The controller's processor; the simulated board executes this code too. The default for `build`
     C67x,
-    /// The engines of the simulated board: bytecode. The default of commands that run programs
+    /// Bytecode for the simulated board only. The default for commands that run programs
     Sim,
 }
 
@@ -93,11 +93,11 @@ enum TargetName {
 enum FormatName {
     /// Source lines, ranges, suggestions
     Human,
-    /// One line each, as editors read it
+    /// One line each, for editors
     Short,
-    /// One JSON object a line
+    /// One JSON object per line
     Json,
-    /// As the controller's own compiler writes them; nothing without an error
+    /// Like the vendor's compiler; nothing unless there is an error
     Vendor,
 }
 

@@ -14,7 +14,7 @@ pub(crate) enum EngineName {
     Bytecode,
     /// Machine code of the host
     Native,
-    /// Code for the controller's processor, in its true cycles; sources are compiled for it
+    /// Code for the controller's processor, executed in its true cycles; sources are compiled for it
     Dsp,
 }
 

@@ -13,16 +13,17 @@ use crate::cli::io::input::read;
 /// Options about the PC.
 #[derive(Debug, Args)]
 pub(crate) struct PcArguments {
-    /// What the PC answers to programs: lines of `key=value`, as for `--answer`; for `live` also an address to listen on
+    /// File of the PC's answers to programs: lines of `key=value`, as for `--answer`; for `live` also an address to
+    /// listen on
     #[arg(long = "host", value_name = "FILE")]
     host: Option<PathBuf>,
-    /// One answer of the PC, such as msgbox=no, input=1.5, mdi=0, request.14=-1, var.500=2; `help` lists them
+    /// Set one answer of the PC, such as msgbox=no, input=1.5, mdi=0, request.14=-1, var.500=2; `help` lists the keys
     #[arg(long, value_name = "KEY=VALUE")]
     answer: Vec<String>,
-    /// Parameters as an M code passes them, from element VAR of persist.UserData on: "M110 P1.23 Q4.56 R-1:0"
+    /// Store the parameters of an M code in persist.UserData, starting at element VAR: "M110 P1.23 Q4.56 R-1:0"
     #[arg(long, value_name = "CODE:VAR")]
     mcode: Option<String>,
-    /// Flash memory of the board: read at the start, if the file is there, and kept in it
+    /// Keep the board's flash memory in FILE, and boot from it if the file exists
     #[arg(long, value_name = "FILE")]
     flash: Option<PathBuf>,
 }

@@ -8,20 +8,20 @@ use kmotiondef::ThreadId;
 /// What to trace.
 #[derive(Debug, Args)]
 pub(crate) struct TraceArguments {
-    /// Write what happens to FILE: .vcd for waveform viewers, .json for Perfetto, else a table (CSV)
+    /// Write a trace to FILE: .vcd for waveform viewers, .json for Perfetto, otherwise CSV
     #[arg(long, value_name = "FILE")]
     pub(crate) trace: Vec<PathBuf>,
-    /// Write every change of a bit with its nanosecond and thread to FILE (CSV)
+    /// Write every bit change with its time in nanoseconds and its thread to FILE (CSV)
     #[arg(long, value_name = "FILE")]
     pub(crate) trace_bits: Option<PathBuf>,
-    /// Write every packet of real code with its cycle, address and instructions to FILE (CSV); of thread N alone
+    /// Write every packet of processor code with its cycle, address and instructions to FILE (CSV), for thread N or all
     #[arg(long, value_name = "[N:]FILE", value_parser = PacketFile::parse)]
     pub(crate) trace_packets: Option<PacketFile>,
-    /// Draw what moved: .svg, .png, or .html for a page with zoom and cursor
+    /// Plot the motion: .svg, .png, or .html for a page with zoom and cursor
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Vec<PathBuf>,
-    /// What is traced and drawn: axis0,bit46,persist.5,adc2, variables and expressions such as "ch0->Dest - home"; else
-    /// the axes that are enabled
+    /// Trace and plot these: axis0,bit46,persist.5,adc2, variables, and expressions such as "ch0->Dest - home"
+    /// [default: all enabled axes]
     #[arg(long, visible_alias = "watch", value_name = "LIST")]
     pub(crate) trace_items: Option<String>,
     /// Sample every N servo ticks

@@ -8,13 +8,13 @@ use runtime::MachineFile;
 /// What the serial port is connected to.
 #[derive(Clone, Debug, Default, Args)]
 pub(crate) struct UartArguments {
-    /// Characters that the serial port receives, from the moment the program first looks for them
+    /// File of characters for the serial port to receive, once the program first looks for them
     #[arg(long, value_name = "FILE", conflicts_with = "uart")]
     pub(crate) uart_input: Option<PathBuf>,
-    /// Write what the serial port sends to FILE
+    /// Write the serial port's output to FILE
     #[arg(long, value_name = "FILE")]
     pub(crate) uart_output: Option<PathBuf>,
-    /// Connect the serial port to the outside, in real time: pty, tcp:PORT (waits for a client on this computer), run:COMMAND
+    /// Connect the serial port in real time: pty, tcp:PORT (waits for a client on this computer), run:COMMAND
     #[arg(long, value_name = "PEER")]
     pub(crate) uart: Option<String>,
 }

@@ -19,10 +19,10 @@ use compiler::target::Target;
 /// Arguments of `cc67 check`.
 #[derive(Debug, Args)]
 pub(super) struct CheckArguments {
-    /// The programs
+    /// Programs to check
     #[arg(required_unless_present = "explain", value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// Show the stack that each function takes on the controller, and the worst chain of calls
+    /// Show the stack that each function needs on the controller, and the worst chain of calls
     #[arg(long)]
     stack: bool,
     #[command(flatten)]

@@ -32,22 +32,22 @@ use outcome::Outcome;
 /// Arguments of `cc67 compare`.
 #[derive(Debug, Args)]
 pub(super) struct CompareArguments {
-    /// Programs, each run by itself on both boards; `1:A+2:B` runs several in one run
+    /// Programs, each run separately on both boards; `1:A+2:B` is one run of two programs
     #[arg(required = true, value_name = "PROGRAM")]
     programs: Vec<OsString>,
     /// Stop each run after SECONDS of board time
     #[arg(long = "for", value_name = "SECONDS", value_parser = seconds, default_value = "10")]
     limit: f64,
-    /// Differences of board times up to this are none, in seconds; more of them are reported, not failed
+    /// Ignore differences of board times up to SECONDS; larger ones are reported, but do not fail
     #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "0.001")]
     tolerance: f64,
-    /// Printed numbers may differ by N; those before a unit of time by --tolerance
+    /// Allow printed numbers to differ by N, and those before a unit of time by --tolerance
     #[arg(long, value_name = "N", default_value = "0.001")]
     numbers: f64,
-    /// Printed numbers may not differ at all
+    /// Allow no difference in printed numbers
     #[arg(long, conflicts_with = "numbers")]
     exact: bool,
-    /// Fail on board times beyond the tolerance, too
+    /// Also fail on board times beyond the tolerance
     #[arg(long)]
     strict_times: bool,
     #[command(flatten)]

@@ -24,10 +24,10 @@ pub(super) struct CyclesArguments {
     /// Sources and objects of one program, or an image (.out)
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// The thread that the program is for, 1 to 7
+    /// Thread of the program, 1 to 7
     #[arg(long, short = 't', value_name = "N", default_value = "1", value_parser = thread)]
     thread: ThreadId,
-    /// Also list the instructions, packet by packet, of all functions or of one
+    /// Also list the instructions of all functions or one, packet by packet
     #[arg(long, value_name = "FUNCTION", num_args = 0..=1, require_equals = true)]
     asm: Option<Option<String>>,
     #[command(flatten)]

@@ -19,13 +19,13 @@ const FILES: &[(&str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/examples.rs"
 /// Arguments of `cc67 examples`.
 #[derive(Debug, Args)]
 pub(super) struct ExamplesArguments {
-    /// The example to copy, with what belongs to it; without one all are listed
+    /// Example to copy, with its files; without a name, list all
     #[arg(value_name = "NAME")]
     name: Option<String>,
-    /// Where the copy goes
+    /// Folder for the copy
     #[arg(value_name = "DIR", default_value = ".")]
     folder: PathBuf,
-    /// Print the program instead
+    /// Print the program instead of copying it
     #[arg(long)]
     print: bool,
 }

@@ -23,15 +23,15 @@ pub(super) struct FirmwareArguments {
 
 #[derive(Debug, Subcommand)]
 enum FirmwareCommand {
-    /// Write the names and addresses as a file that `--firmware` and other linkers read
+    /// Write names and addresses as a file for `--firmware` and for other linkers
     Export {
-        /// Where to
+        /// File to write
         #[arg(value_name = "FILE", default_value = "DSPKFLOP.out")]
         file: PathBuf,
     },
-    /// List functions and variables with their addresses and what they do
+    /// List functions and variables with their addresses and descriptions
     List {
-        /// As JSON
+        /// Print JSON
         #[arg(long)]
         json: bool,
     },

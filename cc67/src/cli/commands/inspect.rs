@@ -19,40 +19,40 @@ pub(super) struct InspectArguments {
     /// An image, an object or a firmware file
     #[arg(value_name = "IMAGE")]
     file: PathBuf,
-    /// Headers and sections; shown with the symbols when nothing is chosen
+    /// Show headers and sections; the default, together with the symbols
     #[arg(long)]
     headers: bool,
-    /// Functions and objects
+    /// Show functions and objects
     #[arg(long)]
     symbols: bool,
     /// Order of the symbols
     #[arg(long, value_name = "ORDER", value_enum, default_value_t = OrderName::Address)]
     sort: OrderName,
-    /// The symbol table entry by entry, as the file has it
+    /// Show the symbol table of the file, entry by entry
     #[arg(long)]
     raw: bool,
-    /// The source line of each address
+    /// Show the source line of each address
     #[arg(long)]
     lines: bool,
-    /// The instructions with their source lines, of all functions or of one
+    /// Show the instructions of all functions or one, with their source lines
     #[arg(long, short = 'd', value_name = "FUNCTION", num_args = 0..=1, require_equals = true)]
     disassembly: Option<Option<String>>,
-    /// Folder of the sources; else that of the image
+    /// Folder of the sources [default: that of the image]
     #[arg(long, value_name = "DIR")]
     sources: Option<PathBuf>,
-    /// Debug information: where variables are, and their types; of an image whose source is beside it
+    /// Show where variables are, and their types; needs the source
     #[arg(long)]
     debug: bool,
-    /// Who calls whom
+    /// Show the calls between functions
     #[arg(long)]
     calls: bool,
-    /// Stack of each function and the worst chain of calls
+    /// Show the stack of each function and the worst chain of calls
     #[arg(long)]
     stack: bool,
-    /// Everything
+    /// Show everything
     #[arg(long)]
     all: bool,
-    /// As JSON: headers, sections, symbols, lines, functions
+    /// Print JSON: headers, sections, symbols, lines, functions
     #[arg(long)]
     json: bool,
 }

@@ -48,7 +48,7 @@ pub use stand_alone::main as stand_alone;
 #[derive(Debug, Parser)]
 #[command(name = "cc67", version = VERSION, about, max_term_width = 100, arg_required_else_help = true, args_override_self = true)]
 struct Arguments {
-    /// Explain a function, field, bit, script command, warning, remark or topic; `topics` lists what there is
+    /// Explain a function, field, bit, script command, warning, remark or topic; `topics` lists the topics
     #[arg(long, value_name = "NAME", global = true, allow_hyphen_values = true)]
     explain: Option<String>,
     #[command(subcommand)]
@@ -80,44 +80,44 @@ macro_rules! subcommands {
 }
 
 subcommands! {
-    /// Compile programs into threads, execute them on the simulated board, print the console
+    /// Compile programs, run them in threads of the simulated board and print the console
     Run(run::RunArguments) as arguments => run::run(arguments);
-    /// Compile and link a program for a thread into an image, FILE(N).out
+    /// Compile and link a program into an image for one thread, FILE(N).out
     Build(build::BuildArguments) as arguments => build::build(arguments);
-    /// Compile programs and report what is wrong with them
+    /// Compile programs and report mistakes
     Check(check::CheckArguments) as arguments => check::check(arguments);
-    /// Talk to a simulated board: script commands, programs, what they print; interactive or from a script
+    /// Talk to a simulated board, interactively or from a script: send script commands, run programs
     Console(console::ConsoleArguments) as arguments => console::console(arguments);
-    /// Serve a simulated board to programs that use the vendor's client library, in place of its server
+    /// Serve a simulated board to programs that use the vendor's client library; replaces the vendor's server
     Serve(serve::ServeArguments) as arguments => serve::serve(arguments);
-    /// Show a simulated board on a page in the browser: axes, inputs and outputs, console, threads, signals
+    /// Show a simulated board in the browser: axes, inputs and outputs, console, threads, signals
     #[cfg(feature = "live")]
     Live(live::LiveArguments) as arguments => live::live(arguments);
-    /// Debug programs, also backwards: in the terminal, from a script, or for an editor (--dap)
+    /// Debug programs, forwards and backwards: in the terminal, from a script, or from an editor (--dap)
     Debug(debug::DebugArguments) as arguments => debug::debug(arguments);
-    /// Show what is in an image: headers, symbols, lines, instructions, calls, stack
+    /// Show the contents of an image: headers, symbols, lines, instructions, calls, stack
     Inspect(inspect::InspectArguments) as arguments => inspect::inspect(arguments);
-    /// Show what functions and loops cost on the controller's processor, from the code itself
+    /// Show the cycles of functions and loops on the controller's processor, computed from their code
     Cycles(cycles::CyclesArguments) as arguments => cycles::cycles(arguments);
     /// Run programs on the modelled firmware and on your own firmware file, and show where they differ
     Compare(compare::CompareArguments) as arguments => compare::compare(arguments);
     /// Show how two images differ
     Diff(diff::DiffArguments) as arguments => diff::diff(arguments);
-    /// The simulated firmware as a file to link against, and as a list
+    /// List the simulated firmware's names, or export them as a file to link against
     Firmware(firmware::FirmwareArguments) as arguments => firmware::firmware(arguments);
-    /// Run programs and compare their consoles with what is expected
+    /// Run programs and compare their output with the expected output
     Test(test::TestArguments) as arguments => test::test(arguments);
-    /// Make a project folder ready for an editor and for CI
+    /// Create a project folder, ready for an editor and for CI
     Init(init::InitArguments) as arguments => init::init(arguments);
-    /// List the example programs, or copy one that stands alone
+    /// List the example programs, or copy one
     Examples(examples::ExamplesArguments) as arguments => examples::examples(arguments);
-    /// Draw saved data over time: columns of numbers, traces (.csv, .vcd)
+    /// Plot saved data over time: columns of numbers, traces (.csv, .vcd)
     Plot(plot::PlotArguments) as arguments => plot::plot(arguments);
-    /// Run programs many times over parameters, FILE.toml, and make a table; needs the Python package
+    /// Run programs for many combinations of parameters (FILE.toml) and write a table; needs the Python package
     Sweep(package::PackageArguments) as arguments => package::run("sweep", arguments);
-    /// Step and frequency response, following error, tolerance of a program; needs the Python package
+    /// Measure step and frequency response, following error or tolerance of a program; needs the Python package
     Study(package::PackageArguments) as arguments => package::run("study", arguments);
-    /// Print a script that completes commands and options in a shell
+    /// Print the completion script for a shell
     Completions(shell::CompletionArguments) as arguments => shell::completions(arguments, Arguments::command());
     /// Write manual pages
     Man(shell::ManArguments) as arguments => shell::man(arguments, Arguments::command());

@@ -14,7 +14,7 @@ use crate::cli::io::exit::Exit;
 /// Arguments that go to the package as they are.
 #[derive(Debug, Args)]
 pub(super) struct PackageArguments {
-    /// What the package takes; `python3 -m cc67 sweep --help` and `… study --help` list it
+    /// Arguments for the package; `python3 -m cc67 sweep --help` and `… study --help` list them
     #[arg(trailing_var_arg = true, allow_hyphen_values = true, required = true, value_name = "ARGUMENT")]
     arguments: Vec<OsString>,
 }

@@ -14,10 +14,10 @@ use crate::cli::report::plot;
 /// Arguments of `cc67 plot`.
 #[derive(Debug, Args)]
 pub(crate) struct PlotArguments {
-    /// Numbers in columns: a trace, or what a program has gathered and printed; or a value change dump (.vcd)
+    /// Columns of numbers, such as a trace or a program's output, or a value change dump (.vcd)
     #[arg(required_unless_present = "explain", value_name = "FILE")]
     data: Option<PathBuf>,
-    /// The picture: .svg, .png, or .html for a page with zoom and cursor; else FILE.svg
+    /// Picture to write: .svg, .png, or .html for a page with zoom and cursor [default: FILE.svg]
     #[arg(short, long, value_name = "PICTURE")]
     output: Option<PathBuf>,
 }

@@ -38,7 +38,7 @@ use crate::cli::session::{Rig, Setup, Started, Work};
 /// Arguments of `cc67 run`.
 #[derive(Debug, Args)]
 pub(super) struct RunArguments {
-    /// The programs, sources or images: FILE for the lowest free thread, N:FILE for thread N
+    /// Sources or images: FILE runs in the lowest free thread, N:FILE in thread N
     #[arg(required_unless_present_any = ["explain", "flash"], value_name = "[N:]FILE")]
     programs: Vec<OsString>,
     /// Stop after SECONDS of board time and exit 0
@@ -47,16 +47,16 @@ pub(super) struct RunArguments {
     /// Show the board time in seconds before each console line
     #[arg(long)]
     time: bool,
-    /// Keep pace with the clock; what happens is the same
+    /// Run in real time; the results are the same
     #[arg(long)]
     realtime: bool,
-    /// Show all of it as JSON on stdout, an object a line; the last one sums it up
+    /// Print everything as JSON on stdout, one object per line; the last one is a summary
     #[arg(long, conflicts_with = "time")]
     json: bool,
-    /// Say in which state the board is left: axes, bits, elements of persist; in a golden, too
+    /// Show the final state of the board: axes, bits, elements of persist
     #[arg(long)]
     state: bool,
-    /// Show every remark of the board, also on what is probably as intended: unknown FPGA registers
+    /// Show all remarks, also on probably intended actions such as writes to unknown FPGA registers
     #[arg(long)]
     verbose: bool,
     /// Show where board time went; with =FILE.svg also draw it as a flame graph

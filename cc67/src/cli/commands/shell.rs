@@ -22,7 +22,7 @@ pub(super) struct CompletionArguments {
 /// Arguments of `cc67 man`.
 #[derive(Debug, Args)]
 pub(super) struct ManArguments {
-    /// The folder; it is made if there is none
+    /// Folder for the pages; created if it does not exist
     #[arg(required_unless_present = "explain", value_name = "DIR")]
     folder: Option<PathBuf>,
 }

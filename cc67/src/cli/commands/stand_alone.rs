@@ -20,7 +20,7 @@ use crate::cli::io::terminal;
 #[derive(Debug, Parser)]
 #[command(max_term_width = 100)]
 struct StandAlone {
-    /// Explain a warning, or limits, machine, stimulus, as the command does
+    /// Explain a warning, or limits, machine, stimulus, as `cc67 --explain` does
     #[arg(long, value_name = "WARNING")]
     explain: Option<String>,
     #[command(flatten)]

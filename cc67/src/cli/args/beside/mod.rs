@@ -41,10 +41,10 @@ const FILES: &[&str] = &[
 /// Which programs come first, and whether what is beside them is used.
 #[derive(Debug, Args)]
 pub(crate) struct BesideArguments {
-    /// Run a program to its end before the others start: initialisation
+    /// Run an initialisation program to its end before the others start
     #[arg(long, value_name = "[N:]FILE")]
     pub(crate) first: Vec<OsString>,
-    /// Use neither NAME.toml, NAME.stim and the first line of the program NAME.c, nor the project file cc67.toml
+    /// Ignore NAME.toml, NAME.stim, the first line of NAME.c and the project file cc67.toml
     #[arg(long)]
     pub(crate) no_sidecar: bool,
 }

@@ -28,28 +28,28 @@ use compiler::{Compilation, Options, link_units};
 /// Arguments of `cc67 build`.
 #[derive(Debug, Args)]
 pub(super) struct BuildArguments {
-    /// Sources and objects (.o, .obj); together they make one program
+    /// Sources and objects (.o, .obj) of one program
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// The thread that the program is for, 1 to 7
+    /// Thread of the program, 1 to 7
     #[arg(long, short = 't', value_name = "N", default_value = "1", value_parser = thread)]
     thread: ThreadId,
     /// Name of the image, or of the object with `-c` and one source
     #[arg(short = 'o', long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Compile to objects, do not link; the same as `--emit object`
+    /// Compile to objects without linking; same as `--emit object`
     #[arg(short = 'c')]
     compile_only: bool,
-    /// Also write a map: where everything is, and what is largest
+    /// Also write a map of all addresses and the largest items
     #[arg(long)]
     map: bool,
-    /// Also write the instructions with their packets, units and cycles, FILE(N).asm; of the controller's code alone
+    /// Also write the instructions with packets, units and cycles, FILE(N).asm; only for the controller's code
     #[arg(long)]
     asm: bool,
     /// Also write the commands that download the program to a controller's thread
     #[arg(long)]
     download_script: bool,
-    /// What to write, separated by commas
+    /// Files to write, separated by commas
     #[arg(long, value_name = "KIND", value_enum, value_delimiter = ',')]
     emit: Vec<Emit>,
     #[command(flatten)]
@@ -65,14 +65,14 @@ enum Emit {
     Object,
     /// The instructions of `--target sim` as text, FILE(N).txt
     Bytecode,
-    /// Where everything is, FILE(N).map
+    /// A map of all addresses, FILE(N).map
     Map,
     /// The instructions of the controller's code with packets, units and cycles, FILE(N).asm
     Asm,
     /// Commands that download the program, FILE(N).kmd
     Download,
-    /// A stand-alone executable for this computer, FILE; needs `--target sim` and `cc`. With `-o NAME.o` the host's
-    /// object file alone
+    /// A stand-alone executable for this computer, FILE; needs `--target sim` and `cc`. With `-o NAME.o`, only its
+    /// object file
     Native,
 }
 

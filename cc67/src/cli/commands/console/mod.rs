@@ -49,25 +49,25 @@ const STRETCH: u64 = 1111;
 /// Arguments of `cc67 console`.
 #[derive(Debug, Args)]
 pub(super) struct ConsoleArguments {
-    /// Programs to load and start: FILE for the lowest free thread, N:FILE for thread N
+    /// Programs to load and start: FILE runs in the lowest free thread, N:FILE in thread N
     #[arg(value_name = "[N:]FILE")]
     programs: Vec<OsString>,
-    /// Keep pace with the clock; the default at a terminal
+    /// Run in real time; the default at a terminal
     #[arg(long, overrides_with = "fast")]
     realtime: bool,
     /// Run as fast as possible; the default from a script
     #[arg(long, overrides_with = "realtime")]
     fast: bool,
-    /// Serve programs of the PC instead of a person, as `cc67 serve --listen ADDRESS`
+    /// Serve PC programs instead of a person, like `cc67 serve --listen ADDRESS`
     #[arg(long, value_name = "ADDRESS", conflicts_with = "time")]
     serve: Option<String>,
-    /// With --serve, let an editor attach its debugger at a port of this computer, 0 for a free one
+    /// With --serve, let an editor attach its debugger at this port (0: a free one)
     #[arg(long, value_name = "PORT", requires = "serve")]
     debug: Option<u16>,
     /// After the last line, run at most SECONDS more of board time
     #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
     limit: Option<f64>,
-    /// Show the board time in seconds before each line of the board
+    /// Show the board time in seconds before each line from the board
     #[arg(long)]
     time: bool,
     #[command(flatten)]

@@ -55,16 +55,16 @@ const ROWS: &[Row] = &[
         help: "compiles a program, loads it into a thread and starts it",
     },
     Row { name: "kill", usage: "kill all [but N]", help: "stops all threads, or all but one" },
-    Row { name: "press", usage: "press BIT", help: "toggles an input, as a button does" },
-    Row { name: "release", usage: "release BIT", help: "gives it back the level it had" },
+    Row { name: "press", usage: "press BIT", help: "toggles an input until `release`, like a button" },
+    Row { name: "release", usage: "release BIT", help: "restores the level that the input had before `press`" },
     Row {
         name: "bit",
         usage: "bit 136 = 1",
-        help: "does what a statement of a stimulus says: bit, adc, pulse, encoder, persist, … (`cc67 --explain stimulus`)",
+        help: "executes a statement of a stimulus: bit, adc, pulse, encoder, persist, … (`cc67 --explain stimulus`)",
     },
-    Row { name: "wait", usage: "wait SECONDS", help: "lets so much board time pass" },
-    Row { name: "time", usage: "time", help: "tells the board time in seconds" },
-    Row { name: "quit", usage: "quit", help: "leaves; so do `exit` and the end of the input" },
+    Row { name: "wait", usage: "wait SECONDS", help: "lets SECONDS of board time pass" },
+    Row { name: "time", usage: "time", help: "prints the board time in seconds" },
+    Row { name: "quit", usage: "quit", help: "leaves the console, like `exit` and the end of the input" },
 ];
 
 /// Words that statements of a stimulus begin with.

@@ -29,16 +29,16 @@ const LIMIT: f64 = 3600.0;
 /// Arguments of `cc67 debug`.
 #[derive(Debug, Args)]
 pub(super) struct DebugArguments {
-    /// The programs, sources or images: FILE for the lowest free thread, N:FILE for thread N
+    /// Sources or images: FILE runs in the lowest free thread, N:FILE in thread N
     #[arg(required_unless_present_any = ["explain", "dap", "listen"], value_name = "[N:]FILE")]
     programs: Vec<OsString>,
-    /// Take the commands from a file, `-` for stdin; stops at the first that is refused
+    /// Take commands from a file (`-`: stdin); stop at the first invalid command
     #[arg(long, value_name = "FILE")]
     batch: Option<PathBuf>,
-    /// Debug for an editor, by the Debug Adapter Protocol: over stdin and stdout, or for one client of a TCP port
+    /// Speak the Debug Adapter Protocol with an editor, over stdin and stdout or with one client of a TCP port
     #[arg(long, value_name = "PORT", num_args = 0..=1, require_equals = false, default_missing_value = "0")]
     dap: Option<u16>,
-    /// The same for one client after another of a TCP port
+    /// Speak the Debug Adapter Protocol with successive clients of a TCP port
     #[arg(long, value_name = "PORT", conflicts_with_all = ["dap", "batch"])]
     listen: Option<u16>,
     /// Stop after SECONDS of board time

@@ -18,10 +18,10 @@ use crate::cli::io::output;
 /// Arguments of `cc67 init`.
 #[derive(Debug, Args)]
 pub(super) struct InitArguments {
-    /// The folder; it is made if there is none
+    /// Folder of the project; created if it does not exist
     #[arg(value_name = "DIR", default_value = ".")]
     folder: PathBuf,
-    /// Begin with an example that stands alone, its machine, its stimulus and its golden
+    /// Start with this example, its machine file, stimulus and expected output
     #[arg(long, value_name = "EXAMPLE", value_parser = topics())]
     example: Option<String>,
 }

@@ -32,7 +32,7 @@ const PORT: u16 = 8067;
 /// Arguments of `cc67 live`.
 #[derive(Debug, Args)]
 pub(super) struct LiveArguments {
-    /// Programs to load and start: FILE for the lowest free thread, N:FILE for thread N
+    /// Programs to load and start: FILE runs in the lowest free thread, N:FILE in thread N
     #[arg(value_name = "[N:]FILE")]
     programs: Vec<OsString>,
     /// Listen on this port; 0 picks a free one [default: 8067, or a free one if that is taken]
@@ -41,19 +41,19 @@ pub(super) struct LiveArguments {
     /// Do not open a browser
     #[arg(long)]
     no_open: bool,
-    /// Signals of the scope: items such as dest0,bit46 and C expressions in the words of the programs
+    /// Signals of the scope: items such as dest0,bit46, and C expressions with the programs' names
     #[arg(long, value_name = "LIST", default_value = "")]
     watch: String,
-    /// Seconds of board time in a second, 0.01 to 100
+    /// Speed relative to real time, 0.01 to 100
     #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = speed)]
     speed: f64,
-    /// Show a machine that homes and mills; its files are written into a folder of their own
+    /// Show a machine that homes and mills; its files are written to a new folder
     #[arg(long, conflicts_with = "programs")]
     demo: bool,
-    /// Wait with the clock stopped
+    /// Start paused
     #[arg(long)]
     paused: bool,
-    /// Load a program that is saved without errors at once
+    /// Load a program whenever it is saved without errors
     #[arg(long)]
     reload: bool,
     /// Stop after SECONDS of board time

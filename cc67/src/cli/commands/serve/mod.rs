@@ -59,28 +59,30 @@ const USUAL: &[&str] = if cfg!(unix) { &["/tmp/kmotionsocket", "tcp:57777"] } el
 /// Arguments of `cc67 serve`.
 #[derive(Debug, Args)]
 pub(super) struct ServeArguments {
-    /// Programs to load and start: FILE for the lowest free thread, N:FILE for thread N
+    /// Programs to load and start: FILE runs in the lowest free thread, N:FILE in thread N
     #[arg(value_name = "[N:]FILE")]
     programs: Vec<OsString>,
-    /// Listen on this socket or port; may be repeated [default: /tmp/kmotionsocket and tcp:57777, as the vendor's server]
+    /// Listen on this socket or port; may be repeated [default: /tmp/kmotionsocket and tcp:57777, like the vendor's
+    /// server]
     #[arg(long, value_name = "PATH|tcp:PORT")]
     listen: Vec<String>,
-    /// Board time in a second: 1 as the board, N times as fast; `fast`: it passes only while a client waits for an answer
+    /// Speed of board time: 1 is real time, N is N times as fast; with `fast`, time passes only while a client waits
+    /// for a reply
     #[arg(long, value_name = "1|N|fast", default_value = "1", value_parser = pace)]
     pace: PaceName,
-    /// End when the last client is gone
+    /// Stop when the last client disconnects
     #[arg(long)]
     once: bool,
-    /// Write what clients ask to FILE, a script for `cc67 console`
+    /// Write the clients' requests to FILE, as a script for `cc67 console`
     #[arg(long, value_name = "FILE")]
     log: Option<PathBuf>,
-    /// Make the folder that the vendor's library reads, with its compiler and its server, and say how to use it
+    /// Create the folder that the vendor's library reads, with compiler and server, and print how to use it
     #[arg(long, value_name = "DIR")]
     home: Option<PathBuf>,
-    /// Folder of the C programs of your M codes, which is linked into that of --home as `MCodes`
+    /// Folder of your M code programs; linked into the folder of --home as `MCodes`
     #[arg(long, value_name = "DIR", requires = "home")]
     mcodes: Option<PathBuf>,
-    /// End after SECONDS of board time
+    /// Stop after SECONDS of board time
     #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
     limit: Option<f64>,
     #[cfg(feature = "live")]

@@ -12,7 +12,7 @@ use super::ServeArguments;
 /// Whether there is a page, and where.
 #[derive(Debug, Args)]
 pub(super) struct PageArguments {
-    /// Show the board on a page in the browser as well
+    /// Also show the board on a page in the browser
     #[arg(long)]
     pub(super) live: bool,
     /// Port of the page; 0 picks a free one [default: 8067, or a free one if that is taken]

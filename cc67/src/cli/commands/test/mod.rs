@@ -33,28 +33,28 @@ const OWN_OPTIONS: &[&str] = &["bless", "force", "engine", "boot", "jobs", "json
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub(super) struct TestArguments {
-    /// Programs, and folders to search for them
+    /// Programs, or folders to search for programs
     #[arg(required_unless_present = "explain", value_name = "PATH")]
     paths: Vec<PathBuf>,
-    /// Write what the programs show now to their .expected files; asks where that is more than a console
+    /// Record the present output in the .expected files; ask before recording remarks, traps or exit codes
     #[arg(long)]
     bless: bool,
-    /// With --bless, write remarks, traps and exit codes without asking
+    /// With --bless, record remarks, traps and exit codes without asking
     #[arg(long, requires = "bless")]
     force: bool,
-    /// Run on this engine alone; else on all, which must agree
+    /// Run only on this engine [default: on all, which must agree]
     #[arg(long, value_enum)]
     engine: Option<EngineName>,
-    /// Run on your own firmware file; tests that need what only the modelled firmware has are skipped
+    /// Run on your own firmware file; skip tests that need the modelled firmware
     #[arg(long, value_name = "FILE", conflicts_with_all = ["engine", "bless"])]
     boot: Option<PathBuf>,
-    /// Runs at a time, a program on two engines being two; else as many as there are processors
+    /// Number of simultaneous runs, where a program on two engines counts as two [default: the number of processors]
     #[arg(long, short, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     jobs: Option<u16>,
     /// Print the results as JSON
     #[arg(long)]
     json: bool,
-    /// Write the results as a JUnit report, too
+    /// Also write the results as a JUnit report
     #[arg(long, value_name = "FILE")]
     junit: Option<PathBuf>,
     /// Options of `cc67 run` for every program
@@ -63,15 +63,15 @@ pub(super) struct TestArguments {
 }
 
 const HELP: &str = "\
-A test is a program NAME.c with NAME.expected beside it: the lines of the console, then `---- notes` and the
-messages of the board, if there were any, then `---- exit N` unless the run succeeded.
-The first line of the program may say how it is run:
+A test is a program NAME.c with NAME.expected beside it, which holds the expected console lines, then `---- notes`
+and the remarks of the board, if any, then `---- exit N` unless the run succeeds.
+The first line of the program may say how to run it; words may be quoted as in a shell:
     // cc67: run --for 2.5 --stim door.stim also 2:watchdog.c
-NAME.toml beside it, if there is one, is its machine file, and NAME.stim its stimulus; cc67.toml in its folder or above has
-defaults. Words may be in quotes as in a shell.
-With --boot the console and the exit code are as expected, numbers within 0.001 and times within 1 ms; the messages are
-those of the modelled firmware and are not compared.
-Exit code: 0 all as expected, 1 not all, 2 wrong usage.";
+NAME.toml, if it exists, is its machine file, and NAME.stim its stimulus; cc67.toml in its folder or above sets
+defaults.
+With --boot, console and exit code must be as expected, numbers within 0.001 and times within 1 ms; remarks are not
+compared, because they come from the modelled firmware.
+Exit code: 0 all tests passed, 1 some failed, 2 wrong usage.";
 
 impl TestArguments {
     /// The command's own options in the project file of what is tested.
