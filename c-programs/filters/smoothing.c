@@ -1,6 +1,6 @@
 // cc67: run
 //
-// smoothing.c - the low pass behind the coordinated path.
+// smoothing.c - the low-pass filter after the coordinated path.
 //
 //   cc67 run c-programs/filters/smoothing.c
 //

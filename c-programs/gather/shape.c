@@ -6,7 +6,7 @@
 //
 // The gather facility copies a list of variables into a large buffer, once a tick.
 // From the positions follow speed, acceleration and jerk as differences from sample
-// to sample; none may exceed what the axis was told.
+// to sample; none may exceed the limits of the axis.
 //
 // Expect 800 steps covered, too few to reach full speed, and all three limits kept.
 

@@ -33,7 +33,7 @@ HOMING Order[3] =
     { 'Y', 1, -10000.0, 400.0, 1000.0 }
 };
 
-// Jogs until the switch has the wanted level, then stops. FALSE: too long.
+// Jogs until the switch has the given level, then stops. FALSE: too long.
 int JogUntil(int Axis, double Speed, int Level)
 {
     double Limit = Time_sec() + TIME_OUT;

@@ -1,6 +1,6 @@
 // cc67: run --answer mdi=0
 //
-// mdi.c - a line of G code, asked for by a program.
+// mdi.c - a line of G code, requested by a program.
 //
 //   cc67 run --answer mdi=0 c-programs/host/mdi.c
 //

@@ -1,6 +1,6 @@
 // pc.c - included by other programs: asking the PC application for something.
 //
-// A request is a number in one element of persist, its parameters stand behind it.
+// A request is a number in one element of persist, its parameters follow it.
 // The PC sees them with its next status poll, does what is asked, and replaces the
 // number by 0, or by a negative number when it refused.
 
@@ -42,7 +42,7 @@ int AskFloat(int Request, float Value)
     return Ask(Request);
 }
 
-// Texts are too long for persist; they lie in the gather buffer and the parameter
+// Texts are too long for persist; they are in the gather buffer and the parameter
 // says where.
 int AskText(int Request, char *Text)
 {

@@ -4,7 +4,7 @@
 //
 //   cc67 run c-programs/host/tool_table.c
 //
-// A request names the slot and the element of persist where the number is to go, or to
+// A request names the slot and the element of persist where the number should go, or
 // come from. After a measurement a program writes the length of the tool, so that the next
 // G43 uses it.
 //

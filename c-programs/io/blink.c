@@ -1,6 +1,6 @@
 // cc67: run
 //
-// blink.c - the two LEDs of the board, by turns.
+// blink.c - the two LEDs of the board, alternating.
 //
 //   cc67 run c-programs/io/blink.c
 //

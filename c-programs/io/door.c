@@ -1,15 +1,15 @@
 // cc67: run
 //
-// door.c - an open door holds the axes; closed again, a button lets them go on.
+// door.c - an open door holds the axes; closed again, a button lets them continue.
 //
 //   cc67 run --stim c-programs/io/door.stim c-programs/io/door.c
 //
 // The hold is a feedhold: the axes come to rest within their acceleration and lose
-// nothing. Closing the door is not enough to go on, somebody may stand inside: it takes
+// nothing. Closing the door is not enough, because somebody may stand inside: it takes
 // the button as well.
 //
 // The file beside this program is the operator. Expect a hold, a button that is pressed
-// in vain, and the end of the move.
+// too early, and the end of the move.
 
 #include "KMotionDef.h"
 #include "../motion/step_axis.c"

@@ -1,10 +1,10 @@
 // cc67: run
 //
-// lube.c - a lubrication pump that is switched on after so much travel, not after so much time.
+// lube.c - a lubrication pump that runs after a distance travelled, not after a time.
 //
 //   cc67 run c-programs/io/lube.c
 //
-// A machine that stands needs no oil. The way of all axes is added up, and every so many
+// A machine at rest needs no oil. The travel of all axes is added up, and after a number of
 // steps the pump gets its stroke. Running on without a finished stroke is noted: the tank
 // may be empty.
 //

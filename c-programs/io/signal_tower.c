@@ -4,7 +4,7 @@
 //
 //   cc67 run c-programs/io/signal_tower.c
 //
-// Green: something moves. Yellow: the axes are on and stand. Red, blinking: an axis that
+// Green: something moves. Yellow: the axes are on and at rest. Red, blinking: an axis that
 // should be on is off. The lamps follow the state; nobody has to remember to switch them.
 //
 // Expect yellow, green while the axis moves, yellow, and red that blinks.

@@ -6,7 +6,7 @@
 //
 // One output charges a capacitor through a resistor, the other one discharges it. The
 // program computes the capacitor's voltage from what it switched last, and switches so
-// that it is nearest to the voltage wanted when it is asked again, in its next slice
+// that it is closest to the set voltage when it is read again, in its next slice
 // 0.18 ms later. A step of charging and one of draining differ by up to 0.07 V: half of
 // that is the ripple that remains.
 //
@@ -15,7 +15,7 @@
 //
 // The file beside this program connects such a low pass to board 0 on JP4, and its
 // voltage to analog input 0. Expect the measured sine of 5 Hz and 3 V to stay within 2 %
-// of the one that was wanted.
+// of the set voltage.
 
 #include "KMotionDef.h"
 

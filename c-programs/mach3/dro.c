@@ -4,7 +4,7 @@
 //
 //   cc67 run c-programs/mach3/dro.c --set persist.6=10020 --set persist.20=d:12.5
 //
-// Fifty doubles lie over the first hundred elements of persist: double n is in the
+// Fifty doubles overlay the first hundred elements of persist: double n is in the
 // elements 2n and 2n + 1. The PC copies some of them to its displays and back. A button
 // on the screen sends a message number, which starts this program.
 //

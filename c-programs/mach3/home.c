@@ -8,7 +8,7 @@
 // program: 1 X, 2 Y, 4 Z. A bit is cleared when its axis is home. So the PC sees the
 // progress, and a bit that stays says which axis had trouble.
 //
-// Expect X and Z homed and no bit left; Y was not asked for.
+// Expect X and Z homed and no bit left; Y was not requested.
 
 #include "KMotionDef.h"
 #include "../motion/step_axis.c"

@@ -5,10 +5,10 @@
 //   cc67 run --machine c-programs/machine/home.toml c-programs/machine/home.c
 //
 // The machine file beside this program puts a home switch at -3000 steps, and a hard
-// stop behind it. The axis runs to the switch, backs off slowly until it opens, takes
+// stop beyond it. The axis runs to the switch, backs off slowly until it opens, takes
 // that place as zero and moves clear.
 //
-// Expect the switch a little behind -3000, because the axis takes its way to stop, then
+// Expect the switch a little beyond -3000, because the axis needs some distance to stop, then
 // at -3000, and 500 at the end.
 
 #include "KMotionDef.h"

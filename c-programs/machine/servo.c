@@ -5,7 +5,7 @@
 //   cc67 run --machine c-programs/machine/servo.toml c-programs/machine/servo.c
 //
 // Without a machine file a servo axis follows its command whatever its gains are.
-// The file beside this program puts a motor behind axis 0 that is driven by what the
+// The file beside this program connects a motor to axis 0 that is driven by what the
 // board really puts out. So gains matter: little damping overshoots, a hundred times
 // the gain swings from one end of the amplifier to the other.
 //

@@ -5,7 +5,7 @@
 //   cc67 run c-programs/motion/approach.c
 //
 // Within one time constant the axis covers 63 % of the remaining way; it never
-// quite arrives, and CheckDone stays 0 for ever. MoveExp may be commanded anew in
+// quite arrives, and CheckDone stays 0 forever. MoveExp may be called again in
 // every slice, which suits handwheels and axes that follow another one. A Move to
 // the same place finishes the job.
 //

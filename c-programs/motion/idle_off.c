@@ -4,7 +4,7 @@
 //
 //   cc67 run c-programs/motion/idle_off.c --for 2
 //
-// Such a loop runs for ever, usually at the end of the start-up program. Here a
+// Such a loop runs forever, usually at the end of the start-up program. Here a
 // move is made first, so that there is something to see.
 //
 // Expect the amplifiers on at the first step and off again half a second after the

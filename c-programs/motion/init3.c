@@ -6,7 +6,7 @@
 //
 // The four duties of such a program: tell the board what is connected, set up and
 // enable each axis, switch the amplifiers on, and say which axes form the
-// coordinate system for G code. What differs between the axes stands in a table.
+// coordinate system for G code. The differences between the axes are in a table.
 //
 // Expect one line for each axis and one for the whole.
 

@@ -4,7 +4,7 @@
 //
 //   cc67 run 1:c-programs/motion/jog_bits.c 2:c-programs/motion/jog_panel.c
 //
-// A jog is commanded only when the wanted speed changes, not in every slice. Both
+// A jog is commanded only when the requested speed changes, not in every slice. Both
 // buttons together, or none, mean stop. Thread 2 plays the operator's panel on
 // virtual bits.
 //

@@ -7,7 +7,7 @@
 // Usually the PC plans the path. A program can do it too: each segment says how a
 // parameter p runs from 0 to 1 with time (a cubic here, so that it starts and ends
 // at rest), and where each axis is for a given p. Between the line and the circle
-// stands a special segment that sets a bit at that very instant.
+// is a special segment that sets a bit at that very instant.
 //
 // Expect the bit to rise at X 1000 Y 2000, a circle with a radius of 1000, and the
 // end where the circle began.

@@ -4,7 +4,7 @@
 //
 //   cc67 run c-programs/motion/report.c
 //
-// Run it after a start-up program to see what the board has really been told.
+// Run it after a start-up program to see the real settings of the board.
 //
 // Expect, on a board that has just been switched on, eight axes with encoder inputs
 // and no outputs, none of them enabled.

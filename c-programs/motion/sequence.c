@@ -33,7 +33,7 @@ STATION Station[STATIONS] =
 void Go(STATION *To)
 {
     Move(AXIS, To->Position);
-    while (!CheckDone(AXIS)) ;          // other threads go on meanwhile
+    while (!CheckDone(AXIS)) ;          // meanwhile other threads run
     printf("%-8s at %5.0f\n", To->Name, chan[AXIS].Dest);
     Delay_sec(To->Pause);
 }

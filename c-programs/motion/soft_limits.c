@@ -5,11 +5,11 @@
 //   cc67 run c-programs/motion/soft_limits.c
 //
 // After homing the board itself knows where the axis may go. A jog that crosses a limit
-// becomes a feedhold of everything: the axis comes to rest a little behind the limit, and
+// becomes a feedhold of everything: the axis comes to rest a little beyond the limit, and
 // nothing moves until the hold is cleared. A program that takes its targets from a person
 // checks them before, as here, because a move that ends somewhere else is found too late.
 //
-// Expect a refused target, a jog that is held behind the limit, and the way back free.
+// Expect a refused target, a jog that is held beyond the limit, and the way back free.
 
 #include "KMotionDef.h"
 #include "step_axis.c"

@@ -5,7 +5,7 @@
 //   cc67 run c-programs/persist/doubles.c --set persist.14=0 --set persist.15=0x405EC000
 //
 // A double takes two elements, the low word first, and begins at an even element:
-// double number n lies in the elements 2n and 2n+1. The PC's displays are passed
+// double number n is in the elements 2n and 2n+1. The PC's displays are passed
 // in this way. The options above put 123.0 into double number 7.
 //
 // Expect 123 as input, 1122 as output, and 00000000 and 40918800 as its two words.

@@ -4,7 +4,7 @@
 //
 //   cc67 run --machine c-programs/probing/bore.toml c-programs/probing/bore.c
 //
-// The probe stands somewhere in the bore. Along X to the one wall and to the other; their
+// The probe is somewhere in the bore. Along X to the one wall and to the other; their
 // middle is the centre in X, from where the same in Y is exact. The ball of the probe
 // takes its diameter away from the bore, but not from the centre.
 //

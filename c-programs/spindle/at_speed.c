@@ -5,7 +5,7 @@
 //   cc67 run --machine c-programs/spindle/at_speed.toml c-programs/spindle/at_speed.c
 //
 // A tool that enters the material too early breaks. The encoder of the spindle tells the
-// true speed; the program goes on when it has stayed within 3 % for a quarter of a second.
+// true speed; the program continues when it has stayed within 3 % for a quarter of a second.
 // The machine file beside this program has a spindle that takes its time: each 0.8 s two
 // thirds of what is missing.
 //

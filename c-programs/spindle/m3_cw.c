@@ -5,7 +5,7 @@
 //   cc67 run --for 5 c-programs/spindle/m3_cw.c --set persist.99=f:1200
 //
 // The speed was set by an S word before. The program starts the jog and ends: the axis
-// goes on by itself. Here it stays for a while to show the speed.
+// keeps turning by itself. Here it stays for a while to show the speed.
 //
 // Expect 1200 turns per minute, and the state that the next program finds.
 

@@ -4,7 +4,7 @@
 //
 //   cc67 run c-programs/spindle/m5_off.c --set persist.99=f:3000
 //
-// The G code must not go on before the spindle stands: the PC waits until this program
+// The G code must not continue before the spindle has stopped: the PC waits until this program
 // has ended. It runs up first, because nobody has switched the spindle on here.
 //
 // Expect about one and a half seconds for 3000 turns per minute.

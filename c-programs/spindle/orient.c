@@ -8,7 +8,7 @@
 // of the keys is a move. The pulse is 8 counts wide: at 1000 counts a second it is there
 // for 8 ms, and a program that looks in every slice cannot miss it.
 //
-// Expect the index within a turn, and the keys a quarter of a turn behind it.
+// Expect the index within a turn, and the keys a quarter of a turn after it.
 
 #include "KMotionDef.h"
 #include "../motion/step_axis.c"
@@ -16,7 +16,7 @@
 #define SPINDLE   6
 #define INDEX_BIT 36
 #define TURN      4096.0
-#define KEYS      (TURN / 4.0)      // counts behind the index
+#define KEYS      (TURN / 4.0)      // counts after the index
 #define SEARCH    1000.0            // counts a second
 
 // FALSE: a turn and a half without a pulse.

@@ -4,7 +4,7 @@
 //
 //   cc67 run --for 5 c-programs/spindle/s_speed.c --set persist.113=f:7500 --set persist.98=1
 //
-// The PC stores the number behind S as a float and starts this program. Without a
+// The PC stores the number after S as a float and starts this program. Without a
 // running spindle it only keeps the number for the next M3 or M4.
 //
 // Expect a remark on the limit, and a spindle at 6000 turns per minute.

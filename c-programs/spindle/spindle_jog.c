@@ -1,6 +1,6 @@
 // spindle_jog.c - included by the spindle programs: a spindle that is jogged as an axis.
 //
-// State and speed stand in persist, as each program ends when its work is done and the
+// State and speed are in persist, as each program ends when its work is done and the
 // next one, for another M code, must know what the spindle does.
 
 #ifndef SPINDLE_JOG_C

@@ -35,7 +35,7 @@ double ZForSpindle(void)
     return ZStart + Turns / PITCH * Z_PER_INCH;
 }
 
-// Turns the spindle by so many inches of thread, with Z in its grip.
+// Turns the spindle by a number of inches of thread, with Z in its grip.
 void Thread(double Inches, double Speed)
 {
     double Counts = PITCH * COUNTS_PER_TURN;    // per inch

@@ -1,6 +1,6 @@
 // cc67: part of mutex.c
 //
-// mutex_adder.c - the second thread of mutex.c: adds in every round it is told to.
+// mutex_adder.c - the second thread of mutex.c: adds in every round that mutex.c starts.
 
 #include "KMotionDef.h"
 #include "mutex_adder.h"

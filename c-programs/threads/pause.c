@@ -1,10 +1,10 @@
 // cc67: run also 2:pause_counter.c
 //
-// pause.c - stopping another thread and letting it go on where it was.
+// pause.c - stopping another thread and letting it continue where it was.
 //
 //   cc67 run 1:c-programs/threads/pause.c 2:c-programs/threads/pause_counter.c
 //
-// Expect the counter of thread 2 to run, to stand still, and to go on from where
+// Expect the counter of thread 2 to run, to stop, and to continue from where
 // it stood; after a start it begins at 0 again.
 
 #include "KMotionDef.h"

@@ -8,7 +8,7 @@
 // over to the other and ends; a thread is started again from its beginning.
 // Globals could not carry the state from one to the other, persist can.
 //
-// Expect six laps, the threads by turns.
+// Expect six laps, the threads alternating.
 
 #include "KMotionDef.h"
 

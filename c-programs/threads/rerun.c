@@ -6,7 +6,7 @@
 //
 // Initial values of globals are written by the download, not by the start.
 //
-// Expect the global of thread 2 to go on (11, 12, 13) although its source says 10,
+// Expect the global of thread 2 to continue (11, 12, 13) although its source says 10,
 // and its local to begin at 0 each time.
 
 #include "KMotionDef.h"

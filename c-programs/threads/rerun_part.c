@@ -12,7 +12,7 @@ main()
 {
     int Local = 0;
 
-    if (persist.UserData[GO] == 0) ThreadDone();    // not asked for
+    if (persist.UserData[GO] == 0) ThreadDone();    // not requested
 
     Runs++;
     Local++;

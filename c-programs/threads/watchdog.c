@@ -4,7 +4,7 @@
 //
 //   cc67 run 1:c-programs/threads/watchdog.c 2:c-programs/threads/watchdog_job.c
 //
-// The job counts in persist whenever it has done its round. If the count stands still for
+// The job counts in persist after each round. If the count does not change for
 // too long, the watchdog stops the thread and brings the machine into its safe state. The
 // threads are preempted, so even a job that never yields cannot stop the watchdog.
 //

@@ -4,11 +4,11 @@
 //
 //   cc67 run --stim c-programs/toolchange/carousel.stim c-programs/toolchange/carousel.c --set persist.30=5 --set persist.31=2
 //
-// The PC stores the wanted slot and starts the program; which tool is in the spindle is
+// The PC stores the requested slot and starts the program; which tool is in the spindle is
 // kept in persist, so it survives the end of the program. The old tool goes back into its
 // own pocket, the carousel turns on pocket by pocket, and the new tool is taken.
 //
-// Every step has its sensor and its time limit: a tool changer that goes on blindly breaks
+// Every step has its sensor and its time limit: a tool changer that continues blindly breaks
 // something. When a step fails the job is halted and the changer left as it is.
 //
 // Expect tool 2 put away, three pockets counted, and tool 5 taken.

@@ -7,7 +7,7 @@
 // The spindle slides into a fork from the side, lets its tool go, rises, slides into the
 // next one, and comes out with another tool. Before anything moves, the switches in the
 // forks must agree with what the program believes: the fork of the tool in the spindle
-// empty, that of the wanted one full.
+// empty, that of the requested one full.
 //
 // Expect the way over both forks, and tool 3.
 

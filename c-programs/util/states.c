@@ -13,7 +13,7 @@
 
 #include "KMotionDef.h"
 
-#define OPEN_VALVE   1024       // virtual bits stand for a valve and a sensor
+#define OPEN_VALVE   1024       // virtual bits in place of a valve and a sensor
 #define OPEN_SENSOR  1025
 #define OPENS_IN     0.05       // seconds the clamp needs
 #define TIME_OUT     0.2

@@ -9,7 +9,7 @@ export function mountAxes(section, link) {
   const shown = el("output", { className: "mono quiet" }, "25 %");
   speed.addEventListener("input", () => say(shown, `${speed.value} %`));
   head(section, el("span", { className: "grow" }), el("span", { className: "quiet" }, "jog at"), speed, shown);
-  const all = el("button", { type: "button", "aria-pressed": "false", title: "Show axes that are not used, too" }, "All");
+  const all = el("button", { type: "button", "aria-pressed": "false", title: "Also show unused axes" }, "All");
   section.querySelector(".head").append(all);
   const body = el("tbody");
   section.append(
@@ -100,7 +100,7 @@ class Row {
     say(atDest, short(dest));
     say(at, short(hasFeedback ? position : load));
     mark(at, "load", !hasFeedback);
-    attribute(at, "title", hasFeedback ? "Measured position" : "Open loop: where the load is");
+    attribute(at, "title", hasFeedback ? "Measured position" : "Open loop: position of the load");
     say(error, hasFeedback ? short(dest - position) : "–");
     say(velocity, short(this.#velocity));
     const reached = atNegative ? "− reached" : atPositive ? "+ reached" : "";

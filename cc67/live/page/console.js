@@ -10,7 +10,7 @@ const WORDS = [
 ];
 
 export function mountConsole(section, link, openSource) {
-  const only = el("input", { type: "checkbox", "aria-label": "Only what programs print" });
+  const only = el("input", { type: "checkbox", "aria-label": "Only program output" });
   head(section, el("span", { className: "grow" }), el("label", { className: "quiet" }, only, " programs only"),
     el("button", { type: "button", onclick: () => lines.replaceChildren() }, "Clear"));
   const lines = el("div", { className: "lines", role: "log", "aria-label": "Messages", tabIndex: 0 });

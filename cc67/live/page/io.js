@@ -28,7 +28,7 @@ export function mountIo(section, link) {
     bits = all.map((bit) => (bit.input ? new Input(bit, link) : new Lamp(bit)));
     inputs.replaceChildren(...bits.filter((bit) => bit instanceof Input).map((bit) => bit.element));
     outputs.replaceChildren(...bits.filter((bit) => bit instanceof Lamp).map((bit) => bit.element));
-    if (!inputs.childElementCount) inputs.append(el("span", { className: "quiet" }, "none is read; a number above shows one"));
+    if (!inputs.childElementCount) inputs.append(el("span", { className: "quiet" }, "programs read none; enter a number above to show one"));
   }
 
   let described = [];

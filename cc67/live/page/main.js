@@ -37,7 +37,7 @@ function tell(text, seconds) {
   notice.hidden = !text;
   if (seconds) hides = setTimeout(() => tell(""), seconds * 1000);
 }
-link.on("state", (isThere) => tell(isThere ? "" : "The board is gone. Trying again …"));
+link.on("state", (isThere) => tell(isThere ? "" : "Disconnected from the board. Reconnecting …"));
 link.on("saved", ({ text }) => tell(text, 12));
 link.on("problem", ({ text }) => tell(text, 8));
 

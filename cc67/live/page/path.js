@@ -10,7 +10,7 @@ export function mountPath(section, link) {
   const view = el("select", { "aria-label": "View", onchange: request }, ...Object.keys(VIEWS).map((name) => el("option", {}, name)));
   const choices = ["X", "Y", "Z"].map((letter) => el("select", { "aria-label": `${letter} is axis`, onchange: clear }));
   head(section, view, el("span", { className: "grow" }), ...choices, el("button", { type: "button", "aria-label": "Clear path", onclick: clear }, "Clear"));
-  const canvas = el("canvas", { className: "plot", role: "img", "aria-label": "Path of the tool", tabIndex: 0 });
+  const canvas = el("canvas", { className: "plot", role: "img", "aria-label": "Tool path", tabIndex: 0 });
   const where = el("p", { className: "readout mono" });
   section.append(el("div", { className: "canvas" }, canvas), where);
   const trail = new Trail();

@@ -40,7 +40,7 @@ class Scope {
   }
 
   #build(section, link) {
-    this.list = el("input", { type: "text", "aria-label": "Signals", title: "Items and C expressions, commas in between: dest0, bit136, count * 2", spellcheck: false, size: 22 });
+    this.list = el("input", { type: "text", "aria-label": "Signals", title: "Items and C expressions, separated by commas: dest0, bit136, count * 2", spellcheck: false, size: 22 });
     this.list.addEventListener("change", () => link.ask("watch", { list: this.list.value }));
     this.span = el("select", { "aria-label": "Time shown", onchange: () => this.#request() },
       ...[0.01, 0.1, 1, 2, 5, 10, 30, 120, 600].map((seconds) => el("option", { value: String(seconds), selected: seconds === 5 }, `${seconds} s`)));

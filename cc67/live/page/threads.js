@@ -38,7 +38,7 @@ export function mountThreads(section, link, sources, openSource) {
       el("span", {}, el("span", { className: "mono" }, programs.get(thread) ?? ""), " ", el("span", { className: `badge ${state}` }, label(state, waits))),
       el("span", {}, act("Start"), " ", isActive ? act("Stop") : ""));
     if (used) {
-      row.append(el("span", { className: "where quiet", title: "The most bytes of its stack in use so far, of those that a board has" },
+      row.append(el("span", { className: "where quiet", title: "Peak use of the stack so far, and the stack of a real board" },
         el("span", { className: used > size ? "bad" : "" }, `worst stack ${used} of ${size} bytes`)));
     }
     if (place?.line) {

@@ -3,7 +3,7 @@
 import { attribute, el, say } from "./dom.js";
 
 export function mountTimeline(section, link) {
-  const slider = el("input", { type: "range", min: "0", max: "1", value: "1", step: "1", "aria-label": "Timeline", title: "Drag back to a moment of the run" });
+  const slider = el("input", { type: "range", min: "0", max: "1", value: "1", step: "1", "aria-label": "Timeline", title: "Drag to go back to any moment of the run" });
   const at = el("output", { className: "mono" });
   const latest = el("button", { type: "button", disabled: true, onclick: () => link.ask("goto", { tick: end }) }, "Latest");
   const state = el("span", { className: "quiet", role: "status" });
@@ -15,7 +15,7 @@ export function mountTimeline(section, link) {
   });
   section.append(el("div", { className: "row" },
     section.querySelector("h2"), slider, at, latest,
-    el("button", { type: "button", title: "Switch the board off and on: begin again", onclick: () => link.ask("restart") }, "Restart"), state, form));
+    el("button", { type: "button", title: "Power the board off and on, and start again", onclick: () => link.ask("restart") }, "Restart"), state, form));
   let end = 0, wanted = null, asked = null, held = false;
 
   /** One question at a time: the next is where the slider is by then. */
@@ -43,7 +43,7 @@ export function mountTimeline(section, link) {
     attribute(slider, "aria-valuetext", `${(frame.tick * 90e-6).toFixed(3)} seconds`);
     say(at, `${(frame.tick * 90e-6).toFixed(3)} / ${(frame.end * 90e-6).toFixed(3)} s`);
     latest.disabled = !frame.past;
-    say(state, frame.past ? "looking back: what you do now goes on from here" : "");
+    say(state, frame.past ? "in the past: your next action continues from here" : "");
     section.classList.toggle("past", frame.past);
   });
   // A board that others use does not go back.
