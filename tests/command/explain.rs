@@ -76,8 +76,8 @@ fn an_unknown_word_gets_a_suggestion() {
         ("MaxFolowingError", "did you mean `MaxFollowingError`?"),
         ("undriven-inptu", "did you mean `undriven-input`?"),
         ("homeing", "did you mean `homing`?"),
-        ("bit4000", "there are bits 0 to 2047"),
-        ("qqqqqqq", "`cc67 --explain topics` lists what there is"),
+        ("bit4000", "no such bit: 4000 (0-2047)"),
+        ("qqqqqqq", "`cc67 --explain topics` lists them"),
     ] {
         let output = cc67(&scratch, ["--explain", word]);
         assert_eq!((output.code, output.stdout.as_str()), (2, ""), "{word}");

@@ -179,9 +179,9 @@ fn found(word: &str) -> Result<String> {
     let mut rows: Vec<_> = entries.iter().filter(has).filter(|_| word.len() >= LEAST).collect();
     rows.dedup_by_key(|entry| entry.name);
     if rows.is_empty() {
-        bail!("no page is named `{word}`; `cc67 --explain topics` lists what there is");
+        bail!("no page is named `{word}`; `cc67 --explain topics` lists them");
     }
-    let mut text = format!("No page is named `{word}`. These names have to do with it:\n\n");
+    let mut text = format!("No page is named `{word}`. Related names:\n\n");
     for entry in rows.iter().take(MOST) {
         let _ = writeln!(text, "  {:<24}{}", entry.name, first_sentence(&entry.about));
     }

@@ -21,11 +21,11 @@ pub(super) fn answer(name: &str) -> Result<Option<String>> {
     let digits = lower.strip_prefix("bit").unwrap_or(&lower).trim();
     let Ok(number) = digits.parse::<u32>() else { return Ok(None) };
     let Some(bit) = i32::try_from(number).ok().and_then(Bit::new) else {
-        bail!("no such bit ({number}): there are bits 0 to 2047");
+        bail!("no such bit: {number} (0-2047)");
     };
     let Some(range) = range_of(bit) else {
         let text = format!(
-            "# bit {number}\n\nNothing on the board or on its option boards answers this number: it reads 0 and cannot be \
+            "# bit {number}\n\nNothing on the board or its option boards is connected to this bit: it reads 0 and cannot be \
              written. `cc67 --explain bits` lists the ranges.\n"
         );
         return Ok(Some(text));
@@ -52,7 +52,7 @@ fn use_of(range: &BitRange, number: u32) -> String {
             format!("An input; a write is ignored:\n\n    while (!ReadBit({number})) WaitNextTimeSlice();\n")
         }
         BitDirection::Output => {
-            format!("An output, no direction to set:\n\n    SetBit({number});\n    ClearBit({number});\n")
+            format!("An output with a fixed direction:\n\n    SetBit({number});\n    ClearBit({number});\n")
         }
         BitDirection::Memory => {
             let word = match range.kind {
@@ -84,7 +84,7 @@ fn outside(range: &BitRange, number: u32) -> String {
     };
     let drive = match range.direction {
         BitDirection::Programmable | BitDirection::Input => format!(
-            "In a run, a `[[switch]]` of the machine file drives it, or a stimulus: `at 1s bit {number} = 1`.\n"
+            "In a run, drive it with a `[[switch]]` in the machine file, or with a stimulus: `at 1s bit {number} = 1`.\n"
         ),
         BitDirection::Output | BitDirection::Memory => String::new(),
     };

@@ -1,4 +1,4 @@
-//! Firmware functions: the row of the table, what they wait for, what goes wrong, an example.
+//! Firmware functions: the row of the table, waits, common mistakes, an example.
 //!
 //! What goes wrong and an example are on the page `pages/functions.md`, whose headings name functions; a function that is
 //! not there has the call of an example program.
@@ -50,15 +50,15 @@ pub(super) fn answer(is_meant: &dyn Fn(&str) -> bool) -> Option<String> {
     let _ = match waits_for(name) {
         Some(what) => writeln!(
             text,
-            "- It waits {what}, while other threads run: not in the call-back (`UserCallBack`). It takes {cost} µs besides."
+            "- It waits {what}, while other threads run: not in the call-back (`UserCallBack`). In addition it takes {cost} µs."
         ),
         None => writeln!(text, "- It takes {cost} µs and does not wait."),
     };
     text.push_str(match function.origin {
         Origin::Header => "- `#include \"KMotionDef.h\"` declares it.\n",
-        Origin::Firmware => "- The firmware has it, the header does not declare it: declare it in the program.\n",
+        Origin::Firmware => "- The firmware has it, but the header does not declare it: declare it in the program.\n",
         Origin::Library => {
-            "- Firmware 4.34 lacks it; the simulated board has it, the real one needs a definition in the program.\n"
+            "- Firmware 4.34 lacks it; the simulated board has it, but for a real board define it in the program.\n"
         }
     });
     let codes = codes(name);
