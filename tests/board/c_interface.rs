@@ -70,7 +70,7 @@ fn the_header_is_the_one_that_the_sources_give() {
         fs::write(&path, &found).expect("the header is writable");
     }
     let expect = fs::read_to_string(&path).expect("the header is there");
-    assert!(found == expect, "run this test with CC67_WRITE_HEADER=1 to write the header anew:\n{found}");
+    assert!(found == expect, "run this test with CC67_WRITE_HEADER=1 to rewrite the header:\n{found}");
 }
 
 /// The library that was built for these tests: it lies beside them.
@@ -133,6 +133,6 @@ fn a_c_program_drives_a_board() {
     let arguments = ["good.c", "bad.c"].map(|name| scratch.path().join(name));
     let output = run_in(program.to_str().expect("a name"), scratch.path(), arguments);
     let expect = "console: counting\nbad.c:3: expected `;` after `retrun` (or is an operator missing, such as `*`?)\nKFLOP 4.34 Build 16:07:06 Aug 14 2018\n\
-                  remark: command: Move: axis 0 is disabled, nothing moves\ndone\n---- exit 0\n";
+                  remark: command: Move: axis 0 is disabled, so nothing moves\ndone\n---- exit 0\n";
     assert_eq!(output.render(), expect);
 }

@@ -160,7 +160,7 @@ main()
     assert_eq!(table(&scratch, "a.csv").last().map(|row| row[1]), Some(-100.0));
     let bits = fs::read_to_string(scratch.path().join("b.csv")).expect("it is written");
     let of_step = |bits: &str| bits.lines().filter(|line| line.split(',').nth(1) == Some("8")).count();
-    assert_eq!(of_step(&bits), 0, "pulses that nobody asked for: {bits}");
+    assert_eq!(of_step(&bits), 0, "pulses that nobody requested: {bits}");
     let options = ["--trace-items", "bit8", "--trace-bits", "b.csv"];
     let (_, scratch) = run("pulses", program, &[], &options);
     let bits = fs::read_to_string(scratch.path().join("b.csv")).expect("it is written");
@@ -366,7 +366,7 @@ fn pins_that_kanalog_occupies_are_warned_of() {
 #[test]
 fn outputs_of_a_kanalog_that_is_not_there_are_told_to_who_asks() {
     let program = "main() { SetBit(152); SetBit(144); printf(\"%d%d\\n\", ReadBit(152), ReadBit(153)); }";
-    let told = "cc67: bit 152 is an output of Kanalog, which nothing has switched on: it is stored, no more \
+    let told = "cc67: bit 152 is an output of Kanalog, which is not switched on: the value is only stored \
                 (`board.kanalog = true` in the machine file)\n";
     for (options, expect) in
         [(vec!["--verbose"], told), (vec![], ""), (vec!["--verbose", "--set", "board.kanalog=true"], "")]
@@ -397,8 +397,7 @@ main()
 ";
     let (output, _) = run("after", program, &[], &[]);
     assert_eq!((output.code, output.stdout.as_str()), (0, "1 200\n"));
-    let told = "cc67: axis 0 is to make more than the 132275 steps a second that pulses of 3.78 µs leave room for: \
-                it falls behind and catches up (STEP_PULSE_LENGTH_ADD)\n";
+    let told = "cc67: axis 0 needs more than 132275 steps per second, the most that pulses of 3.78 µs allow: it falls behind and catches up later (STEP_PULSE_LENGTH_ADD)\n";
     assert_eq!(output.stderr, told);
 }
 
@@ -583,7 +582,10 @@ fn what_is_wrong_with_a_machine_file_is_one_message_with_its_place() {
         ("[board]\nkonnect = [0, 9]\n", "2:15: `board.konnect[1]` must be a whole number, 0 to 7, not 9"),
         ("[board]\nksetp = true\n", "2:1: unknown key `ksetp` in `board`; did you mean `kstep`?"),
         ("[uart]\ninput = 5\n", "2:9: `uart.input` must be a text in quotes, not 5"),
-        ("[host]\nmessage_box = \"maybe\"\n", "2:15: `maybe` is not what `msgbox` takes: a button, as `yes`"),
+        (
+            "[host]\nmessage_box = \"maybe\"\n",
+            "2:15: `maybe` is not valid for `msgbox`: a button, such as `yes`",
+        ),
         ("[[device]]\ntype = \"spi\"\n", "1:1: device `spi` needs `select=…`"),
         ("[[event]]\nat = 1\nhost = { box = \"ok\" }\n", "3:16: there is no answer `box`"),
         ("[uart\n", "1:6: "),
@@ -659,8 +661,7 @@ fn a_switch_on_an_axis_that_drives_nothing_is_told_of() {
     let program = "#include \"KMotionDef.h\"\nmain() { EnableAxis(2); Jog(2, 100); Jog(2, 0); Jog(3, 1); }";
     let machine = "[[switch]]\nbit = 12\naxis = 2\nwhen = \"<= -4000\"\n";
     let (output, _) = run("unmoved", program, &[("s.toml", machine)], &["--machine", "s.toml"]);
-    let told = "cc67: thread 1 at a.c:3:25 in `main`: Jog: axis 2 drives nothing, its OutputMode is NO_OUTPUT_MODE: what the machine file \
-                connects to it stays as it is (is a program that sets the axes up to run first?)\n";
+    let told = "cc67: thread 1 at a.c:3:25 in `main`: Jog: axis 2 drives nothing because its OutputMode is NO_OUTPUT_MODE, so the machine does not move (should an init program run first?)\n";
     assert_eq!(output.stderr.lines().next(), told.lines().next());
     assert_eq!(output.stderr.matches("drives nothing").count(), 1, "{}", output.stderr);
 }

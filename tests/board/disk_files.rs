@@ -172,9 +172,9 @@ fn names_that_lead_outside_are_refused_with_the_reason() {
     let (lines, remarks) = run(&scratch, source);
     assert_eq!(lines, ["0"]);
     let expect = [
-        "the PC does not read ..\\secret.txt: it is no name inside the folder of the PC's files",
-        "the PC does not write ..\\secret.txt: it is no name inside the folder of the PC's files",
-        "a line is written, and no file is open for writing on the PC",
+        "the PC refuses to read ..\\secret.txt: the name is outside the folder of the PC's files",
+        "the PC refuses to write ..\\secret.txt: the name is outside the folder of the PC's files",
+        "a line is written, but no file is open for writing on the PC",
     ];
     assert_eq!(remarks, expect);
     assert_eq!(fs::read_to_string(scratch.path().join("secret.txt")).expect("it is there"), "secret");

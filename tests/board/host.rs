@@ -126,7 +126,7 @@ fn replies_that_nobody_reads_take_limited_memory() -> Result<(), HostError> {
         board.run_for(1.0);
         remarks.extend(board.take_remark());
     }
-    assert_eq!(remarks, ["1048576 bytes of replies wait, which nobody reads; what comes now is lost"]);
+    assert_eq!(remarks, ["1048576 bytes of replies have not been read; further replies are lost"]);
     // What came first is there.
     assert_eq!(board.read_line_timeout(0)?, ["00000000"; 8].join(" ") + "\r\n");
     Ok(())

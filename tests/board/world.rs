@@ -203,8 +203,7 @@ main()
 ";
     let (output, _) = run("misuse", program, &[], &[]);
     assert_eq!((output.code, output.stdout.as_str()), (3, "0 0\n0\n"), "{}", output.stderr);
-    for text in
-        ["SetBit(2048): there are bits 0 to 2047", "AddKonnect(8, …)", "ReadSnapAmp(0x3f)", "not aligned"]
+    for text in ["SetBit(2048): no such bit (0-2047)", "AddKonnect(8, …)", "ReadSnapAmp(0x3f)", "not aligned"]
     {
         assert!(output.stderr.contains(text), "{text} in {}", output.stderr);
     }
@@ -404,8 +403,8 @@ main()
     printf(\"%d %d\\n\", FPGA(0x1f0), FPGAW(0x1f2));
 }
 ";
-    let remarks = "cc67: FPGA register 0x1f0 is not known: it only stores what is written\n\
-                   cc67: FPGA register 0x1f2 is not known: it only stores what is written\n";
+    let remarks = "cc67: FPGA register 0x1f0 is unknown: it only stores what is written\n\
+                   cc67: FPGA register 0x1f2 is unknown: it only stores what is written\n";
     for (options, expect) in [(vec![], ""), (vec!["--verbose"], remarks)] {
         let (output, _) = run("unknown", program, &[], &options);
         assert_eq!((output.code, output.stdout.as_str(), output.stderr.as_str()), (0, "3 1500\n", expect));

@@ -29,7 +29,7 @@ fn scratch(name: &str) -> Scratch {
 #[test]
 fn a_run_uses_what_stands_beside_the_program_and_says_so() {
     let scratch = scratch("beside");
-    let said = "cc67: sub/prog.c is run with sub/prog.toml; its first line: --set persist.5=7 --stim \"persist 6 = 8\" also 2:other.c (--no-sidecar: without)\n";
+    let said = "cc67: running sub/prog.c with sub/prog.toml; its first line: --set persist.5=7 --stim \"persist 6 = 8\" also 2:other.c (--no-sidecar ignores it)\n";
     for (options, stdout, stderr) in [
         (&[][..], "other\n1 7 8\n", said),
         (&["--set", "persist.5=9"], "other\n1 9 8\n", said),
@@ -49,7 +49,7 @@ fn a_debugger_uses_them_too() {
         let output = cc67(&scratch, ["debug", "sub/prog.c", "--batch", "commands"].into_iter().chain(option));
         assert_eq!(output.code, 0, "{}", output.stderr);
         assert!(output.stdout.starts_with(stdout), "{}", output.stdout);
-        assert_eq!(output.stderr.contains("sub/prog.c is run with sub/prog.toml"), option.is_none());
+        assert_eq!(output.stderr.contains("running sub/prog.c with sub/prog.toml"), option.is_none());
     }
 }
 

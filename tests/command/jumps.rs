@@ -31,8 +31,7 @@ fn a_thread_does_not_jump_into_another() {
     scratch.write("marks.c", MARKS).write("jumps.c", JUMPS);
     for engine in ["bytecode", "native"] {
         let output = cc67(&scratch, ["run", "--engine", engine, "--for", "0.1", "1:marks.c", "2:jumps.c"]);
-        let expected = "thread 2 stopped at jumps.c:6:3 in `main`: `longjmp` to the place at 0x80102010, \
-                        which another thread has filled: threads have a stack each";
+        let expected = "thread 2 stopped at jumps.c:6:3 in `main`: `longjmp` to the buffer at 0x80102010, which another thread has set: each thread has its own stack";
         assert_eq!((output.code, output.stdout.as_str()), (3, ""), "{engine}");
         assert!(output.stderr.contains(expected), "{engine}: {}", output.stderr);
     }

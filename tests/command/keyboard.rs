@@ -133,10 +133,10 @@ fn the_first_ctrl_c_stops_the_programs_and_the_second_one_leaves() {
     let mut terminal = Terminal::new(&scratch, &["a.c"]);
     terminal.wait("begun");
     terminal.interrupt();
-    terminal.wait("all threads are stopped; Ctrl-C once more leaves");
+    terminal.wait("all threads are stopped; Ctrl-C again leaves");
     terminal.press("CheckThread1\r");
     terminal.wait("0\r\n");
-    // A line in between counts anew.
+    // A line in between counts from the start.
     terminal.interrupt();
     terminal.wait("all threads are stopped");
     terminal.interrupt();

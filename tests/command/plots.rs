@@ -118,7 +118,7 @@ fn what_is_watched_is_drawn() {
     let output = run(&Scratch::new("plot-unknown"), &["run", "--plot", "a.svg", "--watch", "axis9", "a.c"]);
     assert_eq!(output.code, 2);
     assert!(
-        output.stderr.starts_with("cc67: `dest9` is not an item; there are dest0 to dest7"),
+        output.stderr.starts_with("cc67: `dest9` is not an item; known: dest0 to dest7"),
         "{}",
         output.stderr
     );
@@ -184,7 +184,7 @@ fn a_name_that_is_not_there_is_answered_with_the_nearest() {
     check("ch0->Dst", "`--watch ch0->Dst`: `CHAN` has no member `Dst`; did you mean `Dest`?");
     check("count = 1", "`--watch count = 1`: it changes something; an expression that is watched only reads");
     check("2:count", "`--watch 2:count`: there is no program in that thread");
-    check("bit4000", "`bit4000` is not an item; there are bit0 to bit2047");
+    check("bit4000", "`bit4000` is not an item; known: bit0 to bit2047");
     check("count,,rate", "`--watch` needs names between its commas, such as axis0,bit46,persist.5");
 }
 

@@ -1,4 +1,4 @@
-//! `--engine dsp`: sources become code of the controller's processor, and what goes wrong in it is said in words.
+//! `--engine dsp`: sources become code of the controller's processor, and its faults are reported in words.
 
 use harness::{Output, Scratch, cc67, cc67_with_input};
 use serde_json::Value;
@@ -118,7 +118,7 @@ fn a_remark_names_the_line_of_the_call() {
     let output = run("dsp-remark", "main()\n{\n    MoveRel(2, 100);\n}\n");
     assert_eq!(
         output.stderr,
-        "cc67: thread 1 at a.c:4:5 in `main`: MoveRel: axis 2 is disabled, nothing moves\n"
+        "cc67: thread 1 at a.c:4:5 in `main`: MoveRel: axis 2 is disabled, so nothing moves\n"
     );
 }
 
@@ -195,7 +195,7 @@ fn packets_of_bytecode_are_refused_by_name() {
         assert_eq!(output.code, 2, "{output:?}");
         assert!(output.stderr.contains(&format!("thread {thread} runs bytecode")), "{}", output.stderr);
     }
-    assert!(run(&["9:p.csv", "a.c"]).stderr.contains("there is no thread 9"));
+    assert!(run(&["9:p.csv", "a.c"]).stderr.contains("no such thread 9"));
     // Beside bytecode, only the real code has packets.
     let lines = packets(&scratch, &["--trace-packets", "p.csv", "a.c", "2:a(2).out"]);
     assert!(!lines.is_empty() && lines.iter().all(|line| line.contains(",2,0x8006")), "{lines:#?}");

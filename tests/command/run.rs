@@ -437,9 +437,9 @@ fn a_remark_that_comes_again_and_again_is_shown_once() {
                   for (i = 0; i < 1000; i++) SetBit(bit);\n  SetBit(bit + 1);\n}\n";
     let output = run_source("repeats", source, &[]);
     let remark =
-        |place, bit| format!("thread 1 at a.c:{place} in `main`: SetBit({bit}): there are bits 0 to 2047");
+        |place, bit| format!("thread 1 at a.c:{place} in `main`: SetBit({bit}): no such bit (0-2047)");
     let expected = format!(
-        "cc67: {}\ncc67: {}\ncc67: 999 times more: {}\n",
+        "cc67: {}\ncc67: {}\ncc67: repeated 999 times: {}\n",
         remark("5:28", 5000),
         remark("6:3", 5001),
         remark("5:28", 5000)

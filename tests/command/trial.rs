@@ -46,7 +46,7 @@ fn a_homing_run_is_blessed_then_broken_then_caught() {
     let run = bench.step(["run", "mill/homing.c"], 0);
     assert_eq!(run.stdout, "1300 counts from the switch to the index\nX waits at 2000\n");
     assert!(
-        run.stderr.contains("mill/homing.toml; mill/homing.stim (--no-sidecar: without)"),
+        run.stderr.contains("mill/homing.toml; mill/homing.stim (--no-sidecar ignores it)"),
         "{}",
         run.stderr
     );
@@ -115,7 +115,7 @@ fn a_homing_run_is_blessed_then_broken_then_caught() {
     let set = bench.step(["run", "--set", "persist.10=1,5", "mill/homing.c"], 2).stderr;
     assert!(set.contains("write f:1.5 for a float"), "{set}");
     let trace = bench.step(["run", "--trace", "a.xlsx", "mill/homing.c"], 2).stderr;
-    assert!(trace.contains("there are .csv, .txt, .vcd and .json"), "{trace}");
+    assert!(trace.contains("known: .csv, .txt, .vcd and .json"), "{trace}");
 
     // 14. A project file for the whole folder, and a program that runs before.
     fs::write(bench.scratch.path().join("mill/cc67.toml"), "first = \"first.c\"\n[test]\njobs = 1\n")

@@ -1,6 +1,6 @@
 //! The book: its programs do what it says, its links lead somewhere, its lists are those of the tables.
 //!
-//! Chapters that are lists are made from the tables; `CC67_WRITE_BOOK=1 cargo test --test docs` writes them anew.
+//! Chapters that are lists are made from the tables; `CC67_WRITE_BOOK=1 cargo test --test docs` rewrites them.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -218,9 +218,10 @@ fn the_chapter_of_warnings_has_the_page_of_each() {
 
 #[test]
 fn the_chapter_of_remarks_has_each() {
-    let mut text = "# Remarks\n\nWhat the simulated board says that the real one does not. A remark of a call begins with thread, file, line \
-                    and column\nof the call. `-R no-CODE` switches a remark off for one run, `[remarks]` with `CODE = false` in the machine \
-                    file for good;\n`cc67 --explain CODE` shows its page. Remarks marked *detail* are shown by `--verbose` only.\n"
+    let mut text = "# Remarks\n\nThe simulated board makes remarks on likely mistakes; a real board is silent. A remark on a call begins with \
+                    thread,\nfile, line and column of the call. `-R no-CODE` switches a remark off for one run; `CODE = false` under \
+                    `[remarks]` in the\nmachine file switches it off permanently. `cc67 --explain CODE` shows its page. Only `--verbose` \
+                    shows remarks marked *detail*.\n"
         .to_owned();
     let mut rows: Vec<_> = REMARKS.iter().collect();
     rows.sort_by_key(|row| row.code);
@@ -252,8 +253,9 @@ fn the_chapter_of_messages_has_each() {
     let parts: BTreeSet<_> = PARTS.iter().map(|(part, _)| *part).collect();
     let other: Vec<_> = found.iter().filter(|message| !parts.contains(message.part.as_str())).collect();
     assert!(other.is_empty(), "add a part: {other:?}");
-    let mut text = "# Messages of the compiler\n\nEvery message once, with the names of what it fills in between braces. A message may have a warning's name in \
-                    brackets,\nwhich [warnings](warnings.md) explains; what the board says in a run is in [remarks](remarks.md).\n"
+    let mut text = "# Messages of the compiler\n\nEach message is listed once; braces mark the parts that are filled in. A message may name a warning in \
+                    brackets, which\n[warnings](warnings.md) explains. [Remarks](remarks.md) lists the messages of the board during a \
+                    run.\n"
         .to_owned();
     for (part, title) in PARTS {
         let _ = write!(text, "\n## {title}\n");
@@ -294,9 +296,9 @@ fn messages_of_the_filetests_are_in_the_chapter() {
 
 #[test]
 fn the_chapter_of_limits_has_each() {
-    let mut text = "# Limits\n\nEvery limit has a number, and what refuses to go beyond it says the number; `cc67 --explain limits` lists them.\n\
-                    Compiling takes at most a gigabyte of memory, whatever the source. A run takes at most half a gigabyte, however\n\
-                    long it is and whatever it prints, traces and draws; an ordinary one takes less than 20 megabytes, traced or not.\n"
+    let mut text = "# Limits\n\nEvery limit is a number, and every message about a limit names it; `cc67 --explain limits` lists them all.\nCompiling \
+                    takes at most a gigabyte of memory, whatever the source. A run takes at most half a gigabyte, whatever its\nlength, \
+                    output, traces and pictures; an ordinary run takes less than 20 megabytes, with or without traces.\n"
         .to_owned();
     for (title, limits) in ALL {
         let _ = write!(text, "\n## {title}\n\n| at most | of | beyond |\n|--:|---|---|\n");
@@ -311,7 +313,7 @@ fn the_chapter_of_limits_has_each() {
 #[test]
 fn the_chapter_of_functions_has_each() {
     let mut text =
-        "# Firmware functions\n\nCalls cost processor time; what a function waits comes on top.\n".to_owned();
+        "# Firmware functions\n\nEach call takes the processor time in parentheses; waiting takes additional time.\n".to_owned();
     let shown = || FIRMWARE_FUNCTIONS.iter().filter(|function| !ABSENT.contains(&function.name));
     let groups: BTreeSet<_> = shown().map(|function| function.group).collect();
     for group in groups {
@@ -327,8 +329,7 @@ fn the_chapter_of_functions_has_each() {
 
 #[test]
 fn the_chapter_of_variables_has_each() {
-    let mut text =
-        "# Firmware variables\n\n| address | variable | what it means |\n|---|---|---|\n".to_owned();
+    let mut text = "# Firmware variables\n\n| address | variable | meaning |\n|---|---|---|\n".to_owned();
     for variable in FIRMWARE_VARIABLES {
         let (declaration, doc) = (variable.ty.declare(variable.name), variable.doc.trim().replace('\n', " "));
         let _ = writeln!(
@@ -343,9 +344,9 @@ fn the_chapter_of_variables_has_each() {
 
 #[test]
 fn the_chapter_of_console_commands_has_each() {
-    let mut text = "# Console commands\n\nWhat `cc67 console` sends to the board, and `command \"...\"` of a stimulus; \
-                    words are read in any case,\nand a line may hold several with `;` between them. The console's own \
-                    words, such as `run` and `wait`, are listed by its `help`.\n\n| command | what it does |\n|---|---|\n"
+    let mut text = "# Console commands\n\nThese are the script commands that `cc67 console` sends to the board, and `command \"...\"` in a stimulus. \
+                    Case does not\nmatter, and a line may hold several, separated by `;`. The console's `help` lists its own words, such \
+                    as `run` and `wait`.\n\n| command | effect |\n|---|---|\n"
         .to_owned();
     let mut commands: Vec<_> = COMMANDS.iter().collect();
     commands.sort_by_key(|command| command.name.to_lowercase());

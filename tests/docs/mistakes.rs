@@ -1,4 +1,4 @@
-//! The chapter of mistakes is made of the tests of mistakes: each program with what is said of it.
+//! The chapter of mistakes is made of the tests of mistakes: each program with its messages.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -9,8 +9,8 @@ use crate::book::check_list;
 /// What comes before the first mistake.
 const HEAD: &str = "# Mistakes
 
-Programs that compile and do something else than was meant, each with what `cc67` says. Each is a test, and
-none of it is said of a program of `c-programs/`.
+These programs compile, but do not do what was meant. Each is shown with the messages of `cc67`, and each is a test.
+No program in `c-programs/` gets any of these messages.
 ";
 
 /// Those that come to light in the servo interrupt or on the PC, where nobody knows a line.
@@ -65,7 +65,7 @@ impl Mistake {
     }
 }
 
-/// What is said, with the lines that the program has without its directives.
+/// The messages, with the lines that the program has without its directives.
 fn without_directives(said: &str, name: &str, directives: usize) -> String {
     let file = format!("{name}.c:");
     let mut parts = said.split(file.as_str());

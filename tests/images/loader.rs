@@ -91,7 +91,7 @@ fn what_is_not_linked_for_this_board_is_refused() {
 
 #[test]
 fn sections_stay_inside_the_program_and_apart() {
-    let outside = "lies outside the program area";
+    let outside = "is outside the program area";
     refused(|image| section(image, ".data").address = 0x8004_0000, outside);
     refused(|image| section(image, ".data").address = 0x1001_0000, outside);
     refused(|image| section(image, ".bss").contents = Contents::Uninitialised(u32::MAX), outside);

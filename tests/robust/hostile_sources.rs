@@ -55,7 +55,7 @@ fn complaint(input: &Input) -> Option<String> {
         return say(format!("took {elapsed:?}"));
     }
     if linked.is_none() && errors.is_empty() {
-        return say("refused without a word".to_owned());
+        return say("refused without a message".to_owned());
     }
     if errors.len() > MOST_ERRORS || text.len() > MOST_TEXT {
         return say(format!("{} errors in {} bytes", errors.len(), text.len()));

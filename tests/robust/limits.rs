@@ -12,38 +12,35 @@ struct Case {
 }
 
 const CASES: &[Case] = &[
-    Case { what: "files included within each other", source: |_| "#include \"a.c\"\n".to_owned() },
-    Case {
-        what: "`#if` within `#if`",
-        source: |most| "#if 1\n".repeat(most + 1) + &"#endif\n".repeat(most + 1),
-    },
+    Case { what: "nested includes", source: |_| "#include \"a.c\"\n".to_owned() },
+    Case { what: "nested `#if`", source: |most| "#if 1\n".repeat(most + 1) + &"#endif\n".repeat(most + 1) },
     Case {
         what: "parameters of a macro",
         source: |most| format!("#define M({}) 1\n", list(most + 1, |index| format!("a{index}"))),
     },
     Case {
-        what: "macro calls within each other",
+        what: "nested macro calls",
         source: |most| {
             let (open, close) = ("M(".repeat(most + 1), ")".repeat(most + 1));
             format!("#define M(x) x\nint a = {open}1{close};\n")
         },
     },
     Case {
-        what: "tokens that macros make",
+        what: "tokens expanded from macros",
         source: |_| {
             let levels = (1..24).map(|level| format!("#define M{level} M{0} M{0}\n", level - 1));
             format!("#define M0 ;\n{}M23\n", levels.collect::<String>())
         },
     },
     Case {
-        what: "bytes of a token that",
+        what: "bytes of a token made",
         source: |_| {
             let (open, close) = ("D(".repeat(21), ")".repeat(21));
             format!("#define E(a) a##a\n#define D(a) E(a)\nint {open}a{close};\n")
         },
     },
     Case {
-        what: "parentheses, blocks",
+        what: "nested parentheses",
         source: |most| format!("int a = {}1{};\n", "(".repeat(most + 1), ")".repeat(most + 1)),
     },
     Case {
@@ -89,9 +86,9 @@ fn messages_say_the_number() {
 fn every_limit_has_a_source_or_a_reason() {
     // Half a gigabyte of source for each is too much for a test of every day.
     const TOO_LARGE: [&str; 4] = [
-        "files included by one compilation, each time counted",
+        "files included by one compilation, counting each inclusion",
         "bytes of one source file",
-        "bytes of all source files together, each inclusion counted",
+        "bytes of all source files together, counting each inclusion",
         "tokens after preprocessing",
     ];
     for limit in COMPILER {
@@ -144,7 +141,7 @@ fn a_program_cannot_read_a_file_of_the_pc_that_is_too_large() {
     write_large(&scratch, "large.txt");
     let output = cc67(&scratch, ["run", "--files", ".", "a.c"]);
     assert_eq!(output.stdout, "refused\n", "{output:?}");
-    let expect = format!("the PC does not read large.txt: it is larger than {} bytes", runtime::FILE_BYTES);
+    let expect = format!("the PC refuses to read large.txt: it is larger than {} bytes", runtime::FILE_BYTES);
     assert!(output.stderr.contains(&expect), "{output:?}");
 }
 

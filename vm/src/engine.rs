@@ -1,9 +1,8 @@
-//! What runs a thread: from one stop to the next.
+//! The interface of engines: an engine runs a thread from one stop to the next.
 //!
-//! An engine keeps a context for each thread and one for the call-back: registers, call frames, the code that it runs
-//! and where it is in there. Nobody else knows what a context is made of, so that engines which have nothing in
-//! common but this trait run threads beside each other on one machine. An engine decides nothing about time: it obeys
-//! `charge` and returns.
+//! An engine keeps a context for each thread and one for the call-back: registers, call frames, its code and the
+//! position in it. Contexts are opaque to everything else, so engines that have only this trait in common can run
+//! threads side by side on one machine. An engine decides nothing about time: it obeys `charge` and returns.
 
 use std::fmt;
 use std::sync::Arc;
@@ -162,7 +161,7 @@ impl<F: Firmware + ?Sized> Slice<'_, F> {
 
 /// A snapshot that another engine has taken: threads that run as machine code continue where they were taken only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the snapshot is of another board, whose native threads cannot go on here")]
+#[error("the snapshot is from another board, whose native threads cannot continue here")]
 pub struct ForeignSnapshot;
 
 /// What the machine asks of every engine.

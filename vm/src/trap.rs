@@ -1,4 +1,4 @@
-//! Traps: the running program did the impossible.
+//! Traps: the running program did something impossible.
 //!
 //! A trap stops one thread; the machine continues. Firmware functions yield a [`TrapKind`],
 //! the engine adds the place and the thread.
@@ -76,7 +76,7 @@ pub enum TrapKind {
         addr: GuestAddr,
     },
     /// A call through a pointer whose type differs from the function's.
-    #[error("call of {addr} with other parameters than the function has")]
+    #[error("call of {addr} with parameters that do not match the function")]
     SignatureMismatch {
         /// The address called.
         addr: GuestAddr,
@@ -88,25 +88,25 @@ pub enum TrapKind {
         addr: GuestAddr,
     },
     /// `longjmp` to a place that no `setjmp` has filled.
-    #[error("`longjmp` to the place at {addr}, which no `setjmp` has filled")]
+    #[error("`longjmp` to the buffer at {addr}, which no `setjmp` has set")]
     NoJumpPlace {
         /// Address of the `jmp_buf`.
         addr: GuestAddr,
     },
     /// `longjmp` to a place that another thread has filled.
-    #[error("`longjmp` to the place at {addr}, which another thread has filled: threads have a stack each")]
+    #[error("`longjmp` to the buffer at {addr}, which another thread has set: each thread has its own stack")]
     ForeignJumpPlace {
         /// Address of the `jmp_buf`.
         addr: GuestAddr,
     },
     /// `longjmp` into a call that is over.
-    #[error("`longjmp` to the place at {addr}, but the function that called `setjmp` there has returned")]
+    #[error("`longjmp` to the buffer at {addr}, but the function that called `setjmp` there has returned")]
     JumpAfterReturn {
         /// Address of the `jmp_buf`.
         addr: GuestAddr,
     },
     /// More places than are kept.
-    #[error("`setjmp` has filled more than {most} places in functions that have not returned")]
+    #[error("`setjmp` has set more than {most} buffers in functions that have not returned")]
     TooManyJumpPlaces {
         /// How many are kept.
         most: usize,
@@ -127,7 +127,9 @@ pub enum TrapKind {
         limit: i64,
     },
     /// The compiler held this place to be out of reach; a `goto *` to no label leads to such a one.
-    #[error("execution reached a place without code, as by `goto *` to something other than a label")]
+    #[error(
+        "execution reached an address without code, for example by `goto *` to something other than a label"
+    )]
     Unreachable,
     /// Code of the real processor that no compiler makes.
     #[error(transparent)]

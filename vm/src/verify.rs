@@ -1,4 +1,4 @@
-//! Bytes of a text to a [`Program`]: an image is not trusted.
+//! Turns the bytes of a text into a [`Program`]: an image is not trusted.
 //!
 //! A program that passes cannot leave its registers, its constants or its code, passes
 //! arguments as its callees expect them, and charges what it costs ([`meter`](crate::meter)).

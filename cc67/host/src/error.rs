@@ -17,10 +17,10 @@ pub enum HostError {
     #[error("the board did not answer in time")]
     Timeout,
     /// Another client holds the token.
-    #[error("another client has the board to itself")]
+    #[error("another client holds the token of the board")]
     InUse,
     /// There is no such thread.
-    #[error("there is no thread {0}; there are 1 to 7")]
+    #[error("no such thread {0} (1-7)")]
     Thread(i32),
     /// A file cannot be read.
     #[error("cannot read {}: {error}", path.display())]
@@ -58,7 +58,7 @@ pub enum HostError {
     /// There is no memory at an address.
     #[error("there is no memory at {0}")]
     Unmapped(GuestAddr),
-    /// What was to be done to the board is not possible.
+    /// The requested operation on the board is not possible.
     #[error("{0}")]
     Act(String),
 }

@@ -109,7 +109,7 @@ pub fn undriven(inputs: &[(String, Bit, u8)]) -> String {
         _ => "as they are".to_owned(),
     };
     format!(
-        "{} inputs are read that nothing drives; they stay {stay}:{}",
+        "{} inputs that nothing drives are read; they stay {stay}:{}",
         inputs.len(),
         places.collect::<String>()
     )
@@ -163,7 +163,7 @@ mod tests {
         );
         assert_eq!(
             undriven(&[read(home, 20), read(home, 21), read(stop, 46)]),
-            "3 inputs are read that nothing drives; they stay 0:\n  20, 21: thread 1 at home.c:12 in `main`\n  46: the call-back"
+            "3 inputs that nothing drives are read; they stay 0:\n  20, 21: thread 1 at home.c:12 in `main`\n  46: the call-back"
         );
     }
 }

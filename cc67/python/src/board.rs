@@ -1,4 +1,4 @@
-//! A board for Python: whose thread it is, signals while it runs, exceptions.
+//! A board for Python: its owning thread, signals while it runs, exceptions.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{LazyLock, Mutex, PoisonError, TryLockError};
@@ -143,7 +143,7 @@ fn lines(lines: &[Said]) -> Vec<(f64, String)> {
 fn bit(number: i32) -> PyResult<Bit> {
     Bit::new(number).ok_or_else(|| {
         pyo3::exceptions::PyIndexError::new_err(format!(
-            "there is no bit {number}; there are 0 to {}",
+            "no such bit {number} (0-{})",
             Bit::MAX
         ))
     })

@@ -45,7 +45,7 @@ pub(crate) struct Arranged {
 }
 
 impl BoardArguments<'_> {
-    /// The setup that is asked for.
+    /// The setup that is requested.
     pub(crate) fn arrange(self) -> PyResult<Arranged> {
         let mut machine_file = match &self.machine {
             Some((name, folder, text)) => machine_file(name, folder, text)?,
@@ -162,7 +162,7 @@ fn start_value(key: &str, index: &str, value: &str) -> PyResult<(GuestAddr, Vec<
         word.map_err(|_| wrong("does not fit 32 bits"))?.to_le_bytes().into()
     };
     if index.saturating_add(bytes.len() / 4) > N_USER_DATA_VARS {
-        return Err(wrong("lies outside persist.UserData[0..199]"));
+        return Err(wrong("is outside persist.UserData[0..199]"));
     }
     Ok((PERSIST.field(Persist::USER_DATA).element(index).address(), bytes))
 }

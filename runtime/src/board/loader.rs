@@ -89,7 +89,7 @@ pub enum LoadError {
         wanted: ThreadId,
     },
     /// A section lies outside the memory for programs.
-    #[error("section {name} at {address}, {size} bytes, lies outside the program area")]
+    #[error("section {name} at {address}, {size} bytes, is outside the program area")]
     OutsideProgramArea {
         /// The section.
         name: String,

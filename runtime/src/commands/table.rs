@@ -22,7 +22,7 @@ const SAMPLES: Argument = Integer(1, 40_000);
 const SIGNED: Argument = Limited(-1e12, 1e12);
 const POSITIVE: Argument = Limited(0.0, 1e12);
 
-/// A value of an axis that can be asked for and set.
+/// A value of an axis that can be read and set.
 const REAL: &[Argument] = &[AXIS, Assign, Real];
 const SIGNED_REAL: &[Argument] = &[AXIS, Assign, SIGNED];
 const POSITIVE_REAL: &[Argument] = &[AXIS, Assign, POSITIVE];
@@ -43,48 +43,48 @@ commands! {
     // Programs.
     "Execute" &[THREAD] => programs::execute, "starts a thread at its entry point";
     "Kill" &[THREAD] => programs::kill, "stops a thread";
-    "CheckThread" &[THREAD] => programs::check_thread, "tells whether a thread is active: 1 or 0";
+    "CheckThread" &[THREAD] => programs::check_thread, "reports whether a thread is active: 1 or 0";
     "EntryPoint" &[THREAD, Hex] => programs::entry_point, "sets the address where a thread starts";
-    "SetStartupThread" &[THREAD, SWITCH] => programs::set_startup, "tells whether a thread starts at power-up";
+    "SetStartupThread" &[THREAD, SWITCH] => programs::set_startup, "sets whether a thread starts at power-up";
     "LoadData" &[Hex, Hex] => programs::load_data, "stores bytes; lines of 64 follow; address and count in hexadecimal";
-    "LoadFlash" &[Hex, Hex] => programs::load_flash, "takes a part of a new firmware, and ignores it";
-    "ClearFlashImage" &[] => board::clear_flash_image, "begins a new firmware, which is ignored";
-    "ProgFlashImage" &[] => board::program_flash_image, "ends a new firmware, which is ignored";
+    "LoadFlash" &[Hex, Hex] => programs::load_flash, "accepts part of a firmware update and ignores it";
+    "ClearFlashImage" &[] => board::clear_flash_image, "starts a firmware update, which is ignored";
+    "ProgFlashImage" &[] => board::program_flash_image, "ends a firmware update, which is ignored";
 
     // The board.
-    "Version" &[] => board::version, "tells the firmware's version";
+    "Version" &[] => board::version, "reports the firmware's version";
     "Echo" &[] => board::echo, "sends its text back as a console line";
     "Flash" &[] => board::flash, "saves programs, persistent variables and axis settings in flash";
     "Reboot!" &[] => board::reboot, "restarts the board from flash";
     "USB" &[] => board::usb, "takes commands from USB";
     "RS232" &[Integer(9600, 115_200)] => board::rs232, "takes commands from the UART at a baud rate";
-    "GetStatus" &[OptionalHex, OptionalHex] => status::get, "sends the status record; takes HostStatus and EditChangeCount";
+    "GetStatus" &[OptionalHex, OptionalHex] => status::get, "sends the status record; accepts HostStatus and EditChangeCount";
 
     // Persistent variables.
-    "GetPersistDec" &[ELEMENT] => persist::get_decimal, "tells a persistent variable";
-    "GetPersistHex" &[ELEMENT] => persist::get_hex, "tells a persistent variable in hexadecimal";
+    "GetPersistDec" &[ELEMENT] => persist::get_decimal, "reports a persistent variable";
+    "GetPersistHex" &[ELEMENT] => persist::get_hex, "reports a persistent variable in hexadecimal";
     "SetPersistDec" &[ELEMENT, Real] => persist::set_decimal, "sets a persistent variable";
     "SetPersistHex" &[ELEMENT, Hex] => persist::set_hex, "sets a persistent variable in hexadecimal";
 
     // The gather buffer.
-    "GetGatherDec" &[WORD] => gather::get_decimal, "tells a word of the gather buffer";
+    "GetGatherDec" &[WORD] => gather::get_decimal, "reports a word of the gather buffer";
     "SetGatherDec" &[WORD, Real] => gather::set_decimal, "sets a word of the gather buffer";
     "GetGatherHex" &[WORD, Integer(1, GATHER_WORDS)] => gather::get_hex, "sends words of the gather buffer, 8 on a line";
     "SetGatherHex" &[WORD, Integer(1, GATHER_WORDS)] => gather::set_hex, "takes words for the gather buffer; lines of 8 follow";
     "GatherMove" &[AXIS, Real, SAMPLES] => gather::gather_move, "records an axis while it moves away and back";
     "GatherStep" &[AXIS, Real, SAMPLES] => gather::gather_step, "records an axis while it jumps away and back";
     "GetGather" &[SAMPLES] => gather::get, "sends recorded samples: destination, position, output";
-    "CheckDoneGather" &[] => gather::check_done, "tells whether recording is done: 1 or 0";
-    "Inject" &[AXIS, Real, Real] => gather::inject, "disturbs an axis with noise below a frequency, and records";
-    "GetInject" &[] => gather::get_inject, "sends what Inject has recorded";
+    "CheckDoneGather" &[] => gather::check_done, "reports whether recording is done: 1 or 0";
+    "Inject" &[AXIS, Real, Real] => gather::inject, "disturbs an axis with noise below a frequency and records the response";
+    "GetInject" &[] => gather::get_inject, "sends the recording of Inject";
     "ReadDiskData" &[Integer(0, 3), Integer(0, 1024)] => gather::read_disk_data, "answers a program that reads a file on the PC";
 
     // Enabling, position, profile.
-    "EnableAxis" &[AXIS] => axes::enable, "enables an axis where it is";
+    "EnableAxis" &[AXIS] => axes::enable, "enables an axis at its present position";
     "EnableAxisDest" &[AXIS, Real] => axes::enable_dest, "enables an axis at a destination";
     "DisableAxis" &[AXIS] => axes::disable, "disables an axis";
     "Zero" &[AXIS] => axes::zero, "makes the present position of an axis zero";
-    "Enabled" &[AXIS, Assign] => axes::enabled, "tells whether an axis is enabled: 1 or 0";
+    "Enabled" &[AXIS, Assign] => axes::enabled, "reports whether an axis is enabled: 1 or 0";
     "Dest" REAL => |s, v| axes::double(s, v, Chan::DEST), "destination of an axis";
     "Pos" REAL => |s, v| axes::double(s, v, Chan::POSITION), "position of an axis";
     "Vel" POSITIVE_REAL => |s, v| axes::single(s, v, Chan::VEL), "highest speed of moves, per second";
@@ -106,8 +106,8 @@ commands! {
     "IIR" &[AXIS, Integer(0, 2), Assign, Real, Real, Real, Real, Real] => axes::filter, "coefficients A1 A2 B0 B1 B2 of a filter";
 
     // Inputs and outputs of an axis.
-    "InputMode" &[AXIS, Assign, Integer(0, 4)] => |s, v| axes::integer(s, v, Chan::INPUT_MODE), "what measures the position";
-    "OutputMode" &[AXIS, Assign, Integer(0, 8)] => |s, v| axes::integer(s, v, Chan::OUTPUT_MODE), "what the axis drives";
+    "InputMode" &[AXIS, Assign, Integer(0, 4)] => |s, v| axes::integer(s, v, Chan::INPUT_MODE), "input that measures the position";
+    "OutputMode" &[AXIS, Assign, Integer(0, 8)] => |s, v| axes::integer(s, v, Chan::OUTPUT_MODE), "output that the axis drives";
     "InputChan0" &[AXIS, Assign, Integer(0, 15)] => |s, v| axes::integer(s, v, Chan::INPUT_CHAN0), "first input channel";
     "InputChan1" &[AXIS, Assign, Integer(0, 15)] => |s, v| axes::integer(s, v, Chan::INPUT_CHAN1), "second input channel";
     "OutputChan0" &[AXIS, Assign, Integer(0, 63)] => |s, v| axes::integer(s, v, Chan::OUTPUT_CHAN0), "first output channel";
@@ -132,7 +132,7 @@ commands! {
     "SoftLimitNeg" REAL => |s, v| axes::single(s, v, Chan::SOFT_LIMIT_NEG), "lowest destination";
     "SoftLimitPos" REAL => |s, v| axes::single(s, v, Chan::SOFT_LIMIT_POS), "highest destination";
     "MasterAxis" &[AXIS, Assign, Integer(-1, 7)] => |s, v| axes::integer(s, v, Chan::MASTER_AXIS), "axis that this one follows, or -1";
-    "SlaveGain" REAL => |s, v| axes::double(s, v, Chan::SLAVE_GAIN), "how far this axis follows its master";
+    "SlaveGain" REAL => |s, v| axes::double(s, v, Chan::SLAVE_GAIN), "distance moved per unit of the master axis";
     "BacklashMode" &[AXIS, Assign, Integer(0, 4)] => |s, v| axes::integer(s, v, Chan::BACKLASH_MODE), "backlash compensation: 0 off, 1 linear";
     "BacklashAmount" POSITIVE_REAL => |s, v| axes::single(s, v, Chan::BACKLASH_AMOUNT), "backlash to compensate";
     "BacklashRate" POSITIVE_REAL => |s, v| axes::single(s, v, Chan::BACKLASH_RATE), "speed of backlash compensation";
@@ -145,24 +145,24 @@ commands! {
     "MoveExp" TARGET_AND => motion::move_exp, "approaches a destination exponentially with a time constant";
     "MoveXYZABC" &[Real; 6] => motion::move_xyzabc, "moves six axes of the coordinate system at once";
     "Jog" TARGET => motion::jog, "moves an axis at a speed; 0 stops it";
-    "CheckDone" &[AXIS] => motion::check_done, "tells whether an axis is done: 1, 0, or -1 if disabled";
-    "CheckDoneXYZABC" &[] => motion::check_done_xyzabc, "tells whether all axes of the coordinate system are done";
+    "CheckDone" &[AXIS] => motion::check_done, "reports whether an axis is done: 1, 0, or -1 if disabled";
+    "CheckDoneXYZABC" &[] => motion::check_done_xyzabc, "reports whether all axes of the coordinate system are done";
 
     // Coordinated motion.
     "DefineCS" &[Assign, ANY, ANY, ANY, ANY, ANY, ANY] => path::define_cs, "axes of the letters X Y Z A B C, -1 for none";
     "DefineCSEX" &[Assign, ANY, ANY, ANY, ANY, ANY, ANY, ANY, ANY] => path::define_cs_ex, "axes of the letters X Y Z A B C U V";
     "OpenBuf" &[] => path::open, "empties the buffer of coordinated motion";
     "ExecBuf" &[] => path::execute, "executes the buffer";
-    "FlushBuf" &[] => path::flush, "says that the buffer is complete";
-    "ExecTime" &[] => path::executed_time, "tells the executed time of the buffer; negative when done";
-    "CheckDoneBuf" &[] => path::check_done, "tells whether the buffer is done: 1, 0, or -1 if an axis is disabled";
+    "FlushBuf" &[] => path::flush, "marks the buffer as complete";
+    "ExecTime" &[] => path::executed_time, "reports how much of the buffer has been executed, as a time; negative when done";
+    "CheckDoneBuf" &[] => path::check_done, "reports whether the buffer is done: 1, 0, or -1 if an axis is disabled";
     "Linear" &[Real; 17] => |s, v| path::linear(s, v, 6), "adds a line: begin, end, a b c d, time";
     "LinearEx" &[Real; 21] => |s, v| path::linear(s, v, 8), "adds a line of eight letters";
     "LinearHex" &[Hex; 17] => |s, v| path::linear(s, v, 6), "adds a line, in hexadecimal singles";
     "LinearHexEx" &[Hex; 21] => |s, v| path::linear(s, v, 8), "adds a line of eight letters, in hexadecimal singles";
-    "LHex1" &[Hex; 11] => |s, v| path::linear_on(s, v, 6), "adds a line on from the last one: end, a b c d, time";
-    "LHexEx1" &[Hex; 13] => |s, v| path::linear_on(s, v, 8), "adds a line of eight letters on from the last one";
-    "LHex2" &[Hex; 5] => path::linear_again, "adds the last line with another a b c d, time";
+    "LHex1" &[Hex; 11] => |s, v| path::linear_on(s, v, 6), "continues from the last line: end, a b c d, time";
+    "LHexEx1" &[Hex; 13] => |s, v| path::linear_on(s, v, 8), "continues from the last line, with eight letters";
+    "LHex2" &[Hex; 5] => path::linear_again, "repeats the last line with a new a b c d, time";
     "Arc" &[Real; 19] => |s, v| path::arc(s, v, Plane::Xy), "adds an arc: centre, radii, angles, other letters, a b c d, time";
     "ArcXZ" &[Real; 19] => |s, v| path::arc(s, v, Plane::Zx), "adds an arc in the XZ plane";
     "ArcYZ" &[Real; 19] => |s, v| path::arc(s, v, Plane::Yz), "adds an arc in the YZ plane";
@@ -181,26 +181,26 @@ commands! {
     "EndRapidBuf" &[] => path::end_rapid, "adds to the buffer: rapid motion ends";
     "SetFRO" &[Real] => path::set_fro, "sets the feed rate override";
     "SetRapidFRO" &[Real] => path::set_rapid_fro, "sets the override of rapid motion";
-    "SetFROTemp" &[Real] => path::set_fro_temp, "sets the feed rate override, to be undone later";
+    "SetFROTemp" &[Real] => path::set_fro_temp, "sets the feed rate override temporarily";
     "SetFROwRate" &[Real, Real] => path::fro_with_rate, "stops firmware 4.34; use the function of this name in a program";
     "SetRapidFROwRate" &[Real, Real] => path::fro_with_rate, "stops firmware 4.34; use the function of this name in a program";
     "SetFROwRateTemp" &[Real, Real] => path::fro_with_rate, "stops firmware 4.34; use the function of this name in a program";
     "StopImmediate" &[Integer(0, 2)] => path::stop_immediate, "feedhold: 0 stops, 1 resumes, 2 clears";
-    "GetStopState" &[] => path::stop_state, "tells the state of the feedhold, 0 when running";
+    "GetStopState" &[] => path::stop_state, "reports the state of the feedhold; 0 when running";
     "ConfigSpindle" &[SWITCH, AXIS, Real, Real, Real] => path::configure_spindle, "sets up the measurement of a spindle";
     "TrigThread" &[Real] => path::trigger_threading, "starts threading at a base speed";
-    "GetSpindleRPS" &[] => path::spindle_speed, "tells the speed of the spindle in revolutions per second";
+    "GetSpindleRPS" &[] => path::spindle_speed, "reports the speed of the spindle in revolutions per second";
 
     // Inputs and outputs.
     "SetBit" &[BIT] => io::set_bit, "sets an output bit";
     "ClearBit" &[BIT] => io::clear_bit, "clears an output bit";
     "SetStateBit" &[BIT, Equals, SWITCH] => io::set_state_bit, "drives an output bit";
-    "ReadBit" &[BIT] => io::read_bit, "tells the level of a bit";
+    "ReadBit" &[BIT] => io::read_bit, "reports the level of a bit";
     "SetBitDirection" &[Integer(0, 167), OptionalEquals, SWITCH] => io::set_bit_direction, "makes a bit an input, 0, or an output, 1";
-    "GetBitDirection" &[Integer(0, 167)] => io::get_bit_direction, "tells whether a bit is an output";
-    "GetVirtualBits" &[Integer(0, 31), Integer(0, 31)] => io::get_virtual_bits, "tells words of extended virtual bits, in hexadecimal";
+    "GetBitDirection" &[Integer(0, 167)] => io::get_bit_direction, "reports whether a bit is an output";
+    "GetVirtualBits" &[Integer(0, 31), Integer(0, 31)] => io::get_virtual_bits, "reports words of extended virtual bits, in hexadecimal";
     "LED" &[SWITCH, Equals, SWITCH] => io::led, "turns an LED on or off";
-    "ADC" &[AXIS] => io::adc, "tells an analog input, -2048 to 2047";
+    "ADC" &[AXIS] => io::adc, "reports an analog input, -2048 to 2047";
     "DAC" &[AXIS, Equals, Integer(-2048, 2047)] => io::dac, "sets an analog output";
     "PWM" &[Integer(0, 15), Equals, Integer(-255, 255)] => io::pwm, "sets a PWM output, locked anti-phase";
     "PWMR" &[Integer(0, 15), Equals, Integer(-511, 511)] => io::pwmr, "sets a PWM output, recirculating";

@@ -1,4 +1,4 @@
-//! What the simulated board tells a person: one row a remark.
+//! Remarks of the simulated board: one row each.
 //!
 //! A row has a code, how much it matters, of what it is made once, and its text with named arguments. Whoever notices
 //! something makes a [`Message`] with the arguments and hands it to `Out`; whether it is new, and whether anybody wants
@@ -203,119 +203,119 @@ macro_rules! messages {
 messages! {
     /// A call names a bit that does not exist.
     NoSuchBit { function: &'static str, bit: i32 } = "no-such-bit", Warning, [always],
-        "{function}({bit}): there are bits 0 to 2047";
+        "{function}({bit}): no such bit (0-2047)";
     /// A call names an axis that does not exist.
     NoSuchAxis { function: &'static str, axis: i32 } = "no-such-axis", Warning, [always],
-        "{function}({axis}, …): there are axes 0 to 7";
+        "{function}({axis}, …): no such axis (0-7)";
     /// A program reads an input that nothing drives: no switch, no device, no stimulus.
     UndrivenInput { bit: Bit, level: u8 } = "undriven-input", Hint, [per bit],
         "reads bit {bit}, an input that nothing drives; it stays {level}";
-    /// A program writes to a bit that is an input for good: of an option board.
+    /// A program writes to a bit of an option board that is always an input.
     InputWritten { function: &'static str, bit: Bit } = "input-written", Warning, [per bit],
         "{function}({bit}): bit {bit} is an input, so nothing changes";
-    /// A program writes to a pin that is an input, and does not make it an output.
+    /// A program writes to a pin that is still an input.
     StillAnInput { function: &'static str, bit: Bit } = "still-an-input", Warning, [per bit],
         "{function}({bit}): bit {bit} is an input, so its pin does not change: call SetBitDirection({bit}, 1) first";
-    /// A program uses a bit number that nothing on the board or its option boards answers.
+    /// A program uses a bit number to which nothing on the board or its option boards is connected.
     BitUnused { function: &'static str, bit: Bit } = "bit-unused", Warning, [per bit],
-        "{function}({bit}): nothing answers bit {bit}: it reads 0 and cannot be written";
-    /// A pin becomes an output that something outside of the board drives: a switch, a probe, a wire.
+        "{function}({bit}): nothing is connected to bit {bit}: it reads 0 and cannot be written";
+    /// A program makes a pin an output although a switch, a probe or a wire drives it.
     OutputAgainstInput { bit: Bit } = "output-against-input", Warning, [per bit],
-        "SetBitDirection({bit}, 1): the machine drives bit {bit}, so two outputs work against each other, and the program no longer sees the input";
-    /// A program reads an input of a KStep board, and has not said that there is one.
+        "SetBitDirection({bit}, 1): the machine drives bit {bit}, so two outputs drive the same pin, and the program can no longer read the input";
+    /// A program reads an input of a KStep board without setting `KStepPresent`.
     KstepAbsent { bit: Bit } = "kstep-absent", Warning, [once],
         "ReadBit({bit}): inputs of a KStep read 0 until KStepPresent is set: write KStepPresent = TRUE first";
-    /// A program reads a pin on which a step generator makes its pulses.
+    /// A program reads a pin that a step generator uses for its pulses.
     StepPinRead { bit: Bit } = "step-pin-read", Warning, [per bit],
-        "ReadBit({bit}): bit {bit} is a step or direction output, so it is no input: check OutputChan0 of the axes";
-    /// The step output of an axis takes a pin that something outside of the board drives.
+        "ReadBit({bit}): bit {bit} is a step or direction output, not an input: check OutputChan0 of the axes";
+    /// The step output of an axis uses a pin that something outside the board drives.
     StepPins { axis: AxisId, bit: Bit, channel: i32 } = "step-pins", Warning, [per bit],
-        "axis {axis} steps on OutputChan0 = {channel}, which takes bit {bit}, an input that the machine drives: set OutputChan0 to a free generator";
-    /// A thread waits for a switch, and its axis moves away from it.
+        "axis {axis} steps on OutputChan0 = {channel}, which uses bit {bit}, an input driven by the machine: set OutputChan0 to a free generator";
+    /// A thread waits for a switch while its axis moves away from it.
     MovesAway { axis: AxisId, bit: Bit, place: String, load: f64 } = "moves-away", Warning, [per bit],
         "waits for bit {bit}, but axis {axis} moves away from its switch, which is active {place}: the axis is at {load:.0}";
-    /// A call moves an axis that has no output, while other axes have outputs.
+    /// A call moves an axis that has no output although other axes have one.
     NoOutput { function: &'static str, axis: AxisId } = "no-output", Hint, [per axis],
-        "{function}: axis {axis} has no OutputMode, so its Dest moves and no motor does (is a program that sets the axes up to run first?)";
-    /// An axis moves that another one should follow, which is disabled.
+        "{function}: axis {axis} has no OutputMode, so its Dest changes but no motor moves (should an init program run first?)";
+    /// An axis moves, but the axis that should follow it is disabled.
     SlaveDisabled { axis: AxisId, master: AxisId } = "slave-disabled", Warning, [per axis],
         "axis {axis} has MasterAxis = {master}, but is disabled, so it does not follow: call EnableAxis({axis})";
-    /// A move is called before an earlier one of the same axis had any time to begin.
+    /// A move replaces an earlier move of the same axis that has not started yet.
     MoveReplaced { function: &'static str, axis: AxisId, earlier: f64, target: f64 } = "move-replaced", Warning, [per axis],
-        "{function}: axis {axis} goes to {target} at once, the move to {earlier} is replaced before it begins: wait with `while (!CheckDone({axis}));` in between";
-    /// A path begins, and an axis of it is disabled.
+        "{function}: the move of axis {axis} to {earlier} is replaced by one to {target} before it starts: wait with `while (!CheckDone({axis}));` in between";
+    /// A path starts while one of its axes is disabled.
     PathDisabled { } = "path-disabled", Warning, [once],
-        "a path is to be executed, but an axis of the coordinate system is disabled, so nothing moves: enable all axes that DefineCoordSystem names";
-    /// A path ends that is smoothed with a time constant of zero.
+        "a path is started, but an axis of the coordinate system is disabled, so nothing moves: enable all axes named in DefineCoordSystem";
+    /// A path that is smoothed with a time constant of zero ends.
     KlpWithoutTau { } = "klp-without-tau", Warning, [once],
-        "a path has ended with KLP set and TauKLP 0, so Dest of its axes is not a number any more: set TauKLP = -TIMEBASE / log(KLP) before the path begins";
+        "a path ended with KLP set and TauKLP 0, so Dest of its axes is now NaN: set TauKLP = -TIMEBASE / log(KLP) before the path starts";
     /// An axis in a closed loop goes the wrong way until its following error disables it.
     RunsAway { axis: AxisId } = "runs-away", Warning, [per axis],
         "axis {axis} runs away: its output drives it further from Dest; change the sign of OutputGain or of InputGain0";
-    /// A text or a block is stored in an array that is too small for it.
+    /// A call stores a text or a block in an array that is too small for it.
     BeyondArray { function: &'static str, name: String, size: u32, bytes: usize } = "beyond-array", Warning, [always],
-        "{function} stores {bytes} bytes in `{name}`, which has {size}: what follows it is overwritten";
-    /// A value for a PWM output is beyond what it takes.
+        "{function} stores {bytes} bytes in `{name}`, which has {size}: the memory after it is overwritten";
+    /// A value for a PWM output is out of range.
     PwmRange { function: &'static str, channel: i32, value: i32, most: i32 } = "pwm-range", Warning, [per channel],
-        "{function}({channel}, {value}): values go from -{most} to {most}; it is limited to that";
+        "{function}({channel}, {value}): the range is -{most} to {most}, and the value is limited to it";
     /// A call names a PWM output that does not exist.
     NoSuchPwm { function: &'static str, channel: i32 } = "no-such-pwm", Warning, [per channel],
         "{function}({channel}, …): no such channel (0-15)";
     /// A program ends with a line of text that has no newline.
     UnfinishedLine { text: String } = "unfinished-line", Hint, [once],
         "the text `{text}` has no newline: the board keeps it, and the PC never receives it";
-    /// The operator of `--assist` toggles an input for a while.
+    /// The operator of `--assist` toggles an input for 0.1 s.
     Assisted { bit: Bit, level: u8 } = "assisted", Warning, [always],
-        "waits: bit {bit} is {level} for 0.1 s (--assist)";
-    /// A call passes an address that is not that of an element of `chan`.
+        "waits, so --assist sets bit {bit} to {level} for 0.1 s";
+    /// A call passes an address that is not an element of `chan`.
     NotAnAxis { function: &'static str, chan: GuestAddr } = "not-an-axis", Warning, [always],
         "{function}: {chan} is not an axis structure";
     /// A call names a thread that does not exist.
     NoSuchThread { function: &'static str, thread: i32 } = "no-such-thread", Warning, [always],
-        "{function}({thread}): there are threads 1 to 7";
-    /// A thread without a program is started by a call.
+        "{function}({thread}): no such thread (1-7)";
+    /// A call starts a thread without a program.
     ThreadEmpty { thread: ThreadId } = "thread-empty", Warning, [always],
         "StartThread({thread}): no program is loaded in thread {thread}";
     /// A script command starts a thread without a program.
     ExecuteEmpty { thread: ThreadId } = "execute-empty", Warning, [always],
-        "Execute{thread}: no program is loaded in thread {thread}, and nothing starts";
+        "Execute{thread}: no program is loaded in thread {thread}, so nothing starts";
     /// A call names an analog input that does not exist.
     NoSuchAdc { channel: i32 } = "no-such-adc", Warning, [always],
-        "ReadADC({channel}): there are channels 0 to 7";
+        "ReadADC({channel}): no such channel (0-7)";
     /// A call names a register that a SnapAmp does not have.
     NoSuchSnapRegister { function: &'static str, address: i32 } = "no-such-snap-register", Warning, [always],
-        "{function}({address:#x}): there are registers 0x40 to 0x7f";
+        "{function}({address:#x}): no such register (0x40-0x7f)";
     /// A motion call names an axis that is disabled.
     AxisDisabled { function: &'static str, axis: AxisId } = "axis-disabled", Warning, [always],
-        "{function}: axis {axis} is disabled, nothing moves";
+        "{function}: axis {axis} is disabled, so nothing moves";
     /// A motion call names an axis that follows a path.
     AxisOnPath { function: &'static str, axis: AxisId } = "axis-on-path", Warning, [always],
-        "{function}: axis {axis} executes coordinated motion, which continues";
-    /// A motion is commanded to an axis with switches whose output drives nothing.
+        "{function}: axis {axis} is executing coordinated motion, which continues";
+    /// A call moves an axis that has switches but no output.
     AxisUndriven { function: &'static str, axis: AxisId } = "axis-undriven", Hint, [per axis],
-        "{function}: axis {axis} drives nothing, its OutputMode is NO_OUTPUT_MODE: what the machine file connects to it stays as it is (is a program that sets the axes up to run first?)";
-    /// Motions are called faster than the board plans them.
+        "{function}: axis {axis} drives nothing because its OutputMode is NO_OUTPUT_MODE, so the machine does not move (should an init program run first?)";
+    /// A program calls motions faster than the board can plan them.
     Hurried { function: &'static str, axis: AxisId, ms: f64, calls: u8 } = "hurried", Hint, [always],
         "{function}: axis {axis} gets a new target within {ms} ms, {calls} times in a row. The board takes that long to plan a motion that replaces another, and the axis keeps its speed until then: no target ever takes effect. Call less often, or use MoveExp";
     /// A motion call passes a number that is not finite.
     NotAPlace { function: &'static str, value: f64 } = "not-a-place", Warning, [always],
-        "{function}: {value} is not a valid position, nothing moves";
+        "{function}: {value} is not a valid position, so nothing moves";
     /// A motion call names an axis without limits.
     NoLimits { function: &'static str, axis: AxisId } = "no-limits", Warning, [always],
         "{function}: Vel, Accel and Jerk of axis {axis} are not all positive";
-    /// An axis executes a list of states that is not there.
+    /// The list of states that an axis should execute does not exist.
     NoStates { axis: AxisId } = "no-states", Warning, [always],
-        "axis {axis}: pcoeff points at no list of states; its motion has ended";
-    /// A step generator is to be faster than its pulses allow.
+        "axis {axis}: pcoeff does not point to a list of states; its motion has ended";
+    /// A step generator is commanded to go faster than its pulses allow.
     StepsTooFast { axis: AxisId, fastest: f64, length: f64 } = "steps-too-fast", Warning, [per axis],
-        "axis {axis} is to make more than the {fastest:.0} steps a second that pulses of {length:.2} µs leave room for: it falls behind and catches up (STEP_PULSE_LENGTH_ADD)";
+        "axis {axis} needs more than {fastest:.0} steps per second, the most that pulses of {length:.2} µs allow: it falls behind and catches up later (STEP_PULSE_LENGTH_ADD)";
     /// A real brushless motor would not turn as the simulated one does.
     WouldNotTurn { axis: AxisId } = "would-not-turn", Warning, [always],
         "axis {axis}: with this CommutationOffset a real brushless motor would not turn as commanded; the simulated one follows (model \"follow\")";
     /// A coordinate system is defined with numbers that are not axes.
     BadCoordSystem { axes: String } = "bad-coord-system", Warning, [always],
         "DefineCoordSystem: {axes} must be axes 0 to 7 or -1";
-    /// A coordinate system is defined with an axis for two letters.
+    /// A coordinate system is defined with the same axis for two letters.
     CoordSystemTwice { axes: String } = "coord-system-twice", Warning, [always],
         "DefineCoordSystem: {axes} names an axis twice";
     /// The path being executed is overwritten by a longer one.
@@ -323,10 +323,10 @@ messages! {
         "coordinated motion: the buffer is full and the segment being executed is overwritten";
     /// The pointer to the path does not point at segments.
     NoSegments { list: GuestAddr } = "no-segments", Warning, [always],
-        "CoordSystem0 is {list}, where no segments lie; the path has ended";
+        "CoordSystem0 is {list}, where there are no segments; the path has ended";
     /// A spindle is configured with an axis that does not exist.
     NoSuchSpindleAxis { axis: i32 } = "no-such-spindle-axis", Warning, [always],
-        "ConfigureSpindle: axis {axis}; there are axes 0 to 7";
+        "ConfigureSpindle: no such axis (0-7): {axis}";
     /// A spindle is configured without counts.
     NoSpindleCounts { counts: f32 } = "no-spindle-counts", Warning, [always],
         "ConfigureSpindle: {counts} is not a valid number of counts per revolution";
@@ -345,103 +345,103 @@ messages! {
     /// A Konnect is added that the machine does not have.
     KonnectAbsent { function: &'static str, address: i32 } = "konnect-absent", Warning, [always],
         "{function}({address}, …): the machine has no board with that address";
-    /// The words of a Konnect's service are overwritten by a load.
+    /// A load overwrites the words of a Konnect service.
     KonnectDropped { thread: ThreadId } = "konnect-dropped", Warning, [always],
-        "Konnect service with words of thread {thread} ends: its program is replaced";
-    /// An output of Kanalog is written, which nothing has switched on.
+        "the Konnect service with words of thread {thread} ends: the program of the thread is replaced";
+    /// A program writes an output of Kanalog, which is not switched on.
     KanalogOff { bit: Bit } = "kanalog-off", Detail, [once],
-        "bit {bit} is an output of Kanalog, which nothing has switched on: it is stored, no more (`board.kanalog = true` in the machine file)";
-    /// A pin becomes an output that the Kanalog's interface occupies.
+        "bit {bit} is an output of Kanalog, which is not switched on: the value is only stored (`board.kanalog = true` in the machine file)";
+    /// A program makes a pin an output that the interface of Kanalog uses.
     KanalogPins { bit: Bit } = "kanalog-pins", Warning, [once],
         "bit {bit} becomes an output, but Kanalog is connected to bits 0 to 15 of JP7";
-    /// An unknown register of the FPGA is written.
+    /// A program writes an unknown register of the FPGA.
     UnknownRegister { number: u32 } = "unknown-register", Detail, [per number],
-        "FPGA register {number:#x} is not known: it only stores what is written";
-    /// A place on the bus is written that nothing answers.
+        "FPGA register {number:#x} is unknown: it only stores what is written";
+    /// A program writes to a bus address to which nothing is connected.
     NoEffect { address: GuestAddr } = "no-effect", Warning, [always],
         "write to {address} has no effect";
-    /// The UART sends, and is not connected to its pins.
+    /// The UART sends without being connected to its pins.
     UartUnconnected { } = "uart-unconnected", Warning, [once],
         "the UART is not connected to its pins: call InitRS232, or write 2 to KAN_TRIG_REG";
-    /// Characters were received on the UART and not read in time.
+    /// Characters received on the UART were not read in time.
     UartOverrun { size: usize } = "uart-overrun", Warning, [once],
-        "{size} characters received on the UART and not read: they are lost";
+        "{size} characters received on the UART were not read and are lost";
     /// Characters on the UART are taken as commands.
     UartCommands { } = "uart-commands", Warning, [once],
         "characters received on the UART are taken as script commands; clear DoRS232Cmds to read them";
     /// A line of a file is written in parts.
     LineInParts { } = "line-in-parts", Warning, [once],
-        "fprintf: the line before has not ended; as on the board, a stray character 2 comes before this text, and a line begun by printf goes to the console. Write each line by one call";
-    /// A text for a file has a percent sign in it.
+        "fprintf: the line before is unfinished; as on the board, a stray character 2 precedes this text, and a line begun by printf goes to the console. Write each line with one call";
+    /// A text for a file contains a percent sign.
     PercentTwice { } = "percent-twice", Warning, [once],
-        "fprintf: the text has a % in it, which the board takes as a conversion once more. Write %%%% for it";
+        "fprintf: the text contains a %, which the board reads as a conversion again. Write %%%% for it";
     /// The PC refuses to write a file.
     FileNotMade { name: String, error: String } = "file-not-made", Warning, [always],
-        "the PC does not write {name}: {error}";
+        "the PC refuses to write {name}: {error}";
     /// The PC refuses to read a file.
     FileNotRead { name: String, error: String } = "file-not-read", Warning, [always],
-        "the PC does not read {name}: {error}";
+        "the PC refuses to read {name}: {error}";
     /// The PC fails to write to an open file.
     FileNotWritten { name: String, error: String } = "file-not-written", Warning, [always],
         "the PC cannot write {name}: {error}";
     /// A line is written without an open file.
     NoOpenFile { } = "no-open-file", Warning, [once],
-        "a line is written, and no file is open for writing on the PC";
-    /// A request waits for a PC that is not there.
+        "a line is written, but no file is open for writing on the PC";
+    /// A program sends a request, but no PC is connected.
     NoPc { code: i32 } = "no-pc", Warning, [always],
-        "request {code} waits for a PC, and none is connected (`host.enabled = false`)";
-    /// Replies wait that nobody reads.
+        "request {code} waits for a PC, but none is connected (`host.enabled = false`)";
+    /// Nobody reads the replies of the board.
     RepliesLost { bytes: usize } = "replies-lost", Warning, [always],
-        "{bytes} bytes of replies wait, which nobody reads; what comes now is lost";
-    /// A block is freed that was never allocated.
+        "{bytes} bytes of replies have not been read; further replies are lost";
+    /// A program frees a block that was never allocated.
     NotAllocated { block: GuestAddr } = "not-allocated", Warning, [always],
         "free({block}): no block of the heap starts there";
-    /// Flash is programmed at a place where there are no blocks of the users'.
+    /// A program writes flash outside the blocks of user flash.
     NotABlock { words: i32, to: GuestAddr } = "not-a-block", Warning, [always],
-        "ProgramFlash: {words} words at {to}: blocks of the users' flash begin at multiples of 0x10000 from 0x90100000 and hold 32768 words";
+        "ProgramFlash: {words} words at {to}: blocks of user flash start at multiples of 0x10000 from 0x90100000 and hold 32768 words";
     /// A program has used more stack than the board has.
     StackUsed { used: u32 } = "stack-used", Warning, [always],
         "{used} bytes of stack used; the board has about 1900";
-    /// A call-back is overwritten by a load.
+    /// A load overwrites a call-back.
     CallBackDropped { thread: ThreadId } = "call-back-dropped", Warning, [always],
-        "the call-back in the space of thread {thread} is taken out: its program is replaced";
-    /// What flash holds for a thread is not a program.
+        "the call-back in the space of thread {thread} is removed: the program of the thread is replaced";
+    /// The flash holds no valid program for a thread.
     NotFlashed { thread: ThreadId, error: String } = "not-flashed", Warning, [always],
-        "what was flashed for thread {thread} is not a valid program: {error}";
-    /// A program of a stimulus is not run.
+        "the flash holds no valid program for thread {thread}: {error}";
+    /// A program of a stimulus cannot be run.
     NotRun { name: String, thread: ThreadId, error: String } = "not-run", Warning, [always],
         "{name} is not run in thread {thread}: {error}";
-    /// A downloaded program is not started.
+    /// A downloaded program cannot be started.
     NotStarted { thread: ThreadId, error: String } = "not-started", Warning, [always],
         "thread {thread} is not started: {error}";
     /// A stimulus starts a thread without a program.
     StimulusThreadEmpty { place: String, thread: ThreadId } = "stimulus-thread-empty", Warning, [always],
         "{place}: thread {thread} holds no program";
-    /// Statements of a stimulus had nothing to do until the run was over.
+    /// Statements of a stimulus took no effect during the run.
     NeverHappened { statements: String } = "never-happened", Warning, [always],
         "never happened: {statements}";
-    /// A stimulus plans more than fits.
+    /// A stimulus has too many actions.
     TooMuchPlanned { most: usize } = "too-much-planned", Warning, [once],
         "the stimulus has more than {most} actions; later ones are left out";
     /// Devices answer each other without end.
     DevicesEndless { } = "devices-endless", Warning, [always],
-        "devices on bits answer each other without end: they are taken off";
-    /// A new firmware is announced.
+        "devices on bits answer each other without end: they are disconnected";
+    /// A firmware update starts.
     NoFirmwareToReplace { } = "no-firmware-to-replace", Warning, [always],
-        "ClearFlashImage begins a new firmware: the simulated board has none to replace, and ignores what comes";
-    /// A script command is one where the released firmware stops.
+        "ClearFlashImage starts a firmware update, which the simulated board ignores";
+    /// The released firmware stops at this script command.
     FirmwareStops { command: &'static str } = "firmware-stops", Warning, [always],
         "the released firmware stops at this use of `{command}`: it answers nothing until it is restarted";
     /// A line is G code.
     GCode { } = "g-code", Warning, [always],
-        "G code is planned by the PC's application: the board has no command for it, nor has the simulated one";
+        "G code is interpreted by the PC application: the board has no command for it";
     /// A command has another name in this firmware.
     CommandNamed { word: String, name: &'static str } = "command-named", Warning, [always],
         "firmware 4.34 has no command {word}; its name there is {name}";
-    /// A command came with a later firmware.
+    /// A command belongs to later firmware.
     CommandLater { word: String } = "command-later", Warning, [always],
         "{word} is a command of later firmware than 4.34, which the simulated board models";
-    /// A command is one of another board.
+    /// A command belongs to another board.
     CommandOtherBoard { word: String } = "command-other-board", Warning, [always],
         "{word} is a command of the Kogna board; the simulated board is a KFLOP";
 }
@@ -470,6 +470,6 @@ mod tests {
         assert_eq!(message.arguments(), [("function", "SetBit".to_owned()), ("bit", "3000".to_owned())]);
         let speaker = Speaker::Thread(ThreadId::new(1).expect("1 is a thread"));
         let remark = Remark { message, speaker, place: None };
-        assert_eq!(remark.to_string(), "thread 1: SetBit(3000): there are bits 0 to 2047");
+        assert_eq!(remark.to_string(), "thread 1: SetBit(3000): no such bit (0-2047)");
     }
 }

@@ -38,11 +38,11 @@ pub enum AnswerError {
     NotASetting(String),
     /// The key is none of [`HELP`].
     #[error(
-        "there is no answer `{0}`; there are msgbox, input, boxes, mdi, request.N, var.N, tool.N.KIND, dro.AXIS, resolution.AXIS, cell.N, setup and job"
+        "there is no answer `{0}`; known: msgbox, input, boxes, mdi, request.N, var.N, tool.N.KIND, dro.AXIS, resolution.AXIS, cell.N, setup and job"
     )]
     UnknownKey(String),
     /// The value does not fit the key.
-    #[error("`{value}` is not what `{key}` takes: {expected}")]
+    #[error("`{value}` is not valid for `{key}`: {expected}")]
     BadValue {
         /// The key.
         key: String,
@@ -177,7 +177,7 @@ impl Answers {
         let axis = |text: &str| LETTERS.iter().position(|letter| *letter == text).ok_or_else(unknown);
         match parts[..] {
             ["msgbox"] => {
-                self.boxes.buttons.0.push_back(button(value).ok_or_else(|| bad("a button, as `yes`"))?);
+                self.boxes.buttons.0.push_back(button(value).ok_or_else(|| bad("a button, such as `yes`"))?);
             }
             ["input"] if value == "cancel" => self.boxes.inputs.0.push_back(None),
             ["input"] => self.boxes.inputs.0.push_back(Some(real()? as f32)),
@@ -210,7 +210,7 @@ impl Answers {
                 let numbers: Option<Vec<i32>> =
                     value.split(',').map(|part| part.trim().parse().ok()).collect();
                 let numbers = numbers.and_then(|numbers| numbers.try_into().ok());
-                self.setup = numbers.ok_or_else(|| bad("four whole numbers, as `1,3,3,3`"))?;
+                self.setup = numbers.ok_or_else(|| bad("four whole numbers, such as `1,3,3,3`"))?;
             }
             ["job"] if value == "active" => self.has_job = true,
             ["job"] => return Err(bad("`active`")),
@@ -260,14 +260,14 @@ mod tests {
     fn wrong_answers_say_what_is_wrong() {
         for (setting, expect) in [
             ("msgbox", "`msgbox` is not `key=value`"),
-            ("msgbox=maybe", "`maybe` is not what `msgbox` takes: a button, as `yes`"),
+            ("msgbox=maybe", "`maybe` is not valid for `msgbox`: a button, such as `yes`"),
             ("box=yes", "there is no answer `box`"),
             ("dro.q=1", "there is no answer `dro.q`"),
             ("tool.5.colour=1", "there is no answer `tool.5.colour`"),
             ("request.14=1", "0, a negative number or `never`"),
             ("setup=1,2", "four whole numbers"),
             ("var.x=1", "there is no answer `var.x`"),
-            ("boxes=shut", "`shut` is not what `boxes` takes: `wait`"),
+            ("boxes=shut", "`shut` is not valid for `boxes`: `wait`"),
         ] {
             let error = Answers::default().set(setting).expect_err(setting).to_string();
             assert!(error.contains(expect), "{setting}: {error}");

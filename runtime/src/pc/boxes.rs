@@ -35,8 +35,8 @@ impl OpenBox {
     /// How it is shown when it opens.
     pub(super) fn shown(&self) -> String {
         match self {
-            Self::Message { text, .. } => format!("message box: {text}: it waits for an answer"),
-            Self::Input { text } => format!("input box: {text}: it waits for an answer"),
+            Self::Message { text, .. } => format!("message box: {text}: waiting for an answer"),
+            Self::Input { text } => format!("input box: {text}: waiting for an answer"),
         }
     }
 }

@@ -18,7 +18,7 @@ pub enum FileError {
     #[error("this PC has no files")]
     NoFiles,
     /// The name leads out of the folder, or is none.
-    #[error("it is no name inside the folder of the PC's files")]
+    #[error("the name is outside the folder of the PC's files")]
     Outside,
     /// Something on the way is a link, which may lead anywhere.
     #[error("`{0}` is a link, and links are not followed")]

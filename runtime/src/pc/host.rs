@@ -25,7 +25,7 @@ use crate::views::Typed;
 
 /// Ticks between two polls: 0.1 s.
 const POLL_TICKS: u64 = 1111;
-/// How long a request waits for a PC that is not there before that is said: 5 s.
+/// How long a request waits for an absent PC before this is reported: 5 s.
 const PATIENCE: Cycles = Cycles::new(5 * Cycles::PER_SECOND.get());
 /// Longest string the PC reads, in words.
 const STRING_WORDS: u32 = 50;
@@ -50,7 +50,7 @@ pub(crate) struct Host {
     jog_overrides: [f32; 6],
     /// The request that is not answered and was shown.
     unanswered: i32,
-    /// Since when a request waits for a PC that is not there; `None` once that was said.
+    /// Since when a request waits for a PC that is not there; `None` once this was reported.
     waits_since: Option<Cycles>,
 }
 
@@ -467,7 +467,7 @@ mod tests {
         assert_eq!(ask(&mut desk, 15, &[100, 0, 0]), 15);
         desk.run(60_000);
         desk.run(60_000);
-        let expect = "request 15 waits for a PC, and none is connected (`host.enabled = false`)".to_owned();
+        let expect = "request 15 waits for a PC, but none is connected (`host.enabled = false`)".to_owned();
         assert_eq!(desk.diagnostics(), [expect]);
     }
 

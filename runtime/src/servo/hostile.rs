@@ -62,7 +62,7 @@ fn what_is_no_number_or_no_limit_moves_nothing_and_is_told() {
         desk.call_in_slices(name, &arguments);
         let told = desk.diagnostics();
         assert!(
-            matches!(&told[..], [text] if text.contains("is not a valid position, nothing moves")),
+            matches!(&told[..], [text] if text.contains("is not a valid position, so nothing moves")),
             "{told:?}"
         );
         desk.run(10);
@@ -125,7 +125,7 @@ fn pointers_that_point_nowhere_end_a_motion() {
         desk.call_in_slices("Move", &[0, 10.0_f64.to_bits()]);
         desk.run(100);
         assert_eq!(desk.call_i32("CheckDone", &[0]), 1, "{pointer:#x}");
-        let told = "axis 0: pcoeff points at no list of states; its motion has ended";
+        let told = "axis 0: pcoeff does not point to a list of states; its motion has ended";
         let found = desk.diagnostics();
         assert!(!found.is_empty() && found.iter().all(|text| text == told), "{pointer:#x}: {found:?}");
     }

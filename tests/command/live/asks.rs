@@ -46,7 +46,7 @@ fn a_question_waits_for_its_answer_and_the_answer_is_part_of_the_test() {
     let live = Live::start(&folder, &["ask.c"]);
     browser.open(&live.url);
     browser.until(&shows("#asks", "Coolant on?"));
-    browser.until(&shows("#console", "message box: Coolant on?: it waits for an answer"));
+    browser.until(&shows("#console", "message box: Coolant on?: waiting for an answer"));
     // What has waited so long is not answered by itself.
     browser.until("Number.parseFloat(document.querySelector('#bar .time').textContent) > 1");
     assert_eq!(browser.value(&shows("#console", "the answer is")), false);

@@ -99,7 +99,7 @@ fn a_link_that_was_given_up_is_opened_again_by_the_next_line() {
     assert_eq!(client.ask("GetPersistDec 7"), "5");
     assert_eq!(client.errors, [""; 0]);
 
-    // A failure is said once, until something has been received again.
+    // A failure is reported once, until something has been received again.
     assert_eq!(client.call(FAILED, b""), (0, Vec::new()));
     assert_eq!(client.errors, ["Read Failed - Auto Disconnect"]);
     assert_eq!(client.call(LOCATION, b"").0, -1);
@@ -205,7 +205,7 @@ fn a_thread_without_a_program_is_reported_when_it_is_to_start() {
     let mut client = server.client();
     client.write_line("Execute3");
     assert_eq!(client.ask("CheckThread3"), "0");
-    server.says("Execute3: no program is loaded in thread 3, and nothing starts");
+    server.says("Execute3: no program is loaded in thread 3, so nothing starts");
 }
 
 #[test]

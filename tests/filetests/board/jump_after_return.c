@@ -1,5 +1,5 @@
 //@ exit: 3
-//@ says: jump_after_return.c:15:9 in `main`: `longjmp` to the place at
+//@ says: jump_after_return.c:15:9 in `main`: `longjmp` to the buffer at
 //@ says: but the function that called `setjmp` there has returned
 //@ prints: marked
 #include <setjmp.h>

@@ -1,5 +1,5 @@
 //@ exit: 3
-//@ says: which no `setjmp` has filled
+//@ says: which no `setjmp` has set
 #include <setjmp.h>
 
 jmp_buf place;

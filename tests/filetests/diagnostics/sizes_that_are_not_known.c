@@ -8,12 +8,12 @@ main()
     struct unknown *u = 0;
     double d = 2;
 
-    u + 1; //~ error: the size of `struct unknown` is not known, so its pointer cannot move
-    u->x; //~ error: `struct unknown` is declared but not defined: its members are not known
+    u + 1; //~ error: the size of `struct unknown` is unknown, so pointer arithmetic is not possible
+    u->x; //~ error: `struct unknown` is declared but not defined: its members are unknown
     &bits.part.low; //~ error: a bit-field has no address
     sizeof bits.part.low; //~ error: a bit-field has no size in bytes
-    sizeof(struct unknown); //~ error: the size of `struct unknown` is not known
-    _Generic(d, int: 1); //~ error: no choice of `_Generic` has the type `double`
+    sizeof(struct unknown); //~ error: the size of `struct unknown` is unknown
+    _Generic(d, int: 1); //~ error: no association of `_Generic` has the type `double`
     __builtin_offsetof(union bits, part.low); //~ error: a bit-field has no offset in bytes
     __builtin_offsetof(int, x); //~ error: `int` has no members
 }

@@ -1,7 +1,7 @@
 // Registers by the header's macros, read, changed and written back.
 //@ args: run --verbose
-//@ says: FPGA register 0x2f0 is not known
-//@ says: FPGA register 0x2f4 is not known
+//@ says: FPGA register 0x2f0 is unknown
+//@ says: FPGA register 0x2f4 is unknown
 //@ prints: 11
 //@ prints: 1234
 #include "KMotionDef.h"

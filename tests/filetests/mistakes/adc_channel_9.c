@@ -1,5 +1,5 @@
 //@ prints: 0
-//@ says: thread 1 at adc_channel_9.c:7:20 in `main`: ReadADC(9): there are channels 0 to 7
+//@ says: thread 1 at adc_channel_9.c:7:20 in `main`: ReadADC(9): no such channel (0-7)
 #include "KMotionDef.h"
 
 main()

@@ -1,4 +1,4 @@
-//@ says: thread 1 at axis_8.c:7:5 in `main`: EnableAxis(8, …): there are axes 0 to 7
+//@ says: thread 1 at axis_8.c:7:5 in `main`: EnableAxis(8, …): no such axis (0-7)
 #include "KMotionDef.h"
 
 main()

@@ -1,4 +1,4 @@
-//@ says: thread 1 at axis_enabled_after_its_move.c:11:5 in `main`: Move: axis 0 is disabled, nothing moves
+//@ says: thread 1 at axis_enabled_after_its_move.c:11:5 in `main`: Move: axis 0 is disabled, so nothing moves
 #include "KMotionDef.h"
 
 main()

@@ -1,5 +1,5 @@
 //@ prints: Attempt to Disable invalid Chan
-//@ says: thread 1 at axis_minus_1.c:9:5 in `main`: Move(-1, …): there are axes 0 to 7
+//@ says: thread 1 at axis_minus_1.c:9:5 in `main`: Move(-1, …): no such axis (0-7)
 #include "KMotionDef.h"
 
 main()

@@ -1,4 +1,4 @@
-//@ says: thread 1 at bit_number_too_high.c:6:5 in `main`: SetBit(3000): there are bits 0 to 2047
+//@ says: thread 1 at bit_number_too_high.c:6:5 in `main`: SetBit(3000): no such bit (0-2047)
 #include "KMotionDef.h"
 
 main()

@@ -9,7 +9,7 @@
 //@ says: 18 │     Delay_sec(1);
 //@ says:    │     ^^^^^^^^^^^^ the board hangs if it does
 //@ says:    │
-//@ says:    = help: set a variable here, and call it in a thread that sees the variable
+//@ says:    = help: set a variable here, and call the function in a thread that checks the variable
 //@ says: call-back stopped at call_back_that_waits.c:18:5 in `Tick`: the call-back called a function that waits
 #include "KMotionDef.h"
 

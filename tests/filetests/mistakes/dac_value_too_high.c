@@ -1,5 +1,5 @@
 //@ args: check
-//@ says: warning[value-range]: `DAC` takes values from -2048 to 2047, and this is 2048
+//@ says: warning[value-range]: `DAC` takes values from -2048 to 2047, but this is 2048
 //@ says: dac_value_too_high.c:10:5
 #include "KMotionDef.h"
 

@@ -1,4 +1,4 @@
-//@ says: a line is written, and no file is open for writing on the PC
+//@ says: a line is written, but no file is open for writing on the PC
 #include "KMotionDef.h"
 
 main()

@@ -1,5 +1,5 @@
 //@ args: check
-//@ says: warning[redeclared]: the firmware has a `s` of its own
+//@ says: warning[redeclared]: the firmware already has a `s`
 //@ says: global_with_a_name_of_the_firmware.c:6:8
 #include "KMotionDef.h"
 

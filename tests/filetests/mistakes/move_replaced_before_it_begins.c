@@ -1,4 +1,4 @@
-//@ says: thread 1 at move_replaced_before_it_begins.c:13:5 in `main`: Move: axis 0 goes to 500 at once, the move to 1000 is replaced before it begins: wait with `while (!CheckDone(0));` in between
+//@ says: thread 1 at move_replaced_before_it_begins.c:13:5 in `main`: Move: the move of axis 0 to 1000 is replaced by one to 500 before it starts: wait with `while (!CheckDone(0));` in between
 #include "KMotionDef.h"
 
 main()

@@ -1,4 +1,4 @@
-//@ says: thread 1 at move_to_no_number.c:13:5 in `main`: Move: inf is not a valid position, nothing moves
+//@ says: thread 1 at move_to_no_number.c:13:5 in `main`: Move: inf is not a valid position, so nothing moves
 #include "KMotionDef.h"
 
 main()

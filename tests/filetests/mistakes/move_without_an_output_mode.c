@@ -1,4 +1,4 @@
-//@ says: thread 1 at move_without_an_output_mode.c:8:5 in `main`: Move: axis 0 has no OutputMode, so its Dest moves and no motor does (is a program that sets the axes up to run first?)
+//@ says: thread 1 at move_without_an_output_mode.c:8:5 in `main`: Move: axis 0 has no OutputMode, so its Dest changes but no motor moves (should an init program run first?)
 #include "KMotionDef.h"
 
 main()

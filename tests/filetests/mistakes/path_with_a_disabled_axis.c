@@ -1,5 +1,5 @@
 //@ args: --for 0.5
-//@ says: a path is to be executed, but an axis of the coordinate system is disabled, so nothing moves: enable all axes that DefineCoordSystem names
+//@ says: a path is started, but an axis of the coordinate system is disabled, so nothing moves: enable all axes named in DefineCoordSystem
 #include "KMotionDef.h"
 
 main()

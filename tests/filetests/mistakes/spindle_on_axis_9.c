@@ -1,4 +1,4 @@
-//@ says: thread 1 at spindle_on_axis_9.c:6:5 in `main`: ConfigureSpindle: axis 9; there are axes 0 to 7
+//@ says: thread 1 at spindle_on_axis_9.c:6:5 in `main`: ConfigureSpindle: no such axis (0-7): 9
 #include "KMotionDef.h"
 
 main()

@@ -1,5 +1,5 @@
 //@ args: --machine parts/home.toml
-//@ says: thread 1 at step_output_on_the_pin_of_a_switch.c:13:5 in `main`: axis 2 steps on OutputChan0 = 2, which takes bit 12, an input that the machine drives: set OutputChan0 to a free generator
+//@ says: thread 1 at step_output_on_the_pin_of_a_switch.c:13:5 in `main`: axis 2 steps on OutputChan0 = 2, which uses bit 12, an input driven by the machine: set OutputChan0 to a free generator
 #include "KMotionDef.h"
 
 main()

@@ -1,5 +1,5 @@
 //@ prints: home
-//@ says: thread 1 at step_pin_read_as_an_input.c:14:9 in `main`: ReadBit(8): bit 8 is a step or direction output, so it is no input: check OutputChan0 of the axes
+//@ says: thread 1 at step_pin_read_as_an_input.c:14:9 in `main`: ReadBit(8): bit 8 is a step or direction output, not an input: check OutputChan0 of the axes
 #include "KMotionDef.h"
 
 main()

@@ -1,4 +1,4 @@
-//@ says: thread 1 at thread_8_started.c:7:5 in `main`: StartThread(8): there are threads 1 to 7
+//@ says: thread 1 at thread_8_started.c:7:5 in `main`: StartThread(8): no such thread (1-7)
 #include "KMotionDef.h"
 
 main()

@@ -1,4 +1,4 @@
-//@ says: thread 1 at virtual_bit_range_missed.c:7:5 in `main`: SetBit(188): nothing answers bit 188: it reads 0 and cannot be written
+//@ says: thread 1 at virtual_bit_range_missed.c:7:5 in `main`: SetBit(188): nothing is connected to bit 188: it reads 0 and cannot be written
 #include "KMotionDef.h"
 
 main()

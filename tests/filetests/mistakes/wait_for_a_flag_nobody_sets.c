@@ -7,7 +7,7 @@
 //@ says:    │
 //@ says:    = help: a variable belongs to its own program: threads share `persist.UserData` and virtual bits
 //@ says: at the end, after 0.500 s of board time:
-//@ says:   thread 1 at wait_for_a_flag_nobody_sets.c:18:9 in `main` waits for `ready`, which nobody writes: it is 0 (`!ready`), since 0.000 s
+//@ says:   thread 1 at wait_for_a_flag_nobody_sets.c:18:9 in `main` has waited since 0.000 s for `ready` (now 0), which nothing writes, in `!ready`
 #include "KMotionDef.h"
 
 int ready;

@@ -1,6 +1,6 @@
 //@ args: --for 0.5
 //@ says: at the end, after 0.500 s of board time:
-//@ says:   thread 1 at wait_for_a_jog_to_end.c:17:9 in `main` waits for the end of the motion of axis 0, since 0.000 s
+//@ says:   thread 1 at wait_for_a_jog_to_end.c:17:9 in `main` has waited since 0.000 s for the end of the motion of axis 0
 //@ says:   axis 0: enabled, Dest 48.806, Position 0, moves at 100 units/s
 #include "KMotionDef.h"
 

@@ -1,6 +1,6 @@
 //@ args: --for 0.5
 //@ says: at the end, after 0.500 s of board time:
-//@ says:   thread 1 at wait_for_an_own_output.c:10:9 in `main` waits for bit 20, an output of the board: it is 0, since 0.000 s
+//@ says:   thread 1 at wait_for_an_own_output.c:10:9 in `main` has waited since 0.000 s for bit 20, an output of the board (now 0)
 #include "KMotionDef.h"
 
 main()

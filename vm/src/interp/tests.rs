@@ -146,7 +146,7 @@ fn what_a_program_must_not_do_traps() {
     check("store_i32_at r0, 0x81000000", 0x8005_0070, "write of the unmapped address 0x81000000");
     let unknown = "call of 0x10007000, where the firmware has no function";
     check("call_fw sig0, 0x10007000 | charge 9", 0x8005_0070, unknown);
-    let types = "call of 0x10008000 with other parameters than the function has";
+    let types = "call of 0x10008000 with parameters that do not match the function";
     check("call_fw sig0, 0x10008000 | charge 9", 0x8005_0070, types);
     let pointer = "call of 0x00000000, where no function of this program starts";
     check("call_ptr r0, sig0 | charge 9", 0x8005_0070, pointer);
@@ -154,7 +154,8 @@ fn what_a_program_must_not_do_traps() {
     check("const_i32 r0, 0x80060058 | call_ptr r0, sig0 | charge 9", 0x8005_0078, foreign);
     let missing = "calls `Missing`, whose behaviour the simulated board does not model yet";
     check("call_fw sig0, 0x10008048 | charge 9", 0x8005_0070, missing);
-    let end = "execution reached a place without code, as by `goto *` to something other than a label";
+    let end =
+        "execution reached an address without code, for example by `goto *` to something other than a label";
     check("unreachable | charge 9", 0x8005_0070, end);
 }
 

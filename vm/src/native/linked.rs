@@ -84,7 +84,9 @@ const fn form() -> u64 {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LinkedError {
     /// The object file was made by another version.
-    #[error("the object file and the simulator library are of different versions of cc67; build it again")]
+    #[error(
+        "the object file and the simulator library are from different versions of cc67; build the object file again"
+    )]
     Form,
     /// The code is that of another program.
     #[error("the machine code in the object file is not that of its image")]

@@ -69,7 +69,7 @@ pub enum LinkErrorKind {
         largest: Vec<String>,
     },
     /// Objects for the simulated board and for the controller's processor.
-    #[error("its code is for another target than that of the first file")]
+    #[error("its code is for a different target than the first file")]
     OtherTarget,
     /// More signatures than the bytecode can number.
     #[error("the program uses too many different function types")]

@@ -33,7 +33,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
                 )
                 .at("the board hangs if it does")
                 .label(call_back.span, "runs in every servo interrupt")
-                .help("set a variable here, and call it in a thread that sees the variable");
+                .help("set a variable here, and call the function in a thread that checks the variable");
                 sink.report(match function.symbol == root {
                     true => diagnostic,
                     false => diagnostic.note(path(program, &reached, function.symbol)),

@@ -16,14 +16,14 @@ pub(crate) fn loss(types: &Types, from: TypeId, to: TypeId) -> Option<&'static s
     }
 }
 
-/// What is said of such a conversion between types of these names.
+/// The message for such a conversion between types of these names.
 pub(crate) fn finding(from: &str, to: &str, loss: &str, span: Span) -> Diagnostic {
     Diagnostic::warning(Lint::Conversion, span, format!("a `{from}` becomes a `{to}`"))
         .at(loss)
         .help(format!("write `({to})` if this is meant"))
 }
 
-/// What is said of a constant with a fraction that is stored in an integer.
+/// The message for a constant with a fraction that is stored in an integer.
 pub(crate) fn lost_fraction(number: f64, to: &str, span: Span) -> Diagnostic {
     let whole = number.trunc();
     Diagnostic::warning(Lint::LostFraction, span, format!("the fraction of {number} is lost in a value of type `{to}`"))
@@ -31,13 +31,13 @@ pub(crate) fn lost_fraction(number: f64, to: &str, span: Span) -> Diagnostic {
         .help("store it in a `double` or a `float`; an element of `persist.UserData` holds one as `*(float *)&persist.UserData[…]`")
 }
 
-/// What is said of a quotient of integers that was cut off before it is used as a floating-point number.
+/// The message for a quotient of integers that was cut off before it is used as a floating-point number.
 pub(crate) fn division(dividend: i64, divisor: i64, span: Span) -> Diagnostic {
     let whole = dividend / divisor;
     Diagnostic::warning(
         Lint::IntegerDivision,
         span,
-        format!("`{dividend}/{divisor}` is {whole}: a division of integers has no fraction"),
+        format!("`{dividend}/{divisor}` is {whole}: integer division drops the fraction"),
     )
     .at("used as a floating-point number")
     .help(format!("write `{dividend}.0/{divisor}`"))

@@ -10,7 +10,7 @@ use crate::typed::{Definition, Linkage, Symbol};
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for symbol in program.unit.symbols.values() {
         if let Some(lint) = lint_for(program, symbol) {
-            let message = format!("the firmware has a `{}` of its own", symbol.name);
+            let message = format!("the firmware already has a `{}`", symbol.name);
             sink.report(
                 Diagnostic::warning(lint, symbol.span, message)
                     .at("this one is used in the program")

@@ -1,4 +1,4 @@
-//! Functions that call themselves: nobody can tell how much of the small stack they need.
+//! Functions that call themselves: their need of the small stack is unknown.
 
 use std::collections::BTreeMap;
 
@@ -15,7 +15,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
         let name = program.name(callee);
         let message = match callee == caller {
             true => format!("`{name}` calls itself"),
-            false => format!("`{}` calls `{name}`, which led to it", program.name(caller)),
+            false => format!("`{}` calls `{name}`, which leads back to it", program.name(caller)),
         };
         sink.report(
             Diagnostic::warning(Lint::Recursion, span, message)

@@ -3,10 +3,10 @@
 use crate::diag::{Diagnostic, Lint};
 use crate::source::Span;
 
-/// What is said of such a comparison.
+/// The message for such a comparison.
 pub(crate) fn finding(span: Span) -> Diagnostic {
     Diagnostic::warning(Lint::SignCompare, span, "a signed and an unsigned value are compared")
         .at("as unsigned: a negative value counts as a very large one")
-        .note("programs that the vendor's compiler made compare them as signed")
+        .note("the vendor's compiler compares them as signed")
         .help("cast one of them")
 }

@@ -60,7 +60,7 @@ fn large_frame(program: &AnalysedProgram<'_>, function: &Function, bytes: u32) -
     let name = program.name(function.symbol);
     let message = format!("`{name}` needs {bytes} bytes of the board's stack, which has 2048");
     let diagnostic = Diagnostic::warning(Lint::StackSize, function.span, message)
-        .note("nothing guards the end of the stack: what is too much overwrites the next thread's")
+        .note("nothing guards the end of the stack: an overflow overwrites the next thread's stack")
         .help("make large arrays `static`, or declare them outside of the function");
     let size = |local: &Local| program.unit.types.size_of(local.ty).unwrap_or(0);
     match variables(function).max_by_key(|local| size(local)) {
@@ -123,7 +123,7 @@ fn deep_chain(depths: &Depths<'_>, main: SymbolId) -> Option<Diagnostic> {
         Diagnostic::warning(Lint::StackSize, first_call?, message)
             .at("the deepest chain begins here")
             .note(format!("bytes: {}", chain.join(" → ")))
-            .note("nothing guards the end of the stack: what is too much overwrites the next thread's")
+            .note("nothing guards the end of the stack: an overflow overwrites the next thread's stack")
             .help("make large arrays `static`, or declare them outside of the functions"),
     )
 }

@@ -38,14 +38,14 @@ impl DacWord {
         }
     }
 
-    /// What is said where it is stored.
+    /// The message where it is stored.
     pub(crate) fn finding(self, span: Span) -> Option<Diagnostic> {
         let value = self.value;
         if !self.is_cut || (-DAC_ZERO..DAC_ZERO).contains(&value) {
             return None;
         }
         let wrapped = ((value + DAC_ZERO) & DAC_BITS) - DAC_ZERO;
-        let message = format!("`DAC` takes values from -{DAC_ZERO} to {}, and this is {value}", DAC_ZERO - 1);
+        let message = format!("`DAC` takes values from -{DAC_ZERO} to {}, but this is {value}", DAC_ZERO - 1);
         Some(
             Diagnostic::warning(Lint::ValueRange, span, message)
                 .at(format!("the output has 12 bits and is set to {wrapped}")),
@@ -65,7 +65,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
             };
             let ExprKind::Int(value) = argument.kind else { continue };
             if value.unsigned_abs() > u64::from(most.unsigned_abs()) {
-                let message = format!("`{name}` takes values from -{most} to {most}, and this is {value}");
+                let message = format!("`{name}` takes values from -{most} to {most}, but this is {value}");
                 sink.report(
                     Diagnostic::warning(Lint::ValueRange, argument.span, message)
                         .at(format!("the board limits it to {}", i64::from(*most) * value.signum())),

@@ -37,10 +37,10 @@ pub enum ReadError {
     #[error("the object has no section {0}")]
     Missing(&'static str),
     /// It is made by another version of cc67, or damaged.
-    #[error("the code of the object is not of this version of cc67; compile it again")]
+    #[error("the object was compiled by another version of cc67; compile it again")]
     Code,
     /// A symbol does not fit the sections.
-    #[error("symbol `{0}` lies outside its section")]
+    #[error("symbol `{0}` is outside its section")]
     Symbol(String),
     /// A relocation does not fit the code or the data.
     #[error("the relocation at {address:#x} of {section} is wrong")]

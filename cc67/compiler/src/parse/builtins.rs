@@ -39,7 +39,7 @@ impl Parser<'_> {
     pub(super) fn assembler(&mut self) -> Parsed<()> {
         let span = self.peek().span;
         self.fail(
-            Diagnostic::error(span, "assembler is not supported")
+            Diagnostic::error(span, "inline assembly is not supported")
                 .note("programs are compiled to bytecode, not to instructions of the DSP"),
         )
     }

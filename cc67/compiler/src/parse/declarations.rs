@@ -99,7 +99,8 @@ impl Parser<'_> {
         let name =
             declarator.name.map_or_else(String::new, |(name, _)| format!(" `{}`", self.spelling(name)));
         let span = declarator.name.map_or(declarator.span, |(_, span)| span);
-        let mut diagnostic = Diagnostic::error(span, format!("function{name} is defined within a function"));
+        let mut diagnostic =
+            Diagnostic::error(span, format!("function{name} is defined inside another function"));
         let first = self.tokens.get(start).copied().unwrap_or(self.end);
         let column = self.sources.place(first.span).map_or(1, |place| place.column);
         let is_outer = first.flags.has(Flags::LINE_START) && column == 1;
@@ -272,7 +273,7 @@ impl Parser<'_> {
         self.at += 1;
         let span = first.span.to(self.peek().span);
         let name = format!("{}_{}", self.text(first.span), self.text(self.peek().span));
-        let diagnostic = Diagnostic::error(span, "a name holds letters, digits and `_` only");
+        let diagnostic = Diagnostic::error(span, "a name can contain only letters, digits and `_`");
         self.report(diagnostic.help(format!("write `{name}`")));
         true
     }
@@ -411,9 +412,9 @@ impl Parser<'_> {
         let diagnostic =
             Diagnostic::error(token.span, format!("statement outside of a function, at `{text}`"));
         self.fail(match before {
-            Some(brace) if brace.kind == TokenKind::RightBrace && self.has_function => diagnostic
-                .label(brace.span, "this `}` ends the function before")
-                .help("remove the `}` that is too many"),
+            Some(brace) if brace.kind == TokenKind::RightBrace && self.has_function => {
+                diagnostic.label(brace.span, "this `}` ends the function before").help("remove the extra `}`")
+            }
             _ => diagnostic.help("put it between the braces of a function such as `main() { … }`"),
         })
     }

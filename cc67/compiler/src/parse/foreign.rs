@@ -52,7 +52,7 @@ impl Parser<'_> {
         if !fits {
             return None;
         }
-        let message = format!("`{written}` is not a word of C; letter case matters");
+        let message = format!("`{written}` is not a C keyword; case matters");
         let diagnostic = Diagnostic::error(self.peek().span, message).help(format!("write `{small}`"));
         self.report(diagnostic);
         Some(keyword)
@@ -65,7 +65,7 @@ impl Parser<'_> {
         if !is_known || self.kind_at(1) != TokenKind::LeftParen {
             return false;
         }
-        let message = format!("`{written}` is not a word of C");
+        let message = format!("`{written}` is not a C keyword");
         let diagnostic = Diagnostic::error(self.peek().span, message).help("write `else if`");
         self.report(diagnostic);
         true
@@ -88,7 +88,7 @@ impl Parser<'_> {
         let start = self.peek().span;
         let written = self.unknown_word()?;
         let (language, message, help) = if is_block_end(written) && self.kind_at(1) != TokenKind::LeftParen {
-            let message = format!("`{written}` is not a word of C");
+            let message = format!("`{written}` is not a C keyword");
             (Language::Basic, message, "`}` ends what `{` began".to_owned())
         } else if written == "delete" && self.kind_at(1) != TokenKind::LeftParen {
             let message = "`delete` belongs to C++".to_owned();

@@ -83,7 +83,7 @@ impl Parser<'_> {
     fn surplus_bracket(&mut self) -> Parsed<Statement> {
         let token = self.next();
         let text = token.kind.punctuator().unwrap_or_default();
-        self.report(Diagnostic::error(token.span, format!("one `{text}` too many")).at("closes nothing"));
+        self.report(Diagnostic::error(token.span, format!("extra `{text}`")).at("closes nothing"));
         while matches!(self.kind(), TokenKind::RightParen | TokenKind::RightBracket) {
             self.at += 1;
         }
@@ -168,7 +168,7 @@ impl Parser<'_> {
         Ok(self.finish(StatementKind::Expression(expression), start))
     }
 
-    /// `( … )` after `if` and its kin. If it cannot be parsed the statement is parsed all the same.
+    /// `( … )` after `if`, `while` and the like. If it cannot be parsed the statement is parsed all the same.
     fn condition(&mut self, keyword: &str) -> Parsed<Expression> {
         let start = self.peek();
         if start.kind != TokenKind::LeftParen {

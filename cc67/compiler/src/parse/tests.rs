@@ -249,7 +249,7 @@ fn specifiers() {
     errors("unsigned double a;", &["1:1: `unsigned double` is not a type"]);
     errors("static extern int a;", &["1:8: two storage classes in one declaration"]);
     errors("int double a;", &["1:5: `double` is one type too many"]);
-    errors("asm(\"nop\");", &["1:1: assembler is not supported"]);
+    errors("asm(\"nop\");", &["1:1: inline assembly is not supported"]);
 }
 
 #[test]
@@ -429,14 +429,17 @@ fn unknown_types_are_reported_once() {
 
 #[test]
 fn what_is_not_supported_says_so() {
-    errors("main() { int f(int a) { return a; } x; }", &["1:14: function `f` is defined within a function"]);
-    errors("main() { f(a) { return a; } x; }", &["1:10: function `f` is defined within a function"]);
+    errors(
+        "main() { int f(int a) { return a; } x; }",
+        &["1:14: function `f` is defined inside another function"],
+    );
+    errors("main() { f(a) { return a; } x; }", &["1:10: function `f` is defined inside another function"]);
     errors(
         "main() {\n if (x) {\n y;\n}\n\nint f() { return 1; }\nint g() { return 2; }",
-        &["6:5: function `f` is defined within a function"],
+        &["6:5: function `f` is defined inside another function"],
     );
     errors("main() { p = &&1; x; }", &["1:14: `&&` before an operand needs a label"]);
-    errors("main() { asm(\"nop\"); x; }", &["1:10: assembler is not supported"]);
+    errors("main() { asm(\"nop\"); x; }", &["1:10: inline assembly is not supported"]);
     errors("double _Complex z;", &["1:8: complex numbers are not supported"]);
 }
 

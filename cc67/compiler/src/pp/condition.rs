@@ -98,9 +98,8 @@ impl Parser<'_, '_> {
                 let is_call = token.kind == TokenKind::LeftParen;
                 let diagnostic = match before.filter(|before| is_call && before.kind == TokenKind::Identifier)
                 {
-                    Some(before) if before.name == word::SIZEOF => {
-                        diagnostic.note("the preprocessor knows no types, so `sizeof` means nothing to it")
-                    }
+                    Some(before) if before.name == word::SIZEOF => diagnostic
+                        .note("the preprocessor does not know types, so it cannot evaluate `sizeof`"),
                     Some(before) => diagnostic.note(format!("no macro `{}` is defined", self.text(*before))),
                     None => diagnostic,
                 };

@@ -84,7 +84,7 @@ impl Preprocessor<'_> {
         self.sink.report(
             Diagnostic::error(token.span, message)
                 .at("in the parameters of a macro")
-                .note("`(` directly after its name gives a macro parameters; for a body in parentheses put a blank between"),
+                .note("`(` directly after its name gives a macro parameters; for a body in parentheses, put a space between"),
         );
         None
     }
@@ -152,7 +152,7 @@ impl Preprocessor<'_> {
             return;
         }
         let before = definition.definition;
-        let message = format!("macro `{}` is defined again with another body", self.names.get(name.name));
+        let message = format!("macro `{}` is redefined with a different body", self.names.get(name.name));
         self.sink.report(
             Diagnostic::warning(Lint::MacroRedefined, name.span, message)
                 .at("this one counts from here on")

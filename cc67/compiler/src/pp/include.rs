@@ -38,12 +38,8 @@ impl Preprocessor<'_> {
         if !header.is_closed {
             let (missing, other) = if header.is_angled { ('>', '<') } else { ('"', '"') };
             self.sink.report(
-                Diagnostic::warning(
-                    LAX,
-                    header.span,
-                    format!("missing `{missing}` after the name of the file"),
-                )
-                .at(format!("the rest of the line after `{other}` is taken for the name")),
+                Diagnostic::warning(LAX, header.span, format!("missing `{missing}` after the file name"))
+                    .at(format!("the rest of the line after `{other}` is taken for the name")),
             );
         }
         self.finish_line();
@@ -65,8 +61,7 @@ impl Preprocessor<'_> {
     fn computed_header(&mut self, directive: Span) -> Option<HeaderName> {
         let tokens = self.directive_tokens();
         let Some((first, rest)) = tokens.split_first() else {
-            self.sink
-                .report(Diagnostic::error(directive, "name of a file missing").at("expected `\"name\"`"));
+            self.sink.report(Diagnostic::error(directive, "file name missing").at("expected `\"name\"`"));
             return None;
         };
         let span = self.sources.call_site(first.span);
@@ -90,7 +85,7 @@ impl Preprocessor<'_> {
                 Some(HeaderName { name, is_angled: true, is_closed: end.is_some(), span })
             }
             _ => {
-                let message = "expected the name of a file after `#include`";
+                let message = "expected a file name after `#include`";
                 self.sink
                     .report_lost_names(Diagnostic::error(span, message).help("write `#include \"name\"`"));
                 None
@@ -101,7 +96,7 @@ impl Preprocessor<'_> {
     fn find_and_open(&mut self, header: &HeaderName) {
         let name = header.name.replace('\\', "/");
         if name.trim().is_empty() {
-            self.sink.report(Diagnostic::error(header.span, "name of a file missing"));
+            self.sink.report(Diagnostic::error(header.span, "file name missing"));
             return;
         }
         let directories = self.directories(header.is_angled);
@@ -111,15 +106,15 @@ impl Preprocessor<'_> {
                     let message = format!("`{}` is `{}` on disk", header.name, path.display());
                     self.sink.report(
                         Diagnostic::remark(header.span, message)
-                            .note("systems other than Windows tell letter case apart"),
+                            .note("file names are case-sensitive on systems other than Windows"),
                     );
                 }
                 self.open_found(path, text, header.span);
             }
             Some(Found::Ambiguous(paths)) => {
-                let message = format!("`{}` can be several files", header.name);
+                let message = format!("`{}` matches several files", header.name);
                 let diagnostic =
-                    Diagnostic::error(header.span, message).help("write the name in its letter case");
+                    Diagnostic::error(header.span, message).help("write the name in the same case");
                 self.sink.report_lost_names(
                     paths.iter().fold(diagnostic, |it, path| it.note(format!("`{}`", path.display()))),
                 );
@@ -219,7 +214,7 @@ impl Preprocessor<'_> {
         }
         let total = self.sources.end().saturating_add(length);
         if total > limits::TOTAL_BYTES {
-            self.stop(at, format!("included files have more than {} bytes together", limits::TOTAL_BYTES));
+            self.stop(at, format!("included files exceed {} bytes in total", limits::TOTAL_BYTES));
             return false;
         }
         true
@@ -237,7 +232,7 @@ impl Preprocessor<'_> {
             diagnostic = diagnostic.note(format!("looked in `{}`", shown.display()));
         }
         if header.is_angled && directories.is_empty() {
-            diagnostic = diagnostic.note("names in `<>` are looked for in the directories of `-I` only");
+            diagnostic = diagnostic.note("names in `<>` are searched for only in the directories of `-I`");
         }
         // What headers of C++ declare gets messages of its own.
         if header.is_angled && !file_name.contains('.') {

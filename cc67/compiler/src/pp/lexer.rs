@@ -245,9 +245,9 @@ impl Lexer {
         if has_blanks && self.at >= self.checked_splices {
             let span = self.span_to(self.at, self.at + 1);
             cx.sink.report(
-                Diagnostic::warning(super::LAX, span, "blanks after a backslash at the end of a line")
+                Diagnostic::warning(super::LAX, span, "whitespace after a backslash at the end of a line")
                     .at("this line is joined with the next")
-                    .help("remove the blanks; other compilers do not join the lines"),
+                    .help("remove the whitespace; other compilers do not join the lines"),
             );
             self.checked_splices = behind;
         }

@@ -14,7 +14,7 @@ pub enum Number {
     Integer {
         /// The value with its suffixes.
         literal: IntegerLiteral,
-        /// It has a suffix `f`, which the vendor's compiler drops without a word.
+        /// It has a suffix `f`, which the vendor's compiler silently drops.
         has_float_suffix: bool,
     },
     /// A floating constant.
@@ -235,7 +235,7 @@ fn bad_suffix(text: &[u8], at: usize, kind: &str) -> Problem {
     let suffix = String::from_utf8_lossy(text.get(at..).unwrap_or(&[])).into_owned();
     let problem = Problem::new(at..text.len(), format!("invalid suffix `{suffix}` on {kind} constant"));
     if suffix.starts_with(['+', '-']) {
-        problem.help("put a blank before the sign; the letter before it makes it an exponent")
+        problem.help("put a space before the sign; the letter before it makes it an exponent")
     } else if suffix.contains('.') {
         problem.help("a number has one decimal point")
     } else {

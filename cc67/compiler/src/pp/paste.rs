@@ -56,7 +56,7 @@ impl Preprocessor<'_> {
         let span = Span { expansion, ..self.sources.add_scratch(&text) };
         let mut lexer = Lexer::new(Arc::new(text), span.lo);
         lexer.in_directive = true;
-        // What is wrong with the joined text is said here or when the token is used.
+        // Faults of the joined text are reported here or when the token is used.
         let mut quiet = crate::diag::Sink::new();
         let joined = lexer.next(&mut LexerContext { names: self.names, sink: &mut quiet });
         if joined.span.lo == span.lo && joined.span.hi == span.hi && !quiet.has_errors() {
@@ -78,7 +78,7 @@ impl Preprocessor<'_> {
         if length <= limits::MADE_BYTES {
             return false;
         }
-        self.stop(span, format!("macro makes a token longer than {} bytes", limits::MADE_BYTES));
+        self.stop(span, format!("macro expansion creates a token longer than {} bytes", limits::MADE_BYTES));
         true
     }
 }

@@ -4,7 +4,7 @@ use super::*;
 
 const EMBEDDED: &[(&str, &[u8])] = &[("KMotionDef.h", b"#ifndef KM\n#define KM\nint km;\n#endif\n")];
 
-/// The preprocessed text of `main.c` and what was said about it.
+/// The preprocessed text of `main.c` and the messages about it.
 fn run(files: &MemoryFiles, main: &str, options: &Options) -> (String, Vec<String>) {
     let mut sources = SourceMap::new();
     let mut names = Names::new();
@@ -30,7 +30,7 @@ fn check(input: impl AsRef<[u8]>, expect: &str) {
     said(input, expect, &[]);
 }
 
-/// Input with what is said about it.
+/// Input with the messages about it.
 fn said(input: impl AsRef<[u8]>, expect: &str, said: &[&str]) {
     let files = MemoryFiles::new().with("main.c", input.as_ref());
     let (text, found) = run(&files, "main.c", &options());
@@ -48,7 +48,7 @@ fn line_ends_and_blanks() {
     check("int a;\n\x1A", "int a;");
     check("int a;\n\x1A\0\0\r\n", "int a;");
     check("in\\\nt a\\\r\nb = 1\\\n2;", "int ab = 12;");
-    said("int a \\ \nb;", "int a b;", &["1:7: warning: blanks after a backslash at the end of a line"]);
+    said("int a \\ \nb;", "int a b;", &["1:7: warning: whitespace after a backslash at the end of a line"]);
     check("a+\\\n+b; c<\\\n<\\\n=d; e.\\\n.\\\n.;", "a++b; c<<=d; e...;");
 }
 
@@ -79,7 +79,7 @@ fn quoted_text() {
 
 #[test]
 fn characters_that_c_does_not_know() {
-    said("a\u{A0}b\u{A0}c", "a b c", &["1:2: warning: no-break space (u+00a0) is taken for a blank"]);
+    said("a\u{A0}b\u{A0}c", "a b c", &["1:2: warning: no-break space (u+00a0) is treated as a space"]);
     said(
         "f(\u{201C}a b\u{201D});",
         "f(\u{201C}a b\u{201D});",
@@ -108,7 +108,7 @@ fn object_like_macros() {
     check("#define A \\\n 1 \\\n 2\nA", "1 2");
     check("#define A 1\n#define A 1\nA", "1");
     check("#define a b##c\na", "bc");
-    said("#define A 1\n#define A 2\nA", "2", &["2:9: warning: macro `a` is defined again with another body"]);
+    said("#define A 1\n#define A 2\nA", "2", &["2:9: warning: macro `a` is redefined with a different body"]);
     check("#define z z[0]\nz", "z[0]");
 }
 
@@ -307,8 +307,8 @@ fn includes() {
         &["1:10: note: `modbusmaster.h` is `inc/modbusmaster.h` on disk"],
     );
     check("#include \"x.h\"", "x1", &[]);
-    check("#include \"inc/X.H\"", "", &["1:10: error: `inc/x.h` can be several files"]);
-    check("#include \"b.h  ", "b", &["1:10: warning: missing `\"` after the name of the file"]);
+    check("#include \"inc/X.H\"", "", &["1:10: error: `inc/x.h` matches several files"]);
+    check("#include \"b.h  ", "b", &["1:10: warning: missing `\"` after the file name"]);
     check("#define H \"b.h\"\n#include H", "b", &[]);
     check("#define H <b.h>\n#include H", "b", &[]);
     check("#include \"b.h\"\n#include \"b.h\"", "b b", &[]);
@@ -318,8 +318,8 @@ fn includes() {
     check("#include <iso646.h>\n#include \"MEMORY.H\"", "", &[]);
     check("#include <stdbool.h>\ntrue", "1", &[]);
     check("#include \"ab.h\"", "", &["1:10: error: file `ab.h` not found"]);
-    check("#include x", "", &["1:10: error: expected the name of a file after `#include`"]);
-    check("#include", "", &["1:1: error: name of a file missing"]);
+    check("#include x", "", &["1:10: error: expected a file name after `#include`"]);
+    check("#include", "", &["1:1: error: file name missing"]);
 }
 
 #[test]

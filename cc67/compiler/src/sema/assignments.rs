@@ -55,7 +55,7 @@ impl Sema<'_> {
         let is_call = matches!(to.kind, ExpressionKind::Call(..));
         if is_call {
             self.report(
-                Diagnostic::error(to.span, "what a function returns cannot be assigned to")
+                Diagnostic::error(to.span, "the result of a function cannot be assigned to")
                     .help("write `==` to compare"),
             );
         }
@@ -95,7 +95,7 @@ impl Sema<'_> {
         }
         if located.ty.is_const {
             self.report(
-                Diagnostic::warning(Lint::ConstWrite, span, "a `const` object is changed")
+                Diagnostic::warning(Lint::ConstWrite, span, "a `const` object is modified")
                     .at("declared `const`")
                     .note("the vendor's compiler ignores `const`, and so does this one"),
             );

@@ -20,7 +20,7 @@ pub(super) struct Declared<'t> {
     pub(super) span: Span,
     /// The type.
     pub(super) ty: QualifiedType,
-    /// The alignment asked for, else 1.
+    /// The alignment requested, else 1.
     pub(super) align: u32,
     /// The initialiser.
     pub(super) initializer: Option<&'t Initializer>,
@@ -81,7 +81,7 @@ impl Sema<'_> {
         match self.scopes.lookup_here(name).map(|binding| (binding.entity, binding.span)) {
             Some((Entity::Typedef(known), first)) if known != ty => {
                 let (new, old) = (self.spell(ty.ty), self.spell(known.ty));
-                let message = format!("typedef `{}` is defined again as another type", self.spelling(name));
+                let message = format!("typedef `{}` is redefined as a different type", self.spelling(name));
                 self.report(
                     Diagnostic::error(span, message)
                         .at(format!("`{new}` here"))
@@ -251,7 +251,7 @@ impl Sema<'_> {
         let (known_type, first) = (known.ty, known.span);
         if !self.types.compatible(known_type, ty) {
             let (old, new) = (self.spell(known_type), self.spell(ty));
-            let message = format!("`{}` is declared again with another type", self.spelling(name));
+            let message = format!("`{}` is redeclared with a different type", self.spelling(name));
             self.report(
                 Diagnostic::error(span, message)
                     .at(format!("`{new}` here"))

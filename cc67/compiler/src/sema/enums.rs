@@ -81,7 +81,7 @@ impl Sema<'_> {
             (Some((Entity::Enumerator(old), first)), Some(value)) => {
                 if old != value {
                     let name = self.spelling(enumerator.name);
-                    let message = format!("enumerator `{name}` is declared again with another value");
+                    let message = format!("enumerator `{name}` is redeclared with a different value");
                     self.report(
                         Diagnostic::warning(Lint::Redeclared, enumerator.span, message)
                             .at(format!("{value} from here on"))

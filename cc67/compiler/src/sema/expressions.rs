@@ -201,7 +201,7 @@ impl Sema<'_> {
     fn arrow_base(&mut self, operand: Operand, base: &Expression, member: Name) -> Option<Located> {
         if self.is_record(operand) {
             let (spelled, member) = (self.spell(self.operand_type(operand).ty), self.spelling(member));
-            let message = format!("`->` needs a pointer, and this is a `{spelled}`");
+            let message = format!("`->` needs a pointer, but this is a `{spelled}`");
             let help = format!("use `.{member}`");
             self.report(Diagnostic::error(base.span, message).help(help));
             return None;
@@ -210,7 +210,7 @@ impl Sema<'_> {
         let ty = self.body.ty(pointer);
         let Some(to) = self.types.pointee(ty).filter(|to| self.types.record_of(to.ty).is_some()) else {
             let (spelled, member) = (self.spell(ty), self.spelling(member));
-            let message = format!("`->{member}` needs a pointer to a structure, and this is `{spelled}`");
+            let message = format!("`->{member}` needs a pointer to a structure, but this is `{spelled}`");
             self.report(Diagnostic::error(base.span, message));
             return None;
         };
@@ -226,7 +226,7 @@ impl Sema<'_> {
         let ty = self.operand_type(operand).ty;
         let (spelled, member) = (self.spell(ty), self.spelling(member));
         let mut diagnostic =
-            Diagnostic::error(base.span, format!("`.{member}` needs a structure, and this is `{spelled}`"));
+            Diagnostic::error(base.span, format!("`.{member}` needs a structure, but this is `{spelled}`"));
         if self.types.pointee(ty).is_some_and(|to| self.types.record_of(to.ty).is_some()) {
             diagnostic = diagnostic.help(format!("use `->{member}`"));
         }
@@ -241,7 +241,7 @@ impl Sema<'_> {
         let spelled = self.spell(ty);
         let spelling = self.spelling(member);
         let Some(layout) = &self.types.record(record).layout else {
-            let message = format!("`{spelled}` is declared but not defined: its members are not known");
+            let message = format!("`{spelled}` is declared but not defined: its members are unknown");
             self.report(Diagnostic::error(span, message));
             return;
         };
@@ -302,7 +302,7 @@ impl Sema<'_> {
         if ty.is_arithmetic() {
             return Some(self.promote(value, operand.span));
         }
-        let message = format!("`{operator}` needs a number, and this is `{}`", self.spell(ty));
+        let message = format!("`{operator}` needs a number, but this is `{}`", self.spell(ty));
         self.report(Diagnostic::error(operand.span, message));
         None
     }
@@ -310,13 +310,14 @@ impl Sema<'_> {
     fn dereference(&mut self, pointer: ExprId, span: Span) -> Option<Operand> {
         let ty = self.body.ty(pointer);
         let Some(to) = self.types.pointee(ty) else {
-            let message = format!("`*` needs a pointer, and this is `{}`", self.spell(ty));
+            let message = format!("`*` needs a pointer, but this is `{}`", self.spell(ty));
             self.report(Diagnostic::error(span, message));
             return None;
         };
         if to.ty.is_void() {
             self.report(
-                Diagnostic::error(span, "a `void *` cannot be followed").help("cast it, as in `*(int *)p`"),
+                Diagnostic::error(span, "a `void *` cannot be dereferenced")
+                    .help("cast it, as in `*(int *)p`"),
             );
             return None;
         }
@@ -400,7 +401,7 @@ impl Sema<'_> {
     /// The size of a type as `int`: signed, as the vendor's compiler has it (`dialect.md` 1.1).
     fn sizeof(&mut self, ty: TypeId, span: Span) -> Option<ExprId> {
         let Some(size) = self.types.size_of(ty) else {
-            let message = format!("the size of `{}` is not known", self.spell(ty));
+            let message = format!("the size of `{}` is unknown", self.spell(ty));
             self.report(Diagnostic::error(span, message));
             return None;
         };
@@ -482,7 +483,7 @@ impl Sema<'_> {
             }
         }
         let Some(choice) = default else {
-            let message = format!("no choice of `_Generic` has the type `{}`", self.spell(ty));
+            let message = format!("no association of `_Generic` has the type `{}`", self.spell(ty));
             self.report(Diagnostic::error(span, message).help("add `default:`"));
             return None;
         };

@@ -128,8 +128,10 @@ impl Sema<'_> {
     pub(super) fn step_size(&mut self, element: QualifiedType, span: Span) -> Option<u32> {
         let size = self.types.size_of(element.ty);
         if size.is_none() {
-            let message =
-                format!("the size of `{}` is not known, so its pointer cannot move", self.spell(element.ty));
+            let message = format!(
+                "the size of `{}` is unknown, so pointer arithmetic is not possible",
+                self.spell(element.ty)
+            );
             self.report(Diagnostic::error(span, message));
         }
         size
@@ -234,8 +236,8 @@ impl Sema<'_> {
             let is_text =
                 [a, b].iter().any(|ty| self.types.pointee(*ty).is_some_and(|to| to.ty.is_character()));
             if is_text && operator == "+" {
-                diagnostic =
-                    diagnostic.help("texts are not added; `printf(\"%f\\n\", value)` puts numbers in text");
+                diagnostic = diagnostic
+                    .help("strings cannot be added; `printf(\"%f\\n\", value)` puts numbers in text");
             }
         } else if a.is_floating() || b.is_floating() {
             diagnostic = diagnostic.note("floating-point values support only `+ - * /` and comparisons");
@@ -327,7 +329,7 @@ impl Sema<'_> {
             }
             _ => {
                 let (left, right) = (self.spell(x), self.spell(y));
-                let message = format!("the branches of `?:` do not fit together: `{left}` and `{right}`");
+                let message = format!("the branches of `?:` have incompatible types: `{left}` and `{right}`");
                 self.report(Diagnostic::error(span, message));
                 None
             }
@@ -372,7 +374,7 @@ impl Sema<'_> {
 
     fn refuse_branches(&mut self, a: Operand, b: Operand, span: Span) -> Option<Operand> {
         let (left, right) = (self.spell(self.operand_type(a).ty), self.spell(self.operand_type(b).ty));
-        let message = format!("the branches of `?:` do not fit together: `{left}` and `{right}`");
+        let message = format!("the branches of `?:` have incompatible types: `{left}` and `{right}`");
         self.report(Diagnostic::error(span, message));
         None
     }

@@ -107,7 +107,7 @@ impl Sema<'_> {
             let tag = specifier.tag.map_or("", |(tag, _)| self.names.get(tag)).to_owned();
             let span = specifier.tag.map_or(specifier.span, |(_, span)| span);
             self.report(
-                Diagnostic::error(span, format!("`{tag}` is defined again with other members"))
+                Diagnostic::error(span, format!("`{tag}` is redefined with different members"))
                     .label(first, "first definition"),
             );
             return;
@@ -261,7 +261,7 @@ impl Sema<'_> {
                 .is_some_and(|inner| self.types.find_member(inner, name).is_some()),
         });
         if is_taken {
-            let message = format!("a member `{}` exists already", self.spelling(name));
+            let message = format!("duplicate member `{}`", self.spelling(name));
             self.report(Diagnostic::error(span, message));
             return None;
         }

@@ -77,7 +77,7 @@ impl Sema<'_> {
             self.body.jumps.has_lost_case = true;
             self.report(
                 Diagnostic::error(span, "`case` outside of a `switch`")
-                    .help("is there a `}` too many before it?"),
+                    .help("is there an extra `}` before it?"),
             );
             return;
         };

@@ -1,4 +1,4 @@
-//! How a run ended: which threads have not, where they are and what they wait for; what the axes do.
+//! The end of a run: threads that have not ended, with place and reason of their wait; the axes.
 
 use std::fmt;
 use std::fs;
@@ -91,9 +91,12 @@ impl fmt::Display for EndingThread {
         match &*self.waits_for {
             [] => write!(f, " is {}", self.state)?,
             all if self.state == "paused" => write!(f, " is paused; it waited for {}", all.join(", "))?,
+            all if self.state == "waiting" => {
+                write!(f, " has waited since {:.3} s for {}", self.since, all.join(", "))?;
+            }
             all => write!(f, " waits for {}", all.join(", "))?,
         }
-        if self.state == "waiting" { write!(f, ", since {:.3} s", self.since) } else { Ok(()) }
+        Ok(())
     }
 }
 
@@ -167,11 +170,11 @@ impl<E: Engine> Session<E> {
         let condition = WaitCondition::around(&text, call.line?)?;
         let Some(name) = condition.operand() else { return Some(format!("`{}`", condition.text())) };
         let value = self.watch(&format!("{thread}:{name}")).map(|watch| watch.value(&self.board));
-        let value = value.map_or(String::new(), |value| format!(": it is {}", number(value)));
+        let value = value.map_or(String::new(), |value| format!(" (now {})", number(value)));
         let main = source_text(&program.path, &program.name()).unwrap_or_default();
         let is_written = [&text, &main].iter().any(|text| WaitCondition::writes(text, name));
-        let nobody = if is_written { "" } else { ", which nobody writes" };
-        Some(format!("`{name}`{nobody}{value} (`{}`)", condition.text()))
+        let unwritten = if is_written { "" } else { ", which nothing writes," };
+        Some(format!("`{name}`{value}{unwritten} in `{}`", condition.text()))
     }
 }
 
@@ -208,14 +211,14 @@ fn awaited_words(awaited: &Awaited) -> String {
 
 fn bit_words(bit: Bit, level: u8, source: &Source) -> String {
     match source {
-        Source::Nothing => format!("bit {bit}, an input that nothing drives: it is {level}"),
+        Source::Nothing => format!("bit {bit}, an input that nothing drives (now {level})"),
         Source::Contact(axis, place, active, load) => {
             let (load, active) = (number(*load), u8::from(*active));
-            format!("bit {bit}, which is {level}: its switch is {active} {place}, axis {axis} is at {load}")
+            format!("bit {bit} (now {level}): its switch is {active} {place}, and axis {axis} is at {load}")
         }
-        Source::Outside => format!("bit {bit}, which is {level}"),
-        Source::Output => format!("bit {bit}, an output of the board: it is {level}"),
-        Source::Memory => format!("bit {bit}, which only programs set: it is {level}"),
+        Source::Outside => format!("bit {bit} (now {level})"),
+        Source::Output => format!("bit {bit}, an output of the board (now {level})"),
+        Source::Memory => format!("bit {bit}, which only programs set (now {level})"),
         Source::NoKstep => format!("bit {bit} of a KStep, which reads 0 until KStepPresent is set"),
     }
 }

@@ -1,6 +1,6 @@
 //! Expressions in the words of the programs: C, read from the board's memory and written to it.
 //!
-//! `axis0` is all that belongs to an axis, `bit46` and its kin are items of the board; everything else is C in
+//! `axis0` is all that belongs to an axis, `bit46` and similar names are items of the board; everything else is C in
 //! the words of the programs that are loaded. `2:count` is the `count` of the program in thread 2. To look at an
 //! expression changes nothing and takes no time.
 
@@ -44,7 +44,7 @@ pub enum WatchError {
     #[error("an expression is missing, such as axis0,bit46,persist.5")]
     Missing,
     /// It is too long to be one.
-    #[error("an expression may have {MOST} characters")]
+    #[error("an expression can have at most {MOST} characters")]
     TooLong,
     /// The compiler refuses it.
     #[error("`{expression}`: {message}")]
@@ -153,7 +153,7 @@ impl<E: Engine> Session<E> {
         Ok(())
     }
 
-    /// Records from now on what is asked for; the records come as events.
+    /// Records from now on what is requested; the records come as events.
     pub fn record(&mut self, request: runtime::trace::TraceRequest) {
         self.board.record(request);
     }

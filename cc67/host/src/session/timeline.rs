@@ -24,7 +24,7 @@ const MOST: usize = 256;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TimelineError {
     /// The timeline begins later.
-    #[error("the timeline begins at tick {}", .0.get())]
+    #[error("the timeline starts at tick {}", .0.get())]
     TooEarly(Ticks),
     /// The snapshots are of another session.
     #[error(transparent)]

@@ -1,8 +1,8 @@
 //! The session under the clock: it goes as far as the clock says, does what pages ask for, and shows itself to them.
 //!
-//! A beat is: take what has come, run to the tick that is due, say what was said, send a frame to each page that is due
-//! one. All of it happens on one thread, so what pages ask for falls between two ticks. A session that somebody else runs
-//! has the same beat without the second step: a [`LiveView`].
+//! A beat is: take what has come, run to the tick that is due, report new messages, send a frame to each page that is
+//! due one. All of it happens on one thread, so what pages ask for falls between two ticks. A session that somebody
+//! else runs has the same beat without the second step: a [`LiveView`].
 
 mod clock;
 mod frame;
@@ -446,5 +446,5 @@ fn asks(open_box: Option<&OpenBox>) -> Value {
 }
 
 fn checked(thread: i32) -> Result<ThreadId, String> {
-    ThreadId::new(thread).ok_or_else(|| format!("there is no thread {thread}; there are 1 to 7"))
+    ThreadId::new(thread).ok_or_else(|| format!("no such thread {thread} (1-7)"))
 }

@@ -171,7 +171,7 @@ def _check_thread(thread: int) -> None:
     if isinstance(thread, bool) or not isinstance(thread, int):
         raise TypeError(f"a thread is a number from 1 to 7, not {thread!r}")
     if not 1 <= thread <= 7:
-        raise InputError(f"there is no thread {thread}; there are 1 to 7")
+        raise InputError(f"no such thread {thread} (1-7)")
 
 
 def _paths(files: PathLike | Iterable[PathLike]) -> list[Path]:

@@ -38,7 +38,7 @@ fn persist(text: &str, index: &str, value: &str) -> Result<Setting> {
     let index: u32 = index.parse().with_context(|| format!("`{index}` in `--set {text}` is not an index"))?;
     let bytes = bytes(value).with_context(|| format!("value of `--set {text}`"))?;
     if index >= USER_DATA || index + (bytes.len() as u32 / 4) > USER_DATA {
-        bail!("`--set {text}` lies outside persist.UserData[0..{}]", USER_DATA - 1);
+        bail!("`--set {text}` is outside persist.UserData[0..{}]", USER_DATA - 1);
     }
     Ok(Setting { address: user_data().offset(4 * index), bytes })
 }
@@ -46,7 +46,7 @@ fn persist(text: &str, index: &str, value: &str) -> Result<Setting> {
 /// A word of `persist.UserData`.
 pub(crate) fn word(element: u32, word: u32) -> Result<Setting> {
     if element >= USER_DATA {
-        bail!("element {element} lies outside persist.UserData[0..{}]", USER_DATA - 1);
+        bail!("element {element} is outside persist.UserData[0..{}]", USER_DATA - 1);
     }
     Ok(Setting { address: user_data().offset(4 * element), bytes: word.to_le_bytes().into() })
 }

@@ -44,7 +44,7 @@ impl PacketFile {
             return Ok(Self { thread: None, path: text.into() });
         };
         let thread = number.parse().ok().and_then(ThreadId::new);
-        let thread = thread.ok_or_else(|| format!("there is no thread {number}: threads are 1 to 7"))?;
+        let thread = thread.ok_or_else(|| format!("no such thread {number} (1-7)"))?;
         Ok(Self { thread: Some(thread), path: path.into() })
     }
 }
@@ -54,7 +54,7 @@ fn is_number(text: &str) -> bool {
 }
 
 impl TraceArguments {
-    /// Whether nothing is to be written.
+    /// Whether nothing should be written.
     #[cfg(feature = "live")]
     pub(crate) const fn is_unwritten(&self) -> bool {
         self.trace.is_empty() && self.trace_bits.is_none() && self.plot.is_empty()

@@ -118,7 +118,9 @@ impl CompareArguments {
     fn refuse(&self) -> Result<()> {
         let flash = self.board.pc.has_flash().then_some("--flash");
         match flash.or_else(|| self.board.left_out_by_boot()) {
-            Some("--flash") => bail!("`--flash` does not work with `cc67 compare`: a flash is of one board"),
+            Some("--flash") => {
+                bail!("`--flash` does not work with `cc67 compare`: a flash file belongs to one board")
+            }
             Some(option) => bail!("`{option}` does not work with `--boot`"),
             None => Ok(()),
         }

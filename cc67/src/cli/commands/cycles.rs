@@ -40,7 +40,11 @@ pub(super) fn cycles(arguments: &CyclesArguments) -> Result<Exit> {
     let bytes = read(first)?;
     let inspection = match Inspection::read(&bytes) {
         Ok(inspection) if inspection.image.program.is_some() => {
-            ensure!(arguments.files.len() == 1, "`{}` is a whole program: give it alone", first.display());
+            ensure!(
+                arguments.files.len() == 1,
+                "`{}` is a whole program: name no other files",
+                first.display()
+            );
             inspection
         }
         _ => match arguments.build()? {

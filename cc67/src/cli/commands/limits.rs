@@ -44,26 +44,22 @@ const fn limit(what: &'static str, number: u64, beyond: &'static str) -> Limit {
 
 /// What the compiler refuses to go beyond.
 pub const COMPILER: &[Limit] = &[
-    limit("files included within each other", pp::INCLUDE_DEPTH as u64, ERROR),
-    limit("files included by one compilation, each time counted", pp::INCLUDES as u64, ERROR),
+    limit("nested includes", pp::INCLUDE_DEPTH as u64, ERROR),
+    limit("files included by one compilation, counting each inclusion", pp::INCLUDES as u64, ERROR),
     limit("bytes of one source file", pp::FILE_BYTES as u64, ERROR),
-    limit("bytes of all source files together, each inclusion counted", pp::TOTAL_BYTES as u64, ERROR),
-    limit("`#if` within `#if`", pp::CONDITIONALS as u64, ERROR),
+    limit("bytes of all source files together, counting each inclusion", pp::TOTAL_BYTES as u64, ERROR),
+    limit("nested `#if`", pp::CONDITIONALS as u64, ERROR),
     limit("parameters of a macro", pp::PARAMETERS as u64, ERROR),
-    limit("macro calls within each other, parentheses within an `#if` expression", pp::NESTING as u64, ERROR),
-    limit("tokens that macros make", pp::EXPANDED_TOKENS as u64, ERROR),
-    limit("bytes of a token that `#` or `##` makes", pp::MADE_BYTES as u64, ERROR),
+    limit("nested macro calls, nested parentheses in an `#if` expression", pp::NESTING as u64, ERROR),
+    limit("tokens expanded from macros", pp::EXPANDED_TOKENS as u64, ERROR),
+    limit("bytes of a token made by `#` or `##`", pp::MADE_BYTES as u64, ERROR),
     limit("tokens after preprocessing", pp::TOKENS as u64, ERROR),
-    limit(
-        "parentheses, blocks, declarators, prefix operators within each other",
-        parse::NESTING as u64,
-        ERROR,
-    ),
+    limit("nested parentheses, blocks, declarators, prefix operators", parse::NESTING as u64, ERROR),
     limit("binary operators in a row", parse::CHAIN as u64, ERROR),
     limit("values of an initialiser", MAX_VALUES as u64, ERROR),
     limit("bytes of an object", MAX_OBJECT_SIZE as u64, ERROR),
     limit("bytes of the local variables of a function", MAX_FRAME as u64, ERROR),
-    limit("errors in one stage", MAX_ERRORS as u64, "the rest of the program is not checked, as it says"),
+    limit("errors in one stage", MAX_ERRORS as u64, "the rest of the program is not checked, with a message"),
 ];
 
 /// What a program meets on the board.
@@ -72,21 +68,17 @@ pub const BOARD: &[Limit] = &[
     limit(
         "bytes of a program and its data in its own space",
         PROGRAM_SIZE as u64,
-        "a warning: the threads whose space it takes are named",
+        "a warning that names the threads whose space it takes",
     ),
     limit(
-        "bytes of a program and its data from thread 1 on",
+        "bytes of a program and its data, starting in thread 1",
         (PROGRAM_LIMIT - PROGRAM_BASE) as u64,
         "an error that names the largest parts",
     ),
     limit("bytes of a thread's stack", STACK_SIZE as u64, "the thread traps"),
-    limit(
-        "console strings that wait for the PC",
-        (MAX_NSTRINGS - 1) as u64,
-        "`printf` waits, as on the board",
-    ),
-    limit("files that a program has open for reading", 1, "`fopen` closes the one before"),
-    limit("files that a program has open for writing", 1, "`fopen` closes the one before"),
+    limit("console strings waiting for the PC", (MAX_NSTRINGS - 1) as u64, "`printf` waits, as on the board"),
+    limit("files open for reading", 1, "`fopen` closes the earlier one"),
+    limit("files open for writing", 1, "`fopen` closes the earlier one"),
 ];
 
 /// What waits for a client of the board, see [`cc67_host`].
@@ -95,18 +87,18 @@ pub const CLIENTS: &[Limit] = &[
     limit(
         "bytes of replies that no client has read",
         REPLY_BYTES as u64,
-        "what comes then is lost; a remark says so",
+        "further replies are lost, with a remark",
     ),
     limit("clients of `cc67 serve` at a time", MOST_CLIENTS as u64, "the connection is closed"),
     limit(
         "console lines of `cc67 serve` while no client is the console",
         UNHEARD_LINES as u64,
-        "the oldest is thrown away",
+        "the oldest is discarded",
     ),
     limit(
         "console lines of `cc67 serve` that its console has not received",
         serve::CONSOLE_LINES as u64,
-        "programs that print wait, as on a board the PC of which reads nothing",
+        "programs that print wait, as on a board whose PC does not read",
     ),
 ];
 
@@ -115,24 +107,24 @@ pub const FILES: &[Limit] = &[
     limit("bytes of an image, a machine file or another input", FILE_BYTES, "the file is refused"),
     limit("bytes of saved data that `cc67 plot` draws", DATA_BYTES, "the file is refused"),
     limit(
-        "bytes of a file of the PC that a program reads",
+        "bytes of a PC file that a program reads",
         PC_FILE_BYTES,
-        "the program is told that there is no such file, and a remark says why",
+        "for the program the file does not exist; a remark says why",
     ),
     limit(
-        "things that a stimulus has planned at a time",
+        "actions that a stimulus has planned at a time",
         STIMULUS_PLANS as u64,
-        "later ones are left out; a remark says so",
+        "later ones are left out, with a remark",
     ),
     limit(
-        "different remarks that a run shows",
+        "different remarks shown in a run",
         SHOWN_REMARKS as u64,
         "further ones are counted; `--json` shows all",
     ),
     limit(
         "samples in a picture of a run",
         PICTURE_SAMPLES as u64,
-        "the picture shows only some of the samples, as it says; traces show all",
+        "the picture shows only some of the samples, with a message; traces show all",
     ),
 ];
 
@@ -140,7 +132,7 @@ pub const FILES: &[Limit] = &[
 pub const ALL: [(&str, &[Limit]); 4] = [
     ("The compiler", COMPILER),
     ("A program on the board", BOARD),
-    ("A board that serves programs of the PC", CLIENTS),
+    ("A board that serves PC programs", CLIENTS),
     ("Files, stimuli, remarks and pictures", FILES),
 ];
 

@@ -15,7 +15,7 @@ pub(crate) struct Repeats {
 }
 
 impl Repeats {
-    /// Notes a remark; whether it is to be shown.
+    /// Notes a remark; whether it should be shown.
     pub(crate) fn is_shown(&mut self, text: &str) -> bool {
         if let Some(again) = self.again.get_mut(text) {
             *again += 1;
@@ -29,13 +29,13 @@ impl Repeats {
         true
     }
 
-    /// What there is to be said of those that were not shown.
+    /// What should be reported of those that were not shown.
     pub(crate) fn summary(&self) -> Vec<String> {
         let repeated = self.again.iter().filter(|(_, again)| **again > 0);
         let mut lines: Vec<_> = repeated
             .map(|(text, again)| match again {
-                1 => format!("once more: {text}"),
-                again => format!("{again} times more: {text}"),
+                1 => format!("repeated once: {text}"),
+                again => format!("repeated {again} times: {text}"),
             })
             .collect();
         if self.left_out > 0 {
@@ -54,7 +54,7 @@ mod tests {
         let mut repeats = Repeats::default();
         let shown: Vec<_> = ["a", "b", "a", "a", "b"].map(|text| repeats.is_shown(text)).into();
         assert_eq!(shown, [true, true, false, false, false]);
-        assert_eq!(repeats.summary(), ["2 times more: a", "once more: b"]);
+        assert_eq!(repeats.summary(), ["repeated 2 times: a", "repeated once: b"]);
     }
 
     #[test]

@@ -163,7 +163,7 @@ pub(super) struct SerialLine {
     failed: Option<io::Error>,
     /// What the board has sent and the peer has not been given.
     fresh: Vec<u8>,
-    /// Whether it was said that the peer is gone.
+    /// Whether the loss of the peer was reported.
     is_told: bool,
     /// How long a part of a run waits for the peer.
     patience: Duration,
@@ -278,7 +278,7 @@ impl SerialLine {
         came.extend(peer.incoming.try_iter().take(AHEAD).flatten());
         if is_gone && !self.is_told {
             self.is_told = true;
-            terminal::note(&format!("serial port: {} is gone; the run goes on without it", peer.name));
+            terminal::note(&format!("serial port: {} is gone; the run continues without it", peer.name));
         }
         came
     }

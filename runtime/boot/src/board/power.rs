@@ -36,7 +36,7 @@ const FACTORY: u32 = 0x1_0000;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FlashError {
     /// The flash is of another firmware, or of the modelled board.
-    #[error("it is of the modelled board, or of another firmware file")]
+    #[error("it belongs to the modelled board or to another firmware file")]
     OtherFirmware,
     /// The firmware does not start with what the flash holds.
     #[error(transparent)]

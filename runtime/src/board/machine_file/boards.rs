@@ -28,7 +28,7 @@ fn konnects(value: &Value<'_>) -> Read<u8> {
     if value.text().is_ok() {
         return value.choice(&[("any", u8::MAX)]);
     }
-    let list = value.array().map_err(|_| value.is_wrong("\"any\" or a list of addresses as [0, 1]"))?;
+    let list = value.array().map_err(|_| value.is_wrong("\"any\" or a list of addresses such as [0, 1]"))?;
     list.iter().try_fold(0, |present, address| Ok(present | 1 << address.whole(ADDRESSES - 1)?))
 }
 

@@ -78,7 +78,7 @@ impl Key<'_> {
         let near = known.iter().min_by_key(|name| levenshtein(self.text, name));
         let hint = match near.filter(|name| levenshtein(self.text, name) <= 2) {
             Some(name) => format!("; did you mean `{name}`?"),
-            None => format!("; there are {}", known.join(", ")),
+            None => format!("; known: {}", known.join(", ")),
         };
         Wrong::new(self.offset, format!("unknown key `{}`{place}{hint}", self.text))
     }
@@ -150,7 +150,7 @@ impl<'a> Value<'a> {
     /// A number from 0.
     pub(super) fn not_negative(&self) -> Read<f64> {
         let number = self.parsed().filter(|number| number.is_finite() && *number >= 0.0);
-        number.ok_or_else(|| self.is_wrong("0 or a number above it"))
+        number.ok_or_else(|| self.is_wrong("0 or a positive number"))
     }
 
     /// A whole number up to `max`.
@@ -222,7 +222,7 @@ impl<'a> Value<'a> {
                 let text = format!("`{}` must be {what}, not bit {bit} ({})", self.path, range.name);
                 Err(Wrong::new(self.source.span().start, text))
             }
-            None => Err(self.is_wrong("a bit that something answers")),
+            None => Err(self.is_wrong("a bit that is connected to something")),
         }
     }
 

@@ -93,7 +93,7 @@ fn axis(axis: &mut Axis, table: &Table<'_>) -> Read<()> {
         "index" => axis.index = Some(index(&value.table()?)?);
     });
     if axis.min > axis.max {
-        let text = format!("`{}`: min {} lies above max {}", table.name, axis.min, axis.max);
+        let text = format!("`{}`: min {} exceeds max {}", table.name, axis.min, axis.max);
         return Err(Wrong::new(table.offset, text));
     }
     Ok(())
@@ -297,7 +297,8 @@ fn bits(value: &Value<'_>) -> Read<Vec<Bit>> {
     let ends = text
         .split_once('-')
         .and_then(|(from, to)| Some((from.trim().parse().ok()?, to.trim().parse().ok()?)));
-    let (from, to): (i32, i32) = ends.ok_or_else(|| value.is_wrong("a bit or a range as \"140-143\""))?;
+    let (from, to): (i32, i32) =
+        ends.ok_or_else(|| value.is_wrong("a bit or a range such as \"140-143\""))?;
     let range: Option<Vec<Bit>> = (from..=to.min(from.saturating_add(2047))).map(Bit::new).collect();
     range.filter(|bits| !bits.is_empty()).ok_or_else(|| value.is_wrong("a range of bits, 0 to 2047"))
 }

@@ -169,7 +169,7 @@ fn mistakes_are_named_with_their_place() {
         ),
         ("[axis.0]\ntau_s = 0", "2:9: `axis.0.tau_s` must be a number above 0, not 0"),
         ("[axis.0]\nmin = nan", "2:7: `axis.0.min` must be a number, not nan"),
-        ("[axis.0]\nmin = 3\nmax = 1", "1:1: `axis.0`: min 3 lies above max 1"),
+        ("[axis.0]\nmin = 3\nmax = 1", "1:1: `axis.0`: min 3 exceeds max 1"),
         ("[[switch]]\naxis = 0\nwhen = \">= 3\"", "1:1: `switch[0]` needs `bit`"),
         ("[[switch]]\nbit = 144", "2:7: `switch[0].bit` must be an input, not bit 144 (Kanalog opto out)"),
         ("[[switch]]\nbit = 5000", "2:7: `switch[0].bit` must be a bit number, 0 to 2047, not 5000"),
@@ -185,15 +185,15 @@ fn mistakes_are_named_with_their_place() {
         ("[board]\nkonnect = [8]", "2:12: `board.konnect[0]` must be a whole number, 0 to 7, not 8"),
         (
             "[board]\nkonnect = 5",
-            "2:11: `board.konnect` must be \"any\" or a list of addresses as [0, 1], not 5",
+            "2:11: `board.konnect` must be \"any\" or a list of addresses such as [0, 1], not 5",
         ),
         ("[uart]\ninput = 5", "2:9: `uart.input` must be a text in quotes, not 5"),
-        ("[host]\nanswers = [\"input=x\"]", "2:12: `x` is not what `input` takes: a number"),
+        ("[host]\nanswers = [\"input=x\"]", "2:12: `x` is not valid for `input`: a number"),
         ("switch = 5", "1:10: `switch` must be an array in [brackets], not 5"),
         ("[axis.0\nname = 5", "1:8: unclosed table, expected `]`"),
         (
             "colour = 5",
-            "1:1: unknown key `colour`; there are axis, switch, probe, encoder, adc, wire, event, device, spindle, inputs, remarks, cpu, host, board, uart",
+            "1:1: unknown key `colour`; known: axis, switch, probe, encoder, adc, wire, event, device, spindle, inputs, remarks, cpu, host, board, uart",
         ),
     ] {
         assert_eq!(message(text), expect, "{text}");
@@ -254,7 +254,7 @@ fn wrong_events_are_named_with_their_place() {
             "[[event]]\nat = 1\nset_bit = { 46 = 1 }",
             "3:18: bit 46 (LED) is an output, only the board drives it",
         ),
-        ("[[event]]\nat = -1", "2:6: `event[0].at` must be 0 or a number above it, not -1"),
+        ("[[event]]\nat = -1", "2:6: `event[0].at` must be 0 or a positive number, not -1"),
         (
             "[[event]]\nafter = \"bit 46 blinks\"\nkill = 1",
             "3:8: expected `rises`, `falls` or `changes`, found `blinks`",
@@ -266,7 +266,7 @@ fn wrong_events_are_named_with_their_place() {
         ),
         (
             "[[event]]\nhost = { message_box = \"maybe\" }",
-            "2:24: `maybe` is not what `msgbox` takes: a button, as `yes`",
+            "2:24: `maybe` is not valid for `msgbox`: a button, such as `yes`",
         ),
         ("[[event]]\nencoder_error = 16", "2:17: expected an encoder input from 0 to 15, found `16`"),
         ("[[device]]\nfrom = 3", "1:1: `device[0]` needs `type`"),

@@ -136,7 +136,7 @@ mod tests {
         assert!(desk.memory.get(COORD_SYSTEM0).is_null());
         assert_eq!(
             desk.diagnostics(),
-            ["CoordSystem0 is 0x12345678, where no segments lie; the path has ended"]
+            ["CoordSystem0 is 0x12345678, where there are no segments; the path has ended"]
         );
     }
 

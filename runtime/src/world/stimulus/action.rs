@@ -1,7 +1,7 @@
 //! What a statement does: the table of actions.
 //!
 //! A row is an action: how statements write it, what reads each form and what does it, both functions of a file of
-//! [`acts`](super::acts); the key of an `[[event]]` table that writes it in a machine file; and what is to be known of
+//! [`acts`](super::acts); the key of an `[[event]]` table that writes it in a machine file; and what should be known of
 //! it before time begins. The enum, the words, the keys and the dispatch are expanded from the rows.
 
 use std::sync::Arc;
@@ -258,7 +258,7 @@ fn without_set(reader: &mut StatementReader<'_>) -> Result<(), Mistake> {
     let meant = reader.word(1).filter(|word| reader.peek() == Some("set") && *word != "bit");
     let meant = meant.and_then(|word| WRITTEN.iter().copied().flatten().find(|form| form.word() == word));
     let Some(Written { usage, .. }) = meant else { return Ok(()) };
-    Err((reader.column(), format!("`{usage}` is written without `set`")))
+    Err((reader.column(), format!("write `{usage}` without `set`")))
 }
 
 /// The words that actions begin with, for a message.

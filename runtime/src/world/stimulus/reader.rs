@@ -198,7 +198,7 @@ impl StatementReader<'_> {
         let column = self.column();
         let bit = self.bit_number()?;
         let Some(range) = range_of(bit) else {
-            return Err((column, format!("nothing answers bit {bit}")));
+            return Err((column, format!("nothing is connected to bit {bit}")));
         };
         match range.direction {
             BitDirection::Output => {

@@ -285,12 +285,12 @@ mod tests {
         for (text, expect) in [
             ("\nat 1s set bit 9999", "x.stim:2:15: expected a bit from 0 to 2047, found `9999`"),
             ("set bit 46", "x.stim:1:9: bit 46 (LED) is an output, only the board drives it"),
-            ("set bit 184", "x.stim:1:9: nothing answers bit 184"),
+            ("set bit 184", "x.stim:1:9: nothing is connected to bit 184"),
             ("at soon set bit 3", "x.stim:1:4: expected a time such as 1.5s, 20ms or 90us, found `soon`"),
             ("at -1s set bit 3", "x.stim:1:4: expected a time such as 1.5s, 20ms or 90us, found `-1s`"),
             ("at 1s set bit", "x.stim:1:14: expected a bit from 0 to 2047, found the end of the statement"),
             ("set bit 5 now", "x.stim:1:11: expected 0 or 1, found `now`"),
-            ("set adc 3 = 950", "x.stim:1:1: `adc N = VALUE` is written without `set`"),
+            ("set adc 3 = 950", "x.stim:1:1: write `adc N = VALUE` without `set`"),
             ("set bit 5 =", "x.stim:1:12: expected 0 or 1, found the end of the statement"),
             ("bit 5 = 2", "x.stim:1:9: expected 0 or 1, found `2`"),
             ("bit 5 = 1 now", "x.stim:1:11: expected the end of the statement, found `now`"),
@@ -300,7 +300,7 @@ mod tests {
             ("bit 0=1; kill 8", "x.stim:1:15: expected a thread from 1 to 7, found `8`"),
             (
                 "answer \"box=no\"",
-                "x.stim:1:8: there is no answer `box`; there are msgbox, input, boxes, mdi, request.N, var.N, tool.N.KIND, dro.AXIS, resolution.AXIS, cell.N, setup and job",
+                "x.stim:1:8: there is no answer `box`; known: msgbox, input, boxes, mdi, request.N, var.N, tool.N.KIND, dro.AXIS, resolution.AXIS, cell.N, setup and job",
             ),
             (
                 "expect axis 0 place = 1",

@@ -12,7 +12,7 @@ use crate::io::bits::bit_state;
 use crate::io::konnect::{KonnectBoard, Port};
 use crate::views::Typed;
 
-/// A kind of value: a row of the table of kinds, which is all there is to be said of it.
+/// A kind of value: a row of the table of kinds, which says everything about it.
 struct ItemKind {
     name: &'static str,
     /// How many there are, numbered from 0.
@@ -143,7 +143,7 @@ pub struct Item {
 
 /// A name that is not one of an item.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("`{name}` is not an item; there are {known}")]
+#[error("`{name}` is not an item; known: {known}")]
 pub struct UnknownItem {
     /// The name.
     pub name: String,

@@ -3,5 +3,5 @@
 
 main()
 {
-    asm("nop"); //~ error: assembler
+    asm("nop"); //~ error: inline assembly
 }

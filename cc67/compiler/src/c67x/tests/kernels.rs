@@ -1,6 +1,6 @@
 //! Kernels: what a call of each takes, beside the vendor's compiler, code by hand and what the processor allows.
 //!
-//! The tables are a section of `cc67/benches/README.md`; `CC67_WRITE_BOOK=1` writes them anew.
+//! The tables are a section of `cc67/benches/README.md`; `CC67_WRITE_BOOK=1` rewrites them.
 
 use std::fmt::Write as _;
 
@@ -178,7 +178,7 @@ fn the_page_of_benches_has_the_cycles_of_the_kernels() {
     if std::env::var_os("CC67_WRITE_BOOK").is_some() {
         std::fs::write(path, written).expect("the page can be written");
     } else {
-        assert!(page == written, "CC67_WRITE_BOOK=1 writes it anew");
+        assert!(page == written, "CC67_WRITE_BOOK=1 rewrites it");
     }
 }
 

@@ -34,8 +34,8 @@ impl Lexer {
         }
         if !self.complained.space {
             let span = self.span_to(self.at, self.at + length);
-            let message = format!("{} is taken for a blank", name_of(character));
-            cx.sink.report(Diagnostic::warning(LAX, span, message).help("replace it with a blank"));
+            let message = format!("{} is treated as a space", name_of(character));
+            cx.sink.report(Diagnostic::warning(LAX, span, message).help("replace it with a space"));
             self.complained.space = true;
         }
         self.at += length;
@@ -98,7 +98,7 @@ impl Lexer {
         }
     }
 
-    /// NUL, Ctrl-Z and their kin.
+    /// NUL, Ctrl-Z and other control characters.
     fn control(&mut self, character: char, cx: &mut LexerContext<'_>) {
         let span = self.span_to(self.at, self.at + 1);
         self.at += 1;

@@ -18,11 +18,11 @@ fn what_differs_is_said() {
     said(
         "int a; double a;\nint b = 1; int b = 2;\ntypedef int T; typedef double T;\nstruct S { int a; }; struct S { int b; };\nenum { A }; enum { A = 5 };\nint f; int f(void);\nint g(void); int g;\nint h(int); int h(double);\nint p(void) { int i = 1; int i = 2; return i; }\nint q(int a) { int a = 0; return a; }",
         &[
-            "1: error: `a` is declared again with another type",
+            "1: error: `a` is redeclared with a different type",
             "2: error: `b` is defined twice with different values",
-            "3: error: typedef `T` is defined again as another type",
-            "4: error: `S` is defined again with other members",
-            "5: redeclared: enumerator `A` is declared again with another value",
+            "3: error: typedef `T` is redefined as a different type",
+            "4: error: `S` is redefined with different members",
+            "5: redeclared: enumerator `A` is redeclared with a different value",
             "6: error: `f` is already declared as something else",
             "7: error: `g` is already declared as something else",
             "8: prototype-mismatch: `h` is declared in two different ways",

@@ -86,10 +86,10 @@ fn wrong_operands_are_errors() {
             "5: error: `*` cannot be used on `int *` and `int`",
             "6: error: `~` needs an integer",
             "7: error: `struct S` is used where a number or pointer is needed (write a member of it, after a `.`)",
-            "8: error: `*` needs a pointer, and this is `int`",
+            "8: error: `*` needs a pointer, but this is `int`",
             "9: error: `int` cannot be indexed",
-            "10: error: `->` needs a pointer, and this is a `struct S` (use `.a`)",
-            "11: error: `.a` needs a structure, and this is `int *`",
+            "10: error: `->` needs a pointer, but this is a `struct S` (use `.a`)",
+            "11: error: `.a` needs a structure, but this is `int *`",
             "12: error: `struct S` has no member `b`",
             "13: error: `int` cannot be called",
             "14: error: `&` needs a variable: a value has no address",
@@ -110,7 +110,7 @@ fn one_mistake_is_said_once() {
         "int f(int i) { return (x + 1) * x[3] + i.y->z + x; }\nint g(void) { return x; }",
         &[
             "1: error: `x` is not declared",
-            "1: error: `.y` needs a structure, and this is `int`",
+            "1: error: `.y` needs a structure, but this is `int`",
             "2: error: `x` is not declared",
         ],
     );

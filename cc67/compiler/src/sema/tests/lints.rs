@@ -71,7 +71,7 @@ fn numbers() {
     said(
         "const int n = 1; int f(double d, float x, int i) { n = 2; return (d != d) + (i == i) + (1 << 40) + (i >> -1); }",
         &[
-            "1: const-write: a `const` object is changed",
+            "1: const-write: a `const` object is modified",
             "1: shift-count: a shift by 40",
             "1: shift-count: a shift by -1",
             "1: self-comparison: a floating-point value is compared with itself",
@@ -120,9 +120,7 @@ fn loops_without_an_end() {
 fn names_of_the_firmware() {
     said(
         "int ReadBit(int bit) { return bit; } static double sqrt(double x) { return x; } int f(void) { return sqrt(ReadBit(1)); }",
-        &[
-            "1: redeclared: the firmware has a `ReadBit` of its own (choose another name, or make it `static`)",
-        ],
+        &["1: redeclared: the firmware already has a `ReadBit` (choose another name, or make it `static`)"],
     );
 }
 
@@ -172,7 +170,7 @@ fn call_backs_must_not_wait() {
     said(
         "extern void (*UserCallBack)(void); void WaitNextTimeSlice(void); int n;\nvoid good(void) { n++; } void bad(void) { WaitNextTimeSlice(); } main() { UserCallBack = good; UserCallBack = bad; WaitNextTimeSlice(); }",
         &[
-            "2: call-back-wait: `WaitNextTimeSlice` in the call-back may wait (set a variable here, and call it in a thread that sees the variable)",
+            "2: call-back-wait: `WaitNextTimeSlice` in the call-back may wait (set a variable here, and call the function in a thread that checks the variable)",
         ],
     );
 }

@@ -62,7 +62,7 @@ fn switches_number_their_cases() {
             "1: error: `case 1` appears twice in one `switch`",
             "1: error: `case 2` appears twice in one `switch`",
             "2: extension: `switch` on a floating-point value (write `(int)` if this is meant)",
-            "2: error: `case` outside of a `switch` (is there a `}` too many before it?)",
+            "2: error: `case` outside of a `switch` (is there an extra `}` before it?)",
             "2: error: `continue` outside of a loop",
             "2: error: `default` outside of a `switch`",
             "2: error: label `a` is defined twice",

@@ -1,7 +1,7 @@
-//! What a program is run with that is beside it: `NAME.toml`, `NAME.stim`, the options of its first line, and the
-//! project file `cc67.toml` of its folder or one above.
+//! Files and options beside a program: `NAME.toml`, `NAME.stim`, the options of its first line, and the project file
+//! `cc67.toml` of its folder or one above.
 //!
-//! All of it becomes options before those of the command line, which win. What was taken is said in one line.
+//! All of it becomes options before those of the command line, which win. One line reports what was taken.
 
 mod head;
 mod project;
@@ -135,7 +135,7 @@ impl Beside {
     pub(crate) fn line(&self, program: &OsStr) -> Option<String> {
         let name = file_of(program).display().to_string();
         (!self.said.is_empty())
-            .then(|| format!("{name} is run with {} (--no-sidecar: without)", self.said.join("; ")))
+            .then(|| format!("running {name} with {} (--no-sidecar ignores it)", self.said.join("; ")))
     }
 }
 

@@ -1,4 +1,4 @@
-//! The project file `cc67.toml`: what is the same for all programs of a folder and those below it.
+//! The project file `cc67.toml`: options shared by all programs of a folder and the folders below it.
 //!
 //! ```toml
 //! machine = "mill.toml"
@@ -109,9 +109,7 @@ impl Project {
                 let known = KEYS.iter().map(|(key, _)| *key).chain(COMMANDS.iter().copied());
                 let hint = match suggest(name, known) {
                     Some(near) => format!("; did you mean `{near}`?"),
-                    None => {
-                        "; there are machine, include, first, [run], [test], [live] and [debug]".to_owned()
-                    }
+                    None => "; known: machine, include, first, [run], [test], [live] and [debug]".to_owned(),
                 };
                 return Err(wrong(key.span().start, format!("unknown key `{name}`{hint}")));
             }

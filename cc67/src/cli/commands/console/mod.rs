@@ -249,7 +249,7 @@ impl<'a, E: Engine> Console<'a, E> {
             Ok(Input::Interrupt) => {
                 *interrupted = true;
                 self.stop(|_| true);
-                self.shown.screen.note("all threads are stopped; Ctrl-C once more leaves");
+                self.shown.screen.note("all threads are stopped; Ctrl-C again leaves");
                 Flow::Continue
             }
             Err(RecvTimeoutError::Timeout) if self.shown.screen.is_closed() => return Flow::Leave,

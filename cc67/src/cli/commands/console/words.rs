@@ -56,7 +56,11 @@ const ROWS: &[Row] = &[
     },
     Row { name: "kill", usage: "kill all [but N]", help: "stops all threads, or all but one" },
     Row { name: "press", usage: "press BIT", help: "toggles an input until `release`, like a button" },
-    Row { name: "release", usage: "release BIT", help: "restores the level that the input had before `press`" },
+    Row {
+        name: "release",
+        usage: "release BIT",
+        help: "restores the level that the input had before `press`",
+    },
     Row {
         name: "bit",
         usage: "bit 136 = 1",

@@ -58,7 +58,7 @@ pub(super) fn answer(is_meant: &dyn Fn(&str) -> bool) -> Option<String> {
         Origin::Header => "- `#include \"KMotionDef.h\"` declares it.\n",
         Origin::Firmware => "- The firmware has it, but the header does not declare it: declare it in the program.\n",
         Origin::Library => {
-            "- Firmware 4.34 lacks it; the simulated board has it, but for a real board define it in the program.\n"
+            "- Firmware 4.34 lacks it; the simulated board has it, but on a real board the program must define it.\n"
         }
     });
     let codes = codes(name);

@@ -82,7 +82,7 @@ pub(super) fn init(arguments: &InitArguments) -> Result<Exit> {
         output::write(path, text)?;
     }
     output::print(&format!(
-        "Made a project of {} files in {}. Continue with\n  cc67 run {first}\n  cc67 test {}\n",
+        "Created a project with {} files in {}. Next:\n  cc67 run {first}\n  cc67 test {}\n",
         files.len(),
         folder.display(),
         folder.display(),

@@ -26,7 +26,7 @@ use crate::cli::io::exit::Exit;
 use crate::cli::io::terminal;
 use crate::cli::session::{Rig, Setup, Started, Work};
 
-/// The port that is taken if it is free and no other is asked for.
+/// The port that is taken if it is free and no other is requested.
 const PORT: u16 = 8067;
 
 /// Arguments of `cc67 live`.
@@ -70,7 +70,7 @@ pub(super) struct LiveArguments {
 }
 
 impl LiveArguments {
-    /// The programs, if what is beside them is to be used.
+    /// The programs, if what is beside them should be used.
     pub(super) fn with_sidecars(&self) -> Option<&[OsString]> {
         (!self.beside.no_sidecar).then_some(&self.programs)
     }
@@ -160,7 +160,7 @@ pub(super) fn show(
     })
 }
 
-/// Listens for pages; on a port that is free if the usual one is taken and none is asked for.
+/// Listens for pages; on a port that is free if the usual one is taken and none is requested.
 pub(super) fn listen(port: Option<u16>, board: &BoardArguments) -> Result<Server> {
     let host = board.pc.address().unwrap_or(Ipv4Addr::LOCALHOST.into());
     let listen = |port| Server::listen(host, port);
@@ -177,7 +177,7 @@ pub(super) fn listen(port: Option<u16>, board: &BoardArguments) -> Result<Server
 /// Prints the address of the page, and opens it.
 pub(super) fn announce(server: &Server, board: &BoardArguments, opens: bool) -> Result<()> {
     if board.pc.address().is_some_and(|host| !host.is_loopback()) {
-        terminal::note("other computers can reach this page: whoever has the address moves the machine");
+        terminal::note("other computers can reach this page: anyone with the address can move the machine");
     }
     let mut out = io::stdout();
     writeln!(out, "{}", server.url()).and_then(|()| out.flush()).context("cannot write the address")?;

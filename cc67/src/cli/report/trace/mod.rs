@@ -1,4 +1,4 @@
-//! `--trace` and its kin: what a run did, as a file for a viewer or a table.
+//! `--trace` and related options: what a run did, as a file for a viewer or a table.
 //!
 //! The suffix of the file decides: `.vcd` for waveform viewers, `.json` for trace viewers (Perfetto, Chrome), anything
 //! else is a table of values. Files grow while the run continues, under temporary names, and get their own when it is
@@ -49,7 +49,7 @@ pub(crate) fn request<E: Engine>(
 /// What a board with the user's own firmware is to record; `None` if nothing is traced.
 ///
 /// # Errors
-/// Something is wrong with what is asked for, or only the modelled firmware has it.
+/// Something is wrong with what is requested, or only the modelled firmware has it.
 pub(crate) fn request_of_booted(
     arguments: &TraceArguments,
     quantities: impl FnOnce(&str) -> Result<Vec<Quantity>, WatchError>,
@@ -97,7 +97,7 @@ fn known_suffix(path: &Path) -> Result<()> {
         "" | "csv" | "txt" | "vcd" | "json" => Ok(()),
         "svg" | "png" | "html" => bail!("`--trace {0}`: a picture is drawn by `--plot {0}`", path.display()),
         other => bail!(
-            "`--trace {}`: there is no trace of the form `.{other}`; there are .csv, .txt, .vcd and .json",
+            "`--trace {}`: unknown trace format `.{other}`; known: .csv, .txt, .vcd and .json",
             path.display()
         ),
     }
@@ -273,7 +273,7 @@ fn nanoseconds(at: Cycles) -> i64 {
 mod testing {
     use super::*;
 
-    /// What a run with a few records of each kind was asked for.
+    /// The requests of a run with a few records of each kind.
     pub(crate) fn request() -> TraceRequest {
         let item = |name| Quantity::from(Item::new(name).expect("an item"));
         TraceRequest {
