@@ -1,7 +1,7 @@
 //! Any bytes as a checked view: headers, sections and symbols, nothing copied.
 //!
 //! [`File::parse`] checks that every part the headers name lies inside the file. Names are
-//! checked as they are asked for, because most readers need only a few of them.
+//! checked as they are requested, because most readers need only a few of them.
 
 use std::num::NonZeroU16;
 

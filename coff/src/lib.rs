@@ -1,13 +1,13 @@
-//! TI COFF2 images, read and written.
+//! Reader and writer of TI COFF2 images.
 //!
-//! [`Image::read`] takes any bytes and either gives the whole image or says what is wrong at
-//! which offset; [`Image::write`] gives the same bytes for the same image on every host.
-//! [`File::parse`] does the same checks and copies nothing, for a reader that needs a few
-//! symbols of a large file. [`dump`] lists an image for people and for golden tests.
+//! [`Image::read`] accepts any bytes and either returns the whole image or reports the fault and its offset;
+//! [`Image::write`] gives the same bytes for the same image on every host. [`File::parse`] does the same checks without
+//! copying, for readers that need only a few symbols of a large file. [`dump`] lists an image for people and for golden
+//! tests.
 //!
-//! The format is that of C6000 programs: the vendor compiler's images, the firmware file, and
-//! cc67's own images and objects, which differ in their [`Target`] so that no real board executes
-//! them. Everything is little endian; nothing is padded or aligned.
+//! The format is that of C6000 programs: the vendor compiler's images, the firmware file, and cc67's own images and
+//! objects. The [`Target`] of images for the simulator differs, so that no real board executes them. Everything is
+//! little endian; nothing is padded or aligned.
 //!
 //! | part | bytes | where | here |
 //! |---|---|---|---|
@@ -20,14 +20,14 @@
 //! | symbols and their auxiliary entries | 18 each | anywhere; after all line numbers | [`raw::Symbol`], [`Aux`] |
 //! | string table: length, then the names above eight characters | to the end of the file | after the symbols | [`Name`] |
 //!
-//! The length of the string table counts its own four bytes in files of TI's tools, and does not
-//! in those of the vendor's compiler; both are read, the first is written. Section numbers in
-//! comments are those of `coff.md` of the specification.
+//! In files of TI's tools, the length of the string table includes its own four bytes; in those of the vendor's
+//! compiler it does not. The reader accepts both; the writer uses TI's form. Section numbers in comments refer to
+//! `coff.md` of the specification.
 //!
 //! Invariants:
-//! - No panic and no large allocation, whatever the bytes: what an image claims is compared
-//!   with the length of the file first.
-//! - The reader judges the container alone. Whether the addresses make sense is for the loader.
+//! - No input causes a panic or a large allocation: the sizes that an image claims are first compared with the length
+//!   of the file.
+//! - The reader checks only the container. The loader checks the addresses.
 
 #![forbid(unsafe_code)]
 #![cfg_attr(

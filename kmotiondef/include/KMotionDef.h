@@ -514,7 +514,7 @@ extern double CS0_TimeBaseDelta;   // largest change of CS0_TimeBase in a tick, 
 void SetFRO(float FRO);
 // Ramps the rapid override to FRO.
 void SetRapidFRO(float FRO);
-// Ramps the feed override even during a feed hold and does not keep the value for the resume.
+// Ramps the feed override even during a feedhold and does not keep the value for the resume.
 void SetFROTemp(float FRO);
 // SetFRO with DecelTime seconds for the whole way from 1.0 to 0.0.
 void SetFROwRate(float FRO, float DecelTime);
@@ -525,22 +525,22 @@ void SetFROwRateTemp(float FRO, float DecelTime);
 // Seconds from full override to standstill, from the limits of all axes in the coordinate system.
 float GetNominalFROChangeTime(void);
 
-extern float CS0_LastFRO;      // feed override last asked for; applies when a feed hold is released
-extern float CS0_LastRapidFRO; // rapid override last asked for; applies when a feed hold is released
+extern float CS0_LastFRO;      // feed override last requested; applies when a feedhold is released
+extern float CS0_LastRapidFRO; // rapid override last requested; applies when a feedhold is released
 
-// Feed hold.
+// Feedhold.
 
-// Feed hold: brings the coordinate system's axes to a controlled stop. See CS0_StoppingState.
+// Feedhold: brings the coordinate system's axes to a controlled stop. See CS0_StoppingState.
 void StopCoordinatedMotion(void);
-// Releases a feed hold and continues the interrupted motion.
+// Releases a feedhold and continues the interrupted motion.
 void ResumeCoordinatedMotion(void);
-// Drops the feed hold without continuing the interrupted motion.
+// Drops the feedhold without continuing the interrupted motion.
 void ClearStopImmediately(void);
 // Recomputes CS0_StoppingState; needed only while independent moves are being stopped.
 void UpdateStoppingState(void);
 
 extern int CS0_StoppingState;  // 0 none, 1 stopping, 3 stopped; 2, 4 the same for independent motion
-extern float CS0_DecelTime;    // seconds to a stop, computed when a feed hold begins
+extern float CS0_DecelTime;    // seconds to a stop, computed when a feedhold begins
 extern float CS0_NomDecel2TB2; // nominal deceleration time over 2*TIMEBASE^2
 
 // Path smoothing.

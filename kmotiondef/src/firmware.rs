@@ -288,7 +288,7 @@ macro_rules! for_each_firmware_fn {
             motion::do_resolver_input2 = DoResolverInput2(chx: *mut Chan, x: f32, y: f32),
                 at 0x1000_5C80, cost 166, header;
 
-            // ---- coord: coordinated motion: coordinate system, feed override, feed hold ---------------
+            // ---- coord: coordinated motion: coordinate system, feed override, feedhold ---------------
             /// Assigns the axes used as x, y, z, a; -1 leaves one unused. b, c, u, v keep theirs.
             coord::define_coord_system = DefineCoordSystem(axisx: i32, axisy: i32, axisz: i32, axisa: i32),
                 at 0x8002_5920, cost 43, header;
@@ -303,11 +303,11 @@ macro_rules! for_each_firmware_fn {
             ), at 0x8002_5A74, cost 79, header;
             /// Buffered motion: 1 finished, 0 running, -1 an axis of the coordinate system is disabled.
             coord::check_done_buf = CheckDoneBuf() -> i32, at 0x1000_CDAC, cost 206, header;
-            /// Feed hold: brings the coordinate system's axes to a controlled stop. See CS0_StoppingState.
+            /// Feedhold: brings the coordinate system's axes to a controlled stop. See CS0_StoppingState.
             coord::stop_coordinated_motion = StopCoordinatedMotion(), at 0x8001_C6C4, cost 340, header;
-            /// Releases a feed hold and continues the interrupted motion.
+            /// Releases a feedhold and continues the interrupted motion.
             coord::resume_coordinated_motion = ResumeCoordinatedMotion(), at 0x1000_3904, cost 37, header;
-            /// Drops the feed hold without continuing the interrupted motion.
+            /// Drops the feedhold without continuing the interrupted motion.
             coord::clear_stop_immediately = ClearStopImmediately(), at 0x8001_DB78, cost 15, header;
             /// Recomputes CS0_StoppingState; needed only while independent moves are being stopped.
             coord::update_stopping_state = UpdateStoppingState(), at 0x8001_D464, cost 61, header;
@@ -319,7 +319,7 @@ macro_rules! for_each_firmware_fn {
             coord::set_fro = SetFRO(FRO: f32), at 0x1000_3610, cost 1001, header;
             /// Ramps the rapid override to `FRO`.
             coord::set_rapid_fro = SetRapidFRO(FRO: f32), at 0x1000_33A0, cost 987, header;
-            /// Ramps the feed override even during a feed hold and does not keep the value for the resume.
+            /// Ramps the feed override even during a feedhold and does not keep the value for the resume.
             coord::set_fro_temp = SetFROTemp(FRO: f32), at 0x1000_35B4, cost 987, header;
             /// SetFRO with `DecelTime` seconds for the whole way from 1.0 to 0.0.
             coord::set_fro_w_rate = SetFROwRate(FRO: f32, DecelTime: f32), at 0x1000_34B0, cost 138, header;

@@ -1,13 +1,13 @@
 //! The KFLOP board as its programs see it: names, addresses, types, layouts.
 //!
-//! Tables and plain types only. The compiler links against them, the kernel answers
-//! for them, the header test compares them with the C headers in `include/`.
+//! This crate has only tables and plain types. The compiler links against them, the kernel implements them, the header
+//! test compares them with the C headers in `include/`.
 //!
 //! | table | read by |
 //! |---|---|
-//! | [`firmware`] | the linker for names and signatures, the runtime for its dispatch, the documentation |
+//! | [`firmware`] | the linker for names and signatures, the runtime for dispatch, the documentation |
 //! | [`variables`], [`structs`] | the linker for names, the kernel for typed places |
-//! | [`bits`] | the runtime, to find what answers a bit number |
+//! | [`bits`] | the runtime, to find the device for a bit number |
 //! | [`map`] | the loader and guest memory |
 //! | [`limits`], [`modes`] | the servo and the devices |
 //! | [`jumps`] | the linker, the interpreter |
@@ -15,7 +15,7 @@
 //! | [`waiting`] | the warning about waits in the call-back, `--explain` |
 //! | [`hidden`] | the warning about names that the vendor's linker refuses |
 //!
-//! Invariant: depends on nothing and holds no behaviour.
+//! Invariant: this crate depends on nothing and has no behaviour.
 
 #![forbid(unsafe_code)]
 

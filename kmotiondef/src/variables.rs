@@ -190,7 +190,7 @@ macro_rules! for_each_firmware_var {
             CS0_TIME_BASE_DELTA = CS0_TimeBaseDelta: f64, at 0x1001_7E40, starts Zero;
             /// What CS0_TimeBase is being ramped to, seconds a tick.
             CS0_TIME_BASE_DESIRED = CS0_TimeBaseDesired: f64, at 0x1001_7E58, starts Double(9e-5);
-            /// Seconds to a stop, computed when a feed hold begins.
+            /// Seconds to a stop, computed when a feedhold begins.
             CS0_DECEL_TIME = CS0_DecelTime: f32, at 0x1001_7E7C, starts Float(1.0);
             /// Nominal deceleration time over 2·TIMEBASE².
             CS0_NOM_DECEL_2TB2 = CS0_NomDecel2TB2: f32, at 0x1001_7E68, starts Float(15_432_099.0);
@@ -202,9 +202,9 @@ macro_rules! for_each_firmware_var {
             CS0_HOLD_AT_END = CS0_HoldAtEnd: Bool, at 0x1001_7E64, starts Zero;
             /// 0 none, 1 stopping, 3 stopped; 2, 4 the same for independent motion.
             CS0_STOPPING_STATE = CS0_StoppingState: i32, at 0x1001_7E78, starts Zero;
-            /// Feed override last asked for; applies when a feed hold is released.
+            /// Feed override last requested; applies when a feedhold is released.
             CS0_LAST_FRO = CS0_LastFRO: f32, at 0x1001_7E6C, starts Float(1.0);
-            /// Rapid override last asked for; applies when a feed hold is released.
+            /// Rapid override last requested; applies when a feedhold is released.
             CS0_LAST_RAPID_FRO = CS0_LastRapidFRO: f32, at 0x1001_7E70, starts Float(1.0);
             /// Segment being executed, NULL for none.
             COORD_SYSTEM0 = CoordSystem0: *mut ParametricCoeff, at 0x1001_7F00, starts Zero;

@@ -1,6 +1,6 @@
 //! The kernel: the board's parts as implementations of the machine's traits, and the order of a tick.
 //!
-//! It composes the parts and says what comes after what; what each of them does is theirs.
+//! It composes the parts and defines their order; the parts themselves do the work.
 
 use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, function_at};
 use kmotiondef::map::{FPGA, TIMER0};
@@ -140,7 +140,7 @@ impl Kernel {
         limits::active_switch(&self.parts.io, memory, axis)
     }
 
-    /// Records the last of `count` ticks that is to be recorded.
+    /// Records the last of `count` ticks that should be recorded.
     #[inline]
     fn sample(&mut self, context: &TickContext<'_>, count: u64) {
         let Parts { out, io, machine, world, clock, .. } = &mut self.parts;

@@ -178,7 +178,7 @@ impl Desk {
         String::from_utf8(text).expect("text")
     }
 
-    /// The remarks of the simulation since the last time anything was asked for.
+    /// The remarks of the simulation since the last time anything was requested.
     pub(crate) fn diagnostics(&mut self) -> Vec<String> {
         let texts = self.kernel.parts.out.take_events().into_iter().filter_map(|event| match event.kind {
             EventKind::Remark(remark) if remark.message.severity() > Severity::Detail => {

@@ -164,7 +164,7 @@ fn check<E: Engine>(name: &str, target: Target, numbers: &mut Numbers) {
         let what = format!("{name} from tick {}", snapshot.tick().get());
         session.restore(snapshot).expect("it is of this board");
         assert_eq!(session.tick(), snapshot.tick());
-        // Some way on, and once more from the same instant.
+        // Some way on, and again from the same instant.
         let way = session.tick().get() + numbers.below(50);
         session.advance(Ticks::new(way.min(end.get())), &mut |_| ());
         session.restore(snapshot).expect("it is of this board");

@@ -1,7 +1,7 @@
 //! Programs of `data/firmware` print on the modelled board what they printed on the released firmware, executed.
 //!
 //! Each is a difference that `cc67 compare` has found. `NAME.console` is what `cc67 run --boot` showed, and is made
-//! anew with it alone: a firmware is not needed here.
+//! again, with it alone: a firmware is not needed here.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -12,7 +12,7 @@ main()
 }
 ";
 
-/// What is asked for, and what the program then prints.
+/// What is requested, and what the program then prints.
 const CASES: &[(&[&str], &str)] = &[
     (&[], "0 0\n"),
     (&["--set", "persist.5=7"], "7 0\n"),

@@ -1,6 +1,6 @@
 //! `--boot`: the user's own firmware file in place of the modelled firmware.
 //!
-//! Where `CC67_FIRMWARE` names a file, programs run on it; where not, this is said.
+//! Where `CC67_FIRMWARE` names a file, programs run on it; otherwise the test says so.
 
 use std::path::PathBuf;
 use std::{env, fs};
@@ -232,7 +232,10 @@ fn the_real_firmware_starts_from_the_flash_that_it_has_written() {
     }
     scratch.write("other.flash", vec![0xFF; 1 << 21]);
     let other = cc67(&scratch, ["run", "--boot", &file, "--flash", "other.flash", "hello.c"]);
-    assert_refused(&other, "the flash other.flash does not work with `--boot`: it is of the modelled board");
+    assert_refused(
+        &other,
+        "the flash other.flash does not work with `--boot`: it belongs to the modelled board",
+    );
 }
 
 #[test]

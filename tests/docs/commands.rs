@@ -2,7 +2,7 @@
 //!
 //! A page is read from the top in a folder of its own. A block `LANGUAGE file=NAME` is written to that file. The lines of
 //! a block `sh run` are executed; `exit=N` after it is the exit code that is not 0. A block `text` right after it is what
-//! they print, standard output before standard error. `CC67_WRITE_BOOK=1` writes those blocks anew.
+//! they print, standard output before standard error. `CC67_WRITE_BOOK=1` rewrites those blocks.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,8 +1,8 @@
 //! The messages of the compiler, found in its sources, as a chapter of the book.
 //!
-//! A message is the last argument of `Diagnostic::error` and its kin: a text, a format, a variable that is one of several
-//! texts, or a parameter, whose texts are in the calls of that function. Texts of lints and of preprocessor and linker
-//! errors are kept in values of their own, with a field `message` or an attribute `error`.
+//! A message is the last argument of `Diagnostic::error` or a similar function: a text, a format, a variable that is
+//! one of several texts, or a parameter, whose texts are in the calls of that function. Texts of lints and of
+//! preprocessor and linker errors are kept in values of their own, with a field `message` or an attribute `error`.
 
 use std::collections::BTreeSet;
 use std::fs;

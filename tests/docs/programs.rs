@@ -1,4 +1,4 @@
-//! Every program of `c-programs/` compiles without a word and shows its golden console, on all engines.
+//! Every program of `c-programs/` compiles without messages and shows its golden console, on all engines.
 
 use std::fs;
 

@@ -31,8 +31,8 @@ pub fn is_long() -> bool {
     std::env::var_os("CC67_LONG").is_some()
 }
 
-/// The folder of npm's packages if it has one of this name; a test that uses it does not run where this is `None`, which
-/// is said. `.ci/node/install` fills `target/node`.
+/// The folder of npm's packages if it has one of this name. A test that needs it is skipped with a message if this is
+/// `None`. `.ci/node/install` fills `target/node`.
 #[must_use]
 pub fn node_modules(package: &str) -> Option<PathBuf> {
     let modules = root().join("target/node/node_modules");

@@ -2,7 +2,7 @@
 //!
 //! A page is `cc67/compiler/src/lints/pages/<name>.md`. A block of C marked `fires` is a program in
 //! which this lint, and no other, is reported when it is switched on; a block marked `clean`
-//! one that compiles and links without a word. A block marked with a file name is a file
+//! one that compiles and links without messages. A block marked with a file name is a file
 //! beside all of them.
 
 use std::collections::BTreeSet;
@@ -33,7 +33,7 @@ fn blocks(page: &str) -> Vec<Block> {
     blocks
 }
 
-/// What is said about a program, one finding a line, and the names of the lints that say it.
+/// The messages about a program, one finding a line, and the names of the lints that say it.
 fn compile(lint: Lint, text: &str, page: &[Block]) -> (Vec<String>, BTreeSet<&'static str>) {
     let mut files = MemoryFiles::new();
     for file in page.iter().filter(|block| block.mark.contains('.')) {

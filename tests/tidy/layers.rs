@@ -1,7 +1,7 @@
 //! The layers inside each crate, from top to bottom: a file may import from its own row and from the rows below.
 //!
 //! A new upward import fails with the names of both rows. What still points upwards is named in [`UPWARDS`], what still
-//! goes round in [`CIRCLES`]; both lists only shrink, and an entry that is not needed any more is to be taken out.
+//! goes round in [`CIRCLES`]; both lists only shrink, and an entry that is not needed any more should be taken out.
 
 /// A row of a crate: the name of the layer, and its rooms as paths from `src` on. The longest path that fits counts.
 pub(crate) type Row = (&'static str, &'static [&'static str]);

@@ -1,6 +1,6 @@
 //! Matches over instructions, operators and modes name every one of them.
 //!
-//! An arm `_` would take in whatever is added later, without a word. It is fine over numbers, texts and pairs of facts.
+//! An arm `_` would take in whatever is silently added later. It is fine over numbers, texts and pairs of facts.
 
 use crate::shapes::sources;
 use crate::tokens::{Token, closing};

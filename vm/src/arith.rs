@@ -114,7 +114,7 @@ impl WordDivision {
 
     /// What the firmware's routine makes of a division of `a` by zero.
     ///
-    /// It subtracts and shifts once more often than the dividend has bits, and zero can always be subtracted
+    /// It subtracts and shifts one time more than the dividend has bits, and zero can always be subtracted
     /// (`c67-subset.md` section 7; measured for what that section does not list).
     #[must_use]
     pub const fn by_zero(self, a: i32) -> i32 {

@@ -1,7 +1,7 @@
 //! Device registers: addresses where a read or write is an action.
 //!
-//! The machine does not know what answers; the kernel routes an access to its
-//! device. An access of eight bytes reaches the bus as two of four, low half first.
+//! The machine does not know the devices; the kernel routes each access to its device. An access of eight bytes reaches
+//! the bus as two of four, low half first.
 
 use kmotiondef::{Cycles, GuestAddr};
 

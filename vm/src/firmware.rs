@@ -312,7 +312,7 @@ pub trait Firmware: Bus {
         let _ = (thread, start, end);
     }
 
-    /// Whether packets of real code of this thread, of the call-back for `None`, are to be reported one by one.
+    /// Whether packets of real code of this thread, of the call-back for `None`, should be reported one by one.
     fn follows_packets(&self, thread: Option<ThreadId>) -> bool {
         let _ = thread;
         false

@@ -100,7 +100,7 @@ impl BytecodeEngine {
         running.is_some_and(|running| running.context.set_in(frame, register, slot))
     }
 
-    /// Gives all contexts the words at which they are to be held now.
+    /// Gives all contexts the words at which they should be held now.
     fn refresh(&mut self) {
         for Running { code, .. } in self.contexts.iter_mut().flatten() {
             let plain = self.words.get(&code.program, |program| Arc::new(Encoded::new(program.ops())));

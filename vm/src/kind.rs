@@ -44,7 +44,7 @@ impl Width {
     }
 }
 
-/// Defines the names of operands that are asked for by name.
+/// Defines the names of operands that are requested by name.
 macro_rules! operand_names {
     ($($(#[doc = $doc:literal])+ $name:ident = $text:literal,)*) => {
         /// A name that operands have in the rows, as far as anybody asks for an operand by its name.

@@ -1,4 +1,4 @@
-//! Metering: where a `charge` belongs and what it must cover.
+//! Metering: the place and the amount of each `charge`.
 //!
 //! The compiler's last pass inserts charges with this. The verifier demands less: what an image charges is its own
 //! affair, as it may have been made for the vendor's code and not for these words; but no function begins and no

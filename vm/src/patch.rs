@@ -10,7 +10,7 @@ use crate::operand::{
     RegI64, SigRef,
 };
 
-/// A change of operands; what is not said stays as it is.
+/// A change of operands; the rest stays as it is.
 pub trait Patch {
     /// Changes a place in the code.
     fn label(&mut self, _: &mut Label) {}

@@ -1,4 +1,4 @@
-//! The rotation: whose slice a tick is.
+//! The rotation: which thread gets the slice of a tick.
 //!
 //! Pure: nothing here touches memory, time or an engine. Rules: threads-and-time.md 1.2 of
 //! the specification.

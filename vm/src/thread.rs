@@ -36,7 +36,7 @@ pub enum ThreadState {
     Active(Progress),
     /// Out of the rotation; can continue where it was.
     Paused(Progress),
-    /// Stopped by a trap; can be started anew.
+    /// Stopped by a trap; can be restarted.
     Faulted(Trap),
 }
 

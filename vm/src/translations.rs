@@ -18,7 +18,7 @@ impl<T> Default for Translations<T> {
 }
 
 impl<T: Clone> Translations<T> {
-    /// What `make` makes of `program`, made when it is first asked for.
+    /// What `make` makes of `program`, made when it is first requested.
     pub(crate) fn get(&mut self, program: &Arc<Program>, make: impl FnOnce(&Program) -> T) -> T {
         // A weak reference keeps the address of its program from being used again.
         let is_same = |(known, _): &&(Weak<Program>, T)| known.as_ptr() == Arc::as_ptr(program);

@@ -1,4 +1,4 @@
-//! Console lines, and what the simulation reports.
+//! Console lines, and reports of the simulation.
 
 use std::ffi::{CString, c_char, c_int, c_void};
 

@@ -1,9 +1,9 @@
 //! The host interface for C programs: a library, `cc67board`, and its header, `include/cc67board.h`.
 //!
-//! The calls are those of [`cc67_host::Board`] under the same names with `cc67_` in front. A call says by its result
-//! whether it did what it is for; texts go into buffers of the caller, are cut to fit and always ended with a 0. A client
-//! is a pointer to a box that holds one client of a shared board; each function checks its pointers, calls the method of
-//! the same name, and turns its answer into a number.
+//! The calls are those of [`cc67_host::Board`] under the same names with `cc67_` in front. The result of a call reports
+//! success or failure; texts are copied into buffers of the caller, truncated to fit and always terminated with a 0. A
+//! client is a pointer to a box that holds one client of a shared board; each function checks its pointers, calls the
+//! method of the same name, and converts its result to a number.
 //!
 //! ```text
 //! client, console, lines, programs, time, token   the functions, by subject
@@ -13,11 +13,12 @@
 //! ```
 //!
 //! Invariants:
-//! - Unsafe code is here and in the machine's native engine only: pointers of the caller are looked at in [`border`]
-//!   and [`handle`] and nowhere else. What a caller must keep to is the same for all calls and is in the header.
-//! - No panic leaves a call: it comes back as [`Outcome::Internal`].
-//! - A null pointer, a text that is not UTF-8 or a buffer without room is an answer, never undefined behaviour.
-//! - The header is made from these files; a test compares it.
+//! - Unsafe code exists only here and in the machine's native engine: only [`border`] and [`handle`] dereference
+//!   pointers of the caller. The rules for callers are the same for all calls and are in the header.
+//! - No panic leaves a call: it is returned as [`Outcome::Internal`].
+//! - A null pointer, a text that is not UTF-8 or a buffer that is too small gives an error result, never undefined
+//!   behaviour.
+//! - The header is generated from these files; a test compares it.
 
 #![expect(unsafe_code, reason = "what C programs hand over are pointers, and they call by unmangled names")]
 

@@ -1,4 +1,4 @@
-//! Lines of script commands, and what comes back.
+//! Lines of script commands, and their replies.
 
 use std::ffi::{c_char, c_int, c_void};
 

@@ -1,5 +1,5 @@
-//! The start of an executable that `cc67 build --emit native` makes. Its header does not have this: who calls it is
-//! the object file.
+//! The start of an executable that `cc67 build --emit native` makes. It is not in the header: only the object file
+//! calls it.
 
 use std::ffi::c_int;
 

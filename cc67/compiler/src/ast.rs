@@ -97,7 +97,7 @@ pub struct Specifiers {
     pub qualifiers: Qualifiers,
     /// `inline` was written.
     pub is_inline: bool,
-    /// Alignments asked for.
+    /// Alignments requested.
     pub alignments: Vec<Alignment>,
     /// The type; `None` if no word names one (implicit `int`).
     pub ty: Option<TypeSpecifier>,
@@ -188,7 +188,7 @@ pub struct RecordSpecifier {
     pub tag: Option<(Name, Span)>,
     /// The members; `None` for a mere reference.
     pub members: Option<Vec<MemberDeclaration>>,
-    /// Alignments asked for before the tag or after the brace.
+    /// Alignments requested before the tag or after the brace.
     pub alignments: Vec<Alignment>,
     /// From the keyword to the closing brace or tag.
     pub span: Span,
@@ -243,7 +243,7 @@ pub struct Declarator {
     pub name: Option<(Name, Span)>,
     /// Derivations from the name outwards: `int *a[3]` is `[Array, Pointer]`.
     pub derived: Vec<Derived>,
-    /// Alignments asked for after the declarator.
+    /// Alignments requested after the declarator.
     pub alignments: Vec<Alignment>,
     /// The whole declarator.
     pub span: Span,
@@ -263,7 +263,7 @@ pub enum Derived {
 /// A parameter list.
 #[derive(Debug)]
 pub enum Parameters {
-    /// `()`: nothing is said.
+    /// `()`: unspecified.
     Unspecified,
     /// `(void)`, `(int a, …)`.
     Prototype {

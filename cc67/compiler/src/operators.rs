@@ -1,4 +1,4 @@
-//! The binary operators of C, and what they mean.
+//! The binary operators of C, and their meanings.
 //!
 //! An operator is a row of `for_each_binary_operator!`: how it is written and how tight it binds. What it computes is a
 //! row of `for_each_binary_op!`. Preprocessor, parser, analysis and lowering expand both, so that an operator is known

@@ -66,7 +66,7 @@ pub struct SourceFile {
     pub included_at: Option<Span>,
     /// It holds text made by the preprocessor.
     is_scratch: bool,
-    /// Offsets of the line starts, found when first asked for.
+    /// Offsets of the line starts, found when first requested.
     lines: OnceLock<Vec<u32>>,
 }
 

@@ -121,7 +121,7 @@ fn compile_here(scope: Scope<'_>, expression: &str, items: &[&str]) -> Result<Ex
     if let Some(error) = error {
         return Err(in_one_line(error));
     }
-    // What is doubtful in the program was said when it was compiled; in an expression it is a mistake.
+    // What is doubtful in the program was reported when it was compiled; in an expression it is a mistake.
     let (start, known) = (sources.file(main).start + before, sink.diagnostics().len());
     lints::check(&unit, &names, &sources, &scope.options.firmware, &mut sink);
     let is_here = |diagnostic: &&Diagnostic| {

@@ -1,4 +1,4 @@
-//! What going back costs, and what it costs that one can.
+//! The cost of going back, and the cost of being able to.
 //!
 //! `back/...`: one step back of a thread after a minute of board time. `run/...`: ten seconds of the same program in a
 //! session, and in a debugger without a breakpoint. The test `cost` measures the memory that the past takes.

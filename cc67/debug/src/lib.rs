@@ -1,23 +1,23 @@
-//! A debugger for programs on a simulated board: it stops anywhere, in all threads and the servo at the same instant, and goes
-//! back.
+//! A debugger for programs on a simulated board: it stops anywhere, all threads and the servo together, and goes back
+//! in time.
 //!
-//! A [`Debugger`] has a session and the debug information of its programs. It runs the session to breakpoints, changes of
-//! variables, traps and other events, by lines of one thread while the others continue as on the board, and back in time:
-//! a step back is the last step before, found by executing the past again. [`Shell`] gives it the commands of gdb,
-//! [`dap`] the protocol by which editors debug.
+//! A [`Debugger`] has a session and the debug information of its programs. It runs the session to breakpoints, changes
+//! of variables, traps and other events, steps lines of one thread while the others continue as on the board, and goes
+//! back in time: it finds the previous step by executing the past again. [`Shell`] provides gdb's commands, [`dap`] the
+//! protocol for editors.
 //!
 //! ```text
 //! dap        the Debug Adapter Protocol: requests in, responses and events out
-//! shell      commands that people know from gdb
+//! shell      gdb's commands
 //! debugger   breakpoints, runs, steps, values
-//!   travel     the same back in time
-//! programs   what is known of the programs in the threads
+//!   travel     the same, back in time
+//! programs   debug information of the programs in the threads
 //! ```
 //!
 //! Invariants:
-//! - What a program does, and when, is the same whether it is debugged or not.
-//! - The past is what it was: a state that is reached backwards is that which was there, byte for byte.
-//! - Only what a person changes makes another history, and that is said.
+//! - Debugging does not change what a program does, or when.
+//! - A state reached backwards equals the earlier state, byte for byte.
+//! - Only changes by a person start another history, and this is reported.
 
 #![forbid(unsafe_code)]
 

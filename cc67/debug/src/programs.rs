@@ -1,4 +1,4 @@
-//! What is known about the programs in the threads.
+//! Debug information of the programs in the threads.
 
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -171,7 +171,7 @@ fn compare(machine: &str, files: &[&str], extent: &Extent, numbers: &mut Numbers
             compared += 1;
         }
     }
-    // From the earliest instant the rest is said once more.
+    // From the earliest instant the rest is reported again.
     let first = &instants[0];
     back.go_to(first.tick).expect("it is in the past");
     let mut again = Vec::new();

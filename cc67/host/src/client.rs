@@ -37,7 +37,7 @@ pub enum Lock {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
 pub enum Readiness {
-    /// Nothing was said.
+    /// There was no message.
     NoData = 0,
     /// A part of a line came, without `Ready`.
     Partial = 1,
@@ -543,7 +543,7 @@ impl Board {
     /// ```
     /// let mut board = cc67_host::Board::new();
     /// board.write_line("Move0=5")?;
-    /// assert_eq!(board.take_remark().as_deref(), Some("command: Move: axis 0 is disabled, nothing moves"));
+    /// assert_eq!(board.take_remark().as_deref(), Some("command: Move: axis 0 is disabled, so nothing moves"));
     /// assert_eq!(board.take_remark(), None);
     /// # Ok::<(), cc67_host::HostError>(())
     /// ```

@@ -1,23 +1,23 @@
 //! A simulated KFLOP board under control, as a library.
 //!
-//! Everything here is a view of one thing, the [`session`]: a board with its programs, whose owner decides how far time
-//! goes, looks at it and changes it in the words of its programs, and acts as the world around it. [`Session`] is that
-//! board for one owner, as the command, tests, a debugger or a page want it. [`Board`] shares one among clients by the
-//! operations of the vendor's library for PC programs under their names: compile and load, script commands and their
-//! replies, status, console, the token that gives one client the board to itself. Below both are the simulated board
-//! (`cc67-runtime`) and the compiler (`cc67-compiler`), which know nothing of each other.
+//! Everything here is a view of a [`session`]: a board with its programs. Its owner decides how far time goes, reads
+//! and changes the board with the names of its programs, and acts as the world around it. [`Session`] is for a single
+//! owner: the command, a test, a debugger or a page. [`Board`] shares a session among clients, with the operations of
+//! the vendor's library for PC programs: compile and load, script commands and their replies, status, console, and the
+//! token, which reserves the board for one client. Both use the simulated board (`cc67-runtime`) and the compiler
+//! (`cc67-compiler`), which are independent of each other.
 //!
 //! ```text
 //! client     Board: one of several clients, with the token and the calls of the vendor's library
-//! state      what the clients share: the session, replies and console lines that nobody has taken yet
-//! session/   Session: setup, control of time, expressions, signals, what is done by hand, snapshots
+//! state      shared by the clients: the session, replies and console lines not taken yet
+//! session/   Session: setup, control of time, expressions, signals, manual actions, snapshots
 //! remark     events of the board in words
 //! message    texts in buffers of a caller
-//! error      why a call did not do what it is for
+//! error      why a call failed
 //! ```
 //!
-//! No board time passes between calls; each exchange takes the time that was measured on the board, and
-//! [`run_for`](Board::run_for) and [`run_until`](Board::run_until) let more of it pass. So a test of a PC program is as
+//! No board time passes between calls. Each exchange takes the time that was measured on the board, and
+//! [`run_for`](Board::run_for) and [`run_until`](Board::run_until) let more time pass. So a test of a PC program is as
 //! deterministic as the board.
 //!
 //! ```
@@ -32,11 +32,10 @@
 //! Source: host-protocol.md section 7 of the specification.
 //!
 //! Invariants:
-//! - Who embeds a board builds no crate of terminals, pictures, web or command lines.
-//! - Board time passes in calls alone, by what was asked for: no call looks at a clock.
-//! - Nobody reaches around the session: what changes a board goes through it, so that a recording of a session is all
-//!   that was done.
-//! - A session is a function of its setup and of what was done at which tick, on any engine.
+//! - Embedding a board needs no crate for terminals, pictures, web or command lines.
+//! - Board time passes only in calls, as much as the call requests: no call reads a clock.
+//! - Every change of a board goes through its session, so the recording of a session is complete.
+//! - A session is a function of its setup and of the actions with their ticks, on any engine.
 
 #![forbid(unsafe_code)]
 

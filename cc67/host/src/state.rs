@@ -59,7 +59,7 @@ pub(super) struct State {
     pub(super) is_connected: bool,
     /// Bytes of replies that are not read yet.
     incoming: VecDeque<u8>,
-    /// Whether it was said that more came than are kept.
+    /// Whether the loss of entries was reported.
     has_told_loss: bool,
     console: VecDeque<String>,
     callback: Option<(u64, Callback)>,

@@ -89,7 +89,7 @@ struct Waiting {
     is_closed: bool,
 }
 
-/// What is to be sent.
+/// What should be sent.
 #[derive(Debug)]
 pub(crate) enum Outgoing {
     /// A message in JSON.
@@ -126,12 +126,12 @@ impl Mailbox {
         message.or_else(|| waiting.frame.take().map(Outgoing::Frame))
     }
 
-    /// No more is to be sent.
+    /// No more should be sent.
     pub(crate) fn close(&self) {
         locked(&self.0).is_closed = true;
     }
 
-    /// Whether the page is to be disconnected.
+    /// Whether the page should be disconnected.
     pub(crate) fn is_closed(&self) -> bool {
         locked(&self.0).is_closed
     }

@@ -1,25 +1,24 @@
 //! A simulated board on a page in the browser.
 //!
-//! A [`Server`] listens on this computer and hands out the page, which is part of the binary. It then
-//! [runs](Server::run) a [`Session`](cc67_host::Session) at the pace of a clock, on the thread of the caller. Pages are
-//! views: they are sent what the board does, and ask for what a person wants done. A session that somebody else runs is
-//! shown by a [`LiveView`].
+//! A [`Server`] listens on this computer and serves the page, which is part of the binary. It then [runs](Server::run)
+//! a [`Session`](cc67_host::Session) in real time, on the caller's thread. Pages are views: they receive the board's
+//! state and send the requests of a person. A [`LiveView`] shows a session that other code runs.
 //!
 //! ```text
-//! server/    connections: the files of the page, the check of who asks, the sockets
+//! server/    connections: the files of the page, access checks, sockets
 //! board/     the session under the clock: frames, signals, threads, messages
-//! control    what pages may do to the time of the board
-//! desk       what connections and the board share: requests in, messages and frames out
-//! request    what a page may ask for
-//! names      what the programs call their bits
+//! control    how pages control board time
+//! desk       shared by connections and the board: requests in, messages and frames out
+//! request    the requests of a page
+//! names      the programs' names of bits
 //! ```
 //!
 //! Invariants:
-//! - Wall time decides only how far the board goes before the next look at the pages: what happens in a run does not
-//!   depend on it, nor on how many pages look.
-//! - What is done from a page goes through the session, so it is recorded.
-//! - Nothing is loaded from elsewhere, and nobody without the token is answered.
-//! - A page that sends nonsense, or vanishes, costs the board nothing.
+//! - Wall-clock time decides only how far the board runs before it serves the pages again: the run does not depend on
+//!   it, or on the number of pages.
+//! - Every action of a page goes through the session, so it is recorded.
+//! - The page loads nothing from elsewhere, and a request without the token gets no answer.
+//! - A page that sends invalid data, or disappears, does not affect the board.
 
 #![forbid(unsafe_code)]
 

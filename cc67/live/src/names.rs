@@ -1,4 +1,4 @@
-//! What the programs call their bits, and what they do with them: read from their sources.
+//! The programs' names and uses of bits, read from their sources.
 //!
 //! `#define ESTOP 136` with `ReadBit(ESTOP)` somewhere makes bit 136 the input `ESTOP`. A number without a macro is a
 //! bit, too, where it is an argument of such a function. In a sum the first macro names the bit: with

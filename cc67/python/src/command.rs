@@ -1,4 +1,4 @@
-//! The `cc67` command, for those who have it from the wheel.
+//! The `cc67` command as part of the wheel.
 
 use std::ffi::OsString;
 use std::process::ExitCode;

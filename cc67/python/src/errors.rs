@@ -1,4 +1,4 @@
-//! The exceptions of the package, which are written in Python, and what of ours becomes which of them.
+//! The exceptions of the package, which are written in Python, and the mapping of errors to them.
 
 use std::fmt::Display;
 

@@ -1,4 +1,4 @@
-//! What is in an image, as JSON and as the texts of `cc67 inspect`.
+//! The contents of an image, as JSON and as the texts of `cc67 inspect`.
 
 use compiler::files;
 use compiler::inspect::{Inspection, Order, Sources};

@@ -1,25 +1,25 @@
-//! The native half of the Python package `cc67`: boards and programs, without the forms that Python is used to.
+//! The native half of the Python package `cc67`: boards and programs, without a Pythonic interface.
 //!
-//! What people meet is written in Python, in `python/cc67`: classes, properties, exceptions, help texts. Here is what
-//! that calls: a [session](cc67_host::Session) on either engine, wherever it has to live, and the compiler's driver.
+//! The public interface is written in Python, in `python/cc67`: classes, properties, exceptions, help texts. It calls
+//! this crate: a [session](cc67_host::Session) on either engine and in the right thread, and the compiler's driver.
 //!
 //! ```text
-//! board      a board for Python: whose thread it is, signals while it runs, exceptions
-//! residence  where a session lives: in the calling thread, or in one of its own
-//! control    a session on any engine behind one set of calls; what it said so far
+//! board      a board for Python: its owning thread, signals while it runs, exceptions
+//! residence  where a session lives: in the calling thread, or in its own
+//! control    a session on any engine behind one set of calls; its messages so far
 //! trace      values over time, in columns
-//! setup      what a board begins with
-//! program    sources to a program that can be linked for any thread
-//! image      what is in an image
+//! setup      the initial state of a board
+//! program    sources compiled to a program that can be linked for any thread
+//! image      the contents of an image
 //! command    the `cc67` command
 //! errors     the exceptions of the package
 //! ```
 //!
 //! Invariants:
-//! - No rule of the simulation is here: what a board does is what its session does.
-//! - The interpreter's lock is released while a board runs or a program is compiled, and signals are looked at between
+//! - This crate contains no rules of the simulation: a board does what its session does.
+//! - The interpreter's lock is released while a board runs or a program is compiled, and signals are checked between
 //!   portions of a run.
-//! - No panic and no abort for any argument: each wrong one is an exception.
+//! - No argument causes a panic or an abort: a wrong one raises an exception.
 
 mod board;
 mod command;

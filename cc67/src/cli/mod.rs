@@ -1,17 +1,17 @@
 //! The command line.
 //!
-//! What a program prints goes to stdout byte for byte, everything else to stderr. Messages
-//! about the request or its inputs are single lines that begin with `cc67: `. Where `cc67` stands
-//! in for the vendor's compiler, arguments and messages are that one's.
+//! Program output goes to stdout byte for byte, everything else to stderr. Messages about the request or its inputs are
+//! single lines that start with `cc67: `. In place of the vendor's compiler, `cc67` uses that compiler's arguments and
+//! messages.
 //!
 //! The rooms are layers, each of which knows those below it:
 //!
 //! ```text
 //! commands   a file a subcommand: arguments in, work done, exit code out
-//! session    arguments → configuration → a loaded board, on the engine that was asked for
-//! compile    files → images, with what the compiler says of them
-//! report     what is shown: the screen of a run, diagnostics, traces, plots, profiles
-//! args       options that commands have in common, and what their values mean
+//! session    arguments → configuration → a loaded board, on the engine that was requested
+//! compile    files → images, with the compiler's messages
+//! report     output: the screen of a run, diagnostics, traces, plots, profiles
+//! args       options shared by commands, and the meaning of their values
 //! io         files, the terminal, the clock, exit codes
 //! ```
 

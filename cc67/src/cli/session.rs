@@ -1,5 +1,5 @@
 //! From arguments to a board under control: what the options say becomes a configuration, files become programs, and
-//! both become a [session](cc67_host::Session) on the engine that is asked for.
+//! both become a [session](cc67_host::Session) on the engine that is requested.
 //!
 //! Every command that has a board takes this way, so an option of a board reaches all of them.
 
@@ -81,13 +81,13 @@ impl Setup {
         Ok(Some(Self { session, engine: board.engine, uart, flash }))
     }
 
-    /// The engine that was asked for.
+    /// The engine that was requested.
     #[cfg(feature = "native")]
     pub(crate) const fn engine(&self) -> EngineName {
         self.engine
     }
 
-    /// Does the work of a command on the engine that was asked for.
+    /// Does the work of a command on the engine that was requested.
     pub(crate) fn on_its_engine(self, work: impl Work) -> Result<Exit> {
         // Beside real images there may be bytecode, which the usual engine executes.
         let engine = if self.engine == EngineName::Dsp { EngineName::default() } else { self.engine };

@@ -1,4 +1,4 @@
-//! What is around the board at register level: motors, switches, devices on the lines.
+//! The surroundings of the board at register level: motors, switches, devices on the lines.
 //!
 //! The board alone has registers that keep what was written, and loads that follow their axes ([`loads`](super::loads)).
 //! Whoever connects something else answers the registers of inputs in its place, sees every write in the cycle in which

@@ -160,7 +160,7 @@ impl BootedBoard {
         self.hardware.first_look
     }
 
-    /// Whether the firmware is starting, or starting anew, and does not look for what the PC sends yet.
+    /// Whether the firmware is starting or restarting, and does not look for what the PC sends yet.
     #[must_use]
     pub const fn is_starting(&self) -> bool {
         self.hardware.first_look.is_none()
@@ -246,7 +246,7 @@ impl BootedBoard {
         }
     }
 
-    /// The timer matches: what is connected moves, then the interrupt is asked for.
+    /// The timer matches: what is connected moves, then the interrupt is requested.
     fn tick(&mut self) {
         let now = self.hardware.timer.next_match();
         let Hardware { memory, window, .. } = &mut self.hardware;
@@ -338,7 +338,7 @@ impl BootedBoard {
         self.lines.push(SentLine { cycle, kind, text: text.to_vec() });
     }
 
-    /// Puts the sections of a linked program into memory, as a download does, and tells the firmware where it begins.
+    /// Puts the sections of a linked program into memory, as a download does, and tells the firmware its start address.
     ///
     /// # Errors
     /// The bytes are not an image of this processor.

@@ -1,4 +1,4 @@
-//! Which address is whose (`dsp-board.md` 3).
+//! The map from addresses to devices (`dsp-board.md` 3).
 
 use kmotiondef::GuestAddr;
 use kmotiondef::map::{FLASH, FPGA, IRAM, ROM_SIZE, SDRAM};

@@ -1,4 +1,4 @@
-//! What is reported of a firmware that went where no firmware goes.
+//! The report of a firmware crash.
 
 use std::fmt;
 
@@ -11,7 +11,7 @@ pub struct Crash {
     pub reason: String,
     /// Board time in cycles of 5 ns since power-up.
     pub cycle: u64,
-    /// The packet that did it, or that was to be next.
+    /// The packet that did it, or that should have been next.
     pub pc: u32,
     /// The function of the firmware or of a program that it belongs to, and how far into it; if that is known.
     pub function: Option<(String, u32)>,

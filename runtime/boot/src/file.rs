@@ -1,4 +1,4 @@
-//! The firmware file: what is loaded where, and its symbols (`dsp-board.md` 2.1 and 10).
+//! The firmware file: its loaded sections and its symbols (`dsp-board.md` 2.1 and 10).
 
 use std::collections::BTreeMap;
 
@@ -39,7 +39,7 @@ pub enum FirmwareError {
     OtherBoard {
         /// The section.
         name: String,
-        /// Where it is to be loaded.
+        /// Where it should be loaded.
         address: u32,
     },
     /// It is not a firmware.

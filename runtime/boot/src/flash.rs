@@ -31,7 +31,7 @@ enum Heard {
     First,
     /// AA 55.
     Second,
-    /// AA 55 80: something is to be erased.
+    /// AA 55 80: something should be erased.
     Erase,
     /// AA 55 80 AA.
     EraseFirst,

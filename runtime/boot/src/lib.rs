@@ -1,18 +1,19 @@
 //! The board around a real firmware: the user's own firmware file, executed by the processor's engine.
 //!
-//! Nothing here imitates the firmware. The file is loaded as the board's loader does ([`file`]), the processor starts
-//! at its entry, and everything that it reaches outside of its two RAMs is a device of this room: the timer that
+//! Nothing here imitates the firmware. The file is loaded as by the board's loader ([`file`]), the processor starts
+//! at its entry point, and everything that it accesses outside its two RAMs is a device in this crate: the timer that
 //! interrupts it ([`timer`]), the byte link to the PC ([`link`]), the registers of the FPGA ([`window`]) with step
-//! generators ([`generators`]), pins ([`pins`]) and the serial port ([`uart`]), the flash chip ([`flash`]). What else is connected answers in their place ([`Around`]). What the axes move ([`loads`]) is brought up to date at
-//! each match of the timer. [`bus`] says
-//! which address is whose. [`BootedBoard`] runs them in one time: cycles of 5 ns.
+//! generators ([`generators`]), pins ([`pins`]) and the serial port ([`uart`]), the flash chip ([`flash`]). Other
+//! connected devices answer through [`Around`]. The loads of the axes ([`loads`]) are updated at each match of the
+//! timer. [`bus`] maps addresses to devices. [`BootedBoard`] runs them all in one time base: cycles of 5 ns.
 //!
-//! Source: `dsp-board.md` of the specification, by section. No address of a firmware is built in: what is wanted by
-//! name (threads, axes) is looked up among the symbols of the file.
+//! Source: `dsp-board.md` of the specification, by section. No address of a firmware is built in: threads and axes are
+//! looked up among the symbols of the file.
 //!
 //! Invariants:
-//! - The state is registers, memory, devices; a run is a function of it and of the bytes put into the link.
-//! - An address that is nobody's ends the run with the place and the registers; nothing panics.
+//! - The state consists of registers, memory and devices; a run is a function of the state and of the bytes put into
+//!   the link.
+//! - An access to an unmapped address ends the run with the place and the registers; nothing panics.
 
 #![forbid(unsafe_code)]
 

@@ -1,4 +1,4 @@
-//! Power-up from flash, and what goes into flash.
+//! Power-up from flash, and saving to flash.
 
 use kmotiondef::map::FLASH;
 use kmotiondef::structs::Persist;
@@ -75,7 +75,7 @@ impl<E: Engine> Board<E> {
         programs.flashed = programs.loaded.each_ref().map(known);
     }
 
-    /// Starts anew from flash. Time goes on: it counts from the first power-up.
+    /// Restarts from flash. Time goes on: it counts from the first power-up.
     pub(super) fn reboot(&mut self) {
         ThreadId::all().for_each(|thread| self.machine.unload_program(thread));
         self.programs_mut().loaded = Default::default();

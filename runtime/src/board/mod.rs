@@ -195,7 +195,7 @@ impl<E: Engine> Board<E> {
         self.deliver(sink);
     }
 
-    /// Runs to the end of the next tick in which something can happen, and does what was asked for there.
+    /// Runs to the end of the next tick in which something can happen, and does what was requested there.
     fn step(&mut self, limit: Ticks) {
         self.machine.step(limit);
         if self.machine.held().is_some() {

@@ -1,4 +1,4 @@
-//! What is around the board: the PC, signals on its pins and lines, and who records them.
+//! The surroundings of the board: the PC, signals on its pins and lines, and recorders.
 
 use kmotiondef::{AxisId, Bit};
 use vm::engine::Engine;
@@ -12,7 +12,7 @@ use crate::world::trace;
 
 impl<E: Engine> Board<E> {
     /// Bytes from the PC arrive on the USB link: command lines, ended by CR. A line that begins with 0x1B and a byte
-    /// that is thrown away is not echoed; 0x03 drops what is under way.
+    /// that is discarded is not echoed; 0x03 drops what is under way.
     pub fn receive(&mut self, bytes: &[u8]) {
         let (kernel, _) = self.machine.firmware_mut();
         kernel.parts.pc.usb.receive(bytes);
@@ -57,7 +57,7 @@ impl<E: Engine> Board<E> {
         kernel.parts.world.assist(context.now);
     }
 
-    /// Records from now on what is asked for; the records come as events.
+    /// Records from now on what is requested; the records come as events.
     pub fn record(&mut self, request: trace::TraceRequest) {
         let (kernel, context) = self.machine.firmware_mut();
         let Parts { world, io, .. } = &mut kernel.parts;

@@ -1,4 +1,4 @@
-//! Programs of the vendor's compiler against what they did on the released firmware.
+//! Programs of the vendor's compiler, compared with their runs on the released firmware.
 
 use std::fs;
 

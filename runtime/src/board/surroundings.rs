@@ -1,5 +1,5 @@
-//! What is around a board that runs a real firmware: the same machine, devices, stimulus and PC as around the modelled
-//! one, attached at its registers.
+//! The surroundings of a board that runs a real firmware: the same machine, devices, stimulus and PC as for the
+//! modelled one, attached to its registers.
 //!
 //! The parts are those of the modelled board, without its servo and its firmware functions: inputs and outputs answer
 //! the registers, loads move by what the firmware outputs, switches and encoders show them, the PC serves requests and
@@ -55,7 +55,7 @@ const INTERRUPT: Cycles = Cycles::new(2006);
 pub enum Asked {
     /// The PC sends these bytes.
     Send(Vec<u8>),
-    /// A program that was offered is to be loaded under this name, and started.
+    /// A program that was offered should be loaded under this name, and started.
     Run(ThreadId, String),
 }
 
@@ -164,7 +164,7 @@ impl Surroundings {
         }
     }
 
-    /// Records from now on what is asked for; the records come as events.
+    /// Records from now on what is requested; the records come as events.
     pub fn record(&mut self, request: trace::TraceRequest, memory: &GuestMemory) {
         let Parts { world, io, .. } = &mut self.parts;
         world.record(request, io, memory);

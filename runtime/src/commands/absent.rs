@@ -1,4 +1,4 @@
-//! Words that people send and this board does not have: what they are, and what to send instead.
+//! Unknown words that people send: explanations, and alternatives.
 //!
 //! The board answers them as it answers every unknown word; the simulation adds a remark beside it. The words are
 //! those of the manual's command references that firmware 4.34 lacks, some of them only misprinted there, and G code.
@@ -63,7 +63,7 @@ const WORDS: &[(&str, Why)] = &[
 /// Letters that a block of G code begins with, and after which a number stands.
 const G_CODE: &[u8] = b"GMTSFN";
 
-/// What is to be said of a part, in upper case, that begins with no command.
+/// What should be reported of a part, in upper case, that begins with no command.
 pub(super) fn explain(part: &[u8]) -> Option<Message> {
     let letters = part.iter().take_while(|byte| byte.is_ascii_alphabetic()).count();
     let word = std::str::from_utf8(&part[..letters]).ok()?;

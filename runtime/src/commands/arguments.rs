@@ -25,18 +25,18 @@ pub enum Argument {
     Equals,
     /// An equals sign that may be left out.
     OptionalEquals,
-    /// An equals sign; when the command ends before it, the present value is asked for.
+    /// An equals sign; when the command ends before it, the present value is requested.
     Assign,
 }
 
-/// A mistake in a line: what is said, and where reading stopped.
+/// A mistake in a line: the message, and where reading stopped.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Mistake {
     pub(super) column: usize,
     pub(super) message: Message,
 }
 
-/// What is said about a mistake.
+/// The message about a mistake.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Message {
     /// The first word is not a command.
@@ -216,7 +216,7 @@ impl Values {
         Ok(read)
     }
 
-    /// Whether the present value is asked for.
+    /// Whether the present value is requested.
     pub(super) const fn is_question(&self) -> bool {
         self.is_question
     }

@@ -119,7 +119,7 @@ pub(super) fn set_decimal(session: &mut Session<'_, '_>, values: &Values) -> Ans
     Answer::Nothing
 }
 
-/// Words that the buffer has from the first one named on, of those asked for.
+/// Words that the buffer has from the first one named on, of those requested.
 fn available(values: &Values) -> usize {
     values.count(1).min(GATHER_WORDS as usize - values.count(0))
 }

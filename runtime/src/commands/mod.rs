@@ -1,9 +1,8 @@
 //! The script commands that a PC sends: one table, one function for each row.
 //!
-//! A row says what a command is called, which arguments it takes and what it does, in one line; reading the
-//! arguments, ranges, mistakes and the form of replies follow from the row. Handlers get arguments that are within
-//! their limits and return an [`Answer`]. To add a command, add a row, its function, and a transcript in
-//! `tests/data/commands`.
+//! A row gives the name, the arguments and the effect of a command, in one line. Reading of arguments, ranges, error
+//! messages and the form of replies follow from the row. Handlers get arguments within their limits and return an
+//! [`Answer`]. To add a command, add a row, its function, and a transcript in `tests/data/commands`.
 //!
 //! Words, ranges and replies are those of the released firmware 4.34 (host-protocol.md sections 2 and 3).
 

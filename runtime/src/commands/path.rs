@@ -23,7 +23,7 @@ use crate::views::Typed;
 /// Letters of the commands without U and V.
 const SIX: usize = 6;
 
-/// Numbers that tell how the parameter goes with time.
+/// Coefficients of the parameter as a function of time.
 const TIMING: usize = 5;
 
 fn timing(numbers: &[f32]) -> Timing {
@@ -55,7 +55,7 @@ fn add_line(session: &mut Session<'_, '_>, begin: Point, end: Point, numbers: &[
     noted(session, result)
 }
 
-/// `Linear` and its kin with `letters` letters: beginning, end, timing.
+/// `Linear` and its variants with `letters` letters: beginning, end, timing.
 pub(super) fn linear(session: &mut Session<'_, '_>, values: &Values, letters: usize) -> Answer {
     let numbers = values.singles();
     let (begin, rest) = numbers.split_at(letters.min(numbers.len()));
@@ -63,7 +63,7 @@ pub(super) fn linear(session: &mut Session<'_, '_>, values: &Values, letters: us
     add_line(session, point(0, begin), point(0, end), timing)
 }
 
-/// `LHex1` and its kin: a line on from the end of the one before.
+/// `LHex1` and its variants: a line on from the end of the one before.
 pub(super) fn linear_on(session: &mut Session<'_, '_>, values: &Values, letters: usize) -> Answer {
     let numbers = values.singles();
     let (end, timing) = numbers.split_at(letters.min(numbers.len()));
@@ -71,7 +71,7 @@ pub(super) fn linear_on(session: &mut Session<'_, '_>, values: &Values, letters:
     add_line(session, begin, point(0, end), timing)
 }
 
-/// `LHex2`: the line before once more, with another timing.
+/// `LHex2`: the line before again, with another timing.
 pub(super) fn linear_again(session: &mut Session<'_, '_>, values: &Values) -> Answer {
     let here = present(session);
     let (begin, end) = session.geometry.line.unwrap_or((here, here));
@@ -84,7 +84,7 @@ fn present(session: &mut Session<'_, '_>) -> Point {
     letters(memory).map(|axis| axis.map_or(0.0, |axis| memory.axis(axis, Chan::DEST) as f32))
 }
 
-/// `Arc` and its kin: centre, radii, angles, the other letters' beginning and end, timing.
+/// `Arc` and its variants: centre, radii, angles, the other letters' beginning and end, timing.
 pub(super) fn arc(session: &mut Session<'_, '_>, values: &Values, plane: Plane) -> Answer {
     let numbers = values.singles();
     let Some((&[x, y, radius_x, radius_y, angle, turn], rest)) = numbers.split_first_chunk() else {

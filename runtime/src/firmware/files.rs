@@ -26,7 +26,7 @@ const READING: GuestAddr = GuestAddr::new(0x1001_A418);
 /// The handle of the file open for writing.
 const WRITING: GuestAddr = GuestAddr::new(0x1001_A41C);
 
-/// Values for a text that is taken as a format once more: there are none.
+/// Values for a text that is taken as a format again: there are none.
 struct Nothing;
 
 impl Arguments for Nothing {
@@ -76,7 +76,7 @@ fn address(outcome: Outcome<i32>) -> Outcome<GuestAddr> {
     }
 }
 
-/// What became of the line that was asked for last: `None` while it is on its way.
+/// What became of the line that was requested last: `None` while it is on its way.
 fn arrival(parts: &mut Parts, caller: &Caller<'_>) -> Option<bool> {
     let status = caller.memory.get(READ_DISK_BUFFER_STATUS);
     if status == ASKED {

@@ -130,7 +130,7 @@ pub(crate) fn tick(parts: &mut Parts, context: &mut TickContext<'_>) -> bool {
     true
 }
 
-/// Puts a received character into its ring; a full ring begins anew, as its two pointers are equal then.
+/// Puts a received character into its ring; a full ring starts again, as its two pointers are equal then.
 fn receive(parts: &mut Parts, context: &mut TickContext<'_>) {
     let Some(byte) = parts.io.uart.receive(context.now) else { return };
     let place = context.memory.get(P_RS232_REC_IN);

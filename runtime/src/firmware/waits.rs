@@ -1,5 +1,5 @@
-//! What functions that wait still do when the wait has ended, and what the primary thread does meanwhile, as the board
-//! does (costs.md sections 3 and 5).
+//! The work of waiting functions after their wait, and the work of the primary thread meanwhile, as on the board
+//! (costs.md sections 3 and 5).
 //!
 //! The table's cost is spent when the call is made; what is spent after the wait depends on why it waited.
 

@@ -111,7 +111,7 @@ pub(crate) fn bit_state(io: &Io, memory: &GuestMemory, bit: Bit) -> (bool, bool)
             let (word, mask) = snap_direction(bit);
             if memory.get(word) & mask != 0 { (pins.written(bit), false) } else { (pins.input(bit), true) }
         }
-        // Nobody switches the banks of KStep's inputs through before it is said to be there.
+        // Nobody switches the banks of KStep's inputs through before it is announced.
         BitKind::KstepInput if memory.get(KSTEP_PRESENT) == 0 => (false, false),
         _ => match memory_bit(bit, kind) {
             Some((word, mask)) => (memory.get(word) & mask != 0, false),

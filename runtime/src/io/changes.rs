@@ -1,4 +1,4 @@
-//! What happened to the levels of bits: a list of changes with their instants, kept only while somebody reads it.
+//! Changes of bit levels: a list of changes with their times, kept only while it is read.
 //!
 //! Bits that live in guest memory are changed by plain stores too; those are found by comparing words at the next tick.
 

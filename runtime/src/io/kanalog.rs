@@ -1,4 +1,4 @@
-//! Kanalog: eight analog inputs that are converted anew in each tick while the board's port serves it.
+//! Kanalog: eight analog inputs that are converted again in each tick while the board's port serves it.
 //!
 //! Its outputs are stored bits and `DAC_Buffer`, which nothing else has to copy. Source: devices.md section 2.
 

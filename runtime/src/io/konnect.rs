@@ -90,7 +90,7 @@ impl Konnects {
         *word = *word & !(1 << input) | u32::from(level) << input;
     }
 
-    /// Ends the services whose words lie in a space that is loaded anew; whether there were any.
+    /// Ends the services whose words lie in a space that is loaded again; whether there were any.
     pub(crate) fn drop_within(&mut self, space: &Range<u32>) -> bool {
         let before = self.services.len();
         self.services.retain(|service| {

@@ -1,6 +1,7 @@
-//! What a program reaches beside memory: pins, registers of the FPGA, lines, step generators, option boards, flash.
+//! Everything but memory that a program can access: pins, registers of the FPGA, lines, step generators, option boards,
+//! flash.
 //!
-//! These parts know each other and guest memory. What is connected to them is the business of `machine` and `world`.
+//! These parts know each other and guest memory. `machine` and `world` handle what is connected to them.
 
 pub(crate) mod amplifiers;
 pub(crate) mod bits;

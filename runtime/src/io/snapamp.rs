@@ -1,4 +1,4 @@
-//! Registers of the two SnapAmp boards: what is written is kept, measurements are what the world makes them.
+//! Registers of the two SnapAmp boards: writes are stored, the world sets the measurements.
 //!
 //! Nothing runs while they work: faults are brought up to the instant of each access. More current than the limit of a
 //! side, or no limit at all, switches all bridges off for a quarter of a second beyond its end; a board that is not

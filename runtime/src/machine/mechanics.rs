@@ -1,4 +1,4 @@
-//! What moves by itself, and what the loads trip: handwheels, a spindle, switches, probes, analog sources.
+//! Mechanics that move by themselves or that the loads trip: handwheels, a spindle, switches, probes, analog sources.
 //!
 //! Nothing of it exists on a real board; a machine file describes it. It is moved once a tick, before the axes read
 //! their inputs.

@@ -1,6 +1,7 @@
-//! The simulated machine that the board moves: loads of the axes, what they trip, devices on the board's lines.
+//! The simulated machine that the board moves: loads of the axes, the switches that they trip, devices on the board's
+//! lines.
 //!
-//! It is moved by what the board outputs, and sees only inputs and outputs and guest memory.
+//! The board's outputs move it, and it sees only inputs, outputs and guest memory.
 
 pub(crate) mod attached;
 pub(crate) mod description;

@@ -1,4 +1,4 @@
-//! The load of one axis: where it is, what moves it, what its encoder counts. Source: plant.md sections 1 to 4.
+//! The load of one axis: its position, its drive, its encoder. Source: plant.md sections 1 to 4.
 //!
 //! An axis as it is without a machine file goes where it is commanded: step generators move it by their steps, one
 //! tick late; closed loops follow with a first-order lag, whatever their gains. With the model `motor` it is driven by
@@ -107,7 +107,7 @@ struct Steps {
     reached: f64,
     /// Where the load is when that command is 0.
     origin: f64,
-    /// What it has output in the last tick, whether that is to be told, and whether its amplifier is off.
+    /// What it has output in the last tick, whether that should be reported, and whether its amplifier is off.
     stepped: f64,
     has_stepped: bool,
     is_off: bool,

@@ -1,7 +1,7 @@
-//! What a run tells the outside, with the board time at which it happened.
+//! What a run reports to the outside, with the board time at which it happened.
 //!
-//! Every part of the board may tell something; nothing that is told comes back into the simulation, except console
-//! lines for a stimulus that waits for one.
+//! Every part of the board can report something. Nothing reported feeds back into the simulation, except console lines
+//! for which a stimulus waits.
 
 mod console;
 mod record;
@@ -96,7 +96,7 @@ impl Out {
         }
     }
 
-    /// Remarks of these codes are made once more.
+    /// Remarks of these codes are made again.
     pub(crate) fn forget_remarks(&mut self, codes: &[&str]) {
         self.made.retain(|(code, _)| !codes.contains(code));
     }
@@ -111,7 +111,7 @@ impl Out {
         self.requests.push(request);
     }
 
-    /// What was asked for since the last time.
+    /// What was requested since the last time.
     pub(crate) fn take_requests(&mut self) -> Vec<Request> {
         std::mem::take(&mut self.requests)
     }
@@ -173,10 +173,10 @@ pub enum EventKind {
     Trap(Trap),
     /// Something that was asked to be recorded.
     Trace(Record),
-    /// The UART has sent a character; told to who asked for it.
+    /// The UART has sent a character; told to who requested it.
     UartSent(u8),
     /// An expectation of the stimulus is not met.
     Unmet(String),
-    /// The PC did something that a program asked for.
+    /// The PC did something that a program requested.
     Host(String),
 }

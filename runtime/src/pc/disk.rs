@@ -1,8 +1,8 @@
 //! The PC's side of disk files: requests that come among the console lines, and the answers to them.
 //!
-//! The board has no disk. `fopen` and its kin send a console line whose first character is a code; the PC does what it
-//! says, and answers a reading one with a line of the file, which the board puts into `read_disk_buffer`. The PC has
-//! one file open for writing and one for reading. Source: host-protocol.md section 6.
+//! The board has no disk. `fopen` and similar functions send a console line whose first character is a code; the PC
+//! does what it says, and answers a reading one with a line of the file, which the board puts into `read_disk_buffer`.
+//! The PC has one file open for writing and one for reading. Source: host-protocol.md section 6.
 
 use std::collections::VecDeque;
 

@@ -1,6 +1,6 @@
 //! Bytes on their way to the board, and the lines that they are.
 //!
-//! A line that begins with an escape is taken without echo; the byte after the escape is thrown away. Any other line is
+//! A line that begins with an escape is taken without echo; the byte after the escape is discarded. Any other line is
 //! echoed. 0x03 drops what is under way, wherever it comes. Rules: host-protocol.md sections 1 and 2.
 
 use std::collections::VecDeque;
@@ -18,7 +18,7 @@ enum Intake {
     /// Before its first byte.
     #[default]
     Start,
-    /// After the escape: the next byte is thrown away.
+    /// After the escape: the next byte is discarded.
     Escaped,
     /// In its text.
     Silent,
@@ -64,7 +64,7 @@ impl ByteLink {
     }
 
     /// Takes bytes up to the end of a line, at most `limit` of its text, or to an abort; `None` when they run out before.
-    /// What is to be echoed is added to `echo`.
+    /// What should be echoed is added to `echo`.
     pub(crate) fn next(&mut self, limit: usize, echo: &mut Vec<u8>) -> Option<Arrival> {
         loop {
             let byte = self.input.pop_front()?;

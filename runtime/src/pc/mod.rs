@@ -1,4 +1,4 @@
-//! The PC that the board is connected to: its disk, what it answers to programs, and the bytes it sends.
+//! The PC connected to the board: its disk, its answers to programs, and the bytes that it sends.
 
 mod answers;
 mod boxes;

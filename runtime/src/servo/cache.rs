@@ -2,7 +2,7 @@
 //!
 //! Guest memory is the truth for everything that an axis is set to. Three things are derived from it: the plans of the
 //! axes, whether a tick would change anything at all, and whether the last tick left nothing to do. Whoever changes
-//! what they depend on says so with [`Cache::invalidate`] and a [`Change`]; what else is to be forgotten for that
+//! what they depend on says so with [`Cache::invalidate`] and a [`Change`]; what else should be forgotten for that
 //! follows here and nowhere else.
 
 use kmotiondef::limits::N_CHANNELS;

@@ -1,4 +1,4 @@
-//! How long the servo interrupt takes, and so what is left of a tick to the threads.
+//! The duration of the servo interrupt, and so the part of a tick that is left for the threads.
 //!
 //! Measured on the released firmware: a constant, and for each enabled axis what its output
 //! and input modes need (`servo_cycles` of the recorded thread measurements; means at rest, by

@@ -108,7 +108,7 @@ fn amplifiers_are_off(tick: &Tick<'_>) -> bool {
         && !Bit::new(KSTEP_ENABLE).is_some_and(|bit| tick.io.pins.is_output(bit) && tick.io.pins.level(bit))
 }
 
-/// Something outside may have moved a load: the axes are to be computed again.
+/// Something outside may have moved a load: the axes should be computed again.
 #[inline]
 fn notice_pushes(tick: &mut Tick<'_>) {
     if tick.machine.loads.take_pushed() {

@@ -1,4 +1,4 @@
-//! What the servo remembers beside guest memory, and what a tick of it works on.
+//! The servo's state outside guest memory, and the data of a servo tick.
 
 use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::modes::LastMotion;

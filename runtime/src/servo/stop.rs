@@ -12,11 +12,11 @@ pub(super) enum Tells {
     Stop,
     /// Whenever it was tried: again and again of an axis outside the coordinate system, which nothing stops.
     Always,
-    /// Never: somebody has asked for it.
+    /// Never: somebody has requested it.
     Never,
 }
 
-/// The feedhold, if one is asked for.
+/// The feedhold, if one is requested.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct StopRequest {
     asked: Option<(String, Tells)>,
@@ -40,7 +40,7 @@ impl StopRequest {
         self.is_seen = true;
     }
 
-    /// Whether a stop is asked for.
+    /// Whether a stop is requested.
     pub(super) const fn is_asked(&self) -> bool {
         self.asked.is_some()
     }

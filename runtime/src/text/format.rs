@@ -1,4 +1,4 @@
-//! The formatter of `printf` and its kin.
+//! The formatter of `printf` and related functions.
 //!
 //! The board's results, odd ones included, are what programs see: halves round up, `%#06x` fills before its prefix,
 //! `%ld` takes 40 bits from two words, an unknown conversion prints nothing but its width

@@ -1,4 +1,4 @@
-//! What is around the board: a stimulus that drives its lines, an operator, and who records it all.
+//! The surroundings of the board: a stimulus that drives its lines, an operator, and the recorder.
 
 pub(crate) mod attached;
 pub(crate) mod outside;
@@ -101,7 +101,7 @@ impl World {
         self.recorder = Some(Box::new(Recorder::new(request)));
     }
 
-    /// Samples what is recorded at the last of `count` ticks up to `context` that is to be sampled.
+    /// Samples what is recorded at the last of `count` ticks up to `context` that should be sampled.
     #[inline]
     pub(crate) fn sample(&mut self, view: &View<'_>, out: &mut Out, context: &TickContext<'_>, count: u64) {
         let Some(recorder) = &mut self.recorder else { return };

@@ -1,7 +1,7 @@
 //! What was recorded of the released firmware, asked of the firmware itself: threads, motion, servo and outputs.
 //!
 //! The vectors were measured on it in another emulator, so what does not depend on the compiler of a program comes out to
-//! the last bit here. Where `CC67_FIRMWARE` names no file, this is said.
+//! the last bit here. Where `CC67_FIRMWARE` names no file, the test says so.
 
 mod motion;
 mod outputs;

@@ -131,7 +131,7 @@ fn slave(row: &Json, board: &Released) -> Vec<String> {
     found
 }
 
-/// The fields of axis 0 that are not what they are to be.
+/// The fields of axis 0 that are not what they should be.
 fn differing(board: &Released, fields: &Json) -> Vec<String> {
     let fields = fields.as_object().expect("fields").iter();
     let differing = fields.filter(|(name, expect)| !board.is(0, name, expect));

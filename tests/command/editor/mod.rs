@@ -1,7 +1,7 @@
 //! `cc67 debug` as editors use it: Microsoft's client for debug adapters, and the types of the protocol.
 //!
 //! Both are of npm; `.ci/node/install` puts them into `target/node`. Neovim has another client, nvim-dap, which
-//! `.ci/nvim-dap` puts into `target/nvim-dap`. What is not there is not used, and this is said.
+//! `.ci/nvim-dap` puts into `target/nvim-dap`. What is not there is not used, and the test says so.
 
 use std::fs;
 use std::process::Command;

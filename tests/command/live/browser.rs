@@ -19,7 +19,7 @@ pub(super) struct Browser {
     socket: WebSocket<MaybeTlsStream<TcpStream>>,
     session: String,
     calls: u64,
-    /// The addresses that the page has asked for.
+    /// The addresses that the page has requested.
     pub(super) requests: Vec<String>,
     /// Errors of the page: exceptions, and what is in the browser's console.
     pub(super) complaints: Vec<String>,

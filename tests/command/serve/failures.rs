@@ -84,7 +84,7 @@ fn a_client_that_is_killed_leaves_the_board_to_the_others() {
         std::io::Write::write_all(&mut killed.stream, &[16, 0, 0]).expect("it is sent");
         drop(killed);
         while other.call(LOCK, b"\0").0 != 0 {}
-        // As applications do after a failure: the link is opened anew, and the command is gone with it.
+        // As applications do after a failure: the link is reopened, and the command is gone with it.
         assert_eq!(other.call(super::client::DISCONNECT, b"").0, 0);
         assert_eq!(other.ask("Version"), VERSION);
         other.release();

@@ -64,7 +64,7 @@ fn the_links_of_the_home_folder_are_compiler_and_server() {
     assert_eq!((compiled.code, compiled.stderr.as_str()), (0, ""));
     assert!(scratch.path().join("a(2).out").is_file());
 
-    // The library starts the server without a word, in any folder; it serves what was served last.
+    // The library starts the server silently, in any folder; it serves what was served last.
     let mut command = Command::new(scratch.path().join("home/bin/KMotionServer"));
     command.args(["--for", "1e9"]).current_dir("/");
     let mut server = Server::spawn(command, scratch, 1);

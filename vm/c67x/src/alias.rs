@@ -1,4 +1,4 @@
-//! Names that the assembler has besides the table's: `MV`, `NEG`, `NOT`.
+//! Additional names for the assembler: `MV`, `NEG`, `NOT`.
 //!
 //! Each is an instruction with one constant operand, which the text leaves out.
 

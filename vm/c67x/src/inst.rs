@@ -68,7 +68,7 @@ pub enum BadOperands {
     Unit {
         /// The form.
         op: Op,
-        /// The side asked for.
+        /// The side requested.
         side: Side,
     },
 }

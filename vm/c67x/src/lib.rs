@@ -1,22 +1,21 @@
 //! The instructions of the TMS320C67x+, the processor of the board.
 //!
-//! One table of 302 forms ([`for_each_form!`]) from which decoder, encoder, assembler,
-//! disassembler and the model of the pipeline are expanded. Three users: the engine that
-//! executes real images, the code generator that makes them, and `inspect -d`.
+//! Decoder, encoder, assembler, disassembler and the model of the pipeline are expanded from one table of 302 forms
+//! ([`for_each_form!`]). It has three users: the engine that executes real images, the code generator that makes them,
+//! and `inspect -d`.
 //!
 //! - [`Inst`] is one valid instruction: [`Inst::decode`] from a word, [`Inst::new`],
 //!   [`Inst::pick`] and [`Inst::forms`] from operands, [`assemble`] from text.
 //! - [`Inst::unit`], [`Inst::reads`], [`Inst::writes`], [`Inst::delay_slots`],
-//!   [`Inst::cross_path`], [`Inst::data_path`]: what a scheduler asks.
-//! - [`schedule`] checks packets against the rules of the pipeline, independently of
-//!   whoever made them.
+//!   [`Inst::cross_path`], [`Inst::data_path`]: properties for a scheduler.
+//! - [`schedule`] checks packets against the rules of the pipeline, whatever their origin.
 //!
 //! Map: `register` (registers, conditions, units), `kind` (fields, kinds of operands,
 //! timing), `mnemonic`, `table` (the rows), `operand`, `inst` (encode, decode), `model`
 //! (the scheduler's questions), `convention` (registers of calls), `alias`, `spelling`, `assemble`, `text`, `schedule`.
 //!
-//! Invariants: nothing here executes anything or knows the board; the table is
-//! the one place where a form is described; an [`Inst`] is always valid.
+//! Invariants: nothing here executes anything or knows the board; only the table describes a form; an [`Inst`] is
+//! always valid.
 #![forbid(unsafe_code)]
 
 mod alias;

@@ -1,4 +1,4 @@
-//! Where the time of real images went: for each packet, and for each call of the firmware, what it took.
+//! A record of the time that real images spent, for each packet and each firmware call.
 //!
 //! Nothing is sampled: packets are executed one at a time, and a run is the same, cycle by cycle, as without an account.
 //!
@@ -96,7 +96,7 @@ impl Account {
         std::iter::successors(entry(callers), move |(outer, _)| entry(*outer)).map(|(_, call)| *call)
     }
 
-    /// A context begins anew.
+    /// A context starts again.
     pub(super) fn begin(&mut self, context: ContextId) {
         self.trails[context.index()] = Trail::default();
     }

@@ -1,4 +1,4 @@
-//! Loops that wait: found by what they do, and run through in one step.
+//! Waiting loops: recognised by their effects, and skipped in one step.
 //!
 //! A loop that has changed nothing after a turn, with the same registers, the same results in flight, every byte that
 //! it stored as before, and no device reached, does the same in every further turn until something happens: so as many
@@ -33,7 +33,7 @@ struct Turn {
 pub(super) struct Idle {
     visits: [(u32, u8); PLACES],
     turn: Option<Box<Turn>>,
-    /// Whether stores are to be noted.
+    /// Whether stores should be noted.
     pub(super) is_watching: bool,
     /// Cycles that were skipped so far.
     pub(super) skipped: u64,
@@ -45,7 +45,7 @@ impl Default for Idle {
     }
 }
 
-/// What is to be done at the target of a backward branch.
+/// What should be done at the target of a backward branch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Arrival {
     /// Nothing.

@@ -1,4 +1,4 @@
-//! Lines of RAM that translated code must not store to: the interpreter does, and looks what is there.
+//! Lines of RAM that translated code must not store to: the interpreter performs these stores and checks what is there.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! Registers, and what is on its way to them.
+//! Registers, and the results on their way to them.
 //!
 //! Results that are not there yet wait in sixteen slots, the slot of a cycle being its number
 //! modulo 16: no instruction takes longer. A slot has a value for every register and a mask

@@ -211,7 +211,7 @@ works! {
     Nop,
 }
 
-/// The work of an instruction, and how its sources are to be taken.
+/// The work of an instruction, and how its sources should be taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Plan {
     /// What is done.

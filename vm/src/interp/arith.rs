@@ -10,7 +10,7 @@ use crate::slot::Slot;
 use crate::trap::TrapKind;
 
 /// `name: operand classes -> class = function of the operands`, total or `None` for division by zero.
-/// Of 32 bits, what the firmware makes of that is said, too.
+/// Of 32 bits, the firmware's result is reported, too.
 macro_rules! operations {
     (unary { $($un:ident: $un_src:ident -> $un_dst:ident = $un_fn:expr;)* }
      binary { $($bin:ident: $bin_a:ident, $bin_b:ident -> $bin_dst:ident = $bin_fn:expr;)* }

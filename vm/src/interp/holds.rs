@@ -23,7 +23,7 @@ use crate::trap::TrapKind;
 pub enum HoldReason {
     /// Before an instruction with a breakpoint.
     Breakpoint,
-    /// After one instruction, as was asked for.
+    /// After one instruction, as was requested.
     Step,
     /// Something that is watched was changed.
     Changed {

@@ -60,7 +60,7 @@ impl Jumps {
         (1..).find(is_free).expect("there are fewer places than marks")
     }
 
-    /// Keeps a place and yields its number: the same again where a loop comes by once more.
+    /// Keeps a place and yields its number: the same again where a loop comes by again.
     ///
     /// # Errors
     /// [`TrapKind::TooManyJumpPlaces`]

@@ -1,4 +1,4 @@
-//! The engines of a machine: a context is run by the engine of what its thread is loaded with.
+//! The engines of a machine: the program of a thread determines the engine of its context.
 
 use kmotiondef::{CodeAddr, GuestAddr};
 

@@ -63,7 +63,7 @@ impl From<ModuleError> for CompileError {
     }
 }
 
-/// Where machine code is to be.
+/// Where machine code should be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum CodeDestination {
     /// In memory, at addresses that are known.
@@ -89,7 +89,7 @@ pub(super) fn host_isa(place: CodeDestination) -> Result<OwnedTargetIsa, Compile
     builder.finish(settings::Flags::new(flags)).map_err(|error| CompileError::host(&error))
 }
 
-/// What is to be compiled, and for which surroundings.
+/// What should be compiled, and for which surroundings.
 #[derive(Clone, Copy)]
 pub(super) struct Job<'a> {
     /// The program.

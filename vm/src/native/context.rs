@@ -1,4 +1,4 @@
-//! A context of the native engine: its fiber, where it is, and what it needs to continue.
+//! A context of the native engine: its fiber, its position, and the data to continue.
 
 use std::sync::Arc;
 

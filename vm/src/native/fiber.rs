@@ -3,7 +3,7 @@
 //! A fiber is never unwound. It runs until it has returned, or it is discarded where it is;
 //! the only Rust frames on it are the body below and [`leave`](super::entry::leave), and neither
 //! owns anything. So it can also be copied where it is suspended: the bytes on its stack and the state, which are put back
-//! to the same addresses when it is to continue from there once more.
+//! to the same addresses when it is to continue from there again.
 #![expect(unsafe_code, reason = "runs compiled code and discards fibers without unwinding them")]
 
 use std::cell::Cell;
@@ -28,7 +28,7 @@ use crate::memory::GuestMemory;
 pub(super) enum Answer {
     /// A register slot; 0 where nothing is expected.
     Slot(u64),
-    /// The function to call, as its index in the program; only for a pointer that was to be resolved.
+    /// The function to call, as its index in the program; only for a pointer that should have been resolved.
     Function(usize),
 }
 
@@ -117,7 +117,7 @@ struct Rest {
     code: Arc<MachineCode>,
     /// Where guest memory and the map of protected blocks are, as soon as it has begun.
     ram: Option<(*mut u8, *mut u8, *const u8)>,
-    /// Whether the last request asked for the target of a call.
+    /// Whether the last request was for the target of a call.
     resolving: bool,
 }
 

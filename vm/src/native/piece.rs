@@ -1,4 +1,4 @@
-//! What is handed over to a [`Piece`](super::code::Piece) of machine code, and handed back by it.
+//! The data passed to a [`Piece`](super::code::Piece) of machine code, and returned by it.
 
 use kmotiondef::map::{IRAM, SDRAM};
 

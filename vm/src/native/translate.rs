@@ -59,7 +59,7 @@ const CONVENTION: CallConv = CallConv::Tail;
 /// Parameters of a machine function before those of the program: state, stack pointer, budget.
 const OWN_PARAMETERS: usize = 3;
 
-/// What is to be translated.
+/// What should be translated.
 #[derive(Clone, Copy)]
 pub(super) struct Translation<'a> {
     /// The program.

@@ -8,7 +8,7 @@ const ROW: usize = 8;
 /// Registers and code where the processor has stopped.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Scene {
-    /// The address of the instruction that did it, or of the packet that was to be next.
+    /// The address of the instruction that did it, or of the packet that should have been next.
     pub at: u32,
     /// Registers by name: A0 to A31, B0 to B31, and the control registers that matter.
     pub registers: Vec<(String, u32)>,

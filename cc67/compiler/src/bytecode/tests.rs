@@ -1,4 +1,4 @@
-//! Whole functions: words, registers, charges, and what they compute on the machine.
+//! Whole functions: words, registers, charges, and their results on the machine.
 
 use kmotiondef::timing::Timing;
 use kmotiondef::{Cycles, GuestAddr, ThreadId, Ticks};

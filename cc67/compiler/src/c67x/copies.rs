@@ -1,4 +1,4 @@
-//! Sources of copies in place of the copies, and what nobody reads any more.
+//! Replaces copies by their sources, and removes unused results.
 //!
 //! Selection joins the halves of pairs and takes them apart again, shifts by whole words, and combines with words that
 //! are 0. Block by block, a source that is a copy becomes what it was copied from, as long as neither changed; an

@@ -1,4 +1,4 @@
-//! Symbols that generated code needs besides those of the source, and what is known about symbols.
+//! Symbols that generated code needs in addition to those of the source, and properties of symbols.
 
 use std::collections::BTreeMap;
 
@@ -31,7 +31,7 @@ pub(crate) struct Externs {
     /// Functions of the firmware with variable arguments, which take them from the stack alone.
     stack_alone: SecondaryMap<SymbolId, bool>,
     named: BTreeMap<String, SymbolId>,
-    /// Names that were asked for and are new, in the order of their numbers.
+    /// Names that were requested and are new, in the order of their numbers.
     added: Vec<&'static str>,
 }
 

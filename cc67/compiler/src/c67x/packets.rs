@@ -1,4 +1,4 @@
-//! Instructions with their cycles: what is scheduled, and laid out.
+//! Instructions with their cycles, for scheduling and layout.
 
 use c67x::{FETCH_PACKET, Inst};
 

@@ -1,4 +1,4 @@
-//! Inner loops whose turns overlap: what comes before the loop's own packets, and after them.
+//! Inner loops whose turns overlap: the packets before and after the loop's own.
 //!
 //! A loop of one region without calls becomes: regions that begin the first turns, the packets that [`modulo`] found,
 //! in which every turn is at another stage, and a region that ends the last turns. Every beginning ends with the

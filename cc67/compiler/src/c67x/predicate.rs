@@ -233,7 +233,7 @@ impl Worker<'_> {
     }
 }
 
-/// Drops the blocks that nothing leads to, and numbers the others anew.
+/// Drops the blocks that nothing leads to, and renumbers the others.
 fn compact(code: &mut Code) {
     let mut reached = vec![false; code.blocks.len()];
     let mut open = vec![0_u32];

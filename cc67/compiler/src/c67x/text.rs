@@ -1,4 +1,4 @@
-//! The words of a unit's functions, and what the linker completes in them.
+//! The words of a unit's functions, with the parts for the linker to complete.
 
 use std::ops::Range;
 

@@ -60,7 +60,7 @@ pub struct Probe {
     names: Names,
     expression: Expression,
     value: ExprId,
-    /// The value is the address of what was asked for.
+    /// The value is the address of what was requested.
     is_address: bool,
     locals: BTreeMap<LocalId, LocalModel>,
 }

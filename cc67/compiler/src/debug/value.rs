@@ -1,4 +1,4 @@
-//! Values with their types: what they are in words, and what they consist of.
+//! Values with their types: their text and their parts.
 
 use kmotiondef::GuestAddr;
 

@@ -16,11 +16,11 @@ pub struct Levels {
     as_errors: bool,
     /// `-w`
     is_silent: bool,
-    /// What was said of single lints, the last of each.
+    /// The settings of single lints, the last of each.
     named: Vec<Named>,
 }
 
-/// What was said of one lint.
+/// The setting of one lint.
 #[derive(Clone, Copy, Debug)]
 struct Named {
     lint: Lint,
@@ -99,7 +99,7 @@ impl Levels {
         &mut self.named[index]
     }
 
-    /// The diagnostic as it is to be shown; `None` if its lint is off.
+    /// The diagnostic as it should be shown; `None` if its lint is off.
     #[must_use]
     pub fn apply(&self, diagnostic: &Diagnostic) -> Option<Diagnostic> {
         if diagnostic.severity != Severity::Error && self.is_silent {

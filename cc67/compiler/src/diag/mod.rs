@@ -1,7 +1,6 @@
 //! Diagnostics: what is wrong with the source, where, and what to do about it.
 //!
-//! Analysis continues after a diagnostic; the sink collects. Rendering is a matter of the
-//! caller (`render` for people).
+//! Analysis continues after a diagnostic; the sink collects them. The caller renders them (`render` for people).
 
 pub mod levels;
 mod lint;

@@ -1,4 +1,4 @@
-//! Which programs beside a file include it.
+//! Finds the programs in the same folder that include a file.
 //!
 //! Many files of this field are not programs but parts of some: functions for homing or for the
 //! spindle that programs include as `.c` files. Whoever compiles such a part is told which

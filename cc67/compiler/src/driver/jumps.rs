@@ -1,4 +1,4 @@
-//! `setjmp` and `longjmp` for the controller's processor: no C can say what they do.
+//! `setjmp` and `longjmp` for the controller's processor, which cannot be written in C.
 //!
 //! A `jmp_buf` holds what a function keeps for its caller (`c67x.md` section 6.1): A10 to A15, B10 to B14, the stack
 //! pointer, the return address. Bytecode has no such code: its engine does what the two say.

@@ -190,7 +190,7 @@ pub fn front(
     sema::analyze_as(options.preprocessor.standard, &tree, names, sources, &options.firmware, sink)
 }
 
-/// How often the calls of a function in itself are replaced in the controller's code, which is to be small.
+/// How often the calls of a function in itself are replaced in the controller's code, which should be small.
 const CODE_LEVELS: usize = 1;
 
 /// The object of a unit that has no errors.

@@ -1,4 +1,4 @@
-//! A source file without `main`: why, and what to do about it.
+//! A source file without `main`: the reason, and a remedy.
 //!
 //! Most such files are helpers that other programs include, and were compiled by mistake. Others
 //! have a `main` by another name, or are sketches for another board.

@@ -1,4 +1,4 @@
-//! Files as they come: read up to a size, recognised when they are not what is wanted, failures in words.
+//! Input files: read up to a maximum size, recognised if they are of another kind, with readable errors.
 
 mod binary;
 mod foreign;

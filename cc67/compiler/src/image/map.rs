@@ -1,4 +1,4 @@
-//! The map of a linked program: where everything is, and what takes the most room.
+//! The map of a linked program: all addresses, and the largest items.
 
 use std::cmp::Reverse;
 use std::fmt::{self, Write};

@@ -51,7 +51,7 @@ pub fn write(linked: &Linked) -> Result<Vec<u8>, Error> {
 }
 
 /// Writes the image of a program without symbols and line numbers, as the vendor's compiler does
-/// unless it is asked for them.
+/// unless they are requested.
 ///
 /// # Errors
 /// If the program exceeds what the format can count.

@@ -1,4 +1,4 @@
-//! Who calls whom: the program's functions, the firmware's, and calls through pointers.
+//! The call graph: the program's functions, the firmware's, and calls through pointers.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;

@@ -1,4 +1,4 @@
-//! Who calls whom in the processor's code.
+//! The call graph of the processor's code.
 
 use std::collections::BTreeSet;
 

@@ -1,5 +1,5 @@
-//! How deep a function of the processor's code moves the stack pointer: what its instructions add to B15, along every
-//! way through its blocks.
+//! How far a function of the processor's code lowers the stack pointer: the sum of additions to B15, on every path
+//! through its blocks.
 
 use c67x::convention::STACK;
 use c67x::{Inst, Mem, Mnemonic, Offset, Operand, Pred, Update};

@@ -1,8 +1,8 @@
-//! What an image tells about itself.
+//! The contents of an image, for people and tools.
 //!
-//! [`Inspection`] takes an image apart once: functions, objects, lines, and for images of our own
-//! the verified program, from which disassembly, calls and stack depth follow. Code for the controller's processor has
-//! packets in their place, from which the listing and the cycles follow. The modules beside this one put parts of it into words.
+//! [`Inspection`] takes an image apart once: functions, objects, lines, and for images of our own the verified program,
+//! from which disassembly, calls and stack depth follow. Code for the controller's processor has packets instead, which
+//! give the listing and the cycles. The submodules format parts of it as text.
 
 mod calls;
 mod code_calls;

@@ -16,7 +16,7 @@ pub(super) struct Classes {
 }
 
 impl Classes {
-    /// A value has a class; the class that was said of it before, if that is another one.
+    /// A value has a class; its earlier class, if that differs.
     pub(super) fn say(&mut self, value: ValueId, class: Class) -> Result<(), Class> {
         match self.known[value].replace(class) {
             Some(before) if before != class => Err(before),

@@ -1,4 +1,4 @@
-//! Instructions, terminators and what they are made of.
+//! Instructions, terminators and their parts.
 //!
 //! Which class of value an instruction works on follows from its operands.
 

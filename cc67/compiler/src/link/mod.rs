@@ -1,7 +1,6 @@
 //! Objects to a program at a thread's address.
 //!
-//! The program's own definitions win over those of the firmware, whatever the firmware calls
-//! its symbols. All that is missing is reported at once.
+//! The program's own definitions take precedence over those of the firmware. All missing symbols are reported together.
 //!
 //! Placement (specification, `coff.md` section 4): text at the start of the thread's space,
 //! data and uninitialised data after it, each at a multiple of 32, every object aligned to

@@ -1,6 +1,6 @@
-//! Which functions and objects the program consists of, and what it needs of the firmware.
+//! Finds the functions and objects of the program, and the firmware symbols that it needs.
 //!
-//! A walk over the relocations from `main`, or from every definition if nothing is to be left
+//! A walk over the relocations from `main`, or from every definition if nothing should be left
 //! out. What a relocation refers to is worked out here, once for each symbol of an object.
 
 use std::collections::{BTreeMap, VecDeque};

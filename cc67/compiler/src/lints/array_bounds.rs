@@ -152,7 +152,7 @@ impl Search<'_> {
         });
     }
 
-    /// What is said of an access to `place`, in the first and the last turn of a counter or without one.
+    /// The message for an access to `place`, in the first and the last turn of a counter or without one.
     fn finding(&self, place: PlaceId, counter: Option<Counter>) -> Option<Diagnostic> {
         let (object, from) = self.target(place, counter.map(|counter| (counter.local, counter.first)))?;
         let (_, to) = self.target(place, counter.map(|counter| (counter.local, counter.last)))?;

@@ -4,7 +4,7 @@ use crate::ast::{Expression, ExpressionKind};
 use crate::diag::{Diagnostic, Lint};
 use crate::operators::OperatorMeaning;
 
-/// What is said of a condition that is an assignment.
+/// The message for a condition that is an assignment.
 pub(crate) fn finding(condition: &Expression) -> Option<Diagnostic> {
     let ExpressionKind::Assign(to, from) = &condition.kind else { return None };
     // The span of a parenthesised expression holds its parentheses.

@@ -6,7 +6,7 @@ use crate::ast::{Expression, Statement, StatementKind};
 use crate::diag::{Diagnostic, Lint};
 use crate::source::SourceMap;
 
-/// What is said of an `if` with this condition and body.
+/// The message for an `if` with this condition and body.
 pub(crate) fn finding(
     sources: &SourceMap,
     condition: &Expression,

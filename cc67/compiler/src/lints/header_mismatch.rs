@@ -1,7 +1,7 @@
-//! A copy of the vendor's headers beside the program that belongs to another firmware.
+//! A copy of the vendor's headers in the program's folder that belongs to another firmware.
 //!
-//! The header decides where the fields of `CHAN` and its kin lie (`dialect.md` 1.2); with
-//! those of another version a program reads and writes the wrong ones without a word.
+//! The header decides where the fields of `CHAN` and similar structures are (`dialect.md` 1.2); with
+//! those of another version a program silently reads and writes the wrong ones.
 
 use kmotiondef::limits::VERSION;
 use kmotiondef::structs::{STRUCTURES, Structure};

@@ -4,7 +4,7 @@ use crate::ast::{Statement, StatementKind};
 use crate::diag::{Diagnostic, Lint};
 use crate::source::{ExpansionId, SourceMap, Span};
 
-/// What is said if `next` is indented like the body of the `if`, `for` or `while` before it.
+/// The message if `next` is indented like the body of the `if`, `for` or `while` before it.
 pub(crate) fn finding(sources: &SourceMap, guard: &Statement, next: &Statement) -> Option<Diagnostic> {
     let body = unbraced_body(guard)?;
     let spans = [guard.span, body.span, next.span];

@@ -1,8 +1,8 @@
-//! The searches for what programs should not do; the list of all warnings is [`Lint`](crate::diag::Lint).
+//! Searches for mistakes in programs; the list of all warnings is [`Lint`](crate::diag::Lint).
 //!
 //! A lint that needs a search of its own has a file in this folder: a pass over the finished typed tree, named in its
-//! row, or a `finding` that analysis asks for where the syntax is at hand. What is one condition of a rule that
-//! analysis checks anyway is reported there.
+//! row, or a `finding` that analysis calls where it has the syntax. A single condition of a rule that analysis checks
+//! anyway is reported there.
 
 mod call_graph;
 mod flow;

@@ -4,7 +4,7 @@ use crate::ast::{Expression, ExpressionKind, UnaryOperator};
 use crate::diag::{Diagnostic, Lint};
 use crate::operators::BinaryOperator;
 
-/// What is said of an expression statement whose value nobody sees; `is_function` if it only names one.
+/// The message for an expression statement whose value nobody sees; `is_function` if it only names one.
 pub(crate) fn finding(expression: &Expression, is_function: bool) -> Option<Diagnostic> {
     if has_effect(expression) {
         return None;

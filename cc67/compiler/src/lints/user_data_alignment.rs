@@ -5,7 +5,7 @@ use super::user_data_index;
 use crate::diag::{Diagnostic, Lint};
 use crate::source::Span;
 
-/// What is said of a `double` at a byte offset of `persist`.
+/// The message for a `double` at a byte offset of `persist`.
 pub(crate) fn finding(offset: i32, span: Span) -> Option<Diagnostic> {
     // `persist` and `UserData` begin at multiples of 8.
     (offset % 8 != 0).then(|| {

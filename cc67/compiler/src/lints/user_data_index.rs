@@ -11,7 +11,7 @@ pub(crate) fn range() -> (i32, i32) {
     field.map_or((0, 0), |field| (field.offset.cast_signed(), (field.offset + field.size).cast_signed()))
 }
 
-/// What is said of an object of `size` bytes, reached from an address in `UserData` at byte `from` of `persist` and
+/// The message for an object of `size` bytes, reached from an address in `UserData` at byte `from` of `persist` and
 /// lying at byte `to`.
 pub(crate) fn finding(from: i32, to: i32, size: u32, span: Span) -> Option<Diagnostic> {
     const ELEMENT: i32 = 4;

@@ -1,4 +1,4 @@
-//! What the vendor's compiler translates wrongly, for people who still use it.
+//! Code that the vendor's compiler translates wrongly, for people who still use it.
 //!
 //! The list is that of `c67-subset.md` section 9; cc67 translates all of it as C says. Partly initialised locals are
 //! found where initialisers are, the rest in the finished tree.
@@ -37,7 +37,7 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     }
 }
 
-/// What is said of a local array or structure that its initialiser does not fill.
+/// The message for a local array or structure that its initialiser does not fill.
 pub(crate) fn partly_initialised(span: Span) -> Diagnostic {
     warning(span, "clears the wrong memory for a local that its initialiser fills in part")
         .at("not everything has a value here")

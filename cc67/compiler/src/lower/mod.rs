@@ -1,12 +1,11 @@
 //! Typed tree to IR.
 //!
-//! C's rules are already explicit in the typed tree; what is decided here is shape: where a
-//! local lives, how a condition becomes branches, what a loop looks like, how a call passes
-//! its arguments.
+//! C's rules are already explicit in the typed tree; this stage decides the shape: where a local lives, how a condition
+//! becomes branches, the form of a loop, how a call passes its arguments.
 //!
 //! Everything is evaluated from left to right. A local in a register is read by naming its
 //! value, not by copying it; where a later operand of the same expression writes that local,
-//! a copy is put in after the fact ([`Lowering::hold`]).
+//! a copy is inserted afterwards ([`Lowering::hold`]).
 
 mod calls;
 mod conditions;

@@ -96,7 +96,7 @@ impl Lowering<'_> {
         self.builder.open(end);
     }
 
-    /// Loops test at the bottom, so that a turn costs one branch. A small condition is tested once more in front of
+    /// Loops test at the bottom, so that a turn costs one branch. A small condition is tested again in front of
     /// the loop; a large one is jumped to.
     fn loop_statement(
         &mut self,

@@ -1,11 +1,11 @@
-//! What the compiler makes of one translation unit, ready to be linked with others.
+//! The compiled form of one translation unit, ready to be linked with others.
 //!
-//! Code and data are cut into pieces, one for each function and object, so that the linker
-//! can place each by itself and leave out what nobody needs. Words that depend on a symbol's
-//! address are listed as relocations; labels count from the beginning of the unit's text.
+//! Code and data are cut into pieces, one for each function and object, so that the linker can place each separately
+//! and leave out unused ones. Words that depend on a symbol's address are listed as relocations; labels count from the
+//! beginning of the unit's text.
 //!
 //! `cc67 build -c` keeps an object in a file: COFF with our target and relocations, `write` and
-//! `read` say how. What it loses are the positions in the source text, files and lines remain.
+//! `read` say how. The file keeps files and lines, but not the positions in the source text.
 
 mod coff_words;
 mod read;

@@ -1,4 +1,4 @@
-//! Declarators: a name, and what is derived around it.
+//! Declarators: a name, and the type derived around it.
 
 use crate::ast::{Alignment, Declarator, Derived, Parameter, Parameters, Qualifiers, Specifiers, TypeName};
 use crate::diag::Diagnostic;

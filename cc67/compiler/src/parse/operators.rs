@@ -20,7 +20,7 @@ pub(super) enum Infix {
 
 /// The binding of `,`, the loosest.
 pub(super) const COMMA: u8 = 0;
-/// The binding of `=` and its kin.
+/// The binding of `=` and the other assignments.
 pub(super) const ASSIGNMENT: u8 = 1;
 /// The binding of `?:`.
 pub(super) const CONDITIONAL: u8 = 2;

@@ -1,4 +1,4 @@
-//! Operands: prefix operators, casts, calls, members, and what stands for itself.
+//! Operands: prefix operators, casts, calls, members, and primary expressions.
 
 use crate::ast::{Expression, ExpressionKind, UnaryOperator};
 use crate::diag::Diagnostic;

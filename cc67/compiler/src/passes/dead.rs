@@ -1,4 +1,4 @@
-//! Removes instructions whose value nobody reads.
+//! Removes instructions whose value is never read.
 //!
 //! Two ways to be dead: the value is read nowhere in the function, or it is written again in
 //! the same block, or the function is left, before anything reads it.

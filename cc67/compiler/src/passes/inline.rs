@@ -28,7 +28,7 @@ const SMALLEST: usize = 32;
 /// The most instructions of a function whose calls of itself are replaced.
 const SMALL_RECURSIVE: usize = 16;
 
-/// How often the calls of a function in itself are replaced, unless something else is asked for.
+/// How often the calls of a function in itself are replaced, unless something else is requested.
 const LEVELS: usize = 3;
 
 /// What a function may grow to.

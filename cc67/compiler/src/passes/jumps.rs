@@ -1,5 +1,5 @@
-//! Jumps: threads them through empty blocks, drops blocks that nobody reaches, joins blocks
-//! of which one is the only way to the other.
+//! Jumps: threads them through empty blocks, drops unreachable blocks, joins a block with its only successor if it is
+//! the only predecessor.
 
 use cranelift_entity::packed_option::PackedOption;
 use cranelift_entity::{EntitySet, SecondaryMap};

@@ -1,4 +1,4 @@
-//! What an operator on constants gives, and what cheaper operator gives the same.
+//! Results of operators on constants, and cheaper operators with the same result.
 //!
 //! Constants are computed by [`vm::arith`], as the machine does; what would trap is left
 //! alone.

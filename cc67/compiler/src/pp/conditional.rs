@@ -1,4 +1,4 @@
-//! `#if` and its kin: which lines count.
+//! `#if` and its relatives: which lines count.
 
 use crate::diag::Diagnostic;
 use crate::names::{Name, word};

@@ -182,7 +182,7 @@ impl Preprocessor<'_> {
         !self.work.is_stopped
     }
 
-    /// The token in place of `__LINE__` and its kin.
+    /// The token in place of `__LINE__` and similar macros.
     fn builtin(&mut self, builtin: Builtin, token: Token, id: MacroId) -> Token {
         let place = self.sources.place(token.span);
         let file = self.open.last();

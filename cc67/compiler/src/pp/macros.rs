@@ -1,4 +1,4 @@
-//! What is defined: macros by name, and the tokens of their bodies.
+//! The table of macros by name, and the tokens of their bodies.
 
 use std::ops::Range;
 

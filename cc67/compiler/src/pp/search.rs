@@ -11,7 +11,7 @@ use super::Files;
 
 /// What is where a name points to.
 pub(super) enum Found {
-    /// A file; its real spelling may be another one than was asked for.
+    /// A file; its real spelling may be another one than was requested.
     File { path: PathBuf, text: Arc<Vec<u8>>, is_respelled: bool },
     /// Names that differ from the requested one, and from each other, in letter case only.
     Ambiguous(Vec<PathBuf>),

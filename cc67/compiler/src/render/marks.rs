@@ -1,4 +1,4 @@
-//! What a diagnostic points at, and what it explains, whoever reads it.
+//! The ranges and explanations of a diagnostic, for every format.
 //!
 //! Text that came through a macro is marked at the call, with the macro's own text beside it;
 //! for a header the `#include`s that led to it follow.

@@ -41,7 +41,7 @@ impl Sema<'_> {
         u32::try_from(value.max(1)).ok()
     }
 
-    /// `__alignof__ a`: of a variable what its declaration asked for, of anything else that of its type.
+    /// `__alignof__ a`: of a variable what its declaration requested, of anything else that of its type.
     pub(super) fn alignof_expression(&mut self, operand: &Expression, span: Span) -> Option<ExprId> {
         self.unevaluated += 1;
         let meaning = self.operand(operand);

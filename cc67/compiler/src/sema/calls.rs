@@ -1,4 +1,4 @@
-//! Calls: which type the arguments are converted to, and what is said about them.
+//! Calls: which type the arguments are converted to, and messages about them.
 //!
 //! A function that this unit defines is always called with the type of its definition, even
 //! where another prototype, or none, is in sight (`dialect.md` 2.2, 2.3). So a call in the
@@ -205,7 +205,7 @@ impl Sema<'_> {
         Some(result)
     }
 
-    /// What is said of a call without prototype that does not fit the definition.
+    /// The message for a call without prototype that does not fit the definition.
     fn lint_count(&mut self, symbol: SymbolId, definition: &FunctionType, given: usize, span: Span) {
         let (wanted, _) = prototype(definition);
         let name = self.symbols.get(symbol).name.clone();

@@ -1,4 +1,4 @@
-//! Conversions that C makes by itself, and what is said about the doubtful ones.
+//! Conversions that C makes by itself, and messages about the doubtful ones.
 //!
 //! Which pairs are silent, warned about or refused: `dialect.md` 2.4.
 

@@ -5,8 +5,8 @@
 //! the unit defines later, which is what programs for this board rely on
 //! (`dialect.md` 2.3), while names still become visible only where they are declared.
 //!
-//! Analysis continues after an error. Whatever was diagnosed yields `None`, and what is made of
-//! it is silent; so each mistake is reported once.
+//! Analysis continues after an error. A diagnosed expression yields `None`, and nothing derived from it is reported; so
+//! each mistake is reported once.
 //!
 //! Nothing here knows the target beyond the sizes in [`crate::ty::layout`] and the arithmetic
 //! of `vm::arith`.
@@ -128,7 +128,7 @@ struct Sema<'a> {
 /// What was noted for later messages.
 #[derive(Debug, Default)]
 struct Noted {
-    /// Structures with a wrong definition: what is said of their members would be wrong too.
+    /// Structures with a wrong definition: messages about their members would be wrong too.
     broken: BTreeSet<RecordId>,
     /// Where enumerations without negative constants, and their typedefs, are declared.
     unsigned_enums: BTreeSet<Span>,
@@ -188,7 +188,7 @@ impl Sema<'_> {
         }
     }
 
-    /// Reports something, unless enough was said.
+    /// Reports something, unless there are enough messages.
     fn report(&mut self, diagnostic: Diagnostic) {
         if self.sink.is_full() {
             return;

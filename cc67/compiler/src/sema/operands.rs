@@ -2,7 +2,7 @@
 //!
 //! `a` is a place when it is assigned to, a value when it is read, and an address when it is
 //! an array that is passed on. `None` instead of an operand means that something was
-//! diagnosed: nothing more is said about what is made of it.
+//! diagnosed: nothing computed from it is reported again.
 
 use super::Sema;
 use super::places::Located;

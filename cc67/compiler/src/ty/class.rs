@@ -1,4 +1,4 @@
-//! Questions about a type: what class it belongs to, what it points to.
+//! Queries of a type: its class, its target as a pointer.
 
 use super::{FunctionType, QualifiedType, RecordId, Type, TypeId, Types};
 

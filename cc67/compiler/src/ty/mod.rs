@@ -1,4 +1,4 @@
-//! Types of the target: what they are, how large, how they convert.
+//! Types of the target: kinds, sizes, conversions.
 //!
 //! Types are interned in [`Types`]; a [`TypeId`] is a number, equal numbers are equal types.
 //! `long` is `int`, an enumeration is `int`, `long double` is `double` (specification,

@@ -1,7 +1,7 @@
-//! Words of other languages and boards, and what a program for KFLOP has in their place.
+//! Words of other languages and boards, and their counterparts in a program for KFLOP.
 //!
 //! People come to KFLOP from Arduino, C++, Python, Basic and G-code, and write what they know; or they take a call from
-//! an example of the manual and not the function. A row of [`WORDS`] is such a word with advice that tells what to write
+//! an example of the manual and not the function. A row of [`WORDS`] is such a word with advice on what to write
 //! instead.
 
 /// Where a word comes from.

@@ -1,4 +1,4 @@
-//! Names that are not known: which one was meant, and what other boards' words are called here.
+//! Unknown names: the probable intended name, and the counterparts of other boards' words.
 
 pub mod foreign;
 mod suggest;

@@ -1,4 +1,4 @@
-//! A debugger of a board that somebody else runs: a server for programs of the PC, a page.
+//! A debugger for a board that other code runs: a server for PC programs, or a page.
 //!
 //! The owner of the session lets time pass through an [`AttachPoint`]. An editor that connects to its port has the board
 //! for as long as it stops it; then the owner's clock and clients wait. When it goes, its breakpoints go with it.

@@ -1,4 +1,4 @@
-//! What a client wants to debug, and what the server can do.
+//! The launch request of a client, and the capabilities of the server.
 
 use std::ffi::OsString;
 

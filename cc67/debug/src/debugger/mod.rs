@@ -141,7 +141,7 @@ pub enum Reason {
     Console(String),
     /// An input or output has another level.
     Bit(String),
-    /// The time that was asked for.
+    /// The time that was requested.
     Time,
     /// All threads have ended.
     AllEnded,

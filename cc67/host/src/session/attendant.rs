@@ -1,4 +1,4 @@
-//! Somebody beside the owner of a session who may stop its time.
+//! A second party, beside the owner of a session, that may stop its time.
 
 use std::fmt::Debug;
 use std::ops::ControlFlow;

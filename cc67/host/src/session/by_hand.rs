@@ -1,4 +1,4 @@
-//! What is done by hand: the owner of a session as the world around the board, and as its PC.
+//! Manual actions: the owner of a session acts as the world around the board, and as its PC.
 //!
 //! Whatever a person does is a statement of a stimulus at the beginning of the next tick. So it is done by what plays
 //! stimuli, and what was done is a stimulus: the same setup with that text does it all again, tick for tick. What no

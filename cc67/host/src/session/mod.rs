@@ -49,7 +49,7 @@
 //! let seen = Until::True(session.watch("count == 1")?);
 //! assert!(session.run_until(&seen, second(&session), &mut hear));
 //!
-//! // Spare the program one of three, and press once more.
+//! // Spare the program one of three, and press again.
 //! session.write("count", 2.0)?;
 //! session.act("bit 136 = 0")?;
 //! session.advance(Ticks::new(session.tick().get() + 5), &mut hear);

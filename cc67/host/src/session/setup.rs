@@ -21,7 +21,7 @@ pub struct Setup {
     pub config: Config,
     /// How expressions, and programs that are loaded later, are compiled.
     pub options: Options,
-    /// Programs that are loaded at power-up, and started if they [are to be](UserProgram::started).
+    /// Programs that are loaded at power-up, and started if they [should be](UserProgram::started).
     pub programs: Vec<UserProgram>,
     /// Programs that the stimulus may load while it is played.
     pub offered: Vec<UserProgram>,

@@ -5,7 +5,7 @@
 //! | from | what |
 //! |---|---|
 //! | 0 | version, flags (1 running, 2 in the past, 4 programs ended), as u32 |
-//! | 8 | tick, last tick of the run, speed asked for, speed measured, as f64 |
+//! | 8 | tick, last tick of the run, speed requested, speed measured, as f64 |
 //! | 40 | generation of the signals, numbers in a row, rows, spare, as u32 |
 //! | 56 | eight axes of 72 bytes: Dest, Position, load, output, velocity, soft limits, Vel as f64; enable, input mode, output mode, limits reached, spare as u8 |
 //! | 632 | levels of the 2048 bits; then directions of the first 64, 1 for an output |
@@ -39,7 +39,7 @@ pub(super) struct Moment {
     pub(super) is_past: bool,
     /// The last tick of the run.
     pub(super) end: Ticks,
-    /// Speed asked for, and measured.
+    /// Speed requested, and measured.
     pub(super) speed: [f64; 2],
 }
 

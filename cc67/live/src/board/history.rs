@@ -1,5 +1,4 @@
-//! The past of a board that is shown: back to a moment and on from there, the beginning again, and what was done by hand
-//! as a test.
+//! The history of a shown board: going back and continuing from there, restarting, and saving manual actions as a test.
 
 use std::sync::Arc;
 

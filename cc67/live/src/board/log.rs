@@ -1,4 +1,4 @@
-//! What was said: by the board, about it, and to it. The last few thousand entries are kept for pages that come later.
+//! Messages of the board, about it, and to it. The last few thousand entries are kept for pages opened later.
 
 use std::collections::VecDeque;
 
@@ -43,7 +43,7 @@ pub(super) struct LogEntry {
     line: Option<u32>,
 }
 
-/// What was said.
+/// The messages.
 #[derive(Debug, Default)]
 pub(super) struct Log {
     entries: VecDeque<LogEntry>,

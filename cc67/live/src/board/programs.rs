@@ -40,13 +40,13 @@ impl Programs {
         }
     }
 
-    /// A program was saved; what is to be loaded now.
+    /// A program was saved; what should be loaded now.
     pub(super) fn saved(&mut self, compiled: Compiled) -> Vec<UserProgram> {
         self.note(compiled);
         if self.reloads { self.take() } else { Vec::new() }
     }
 
-    /// What is to be loaded: what waits; where nothing does, every program anew.
+    /// What should be loaded: what waits; where nothing does, every program again.
     pub(super) fn reload(&mut self) -> Vec<UserProgram> {
         if self.waiting.is_empty() {
             for program in self.programs.clone() {

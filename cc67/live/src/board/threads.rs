@@ -1,4 +1,4 @@
-//! What each thread does, at which line, and what it waits for.
+//! The state of each thread, its line, and what it waits for.
 
 use cc67_host::Session;
 use kmotiondef::{Cycles, ThreadId};

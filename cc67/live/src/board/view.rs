@@ -1,4 +1,4 @@
-//! A session that somebody else runs, on the page: a server whose clients use the same board.
+//! Shows a session that other code runs, such as a server whose clients use the same board.
 
 use std::sync::mpsc::Receiver;
 use std::time::Duration;
@@ -40,7 +40,7 @@ impl<E: Engine> LiveView<E> {
         self.stage.log.note(session, event);
     }
 
-    /// Does what pages have asked for since the last time, without waiting, and sends them what is new. To be called
+    /// Does what pages have requested since the last time, without waiting, and sends them what is new. To be called
     /// about a hundred times in a second.
     pub fn beat(&mut self, session: &mut Session<E>) -> Wishes {
         self.stage.take(session, &self.requests, Duration::ZERO);
@@ -50,7 +50,7 @@ impl<E: Engine> LiveView<E> {
         Wishes { speed, ..std::mem::take(&mut self.stage.wishes) }
     }
 
-    /// Sends pages what is new while nothing may be asked for.
+    /// Sends pages what is new while nothing may be requested.
     pub fn show(&mut self, session: &Session<E>) {
         self.stage.tell(session);
     }

@@ -1,4 +1,4 @@
-//! Who is let in: the token has to be right, and the request must not come from another site's page.
+//! Access control: the token must be right, and the request must not come from another site's page.
 //!
 //! A browser sends any page's requests to any address, this one too. So a request is refused unless its `Host` is the
 //! address that the server listens on (which a site that renames itself cannot fake), and unless its `Origin`, if it has

@@ -43,7 +43,7 @@ impl Head {
         target.starts_with('/').then_some(Self { target, headers })
     }
 
-    /// The path that is asked for.
+    /// The path that is requested.
     pub(super) fn path(&self) -> &str {
         self.target.split('?').next().unwrap_or_default()
     }

@@ -1,4 +1,4 @@
-//! Connections: who asks is checked, the files of the page are handed out, a socket is served as long as it lasts.
+//! Connections: checks each request, serves the files of the page, and serves a socket until it closes.
 
 mod files;
 mod gate;

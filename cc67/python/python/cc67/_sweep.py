@@ -310,7 +310,7 @@ class _Log:
         for line in lines[1:]:
             self.results[line["run"]] = line["outputs"]
         kept = [{"sweep": fingerprint}, *lines[1:]]
-        # What was interrupted in the middle of a line is written anew.
+        # What was interrupted in the middle of a line is rewritten.
         Path(path).write_text("".join(json.dumps(line) + "\n" for line in kept), encoding="utf-8")
         self._file = open(path, "a", encoding="utf-8")
 

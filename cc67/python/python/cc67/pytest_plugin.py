@@ -8,7 +8,7 @@
         assert_console(board)
 
 `board` is the board of the marker, whose files are beside the test's. `make_board` makes further ones. What a test that
-fails has done to its boards is done once more with a trace, and both the picture and the table are kept.
+fails has done to its boards is done again with a trace, and both the picture and the table are kept.
 """
 
 from __future__ import annotations
@@ -296,7 +296,7 @@ def _summary(board: Board) -> Iterator[str]:
 
 
 def _attach(item: pytest.Item, title: str, board: Board, options: dict[str, Any]) -> Iterator[str]:
-    """The run once more, with a trace, as a table and a picture."""
+    """The run again, with a trace, as a table and a picture."""
     folder = _folder(item)
     recording, is_complete = board._native.recording()
     if folder is None or board.tick == 0:

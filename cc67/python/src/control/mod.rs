@@ -1,4 +1,4 @@
-//! A session on any engine with one set of calls, and what its board has said so far.
+//! A session on any engine with one set of calls, and the messages of its board so far.
 
 mod fields;
 mod log;
@@ -56,7 +56,7 @@ pub(crate) trait Control: 'static {
     fn drive(&mut self, bit: Bit, level: bool) -> Result<(), StimulusError>;
     /// The level of a bit.
     fn bit(&self, bit: Bit) -> bool;
-    /// What is to be looked at, prepared.
+    /// What should be looked at, prepared.
     fn watch(&mut self, text: &str) -> Result<Watch, WatchError>;
     /// The value of an item or an expression.
     fn read(&mut self, text: &str) -> Result<f64, WatchError>;
@@ -158,7 +158,7 @@ impl<E: Engine> Rig<E> {
                 return Portion { is_over: true, is_met, fault: None };
             }
             self.session.step(limit, &mut |event| events.push(event));
-            // In most steps nothing is said.
+            // Most steps have no message.
             if !events.is_empty() {
                 self.hear(std::mem::take(&mut events));
                 if let Some(fault) = self.fault() {

@@ -1,4 +1,4 @@
-//! What board it is: what is connected to it, what it begins with, what executes its programs.
+//! The options of a board: its connections, its initial state, its engine.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! What a person may ask for: the options that commands have in common, a file each, and what their values mean.
+//! The options shared by commands, one file for each subject, and the meaning of their values.
 //!
 //! An option of a board is one field in [`board`]; every command that has a board has the option.
 

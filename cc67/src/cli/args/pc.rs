@@ -1,4 +1,4 @@
-//! What the PC beside the board is told to do: its answers, M codes that start programs, the file of the board's flash.
+//! Options of the PC: its answers, M codes that start programs, the file of the board's flash.
 
 use std::net::IpAddr;
 use std::path::PathBuf;

@@ -1,4 +1,4 @@
-//! What the serial port of the board is connected to: `--uart` and its kin.
+//! What the serial port of the board is connected to: `--uart` and related options.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! Arguments of a subcommand that are described only when that subcommand is asked for.
+//! Arguments of a subcommand that are described only when that subcommand is requested.
 //!
 //! Twenty subcommands have some three hundred options; a start of the command needs those of one.
 
@@ -47,7 +47,7 @@ impl<T: Args> Args for Deferred<T> {
     }
 }
 
-/// The subcommand with its arguments; what it is about is said by its row and not by their type.
+/// The subcommand with its arguments; its row describes it, not their type.
 fn described<T: Args>(command: Command) -> Command {
     let (about, long) = (command.get_about().cloned(), command.get_long_about().cloned());
     T::augment_args(command).about(Resettable::from(about)).long_about(Resettable::from(long))

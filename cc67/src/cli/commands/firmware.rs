@@ -37,7 +37,7 @@ enum FirmwareCommand {
     },
 }
 
-/// Does what is asked for.
+/// Does what is requested.
 pub(super) fn firmware(arguments: &FirmwareArguments) -> Result<Exit> {
     match &arguments.command {
         FirmwareCommand::Export { file } => output::write(file, &firmware::export()?)?,

@@ -1,4 +1,4 @@
-//! `cc67 inspect`: what is in an image.
+//! `cc67 inspect`: the contents of an image.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -78,7 +78,7 @@ impl From<OrderName> for Order {
     }
 }
 
-/// Prints what is asked for.
+/// Prints what is requested.
 pub(super) fn inspect(arguments: &InspectArguments) -> Result<Exit> {
     if arguments.debug {
         return debug(arguments);

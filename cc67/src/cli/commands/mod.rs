@@ -170,8 +170,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
 }
 
 impl Arguments {
-    /// The same with the options of the project file and of what is beside the first program, which is said in one
-    /// line.
+    /// The same with the options of the project file and of the files beside the first program; one line names them.
     fn with_sidecars(mut self, words: &[OsString]) -> Result<Self> {
         if let Some(Command::Compare(arguments)) = &mut self.command {
             // Each of its programs has its own.

@@ -123,7 +123,7 @@ impl Work for &RunArguments {
 }
 
 impl RunArguments {
-    /// The programs, if what is beside them is to be used.
+    /// The programs, if what is beside them should be used.
     pub(super) fn with_sidecars(&self) -> Option<&[OsString]> {
         (!self.beside.no_sidecar).then_some(&self.programs)
     }

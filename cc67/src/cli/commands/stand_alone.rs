@@ -1,5 +1,5 @@
-//! What an executable of `cc67 build --emit native` does: `cc67 run` of the program that it holds, whose machine code
-//! is its own.
+//! The command of an executable from `cc67 build --emit native`: `cc67 run` of the program that it contains as machine
+//! code.
 
 use std::ffi::OsString;
 use std::io::{self, Write};

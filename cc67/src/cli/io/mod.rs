@@ -1,4 +1,4 @@
-//! The process: the files that a command reads and writes, the terminal, the clock, and what its exit code says.
+//! The process: the files that a command reads and writes, the terminal, the clock, and exit codes.
 
 pub(crate) mod exit;
 pub(crate) mod input;

@@ -1,4 +1,4 @@
-//! Files that commands write: under a temporary name first, so that nobody meets half a file.
+//! Files that commands write: under a temporary name first, so that there is never half a file.
 //!
 //! A process that is killed leaves the old file or the new one. The disk is not waited for, as by
 //! any compiler: it would take longer than the compilation.
@@ -156,7 +156,7 @@ pub(crate) fn print(text: &str) -> Result<()> {
     }
 }
 
-/// What is said when standard output takes no more.
+/// The message when standard output accepts no more.
 pub(crate) fn lost_output(error: &io::Error) -> anyhow::Error {
     anyhow!("cannot write to standard output: {}", reason(error))
 }

@@ -269,7 +269,7 @@ impl Booted {
         Ok(Some(Begun { request }))
     }
 
-    /// Starts the firmware anew from what the flash holds, if there is a file of it.
+    /// Restarts the firmware from what the flash holds, if there is a file of it.
     fn start_from(&mut self, mut flash: Flash) -> Result<()> {
         if let Some((path, bytes)) = flash.held() {
             let file = self.board.shared_file();
@@ -348,7 +348,7 @@ impl Booted {
         FinalState::seen(memory, |item| surroundings.value(item, memory))
     }
 
-    /// Does what the stimulus has asked for.
+    /// Does what the stimulus has requested.
     fn serve(&mut self) {
         let asked = self.surroundings().map(Surroundings::take_asked).unwrap_or_default();
         for one in asked {

@@ -1,5 +1,5 @@
 //! What the firmware was recorded to answer, asked of the firmware itself: 246 replies of one session, and every script
-//! command from a fresh start (2,684 exchanges). Where no file is named, this is said.
+//! command from a fresh start (2,684 exchanges). Without the file, the test says so.
 
 use serde_json::Value;
 

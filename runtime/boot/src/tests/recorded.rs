@@ -1,4 +1,4 @@
-//! The start of the real firmware against what was recorded of it (`boot.jsonl`); where no file is named, this is said.
+//! The start of the real firmware against what was recorded of it (`boot.jsonl`); without the file, the test says so.
 
 use std::sync::{Arc, Mutex, OnceLock};
 use std::{env, fs};

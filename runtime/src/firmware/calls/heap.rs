@@ -1,4 +1,4 @@
-//! The firmware's heap: what is left of the SDRAM after the board's own buffers.
+//! The firmware's heap: the SDRAM that the board's own buffers leave free.
 //!
 //! Sizes are rounded up to 8 bytes and each block has 8 bytes in front, as the board has it; where the free blocks
 //! are is kept here, so that no program can damage the heap.

@@ -1,4 +1,4 @@
-//! What is worth a remark only in the light of what follows, or of what came before.
+//! Remarks that depend on earlier or later calls.
 //!
 //! A level written to a pin that is still an input is as it should be if the pin becomes an output soon; a move called
 //! while another one has just begun replaces it; a text longer than its array is known by the arrays of the programs.

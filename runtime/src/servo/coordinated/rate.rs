@@ -1,4 +1,4 @@
-//! The time base: how fast the path time advances, and what it is being ramped to.
+//! The time base: the rate of path time, and the rate that it ramps to.
 //!
 //! An override of 1.0 advances the path by a tick's length every tick. Two overrides are kept, one of them for rapids.
 

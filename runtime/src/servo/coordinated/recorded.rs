@@ -88,7 +88,7 @@ struct Rig {
 impl Rig {
     fn new() -> Self {
         let mut desk = Desk::new();
-        // Nobody asked for the status while the recordings were made.
+        // Nobody requested the status while the recordings were made.
         desk.kernel.parts.pc.host.connect(false);
         system::assign(&mut desk.memory, &[0, 1, -1, -1]);
         for axis in AxisId::all().take(3) {

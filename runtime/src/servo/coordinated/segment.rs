@@ -1,4 +1,4 @@
-//! One entry of a path: where it is in guest memory and what it says.
+//! One entry of a path: its address in guest memory and its contents.
 
 use kmotiondef::modes::TrajectoryMode;
 use kmotiondef::structs::{ParametricCoeff, TripCircleLinear, TripLinear};

@@ -1,4 +1,4 @@
-//! An operator for programs that wait on inputs nobody drives: `--assist`.
+//! An operator for programs that wait for undriven inputs: `--assist`.
 //!
 //! When the programs have done nothing for two seconds but look at inputs and wait, one of these inputs is toggled
 //! for a tenth of a second; if nothing comes of that, the next one. All in board time. Source: plant.md section 7.

@@ -1,4 +1,4 @@
-//! What is planned, and what is under way: due statements, pulses that end, courses of analog inputs, turning encoders.
+//! Planned and active actions: due statements, ends of pulses, curves of analog inputs, turning encoders.
 
 use std::collections::BTreeMap;
 

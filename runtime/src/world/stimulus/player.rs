@@ -1,4 +1,4 @@
-//! Plays a stimulus: what is due is done, and what the board does is watched for.
+//! Plays a stimulus: performs due actions, and watches for conditions.
 
 use std::collections::VecDeque;
 

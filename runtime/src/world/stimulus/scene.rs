@@ -13,6 +13,6 @@ pub(crate) struct Scene<'a, 'b, 'c> {
     pub(crate) context: &'a mut TickContext<'c>,
     /// Where the statement stands, for messages.
     pub(crate) place: &'a str,
-    /// Whether its expectation is to be checked.
+    /// Whether its expectation should be checked.
     pub(crate) is_checked: bool,
 }

@@ -1,4 +1,4 @@
-//! What a run records for those who look at it afterwards: levels, slices, values over time.
+//! The recordings of a run: levels, slices, values over time.
 //!
 //! Records travel as events, so they are in order with the console. Nothing is recorded unless somebody asks, and what
 //! is recorded does not depend on shortcuts: values are sampled when they change, at ticks that are multiples of the
@@ -16,7 +16,7 @@ pub use crate::out::Record;
 
 use kmotiondef::ThreadId;
 
-/// What is to be recorded.
+/// What should be recorded.
 #[derive(Clone, Debug)]
 pub struct TraceRequest {
     /// Values to sample.

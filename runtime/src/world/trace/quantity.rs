@@ -1,4 +1,4 @@
-//! What can be sampled: the items of the board, and what is computed from its memory.
+//! Quantities that can be sampled: the items of the board, and values computed from its memory.
 
 use std::fmt;
 use std::sync::Arc;

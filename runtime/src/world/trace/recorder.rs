@@ -1,4 +1,4 @@
-//! Samples the quantities that were asked for.
+//! Samples the quantities that were requested.
 
 use kmotiondef::structs::Chan;
 use kmotiondef::{AxisId, ThreadId, Ticks};

@@ -28,7 +28,7 @@ pub(super) struct RenamedPacket {
     pub(super) cycles: u8,
     /// Whether the loop is left before it.
     pub(super) is_exit: bool,
-    /// Whether more is to be done after it than to go on at the next one.
+    /// Whether more should be done after it than to go on at the next one.
     pub(super) is_special: bool,
     /// The place of the stack pointer if it is written.
     pub(super) stack: Option<u8>,
@@ -44,7 +44,7 @@ pub(super) struct Arrival {
     /// What it depends on.
     pub(super) decider: Option<Decider>,
     pub(super) to: u32,
-    /// Its packet, if that is to be noted.
+    /// Its packet, if that should be noted.
     pub(super) from: Option<u32>,
     /// Cycles that pass after it if it is not taken.
     pub(super) rest: u8,

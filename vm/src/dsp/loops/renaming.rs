@@ -1,4 +1,4 @@
-//! Where the registers of a loop are: which place each has, what is on its way to which place.
+//! Renamed registers of a loop: the slot of each register, and the results on their way to each slot.
 //!
 //! A result that is on its way is written to a place that nothing reads, and landing is that the register has this place
 //! from then on. So at the border of two packets everything but the values follows from the packets executed before.

@@ -1,4 +1,4 @@
-//! One packet: what its instructions do, and how its cycles pass.
+//! One packet: the effects of its instructions, and the passing of its cycles.
 //!
 //! Results of the first stage are kept apart until all instructions of the packet are written down, and so are stores:
 //! whatever finds that the packet is the interpreter's leads to the same exit, where nothing of it has happened.

@@ -119,7 +119,7 @@ fn check<E: Engine>(seed: u64) {
         let first = numbers.below(instants.len() as u64) as usize;
         go_back(&mut machine, &kept[first]);
         assert_eq!(machine.tick(), Ticks::new(instants[first].0));
-        // Some way on, and once more from the same instant.
+        // Some way on, and again from the same instant.
         machine.run_until(Ticks::new(instants[first].0 + numbers.below(9)));
         go_back(&mut machine, &kept[first]);
         for (tick, kind) in &instants[first..] {

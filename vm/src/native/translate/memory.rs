@@ -202,7 +202,7 @@ impl Translator<'_, '_> {
     }
 
     /// The blocks of an access: what is not in SDRAM, what is in no RAM, and the access itself, which takes the
-    /// offset from the beginning of SDRAM to where it is to be made.
+    /// offset from the beginning of SDRAM to where it should be made.
     ///
     /// There is one place where the access is made, whatever path leads there: Cranelift computes a value where
     /// it is first used, and what it computed on one of several ways it would compute again after them.
@@ -212,7 +212,7 @@ impl Translator<'_, '_> {
         [self.builder.create_block(), self.builder.create_block(), behind]
     }
 
-    /// Continues the access; yields where it is to be made.
+    /// Continues the access; yields where it should be made.
     fn enter_access(&mut self, behind: Block) -> Value {
         self.enter(behind);
         let base = self.load_pointer(offset_of!(State, ram.sdram));
@@ -253,7 +253,7 @@ impl Translator<'_, '_> {
         self.store_state(yes, offset_of!(State, signs.touched));
     }
 
-    /// Continues the access in a field of the state: the request has done what was to be done.
+    /// Continues the access in a field of the state: the request has done the work.
     fn go_on_in_state(&mut self, field: usize, behind: Block) {
         let pointer = self.builder.ins().iadd_imm_s(self.frame.state, i64::from(offset(field)));
         self.go_on_at(pointer, behind);

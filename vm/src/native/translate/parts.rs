@@ -1,4 +1,4 @@
-//! What a translator is made of: what it knows of registers, calls, second translations and the frame.
+//! The parts of a translator: its knowledge of registers, calls, second translations and the frame.
 
 use std::collections::BTreeMap;
 

@@ -41,7 +41,8 @@ impl Strides {
     }
 }
 
-/// The root that each of `turns`, as sorted sums, has once more than the one before; `None` if they are no such row.
+/// The root that each of `turns`, as sorted sums, has in addition to the previous one; `None` if this is no such
+/// series.
 pub(super) fn common_step(turns: &[Vec<Root>]) -> Option<Root> {
     let (first, second) = (turns.first()?, turns.get(1)?);
     let step = *second.iter().find(|root| count(second, **root) > count(first, **root))?;

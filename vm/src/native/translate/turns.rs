@@ -1,4 +1,4 @@
-//! What is translated a second time, with fewer tests, and what is known in there.
+//! Loops translated a second time, with fewer tests, and the facts known inside them.
 //!
 //! A loop without calls that has no loop inside may run for several turns as soon as the budget
 //! covers the most that they can cost: no charge on the way could end the slice, so the charges are

@@ -157,7 +157,7 @@ impl Selector<'_> {
         }
     }
 
-    /// Compares; returns whether `dst` is the opposite of what is asked for.
+    /// Compares; returns whether `dst` is the opposite of what is requested.
     pub(super) fn compare(&mut self, op: CompareOp, dst: VReg, a: Operand, b: Operand) -> bool {
         match self.function.class(a) {
             Class::I32 => self.compare_i32(op, dst, a, b),

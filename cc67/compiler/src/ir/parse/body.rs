@@ -1,4 +1,4 @@
-//! A function as its lines are read, and what is known only when all of them are.
+//! A function while its lines are read, and the checks that need all of them.
 
 use std::collections::BTreeMap;
 
@@ -166,7 +166,7 @@ impl Body {
         self.targets.entry(block).or_insert(self.at);
     }
 
-    /// An operand is said to have a class in this line.
+    /// An operand has a class according to this line.
     pub(super) fn check_class(&mut self, operand: Operand, class: Class) {
         self.compared.push((operand, class, self.at));
     }

@@ -1,4 +1,4 @@
-//! Where strings and character constants end; what they mean is read later.
+//! The ends of strings and character constants; their meaning is read later.
 
 use crate::diag::Diagnostic;
 

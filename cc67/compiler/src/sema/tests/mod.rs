@@ -49,7 +49,7 @@ impl FirmwareNames for Board {
     }
 }
 
-/// The typed tree of a program and what was said about it.
+/// The typed tree of a program and the messages about it.
 fn run(source: &str) -> (String, Vec<String>) {
     let (unit, names, said) = analyzed(source);
     (print::unit(&unit, &names), said)
@@ -94,7 +94,7 @@ fn accept(source: &str) {
     assert_eq!(said, [""; 0], "said about:\n{source}");
 }
 
-/// What is said about a program.
+/// The messages about a program.
 fn said(source: &str, expect: &[&str]) {
     let (_, said) = run(source);
     assert_eq!(said, expect, "said about:\n{source}");

@@ -1,4 +1,4 @@
-//! The first line of a program: `// cc67: run OPTION … also N:FILE …`, with words as a shell parts them.
+//! The first line of a program: `// cc67: run OPTION … also N:FILE …`, with words split as by a shell.
 
 use std::path::Path;
 

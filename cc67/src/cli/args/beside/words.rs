@@ -1,4 +1,4 @@
-//! Words of a line as a shell parts them: quotes of both kinds, and a backslash before a sign.
+//! Splits a line into words like a shell: both kinds of quotes, and backslash escapes.
 
 use anyhow::{Result, bail};
 

@@ -1,4 +1,4 @@
-//! `cc67 build`: compile and link for a thread, write what is asked for.
+//! `cc67 build`: compile and link for a thread, write what is requested.
 
 mod names;
 #[cfg(feature = "native")]
@@ -130,7 +130,7 @@ impl BuildArguments {
         Ok(())
     }
 
-    /// Objects are for the target that is asked for.
+    /// Objects are for the target that is requested.
     fn check_objects(&self, units: &[Compilation]) -> Result<()> {
         for unit in units {
             let Some(target) = unit.object.as_ref().map(Object::target) else { continue };
@@ -144,7 +144,7 @@ impl BuildArguments {
         Ok(())
     }
 
-    /// The kinds that are asked for.
+    /// The kinds that are requested.
     fn emit(&self) -> Vec<Emit> {
         let mut emit = self.emit.clone();
         if self.compile_only {

@@ -1,4 +1,4 @@
-//! What a run comes to on either board, and what of it differs.
+//! The outcome of a run on either board, and the differences.
 
 use std::fmt;
 

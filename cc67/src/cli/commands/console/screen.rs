@@ -83,7 +83,7 @@ impl Screen {
         }
     }
 
-    /// A text that was asked for.
+    /// A text that was requested.
     pub(super) fn text(&mut self, text: &str) {
         self.bytes(text.as_bytes());
     }

@@ -23,7 +23,7 @@ use crate::cli::io::input::read;
 use crate::cli::io::{output, terminal as screen};
 use crate::cli::session::{Setup, Started};
 
-/// Where a run ends if nothing else is said: an hour of board time.
+/// The end of a run by default: an hour of board time.
 const LIMIT: f64 = 3600.0;
 
 /// Arguments of `cc67 debug`.
@@ -53,7 +53,7 @@ pub(super) struct DebugArguments {
 }
 
 impl DebugArguments {
-    /// The programs, if the files beside them are to be used.
+    /// The programs, if the files beside them should be used.
     pub(super) fn with_sidecars(&self) -> Option<&[OsString]> {
         (!self.beside.no_sidecar).then_some(&self.programs)
     }

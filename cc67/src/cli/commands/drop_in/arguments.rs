@@ -42,7 +42,7 @@ pub(super) enum Invocation {
     SearchDirectories,
 }
 
-/// What is to be compiled, and how.
+/// What should be compiled, and how.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct CompileRequest {
     /// The source file.

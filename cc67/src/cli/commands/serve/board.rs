@@ -147,7 +147,7 @@ impl<'a, B: Served> ServedBoard<'a, B> {
         self.log.is_some()
     }
 
-    /// Opens the link anew: what is under way is dropped on both ends.
+    /// Reopens the link: what is under way is dropped on both ends.
     pub(super) fn reopen(&mut self) {
         self.board.receive(b"\x03");
         self.until(TAKEN_WITHIN, |board| !board.board.is_receiving());
@@ -169,7 +169,7 @@ impl<'a, B: Served> ServedBoard<'a, B> {
     }
 
     fn event(&mut self, event: Event) {
-        // A page shows what it has asked for itself, and not what others have.
+        // A page shows what it has requested itself, and not what others have.
         if self.is_for_page || !matches!(event.kind, EventKind::Reply(_)) {
             self.board.show(&event);
         }

@@ -131,7 +131,7 @@ impl<B: Served> Desk<'_, B> {
         Some(line)
     }
 
-    /// A line for the console: without one it is thrown away.
+    /// A line for the console: without one it is discarded.
     fn show(&mut self, line: Vec<u8>) {
         if self.console.client.is_some() {
             self.console.lines.push_back(line);

@@ -88,7 +88,7 @@ pub(super) struct Waiting {
 pub(super) struct Token {
     /// The client that has taken it last.
     pub(super) taken_by: Option<u64>,
-    /// Whether it was said that this client waits for itself.
+    /// Whether it was reported that this client waits for itself.
     pub(super) has_told: bool,
 }
 
@@ -106,7 +106,7 @@ pub(super) struct ConsoleClient {
 pub(super) struct LinkState {
     /// Whether it is open.
     pub(super) is_open: bool,
-    /// Whether its loss was said since something was read.
+    /// Whether its loss was reported since something was read.
     pub(super) has_told_failure: bool,
 }
 
@@ -309,7 +309,7 @@ impl<'a, B: Served> Desk<'a, B> {
         self.catch_up(u64::MAX, BEFORE_ANSWER);
     }
 
-    /// Brings the board up to the clock, unless something comes that is to be taken first, or it takes too long: a board
+    /// Brings the board up to the clock, unless something comes that should be taken first, or it takes too long: a board
     /// that cannot keep up is not chased.
     fn catch_up(&mut self, limit: u64, at_once: Duration) {
         let Some((pace, speed)) = &self.clock else { return self.run_for_clients() };

@@ -1,4 +1,4 @@
-//! What the board has sent over its link and nobody has read yet.
+//! Data that the board has sent over its link and that has not been read yet.
 //!
 //! Lines of replies, echoes and the console are read in the order in which they came. Source: host-protocol.md sections
 //! 4, 7 and 9.
@@ -96,7 +96,7 @@ impl Unread {
         Some(LinkLine::Reply(line))
     }
 
-    /// Drops everything, as when the link is opened anew.
+    /// Drops everything, as when the link is reopened.
     pub(super) fn clear(&mut self) {
         self.replies.clear();
         self.console.clear();

@@ -21,7 +21,7 @@ const ACKNOWLEDGED: u8 = 0xAA;
 /// How the first message of the library of version 4.32 begins, which has no length.
 const OLD_LIBRARY: [u8; 8] = [9, 0, 0, 0, 0, 0, 0, 0];
 
-/// What is asked for.
+/// What is requested.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Call {
     WriteLineReadLine(Vec<u8>),

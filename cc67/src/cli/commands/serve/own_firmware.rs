@@ -60,7 +60,7 @@ struct OwnFirmware {
     booted: Booted,
     /// The tick that it has come to since the firmware ran away: nothing happens there any more.
     crashed: Option<Ticks>,
-    /// Whether console lines are thrown away, and whether that was said.
+    /// Whether console lines are discarded, and whether this was reported.
     is_deaf: bool,
     has_told: bool,
 }

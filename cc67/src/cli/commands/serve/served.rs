@@ -1,4 +1,4 @@
-//! What is served: the modelled board, shown on a page if that is wanted.
+//! The served board: the modelled one, shown on a page if requested.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;

@@ -23,9 +23,9 @@ use crate::cli::io::output;
 pub(super) enum Verdict {
     /// Every engine showed what was expected.
     Passed,
-    /// The expected text was written anew.
+    /// The expected text was rewritten.
     Blessed,
-    /// The text would be written, but holds more than a console: that is asked for first.
+    /// The text would be written, but holds more than a console: the user is asked first.
     Asked(Shown),
     /// The text is not written: nothing was run, or not as it should.
     Refused(Shown),

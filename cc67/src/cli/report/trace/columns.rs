@@ -1,4 +1,4 @@
-//! What a trace shows: what was asked for, or else the items of axes that have been enabled.
+//! What a trace shows: what was requested, or else the items of axes that have been enabled.
 //!
 //! A picture of an axis whose position nobody measures shows where its load is; for that the loads are recorded as well.
 
@@ -15,7 +15,7 @@ pub(super) struct Columns {
 }
 
 impl Columns {
-    /// What is recorded for pictures where nothing else is asked for.
+    /// What is recorded for pictures where nothing else is requested.
     pub(super) fn of_pictures() -> Vec<Item> {
         [Item::of_axes(), Item::of_loads()].concat()
     }
@@ -52,7 +52,7 @@ impl Columns {
         self.of_enabled().filter(|(_, quantity)| !self.is_default || is_shown(quantity)).collect()
     }
 
-    /// Those of axes that were enabled, or what was asked for.
+    /// Those of axes that were enabled, or what was requested.
     fn of_enabled(&self) -> impl Iterator<Item = (usize, &Quantity)> {
         let is_shown = |quantity: &Quantity| {
             let of_axis = |item: Item| item.axis().or((item.kind() == LOAD).then_some(item.index()));

@@ -34,7 +34,7 @@ pub(super) struct Log {
 }
 
 impl Log {
-    /// Nothing yet, of what was asked for.
+    /// Nothing yet, of what was requested.
     pub(super) fn new(request: &TraceRequest) -> Self {
         let every = i64::try_from(request.every).unwrap_or(i64::MAX);
         Self {

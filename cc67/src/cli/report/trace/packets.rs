@@ -16,7 +16,7 @@ use super::{Sink, TraceEntry};
 use crate::cli::args::trace::PacketFile;
 use crate::cli::io::output::Draft;
 
-/// Whose packets are to be recorded.
+/// Whose packets should be recorded.
 ///
 /// # Errors
 /// The thread that is named has a program that is not real code, or no thread has any.

@@ -1,4 +1,4 @@
-//! The unit of a watched expression, where it is one place of the board whose meaning says it.
+//! The unit of a watched expression, if it is a single item of the board with a known unit.
 
 use kmotiondef::structs::{Chan, StructureField};
 use kmotiondef::variables::FIRMWARE_VARIABLES;

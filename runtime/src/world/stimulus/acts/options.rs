@@ -1,4 +1,4 @@
-//! Devices on pins, and what happens to option boards.
+//! Devices on pins, and actions on option boards.
 
 use kmotiondef::variables::{KANALOG_PRESENT, SNAP_AMP_PRESENT};
 use vm::memory::GuestMemory;
