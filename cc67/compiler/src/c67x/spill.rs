@@ -25,6 +25,9 @@ pub(super) fn to_memory(code: &mut Code, moved: &[VReg]) {
     }
 }
 
+/// The most arguments that find room on any side: all are needed at once, and a side has eight pairs.
+const CROWDED: usize = 6;
+
 /// Where a register's value comes from.
 #[derive(Clone, Copy)]
 enum Home {
@@ -146,7 +149,13 @@ impl Mover<'_> {
             let (argument, at) = self.code.calls[number].arguments[index];
             if argument == self.reg {
                 let short = self.load(inst.span, out);
-                self.code.regs[short].hint = Some(at);
+                let is_crowded = self.code.calls[number].arguments.len() > CROWDED;
+                let info = &mut self.code.regs[short];
+                info.hint = Some(at);
+                if is_crowded {
+                    info.side = Some(at.side());
+                    info.is_condition = false;
+                }
                 self.code.calls[number].arguments[index].0 = short;
             }
         }

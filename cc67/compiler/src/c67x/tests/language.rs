@@ -27,6 +27,36 @@ fn quotients_wide_integers_structures_and_many_arguments_are_right() {
     }
 }
 
+/// All registers of arguments are pairs, from memory: they fit only on their own sides.
+const ARGUMENTS: &str = r#"
+#include "KMotionDef.h"
+typedef struct { int x; double y; char n[5]; } REC;
+REC swap(REC a, REC b, int which, double add, REC *last) { REC r = which ? a : b; r.y += add; *last = a; return r; }
+long long mix(long long a, long long b, long long c, double d, long long e, short f, long long g, long long h, int i,
+    long long j, long long k) { return a + b - c + (int)d - e + f - g + h - i + j - k; }
+main()
+{
+    int i;
+    REC a = { 1, 1.5 }, b = { 2, 2.5 }, c, d;
+    long long r = mix(10, -7, 1LL << 32, 12, -5, 300, 1LL << 40, -123, 77, 987, -1000);
+    printf("%d %d\n", (int)(r >> 32), (int)r);
+    for (i = 0; i < 2; i++) {
+        c = swap(a, b, i, 0.125, &d);
+        printf("%d %d\n", c.x, d.x);
+    }
+    printf("%d %g\n", swap(swap(a, b, 1, 10, &d), swap(b, a, 1, 20, &c), 0, 30, &d).x,
+        swap(swap(a, b, 1, 10, &d), swap(b, a, 1, 20, &c), 0, 30, &d).y);
+}
+"#;
+
+#[test]
+fn ten_wide_arguments_fit_into_their_registers() {
+    for level in [Level::None, Level::Small, Level::Full, Level::Fast] {
+        let printed = "-257 2107\n2 1\n1 1\n2 52.5\n";
+        assert_eq!(machine::run(&build(ARGUMENTS, level)).console, printed, "{level:?}");
+    }
+}
+
 /// Loops whose number of turns nobody knows: several turns become one, which must end where each of them would.
 const LOOPS: &str = r#"
 #include "KMotionDef.h"
