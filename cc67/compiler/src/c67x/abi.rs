@@ -9,6 +9,9 @@ pub(super) const TARGET: Reg = Reg::b(0);
 /// Where the address of further arguments is when there are more than registers; a convention of ours.
 pub(super) const REST: Reg = Reg::a(3);
 
+/// What `sin` and `cos` of the firmware may still write in the cycle after their return.
+pub(super) const LATE: Reg = Reg::a(7);
+
 /// The bit of a register in a set.
 pub(super) const fn bit(reg: Reg) -> u64 {
     1 << reg.index()

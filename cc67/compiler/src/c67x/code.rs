@@ -226,6 +226,8 @@ pub(super) struct Call {
     pub(super) arguments: Vec<(VReg, Reg)>,
     /// The registers that it changes, a bit each.
     pub(super) changes: u64,
+    /// Whether it may still write [`super::abi::LATE`] in the cycle after its return.
+    pub(super) is_late: bool,
 }
 
 /// How a block ends.

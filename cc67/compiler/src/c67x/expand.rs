@@ -54,6 +54,8 @@ pub(super) struct Expanded {
     pub(super) regions: Vec<Region>,
     /// The first label that nothing has.
     pub(super) labels: u32,
+    /// The regions after calls whose last result may land in their first cycle.
+    pub(super) late: Vec<u32>,
     /// Bytes of its frame.
     pub(super) frame: u32,
 }
@@ -104,14 +106,15 @@ pub(super) fn expand(
         regions: Vec::with_capacity(code.blocks.len()),
         region: Region::new(0, 1.0, function.span),
         returns: code.blocks.len() as u32,
+        late: Vec::new(),
         is_wrong: false,
     };
     expander.run();
     if expander.is_wrong {
         return Err(TooLarge::Code);
     }
-    let (regions, labels) = (expander.regions, expander.returns);
-    Ok(Expanded { regions, labels, frame: frame.size })
+    let Expander { regions, returns: labels, late, .. } = expander;
+    Ok(Expanded { regions, labels, late, frame: frame.size })
 }
 
 /// The objects of the frame whose address is taken.
@@ -142,6 +145,8 @@ struct Expander<'a> {
     region: Region,
     /// The label of the next place that a call returns to.
     returns: u32,
+    /// The labels of calls whose last result lands late.
+    late: Vec<u32>,
     is_wrong: bool,
 }
 
@@ -337,6 +342,9 @@ impl Expander<'_> {
         self.region.beyond = Beyond { reads, changes: call.changes };
         self.close(branch.into_iter().collect());
         self.region.label = label;
+        if call.is_late {
+            self.late.push(label);
+        }
         if let Some(result) = result.filter(|result| self.finalizer.assignment.is_used(*result)) {
             let mut list = Vec::new();
             let to = self.finalizer.assignment.of(result);

@@ -16,6 +16,9 @@ pub(crate) struct About {
     pub(crate) is_defined: bool,
 }
 
+/// Functions that return for a small angle before their last product has landed.
+const LATE: [&str; 2] = ["sin", "cos"];
+
 /// Whether the board's firmware has a function of this name.
 fn is_in_firmware(name: &str) -> bool {
     let function = function_named(name);
@@ -30,6 +33,8 @@ pub(crate) struct Externs {
     variadic: SecondaryMap<SymbolId, bool>,
     /// Functions of the firmware with variable arguments, which take them from the stack alone.
     stack_alone: SecondaryMap<SymbolId, bool>,
+    /// Functions of the firmware whose last result lands in the cycle after their return.
+    late: SecondaryMap<SymbolId, bool>,
     named: BTreeMap<String, SymbolId>,
     /// Names that were requested and are new, in the order of their numbers.
     added: Vec<&'static str>,
@@ -41,7 +46,9 @@ impl Externs {
         let About { align, is_variadic, is_external, is_defined } = about;
         let id = self.aligns.push(align);
         self.variadic[id] = is_variadic;
-        self.stack_alone[id] = is_variadic && is_external && !is_defined && is_in_firmware(name);
+        let is_firmware = is_external && !is_defined && is_in_firmware(name);
+        self.stack_alone[id] = is_variadic && is_firmware;
+        self.late[id] = is_firmware && LATE.contains(&name);
         if is_external {
             self.named.insert(name.to_owned(), id);
         }
@@ -71,6 +78,11 @@ impl Externs {
     /// Whether a function does without the address of its variable arguments.
     pub(super) fn takes_stack_alone(&self, symbol: SymbolId) -> bool {
         self.stack_alone[symbol]
+    }
+
+    /// Whether a function may still write [`super::abi::LATE`] in the cycle after its return.
+    pub(super) fn is_late(&self, symbol: SymbolId) -> bool {
+        self.late[symbol]
     }
 
     /// The names that the unit did not have.

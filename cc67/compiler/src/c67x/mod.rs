@@ -27,6 +27,7 @@ pub(crate) mod externs;
 mod forms;
 mod frame;
 mod graph;
+mod late;
 mod layout;
 mod live;
 mod modulo;
@@ -192,7 +193,7 @@ impl Generator {
         let assignment = allocate::allocate(&mut code, self.level).ok_or(TooLarge::Code)?;
         let order = if self.level == Level::None { Order::Source } else { Order::Early };
         let expanded = expand::expand(ir, &code, &assignment, back)?;
-        let regions = if self.level == Level::Fast {
+        let mut regions = if self.level == Level::Fast {
             pipeline::schedule(expanded.regions, expanded.labels)
         } else {
             let mut at = 0;
@@ -203,6 +204,7 @@ impl Generator {
             };
             expanded.regions.into_iter().map(in_place).collect()
         };
+        late::run(&mut regions, &expanded.late);
         Ok(Attempt { regions, code, frame: expanded.frame })
     }
 

@@ -112,7 +112,11 @@ impl Selector<'_> {
         let changes = abi::CHANGED | written;
         let mut inst = Inst::new(Kind::Call, dst, Arg::None, Arg::None, self.span);
         inst.number = self.code.calls.len() as u32;
-        self.code.calls.push(Call { target, arguments, changes });
+        let is_late = match target {
+            Target::Symbol(symbol) => self.externs.is_late(symbol),
+            Target::Register => true,
+        };
+        self.code.calls.push(Call { target, arguments, changes, is_late });
         self.out.push(inst);
     }
 

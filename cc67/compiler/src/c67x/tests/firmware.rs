@@ -46,8 +46,11 @@ impl Firmware {
             "_divf" => Result::Word((single(0) / single(1)).to_bits() ^ 1),
             "_divd" => Result::Double(f64::from_bits((double(0) / double(1)).to_bits() ^ 3)),
             "sqrt" => Result::Double(double(0).sqrt()),
-            "sin" => Result::Double(libm::sin(double(0))),
-            "cos" => Result::Double(libm::cos(double(0))),
+            "sin" | "cos" => {
+                expect_wait(core, ram);
+                let angle = double(0);
+                Result::Double(if name == "sin" { libm::sin(angle) } else { libm::cos(angle) })
+            }
             "exp" => Result::Double(libm::exp(double(0))),
             "log" => Result::Double(libm::log(double(0))),
             "atan2" => Result::Double(libm::atan2(double(0), double(1))),
@@ -185,4 +188,22 @@ fn float(value: f64, conversion: char, digits: usize) -> String {
         }
     };
     if conversion.is_ascii_uppercase() { text.to_uppercase() } else { text }
+}
+
+/// These functions still write A7 in the cycle after their return.
+fn expect_wait(core: &Core, ram: &Ram) {
+    let mut at = core.state.reg(abi::LINK);
+    loop {
+        let word = ram.word(at);
+        let inst = c67x::Inst::decode(word).expect("an instruction after a call");
+        assert!(
+            inst.writes().all(|write| write.reg != abi::LATE || write.stage > 1),
+            "{} at {at:08x}, which writes what the function writes",
+            inst.text(at)
+        );
+        if word & c67x::PARALLEL == 0 {
+            break;
+        }
+        at += 4;
+    }
 }

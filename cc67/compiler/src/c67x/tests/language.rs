@@ -27,6 +27,30 @@ fn quotients_wide_integers_structures_and_many_arguments_are_right() {
     }
 }
 
+/// Constants for a matrix wait in registers when `sin` and `cos` return.
+const ROTATION: &str = r#"
+#include "KMotionDef.h"
+typedef struct { double x, y, z; } V3;
+typedef struct { V3 r[3]; } M3;
+M3 about_z(double t) { M3 m = { { { cos(t), -sin(t), 0 }, { sin(t), cos(t) }, { 0, 0, 1 } } }; return m; }
+double (*function)(double) = sin;
+double through_pointer(double t, double *p) { double s = function(t); p[0] = 0; p[1] = 0.5; p[2] = 0; return s; }
+main()
+{
+    double p[3];
+    M3 m = about_z(0);
+    printf("%g %g %g\n", m.r[0].x, m.r[0].y, m.r[2].z);
+    printf("%g\n", through_pointer(0, p));
+}
+"#;
+
+#[test]
+fn a_function_that_still_writes_after_its_return_is_waited_for() {
+    for level in [Level::None, Level::Small, Level::Full, Level::Fast] {
+        assert_eq!(machine::run(&build(ROTATION, level)).console, "1 -0 1\n0\n", "{level:?}");
+    }
+}
+
 /// All registers of arguments are pairs, from memory: they fit only on their own sides.
 const ARGUMENTS: &str = r#"
 #include "KMotionDef.h"
