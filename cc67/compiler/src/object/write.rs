@@ -10,7 +10,8 @@
 //! - in code for the processor, [`LOW`] and [`HIGH`] put half of the symbol's address plus an offset into the constant
 //!   of an instruction, which holds that half of the offset, the displacement the other half; [`NEAR`] completes a
 //!   branch; [`OWN`] adds the function's address to the word;
-//! - the symbols after the file symbols are in the order of the unit's. A tentative external
+//! - the symbols after the file symbols are in the order of the unit's, without those that are only declared: a header
+//!   has hundreds. A tentative external
 //!   object is undefined with its size as value, as common objects always are in COFF; a
 //!   `static` one lies in `.bss`;
 //! - the auxiliary entry of an object has its alignment, file and line; `.bf` and `.ef` have the
@@ -21,6 +22,8 @@ use coff::{
     Aux, Contents, Error, FileFlags, Image, Layout, Line, Name, Section, SectionFlags, SectionNumber,
     StorageClass, Symbol, SymbolType, Target,
 };
+
+use cranelift_entity::EntitySet;
 
 use super::{
     Definition, Object, ObjectFunction, SourceLine, base_type, class, function_type, statement, to_u16,
@@ -69,10 +72,19 @@ impl Object {
                 &[],
             );
         }
+        let used = self.used_symbols();
         for id in self.symbols.keys() {
-            writer.symbol(id);
+            writer.symbol(id, used.contains(id));
         }
         writer.image()?.write()
+    }
+
+    /// The symbols that code or data needs the address of.
+    fn used_symbols(&self) -> EntitySet<SymbolId> {
+        let mut used = EntitySet::new();
+        used.extend(self.relocations.iter().map(|relocation| relocation.symbol));
+        used.extend(self.data_relocations.iter().map(|relocation| relocation.symbol));
+        used
     }
 }
 
@@ -126,9 +138,12 @@ impl<'a> Writer<'a> {
         self.symbols.push(Symbol { name, value, section, ty, class, aux: aux.to_vec() });
     }
 
-    fn symbol(&mut self, id: SymbolId) {
+    fn symbol(&mut self, id: SymbolId, is_used: bool) {
         let symbol = &self.object.symbols[id];
         self.indexes.push(self.entries);
+        if !is_used && symbol.definition == Definition::None {
+            return;
+        }
         let SourceLine { file, line } = symbol.place;
         let object = ObjectAux {
             size: symbol.size.into(),
