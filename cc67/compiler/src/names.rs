@@ -208,7 +208,7 @@ impl Names {
 
 /// Whether a byte can go on an identifier.
 #[must_use]
-pub fn is_name_byte(byte: u8) -> bool {
+pub const fn is_name_byte(byte: u8) -> bool {
     const NAME_BYTES: [bool; 256] = {
         let mut table = [false; 256];
         let mut byte = 0;
@@ -218,7 +218,7 @@ pub fn is_name_byte(byte: u8) -> bool {
         }
         table
     };
-    NAME_BYTES[usize::from(byte)]
+    NAME_BYTES[byte as usize]
 }
 
 /// FNV-1a of a spelling, so that the lexer can make it with the same look at a byte that finds the end.
@@ -242,7 +242,8 @@ impl SpellingHash {
     }
 
     /// The number that chooses a slot: its low bits depend on all others.
-    const fn finish(self) -> u64 {
+    #[must_use]
+    pub const fn finish(self) -> u64 {
         self.0 ^ (self.0 >> 32)
     }
 }

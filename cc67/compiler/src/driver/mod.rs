@@ -11,6 +11,7 @@ mod no_main;
 use std::hint::black_box;
 use std::panic::resume_unwind;
 use std::path::Path;
+use std::sync::Arc;
 use std::thread;
 
 use kmotiondef::ThreadId;
@@ -28,6 +29,7 @@ use crate::names::Names;
 use crate::object::{self, About, Object, UnitBuilder};
 use crate::passes::inline::Candidates;
 use crate::passes::{self, Level};
+use crate::pp::{Headers, HeadersRead};
 use crate::source::{FileId, SourceMap};
 use crate::target::Target;
 use crate::typed::Unit;
@@ -149,21 +151,46 @@ pub(crate) fn compile_here(
     options: &Options,
     files: &dyn pp::Files,
 ) -> Compilation {
-    let (mut sources, mut names, mut sink) = (SourceMap::new(), Names::new(), Sink::new());
     let name = path.to_string_lossy().into_owned();
+    let refuse = |message: String| {
+        let mut sink = Sink::new();
+        sink.report(Diagnostic::global_error(message));
+        Compilation { name, sources: SourceMap::new(), sink, object: None, included_by: Vec::new() }
+    };
     if let Some(what) = files::not_source(&text) {
-        sink.report(Diagnostic::global_error(format!("{} is not C source text but {what}", path.display())));
-        return Compilation { name, sources, sink, object: None, included_by: Vec::new() };
+        return refuse(format!("{} is not C source text but {what}", path.display()));
     }
     if text.len() > pp::limits::FILE_BYTES as usize {
         let most = pp::limits::FILE_BYTES;
-        sink.report(Diagnostic::global_error(format!("{} is larger than {most} bytes", path.display())));
-        return Compilation { name, sources, sink, object: None, included_by: Vec::new() };
+        return refuse(format!("{} is larger than {most} bytes", path.display()));
     }
-    let main = sources.add_file(path.to_string_lossy(), Some(path), text, None);
-    let unit = front(main, options, files, &mut sources, &mut names, &mut sink);
-    lints::check(&unit, &names, &sources, &options.firmware, &mut sink);
-    let object = (!sink.has_errors()).then(|| match options.target {
+    let text = Arc::new(text);
+    let (compilation, is_final) = compile_text(path, &text, Headers::AsNeeded, options, files);
+    if is_final { compilation } else { compile_text(path, &text, Headers::Whole, options, files).0 }
+}
+
+/// Compiles a text, and says whether the result would be the same if it had read all of the headers.
+fn compile_text(
+    path: &Path,
+    text: &Arc<Vec<u8>>,
+    headers: Headers,
+    options: &Options,
+    files: &dyn pp::Files,
+) -> (Compilation, bool) {
+    let (mut sources, mut names, mut sink) = (SourceMap::new(), Names::new(), Sink::new());
+    let name = path.to_string_lossy().into_owned();
+    let main = sources.add_file(path.to_string_lossy(), Some(path), Arc::clone(text), None);
+    let (unit, read) = front_with(headers, main, options, files, &mut sources, &mut names, &mut sink);
+    // What was said so far may name any declaration; what comes now names those that the program does.
+    let is_final = match read {
+        HeadersRead::Whole => true,
+        HeadersRead::Partly => sink.diagnostics().is_empty(),
+        HeadersRead::TooLittle => false,
+    };
+    if is_final {
+        lints::check(&unit, &names, &sources, &options.firmware, &mut sink);
+    }
+    let object = (is_final && !sink.has_errors()).then(|| match options.target {
         Target::Sim => generate(&unit, &sources, (options.level, options.timing), &mut sink),
         Target::C67x => generate_code(&unit, &sources, options.level, &mut sink),
     });
@@ -172,7 +199,7 @@ pub(crate) fn compile_here(
     if sink.has_errors() && !included_by.is_empty() {
         sink.report(no_main::remark(&included_by));
     }
-    Compilation { name, sources, sink, object, included_by }
+    (Compilation { name, sources, sink, object, included_by }, is_final)
 }
 
 /// The typed tree of the text with number `main`; complete even after errors.
@@ -184,10 +211,24 @@ pub fn front(
     names: &mut Names,
     sink: &mut Sink,
 ) -> Unit {
-    let tokens = pp::preprocess(main, &options.preprocessor, files, sources, names, sink);
+    front_with(Headers::Whole, main, options, files, sources, names, sink).0
+}
+
+/// The same with the declarations of the headers that are needed, or all of them.
+fn front_with(
+    headers: Headers,
+    main: FileId,
+    options: &Options,
+    files: &dyn pp::Files,
+    sources: &mut SourceMap,
+    names: &mut Names,
+    sink: &mut Sink,
+) -> (Unit, HeadersRead) {
+    let (tokens, read) = pp::preprocess_as(headers, main, &options.preprocessor, files, sources, names, sink);
     let tree = parse::parse(&tokens, sources, names, sink);
     drop(tokens);
-    sema::analyze_as(options.preprocessor.standard, &tree, names, sources, &options.firmware, sink)
+    let standard = options.preprocessor.standard;
+    (sema::analyze_as(standard, &tree, names, sources, &options.firmware, sink), read)
 }
 
 /// How often the calls of a function in itself are replaced in the controller's code, which should be small.
@@ -353,37 +394,4 @@ fn compile_library(member: &library::Member<'_>, target: Target, timing: Timing)
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, Origin};
-
-    use crate::diag::Lint;
-    use crate::object::Definition;
-
-    #[test]
-    fn every_member_of_the_library_compiles_without_a_word() {
-        for member in library::members() {
-            let compilation = compile_library(&member, Target::Sim, Timing::default());
-            let mut said = compilation.diagnostics();
-            // The names are the firmware's on purpose, and so is the test for what is not a number.
-            let on_purpose =
-                [Lint::Portability, Lint::SelfComparison, Lint::Redeclared, Lint::Vendor].map(Some);
-            said.retain(|diagnostic| !on_purpose.contains(&diagnostic.lint));
-            assert!(said.is_empty(), "{}: {said:?}", member.names);
-            let object = compilation.object.expect("no errors");
-            for name in member.names() {
-                let is_defined =
-                    |symbol: &object::Symbol| symbol.name == name && symbol.definition != Definition::None;
-                assert!(object.symbols.values().any(is_defined), "{name}");
-            }
-        }
-    }
-
-    #[test]
-    fn what_firmware_4_34_lacks_is_code_of_the_library() {
-        let defined: Vec<_> = library::members().flat_map(|member| member.names()).collect();
-        for function in FIRMWARE_FUNCTIONS.iter().filter(|function| function.origin == Origin::Library) {
-            assert!(defined.contains(&function.name), "a board has no `{}`", function.name);
-        }
-    }
-}
+mod tests;

@@ -11,22 +11,17 @@ use super::macros::{Macro, MacroId, Parameters};
 use super::token::{Flags, Token, TokenKind};
 
 impl Preprocessor<'_> {
-    /// Defines a macro from the rest of the line.
-    pub(super) fn define(&mut self) {
-        let Some(name) = self.macro_name("define") else { return };
+    /// Defines a macro from the rest of the line; the name of the macro.
+    pub(super) fn define(&mut self) -> Option<Name> {
+        let name = self.macro_name("define")?;
         let is_function_like = self.lexer().is_some_and(|(lexer, _)| lexer.is_at_paren());
-        let parameters = if is_function_like {
-            let Some(parameters) = self.parameters() else { return };
-            Some(parameters)
-        } else {
-            None
-        };
-        let Some(body) = self.body(parameters.as_ref()) else { return };
+        let parameters = if is_function_like { Some(self.parameters()?) } else { None };
+        let body = self.body(parameters.as_ref())?;
         let is_operator = |token: &Token| {
             matches!(token.kind, TokenKind::Parameter | TokenKind::Stringize | TokenKind::Paste)
         };
         let is_plain = !body.iter().any(is_operator);
-        if let Some(old) = self.macros.find(name.name) {
+        if let Some(old) = self.find_macro(name.name) {
             self.check_redefinition(old, name, parameters.as_ref(), &body);
         }
         if parameters.is_some() {
@@ -36,6 +31,7 @@ impl Preprocessor<'_> {
         let definition =
             Macro { definition: name.span, parameters, body, is_plain, builtin: None, is_active: false };
         self.macros.define(name.name, definition);
+        Some(name.name)
     }
 
     /// Reads `(a, b, ...)`.

@@ -73,9 +73,14 @@ impl Preprocessor<'_> {
             file.guard.meet_text();
         }
         match token.name {
-            word::DEFINE => self.define(),
+            word::DEFINE => {
+                if let Some(name) = self.define() {
+                    self.note_macro(name);
+                }
+            }
             word::UNDEF => {
                 if let Some(name) = self.macro_name("undef") {
+                    self.note_macro(name.name);
                     self.macros.undefine(name.name);
                 }
             }
@@ -131,9 +136,13 @@ impl Preprocessor<'_> {
         }
         if let ("push_macro" | "pop_macro", Some(name)) = (first, text.split('"').nth(1)) {
             let name = self.names.intern(name);
+            self.find_macro(name);
             match first {
                 "push_macro" => self.macros.save(name),
-                _ => self.macros.restore(name),
+                _ => {
+                    self.note_macro(name);
+                    self.macros.restore(name);
+                }
             }
         }
         if !KNOWN_PRAGMAS.contains(&first) {
@@ -190,7 +199,7 @@ impl Preprocessor<'_> {
     }
 
     /// Whether a macro of this name is defined.
-    pub(super) fn is_defined(&self, name: Name) -> bool {
-        self.macros.find(name).is_some()
+    pub(super) fn is_defined(&mut self, name: Name) -> bool {
+        self.find_macro(name).is_some()
     }
 }

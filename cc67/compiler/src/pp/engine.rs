@@ -15,9 +15,10 @@ use super::expand::Frame;
 use super::guard::Guard;
 use super::lexer::{Lexer, LexerContext};
 use super::macros::Macros;
+use super::prepared::Prepared;
 use super::search::FileReader;
 use super::token::{Flags, Token, TokenKind};
-use super::{Files, Options, limits};
+use super::{Files, Headers, HeadersRead, Options, limits};
 
 /// Room for the tokens of a usual program and its headers; what is not filled is never touched.
 const USUAL_TOKENS: usize = 1 << 16;
@@ -39,6 +40,21 @@ pub(super) struct OpenFile {
     pub(super) presumed_name: Option<String>,
 }
 
+impl OpenFile {
+    /// A file at the start of what `lexer` reads.
+    pub(super) fn new(lexer: Lexer, path: Option<PathBuf>, directory: PathBuf) -> Self {
+        Self {
+            lexer,
+            path,
+            directory,
+            conditionals: Vec::new(),
+            guard: Guard::default(),
+            line_shift: 0,
+            presumed_name: None,
+        }
+    }
+}
+
 /// A preprocessor at work.
 pub(super) struct Preprocessor<'a> {
     pub(super) options: &'a Options,
@@ -47,6 +63,7 @@ pub(super) struct Preprocessor<'a> {
     pub(super) sink: &'a mut Sink,
     pub(super) reader: FileReader<'a>,
     pub(super) macros: Macros,
+    pub(super) prepared: Prepared,
     /// Expansions being read, the innermost last.
     pub(super) frames: Vec<Frame>,
     /// Files being read, the innermost last.
@@ -78,6 +95,7 @@ impl<'a> Preprocessor<'a> {
         sources: &'a mut SourceMap,
         names: &'a mut Names,
         sink: &'a mut Sink,
+        headers: Headers,
     ) -> Self {
         Self {
             options,
@@ -86,6 +104,7 @@ impl<'a> Preprocessor<'a> {
             sink,
             reader: FileReader::new(files),
             macros: Macros::default(),
+            prepared: Prepared::new(headers),
             frames: Vec::new(),
             open: Vec::new(),
             main_directory: PathBuf::new(),
@@ -94,8 +113,8 @@ impl<'a> Preprocessor<'a> {
         }
     }
 
-    /// All tokens of the main file and what it includes.
-    pub(super) fn run(mut self, main: FileId) -> Vec<Token> {
+    /// All tokens of the main file and what it includes, and how much of the headers is among them.
+    pub(super) fn run(mut self, main: FileId) -> (Vec<Token>, HeadersRead) {
         self.define_predefined();
         let mut output = Vec::with_capacity(USUAL_TOKENS);
         self.open_main(main);
@@ -106,11 +125,13 @@ impl<'a> Preprocessor<'a> {
             if output.len() > limits::TOKENS && !self.work.is_stopped {
                 self.stop(end, format!("more than {} tokens after preprocessing", limits::TOKENS));
             }
+            self.prepared.take_place(output.len());
             self.close_file();
         }
+        self.add_declarations(&mut output);
         let broken = if self.work.is_stopped { Flags::BROKEN } else { Flags::NONE };
         output.push(Token::new(TokenKind::End, Flags::LINE_START.with(broken), end));
-        output
+        (output, self.prepared.read())
     }
 
     /// The next token of the innermost file; directives on the way are obeyed.

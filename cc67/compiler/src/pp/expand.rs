@@ -123,7 +123,7 @@ impl Preprocessor<'_> {
 
     /// Expands a name if it is a macro's; otherwise gives it back.
     fn expand(&mut self, mut token: Token) -> Option<Token> {
-        let Some(id) = self.macros.find(token.name) else { return Some(token) };
+        let Some(id) = self.find_macro(token.name) else { return Some(token) };
         if token.flags.has(Flags::NO_EXPAND) {
             return Some(token);
         }
@@ -290,7 +290,7 @@ impl Preprocessor<'_> {
 
     /// A name inside the expansion of its own macro stays a name, also when it is moved out as an argument.
     fn mark_active(&self, token: &mut Token) {
-        let definition = self.macros.find(token.name).and_then(|id| self.macros.get(id));
+        let definition = self.macros.defined(token.name).and_then(|id| self.macros.get(id));
         if definition.is_some_and(|definition| definition.is_active) {
             token.flags = token.flags.with(Flags::NO_EXPAND);
         }

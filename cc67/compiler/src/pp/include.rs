@@ -154,8 +154,14 @@ impl Preprocessor<'_> {
         directories.iter().find_map(|directory| self.reader.find_in(directory, relative))
     }
 
+    /// Whether a file has nothing more to give.
+    fn is_spent(&mut self, path: &Path) -> bool {
+        self.reader.is_once(path)
+            || self.reader.guard(path).is_some_and(|guard| self.find_macro(guard).is_some())
+    }
+
     fn open_found(&mut self, path: PathBuf, text: Arc<Vec<u8>>, at: Span) {
-        if self.reader.is_spent(&path, |guard| self.macros.find(guard).is_some()) {
+        if self.is_spent(&path) {
             return;
         }
         let name = path.display().to_string();
@@ -172,9 +178,11 @@ impl Preprocessor<'_> {
             (None, Some(text)) => (file_name, text.as_bytes()),
             (None, None) => return self.report_missing(header, file_name, directories),
         };
-        // No directory can hold a path with a NUL in it, so that these never meet a real file.
-        let path = PathBuf::from(format!("\0{}", known.to_ascii_lowercase()));
-        if text.is_empty() || self.reader.is_spent(&path, |guard| self.macros.find(guard).is_some()) {
+        let path = embedded_path(known);
+        if text.is_empty() || self.is_spent(&path) {
+            return;
+        }
+        if self.include_prepared(text, header.span) {
             return;
         }
         let text = Arc::new(text.to_vec());
@@ -244,6 +252,12 @@ impl Preprocessor<'_> {
             None => diagnostic,
         });
     }
+}
+
+/// The path that a header of the compiler counts as: no directory can hold one with a NUL in it, so that it never meets a
+/// real file.
+pub(super) fn embedded_path(name: &str) -> PathBuf {
+    PathBuf::from(format!("\0{}", name.to_ascii_lowercase()))
 }
 
 fn directory_of(path: &Path) -> PathBuf {

@@ -74,6 +74,11 @@ impl Lexer {
         }
     }
 
+    /// The same for a part of the text.
+    pub(super) fn within(self, lo: usize, hi: usize) -> Self {
+        Self { at: lo, end: hi, ..self }
+    }
+
     /// Whether the file is in an encoding that cannot be C source.
     pub(super) fn is_utf16(&self) -> bool {
         self.text.starts_with(b"\xFF\xFE") || self.text.starts_with(b"\xFE\xFF")
@@ -94,6 +99,9 @@ impl Lexer {
         loop {
             let flags = self.skip_space(cx);
             let lo = self.at;
+            if lo >= self.end {
+                return Token::new(TokenKind::End, flags, self.end_span());
+            }
             let byte = self.byte(lo);
             let token = match byte {
                 b'a'..=b'z' | b'A'..=b'Z' | b'_' => self.identifier(flags, cx),
@@ -101,7 +109,6 @@ impl Lexer {
                 b'.' if self.byte(self.past_splices(lo + 1)).is_ascii_digit() => self.number(flags, cx),
                 b'"' | b'\'' => self.quoted(lo, flags, cx),
                 b'\n' => return Token::new(TokenKind::End, flags, self.here()),
-                _ if lo >= self.end => return Token::new(TokenKind::End, flags, self.end_span()),
                 _ => match self.punctuator(byte) {
                     Some(kind) => Token::new(kind, flags, self.span_from(lo)),
                     None => match self.foreign(flags, cx) {

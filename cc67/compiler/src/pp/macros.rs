@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use cranelift_entity::{PrimaryMap, SecondaryMap, entity_impl, packed_option::PackedOption};
+use cranelift_entity::{PrimaryMap, SecondaryMap, entity_impl};
 
 use crate::names::Name;
 use crate::source::Span;
@@ -51,23 +51,54 @@ pub(super) enum Builtin {
     Counter,
 }
 
+/// What a name stands for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Standing {
+    /// Nobody has asked yet: it may be the name of a macro that is defined before the program begins.
+    #[default]
+    Unknown,
+    /// No text that was read so far defines it.
+    Free,
+    /// Its definition was taken back.
+    Undefined,
+    /// The definition in force.
+    Defined(MacroId),
+}
+
 /// All definitions.
 #[derive(Debug, Default)]
 pub(super) struct Macros {
     macros: PrimaryMap<MacroId, Macro>,
-    current: SecondaryMap<Name, PackedOption<MacroId>>,
+    current: SecondaryMap<Name, Standing>,
     /// What `#pragma push_macro` put aside, the last one at the end.
-    saved: Vec<(Name, PackedOption<MacroId>)>,
+    saved: Vec<(Name, Standing)>,
     bodies: Vec<Token>,
 }
 
 impl Macros {
-    /// The definition in force for a name.
-    pub(super) fn find(&self, name: Name) -> Option<MacroId> {
-        self.current.get(name)?.expand()
+    /// What a name stands for.
+    pub(super) fn standing(&self, name: Name) -> Standing {
+        self.current.get(name).copied().unwrap_or_default()
     }
 
-    /// A definition; `None` never happens for an id from [`Self::find`].
+    /// The definition in force for a name that was asked for.
+    pub(super) fn defined(&self, name: Name) -> Option<MacroId> {
+        if let Standing::Defined(id) = self.standing(name) { Some(id) } else { None }
+    }
+
+    /// Notes that no text defines a name.
+    pub(super) fn set_free(&mut self, name: Name) {
+        *self.slot(name) = Standing::Free;
+    }
+
+    /// Forgets which names no text defines: there are more texts now.
+    pub(super) fn forget_free(&mut self) {
+        for standing in self.current.values_mut().filter(|standing| **standing == Standing::Free) {
+            *standing = Standing::Unknown;
+        }
+    }
+
+    /// A definition; `None` never happens for an id from [`Self::defined`].
     pub(super) fn get(&self, id: MacroId) -> Option<&Macro> {
         self.macros.get(id)
     }
@@ -81,25 +112,25 @@ impl Macros {
 
     /// Makes the macro of a name compute its value.
     pub(super) fn set_builtin(&mut self, name: Name, builtin: Builtin) {
-        if let Some(definition) = self.find(name).and_then(|id| self.macros.get_mut(id)) {
+        if let Some(definition) = self.defined(name).and_then(|id| self.macros.get_mut(id)) {
             definition.builtin = Some(builtin);
         }
     }
 
     /// Puts a definition in force.
     pub(super) fn define(&mut self, name: Name, definition: Macro) {
-        *self.slot(name) = self.macros.push(definition).into();
+        let id = self.macros.push(definition);
+        *self.slot(name) = Standing::Defined(id);
     }
 
     /// Ends the force of any definition.
     pub(super) fn undefine(&mut self, name: Name) {
-        *self.slot(name) = None.into();
+        *self.slot(name) = Standing::Undefined;
     }
 
     /// Puts the definition of a name aside, or that there is none.
     pub(super) fn save(&mut self, name: Name) {
-        let definition = *self.slot(name);
-        self.saved.push((name, definition));
+        self.saved.push((name, self.standing(name)));
     }
 
     /// Puts the definition in force that was put aside last; nothing if there is none.
@@ -127,7 +158,7 @@ impl Macros {
     }
 
     #[expect(clippy::indexing_slicing, reason = "the map grows to hold every key")]
-    fn slot(&mut self, name: Name) -> &mut PackedOption<MacroId> {
+    fn slot(&mut self, name: Name) -> &mut Standing {
         &mut self.current[name]
     }
 }

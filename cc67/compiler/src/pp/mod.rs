@@ -36,6 +36,7 @@ mod macros;
 pub mod number;
 mod paste;
 mod predefined;
+mod prepared;
 mod print;
 pub mod quoted;
 mod search;
@@ -111,6 +112,27 @@ impl Standard {
     }
 }
 
+/// How much of the board's headers is read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Headers {
+    /// All, as of any other file.
+    Whole,
+    /// The declarations that the program names.
+    AsNeeded,
+}
+
+/// What was read of the board's headers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HeadersRead {
+    /// Everything, if they are included.
+    Whole,
+    /// Not the declarations that the program does not name. The result is the same as long as nothing is wrong with the
+    /// program.
+    Partly,
+    /// Less than needed: the result means nothing.
+    TooLittle,
+}
+
 /// Preprocesses a file of `sources` with everything it includes; the last token is `End`.
 ///
 /// What is wrong goes to `sink`. After a limit was exceeded or too many errors were found the
@@ -123,5 +145,18 @@ pub fn preprocess(
     names: &mut Names,
     sink: &mut Sink,
 ) -> Vec<Token> {
-    engine::Preprocessor::new(options, files, sources, names, sink).run(main)
+    preprocess_as(Headers::Whole, main, options, files, sources, names, sink).0
+}
+
+/// The same, where not all of the board's headers need be among the tokens.
+pub fn preprocess_as(
+    headers: Headers,
+    main: FileId,
+    options: &Options,
+    files: &dyn Files,
+    sources: &mut SourceMap,
+    names: &mut Names,
+    sink: &mut Sink,
+) -> (Vec<Token>, HeadersRead) {
+    engine::Preprocessor::new(options, files, sources, names, sink, headers).run(main)
 }

@@ -1,3 +1,16 @@
+#define __FILE__
+#define __LINE__
+#define __COUNTER__
+#define __DATE__ "Jan  1 2000"
+#define __TIME__ "00:00:00"
+#define __TIMESTAMP__ "Sat Jan  1 00:00:00 2000"
+#define __STDC__ 1
+#define __TINYC__ 1
+#define __CC67__ 1
+#define __SIZE_TYPE__ unsigned int
+#define __PTRDIFF_TYPE__ int
+#define __WCHAR_TYPE__ int
+#define _Pragma(text)
 #define __CHAR_BIT__ 8
 #define __SCHAR_MAX__ 127
 #define __SHRT_MAX__ 32767

@@ -52,9 +52,14 @@ impl<'a> FileReader<'a> {
         self.once.insert(path);
     }
 
-    /// Whether a file has nothing more to give.
-    pub(super) fn is_spent(&self, path: &Path, is_defined: impl Fn(Name) -> bool) -> bool {
-        self.once.contains(path) || self.guards.get(path).is_some_and(|guard| is_defined(*guard))
+    /// Whether a file asked to be read once, and was.
+    pub(super) fn is_once(&self, path: &Path) -> bool {
+        self.once.contains(path)
+    }
+
+    /// The macro that makes a second inclusion of a file empty.
+    pub(super) fn guard(&self, path: &Path) -> Option<Name> {
+        self.guards.get(path).copied()
     }
 
     /// Looks for `name`, with slashes, below a directory.

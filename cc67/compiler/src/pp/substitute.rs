@@ -114,10 +114,10 @@ impl Preprocessor<'_> {
         arguments: &mut MacroArguments<'_>,
     ) {
         let raw = arguments.raw(parameter);
-        let is_macro =
-            |token: &Token| token.kind == TokenKind::Identifier && self.macros.find(token.name).is_some();
+        let mut is_macro =
+            |token: &Token| token.kind == TokenKind::Identifier && self.find_macro(token.name).is_some();
         let start = output.len();
-        if raw.iter().any(is_macro) {
+        if raw.iter().any(&mut is_macro) {
             let list = raw.to_vec();
             let Some(slot) = arguments.expanded.get_mut(parameter) else { return };
             output.extend_from_slice(slot.get_or_insert_with(|| self.expand_list(list)));
