@@ -51,9 +51,9 @@ fn options_that_a_booted_board_does_not_know_are_named() {
         let all = [&["run", "--boot", "x.out", "hello.c"], option].concat();
         assert_refused(&cc67(&scratch, all), &format!("`{name}` does not work with `--boot`"));
     };
-    refused(&["--assist"], "--assist");
     refused(&["--engine", "bytecode"], "--engine");
-    refused(&["--trace-packets", "a.csv"], "--trace-packets");
+    let debug = ["console", "--boot", "x.out", "--serve", "tcp:0", "--debug", "0"];
+    assert_refused(&cc67(&scratch, debug), "`--debug` does not work with `--boot` yet");
     let serve = ["serve", "--boot", "x.out", "hello.c", "--live"];
     assert_refused(&cc67(&scratch, serve), "`--live` does not work with `--boot`");
     let compare = ["compare", "--boot", "x.out", "--flash", "x", "hello.c"];
@@ -280,13 +280,85 @@ fn tests_of_a_project_run_on_the_real_firmware() {
     let Some(file) = firmware() else { return };
     let scratch = scratch("boot-test");
     scratch.write("move.c", MOVE);
-    scratch.write("assist.c", format!("// cc67: run --assist\n{HELLO}"));
-    for (name, text) in [("hello", "hello\n"), ("assist", "hello\n"), ("move", "other\n")] {
+    scratch.write("engine.c", format!("// cc67: run --engine bytecode\n{HELLO}"));
+    for (name, text) in [("hello", "hello\n"), ("engine", "hello\n"), ("move", "other\n")] {
         scratch.write(&format!("{name}.expected"), text);
     }
     let test = cc67(&scratch, ["test", "--boot", &file, "."]);
     assert_eq!(test.code, 1, "{test:?}");
-    let skipped = "skipped  assist: `--assist` does not work with `--boot`\n";
+    let skipped = "skipped  engine: `--engine` does not work with `--boot`\n";
     assert!(test.stdout.starts_with(skipped), "{}", test.stdout);
     assert!(test.stdout.ends_with("1 passed, 1 failed, 1 skipped\n"), "{}", test.stdout);
+}
+
+#[test]
+fn an_operator_helps_programs_on_the_real_firmware_that_wait() {
+    let Some(file) = firmware() else { return };
+    let scratch = Scratch::new("boot-assist");
+    let program = "#include \"KMotionDef.h\"
+main()
+{
+    while (!ReadBit(136)) WaitNextTimeSlice();
+    printf(\"start\\n\");
+    Jog(0, -1000.0);
+    while (!ReadBit(10) && !ReadBit(11)) ;
+    printf(\"home\\n\");
+}
+";
+    scratch.write("wait.c", program);
+    let run = |options: &[&str]| {
+        cc67(&scratch, [&["run", "wait.c", "--assist", "--for", "7", "--time"], options].concat())
+    };
+    let (model, real) = (run(&[]), run(&["--boot", &file]));
+    assert_eq!(real.code, 0, "{real:?}");
+    let helps = |output: &Output| -> Vec<String> {
+        output.stderr.lines().filter(|line| line.contains(" waits: ")).map(str::to_owned).collect()
+    };
+    assert_eq!(helps(&real), helps(&model), "what the operator does, to whom and where");
+    assert!(real.stderr.contains("wait.c:4:13 in `main` waits: bit 136 is 1 for 0.1 s"), "{real:?}");
+    let times = |output: &Output| -> Vec<f64> {
+        let times = output.stdout.lines().filter_map(|line| line.split_whitespace().next()?.parse().ok());
+        times.collect()
+    };
+    let (model, real) = (times(&model), times(&real));
+    assert_eq!(real.len(), 2);
+    assert!(model.iter().zip(&real).all(|(one, other)| (one - other).abs() < 0.002), "{model:?} {real:?}");
+}
+
+#[test]
+fn packets_of_programs_on_the_real_firmware_are_written() {
+    let Some(file) = firmware() else { return };
+    let scratch = Scratch::new("boot-packets");
+    let program = "#include \"KMotionDef.h\"
+int ticks;
+void count(void) { ++ticks; }
+main()
+{
+    UserCallBack = count;
+    Delay_sec(0.001);
+    UserCallBack = 0;
+    printf(\"%d\\n\", ticks > 5);
+}
+";
+    scratch.write("count.c", program);
+    let run = |name: &str, more: &[&str]| {
+        let output = cc67(&scratch, [&["run", "count.c", "--trace-packets", name], more].concat());
+        assert_eq!((output.code, output.stdout.as_str()), (0, "1\n"), "{output:?}");
+        let file = name.trim_start_matches("1:");
+        let text = fs::read_to_string(scratch.path().join(file)).expect("it is written");
+        text.lines().map(|line| line.splitn(5, ',').map(str::to_owned).collect()).collect::<Vec<Vec<_>>>()
+    };
+    let real = run("real.csv", &["--boot", &file]);
+    assert_eq!(real[0], ["cycle", "thread", "address", "cycles", "packet"]);
+    let of_model = run("model.csv", &["--engine", "dsp"]);
+    // The same packets in the same order, wherever the firmware waits; the linker knows other addresses there.
+    let path = |rows: &[Vec<String>], thread: &str| -> Vec<String> {
+        let own = rows.iter().filter(|row| row[1] == thread);
+        own.map(|row| row[2].clone()).collect()
+    };
+    assert_eq!(path(&real, "1"), path(&of_model, "1"));
+    let (calls, of_model) = (path(&real, "0"), path(&of_model, "0"));
+    assert!(calls.len() > 20 && calls.len().abs_diff(of_model.len()) <= of_model.len() / 5, "{calls:?}");
+    assert_eq!(calls[..4], of_model[..4]);
+    assert!(run("1:one.csv", &["--boot", &file])[1..].iter().all(|row| row[1] == "1"));
 }

@@ -8,6 +8,9 @@ enum { STATUS = 0x04, DATA = 0x05, RATE = 0x3C };
 
 volatile int ticks, next = 10;
 
+// Assembled code that goes back at once.
+#define SERVICE ((void (*)(int))0x80002000)
+
 // What answers the timer; assembled code calls it.
 void (*volatile handler)(void);
 
@@ -40,6 +43,7 @@ void tick(void)
 {
     TIMER(0x88) = 1;
     ticks++;
+    SERVICE(ticks);
     if (ticks == 5) step(2, 1 << 20);
     if (ticks == next)
     {

@@ -4,7 +4,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use boot::{BootedBoard, FirmwareFile, Halted, Sent};
+use boot::{BootedBoard, FirmwareFile, Halted, ProgramPacket, Ran, Sent};
 use coff::{
     Contents, Image, Name, Program, Section, SectionFlags, SectionNumber, StorageClass, Symbol, SymbolType,
 };
@@ -12,8 +12,11 @@ use compiler::pp::MemoryFiles;
 use compiler::target::Target;
 use compiler::{Options, compile};
 use kmotiondef::ThreadId;
+use kmotiondef::map::{IRAM, SDRAM};
 
 const SOURCE: &str = include_str!("own_firmware.c");
+/// A function that the C calls with the number of each tick; it goes back at once.
+const SERVICE: u32 = 0x8000_2000;
 /// Where the assembled parts are, and the end of the stack.
 const START: u32 = 0x8000_0000;
 const HANDLER: u32 = 0x8000_1000;
@@ -98,6 +101,7 @@ fn firmware() -> Vec<u8> {
     image.sections.push(section("start", START, &start(main)));
     image.sections.push(section("vectors", VECTOR, &jump));
     image.sections.push(section("handler", HANDLER, &handler(tick)));
+    image.sections.push(section("service", SERVICE, "B .S2 B3\nNOP 5\n"));
     let places = [("_c_int00", START), ("_main", main), ("_persist", START), ("_chan", START)];
     image.symbols.retain(|symbol| symbol.name.to_str() != "_main");
     image.symbols.extend(places.map(|(name, value)| Symbol {
@@ -141,4 +145,93 @@ fn a_firmware_in_c_echoes_while_it_is_interrupted() {
     let all = String::from_utf8(bytes).expect("it is text");
     let (one, rest) = all.split_once("\x1btick 10\r\n").expect("a tenth tick");
     assert_eq!(one.to_owned() + rest, String::from_utf8_lossy(&text));
+}
+
+/// Everything that can be seen of a board, and what it has sent since the last time.
+fn seen(board: &mut BootedBoard) -> impl PartialEq + std::fmt::Debug + use<> {
+    let bytes = board.take_bytes();
+    let place = (board.cycle(), board.packets(), board.registers(), board.steps(2));
+    let changes = board.take_pin_changes();
+    let memory = board.memory();
+    let ram = [IRAM, SDRAM].map(|region| memory.read_bytes(region.base, region.size).expect("it is RAM"));
+    // As a number: memory is too large to be printed.
+    let mut hash = std::hash::DefaultHasher::new();
+    std::hash::Hash::hash(&ram, &mut hash);
+    (bytes, place, changes, std::hash::Hasher::finish(&hash))
+}
+
+fn run_to(board: &mut BootedBoard, cycle: u64) {
+    board.run_to(cycle).unwrap_or_else(|halted| panic!("{halted}"));
+}
+
+#[test]
+fn a_board_that_goes_back_to_a_snapshot_goes_on_as_it_did() {
+    let mut board = booted();
+    // Between ticks, in the interrupt of one, and while it prints.
+    for at in [3 * TICK + 7777, 5 * TICK + 300, 10 * TICK + 450, 10 * TICK + 455] {
+        run_to(&mut board, at);
+        board.send(b"in flight");
+        let _ = board.take_bytes();
+        let snapshot = board.snapshot();
+        let end = at + 12 * TICK + 1234;
+        run_to(&mut board, end);
+        let once = seen(&mut board);
+        board.restore(&snapshot);
+        assert_eq!(board.cycle(), snapshot.cycle());
+        run_to(&mut board, end);
+        assert_eq!(seen(&mut board), once, "from cycle {at}");
+        let mut other = snapshot.board();
+        // In parts, which no run may show.
+        (at..end).step_by(997).for_each(|cycle| run_to(&mut other, cycle));
+        run_to(&mut other, end);
+        assert_eq!(seen(&mut other), once, "from cycle {at}, in parts");
+        board.restore(&snapshot);
+    }
+}
+
+#[test]
+fn a_run_with_stops_is_the_same_run() {
+    let mut plain = booted();
+    let begin = plain.cycle();
+    run_to(&mut plain, begin + 25 * TICK);
+    let tick = address(&compiled(), "tick");
+    let mut board = booted();
+    board.set_stops([tick, SERVICE]);
+    let (mut ticks, mut calls) = (Vec::new(), Vec::new());
+    while board.run_to_stop(begin + 25 * TICK).unwrap_or_else(|halted| panic!("{halted}")) == Ran::ToStop {
+        match board.doing().pc {
+            SERVICE => calls.extend(board.program_call()),
+            pc => {
+                assert_eq!(pc, tick);
+                assert_eq!(board.program_call(), None, "a call of the firmware's own");
+                ticks.push(board.cycle());
+            }
+        }
+    }
+    assert!(seen(&mut board) == seen(&mut plain));
+    assert!(ticks.len() >= 24 && ticks.windows(2).all(|pair| pair[1] - pair[0] > TICK / 2), "{ticks:?}");
+    let numbers: Vec<_> = calls.iter().map(|call| (call.argument, call.thread, call.function)).collect();
+    assert_eq!(numbers, (1..=ticks.len() as i32).map(|number| (number, None, SERVICE)).collect::<Vec<_>>());
+    assert!(calls.iter().all(|call| call.at > tick && call.at < tick + 0x200), "{calls:X?}");
+}
+
+#[test]
+fn packets_of_programs_are_kept_as_they_are_executed() {
+    let mut plain = booted();
+    let begin = plain.cycle();
+    run_to(&mut plain, begin + 3 * TICK);
+    let mut board = booted();
+    board.keep_packets(true);
+    run_to(&mut board, begin + 3 * TICK);
+    let packets = board.take_packets();
+    assert!(seen(&mut board) == seen(&mut plain));
+    let is_program = |packet: &ProgramPacket| (0x8005_0000..0x8006_0000).contains(&packet.at);
+    assert!(packets.len() > 5000 && packets.iter().all(is_program), "{}", packets.len());
+    let follows = |pair: &[ProgramPacket]| pair[0].cycle + pair[0].cycles as u64 <= pair[1].cycle;
+    assert!(packets.windows(2).all(follows));
+    // Nothing but the start, the vector, the interrupt's registers and the function that it calls comes between them.
+    let own: i64 = packets.iter().map(|packet| packet.cycles).sum();
+    assert!(own > 2 * TICK as i64 && own < 3 * TICK as i64, "{own}");
+    let first = packets.iter().find(|packet| packet.text.contains("LDB")).expect("it reads registers");
+    assert!(first.text.contains(".D1") || first.text.contains(".D2"), "{first:?}");
 }

@@ -44,6 +44,7 @@ pub use self::account::{Account, Callers, Spender, Time};
 pub(crate) use self::core::HotCode;
 pub use self::core::{Core, Halt};
 pub use self::decode::is_code;
+pub use self::inspect::packet_text;
 pub use self::memory::{Clock, Memory};
 pub use self::pipeline::State;
 pub use self::threads::{DspEngine, DspSnapshot};

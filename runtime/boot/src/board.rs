@@ -1,7 +1,9 @@
 //! The board in one time: processor, timer, link, programs.
 
+mod followed;
 mod power;
 
+pub use followed::{ProgramCall, ProgramPacket, Ran, Reached};
 pub use power::FlashError;
 
 use std::sync::Arc;
@@ -91,6 +93,8 @@ pub struct BootedBoard {
     loads: Loads,
     /// Whether waiting loops are skipped.
     skips: bool,
+    /// Packets that programs have executed, where they are kept.
+    packets: Option<Vec<ProgramPacket>>,
     /// The end of it, if there was one.
     crash: Option<Box<Crash>>,
 }
@@ -203,40 +207,35 @@ impl BootedBoard {
     /// # Errors
     /// The firmware ran away; it stays so.
     pub fn run_to(&mut self, cycle: u64) -> Result<(), Halted> {
-        while self.cycle() < cycle {
-            self.run_events(cycle)?;
-        }
+        while self.run_to_stop(cycle)? == Ran::ToStop {}
         Ok(())
     }
 
-    /// Runs to `cycle`, or to where a device asked to stop.
-    fn run_events(&mut self, cycle: u64) -> Result<(), Halted> {
+    /// Runs to `cycle`, to a stop, or to where a device asked to stop.
+    fn run_events(&mut self, cycle: u64) -> Result<Ran, Halted> {
         if let Some(crash) = &self.crash {
             return Err(Halted::Crashed(crash.clone()));
         }
         let next = self.hardware.timer.next_match();
         if next <= self.cycle() {
             self.tick();
-            return Ok(());
+            return Ok(Ran::Through);
         }
-        let until = cycle.min(next);
-        let halt = if self.core.state.has_timer_flag() {
+        if self.core.state.has_timer_flag() {
             if self.core.state.is_interruptible() {
                 self.core.state.take_timer_interrupt(OVERHEAD);
-                return Ok(());
+                return Ok(Ran::Through);
             }
             if self.cycle() - self.waits_since > LONGEST_SHADOW {
                 return Err(self.crash("it has not taken an interrupt for 0.2 s".to_owned()));
             }
-            self.core.run_to_interrupt(&mut self.hardware, until)
-        } else {
-            self.core.run_until(&mut self.hardware, until)
-        };
-        match halt {
-            Halt::Preempted => Ok(()),
+        }
+        match self.execute_to(cycle.min(next)) {
+            Halt::Preempted => Ok(Ran::Through),
+            Halt::Stopped => Ok(Ran::ToStop),
             Halt::Left(0) => {
                 self.restart();
-                Ok(())
+                Ok(Ran::Through)
             }
             Halt::Left(address) => {
                 Err(self

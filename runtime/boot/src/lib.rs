@@ -35,6 +35,9 @@ mod uart;
 mod window;
 
 pub use around::{Around, AtMatch};
-pub use board::{BootedBoard, BootedSnapshot, Doing, FlashError, Halted, Sent, SentLine};
+pub use board::{
+    BootedBoard, BootedSnapshot, Doing, FlashError, Halted, ProgramCall, ProgramPacket, Ran, Reached, Sent,
+    SentLine,
+};
 pub use crash::Crash;
 pub use file::{FirmwareError, FirmwareFile};

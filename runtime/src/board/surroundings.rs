@@ -13,9 +13,9 @@ use kmotiondef::map::FPGA;
 use kmotiondef::modes::{InputMode, OutputMode};
 use kmotiondef::structs::Chan;
 use kmotiondef::variables::{ADC_BUFFER_IN, CURRENT_THREAD, HOST_STATUS, KSTEP_PRESENT};
-use kmotiondef::{AxisId, Bit, Cycles, GuestAddr, ThreadId, Ticks};
+use kmotiondef::{AxisId, Bit, CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
 use vm::bus::AccessSize;
-use vm::firmware::TickContext;
+use vm::firmware::{ExecutedPacket, TickContext};
 use vm::memory::GuestMemory;
 use vm::scheduler::{ThreadSet, Turn};
 use vm::thread::Threads;
@@ -23,14 +23,15 @@ use vm::thread::Threads;
 use super::machine_file::MachineFile;
 use super::{Config, connect};
 use crate::firmware::parts::Parts;
+use crate::io::bits::bit_state;
 use crate::io::kanalog::ADC_CHANNELS;
 use crate::io::stepgen::generator_of;
 use crate::machine::{COUNTS_PER_TICK, Drive};
-use crate::out::{Event, EventKind, Request, Speaker};
+use crate::out::{Event, EventKind, Message, Remark, Request, Speaker};
 use crate::pc::{Pc, host};
 use crate::servo::driven;
 use crate::views::{AxisView, Typed};
-use crate::world::stimulus::Stimulus;
+use crate::world::stimulus::{Asker, Stimulus, WAITING};
 use crate::world::{Moment, trace};
 
 /// First register, and how many, that something else than the board answers.
@@ -57,6 +58,19 @@ pub enum Asked {
     Send(Vec<u8>),
     /// A program that was offered should be loaded under this name, and started.
     Run(ThreadId, String),
+}
+
+/// A program on the firmware calls one of its functions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ProgramCall {
+    /// Its name.
+    pub function: &'static str,
+    /// The first argument, if it is an integer.
+    pub argument: i32,
+    /// The thread; `None` for the call-back.
+    pub thread: Option<ThreadId>,
+    /// The instruction that calls.
+    pub at: Option<CodeAddr>,
 }
 
 /// What a tick of the firmware is seen with.
@@ -161,6 +175,34 @@ impl Surroundings {
         if is_heard {
             let Parts { world, io, .. } = &mut self.parts;
             world.hear_uart(io);
+        }
+    }
+
+    /// Plays an operator, from the beginning of time, for programs that wait on inputs nobody drives; what they do is
+    /// [`called`](Self::called).
+    pub fn assist(&mut self) {
+        self.parts.world.assist(Cycles::default());
+    }
+
+    /// A program calls the firmware: whether it only waits, and for what.
+    pub fn called(&mut self, call: ProgramCall, memory: &GuestMemory, now: Cycles) {
+        let Parts { world, io, .. } = &mut self.parts;
+        let Some(assist) = &mut world.assist else { return };
+        assist.called(WAITING.contains(&call.function), now);
+        if call.function == "ReadBit"
+            && let Some(bit) = Bit::new(call.argument)
+            && bit_state(io, memory, bit).1
+        {
+            assist.polled(bit, Asker { thread: call.thread, at: call.at });
+        }
+    }
+
+    /// A program has executed a packet.
+    pub fn packet_ran(&mut self, packet: ExecutedPacket) {
+        let ExecutedPacket { thread, at: address, start, cycles, text } = packet;
+        let Parts { world, out, .. } = &mut self.parts;
+        if world.records_packets(thread) {
+            out.tell(start, EventKind::Trace(trace::Record::Packet { thread, address, cycles, text }));
         }
     }
 
@@ -374,7 +416,8 @@ impl Surroundings {
     pub fn take_events(&mut self) -> Vec<Event> {
         let is_told = |event: &Event| match &event.kind {
             // Of the programs on a booted board nothing is known that a remark could say.
-            EventKind::Remark(remark) => matches!(remark.speaker, Speaker::Board),
+            EventKind::Remark(Remark { speaker: Speaker::Board, .. }) => true,
+            EventKind::Remark(remark) => matches!(remark.message, Message::Assisted { .. }),
             _ => true,
         };
         let mut events = self.parts.out.take_events();

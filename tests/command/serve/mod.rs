@@ -312,6 +312,15 @@ fn clients_talk_to_the_users_own_firmware() {
     assert_eq!(client.call(client::CHECK_FOR_READY, b"").0, 3);
     assert_eq!(client.call(client::DISCONNECT, b"").0, 0);
     assert_eq!(client.ask("Version"), VERSION);
+    drop(server);
+
+    let words = ["console", "--boot", &firmware, "--fast", "--serve", "tcp:0", "a.c"];
+    let server = Server::start("console-boot", &words, HELLO, 1);
+    let mut client = server.client();
+    assert_eq!(client.call(client::SET_CONSOLE, b"").0, 0);
+    while client.console != ["hello"] {
+        assert_eq!(client.ask("Version"), VERSION);
+    }
 }
 
 /// The first block of a kind in the chapter on PC applications, for another port than the usual one.

@@ -44,6 +44,8 @@ pub(super) struct Cache {
     pages: Box<[Option<Box<Page>>]>,
     /// How often decoded packets were dropped.
     generation: u64,
+    /// Addresses that are searched even where the packet before is followed by them, in order.
+    stops: Vec<u32>,
     #[cfg(feature = "native")]
     marks: super::marks::LineMarks,
 }
@@ -56,16 +58,17 @@ impl Default for Cache {
             micros: Vec::new(),
             pages,
             generation: 0,
+            stops: Vec::new(),
             #[cfg(feature = "native")]
             marks: Default::default(),
         }
     }
 }
 
-/// A copy knows nothing yet: what is decoded follows from memory, and copies are made for snapshots.
+/// A copy knows nothing yet but its stops: what is decoded follows from memory, and copies are made for snapshots.
 impl Clone for Cache {
     fn clone(&self) -> Self {
-        Self::default()
+        Self { stops: self.stops.clone(), ..Self::default() }
     }
 }
 
@@ -139,10 +142,10 @@ impl Cache {
                 Err(_) => break,
             };
             self.note(next, packet.end);
-            next = packet.end;
-            if self.packets.len() > start {
+            if self.packets.len() > start && !self.is_stop(next) {
                 self.link_last(writes);
             }
+            next = packet.end;
             self.packets.push(packet);
         }
         Ok(start as u32)
@@ -208,7 +211,30 @@ impl Cache {
 
     /// Forgets everything.
     pub(super) fn clear(&mut self) {
-        *self = Self { generation: self.generation + 1, ..Self::default() };
+        let stops = std::mem::take(&mut self.stops);
+        *self = Self { generation: self.generation + 1, stops, ..Self::default() };
+    }
+
+    /// Has these addresses be searched, and no others.
+    pub(super) fn set_stops(&mut self, addresses: impl IntoIterator<Item = u32>) {
+        let mut stops: Vec<_> = addresses.into_iter().collect();
+        stops.sort_unstable();
+        stops.dedup();
+        if stops != self.stops {
+            self.stops = stops;
+            self.clear();
+        }
+    }
+
+    /// Addresses that are searched, in order.
+    pub(super) fn stops(&self) -> &[u32] {
+        &self.stops
+    }
+
+    /// Whether an address is one of them.
+    #[inline(always)]
+    pub(super) fn is_stop(&self, at: u32) -> bool {
+        self.stops.binary_search(&at).is_ok()
     }
 
     /// A number that is another one once decoded packets were dropped.

@@ -26,6 +26,8 @@ pub enum Halt {
     Left(u32),
     /// A packet could not be executed.
     Faulted(TrapKind),
+    /// The next packet is at one of the [stops](Core::set_stops); a run from there executes it.
+    Stopped,
 }
 
 /// How hot code becomes code of the host.
@@ -69,6 +71,8 @@ pub struct Core {
     /// The instruction of the last fault.
     faulted_at: Option<u32>,
     border: Border,
+    /// The stop that was reported last: the packet there is executed next.
+    passed: Option<u32>,
     idle: Idle,
     skips: bool,
     loops: Loops,
@@ -139,12 +143,48 @@ impl Core {
         count: &mut dyn FnMut(u32, i64, &State),
     ) -> Halt {
         self.border = Border::Slice;
+        self.count_to_border(memory, &mut |_, pc, cycles, state| count(pc, cycles, state))
+    }
+
+    /// As [`run_until`](Self::run_until), packet by packet, and says of each what it took: memory, its address, cycles, the
+    /// state after it.
+    pub fn count_until<M: Memory>(
+        &mut self,
+        memory: &mut M,
+        until: u64,
+        count: &mut dyn FnMut(&M, u32, i64, &State),
+    ) -> Halt {
+        self.border = Border::Next;
+        self.state.clock.deadline = until;
+        self.count_to_border(memory, count)
+    }
+
+    /// As [`run_to_interrupt`](Self::run_to_interrupt), packet by packet, and says of each what it took.
+    pub fn count_to_interrupt<M: Memory>(
+        &mut self,
+        memory: &mut M,
+        until: u64,
+        count: &mut dyn FnMut(&M, u32, i64, &State),
+    ) -> Halt {
+        self.border = Border::Interrupt(until);
+        self.state.clock.deadline = self.state.clock.cycle;
+        self.count_to_border(memory, count)
+    }
+
+    fn count_to_border<M: Memory>(
+        &mut self,
+        memory: &mut M,
+        count: &mut dyn FnMut(&M, u32, i64, &State),
+    ) -> Halt {
         self.idle.forget();
         loop {
             if self.state.clock.is_over()
                 && let Some(halt) = self.border.halt(&self.state)
             {
                 return halt;
+            }
+            if self.stops_here() {
+                return Halt::Stopped;
             }
             let (pc, left) = (self.state.pc, self.state.clock.left());
             if let Err(halt) = self.step(memory) {
@@ -153,8 +193,31 @@ impl Core {
             if self.state.is_idle {
                 self.wait();
             }
-            count(pc, left - self.state.clock.left(), &self.state);
+            count(memory, pc, left - self.state.clock.left(), &self.state);
         }
+    }
+
+    /// Stops every run before the packets at these addresses, and before no others. What is executed, and when, stays the
+    /// same.
+    pub fn set_stops(&mut self, addresses: impl IntoIterator<Item = u32>) {
+        self.passed = None;
+        self.cache.set_stops(addresses);
+    }
+
+    /// Where runs stop.
+    #[must_use]
+    pub fn stops(&self) -> &[u32] {
+        self.cache.stops()
+    }
+
+    /// Whether the next packet is at a stop that was not reported just now.
+    fn stops_here(&mut self) -> bool {
+        let pc = self.state.pc;
+        if !self.cache.is_stop(pc) || self.passed.take() == Some(pc) {
+            return false;
+        }
+        self.passed = Some(pc);
+        true
     }
 
     /// Whether loops that wait are run through in one step by [`run_until`](Self::run_until); nothing else changes.
@@ -185,9 +248,20 @@ impl Core {
     }
 
     fn run_to_border<M: Memory>(&mut self, memory: &mut M) -> Halt {
+        let has_stops = !self.cache.stops().is_empty();
         loop {
-            #[cfg(feature = "native")]
-            self.run_native(memory);
+            if has_stops {
+                let is_over = self.state.clock.is_over();
+                if let Some(halt) = self.border.halt(&self.state).filter(|_| is_over) {
+                    return halt;
+                }
+                if self.stops_here() {
+                    return Halt::Stopped;
+                }
+            } else {
+                #[cfg(feature = "native")]
+                self.run_native(memory);
+            }
             let index = match self.find(memory) {
                 Ok(index) => index,
                 Err(NoPacket::Outside) => return Halt::Left(self.state.pc),
@@ -203,7 +277,7 @@ impl Core {
             if self.state.pc <= from {
                 if self.skips {
                     self.went_back(memory);
-                } else if let Err(halt) = self.run_loop(memory) {
+                } else if !has_stops && let Err(halt) = self.run_loop(memory) {
                     return halt;
                 }
             }

@@ -53,7 +53,8 @@ impl Core {
 }
 
 /// The instructions of the packet at `at`, bars between them, as far as `fetch` has them.
-pub(super) fn packet_text(at: u32, fetch: impl Fn(u32) -> Option<u32>) -> String {
+#[must_use]
+pub fn packet_text(at: u32, fetch: impl Fn(u32) -> Option<u32>) -> String {
     let mut text = String::new();
     for at in (at..at.saturating_add(4 * MOST)).step_by(4) {
         let Some(word) = fetch(at) else { break };

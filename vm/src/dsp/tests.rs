@@ -2,5 +2,6 @@
 
 mod faults;
 mod flat;
+mod stops;
 mod translated;
 mod vectors;

@@ -176,7 +176,8 @@ impl Processor {
             };
             slice.budget = Cycles::new(self.core.state.clock.left());
             match halt {
-                Halt::Preempted => {
+                // No thread has stops: they are of a board that runs a firmware.
+                Halt::Preempted | Halt::Stopped => {
                     self.core.state.settle();
                     return Ok(Stop::Preempted);
                 }

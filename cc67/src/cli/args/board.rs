@@ -63,8 +63,7 @@ pub(crate) struct BoardArguments {
 impl BoardArguments {
     /// The first option given that a board with the user's own firmware does not know.
     pub(crate) fn left_out_by_boot(&self) -> Option<&'static str> {
-        let own = [(self.assist, "--assist"), (self.engine != EngineName::default(), "--engine")];
-        own.into_iter().find(|(is_given, _)| *is_given).map(|(_, name)| name)
+        (self.engine != EngineName::default()).then_some("--engine")
     }
 
     /// What is connected to the board, and which of its remarks are shown.

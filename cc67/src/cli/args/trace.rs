@@ -59,9 +59,4 @@ impl TraceArguments {
     pub(crate) const fn is_unwritten(&self) -> bool {
         self.trace.is_empty() && self.trace_bits.is_none() && self.plot.is_empty()
     }
-
-    /// The first of these options given that a board with the user's own firmware does not know.
-    pub(crate) fn left_out_by_boot(&self) -> Option<&'static str> {
-        self.trace_packets.as_ref().map(|_| "--trace-packets")
-    }
 }

@@ -16,7 +16,8 @@ pub(super) struct Attached {
 }
 
 impl Attached {
-    fn since(&self, cycle: u64) -> Cycles {
+    /// The time since they began.
+    pub(super) fn since(&self, cycle: u64) -> Cycles {
         Cycles::new(i64::try_from(cycle.saturating_sub(self.origin)).unwrap_or(i64::MAX))
     }
 }

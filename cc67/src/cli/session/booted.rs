@@ -3,15 +3,16 @@
 //!
 //! Time is counted from the moment in which the firmware has started and looks for the first byte of the PC.
 
+mod looks;
 mod samples;
 
-pub(crate) use samples::Samples;
+pub(crate) use looks::Looks;
 
 use std::path::Path;
 use std::sync::Arc;
 
 use anyhow::{Context, Result, bail};
-use boot::{BootedBoard, BootedSnapshot, FirmwareFile, Halted, Sent, SentLine};
+use boot::{BootedBoard, BootedSnapshot, FirmwareFile, Halted, ProgramPacket, Sent, SentLine};
 use cc67_host::session::{by_hand, quantities, resolve};
 use cc67_host::{End, Interrupter, UserProgram};
 use compiler::Options;
@@ -21,10 +22,12 @@ use kmotiondef::variables::{
     ADC_BUFFER_IN, CHAN, CURRENT_THREAD, DAC_BUFFER, HOST_STATUS, KSTEP_PRESENT, LAST_PWM, PERSIST,
     READ_DISK_BUFFER, VIRTUAL_BITS, VIRTUAL_BITS_EX,
 };
-use kmotiondef::{AxisId, Bit, Cycles, GuestAddr, ThreadId, Ticks};
+use kmotiondef::{AxisId, Bit, CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
+use runtime::debug::DebugInfo;
 use runtime::surroundings::{Asked, Surroundings};
 use runtime::trace::{Item, TraceRequest};
 use runtime::{Event, EventKind, MachineFile};
+use vm::firmware::ExecutedPacket;
 
 use super::around::Attached;
 use super::flash::Flash;
@@ -39,6 +42,7 @@ use crate::cli::args::uart::UartArguments;
 use crate::cli::compile::images;
 use crate::cli::io::input::read;
 use crate::cli::io::pace::Pace;
+use crate::cli::report::profile::program_names;
 use crate::cli::report::state::FinalState;
 use crate::cli::report::trace;
 
@@ -70,8 +74,8 @@ pub(crate) struct Booted {
     flash: Flash,
     /// Lines that programs have sent which the flash has started, before time begins.
     early: Vec<SentLine>,
-    /// What a profile is made of, where one is wanted.
-    samples: Option<Samples>,
+    /// Who looks at the processor while it runs.
+    pub(crate) looks: Looks,
 }
 
 /// How long nothing has happened.
@@ -165,7 +169,7 @@ impl Booted {
             interrupter: Interrupter::default(),
             flash: Flash::default(),
             early: Vec::new(),
-            samples: None,
+            looks: Looks::default(),
         }
     }
 
@@ -236,7 +240,17 @@ impl Booted {
         if !board.keeps_files {
             self.start_from(flash)?;
         }
-        let cc67_host::Setup { mut config, options, programs, offered, values, mut stimulus, .. } = session;
+        let cc67_host::Setup {
+            mut config,
+            options,
+            programs,
+            offered,
+            values,
+            mut stimulus,
+            is_assisted,
+            uart_input,
+            hears_uart,
+        } = session;
         let request = traced
             .map(|traced| trace::request_of_booted(traced, |list| quantities(list, &programs, &options)));
         let request = request.transpose()?.flatten();
@@ -254,12 +268,21 @@ impl Booted {
             let active = self.board.file().address("ThreadActive").unwrap_or_default();
             let mut surroundings = Surroundings::new(config, active);
             surroundings.begin(&machine, stimulus, self.board.memory_mut());
-            surroundings.connect_uart(&session.uart_input, session.hears_uart);
+            surroundings.connect_uart(&uart_input, hears_uart);
             if let Some(request) = &request {
                 surroundings.record(request.clone(), self.board.memory());
+                self.board.keep_packets(request.packets.is_some());
+            }
+            if is_assisted {
+                surroundings.assist();
+                self.looks.follow_calls(&mut self.board);
             }
             self.board.connect(Box::new(Attached { surroundings, origin: self.origin }));
-        } else if !stimulus.is_empty() || config.machine_file != MachineFile::default() || request.is_some() {
+        } else if !stimulus.is_empty()
+            || config.machine_file != MachineFile::default()
+            || request.is_some()
+            || is_assisted
+        {
             bail!(
                 "nothing can be connected or recorded: this firmware keeps its variables in other places than 4.34"
             );
@@ -286,19 +309,14 @@ impl Booted {
         self.flash.keep(|| self.board.flash())
     }
 
-    /// Looks what the processor does, from now on.
-    pub(crate) fn sample(&mut self) {
-        self.samples = Some(Samples::new(self.board.cycle()));
-    }
-
-    /// What was seen, where a profile is made.
-    pub(crate) const fn samples(&self) -> Option<&Samples> {
-        self.samples.as_ref()
-    }
-
     /// The programs in the threads.
     pub(crate) fn programs(&self) -> &[UserProgram] {
         &self.programs
+    }
+
+    /// Names and lines of the programs in the threads.
+    pub(crate) fn debug(&self) -> Vec<(ThreadId, DebugInfo)> {
+        self.programs.iter().map(|program| (program.thread, program_names(program))).collect()
     }
 
     /// Lets the firmware read what was sent, and start threads in the next tick; time is 0 a tick before.
@@ -381,11 +399,16 @@ impl Booted {
         Ok(())
     }
 
-    /// The level of a bit; low where nothing is connected to this firmware.
-    pub(crate) fn bit(&mut self, bit: Bit) -> bool {
+    /// The value of an item of the board; 0 where nothing is connected to this firmware.
+    pub(crate) fn item(&mut self, item: Item) -> f64 {
         let (around, memory) = self.board.around_and_memory();
         let attached = around.and_then(|around| around.as_any().downcast_mut::<Attached>());
-        attached.is_some_and(|attached| attached.surroundings.value(Item::of_bit(bit), memory) != 0.0)
+        attached.map_or(0.0, |attached| attached.surroundings.value(item, memory))
+    }
+
+    /// The level of a bit; low where nothing is connected to this firmware.
+    pub(crate) fn bit(&mut self, bit: Bit) -> bool {
+        self.item(Item::of_bit(bit)) != 0.0
     }
 
     /// Gives the peer of the serial port what was sent, and takes what it sends.
@@ -512,13 +535,16 @@ impl Booted {
     /// # Errors
     /// The firmware ran away.
     pub(crate) fn advance(&mut self, cycles: u64, sink: &mut dyn FnMut(Event)) -> Result<bool, Halted> {
-        let before = self.tick().get();
-        let end = self.board.cycle() + cycles;
-        let result = match &mut self.samples {
-            Some(samples) => samples.run(&mut self.board, end),
-            None => self.board.run_to(end),
-        };
-        if before / PART != self.tick().get() / PART {
+        let (begin, end) = (self.tick(), self.board.cycle() + cycles);
+        let result = self.looks.run(&mut self.board, end);
+        let has_sent = self.complete(begin, sink);
+        result.map(|()| has_sent)
+    }
+
+    /// A part of the run that began in a tick is over: exchanges what is around the board; whether the firmware has sent lines.
+    fn complete(&mut self, begin: Ticks, sink: &mut dyn FnMut(Event)) -> bool {
+        self.note_packets();
+        if begin.get() / PART != self.tick().get() / PART {
             self.exchange_serial();
         }
         let mut lines = std::mem::take(&mut self.early);
@@ -536,7 +562,17 @@ impl Booted {
         }
         self.tell(sink);
         self.serve();
-        result.map(|()| has_sent)
+        has_sent
+    }
+
+    /// Records the packets that programs have executed, where they are recorded.
+    fn note_packets(&mut self) {
+        for ProgramPacket { cycle, cycles, at, thread, text } in self.board.take_packets() {
+            let (start, cycles) = (self.since_ready(cycle), Cycles::new(cycles));
+            if let (Some(at), Some(surroundings)) = (CodeAddr::new(at), self.surroundings()) {
+                surroundings.packet_ran(ExecutedPacket { thread, at, start, cycles, text });
+            }
+        }
     }
 
     /// Hands over what has happened around the board.

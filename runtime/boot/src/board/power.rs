@@ -54,7 +54,18 @@ impl BootedBoard {
         core.skip_waits(true);
         let unfinished = (0, Vec::new());
         let (lines, loads) = (Vec::new(), Loads::default());
-        Self { file, core, hardware, unfinished, lines, waits_since: 0, loads, skips: true, crash: None }
+        Self {
+            file,
+            core,
+            hardware,
+            unfinished,
+            lines,
+            waits_since: 0,
+            loads,
+            skips: true,
+            packets: None,
+            crash: None,
+        }
     }
 
     /// The board that a firmware file makes, when it first looks for what the PC sends.
@@ -77,7 +88,7 @@ impl BootedBoard {
                 let reason = "it has not begun to wait for the PC within 3 s of its start";
                 return Err(self.crash(reason.to_owned()));
             }
-            self.run_events(self.cycle() + SECOND / 100)?;
+            let _ = self.run_events(self.cycle() + SECOND / 100)?;
         }
         Ok(())
     }
@@ -120,8 +131,10 @@ impl BootedBoard {
         for (offset, address, size) in PIECES {
             copy(memory, FLASH.base.get() + offset, address, size);
         }
+        let stops = self.core.stops().to_vec();
         self.core = Core::at_power_up(FLASH_START, FLASH_STACK, self.cycle());
         self.core.skip_waits(self.skips);
+        self.core.set_stops(stops);
     }
 }
 

@@ -17,8 +17,10 @@ use super::input::{self, Input, Lines};
 use super::screen::Screen;
 use super::words::{self, Word};
 use super::{BEAT, ConsoleArguments, Flow, STRETCH, Shown};
+use crate::cli::args::attach::AttachArguments;
 use crate::cli::args::program::{ProgramFile, assign};
 use crate::cli::args::time::DEFAULT_LIMIT;
+use crate::cli::commands::serve::own_firmware::{self, Asked};
 use crate::cli::io::exit::Exit;
 use crate::cli::io::pace::Pace;
 use crate::cli::report::seen::Seen;
@@ -27,8 +29,14 @@ use crate::cli::session::booted::{Begun, Booted};
 
 /// Talks to the firmware until the input ends.
 pub(super) fn console(arguments: &ConsoleArguments, file: &Path) -> Result<Exit> {
-    if let Some(option) = left_out(arguments) {
+    if let Some(option) = arguments.board.left_out_by_boot() {
         bail!("`{option}` does not work with `--boot`");
+    }
+    if let Some(address) = &arguments.serve {
+        AttachArguments { debug: arguments.debug }.open(&arguments.board)?;
+        let asked =
+            Asked { programs: &arguments.programs, board: &arguments.board, compiler: &arguments.compiler };
+        return own_firmware::serve(&asked, file, &arguments.terms(address));
     }
     let mut booted = Booted::new(file)?;
     let programs = arguments.programs.as_slice();
@@ -38,6 +46,7 @@ pub(super) fn console(arguments: &ConsoleArguments, file: &Path) -> Result<Exit>
     booted.connect()?;
     let shown = Shown { screen: Screen::new(arguments.time, false), seen: Seen::default(), trace, arguments };
     let mut console = Console { arguments, booted, shown, pressed: BTreeMap::new(), has_crashed: false };
+    console.know_programs();
     if io::stdin().is_terminal() && io::stdout().is_terminal() {
         console.keyboard()
     } else if arguments.realtime {
@@ -45,12 +54,6 @@ pub(super) fn console(arguments: &ConsoleArguments, file: &Path) -> Result<Exit>
     } else {
         console.script()
     }
-}
-
-/// The first option given that a booted board does not know.
-fn left_out(arguments: &ConsoleArguments) -> Option<&'static str> {
-    let serve = arguments.serve.as_ref().map(|_| "--serve");
-    serve.or(arguments.trace.left_out_by_boot()).or_else(|| arguments.board.left_out_by_boot())
 }
 
 /// The firmware, and the person or script that talks to it.
@@ -64,6 +67,11 @@ struct Console<'a> {
 }
 
 impl Console<'_> {
+    /// Has the screen know what is loaded.
+    fn know_programs(&mut self) {
+        self.shown.screen.programs = self.booted.debug().into_iter().map(|(_, debug)| debug).collect();
+    }
+
     fn keyboard(&mut self) -> Result<Exit> {
         let (lines, printer) = input::keyboard()?;
         self.shown.screen.print_through(printer);
@@ -190,7 +198,9 @@ impl Console<'_> {
     }
 
     fn load(&mut self, files: &[ProgramFile], starts: usize) -> Result<bool> {
-        self.booted.load(files, starts, &self.arguments.compiler)
+        let loaded = self.booted.load(files, starts, &self.arguments.compiler);
+        self.know_programs();
+        loaded
     }
 
     fn send(&mut self, line: &str) {

@@ -23,7 +23,7 @@ use crate::cli::session::booted::{Begun, Booted};
 
 /// Compiles the programs for the real processor, starts the firmware, runs them.
 pub(super) fn run(arguments: &RunArguments, file: &Path) -> Result<Exit> {
-    if let Some(option) = left_out(arguments) {
+    if let Some(option) = arguments.board.left_out_by_boot() {
         bail!("`{option}` does not work with `--boot`");
     }
     let mut booted = Booted::new(file)?;
@@ -47,10 +47,10 @@ fn execute(
     profiled: Option<&ProfileOutput>,
 ) -> Result<Exit> {
     if profiled.is_some() {
-        booted.sample();
+        booted.looks.sample(booted.board.cycle());
     }
     let out = BufWriter::new(io::stdout().lock());
-    let mut screen = Screen::new(out, arguments.style(), Vec::new(), Vec::new());
+    let mut screen = Screen::new(out, arguments.style(), booted.debug(), Vec::new());
     let request = begun.request.as_ref();
     let mut trace = request.map(|request| Trace::begin(&arguments.trace, request)).transpose()?;
     booted.connect()?;
@@ -88,14 +88,9 @@ fn execute(
         Ok(End::Limit) if exit == Exit::StillRunning => terminal::note(&super::still_running(&active, &[])),
         Ok(_) => {}
     }
-    if let Some((samples, target)) = booted.samples().zip(profiled) {
+    if let Some((samples, target)) = booted.looks.samples.as_ref().zip(profiled) {
         let of = Sampled { programs: booted.programs(), file: booted.board.file(), end: booted.now() };
         terminal::aside(&of.report(samples.seen(), target)?);
     }
     Ok(exit)
-}
-
-/// The first option given that a booted board does not know.
-fn left_out(arguments: &RunArguments) -> Option<&'static str> {
-    arguments.trace.left_out_by_boot().or_else(|| arguments.board.left_out_by_boot())
 }

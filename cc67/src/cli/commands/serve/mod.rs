@@ -24,7 +24,7 @@ mod link;
 mod listen;
 mod log;
 mod message;
-mod own_firmware;
+pub(super) mod own_firmware;
 #[cfg(feature = "live")]
 mod page;
 mod served;
@@ -35,6 +35,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Sender, channel};
 
+#[cfg(feature = "live")]
+use anyhow::ensure;
 use anyhow::{Context, Result};
 use clap::Args;
 use vm::engine::Engine;
@@ -164,7 +166,10 @@ pub(super) fn serve(arguments: &ServeArguments) -> Result<Exit> {
     }
     let debugger = arguments.attach.open(&arguments.board)?;
     if let Some(file) = &arguments.board.boot {
-        return own_firmware::serve(arguments, file, &terms);
+        #[cfg(feature = "live")]
+        ensure!(!arguments.page.live, "`--live` does not work with `--boot`");
+        let ServeArguments { programs, board, compiler, .. } = arguments;
+        return own_firmware::serve(&own_firmware::Asked { programs, board, compiler }, file, &terms);
     }
     let setup = Setup::new(&arguments.programs, &arguments.board, &arguments.compiler, None)?;
     let Some(setup) = setup else { return Ok(Exit::Failure) };

@@ -1,5 +1,6 @@
 //! `cc67 serve --boot FILE`: the user's own firmware file is what clients talk to.
 
+use std::ffi::OsString;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::mpsc::channel;
@@ -13,22 +14,34 @@ use super::board::ServedBoard;
 use super::desk::Desk;
 use super::link::CONSOLE_LINES;
 use super::served::Served;
-use super::{ServeArguments, Terms, end_on_signal, listen};
+use super::{Terms, end_on_signal, listen};
+use crate::cli::args::board::BoardArguments;
+use crate::cli::args::compiler::CompilerArguments;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::terminal;
 use crate::cli::report::trace::Trace;
 use crate::cli::session::booted::{Begun, Booted};
 
+/// What runs on the firmware, and what is around it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Asked<'a> {
+    /// Programs to load and start.
+    pub(crate) programs: &'a [OsString],
+    /// The board.
+    pub(crate) board: &'a BoardArguments,
+    /// How programs are compiled.
+    pub(crate) compiler: &'a CompilerArguments,
+}
+
 /// Starts the firmware and serves clients until it is ended.
-pub(super) fn serve(arguments: &ServeArguments, file: &Path, terms: &Terms<'_>) -> Result<Exit> {
-    if let Some(option) = left_out(arguments) {
+pub(crate) fn serve(asked: &Asked<'_>, file: &Path, terms: &Terms<'_>) -> Result<Exit> {
+    if let Some(option) = asked.board.left_out_by_boot() {
         bail!("`{option}` does not work with `--boot`");
     }
     let mut booted = Booted::new(file)?;
-    let begun =
-        booted.begin(&arguments.programs, &arguments.board, &arguments.compiler, Some(&arguments.trace))?;
+    let begun = booted.begin(asked.programs, asked.board, asked.compiler, Some(terms.trace))?;
     let Some(Begun { request }) = begun else { return Ok(Exit::Failure) };
-    let trace = request.as_ref().map(|request| Trace::begin(&arguments.trace, request)).transpose()?;
+    let trace = request.as_ref().map(|request| Trace::begin(terms.trace, request)).transpose()?;
     booted.connect()?;
     let board = ServedBoard::new(
         OwnFirmware { booted, crashed: None, is_deaf: false, has_told: false },
@@ -42,16 +55,6 @@ pub(super) fn serve(arguments: &ServeArguments, file: &Path, terms: &Terms<'_>) 
     let exit = Desk::new(board, terms, inbox).run();
     drop(places);
     exit
-}
-
-/// The first option given that a booted board does not know.
-fn left_out(arguments: &ServeArguments) -> Option<&'static str> {
-    #[cfg(feature = "live")]
-    let is_live = arguments.page.live;
-    #[cfg(not(feature = "live"))]
-    let is_live = false;
-    let live = is_live.then_some("--live");
-    live.or(arguments.trace.left_out_by_boot()).or_else(|| arguments.board.left_out_by_boot())
 }
 
 /// A board that runs the user's firmware.
@@ -111,7 +114,7 @@ impl Served for OwnFirmware {
     }
 
     fn programs(&self) -> Vec<DebugInfo> {
-        Vec::new()
+        self.booted.debug().into_iter().map(|(_, debug)| debug).collect()
     }
 
     fn keep_flash(&mut self) -> Result<()> {

@@ -66,8 +66,8 @@ mod tests {
 
     #[test]
     fn what_only_the_model_has_is_skipped_by_name() {
-        let refused = "cc67: `--assist` does not work with `--boot`\n";
-        check("a\n", "", refused, 2, "Skipped(\"`--assist` does not work");
+        let refused = "cc67: `--engine` does not work with `--boot`\n";
+        check("a\n", "", refused, 2, "Skipped(\"`--engine` does not work");
         check("a\n---- notes\ncc67: trap\n---- exit 3\n", "a\n", "", 0, "Skipped(\"it expects a trap");
         check("a\n", "", "cc67: no such file\n", 2, "Differs");
     }

@@ -7,7 +7,7 @@ mod flame;
 mod sampled;
 mod table;
 
-pub(crate) use sampled::Sampled;
+pub(crate) use sampled::{Sampled, program_names};
 
 use std::collections::BTreeMap;
 use std::fmt;

@@ -30,7 +30,7 @@ impl Sampled<'_> {
         looks: impl Iterator<Item = (&'a Doing, Cycles)>,
         target: &ProfileOutput,
     ) -> Result<String> {
-        let known: Vec<DebugInfo> = self.programs.iter().map(names).collect();
+        let known: Vec<DebugInfo> = self.programs.iter().map(program_names).collect();
         let mut account = Account::new();
         for (doing, time) in looks {
             account.entry(self.place(doing, &known)).or_default().computing += time;
@@ -61,7 +61,7 @@ impl Sampled<'_> {
 }
 
 /// Names and lines of a program; none of an image that the modelled board would refuse.
-fn names(program: &UserProgram) -> DebugInfo {
+pub(crate) fn program_names(program: &UserProgram) -> DebugInfo {
     let prepared = prepare(&program.image, program.thread, |_| false);
     prepared.map(|prepared| prepared.debug.with_details(program.details.clone())).unwrap_or_default()
 }

@@ -54,7 +54,8 @@ pub(crate) fn request_of_booted(
     arguments: &TraceArguments,
     quantities: impl FnOnce(&str) -> Result<Vec<Quantity>, WatchError>,
 ) -> Result<Option<TraceRequest>> {
-    let request = requested(arguments, None, quantities)?;
+    let packets = arguments.trace_packets.as_ref().map(|file| file.thread.map_or(Packets::All, Packets::Of));
+    let request = requested(arguments, packets, quantities)?;
     for quantity in request.iter().flat_map(|request| &request.quantities) {
         if let Some(item) = quantity.items().iter().find(|item| item.is_only_modelled()) {
             bail!(

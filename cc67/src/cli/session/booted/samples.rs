@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use boot::{BootedBoard, Doing, Halted};
+use boot::{BootedBoard, Doing};
 use kmotiondef::Cycles;
 
 /// Cycles between two looks: a prime, so that no loop and no tick keeps step with them.
@@ -11,7 +11,8 @@ const PERIOD: u64 = 997;
 /// How often the processor was seen at each place.
 #[derive(Debug)]
 pub(crate) struct Samples {
-    next: u64,
+    /// The cycle of the next look.
+    pub(super) next: u64,
     seen: BTreeMap<Doing, i64>,
 }
 
@@ -21,17 +22,10 @@ impl Samples {
         Self { next: now + PERIOD, seen: BTreeMap::new() }
     }
 
-    /// Runs the board to a cycle.
-    ///
-    /// # Errors
-    /// The firmware ran away.
-    pub(super) fn run(&mut self, board: &mut BootedBoard, end: u64) -> Result<(), Halted> {
-        while self.next < end {
-            board.run_to(self.next)?;
-            *self.seen.entry(board.doing()).or_default() += 1;
-            self.next += PERIOD;
-        }
-        board.run_to(end)
+    /// A look, the one that was due.
+    pub(super) fn note(&mut self, board: &BootedBoard) {
+        *self.seen.entry(board.doing()).or_default() += 1;
+        self.next += PERIOD;
     }
 
     /// The places, and the time that each look stands for.
