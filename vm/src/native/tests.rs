@@ -3,6 +3,7 @@
 mod generate;
 mod long_slices;
 mod loops;
+mod shortcuts;
 mod snapshots;
 
 use std::sync::Arc;

@@ -20,6 +20,7 @@ mod fast;
 mod memory;
 mod nan;
 mod parts;
+mod shortcut;
 mod strides;
 mod turns;
 
@@ -330,6 +331,8 @@ impl<'a, 'b> Translator<'a, 'b> {
             registers: Registers { variables: registers, budget, lax, raw: BTreeMap::new() },
             calls: CallParts {
                 callees: BTreeMap::new(),
+                shortcuts: BTreeMap::new(),
+                attempt: None,
                 request,
                 leave,
                 arguments: Vec::new(),
@@ -363,6 +366,7 @@ impl<'a, 'b> Translator<'a, 'b> {
         self.branch_if_room(caller, lowest, bytes, body, deeper);
         self.enter_cold(deeper);
         self.end_long_slice();
+        self.stay_cold();
         let overflow = self.builder.create_block();
         let limit = self.load_state(types::I32, offset_of!(State, stack.limit));
         self.branch_if_room(caller, limit, bytes, lower, overflow);
@@ -617,6 +621,12 @@ impl<'a, 'b> Translator<'a, 'b> {
         self.request(Reason::NeedsBoard.code(), self.at, none, none);
         self.builder.ins().jump(go_on, &[]);
         self.enter(go_on);
+    }
+
+    /// Says that what follows is rarely executed, like what came before.
+    fn stay_cold(&mut self) {
+        let block = self.builder.current_block();
+        block.into_iter().for_each(|block| self.builder.set_cold_block(block));
     }
 
     /// Takes cycles from the budget.

@@ -71,6 +71,9 @@ impl Translator<'_, '_> {
             return;
         }
         self.spend(cycles.0);
+        if self.calls.attempt.is_some() {
+            return;
+        }
         let left = self.builder.use_var(self.registers.budget);
         let overdrawn = self.builder.ins().icmp_imm_s(IntCC::SignedLessThan, left, 0);
         let (stop, go_on) = (self.builder.create_block(), self.builder.create_block());
@@ -117,8 +120,9 @@ impl Translator<'_, '_> {
         self.reachable = false;
     }
 
-    pub(super) fn call(&mut self, func: FuncRef) {
-        let callee = self.callee(func);
+    /// Calls the function with the given index.
+    pub(super) fn make_call(&mut self, index: usize) {
+        let callee = self.callee(index);
         self.note_call();
         let arguments = self.take_call_arguments();
         let call = self.builder.ins().call(callee, &arguments);
@@ -230,12 +234,16 @@ impl Translator<'_, '_> {
         self.reachable = false;
     }
 
-    /// The function `func` as this function can call it.
-    fn callee(&mut self, func: FuncRef) -> IrFuncRef {
+    /// The index of the function `func`.
+    pub(super) fn function_index(&self, func: FuncRef) -> usize {
         let functions = self.translation.program.functions();
-        let index = functions
+        functions
             .binary_search_by_key(&func, |function| function.at)
-            .unwrap_or_else(|_| unreachable!("a function reference of a verified program"));
+            .unwrap_or_else(|_| unreachable!("a function reference of a verified program"))
+    }
+
+    /// The function with the given index as this function can call it.
+    fn callee(&mut self, index: usize) -> IrFuncRef {
         let id = self.translation.functions[index];
         let (module, builder) = (&mut *self.module, &mut self.builder);
         *self.calls.callees.entry(index).or_insert_with(|| module.declare_func_in_func(id, builder.func))
@@ -273,6 +281,9 @@ impl Translator<'_, '_> {
     }
 
     fn return_slot(&mut self, slot: Value) {
+        if let Some(attempt) = self.calls.attempt {
+            return self.end_attempt(attempt, slot);
+        }
         self.settle();
         let at = self.builder.ins().iconst(types::I32, self.at as i64);
         self.store_state(at, offset_of!(State, returned_at));

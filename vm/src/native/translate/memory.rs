@@ -89,7 +89,7 @@ impl Translator<'_, '_> {
     }
 
     /// The offset in SDRAM of the address `base + off`.
-    fn place(&mut self, base: RegI32, off: Off) -> Value {
+    pub(super) fn place(&mut self, base: RegI32, off: Off) -> Value {
         let base = self.get(base);
         let sdram = SDRAM.base.get().cast_signed();
         self.builder.ins().iadd_imm_s(base, i64::from(i32::from(off.0).wrapping_sub(sdram)))
@@ -98,6 +98,10 @@ impl Translator<'_, '_> {
     fn load<R: Register>(&mut self, dst: R, base: RegI32, off: Off, width: Width) {
         if let Some((pointer, place)) = self.checked_place(base, width, false) {
             let value = self.load_guest(pointer, place, width);
+            return self.set(dst, value);
+        }
+        if let Some(attempt) = self.calls.attempt {
+            let value = self.load_in_attempt(attempt, base, off, width);
             return self.set(dst, value);
         }
         let place = self.place(base, off);
@@ -152,7 +156,7 @@ impl Translator<'_, '_> {
         let offset_in_sdram = self.builder.ins().uextend(types::I64, place);
         let block = self.builder.ins().ushr_imm_u(place, i64::from(BLOCK_BITS));
         let block = self.builder.ins().uextend(types::I64, block);
-        let marks = self.load_pointer(offset_of!(State, ram.protected));
+        let marks = self.load_marks();
         let mark = self.builder.ins().iadd(marks, block);
         let mark = self.builder.ins().uload8(types::I32, self.flags.state, mark, 0);
         self.builder.ins().brif(mark, slow, &[], behind, &[offset_in_sdram.into()]);
@@ -166,6 +170,14 @@ impl Translator<'_, '_> {
 
         let pointer = self.enter_access(behind);
         self.store_guest(value, pointer, 0, width);
+    }
+
+    /// Loads the pointer to the marks of protected blocks.
+    ///
+    /// Code for the rare case does so where it stands: what is moved out of a loop takes a register all through it.
+    fn load_marks(&mut self) -> Value {
+        let field = offset_of!(State, ram.protected);
+        if self.twice.is_rare { self.load_state(types::I64, field) } else { self.load_pointer(field) }
     }
 
     fn store_at<R: Register>(&mut self, src: R, addr: Addr, width: Width) {
@@ -237,6 +249,7 @@ impl Translator<'_, '_> {
 
         self.enter_cold(iram);
         self.end_long_slice();
+        self.stay_cold();
         if is_store {
             self.touch();
         }
@@ -271,6 +284,11 @@ impl Translator<'_, '_> {
         self.builder.ins().band_imm_s(place, i64::from(never.cast_signed()))
     }
 
+    /// The same for SDRAM.
+    pub(super) fn wrong_bits_in_sdram(&mut self, place: Value, width: Width) -> Value {
+        self.wrong_bits(SDRAM, place, width)
+    }
+
     /// From an address to the offset in `region`, and back, since regions lie at multiples of their size.
     ///
     /// Not written as a sum: Cranelift would share it with the sum that made the address, and keep that over
@@ -279,7 +297,7 @@ impl Translator<'_, '_> {
         self.builder.ins().bxor_imm_s(value, i64::from(region.base.get().cast_signed()))
     }
 
-    fn load_guest(&mut self, pointer: Value, place: i32, width: Width) -> Value {
+    pub(super) fn load_guest(&mut self, pointer: Value, place: i32, width: Width) -> Value {
         let flags = self.flags.guest;
         match width {
             Width::I8S => self.builder.ins().sload8(types::I32, flags, pointer, place),
