@@ -15,6 +15,7 @@ use crate::operand::{FuncRef, SigRef};
 use crate::program::Program;
 use crate::slot::Slot;
 use crate::trap::TrapKind;
+use crate::wake::Wake;
 
 /// How a context continues when it is resumed.
 #[derive(Clone, Debug)]
@@ -29,12 +30,47 @@ enum Next {
     Nothing(Stop),
 }
 
-/// What a request leads to.
+/// What a request leads to; small, because there is one of it at each request.
 enum NextStep {
     /// The context goes on at once.
     Go(Answer),
-    /// It stops, to go on later as given.
-    Stop(Stop, Next),
+    /// It waits, and continues as the context says.
+    Wait(Wake),
+    /// It stops, and continues as the context says.
+    Stop(Halt),
+}
+
+/// Why a context stopped that does not wait.
+#[derive(Clone, Copy)]
+enum Halt {
+    Preempted,
+    NeedsBoard,
+    Ended,
+    Paused,
+}
+
+impl From<Halt> for Stop {
+    fn from(halt: Halt) -> Self {
+        match halt {
+            Halt::Preempted => Self::Preempted,
+            Halt::NeedsBoard => Self::NeedsBoard,
+            Halt::Ended => Self::Ended,
+            Halt::Paused => Self::Paused,
+        }
+    }
+}
+
+/// Which calls of the firmware were found to fit the called function's signature, as many as a loop makes.
+#[derive(Clone, Copy, Debug, Default)]
+struct CheckedCalls([Option<(GuestAddr, SigRef)>; 8]);
+
+impl CheckedCalls {
+    /// The place of a call among them.
+    fn place(&mut self, address: GuestAddr, signature: SigRef) -> &mut Option<(GuestAddr, SigRef)> {
+        // Functions of the firmware begin at multiples of 32 bytes.
+        let number = (address.get() >> 5) as usize + usize::from(signature.0);
+        &mut self.0[number % self.0.len()]
+    }
 }
 
 /// One context.
@@ -52,6 +88,7 @@ pub(super) struct Context {
     protected: Option<u64>,
     /// CallArguments of the firmware call being made.
     arguments: ArgumentList,
+    checked: CheckedCalls,
 }
 
 /// A context as it was at an instant.
@@ -78,6 +115,7 @@ impl Saved {
             next: next.clone(),
             protected: None,
             arguments: ArgumentList::default(),
+            checked: CheckedCalls::default(),
         }
     }
 }
@@ -106,6 +144,7 @@ impl Context {
             next: Next::Answer(Answer::Slot(0)),
             protected: None,
             arguments: ArgumentList::default(),
+            checked: CheckedCalls::default(),
         }
     }
 
@@ -169,25 +208,10 @@ impl Context {
         loop {
             let answer = match step {
                 NextStep::Go(answer) => answer,
-                NextStep::Stop(stop, next) => {
-                    self.next = next;
-                    return Ok(stop);
-                }
+                NextStep::Wait(wake) => return Ok(Stop::Waiting(wake)),
+                NextStep::Stop(halt) => return Ok(halt.into()),
             };
-            let state = self.fiber.state();
-            state.budget.set(slice.budget.get());
-            state.signs.is_long.set(slice.is_long.into());
-            protected.follow(slice.memory.protected_texts());
-            if self.protected != Some(protected.version()) {
-                self.protected = Some(protected.version());
-                state.set_windows(protected.windows(self.program.text().end.get()));
-            }
-            let request = self.fiber.resume(slice.memory, protected, answer);
-            slice.budget = Cycles::new(self.fiber.state().budget.get());
-            if self.fiber.state().signs.touched.take() != 0 {
-                slice.memory.touch();
-            }
-            let Some(request) = request else {
+            let Some(request) = self.go_on(slice, protected, answer) else {
                 self.at = self.fiber.state().returned_at.get() as usize;
                 self.stack_pointer = self.stack.top;
                 return Ok(self.end(Stop::Ended));
@@ -196,6 +220,36 @@ impl Context {
             self.stack_pointer = request.stack_pointer;
             step = self.answer(id, slice, request)?;
         }
+    }
+
+    /// Runs the fiber until its next request; `None` when the program has returned.
+    fn go_on<F: Firmware + ?Sized>(
+        &mut self,
+        slice: &mut Slice<'_, F>,
+        protected: &mut ProtectedBlocks,
+        answer: Answer,
+    ) -> Option<Request> {
+        let state = self.fiber.state();
+        state.budget.set(slice.budget.get());
+        state.signs.is_long.set(slice.is_long.into());
+        protected.follow(slice.memory.protected_texts());
+        if self.protected != Some(protected.version()) {
+            self.protected = Some(protected.version());
+            state.set_windows(protected.windows(self.program.text().end.get()));
+        }
+        let request = self.fiber.resume(slice.memory, protected, answer);
+        let state = self.fiber.state();
+        slice.budget = Cycles::new(state.budget.get());
+        if state.signs.touched.take() != 0 {
+            slice.memory.touch();
+        }
+        request
+    }
+
+    /// Stops the context, to go on later with `next`.
+    fn halt(&mut self, halt: Halt, next: Next) -> NextStep {
+        self.next = next;
+        NextStep::Stop(halt)
     }
 
     /// Does what compiled code asks for.
@@ -207,10 +261,10 @@ impl Context {
     ) -> Result<NextStep, TrapKind> {
         let address = GuestAddr::new(request.a as u32);
         if slice.is_long && request.involves_board() {
-            return Ok(NextStep::Stop(Stop::NeedsBoard, Next::Request(request)));
+            return Ok(self.halt(Halt::NeedsBoard, Next::Request(request)));
         }
         let slot = match request.reason().unwrap_or(Reason::Unreachable) {
-            Reason::Preempted => return Ok(NextStep::Stop(Stop::Preempted, Next::Answer(Answer::Slot(0)))),
+            Reason::Preempted => return Ok(self.halt(Halt::Preempted, Next::Answer(Answer::Slot(0)))),
             Reason::Load => slice.load_slot(address, request.width().ok_or(TrapKind::Unreachable)?)?,
             Reason::Store => {
                 slice.store_slot(address, request.width().ok_or(TrapKind::Unreachable)?, request.b)?;
@@ -257,11 +311,14 @@ impl Context {
         address: GuestAddr,
         signature: SigRef,
     ) -> Result<NextStep, TrapKind> {
-        let stated = self.program.signature(signature);
-        let Some(callee) = slice.firmware.signature(address) else {
-            return Err(TrapKind::UnknownFirmwareFunction { addr: address });
-        };
-        callee.check_call(address, stated)?;
+        let checked = self.checked.place(address, signature);
+        if *checked != Some((address, signature)) {
+            let Some(callee) = slice.firmware.signature(address) else {
+                return Err(TrapKind::UnknownFirmwareFunction { addr: address });
+            };
+            callee.check_call(address, self.program.signature(signature))?;
+            *checked = Some((address, signature));
+        }
         self.call_firmware(id, slice, address, signature)
     }
 
@@ -279,12 +336,13 @@ impl Context {
         Ok(match slice.call_firmware(id, address, arguments, self.program.address_of(self.at))? {
             Outcome::Done(value) => NextStep::Go(Answer::Slot(value.into_slot())),
             Outcome::Wait(wake) => {
-                NextStep::Stop(Stop::Waiting(wake), Next::CallFirmware(address, signature))
+                self.next = Next::CallFirmware(address, signature);
+                NextStep::Wait(wake)
             }
-            Outcome::End => NextStep::Stop(Stop::Ended, Next::Nothing(Stop::Ended)),
+            Outcome::End => self.halt(Halt::Ended, Next::Nothing(Stop::Ended)),
             Outcome::Pause => {
                 self.at += 1;
-                NextStep::Stop(Stop::Paused, Next::Answer(Answer::Slot(0)))
+                self.halt(Halt::Paused, Next::Answer(Answer::Slot(0)))
             }
         })
     }
