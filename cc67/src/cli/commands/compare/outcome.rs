@@ -3,7 +3,7 @@
 use std::fmt;
 
 use kmotiondef::structs::{Chan, Persist};
-use kmotiondef::variables::{CHAN, PERSIST};
+use kmotiondef::variables::{BIT_DIR_SHADOW, CHAN, PERSIST};
 use kmotiondef::{AxisId, Bit, Cycles, Ticks};
 use runtime::{Event, EventKind};
 use vm::engine::Engine;
@@ -50,8 +50,8 @@ pub(super) struct Outcome {
     pub(super) reach: Vec<f64>,
     /// Where the axes are at its very end: what came to rest a little later.
     pub(super) last_axes: Vec<(f64, f64)>,
-    /// Pins that are high.
-    pins: Vec<bool>,
+    /// The pins at the end.
+    pins: Vec<Pin>,
     /// Whether a KStep is there.
     has_kstep: bool,
 }
@@ -98,7 +98,12 @@ impl Outcome {
                 )
             })
             .collect();
-        self.pins = (0..PINS).filter_map(Bit::new).map(|bit| session.bit(bit)).collect();
+        let directions = [0, 1].map(|word| memory.peek::<u32>(BIT_DIR_SHADOW.element(word).address()));
+        let pins = (0..PINS).map(|pin| Pin {
+            is_output: directions[usize::from(pin >= 32)] >> (pin % 32) & 1 != 0,
+            is_high: Bit::new(pin).is_some_and(|bit| session.bit(bit)),
+        });
+        self.pins = pins.collect();
     }
 
     /// What the board with the firmware file is left with.
@@ -110,7 +115,9 @@ impl Outcome {
         }
         let kstep = board.file().address("KStepPresent").map(|at| board.memory().peek::<u32>(at));
         self.has_kstep = kstep.is_some_and(|present| present != 0);
-        self.pins = (0..PINS as usize).map(|pin| board.is_output(pin) && board.is_high(pin)).collect();
+        let pins = (0..PINS as usize)
+            .map(|pin| Pin { is_output: board.is_output(pin), is_high: board.is_high(pin) });
+        self.pins = pins.collect();
     }
 
     /// The largest difference between the times of lines, the first ones set to each other.
@@ -192,13 +199,22 @@ impl Outcome {
         for (pin, (one, two)) in self.pins.iter().zip(&firmware.pins).enumerate() {
             let is_pulsed = STEP_PINS.iter().any(|pins| pins.contains(&pin))
                 || firmware.has_kstep && KSTEP_PINS.contains(&pin);
-            if one != two && !is_pulsed {
-                let shown = |level: &bool| u8::from(*level).to_string();
+            // What drives an input is the same on both, and a generator's output is high for a part of the time.
+            let matters = (one.is_output || two.is_output) && !is_pulsed;
+            if matters && one.is_high != two.is_high {
+                let shown = |pin: &Pin| u8::from(pin.is_high).to_string();
                 found.push(Difference::new(format!("bit {pin}"), shown(one), shown(two), "io.md"));
             }
         }
         found
     }
+}
+
+/// A pin of the board.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Pin {
+    is_output: bool,
+    is_high: bool,
 }
 
 impl Difference {
@@ -284,5 +300,15 @@ mod tests {
         let what: Vec<_> = found.iter().map(|difference| difference.what.as_str()).collect();
         assert_eq!((what, near.any().is_none()), (vec!["line 1", "line 2"], true));
         assert_eq!(found[1].firmware, "(no more lines)");
+    }
+
+    #[test]
+    fn pins_differ_only_where_one_board_drives_them() {
+        let of =
+            |is_output, is_high| Outcome { pins: vec![Pin { is_output, is_high }], ..Outcome::default() };
+        let count = |model: Outcome, firmware: Outcome| model.differences(&firmware, None).0.len();
+        assert_eq!(count(of(false, true), of(false, false)), 0);
+        assert_eq!(count(of(true, true), of(true, false)), 1);
+        assert_eq!(count(of(false, true), of(true, false)), 1);
     }
 }
