@@ -50,6 +50,8 @@ macro_rules! for_each_lint {
             MissingAddress = "missing-address", On;
             /// An assignment is used as a condition.
             AssignmentCondition = "assignment-condition", On;
+            /// An operator of a condition takes less than it seems.
+            Precedence = "precedence", On;
             /// The name of a function is used where its result is meant: the `()` is missing.
             MissingCall = "missing-call", On, pass missing_call;
             /// A statement computes a value and drops it.

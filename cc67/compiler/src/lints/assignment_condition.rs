@@ -1,6 +1,6 @@
 //! `if (a = b)`, where `if ((a = b))` says that it is meant.
 
-use crate::ast::{Expression, ExpressionKind};
+use crate::ast::{Expression, ExpressionKind, UnaryOperator};
 use crate::diag::{Diagnostic, Lint};
 use crate::operators::OperatorMeaning;
 
@@ -16,7 +16,13 @@ pub(crate) fn finding(condition: &Expression) -> Option<Diagnostic> {
         condition.span,
         "an assignment is used as a condition",
     )
-    .help("write `==` to compare, or a second pair of parentheses if this is meant");
+    .help(match &from.kind {
+        // `a =! b`
+        ExpressionKind::Unary(UnaryOperator::Not, _) => {
+            "write `!=` or `==` to compare, or a second pair of parentheses if this is meant"
+        }
+        _ => "write `==` to compare, or a second pair of parentheses if this is meant",
+    });
     Some(match &from.kind {
         ExpressionKind::Binary(operator, ..) if matches!(operator.meaning(), OperatorMeaning::Compare(_)) => {
             diagnostic.note(format!("`{}` is computed first: its result is assigned", operator.spelling()))

@@ -114,6 +114,15 @@ impl Finding {
     }
 }
 
+/// A conversion as a message names it: a line end would break the message.
+fn printable(conversion: &[u8]) -> String {
+    let text = String::from_utf8_lossy(conversion);
+    let escaped = text
+        .chars()
+        .map(|one| if one.is_control() { one.escape_default().to_string() } else { one.to_string() });
+    escaped.collect()
+}
+
 /// Compares a format with the arguments after it.
 fn compare(
     types: &Types,
@@ -126,7 +135,7 @@ fn compare(
     let mut rest = format;
     while let Some(start) = rest.iter().position(|byte| *byte == b'%') {
         let (conversion, behind) = Conversion::parse(&rest[start + 1..], function.is_scan);
-        let spelled = String::from_utf8_lossy(&rest[start..rest.len() - behind.len()]).into_owned();
+        let spelled = printable(&rest[start..rest.len() - behind.len()]);
         rest = behind;
         if conversion.letter == b'%' || conversion.is_suppressed {
             continue;
@@ -350,6 +359,7 @@ mod tests {
         check("printf", "%d", &[Types::INT, Types::INT], "1 argument is not in the format");
         check("printf", "50% of", &[], "there is no argument for `% o`");
         check("printf", "%k", &[Types::INT], "`%k` is not a conversion");
+        check("printf", "100%\n", &[], "`%\\n` is not a conversion");
         check("sscanf", "%d", &[Types::INT], "`%d` needs an `int *`");
         check("fscanf", "%lf", &[int], "`%lf` needs a `double *`");
     }

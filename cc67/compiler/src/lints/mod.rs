@@ -35,6 +35,7 @@ pub(crate) mod conversion;
 pub(crate) mod empty_body;
 pub(crate) mod misleading_indentation;
 pub(crate) mod missing_address;
+pub(crate) mod precedence;
 pub(crate) mod sign_compare;
 pub(crate) mod unused_value;
 pub(crate) mod user_data_alignment;

@@ -5,6 +5,9 @@ use super::user_data_index;
 use crate::diag::{Diagnostic, Lint};
 use crate::source::Span;
 
+/// The last index at which there is room for one.
+const LAST: i32 = 198;
+
 /// The message for a `double` at a byte offset of `persist`.
 pub(crate) fn finding(offset: i32, span: Span) -> Option<Diagnostic> {
     // `persist` and `UserData` begin at multiples of 8.
@@ -13,6 +16,15 @@ pub(crate) fn finding(offset: i32, span: Span) -> Option<Diagnostic> {
         let index = (offset - user_data_index::range().0) / 4;
         Diagnostic::warning(Lint::UserDataAlignment, span, message)
             .at(format!("index {index}: the board would load a wrong value"))
-            .help(format!("use index {} or {}", index - 1, index + 1))
+            .help(neighbours(index))
     })
+}
+
+/// The indexes beside this one that hold a `double`.
+fn neighbours(index: i32) -> String {
+    match [index - 1, index + 1].map(|index| Some(index).filter(|index| (0..=LAST).contains(index))) {
+        [Some(below), Some(above)] => format!("use index {below} or {above}"),
+        [Some(index), None] | [None, Some(index)] => format!("use index {index}"),
+        [None, None] => format!("use an even index from 0 to {LAST}"),
+    }
 }

@@ -304,12 +304,21 @@ impl Sema<'_> {
         target: AssignmentTarget,
         span: Span,
     ) {
+        let help = self.quotes_help(to, span);
         let (from, to) = (self.spell(self.body.ty(value)), self.spell(to));
         self.report(
             Diagnostic::warning(lint, span, format!("{} makes {message}", self.describe(target)))
                 .at(format!("this is `{from}`, needed is `{to}`"))
-                .help(format!("write `({to})` if this is meant")),
+                .help(help.unwrap_or_else(|| format!("write `({to})` if this is meant"))),
         );
+    }
+
+    /// What is said of `'a'` where text is needed.
+    fn quotes_help(&self, to: TypeId, span: Span) -> Option<String> {
+        let text = String::from_utf8_lossy(self.sources.text(span)).into_owned();
+        let inner = text.strip_prefix('\'')?.strip_suffix('\'')?;
+        let is_text = self.types.pointee(to).is_some_and(|ty| self.types.size_of(ty.ty) == Some(1));
+        is_text.then(|| format!("text has double quotes: `\"{inner}\"`"))
     }
 
     pub(super) fn refuse_conversion(
@@ -353,6 +362,10 @@ impl Sema<'_> {
         let is_number = |ty: Option<QualifiedType>| ty.is_some_and(|ty| ty.ty.is_arithmetic());
         if to.is_arithmetic() && is_number(self.types.pointee(from)) {
             return Some("write `*` before it for the value it points to");
+        }
+        let is_text = |ty: QualifiedType| ty.is_const && self.types.size_of(ty.ty) == Some(1);
+        if from.is_arithmetic() && self.types.pointee(to).is_some_and(is_text) {
+            return Some("text in double quotes is needed here, such as `\"%g\\n\"` for `printf`");
         }
         if from.is_arithmetic() && is_number(self.types.pointee(to)) {
             return Some(match target {

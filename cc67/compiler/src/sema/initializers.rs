@@ -513,9 +513,13 @@ impl Sema<'_> {
         let element_size = text.encoding.size();
         if bytes.len() > size + element_size {
             let excess = (bytes.len() - element_size - size) / element_size;
+            let dropped = match excess {
+                1 => "the last character is dropped".to_owned(),
+                _ => format!("the last {excess} characters are dropped"),
+            };
             self.report(
                 Diagnostic::warning(Lint::LongString, span, "the string is longer than the array")
-                    .at(format!("the last {excess} characters are dropped")),
+                    .at(dropped),
             );
         }
         bytes.resize(size, 0);

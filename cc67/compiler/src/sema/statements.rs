@@ -7,7 +7,7 @@ use super::conversions::AssignmentTarget;
 use super::operands::Operand;
 use crate::ast::{Expression, Statement, StatementKind};
 use crate::diag::Diagnostic;
-use crate::lints::{assignment_condition, empty_body, misleading_indentation, unused_value};
+use crate::lints::{assignment_condition, empty_body, misleading_indentation, precedence, unused_value};
 use crate::names::Name;
 use crate::source::Span;
 use crate::ty::Types;
@@ -139,6 +139,7 @@ impl Sema<'_> {
             return self.placeholder(expression.span);
         }
         self.report_finding(assignment_condition::finding(expression));
+        self.report_finding(precedence::finding(expression));
         self.value(expression).unwrap_or_else(|| self.placeholder(expression.span))
     }
 

@@ -1,0 +1,105 @@
+//! Operators that take less than it seems: `a & b == c`, `a < b < c`, `!a == 3`.
+
+use crate::ast::{Expression, ExpressionKind, UnaryOperator};
+use crate::diag::{Diagnostic, Lint};
+use crate::operators::{BinaryOperator, CompareOp, OperatorMeaning};
+
+/// What is said of a condition; parts of it that are joined by `&&` and `||` are looked at one by one.
+pub(crate) fn finding(condition: &Expression) -> Option<Diagnostic> {
+    let ExpressionKind::Binary(operator, left, right) = &condition.kind else { return None };
+    match operator.meaning() {
+        OperatorMeaning::Logical(_) => finding(left).or_else(|| finding(right)),
+        OperatorMeaning::Compare(_) => chain(condition, *operator, left, right),
+        OperatorMeaning::Bitwise(_) => mask(*operator, left, right),
+        OperatorMeaning::Arithmetic(_) | OperatorMeaning::Shift(_) => None,
+    }
+}
+
+/// `a & b == c`
+fn mask(operator: BinaryOperator, left: &Expression, right: &Expression) -> Option<Diagnostic> {
+    let (found, compare) = match (comparison(left), comparison(right)) {
+        (None, Some(compare)) if !is_truth(left) => (right, compare),
+        (Some(compare), None) if !is_truth(right) => (left, compare),
+        _ => return None,
+    };
+    // `a & b == 1` asks for the same, if both are 0 or 1.
+    if matches!(compare.meaning(), OperatorMeaning::Compare(CompareOp::Equal)) && is_one(found) {
+        return None;
+    }
+    let spelling = compare.spelling();
+    let operator = operator.spelling();
+    let message = format!("`{spelling}` is computed before `{operator}`");
+    Some(
+        Diagnostic::warning(Lint::Precedence, found.span, message)
+            .at("this is 0 or 1")
+            .help(format!("write the `{operator}` in parentheses: `(a {operator} b) {spelling} c`")),
+    )
+}
+
+/// `a < b < c`, `!a == 3`
+fn chain(
+    condition: &Expression,
+    operator: BinaryOperator,
+    left: &Expression,
+    right: &Expression,
+) -> Option<Diagnostic> {
+    let spelling = operator.spelling();
+    let help = if comparison(left).is_some_and(is_relation) && is_relation(operator) {
+        format!("write both comparisons: `a {spelling} b && b {spelling} c`")
+    } else if is_negated(left) && is_large(right) {
+        "write `!=` in place of `==`, or `!( … )` around the comparison".to_owned()
+    } else {
+        return None;
+    };
+    Some(
+        Diagnostic::warning(Lint::Precedence, condition.span, format!("`{spelling}` compares a 0 or 1 here"))
+            .at(format!("what is before `{spelling}` is computed first"))
+            .help(help),
+    )
+}
+
+/// The operator of a comparison that no parentheses are around, whose span would hold them.
+fn comparison(expression: &Expression) -> Option<BinaryOperator> {
+    match &expression.kind {
+        ExpressionKind::Binary(operator, left, _) => {
+            let is_comparison = matches!(operator.meaning(), OperatorMeaning::Compare(_));
+            (is_comparison && expression.span.lo == left.span.lo).then_some(*operator)
+        }
+        _ => None,
+    }
+}
+
+fn is_relation(operator: BinaryOperator) -> bool {
+    let OperatorMeaning::Compare(compare) = operator.meaning() else { return false };
+    !matches!(compare, CompareOp::Equal | CompareOp::NotEqual)
+}
+
+/// Whether a value is 0 or 1 by its form.
+fn is_truth(expression: &Expression) -> bool {
+    match &expression.kind {
+        ExpressionKind::Unary(UnaryOperator::Not, _) => true,
+        ExpressionKind::Binary(operator, ..) => {
+            matches!(operator.meaning(), OperatorMeaning::Compare(_) | OperatorMeaning::Logical(_))
+        }
+        _ => false,
+    }
+}
+
+/// A `!` that no parentheses are around.
+fn is_negated(expression: &Expression) -> bool {
+    match &expression.kind {
+        ExpressionKind::Unary(UnaryOperator::Not, operand) => operand.span.lo > expression.span.lo,
+        _ => false,
+    }
+}
+
+/// A constant that no `!` gives.
+fn is_large(expression: &Expression) -> bool {
+    matches!(&expression.kind, ExpressionKind::Integer(literal) if literal.value > 1)
+}
+
+/// Whether a comparison is one with 1.
+fn is_one(comparison: &Expression) -> bool {
+    let ExpressionKind::Binary(_, _, right) = &comparison.kind else { return false };
+    matches!(&right.kind, ExpressionKind::Integer(literal) if literal.value == 1)
+}

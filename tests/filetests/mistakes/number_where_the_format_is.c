@@ -1,0 +1,10 @@
+//@ args: check
+//@ says: error: argument 1 of `printf`: cannot convert `float` to `const char *`
+//@ says: text in double quotes is needed here, such as `"%g\n"` for `printf`
+//@ exit: 1
+#include "KMotionDef.h"
+main()
+{
+    float x = 1.5;
+    printf(x);
+}

@@ -1,0 +1,8 @@
+//@ args: check
+//@ says: warning[int-pointer]: argument 1 of `printf` makes a pointer from an integer without a cast
+//@ says: text has double quotes: `"x"`
+#include "KMotionDef.h"
+main()
+{
+    printf('x');
+}
