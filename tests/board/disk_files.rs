@@ -149,7 +149,7 @@ fn a_line_written_in_parts_has_stray_characters_as_on_the_board() {
     let source = "main() { FILE *f = fopen(\"a.txt\", \"wt\"); fprintf(f, \"%d,\", 1); fprintf(f, \"%d\\n\", 2); fclose(f); }";
     let (_, remarks) = run(&scratch, source);
     assert_eq!(remarks.len(), 1, "{remarks:?}");
-    assert!(remarks[0].contains("Write each line by one call"), "{remarks:?}");
+    assert!(remarks[0].contains("Write each line with one call"), "{remarks:?}");
     assert_eq!(fs::read_to_string(scratch.path().join("disk/a.txt")).expect("it is there"), "1,\u{2}2\n");
 }
 
