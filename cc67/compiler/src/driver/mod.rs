@@ -152,17 +152,20 @@ pub(crate) fn compile_here(
     files: &dyn pp::Files,
 ) -> Compilation {
     let name = path.to_string_lossy().into_owned();
-    let refuse = |message: String| {
+    let refuse = |error: Diagnostic| {
         let mut sink = Sink::new();
-        sink.report(Diagnostic::global_error(message));
+        sink.report(error);
         Compilation { name, sources: SourceMap::new(), sink, object: None, included_by: Vec::new() }
     };
     if let Some(what) = files::not_source(&text) {
-        return refuse(format!("{} is not C source text but {what}", path.display()));
+        return refuse(Diagnostic::global_error(format!(
+            "{} is not C source text but {what}",
+            path.display()
+        )));
     }
     if text.len() > pp::limits::FILE_BYTES as usize {
         let most = pp::limits::FILE_BYTES;
-        return refuse(format!("{} is larger than {most} bytes", path.display()));
+        return refuse(Diagnostic::global_error(format!("{} is larger than {most} bytes", path.display())));
     }
     let text = Arc::new(text);
     let (compilation, is_final) = compile_text(path, &text, Headers::AsNeeded, options, files);

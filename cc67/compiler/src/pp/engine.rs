@@ -15,7 +15,7 @@ use super::expand::Frame;
 use super::guard::Guard;
 use super::lexer::{Lexer, LexerContext};
 use super::macros::Macros;
-use super::prepared::Prepared;
+use super::prepared::state::Prepared;
 use super::search::FileReader;
 use super::token::{Flags, Token, TokenKind};
 use super::{Files, Headers, HeadersRead, Options, limits};

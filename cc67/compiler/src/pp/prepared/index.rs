@@ -69,7 +69,7 @@ impl At {
 
 /// A name in the texts.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Word {
+pub(super) struct IndexedName {
     spelling: At,
     length: u8,
     /// It is read when the headers are: as the name of a macro, or within a declaration.
@@ -80,7 +80,7 @@ pub(super) struct Word {
     piece: u16,
 }
 
-impl Word {
+impl IndexedName {
     const NONE: Self = Self {
         spelling: At::NOWHERE,
         length: 0,
@@ -128,7 +128,7 @@ pub(super) struct Head {
 /// Every name of the texts.
 pub(super) struct Index {
     slots: [u16; SLOTS],
-    words: [Word; WORDS],
+    words: [IndexedName; WORDS],
     count: usize,
     pieces: [Piece; PIECES],
     piece_count: usize,
@@ -137,7 +137,7 @@ pub(super) struct Index {
 
 impl Index {
     /// The word of a spelling.
-    pub(super) fn find(&self, spelling: &[u8]) -> Option<&Word> {
+    pub(super) fn find(&self, spelling: &[u8]) -> Option<&IndexedName> {
         match self.slot(spelling) {
             (_, Some(word)) => self.words.get(word),
             (_, None) => None,
@@ -159,7 +159,7 @@ impl Index {
         let head = Head { included_at: (0, 0, 0), guard: (0, 0) };
         let mut index = Self {
             slots: [0; SLOTS],
-            words: [Word::NONE; WORDS],
+            words: [IndexedName::NONE; WORDS],
             count: 0,
             pieces: [nothing; PIECES],
             piece_count: 0,
@@ -270,7 +270,7 @@ impl Index {
             is_new = false;
             let mut word = 0;
             while word < self.count {
-                let Word { definition, is_in_declaration, .. } = self.words[word];
+                let IndexedName { definition, is_in_declaration, .. } = self.words[word];
                 is_new |= is_in_declaration && !definition.is_nowhere() && self.spread_body(definition);
                 word += 1;
             }
@@ -309,7 +309,7 @@ impl Index {
         }
         let word = self.count;
         let spelling = At::new(number, at);
-        self.words[word] = Word { spelling, length: (end - at) as u8, ..Word::NONE };
+        self.words[word] = IndexedName { spelling, length: (end - at) as u8, ..IndexedName::NONE };
         self.count += 1;
         self.slots[slot] = self.count as u16;
         word
@@ -326,7 +326,7 @@ impl Index {
         let mut slot = hash.finish() as usize % SLOTS;
         loop {
             let Some(word) = (self.slots[slot] as usize).checked_sub(1) else { return (slot, None) };
-            let Word { spelling: known, length, .. } = self.words[word];
+            let IndexedName { spelling: known, length, .. } = self.words[word];
             if length as usize == spelling.len() && is_at(TEXTS[known.text()], known.offset(), spelling) {
                 return (slot, Some(word));
             }
@@ -335,7 +335,7 @@ impl Index {
     }
 }
 
-/// Whether a text goes on with some bytes.
+/// Whether a text continues with some bytes.
 const fn is_at(text: &[u8], at: usize, bytes: &[u8]) -> bool {
     let mut index = 0;
     while index < bytes.len() {

@@ -13,7 +13,8 @@
 //!   everything has to be read again. Other macros that are defined later mean nothing to the declarations.
 //! - Something is wrong in the program, and a message could name any declaration: the caller knows that.
 
-pub(super) mod index;
+mod index;
+pub(super) mod state;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -25,62 +26,12 @@ use crate::source::{FileId, Span};
 
 use super::engine::{OpenFile, Preprocessor};
 use super::lexer::Lexer;
+use super::limits;
 use super::macros::{Builtin, MacroId, Standing};
 use super::token::{Token, TokenKind};
-use super::{Headers, HeadersRead, limits};
 
 use index::{At, BOARD, INDEX, PREDEFINED, Piece, TEXTS};
-
-/// The texts in one compilation.
-#[derive(Debug)]
-pub(super) struct Prepared {
-    /// Those that were begun.
-    files: [Option<FileId>; TEXTS.len()],
-    headers: Reading,
-    /// A declaration is read: macros of the program mean nothing there.
-    in_declaration: bool,
-}
-
-/// How the headers are read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Reading {
-    /// As any other file.
-    Whole,
-    /// As needed, once they are included.
-    AsNeeded,
-    /// As needed; the program has just included them.
-    Begun,
-    /// As needed; the declarations come before the token of this number.
-    Included(usize),
-    /// As needed, which was wrong.
-    Wrong,
-}
-
-impl Prepared {
-    pub(super) fn new(headers: Headers) -> Self {
-        let headers = match headers {
-            Headers::Whole => Reading::Whole,
-            Headers::AsNeeded => Reading::AsNeeded,
-        };
-        Self { files: [None; TEXTS.len()], headers, in_declaration: false }
-    }
-
-    /// How much of the headers was read.
-    pub(super) fn read(&self) -> HeadersRead {
-        match self.headers {
-            Reading::Whole | Reading::AsNeeded => HeadersRead::Whole,
-            Reading::Begun | Reading::Included(_) => HeadersRead::Partly,
-            Reading::Wrong => HeadersRead::TooLittle,
-        }
-    }
-
-    /// Says where the tokens of the headers belong, if the program has just included them.
-    pub(super) fn take_place(&mut self, tokens: usize) {
-        if self.headers == Reading::Begun {
-            self.headers = Reading::Included(tokens);
-        }
-    }
-}
+use state::HeaderState;
 
 impl Preprocessor<'_> {
     /// The definition in force for a name; the prepared texts are searched for it when it is met first.
@@ -114,16 +65,16 @@ impl Preprocessor<'_> {
     /// Notes that the program defines a macro, or takes a definition back.
     pub(super) fn note_macro(&mut self, name: Name) {
         let reading = self.prepared.headers;
-        if matches!(reading, Reading::Whole | Reading::Wrong) {
+        if matches!(reading, HeaderState::Whole | HeaderState::Wrong) {
             return;
         }
         let Some(word) = INDEX.find(self.names.get(name).as_bytes()) else { return };
         self.prepared.headers = match reading {
-            Reading::AsNeeded if word.is_of_headers() => Reading::Whole,
-            Reading::Begun | Reading::Included(_)
+            HeaderState::AsNeeded if word.is_of_headers() => HeaderState::Whole,
+            HeaderState::Begun | HeaderState::Included(_)
                 if word.is_in_declaration && word.definition().is_some() =>
             {
-                Reading::Wrong
+                HeaderState::Wrong
             }
             _ => reading,
         };
@@ -133,13 +84,13 @@ impl Preprocessor<'_> {
     pub(super) fn include_prepared(&mut self, text: &[u8], at: Span) -> bool {
         let is_board = TEXTS.get(BOARD).is_some_and(|board| std::ptr::eq(*board, text) || *board == text);
         if !is_board
-            || self.prepared.headers != Reading::AsNeeded
+            || self.prepared.headers != HeaderState::AsNeeded
             || self.is_near_limits()
             || self.has_own_copy()
         {
             return false;
         }
-        self.prepared.headers = Reading::Begun;
+        self.prepared.headers = HeaderState::Begun;
         self.macros.forget_free();
         for (number, text) in TEXTS.iter().enumerate().skip(BOARD) {
             let head = INDEX.head(number);
@@ -160,10 +111,10 @@ impl Preprocessor<'_> {
 
     /// Puts the declarations that the tokens need among them.
     pub(super) fn add_declarations(&mut self, output: &mut Vec<Token>) {
-        let Reading::Included(place) = self.prepared.headers else { return };
+        let HeaderState::Included(place) = self.prepared.headers else { return };
         let bytes: usize = TEXTS.iter().map(|text| text.len()).sum();
         if output.len() + bytes > limits::TOKENS || self.work.expanded + bytes > limits::EXPANDED_TOKENS {
-            self.prepared.headers = Reading::Wrong;
+            self.prepared.headers = HeaderState::Wrong;
             return;
         }
         let mut declarations: Vec<Vec<Token>> = vec![Vec::new(); INDEX.pieces().len()];
@@ -186,7 +137,7 @@ impl Preprocessor<'_> {
         for token in tokens.iter().filter(|token| token.kind == TokenKind::Identifier) {
             if seen.insert(token.name) {
                 let word = INDEX.find(self.names.get(token.name).as_bytes());
-                needed.extend(word.and_then(index::Word::piece));
+                needed.extend(word.and_then(index::IndexedName::piece));
             }
         }
     }

@@ -1,0 +1,57 @@
+//! How far the prepared texts were read in one compilation.
+
+use crate::source::FileId;
+
+use super::super::{Headers, HeadersRead};
+use super::index::TEXTS;
+
+/// The texts in one compilation.
+#[derive(Debug)]
+pub(in crate::pp) struct Prepared {
+    /// Those that were begun.
+    pub(super) files: [Option<FileId>; TEXTS.len()],
+    pub(super) headers: HeaderState,
+    /// A declaration is read: macros of the program mean nothing there.
+    pub(super) in_declaration: bool,
+}
+
+/// How the headers are read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum HeaderState {
+    /// As any other file.
+    Whole,
+    /// As needed, once they are included.
+    AsNeeded,
+    /// As needed; the program has just included them.
+    Begun,
+    /// As needed; the declarations come before the token of this number.
+    Included(usize),
+    /// As needed, which was wrong.
+    Wrong,
+}
+
+impl Prepared {
+    pub(in crate::pp) fn new(headers: Headers) -> Self {
+        let headers = match headers {
+            Headers::Whole => HeaderState::Whole,
+            Headers::AsNeeded => HeaderState::AsNeeded,
+        };
+        Self { files: [None; TEXTS.len()], headers, in_declaration: false }
+    }
+
+    /// How much of the headers was read.
+    pub(in crate::pp) fn read(&self) -> HeadersRead {
+        match self.headers {
+            HeaderState::Whole | HeaderState::AsNeeded => HeadersRead::Whole,
+            HeaderState::Begun | HeaderState::Included(_) => HeadersRead::Partly,
+            HeaderState::Wrong => HeadersRead::TooLittle,
+        }
+    }
+
+    /// Says where the tokens of the headers belong, if the program has just included them.
+    pub(in crate::pp) fn take_place(&mut self, tokens: usize) {
+        if self.headers == HeaderState::Begun {
+            self.headers = HeaderState::Included(tokens);
+        }
+    }
+}
