@@ -12,9 +12,7 @@
 //! The file is as long as the board has functions: after the hundred lines of the row's type there is nothing but
 //! rows, and a row cut off from the others would be looked for in two places.
 
-use std::collections::BTreeMap;
 use std::num::NonZeroU16;
-use std::sync::LazyLock;
 
 use crate::GuestAddr;
 use crate::ctype::{CType, Char, File, GuestType, Long, SizeT, UnsignedLong, ValueClass, Void, Volatile};
@@ -127,10 +125,39 @@ crate::for_each_firmware_fn!(functions);
 /// The number of the function called `name`.
 #[must_use]
 pub fn function_named(name: &str) -> Option<usize> {
-    static BY_NAME: LazyLock<BTreeMap<&str, usize>> = LazyLock::new(|| {
-        FIRMWARE_FUNCTIONS.iter().zip(0..).map(|(function, n)| (function.name, n)).collect()
-    });
-    BY_NAME.get(name).copied()
+    let at =
+        BY_NAME.binary_search_by(|number| FIRMWARE_FUNCTIONS[usize::from(*number)].name.cmp(name)).ok()?;
+    Some(usize::from(BY_NAME[at]))
+}
+
+/// The numbers of the functions in the order of their names.
+static BY_NAME: [u16; FIRMWARE_FUNCTIONS.len()] = by_name();
+
+const fn by_name() -> [u16; FIRMWARE_FUNCTIONS.len()] {
+    let mut table = [0; FIRMWARE_FUNCTIONS.len()];
+    let mut number = 0;
+    while number < table.len() {
+        let mut at = number;
+        while at > 0
+            && is_before(FIRMWARE_FUNCTIONS[number].name, FIRMWARE_FUNCTIONS[table[at - 1] as usize].name)
+        {
+            table[at] = table[at - 1];
+            at -= 1;
+        }
+        table[at] = number as u16;
+        number += 1;
+    }
+    table
+}
+
+/// Whether a name comes before another one.
+const fn is_before(name: &str, other: &str) -> bool {
+    let (name, other) = (name.as_bytes(), other.as_bytes());
+    let mut at = 0;
+    while at < name.len() && at < other.len() && name[at] == other[at] {
+        at += 1;
+    }
+    at < other.len() && (at == name.len() || name[at] < other[at])
 }
 
 /// The number of the function that starts at `address`.

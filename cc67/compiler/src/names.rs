@@ -74,8 +74,8 @@ impl Name {
     }
 }
 
-/// Room for the names of a usual program with the header of the board; a power of two.
-const USUAL_NAMES: usize = 4096;
+/// Room for the names of a usual program; a power of two.
+const USUAL_NAMES: usize = 1024;
 
 /// Every identifier of a compilation, each once.
 #[derive(Clone, Debug)]

@@ -5,8 +5,6 @@
 //! source map's scratch space, so that a span is enough for every token.
 
 use std::borrow::Cow;
-use std::cmp::Reverse;
-use std::sync::LazyLock;
 
 use cranelift_entity::EntityRef;
 use cranelift_entity::packed_option::ReservedValue;
@@ -135,22 +133,56 @@ macro_rules! token_kinds {
 /// A punctuator and its text.
 type Spelled = (&'static [u8], TokenKind);
 
-/// The punctuators that begin with each byte, the longest first.
-static BY_FIRST_BYTE: LazyLock<Vec<Vec<Spelled>>> = LazyLock::new(|| {
-    let from = |first: u8| {
-        let all = TokenKind::PUNCTUATORS.iter().copied();
-        let mut list: Vec<_> = all.filter(|(text, _)| text.first() == Some(&first)).collect();
-        list.sort_by_key(|(text, _)| Reverse(text.len()));
-        list
-    };
-    (0..=u8::MAX).map(from).collect()
-});
+/// The punctuators, those with the same first byte next to each other, the longest first.
+static BY_FIRST_BYTE: [Spelled; TokenKind::PUNCTUATORS.len()] = by_first_byte();
+
+/// For each byte, which of them begin with it.
+static OF_FIRST_BYTE: [(u8, u8); 256] = of_first_byte();
 
 impl TokenKind {
     /// The punctuators that begin with a byte, the longest first.
     pub(super) fn punctuators_from(first: u8) -> &'static [Spelled] {
-        BY_FIRST_BYTE.get(usize::from(first)).map_or(&[], Vec::as_slice)
+        let (start, end) = OF_FIRST_BYTE.get(usize::from(first)).copied().unwrap_or_default();
+        BY_FIRST_BYTE.get(usize::from(start)..usize::from(end)).unwrap_or(&[])
     }
+}
+
+#[expect(clippy::indexing_slicing, reason = "runs when the compiler is built")]
+const fn by_first_byte() -> [Spelled; TokenKind::PUNCTUATORS.len()] {
+    let mut sorted = [(b"".as_slice(), TokenKind::End); TokenKind::PUNCTUATORS.len()];
+    let mut number = 0;
+    while number < sorted.len() {
+        let (text, kind) = TokenKind::PUNCTUATORS[number];
+        let mut at = number;
+        while at > 0 && is_before(text, sorted[at - 1].0) {
+            sorted[at] = sorted[at - 1];
+            at -= 1;
+        }
+        sorted[at] = (text, kind);
+        number += 1;
+    }
+    sorted
+}
+
+/// Whether a punctuator comes before another one.
+#[expect(clippy::indexing_slicing, reason = "runs when the compiler is built")]
+const fn is_before(text: &[u8], other: &[u8]) -> bool {
+    text[0] < other[0] || text[0] == other[0] && text.len() > other.len()
+}
+
+#[expect(clippy::indexing_slicing, clippy::as_conversions, reason = "runs when the compiler is built")]
+const fn of_first_byte() -> [(u8, u8); 256] {
+    let mut ranges = [(0, 0); 256];
+    let mut at = 0;
+    while at < BY_FIRST_BYTE.len() {
+        let (start, end) = &mut ranges[BY_FIRST_BYTE[at].0[0] as usize];
+        if *end == 0 {
+            *start = at as u8;
+        }
+        at += 1;
+        *end = at as u8;
+    }
+    ranges
 }
 
 token_kinds! {
@@ -217,6 +249,18 @@ for_each_binary_operator!(tokens_of_operators);
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn punctuators_are_found_by_their_first_byte_and_the_longest_is_first() {
+        let found: usize = (0..=u8::MAX).map(|first| TokenKind::punctuators_from(first).len()).sum();
+        assert_eq!(found, TokenKind::PUNCTUATORS.len());
+        for (text, kind) in TokenKind::PUNCTUATORS {
+            let list = TokenKind::punctuators_from(*text.first().unwrap());
+            assert!(
+                list.contains(&(*text, *kind)) && list.is_sorted_by_key(|(text, _)| usize::MAX - text.len())
+            );
+        }
+    }
 
     #[test]
     fn a_token_is_small() {

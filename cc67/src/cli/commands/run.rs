@@ -159,7 +159,8 @@ impl RunArguments {
         let (board, ending) = (rig.session.board(), rig.session.ending());
         let (exit, why) = seen.exit(end, self.limit.is_some());
         let active = active(board);
-        let state = FinalState::of(board);
+        // 2,000 bits are looked at only if somebody looks at the result.
+        let state = if self.json || self.state { FinalState::of(board) } else { FinalState::default() };
         screen.end(exit, why, board.tick(), &active, &ending, &state);
         if screen.finish().map_err(|error| output::lost_output(&error))? == Audience::Gone {
             return Ok(Exit::Success);
