@@ -174,7 +174,7 @@ impl Translator<'_, '_> {
 
     /// Loads the pointer to the marks of protected blocks.
     ///
-    /// Code for the rare case does so where it stands: what is moved out of a loop takes a register all through it.
+    /// Code for the rare case does so in the same place: what is moved out of a loop takes a register all through it.
     fn load_marks(&mut self) -> Value {
         let field = offset_of!(State, ram.protected);
         if self.twice.is_rare { self.load_state(types::I64, field) } else { self.load_pointer(field) }

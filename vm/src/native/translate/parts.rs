@@ -6,7 +6,7 @@ use cranelift_codegen::ir::{FuncRef, MemFlagsData, SigRef, Value};
 use cranelift_frontend::Variable;
 
 use super::fast::{Fast, Way};
-use super::shortcut::{Attempt, Words};
+use super::shortcut::{Attempt, ShortcutWords};
 use super::turns::Plan;
 
 /// What the registers of the program are.
@@ -24,7 +24,7 @@ pub(super) struct CallParts {
     /// The functions of the program that this one has called so far.
     pub(super) callees: BTreeMap<usize, FuncRef>,
     /// What callers attempt of them, and the attempt at hand.
-    pub(super) shortcuts: BTreeMap<usize, Option<Words>>,
+    pub(super) shortcuts: BTreeMap<usize, Option<ShortcutWords>>,
     pub(super) attempt: Option<Attempt>,
     pub(super) request: FuncRef,
     pub(super) leave: SigRef,

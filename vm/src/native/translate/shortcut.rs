@@ -28,24 +28,24 @@ const MAX_WORDS: usize = 32;
 const MAX_REGISTERS: usize = 64;
 
 /// The words of a path to a return, in ascending order, which is that of execution.
-pub(super) type Words = Rc<BTreeSet<usize>>;
+pub(super) type ShortcutWords = Rc<BTreeSet<usize>>;
 
-/// The words of `function` from which an attempt gets to a return; `None` if that is not so at its beginning.
+/// The words of `function` from which an attempt gets to a return; `None` if its first word is not one.
 fn shortcut(program: &Program, function: &Function) -> Option<BTreeSet<usize>> {
     let first = function.body.start;
-    let mut search = Search { program, leads: BTreeMap::new() };
+    let mut search = ReturnSearch { program, leads: BTreeMap::new() };
     let found = function.classes.len() <= MAX_REGISTERS && search.leads_to_return(first);
     found.then(|| search.leads.into_iter().filter(|(_, leads)| *leads).map(|(at, _)| at).collect())
 }
 
 /// Looks for paths to a return.
-struct Search<'a> {
+struct ReturnSearch<'a> {
     program: &'a Program,
     /// Whether each of the words that were looked at leads to a return.
     leads: BTreeMap<usize, bool>,
 }
 
-impl Search<'_> {
+impl ReturnSearch<'_> {
     fn leads_to_return(&mut self, at: usize) -> bool {
         if let Some(leads) = self.leads.get(&at) {
             return *leads;
@@ -115,7 +115,7 @@ pub(super) struct Attempt {
 
 impl<'a> Translator<'a, '_> {
     /// The path to a return of the function with the given index, if callers attempt it.
-    fn shortcut_of(&mut self, index: usize) -> Option<Words> {
+    fn shortcut_of(&mut self, index: usize) -> Option<ShortcutWords> {
         // Code for the rare case stays small.
         if self.twice.is_rare {
             return None;
