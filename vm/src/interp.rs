@@ -14,6 +14,7 @@ mod dispatch;
 mod holds;
 mod jumps;
 mod memory;
+mod parts;
 mod sequences;
 
 use std::sync::Arc;
@@ -103,7 +104,7 @@ impl BytecodeEngine {
     /// Gives all contexts the words at which they should be held now.
     fn refresh(&mut self) {
         for Running { code, .. } in self.contexts.iter_mut().flatten() {
-            let plain = self.words.get(&code.program, |program| Arc::new(Encoded::new(program.ops())));
+            let plain = self.words.get(&code.program, |program| Arc::new(Encoded::new(program)));
             code.words = self.holds.words(&code.program, plain);
         }
     }
@@ -129,7 +130,7 @@ impl Executor for BytecodeEngine {
         _firmware: &F,
     ) -> Result<(), TrapKind> {
         let function = program.function_at(entry).ok_or(TrapKind::BadCallTarget { addr: entry })?;
-        let words = self.words.get(program, |program| Arc::new(Encoded::new(program.ops())));
+        let words = self.words.get(program, |program| Arc::new(Encoded::new(program)));
         let words = self.holds.words(program, words);
         self.holds.passes[id.index()] = false;
         let code = Code { program: Arc::clone(program), words };
@@ -265,9 +266,9 @@ fn execute<F: Firmware + ?Sized>(
     slice: &mut Slice<'_, F>,
 ) -> Exit {
     let (calls, registers) = context.parts();
-    let mut state =
-        State { program, memory: slice.memory, budget: slice.budget.get(), registers, calls, exit: None };
-    let exit = dispatch::execute(&mut state, words);
+    let (sdram, ram) = slice.memory.split();
+    let mut state = State { words, program, ram, budget: slice.budget.get(), registers, calls, exit: None };
+    let exit = dispatch::execute(&mut state, sdram);
     slice.budget = Cycles::new(state.budget);
     exit
 }

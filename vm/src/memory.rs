@@ -66,6 +66,15 @@ pub trait Scalar: sealed::Sealed + Copy + Default {
     #[doc(hidden)]
     fn get(bytes: &[u8], offset: usize) -> Option<Self>;
 
+    /// The same at a multiple of the size, and `None` elsewhere; one comparison finds both out, as any other offset
+    /// becomes an index far beyond the end.
+    #[doc(hidden)]
+    fn get_multiple(bytes: &[u8], offset: u32) -> Option<Self>;
+
+    /// Writes little-endian bytes at a multiple of the size; `None` elsewhere and beyond the end.
+    #[doc(hidden)]
+    fn set_multiple(self, bytes: &mut [u8], offset: u32) -> Option<()>;
+
     /// Writes little-endian bytes at `offset`; `None` beyond the end.
     #[doc(hidden)]
     fn set(self, bytes: &mut [u8], offset: usize) -> Option<()>;
@@ -89,6 +98,19 @@ macro_rules! scalars {
             fn get(bytes: &[u8], offset: usize) -> Option<Self> {
                 let chunk = bytes.get(offset..offset.checked_add($size)?)?;
                 Some(Self::from_le_bytes(*chunk.first_chunk()?))
+            }
+
+            #[inline(always)]
+            fn get_multiple(bytes: &[u8], offset: u32) -> Option<Self> {
+                let number = offset.rotate_right(Self::SIZE.trailing_zeros());
+                Some(Self::from_le_bytes(*bytes.as_chunks().0.get(index(number))?))
+            }
+
+            #[inline(always)]
+            fn set_multiple(self, bytes: &mut [u8], offset: u32) -> Option<()> {
+                let number = offset.rotate_right(Self::SIZE.trailing_zeros());
+                *bytes.as_chunks_mut().0.get_mut(index(number))? = self.to_le_bytes();
+                Some(())
             }
 
             #[inline]
@@ -147,6 +169,70 @@ impl Default for GuestMemory {
     }
 }
 
+/// The large memory.
+pub(crate) type Sdram = [u8; SDRAM_SIZE];
+
+/// What accesses of RAM need besides SDRAM, and divisions.
+///
+/// An engine that has both apart can keep the place of SDRAM in a register of the processor.
+pub(crate) struct RamRest<'a> {
+    iram: &'a mut [u8; IRAM_SIZE],
+    protection: &'a Protection,
+    faults: Faults,
+    is_touched: &'a mut bool,
+}
+
+impl RamRest<'_> {
+    /// [`GuestMemory::load_ram`]
+    #[inline(always)]
+    pub(crate) fn load_ram<T: Scalar>(&self, sdram: &Sdram, addr: GuestAddr) -> Option<T> {
+        load_ram(sdram, self.iram, addr)
+    }
+
+    /// [`GuestMemory::store_ram`]
+    #[inline(always)]
+    pub(crate) fn store_ram<T: Scalar>(
+        &mut self,
+        sdram: &mut Sdram,
+        addr: GuestAddr,
+        value: T,
+    ) -> Option<()> {
+        let address = addr.get();
+        if self.protection.covers_aligned(address) {
+            return None;
+        }
+        if value.set_multiple(sdram, address.wrapping_sub(SDRAM_BASE)).is_none() {
+            value.set_multiple(self.iram, address.wrapping_sub(IRAM_BASE))?;
+            *self.is_touched = true;
+        }
+        Some(())
+    }
+
+    /// [`GuestMemory::divided_by_zero`]
+    ///
+    /// # Errors
+    /// [`TrapKind::DivisionByZero`], unless programs get what the board yields.
+    #[cold]
+    pub(crate) const fn divided_by_zero(&self, op: WordDivision, a: i32) -> Result<i32, TrapKind> {
+        divided_by_zero(self.faults, op, a)
+    }
+}
+
+/// A value at a multiple of its size in one of the two.
+#[inline(always)]
+fn load_ram<T: Scalar>(sdram: &Sdram, iram: &[u8; IRAM_SIZE], addr: GuestAddr) -> Option<T> {
+    let address = addr.get();
+    T::get_multiple(sdram, address.wrapping_sub(SDRAM_BASE))
+        .or_else(|| T::get_multiple(iram, address.wrapping_sub(IRAM_BASE)))
+}
+
+const fn divided_by_zero(faults: Faults, op: WordDivision, a: i32) -> Result<i32, TrapKind> {
+    match faults {
+        Faults::Trap => Err(TrapKind::DivisionByZero),
+        Faults::Board => Ok(op.by_zero(a)),
+    }
+}
+
 impl GuestMemory {
     /// Memory as at power-up: zero, the flash erased.
     #[must_use]
@@ -173,10 +259,7 @@ impl GuestMemory {
     /// [`TrapKind::DivisionByZero`], unless programs get what the board yields.
     #[cold]
     pub const fn divided_by_zero(&self, op: WordDivision, a: i32) -> Result<i32, TrapKind> {
-        match self.faults {
-            Faults::Trap => Err(TrapKind::DivisionByZero),
-            Faults::Board => Ok(op.by_zero(a)),
-        }
+        divided_by_zero(self.faults, op, a)
     }
 
     /// Whether on-chip RAM, where the variables of the firmware are, may have been written since this was last asked.
@@ -215,12 +298,7 @@ impl GuestMemory {
     #[must_use]
     #[inline(always)]
     pub fn load_ram<T: Scalar>(&self, addr: GuestAddr) -> Option<T> {
-        let address = addr.get();
-        if address & (T::LOAD_ALIGN - 1) != 0 {
-            return None;
-        }
-        T::get(&self.sdram[..], index(address.wrapping_sub(SDRAM_BASE)))
-            .or_else(|| T::get(&self.iram[..], index(address.wrapping_sub(IRAM_BASE))))
+        load_ram(&self.sdram, &self.iram, addr)
     }
 
     #[cold]
@@ -263,14 +341,18 @@ impl GuestMemory {
     /// `None` elsewhere.
     #[inline(always)]
     pub fn store_ram<T: Scalar>(&mut self, addr: GuestAddr, value: T) -> Option<()> {
-        let address = addr.get();
-        if address & (T::SIZE - 1) != 0 || self.protection.covers_aligned(address) {
-            return None;
-        }
-        self.write_ram(address, value)
+        let (sdram, mut rest) = self.split();
+        rest.store_ram(sdram, addr, value)
     }
 
+    /// SDRAM, and what else an engine needs for accesses of RAM.
     #[inline(always)]
+    pub(crate) fn split(&mut self) -> (&mut Sdram, RamRest<'_>) {
+        let Self { sdram, iram, protection, faults, is_touched, .. } = self;
+        (sdram, RamRest { iram, protection, faults: *faults, is_touched })
+    }
+
+    #[inline]
     fn write_ram<T: Scalar>(&mut self, address: u32, value: T) -> Option<()> {
         if value.set(&mut self.sdram[..], index(address.wrapping_sub(SDRAM_BASE))).is_none() {
             value.set(&mut self.iram[..], index(address.wrapping_sub(IRAM_BASE)))?;

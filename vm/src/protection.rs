@@ -22,11 +22,20 @@ pub(crate) type Texts = [Range<u32>; ThreadId::MAX as usize];
 pub(crate) struct Protection {
     texts: Texts,
     map: Box<[u64; MAP]>,
+    /// The addresses from the first to the last that is protected: most stores go elsewhere and need not ask the map.
+    hull: Hull,
+}
+
+/// The `size` bytes from `first` on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Hull {
+    first: u32,
+    size: u32,
 }
 
 impl Default for Protection {
     fn default() -> Self {
-        Self { texts: Default::default(), map: Box::new([0; MAP]) }
+        Self { texts: Default::default(), map: Box::new([0; MAP]), hull: Hull::default() }
     }
 }
 
@@ -35,14 +44,20 @@ impl Protection {
     pub(crate) fn set(&mut self, thread: ThreadId, text: Range<u32>) {
         self.texts[thread.index()] = text;
         self.map.fill(0);
+        let (mut lowest, mut highest) = (u32::MAX, 0);
         for text in &self.texts {
             let first = text.start.clamp(PROGRAM_BASE, PROGRAM_LIMIT).div_ceil(GRANULE);
             let end = text.end.clamp(PROGRAM_BASE, PROGRAM_LIMIT) / GRANULE;
+            if first < end {
+                lowest = lowest.min(first * GRANULE);
+                highest = highest.max(end * GRANULE);
+            }
             for granule in first..end {
                 let bit = granule - PROGRAM_BASE / GRANULE;
                 self.map[(bit / u64::BITS) as usize] |= 1 << (bit % u64::BITS);
             }
         }
+        self.hull = Hull { first: lowest, size: highest.saturating_sub(lowest) };
     }
 
     /// The protected ranges, before they are cut to whole granules inside the program area.
@@ -64,7 +79,8 @@ impl Protection {
     /// Whether bytes from `address` on within its granule are protected.
     #[inline]
     pub(crate) fn covers_aligned(&self, address: u32) -> bool {
-        self.is_set(address.wrapping_sub(PROGRAM_BASE) / GRANULE)
+        address.wrapping_sub(self.hull.first) < self.hull.size
+            && self.is_set(address.wrapping_sub(PROGRAM_BASE) / GRANULE)
     }
 
     #[cold]

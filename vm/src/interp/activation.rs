@@ -7,9 +7,11 @@ use std::cell::Cell;
 
 use kmotiondef::GuestAddr;
 
+use super::code::Words;
 use super::context::{Calls, Window};
+use super::sequences::AHEAD;
 use crate::kind::Width;
-use crate::memory::GuestMemory;
+use crate::memory::{RamRest, Sdram};
 use crate::operand::{FuncRef, Label, RegF32, RegF64, RegI32, RegI64, SigRef};
 use crate::program::Program;
 use crate::slot::Slot;
@@ -98,10 +100,13 @@ pub(super) trait Register: Copy {
 
     /// Index in the window.
     fn index(self) -> u16;
+
+    /// Notes that this was assigned last.
+    fn note(activation: &mut Activation<'_, '_>, value: Self::Value);
 }
 
 macro_rules! registers {
-    ($($register:ident holds $value:ty;)*) => {$(
+    ($($register:ident holds $value:ty $(, noted as $last:ident)?;)*) => {$(
         impl Register for $register {
             type Value = $value;
 
@@ -109,20 +114,28 @@ macro_rules! registers {
             fn index(self) -> u16 {
                 self.0
             }
+
+            #[inline(always)]
+            fn note(_activation: &mut Activation<'_, '_>, _value: $value) {
+                $(_activation.$last = _value;)?
+            }
         }
     )*};
 }
 registers! {
     RegI32 holds i32;
     RegI64 holds i64;
-    RegF32 holds f32;
-    RegF64 holds f64;
+    RegF32 holds f32, noted as single;
+    RegF64 holds f64, noted as double;
 }
 
 /// What an execution has besides the registers of the current call.
 pub(super) struct State<'m> {
+    /// Those of the program.
+    pub(super) words: &'m Words,
     pub(super) program: &'m Program,
-    pub(super) memory: &'m mut GuestMemory,
+    /// Memory besides SDRAM.
+    pub(super) ram: RamRest<'m>,
     /// What is left of the slice, in cycles.
     pub(super) budget: i64,
     /// The registers of all calls.
@@ -136,18 +149,46 @@ pub(super) struct State<'m> {
 pub(super) struct Activation<'a, 'm> {
     pub(super) state: &'a mut State<'m>,
     pub(super) window: &'m Window,
-    /// The instruction that is executed.
-    pub(super) pc: usize,
+    pub(super) sdram: &'a mut Sdram,
+    /// The words from the instruction that is executed on.
+    pub(super) code: &'a Words,
+    /// The double that was assigned last.
+    pub(super) double: f64,
+    /// The single that was assigned last.
+    pub(super) single: f32,
 }
 
-impl Activation<'_, '_> {
+impl<'a, 'm: 'a> Activation<'a, 'm> {
+    /// The instruction that is executed.
+    #[inline(always)]
+    pub(super) fn pc(&self) -> usize {
+        self.state.words.len() - self.code.len()
+    }
+
+    /// The words from the one at a label on.
+    #[inline(always)]
+    pub(super) fn code_at(&self, to: Label) -> Option<&'a Words> {
+        self.state.words.get(to.0 as usize..).filter(|code| code.len() >= AHEAD)
+    }
+
+    /// Puts into the register that is the operand at `place` what it holds, as it was assigned last.
+    ///
+    /// Nothing changes in memory; the compiler knows from it what the register holds, and does not wait for memory.
+    #[inline(always)]
+    pub(super) fn recall(&self, place: usize, slot: u64) {
+        if let Some(word) = self.code.first() {
+            self.window[usize::from(word.register(place))].set(slot);
+        }
+    }
+
     #[inline(always)]
     pub(super) fn get<R: Register>(&self, register: R) -> R::Value {
         R::Value::from_slot(self.window[usize::from(register.index())].get())
     }
 
     #[inline(always)]
-    pub(super) fn set<R: Register>(&self, register: R, value: R::Value) {
+    pub(super) fn set<R: Register>(&mut self, register: R, value: R::Value) {
         self.window[usize::from(register.index())].set(value.into_slot());
+        R::note(self, value);
     }
 }

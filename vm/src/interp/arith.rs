@@ -31,7 +31,7 @@ macro_rules! operations {
             pub(super) fn $div(&mut self, dst: RegI32, a: RegI32, b: RegI32) -> Result<(), TrapKind> {
                 let result = match $div_fn(self.get(a), self.get(b)) {
                     Some(result) => result,
-                    None => self.state.memory.divided_by_zero(WordDivision::$op, self.get(a))?,
+                    None => self.state.ram.divided_by_zero(WordDivision::$op, self.get(a))?,
                 };
                 self.set(dst, result);
                 Ok(())

@@ -1,51 +1,64 @@
-//! What the interpreter executes: the words of a program as they lie in its image.
+//! What the interpreter executes: the words of a program, each with the handler that executes it.
 //!
-//! A word is kept as four numbers of 16 bits, the opcode first, so that a handler takes each operand
-//! from memory by itself and need not ask which instruction it is.
+//! The words of the image are kept as they are (`parts.rs`). What is done to them once: a function's word says what a
+//! call of it needs, and operands that may change places do so where the first is then what was assigned last.
 
 use std::fmt;
 use std::sync::Arc;
 
-use super::sequences::{self, BREAK};
+use super::context::Head;
+use super::dispatch::{Handler, handler_of};
+use super::parts::{A, B, DST, Parts, is_commutative, parts_of};
+use super::sequences::{AHEAD, BREAK, Text};
+use crate::meter::branch_target;
 use crate::op::{Op, WORD};
-use crate::operand::OperandType;
-use crate::program::{MAX_TEXT, Program};
+use crate::operand::{FuncRef, Label};
+use crate::program::Program;
 
 /// One instruction.
-pub(super) type Word = [u16; WORD / 2];
-
-/// Room for the longest text, as a power of two: an index is cut to it instead of being compared.
-const CAPACITY: usize = (MAX_TEXT / WORD).next_power_of_two();
-
-/// The words of a program by index; after the last one of it there are only `program` words, which trap.
-pub(super) type Words = [Word; CAPACITY];
-
-/// The word `pc`.
-#[inline(always)]
-pub(super) const fn word_at(words: &Words, pc: usize) -> &Word {
-    &words[pc % CAPACITY]
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Word {
+    /// What executes it, and maybe what comes after it.
+    pub(super) handler: Handler,
+    /// The word of the image.
+    pub(super) parts: Parts,
 }
 
-/// Takes the operands of a word one after another.
-pub(super) struct Operands<'a> {
-    word: &'a Word,
-    at: usize,
-}
+/// The words of a program by index, and after them [`AHEAD`] that trap.
+pub(super) type Words = [Word];
 
-impl<'a> Operands<'a> {
-    /// Those of `word`.
-    #[inline(always)]
-    pub(super) const fn of(word: &'a Word) -> Self {
-        Self { word, at: 1 }
+impl Word {
+    /// That of the opcode `code` with these operands.
+    const fn new(code: u16, parts: Parts) -> Self {
+        Self { handler: handler_of(code), parts }
     }
 
-    /// The next operand.
+    /// That of one instruction, which stands for itself alone.
+    pub(super) fn plain(op: &Op) -> Self {
+        let parts = parts_of(op);
+        Self::new(parts[0], parts)
+    }
+
+    /// One at which a context is held.
+    pub(super) const HELD: Self = Self::new(BREAK, [0; WORD / 2]);
+
+    /// What [`encode`] leaves in the word of a function for calls of it.
     #[inline(always)]
-    pub(super) fn take<O: OperandType>(&mut self) -> O {
-        let first = self.at;
-        self.at += O::SIZE / 2;
-        let high = if O::SIZE == 4 { self.word[first + 1] } else { 0 };
-        O::from_bits(u32::from(self.word[first]) | u32::from(high) << 16)
+    pub(super) const fn head(&self) -> Head {
+        let [_, parameters, registers, frame] = self.parts;
+        Head { parameters, registers, frame }
+    }
+
+    /// The index of the register that is the operand at `place`.
+    #[inline(always)]
+    pub(super) const fn register(&self, place: usize) -> u16 {
+        self.parts[place]
+    }
+
+    /// The index of the register that it assigns, if it assigns one.
+    #[inline(always)]
+    pub(super) const fn assigned(&self) -> u16 {
+        self.parts[DST]
     }
 }
 
@@ -54,14 +67,14 @@ impl<'a> Operands<'a> {
 pub(super) struct Encoded(Box<Words>);
 
 impl Encoded {
-    /// Those of `ops`; verification refuses a text that is longer than the program area.
-    pub(super) fn new(ops: &[Op]) -> Self {
-        Self(encode(ops, &|_, _| false))
+    /// Those of `program`.
+    pub(super) fn new(program: &Program) -> Self {
+        Self(encode(program, &|_, _| false))
     }
 
     /// The same, where a debugger holds contexts at some words.
-    pub(super) fn held(ops: &[Op], is_held: &dyn Fn(usize, &Op) -> bool) -> Self {
-        Self(encode(ops, is_held))
+    pub(super) fn held(program: &Program, is_held: &dyn Fn(usize, &Op) -> bool) -> Self {
+        Self(encode(program, is_held))
     }
 
     /// The words.
@@ -85,28 +98,31 @@ pub(super) struct Code {
     pub(super) words: Arc<Encoded>,
 }
 
-/// The word of one instruction, which stands for itself alone.
-pub(super) fn plain_word(op: &Op) -> Word {
-    let bytes = op.encode();
-    std::array::from_fn(|index| u16::from_le_bytes([bytes[2 * index], bytes[2 * index + 1]]))
-}
-
-/// A text in which a context is held at every word.
-pub(super) fn all_held() -> Box<Words> {
-    vec![[BREAK; WORD / 2]; CAPACITY].into_boxed_slice().try_into().expect("it is of that length")
-}
-
-/// The words of instructions, of which those that are held have an opcode that stops a context.
-fn encode(ops: &[Op], is_held: &dyn Fn(usize, &Op) -> bool) -> Box<Words> {
-    let mut words: Box<Words> =
-        vec![[0; WORD / 2]; CAPACITY].into_boxed_slice().try_into().expect("it is of that length");
-    for (word, op) in words.iter_mut().zip(ops) {
-        *word = plain_word(op);
+/// The words of a program, of which those that are held have a handler that stops a context.
+fn encode(program: &Program, is_held: &dyn Fn(usize, &Op) -> bool) -> Box<Words> {
+    let ops = program.ops();
+    let mut parts: Vec<Parts> = ops.iter().map(parts_of).collect();
+    for pc in 1..ops.len() {
+        if is_commutative(&ops[pc]) && parts[pc][B] == parts[pc - 1][DST] {
+            parts[pc].swap(A, B);
+        }
     }
-    let held = |(pc, op): (usize, &Op)| if is_held(pc, op) { BREAK } else { words[pc][0] };
+    let held = |(pc, op): (usize, &Op)| if is_held(pc, op) { BREAK } else { parts[pc][0] };
     let codes: Vec<u16> = ops.iter().enumerate().map(held).collect();
-    for (pc, word) in words.iter_mut().enumerate().take(ops.len()) {
-        word[0] = sequences::opcode(ops, &codes, pc);
+    let mut is_target = vec![false; ops.len()];
+    for Label(to) in ops.iter().filter_map(branch_target) {
+        is_target[to as usize] = true;
     }
-    words
+    let text = Text { ops, codes: &codes, parts: &parts, is_target: &is_target };
+    let word = |pc: usize| {
+        let mut parts = parts[pc];
+        if let Op::Func { .. } = ops[pc] {
+            let Head { parameters, registers, frame } = Head::of(program, FuncRef(pc as u32));
+            parts = [parts[0], parameters, registers, frame];
+        }
+        Word::new(text.code_at(pc), parts)
+    };
+    let words = (0..ops.len()).map(word);
+    let behind = std::iter::repeat_n(Word::new(0, [0; WORD / 2]), AHEAD);
+    words.chain(behind).collect()
 }

@@ -16,8 +16,11 @@ use crate::verify::MAX_PARAMETERS;
 /// They are cells, as the windows of a caller and of its callee overlap.
 pub(super) type Window = [Cell<u64>; WINDOW];
 
-/// Number of registers in a window.
-const WINDOW: usize = 1 << 16;
+/// Number of registers in a window, with as many after those that can be named as are cleared at once.
+const WINDOW: usize = (1 << 16) + BLOCK;
+
+/// Registers that are cleared at once.
+const BLOCK: usize = 8;
 
 /// Most registers of all calls together; a stack full of calls of ordinary functions has far fewer.
 const MAX_REGISTERS: usize = 1 << 24;
@@ -56,48 +59,79 @@ pub(super) struct Calls {
     pub(super) result: u64,
 }
 
+/// What a call needs to know of the function that it calls.
+#[derive(Clone, Copy)]
+pub(super) struct Head {
+    /// How many of its registers are parameters.
+    pub(super) parameters: u16,
+    /// Number of registers.
+    pub(super) registers: u16,
+    /// Units of 8 bytes of its frame.
+    pub(super) frame: u16,
+}
+
+impl Head {
+    /// That of `function`.
+    pub(super) fn of(program: &Program, function: FuncRef) -> Self {
+        let (signature, registers, frame) = program.head_of(function);
+        Self { parameters: program.signature(signature).params.len() as u16, registers, frame }
+    }
+}
+
+/// What a call gets.
+struct Room<'a> {
+    /// The first register.
+    base: usize,
+    window: &'a Window,
+    /// Address of the frame in guest memory.
+    stack_pointer: u32,
+}
+
 impl Calls {
-    /// Calls `function` from the instruction `pc`, if the stack and `registers` have room; its window then.
-    #[inline]
+    /// Calls `function` from the instruction `pc`, if the stack, `registers` and the list of calls have room; its
+    /// window then.
+    #[inline(always)]
     pub(super) fn call<'a>(
         &mut self,
-        program: &Program,
         function: FuncRef,
+        head: Head,
         pc: usize,
         registers: &'a [Cell<u64>],
     ) -> Option<&'a Window> {
-        let caller = Frame { pc: pc + 1, ..self.current };
-        let window = self.begin(program, function, registers)?;
-        self.frames.push(caller);
-        Some(window)
+        if self.frames.len() == self.frames.capacity() {
+            return None;
+        }
+        let room = self.room(head, registers)?;
+        self.frames.push(Frame { pc: pc + 1, ..self.current });
+        Some(self.begin(function, head, room))
     }
 
-    /// Begins a call with the parameters that lie after the current registers; all its others are 0.
-    #[inline]
-    fn begin<'a>(
-        &mut self,
-        program: &Program,
-        function: FuncRef,
-        registers: &'a [Cell<u64>],
-    ) -> Option<&'a Window> {
-        let (signature, count, frame) = program.head_of(function);
+    /// Where the registers and the frame of a call will be that begins with the parameters after the current registers.
+    #[inline(always)]
+    fn room<'a>(&self, head: Head, registers: &'a [Cell<u64>]) -> Option<Room<'a>> {
         let base = self.current.base + usize::from(self.current.registers);
-        let bytes = bytes_of(frame);
+        let bytes = bytes_of(head.frame);
         if bytes > self.current.stack_pointer - self.stack.limit {
             return None;
         }
-        let window = registers.get(base..)?.first_chunk::<WINDOW>()?;
-        let parameters = program.signature(signature).params.len();
-        clear(&window[parameters..], usize::from(count) - parameters);
-        let stack_pointer = self.current.stack_pointer - bytes;
+        let window = registers.get(base..)?.first_chunk()?;
+        Some(Room { base, window, stack_pointer: self.current.stack_pointer - bytes })
+    }
+
+    /// Begins a call of `function`; all its registers but the parameters are 0.
+    #[inline(always)]
+    fn begin<'a>(&mut self, function: FuncRef, head: Head, room: Room<'a>) -> &'a Window {
+        let Room { base, window, stack_pointer } = room;
+        let (parameters, count) = (usize::from(head.parameters), usize::from(head.registers));
+        clear(&window[parameters..], count - parameters);
         self.lowest = self.lowest.min(stack_pointer);
-        self.pc = body_of(function, count);
-        self.current = Frame { pc: self.pc, base, registers: count, mark: 0, stack_pointer };
-        Some(window)
+        self.pc = body_of(function, head.registers);
+        self.current = Frame { pc: self.pc, base, registers: head.registers, mark: 0, stack_pointer };
+        window
     }
 
     /// Goes back to the caller, whose window among `registers` it yields; `None` if there is none.
-    #[inline]
+    #[inline(always)]
     pub(super) fn leave<'a>(&mut self, registers: &'a [Cell<u64>]) -> Option<&'a Window> {
         let caller = self.frames.pop()?;
         self.pc = caller.pc;
@@ -106,7 +140,7 @@ impl Calls {
     }
 
     /// The registers of the current call and what is after them, among all `registers`.
-    #[inline]
+    #[inline(always)]
     pub(super) fn window<'a>(&self, registers: &'a [Cell<u64>]) -> Option<&'a Window> {
         registers.get(self.current.base..)?.first_chunk()
     }
@@ -211,7 +245,9 @@ impl Context {
         self.registers[..MAX_PARAMETERS].fill(0);
         self.make_room(program, function)?;
         let (calls, registers) = self.parts();
-        calls.begin(program, function, registers).expect("there is room");
+        let head = Head::of(program, function);
+        let room = calls.room(head, registers).expect("there is room");
+        calls.begin(function, head, room);
         Ok(())
     }
 
@@ -219,7 +255,8 @@ impl Context {
     pub(super) fn call(&mut self, program: &Program, function: FuncRef) -> Result<(), TrapKind> {
         self.make_room(program, function)?;
         let (calls, registers) = self.parts();
-        calls.call(program, function, calls.pc, registers).expect("there is room");
+        let pc = calls.pc;
+        calls.call(function, Head::of(program, function), pc, registers).expect("there is room");
         Ok(())
     }
 
@@ -235,6 +272,7 @@ impl Context {
         if self.registers.len() < base + WINDOW {
             self.registers.resize(2 * base + WINDOW, 0);
         }
+        self.calls.frames.reserve(1);
         Ok(())
     }
 
@@ -328,17 +366,13 @@ impl Context {
     }
 }
 
-/// Sets the first `count` of `registers` to 0, and up to seven after them, which nobody reads before they are set.
-#[inline]
+/// Sets the first `count` of `registers` to 0, and some after them, which nobody reads before they are set.
+#[inline(always)]
 fn clear(registers: &[Cell<u64>], count: usize) {
-    let (blocks, rest) = registers.as_chunks::<8>();
-    for block in blocks.iter().take(count.div_ceil(8)) {
+    for block in registers.as_chunks::<BLOCK>().0.iter().take(count.div_ceil(BLOCK)) {
         for register in block {
             register.set(0);
         }
-    }
-    for register in rest.iter().take(count.saturating_sub(8 * blocks.len())) {
-        register.set(0);
     }
 }
 

@@ -3,6 +3,7 @@
 use kmotiondef::GuestAddr;
 
 use super::activation::{Activation, Exit, Flow, Register, State};
+use super::code::Word;
 use super::context::Window;
 use crate::operand::{Addr, Classes, Count, Count32, FuncRef, Label, RegF32, RegF64, RegI32, RegI64, SigRef};
 use crate::slot::Slot;
@@ -88,8 +89,10 @@ impl<'m> Activation<'_, 'm> {
 
     #[inline(always)]
     pub(super) fn call(&mut self, func: FuncRef) -> Flow {
-        let State { program, registers, calls, .. } = &mut *self.state;
-        match calls.call(program, func, self.pc, registers) {
+        let pc = self.pc();
+        let State { words, registers, calls, .. } = &mut *self.state;
+        let head = words.get(func.0 as usize).map(Word::head);
+        match head.and_then(|head| calls.call(func, head, pc, registers)) {
             Some(window) => self.go_to_call(window),
             None => Flow::Leave(Exit::Call(func)),
         }

@@ -13,42 +13,74 @@
 //! every handler so often in one slice that the host's stack would not do without the jumps.
 //!
 //! What programs often do in a row has a handler for all of it (`sequences.rs`).
+//!
+//! How long an instruction takes is mostly how long it waits. The place of the next one is known as soon as one
+//! number is added to that of this one; a test whether it is there is predicted and costs no time. What was assigned
+//! last is handed on in registers of the processor, as far as it is floating: a load of what was just stored takes
+//! ten cycles there, and one of an integer next to none. Six numbers and addresses can be handed on so; what a
+//! handler needs rarely is in the [`State`].
 
 use super::activation::{Activation, Exit, Flow, State};
-use super::code::{Word, Words, word_at};
+use super::code::Words;
 use super::context::Window;
+use super::parts::Assigned;
 use super::sequences::{BREAK, for_each_sequence};
 use crate::for_each_op;
+use crate::memory::Sdram;
+use crate::operand::Label;
+use crate::slot::Slot;
 use crate::trap::TrapKind;
 
-/// Executes the word `word`, number `pc`, and what comes then, until something leaves the state an exit.
-type Handler = for<'m> fn(&mut State<'m>, &'m Window, &Words, pc: usize, &Word);
+/// Executes the first word of `code`, the rest of the words, and what comes then, until something leaves the state an
+/// exit; takes the double and the single that were assigned last.
+pub(super) type Handler = for<'m> fn(&mut State<'m>, &'m Window, code: &Words, &mut Sdram, f64, f32);
 
 /// Executes one instruction after another; where one may go two ways, the next is there on both.
+///
+/// In brackets are the operands that are what the one before has assigned, and the one before that; these are the
+/// registers `$assigned`.
 macro_rules! run {
-    ($activation:ident, $words:ident, $word:expr, $last:ident) => {
-        match step::$last(&mut $activation, $word) {
-            Flow::Next => go_to($activation.pc + 1, $activation, $words),
-            Flow::Skip(count) => go_to($activation.pc + 1 + count, $activation, $words),
-            Flow::Jump(to) => go_to(to.0 as usize, $activation, $words),
+    ($activation:ident, $assigned:expr, $last:ident $(($($link:ident),+))?) => {{
+        let Some(word) = $activation.code.first() else { return lost($activation) };
+        match step!($last $($($link)+)?)(&mut $activation, word, $assigned) {
+            Flow::Next => go_on($activation, 1),
+            Flow::Skip(count) => go_on($activation, 1 + count),
+            Flow::Jump(to) => go_to($activation, to),
             Flow::Leave(exit) => leave($activation, exit),
         }
-    };
-    ($activation:ident, $words:ident, $word:expr, $first:ident $($then:ident)+) => {
-        match step::$first(&mut $activation, $word) {
+    }};
+    ($activation:ident, $assigned:expr, $first:ident $(($($link:ident),+))? $($then:ident $(($($links:ident),+))?)+) => {{
+        let Some((word, next)) = $activation.code.split_first() else { return lost($activation) };
+        let assigned: Assigned = $assigned;
+        match step!($first $($($link)+)?)(&mut $activation, word, assigned) {
             Flow::Next => {
-                $activation.pc += 1;
-                let word = word_at($words, $activation.pc);
-                run!($activation, $words, word, $($then)+)
+                $activation.code = next;
+                run!($activation, [word.assigned(), assigned[0]], $($then $(($($links),+))?)+)
             }
-            Flow::Skip(count) => go_to($activation.pc + 1 + count, $activation, $words),
+            Flow::Skip(count) => go_on($activation, 1 + count),
             Flow::Jump(to) => {
-                $activation.pc = to.0 as usize;
-                let word = word_at($words, $activation.pc);
-                run!($activation, $words, word, $($then)+)
+                let Some(code) = $activation.code_at(to) else { return lost($activation) };
+                $activation.code = code;
+                run!($activation, [word.assigned(), assigned[0]], $($then $(($($links),+))?)+)
             }
             Flow::Leave(exit) => leave($activation, exit),
         }
+    }};
+}
+
+/// The function of a step with the places of linked operands.
+macro_rules! step {
+    ($step:ident) => {
+        step::$step::<0, 0>
+    };
+    ($step:ident $link:ident) => {
+        step::$step::<{ place_in(stringify!($step), stringify!($link)) }, 0>
+    };
+    ($step:ident $link:ident $far:ident) => {
+        step::$step::<
+            { place_in(stringify!($step), stringify!($link)) },
+            { place_in(stringify!($step), stringify!($far)) },
+        >
     };
 }
 
@@ -58,12 +90,17 @@ macro_rules! define_steps {
         mod step {
             use crate::operand::*;
             use crate::interp::activation::{Activation, Finish, Flow};
-            use crate::interp::code::{Operands, Word};
+            use crate::interp::code::Word;
+            use crate::interp::parts::{Assigned, Operands};
 
             $(
                 #[inline(always)]
-                pub(super) fn $name(activation: &mut Activation<'_, '_>, word: &Word) -> Flow {
-                    let mut _operands = Operands::of(word);
+                pub(super) fn $name<const LINK: usize, const FAR: usize>(
+                    activation: &mut Activation<'_, '_>,
+                    word: &Word,
+                    assigned: Assigned,
+                ) -> Flow {
+                    let mut _operands = Operands::of(&word.parts, [LINK, FAR], assigned);
                     $(let $field: $operand = _operands.take();)*
                     activation.$name($($field),*).flow()
                 }
@@ -75,20 +112,30 @@ macro_rules! define_steps {
 }
 
 macro_rules! define_handlers {
-    ($($name:ident: $($step:ident)+;)*) => {
+    ($($name:ident: $first:ident $([$recalled:ident = $last:ident])? $($step:ident $(($($link:ident),+))?)*;)*) => {
         mod handler {
-            use super::{Activation, Flow, State, Window, Word, Words, go_to, leave, step, word_at};
+            use super::super::sequences::place_in;
+            use super::{Activation, Assigned, Flow, Sdram, Slot, State, Window, Words, go_on, go_to, leave, lost, step};
 
             $(
                 pub(super) fn $name<'m>(
                     state: &mut State<'m>,
                     window: &'m Window,
-                    words: &Words,
-                    pc: usize,
-                    word: &Word,
+                    code: &Words,
+                    sdram: &mut Sdram,
+                    double: f64,
+                    single: f32,
                 ) {
-                    let mut activation = Activation { state, window, pc };
-                    run!(activation, words, word, $($step)+);
+                    let mut activation = Activation { state, window, sdram, code, double, single };
+                    // One comparison for all steps, and for the word after them.
+                    if code.len() < 2 $(+ count!($step))* {
+                        return lost(activation);
+                    }
+                    $(
+                        let place = const { place_in(stringify!($first), stringify!($recalled)) };
+                        activation.recall(place, activation.$last.into_slot());
+                    )?
+                    run!(activation, [0; 2], $first $($step $(($($link),+))?)*);
                 }
             )*
         }
@@ -97,62 +144,91 @@ macro_rules! define_handlers {
         const ROWS: &[Handler] = &[$(handler::$name),*];
     };
 }
+
+/// A step as a number.
+macro_rules! count {
+    ($step:ident) => {
+        1
+    };
+}
 for_each_op!(define_steps);
 
-/// The handlers by opcode, of a length that needs no check.
-static HANDLERS: [Handler; 256] = {
-    let mut handlers: [Handler; 256] = [handler::unreachable; 256];
-    let mut code = 0;
-    while code < ROWS.len() {
-        handlers[code] = ROWS[code];
-        code += 1;
-    }
-    handlers[BREAK as usize] = held;
-    handlers
-};
-
-/// What a word does at which a debugger holds the context.
-fn held<'m>(state: &mut State<'m>, window: &'m Window, _: &Words, pc: usize, _: &Word) {
-    leave(Activation { state, window, pc }, Exit::Held);
+/// The handler of an opcode.
+pub(super) const fn handler_of(code: u16) -> Handler {
+    if code == BREAK { held } else { ROWS[code as usize] }
 }
 
-/// The handler of a word; `sequences.rs` sees to it that an opcode fits a byte.
-#[inline(always)]
-fn handler_of(word: &Word) -> Handler {
-    HANDLERS[usize::from(word[0] as u8)]
+/// What a word does at which a debugger holds the context.
+fn held<'m>(
+    state: &mut State<'m>,
+    window: &'m Window,
+    code: &Words,
+    sdram: &mut Sdram,
+    double: f64,
+    single: f32,
+) {
+    leave(Activation { state, window, sdram, code, double, single }, Exit::Held);
 }
 
 /// Executes from where the calls stand; yields why that ended, with the instruction that did it in `pc`.
-pub(super) fn execute(state: &mut State<'_>, words: &Words) -> Exit {
+pub(super) fn execute(state: &mut State<'_>, sdram: &mut Sdram) -> Exit {
     loop {
+        let (words, pc) = (state.words, state.calls.pc);
         let Some(window) = state.calls.window(state.registers) else {
             return Exit::Trap(TrapKind::Unreachable);
         };
-        let pc = state.calls.pc;
-        let word = word_at(words, pc);
-        handler_of(word)(state, window, words, pc, word);
+        let Some((word, _)) = words.get(pc..).and_then(<[_]>::split_first) else {
+            return Exit::Trap(TrapKind::Unreachable);
+        };
+        // What the word before has assigned, if this one is linked with it.
+        let last = pc.checked_sub(1).map_or(0, |before| window[usize::from(words[before].assigned())].get());
+        (word.handler)(state, window, &words[pc..], sdram, f64::from_slot(last), f32::from_slot(last));
         if let Some(exit) = state.exit.take() {
             return exit;
         }
     }
 }
 
-/// Continues with the word `next`.
+/// Continues `count` words further on.
 #[inline(always)]
-fn go_to(next: usize, activation: Activation<'_, '_>, words: &Words) {
-    let Activation { state, window, .. } = activation;
-    if cfg!(tail_calls) {
-        let pc = next % words.len();
-        let word = &words[pc];
-        handler_of(word)(state, window, words, pc, word);
-    } else {
-        state.calls.pc = next;
+fn go_on(activation: Activation<'_, '_>, count: usize) {
+    match activation.code.get(count..) {
+        Some(code) => enter(activation, code),
+        None => lost(activation),
     }
+}
+
+/// Continues with the word `to`.
+#[inline(always)]
+fn go_to(activation: Activation<'_, '_>, to: Label) {
+    match activation.code_at(to) {
+        Some(code) => enter(activation, code),
+        None => lost(activation),
+    }
+}
+
+/// Continues with the first word of `code`.
+#[inline(always)]
+fn enter(activation: Activation<'_, '_>, code: &Words) {
+    let Activation { state, window, sdram, double, single, .. } = activation;
+    if cfg!(tail_calls) {
+        if let Some(word) = code.first() {
+            (word.handler)(state, window, code, sdram, double, single);
+        }
+    } else {
+        state.calls.pc = state.words.len() - code.len();
+    }
+}
+
+/// Ends the execution at a place that no verified program comes to.
+#[cold]
+fn lost(activation: Activation<'_, '_>) {
+    leave(activation, Exit::Trap(TrapKind::Unreachable));
 }
 
 /// Ends the execution at the instruction of `activation`.
 #[inline(always)]
 fn leave(activation: Activation<'_, '_>, exit: Exit) {
-    activation.state.calls.pc = activation.pc;
+    activation.state.calls.pc = activation.pc();
     activation.state.exit = Some(exit);
 }

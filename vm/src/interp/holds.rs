@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use kmotiondef::{CodeAddr, GuestAddr};
 
-use super::code::{Code, Encoded, Words, plain_word};
+use super::code::{Code, Encoded, Word};
 use super::context::Context;
 use crate::engine::{ContextId, Slice, Stop};
 use crate::firmware::Firmware;
@@ -68,7 +68,8 @@ pub(super) struct Holds {
     pub(super) passes: [bool; ContextId::COUNT],
     pub(super) hold: Option<Hold>,
     patched: Vec<(Arc<Program>, Arc<Encoded>)>,
-    scratch: Option<Box<Words>>,
+    /// As many words as the longest program has that was executed by single instructions; all are held.
+    scratch: Vec<Word>,
 }
 
 impl Holds {
@@ -121,7 +122,7 @@ impl Holds {
         let is_probed = |op: &Op| !self.watched.is_empty() && may_store(op);
         let is_held =
             |pc: usize, op: &Op| self.breakpoints.contains(&program.address_of(pc).get()) || is_probed(op);
-        let words = Arc::new(Encoded::held(program.ops(), &is_held));
+        let words = Arc::new(Encoded::held(program, &is_held));
         self.patched.push((Arc::clone(program), Arc::clone(&words)));
         words
     }
@@ -183,11 +184,13 @@ impl Holds {
     ) -> Result<Stop, TrapKind> {
         let pc = context.calls.pc;
         let Some(op) = code.program.ops().get(pc) else { return Err(TrapKind::Unreachable) };
-        let words = self.scratch.get_or_insert_with(super::code::all_held);
-        let place = pc % words.len();
-        let held = std::mem::replace(&mut words[place], plain_word(op));
+        let words = &mut self.scratch;
+        if words.len() < code.words.words().len() {
+            words.resize(code.words.words().len(), Word::HELD);
+        }
+        words[pc] = Word::plain(op);
         let stop = super::run(id, &code.program, words, context, slice);
-        words[place] = held;
+        words[pc] = Word::HELD;
         stop
     }
 }

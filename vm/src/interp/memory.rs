@@ -15,7 +15,7 @@ macro_rules! accesses {
             $(#[inline(always)]
             pub(super) fn $load(&mut self, dst: $dst, base: RegI32, off: Off) -> Flow {
                 let address = self.address(base, off);
-                match self.state.memory.load_ram::<$from>(address) {
+                match self.state.ram.load_ram::<$from>(self.sdram, address) {
                     Some(value) => {
                         self.set(dst, value as $value);
                         Flow::Next
@@ -27,7 +27,7 @@ macro_rules! accesses {
             #[inline(always)]
             pub(super) fn $load_at(&mut self, dst: $dst, addr: Addr) -> Flow {
                 let address = GuestAddr::new(addr.0);
-                match self.state.memory.load_ram::<$from>(address) {
+                match self.state.ram.load_ram::<$from>(self.sdram, address) {
                     Some(value) => {
                         self.set(dst, value as $value);
                         Flow::Next
@@ -39,7 +39,7 @@ macro_rules! accesses {
             $(#[inline(always)]
             pub(super) fn $store(&mut self, src: $src, base: RegI32, off: Off) -> Flow {
                 let (address, value) = (self.address(base, off), self.get(src));
-                match self.state.memory.store_ram(address, value as $to) {
+                match self.state.ram.store_ram(self.sdram, address, value as $to) {
                     Some(()) => Flow::Next,
                     None => Flow::Leave(Exit::Store(address, Width::$store_width, value.into_slot())),
                 }
@@ -48,7 +48,7 @@ macro_rules! accesses {
             #[inline(always)]
             pub(super) fn $store_at(&mut self, src: $src, addr: Addr) -> Flow {
                 let (address, value) = (GuestAddr::new(addr.0), self.get(src));
-                match self.state.memory.store_ram(address, value as $to) {
+                match self.state.ram.store_ram(self.sdram, address, value as $to) {
                     Some(()) => Flow::Next,
                     None => Flow::Leave(Exit::Store(address, Width::$store_width, value.into_slot())),
                 }

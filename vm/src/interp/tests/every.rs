@@ -7,7 +7,8 @@ use kmotiondef::{Cycles, Ticks};
 
 use crate::engine::{ContextId, Executor, Slice, Stop};
 use crate::interp::BytecodeEngine;
-use crate::interp::sequences::SEQUENCES;
+use crate::interp::parts::DST;
+use crate::interp::sequences::{LinkedOp, SEQUENCES};
 use crate::memory::GuestMemory;
 use crate::op::{OPCODES, Op, WORD};
 use crate::testing::{Fake, thread};
@@ -68,29 +69,62 @@ const SPECIAL: [&str; 23] = [
 ];
 
 /// The instruction with a register of its class wherever it has one, and an address of RAM.
-fn line(code: u16, label: &str) -> String {
+///
+/// What it assigns is another register than what it reads, unless that is linked with what the one before assigns.
+fn line(step: &LinkedOp, label: &str) -> String {
     let mut word = [0; WORD];
-    word[..2].copy_from_slice(&code.to_le_bytes());
+    word[..2].copy_from_slice(&step.code.to_le_bytes());
     let op = Op::decode(word).expect("it is an opcode");
-    // The first operand is what is written, for most: not the register with the address.
-    let written = op.to_string().replacen(&format!("{} r0", op.name()), &format!("{} r1", op.name()), 1);
-    let line = written.replace("l0", "l4").replace("f0", "f8").replace("d0", "d12");
-    line.replace("0x00000000", "0x10000010").replace("@0", label) + "\n"
+    let text = op.to_string();
+    let (name, operands) = text.split_once(' ').unwrap_or((&text, ""));
+    let mut place = DST;
+    let mut written = Vec::new();
+    for operand in operands.split(", ") {
+        // The first operand is what is written, for most: not the register with the address.
+        let is_assigned = place == DST && step.links[0] != DST && !name.starts_with("br");
+        written.push(operand_at(operand, is_assigned || step.links.contains(&place)));
+        place += if operand.starts_with("0x") { 2 } else { 1 };
+    }
+    // Sums and products have the value of one operand, so that an address stays one.
+    if let "add_i32" = name {
+        written[2] = "r2".into();
+    }
+    if let "mul_i32_imm" = name {
+        written[2] = "1".into();
+    }
+    format!("{name} {}\n", written.join(", ")).replace("0x00000000", "0x10000010").replace("@0", label)
 }
 
-/// Code that has the instructions of `codes` in a row; nothing if one of them is special.
-fn piece(number: usize, codes: &[u16]) -> String {
+/// An operand with a register that a piece has set, or with one that its instructions assign.
+fn operand_at(operand: &str, is_assigned: bool) -> String {
+    let (set, assigned) = match operand {
+        "r0" => ("r0", "r1"),
+        "l0" => ("l4", "l5"),
+        "f0" => ("f8", "f9"),
+        "d0" => ("d12", "d13"),
+        other => (other, other),
+    };
+    if is_assigned { assigned } else { set }.to_owned()
+}
+
+/// Code that has the instructions of `steps` in a row; nothing if one of them is special.
+fn piece(number: usize, steps: &[LinkedOp]) -> String {
     let label = format!("@l{number}");
     // A sequence ends with the `charge` that every piece ends with.
     let is_charged =
-        codes.len() > 1 && codes.last().is_some_and(|code| Op::NAMES[usize::from(*code)] == "charge");
-    let codes = &codes[..codes.len() - usize::from(is_charged)];
-    if codes.iter().any(|code| SPECIAL.contains(&Op::NAMES[usize::from(*code)])) {
+        steps.len() > 1 && steps.last().is_some_and(|step| Op::NAMES[usize::from(step.code)] == "charge");
+    let steps = &steps[..steps.len() - usize::from(is_charged)];
+    if steps.iter().any(|step| SPECIAL.contains(&Op::NAMES[usize::from(step.code)])) {
         return String::new();
     }
-    let lines: String = codes.iter().map(|code| line(*code, &label)).collect();
-    let set = "const_i32 r0, 0x10000010\nmov_i32 r1, r0\nconst_i64 l4, pool[1]\nconst_f64 d12, pool[0]";
-    format!("charge 2000\n{set}\n{lines}{label}: charge 2000\n")
+    let lines: String = steps.iter().map(|step| line(step, &label)).collect();
+    let set = "const_i32 r0, 0x10000010\nconst_i64 l4, pool[1]\nconst_f64 d12, pool[0]\nmov_i32 r1, r0";
+    let recalled = match &Op::NAMES[usize::from(steps[0].code)] {
+        _ if steps[0].links == [0; 2] => "",
+        name if name.ends_with("f32") => "mov_f32 f9, f8\n",
+        _ => "mov_f64 d13, d12\n",
+    };
+    format!("charge 2000\n{set}\n{recalled}{lines}{label}: charge 2000\n")
 }
 
 /// Code that calls a function with the value of a register.
@@ -104,9 +138,9 @@ const MORE: &str = "arg_i32 r0, 0\narg_i32 r0, 1\narg_i32 r0, 2\narg_f32 f8, 3\n
 
 /// A program whose `main` does everything.
 fn everything() -> String {
-    let each = (0..OPCODES).map(|code| vec![code]);
+    let each = (0..OPCODES).map(|code| vec![LinkedOp { code, links: [0; 2] }]);
     let rows = SEQUENCES.iter().map(|sequence| sequence.to_vec());
-    let pieces: String = each.chain(rows).enumerate().map(|(number, codes)| piece(number, &codes)).collect();
+    let pieces: String = each.chain(rows).enumerate().map(|(number, steps)| piece(number, &steps)).collect();
     let calls = [("i32", "r0"), ("i64", "l4"), ("f32", "f8"), ("f64", "d12")];
     let calls: String = calls.iter().map(|(class, register)| call(class, register)).collect();
     format!(
@@ -125,7 +159,7 @@ fn run_everything() -> Stop {
     let (mut engine, mut firmware) = (BytecodeEngine::default(), Fake::new());
     let started = engine.start(id, &program, entry, id.stack(false), &firmware);
     assert_eq!(started, Ok(()));
-    let length = Cycles::new(i64::from(TURNS) * 1_000_000);
+    let length = Cycles::new(i64::from(TURNS) * 2_000_000);
     let mut slice = Slice {
         memory: &mut GuestMemory::new(),
         threads: &mut Threads::new(),

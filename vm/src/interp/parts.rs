@@ -1,0 +1,80 @@
+//! The words of a program as they lie in its image, and the operands in them.
+//!
+//! A word is four numbers of 16 bits, so that a handler takes each operand from memory by itself and need not ask
+//! which instruction it is.
+
+use crate::op::{Op, WORD};
+use crate::operand::OperandType;
+
+/// The word of an instruction, the opcode first.
+pub(super) type Parts = [u16; WORD / 2];
+
+/// Where the register that an instruction assigns is in its word.
+pub(super) const DST: usize = 1;
+
+/// Where the operands of an instruction with two are.
+pub(super) const A: usize = 2;
+pub(super) const B: usize = 3;
+
+/// Takes the operands of a word one after another.
+pub(super) struct Operands<'a> {
+    parts: &'a Parts,
+    at: usize,
+    links: Links,
+    assigned: Assigned,
+}
+
+/// The places of two operands: of what the instruction before assigns and of what the one before that does; 0 for none.
+pub(super) type Links = [usize; 2];
+
+/// The registers that the instruction before assigns and that the one before that does.
+pub(super) type Assigned = [u16; 2];
+
+impl<'a> Operands<'a> {
+    /// Those of a word, of which the ones at `links` are the registers `assigned`.
+    #[inline(always)]
+    pub(super) const fn of(parts: &'a Parts, links: Links, assigned: Assigned) -> Self {
+        Self { parts, at: DST, links, assigned }
+    }
+
+    /// The next operand.
+    ///
+    /// A linked one is taken from where the compiler knows it already, so that it knows what is in that register, too.
+    #[inline(always)]
+    pub(super) fn take<O: OperandType>(&mut self) -> O {
+        let first = self.at;
+        self.at += O::SIZE / 2;
+        if first == self.links[0] {
+            return O::from_bits(u32::from(self.assigned[0]));
+        }
+        if first == self.links[1] {
+            return O::from_bits(u32::from(self.assigned[1]));
+        }
+        let high = if O::SIZE == 4 { self.parts[first + 1] } else { 0 };
+        O::from_bits(u32::from(self.parts[first]) | u32::from(high) << 16)
+    }
+}
+
+/// The word of one instruction as it lies in the image.
+pub(super) fn parts_of(op: &Op) -> Parts {
+    let bytes = op.encode();
+    std::array::from_fn(|index| u16::from_le_bytes([bytes[2 * index], bytes[2 * index + 1]]))
+}
+
+/// Whether the operands `a` and `b` may change places.
+pub(super) const fn is_commutative(op: &Op) -> bool {
+    matches!(
+        op,
+        Op::AddI32 { .. }
+            | Op::MulI32 { .. }
+            | Op::AndI32 { .. }
+            | Op::OrI32 { .. }
+            | Op::XorI32 { .. }
+            | Op::EqI32 { .. }
+            | Op::NeI32 { .. }
+            | Op::AddF32 { .. }
+            | Op::MulF32 { .. }
+            | Op::AddF64 { .. }
+            | Op::MulF64 { .. }
+    )
+}
