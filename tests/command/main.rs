@@ -4,6 +4,7 @@ mod attach;
 mod beside;
 mod board_options;
 mod boot;
+mod boot_debug;
 mod console;
 mod drop_in;
 mod editor;

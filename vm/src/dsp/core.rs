@@ -197,10 +197,10 @@ impl Core {
         }
     }
 
-    /// Stops every run before the packets at these addresses, and before no others. What is executed, and when, stays the
-    /// same.
+    /// Stops every run before the packets at these addresses, and before no others; a run from a stop that was reported
+    /// executes it. What is executed, and when, stays the same.
     pub fn set_stops(&mut self, addresses: impl IntoIterator<Item = u32>) {
-        self.passed = None;
+        self.passed = self.passed.filter(|at| *at == self.state.pc);
         self.cache.set_stops(addresses);
     }
 

@@ -27,6 +27,7 @@ use crate::object::{InlinedPlaces, Object, ObjectFunction, VariablePlaces};
 use crate::passes::Level;
 use crate::pp::Files;
 use crate::source::SourceMap;
+use crate::target::Target;
 use crate::typed::Unit;
 
 pub use crate::object::Location;
@@ -133,7 +134,32 @@ impl Model {
         thread: ThreadId,
         program: &[u8],
     ) -> Result<Self, String> {
-        on_large_stack(|| Self::here(path, text, options, files, thread, program))
+        on_large_stack(|| {
+            if options.target == Target::C67x {
+                return Err("it is code for the controller's processor".to_owned());
+            }
+            let (mut model, object, sources) = Self::here(path, text, options, files, thread, program)?;
+            model.functions = model.functions_of(&object, &sources);
+            Ok(model)
+        })
+    }
+
+    /// Types and variables outside of functions of code for the controller's processor; of its functions nothing is known.
+    ///
+    /// # Errors
+    /// As [`of`](Self::of).
+    ///
+    /// # Panics
+    /// If the system cannot start a thread.
+    pub fn of_real_code(
+        path: &Path,
+        text: Vec<u8>,
+        options: &Options,
+        files: &(dyn Files + Sync),
+        thread: ThreadId,
+        program: &[u8],
+    ) -> Result<Self, String> {
+        on_large_stack(|| Ok(Self::here(path, text, options, files, thread, program)?.0))
     }
 
     fn here(
@@ -143,7 +169,7 @@ impl Model {
         files: &(dyn Files + Sync),
         thread: ThreadId,
         program: &[u8],
-    ) -> Result<Self, String> {
+    ) -> Result<(Self, Object, SourceMap), String> {
         let (unit, mut compilation, names) = front_and_object(path, text.clone(), options, files);
         let object = compilation.object.clone().ok_or("the source has errors")?;
         let linked: Option<Linked> = compilation.link(thread, options);
@@ -152,7 +178,7 @@ impl Model {
             return Err("the source, as it is compiled here, makes another image".to_owned());
         }
         let image = Inspection::read(program).map_err(|error| error.to_string())?;
-        let mut model = Self {
+        let model = Self {
             path: path.to_owned(),
             functions: Vec::new(),
             text,
@@ -161,8 +187,7 @@ impl Model {
             options: options.clone(),
             image,
         };
-        model.functions = model.functions_of(&object, &compilation.sources);
-        Ok(model)
+        Ok((model, object, compilation.sources))
     }
 
     fn functions_of(&self, object: &Object, sources: &SourceMap) -> Vec<FunctionModel> {

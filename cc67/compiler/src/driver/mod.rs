@@ -138,11 +138,18 @@ pub(crate) fn front_and_object(
     let (mut sources, mut names, mut sink) = (SourceMap::new(), Names::new(), Sink::new());
     let main = sources.add_file(path.to_string_lossy(), Some(path), text, None);
     let unit = front(main, options, files, &mut sources, &mut names, &mut sink);
-    let object = (!sink.has_errors() && options.target == Target::Sim)
-        .then(|| generate(&unit, &sources, (options.level, options.timing), &mut sink));
+    let object = (!sink.has_errors()).then(|| object_of(&unit, &sources, options, &mut sink));
     let object = object.filter(|_| !sink.has_errors());
     let name = path.to_string_lossy().into_owned();
     (unit, Compilation { name, sources, sink, object, included_by: Vec::new() }, names)
+}
+
+/// The object of a unit, for the machine that the options name.
+fn object_of(unit: &Unit, sources: &SourceMap, options: &Options, sink: &mut Sink) -> Object {
+    match options.target {
+        Target::Sim => generate(unit, sources, (options.level, options.timing), sink),
+        Target::C67x => generate_code(unit, sources, options.level, sink),
+    }
 }
 
 pub(crate) fn compile_here(
@@ -193,10 +200,7 @@ fn compile_text(
     if is_final {
         lints::check(&unit, &names, &sources, &options.firmware, &mut sink);
     }
-    let object = (is_final && !sink.has_errors()).then(|| match options.target {
-        Target::Sim => generate(&unit, &sources, (options.level, options.timing), &mut sink),
-        Target::C67x => generate_code(&unit, &sources, options.level, &mut sink),
-    });
+    let object = (is_final && !sink.has_errors()).then(|| object_of(&unit, &sources, options, &mut sink));
     let object = object.filter(|_| !sink.has_errors());
     let included_by = if unit.defines("main") { Vec::new() } else { includers(path, files) };
     if sink.has_errors() && !included_by.is_empty() {

@@ -11,8 +11,8 @@ pub(crate) use looks::Looks;
 use std::path::Path;
 use std::sync::Arc;
 
-use anyhow::{Context, Result, bail};
-use boot::{BootedBoard, BootedSnapshot, FirmwareFile, Halted, ProgramPacket, Sent, SentLine};
+use anyhow::{Context, Result, ensure};
+use boot::{BootedBoard, BootedSnapshot, FirmwareFile, Halted, ProgramPacket, Ran, Sent, SentLine};
 use cc67_host::session::{by_hand, quantities, resolve};
 use cc67_host::{End, Interrupter, UserProgram};
 use compiler::Options;
@@ -240,56 +240,61 @@ impl Booted {
         if !board.keeps_files {
             self.start_from(flash)?;
         }
+        let (programs, options) = (&session.programs, &session.options);
+        let request =
+            traced.map(|traced| trace::request_of_booted(traced, |list| quantities(list, programs, options)));
+        let request = request.transpose()?.flatten();
+        self.store(&session.values)?;
+        programs.iter().try_for_each(|program| self.take(program))?;
+        let starting = programs.iter().filter(|program| program.starts).map(|program| program.thread);
+        self.settle(&starting.collect::<Vec<_>>())?;
+        (self.programs, self.offered) = (session.programs.clone(), session.offered.clone());
+        (self.options, self.uart) = (session.options.clone(), uart);
+        self.surround(session, request.as_ref())?;
+        Ok(Some(Begun { request }))
+    }
+
+    /// Connects what is around the board, and records what is asked for.
+    fn surround(&mut self, session: cc67_host::Setup, request: Option<&TraceRequest>) -> Result<()> {
         let cc67_host::Setup {
             mut config,
             options,
             programs,
             offered,
-            values,
+            values: _,
             mut stimulus,
             is_assisted,
             uart_input,
             hears_uart,
         } = session;
-        let request = traced
-            .map(|traced| trace::request_of_booted(traced, |list| quantities(list, &programs, &options)));
-        let request = request.transpose()?.flatten();
-        self.store(&values)?;
-        programs.iter().try_for_each(|program| self.take(program))?;
-        let starting = programs.iter().filter(|program| program.starts).map(|program| program.thread);
-        self.settle(&starting.collect::<Vec<_>>())?;
-        if self.can_be_surrounded() {
-            let known = [&programs[..], &offered].concat();
-            let mut machine = std::mem::take(&mut config.machine_file);
-            for stimulus in [&mut machine.stimulus, &mut stimulus] {
-                resolve(stimulus, &known, &options)?;
-            }
-            config.machine_file = machine.clone();
-            let active = self.board.file().address("ThreadActive").unwrap_or_default();
-            let mut surroundings = Surroundings::new(config, active);
-            surroundings.begin(&machine, stimulus, self.board.memory_mut());
-            surroundings.connect_uart(&uart_input, hears_uart);
-            if let Some(request) = &request {
-                surroundings.record(request.clone(), self.board.memory());
-                self.board.keep_packets(request.packets.is_some());
-            }
-            if is_assisted {
-                surroundings.assist();
-                self.looks.follow_calls(&mut self.board);
-            }
-            self.board.connect(Box::new(Attached { surroundings, origin: self.origin }));
-        } else if !stimulus.is_empty()
-            || config.machine_file != MachineFile::default()
-            || request.is_some()
-            || is_assisted
-        {
-            bail!(
+        let mut machine = std::mem::take(&mut config.machine_file);
+        if !self.can_be_surrounded() {
+            let is_plain = stimulus.is_empty() && machine == MachineFile::default();
+            ensure!(
+                is_plain && request.is_none() && !is_assisted,
                 "nothing can be connected or recorded: this firmware keeps its variables in other places than 4.34"
             );
+            return Ok(());
         }
-        (self.programs, self.offered) = (programs, offered);
-        (self.options, self.uart) = (options, uart);
-        Ok(Some(Begun { request }))
+        let known = [programs, offered].concat();
+        for stimulus in [&mut machine.stimulus, &mut stimulus] {
+            resolve(stimulus, &known, &options)?;
+        }
+        config.machine_file = machine.clone();
+        let active = self.board.file().address("ThreadActive").unwrap_or_default();
+        let mut surroundings = Surroundings::new(config, active);
+        surroundings.begin(&machine, stimulus, self.board.memory_mut());
+        surroundings.connect_uart(&uart_input, hears_uart);
+        if let Some(request) = request {
+            surroundings.record(request.clone(), self.board.memory());
+            self.board.keep_packets(request.packets.is_some());
+        }
+        if is_assisted {
+            surroundings.assist();
+            self.looks.follow_calls(&mut self.board);
+        }
+        self.board.connect(Box::new(Attached { surroundings, origin: self.origin }));
+        Ok(())
     }
 
     /// Restarts the firmware from what the flash holds, if there is a file of it.
@@ -404,6 +409,11 @@ impl Booted {
         let (around, memory) = self.board.around_and_memory();
         let attached = around.and_then(|around| around.as_any().downcast_mut::<Attached>());
         attached.map_or(0.0, |attached| attached.surroundings.value(item, memory))
+    }
+
+    /// How programs are compiled.
+    pub(crate) const fn compile_options(&self) -> &Options {
+        &self.options
     }
 
     /// The level of a bit; low where nothing is connected to this firmware.
@@ -536,9 +546,30 @@ impl Booted {
     /// The firmware ran away.
     pub(crate) fn advance(&mut self, cycles: u64, sink: &mut dyn FnMut(Event)) -> Result<bool, Halted> {
         let (begin, end) = (self.tick(), self.board.cycle() + cycles);
-        let result = self.looks.run(&mut self.board, end);
+        let result = loop {
+            match self.looks.run(&mut self.board, end) {
+                Ok(Ran::ToStop) => {}
+                other => break other,
+            }
+        };
         let has_sent = self.complete(begin, sink);
-        result.map(|()| has_sent)
+        result.map(|_| has_sent)
+    }
+
+    /// Runs to one of the [stops](Looks::set_stops), or through a part of the run that began in a tick and ends in a cycle.
+    ///
+    /// # Errors
+    /// The firmware ran away.
+    pub(crate) fn advance_to_stop(
+        &mut self,
+        (begin, end): (Ticks, u64),
+        sink: &mut dyn FnMut(Event),
+    ) -> Result<Ran, Halted> {
+        let result = self.looks.run(&mut self.board, end);
+        if result != Ok(Ran::ToStop) {
+            self.complete(begin, sink);
+        }
+        result
     }
 
     /// A part of the run that began in a tick is over: exchanges what is around the board; whether the firmware has sent lines.

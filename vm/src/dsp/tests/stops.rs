@@ -80,3 +80,19 @@ fn packets_are_counted_as_they_are_executed() {
     assert_eq!(packets.iter().map(|(_, cycles)| cycles).sum::<i64>(), core.state.cycle() as i64);
     assert_eq!(packets[..3], [(BASE, 1), (ADD, 1), (SUB, 1)]);
 }
+
+#[test]
+fn a_run_goes_on_from_a_stop_with_other_stops() {
+    let (mut core, mut memory) = at_begin();
+    for (stops, at, count) in [
+        (&[SUB][..], SUB, 1),
+        (&[ADD, SUB], ADD, 1),
+        (&[SUB], SUB, 2),
+        (&[ADD], ADD, 2),
+        (&[ADD, SUB], SUB, 3),
+    ] {
+        core.set_stops(stops.iter().copied());
+        assert_eq!(core.run_until(&mut memory, 500), Halt::Stopped);
+        assert_eq!((core.state.pc(), core.state.reg(Reg::a(3))), (at, count));
+    }
+}

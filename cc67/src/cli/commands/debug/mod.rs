@@ -1,5 +1,7 @@
 //! `cc67 debug`: a debugger in the terminal, from a script, or for an editor.
 
+mod booted;
+mod talker;
 mod terminal;
 
 use std::ffi::OsString;
@@ -22,6 +24,7 @@ use crate::cli::io::exit::Exit;
 use crate::cli::io::input::read;
 use crate::cli::io::{output, terminal as screen};
 use crate::cli::session::{Setup, Started};
+use talker::Talker;
 
 /// The end of a run by default: an hour of board time.
 const LIMIT: f64 = 3600.0;
@@ -82,6 +85,10 @@ impl LaunchArguments {
 
 /// Debugs programs.
 pub(super) fn debug(arguments: &DebugArguments) -> Result<Exit> {
+    anyhow::ensure!(
+        arguments.board.boot.is_none() || arguments.dap.is_none() && arguments.listen.is_none(),
+        "editors do not debug with `--boot` yet; `cc67 debug --boot FILE PROGRAM` takes commands"
+    );
     match (arguments.dap, arguments.listen) {
         (Some(0), _) => {
             dap::serve(BufReader::new(io::stdin()), io::stdout(), &mut launch)?;
@@ -91,11 +98,22 @@ pub(super) fn debug(arguments: &DebugArguments) -> Result<Exit> {
         (None, Some(port)) => return listen(port, false),
         (None, None) => {}
     }
+    if let Some(file) = &arguments.board.boot {
+        return match booted::shell(arguments, file)? {
+            Some(shell) => converse(arguments, shell),
+            None => Ok(Exit::Failure),
+        };
+    }
     let Some(debugger) = debugger(arguments)? else { return Ok(Exit::Failure) };
-    let mut shell = Shell::new(debugger);
+    let shell = Shell::new(debugger);
     for why in shell.debugger().programs().unknown() {
         screen::note(&why);
     }
+    converse(arguments, shell)
+}
+
+/// Takes commands from where the arguments say.
+fn converse<T: Talker + 'static>(arguments: &DebugArguments, mut shell: T) -> Result<Exit> {
     match &arguments.batch {
         Some(path) => batch(&mut shell, path),
         None => terminal::talk(shell),
@@ -113,7 +131,7 @@ fn debugger(arguments: &DebugArguments) -> Result<Option<Debugger>> {
 }
 
 /// Does the commands of a file.
-fn batch(shell: &mut Shell, path: &std::path::Path) -> Result<Exit> {
+fn batch(shell: &mut impl Talker, path: &std::path::Path) -> Result<Exit> {
     let text =
         if path.as_os_str() == "-" { io::read_to_string(io::stdin())?.into_bytes() } else { read(path)? };
     for line in String::from_utf8_lossy(&text).lines() {

@@ -6,7 +6,7 @@ use std::io::{self, IsTerminal};
 use std::rc::Rc;
 
 use anyhow::{Context as _, Result};
-use cc67_debug::{Said, Shell};
+use cc67_debug::Said;
 use rustyline::completion::{Completer, Pair};
 use rustyline::error::ReadlineError;
 use rustyline::highlight::Highlighter;
@@ -16,13 +16,14 @@ use rustyline::validate::Validator;
 use rustyline::{Context, Editor, Helper};
 
 use super::show;
+use super::talker::Talker;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::output;
 
 const PROMPT: &str = "(cc67) ";
 
 /// Takes commands until the end of the input.
-pub(super) fn talk(shell: Shell) -> Result<Exit> {
+pub(super) fn talk<T: Talker>(shell: T) -> Result<Exit> {
     if !io::stdin().is_terminal() {
         let mut shell = shell;
         for line in io::stdin().lines() {
@@ -33,14 +34,15 @@ pub(super) fn talk(shell: Shell) -> Result<Exit> {
         return Ok(Exit::Success);
     }
     let shell = Rc::new(RefCell::new(shell));
-    let mut editor: Editor<Guide, DefaultHistory> = Editor::new().context("no terminal to edit lines on")?;
+    let mut editor: Editor<Guide<T>, DefaultHistory> =
+        Editor::new().context("no terminal to edit lines on")?;
     editor.set_helper(Some(Guide(Rc::clone(&shell))));
     loop {
         match editor.readline(PROMPT) {
             Ok(line) => {
                 // A line that cannot be remembered is only harder to repeat.
                 let _ = editor.add_history_entry(&line);
-                if !obey(&mut shell.borrow_mut(), &line)? {
+                if !obey(&mut *shell.borrow_mut(), &line)? {
                     return Ok(Exit::Success);
                 }
             }
@@ -51,7 +53,7 @@ pub(super) fn talk(shell: Shell) -> Result<Exit> {
 }
 
 /// Does what a line says; whether there may be another one.
-fn obey(shell: &mut Shell, line: &str) -> Result<bool> {
+fn obey(shell: &mut impl Talker, line: &str) -> Result<bool> {
     match shell.command(line, &mut |text| show(text)) {
         Ok(Said::Text(text)) => output::print(&text)?,
         Ok(Said::Quit) => return Ok(false),
@@ -61,9 +63,9 @@ fn obey(shell: &mut Shell, line: &str) -> Result<bool> {
 }
 
 /// Completes commands and what programs name.
-struct Guide(Rc<RefCell<Shell>>);
+struct Guide<T>(Rc<RefCell<T>>);
 
-impl Completer for Guide {
+impl<T: Talker> Completer for Guide<T> {
     type Candidate = Pair;
 
     fn complete(&self, line: &str, at: usize, _: &Context<'_>) -> rustyline::Result<(usize, Vec<Pair>)> {
@@ -75,16 +77,16 @@ impl Completer for Guide {
     }
 }
 
-impl Hinter for Guide {
+impl<T: Talker> Hinter for Guide<T> {
     type Hint = String;
 }
 
-impl Highlighter for Guide {
+impl<T: Talker> Highlighter for Guide<T> {
     fn highlight_prompt<'b, 's: 'b, 'p: 'b>(&'s self, prompt: &'p str, _: bool) -> Cow<'b, str> {
         Cow::Borrowed(prompt)
     }
 }
 
-impl Validator for Guide {}
+impl<T: Talker> Validator for Guide<T> {}
 
-impl Helper for Guide {}
+impl<T: Talker> Helper for Guide<T> {}

@@ -2,7 +2,7 @@
 //!
 //! What is executed, and when, is the same whoever looks.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use boot::{BootedBoard, Halted, Ran};
 use kmotiondef::CodeAddr;
@@ -19,6 +19,8 @@ pub(crate) struct Looks {
     pub(crate) samples: Option<Samples>,
     /// The functions of the firmware by address, where its calls are followed.
     functions: BTreeMap<u32, &'static str>,
+    /// Where a debugger stops.
+    stops: BTreeSet<u32>,
 }
 
 impl Looks {
@@ -31,16 +33,29 @@ impl Looks {
     pub(super) fn follow_calls(&mut self, board: &mut BootedBoard) {
         let address = |name| board.file().address(name).map(|at| (at.get(), name));
         self.functions = FIRMWARE_FUNCTIONS.iter().filter_map(|function| address(function.name)).collect();
-        board.set_stops(self.functions.keys().copied());
+        self.hold(board);
     }
 
-    /// Runs the board to a cycle.
+    /// Stops runs before these packets, and before no others.
+    pub(crate) fn set_stops(&mut self, board: &mut BootedBoard, stops: impl IntoIterator<Item = u32>) {
+        self.stops = stops.into_iter().collect();
+        self.hold(board);
+    }
+
+    /// The stops of a board that has gone back to a snapshot are those of before.
+    pub(crate) fn hold(&self, board: &mut BootedBoard) {
+        board.set_stops(self.functions.keys().chain(&self.stops).copied());
+    }
+
+    /// Runs the board to a cycle, or to a stop.
     ///
     /// # Errors
     /// The firmware ran away.
-    pub(super) fn run(&mut self, board: &mut BootedBoard, end: u64) -> Result<(), Halted> {
+    pub(super) fn run(&mut self, board: &mut BootedBoard, end: u64) -> Result<Ran, Halted> {
         while let Some(next) = self.samples.as_ref().map(|samples| samples.next).filter(|next| *next < end) {
-            self.run_calls(board, next)?;
+            if self.run_calls(board, next)? == Ran::ToStop {
+                return Ok(Ran::ToStop);
+            }
             if let Some(samples) = &mut self.samples {
                 samples.note(board);
             }
@@ -49,11 +64,14 @@ impl Looks {
     }
 
     /// The same; what is around the board hears of the calls that are followed.
-    fn run_calls(&self, board: &mut BootedBoard, end: u64) -> Result<(), Halted> {
+    fn run_calls(&self, board: &mut BootedBoard, end: u64) -> Result<Ran, Halted> {
         while board.run_to_stop(end)? == Ran::ToStop {
             self.tell_call(board);
+            if self.stops.contains(&board.doing().pc) {
+                return Ok(Ran::ToStop);
+            }
         }
-        Ok(())
+        Ok(Ran::Through)
     }
 
     fn tell_call(&self, board: &mut BootedBoard) {

@@ -1,0 +1,129 @@
+//! The calls in progress of the programs on a booted board.
+//!
+//! Code for the processor keeps no list of its callers. So whoever enters a function of a program is noted, with the call and the
+//! stack pointer there; and a function has been left once the stack is shorter, or as long but the code another function's.
+
+use std::ops::Range;
+
+use boot::Reached;
+use kmotiondef::ThreadId;
+use kmotiondef::map::{PROGRAM_BASE, PROGRAM_LIMIT};
+use vm::engine::ContextId;
+
+/// A function of a program that was entered.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Entered {
+    /// Its code.
+    pub(super) code: Range<u32>,
+    /// The packet that has called it, or one near it; `None` where the firmware has.
+    pub(super) call: Option<u32>,
+    /// Where it returns to.
+    pub(super) back: u32,
+    /// The stack pointer at its first packet.
+    stack: u32,
+}
+
+/// The calls of a context.
+#[derive(Clone, Debug, Default)]
+struct ContextCalls {
+    /// Outermost first.
+    entered: Vec<Entered>,
+    /// Where its program was seen last, and the firmware function that it has called there.
+    last: Option<(u32, Option<u32>)>,
+}
+
+/// The calls of all threads and of the call-back.
+#[derive(Clone, Debug, Default)]
+pub(super) struct OpenCalls([ContextCalls; ContextId::COUNT]);
+
+impl OpenCalls {
+    /// The processor is at a packet, which may be the first of a function with this code.
+    pub(super) fn arrive(&mut self, arrival: &Reached, begins: Option<Range<u32>>) {
+        let Some(context) = context(arrival) else { return };
+        let known = &mut self.0[context.index()];
+        let Reached { pc, call, back, stack, .. } = *arrival;
+        let call = call.filter(|at| is_of_program(*at));
+        if !is_of_program(pc) {
+            known.last = call.map(|at| (at, Some(pc))).or(known.last);
+            return;
+        }
+        known.last = Some((pc, None));
+        let is_left = |one: &mut Entered| stack > one.stack || stack == one.stack && !one.code.contains(&pc);
+        while known.entered.pop_if(is_left).is_some() {}
+        let Some(code) = begins else { return };
+        // A loop that goes back to the first packet is not a call.
+        if known.entered.last().is_none_or(|one| one.code != code || one.stack != stack) {
+            // After an interrupt there the branch before is not the call.
+            let call = call.or(Some(back.wrapping_sub(4))).filter(|at| is_of_program(*at));
+            known.entered.push(Entered { code, call, back, stack });
+        }
+    }
+
+    /// The functions entered and not left, innermost first.
+    pub(super) fn entered(&self, context: ContextId) -> impl ExactSizeIterator<Item = &Entered> {
+        self.0[context.index()].entered.iter().rev()
+    }
+
+    /// Where a context was seen last, and the firmware function that it has called there.
+    pub(super) fn last(&self, context: ContextId) -> Option<(u32, Option<u32>)> {
+        self.0[context.index()].last
+    }
+
+    /// A thread has ended.
+    pub(super) fn end(&mut self, thread: ThreadId) {
+        self.0[ContextId::of(thread).index()] = ContextCalls::default();
+    }
+}
+
+/// Whose code is executed: a thread's, the call-back's; `None` for the firmware's own and its interrupt.
+pub(super) fn context(arrival: &Reached) -> Option<ContextId> {
+    if !arrival.is_masked {
+        return arrival.thread.map(ContextId::of);
+    }
+    let is_callback = is_of_program(arrival.pc) || arrival.call.is_some_and(is_of_program);
+    is_callback.then_some(ContextId::CALLBACK)
+}
+
+/// Whether an address is in the part of memory that programs are linked for.
+pub(super) fn is_of_program(at: u32) -> bool {
+    (PROGRAM_BASE..PROGRAM_LIMIT).contains(&at)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MAIN: Range<u32> = 0x8005_0000..0x8005_0100;
+    const INNER: Range<u32> = 0x8005_0100..0x8005_0180;
+    const FIRMWARE: u32 = 0x8000_4000;
+
+    fn at(pc: u32, call: Option<u32>, stack: u32) -> Reached {
+        Reached { pc, thread: ThreadId::new(1), is_masked: false, call, back: FIRMWARE + 8, stack }
+    }
+
+    fn depth(calls: &OpenCalls) -> usize {
+        calls.entered(ContextId::of(ThreadId::new(1).expect("there is a thread 1"))).len()
+    }
+
+    #[test]
+    fn functions_are_entered_and_left() {
+        let mut calls = OpenCalls::default();
+        let mut arrive = |pc, call, stack, begins| {
+            calls.arrive(&at(pc, call, stack), begins);
+            depth(&calls)
+        };
+        assert_eq!(arrive(MAIN.start, Some(FIRMWARE), 1000, Some(MAIN)), 1);
+        assert_eq!(arrive(MAIN.start + 8, None, 900, None), 1);
+        assert_eq!(arrive(INNER.start, Some(MAIN.start + 8), 900, Some(INNER)), 2);
+        // A leaf without a frame goes on, and back to its first packet.
+        assert_eq!(arrive(INNER.start + 8, None, 900, None), 2);
+        assert_eq!(arrive(INNER.start, None, 900, Some(INNER)), 2);
+        // It calls itself with a frame, and the firmware from there.
+        assert_eq!(arrive(INNER.start, Some(INNER.start + 16), 850, Some(INNER)), 3);
+        assert_eq!(arrive(FIRMWARE, Some(INNER.start + 8), 850, None), 3);
+        assert_eq!(arrive(INNER.start + 12, None, 900, None), 2);
+        assert_eq!(arrive(MAIN.start + 16, None, 900, None), 1);
+        // The thread begins anew, wherever it was.
+        assert_eq!(arrive(MAIN.start, Some(FIRMWARE), 1000, Some(MAIN)), 1);
+    }
+}
