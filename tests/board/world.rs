@@ -370,7 +370,11 @@ main()
     assert_eq!(output.code, 0, "{}", output.stderr);
     let lines: Vec<_> = output.stdout.lines().collect();
     assert!(lines.len() == 2 && lines[0].starts_with("2.00") && lines[1].starts_with("4.10"), "{lines:?}");
-    assert!(output.stderr.contains("a.c:4:13 in `main` waits, so --assist sets bit 136 to 1 for 0.1 s"), "{}", output.stderr);
+    assert!(
+        output.stderr.contains("a.c:4:13 in `main` waits, so --assist sets bit 136 to 1 for 0.1 s"),
+        "{}",
+        output.stderr
+    );
 }
 
 #[test]

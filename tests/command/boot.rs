@@ -315,7 +315,10 @@ main()
         output.stderr.lines().filter(|line| line.contains(" waits: ")).map(str::to_owned).collect()
     };
     assert_eq!(helps(&real), helps(&model), "what the operator does, to whom and where");
-    assert!(real.stderr.contains("wait.c:4:13 in `main` waits, so --assist sets bit 136 to 1 for 0.1 s"), "{real:?}");
+    assert!(
+        real.stderr.contains("wait.c:4:13 in `main` waits, so --assist sets bit 136 to 1 for 0.1 s"),
+        "{real:?}"
+    );
     let times = |output: &Output| -> Vec<f64> {
         let times = output.stdout.lines().filter_map(|line| line.split_whitespace().next()?.parse().ok());
         times.collect()

@@ -1,6 +1,6 @@
 //! `cc67 debug --boot`: programs on the user's own firmware file, stopped and taken back.
 //!
-//! Where `CC67_FIRMWARE` names a file, programs run on it; where not, this is said.
+//! Programs run on the file that `CC67_FIRMWARE` names; without one, the test says so.
 
 use std::env;
 
@@ -48,7 +48,7 @@ fn session(name: &str, commands: &str) -> Option<Output> {
     Some(cc67(&scratch, ["debug", "--boot", file, "-O0", "--batch", "commands", "twice.c"]))
 }
 
-/// The lines of what was said, without board times.
+/// The printed lines, without board times.
 fn lines(output: &Output) -> Vec<String> {
     assert_eq!((output.code, output.stderr.as_str()), (0, ""), "{output:?}");
     let without_time = |line: &str| match line.rsplit_once(", 0.") {

@@ -332,6 +332,7 @@ impl<'a, 'b> Translator<'a, 'b> {
             calls: CallParts {
                 callees: BTreeMap::new(),
                 shortcuts: BTreeMap::new(),
+                attempts: 0,
                 attempt: None,
                 request,
                 leave,

@@ -152,6 +152,7 @@ fn object_of(unit: &Unit, sources: &SourceMap, options: &Options, sink: &mut Sin
     }
 }
 
+/// Compiles a text on the calling thread.
 pub(crate) fn compile_here(
     path: &Path,
     text: Vec<u8>,

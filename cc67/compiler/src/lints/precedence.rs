@@ -4,7 +4,7 @@ use crate::ast::{Expression, ExpressionKind, UnaryOperator};
 use crate::diag::{Diagnostic, Lint};
 use crate::operators::{BinaryOperator, CompareOp, OperatorMeaning};
 
-/// What is said of a condition; parts of it that are joined by `&&` and `||` are looked at one by one.
+/// The finding in a condition, whose parts joined by `&&` and `||` are checked one by one.
 pub(crate) fn finding(condition: &Expression) -> Option<Diagnostic> {
     let ExpressionKind::Binary(operator, left, right) = &condition.kind else { return None };
     match operator.meaning() {

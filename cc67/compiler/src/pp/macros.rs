@@ -81,7 +81,7 @@ impl Macros {
         self.current.get(name).copied().unwrap_or_default()
     }
 
-    /// The definition in force for a name that was asked for.
+    /// The definition in force for a name.
     pub(super) fn defined(&self, name: Name) -> Option<MacroId> {
         if let Standing::Defined(id) = self.standing(name) { Some(id) } else { None }
     }

@@ -313,7 +313,7 @@ impl Sema<'_> {
         );
     }
 
-    /// What is said of `'a'` where text is needed.
+    /// The help for `'a'` where text is needed.
     fn quotes_help(&self, to: TypeId, span: Span) -> Option<String> {
         let text = String::from_utf8_lossy(self.sources.text(span)).into_owned();
         let inner = text.strip_prefix('\'')?.strip_suffix('\'')?;

@@ -254,7 +254,7 @@ impl Booted {
         Ok(Some(Begun { request }))
     }
 
-    /// Connects what is around the board, and records what is asked for.
+    /// Connects the surroundings of the board, and starts the requested records.
     fn surround(&mut self, session: cc67_host::Setup, request: Option<&TraceRequest>) -> Result<()> {
         let cc67_host::Setup {
             mut config,

@@ -18,7 +18,7 @@ const LONGEST_CALL: u32 = 6 * 32;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
 pub enum Ran {
-    /// To the cycle that was asked for.
+    /// To the requested cycle.
     Through,
     /// To one of the stops, which is executed next.
     ToStop,

@@ -23,8 +23,9 @@ pub(super) struct Registers {
 pub(super) struct CallParts {
     /// The functions of the program that this one has called so far.
     pub(super) callees: BTreeMap<usize, FuncRef>,
-    /// What callers attempt of them, and the attempt at hand.
+    /// What callers attempt of them, how many attempts there are so far, and the attempt at hand.
     pub(super) shortcuts: BTreeMap<usize, Option<ShortcutWords>>,
+    pub(super) attempts: usize,
     pub(super) attempt: Option<Attempt>,
     pub(super) request: FuncRef,
     pub(super) leave: SigRef,

@@ -27,6 +27,10 @@ use crate::program::{Function, Program};
 const MAX_WORDS: usize = 32;
 const MAX_REGISTERS: usize = 64;
 
+/// The most attempts in one function: each adds blocks and registers to it, and the time and memory that its translation
+/// takes grow faster than their number.
+const MAX_ATTEMPTS: usize = 16;
+
 /// The words of a path to a return, in ascending order, which is that of execution.
 pub(super) type ShortcutWords = Rc<BTreeSet<usize>>;
 
@@ -117,7 +121,7 @@ impl<'a> Translator<'a, '_> {
     /// The path to a return of the function with the given index, if callers attempt it.
     fn shortcut_of(&mut self, index: usize) -> Option<ShortcutWords> {
         // Code for the rare case stays small.
-        if self.twice.is_rare {
+        if self.twice.is_rare || self.calls.attempts == MAX_ATTEMPTS {
             return None;
         }
         let program = self.translation.program;
@@ -130,6 +134,7 @@ impl<'a> Translator<'a, '_> {
         let Some(words) = self.shortcut_of(index) else {
             return self.make_call(index);
         };
+        self.calls.attempts += 1;
         let budget = self.builder.use_var(self.registers.budget);
         let attempt = Attempt { call: self.builder.create_block(), behind: self.builder.create_block() };
         let result = self.builder.append_block_param(attempt.behind, types::I64);

@@ -118,7 +118,7 @@ pub(super) struct Piece {
 
 /// The start of a header.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Head {
+pub(super) struct HeadPlaces {
     /// The text that includes it, and the range of the name there with its quotes; of no meaning for the first.
     pub(super) included_at: (usize, usize, usize),
     /// The name of the macro that guards it.
@@ -132,7 +132,7 @@ pub(super) struct Index {
     count: usize,
     pieces: [Piece; PIECES],
     piece_count: usize,
-    heads: [Head; TEXTS.len()],
+    heads: [HeadPlaces; TEXTS.len()],
 }
 
 impl Index {
@@ -150,13 +150,13 @@ impl Index {
     }
 
     /// The start of the header with this number.
-    pub(super) const fn head(&self, text: usize) -> Head {
+    pub(super) const fn head(&self, text: usize) -> HeadPlaces {
         self.heads[text]
     }
 
     const fn of_texts() -> Self {
         let nothing = Piece { start: At::NOWHERE, end: 0 };
-        let head = Head { included_at: (0, 0, 0), guard: (0, 0) };
+        let head = HeadPlaces { included_at: (0, 0, 0), guard: (0, 0) };
         let mut index = Self {
             slots: [0; SLOTS],
             words: [IndexedName::NONE; WORDS],

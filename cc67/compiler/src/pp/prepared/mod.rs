@@ -9,8 +9,8 @@
 //! be the same; then the headers have to be read whole:
 //! - A file in the folder has the name of one of them, or a macro that is defined before has a name of theirs: this is
 //!   known when the program includes them.
-//! - The program defines a macro anew that a declaration uses, or a limit may be exceeded: this is known at the end, and
-//!   everything has to be read again. Other macros that are defined later mean nothing to the declarations.
+//! - The program redefines a macro that a declaration uses, or may exceed a limit: this is known at the end, and
+//!   everything has to be read again. Other macros that are defined later do not affect the declarations.
 //! - Something is wrong in the program, and a message could name any declaration: the caller knows that.
 
 mod index;

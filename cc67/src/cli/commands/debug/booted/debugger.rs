@@ -43,7 +43,7 @@ pub(super) enum Reason {
     Breakpoint(u32),
     /// A step is over.
     Step,
-    /// The time that was asked for, or the limit.
+    /// The requested time, or the limit.
     Time,
     /// A thread has ended.
     Ended(ThreadId),
@@ -341,7 +341,7 @@ impl Debugger {
         self.booted.looks.hold(&mut self.booted.board);
     }
 
-    /// Stops where breakpoints and a goal need it, and wherever calls are to be noted.
+    /// Sets the stops that breakpoints and a goal need, and those that record calls.
     fn arm(&mut self, goal: &Goal) {
         let file = self.booted.board.file();
         let functions = FIRMWARE_FUNCTIONS.iter().filter_map(|function| file.address(function.name));
