@@ -12,6 +12,7 @@ use vm::trap::TrapKind;
 use super::calls::Continuation;
 use super::costs;
 use super::parts::Parts;
+use crate::io::bits;
 use crate::io::stepgen::generator_of;
 use crate::machine::Drive;
 use crate::out::Message;
@@ -44,12 +45,12 @@ pub(crate) fn enable_axis(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32)
     let keeps_dest = mode.is_some_and(|mode| mode.traits().keeps_dest);
     let field = if keeps_dest { Chan::DEST } else { Chan::POSITION };
     let dest = caller.memory.axis(axis, field);
-    enable(parts, caller.memory, axis, dest);
-    check_pins(parts, caller, axis);
+    enable(parts, caller, axis, dest);
 }
 
-/// An axis is enabled: whether its step output takes pins that the machine drives.
-fn check_pins(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId) {
+/// An axis is enabled: the pins of its step output become outputs, and stay so when it is disabled. Tells which of them
+/// the machine drives too.
+fn take_pins(parts: &mut Parts, caller: &mut Caller<'_>, axis: AxisId) {
     let mode = OutputMode::new(caller.memory.axis(axis, Chan::OUTPUT_MODE));
     if !OutputMode::has_generator(mode) {
         return;
@@ -59,22 +60,22 @@ fn check_pins(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId) {
         if parts.machine.mechanics.contact(bit).is_some() || parts.io.pins.is_declared(bit) {
             parts.out.diagnose(caller, Message::StepPins { axis, bit, channel });
         }
+        bits::set_direction(&mut parts.io, caller.memory, bit, true, caller.now());
     }
+    parts.lines(caller.now()).settle();
 }
 
 pub(crate) fn enable_axis_dest(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32, dest: f64) {
     match AxisId::new(axis) {
-        Some(axis) => {
-            enable(parts, caller.memory, axis, dest);
-            check_pins(parts, caller, axis);
-        }
+        Some(axis) => enable(parts, caller, axis, dest),
         None => invalid(parts, "enable"),
     }
 }
 
 /// Puts an axis at a destination and turns it on.
-fn enable(parts: &mut Parts, memory: &mut GuestMemory, axis: AxisId, dest: f64) {
-    switching::enable(&mut parts.servo, &mut parts.machine, memory, axis, dest);
+fn enable(parts: &mut Parts, caller: &mut Caller<'_>, axis: AxisId, dest: f64) {
+    switching::enable(&mut parts.servo, &mut parts.machine, caller.memory, axis, dest);
+    take_pins(parts, caller, axis);
 }
 
 pub(crate) fn disable_axis(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32) {
