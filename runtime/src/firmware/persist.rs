@@ -7,7 +7,7 @@ use vm::trap::TrapKind;
 use super::calls::Continuation;
 use super::parts::Parts;
 use super::string::text;
-use crate::io::flash;
+use crate::io::flash::{self, Refused};
 use crate::out::Message;
 
 /// How long erasing and programming a block takes; other threads and the servo continue.
@@ -76,9 +76,12 @@ fn program(
     Ok(Outcome::Done(if done { 0 } else { REFUSED }))
 }
 
-/// Selects the bank that reads find, on a board that is strict about it; others show all of flash where it is.
+/// Selects the bank that reads find, on a board that is strict about it; others show all of flash where it is. The
+/// board refuses its boot sector (devices.md section 7).
 pub(crate) fn set_flash_bank(parts: &mut Parts, caller: &mut Caller<'_>, address: GuestAddr) {
-    parts.io.flash.select(address, caller.memory);
+    if parts.io.flash.select(address, caller.memory) == Err(Refused) {
+        parts.out.console.message(&format!("Attempted boot sector write : addr={:x}", address.get()));
+    }
 }
 
 #[cfg(test)]
@@ -115,5 +118,8 @@ mod tests {
         assert_eq!(desk.bytes_at(USER as u32, 5), [1, 2, 3, 4, 0xff]);
         desk.call("SetFlashBank", &[USER + 0x8000]);
         assert_eq!(desk.bytes_at(USER as u32, 2), [0xff, 0xff]);
+        desk.call("SetFlashBank", &[0x9000_0000]);
+        assert_eq!(desk.bytes_at(USER as u32, 2), [1, 2]);
+        assert_eq!(desk.printed(), ["Attempted boot sector write : addr=90000000"]);
     }
 }

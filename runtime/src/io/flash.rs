@@ -12,7 +12,7 @@ use kmotiondef::map::{FLASH, IRAM, PROGRAM_BASE, PROGRAM_SIZE, program_base};
 use kmotiondef::{GuestAddr, ThreadId};
 use vm::memory::GuestMemory;
 
-pub(crate) use banks::Banks;
+pub(crate) use banks::{Banks, Refused};
 
 /// Bytes of flash memory, and of a file that holds it.
 pub const FLASH_SIZE: usize = FLASH.size as usize;

@@ -21,23 +21,46 @@ struct Chip {
     bank: usize,
 }
 
-/// The selected bank; none where all of flash is seen.
+/// Address bits that are selected.
+const BANK_BITS: u32 = 0x1F_C000;
+/// Below this offset is the boot sector.
+const BOOT_SECTOR: u32 = 0x1_0000;
+/// The two places there that a program may select: those of the chip's command sequences.
+const COMMANDS: [u32; 2] = [0xAAAA, 0x5554];
+/// Selected in place of the boot sector.
+const USER: u32 = 0x10_0000;
+
+/// The bank of an address was not selected, which is to be told: it is one of the boot sector.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[must_use]
+pub(crate) struct Refused;
+
+/// The selected bank; no chip where all of flash is seen.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Banks(Option<Chip>);
+pub(crate) struct Banks {
+    chip: Option<Chip>,
+    /// The bank that was refused last. It is told again when another one has been refused since.
+    refused: Option<u32>,
+}
 
 impl Banks {
     /// From now on one bank is seen, the first one to begin with.
     pub(crate) fn be_strict(&mut self, memory: &mut GuestMemory) {
-        self.0 = Some(Chip { bytes: flash(memory), bank: 0 });
+        self.chip = Some(Chip { bytes: flash(memory), bank: 0 });
         self.show(memory);
     }
 
-    /// Selects the bank of an address.
-    pub(crate) fn select(&mut self, address: GuestAddr, memory: &mut GuestMemory) {
-        let Some(chip) = &mut self.0 else { return };
-        let offset = address.get().wrapping_sub(FLASH.base.get()) as usize;
-        chip.bank = offset % FLASH_SIZE / BANK;
-        self.show(memory);
+    /// Selects the bank of an address. The boot sector is refused, and the users' first bank is selected in its place.
+    pub(crate) fn select(&mut self, address: GuestAddr, memory: &mut GuestMemory) -> Result<(), Refused> {
+        let address = address.get();
+        let offset = address % FLASH.size;
+        let is_refused = offset < BOOT_SECTOR && !COMMANDS.contains(&address);
+        if let Some(chip) = &mut self.chip {
+            chip.bank = (if is_refused { USER } else { offset }) as usize / BANK;
+            self.show(memory);
+        }
+        let bank = address & BANK_BITS;
+        if is_refused && self.refused.replace(bank) != Some(bank) { Err(Refused) } else { Ok(()) }
     }
 
     /// Does something that needs all of flash where it is.
@@ -46,11 +69,11 @@ impl Banks {
         memory: &mut GuestMemory,
         work: impl FnOnce(&mut GuestMemory) -> R,
     ) -> R {
-        if let Some(chip) = &self.0 {
+        if let Some(chip) = &self.chip {
             store(memory, &chip.bytes);
         }
         let result = work(memory);
-        if let Some(chip) = &mut self.0 {
+        if let Some(chip) = &mut self.chip {
             chip.bytes = flash(memory);
         }
         self.show(memory);
@@ -59,11 +82,11 @@ impl Banks {
 
     /// What the chip holds, if that is not what is seen.
     pub(crate) fn chip(&self) -> Option<&[u8]> {
-        self.0.as_ref().map(|chip| &*chip.bytes)
+        self.chip.as_ref().map(|chip| &*chip.bytes)
     }
 
     fn show(&self, memory: &mut GuestMemory) {
-        let Some(Chip { bytes, bank }) = &self.0 else { return };
+        let Some(Chip { bytes, bank }) = &self.chip else { return };
         let seen = &bytes[bank * BANK..][..BANK];
         store(memory, &seen.repeat(FLASH_SIZE / BANK));
     }
@@ -93,11 +116,17 @@ mod tests {
             [0, 0x10_0000, 0x10_8000].map(|at| memory.peek::<u8>(FLASH.base.offset(at)))
         };
         assert_eq!(look(&memory), [0xFF; 3]);
-        banks.select(user.offset(2), &mut memory);
+        assert_eq!(banks.select(FLASH.base.offset(0x1_0000), &mut memory), Ok(()));
+        assert_eq!(look(&memory), [0xFF; 3]);
+        assert_eq!(banks.select(user.offset(2), &mut memory), Ok(()));
         assert_eq!(look(&memory), [7; 3]);
-        banks.select(user.offset(0x8000), &mut memory);
+        assert_eq!(banks.select(user.offset(0x8000), &mut memory), Ok(()));
         assert_eq!(look(&memory), [7; 3]);
         assert_eq!(memory.peek::<u8>(user.offset(1)), 0xFF);
         assert_eq!(banks.chip().map(|bytes| bytes[0x10_7FFF..0x10_8002].to_vec()), Some(vec![7, 7, 0xFF]));
+        // The boot sector shows the users' first bank.
+        assert_eq!(banks.select(FLASH.base, &mut memory), Err(Refused));
+        assert_eq!(look(&memory), [7; 3]);
+        assert_eq!(banks.select(FLASH.base.offset(2), &mut memory), Ok(()));
     }
 }
