@@ -452,7 +452,7 @@ pub(crate) fn setup_for_move(
         return Ok(());
     };
     let ramps = [abrupt_start, abrupt_end].map(|flag| if flag != 0 { Ramp::Abrupt } else { Ramp::Smooth });
-    // Without the resting tick and the end: those come from SetupForMotionPause and SetupForMotionEnd.
+    // Without the end, which comes from SetupForMotionEnd.
     let states = profile::bare_move(from, to, ramps, &limits);
     write(caller.memory, axis, index(offset), &states);
     if !count.is_null() {

@@ -167,15 +167,6 @@ impl Path {
         self.states.push(state);
     }
 
-    /// Appends a change of the velocity by `gain`, from and to acceleration 0.
-    fn ramp(&mut self, (ramp, constant): (f64, f64), gain: f64) {
-        let peak = if ramp + constant > 0.0 { gain / (ramp + constant) } else { 0.0 };
-        let jerk = if ramp > 0.0 { peak / ramp } else { 0.0 };
-        self.push_at(ramp, jerk, 0.0);
-        self.push_at(constant, 0.0, peak);
-        self.push_at(ramp, -jerk, peak);
-    }
-
     /// Appends a segment that starts with exactly this acceleration.
     fn push_at(&mut self, duration: f64, jerk: f64, acceleration: f64) {
         self.end.a = acceleration;
@@ -210,20 +201,29 @@ impl Path {
         self.end.a = 0.0;
     }
 
-    /// Appends a move from rest to `target`, with the resting tick the board puts after it.
-    fn move_from_rest(&mut self, target: f64, limits: &Limits) {
+    /// Appends a move from rest to `target`, with the resting tick the board puts after it. A half without its outer
+    /// change of acceleration is as fast at the end of its constant phase; only a move that reaches the limit of the
+    /// velocity has such halves.
+    fn move_from_rest(&mut self, target: f64, ramps: [Ramp; 2], limits: &Limits) {
         let distance = target - self.end.x;
         let sign = if distance < 0.0 { -1.0 } else { 1.0 };
-        let Phases { ramp, constant, cruise, peak } = Phases::of(distance.abs(), limits);
+        let Phases { ramp, constant, cruise, peak, is_full } = Phases::of(distance.abs(), limits);
         let jerk = sign * limits.j;
         let turn = sign * peak;
-        self.push(ramp, jerk);
-        self.push_at(constant, 0.0, turn);
+        let abrupt = ramps.map(|kind| is_full && kind == Ramp::Abrupt);
+        let saved = if abrupt.contains(&true) { peak * ramp * ramp / 24.0 / limits.v } else { 0.0 };
+        let cruise = abrupt.iter().filter(|&&is| is).fold(cruise, |cruise, _| cruise + saved);
+        if !abrupt[0] {
+            self.push(ramp, jerk);
+        }
+        self.push_at(if abrupt[0] { constant + ramp / 2.0 } else { constant }, 0.0, turn);
         self.push_at(ramp, -jerk, turn);
         self.push_at(cruise, 0.0, 0.0);
         self.push_at(ramp, -jerk, 0.0);
-        self.push_at(constant, 0.0, -turn);
-        self.push_at(ramp, jerk, -turn);
+        self.push_at(if abrupt[1] { constant + ramp / 2.0 } else { constant }, 0.0, -turn);
+        if !abrupt[1] {
+            self.push_at(ramp, jerk, -turn);
+        }
         self.states.push(MotionState::hold(target, TIMEBASE));
         self.end = Point::rest(target);
     }
@@ -240,6 +240,8 @@ struct Phases {
     cruise: f64,
     /// The acceleration that is reached.
     peak: f64,
+    /// Whether the limit of the velocity is.
+    is_full: bool,
 }
 
 impl Phases {
@@ -251,11 +253,12 @@ impl Phases {
         let ramp = divide(peak, j);
         if length < 2.0 * peak * ramp * ramp {
             let ramp = libm::cbrt(divide(length, 2.0 * j));
-            return Self { ramp, constant: 0.0, cruise: 0.0, peak: j * ramp };
+            return Self { ramp, constant: 0.0, cruise: 0.0, peak: j * ramp, is_full: false };
         }
         let way = |v: f64| v * (divide(v, peak) + ramp);
         if length > way(v) {
-            return Self { ramp, constant: divide(v, peak) - ramp, cruise: divide(length - way(v), v), peak };
+            let (constant, cruise) = (divide(v, peak) - ramp, divide(length - way(v), v));
+            return Self { ramp, constant, cruise, peak, is_full: true };
         }
         // (J·r/2)·c² + (3·J·r²/2)·c + (J·r³ − L/2) = 0 for the constant phase c. The board's root is a single. Where
         // it leaves no constant phase, at a length just between two cases, the board takes the other solution, a time
@@ -265,7 +268,8 @@ impl Phases {
         let constant = divide(sum - 3.0 * half, peak);
         let constant = if constant <= 0.0 { -divide(sum + 3.0 * half, peak) } else { constant };
         // What the single leaves over is covered at the limit of the velocity, even if that is not reached.
-        Self { ramp, constant, cruise: divide(length - way(sum - half), v), peak: j * ramp }
+        let cruise = divide(length - way(sum - half), v);
+        Self { ramp, constant, cruise, peak: j * ramp, is_full: false }
     }
 }
 
@@ -274,10 +278,9 @@ pub(crate) fn move_from_rest(from: f64, to: f64, limits: &Limits) -> Vec<MotionS
     if from.is_nan() {
         return move_from_nowhere(to, limits);
     }
-    let mut path = Path::from(Point::rest(from));
-    path.move_from_rest(to, limits);
-    path.states.push(MotionState::END);
-    path.states
+    let mut states = bare_move(from, to, [Ramp::Smooth; 2], limits);
+    states.push(MotionState::END);
+    states
 }
 
 /// A move of an axis whose destination is not a number: four phases of full length, and the last state that every move
@@ -294,61 +297,15 @@ fn move_from_nowhere(to: f64, limits: &Limits) -> Vec<MotionState> {
 pub(crate) enum Ramp {
     /// With limited jerk.
     Smooth,
-    /// With steps of the acceleration.
+    /// With a step of the acceleration where the axis rests.
     Abrupt,
 }
 
-impl Ramp {
-    /// Seconds of changing jerk at each end of the change to velocity `v`, and of constant acceleration between.
-    fn phases(self, v: f64, limits: &Limits) -> (f64, f64) {
-        match self {
-            Self::Abrupt => (0.0, v / limits.a),
-            Self::Smooth => {
-                let peak = limits.a.min(libm::sqrt(v * limits.j));
-                if peak > 0.0 { (peak / limits.j, (v / peak - peak / limits.j).max(0.0)) } else { (0.0, 0.0) }
-            }
-        }
-    }
-
-    /// The way from rest to velocity `v`.
-    fn way(self, v: f64, limits: &Limits) -> f64 {
-        let (ramp, constant) = self.phases(v, limits);
-        v * (2.0 * ramp + constant) / 2.0
-    }
-}
-
-/// The states of a move from rest alone, each half with its own ramp.
+/// The states of a move from rest, each half with its own ramp, and the resting tick; without the end of the list.
 pub(crate) fn bare_move(from: f64, to: f64, ramps: [Ramp; 2], limits: &Limits) -> Vec<MotionState> {
-    if ramps == [Ramp::Smooth; 2] {
-        let mut states = move_from_rest(from, to, limits);
-        states.truncate(states.len() - 2);
-        return states;
-    }
-    let [start, end] = ramps;
-    let length = (to - from).abs();
-    let peak = peak_velocity(length, ramps, limits);
-    let sign = if to < from { -1.0 } else { 1.0 };
-    let cruise = (length - start.way(peak, limits) - end.way(peak, limits)).max(0.0);
     let mut path = Path::from(Point::rest(from));
-    path.ramp(start.phases(peak, limits), sign * peak);
-    path.push_at(if peak > 0.0 { cruise / peak } else { 0.0 }, 0.0, 0.0);
-    path.ramp(end.phases(peak, limits), -sign * peak);
+    path.move_from_rest(to, ramps, limits);
     path.states
-}
-
-/// The velocity that a move over `length` reaches.
-fn peak_velocity(length: f64, ramps: [Ramp; 2], limits: &Limits) -> f64 {
-    let way = |v: f64| ramps.iter().map(|ramp| ramp.way(v, limits)).sum::<f64>();
-    if way(limits.v) <= length {
-        return limits.v;
-    }
-    let (mut low, mut high) = (0.0, limits.v);
-    // Each step halves the range; 60 of them leave less than rounding.
-    for _ in 0..60 {
-        let middle = f64::midpoint(low, high);
-        if way(middle) <= length { low = middle } else { high = middle }
-    }
-    low
 }
 
 /// A move planned while the axis moves: 20 ticks continue as they are, then either the target is approached at full
@@ -366,7 +323,7 @@ pub(crate) fn move_in_motion(start: Point, to: f64, limits: &Limits) -> Vec<Moti
     let remaining = to - shortest.end.x;
     if sign * remaining < 0.0 {
         path = stopped;
-        path.move_from_rest(to, limits);
+        path.move_from_rest(to, [Ramp::Smooth; 2], limits);
         path.states.push(MotionState::END);
         return path.states;
     }
@@ -425,20 +382,25 @@ mod tests {
     }
 
     #[test]
-    fn abrupt_halves_have_no_jerk_phases() {
-        let limits = Limits::new(100.0, 1000.0, 10_000.0).expect("positive limits");
-        let durations = |ramps, distance| {
-            bare_move(0.0, distance, ramps, &limits).iter().map(|state| state.t).collect::<Vec<_>>()
+    fn abrupt_halves_have_no_outer_jerk_phase() {
+        let limits = Limits::new(300.0, 3000.0, 50_000.0).expect("positive limits");
+        let check = |ramps: [Ramp; 2], distance: f64, durations: &[f64]| {
+            let states = bare_move(5.0, 5.0 + distance, ramps, &limits);
+            let found: Vec<f64> = states.iter().map(|state| state.t).collect();
+            assert_eq!(found.len(), durations.len() + 1, "{found:?}");
+            assert!(found.iter().zip(durations).all(|(a, b)| (a - b).abs() < 1e-10), "{found:?}");
+            assert_eq!(states.last(), Some(&MotionState::hold(5.0 + distance, TIMEBASE)));
+            let [.., last, _] = &states[..] else { panic!("{states:?}") };
+            let end = last.at(last.t);
+            assert!((end.x - 5.0 - distance).abs() < 1e-5 && end.v.abs() < 1e-9, "{end:?}");
         };
-        let near = |found: &[f64], expect: &[f64]| {
-            found.len() == expect.len() && found.iter().zip(expect).all(|(a, b)| (a - b).abs() < 1e-12)
-        };
-        // 5 units to full speed and 5 to stop; smooth they are 10 each.
-        assert!(near(&durations([Ramp::Abrupt; 2], 110.0), &[0.1, 1.0, 0.1]));
-        assert!(near(&durations([Ramp::Abrupt, Ramp::Smooth], 115.0), &[0.1, 1.0, 0.1, 0.1]));
-        let short = bare_move(7.0, 3.0, [Ramp::Smooth, Ramp::Abrupt], &limits);
-        let end = short.last().map(|state| state.at(state.t)).expect("states");
-        assert!((end.x - 3.0).abs() < 1e-12 && end.v.abs() < 1e-9, "{end:?}");
+        let (smooth, abrupt) = (Ramp::Smooth, Ramp::Abrupt);
+        check([abrupt, smooth], 1000.0, &[0.07, 0.06, 3.174_833_333_333_333, 0.06, 0.04, 0.06]);
+        check([smooth, abrupt], -1005.0, &[0.06, 0.04, 0.06, 3.1915, 0.06, 0.07]);
+        check([abrupt; 2], 48.0, &[0.07, 0.06, 0.003, 0.06, 0.07]);
+        // The limit of the velocity is not reached.
+        let constant = 0.022_101_145_426_4;
+        check([abrupt; 2], 35.0, &[0.06, constant, 0.06, 0.06, constant, 0.06]);
     }
 
     #[test]
