@@ -207,7 +207,7 @@ impl Path {
     fn move_from_rest(&mut self, target: f64, ramps: [Ramp; 2], limits: &Limits) {
         let distance = target - self.end.x;
         let sign = if distance < 0.0 { -1.0 } else { 1.0 };
-        let Phases { ramp, constant, cruise, peak, is_full } = Phases::of(distance.abs(), limits);
+        let Phases { ramp, constant, cruise, peak, is_full } = Phases::of(distance, limits);
         let jerk = sign * limits.j;
         let turn = sign * peak;
         let abrupt = ramps.map(|kind| is_full && kind == Ramp::Abrupt);
@@ -245,8 +245,9 @@ struct Phases {
 }
 
 impl Phases {
-    /// The fastest move over `length` within the limits.
-    fn of(length: f64, limits: &Limits) -> Self {
+    /// The fastest move over `distance` within the limits.
+    fn of(distance: f64, limits: &Limits) -> Self {
+        let length = distance.abs();
         let Limits { v, a, j } = *limits;
         // The product is a single on the board.
         let peak = a.min(libm::sqrt(f64::from(((v * j) as f32).max(f32::MIN_POSITIVE))));
@@ -256,17 +257,21 @@ impl Phases {
             return Self { ramp, constant: 0.0, cruise: 0.0, peak: j * ramp, is_full: false };
         }
         let way = |v: f64| v * (divide(v, peak) + ramp);
-        if length > way(v) {
-            let (constant, cruise) = (divide(v, peak) - ramp, divide(length - way(v), v));
+        let constant = divide(v, peak) - ramp;
+        // Without a constant phase at full speed, there is none at a lower speed either.
+        if length > way(v) || constant <= 0.0 {
+            let cruise = divide(length - way(v), v);
             return Self { ramp, constant, cruise, peak, is_full: true };
         }
         // (J·r/2)·c² + (3·J·r²/2)·c + (J·r³ − L/2) = 0 for the constant phase c. The board's root is a single. Where
         // it leaves no constant phase, at a length just between two cases, the board takes the other solution, a time
-        // before the start, and its list jumps: so it was recorded.
+        // before the start, and its list jumps: so it was recorded. Backwards the coefficients have the other sign, the
+        // other solution is the board's first choice, and what it falls back to is the right one.
         let half = peak * ramp / 2.0;
         let sum = root(half * half + peak * length);
         let constant = divide(sum - 3.0 * half, peak);
-        let constant = if constant <= 0.0 { -divide(sum + 3.0 * half, peak) } else { constant };
+        let constant =
+            if constant <= 0.0 && distance > 0.0 { -divide(sum + 3.0 * half, peak) } else { constant };
         // What the single leaves over is covered at the limit of the velocity, even if that is not reached.
         let cruise = divide(length - way(sum - half), v);
         Self { ramp, constant, cruise, peak: j * ramp, is_full: false }
