@@ -276,6 +276,21 @@ fn times_that_programs_print_may_differ_within_the_tolerance() {
 }
 
 #[test]
+fn a_program_that_does_not_compile_leaves_the_others_compared() {
+    let Some(file) = firmware() else { return };
+    let scratch = scratch("boot-compare-broken");
+    scratch.write("broken.c", "main() { printf(\"no end\") }\n");
+    scratch.write("hello.c", HELLO);
+    let compare = cc67(&scratch, ["compare", "--boot", &file, "broken.c", "hello.c"]);
+    assert_eq!(compare.code, 1, "{compare:?}");
+    let rows: Vec<_> =
+        compare.stdout.lines().skip(1).map(|row| row.split_whitespace().collect::<Vec<_>>()).collect();
+    assert_eq!(rows[0], ["broken.c", "-", "does", "not", "compile"], "{compare:?}");
+    assert_eq!(rows[1][..3], ["hello.c", "1", "equal"], "{compare:?}");
+    assert!(compare.stderr.contains("1 of 2 programs do not compile"), "{compare:?}");
+}
+
+#[test]
 fn tests_of_a_project_run_on_the_real_firmware() {
     let Some(file) = firmware() else { return };
     let scratch = scratch("boot-test");

@@ -61,7 +61,16 @@ pub(super) struct CompareArguments {
     pub(super) words: Vec<OsString>,
 }
 
-/// Compares all programs; exit code 5 if any differs.
+/// How a program compares.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Verdict {
+    Equal,
+    Unequal,
+    /// Its source has errors.
+    Broken,
+}
+
+/// Compares all programs; exit code 1 if one does not compile, 5 if any differs.
 pub(super) fn compare(arguments: &CompareArguments) -> Result<Exit> {
     let Some(file) = &arguments.board.boot else {
         bail!("`cc67 compare` needs `--boot FILE`, your firmware file")
@@ -69,38 +78,27 @@ pub(super) fn compare(arguments: &CompareArguments) -> Result<Exit> {
     arguments.refuse()?;
     let mut ready = Booted::new(file)?.into_ready();
     let mut table = String::new();
-    let mut unequal = 0;
+    let mut verdicts = Vec::new();
     for program in &arguments.programs {
-        let (own, programs) = arguments.of(program)?;
-        let Some(model) = own.model(&programs)? else { return Ok(Exit::Failure) };
-        let Some(firmware) = own.firmware(&programs, &mut ready, model.ticks)? else {
-            return Ok(Exit::Failure);
-        };
-        let (differences, near) = model.differences(&firmware, own.allowed());
-        let late = model.latest(&firmware);
-        let is_late = arguments.strict_times && late > arguments.tolerance;
-        unequal += usize::from(!differences.is_empty() || is_late);
-        let name = program.to_string_lossy();
-        if let Some(first) = differences.first() {
-            output::print(&format!(
-                "{name}: {}\n  model:    {}\n  firmware: {}\n  see {}\n",
-                first.what, first.model, first.firmware, first.page
-            ))?;
+        let verdict = arguments.one(program, &mut ready, &mut table)?;
+        if verdict == Verdict::Broken {
+            writeln!(table, "{:40} {:>6} does not compile", program.to_string_lossy(), "-")?;
         }
-        if let Some(near) = near.any() {
-            output::print(&format!("{name}: {near}\n"))?;
-        }
-        let verdict = if differences.is_empty() { "equal".to_owned() } else { plural(differences.len()) };
-        let times = if late > arguments.tolerance { "  (times beyond the tolerance)" } else { "" };
-        let lines = firmware.lines.len();
-        writeln!(table, "{name:40} {lines:6} {verdict:16} {late:10.6}{times}")?;
+        verdicts.push(verdict);
     }
     output::print(&format!("{:40} {:>6} {:16} {:>10}\n{table}", "program", "lines", "result", "times, s"))?;
-    if unequal > 0 {
-        terminal::note(&format!("{unequal} of {} programs differ", arguments.programs.len()));
-        return Ok(Exit::Unmet);
+    let count = |verdict| verdicts.iter().filter(|&&found| found == verdict).count();
+    let (unequal, broken) = (count(Verdict::Unequal), count(Verdict::Broken));
+    for (number, what) in [(unequal, "differ"), (broken, "do not compile")] {
+        if number > 0 {
+            terminal::note(&format!("{number} of {} programs {what}", verdicts.len()));
+        }
     }
-    Ok(Exit::Success)
+    Ok(match (broken, unequal) {
+        (0, 0) => Exit::Success,
+        (0, _) => Exit::Unmet,
+        _ => Exit::Failure,
+    })
 }
 
 fn plural(count: usize) -> String {
@@ -157,6 +155,32 @@ impl CompareArguments {
     /// By how much printed numbers may differ.
     fn allowed(&self) -> Option<Tolerance> {
         (!self.exact).then_some(Tolerance { seconds: self.tolerance, number: self.numbers })
+    }
+
+    /// Compares one of the programs, and adds its row to the table if it compiles.
+    fn one(&self, program: &OsString, ready: &mut Ready, table: &mut String) -> Result<Verdict> {
+        let (own, programs) = self.of(program)?;
+        let Some(model) = own.model(&programs)? else { return Ok(Verdict::Broken) };
+        let Some(firmware) = own.firmware(&programs, ready, model.ticks)? else { return Ok(Verdict::Broken) };
+        let (differences, near) = model.differences(&firmware, own.allowed());
+        let late = model.latest(&firmware);
+        let is_late = self.strict_times && late > self.tolerance;
+        let name = program.to_string_lossy();
+        if let Some(first) = differences.first() {
+            output::print(&format!(
+                "{name}: {}\n  model:    {}\n  firmware: {}\n  see {}\n",
+                first.what, first.model, first.firmware, first.page
+            ))?;
+        }
+        if let Some(near) = near.any() {
+            output::print(&format!("{name}: {near}\n"))?;
+        }
+        let result = if differences.is_empty() { "equal".to_owned() } else { plural(differences.len()) };
+        let times = if late > self.tolerance { "  (times beyond the tolerance)" } else { "" };
+        let lines = firmware.lines.len();
+        writeln!(table, "{name:40} {lines:6} {result:16} {late:10.6}{times}")?;
+        let is_equal = differences.is_empty() && !is_late;
+        Ok(if is_equal { Verdict::Equal } else { Verdict::Unequal })
     }
 
     fn started<'a>(&'a self, programs: &'a [OsString]) -> Started<'a> {
