@@ -1,7 +1,7 @@
 // Motions that a program plans by itself, and one that is dropped. A ramp with steps of acceleration takes
 // L / V + V / A seconds: 1000 / 1000 + 1000 / 10000, and then it stands for a quarter of a second.
 //@ says: StopMotion: 0x80000000 is not an axis structure
-//@ prints: 3 states, 1000 after 1.35 s
+//@ prints: 6 states, 1000 after 1.35 s
 //@ prints: stands at 500: 1
 //@ prints: the integrator is 0
 #include "KMotionDef.h"
@@ -41,4 +41,4 @@ main()
     printf("the integrator is %g\n", ch0->integrator);
     DisableAxis(0);
 }
-//@ cycles: 118322333
+//@ cycles: 118338077

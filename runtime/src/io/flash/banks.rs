@@ -30,7 +30,7 @@ const COMMANDS: [u32; 2] = [0xAAAA, 0x5554];
 /// Selected in place of the boot sector.
 const USER: u32 = 0x10_0000;
 
-/// The bank of an address was not selected, which is to be told: it is one of the boot sector.
+/// The bank of an address was not selected, because it is one of the boot sector; the program is told so.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
 pub(crate) struct Refused;
