@@ -142,10 +142,7 @@ fn lines(lines: &[Said]) -> Vec<(f64, String)> {
 
 fn bit(number: i32) -> PyResult<Bit> {
     Bit::new(number).ok_or_else(|| {
-        pyo3::exceptions::PyIndexError::new_err(format!(
-            "no such bit {number} (0-{})",
-            Bit::MAX
-        ))
+        pyo3::exceptions::PyIndexError::new_err(format!("no such bit {number} (0-{})", Bit::MAX))
     })
 }
 

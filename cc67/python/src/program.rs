@@ -170,8 +170,7 @@ impl LinkableProgram {
 
 /// A thread of that number.
 pub(crate) fn thread(number: i32) -> PyResult<ThreadId> {
-    ThreadId::new(number)
-        .ok_or_else(|| input(format!("no such thread {number} (1-{})", ThreadId::MAX)))
+    ThreadId::new(number).ok_or_else(|| input(format!("no such thread {number} (1-{})", ThreadId::MAX)))
 }
 
 /// Compiles sources and reads objects, which together make one program, and links it once to see whether that works:

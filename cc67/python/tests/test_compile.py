@@ -105,7 +105,7 @@ def test_an_error_pickles(write: Write) -> None:
         ({"files": []}, cc67.InputError, "no file"),
         ({"files": 5}, TypeError, "files must be a path"),
         ({"files": "missing.c"}, OSError, "missing.c"),
-        ({"thread": 8}, cc67.InputError, "there are 1 to 7"),
+        ({"thread": 8}, cc67.InputError, r"no such thread 8 \(1-7\)"),
         ({"thread": "1"}, TypeError, "from 1 to 7"),
         ({"optimize": 3}, cc67.InputError, "0, 1, 2 or"),
         ({"std": "c42"}, cc67.InputError, "vendor"),
