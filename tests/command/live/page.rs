@@ -155,11 +155,11 @@ fn drag_back(browser: &mut Browser) {
          line.dispatchEvent(new Event('input')); })()",
     );
     browser.until(&shows("#bar .time", "0.090 s"));
-    browser.until(&shows("#timeline", "looking back"));
+    browser.until(&shows("#timeline", "in the past"));
     browser.until("document.querySelector('[aria-label=HOME]').getAttribute('aria-checked') === 'false'");
     browser.until(&format!("{} < 0", axis("Dest")));
     press(browser, "Run");
-    browser.until(&format!("!{}", shows("#timeline", "looking back")));
+    browser.until(&format!("!{}", shows("#timeline", "in the past")));
     browser.until(&format!("!{}", shows("#console", "home at 250")));
     browser.click("[aria-label=ESTOP]");
     browser.until(&shows("#console", "home at 250"));
