@@ -139,6 +139,7 @@ pub(crate) const LAYERS: &[(&str, &[Row])] = &[
         &[
             ("protocol", &["dap"]),
             ("commands", &["shell"]),
+            ("words of commands", &["words"]),
             ("debugger", &["debugger"]),
             ("programs", &["programs"]),
         ],

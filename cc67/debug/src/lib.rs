@@ -9,6 +9,7 @@
 //! ```text
 //! dap        the Debug Adapter Protocol: requests in, responses and events out
 //! shell      gdb's commands
+//! words      their names, and how their lines are read
 //! debugger   breakpoints, runs, steps, values
 //!   travel     the same, back in time
 //! programs   debug information of the programs in the threads
@@ -25,10 +26,12 @@ pub mod dap;
 mod debugger;
 mod programs;
 mod shell;
+mod words;
 
 pub use debugger::{
     Breakpoint, BreakpointKind, Catches, CodePlace, DebugError, Debugger, Reason, ShownVariable, StackFrame,
     Stop,
 };
 pub use programs::Programs;
-pub use shell::{COMMANDS, Output, Said, Shell};
+pub use shell::{Output, Said, Shell};
+pub use words::{BreakWords, LineReader};

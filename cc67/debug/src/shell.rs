@@ -11,50 +11,7 @@ use runtime::{Event, EventKind};
 use vm::engine::ContextId;
 
 use crate::debugger::{BreakpointKind, DebugError, Debugger, Reason, Stop};
-
-/// Every command with its short forms and what it does.
-pub const COMMANDS: &[(&str, &[&str], &str)] = &[
-    ("break", &["b", "br"], "break [FILE:]LINE|FUNCTION|*ADDRESS [thread N] [if CONDITION]: stop there"),
-    ("tbreak", &["tb"], "the same, once"),
-    ("watch", &["wa"], "watch EXPRESSION [if CONDITION]: stop when its value changes, and say who did it"),
-    ("dprintf", &[], "dprintf PLACE,TEXT: print a text there, {expression} is its value"),
-    ("catch", &[], "catch trap|remark|start|end|console TEXT|bit N: stop on it"),
-    ("condition", &["cond"], "condition N [EXPRESSION]: stop at breakpoint N only where it is not 0"),
-    ("ignore", &[], "ignore N COUNT: pass breakpoint N so often"),
-    ("enable", &["en"], "enable [N]"),
-    ("disable", &["dis"], "disable [N]"),
-    ("delete", &["d"], "delete [N]: delete a breakpoint, or all"),
-    ("run", &["r"], "begin, or begin again"),
-    ("continue", &["c"], "continue [COUNT]: go on to the next stop"),
-    ("step", &["s"], "step [COUNT]: to the next line, into functions"),
-    ("next", &["n"], "next [COUNT]: to the next line, over functions"),
-    ("finish", &["fin"], "until the function returns"),
-    ("stepi", &["si"], "stepi [COUNT]: one instruction"),
-    ("until", &["u"], "until PLACE: go on to it"),
-    ("advance", &[], "advance PLACE: go on to it"),
-    ("tick", &[], "tick [COUNT]: to the end of the servo tick"),
-    ("slice", &[], "to the end of the thread's next slice"),
-    ("goto", &[], "goto SECONDS: to that board time, back or forward"),
-    ("reverse-continue", &["rc"], "back to the last stop"),
-    ("reverse-step", &["rs"], "reverse-step [COUNT]: back to the last line"),
-    ("reverse-next", &["rn"], "reverse-next [COUNT]: the same over functions"),
-    ("reverse-stepi", &["rsi"], "reverse-stepi [COUNT]: back by one instruction"),
-    ("reverse-finish", &[], "back to the call of the function"),
-    ("print", &["p", "inspect"], "print[/x] EXPRESSION"),
-    ("ptype", &["whatis"], "ptype EXPRESSION: its type"),
-    ("x", &[], "x/NFU ADDRESS: memory; F is x d u f s c or i, U is b h w g"),
-    ("set", &[], "set var NAME = EXPRESSION: another value, which begins a new line of history in the past"),
-    ("info", &["i"], "info threads|breakpoints|locals|variables|line|frame|history"),
-    ("backtrace", &["bt", "where"], "the calls that led here"),
-    ("frame", &["f"], "frame [N]: look at a call"),
-    ("up", &[], "look at the caller"),
-    ("down", &[], "look at the called function"),
-    ("thread", &["t"], "thread [N]: look at a thread"),
-    ("list", &["l"], "list [LINE|FUNCTION]: the source"),
-    ("disassemble", &["disas"], "the instructions of the function"),
-    ("help", &["h"], "this list"),
-    ("quit", &["q", "exit"], "end"),
-];
+use crate::words::{BreakWords, LineReader, split_if};
 
 /// What comes of a command.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -69,8 +26,7 @@ pub enum Said {
 #[derive(Debug)]
 pub struct Shell {
     debugger: Debugger,
-    /// The line that was given last, for an empty one.
-    last: String,
+    lines: LineReader,
     /// The line that `list` continues with.
     listed: u32,
     values: u32,
@@ -83,7 +39,7 @@ impl Shell {
     /// Commands for a debugger.
     #[must_use]
     pub const fn new(debugger: Debugger) -> Self {
-        Self { debugger, last: String::new(), listed: 0, values: 0 }
+        Self { debugger, lines: LineReader::modelled(), listed: 0, values: 0 }
     }
 
     /// The debugger.
@@ -99,7 +55,7 @@ impl Shell {
             line.rsplit(|c: char| !(c.is_ascii_alphanumeric() || "_-".contains(c))).next().unwrap_or("");
         let mut names: Vec<String> = Vec::new();
         if line.trim_start() == word {
-            names.extend(COMMANDS.iter().map(|(name, ..)| (*name).to_owned()));
+            names.extend(self.lines.names().map(str::to_owned));
         } else {
             for (_, model) in self.debugger.programs().all() {
                 names.extend(model.functions.iter().map(|function| function.name.clone()));
@@ -118,19 +74,11 @@ impl Shell {
     /// # Errors
     /// What is wrong with it.
     pub fn command(&mut self, line: &str, output: Output<'_>) -> Result<Said, DebugError> {
-        let line = line.trim();
-        let line = if line.is_empty() { self.last.clone() } else { line.to_owned() };
-        if line.is_empty() || line.starts_with('#') {
-            return Ok(Said::Text(String::new()));
-        }
-        self.last.clone_from(&line);
-        let end = line.find(|c: char| c.is_whitespace() || c == '/').unwrap_or(line.len());
-        let (word, rest) = line.split_at(end);
-        let name = command_of(word)?;
+        let Some((name, rest)) = self.lines.read(line)? else { return Ok(Said::Text(String::new())) };
         if name == "quit" {
             return Ok(Said::Quit);
         }
-        let text = self.execute(name, rest.trim(), output)?;
+        let text = self.execute(name, &rest, output)?;
         let mut messages = String::new();
         while let Some(message) = self.debugger.take_message() {
             messages += &message;
@@ -244,13 +192,7 @@ impl Shell {
     }
 
     fn set_break(&mut self, rest: &str, is_temporary: bool) -> Result<String, DebugError> {
-        let (place, condition) = split_if(rest);
-        let (place, thread) = match place.rsplit_once("thread ") {
-            Some((place, number)) if number.trim().parse::<i32>().is_ok() => {
-                (place.trim(), number.trim().parse().ok().and_then(ThreadId::new))
-            }
-            _ => (place, None),
-        };
+        let BreakWords { place, thread, condition } = BreakWords::of(rest);
         let own = self.debugger.present().map(|place| place.line.to_string());
         let place = if place.is_empty() {
             own.ok_or("No default breakpoint location now.")?
@@ -324,31 +266,6 @@ impl Shell {
         self.listed = place.as_ref().map_or(self.listed, |place| place.line.saturating_sub(5));
         show::stop(&self.debugger, stop)
     }
-}
-
-/// The command that a word means: its name, a short form, or the beginning of one name alone.
-fn command_of(word: &str) -> Result<&'static str, DebugError> {
-    if let Some((name, ..)) = COMMANDS.iter().find(|(name, short, _)| *name == word || short.contains(&word))
-    {
-        return Ok(name);
-    }
-    let starts: Vec<_> =
-        COMMANDS.iter().filter(|(name, ..)| name.starts_with(word)).map(|(name, ..)| *name).collect();
-    match starts.as_slice() {
-        [one] => Ok(one),
-        [] => Err(format!("Undefined command: \"{word}\".  Try \"help\".").into()),
-        many => Err(format!("Ambiguous command \"{word}\": {}.", many.join(", ")).into()),
-    }
-}
-
-/// The text before ` if `, and the condition after it.
-fn split_if(text: &str) -> (&str, Option<&str>) {
-    let text = text.trim();
-    if let Some(condition) = text.strip_prefix("if ") {
-        return ("", Some(condition.trim()));
-    }
-    text.split_once(" if ")
-        .map_or((text, None), |(before, condition)| (before.trim(), Some(condition.trim())))
 }
 
 /// Hands events over as lines.

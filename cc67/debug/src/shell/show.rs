@@ -7,7 +7,7 @@ use kmotiondef::{Cycles, ThreadId};
 use vm::engine::ContextId;
 use vm::thread::{Progress, ThreadState};
 
-use super::{COMMANDS, Shell, breakpoints, context};
+use super::{Shell, breakpoints, context};
 use crate::debugger::{CodePlace, DebugError, Debugger, Reason, Stop, file_name};
 
 /// Lines that `list` shows.
@@ -145,13 +145,7 @@ impl Shell {
                 let range = found.2.addresses.clone();
                 Ok(self.instructions(range.start, (range.end - range.start) / 8))
             }
-            _ => {
-                let lines = COMMANDS.iter().map(|(name, short, text)| {
-                    let names = std::iter::once(name).chain(*short).copied().collect::<Vec<_>>().join(", ");
-                    format!("{names:<24} {text}\n")
-                });
-                Ok(lines.collect())
-            }
+            _ => Ok(self.lines.help()),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use cc67_debug::{COMMANDS, Said};
+use cc67_debug::{BreakWords, LineReader, Said};
 use cc67_host::remark;
 use kmotiondef::limits::TIMEBASE;
 use kmotiondef::{Cycles, ThreadId, Ticks};
@@ -16,35 +16,6 @@ use super::calls::is_of_program;
 use super::debugger::{Debugger, Reason, ShownCall, Stop};
 use super::programs::CodeLine;
 
-/// What this debugger has of the commands.
-const HERE: [&str; 26] = [
-    "break",
-    "tbreak",
-    "delete",
-    "run",
-    "continue",
-    "step",
-    "next",
-    "finish",
-    "stepi",
-    "until",
-    "advance",
-    "tick",
-    "goto",
-    "reverse-continue",
-    "reverse-step",
-    "reverse-next",
-    "print",
-    "ptype",
-    "set",
-    "info",
-    "backtrace",
-    "thread",
-    "list",
-    "disassemble",
-    "help",
-    "quit",
-];
 /// Lines of the source shown at once, and packets around a place.
 const LINES: u32 = 10;
 const PACKETS: usize = 12;
@@ -57,8 +28,7 @@ pub(super) struct Shell {
     infos: Vec<DebugInfo>,
     /// Whose program the board has stopped in.
     stood: Option<ContextId>,
-    /// The line that was given last, for an empty one.
-    last: String,
+    lines: LineReader,
     listed: u32,
     values: u32,
 }
@@ -68,7 +38,7 @@ type Output<'a> = &'a mut dyn FnMut(&str);
 impl Shell {
     pub(super) fn new(debugger: Debugger) -> Self {
         let infos = debugger.booted.debug().into_iter().map(|(_, info)| info).collect();
-        Self { debugger, infos, stood: None, last: String::new(), listed: 1, values: 0 }
+        Self { debugger, infos, stood: None, lines: LineReader::booted(), listed: 1, values: 0 }
     }
 
     /// Why nothing is known about some of the programs.
@@ -79,16 +49,8 @@ impl Shell {
 
     /// Does what a line says; an empty one repeats the last.
     fn obey(&mut self, line: &str, output: Output<'_>) -> Result<Said, String> {
-        let line = line.trim();
-        let line = if line.is_empty() { self.last.clone() } else { line.to_owned() };
-        if line.is_empty() || line.starts_with('#') {
-            return Ok(Said::Text(String::new()));
-        }
-        self.last.clone_from(&line);
-        let end = line.find(|c: char| c.is_whitespace() || c == '/').unwrap_or(line.len());
-        let (word, rest) = line.split_at(end);
-        let name = full_name(word)?;
-        let rest = rest.trim();
+        let Some((name, rest)) = self.lines.read(line)? else { return Ok(Said::Text(String::new())) };
+        let rest = rest.as_str();
         if name == "quit" {
             return Ok(Said::Quit);
         }
@@ -104,7 +66,7 @@ impl Shell {
             "thread" => self.select(rest)?,
             "list" => self.list(rest)?,
             "disassemble" => self.disassemble()?,
-            "help" => help(),
+            "help" => self.lines.help(),
             _ => self.travel(name, rest, output)?,
         };
         Ok(Said::Text(text))
@@ -165,18 +127,8 @@ impl Shell {
     }
 
     fn set_breakpoint(&mut self, rest: &str, is_temporary: bool) -> Result<String, String> {
-        let (place, condition) = match rest.split_once(" if ") {
-            Some((place, condition)) => (place, Some(condition.trim())),
-            None => (rest, None),
-        };
-        let (place, thread) = match place.split_once(" thread ") {
-            Some((place, thread)) => {
-                let thread = thread.trim().parse().ok().and_then(ThreadId::new);
-                (place, Some(thread.ok_or("break [FILE:]LINE|FUNCTION|*ADDRESS [thread N] [if CONDITION]")?))
-            }
-            None => (place, None),
-        };
-        let (id, place) = self.debugger.break_at(place.trim(), thread, (condition, is_temporary))?;
+        let BreakWords { place, thread, condition } = BreakWords::of(rest);
+        let (id, place) = self.debugger.break_at(place, thread, (condition, is_temporary))?;
         Ok(format!("Breakpoint {id} at {place}\n"))
     }
 
@@ -363,34 +315,8 @@ impl Talker for Shell {
 
     fn complete(&self, line: &str) -> Vec<String> {
         let word = line.trim_start();
-        let names = HERE.iter().filter(|name| name.starts_with(word));
-        names.map(|name| (*name).to_owned()).collect()
+        self.lines.names().filter(|name| name.starts_with(word)).map(str::to_owned).collect()
     }
-}
-
-/// The command that a word means: its name, a short form, or the beginning of one.
-fn full_name(word: &str) -> Result<&'static str, String> {
-    let known = || COMMANDS.iter().filter(|(name, ..)| HERE.contains(name));
-    let exact = known().find(|(name, short, _)| *name == word || short.contains(&word));
-    if let Some((name, ..)) = exact {
-        return Ok(name);
-    }
-    let mut begun = known().filter(|(name, ..)| name.starts_with(word));
-    match (begun.next(), begun.next()) {
-        (Some((name, ..)), None) => Ok(name),
-        (None, _) if COMMANDS.iter().any(|(name, short, _)| *name == word || short.contains(&word)) => {
-            Err(format!("`{word}` does not work with `--boot`; `help` lists what does"))
-        }
-        _ => Err(format!("Undefined command: \"{word}\".  Try \"help\".")),
-    }
-}
-
-fn help() -> String {
-    let lines = COMMANDS.iter().filter(|(name, ..)| HERE.contains(name)).map(|(name, short, text)| {
-        let names = std::iter::once(name).chain(*short).copied().collect::<Vec<_>>().join(", ");
-        format!("{names:<24} {text}\n")
-    });
-    lines.collect()
 }
 
 fn number(text: &str) -> String {
