@@ -88,7 +88,7 @@ pub struct Expression {
     meanings: BTreeMap<SymbolId, Meaning>,
 }
 
-/// What a name stands for.
+/// The meaning of a name.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Meaning {
     Variable(GuestAddr),

@@ -64,7 +64,7 @@ impl Recorder {
     }
 }
 
-/// What a name stands for: `axis0` is its destination, position and output.
+/// The items of a name: `axis0` is its destination, position and output.
 fn names(item: &str) -> Vec<String> {
     match item.trim().strip_prefix("axis") {
         Some(number) if !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit()) => {

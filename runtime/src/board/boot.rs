@@ -75,7 +75,7 @@ impl<E: Engine> Board<E> {
         programs.flashed = programs.loaded.each_ref().map(known);
     }
 
-    /// Restarts from flash. Time goes on: it counts from the first power-up.
+    /// Restarts from flash. Time continues: it counts from the first power-up.
     pub(super) fn reboot(&mut self) {
         ThreadId::all().for_each(|thread| self.machine.unload_program(thread));
         self.programs_mut().loaded = Default::default();

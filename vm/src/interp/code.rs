@@ -33,7 +33,7 @@ impl Word {
         Self { handler: handler_of(code), parts }
     }
 
-    /// That of one instruction, which stands for itself alone.
+    /// The word of a single instruction that is not part of a sequence.
     pub(super) fn plain(op: &Op) -> Self {
         let parts = parts_of(op);
         Self::new(parts[0], parts)

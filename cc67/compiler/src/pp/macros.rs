@@ -51,7 +51,7 @@ pub(super) enum Builtin {
     Counter,
 }
 
-/// What a name stands for.
+/// The meaning of a name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Standing {
     /// Nobody has asked yet: it may be the name of a macro that is defined before the program begins.
@@ -76,7 +76,7 @@ pub(super) struct Macros {
 }
 
 impl Macros {
-    /// What a name stands for.
+    /// The meaning of a name.
     pub(super) fn standing(&self, name: Name) -> Standing {
         self.current.get(name).copied().unwrap_or_default()
     }

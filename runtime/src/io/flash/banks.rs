@@ -30,7 +30,7 @@ const COMMANDS: [u32; 2] = [0xAAAA, 0x5554];
 /// Selected in place of the boot sector.
 const USER: u32 = 0x10_0000;
 
-/// The bank of an address was not selected, because it is one of the boot sector; the program is told so.
+/// The bank of an address was not selected, because it belongs to the boot sector; the board prints a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
 pub(crate) struct Refused;
@@ -39,7 +39,7 @@ pub(crate) struct Refused;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Banks {
     chip: Option<Chip>,
-    /// The bank that was refused last. It is told again when another one has been refused since.
+    /// The bank that was refused last. The message for it comes again only after another bank was refused.
     refused: Option<u32>,
 }
 

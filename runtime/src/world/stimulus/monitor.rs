@@ -133,7 +133,7 @@ impl Player {
         self.progress[index].happened = true;
     }
 
-    /// The run is over: what is watched is looked at again, and what has not come is told.
+    /// The run is over: checks the watched expectations once again, and reports those that were not met.
     pub(super) fn finish_watching(&mut self, stage: &mut Stage<'_>, context: &TickContext<'_>) {
         self.watch(stage, context);
         for index in 0..self.rules.len() {

@@ -115,7 +115,7 @@ mod tests {
         assert_eq!(arrive(MAIN.start, Some(FIRMWARE), 1000, Some(MAIN)), 1);
         assert_eq!(arrive(MAIN.start + 8, None, 900, None), 1);
         assert_eq!(arrive(INNER.start, Some(MAIN.start + 8), 900, Some(INNER)), 2);
-        // A leaf without a frame goes on, and back to its first packet.
+        // A leaf without a frame continues, and jumps back to its first packet.
         assert_eq!(arrive(INNER.start + 8, None, 900, None), 2);
         assert_eq!(arrive(INNER.start, None, 900, Some(INNER)), 2);
         // It calls itself with a frame, and the firmware from there.
