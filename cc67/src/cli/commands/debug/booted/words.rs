@@ -128,6 +128,9 @@ impl Shell {
 
     fn set_breakpoint(&mut self, rest: &str, is_temporary: bool) -> Result<String, String> {
         let BreakWords { place, thread, condition } = BreakWords::of(rest);
+        if place.is_empty() {
+            return Err("`break` needs a line, a function or an address with `--boot`".to_owned());
+        }
         let (id, place) = self.debugger.break_at(place, thread, (condition, is_temporary))?;
         Ok(format!("Breakpoint {id} at {place}\n"))
     }
