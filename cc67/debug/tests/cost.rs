@@ -89,27 +89,25 @@ fn on_processor() -> Duration {
     Duration::from_nanos(nanoseconds.expect("a number"))
 }
 
-/// How much longer runs take in a debugger without a breakpoint, the median of pairs of runs.
+/// How much longer runs take in a debugger without a breakpoint: the shortest of some runs over the shortest plain one,
+/// as what else the computer does only ever makes a run longer.
 fn ratio(pairs: usize, seconds: f64) -> f64 {
     let end = tick(seconds);
-    let mut ratios: Vec<f64> = (0..pairs)
-        .map(|_| {
-            let mut plain = session();
-            let plain = time(|| plain.advance(end, &mut |_| ()));
-            let mut debugger = Debugger::new(session(), end);
-            let debugged = time(|| _ = debugger.go_on(&mut |_| ()));
-            debugged.as_secs_f64() / plain.as_secs_f64()
-        })
-        .collect();
-    ratios.sort_by(f64::total_cmp);
-    ratios[pairs / 2]
+    let (mut plain, mut debugged) = (Duration::MAX, Duration::MAX);
+    for _ in 0..pairs {
+        let mut session = self::session();
+        plain = plain.min(time(|| session.advance(end, &mut |_| ())));
+        let mut debugger = Debugger::new(self::session(), end);
+        debugged = debugged.min(time(|| _ = debugger.go_on(&mut |_| ())));
+    }
+    debugged.as_secs_f64() / plain.as_secs_f64()
 }
 
 /// What is measured, and what it may be. One test, as other work in the process would be measured as well.
 #[test]
 fn a_past_of_hours_takes_little_memory_and_little_time() {
     let is_long = std::env::var_os("CC67_LONG").is_some();
-    let (minutes, pairs, seconds, most) = if is_long { (60.0, 15, 20.0, 1.1) } else { (0.5, 3, 2.0, 1.6) };
+    let (minutes, pairs, seconds, most) = if is_long { (60.0, 15, 100.0, 1.1) } else { (0.5, 7, 20.0, 1.6) };
 
     let before = resident();
     let mut debugger = Debugger::new(session(), tick(1e6));
@@ -129,7 +127,7 @@ fn a_past_of_hours_takes_little_memory_and_little_time() {
 
     let ratio = ratio(pairs, seconds);
     println!(
-        "a run in a debugger takes {ratio:.3} times a plain one, the median of {pairs} pairs of {seconds} s"
+        "a run in a debugger takes {ratio:.3} times a plain one, the shortest of {pairs} runs of {seconds} s each"
     );
     assert!(ratio < most, "{ratio}");
     std::fs::remove_dir_all(folder()).expect("the folder is ours");
