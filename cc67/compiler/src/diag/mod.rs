@@ -167,6 +167,8 @@ pub struct Sink {
     diagnostics: Vec<Diagnostic>,
     errors: usize,
     lacks_names: bool,
+    /// The rest of a file was not read.
+    lacks_text: bool,
 }
 
 impl Sink {
@@ -201,6 +203,19 @@ impl Sink {
     pub fn report_lost_names(&mut self, error: Diagnostic) {
         self.lacks_names |= error.severity == Severity::Error;
         self.report(error);
+    }
+
+    /// Takes an error that hides the rest of a file: a comment without an end. What is then missing, names among
+    /// it, is not worth an error of its own.
+    pub fn report_lost_text(&mut self, error: Diagnostic) {
+        self.lacks_text = true;
+        self.report_lost_names(error);
+    }
+
+    /// Whether an error that was reported hides the rest of a file.
+    #[must_use]
+    pub fn lacks_text(&self) -> bool {
+        self.lacks_text
     }
 
     /// Whether names are unknown because of an error that was reported.

@@ -129,7 +129,8 @@ impl<'a> Preprocessor<'a> {
             self.close_file();
         }
         self.add_declarations(&mut output);
-        let broken = if self.work.is_stopped { Flags::BROKEN } else { Flags::NONE };
+        let is_cut = self.work.is_stopped || self.sink.lacks_text();
+        let broken = if is_cut { Flags::BROKEN } else { Flags::NONE };
         output.push(Token::new(TokenKind::End, Flags::LINE_START.with(broken), end));
         (output, self.prepared.read())
     }

@@ -136,7 +136,7 @@ pub enum HeadersRead {
 /// Preprocesses a file of `sources` with everything it includes; the last token is `End`.
 ///
 /// What is wrong goes to `sink`. After a limit was exceeded or too many errors were found the
-/// tokens are those up to that place, and the `End` is `BROKEN`.
+/// tokens are those up to that place, and the `End` is `BROKEN`; so it is after a comment without an end.
 pub fn preprocess(
     main: FileId,
     options: &Options,

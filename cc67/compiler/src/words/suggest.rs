@@ -4,7 +4,8 @@
 ///
 /// Closeness counts the letters that are changed, added, left out or swapped with their
 /// neighbour (optimal string alignment); another letter case counts a quarter. A third of the
-/// letters may differ. Failing that, the longest candidate that abbreviates the name.
+/// letters may differ. Failing that, the longest candidate that abbreviates the name; one of six or more letters
+/// comes before a candidate that is only close: `MoveRel` for `MoveRelative`.
 pub fn suggest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let limit = (name.chars().count() * CHANGE / 3).max(CHANGE);
     let mut best: Option<(usize, &str)> = None;
@@ -22,7 +23,12 @@ pub fn suggest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
             best = Some((distance, candidate));
         }
     }
-    best.map(|(_, candidate)| candidate).or(abbreviation)
+    let near = best.map(|(distance, candidate)| (distance > CHANGE * 2, candidate));
+    match (near, abbreviation) {
+        (Some((true, _)), Some(long)) if long.len() >= LONG => Some(long),
+        (Some((_, candidate)), _) => Some(candidate),
+        (None, abbreviation) => abbreviation,
+    }
 }
 
 /// Whether `short` is the beginning of `name`, in any letter case: `Vel` of `velocity`.
@@ -33,6 +39,9 @@ fn abbreviates(short: &str, name: &str) -> bool {
         && short.len() < name.len()
         && beginning.is_some_and(|b| b.eq_ignore_ascii_case(short))
 }
+
+/// Letters of an abbreviation that is hardly there by chance.
+const LONG: usize = 6;
 
 /// Weight of a changed letter; a changed letter case weighs 1.
 const CHANGE: usize = 4;
@@ -81,5 +90,7 @@ mod tests {
         check("printf", &["printf"], None);
         check("Velocity", &["Accel", "Vel", "Vex"], Some("Vel"));
         check("velocity", &["Ve", "loc"], None);
+        check("MoveRelative", &["Move", "MoveRelAtVel", "MoveRel"], Some("MoveRel"));
+        check("MoveRelAtVell", &["MoveRel", "MoveRelAtVel"], Some("MoveRelAtVel"));
     }
 }

@@ -128,7 +128,7 @@ impl Lexer {
         let opener = self.at;
         let Some(end) = self.end_of_comment(text) else {
             let span = self.span_to(opener, text);
-            cx.sink.report(Diagnostic::error(span, "comment is never closed").at("it starts here"));
+            cx.sink.report_lost_text(Diagnostic::error(span, "comment is never closed").at("it starts here"));
             self.at = self.end;
             return;
         };
