@@ -240,6 +240,24 @@ impl SourceMap {
         Some(Place { file, line: line as u32, column: offset - line_start + 1 })
     }
 
+    /// The line number of a span and the blanks before it; `None` if anything else is before it in its line.
+    #[must_use]
+    pub fn indentation(&self, span: Span) -> Option<(u32, &[u8])> {
+        let place = self.place(span)?;
+        let file = &self.files[place.file];
+        let end = span.lo.checked_sub(file.start)?;
+        let start = end.checked_sub(place.column.checked_sub(1)?)?;
+        let before = file.text.get(start as usize..end as usize)?;
+        before.iter().all(u8::is_ascii_whitespace).then_some((place.line, before))
+    }
+
+    /// The byte before a span, in the same file.
+    #[must_use]
+    pub fn byte_before(&self, span: Span) -> Option<u8> {
+        let file = &self.files[self.file_at(span.lo)?];
+        file.text.get((span.lo - file.start).checked_sub(1)? as usize).copied()
+    }
+
     /// The bytes of a span.
     #[must_use]
     pub fn text(&self, span: Span) -> &[u8] {
@@ -268,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn scratch_text_lies_behind_the_files_and_moves_none() {
+    fn scratch_text_comes_after_the_files_and_moves_none() {
         let mut map = SourceMap::new();
         map.add_file("a.c", None, b"int".to_vec(), None);
         let joined = map.add_scratch(b"ab");

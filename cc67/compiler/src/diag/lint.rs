@@ -20,23 +20,23 @@ pub enum Preset {
 macro_rules! for_each_lint {
     ($m:ident) => {
         $m! {
-            /// A function is called that nothing declares, or that needs its declaration.
+            /// A function is called without the declaration that it needs.
             ImplicitDeclaration = "implicit-declaration", On;
-            /// A function is called above its definition, all of it integers and pointers.
+            /// A function that takes and returns only integers and pointers is called before its definition.
             LateDefinition = "late-definition", Extra;
-            /// Firmware 4.34 lacks a function, or has one of the C library that the program defines.
+            /// Firmware 4.34 lacks a function, or the program defines a function that the firmware also has.
             Portability = "portability", Extra, pass portability;
-            /// A declaration names no type, where programs seldom mean `int`.
+            /// A declaration names no type in a place where `int` is seldom meant.
             ImplicitInt = "implicit-int", On;
             /// The types of the parameters come after the parentheses, as before 1989.
             OldStyleDefinition = "old-style-definition", On;
             /// `main` has parameters, which the board does not pass.
             MainParameters = "main-parameters", On;
-            /// A macro is defined again with another body.
+            /// A macro is redefined with a different body.
             MacroRedefined = "macro-redefined", On;
-            /// The text is not quite C, but the vendor's compiler takes it.
+            /// The text is not quite C, but the vendor's compiler accepts it.
             LaxText = "lax-text", On;
-            /// A function, local or enumerator is declared twice, or a name of the firmware is defined.
+            /// A function, local variable or enumerator is declared twice, or a name that the firmware uses is redefined.
             Redeclared = "redeclared", On, pass firmware_name;
             /// A prototype differs from the definition.
             PrototypeMismatch = "prototype-mismatch", On;
@@ -50,65 +50,69 @@ macro_rules! for_each_lint {
             MissingAddress = "missing-address", On;
             /// An assignment is used as a condition.
             AssignmentCondition = "assignment-condition", On;
-            /// An operator of a condition takes less than it seems.
+            /// An operator in a condition applies to less than it seems to.
             Precedence = "precedence", On;
+            /// `=-` or `=+` is written where `-=` or `+=` is probably meant.
+            ReversedOperator = "reversed-operator", On;
             /// The name of a function is used where its result is meant: the `()` is missing.
             MissingCall = "missing-call", On, pass missing_call;
-            /// A statement computes a value and drops it.
+            /// A statement computes a value and discards it.
             UnusedValue = "unused-value", On;
-            /// An `if` ends in a `;` on its own line.
+            /// An `if` or a loop ends in a `;` that is probably not meant.
             EmptyBody = "empty-body", On;
             /// The value of a void function is used.
             VoidValue = "void-value", On;
-            /// A function whose value is used may end without one.
+            /// A function may end without a value that a caller uses.
             MissingReturn = "missing-return", On, pass missing_return;
-            /// A function that returns a value may end without one, and no caller uses it.
+            /// A function may end without its value, and no caller uses it.
             FallsOffEnd = "falls-off-end", All;
             /// An integer constant has the suffix `f`.
             IntegerFloatSuffix = "integer-float-suffix", On;
-            /// A constant shift count lies outside of the value's width.
+            /// A constant shift count is negative or not less than the width of the value.
             ShiftCount = "shift-count", On;
-            /// A format conversion does not fit its argument.
+            /// A format conversion does not match its argument.
             Format = "format", On, pass format;
-            /// A format conversion does on the board what it does nowhere else.
+            /// A format conversion behaves differently on the board than in standard C.
             BoardFormat = "board-format", All, pass board_format;
-            /// A local is read before anything is stored in it.
+            /// A file is opened whose name contains an escape, such as a tab.
+            FileName = "file-name", On, pass file_name;
+            /// A local variable is read before it is assigned.
             Uninitialized = "uninitialized", On, pass uninitialized;
-            /// A local may be read before anything is stored in it.
+            /// A local variable may be read before it is assigned.
             MaybeUninitialized = "maybe-uninitialized", All;
             /// A string is longer than the array it initialises.
             LongString = "long-string", On;
-            /// A `const` object is changed.
+            /// A `const` object is modified.
             ConstWrite = "const-write", On;
-            /// An array is read or written at an element that it does not have.
+            /// An array index is out of range.
             ArrayBounds = "array-bounds", On, pass array_bounds;
             /// `persist.UserData` is indexed outside 0..199.
             UserDataIndex = "user-data-index", On;
-            /// A constant is beyond what an output takes.
+            /// A constant is outside the range of an output.
             ValueRange = "value-range", On, pass value_range;
             /// A `double` lies at an odd index of `persist.UserData`.
             UserDataAlignment = "user-data-alignment", On;
-            /// A frame or a chain of calls is larger than the board's small stack.
+            /// A frame or a chain of calls needs more than the board's small stack.
             StackSize = "stack-size", On, pass stack_size;
-            /// A function calls itself, so that the stack it needs is unknown.
+            /// A function calls itself, so the stack that it needs is unknown.
             Recursion = "recursion", Extra, pass recursion;
             /// A floating-point value is compared with itself.
             SelfComparison = "self-comparison", On, pass self_comparison;
             /// An endless loop neither waits nor has an effect.
             IdleLoop = "idle-loop", On, pass idle_loop;
-            /// A statement is indented as if the condition above it governed it.
+            /// A statement is indented as if it belonged to the condition above it.
             MisleadingIndentation = "misleading-indentation", On;
-            /// A function that may wait is called in the call-back of the servo interrupt.
+            /// A function that may wait is called in a call-back of the servo interrupt.
             CallBackWait = "call-back-wait", On, pass call_back_wait;
-            /// The call-back of the servo interrupt takes longer than the servo leaves it.
+            /// A call-back of the servo interrupt takes more time than the servo leaves for it.
             SlowCallback = "slow-callback", On, pass slow_callback;
-            /// A local copy of `KMotionDef.h` belongs to another firmware.
+            /// A local copy of `KMotionDef.h` belongs to another version of the firmware.
             HeaderMismatch = "header-mismatch", On, pass header_mismatch;
-            /// A variable of a function is never used.
+            /// A local variable is never used.
             UnusedVariable = "unused-variable", All, pass unused_variable;
             /// `main` is declared `void`.
             VoidMain = "void-main", Extra, pass void_main;
-            /// A number is stored in a type that cannot hold all of it.
+            /// A number is converted to a type that may not be able to represent it.
             Conversion = "conversion", Extra;
             /// A constant with a fraction is stored in an integer.
             LostFraction = "lost-fraction", On;
@@ -120,9 +124,9 @@ macro_rules! for_each_lint {
             EndlessWait = "endless-wait", On, pass endless_wait;
             /// A signed and an unsigned value are compared.
             SignCompare = "sign-compare", Extra;
-            /// The vendor's compiler accepts it and translates it wrongly.
+            /// The vendor's compiler accepts the construct and generates wrong code for it.
             Vendor = "vendor", Own, pass vendor;
-            /// Standard C does not allow it, and the vendor's compiler accepts it.
+            /// Standard C does not allow the construct, but the vendor's compiler accepts it.
             Extension = "extension", On;
         }
     };

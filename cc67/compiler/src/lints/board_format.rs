@@ -210,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_board_prints_otherwise_is_found() {
+    fn formats_that_the_board_prints_differently_are_found() {
         check("printf", "%d %f %#x %g %s %08X %5.2f %c %% %u\n", &[]);
         check("printf", "%ld %hd %#06x %.0f %0.lf", &["%ld", "%hd", "%#06x", "%.0f", "%0.lf"]);
         check(
@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_board_reads_otherwise_is_found() {
+    fn formats_that_the_board_reads_differently_are_found() {
         check("sscanf", "%d %lf,%d ,%s %[^]-] %*d%3d%n", &[]);
         check("sscanf", "%d, %d", &[", "]);
         check("sscanf", "%[a-z]%5f%ld%lld", &["%[a-z]", "%5f", "%ld", "%lld"]);

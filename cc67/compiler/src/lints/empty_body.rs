@@ -1,10 +1,10 @@
-//! `if (x) ;` on one line: the `;` ends the `if`.
+//! `if (x) ;` on one line: the `;` ends the `if`. So it does a loop, if what follows looks like its body.
 //!
-//! `while (x) ;` is how programs for this board wait, and is never mentioned.
+//! `while (x) ;` by itself is how programs for this board wait, and is never reported.
 
 use crate::ast::{Expression, Statement, StatementKind};
 use crate::diag::{Diagnostic, Lint};
-use crate::source::SourceMap;
+use crate::source::{ExpansionId, SourceMap};
 
 /// The message for an `if` with this condition and body.
 pub(crate) fn finding(
@@ -21,5 +21,40 @@ pub(crate) fn finding(
         Diagnostic::warning(Lint::EmptyBody, then.span, "`if` with an empty body")
             .at("this `;` ends the `if`")
             .help("remove the `;`, or write `{}` if nothing should be done")
+    })
+}
+
+/// The message for a loop that ends in a `;`, if `next` is a block or indented like its body.
+pub(crate) fn loop_finding(
+    sources: &SourceMap,
+    statement: &Statement,
+    next: &Statement,
+) -> Option<Diagnostic> {
+    let (keyword, body) = match &statement.kind {
+        StatementKind::While { body, .. } => ("while", body),
+        StatementKind::For { body, .. } => ("for", body),
+        _ => return None,
+    };
+    let spans = [statement.span, body.span, next.span];
+    if !matches!(body.kind, StatementKind::Empty) || spans.iter().any(|it| it.expansion != ExpansionId::NONE)
+    {
+        return None;
+    }
+    // A `;` on a line of its own is meant.
+    let [Some((_, outer)), None, Some((next_line, inner))] = spans.map(|span| sources.indentation(span))
+    else {
+        return None;
+    };
+    let is_below = sources.place(body.span).is_some_and(|end| end.line + 1 == next_line);
+    let looks_like_body = match next.kind {
+        StatementKind::Block(_) => inner.starts_with(outer),
+        StatementKind::Empty => false,
+        _ => inner.starts_with(outer) && inner.len() > outer.len(),
+    };
+    (is_below && looks_like_body).then(|| {
+        Diagnostic::warning(Lint::EmptyBody, body.span, format!("`{keyword}` with an empty body"))
+            .at(format!("this `;` ends the `{keyword}`"))
+            .label(next.span, "so this is executed once, after it")
+            .help("remove the `;`, or move it to a line of its own if the loop is only to wait")
     })
 }

@@ -57,7 +57,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_what_every_way_stores_is_certain() {
+    fn only_variables_stored_on_every_path_count_as_initialised() {
         let [a, b] = [3, 200].map(LocalId::new);
         let mut left = Flow::start();
         left.insert(a);

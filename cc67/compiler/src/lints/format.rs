@@ -42,21 +42,33 @@ pub(super) fn literal_format<'p>(
     function: &typed::Function,
     call: &Call,
 ) -> Option<(FormatFunction, &'p [u8])> {
+    let taker = FormatFunction::by_name(called_firmware(unit, call)?)?;
+    Some((taker, literal_argument(unit, function, call, taker.format)?))
+}
+
+/// The name of the function that a call calls, if the program does not define it.
+pub(super) fn called_firmware<'p>(unit: &'p Unit, call: &Call) -> Option<&'p str> {
     let Callee::Symbol(callee) = call.callee else { return None };
     let callee = &unit.symbols[callee];
-    let taker = FormatFunction::by_name(&callee.name)?;
-    if !matches!(callee.definition, Definition::None) {
-        return None;
+    matches!(callee.definition, Definition::None).then_some(&callee.name)
+}
+
+/// The text of an argument of a call, counted from 0, if that is a string literal.
+pub(super) fn literal_argument<'p>(
+    unit: &'p Unit,
+    function: &typed::Function,
+    call: &Call,
+    index: usize,
+) -> Option<&'p [u8]> {
+    let mut text: ExprId = *call.arguments.get(index)?;
+    while let ExprKind::Convert(inner) = function.exprs[text].kind {
+        text = inner;
     }
-    let mut format: ExprId = *call.arguments.get(taker.format)?;
-    while let ExprKind::Convert(inner) = function.exprs[format].kind {
-        format = inner;
-    }
-    let ExprKind::Address(place) = function.exprs[format].kind else { return None };
+    let ExprKind::Address(place) = function.exprs[text].kind else { return None };
     let PlaceKind::Symbol(symbol, 0) = function.places[place].kind else { return None };
     let literal = unit.symbols.get(symbol).filter(|symbol| symbol.is_anonymous())?;
     let Definition::Data(data) = &literal.definition else { return None };
-    Some((taker, data.bytes.strip_suffix(&[0])?))
+    data.bytes.strip_suffix(&[0])
 }
 
 /// A function that takes a format.
@@ -334,7 +346,7 @@ mod tests {
     }
 
     #[test]
-    fn formats_that_fit_are_silent() {
+    fn matching_formats_give_no_warning() {
         let mut types = Types::new();
         let text = types.pointer_to(Types::CHAR);
         let arguments =
@@ -346,7 +358,7 @@ mod tests {
     }
 
     #[test]
-    fn formats_that_do_not_fit_say_what_they_need() {
+    fn mismatched_formats_say_what_they_need() {
         let mut types = Types::new();
         let int = types.pointer_to(Types::INT);
         let check = |function, format, arguments: &[TypeId], expect: &str| {

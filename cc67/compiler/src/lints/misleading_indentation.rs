@@ -2,7 +2,7 @@
 
 use crate::ast::{Statement, StatementKind};
 use crate::diag::{Diagnostic, Lint};
-use crate::source::{ExpansionId, SourceMap, Span};
+use crate::source::{ExpansionId, SourceMap};
 
 /// The message if `next` is indented like the body of the `if`, `for` or `while` before it.
 pub(crate) fn finding(sources: &SourceMap, guard: &Statement, next: &Statement) -> Option<Diagnostic> {
@@ -14,7 +14,7 @@ pub(crate) fn finding(sources: &SourceMap, guard: &Statement, next: &Statement) 
         return None;
     }
     let [Some((guard_line, outer)), Some((body_line, inner)), Some((next_line, following))] =
-        spans.map(|span| indentation(sources, span))
+        spans.map(|span| sources.indentation(span))
     else {
         return None;
     };
@@ -26,16 +26,6 @@ pub(crate) fn finding(sources: &SourceMap, guard: &Statement, next: &Statement) 
             .label(body.span, "only this one does")
             .help("put both in braces, or move this one to the left")
     })
-}
-
-/// Line number of a statement and the blanks before it; `None` if something else is there.
-fn indentation(sources: &SourceMap, span: Span) -> Option<(u32, &[u8])> {
-    let place = sources.place(span)?;
-    let file = sources.file(place.file);
-    let end = span.lo.checked_sub(file.start)?;
-    let start = end.checked_sub(place.column.checked_sub(1)?)?;
-    let before = file.text.get(start as usize..end as usize)?;
-    before.iter().all(u8::is_ascii_whitespace).then_some((place.line, before))
 }
 
 /// The last body without braces of a statement with a condition.

@@ -7,7 +7,7 @@ use super::operands::Operand;
 use super::places::Located;
 use crate::ast::{Expression, ExpressionKind};
 use crate::diag::{Diagnostic, Lint};
-use crate::lints::value_range;
+use crate::lints::{reversed_operator, value_range};
 use crate::operators::{BinaryOp, BinaryOperator, OperatorMeaning};
 use crate::source::Span;
 use crate::ty::{TypeId, Types, convert};
@@ -16,6 +16,7 @@ use crate::typed::{ExprId, ExprKind, PlaceId, PlaceKind, Update, UpdateResult};
 impl Sema<'_> {
     /// `to = from`
     pub(super) fn assignment(&mut self, to: &Expression, from: &Expression, span: Span) -> Option<Operand> {
+        self.report_finding(reversed_operator::finding(self.sources, from));
         let target = self.operand(to);
         let source = self.operand(from);
         let target = self.modifiable(target?, to.span);

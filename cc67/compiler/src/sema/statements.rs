@@ -20,6 +20,7 @@ impl Sema<'_> {
             self.statement(statement, out);
             if let Some(next) = statements.get(index + 1) {
                 self.report_finding(misleading_indentation::finding(self.sources, statement, next));
+                self.report_finding(empty_body::loop_finding(self.sources, statement, next));
             }
         }
     }

@@ -1,0 +1,38 @@
+//! Backslashes in the name of a file that are written once: `fopen("c:\temp\new.txt", "w")`.
+
+use super::format::{called_firmware, literal_argument};
+use super::program::AnalysedProgram;
+use crate::diag::{Diagnostic, Lint, Sink};
+
+/// Looks at the names of the files that are opened.
+pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
+    for function in program.functions() {
+        for (_, call) in function.calls() {
+            if called_firmware(program.unit, call) != Some("fopen") {
+                continue;
+            }
+            let name = literal_argument(program.unit, function, call, 0).unwrap_or_default();
+            let Some(escape) = name.iter().find_map(|byte| escape(*byte)) else { continue };
+            let span = function.exprs[call.arguments[0]].span;
+            sink.report(
+                Diagnostic::warning(Lint::FileName, span, format!("`\\{escape}` in the name of a file"))
+                    .at("no file has such a name")
+                    .help("write `\\\\` for each backslash, or `/`"),
+            );
+        }
+    }
+}
+
+/// The letter that gives a control character after a backslash.
+fn escape(byte: u8) -> Option<char> {
+    match byte {
+        0x07 => Some('a'),
+        0x08 => Some('b'),
+        b'\t' => Some('t'),
+        b'\n' => Some('n'),
+        0x0B => Some('v'),
+        0x0C => Some('f'),
+        b'\r' => Some('r'),
+        _ => None,
+    }
+}
