@@ -18,12 +18,20 @@ pub(super) struct Head {
 
 impl Head {
     /// Reads one from a client; `None` if that is not what it sends. What comes after it is left alone.
+    ///
+    /// # Errors
+    ///
+    /// The connection failed, or ended before its first byte: browsers open some to spare.
     pub(super) fn read(stream: &mut TcpStream) -> io::Result<Option<Self>> {
         let mut bytes = Vec::new();
         let mut byte = [0];
         // A head is short, and what follows it belongs to the socket.
         while !bytes.ends_with(b"\r\n\r\n") {
-            if bytes.len() == LONGEST || stream.read(&mut byte)? == 0 {
+            let count = stream.read(&mut byte)?;
+            if count == 0 && bytes.is_empty() {
+                return Err(io::ErrorKind::UnexpectedEof.into());
+            }
+            if count == 0 || bytes.len() == LONGEST {
                 return Ok(None);
             }
             bytes.extend(byte);
@@ -115,7 +123,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_head_is_read() {
+    fn a_request_head_is_parsed() {
         let text = b"GET /socket?a=1&token=x HTTP/1.1\r\nHost: here\r\nUpgrade: WebSocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: k\r\n\r\n";
         let head = Head::parse(text).expect("it is HTTP");
         assert_eq!(
