@@ -340,7 +340,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn types_are_encoded_as_the_document_says() {
+    fn types_are_encoded_as_the_specification_says() {
         let int = SymbolType::new(BaseType::INT);
         let check = |ty: SymbolType, code, printed: &str| {
             assert_eq!(ty.0, code);

@@ -75,7 +75,7 @@ fn hex(bytes: &[u8]) -> String {
 }
 
 #[test]
-fn headers_are_those_of_the_document() {
+fn headers_match_the_specification() {
     let bytes = tiny().write().expect("fits");
     assert_eq!(hex(&bytes[..22]), "c2 00 02 00 00 00 00 00 24 01 00 00 05 00 00 00 1c 00 43 11 99 00");
     assert_eq!(
@@ -95,7 +95,7 @@ fn headers_are_those_of_the_document() {
 }
 
 #[test]
-fn lines_symbols_and_strings_are_those_of_the_document() {
+fn lines_symbols_and_strings_match_the_specification() {
     let bytes = tiny().write().expect("fits");
     assert_eq!(
         hex(&bytes[0x10e..0x124]),
@@ -170,7 +170,7 @@ fn read_changed(change: impl FnOnce(&mut Vec<u8>)) -> Error {
 }
 
 #[test]
-fn faults_name_the_place() {
+fn errors_name_the_place() {
     let check = |change: fn(&mut Vec<u8>), at, kind| assert_eq!(read_changed(change), Error { at, kind });
     check(|bytes| bytes[0] = 0x7f, 0, ErrorKind::Magic(0x7f));
     check(|bytes| bytes[..2].reverse(), 0, ErrorKind::BigEndian);

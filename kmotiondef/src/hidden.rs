@@ -88,7 +88,7 @@ mod tests {
     use crate::tests::table;
 
     #[test]
-    fn names_are_those_that_the_specification_has_beside_functions_and_variables() {
+    fn hidden_names_are_the_other_reserved_names_of_the_specification() {
         let rows = table("reserved-names.csv").into_iter();
         let mut specified: Vec<_> = rows
             .filter(|row| row["in_functions_or_variables_table"] == "no")

@@ -236,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn a_number_without_a_meaning_is_no_mode() {
+    fn a_number_without_a_meaning_is_not_a_mode() {
         assert_eq!(InputMode::new(1), Some(InputMode::Encoder));
         assert_eq!(InputMode::new(5), None);
         assert_eq!(OutputMode::new(-1), None);

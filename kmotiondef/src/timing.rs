@@ -71,7 +71,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn wait_states_have_the_names_of_the_measurements() {
+    fn wait_states_are_found_by_their_measurement_names() {
         assert_eq!(WaitStates::named("none"), Some(WaitStates::NONE));
         assert_eq!(WaitStates::named("io44"), Some(WaitStates::REGISTERS));
         assert_eq!(WaitStates::named("io44_sd20"), Some(WaitStates { register: 44, sdram: 20 }));

@@ -41,7 +41,7 @@ mod tests {
     use crate::firmware::function_named;
 
     #[test]
-    fn rows_are_functions_in_order() {
+    fn rows_name_existing_functions_in_order() {
         assert!(WAITING.is_sorted_by(|a, b| a.0 < b.0));
         for (name, _) in WAITING {
             assert!(function_named(name).is_some(), "{name}");

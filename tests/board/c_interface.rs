@@ -63,7 +63,7 @@ fn header() -> String {
 }
 
 #[test]
-fn the_header_is_the_one_that_the_sources_give() {
+fn the_header_matches_the_sources() {
     let path = root().join("cc67/capi/include/cc67board.h");
     let found = header();
     if std::env::var_os("CC67_WRITE_HEADER").is_some() {

@@ -80,7 +80,7 @@ main()
 }
 
 #[test]
-fn a_device_answers_bits_that_registers_set_and_read() {
+fn a_device_responds_to_bits_set_and_read_through_registers() {
     // Select on bit 16, clock on 17, data on 18: the third group of eight.
     let program = "
 #define GROUP 2
@@ -195,7 +195,7 @@ main()
 }
 
 #[test]
-fn the_analog_output_of_a_kstep_is_an_item_of_traces() {
+fn the_analog_output_of_a_kstep_can_be_traced() {
     let program = "
 main()
 {
@@ -268,7 +268,7 @@ const CONSTANT: f64 = 100.0 * 290e-6;
 const TICK: f64 = 90e-6;
 
 #[test]
-fn the_filter_is_the_closed_form_of_a_low_pass() {
+fn the_filter_matches_the_closed_form_of_a_low_pass() {
     let rows = software_pwm("devices-closed-form");
     let mut volts = 0.0;
     for pair in rows.windows(2) {
@@ -286,7 +286,7 @@ fn the_filter_is_the_closed_form_of_a_low_pass() {
 }
 
 #[test]
-fn the_filtered_sine_is_the_one_wanted_within_two_percent() {
+fn the_filtered_sine_is_within_two_percent_of_the_wanted_one() {
     let rows = software_pwm("devices-sine");
     // Four whole periods of 5 Hz, the capacitor charged before.
     let periods: Vec<_> = rows.iter().filter(|row| (0.2..1.0).contains(&row[0])).collect();
@@ -306,7 +306,7 @@ fn the_filtered_sine_is_the_one_wanted_within_two_percent() {
 }
 
 #[test]
-fn konnect_boards_are_those_of_the_machine_file() {
+fn only_konnect_boards_of_the_machine_file_are_present() {
     let program = "
 main()
 {
@@ -356,7 +356,7 @@ main()
 }
 
 #[test]
-fn pins_that_kanalog_occupies_are_warned_of() {
+fn making_a_kanalog_pin_an_output_gives_a_warning() {
     let program = "main() { FPGA(KAN_TRIG_REG) = 1; SetBitDirection(16, 1); SetBitDirection(5, 1); SetBitDirection(6, 1); }";
     let (output, _) = run("jp7", program, &[], &[]);
     let told = "cc67: thread 1 at a.c:2:58 in `main`: bit 5 becomes an output, but Kanalog is connected to bits 0 to 15 of JP7\n";
@@ -364,7 +364,7 @@ fn pins_that_kanalog_occupies_are_warned_of() {
 }
 
 #[test]
-fn outputs_of_a_kanalog_that_is_not_there_are_told_to_who_asks() {
+fn outputs_of_a_missing_kanalog_are_reported_on_request() {
     let program = "main() { SetBit(152); SetBit(144); printf(\"%d%d\\n\", ReadBit(152), ReadBit(153)); }";
     let told = "cc67: bit 152 is an output of Kanalog, which is not switched on: the value is only stored \
                 (`board.kanalog = true` in the machine file)\n";
@@ -377,7 +377,7 @@ fn outputs_of_a_kanalog_that_is_not_there_are_told_to_who_asks() {
 }
 
 #[test]
-fn an_axis_that_is_to_step_too_fast_falls_behind() {
+fn an_axis_commanded_to_step_too_fast_falls_behind() {
     let program = "
 int Steps(void) { return (short)FPGAW(STEP_POSITION_ADD0) >> 7; }
 main()
@@ -416,7 +416,7 @@ fn the_flash_of_a_machine_file_is_kept() {
 }
 
 #[test]
-fn the_serial_ports_files_stand_in_the_machine_file() {
+fn the_machine_file_names_the_serial_ports_files() {
     let program = "
 main()
 {
@@ -463,7 +463,7 @@ main()
 }
 
 #[test]
-fn a_program_that_reads_too_slowly_keeps_the_first_character_and_the_last() {
+fn a_program_that_reads_too_slowly_gets_the_first_and_last_character() {
     let program = "
 main()
 {
@@ -563,7 +563,7 @@ fn a_stimulus_loads_programs_and_runs_them() {
 }
 
 #[test]
-fn a_register_that_is_not_aligned_stops_the_thread_alone() {
+fn an_invalid_register_access_stops_only_the_thread() {
     for (access, expect) in [
         ("*(volatile short *)0x91000103 = 1;", "not aligned"),
         ("i = *(volatile int *)0x91000102;", "not aligned"),
@@ -577,7 +577,7 @@ fn a_register_that_is_not_aligned_stops_the_thread_alone() {
 }
 
 #[test]
-fn what_is_wrong_with_a_machine_file_is_one_message_with_its_place() {
+fn an_error_in_a_machine_file_gives_one_message_with_its_place() {
     for (text, expect) in [
         ("[board]\nkonnect = [0, 9]\n", "2:15: `board.konnect[1]` must be a whole number, 0 to 7, not 9"),
         ("[board]\nksetp = true\n", "2:1: unknown key `ksetp` in `board`; did you mean `kstep`?"),
@@ -657,7 +657,7 @@ fn a_spindle_is_switched_by_two_bits() {
 }
 
 #[test]
-fn a_switch_on_an_axis_that_drives_nothing_is_told_of() {
+fn a_switch_on_an_axis_that_drives_nothing_is_reported() {
     let program = "#include \"KMotionDef.h\"\nmain() { EnableAxis(2); Jog(2, 100); Jog(2, 0); Jog(3, 1); }";
     let machine = "[[switch]]\nbit = 12\naxis = 2\nwhen = \"<= -4000\"\n";
     let (output, _) = run("unmoved", program, &[("s.toml", machine)], &["--machine", "s.toml"]);

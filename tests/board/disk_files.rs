@@ -65,7 +65,7 @@ fn strings(json: &Json) -> Vec<&str> {
 }
 
 #[test]
-fn requests_for_files_are_those_of_the_released_firmware() {
+fn file_requests_match_the_released_firmware() {
     let text = fs::read_to_string(root().join("tests/data/vectors/files.jsonl")).expect("it is there");
     for row in text.lines() {
         let row: Json = serde_json::from_str(row).expect("each line is JSON");
@@ -111,7 +111,7 @@ fn run(scratch: &Scratch, source: &str) -> (Vec<String>, Vec<String>) {
 }
 
 #[test]
-fn lines_are_read_one_for_one_until_the_end() {
+fn lines_are_read_one_by_one_until_the_end() {
     let scratch = Scratch::new("disk-read");
     scratch.write("disk/Temp/in.txt", "one\r\n\r\nthree");
     let source = "main() { FILE *f = fopen(\"c:\\\\temp\\\\IN.TXT\", \"rt\"); int n = 0;\n\
@@ -123,7 +123,7 @@ fn lines_are_read_one_for_one_until_the_end() {
 }
 
 #[test]
-fn a_program_that_looks_for_the_end_before_it_reads_sees_each_line_once() {
+fn a_program_that_tests_feof_before_reading_sees_each_line_once() {
     let scratch = Scratch::new("disk-feof");
     scratch.write("disk/in.txt", "a\nb\n");
     let source = "main() { FILE *f = fopen(\"in.txt\", \"rt\"); while (!feof(f)) { fgets(zbuf, 100, f); if (!feof(f)) printf(\"<%s>\\n\", zbuf); } }";
@@ -131,7 +131,7 @@ fn a_program_that_looks_for_the_end_before_it_reads_sees_each_line_once() {
 }
 
 #[test]
-fn what_is_written_lies_on_the_disk() {
+fn written_lines_are_saved_on_the_disk() {
     let scratch = Scratch::new("disk-write");
     let source = "main() { FILE *f = fopen(\"c:\\\\out\\\\a.txt\", \"wt\"); int i;\n\
                   printf(\"begin\\n\"); for (i = 0; i < 400; i++) fprintf(f, \"line %d\\n\", i); fclose(f);\n\
@@ -154,7 +154,7 @@ fn a_line_written_in_parts_has_stray_characters_as_on_the_board() {
 }
 
 #[test]
-fn a_percent_sign_is_taken_twice_as_on_the_board() {
+fn percent_signs_are_interpreted_twice_as_on_the_board() {
     let scratch = Scratch::new("disk-percent");
     let source = "main() { FILE *f = fopen(\"a.txt\", \"wt\"); fprintf(f, \"50%%%%\\n\"); fprintf(f, \"50%%d\\n\"); fclose(f); }";
     let (_, remarks) = run(&scratch, source);
@@ -164,7 +164,7 @@ fn a_percent_sign_is_taken_twice_as_on_the_board() {
 }
 
 #[test]
-fn names_that_lead_outside_are_refused_with_the_reason() {
+fn names_that_lead_outside_the_folder_are_refused_with_a_reason() {
     let scratch = Scratch::new("disk-outside");
     scratch.write("secret.txt", "secret");
     let source = "main() { FILE *f = fopen(\"..\\\\secret.txt\", \"rt\"); printf(\"%d\\n\", (int)f);\n\
@@ -182,7 +182,7 @@ fn names_that_lead_outside_are_refused_with_the_reason() {
 
 #[cfg(unix)]
 #[test]
-fn the_command_does_not_follow_links_either() {
+fn the_command_does_not_follow_links() {
     let scratch = Scratch::new("disk-links");
     scratch.write("secret.txt", "secret").write("disk/x", "");
     std::os::unix::fs::symlink("../secret.txt", scratch.path().join("disk/link.txt")).expect("a link");

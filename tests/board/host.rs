@@ -26,7 +26,7 @@ fn number(board: &mut Board, command: &str) -> i64 {
 }
 
 #[test]
-fn a_program_that_does_not_compile_leaves_the_one_that_runs() {
+fn a_program_that_does_not_compile_leaves_the_running_one_alone() {
     let (mut board, scratch) = board("host-compile", COUNTER);
     scratch.write("bad.c", "main()\n{\n  retrun 1;\n}\n");
     for length in [0, 1, 2, 10, 1000] {

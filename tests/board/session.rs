@@ -122,7 +122,7 @@ fn again<E: Engine>(mut setup: Setup, engine: E, recording: &str, end: Ticks) ->
 }
 
 #[test]
-fn what_was_done_by_hand_is_done_again_by_its_recording_on_both_engines() {
+fn a_recording_of_manual_actions_replays_the_same_on_both_engines() {
     let scratch = Scratch::new("session-replay");
     let (shown, text) = by_hand(setup(&scratch).session().expect("the programs fit"));
     assert!(shown.lines.len() > 20, "{:?}", shown.lines);
@@ -180,7 +180,7 @@ fn a_step_is_a_tick_a_slice_or_the_next_slice_of_a_thread() {
 }
 
 #[test]
-fn expressions_are_read_and_written_in_the_words_of_the_programs() {
+fn expressions_are_read_and_written_with_the_programs_names() {
     let (mut session, _scratch) = session("session-expressions");
     assert_eq!(session.write("persist.7", -2.0), Ok(()));
     assert_eq!(session.recording().text(), "at 90us persist 7 = -2\n");
@@ -209,7 +209,7 @@ fn expressions_are_read_and_written_in_the_words_of_the_programs() {
 }
 
 #[test]
-fn signals_come_at_their_rate_whatever_is_skipped() {
+fn signals_arrive_at_their_rate_even_when_ticks_are_skipped() {
     let scratch = Scratch::new("session-signals");
     scratch.write(
         "a.c",
@@ -250,7 +250,7 @@ fn a_run_can_be_interrupted_from_another_thread() {
 }
 
 #[test]
-fn what_cannot_be_done_is_said_and_changes_nothing() {
+fn impossible_actions_are_refused_and_change_nothing() {
     let (mut session, scratch) = session("session-refused");
     assert!(session.act("bit 46 = 1").is_err(), "only the board drives an output");
     assert!(session.act("when bit 46 rises bit 136 = 1").is_err(), "it has a moment of its own");

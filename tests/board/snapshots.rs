@@ -182,22 +182,22 @@ fn check_all<E: Engine>(target: Target) {
 }
 
 #[test]
-fn boards_go_on_from_any_instant_on_the_interpreter() {
+fn boards_resume_from_any_instant_on_the_interpreter() {
     check_all::<BytecodeEngine>(Target::Sim);
 }
 
 #[test]
-fn boards_go_on_from_any_instant_on_the_native_engine() {
+fn boards_resume_from_any_instant_on_the_native_engine() {
     check_all::<NativeEngine>(Target::Sim);
 }
 
 #[test]
-fn boards_with_real_code_go_on_from_any_instant_interpreted() {
+fn boards_with_real_code_resume_from_any_instant_interpreted() {
     check_all::<BytecodeEngine>(Target::C67x);
 }
 
 #[test]
-fn boards_with_real_code_go_on_from_any_instant_translated() {
+fn boards_with_real_code_resume_from_any_instant_translated() {
     check_all::<NativeEngine>(Target::C67x);
 }
 

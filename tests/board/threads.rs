@@ -203,7 +203,7 @@ fn a_lock_makes_increments_of_two_threads_add_up() {
 }
 
 #[test]
-fn a_busy_thread_is_no_obstacle() {
+fn a_busy_thread_does_not_block_another() {
     let scratch = Scratch::new("busy");
     scratch
         .write("a.c", BUSY)

@@ -86,7 +86,7 @@ fn another_program_is_the_other_end_of_the_line() {
 }
 
 #[test]
-fn a_peer_that_vanishes_is_told_once_and_the_run_goes_on() {
+fn a_lost_peer_is_reported_once_and_the_run_continues() {
     let scratch = Scratch::new("world-vanishes");
     let program = "#include \"KMotionDef.h\"
 main()
@@ -149,7 +149,7 @@ fn a_terminal_is_the_other_end_of_the_line() {
 }
 
 #[test]
-fn what_is_wrong_with_the_world_is_one_message_with_its_place() {
+fn an_error_in_a_stimulus_or_machine_gives_one_message_with_its_place() {
     let files: &[(&str, &[u8])] = &[
         ("a.stim", b"# door\nat 1s set bit 4711\n"),
         ("b.stim", b"\xff\xfe"),
@@ -189,7 +189,7 @@ fn what_is_wrong_with_the_world_is_one_message_with_its_place() {
 }
 
 #[test]
-fn what_programs_do_wrong_is_told_and_does_no_harm() {
+fn mistakes_of_programs_are_reported_and_do_no_harm() {
     let program = "#include \"KMotionDef.h\"
 main()
 {
@@ -398,7 +398,7 @@ main()
 }
 
 #[test]
-fn an_unknown_register_is_storage_and_told_once_to_who_asks() {
+fn an_unknown_register_stores_and_is_reported_once_on_request() {
     let program = "#include \"KMotionDef.h\"
 main()
 {

@@ -144,7 +144,7 @@ impl Editor {
 }
 
 #[test]
-fn a_board_that_is_served_stops_at_a_breakpoint_and_continues_when_the_editor_is_gone() {
+fn a_served_board_stops_at_a_breakpoint_and_continues_after_the_editor() {
     let board = Running::start("attach-serve", &["serve", "--listen", "tcp:0"]);
     let mut editor = board.editor();
     let able = editor.attach(json!({}));
@@ -191,7 +191,7 @@ fn a_board_that_is_served_stops_at_a_breakpoint_and_continues_when_the_editor_is
 
 #[cfg(feature = "live")]
 #[test]
-fn an_editor_with_its_own_debugger_attaches_to_the_board_of_a_page() {
+fn an_editor_attaches_its_debugger_to_the_board_of_a_page() {
     let board = Running::start("attach-live", &["live", "--no-open", "--port", "0"]);
     let mut command = Command::new(harness::command());
     command.args(["debug", "--dap"]).stdin(Stdio::piped()).stdout(Stdio::piped());

@@ -27,7 +27,7 @@ fn scratch(name: &str) -> Scratch {
 }
 
 #[test]
-fn a_run_uses_what_stands_beside_the_program_and_says_so() {
+fn a_run_uses_the_files_next_to_the_program_and_says_so() {
     let scratch = scratch("beside");
     let said = "cc67: running sub/prog.c with sub/prog.toml; its first line: --set persist.5=7 --stim \"persist 6 = 8\" also 2:other.c (--no-sidecar ignores it)\n";
     for (options, stdout, stderr) in [
@@ -42,7 +42,7 @@ fn a_run_uses_what_stands_beside_the_program_and_says_so() {
 }
 
 #[test]
-fn a_debugger_uses_them_too() {
+fn a_debugger_uses_the_files_next_to_the_program_too() {
     let scratch = scratch("beside-debug");
     scratch.write("commands", "continue\n");
     for (option, stdout) in [(None, "other\n1 7 8\n"), (Some("--no-sidecar"), "0 0 0\n")] {

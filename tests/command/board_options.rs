@@ -46,7 +46,7 @@ main()
 ";
 
 #[test]
-fn a_board_answers_where_a_simulated_one_stops_if_that_is_asked_for() {
+fn board_faults_makes_bad_accesses_answer_as_on_the_board() {
     let scratch = Scratch::new("board-options-faults");
     scratch.write("a.c", FAULTS).write("a.machine", "[cpu]\nboard_faults = true\n");
     for engine in ["bytecode", "native", "dsp"] {
@@ -75,7 +75,7 @@ main()
 ";
 
 #[test]
-fn a_division_by_zero_yields_what_the_board_yields_if_that_is_asked_for() {
+fn board_faults_makes_divisions_by_zero_yield_what_the_board_yields() {
     let scratch = Scratch::new("board-options-divisions");
     scratch.write("a.c", DIVISIONS);
     let board = "1 0 1 0\n15 5 15 5\n-15 -5 4294967295 0\n131071 32767 131071 32767\n";
@@ -89,7 +89,7 @@ fn a_division_by_zero_yields_what_the_board_yields_if_that_is_asked_for() {
 }
 
 #[test]
-fn the_time_of_cc67s_code_is_that_of_the_code_for_the_controller_on_every_engine() {
+fn cc67_timing_is_that_of_the_controller_code_on_every_engine() {
     let scratch = Scratch::new("board-options-timing");
     scratch.write(
         "a.c",
@@ -142,7 +142,7 @@ fn run_console_and_test_understand_the_same_options() {
 }
 
 #[test]
-fn characters_of_the_serial_port_come_from_a_file_in_every_command() {
+fn every_command_can_feed_the_serial_port_from_a_file() {
     let scratch = Scratch::new("board-options-uart");
     scratch.write(
         "a.c",

@@ -33,7 +33,7 @@ fn assert_refused(output: &Output, expect: &str) {
 }
 
 #[test]
-fn what_is_no_firmware_file_is_refused_with_one_message() {
+fn files_that_are_not_firmware_are_refused_with_one_message() {
     let scratch = scratch("boot-none");
     let run = |file: &str| cc67(&scratch, ["run", "--boot", file, "hello.c"]);
     assert_refused(&run("nosuch.out"), "nosuch.out");
@@ -45,7 +45,7 @@ fn what_is_no_firmware_file_is_refused_with_one_message() {
 }
 
 #[test]
-fn options_that_a_booted_board_does_not_know_are_named() {
+fn options_that_a_booted_board_does_not_support_are_named() {
     let scratch = scratch("boot-options");
     let refused = |option: &[&str], name: &str| {
         let all = [&["run", "--boot", "x.out", "hello.c"], option].concat();
@@ -63,7 +63,7 @@ fn options_that_a_booted_board_does_not_know_are_named() {
 }
 
 #[test]
-fn a_program_prints_on_the_real_firmware_and_as_on_the_model() {
+fn a_program_prints_the_same_on_the_real_firmware_and_the_model() {
     let Some(file) = firmware() else { return };
     let scratch = scratch("boot-hello");
     let run = cc67(&scratch, ["run", "--boot", &file, "hello.c"]);
@@ -76,7 +76,7 @@ fn a_program_prints_on_the_real_firmware_and_as_on_the_model() {
 /// A thousand where `CC67_LONG` is set. A motion whose planning ends about the end of a tick begins in another tick on the
 /// two boards, as they agree on what planning costs within a tenth: one in twenty programs may end a little elsewhere.
 #[test]
-fn random_motions_end_where_they_end_on_the_real_firmware() {
+fn random_motions_end_at_the_same_place_on_the_real_firmware() {
     let Some(file) = firmware() else { return };
     let count = if harness::is_long() { 1000 } else { 4 };
     let scratch = Scratch::new("boot-motions");
@@ -116,7 +116,7 @@ fn the_real_firmware_keeps_pace_with_the_clock() {
 }
 
 #[test]
-fn a_program_that_takes_the_firmware_away_is_told_with_registers_and_code() {
+fn a_program_that_crashes_the_firmware_is_shown_with_registers_and_code() {
     let Some(file) = firmware() else { return };
     let scratch = scratch("boot-crash");
     scratch.write("wild.c", "#include \"KMotionDef.h\"\nmain()\n{\n  printf(\"before\\n\");\n  Delay_sec(0.01);\n  *(int *)0x70000000 = 1;\n}\n");
@@ -187,7 +187,7 @@ fn a_run_on_the_real_firmware_is_traced_and_drawn_as_on_the_model() {
 }
 
 #[test]
-fn slices_of_threads_are_in_a_trace_of_the_real_firmware() {
+fn a_trace_of_the_real_firmware_shows_the_slices_of_threads() {
     let Some(file) = firmware() else { return };
     let scratch = scratch("boot-slices");
     scratch.write("move.c", MOVE);
@@ -239,7 +239,7 @@ fn the_real_firmware_starts_from_the_flash_that_it_has_written() {
 }
 
 #[test]
-fn a_profile_of_the_real_firmware_has_its_functions_and_the_lines_of_programs() {
+fn a_profile_of_the_real_firmware_shows_functions_and_program_lines() {
     let Some(file) = firmware() else { return };
     let scratch = scratch("boot-profile");
     let work = "#include \"KMotionDef.h\"\nint sum;\nmain()\n{\n  int i;\n  for (i = 0; i < 100000; ++i)\n    sum += i * i;\n  Delay_sec(0.01);\n}\n";
@@ -264,7 +264,7 @@ fn inputs_of_the_real_firmware_are_driven_at_the_prompt() {
 }
 
 #[test]
-fn times_that_programs_print_may_differ_within_the_tolerance() {
+fn printed_times_may_differ_within_the_tolerance() {
     let Some(file) = firmware() else { return };
     let scratch = scratch("boot-numbers");
     scratch.write("time.c", "#include \"KMotionDef.h\"\nmain()\n{\n  double t = Time_sec();\n  Delay_sec(0.01);\n  printf(\"took %.7f s\\n\", Time_sec() - t);\n}\n");
@@ -276,7 +276,7 @@ fn times_that_programs_print_may_differ_within_the_tolerance() {
 }
 
 #[test]
-fn a_program_that_does_not_compile_leaves_the_others_compared() {
+fn the_others_are_compared_when_one_program_does_not_compile() {
     let Some(file) = firmware() else { return };
     let scratch = scratch("boot-compare-broken");
     scratch.write("broken.c", "main() { printf(\"no end\") }\n");
@@ -307,7 +307,7 @@ fn tests_of_a_project_run_on_the_real_firmware() {
 }
 
 #[test]
-fn an_operator_helps_programs_on_the_real_firmware_that_wait() {
+fn an_operator_helps_waiting_programs_on_the_real_firmware() {
     let Some(file) = firmware() else { return };
     let scratch = Scratch::new("boot-assist");
     let program = "#include \"KMotionDef.h\"
@@ -344,7 +344,7 @@ main()
 }
 
 #[test]
-fn packets_of_programs_on_the_real_firmware_are_written() {
+fn packets_of_programs_on_the_real_firmware_are_traced() {
     let Some(file) = firmware() else { return };
     let scratch = Scratch::new("boot-packets");
     let program = "#include \"KMotionDef.h\"

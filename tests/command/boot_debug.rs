@@ -59,7 +59,7 @@ fn lines(output: &Output) -> Vec<String> {
 }
 
 #[test]
-fn what_editors_want_is_refused_with_a_firmware_file() {
+fn editor_debugging_is_refused_with_a_firmware_file() {
     let scratch = Scratch::new("boot-debug-dap");
     for option in ["--dap", "--listen=0"] {
         let output = cc67(&scratch, ["debug", "--boot", "x.out", option]);
@@ -110,7 +110,7 @@ print persist.5
 }
 
 #[test]
-fn lines_of_the_real_firmware_s_programs_are_stepped_forth_and_back() {
+fn lines_step_forwards_and_backwards_on_the_real_firmware() {
     let commands = "\
 tbreak 19
 continue
@@ -145,7 +145,7 @@ disassemble
 }
 
 #[test]
-fn the_past_of_the_real_firmware_is_exact() {
+fn going_back_on_the_real_firmware_is_exact() {
     let commands = "\
 break 25
 continue

@@ -37,7 +37,7 @@ fn a_script_loads_programs_and_talks_to_the_board() {
 }
 
 #[test]
-fn programs_on_the_command_line_run_to_their_end_behind_the_script() {
+fn programs_on_the_command_line_run_to_their_end_after_the_script() {
     let source = "#include \"KMotionDef.h\"\nmain()\n{\n  Delay_sec(3);\n  printf(\"done\\n\");\n}\n";
     let expect = "1\ndone\n---- exit 0\n";
     check("console-end", &[("slow.c", source)], &["slow.c"], "CheckThread1\n", expect);
@@ -61,7 +61,7 @@ fn a_download_written_as_commands_runs() {
 }
 
 #[test]
-fn a_download_that_is_no_program_stops_its_thread() {
+fn a_download_that_is_not_a_program_stops_its_thread() {
     let script =
         "LoadData 80050000 4\n1 2 3 4\nEntryPoint1 80050000\nExecute1\nwait 0.01\nCheckThread1\nVersion\n";
     let output = console("console-junk", &[], &[], script);
@@ -71,7 +71,7 @@ fn a_download_that_is_no_program_stops_its_thread() {
 }
 
 #[test]
-fn mistakes_in_own_words_and_sources_do_not_end_the_session() {
+fn mistakes_in_console_words_and_sources_do_not_end_the_session() {
     let script = "wait x\nload nosuch.c\nrun bad.c\nkill all but 9\nEcho on\n";
     let output = console("console-mistakes", &[("bad.c", "main() { retrun 1; }\n")], &[], script);
     assert_eq!((output.code, output.stdout.as_str()), (0, "ON\n"), "{output:?}");
@@ -82,7 +82,7 @@ fn mistakes_in_own_words_and_sources_do_not_end_the_session() {
 }
 
 #[test]
-fn threads_are_stopped_all_but_one() {
+fn all_threads_but_one_can_be_stopped() {
     let endless = "#include \"KMotionDef.h\"\nmain()\n{\n  for (;;) WaitNextTimeSlice();\n}\n";
     let script = "CheckThread1;CheckThread2;CheckThread3\nkill all but 2\nCheckThread1;CheckThread2;CheckThread3\nkill all\nCheckThread2\n";
     let expect = "1\n1\n1\n0\n1\n0\n0\n---- exit 0\n";
@@ -90,7 +90,7 @@ fn threads_are_stopped_all_but_one() {
 }
 
 #[test]
-fn a_trap_is_the_exit_code() {
+fn a_trap_sets_the_exit_code() {
     let trap = "main()\n{\n  *(int *)0 = 1;\n}\n";
     assert_eq!(console("console-trap", &[("a.c", trap)], &["a.c"], "Version\n").code, 3);
 }
@@ -153,7 +153,7 @@ fn answer(board: &mut Board, bytes: &[u8]) -> Option<Vec<u8>> {
 }
 
 #[test]
-fn ten_thousand_random_lines_leave_a_board_that_answers() {
+fn the_board_still_answers_after_ten_thousand_random_lines() {
     let cases = Cases { cases: 100, ..Cases::default() };
     let result = TestRunner::new(cases).run(&prop::collection::vec(line(), 100), |lines| {
         let mut board = Board::new(Config::default());

@@ -127,7 +127,7 @@ fn check_message(name: &str, source: &str, arguments: &[&str], expect: &str) {
 }
 
 #[test]
-fn the_call_of_the_pc_software_writes_an_image_and_no_word() {
+fn the_call_of_the_pc_software_writes_an_image_and_prints_nothing() {
     let scratch = folder("call", BLINK);
     assert_eq!(call(&scratch, CALL), SILENCE);
     let image = read(&scratch, "prog(1).out");
@@ -173,7 +173,7 @@ fn the_name_of_the_vendors_compiler_selects_its_command_line() {
 }
 
 #[test]
-fn the_call_of_newer_versions_is_the_same() {
+fn the_call_of_newer_versions_works_too() {
     let scratch = folder("newer", BLINK);
     let arguments = [
         "-Wl,-Ttext,80070000",
@@ -230,7 +230,7 @@ fn errors_have_file_and_line_and_come_before_warnings() {
 }
 
 #[test]
-fn faults_of_the_vendors_compiler_are_warned_of_after_an_error() {
+fn bugs_of_the_vendors_compiler_are_reported_after_an_error() {
     let source = "set(int *x) { *x = 1; }\nf(int a) { set(&a); }\nmain()\n{\n  y = 5;\n}\n";
     let output = call(&folder("faults", source), CALL);
     let found = "prog.c:5: `y` is not declared\nprog.c:2: warning: the vendor's compiler takes a wrong address for the parameter `a`";
@@ -240,7 +240,7 @@ fn faults_of_the_vendors_compiler_are_warned_of_after_an_error() {
 }
 
 #[test]
-fn errors_in_included_files_name_the_including_ones() {
+fn errors_in_included_files_name_the_including_file() {
     let scratch = folder("included", "\n#include \"sub/helper.c\"\nmain() { }\n");
     scratch.write("sub/helper.c", "int a\nint b;\n");
     let output = call(&scratch, CALL);
@@ -250,7 +250,7 @@ fn errors_in_included_files_name_the_including_ones() {
 }
 
 #[test]
-fn link_errors_begin_with_the_words_of_the_vendors_linker() {
+fn link_errors_begin_with_the_message_of_the_vendors_linker() {
     let source = "#include \"KMotionDef.h\"\nmain()\n{\n  while (!Readbit(46)) ;\n}\n";
     let expect = "tcc: undefined symbol 'Readbit'\n\
         prog.c:4: undefined function `Readbit` (did you mean `ReadBit`?)\n";
@@ -261,7 +261,7 @@ fn link_errors_begin_with_the_words_of_the_vendors_linker() {
 }
 
 #[test]
-fn names_that_the_firmware_file_lacks_are_undefined() {
+fn names_missing_from_the_firmware_file_are_undefined() {
     let scratch = folder("lacks", BLINK);
     scratch.write("DSP dir/DSPKFLOP.out", firmware(&["ReadBit"])).write("prog(1).out", "the old one");
     let output = call(&scratch, CALL);
@@ -281,7 +281,7 @@ fn a_programs_own_definition_wins_over_the_firmwares() {
 }
 
 #[test]
-fn wrong_calls_get_the_vendors_words() {
+fn wrong_calls_give_the_vendors_messages() {
     for (name, arguments, expect) in [
         ("option", &["-zzz", "prog.c"][..], "tcc: invalid option -- '-zzz'\n"),
         ("argument", &["prog.c", "-text"], "tcc: argument to '-text' is missing\n"),

@@ -86,7 +86,7 @@ fn an_unknown_word_gets_a_suggestion() {
 }
 
 #[test]
-fn a_word_without_a_page_of_its_own_finds_the_pages_that_have_it() {
+fn a_word_without_its_own_page_lists_the_pages_that_mention_it() {
     let scratch = Scratch::new("found_words");
     let output = cc67(&scratch, ["--explain", "encoder"]);
     assert_eq!(output.code, 0, "{}", output.stderr);
@@ -98,7 +98,7 @@ fn a_word_without_a_page_of_its_own_finds_the_pages_that_have_it() {
 }
 
 #[test]
-fn what_the_topics_name_is_explained() {
+fn every_listed_topic_is_explained() {
     let scratch = Scratch::new("topics");
     let list = cc67(&scratch, ["--explain", "topics"]).stdout;
     let words: Vec<_> = list.lines().filter_map(|line| line.strip_prefix("  ")?.split(' ').next()).collect();

@@ -28,7 +28,7 @@ fn check(files: &[(&str, &str)], arguments: &[&str], code: i32, stdout: &str, na
 }
 
 #[test]
-fn a_program_that_shows_what_is_expected_passes() {
+fn a_program_with_the_expected_output_passes() {
     let files = [("a.c", COUNT), ("a.expected", "1\n2\n3\n"), ("part.c", "int unused;\n")];
     check(&files, &["."], 0, "1 passed, 0 failed\n", "passes");
 }
@@ -50,7 +50,7 @@ FAILED   sub/a: - expected, + shown now
 }
 
 #[test]
-fn traps_and_exit_codes_belong_to_what_is_expected() {
+fn traps_and_exit_codes_are_part_of_the_expected_output() {
     let program =
         "#include \"KMotionDef.h\"\nmain()\n{\n    int *p = 0;\n    printf(\"before\\n\");\n    *p = 1;\n}\n";
     let scratch = folder("trap", &[("a.c", program)]);
@@ -73,7 +73,7 @@ fn traps_and_exit_codes_belong_to_what_is_expected() {
 }
 
 #[test]
-fn blessing_writes_what_changed_and_only_that() {
+fn blessing_writes_only_what_changed() {
     let files = [("a.c", COUNT), ("a.expected", "old\n"), ("b.c", COUNT), ("b.expected", "1\n2\n3\n")];
     let scratch = folder("bless", &files);
     assert_eq!(
@@ -96,7 +96,7 @@ fn the_first_line_says_how_a_program_is_run() {
 }
 
 #[test]
-fn what_is_missing_is_said() {
+fn missing_tests_and_expectations_are_reported() {
     let output = test(&folder("none", &[("a.c", COUNT)]), &["."]);
     assert_eq!(output.code, 2);
     assert_eq!(

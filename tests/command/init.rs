@@ -23,7 +23,7 @@ fn the_first_program_passes_its_test_without_a_warning() {
 }
 
 #[test]
-fn the_tasks_for_the_editor_find_what_is_reported() {
+fn the_editor_tasks_recognise_the_reported_problems() {
     let scratch = project("tasks");
     let text = fs::read_to_string(scratch.path().join("machine/.vscode/tasks.json")).expect("it was written");
     let tasks: serde_json::Value = serde_json::from_str(&text).expect("it is JSON");
@@ -57,7 +57,7 @@ fn the_tasks_for_the_editor_find_what_is_reported() {
 }
 
 #[test]
-fn the_debugger_accepts_what_the_editor_launches() {
+fn the_debugger_accepts_the_editors_launch_configuration() {
     let scratch = project("launch");
     let folder = scratch.path().join("machine");
     let text = fs::read_to_string(folder.join(".vscode/launch.json")).expect("it was written");
@@ -99,7 +99,7 @@ fn the_debugger_accepts_what_the_editor_launches() {
 }
 
 #[test]
-fn nothing_that_is_there_is_overwritten() {
+fn existing_files_are_not_overwritten() {
     let scratch = Scratch::new("init-there");
     fs::write(scratch.path().join("first.c"), "mine").expect("files can be written");
     let output = cc67(&scratch, ["init", "."]);
@@ -112,7 +112,7 @@ fn nothing_that_is_there_is_overwritten() {
 }
 
 #[test]
-fn the_header_of_a_project_is_c_for_other_compilers_too() {
+fn the_header_of_a_project_compiles_with_other_compilers_too() {
     let scratch = project("clang");
     let folder = scratch.path().join("machine");
     let flags = fs::read_to_string(folder.join("compile_flags.txt")).expect("it was written");

@@ -38,7 +38,7 @@ fn a_thread_does_not_jump_into_another() {
 }
 
 #[test]
-fn functions_of_several_files_jump_and_code_of_the_host_is_refused() {
+fn jumps_work_across_files_and_are_refused_for_host_code() {
     let scratch = Scratch::new("jumps-files");
     scratch.write(
         "a.c",

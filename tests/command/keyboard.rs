@@ -146,7 +146,7 @@ fn the_first_ctrl_c_stops_the_programs_and_the_second_one_leaves() {
 /// For an hour where tests take their long form.
 #[test]
 #[cfg(target_os = "linux")]
-fn a_board_left_at_a_prompt_takes_next_to_nothing() {
+fn a_board_left_at_a_prompt_uses_hardly_any_time_or_memory() {
     let seconds = if harness::is_long() { 3600 } else { 2 };
     let scratch = Scratch::new("keyboard-idle");
     let source = "main() { for (;;) { Delay_sec(0.1); SetStateBit(47, !ReadBit(47)); } }\n";

@@ -82,7 +82,7 @@ fn a_run_is_drawn_with_titles_and_units() {
 }
 
 #[test]
-fn an_axis_that_is_measured_is_drawn_where_it_was_measured() {
+fn a_measured_axis_is_drawn_at_its_measured_position() {
     let scratch = Scratch::new("plot-measured");
     scratch.write("b.c", PROGRAM.replace("NO_INPUT_MODE", "ENCODER_MODE"));
     let output = cc67(&scratch, ["run", "--plot", "b.svg", "--trace", "b.csv", "b.c"]);
@@ -110,7 +110,7 @@ fn a_picture_in_which_nothing_moves_is_refused() {
 }
 
 #[test]
-fn what_is_watched_is_drawn() {
+fn watched_values_are_drawn() {
     let (_, svg) = plot("watch", "a.svg", &["--watch", "persist.5,dest0"]);
     let texts = texts(&svg);
     assert!(texts.iter().any(|text| text == "persist5"), "{texts:?}");
@@ -162,7 +162,7 @@ main()
 ";
 
 #[test]
-fn expressions_are_watched_in_the_words_of_the_program() {
+fn expressions_are_watched_with_the_programs_names() {
     let list = "count,count / 2.0,rate*tool.feed,tool.state == 4,chan[SPINDLE].Dest - chan[0].Position,\
                 persist.UserData[5] + persist.5,fabs(-rate),(bit46, bit1024 ? 1 : 2)";
     let (names, values) = table("program", COUNTER, list);
@@ -173,7 +173,7 @@ fn expressions_are_watched_in_the_words_of_the_program() {
 }
 
 #[test]
-fn a_name_that_is_not_there_is_answered_with_the_nearest() {
+fn an_unknown_name_suggests_the_nearest_one() {
     let check = |list: &str, expect: &str| {
         let scratch = Scratch::new("watch-wrong");
         fs::write(scratch.path().join("b.c"), COUNTER).expect("files can be written");
@@ -189,7 +189,7 @@ fn a_name_that_is_not_there_is_answered_with_the_nearest() {
 }
 
 #[test]
-fn the_variables_of_an_image_and_of_another_thread_are_watched() {
+fn variables_of_an_image_and_of_another_thread_can_be_watched() {
     let scratch = Scratch::new("watch-threads");
     fs::write(scratch.path().join("b.c"), COUNTER).expect("files can be written");
     assert_eq!(run(&scratch, &["build", "b.c", "--thread", "2"]).code, 0);
@@ -202,7 +202,7 @@ fn the_variables_of_an_image_and_of_another_thread_are_watched() {
 }
 
 #[test]
-fn bits_that_are_watched_are_the_strips_of_the_picture() {
+fn watched_bits_are_drawn_as_strips() {
     let (_, svg) = plot("strips", "a.svg", &["--watch", "dest0,bit47,bit1030"]);
     let texts = texts(&svg);
     let bits: Vec<_> = texts.iter().filter(|text| text.starts_with("bit ")).collect();
@@ -210,7 +210,7 @@ fn bits_that_are_watched_are_the_strips_of_the_picture() {
 }
 
 #[test]
-fn a_picture_of_pixels_is_as_large_as_the_drawing() {
+fn a_png_has_the_size_of_the_drawing() {
     let (_, png) = plot("png", "a.png", &[]);
     assert_eq!(&png[..8], b"\x89PNG\r\n\x1a\n");
     let number = |at: usize| u32::from_be_bytes(png[at..at + 4].try_into().expect("four bytes"));
@@ -314,7 +314,7 @@ fn browser() -> Option<PathBuf> {
 }
 
 #[test]
-fn the_page_zooms_and_tells_values_in_a_browser() {
+fn the_page_zooms_and_shows_values_in_a_browser() {
     let Some(browser) = browser() else { return };
     let (scratch, page) = plot("page", "a.html", &[]);
     let page = String::from_utf8(page).expect("the page is UTF-8");

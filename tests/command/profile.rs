@@ -52,7 +52,7 @@ fn the_flame_graph_has_the_functions() {
 }
 
 #[test]
-fn a_profile_changes_nothing_that_a_program_shows() {
+fn profiling_does_not_change_what_a_program_prints() {
     for folder in ["threads", "gather", "motion"] {
         for path in files(&harness::root().join("c-programs").join(folder), "c") {
             let (folder, name) =
@@ -74,7 +74,7 @@ fn real_code_has_a_profile_of_true_cycles() {
 }
 
 #[test]
-fn functions_of_real_code_have_their_callers() {
+fn the_profile_of_real_code_shows_callers() {
     let scratch = Scratch::new("profile-callers");
     let source = "#include \"KMotionDef.h\"\ndouble table[200];\nint depth;\n\
                   double Half(double x)\n{\n    int i;\n    for (i = 0; i < 50; i++)\n        depth += i & 3;\n    \

@@ -59,7 +59,7 @@ fn a_console_loads_sources_for_the_engine_it_was_given() {
 }
 
 #[test]
-fn tests_run_on_the_engine_that_is_asked_for() {
+fn tests_run_on_the_requested_engine() {
     let scratch = Scratch::new("dsp-test");
     scratch.write("a.c", format!("#include \"KMotionDef.h\"\n{SUM}"));
     scratch.write("a.expected", "5\n");
@@ -68,7 +68,7 @@ fn tests_run_on_the_engine_that_is_asked_for() {
 }
 
 #[test]
-fn a_word_that_is_no_instruction_stops_the_thread() {
+fn a_word_that_is_not_an_instruction_stops_the_thread() {
     let output = run_words("dsp-word", "0x00000000, 0x10000000");
     let message = trap(&output);
     let (at, text) = message.split_once(": ").expect("a place");
@@ -185,7 +185,7 @@ fn packets_are_traced_with_cycle_address_and_text() {
 }
 
 #[test]
-fn packets_of_bytecode_are_refused_by_name() {
+fn tracing_packets_of_bytecode_is_refused_by_name() {
     let scratch = Scratch::new("dsp-no-packets");
     scratch.write("a.c", format!("#include \"KMotionDef.h\"\n{SUM}"));
     assert_eq!(cc67(&scratch, ["build", "--thread", "2", "a.c"]).code, 0);

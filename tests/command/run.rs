@@ -64,7 +64,7 @@ fn an_unclosed_comment_points_at_its_start() {
 }
 
 #[test]
-fn an_include_of_itself_has_a_limit() {
+fn a_file_that_includes_itself_hits_a_limit() {
     assert_plain(&run_source("itself", "#include \"a.c\"\nmain() { }\n", &[]), 1, "64");
 }
 
@@ -77,7 +77,7 @@ fn a_program_with_an_upper_case_suffix_runs() {
 }
 
 #[test]
-fn files_by_windows_paths_are_written_appended_and_read() {
+fn files_with_windows_paths_are_written_appended_and_read() {
     let source = r#"#include "KMotionDef.h"
 main()
 {
@@ -117,7 +117,7 @@ fn a_header_in_the_current_folder_is_found() {
 
 #[cfg(target_os = "linux")] // Elsewhere two such files cannot exist.
 #[test]
-fn files_that_only_letter_case_tells_apart_are_not_guessed() {
+fn files_that_differ_only_in_letter_case_are_not_guessed() {
     let scratch = Scratch::new("letter-case");
     scratch.write("tool.h", "#define TOOL 1\n").write("TOOL.h", "#define TOOL 2\n");
     scratch.write("a.c", "#include \"Tool.h\"\nmain() { }\n");
@@ -129,7 +129,7 @@ fn files_that_only_letter_case_tells_apart_are_not_guessed() {
 }
 
 #[test]
-fn a_header_beside_the_program_wins_and_another_version_is_reported() {
+fn a_header_next_to_the_program_wins_and_its_version_is_reported() {
     let scratch = Scratch::new("local-header");
     scratch.write("KMotionDef.h", "#include \"PC-DSP.h\"\nint printf(const char *format, ...);\n");
     scratch.write("PC-DSP.h", "#define KMOTION_VER \"4.32\"\n#define LOCAL 7\n");
@@ -178,7 +178,7 @@ fn an_error_inside_a_macro_shows_the_macro() {
 }
 
 #[test]
-fn editors_programs_and_the_vendors_software_get_their_own_form() {
+fn editors_programs_and_the_vendors_software_have_their_own_format() {
     let source = "#include \"KMotionDef.h\"\nmain()\n{\n  int x;\n  if (x = 1) ;\n  y = 2;\n}\n";
     let stderr = |format| {
         let output = run_source(format, source, &["--message-format", format]);
@@ -207,7 +207,7 @@ fn an_endless_loop_in_one_thread_does_not_stop_another() {
 }
 
 #[test]
-fn the_default_limit_is_a_code_of_its_own() {
+fn the_default_time_limit_has_its_own_exit_code() {
     let output =
         run_source("limit", "#include \"KMotionDef.h\"\nmain() { for (;;) WaitNextTimeSlice(); }\n", &[]);
     assert_eq!(output.code, 4, "{output:?}");
@@ -227,7 +227,7 @@ fn a_wild_pointer_stops_its_thread_only() {
 }
 
 #[test]
-fn a_function_whose_behaviour_is_to_come_names_itself() {
+fn an_unimplemented_function_names_itself() {
     let source =
         "#include \"KMotionDef.h\"\nmain()\n{\n  int point, sign;\n  ecvt(1.5, 3, &point, &sign);\n}\n";
     let output = run_source("tocome", source, &[]);
@@ -243,7 +243,7 @@ fn settings_reach_the_program() {
 }
 
 #[test]
-fn board_time_stands_before_each_line_on_request() {
+fn board_time_precedes_each_line_on_request() {
     let source = "#include \"KMotionDef.h\"\nmain()\n{\n  Delay_sec(0.5);\n  printf(\"half\\n\");\n}\n";
     let output = run_source("time", source, &["--time"]);
     assert!(output.stdout.starts_with("0.500"), "{}", output.stdout);
@@ -251,7 +251,7 @@ fn board_time_stands_before_each_line_on_request() {
 }
 
 #[test]
-fn runs_are_equal_to_the_byte_with_shortcuts_and_without() {
+fn runs_are_byte_identical_with_and_without_shortcuts() {
     let mut source = String::from("#include \"KMotionDef.h\"\nmain()\n{\n  int i;\n  double t;\n");
     for n in 0..5 {
         let _ = writeln!(
@@ -298,7 +298,7 @@ fn all_warnings_are_listed() {
 }
 
 #[test]
-fn switches_silence_and_harden_warnings() {
+fn switches_silence_warnings_or_make_them_errors() {
     let scratch = Scratch::new("switches");
     scratch.write("a.c", "#include \"KMotionDef.h\"\nmain()\n{\n  int x = 0;\n  if (x = 1) SetBit(46);\n}\n");
     for (switch, code, said) in [
@@ -320,7 +320,7 @@ fn switches_silence_and_harden_warnings() {
 }
 
 #[test]
-fn a_run_as_json_is_an_object_a_line_and_a_summary() {
+fn a_json_run_prints_one_object_per_line_and_a_summary() {
     let scratch = Scratch::new("json");
     let source = "#include \"KMotionDef.h\"\nmain()\n{\n  printf(\"say \\\"hi\\\"\\n\");\n  MoveRel(0, 5);\n  *(int *)0 = 1;\n}\n";
     scratch.write("a.c", source);
@@ -371,7 +371,7 @@ fn the_summary_tells_why_a_run_ended() {
 }
 
 #[test]
-fn an_axis_that_jogs_on_is_named_when_the_run_is_broken_off() {
+fn an_axis_still_jogging_is_named_when_the_run_is_cut_short() {
     let scratch = Scratch::new("jogs-on");
     let source = "#include \"KMotionDef.h\"\nmain() { ch2->OutputMode = STEP_DIR_MODE; EnableAxisDest(2, 0); Jog(2, 100); }\n";
     scratch.write("jog.c", source);
@@ -391,7 +391,7 @@ fn an_axis_that_jogs_on_is_named_when_the_run_is_broken_off() {
 }
 
 #[test]
-fn a_run_in_real_time_takes_its_time_and_does_the_same() {
+fn a_run_in_real_time_takes_real_time_and_prints_the_same() {
     let scratch = Scratch::new("realtime");
     let source = "#include \"KMotionDef.h\"\nmain()\n{\n  int i;\n  for (i = 0; i < 4; i++) { Delay_sec(0.1); printf(\"%f\\n\", Time_sec()); }\n}\n";
     scratch.write("a.c", source);
@@ -448,7 +448,7 @@ fn a_remark_that_comes_again_and_again_is_shown_once() {
 }
 
 #[test]
-fn a_program_in_the_place_of_a_subcommand_and_a_misspelt_one_get_a_suggestion() {
+fn a_missing_or_misspelt_subcommand_gets_a_suggestion() {
     let scratch = Scratch::new("suggestions");
     scratch.write("first.c", "main() { }").write("notes", "");
     for (word, expect) in [

@@ -48,7 +48,7 @@ fn read(path: &Path) -> String {
 }
 
 #[test]
-fn another_reader_accepts_the_dump() {
+fn an_independent_reader_accepts_the_dump() {
     let dump = traces(&["--trace", "a.vcd", "--stim", "at 1ms bit 136 = 1"], &["a.vcd"]).remove(0);
     let mut parser = vcd::Parser::new(dump.as_bytes());
     let header = parser.parse_header().expect("the head is right");
@@ -227,7 +227,7 @@ fn edges(dump: &str, name: &str) -> Vec<(u64, bool)> {
 }
 
 #[test]
-fn pulses_have_all_their_edges_where_their_pin_is_named() {
+fn pulses_show_all_edges_when_their_pin_is_traced() {
     let program = "#include \"KMotionDef.h\"
 main()
 {
@@ -259,7 +259,7 @@ main()
 }
 
 #[test]
-fn a_run_that_is_killed_leaves_no_file_under_the_name() {
+fn a_killed_run_leaves_no_file_under_its_final_name() {
     let scratch = Scratch::new("traces-killed");
     let program = "#include \"KMotionDef.h\"
 main() { int axis = 9; EnableAxis(axis); for (;;) { SetStateBit(46, ReadBit(136)); Delay_sec(0.01); } }";
@@ -297,7 +297,7 @@ fn tables_are_the_same_with_and_without_shortcuts() {
 }
 
 #[test]
-fn items_that_do_not_exist_are_refused_and_nothing_is_left_behind() {
+fn unknown_items_are_refused_and_no_file_is_left_behind() {
     let scratch = Scratch::new("traces-refused");
     fs::write(scratch.path().join("a.c"), "main() { }").expect("it is ours");
     for (arguments, expect) in [

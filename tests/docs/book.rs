@@ -187,7 +187,7 @@ fn every_chapter_is_in_the_summary() {
 }
 
 #[test]
-fn headings_are_spelled_as_links_name_them() {
+fn heading_anchors_match_the_form_of_links() {
     let anchors = anchors("# A `b` (c), d_e\ntext\n## F-g");
     assert_eq!(anchors.into_iter().collect::<Vec<_>>(), ["a-b-c-d_e", "f-g"]);
 }
@@ -204,7 +204,7 @@ pub(crate) fn check_list(name: &str, text: &str) {
 }
 
 #[test]
-fn the_chapter_of_warnings_has_the_page_of_each() {
+fn the_chapter_of_warnings_has_every_page() {
     let mut text = "# Warnings\n\nMessages name the warning in brackets; `-Wno-NAME` switches it off, `-Werror=NAME` makes it an \
                     error,\nand `cc67 --explain NAME` shows its page. `-Wall` and `-Wextra` switch on more.\n"
         .to_owned();
@@ -217,7 +217,7 @@ fn the_chapter_of_warnings_has_the_page_of_each() {
 }
 
 #[test]
-fn the_chapter_of_remarks_has_each() {
+fn the_chapter_of_remarks_lists_every_remark() {
     let mut text = "# Remarks\n\nThe simulated board makes remarks on likely mistakes; a real board is silent. A remark on a call begins with \
                     thread,\nfile, line and column of the call. `-R no-CODE` switches a remark off for one run; `CODE = false` under \
                     `[remarks]` in the\nmachine file switches it off permanently. `cc67 --explain CODE` shows its page. Only `--verbose` \
@@ -246,7 +246,7 @@ const PARTS: &[(&str, &str)] = &[
 ];
 
 #[test]
-fn the_chapter_of_messages_has_each() {
+fn the_chapter_of_messages_lists_every_message() {
     let (found, unknown) = messages(&sources(&harness::root().join("cc67/compiler/src")));
     assert!(unknown.is_empty(), "the text of these diagnostics was not found: {unknown:#?}");
     assert!(found.len() >= 250, "only {} messages", found.len());
@@ -295,7 +295,7 @@ fn messages_of_the_filetests_are_in_the_chapter() {
 }
 
 #[test]
-fn the_chapter_of_limits_has_each() {
+fn the_chapter_of_limits_lists_every_limit() {
     let mut text = "# Limits\n\nEvery limit is a number, and every message about a limit names it; `cc67 --explain limits` lists them all.\nCompiling \
                     takes at most a gigabyte of memory, whatever the source. A run takes at most half a gigabyte, whatever its\nlength, \
                     output, traces and pictures; an ordinary run takes less than 20 megabytes, with or without traces.\n"
@@ -311,7 +311,7 @@ fn the_chapter_of_limits_has_each() {
 }
 
 #[test]
-fn the_chapter_of_functions_has_each() {
+fn the_chapter_of_functions_lists_every_function() {
     let mut text =
         "# Firmware functions\n\nEach call takes the processor time in parentheses; waiting takes additional time.\n".to_owned();
     let shown = || FIRMWARE_FUNCTIONS.iter().filter(|function| !ABSENT.contains(&function.name));
@@ -328,7 +328,7 @@ fn the_chapter_of_functions_has_each() {
 }
 
 #[test]
-fn the_chapter_of_variables_has_each() {
+fn the_chapter_of_variables_lists_every_variable() {
     let mut text = "# Firmware variables\n\n| address | variable | meaning |\n|---|---|---|\n".to_owned();
     for variable in FIRMWARE_VARIABLES {
         let (declaration, doc) = (variable.ty.declare(variable.name), variable.doc.trim().replace('\n', " "));
@@ -343,7 +343,7 @@ fn the_chapter_of_variables_has_each() {
 }
 
 #[test]
-fn the_chapter_of_console_commands_has_each() {
+fn the_chapter_of_console_commands_lists_every_command() {
     let mut text = "# Console commands\n\nThese are the script commands that `cc67 console` sends to the board, and `command \"...\"` in a stimulus. \
                     Case does not\nmatter, and a line may hold several, separated by `;`. The console's `help` lists its own words, such \
                     as `run` and `wait`.\n\n| command | effect |\n|---|---|\n"

@@ -79,7 +79,7 @@ fn without_directives(said: &str, name: &str, directives: usize) -> String {
 }
 
 #[test]
-fn the_chapter_of_mistakes_has_each() {
+fn the_chapter_of_mistakes_lists_every_mistake() {
     let folder = harness::root().join("tests/filetests/mistakes");
     let files =
         fs::read_dir(&folder).expect("the folder is there").map(|entry| entry.expect("a file").path());

@@ -70,7 +70,7 @@ fn the_index_lists_every_program_and_nothing_else() {
 }
 
 #[test]
-fn every_program_compiles_without_a_word() {
+fn every_program_compiles_without_messages() {
     for path in files(&harness::root().join("c-programs"), "c") {
         if !fs::read_to_string(&path).expect("programs are UTF-8").starts_with("// cc67: ") {
             continue;
@@ -103,7 +103,7 @@ fn textbook(time: f64) -> f64 {
 }
 
 #[test]
-fn the_recorded_coils_follow_the_recorded_move_and_that_the_textbook() {
+fn recorded_coils_follow_the_recorded_move_which_follows_the_textbook() {
     const TICK: f64 = 90e-6;
     let text =
         fs::read_to_string(harness::root().join("c-programs/gather/pwm_log.expected")).expect("a golden");

@@ -44,7 +44,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn quotes_protect_commas_and_double_for_themselves() {
+    fn quoted_fields_may_contain_commas_and_doubled_quotes() {
         assert_eq!(records("a,\"b,\"\"c\"\"\"\nd,\n"), [["a", "b,\"c\""], ["d", ""]]);
     }
 }

@@ -319,7 +319,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn annotations_name_their_line_and_those_above() {
+    fn annotations_refer_to_their_line_or_to_one_above() {
         let remarks = annotations("a.c", "x; //~ one: some text //~ two\ny;\n//~^ three\n");
         let rendered: Vec<_> = remarks.iter().map(Remark::render).collect();
         assert_eq!(rendered, ["a.c:1: one: some text\n", "a.c:1: two: \n", "a.c:2: three: \n"]);
@@ -334,7 +334,7 @@ mod tests {
     }
 
     #[test]
-    fn characters_stand_for_bytes_and_directives_keep_their_line() {
+    fn placeholders_become_bytes_and_directives_keep_their_lines() {
         let scratch = Scratch::new("stand-in");
         scratch.write("a.c", "//@ byte: ¶ 0d\n//@ no-final-newline\nmain¶\n");
         let test = FileTest::read(&scratch.path().join("a.c"));

@@ -61,7 +61,7 @@ fn an_object_links_to_the_same_bytes_as_its_source() {
 }
 
 #[test]
-fn a_missing_unit_is_missed_by_name_with_everyone_who_calls_it() {
+fn a_missing_unit_is_reported_by_name_with_all_its_callers() {
     let scratch = four_files("missing-unit");
     scratch.write("more.c", "int up(int n);\nint more(void)\n{\n  return up(2) + 1;\n}\n");
     succeed(&scratch, &["build", "-c", "main.c", "more.c"]);
@@ -84,7 +84,7 @@ fn a_name_that_two_units_define_is_reported_with_both_places() {
 }
 
 #[test]
-fn builds_are_equal_to_the_byte_and_leave_nothing_else_behind() {
+fn builds_are_byte_identical_and_leave_no_other_files() {
     let scratch = Scratch::new("bytes");
     scratch.write("a.c", HELLO).write("again/a.c", HELLO);
     succeed(
@@ -116,7 +116,7 @@ fn the_size_line_counts_as_the_vendors_editor_does() {
 }
 
 #[test]
-fn what_main_cannot_reach_is_left_out_unless_it_is_kept() {
+fn code_unreachable_from_main_is_left_out_unless_it_is_kept() {
     let scratch = Scratch::new("gc");
     scratch.write("a.c", "int unused(void) { return 1; }\nint table[1000];\nmain() { return 0; }\n");
     let has_unused = |arguments: &[&str]| {
@@ -130,7 +130,7 @@ fn what_main_cannot_reach_is_left_out_unless_it_is_kept() {
 }
 
 #[test]
-fn a_program_that_enters_other_threads_is_built_with_a_warning_and_one_too_large_is_not() {
+fn using_another_threads_space_is_a_warning_and_too_large_an_error() {
     let scratch = Scratch::new("large");
     scratch
         .write("a.c", "char big[70000];\nmain() { return big[5]; }\n")
@@ -162,7 +162,7 @@ fn an_image_goes_into_the_thread_that_it_is_linked_for() {
 }
 
 #[test]
-fn files_of_other_tools_are_named_by_what_they_are() {
+fn files_of_other_tools_are_described_by_their_kind() {
     let scratch = Scratch::new("foreign");
     let mut elf = vec![0; 64];
     elf[..7].copy_from_slice(b"\x7fELF\x02\x01\x01");
@@ -195,7 +195,7 @@ fn a_program_linked_against_the_firmwares_own_file_runs() {
 }
 
 #[test]
-fn names_that_the_firmware_file_lacks_are_undefined() {
+fn names_missing_from_the_firmware_file_are_undefined() {
     let scratch = Scratch::new("firmware-lacks");
     scratch.write("DSPKFLOP.out", vendor::board_firmware()).write(
         "a.c",
@@ -254,7 +254,7 @@ fn functions_of_an_object_are_in_the_file_that_defines_them() {
 }
 
 #[test]
-fn a_body_that_is_included_counts_as_the_line_of_its_include() {
+fn an_included_body_has_the_line_of_its_include() {
     let scratch = Scratch::new("body");
     scratch
         .write("a.c", "int *nowhere;\nmain()\n{\n  int x = 1;\n#include \"body.inc\"\n}\n")

@@ -39,7 +39,7 @@ fn thread() -> ThreadId {
 }
 
 #[test]
-fn every_image_and_object_that_is_read_is_written_to_the_same_bytes() {
+fn images_and_objects_are_written_back_to_the_same_bytes() {
     for (name, image, object) in corpus() {
         let read = Image::read(&image).unwrap_or_else(|error| panic!("{name}: {error}"));
         assert!(read.write().as_ref() == Ok(&image), "image of {name}");
@@ -128,7 +128,7 @@ fn rows(text: &str) -> Vec<String> {
 }
 
 #[test]
-fn another_reader_sees_the_same_in_every_image() {
+fn an_independent_reader_sees_the_same_in_every_image() {
     let scratch = Scratch::new("other-reader");
     let mut files: Vec<_> = corpus()
         .into_iter()
@@ -182,7 +182,7 @@ fn no_symbol_of_the_firmware_file_is_lost() {
 
 #[test]
 #[expect(clippy::disallowed_methods, reason = "the promise is about the time that reading takes")]
-fn a_firmware_file_is_read_and_resolved_against_in_two_milliseconds() {
+fn a_firmware_file_is_read_and_linked_against_in_two_milliseconds() {
     let bytes = vendor::board_firmware();
     let options = Options::default();
     let text = b"#include \"KMotionDef.h\"\nmain() { SetBit(1); printf(\"%d\\n\", persist.UserData[3]); }\n";
@@ -215,7 +215,7 @@ fn contents(board: &Board) -> [&[u8]; 2] {
 }
 
 #[test]
-fn a_download_that_is_replayed_leaves_the_memory_that_a_load_leaves() {
+fn a_replayed_download_leaves_the_same_memory_as_a_load() {
     for (name, bytes, _) in corpus() {
         let image = Image::read(&bytes).expect("the image is good");
         let script = compiler::image::download::script(&image, thread());

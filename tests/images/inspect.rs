@@ -90,7 +90,7 @@ fn recursion_has_no_worst_chain() {
 }
 
 #[test]
-fn code_of_the_controller_has_stack_calls_and_cycles() {
+fn code_for_the_controller_is_shown_with_stack_calls_and_cycles() {
     let scratch = Scratch::new("inspect-code");
     scratch.write("p.c", PROGRAM);
     succeed(&scratch, &["build", "-O0", "p.c"]);
@@ -176,7 +176,7 @@ fn a_firmware_file_is_shown_with_its_28_sections() {
 }
 
 #[test]
-fn images_of_two_versions_of_a_program_differ_by_name() {
+fn the_difference_of_two_images_is_shown_by_name() {
     let scratch = built("diff");
     scratch.write("q.c", PROGRAM.replace("{ 1, 2, 3, 4 }", "{ 1, 2, 3, 5 }").replace("calls", "count"));
     succeed(&scratch, &["build", "--target", "sim", "q.c", "-o", "q.out"]);
@@ -217,7 +217,7 @@ main()
 "#;
 
 #[test]
-fn the_stack_on_the_controller_is_that_of_the_code() {
+fn the_stack_size_on_the_controller_matches_the_code() {
     let scratch = Scratch::new("inspect-real-stack");
     scratch.write("deep.c", DEEP);
     let text = succeed(&scratch, &["check", "--stack", "deep.c"]);
@@ -229,7 +229,7 @@ fn the_stack_on_the_controller_is_that_of_the_code() {
 }
 
 #[test]
-fn recursion_on_the_controller_names_the_circle() {
+fn recursion_on_the_controller_names_the_cycle() {
     let scratch = Scratch::new("inspect-real-recursion");
     scratch.write(
         "f.c",

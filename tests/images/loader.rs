@@ -66,7 +66,7 @@ fn section<'a>(image: &'a mut Image, name: &str) -> &'a mut Section {
 }
 
 #[test]
-fn files_that_are_cut_or_foreign_are_refused() {
+fn truncated_or_foreign_files_are_refused() {
     let whole = build(COUNTER, 1);
     for length in [0, 10, 30, 100, 300, whole.len() - 1] {
         refused_bytes(&whole[..length], "not a KFLOP image: ");
@@ -76,7 +76,7 @@ fn files_that_are_cut_or_foreign_are_refused() {
 }
 
 #[test]
-fn what_is_not_linked_for_this_board_is_refused() {
+fn images_not_linked_for_this_board_are_refused() {
     refused(|image| image.flags = FileFlags::LITTLE_ENDIAN, "not linked yet");
     let relocation = Relocation { address: 0, symbol: 0, displacement: 0, kind: 1 };
     refused(|image| section(image, ".text").relocations.push(relocation), "not linked yet");
@@ -90,7 +90,7 @@ fn what_is_not_linked_for_this_board_is_refused() {
 }
 
 #[test]
-fn sections_stay_inside_the_program_and_apart() {
+fn sections_must_lie_inside_the_program_area_and_not_overlap() {
     let outside = "is outside the program area";
     refused(|image| section(image, ".data").address = 0x8004_0000, outside);
     refused(|image| section(image, ".data").address = 0x1001_0000, outside);
@@ -176,7 +176,7 @@ fn sections_that_are_not_loaded_are_left_out() {
 }
 
 #[test]
-fn a_load_sets_all_data_anew_and_execution_none() {
+fn a_load_resets_all_data_and_execution_resets_none() {
     let image = build(COUNTER, 1);
     let mut board: Board = Board::new(Config::default());
     board.load(thread(1), &image).expect("it loads");

@@ -68,7 +68,7 @@ fn board(machine: &str) -> Board {
 }
 
 #[test]
-fn a_machine_file_makes_globals_fresh() {
+fn a_machine_file_can_reset_globals_at_each_start() {
     let mut board = board("[cpu]\nfresh_globals = true");
     load(&mut board, &image_of(COUNTER));
     assert_eq!([execute(&mut board), execute(&mut board)], ["5 0", "5 0"]);

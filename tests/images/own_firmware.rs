@@ -122,7 +122,7 @@ fn booted() -> BootedBoard {
 }
 
 #[test]
-fn a_firmware_in_c_answers_its_timer_prints_and_moves_a_generator() {
+fn a_firmware_in_c_handles_its_timer_prints_and_drives_a_generator() {
     let mut board = booted();
     board.run_to(board.cycle() + 25 * TICK).unwrap_or_else(|halted| panic!("{halted}"));
     let lines: Vec<_> = board.take_lines().into_iter().map(|line| (line.kind, line.text)).collect();
@@ -165,7 +165,7 @@ fn run_to(board: &mut BootedBoard, cycle: u64) {
 }
 
 #[test]
-fn a_board_that_goes_back_to_a_snapshot_goes_on_as_it_did() {
+fn a_board_restored_from_a_snapshot_continues_as_before() {
     let mut board = booted();
     // Between ticks, in the interrupt of one, and while it prints.
     for at in [3 * TICK + 7777, 5 * TICK + 300, 10 * TICK + 450, 10 * TICK + 455] {
@@ -190,7 +190,7 @@ fn a_board_that_goes_back_to_a_snapshot_goes_on_as_it_did() {
 }
 
 #[test]
-fn a_run_with_stops_is_the_same_run() {
+fn stops_do_not_change_a_run() {
     let mut plain = booted();
     let begin = plain.cycle();
     run_to(&mut plain, begin + 25 * TICK);
@@ -216,7 +216,7 @@ fn a_run_with_stops_is_the_same_run() {
 }
 
 #[test]
-fn packets_of_programs_are_kept_as_they_are_executed() {
+fn packets_of_programs_are_recorded_as_they_are_executed() {
     let mut plain = booted();
     let begin = plain.cycle();
     run_to(&mut plain, begin + 3 * TICK);

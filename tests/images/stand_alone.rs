@@ -51,7 +51,7 @@ fn check(name: &str, source: &str, options: &[&str]) -> Output {
 }
 
 #[test]
-fn a_program_of_its_own_does_the_same_at_the_same_board_time() {
+fn a_stand_alone_program_does_the_same_at_the_same_board_time() {
     if !has_linker() {
         return;
     }
@@ -76,7 +76,7 @@ main()
 }
 
 #[test]
-fn a_trap_names_the_line_and_the_exit_code_tells() {
+fn a_trap_names_the_line_and_sets_the_exit_code() {
     if !has_linker() {
         return;
     }
@@ -90,7 +90,7 @@ main()
 }
 
 #[test]
-fn options_are_those_of_run() {
+fn a_stand_alone_program_has_the_options_of_run() {
     if !has_linker() {
         return;
     }
@@ -101,7 +101,7 @@ main() { for (;;) { WaitNextTimeSlice(); persist.UserData[0]++; if (persist.User
 }
 
 #[test]
-fn an_executable_is_small_and_interprets_what_runs_beside_it() {
+fn an_executable_is_small_and_interprets_the_other_programs() {
     if !has_linker() {
         return;
     }
@@ -121,7 +121,7 @@ fn an_executable_is_small_and_interprets_what_runs_beside_it() {
 }
 
 #[test]
-fn example_programs_do_the_same() {
+fn example_programs_do_the_same_stand_alone() {
     if !has_linker() {
         return;
     }
@@ -132,7 +132,7 @@ fn example_programs_do_the_same() {
 }
 
 #[test]
-fn wrong_options_are_told_as_by_any_command() {
+fn wrong_options_are_reported_as_by_any_command() {
     if !has_linker() {
         return;
     }
@@ -163,7 +163,7 @@ fn text_of(elf: &Elf<'_>) -> Range<usize> {
 }
 
 #[test]
-fn the_object_has_a_function_for_each_of_the_program_and_asks_for_the_library_alone() {
+fn the_object_has_every_function_and_needs_only_the_library() {
     let scratch = Scratch::new("stand-alone-object");
     let bytes = object(
         &scratch,
@@ -193,7 +193,7 @@ fn the_object_has_a_function_for_each_of_the_program_and_asks_for_the_library_al
 /// the one that is printed.
 #[test]
 #[cfg(all(target_arch = "x86_64", target_os = "linux"))]
-fn the_code_that_runs_is_that_of_the_object() {
+fn the_executable_runs_the_code_of_the_object() {
     if !has_linker() {
         return;
     }

@@ -66,7 +66,7 @@ fn every_test_names_a_statement() {
 }
 
 #[test]
-fn ids_are_section_and_name_and_stand_once() {
+fn ids_are_section_and_name_and_are_unique() {
     let mut seen = BTreeSet::new();
     for row in rows() {
         let id = &row["id"];

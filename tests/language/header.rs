@@ -127,7 +127,7 @@ fn completed(header: &str) -> String {
 }
 
 #[test]
-fn every_field_has_its_line() {
+fn every_field_is_declared_in_the_header() {
     for header in ["KMotionDef.h", "PC-DSP.h"] {
         let path = harness::root().join("kmotiondef/include").join(header);
         let read = || std::fs::read_to_string(&path).expect("the header is there");
@@ -143,7 +143,7 @@ fn every_field_has_its_line() {
 }
 
 #[test]
-fn a_missing_line_is_written_as_its_neighbours_are() {
+fn a_missing_declaration_is_written_like_its_neighbours() {
     let path = harness::root().join("kmotiondef/include/KMotionDef.h");
     let header = std::fs::read_to_string(path).expect("the header is there");
     let line = header.lines().find(|line| declares(line, "FFVel")).expect("the field has its line");
@@ -232,7 +232,7 @@ fn macros_are_all_defined() {
 }
 
 #[test]
-fn every_function_of_the_tables_links_but_the_one_the_board_lacks() {
+fn every_function_links_except_the_one_the_board_lacks() {
     let mut program = String::from("void *all[] = {\n");
     for row in table("functions.csv") {
         if !row["address"].is_empty() && row["header_declares"] == "yes" {

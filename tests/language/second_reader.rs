@@ -156,7 +156,7 @@ fn read(path: &Path) -> Reading {
 }
 
 #[test]
-fn a_parser_of_other_people_gives_the_same_trees() {
+fn a_third_party_parser_gives_the_same_trees() {
     let mut paths = files(&harness::root().join("c-programs"), "c");
     paths.extend(files(&harness::root().join("tests/filetests"), "c"));
     let work = move || paths.into_iter().map(|path| (read(&path), path)).collect::<Vec<_>>();

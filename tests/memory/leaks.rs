@@ -84,7 +84,7 @@ fn check<E: Engine>(engine: &str) {
 }
 
 #[test]
-fn nothing_is_left_of_programs_that_end_badly() {
+fn programs_that_end_badly_leak_nothing() {
     let _alone = alone();
     check::<BytecodeEngine>("bytecode");
     #[cfg(feature = "native")]

@@ -68,7 +68,7 @@ fn assert_one_message(output: &Output, code: i32, expect: &str) {
 }
 
 #[test]
-fn a_full_disk_is_one_message_and_leaves_the_old_file() {
+fn a_full_disk_gives_one_message_and_keeps_the_old_file() {
     // A limit on the size of files that does not kill makes a disk full after the first kilobyte.
     const FULL: &str = "trap '' XFSZ; ulimit -f 1; exec \"$@\"";
     let scratch = with_program("full-disk");
@@ -98,7 +98,7 @@ fn a_full_disk_is_one_message_and_leaves_the_old_file() {
 
 #[test]
 #[cfg(target_os = "linux")]
-fn a_full_standard_output_is_one_message() {
+fn a_full_standard_output_gives_one_message() {
     let scratch = with_program("full-output");
     for arguments in [
         &["run", "a.c"][..],
@@ -116,7 +116,7 @@ fn a_full_standard_output_is_one_message() {
 }
 
 #[test]
-fn a_folder_that_cannot_be_written_is_one_message() {
+fn an_unwritable_folder_gives_one_message() {
     let scratch = with_program("read-only");
     // No user may create files in /dev/null, not even root, whom permissions do not stop.
     for arguments in [
@@ -131,7 +131,7 @@ fn a_folder_that_cannot_be_written_is_one_message() {
 }
 
 #[test]
-fn a_reader_that_goes_away_is_no_failure() {
+fn a_reader_that_goes_away_is_not_an_error() {
     let scratch = with_program("head");
     for arguments in [&["run", "a.c"][..], &["firmware", "list"], &["completions", "bash"]] {
         let mut child = Command::new(harness::command())
@@ -154,7 +154,7 @@ fn a_reader_that_goes_away_is_no_failure() {
 
 #[test]
 #[cfg(target_os = "linux")] // Elsewhere such names cannot exist.
-fn names_that_are_no_text_are_names_of_files() {
+fn file_names_that_are_not_utf_8_are_accepted() {
     let scratch = Scratch::new("no-text");
     let name = |bytes| OsStr::from_bytes(bytes);
     let (source, image) = (name(b"caf\xe9.c"), name(b"caf\xe9.out"));
@@ -226,7 +226,7 @@ fn a_build_that_is_killed_leaves_the_old_image_or_the_new() {
 }
 
 #[test]
-fn flash_memory_that_is_killed_while_it_is_kept_is_the_old_or_the_new() {
+fn a_run_killed_while_saving_flash_leaves_the_old_file_or_the_new_one() {
     let erased = vec![0xFF; 2 << 20];
     assert_whole("kill-flash", &["run", "--flash", "board.flash", "flash.c"], "board.flash", &erased, 40);
 }

@@ -89,7 +89,7 @@ fn hostile_text_gets_an_answer() {
 
 #[test]
 #[cfg(target_os = "linux")]
-fn the_heaviest_stay_below_a_gigabyte() {
+fn the_heaviest_sources_stay_below_a_gigabyte() {
     let scratch = Scratch::new("hostile-heavy");
     for input in inputs::heavy() {
         scratch.write("hostile.c", &input.text);
@@ -109,7 +109,7 @@ fn the_heaviest_stay_below_a_gigabyte() {
 
 #[test]
 #[cfg(unix)]
-fn includes_of_what_is_no_file_are_refused() {
+fn includes_that_are_not_regular_files_are_refused() {
     let scratch = Scratch::new("hostile-include");
     scratch.write("sub/x.h", "");
     std::os::unix::fs::symlink("loop.h", scratch.path().join("loop.h")).expect("links can be made");

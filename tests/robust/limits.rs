@@ -73,7 +73,7 @@ fn check(limit: &Limit, source: &str) -> Output {
 }
 
 #[test]
-fn messages_say_the_number() {
+fn messages_state_the_limit() {
     for case in CASES {
         let limit = COMPILER.iter().find(|limit| limit.what.starts_with(case.what)).expect("it is listed");
         let output = check(limit, &(case.source)(limit.number as usize));
@@ -159,7 +159,7 @@ fn a_picture_of_a_long_run_says_what_it_leaves_out() {
 }
 
 #[test]
-fn the_command_lists_what_the_book_lists() {
+fn the_command_lists_the_same_limits_as_the_book() {
     let shown = cc67(harness::root(), ["--explain", "limits"]).stdout;
     let book = std::fs::read_to_string(harness::root().join("cc67/book/src/limits.md")).expect("it is there");
     let rows: Vec<Vec<&str>> = book.lines().filter_map(row).collect();

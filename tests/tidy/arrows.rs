@@ -50,7 +50,7 @@ fn upward(krate: &str, rows: &[Row], imports: &Imports, met: &mut BTreeSet<(Stri
 }
 
 #[test]
-fn arrows_inside_a_crate_point_downwards() {
+fn imports_inside_a_crate_point_downwards() {
     let mut wrong = Vec::new();
     for (krate, rows) in LAYERS {
         let mut met = BTreeSet::new();
@@ -83,7 +83,7 @@ fn file_graph(imports: &Imports) -> Graph {
 }
 
 #[test]
-fn no_rooms_of_a_crate_lie_in_a_circle() {
+fn no_rooms_of_a_crate_form_an_import_cycle() {
     let mut wrong = Vec::new();
     for (krate, _) in LAYERS {
         let graph = rooms(&imports::read(krate));
@@ -102,7 +102,7 @@ fn no_rooms_of_a_crate_lie_in_a_circle() {
 }
 
 #[test]
-fn no_more_than_three_files_lie_in_a_circle() {
+fn no_import_cycle_has_more_than_three_files() {
     let known: BTreeMap<&str, usize> = FILES_IN_A_CIRCLE.iter().copied().collect();
     let mut longest: (usize, String) = (0, String::new());
     let mut wrong = Vec::new();

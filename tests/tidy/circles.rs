@@ -79,7 +79,7 @@ fn walk<'a>(
 }
 
 #[test]
-fn circles_are_found() {
+fn cycles_are_found() {
     let graph: Graph =
         [("a", vec!["b"]), ("b", vec!["c", "d"]), ("c", vec!["a"]), ("d", vec!["e"]), ("e", vec![])]
             .into_iter()

@@ -62,7 +62,7 @@ fn names_crate(code: &str, name: &str) -> bool {
 }
 
 #[test]
-fn crates_depend_only_along_the_arrows() {
+fn crates_depend_only_in_the_allowed_directions() {
     let forbidden: &[(&str, &[&str], &[&str])] = &[
         ("kmotiondef/src", &["coff", "vm", "runtime", "compiler", "cc67_host", "cc67"], &[]),
         ("coff/src", &["kmotiondef", "vm", "runtime", "compiler", "cc67_host", "cc67"], &[]),
@@ -115,7 +115,7 @@ fn needed_by(package: &str) -> Vec<String> {
 }
 
 #[test]
-fn who_embeds_a_board_builds_no_crate_of_terminals_pictures_web_or_command_lines() {
+fn embedding_a_board_builds_no_terminal_picture_web_or_cli_crate() {
     const OF_THE_COMMAND: &[&str] = &[
         "ab_glyph",
         "anstream",
@@ -152,7 +152,7 @@ fn who_embeds_a_board_builds_no_crate_of_terminals_pictures_web_or_command_lines
 }
 
 #[test]
-fn every_source_file_opens_with_what_it_is() {
+fn every_source_file_starts_with_a_module_doc() {
     let silent: Vec<_> = files(root(), "rs")
         .into_iter()
         .filter(|file| !fs::read_to_string(file).expect("sources are UTF-8").starts_with("//!"))
@@ -215,7 +215,7 @@ fn every_library_states_its_invariants() {
 }
 
 #[test]
-fn no_test_is_switched_off_and_nothing_is_left_open() {
+fn no_test_is_disabled_and_no_code_is_unfinished() {
     for file in files(root(), "rs") {
         if relative(&file) == "tests/tidy/main.rs" {
             continue;
@@ -228,7 +228,7 @@ fn no_test_is_switched_off_and_nothing_is_left_open() {
 }
 
 #[test]
-fn a_file_is_one_idea() {
+fn no_file_is_too_long() {
     // Tables are long by nature; a program's text is not.
     const TABLES: &[&str] = &["kmotiondef/src/firmware.rs", "vm/src/op.rs"];
     let long: Vec<_> = files(root(), "rs")
@@ -241,7 +241,7 @@ fn a_file_is_one_idea() {
 }
 
 #[test]
-fn the_top_level_keeps_its_names() {
+fn the_top_level_has_only_the_expected_names() {
     let mut names: Vec<_> = fs::read_dir(root())
         .expect("the workspace is readable")
         .map(|entry| entry.expect("the entry is readable").file_name().to_string_lossy().into_owned())

@@ -22,7 +22,7 @@ fn rows(tokens: &[Token]) -> Range<usize> {
 }
 
 #[test]
-fn every_pass_has_its_turn() {
+fn every_pass_is_run() {
     let all = sources();
     let (_, table) = all.iter().find(|(file, _)| file == TABLE).expect("the table of passes is there");
     let rows = rows(table);

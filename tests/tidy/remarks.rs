@@ -17,7 +17,7 @@ fn rows(tokens: &[Token]) -> Vec<&str> {
 }
 
 #[test]
-fn every_remark_is_made() {
+fn every_remark_is_used() {
     let all = sources();
     let (table, others): (Vec<_>, Vec<_>) = all.iter().partition(|(file, _)| file == TABLE);
     let rows: Vec<_> = table.iter().flat_map(|(_, tokens)| rows(tokens)).collect();

@@ -75,7 +75,7 @@ fn is_argument_list(tokens: &[Token], at: usize) -> bool {
 }
 
 #[test]
-fn no_structure_has_more_fields_than_one_can_hold_in_mind() {
+fn no_structure_has_too_many_fields() {
     let known: BTreeMap<&str, usize> = LARGE.iter().copied().collect();
     let mut wrong = Vec::new();
     for (file, tokens) in sources() {

@@ -231,7 +231,7 @@ fn comments_strings_and_tests_are_left_out() {
 }
 
 #[test]
-fn strings_and_doc_comments_are_the_texts() {
+fn texts_are_strings_and_doc_comments() {
     let text = "//! a\n//! b\n\n/// c\nfn d() { e(\"f {g}\", r#\"h\"#) } // i\n";
     let texts = texts(text);
     let expect = [(1, " a\n b"), (4, " c"), (5, "f {g}"), (5, "h")];

@@ -104,7 +104,7 @@ fn matches_over_tables_name_every_row() {
 }
 
 #[test]
-fn a_silent_arm_is_found() {
+fn a_wildcard_arm_is_found() {
     let lines = |text: &str| silent(&crate::tokens::tokens(text));
     assert_eq!(lines("fn f() { match op { Op::Add { a } => { 1 } \n _ => 2, } }"), [(2, "Op")]);
     assert_eq!(lines("match x { Some(Op::Add) => 1, _ => 2 }"), []);

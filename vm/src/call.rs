@@ -67,7 +67,7 @@ mod tests {
     use crate::memory::GuestMemory;
 
     #[test]
-    fn arguments_are_taken_by_position_wherever_an_engine_has_them() {
+    fn arguments_are_found_by_position_wherever_an_engine_keeps_them() {
         // As on the real processor: a single in A4, a double in B5:B4, the variable part on the stack.
         let (a4, b4, b5) = (1.5_f32.to_bits(), 0_u32, 0x4004_0000_u32);
         let mut memory = GuestMemory::new();

@@ -61,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn a_text_is_taken_apart_as_it_was_put_together() {
+    fn a_text_is_split_as_it_was_put_together() {
         let main = GuestAddr::new(0x8005_0040);
         let text = [&words(main)[..], &[1, 2, 3]].concat();
         assert_eq!(split(&text), Some((main, &[1, 2, 3][..])));

@@ -213,12 +213,12 @@ mod tests {
     }
 
     #[test]
-    fn a_loop_head_and_what_follows_a_branch_begin_segments() {
+    fn loop_heads_and_code_after_a_branch_begin_segments() {
         check(&[ADD, ADD, br_if(1), RET], &[(0, 1), (1, 2), (3, 2)]);
     }
 
     #[test]
-    fn a_segment_ends_behind_a_call_with_its_result() {
+    fn a_segment_ends_after_a_call_with_its_result() {
         check(&[ADD, CALL, RESULT, ADD, CALL, RET], &[(0, 6), (3, 5), (5, 2)]);
     }
 
@@ -229,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn charges_that_are_there_do_not_change_the_points() {
+    fn existing_charges_do_not_change_the_charge_points() {
         let charge = |cycles| Op::Charge { cycles: Count32(cycles) };
         check(&[charge(1), ADD, charge(2), ADD, br_if(2), charge(2), RET], &[(0, 1), (2, 2), (5, 2)]);
     }

@@ -86,7 +86,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn labels_constants_and_signatures_are_found_wherever_they_stand() {
+    fn labels_constants_and_signatures_are_found_in_any_operand() {
         struct Add;
         impl Patch for Add {
             fn label(&mut self, label: &mut Label) {

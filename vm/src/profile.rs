@@ -320,7 +320,7 @@ add_i32_imm r0, r0, -1
 ret_i32 r0";
 
     #[test]
-    fn every_cycle_is_put_down_where_it_was_spent() {
+    fn every_cycle_is_attributed_to_where_it_was_spent() {
         let mut machine = machine_on::<ProfilingEngine>(Config::default(), &[(1, PROGRAM)]);
         machine.run_until(Ticks::new(20));
         let program = machine.program(thread(1)).expect("it is loaded");

@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn rotation_is_that_of_the_released_firmware() {
+    fn rotation_matches_the_released_firmware() {
         check(&[], "0000000000000000000000000000000000000000");
         check(&[1], "0101010101010101010101010101010101010101");
         check(&[2], "0202020202020202020202020202020202020202");

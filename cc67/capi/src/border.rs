@@ -121,7 +121,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_panic_is_an_outcome() {
+    fn a_panic_is_reported_as_an_internal_error() {
         let hook = std::panic::take_hook();
         std::panic::set_hook(Box::new(|_| ()));
         let outcome = guarded(|| panic!("a mistake of ours"));

@@ -253,7 +253,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_have_their_numbers_beforehand() {
+    fn known_words_have_fixed_numbers() {
         let mut names = Names::new();
         assert_eq!(names.intern("auto"), word::AUTO);
         assert_eq!(names.find("main"), Some(word::MAIN));

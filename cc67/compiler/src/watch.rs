@@ -481,7 +481,7 @@ main() { int local; }
     }
 
     #[test]
-    fn expressions_mean_what_they_mean_in_the_program() {
+    fn expressions_mean_the_same_as_in_the_program() {
         check("count", Ok(7.0));
         check("count / 2 + SPINDLE", Ok(5.0));
         check("count / 2.0", Ok(3.5));
@@ -495,7 +495,7 @@ main() { int local; }
     }
 
     #[test]
-    fn what_is_stored_has_the_type_of_its_place() {
+    fn a_stored_value_takes_the_type_of_its_place() {
         for (expression, value, expect) in [
             ("count", -2.9, Some((0x8005_0000, (-2_i32).to_le_bytes().to_vec()))),
             ("table[1]", 0.5, Some((0x8005_0010, 0.5_f64.to_le_bytes().to_vec()))),
@@ -514,7 +514,7 @@ main() { int local; }
     }
 
     #[test]
-    fn what_is_wrong_with_an_expression_is_said() {
+    fn errors_in_an_expression_are_explained() {
         check("conut", Err("`conut` is not declared; did you mean `count`?"));
         check("count = 5", Err("it changes something; an expression that is watched only reads"));
         check(

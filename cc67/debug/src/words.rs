@@ -219,7 +219,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_word_is_a_name_a_short_form_or_the_beginning_of_one_name() {
+    fn a_command_is_a_name_a_short_form_or_an_unambiguous_prefix() {
         let mut lines = LineReader::modelled();
         assert_eq!(lines.read("rc"), Ok(Some(("reverse-continue", String::new()))));
         assert_eq!(lines.read(" print/x  a + 1 "), Ok(Some(("print", "/x  a + 1".to_owned()))));
@@ -230,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn a_firmware_file_refuses_by_name_what_it_has_not() {
+    fn commands_unavailable_with_a_firmware_file_are_refused_by_name() {
         let mut lines = LineReader::booted();
         assert_eq!(
             lines.read("watch x"),

@@ -34,7 +34,7 @@ fn transcript(program: &Path, level: Level, session: &str) -> String {
 }
 
 #[test]
-fn sessions_are_what_the_book_says() {
+fn sessions_run_as_the_book_shows() {
     let chapter = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../book/src/debugging.md");
     let text = fs::read_to_string(&chapter).expect("the chapter");
     let source = text.split("```c\n").nth(1).and_then(|rest| rest.split("```").next()).expect("a program");

@@ -105,7 +105,7 @@ fn ratio(pairs: usize, seconds: f64) -> f64 {
 
 /// What is measured, and what it may be. One test, as other work in the process would be measured as well.
 #[test]
-fn a_past_of_hours_takes_little_memory_and_little_time() {
+fn hours_of_history_take_little_memory_and_time() {
     let is_long = std::env::var_os("CC67_LONG").is_some();
     let (minutes, pairs, seconds, most) = if is_long { (60.0, 15, 100.0, 1.1) } else { (0.5, 7, 20.0, 1.6) };
 

@@ -181,7 +181,7 @@ fn compare(machine: &str, files: &[&str], extent: &Extent, numbers: &mut Numbers
 }
 
 #[test]
-fn a_state_reached_backwards_is_the_one_reached_forwards() {
+fn a_state_reached_backwards_equals_the_one_reached_forwards() {
     let extent = extent();
     let mut within = 0;
     for (number, (machine, files)) in PROGRAMS.iter().take(extent.programs).enumerate() {

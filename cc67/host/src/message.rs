@@ -21,7 +21,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_message_is_never_longer_than_its_buffer_and_always_ended() {
+    fn a_message_always_fits_its_buffer_and_is_terminated() {
         for (length, text, expect) in [
             (0, "abc", &b""[..]),
             (1, "abc", b"\0"),

@@ -154,7 +154,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn inputs_that_nothing_drives_are_told_together() {
+    fn undriven_inputs_are_reported_together() {
         let read = |reader: &str, bit| (reader.to_owned(), Bit::new(bit).expect("a bit"), 0);
         let (home, stop) = ("thread 1 at home.c:12 in `main`", "the call-back");
         assert_eq!(

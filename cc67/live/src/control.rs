@@ -56,7 +56,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_board_that_others_use_does_not_go_back() {
+    fn a_shared_board_does_not_go_back_in_time() {
         let back = PageRequest::Goto { tick: 0 };
         let pause = PageRequest::Pause {};
         let click = PageRequest::Act { text: "bit 136 = 1".to_owned() };

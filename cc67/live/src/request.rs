@@ -94,7 +94,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_request_is_an_object_with_its_word() {
+    fn a_request_is_an_object_with_a_known_action() {
         let parsed = PageRequest::parse(r#"{"do":"act","text":"bit 136 = 1"}"#).expect("it is one");
         assert_eq!(parsed, PageRequest::Act { text: "bit 136 = 1".to_owned() });
         assert_eq!(

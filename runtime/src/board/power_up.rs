@@ -137,7 +137,7 @@ mod tests {
     use crate::views::Typed;
 
     #[test]
-    fn variables_and_fields_have_their_values() {
+    fn variables_and_fields_have_their_power_up_values() {
         let mut memory = GuestMemory::new();
         fill(&mut memory, Before::Zero);
         let axis = AxisId::new(3).expect("3 is an axis");

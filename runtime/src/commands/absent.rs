@@ -86,7 +86,7 @@ mod tests {
     use crate::commands::command_named;
 
     #[test]
-    fn no_word_is_one_of_the_board() {
+    fn no_absent_word_is_a_command_of_the_board() {
         for (word, why) in WORDS {
             assert!(command_named(word).is_none(), "{word}");
             if let Named(names) = why {

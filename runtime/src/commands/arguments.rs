@@ -307,7 +307,7 @@ mod tests {
     }
 
     #[test]
-    fn a_number_ends_where_it_ends() {
+    fn text_after_a_number_is_left_unread() {
         let thread = [Argument::Integer(1, 7)];
         check(&thread, "1.5", Ok(&[1.0]));
         check(&thread, " +1 junk", Ok(&[1.0]));
@@ -318,7 +318,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hexadecimal_number_takes_the_next_character_along() {
+    fn a_hexadecimal_number_consumes_the_next_character() {
         let words = [Argument::Hex; 2];
         check(&words, "0x12", Ok(&[0.0, 18.0]));
         check(&words, "123456789,-1", Ok(&[591_751_049.0, 4_294_967_295.0]));
@@ -327,7 +327,7 @@ mod tests {
     }
 
     #[test]
-    fn an_assignment_may_be_a_question() {
+    fn an_assignment_without_a_value_is_a_query() {
         let arguments = [Argument::Integer(0, 7), Argument::Assign, Argument::Limited(0.0, 255.0)];
         check(&arguments, "0", Ok(&[0.0]));
         check(&arguments, "0 = 2", Ok(&[0.0, 2.0]));

@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn every_word_stands_in_the_table_once() {
+    fn every_word_is_in_the_table_once() {
         let mut words: Vec<_> = COMMANDS.iter().map(|command| command.name.to_ascii_uppercase()).collect();
         words.sort();
         let count = words.len();
@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn usage_is_as_one_would_write_it() {
+    fn usage_shows_how_a_command_is_written() {
         for (name, expect) in [
             ("Move", "Move <0..7>=<number>"),
             ("MoveAtVel", "MoveAtVel <0..7>=<number> <number>"),

@@ -61,7 +61,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_are_as_the_board_shows_them() {
+    fn numbers_are_shown_as_on_the_board() {
         for (text, expect) in [
             (plain(1000.0), "1000.000000"),
             (plain(1.5e9), "1.5e+09"),

@@ -54,7 +54,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_listed_follows_the_convention() {
+    fn unlisted_functions_follow_the_calling_convention() {
         assert_eq!(registers("printf"), 0x0000_03FF_0000_03FF);
         assert_eq!(registers("_divf"), 0x0000_0061_0000_0018);
     }

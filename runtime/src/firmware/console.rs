@@ -352,7 +352,7 @@ mod tests {
     }
 
     #[test]
-    fn doubles_are_aligned_among_the_values() {
+    fn doubles_are_aligned_in_the_argument_list() {
         let mut desk = Desk::new();
         let double = 1.5_f64.to_bits();
         let pattern = desk.put_text(0, b"%d %f %d\n");

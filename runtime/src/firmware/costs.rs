@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn texts_of_numbers_cost_what_was_measured() {
+    fn reading_numbers_costs_what_was_measured() {
         for (text, recorded) in [("0", 75), ("42", 97), ("-12345", 163), ("1234567890", 273)] {
             is_near(53 + of_integer(IntegerReading::Plain, 0, text.as_bytes()), recorded);
         }

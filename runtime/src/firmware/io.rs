@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn a_latch_waits_for_the_direction() {
+    fn a_latched_bit_takes_effect_when_its_pin_becomes_an_output() {
         let mut desk = Desk::new();
         desk.call("SetBit", &[8]);
         assert_eq!(read(&mut desk, 8), 0);
@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn the_diodes_are_lit() {
+    fn the_leds_are_on_at_power_up() {
         let mut desk = Desk::new();
         assert_eq!(read(&mut desk, 46), 1);
         desk.call("ClearBit", &[46]);
@@ -210,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn pins_that_kanalog_occupies_are_told_once() {
+    fn pins_used_by_kanalog_are_reported_once() {
         let mut desk = Desk::new();
         desk.call("SetBitDirection", &[3, 1]);
         desk.memory.set(KANALOG_PRESENT, 1);

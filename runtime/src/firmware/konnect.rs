@@ -69,7 +69,7 @@ mod tests {
     use crate::views::Typed;
 
     #[test]
-    fn inputs_of_served_boards_read_0_in_turn() {
+    fn inputs_of_each_added_board_read_0() {
         let mut desk = Desk::new();
         let outputs = VIRTUAL_BITS.address().get();
         desk.call("InitAux", &[]);
@@ -86,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn a_board_that_is_not_there_is_told_and_gives_nothing() {
+    fn a_missing_board_is_reported_and_reads_zero() {
         let mut desk = Desk::new();
         let word: u64 = VIRTUAL_BITS.address().get().into();
         desk.kernel.parts.io.konnects.set_present(Port::Aux1, 0b01);

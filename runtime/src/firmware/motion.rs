@@ -558,7 +558,7 @@ mod tests {
     }
 
     #[test]
-    fn a_move_takes_its_time_and_arrives() {
+    fn a_move_takes_the_expected_time_and_arrives() {
         let mut desk = desk();
         desk.call("Move", &[0, 100_000.0_f64.to_bits()]);
         let taken = ticks(&mut desk) as f64 * TIMEBASE;

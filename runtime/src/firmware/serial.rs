@@ -207,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn an_overrun_and_unread_commands_are_told_once() {
+    fn an_overrun_and_unread_commands_are_reported_once() {
         for (commands, word) in [(0, "lost"), (1, "DoRS232Cmds")] {
             let mut desk = desk();
             desk.memory.set(DO_RS232_CMDS, commands);

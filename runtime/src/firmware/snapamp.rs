@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn a_board_that_is_not_there_reads_48_volts_and_no_current() {
+    fn a_missing_board_reads_48_volts_and_no_current() {
         let mut desk = Desk::new();
         for (register, expect) in [(12, 8192), (22, 30_916), (24, 616), (30, 0)] {
             assert_eq!(desk.call_i32("ReadSnapAmp", &[0x40 + register]), expect, "{register}");

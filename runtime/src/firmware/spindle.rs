@@ -67,7 +67,7 @@ mod tests {
     }
 
     #[test]
-    fn a_program_that_asks_for_nonsense_is_told() {
+    fn nonsense_spindle_settings_are_reported() {
         let mut desk = Desk::new();
         let float = |value: f32| u64::from(value.to_bits());
         desk.call("ConfigureSpindle", &[1, 9, float(0.1), float(0.1), float(4096.0)]);

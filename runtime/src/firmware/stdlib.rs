@@ -259,7 +259,7 @@ mod tests {
     use crate::testing::Desk;
 
     #[test]
-    fn numbers_end_where_they_end() {
+    fn number_parsing_stops_at_the_end_of_the_number() {
         let mut desk = Desk::new();
         let (string, end) = (desk.put_text(0, b" 0x1fz"), desk.put_text(64, b"...."));
         assert_eq!(desk.call_i32("strtol", &[string, end, 16]), 31);

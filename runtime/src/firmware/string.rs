@@ -359,7 +359,7 @@ mod tests {
     }
 
     #[test]
-    fn strncpy_fills_up_with_zeros() {
+    fn strncpy_pads_with_zeros() {
         let mut desk = Desk::new();
         let (to, from) = (desk.put_text(0, b"xxxxxx"), desk.put_text(64, b"ab"));
         desk.call_i32("strncpy", &[to, from, 4]);

@@ -72,7 +72,7 @@ mod tests {
     }
 
     #[test]
-    fn no_time_and_time_past_return_at_once() {
+    fn zero_and_past_times_return_at_once() {
         let mut desk = Desk::new();
         for seconds in [0.0, -1.0, f64::NAN] {
             assert!(desk.is_done("Delay_sec", &[seconds.to_bits()]));

@@ -37,7 +37,7 @@ mod tests {
     use crate::text::vectors::rows;
 
     #[test]
-    fn a_line_takes_the_primary_thread_what_was_measured() {
+    fn a_console_line_costs_the_primary_thread_what_was_measured() {
         let mut compared = 0;
         for row in rows("costs.jsonl") {
             let Some(length) = row["what"].as_str().and_then(|what| what.strip_prefix("console line of "))

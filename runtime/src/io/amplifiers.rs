@@ -37,7 +37,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pwm_words_are_those_recorded() {
+    fn pwm_words_match_the_recording() {
         // `checks.jsonl`, row "LastPWM after the PWM commands".
         assert_eq!((antiphase(100), antiphase(-100)), (1380, 1180));
         assert_eq!((recirculate(100), recirculate(-100)), (100, 612));

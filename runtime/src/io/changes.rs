@@ -118,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn nobody_reads_so_nothing_is_kept() {
+    fn changes_are_not_kept_without_a_reader() {
         let mut changes = Changes::default();
         changes.note_mask(0b11, 0b01, Cycles::default());
         assert_eq!(told(&mut changes), []);

@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn counts_show_as_phases_and_move_with_the_filters_upper_bits() {
+    fn counts_appear_as_phases_on_pins_chosen_by_the_filters_upper_bits() {
         let (mut encoders, mut pins) = (Encoders::default(), Pins::default());
         for (count, expect) in [
             (0, [false, false]),
@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn an_input_that_something_drives_shows_no_phase() {
+    fn a_driven_input_shows_no_phase() {
         let (mut encoders, mut pins) = (Encoders::default(), Pins::default());
         pins.drive(Bit::new(0).expect("a bit"), false, Cycles::default());
         encoders.count(0, 2, &mut pins, Cycles::default());

@@ -105,7 +105,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_whole_blocks_of_the_users_are_programmed() {
+    fn only_whole_blocks_of_the_user_area_are_programmed() {
         let mut memory = GuestMemory::new();
         for (offset, expect) in
             [(0, false), (USER - BLOCK, false), (USER, true), (USER + 2, false), (USER + 15 * BLOCK, true)]

@@ -470,7 +470,7 @@ mod tests {
     }
 
     #[test]
-    fn kanalog_has_its_bits_and_conversions_in_registers() {
+    fn kanalog_bits_and_conversions_are_in_registers() {
         let mut bench = Bench::default();
         let bit = |number| Bit::new(number).expect("a bit");
         bench.write(0x88, AccessSize::Half, 0x8101);
@@ -488,7 +488,7 @@ mod tests {
     }
 
     #[test]
-    fn directions_of_pins_that_kanalog_needs_are_told() {
+    fn making_a_kanalog_pin_an_output_is_reported() {
         let mut bench = Bench::default();
         bench.write(0xa0, AccessSize::Byte, 1);
         assert_eq!(bench.write(0x123, AccessSize::Byte, 0xff), None);
@@ -506,7 +506,7 @@ mod tests {
     }
 
     #[test]
-    fn four_bytes_run_a_step_generator_and_its_position_has_two() {
+    fn a_step_generator_has_a_four_byte_rate_and_two_byte_position() {
         let mut bench = Bench::default();
         // Generator 1, 0x800 units of 1.987 steps a second.
         for (register, value) in [(0x3c, 0), (0x3d, 8), (0x3e, 0), (0x3f, 0x89)] {
@@ -520,7 +520,7 @@ mod tests {
     }
 
     #[test]
-    fn other_registers_store_and_an_unknown_one_is_told() {
+    fn other_registers_store_and_unknown_ones_are_reported() {
         let mut bench = Bench::default();
         assert_eq!(bench.write(0x06, AccessSize::Byte, 0x12), None);
         assert_eq!(bench.read(0x06, AccessSize::Byte), 0x12);
@@ -530,7 +530,7 @@ mod tests {
     }
 
     #[test]
-    fn the_uart_answers_and_says_when_it_has_no_pins() {
+    fn the_uart_works_and_reports_when_it_has_no_pins() {
         let mut bench = Bench::default();
         assert!(bench.write(0xc0, AccessSize::Byte, 65).is_some());
         assert_eq!(bench.read(0xc1, AccessSize::Byte), 0);

@@ -82,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn inputs_are_converted_while_the_port_serves_them() {
+    fn inputs_are_converted_only_while_kanalog_is_present() {
         let (mut kanalog, fpga, mut memory) = (Kanalog::default(), Fpga::default(), GuestMemory::new());
         memory.set(ADC_BUFFER_IN.element(3), ZERO);
         kanalog.drive(3, 4000);

@@ -59,14 +59,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_coupler_has_the_curve_of_the_table() {
+    fn the_optocoupler_follows_the_curve_of_the_table() {
         for (counts, expect) in [(0.0, 0.001), (2.0, 0.044), (6.5, 0.0765), (240.0, 0.970), (255.0, 1.0)] {
             assert!((coupled(counts) - expect).abs() < 1e-9, "{counts}: {}", coupled(counts));
         }
     }
 
     #[test]
-    fn it_follows_in_10_ms_and_comes_to_rest() {
+    fn the_analog_output_follows_in_10_ms_and_settles() {
         let ms = |ms: i64| Cycles::new(ms * Cycles::PER_SECOND.get() / 1000);
         let mut output = AnalogOutput::default();
         output.drive(Some(1.0), ms(5));

@@ -266,7 +266,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn changes_are_those_of_levels() {
+    fn only_changes_of_level_are_recorded() {
         let mut pins = Pins::default();
         pins.changes.switch_on(&GuestMemory::new());
         let (bit, at) = (Bit::new(26).expect("a bit"), Cycles::new(7));
@@ -282,7 +282,7 @@ mod tests {
     }
 
     #[test]
-    fn edges_of_fast_signals_are_told_for_watched_pins_alone() {
+    fn edges_of_fast_signals_are_reported_only_for_watched_pins() {
         let mut pins = Pins::default();
         pins.changes.switch_on(&GuestMemory::new());
         let bits = [26, 27].map(|number| Bit::new(number).expect("a bit"));

@@ -273,7 +273,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fault_lasts_until_limits_are_set_and_after_each_over_current() {
+    fn a_fault_lasts_until_limits_are_set_and_returns_after_over_current() {
         let mut boards = SnapAmps::default();
         assert_eq!(boards.read(register(30), ms(0)), 0);
         boards.connect(1);
@@ -307,7 +307,7 @@ mod tests {
     }
 
     #[test]
-    fn the_clamp_holds_the_supply() {
+    fn the_clamp_limits_the_supply_voltage() {
         let mut boards = SnapAmps::default();
         boards.set(1, Side::B, Quantity::Voltage, 95.0, ms(0));
         let clamp = convert(90.0 / FULL_VOLTS * 65_536.0 + 256.0);

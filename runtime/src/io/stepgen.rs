@@ -369,7 +369,7 @@ mod tests {
     }
 
     #[test]
-    fn quadrature_has_one_edge_a_step() {
+    fn quadrature_has_one_edge_per_step() {
         let (mut generators, mut pins) = bench(16);
         pins.changes.take();
         let axis = AxisId::new(0).expect("0");

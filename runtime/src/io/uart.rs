@@ -176,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn a_character_is_sent_in_ten_bits_and_one_waits() {
+    fn a_character_takes_ten_bits_and_one_more_is_buffered() {
         let mut uart = uart();
         uart.send(b'x', at(0));
         assert!(uart.is_free(at(0)));
@@ -198,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn who_listens_gets_each_character_when_it_is_through() {
+    fn a_listener_gets_each_character_once_it_is_sent() {
         let mut uart = uart();
         uart.listen();
         uart.send(b'a', at(0));
@@ -210,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn characters_arrive_one_after_the_other_and_the_third_overwrites() {
+    fn characters_arrive_in_turn_and_the_third_overwrites_the_second() {
         let mut uart = uart();
         uart.arrive(b"abc", at(0));
         assert_eq!(uart.status(at(1) - Cycles::new(1)), 0);

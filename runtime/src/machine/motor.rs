@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn a_voltage_comes_to_a_speed_in_its_time_constant() {
+    fn a_voltage_approaches_its_speed_with_the_time_constant() {
         let end = 435.0 * 100.0;
         let speed = after(&motor(0.0, 1.0), Applied::Pwm(100.0), 0.02);
         assert!((speed / end - 0.632).abs() < 0.003, "{speed}");
@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn a_current_is_a_torque() {
+    fn a_current_acts_as_a_torque() {
         let speed = after(&motor(0.0, 1.0), Applied::Current(100.0), 0.01);
         assert!((speed - 2000.0).abs() < 40.0, "{speed}");
         let heavy = after(&motor(0.0, 2.0), Applied::Current(100.0), 0.01);

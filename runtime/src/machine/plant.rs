@@ -406,7 +406,7 @@ mod tests {
     }
 
     #[test]
-    fn another_gain_moves_no_register() {
+    fn changing_the_gain_does_not_move_the_register() {
         let mut plant = Plant::default();
         plant.push(100.0);
         assert_eq!(plant.encoder(1.0), 100);

@@ -94,7 +94,7 @@ fn a_hundred_times_the_gain_is_unstable() {
 }
 
 #[test]
-fn switches_close_where_they_are() {
+fn switches_close_at_their_positions() {
     let mut desk = desk(
         "[[switch]]\nbit = 136\naxis = 0\nwhen = \"<= -100\"\n[[switch]]\nbit = 136\naxis = 0\nwhen = \">= 50\"\n\
          [[switch]]\nbit = 137\naxis = 0\nwhen = \"between 10 20\"\nactive = 0\n\
@@ -180,7 +180,7 @@ fn a_rotor_turns_with_its_vector() {
 }
 
 #[test]
-fn a_brushless_axis_with_a_wrong_offset_is_told_of_once() {
+fn a_brushless_axis_with_a_wrong_offset_is_reported_once() {
     for (offset, is_told) in [(0.0, false), (250.0, true), (500.0, true), (100.0, false)] {
         let mut desk = desk("");
         desk.memory.set_axis(axis(0), Chan::OUTPUT_MODE, OutputMode::Brushless3Ph.get());
@@ -196,7 +196,7 @@ fn a_brushless_axis_with_a_wrong_offset_is_told_of_once() {
 }
 
 #[test]
-fn wires_lead_outputs_to_inputs() {
+fn wires_connect_outputs_to_inputs() {
     let mut desk =
         desk("[[wire]]\nfrom = 8\nto = 12\n[[wire]]\nfrom = 8\nto = 13\ninvert = true\ndelay_s = 0.001");
     desk.call("SetBitDirection", &[8, 1]);

@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn the_servo_has_one_place_for_a_message() {
+    fn the_servo_can_hold_one_message() {
         let mut console = Console::default();
         console.servo_message("first");
         console.servo_message("second");

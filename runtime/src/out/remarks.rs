@@ -453,7 +453,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn codes_are_words_and_each_is_there_once() {
+    fn codes_are_lower_case_words_and_unique() {
         let codes: BTreeSet<_> = REMARKS.iter().map(|row| row.code).collect();
         assert_eq!(codes.len(), REMARKS.len());
         for code in codes {

@@ -236,7 +236,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn answers_are_given_in_turn_and_the_last_one_stays() {
+    fn answers_are_given_in_turn_and_the_last_one_repeats() {
         let mut answers = Answers::default();
         for line in ["# buttons", "", "msgbox = no", "msgbox=YES", "input=1.5", "input=cancel"] {
             answers.line(line).expect(line);
@@ -249,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn the_next_answer_takes_the_place_of_those_to_come() {
+    fn setting_the_next_answer_replaces_those_still_to_come() {
         let mut answers = Answers::default();
         answers.line("msgbox=no").expect("an answer");
         answers.set_next("msgbox=yes").expect("an answer");

@@ -232,7 +232,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_last_line_without_end_is_a_line() {
+    fn a_last_line_without_a_line_end_is_read() {
         let lines = |text: &[u8]| TextLines::new(text.to_vec()).collect::<Vec<_>>();
         assert_eq!(lines(b"a\r\n\r\nb"), [&b"a"[..], b"", b"b"]);
         assert_eq!(lines(b"a\n"), [b"a"]);
@@ -246,7 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn requests_are_told_from_console_lines_by_their_first_character() {
+    fn requests_differ_from_console_lines_in_their_first_character() {
         assert_eq!(DiskRequest::read(b"\x04a.txt"), Some((DiskRequest::Open, &b"a.txt"[..])));
         assert_eq!(DiskRequest::read(b"\x07"), Some((DiskRequest::Append, &b""[..])));
         for line in [&b"text"[..], b"", b"\x08", b"a\x02"] {

@@ -335,7 +335,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_beside_the_folder_is_reached_by_name() {
+    fn nothing_outside_the_folder_is_reached_by_name() {
         let scratch = Scratch::new("beside");
         let secret = scratch.0.join("secret.txt");
         let absolute = secret.to_string_lossy().into_owned();
@@ -386,7 +386,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_is_made_kept_and_grows() {
+    fn a_file_is_created_kept_and_appended_to() {
         let scratch = Scratch::new("grows");
         let mut directory = scratch.directory();
         assert_eq!(directory.create("c:\\new\\a.txt", false), Ok(()));

@@ -238,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn expressions_have_the_value_of_the_interpreter() {
+    fn expressions_evaluate_as_in_the_interpreter() {
         for (line, expect) in [
             ("#100 = 5", 5.0),
             ("#100=[#5+1]", 3.5),
@@ -266,7 +266,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_understood_changes_nothing() {
+    fn invalid_expressions_change_nothing() {
         for (line, expect) in [
             ("#100 = 5 #101 = [1 + ", "a value is missing"),
             ("#100 = [1 + 2", "a bracket is not closed"),

@@ -440,7 +440,7 @@ mod tests {
     }
 
     #[test]
-    fn every_request_has_an_answer_that_lets_the_program_go_on() {
+    fn every_request_gets_an_answer_that_lets_the_program_continue() {
         let mut desk = Desk::new();
         for code in 1..=55 {
             // An element of UserData, an index of doubles, a tool and a number: what the request takes of them is valid.
@@ -461,7 +461,7 @@ mod tests {
     }
 
     #[test]
-    fn a_request_without_a_pc_is_told_once() {
+    fn a_request_without_a_pc_is_reported_once() {
         let mut desk = Desk::new();
         desk.kernel.parts.pc.host.connect(false);
         assert_eq!(ask(&mut desk, 15, &[100, 0, 0]), 15);
@@ -472,7 +472,7 @@ mod tests {
     }
 
     #[test]
-    fn requests_that_cannot_be_met_say_so() {
+    fn requests_that_cannot_be_met_return_an_error() {
         let mut desk = Desk::new();
         assert_eq!(ask(&mut desk, 99, &[]), INVALID);
         assert_eq!(ask(&mut desk, 23, &[100, 10]), BAD_TOOL);
@@ -505,7 +505,7 @@ mod tests {
     }
 
     #[test]
-    fn answers_can_be_named() {
+    fn answers_can_be_set_in_advance() {
         let mut desk = Desk::new();
         let mut answers = Answers::default();
         for setting in

@@ -168,7 +168,7 @@ fn in_motion(v0: f64, way: f64, limits: &Limits) -> f64 {
 }
 
 #[test]
-fn limits_that_are_none_plan_nothing() {
+fn invalid_limits_plan_nothing() {
     for bad in [0.0, -1.0, f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
         for limits in [[bad, 1.0, 1.0], [1.0, bad, 1.0], [1.0, 1.0, bad]] {
             assert_eq!(Limits::new(limits[0], limits[1], limits[2]), None, "{limits:?}");

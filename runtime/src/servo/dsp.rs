@@ -54,7 +54,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn quotients_are_those_of_the_recorded_profiles() {
+    fn quotients_match_the_recorded_profiles() {
         let recorded = [
             (1e4, 1e5, 0.099_999_999_999_999_99),
             (5e3, 1e6, 0.005_000_000_000_000_001),
@@ -68,7 +68,7 @@ mod tests {
     }
 
     #[test]
-    fn roots_are_those_of_the_recorded_profiles() {
+    fn roots_match_the_recorded_profiles() {
         // The first is exact, and the board misses it.
         for (square, root_of_it) in [(2_250_000.0, 1_500.000_122_070_312_5), (36e6, 6_000.000_488_281_25)] {
             assert_eq!(root(square), root_of_it);
@@ -76,7 +76,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_quotient_or_root_is_no_surprise() {
+    fn invalid_quotients_and_roots_have_defined_results() {
         assert_eq!(divide(1.0, 0.0), f64::INFINITY);
         assert!(divide(0.0, 0.0).is_nan());
         assert_eq!(divide(1.0, f64::INFINITY), 0.0);

@@ -19,7 +19,7 @@ fn desk() -> Desk {
 }
 
 #[test]
-fn limits_and_targets_of_nonsense_end() {
+fn motions_with_nonsense_limits_or_targets_end() {
     for field in [Chan::VEL, Chan::ACCEL, Chan::JERK] {
         for value in NONSENSE {
             let mut desk = desk();
@@ -45,7 +45,7 @@ fn limits_and_targets_of_nonsense_end() {
 }
 
 #[test]
-fn what_is_no_number_or_no_limit_moves_nothing_and_is_told() {
+fn invalid_targets_and_limits_move_nothing_and_are_reported() {
     let nan = f64::NAN.to_bits();
     let calls: [(&str, Vec<u64>); 5] = [
         ("Move", vec![0, nan]),
@@ -86,7 +86,7 @@ fn what_is_no_number_or_no_limit_moves_nothing_and_is_told() {
 }
 
 #[test]
-fn gains_and_filters_of_nonsense_put_out_something() {
+fn nonsense_gains_and_filters_still_give_an_output() {
     let gains: [Field<f32>; 12] = [
         Chan::P,
         Chan::I,
@@ -115,7 +115,7 @@ fn gains_and_filters_of_nonsense_put_out_something() {
 }
 
 #[test]
-fn pointers_that_point_nowhere_end_a_motion() {
+fn invalid_pointers_end_a_motion() {
     for pointer in [4_u32, 0x1234_5677, 0x4200_0010, 0x9100_0000, 0xFFFF_FFF0] {
         let mut desk = desk();
         desk.memory.set_axis(axis(), Chan::PCOEFF, GuestAddr::new(pointer));

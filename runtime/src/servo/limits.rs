@@ -233,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn packed_bit_numbers_kill_the_axis() {
+    fn packed_limit_bit_numbers_disable_the_axis() {
         // `servo.jsonl`, "limit bits packed in the option word".
         let mut desk = Desk::new();
         desk.memory.set_axis(axis(), Chan::LIMIT_SWITCH_OPTIONS, 825_229_315);
@@ -247,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn a_soft_limit_holds_a_member_once() {
+    fn a_soft_limit_stops_an_axis_and_reports_once() {
         let mut desk = Desk::new();
         for axis in 0..4 {
             desk.call("EnableAxisDest", &[axis, 0]);

@@ -169,7 +169,7 @@ fn check(row: &Json) -> Vec<String> {
 }
 
 #[test]
-fn the_board_moves_the_same() {
+fn motions_match_the_recording() {
     let problems: Vec<Vec<String>> =
         rows("motion.jsonl").iter().map(check).filter(|list| !list.is_empty()).collect();
     let shown: Vec<String> = problems.iter().take(12).map(|list| list.join("\n")).collect();

@@ -391,7 +391,7 @@ fn is_limit_switch(row: &Json) -> bool {
 }
 
 #[test]
-fn the_board_computes_and_puts_out_the_same() {
+fn servo_outputs_match_the_recording() {
     let mut replayed = 0;
     for row in rows("servo.jsonl") {
         match row["kind"].as_str() {

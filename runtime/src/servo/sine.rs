@@ -45,7 +45,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_is_exact_at_its_values_and_below_the_sine_between_them() {
+    fn the_table_is_exact_at_its_entries_and_below_the_sine_in_between() {
         assert!((sine(0.25, 0) - 1.0).abs() < 1e-12 && (sine(-0.25, QUARTER)).abs() < 1e-12);
         // Half way between two values: cos(1.5°) of the sine.
         let between = sine(1.5 / 360.0, QUARTER);
@@ -53,7 +53,7 @@ mod tests {
     }
 
     #[test]
-    fn phases_are_those_recorded() {
+    fn phases_match_the_recording() {
         // `checks.jsonl`, "fractionf and Sine3PH".
         for (angle, expect) in [
             (0.1, [0.587_785_2, 0.406_736_9]),

@@ -176,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn halves_go_up_and_digits_come_from_the_fraction() {
+    fn halves_round_up_and_digits_come_from_the_fraction() {
         check(0.5, Keep::Decimals(0), "1", 1);
         check(2.5, Keep::Significant(1), "3", 1);
         check(0.35, Keep::Decimals(1), "4", 0);
@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn small_values_have_zeros_behind_the_point() {
+    fn small_values_have_zeros_after_the_point() {
         check(0.00012, Keep::Significant(2), "12", -3);
         check(4.9e-7, Keep::Decimals(6), "", -6);
         check(5.1e-7, Keep::Decimals(6), "1", -5);

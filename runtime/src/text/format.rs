@@ -438,7 +438,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn the_board_prints_the_same() {
+    fn printed_text_matches_the_recording() {
         for file in ["printf.jsonl", "printf-scanf.jsonl", "printf-edge.jsonl"] {
             rows(file).iter().for_each(check);
         }
@@ -465,7 +465,7 @@ pub(super) mod tests {
         }
 
         #[test]
-        fn decimals_are_right_to_a_unit_of_the_last_one(value in -1e6..1e6_f64, precision in 0_usize..9) {
+        fn decimals_are_correct_to_a_unit_in_the_last_place(value in -1e6..1e6_f64, precision in 0_usize..9) {
             let text = printf(format!("%.{precision}f").as_bytes(), vec![Argument::Double(value)]);
             let text = String::from_utf8_lossy(&text).into_owned();
             let read: f64 = text.parse().expect("a number");

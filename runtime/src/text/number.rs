@@ -70,7 +70,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn integers_take_their_prefix() {
+    fn integer_parsing_accepts_prefixes() {
         assert_eq!(integer_prefix(b"0x1F;", 0), (31, 4));
         assert_eq!(integer_prefix(b"010", 0), (8, 3));
         assert_eq!(integer_prefix(b"-12a", 10), (-12, 3));
@@ -79,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn floats_stop_where_they_end() {
+    fn float_parsing_stops_at_the_end_of_the_number() {
         assert_eq!(float_prefix(b"-2.5e3,"), (-2500.0, 6));
         assert_eq!(float_prefix(b".5"), (0.5, 2));
         assert_eq!(float_prefix(b"5."), (5.0, 2));

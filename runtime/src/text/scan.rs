@@ -412,7 +412,7 @@ mod tests {
     }
 
     #[test]
-    fn the_board_converts_the_same() {
+    fn conversions_match_the_recording() {
         rows("scanf.jsonl").iter().for_each(check);
         let older = rows("printf-scanf.jsonl");
         let older: Vec<&Json> = older.iter().filter(|row| row["sscanf"].is_string()).collect();

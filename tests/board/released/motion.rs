@@ -166,7 +166,7 @@ fn differences(row: &Json, board: Released) -> Vec<String> {
 }
 
 #[test]
-fn recorded_motions_come_out_on_the_released_firmware() {
+fn the_released_firmware_reproduces_the_recorded_motions() {
     let Some(board) = released() else { return };
     let rows = rows("motion.jsonl");
     let mut wrong = Vec::new();

@@ -171,7 +171,7 @@ fn enable(row: &Json, board: &Released) -> Vec<String> {
 }
 
 #[test]
-fn recorded_servo_and_outputs_come_out_on_the_released_firmware() {
+fn the_released_firmware_reproduces_the_recorded_servo_outputs() {
     let Some(board) = released() else { return };
     let rows = rows("servo.jsonl");
     let mut wrong = Vec::new();

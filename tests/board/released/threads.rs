@@ -325,7 +325,7 @@ fn servo_time(row: &Json, board: &Released) -> Vec<String> {
 }
 
 #[test]
-fn recorded_threads_come_out_on_the_released_firmware() {
+fn the_released_firmware_reproduces_the_recorded_threads() {
     let Some(board) = released() else { return };
     let rows = rows("threads.jsonl");
     let mut wrong = Vec::new();

@@ -47,7 +47,7 @@ fn is_alive(live: &Live) {
 }
 
 #[test]
-fn who_has_no_token_or_comes_from_elsewhere_is_not_answered() {
+fn requests_without_the_token_or_from_other_origins_are_refused() {
     let (_folder, live) = board("live-gate");
     let token = live.url.split("token=").nth(1).expect("there is one").to_owned();
     let get =
@@ -70,7 +70,7 @@ fn who_has_no_token_or_comes_from_elsewhere_is_not_answered() {
 }
 
 #[test]
-fn nonsense_floods_and_vanishing_do_not_stop_the_board() {
+fn nonsense_floods_and_disconnects_do_not_stop_the_board() {
     let (_folder, live) = board("live-flood");
     // Ten thousand messages, as fast as they go, without a look at the answers; then it vanishes.
     let (mut flood, _) = tungstenite::connect(live.socket()).expect("it listens");

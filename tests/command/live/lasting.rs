@@ -112,7 +112,7 @@ impl Reading {
 }
 
 #[test]
-fn a_page_left_open_paints_and_holds_no_more_than_before() {
+fn a_page_left_open_does_not_paint_or_hold_more_over_time() {
     let Some(mut browser) = Browser::start() else {
         println!("no Chromium here: the page is not opened");
         return;

@@ -53,7 +53,7 @@ pub(super) fn press(browser: &mut Browser, text: &str) {
 }
 
 #[test]
-fn a_session_on_the_page() {
+fn a_session_works_on_the_page() {
     let Some(mut browser) = Browser::start() else {
         eprintln!("no Chromium here: the page is not opened");
         return;

@@ -23,7 +23,7 @@ const ENDLESS: &str = "#include \"KMotionDef.h\"\nmain()\n{\n  int i;\n  for (i 
 const LINES_KEPT: usize = 10_000;
 
 #[test]
-fn a_program_that_prints_goes_on_without_a_console_and_its_lines_are_thrown_away() {
+fn without_a_console_a_program_continues_and_its_lines_are_discarded() {
     let server = Server::fast("serve-unheard", &counter(2000));
     let mut client = server.client();
     while client.ask("GetPersistDec 9") != "1" {}
@@ -55,7 +55,7 @@ fn a_registered_console_gets_every_line_in_order() {
 }
 
 #[test]
-fn the_console_goes_to_the_client_that_registered_last_at_most_ten_lines_before_a_reply() {
+fn the_last_registered_client_gets_at_most_ten_lines_before_a_reply() {
     let server = Server::fast("serve-console", HELLO);
     let (mut first, mut second) = (server.client(), server.client());
     assert_eq!(first.call(SET_CONSOLE, b"").0, 0);
@@ -84,7 +84,7 @@ fn the_console_goes_to_the_client_that_registered_last_at_most_ten_lines_before_
 }
 
 #[test]
-fn a_link_that_was_given_up_is_opened_again_by_the_next_line() {
+fn a_closed_link_is_reopened_by_the_next_line() {
     let server = Server::fast("serve-disconnect", HELLO);
     let (mut client, mut other) = (server.client(), server.client());
     assert!(client.call(LOCATION, b"").0 > 0);
@@ -130,7 +130,7 @@ fn check_for_ready_gives_all_lines_to_the_console() {
 }
 
 #[test]
-fn the_token_is_a_counter_of_the_board() {
+fn the_token_belongs_to_the_board_and_any_client_can_release_it() {
     let server = Server::fast("serve-token", HELLO);
     let (mut first, mut second) = (server.client(), server.client());
     assert_eq!(first.lock(), 0);
@@ -153,7 +153,7 @@ fn the_token_is_a_counter_of_the_board() {
 }
 
 #[test]
-fn a_program_waits_when_its_console_takes_no_lines_and_none_is_lost() {
+fn a_program_waits_for_a_blocked_console_and_no_line_is_lost() {
     let server = Server::fast("serve-backlog", ENDLESS);
     let (mut console, mut other) = (server.client(), server.client());
     assert_eq!(console.call(SET_CONSOLE, b"").0, 0);
@@ -176,7 +176,7 @@ fn a_program_waits_when_its_console_takes_no_lines_and_none_is_lost() {
 
 #[test]
 #[expect(clippy::disallowed_methods, reason = "a client's wait is measured on the clock")]
-fn a_line_that_does_not_come_takes_its_time_on_the_clock() {
+fn waiting_for_a_missing_line_times_out_on_the_wall_clock() {
     let server = Server::fast("serve-clock", HELLO);
     let (mut client, mut other) = (server.client(), server.client());
     let begin = Instant::now();
@@ -200,7 +200,7 @@ fn a_line_without_an_answer_fails() {
 }
 
 #[test]
-fn a_thread_without_a_program_is_reported_when_it_is_to_start() {
+fn starting_a_thread_without_a_program_is_reported() {
     let server = Server::fast("serve-empty", HELLO);
     let mut client = server.client();
     client.write_line("Execute3");
@@ -209,7 +209,7 @@ fn a_thread_without_a_program_is_reported_when_it_is_to_start() {
 }
 
 #[test]
-fn a_board_that_cannot_keep_up_answers_all_the_same() {
+fn a_board_that_cannot_keep_up_still_answers() {
     let arguments = ["serve", "--pace", "1000", "--listen", "tcp:0", "a.c"];
     let server = Server::start("serve-late", &arguments, ENDLESS, 1);
     let mut client = server.client();

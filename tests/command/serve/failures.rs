@@ -24,7 +24,7 @@ fn with_flash(scratch: Scratch, is_full: bool) -> Server {
 }
 
 #[test]
-fn a_flash_that_cannot_be_kept_is_not_acknowledged_and_the_old_one_stays() {
+fn flash_that_cannot_be_saved_is_not_acknowledged_and_the_old_is_kept() {
     let scratch = Scratch::new("serve-full-flash");
     scratch.write("a.c", HELLO);
     let flash = scratch.path().join("board.flash");

@@ -44,7 +44,7 @@ fn the_home_folder_has_what_the_library_looks_for() {
 }
 
 #[test]
-fn the_links_of_the_home_folder_are_compiler_and_server() {
+fn the_home_folder_links_to_the_compiler_and_the_server() {
     let scratch = home("serve-links");
     let program = scratch.path().join("home/bin/tcc67");
     let call = [

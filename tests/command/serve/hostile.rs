@@ -6,7 +6,7 @@ use super::client::{Client, DISCONNECT, LOCK, SET_CONSOLE, WRITE_LINE_READ_LINE}
 use super::{HELLO, Server, VERSION};
 
 #[test]
-fn half_messages_and_impossible_lengths_keep_nobody_from_the_board() {
+fn partial_messages_and_impossible_lengths_do_not_block_others() {
     let server = Server::fast("serve-hostile", HELLO);
     let mut held = Vec::new();
     for bytes in [
@@ -31,7 +31,7 @@ fn half_messages_and_impossible_lengths_keep_nobody_from_the_board() {
 }
 
 #[test]
-fn a_client_that_reads_nothing_holds_up_itself_alone() {
+fn a_client_that_reads_nothing_blocks_only_itself() {
     let server = Server::fast("serve-deaf", HELLO);
     let mut deaf = server.client();
     assert_eq!(deaf.call(SET_CONSOLE, b"").0, 0);
@@ -55,7 +55,7 @@ fn a_client_that_reads_nothing_holds_up_itself_alone() {
 }
 
 #[test]
-fn ten_clients_at_once_are_served_each_by_its_own_answers() {
+fn ten_simultaneous_clients_each_get_their_own_answers() {
     let server = Server::fast("serve-ten", HELLO);
     let clients: Vec<_> = (0..10).map(|number| (number, server.client())).collect();
     let work = |(number, mut client): (i32, Client<std::net::TcpStream>)| {
@@ -75,7 +75,7 @@ fn ten_clients_at_once_are_served_each_by_its_own_answers() {
 }
 
 #[test]
-fn who_speaks_something_else_is_answered_in_words() {
+fn a_client_of_another_protocol_gets_a_text_answer() {
     let server = Server::fast("serve-words", HELLO);
     for text in ["GET / HTTP/1.1\r\n\r\n", "\r\n", "Version\r\n"] {
         let mut client = server.client();

@@ -130,7 +130,7 @@ fn a_client_over_tcp_talks_to_the_board() {
 }
 
 #[test]
-fn real_code_is_served_and_taken_as_a_download() {
+fn real_code_can_be_served_and_downloaded() {
     let scratch = Scratch::new("serve-real");
     scratch.write("a.c", HELLO);
     scratch
@@ -189,7 +189,7 @@ fn clients_over_a_socket_share_the_board_by_its_token() {
 
 #[cfg(unix)]
 #[test]
-fn a_socket_and_a_port_are_served_together_and_the_socket_is_removed_at_the_end() {
+fn a_socket_and_a_port_are_served_together_and_the_socket_is_removed() {
     use std::os::unix::net::{UnixListener, UnixStream};
 
     let scratch = Scratch::new("serve-both");
@@ -212,7 +212,7 @@ fn a_socket_and_a_port_are_served_together_and_the_socket_is_removed_at_the_end(
 
 #[cfg(unix)]
 #[test]
-fn a_request_to_end_ends_the_server_in_order() {
+fn a_termination_signal_shuts_the_server_down_cleanly() {
     for signal in ["-TERM", "-INT"] {
         let arguments = ["serve", "--listen", "tcp:0", "--log", "log.txt", "--flash", "board.flash", "a.c"];
         let mut server = Server::start("serve-signal", &arguments, HELLO, 1);
@@ -229,7 +229,7 @@ fn a_request_to_end_ends_the_server_in_order() {
 }
 
 #[test]
-fn flash_is_kept_as_soon_as_a_client_has_it_written() {
+fn flash_is_saved_as_soon_as_a_client_writes_it() {
     let arguments = ["serve", "--pace", "fast", "--listen", "tcp:0", "--flash", "board.flash", "a.c"];
     let mut server = Server::start("serve-flash", &arguments, HELLO, 1);
     let mut client = server.client();
@@ -245,7 +245,7 @@ fn flash_is_kept_as_soon_as_a_client_has_it_written() {
 }
 
 #[test]
-fn the_log_is_a_script_that_asks_the_same_again() {
+fn the_log_is_a_script_that_repeats_the_session() {
     let arguments = ["serve", "--pace", "fast", "--once", "--listen", "tcp:0", "--log", "log.txt", "a.c"];
     let mut server = Server::start("serve-log", &arguments, HELLO, 1);
     let mut client = server.client();

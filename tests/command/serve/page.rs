@@ -124,7 +124,7 @@ fn clients_wait_while_a_page_has_stopped_the_clock() {
 }
 
 #[test]
-fn a_page_cannot_stop_a_board_whose_time_passes_in_exchanges() {
+fn a_page_cannot_pause_a_board_paced_by_its_clients() {
     let (server, mut page) = server("serve-live-fast", &["--pace", "fast"]);
     page.ask(r#"{"do":"pause"}"#);
     assert!(page.problem().contains("as its clients need it"));

@@ -246,7 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_fit_is_refused() {
+    fn invalid_assembly_is_refused() {
         assert_eq!(assemble("ADD .L1 A2", 0), Err(SyntaxError::Form("ADD".into())));
         assert_eq!(assemble("FROB A2", 0), Err(SyntaxError::Mnemonic("FROB".into())));
         assert_eq!(assemble("ADD A99,A1,A1", 0), Err(SyntaxError::Operand("A99".into())));

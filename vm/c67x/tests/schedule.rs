@@ -36,7 +36,7 @@ fn words(text: &str) -> Vec<u32> {
 }
 
 #[test]
-fn hand_made_loops_keep_every_rule_but_one() {
+fn handwritten_loops_break_only_one_rule() {
     let sum =
         "0013E05B 02800029 01900058 030C3665 20000191 2003E05A 00006000 0298A078 000C0362 02140058 00006000";
     let dot = "02901059 011839A3 04800029 021088C2 0108205B 04000029 0280002B 0318C4F8 01000029 0300002B \
@@ -52,7 +52,7 @@ fn hand_made_loops_keep_every_rule_but_one() {
 }
 
 #[test]
-fn one_packet_has_each_unit_and_path_once() {
+fn a_packet_uses_each_unit_and_path_once() {
     let l1 = unit(UnitKind::L, Side::A);
     assert_eq!(rules("ADD .L1 A1,A2,A3\n|| SUB .L1 A4,A5,A6"), [Rule::UnitTwice(l1), Rule::WritePort(l1)]);
     let same = "ADD .L1X A1,B2,A3\n|| ADD .S1X A4,B5,A6";
@@ -95,7 +95,7 @@ fn a_result_is_not_read_early_where_interrupts_are_taken() {
 }
 
 #[test]
-fn doubles_may_arrive_just_in_time_and_not_in_between() {
+fn doubles_may_arrive_just_in_time_but_not_during_a_read() {
     assert_eq!(rules("INTDP .L1 A1,A5:A4\nNOP 3\nADDDP .S1 A5:A4,A7:A6,A9:A8"), []);
     assert_eq!(rules("INTDP .L1 A1,A5:A4\nNOP 2\nADDDP .S1 A5:A4,A7:A6,A9:A8").len(), 2);
     let changed = "MPYDP .M1 A5:A4,A7:A6,A9:A8\nNOP 1\nMV .L1 A1,A5";
@@ -117,7 +117,7 @@ fn units_stay_locked_and_have_one_write_port() {
 }
 
 #[test]
-fn branches_end_where_packets_begin_with_nothing_in_flight() {
+fn branches_lead_to_packet_starts_with_nothing_in_flight() {
     let inside = "B .S1 pc+12\nNOP 5\nADD .L1 A1,A2,A3\n|| ADD .S1 A4,A5,A6";
     assert_eq!(rules(inside), [Rule::IntoPacket(BASE + 12)]);
     let late = "B .S2 B3\nNOP 4\nLDW .D1T1 *A4,A5";
@@ -139,7 +139,7 @@ fn overlapping([two, three, five]: [&str; 3]) -> Vec<Rule> {
 }
 
 #[test]
-fn turns_of_a_loop_that_overlap_are_checked_across_the_branch_back() {
+fn overlapping_iterations_are_checked_across_the_branch_back() {
     let sum = "ADD .L1 A5,A6,A5";
     assert_eq!(overlapping(["NOP 1", sum, "NOP 1"]), []);
     // The load of the turn before lands a cycle later, and an interrupt could come at the branch back.

@@ -190,7 +190,7 @@ fn every_row_is_as_published() {
 }
 
 #[test]
-fn no_word_has_two_forms() {
+fn no_word_decodes_to_two_forms() {
     for (index, one) in Op::ALL.iter().enumerate() {
         for other in &Op::ALL[index + 1..] {
             let (a, b) = (one.row(), other.row());

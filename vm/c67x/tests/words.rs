@@ -36,7 +36,7 @@ fn recorded_words_have_the_recorded_text() {
 }
 
 #[test]
-fn recorded_words_come_back_from_their_text() {
+fn recorded_words_are_assembled_again_from_their_text() {
     for line in recorded() {
         let word = hex(&line["w"]);
         let at = line.get("pc").map_or(PLACE, hex);
@@ -62,7 +62,7 @@ fn word_of(op: Op, random: u32) -> Option<u32> {
 
 proptest! {
     #[test]
-    fn every_form_survives_text_and_operands(randoms in prop::collection::vec(any::<u32>(), Op::ALL.len())) {
+    fn every_form_survives_a_round_trip(randoms in prop::collection::vec(any::<u32>(), Op::ALL.len())) {
         for (op, random) in Op::ALL.iter().zip(randoms) {
             let Some(word) = word_of(*op, random) else { continue };
             let inst = Inst::decode(word).expect("its form");
@@ -98,7 +98,7 @@ fn every_form_is_reached_by_random_fields() {
 }
 
 #[test]
-fn a_generator_gets_forms_by_name_and_operands() {
+fn forms_are_found_by_name_and_operands() {
     let operands = [Reg::a(4).into(), Reg::a(5).into(), Reg::a(6).into()];
     let forms: Vec<String> = Inst::forms(c67x::Mnemonic::Add, c67x::Pred::Always, &operands)
         .map(|inst| inst.to_string())

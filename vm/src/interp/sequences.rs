@@ -450,7 +450,7 @@ mod tests {
     }
 
     #[test]
-    fn every_sequence_is_found_where_it_stands() {
+    fn every_sequence_is_recognised() {
         for (row, sequence) in SEQUENCES.iter().enumerate() {
             let mut ops: Vec<Op> = assigning(sequence).into_iter().collect();
             let start = ops.len();
@@ -460,7 +460,7 @@ mod tests {
     }
 
     #[test]
-    fn behind_a_branch_the_next_instruction_is_there_on_both_ways() {
+    fn a_sequence_with_a_branch_needs_its_next_instruction_on_both_paths() {
         let branch = Op::BrIf { cond: RegI32(0), to: Label(3) };
         let charge = Op::Charge { cycles: crate::operand::Count32(1) };
         let mov = Op::MovI32 { dst: RegI32(0), src: RegI32(0) };
@@ -471,7 +471,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_recalled_is_what_the_instruction_before_has_assigned_and_no_other() {
+    fn only_the_value_assigned_just_before_is_recalled() {
         let add = |a, b| Op::AddF64 { dst: RegF64(5), a: RegF64(a), b: RegF64(b) };
         let before = |dst| Op::ConstF64 { dst: RegF64(dst), pool: Pool(0) };
         let is_sequence = |ops: [Op; 2]| opcodes(&ops)[1] >= OPCODES;
@@ -482,7 +482,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_recalled_where_a_branch_goes_to() {
+    fn nothing_is_recalled_at_a_branch_target() {
         let ops = [
             Op::ConstF64 { dst: RegF64(1), pool: Pool(0) },
             Op::AddF64 { dst: RegF64(5), a: RegF64(1), b: RegF64(2) },

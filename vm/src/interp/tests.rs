@@ -61,7 +61,7 @@ fn integers_of_32_bits_wrap() {
 }
 
 #[test]
-fn comparisons_know_signs() {
+fn comparisons_respect_signedness() {
     check_binary("lt_i32_s", -1, 0, 1);
     check_binary("lt_i32_u", -1, 0, 0);
     check_binary("le_i32_s", 3, 3, 1);
@@ -128,7 +128,7 @@ fn loads_and_stores_extend_and_truncate() {
 }
 
 #[test]
-fn a_double_may_be_stored_at_a_word_and_not_loaded_there() {
+fn a_double_may_be_stored_but_not_loaded_at_a_word_address() {
     let store = "const_f64 d12, pool[0] | store_f64_at d12, 0x10000004";
     check_i32(&format!("{store} | load_i32_at r0, 0x10000008"), 0x4004_0000);
     let message = "27000 1 thread 1 at 0x80050080: read of 8 bytes at 0x10000004, which is not aligned";
@@ -136,7 +136,7 @@ fn a_double_may_be_stored_at_a_word_and_not_loaded_there() {
 }
 
 #[test]
-fn what_a_program_must_not_do_traps() {
+fn illegal_operations_trap() {
     let check = |body: &str, at: u32, expected: &str| {
         check_trap(body, &format!("27000 1 thread 1 at {at:#x}: {expected}"));
     };
@@ -160,7 +160,7 @@ fn what_a_program_must_not_do_traps() {
 }
 
 #[test]
-fn a_table_goes_to_the_branch_of_its_index() {
+fn a_branch_table_jumps_by_its_index() {
     let table = "br_table r1, 2 | br @a | br @b | br @c \
                  | @a: charge 9 | const_i32 r0, 10 | br @end | @b: charge 9 | const_i32 r0, 20 | br @end \
                  | @c: charge 9 | const_i32 r0, 30 | br @end | @end: charge 9";
@@ -182,7 +182,7 @@ fn calls_pass_arguments_and_results() {
 }
 
 #[test]
-fn a_pointer_may_be_called_whatever_it_is_said_to_return() {
+fn a_pointer_may_be_called_with_any_declared_return_type() {
     let callee = "@add: func sig3, 1, 0\ntypes 0\ncharge 9\nadd_i32_imm r0, r0, 1\nret_i32 r0\n\
                   @none: func sig1, 1, 0\ntypes 0\ncharge 9\nret";
     // `main` takes words 11 to 27.

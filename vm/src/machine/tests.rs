@@ -55,13 +55,13 @@ fn check(programs: &[(i32, &str)], ticks: u64, expected: &[&str]) -> Machine<Fak
 }
 
 #[test]
-fn a_slice_comes_every_180_us_to_a_single_thread() {
+fn a_single_thread_gets_a_slice_every_180_us() {
     // 20 cycles are charged between the slice's beginning and the note.
     check(&[(1, SLICES)], 7, &["62020 1 1", "98020 1 2", "134020 1 3"]);
 }
 
 #[test]
-fn every_active_thread_has_its_turn_also_when_it_waits() {
+fn every_active_thread_gets_its_turn_even_when_it_waits() {
     let slices = |main: &str| {
         let config = Config { shortcuts: false, ..Config::default() };
         let mut machine = machine(config, &[(1, main), (2, SLICES), (5, COUNTS)]);
@@ -87,7 +87,7 @@ fn a_delay_ends_at_its_instant_inside_a_slice() {
 }
 
 #[test]
-fn a_delay_over_the_slice_ends_in_a_later_one() {
+fn a_delay_longer_than_the_slice_ends_in_a_later_one() {
     // Ends at 50 000, in the primary thread's tick: goes on when the next own slice begins.
     let main = steps(&[("delay", 50_000 - 26_006)]);
     check(&[(1, &main)], 4, &["62006 1 99"]);
@@ -106,7 +106,7 @@ fn an_endless_loop_loses_the_processor_and_its_debt_is_carried() {
 }
 
 #[test]
-fn waiting_for_a_condition_is_asked_again_each_slice() {
+fn a_wait_condition_is_checked_again_each_slice() {
     let main = "@main: func sig0, 1, 0\ntypes 0\ncharge 20\ncall_fw sig2, 0x10008018\nresult_i32 r0\n\
                 charge 5\narg_i32 r0, 0\ncall_fw sig1, 0x10008000\ncharge 2\nret";
     let mut machine = machine(Config::default(), &[(1, main)]);
@@ -118,7 +118,7 @@ fn waiting_for_a_condition_is_asked_again_each_slice() {
 }
 
 #[test]
-fn start_of_an_active_thread_restarts_it_with_its_memory_kept() {
+fn starting_an_active_thread_restarts_it_and_keeps_its_memory() {
     let main = steps(&[("start", 2), ("delay", 200_000), ("start", 2), ("delay", 200_000)]);
     let counter = "@main: func sig0, 1, 0\ntypes 0\ncharge 20\nload_i32_at r0, 0x10000000\n\
                    add_i32_imm r0, r0, 1\nstore_i32_at r0, 0x10000000\narg_i32 r0, 0\n\
@@ -129,7 +129,7 @@ fn start_of_an_active_thread_restarts_it_with_its_memory_kept() {
 }
 
 #[test]
-fn a_paused_thread_goes_on_where_it_was() {
+fn a_paused_thread_continues_where_it_was() {
     let main = steps(&[("start", 2), ("delay", 100_000), ("pause", 2), ("delay", 200_000), ("resume", 2)]);
     let machine = run(&[(1, &main), (2, SLICES)], 30);
     let others: Vec<_> = machine.firmware().log.iter().filter(|line| line.contains(" 2 ")).collect();
@@ -137,7 +137,7 @@ fn a_paused_thread_goes_on_where_it_was() {
 }
 
 #[test]
-fn a_thread_may_pause_itself_and_is_resumed_behind_the_call() {
+fn a_thread_may_pause_itself_and_is_resumed_after_the_call() {
     let main = steps(&[("start", 2), ("delay", 100_000), ("resume", 2)]);
     let other = steps(&[("note", 1), ("pause", 2), ("note", 2)]);
     let machine = run(&[(1, &main), (2, &other)], 20);
@@ -146,7 +146,7 @@ fn a_thread_may_pause_itself_and_is_resumed_behind_the_call() {
 }
 
 #[test]
-fn resume_of_a_thread_that_never_ran_makes_it_active_and_idle() {
+fn resuming_a_thread_that_never_ran_makes_it_active_and_idle() {
     let machine = check(&[(1, &steps(&[("resume", 2), ("resume", 3)])), (2, SLICES)], 9, &["26018 1 99"]);
     assert_eq!(machine.threads().active().bits(), 0b100);
     assert_eq!(machine.turn, Turn::Primary);
@@ -227,7 +227,7 @@ fn a_program_takes_the_place_of_another() {
 }
 
 #[test]
-fn an_entry_that_is_no_function_traps() {
+fn an_entry_that_is_not_a_function_traps() {
     let mut machine = machine(Config::default(), &[(1, SLICES)]);
     machine.threads_mut().set_entry(thread(1), program_base(thread(1)));
     machine.start(thread(1)).expect("a program is loaded");

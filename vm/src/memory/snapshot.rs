@@ -164,7 +164,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn memory_is_what_it_was_and_shares_what_did_not_change() {
+    fn snapshots_restore_memory_and_share_unchanged_parts() {
         let mut memory = GuestMemory::new();
         let empty = memory.snapshot();
         memory.poke(SDRAM.base.offset(0x12_3456), 1_u8);

@@ -50,7 +50,7 @@ fn alignment_is_checked_for_programs_and_not_for_the_kernel() {
 }
 
 #[test]
-fn a_board_that_answers_has_silent_places_and_ignores_low_bits() {
+fn with_board_faults_some_places_are_silent_and_low_bits_are_ignored() {
     let mut memory = GuestMemory::new();
     memory.set_faults(Faults::Board);
     assert_eq!(memory.load::<i32>(at(0)), Ok(0));
@@ -69,7 +69,7 @@ fn a_board_that_answers_has_silent_places_and_ignores_low_bits() {
 }
 
 #[test]
-fn a_board_that_answers_protects_program_text_all_the_same() {
+fn with_board_faults_program_text_is_still_protected() {
     let mut memory = GuestMemory::new();
     memory.set_faults(Faults::Board);
     memory.protect(ThreadId::new(1).expect("1 is a thread"), at(PROGRAM_BASE)..at(PROGRAM_BASE + 32));

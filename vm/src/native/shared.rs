@@ -52,7 +52,7 @@ mod tests {
     use crate::testing::program;
 
     #[test]
-    fn a_program_is_compiled_once_for_all_and_the_oldest_is_forgotten() {
+    fn a_program_is_compiled_once_and_the_oldest_is_forgotten() {
         let shared = SharedCode::default();
         let of = |number: i32| {
             program(

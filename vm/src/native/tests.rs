@@ -152,7 +152,7 @@ fn a_loop_is_preempted_at_the_same_instruction_with_the_same_budget() {
 }
 
 #[test]
-fn a_context_that_is_started_anew_forgets_its_fiber() {
+fn a_restarted_context_forgets_its_fiber() {
     let main = "@main: func sig0, 2, 0\ntypes 0\n@up: charge 7\nadd_i32_imm r0, r0, 1\nstore_i32_at r0, 0x10000000\n\
                 br @up";
     let program = Arc::new(program(1, &format!("{RECURSION}{main}")));

@@ -50,7 +50,7 @@ fn branches_stay_in_their_function_and_out_of_groups() {
 }
 
 #[test]
-fn calls_stand_together_and_fit_their_signature() {
+fn calls_are_contiguous_and_match_their_signature() {
     let order = "word 14: the arguments of a call must be in order directly before it";
     check("charge 9 | arg_i32 r0, 1 | call_fw sig1, 0 | charge 2 | ret", order);
     let alone = "word 15: the arguments of a call must be in order directly before it";
@@ -74,7 +74,7 @@ fn a_function_returns_what_its_signature_says() {
 }
 
 #[test]
-fn no_function_begins_and_no_loop_turns_without_a_charge() {
+fn every_function_entry_and_loop_must_be_charged() {
     let uncharged = |at| format!("word {at}: the code from here on can run forever without being charged");
     check("ret", &uncharged(13));
     check("charge 0 | ret", &uncharged(13));
@@ -88,7 +88,7 @@ fn no_function_begins_and_no_loop_turns_without_a_charge() {
 }
 
 #[test]
-fn the_words_of_the_structure_keep_their_order() {
+fn structural_words_must_be_in_order() {
     assert_eq!(message("sig 1, 9"), "word 11: a result class of 9 does not exist");
     assert_eq!(message("sig 1, 0"), "word 12: the text is truncated");
     assert_eq!(message("ret"), "word 11: `ret` is not allowed here");
@@ -100,7 +100,7 @@ fn the_words_of_the_structure_keep_their_order() {
 }
 
 #[test]
-fn what_is_not_bytecode_is_told_apart() {
+fn text_that_is_not_bytecode_is_refused_with_the_reason() {
     let check = |text: &[u8], expected: &str| {
         assert_eq!(verify(text, BASE).map_err(|error| error.to_string()), Err(expected.to_owned()));
     };

@@ -142,7 +142,7 @@ fn words_use_displacements_immediates_and_absolute_addresses() {
 }
 
 #[test]
-fn a_loop_loads_its_constants_in_front_and_costs_one_branch_a_turn() {
+fn a_loop_loads_constants_beforehand_and_takes_one_branch_per_iteration() {
     check_words(
         "double x; main() { int i; for (i = 0; i < 100; i++) x += 0.5; }",
         "
@@ -167,7 +167,7 @@ fn a_loop_loads_its_constants_in_front_and_costs_one_branch_a_turn() {
 }
 
 #[test]
-fn registers_are_shared_but_not_between_what_lives_at_the_same_time() {
+fn registers_are_shared_except_between_values_live_at_the_same_time() {
     // Values that cross a loop's end keep theirs; `a` is a parameter and `b` is set before the loop.
     check(
         "f(int a) { int b = a * 2, i, s = 0; for (i = 0; i < 3; i++) { int t = a + i; s += t * b; } return s + a; }
@@ -182,7 +182,7 @@ fn registers_are_shared_but_not_between_what_lives_at_the_same_time() {
 }
 
 #[test]
-fn a_parameter_survives_a_loop_that_begins_with_the_function() {
+fn a_parameter_survives_a_loop_at_the_start_of_its_function() {
     check("f(int a, int n) { for (;;) { if (n-- == 0) return a; } } main() { out[0] = f(42, 3); }", &[42]);
 }
 
@@ -198,7 +198,7 @@ fn structures_are_passed_returned_and_copied() {
 }
 
 #[test]
-fn copies_larger_than_an_instruction_are_made_in_parts() {
+fn copies_too_large_for_one_instruction_are_split() {
     check(
         "struct B { int a[20000]; } x, y;
          main() { x.a[0] = 1; x.a[16381] = 2; x.a[16382] = 3; x.a[19999] = 4; y = x;
@@ -228,7 +228,7 @@ fn variable_arguments_are_read_back() {
 }
 
 #[test]
-fn switches_find_their_case() {
+fn switches_jump_to_the_matching_case() {
     let cases = "switch (v) { case 1: case 2: return 1; case 3: v += 100; case 4: return v; case 900 ... 999: return 5;
                  case -2147483647 - 1: return 6; case 7: break; default: return 8; } return 9;";
     check(
@@ -254,7 +254,7 @@ fn a_division_by_zero_traps() {
 }
 
 #[test]
-fn lines_name_the_statement() {
+fn line_numbers_are_those_of_the_statements() {
     let linked = build("int g;\nmain()\n{\n  g = 1;\n\n  while (g < 9)\n    g++;\n}\n", Level::None);
     let lines: Vec<u32> = linked.lines.iter().map(|line| line.place.line).collect();
     assert_eq!(lines, [2, 4, 6, 7, 6, 8]);
@@ -262,7 +262,7 @@ fn lines_name_the_statement() {
 }
 
 #[test]
-fn a_frame_that_the_machine_cannot_number_is_refused() {
+fn a_stack_frame_too_large_for_the_machine_is_refused() {
     let (unit, sources) = testing::unit("int f(void) { char a[600000]; a[0] = 1; return a[0]; }");
     let mut sink = Sink::new();
     let _ = generate(&unit, &sources, (Level::Full, Timing::Fast), &mut sink);

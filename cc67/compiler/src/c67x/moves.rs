@@ -46,7 +46,7 @@ mod tests {
     }
 
     #[test]
-    fn cycles_and_chains_arrive() {
+    fn cyclic_and_chained_moves_give_the_right_values() {
         let [a, b, c, d] = [Reg::a(4), Reg::b(4), Reg::a(6), Reg::b(6)];
         run(&[]);
         run(&[(a, b), (b, a)]);

@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn switches_show_hide_and_harden() {
+    fn switches_show_or_hide_warnings_or_make_them_errors() {
         let (warning, error) = (Some(Severity::Warning), Some(Severity::Error));
         for (switches, default, all, extra) in [
             ("", warning, None, None),

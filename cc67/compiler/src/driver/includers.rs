@@ -48,7 +48,7 @@ mod tests {
     use crate::pp::MemoryFiles;
 
     #[test]
-    fn programs_of_the_same_folder_are_found_whatever_path_they_write() {
+    fn includers_in_the_folder_are_found_however_they_spell_the_path() {
         let files = MemoryFiles::new()
             .with("p/helper.c", "int f;\n")
             .with("p/b.c", "#include \"..\\p\\Helper.c\" // functions\n")

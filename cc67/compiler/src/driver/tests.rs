@@ -14,7 +14,7 @@ use crate::pp::{Disk, Token};
 use crate::source::Place;
 
 #[test]
-fn every_member_of_the_library_compiles_without_a_word() {
+fn every_library_member_compiles_without_unexpected_warnings() {
     for member in library::members() {
         let compilation = compile_library(&member, Target::Sim, Timing::default());
         let mut said = compilation.diagnostics();
@@ -32,7 +32,7 @@ fn every_member_of_the_library_compiles_without_a_word() {
 }
 
 #[test]
-fn what_firmware_4_34_lacks_is_code_of_the_library() {
+fn functions_missing_from_firmware_4_34_are_in_the_library() {
     let defined: Vec<_> = library::members().flat_map(|member| member.names()).collect();
     for function in FIRMWARE_FUNCTIONS.iter().filter(|function| function.origin == Origin::Library) {
         assert!(defined.contains(&function.name), "a board has no `{}`", function.name);
@@ -64,7 +64,7 @@ fn header_names() -> BTreeSet<String> {
 }
 
 #[test]
-fn a_declaration_of_the_headers_is_read_where_its_name_is_met() {
+fn a_header_declaration_is_read_where_its_name_is_used() {
     let (whole, read, sources, names, mut sink) = tokens(INCLUDE, Headers::Whole);
     assert_eq!(read, HeadersRead::Whole);
     let unit = parse::parse(&whole, &sources, &names, &mut sink);
@@ -90,7 +90,7 @@ fn a_declaration_of_the_headers_is_read_where_its_name_is_met() {
 }
 
 #[test]
-fn macros_are_the_same_if_they_are_read_where_their_names_are_met() {
+fn macros_are_the_same_when_read_only_where_they_are_used() {
     let predefined = include_str!("../pp/predefined.h").split_whitespace().filter(|word| word.contains('_'));
     let words: BTreeSet<_> = header_names().into_iter().chain(predefined.map(str::to_owned)).collect();
     let uses = |word: &String| format!("{word} ; {word} (1) ; {word} (1, 2) ;\n#ifdef {word}\nyes\n#endif\n");
@@ -135,7 +135,7 @@ fn bytes(compilation: Compilation, options: &Options) -> (Option<Vec<u8>>, Optio
 }
 
 #[test]
-fn programs_are_the_same_with_the_declarations_that_they_need() {
+fn programs_compile_the_same_with_only_the_declarations_they_need() {
     let (mut same, mut again) = (0, 0);
     for path in ["c-programs", "tests/filetests"].into_iter().flat_map(programs) {
         let text = Arc::new(fs::read(&path).expect("it can be read"));
@@ -158,7 +158,7 @@ fn programs_are_the_same_with_the_declarations_that_they_need() {
 }
 
 #[test]
-fn headers_are_read_whole_where_a_macro_or_a_message_would_show_it() {
+fn headers_are_read_whole_where_a_partial_read_would_be_visible() {
     let read = |text: &str| {
         let (_, read, _, _, sink) = tokens(text, Headers::AsNeeded);
         let said: Vec<_> = sink.diagnostics().iter().map(|it| it.message.clone()).collect();

@@ -35,7 +35,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn source_may_hold_a_stray_byte_but_not_be_made_of_them() {
+    fn source_may_contain_a_stray_byte_but_not_be_binary() {
         assert_eq!(not_source(b"int x; \x01 main() { return 0; } /* long enough */\n"), None);
         assert_eq!(not_source("int größe; // größer\r\n".as_bytes()), None);
         assert_eq!(not_source(b""), None);

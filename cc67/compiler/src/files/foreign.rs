@@ -67,7 +67,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn files_are_named_by_what_they_are() {
+    fn files_are_described_by_their_kind() {
         let check = |bytes: &[u8], expect: Option<&str>| assert_eq!(describe(bytes).as_deref(), expect);
         check(b"", Some("an empty file"));
         check(b"int main() { }\n", Some("a text file"));

@@ -76,7 +76,7 @@ mod tests {
     use crate::firmware::{BuiltIn, Firmware, FirmwareFile, FirmwareSymbols};
 
     #[test]
-    fn the_exported_file_offers_what_the_tables_offer() {
+    fn the_exported_file_has_the_symbols_of_the_tables() {
         let bytes = export().expect("it fits");
         let file = FirmwareFile::read(&bytes).expect("it is a firmware file");
         assert_eq!(file.version(), Some(VERSION.trim_end()));

@@ -144,7 +144,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn versions_become_stamps() {
+    fn version_texts_become_version_stamps() {
         assert_eq!(stamp("KFLOP 4.34 Build 16:07:06 Aug 14 2018"), Some(434));
         assert_eq!(stamp("KFLOP 4.35h Build 1"), Some(435));
         assert_eq!(stamp("KFLOP 5.10 Build"), Some(510));
@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn types_that_the_vendors_linker_leaves_out_are_left_out() {
+    fn symbol_types_that_the_vendors_linker_omits_are_not_exported() {
         for (code, expect) in
             [(0, false), (4, true), (6, true), (7, true), (8, true), (0x18, true), (0x24, true)]
         {

@@ -238,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn lines_are_those_of_the_document() {
+    fn download_lines_have_the_documented_form() {
         let text = Download { writes: download().writes.split_off(1), ..download() }.to_string();
         assert_eq!(text, "Kill 1\nLOADDATA 80054080 4\n07 00 00 00\nEntryPoint1 80050000\n");
     }
@@ -276,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn records_of_initial_values_are_taken_apart() {
+    fn records_of_initial_values_are_decoded() {
         let mut bytes = Vec::new();
         for word in [0_u32, 3, 0x1000, 0x00ab_cdef, 0, 100] {
             bytes.extend_from_slice(&word.to_le_bytes());

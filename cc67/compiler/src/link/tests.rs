@@ -89,7 +89,7 @@ fn statics_are_resolved_in_their_unit_and_externals_across_units() {
 }
 
 #[test]
-fn the_largest_tentative_definition_counts_and_an_initialised_one_wins() {
+fn an_initialised_definition_wins_over_the_largest_tentative_one() {
     let linked = linked(&["char a[4]; int b; main() { return a[0] + b; }", "char a[9]; int b = 7; "]);
     let size =
         |name: &str| linked.symbols.iter().find(|symbol| symbol.name == name).map(|symbol| symbol.size);
@@ -116,7 +116,7 @@ fn a_programs_own_definition_wins_over_the_firmwares() {
 }
 
 #[test]
-fn what_main_cannot_reach_is_left_out_on_request() {
+fn symbols_unreachable_from_main_are_left_out_on_request() {
     let source = "int used = 1, unused = 2; int f(void) { return unused; } main() { return used; }";
     assert_eq!(linked(&[source]).symbols.len(), 2);
     assert_eq!(try_link(&[source], 1, false).map(|linked| linked.symbols.len()), Ok(4));
@@ -158,7 +158,7 @@ fn other_errors_are_named() {
 }
 
 #[test]
-fn a_program_larger_than_its_space_enters_the_next_ones() {
+fn a_program_larger_than_its_space_extends_into_the_next_ones() {
     let source = "char a[200000]; main() { a[0] = 1; }";
     let linked = try_link(&[source], 2, true).expect("links");
     let warning = linked.warnings.first().map(ToString::to_string).unwrap_or_default();
@@ -181,7 +181,7 @@ fn a_program_larger_than_its_space_enters_the_next_ones() {
 }
 
 #[test]
-fn sizes_up_to_the_limit_pass_without_a_word() {
+fn sizes_up_to_the_limit_give_no_warning() {
     let fits = |size: u32| try_link(&[&format!("char a[{size}]; main() {{ a[0] = 1; }}")], 1, true);
     let text = fits(1).expect("links");
     let room = 0x1_0000 - (text.bss.address.get() - text.text.address.get());

@@ -130,7 +130,7 @@ fn narrow_locals_keep_their_range() {
 }
 
 #[test]
-fn bit_fields_are_cut_out_and_put_in() {
+fn bit_fields_are_extracted_and_inserted() {
     check(
         "struct S { int a : 3, b : 5; } s; int f(void) { return s.b = s.a; }",
         "
@@ -182,7 +182,7 @@ fn dense_cases_become_a_table_and_scattered_ones_a_search() {
 }
 
 #[test]
-fn calls_fit_the_definition_whatever_they_were_declared_as() {
+fn calls_match_the_definition_however_it_was_declared() {
     let text = super::testing::ir("f() { return g(1.5); } int g(double d) { return d; }", Level::None);
     assert!(text.contains("call.i32 g(1.5)"), "{text}");
 }

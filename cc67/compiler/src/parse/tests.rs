@@ -355,7 +355,7 @@ fn statements() {
 }
 
 #[test]
-fn variable_arguments_unless_the_program_declares_them() {
+fn variable_argument_macros_work_unless_the_program_declares_them() {
     body(
         "va_list p; va_start(p, a); va_arg(p, int *); va_copy(q, p); va_end(p);",
         "(var (typeof char *) p) (va_start p a) (va_arg (int *) p) (va_copy q p) (va_end p)",
@@ -428,7 +428,7 @@ fn unknown_types_are_reported_once() {
 }
 
 #[test]
-fn what_is_not_supported_says_so() {
+fn unsupported_constructs_are_reported_as_such() {
     errors(
         "main() { int f(int a) { return a; } x; }",
         &["1:14: function `f` is defined inside another function"],
@@ -444,7 +444,7 @@ fn what_is_not_supported_says_so() {
 }
 
 #[test]
-fn misplaced_things() {
+fn misplaced_constructs_are_reported() {
     errors("main() { else x; }", &["1:10: `else` without `if`"]);
     errors("main() { a = int; }", &["1:14: expected an expression, found `int`"]);
     errors("main() { a = @; }", &["1:14: expected an expression, found the character `@`"]);
@@ -472,7 +472,7 @@ proptest::proptest! {
 }
 
 #[test]
-fn what_the_preprocessor_gave_up_is_not_called_unclosed() {
+fn text_abandoned_by_the_preprocessor_is_not_reported_as_unclosed() {
     errors(
         "#include \"main.c\"\nmain() {",
         &["1:10: files included deeper than 64; does `main.c` include itself?"],
@@ -480,7 +480,7 @@ fn what_the_preprocessor_gave_up_is_not_called_unclosed() {
 }
 
 #[test]
-fn rows_of_operators_have_a_limit() {
+fn chains_of_operators_have_a_limit() {
     let said =
         |input: String| std::thread::Builder::new().stack_size(64 << 20).spawn(move || run(&input).said);
     let check = |input: String, expect: &[&str]| assert_eq!(said(input).unwrap().join().unwrap(), expect);

@@ -17,7 +17,7 @@ fn constants_fold_as_the_machine_computes() {
 }
 
 #[test]
-fn what_would_trap_stays() {
+fn operations_that_would_trap_are_kept() {
     check(
         "int f(int a) { a / 0; return a % (a - a); }",
         "
@@ -31,7 +31,7 @@ fn what_would_trap_stays() {
 }
 
 #[test]
-fn loads_and_stores_stay_in_number_and_order() {
+fn loads_and_stores_keep_their_number_and_order() {
     check(
         "int g; void f(void) { g = 1; g = 1; g; g; while (g == 0) ; }",
         "
@@ -53,7 +53,7 @@ fn loads_and_stores_stay_in_number_and_order() {
 }
 
 #[test]
-fn decided_branches_and_what_they_skip_disappear() {
+fn decided_branches_and_unreachable_code_are_removed() {
     check(
         "int f(int a) { if (0) a = 1; for (;;) { if (a) break; return 3; } return 2; }",
         "
@@ -69,7 +69,7 @@ fn decided_branches_and_what_they_skip_disappear() {
 }
 
 #[test]
-fn addresses_shorten_to_base_and_offset() {
+fn addresses_are_folded_into_base_and_offset() {
     check(
         "struct { int a, b[4]; } s[3]; int f(int *p) { int *q = p + 2; return q[1] + s[1].b[2] + *(q - 1); }",
         "
@@ -119,7 +119,7 @@ fn values_that_nobody_reads_are_not_computed() {
 }
 
 #[test]
-fn facts_end_where_a_value_is_written_again() {
+fn facts_about_a_value_end_where_it_is_overwritten() {
     check(
         "int f(int a, int b) { int c = a; a = b; if (c) return c; return a; }",
         "
@@ -137,12 +137,12 @@ fn facts_end_where_a_value_is_written_again() {
 }
 
 #[test]
-fn an_endless_empty_loop_stays() {
+fn an_endless_empty_loop_is_kept() {
     check("void f(void) { for (;;) ; }", "function f()\nblock0:\njump block1\nblock1:\njump block1");
 }
 
 #[test]
-fn what_does_not_change_leaves_the_loop_and_what_grows_evenly_is_carried() {
+fn invariants_leave_the_loop_and_linear_values_are_incremented() {
     check(
         "int a[4][4]; int f(int i, int n) { int k, s = 0; for (k = 0; k < n; k++) s += a[i][k] + (i * 3 ^ n); return s; }",
         "

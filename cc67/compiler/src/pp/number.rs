@@ -328,7 +328,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_says_why() {
+    fn invalid_numbers_are_explained() {
         let check = |text: &str, message: &str| {
             assert_eq!(parse(text.as_bytes()).map_err(|problem| problem.message), Err(message.to_owned()));
         };

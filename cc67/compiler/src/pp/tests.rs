@@ -323,7 +323,7 @@ fn includes() {
 }
 
 #[test]
-fn limits_end_with_one_message() {
+fn exceeding_a_limit_gives_one_message() {
     let check = |files: &MemoryFiles, message: &str| {
         let (_, said) = run(files, "main.c", &options());
         assert_eq!(said.len(), 1, "{said:?}");

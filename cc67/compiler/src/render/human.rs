@@ -257,7 +257,7 @@ error: no
     }
 
     #[test]
-    fn what_cannot_be_shown_is_one_line() {
+    fn a_message_whose_source_cannot_be_shown_is_one_line() {
         let sources = sources(&[b'x'; 5000]);
         check(&Diagnostic::error(Span::new(4, 5), "no"), &sources, "a.c:1:5: error: no");
         check(&Diagnostic::global_error("no"), &sources, "error: no");

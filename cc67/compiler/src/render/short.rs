@@ -23,7 +23,7 @@ mod tests {
     use crate::source::Span;
 
     #[test]
-    fn place_severity_message_and_code_stand_in_one_line() {
+    fn place_severity_message_and_code_are_on_one_line() {
         let mut sources = SourceMap::new();
         sources.add_file("a.c", None, b"int a;\nint b;\n".to_vec(), None);
         let span = Span::new(11, 12);

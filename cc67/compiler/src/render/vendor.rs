@@ -95,13 +95,13 @@ mod tests {
     }
 
     #[test]
-    fn warnings_alone_are_not_worth_a_word() {
+    fn warnings_alone_are_not_printed() {
         check(&[], "");
         check(&[Diagnostic::warning(Lint::ImplicitInt, Span::new(17, 18), "hm")], "");
     }
 
     #[test]
-    fn errors_stand_before_warnings_and_undefined_symbols_last() {
+    fn errors_come_before_warnings_and_undefined_symbols_come_last() {
         let undefined = Diagnostic::error(Span::new(17, 18), "undefined function `f`").help("write it");
         let diagnostics = [
             Diagnostic::warning(Lint::ImplicitInt, Span::new(0, 1), "hm"),

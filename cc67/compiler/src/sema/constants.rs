@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn comparisons_know_unsigned_and_nan() {
+    fn comparisons_handle_unsigned_and_nan() {
         let (nan, one) = (Constant::Float(f64::NAN), Constant::Float(1.0));
         assert_eq!(compare(CompareOp::GreaterEqual, nan, one, Types::DOUBLE), Some(false));
         assert_eq!(compare(CompareOp::NotEqual, nan, nan, Types::DOUBLE), Some(true));

@@ -213,7 +213,7 @@ mod tests {
     use crate::names::Names;
 
     #[test]
-    fn blocks_hide_and_restore_and_file_scope_counts_items() {
+    fn blocks_shadow_and_restore_names_and_file_scope_is_in_item_order() {
         let mut names = Names::new();
         let (a, span) = (names.intern("a"), Span::new(0, 0));
         let mut scopes = Scopes::new();

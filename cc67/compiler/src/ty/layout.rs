@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn members_are_aligned_naturally_and_double_on_8() {
+    fn members_are_aligned_naturally_and_doubles_to_8_bytes() {
         let (ch, short, double) = (Types::CHAR, Types::SHORT, Types::DOUBLE);
         assert_eq!(offsets(RecordKind::Struct, &[ch, double, ch]), (vec![0, 8, 16], 24, 8));
         assert_eq!(offsets(RecordKind::Struct, &[ch, ch, ch, short, ch]), (vec![0, 1, 2, 4, 6], 8, 2));

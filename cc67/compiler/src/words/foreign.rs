@@ -211,7 +211,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_word_stands_once() {
+    fn every_word_is_listed_once() {
         let mut words: Vec<_> = WORDS.iter().map(|word| word.spelling).collect();
         words.extend(TYPES.iter().map(|(word, _)| word));
         let count = words.len();
@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn the_advice_names_what_the_firmware_has() {
+    fn the_advice_names_functions_that_the_firmware_has() {
         for name in ["Delay_sec", "Time_sec", "SetStateBit", "SetBitDirection", "printf"] {
             assert!(kmotiondef::firmware::function_named(name).is_some(), "{name}");
         }

@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_message_ends_the_reading() {
+    fn an_invalid_message_ends_the_reading() {
         for (text, expect) in [
             ("Content-Length: 2\r\n\r\n{}", Some(json!({}))),
             ("Content-Length: 9\r\n\r\n{}", None),

@@ -228,7 +228,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bytes_are_quoted_so_that_statements_have_them_back() {
+    fn quoted_bytes_are_read_back_unchanged() {
         let all: Vec<u8> = (0..128).collect();
         let stimulus = Stimulus::parse(&format!("uart {}", quoted(&all)), SOURCE).expect("it is right");
         let action = stimulus.rules.into_iter().next().expect("a statement").action;
@@ -236,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn the_moment_of_a_statement_is_the_beginning_of_the_next_tick() {
+    fn a_statement_takes_effect_at_the_start_of_the_next_tick() {
         for tick in [0, 1, 4999, 1_000_000_007] {
             let text = statement(Ticks::new(tick), "persist 1 = 2");
             let rule = Stimulus::parse(&text, SOURCE).expect("it is right").rules.remove(0);

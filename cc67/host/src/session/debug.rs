@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn a_run_that_is_held_everywhere_is_the_same_run() {
+    fn stopping_everywhere_does_not_change_a_run() {
         let plain = run(session("all"), |_| ());
         assert!(plain.0.len() > 4, "{:?}", plain.0);
         let mut held = session("all");
@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn whoever_writes_is_known() {
+    fn the_writer_of_a_watched_variable_is_known() {
         let plain = run(session("who"), |_| ());
         let mut watched = session("who");
         let address = watched.board().debug(ThreadId::new(1).expect("there are 7")).and_then(|_| {

@@ -424,7 +424,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn commas_within_brackets_do_not_part_a_list() {
+    fn commas_inside_brackets_do_not_split_a_list() {
         assert_eq!(expressions("a, f(b, c) ,x[1,2]"), ["a", "f(b, c)", "x[1,2]"]);
     }
 

@@ -346,7 +346,7 @@ mod tests {
     }
 
     #[test]
-    fn the_past_is_as_it_was_in_whatever_order_one_goes_there() {
+    fn past_states_are_the_same_in_whatever_order_they_are_visited() {
         let (mut session, mut timeline, known) = played();
         for index in [3, 1, 7, 0, 5, 6, 2, 4, 7] {
             let (tick, dest) = known[index];
@@ -358,7 +358,7 @@ mod tests {
     }
 
     #[test]
-    fn another_past_is_another_history() {
+    fn an_action_in_the_past_starts_a_new_history() {
         let (mut session, mut timeline, known) = played();
         let (tick, _) = known[3];
         timeline.go_to(&mut session, Ticks::new(tick)).expect("it is of this session");

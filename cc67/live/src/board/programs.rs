@@ -106,7 +106,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_line_of_the_compiler_has_a_place() {
+    fn the_place_is_split_off_a_compiler_message() {
         assert_eq!(place("a.c:12: error: no"), (Some("a.c"), Some(12), "error: no"));
         assert_eq!(place("C:\\x\\a.c:3: e"), (Some("C:\\x\\a.c"), Some(3), "e"));
         assert_eq!(place("cannot be linked: x"), (None, None, "cannot be linked: x"));

@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn only_the_page_itself_is_let_in() {
+    fn only_the_page_itself_is_admitted() {
         let host = "Host: 127.0.0.1:8067\r\n";
         assert_eq!(check("/?token=TOKEN", host), Ok(()));
         assert_eq!(check("/socket?x=1&token=TOKEN", host), Ok(()));

@@ -232,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_rounded_may_differ_by_its_last_digit() {
+    fn rounded_numbers_may_differ_in_their_last_digit() {
         check("t=3.20 s", "t=3.21 s", Some("10 ms"));
         check("t=3.2 s", "t=3.3 s", None);
         check("12 ms", "13 ms", Some("1 ms"));
@@ -241,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn counts_and_words_are_equal_or_not() {
+    fn counts_and_words_must_be_equal() {
         check("3 parts", "4 parts", None);
         check("axis1 ready", "axis2 ready", None);
         check("0x1F", "0x1E", None);
@@ -253,13 +253,13 @@ mod tests {
     }
 
     #[test]
-    fn a_field_keeps_its_width() {
+    fn padding_to_a_field_width_is_ignored() {
         check("t:   9.9999 s", "t:  10.0001 s", Some("200 µs"));
         check("1.5e-3x", "1.6e-3x", Some("0.0001"));
     }
 
     #[test]
-    fn times_and_other_numbers_are_told_apart() {
+    fn times_and_other_numbers_are_reported_separately() {
         check("3.0001 s at 5.0004", "3.0002 s at 5.0001", Some("100 µs and 0.0003"));
     }
 }

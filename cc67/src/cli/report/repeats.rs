@@ -58,7 +58,7 @@ mod tests {
     }
 
     #[test]
-    fn so_many_different_remarks_are_shown_and_no_more() {
+    fn the_number_of_different_remarks_shown_is_limited() {
         let mut repeats = Repeats::default();
         assert_eq!((0..1500).filter(|number| repeats.is_shown(&number.to_string())).count(), MOST);
         assert_eq!(repeats.summary(), ["500 further remarks are not shown; --json shows all"]);

@@ -104,7 +104,7 @@ mod tests {
     use super::ranges;
 
     #[test]
-    fn neighbours_are_a_range() {
+    fn consecutive_numbers_become_a_range() {
         assert_eq!(ranges(&[8, 140, 141, 142, 1024]), "8, 140-142, 1024");
     }
 }

@@ -53,7 +53,7 @@ fn hash(bytes: &[u8]) -> u64 {
 }
 
 #[test]
-fn the_registers_are_as_recorded_at_the_first_look_for_the_pc() {
+fn registers_match_the_recording_at_the_first_poll_of_the_pc() {
     let Some(board) = booted() else { return };
     let recorded = row("registers at the first read of the host status byte");
     assert_eq!(board.ready_at(), recorded["cycle"].as_u64());

@@ -131,7 +131,7 @@ fn booted() -> BootedBoard {
 }
 
 #[test]
-fn it_answers_its_timer_prints_and_moves_a_generator() {
+fn a_small_firmware_handles_its_timer_prints_and_drives_a_generator() {
     let mut board = booted();
     let begun = board.cycle();
     board.run_to(begun + 20 * 18_000).expect("it runs");
@@ -175,7 +175,7 @@ fn skipping_the_wait_changes_nothing() {
 }
 
 #[test]
-fn a_snapshot_goes_on_as_the_board_did() {
+fn a_restored_snapshot_continues_as_the_board_did() {
     let mut board = booted();
     board.run_to(board.cycle() + 70_000).expect("it runs");
     let snapshot = board.snapshot();
@@ -190,7 +190,7 @@ fn a_snapshot_goes_on_as_the_board_did() {
 }
 
 #[test]
-fn a_board_starts_from_what_its_flash_held_if_that_is_of_this_firmware() {
+fn a_board_starts_from_its_flash_only_if_it_holds_this_firmware() {
     let before = booted();
     let mut flash = before.flash().to_vec();
     flash[0x18_0000] = 7;
@@ -205,7 +205,7 @@ fn a_board_starts_from_what_its_flash_held_if_that_is_of_this_firmware() {
 }
 
 #[test]
-fn what_the_processor_does_is_seen_in_the_interrupt_and_outside() {
+fn processor_activity_is_visible_inside_and_outside_the_interrupt() {
     let mut board = booted();
     let outside = board.doing();
     assert!(!outside.is_masked && outside.pc < HANDLER, "{outside:?}");
@@ -224,7 +224,7 @@ fn crash(start: &str) -> String {
 }
 
 #[test]
-fn a_firmware_that_runs_away_is_stopped_with_registers_and_code() {
+fn a_runaway_firmware_is_stopped_and_shown_with_registers_and_code() {
     let away = constant(".S2", 0x1234_5678, "B20") + "B .S2 B20\nNOP 5\n";
     let text = crash(&away);
     assert!(text.contains("it went to 0x12345678, where this board has no memory for code"), "{text}");
@@ -236,7 +236,7 @@ fn a_firmware_that_runs_away_is_stopped_with_registers_and_code() {
 }
 
 #[test]
-fn a_start_without_interrupts_may_be_long_and_be_run_through_at_once() {
+fn a_long_start_without_interrupts_can_run_in_one_step() {
     // 0.3 s of a loop before the timer is set.
     let wait = constant(".S1", 9_000_000, "A1") + "ADD .L1 -1,A1,A1\n[A1] B .S1 0x80000008\nNOP 5\n";
     let base = START + 4 * wait.lines().count() as u32;
@@ -246,7 +246,7 @@ fn a_start_without_interrupts_may_be_long_and_be_run_through_at_once() {
 }
 
 #[test]
-fn files_that_are_no_firmware_are_refused_with_their_reason() {
+fn files_that_are_not_firmware_are_refused_with_a_reason() {
     let bytes = image(&start()).write().expect("it can be written");
     let refused = |bytes: &[u8]| FirmwareFile::read(bytes).expect_err("it is refused").to_string();
     assert!(refused(b"#include \"KMotionDef.h\"").starts_with("not a firmware file"));

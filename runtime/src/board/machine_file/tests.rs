@@ -72,7 +72,7 @@ snapamp = 0
 "#;
 
 #[test]
-fn a_full_file_says_all_this() {
+fn every_key_of_a_full_file_is_read() {
     let machine = MachineFile::parse(FULL).expect("a good file");
     let axis = &machine.axes[0];
     assert_eq!((axis.model, axis.encoder, axis.counts_per_unit), (Model::Motor, Encoder::Connected, 400.5));
@@ -96,12 +96,12 @@ fn a_full_file_says_all_this() {
 }
 
 #[test]
-fn an_empty_file_is_no_file() {
+fn an_empty_file_gives_the_defaults() {
     assert_eq!(MachineFile::parse("").expect("a good file"), MachineFile::default());
 }
 
 #[test]
-fn a_key_is_set_alone() {
+fn a_single_key_can_be_set() {
     let mut machine = MachineFile::default();
     for (key, value) in [("axis.0.model", "motor"), ("axis.0.tau_s", "0.5"), ("cpu.bss_fill", "7")] {
         machine.set(key, value).expect(key);
@@ -113,7 +113,7 @@ fn a_key_is_set_alone() {
 }
 
 #[test]
-fn boards_the_serial_port_and_the_pc_have_their_keys() {
+fn boards_serial_port_and_pc_are_configured_by_keys() {
     let text = r#"
 [board]
 kstep = true
@@ -201,7 +201,7 @@ fn mistakes_are_named_with_their_place() {
 }
 
 #[test]
-fn events_and_devices_are_statements_of_a_stimulus() {
+fn events_and_devices_become_stimulus_statements() {
     let text = "[[event]]
 at = 2.5
 set_bit = { 24 = 1 }

@@ -54,7 +54,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn blocks_do_not_overlap_and_come_back() {
+    fn blocks_do_not_overlap_and_are_reused() {
         let mut heap = Heap::default();
         let first = heap.take(10, 8).expect("room");
         let second = heap.take(100, 64).expect("room");

@@ -107,7 +107,7 @@ mod tests {
     use crate::io::flash;
 
     #[test]
-    fn a_read_finds_the_selected_bank_wherever_it_looks() {
+    fn a_read_at_any_address_sees_the_selected_bank() {
         let (mut memory, mut banks) = (GuestMemory::new(), Banks::default());
         let user = FLASH.base.offset(0x10_0000);
         banks.be_strict(&mut memory);

@@ -106,7 +106,7 @@ mod tests {
     use crate::io::fpga::tests::Bench;
 
     #[test]
-    fn a_pwm_drives_its_pin_and_knows_its_rate() {
+    fn a_pwm_drives_its_pin_and_reports_its_rate() {
         let mut bench = Bench::default();
         let pins = [26, 44].map(|pin| Bit::new(pin).expect("a bit"));
         for (register, value) in [(0x2f, 65), (0xd0, 128), (0xd1, 1), (0xa0, 4)] {

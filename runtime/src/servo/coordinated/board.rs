@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pointer_that_points_nowhere_ends_the_path_and_is_told() {
+    fn an_invalid_pointer_ends_the_path_and_is_reported() {
         let mut desk = desk();
         desk.memory.set(COORD_SYSTEM0, kmotiondef::GuestAddr::new(0x1234_5678));
         desk.run(2);

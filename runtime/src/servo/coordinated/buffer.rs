@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn overtaking_the_execution_is_reported() {
+    fn overwriting_the_executing_segment_is_reported() {
         let mut memory = board();
         add_line(&mut memory, 0.5).expect("room");
         execute(&mut memory);

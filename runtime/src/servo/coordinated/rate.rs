@@ -118,7 +118,7 @@ mod tests {
     use crate::testing::powered_memory;
 
     #[test]
-    fn an_override_is_kept_when_it_does_not_apply() {
+    fn an_override_that_does_not_apply_yet_is_kept() {
         let mut memory = powered_memory();
         set_rapid(&mut memory, 0.25, 1.0);
         assert_eq!(memory.get(CS0_LAST_RAPID_FRO), 0.25);
@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn no_time_is_a_jump() {
+    fn a_rate_change_without_time_is_immediate() {
         for time in [0.0, -1.0, f32::NAN] {
             let mut memory = powered_memory();
             memory.set(CS0_FLUSHED, 1);
@@ -144,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn lost_data_stops_the_way_back() {
+    fn overwritten_segments_stop_reverse_motion() {
         let mut memory = powered_memory();
         set_feed(&mut memory, -1.0, 0.0);
         memory.set(CS0_TIME_BASE, 0.0);

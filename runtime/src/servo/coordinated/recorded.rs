@@ -462,7 +462,7 @@ fn close_enough(name: &str, found: f64, expect: f64) -> Result<(), String> {
 }
 
 #[test]
-fn the_board_follows_the_same_paths() {
+fn paths_match_the_recording() {
     let recordings = rows("coord.jsonl");
     let name = |recording: &Json| recording["name"].as_str().expect("a name").to_owned();
     let differing: Vec<(String, String)> =

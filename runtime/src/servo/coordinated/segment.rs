@@ -175,7 +175,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn commands_survive_their_entry() {
+    fn commands_are_read_back_from_their_entries() {
         let bit = Bit::new(1040).expect("a bit");
         for command in [
             Command::Drive(bit, false),

@@ -81,7 +81,7 @@ mod tests {
     use crate::testing::powered_memory;
 
     #[test]
-    fn letters_not_given_keep_their_axes() {
+    fn omitted_letters_keep_their_axes() {
         let mut memory = powered_memory();
         assign(&mut memory, &[5, 1, -1, -1, 7, -1]);
         assign(&mut memory, &[0, 1, 2, -1]);

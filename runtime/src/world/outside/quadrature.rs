@@ -61,7 +61,7 @@ mod tests {
     use crate::world::outside::testing::Bench;
 
     #[test]
-    fn each_edge_is_a_count_and_the_order_says_where_to() {
+    fn each_edge_counts_and_the_order_gives_the_direction() {
         let mut bench = Bench::new("quadrature a=8 b=9 axis=2");
         for (bit, level, expect) in [
             (8, true, 1.0),

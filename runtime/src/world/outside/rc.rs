@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn two_outputs_of_a_konnect_board_leave_it_alone_when_both_are_off() {
+    fn the_capacitor_keeps_its_charge_when_both_konnect_outputs_are_off() {
         let mut bench = Bench::new("rc konnect=3 aux=0 high=14 low=15 adc=0 volts=10");
         let board = KonnectBoard { port: Port::Aux0, address: 3 };
         bench.device.konnect(board, 1 << 14, us(0));

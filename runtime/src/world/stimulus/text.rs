@@ -209,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn expectations_have_their_forms() {
+    fn every_form_of_expectation_is_parsed() {
         for (text, expect) in [
             ("at end expect axis 0 position = 500 ± 1", "End: axis 0 position = 500 ± 1 Is"),
             ("expect axis 0 velocity<=0.5", "End: axis 0 velocity <= 0.5 ± 0 Is"),
@@ -244,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn a_condition_of_always_is_an_expectation_of_its_own() {
+    fn the_condition_of_always_is_parsed_as_an_expectation() {
         let rules = parse("always while bit 1050 = 1 expect axis 0 enabled", "x").expect("it is right");
         let Trigger::Always {
             while_met: Some(Expectation { predicate: Predicate::Value { subject, .. }, .. }),
@@ -256,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn set_takes_a_level_as_well() {
+    fn set_also_accepts_a_level() {
         for (one, same) in [
             ("set bit 5 = 0", "bit 5 = 0"),
             ("set bit 5 0", "bit 5 = 0"),
@@ -269,7 +269,7 @@ mod tests {
     }
 
     #[test]
-    fn waves_have_their_words() {
+    fn waves_are_parsed() {
         for text in [
             "adc 0 = sine mean 0 amplitude 1000 hz 2",
             "adc 0 = square low -1V high 1V hz 5",

@@ -136,7 +136,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lines_fall_into_tokens() {
+    fn lines_are_split_into_tokens() {
         let tokens = tokens("at 1s bit 5=1; uart \"a\\x41\\r#\" # said").expect("it is right");
         let kinds: Vec<_> = tokens.iter().map(|token| (token.column, format!("{:?}", token.kind))).collect();
         let columns: Vec<_> = tokens.iter().map(|token| token.column).collect();
@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn texts_end_and_escapes_are_known() {
+    fn unclosed_texts_and_unknown_escapes_are_errors() {
         for (line, expect) in [("uart \"a", 6), ("uart \"\\q\"", 7), ("uart \"\\x4\"", 7), ("\"\\", 2)] {
             assert_eq!(tokens(line).expect_err("it is wrong").0, expect, "{line}");
         }

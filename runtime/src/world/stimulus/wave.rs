@@ -81,7 +81,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn courses_have_their_values() {
+    fn waveforms_have_the_expected_values() {
         let ms = |ms: i64| Cycles::new(ms * Cycles::PER_SECOND.get() / 1000);
         let ramp = Wave::Ramp { from: 0.0, to: 100.0, over: ms(10) };
         let square = Wave::Square { low: -5.0, high: 5.0, hz: 100.0 };

@@ -63,7 +63,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ticks_are_sampled_at_multiples_also_when_they_are_skipped() {
+    fn ticks_are_sampled_at_multiples_even_when_they_are_skipped() {
         let recorder =
             Recorder::new(TraceRequest { quantities: Vec::new(), every: 10, changes: false, packets: None });
         for (tick, count, expect) in [(10, 1, Some(10)), (11, 1, None), (35, 20, Some(30)), (29, 9, None)] {

@@ -39,7 +39,7 @@ fn fault(text: &str) -> String {
 }
 
 #[test]
-fn a_word_that_is_no_instruction_is_named() {
+fn a_word_that_is_not_an_instruction_is_named() {
     let (mut core, mut memory) = code("NOP");
     memory.words(BASE + 4, [0x1000_0000]);
     let halt = run(&mut core, &mut memory, 100);
@@ -47,12 +47,12 @@ fn a_word_that_is_no_instruction_is_named() {
 }
 
 #[test]
-fn a_branch_to_no_instruction_is_found_when_it_arrives() {
+fn a_branch_to_an_invalid_address_faults_when_it_is_taken() {
     assert_eq!(fault("MVK .S2 6,B4\nB .S2 B4\nNOP 5"), "branch to 0x00000006, which is not a multiple of 4");
 }
 
 #[test]
-fn two_results_for_one_register_are_found_whoever_makes_them() {
+fn two_results_for_one_register_are_found_whatever_produces_them() {
     let same = "two results are written to A3 in the same cycle";
     assert_eq!(fault("ADD .L1 A1,A2,A3\n|| SUB .S1 A4,A5,A3"), same);
     assert_eq!(fault("MPYSP .M1 A1,A2,A3\nNOP 2\nADD .L1 A4,A5,A3"), same);
@@ -70,7 +70,7 @@ fn exclusive_conditions_write_one_register() {
 }
 
 #[test]
-fn an_endless_loop_that_holds_interrupts_off_is_found() {
+fn an_endless_loop_that_blocks_interrupts_is_found() {
     let text = "B .S1 pc+0\nNOP\nNOP\nNOP\nNOP\nB .S1 pc+0";
     let words = "200000 cycles without a place where an interrupt is possible: the board's servo stops";
     // Two branches, five cycles apart, keep each other's shadow alive.

@@ -40,7 +40,7 @@ fn run(stops: &[u32], until: u64) -> (Core, Vec<(u32, u32)>) {
 }
 
 #[test]
-fn a_run_that_stops_everywhere_is_the_same_run() {
+fn stopping_everywhere_does_not_change_a_run() {
     for until in [3, 17, 100, 500] {
         let plain = state(&run(&[], until).0);
         for stops in [&[ADD][..], &[SUB], &[ADD, SUB], &[BASE, ADD, SUB, BASE + 12, BASE + 16]] {
@@ -82,7 +82,7 @@ fn packets_are_counted_as_they_are_executed() {
 }
 
 #[test]
-fn a_run_goes_on_from_a_stop_with_other_stops() {
+fn a_run_continues_from_a_stop_with_other_stops() {
     let (mut core, mut memory) = at_begin();
     for (stops, at, count) in [
         (&[SUB][..], SUB, 1),

@@ -220,13 +220,13 @@ const DOUBLE: [u32; 30] = [
 ];
 
 #[test]
-fn the_loop_of_integers_is_translated() {
+fn an_integer_loop_is_translated() {
     let translated = check(&INTEGER, &[(Reg::a(4), 0x8006_0000), (Reg::b(4), 20_000)], 18_000, 8);
     assert!(translated > 20_000, "{translated}");
 }
 
 #[test]
-fn loops_are_left_before_any_packet() {
+fn a_translated_loop_can_be_left_before_any_packet() {
     let regs = [(Reg::a(4), 0x8006_0000), (Reg::b(4), 20_000)];
     for step in 70..80 {
         let looped = check_borders(&INTEGER, &regs, &[step]);
@@ -241,7 +241,7 @@ fn loops_are_left_before_any_packet() {
 }
 
 #[test]
-fn a_fault_in_a_loop_leaves_what_is_on_its_way() {
+fn a_fault_in_a_loop_keeps_the_results_in_flight() {
     // Products and the one load land after the other has run out of SDRAM.
     let text = "MPYI .M1 A8,A9,A12\nMPYI .M2 B8,B9,B12\n|| LDW .D2T2 *B5++[1],B8\n|| ADDK .S2 1,B9\n|| LDW .D1T1 *A5++[16],A8\n\
                 || B .S1 BACK\nADD .L1 A8,A9,A9\nNOP 5\n"
@@ -258,7 +258,7 @@ fn a_fault_in_a_loop_leaves_what_is_on_its_way() {
 }
 
 #[test]
-fn code_that_is_written_again_and_again_runs_alike() {
+fn repeatedly_overwritten_code_runs_the_same() {
     // Each turn stores one of two constants over the MVK after it.
     let text = "ADDK .S2 -1,B0\nXOR .L1 A6,A7,A6\nSTW .D1T1 A6,*A5\nNOP 5\nMVK .S1 1,A8\nADD .L1 A8,A9,A9\n\
                 [B0] B .S2 B31\nNOP 5\nB .S2 B3\nNOP 5\n";
@@ -275,7 +275,7 @@ fn code_that_is_written_again_and_again_runs_alike() {
 }
 
 #[test]
-fn an_access_outside_of_ram_ends_alike() {
+fn an_access_outside_ram_ends_the_same() {
     // A pointer runs from the end of SDRAM into nothing.
     let text = "LDW .D1T1 *A5++[16],A8\nNOP 4\nADD .L1 A8,A9,A9\nB .S2 B31\nNOP 5\n";
     let translated =
@@ -341,7 +341,7 @@ fn line(kind: u8, a: u8, b: u8, c: u8) -> String {
 }
 
 #[test]
-fn doubles_of_every_kind_are_computed_alike() {
+fn doubles_of_every_kind_give_the_same_results() {
     let text = "ADDK .S2 -1,B0\nLDDW .D1T1 *A5++[1],A9:A8\nLDDW .D1T1 *A6[0],A11:A10\nNOP 4\n\
                 MPYDP .M1 A9:A8,A11:A10,A13:A12\nADDDP .L1 A9:A8,A11:A10,A17:A16\nSUBDP .L1 A9:A8,A11:A10,A19:A18\nNOP 9\n\
                 XOR .L1 A12,A20,A20\nXOR .L1 A13,A21,A21\nXOR .L1 A16,A22,A22\nXOR .L1 A17,A23,A23\n\
@@ -407,7 +407,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 100, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn random_loops_run_alike(
+    fn random_loops_run_the_same(
         lines in prop::collection::vec((any::<[u8; 4]>(), 0_u8..6), 4..24),
         gap in 1_u8..8,
         seeds in any::<[u32; 32]>(),
@@ -417,7 +417,7 @@ proptest! {
     }
 
     #[test]
-    fn random_loops_whose_results_come_for_certain_run_alike(
+    fn random_loops_without_conditional_late_results_run_the_same(
         lines in prop::collection::vec((any::<[u8; 4]>(), 0_u8..6), 4..16),
         gap in 1_u8..8,
         seeds in any::<[u32; 32]>(),
@@ -427,7 +427,7 @@ proptest! {
     }
 
     #[test]
-    fn doubles_whose_words_change_after_their_issue_run_alike(
+    fn doubles_whose_words_change_after_issue_run_the_same(
         lines in prop::collection::vec((any::<[u8; 4]>(), 3_u8..6), 4..24),
         gap in 1_u8..8,
         seeds in any::<[u32; 32]>(),

@@ -175,7 +175,7 @@ fn run_everything() -> Stop {
 }
 
 #[test]
-fn a_slice_takes_no_stack_of_the_host_however_long_it_is() {
+fn a_slice_of_any_length_uses_no_host_stack() {
     let runner = std::thread::Builder::new().stack_size(HOST_STACK).spawn(run_everything);
     let stop = runner.expect("a thread can be started").join().expect("it does not panic");
     assert_eq!(stop, Stop::Ended);

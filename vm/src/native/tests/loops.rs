@@ -31,7 +31,7 @@ fn trap_of(functions: &str) -> TrapKind {
 }
 
 #[test]
-fn memory_is_read_and_written_wherever_it_is() {
+fn memory_is_read_and_written_in_every_region() {
     for from in [0x80ff_ff80, 0x1001_ff80, 0x8004_ff00] {
         for body in [
             "load_i32 r2, r0, +0",
@@ -46,7 +46,7 @@ fn memory_is_read_and_written_wherever_it_is() {
 }
 
 #[test]
-fn the_end_of_memory_traps_in_the_turn_that_reaches_it() {
+fn the_end_of_memory_traps_in_the_iteration_that_reaches_it() {
     for turns in 0..5 {
         let from = 0x8100_0000 - 4 * turns;
         let load = trap_of(&walk(from, 4, 20, "load_i32 r2, r0, +0"));
@@ -57,7 +57,7 @@ fn the_end_of_memory_traps_in_the_turn_that_reaches_it() {
 }
 
 #[test]
-fn program_text_is_protected_in_every_turn() {
+fn program_text_is_protected_in_every_iteration() {
     for turns in 0..5 {
         let up = walk(0x8005_0000 - 4 * turns, 4, 20, "store_i32 r1, r0, +0");
         assert!(matches!(trap_of(&up), TrapKind::WriteProtected { .. }));
@@ -83,7 +83,7 @@ fn addresses_that_are_not_aligned_trap() {
 }
 
 #[test]
-fn division_by_zero_traps_in_its_turn() {
+fn division_by_zero_traps_in_its_iteration() {
     for zero in [1, 2, 7, 9] {
         let body = format!("add_i32_imm r3, r1, -{zero}\ndiv_i32_s r2, r0, r3\nstore_i32 r2, r0, +0");
         assert_eq!(trap_of(&walk(0x8010_0000, 4, 12, &body)), TrapKind::DivisionByZero);
@@ -91,7 +91,7 @@ fn division_by_zero_traps_in_its_turn() {
 }
 
 #[test]
-fn devices_are_reached_from_loops() {
+fn devices_can_be_accessed_from_loops() {
     for body in ["load_i32 r2, r0, +0", "store_i32 r1, r0, +0\nload_i32 r2, r0, +4\nstore_i32 r2, r0, +8"] {
         let _ = stop_of(&walk(0x9100_0000, 4, 12, body));
         let _ = stop_of(&walk(0x9100_0000, 0, 12, body));
@@ -99,7 +99,7 @@ fn devices_are_reached_from_loops() {
 }
 
 #[test]
-fn turns_take_what_their_way_costs() {
+fn iterations_cost_what_their_path_costs() {
     for body in [
         "and_i32_imm r3, r1, 1\nbr_if r3, @odd\ncharge 40\nload_i32 r2, r0, +0\n@odd: charge 23",
         "and_i32_imm r3, r1, 2\nbr_if r3, @a\ncharge 40\nstore_i32 r1, r0, +0\nbr @b\n\
@@ -115,7 +115,7 @@ fn turns_take_what_their_way_costs() {
 }
 
 #[test]
-fn a_loop_may_be_entered_where_its_condition_is() {
+fn a_loop_may_be_entered_at_its_condition() {
     for turns in [0, 1, 3, 4, 9] {
         let functions = format!(
             "@main: func sig0, 4, 0\ntypes 0\ncharge 9\nconst_i32 r0, 0x10000100\nconst_i32 r1, {turns}\nbr @test\n\
@@ -128,7 +128,7 @@ fn a_loop_may_be_entered_where_its_condition_is() {
 }
 
 #[test]
-fn several_accesses_through_one_register_trap_at_the_first_that_must() {
+fn several_accesses_through_one_register_trap_at_the_first_bad_one() {
     for (from, accesses) in [
         (0x80ff_fff8, "load_i32 r2, r0, +0\nload_i32 r3, r0, +4\nstore_i32 r3, r0, +0\nload_i32 r2, r0, +8"),
         (

@@ -24,7 +24,7 @@ fn stop_of(functions: &str) -> Stop {
 }
 
 #[test]
-fn a_guard_at_the_beginning_returns_or_does_not() {
+fn an_early_return_guard_may_or_may_not_be_taken() {
     for test in ["lt_i32_s r1, r0, r1", "and_i32_imm r1, r0, 1", "sub_i32 r1, r0, r0", "const_i32 r1, 1"] {
         let f = format!(
             "@f: func sig3, 3, 8\ntypes 0\ncharge 13\nconst_i32 r1, 4\n{test}\nbr_if r1, @soon\ncharge 21\n\
@@ -36,7 +36,7 @@ fn a_guard_at_the_beginning_returns_or_does_not() {
 }
 
 #[test]
-fn what_a_function_loads_on_its_way_may_be_anywhere() {
+fn a_function_that_returns_soon_may_load_from_anywhere() {
     let at = |address: u32| {
         format!(
             "@f: func sig3, 2, 0\ntypes 0\ncharge 13\nconst_i32 r1, {}\nload_i32 r1, r1, +4\nadd_i32 r0, r0, r1\nret_i32 r0\n",
@@ -64,7 +64,7 @@ fn a_division_by_zero_traps_in_the_function() {
 }
 
 #[test]
-fn the_stack_has_the_frame_of_a_function_that_returns_soon() {
+fn a_function_that_returns_soon_still_needs_its_stack_frame() {
     // The last call has no room, wherever the recursion ends.
     for frame in [0, 8, 4000] {
         let leaf =
@@ -83,7 +83,7 @@ fn the_stack_has_the_frame_of_a_function_that_returns_soon() {
 }
 
 #[test]
-fn a_result_that_is_no_number_is_that_of_arithmetic() {
+fn a_nan_result_has_the_bits_of_arithmetic() {
     let f = "@f: func sig4, 4, 0\ntypes 0xfc\ncharge 13\nsub_f64 d2, d1, d1\nmov_f64 d3, d2\ncharge 4\nret_f64 d3\n";
     let main = format!(
         "{f}@main: func sig0, 3, 0\ntypes 0x3c\ncharge 9\nload_f64_at d1, ADDRESS\narg_i32 r0, 0\narg_f64 d1, 1\n\

@@ -132,7 +132,7 @@ fn check<E: Engine>(seed: u64) {
 }
 
 #[test]
-fn a_machine_goes_on_from_any_of_its_snapshots() {
+fn a_machine_resumes_from_any_of_its_snapshots() {
     for seed in 1..if cfg!(debug_assertions) { 11 } else { 100 } {
         check::<NativeEngine>(seed);
         check::<BytecodeEngine>(seed);
@@ -141,7 +141,7 @@ fn a_machine_goes_on_from_any_of_its_snapshots() {
 }
 
 #[test]
-fn native_threads_go_on_in_their_own_machine_alone() {
+fn native_threads_resume_only_in_their_own_machine() {
     let mut machine = machine_of::<NativeEngine>(1);
     machine.run_until(Ticks::new(20));
     let kept = machine.snapshot();

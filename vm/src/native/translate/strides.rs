@@ -65,7 +65,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_row_gains_the_same_root_in_each_turn() {
+    fn each_iteration_adds_the_same_root() {
         assert_eq!(common_step(&[vec![1, 4], vec![1, 2, 4], vec![1, 2, 2, 4]]), Some(2));
         assert_eq!(common_step(&[vec![2], vec![2, 2], vec![2, 2, 2]]), Some(2));
         assert_eq!(common_step(&[vec![1], vec![1, 2], vec![1, 2, 3]]), None);

@@ -170,7 +170,7 @@ fn with_table(page: &str, head: &str, table: &str) -> String {
 }
 
 #[test]
-fn the_page_of_benches_has_the_cycles_of_the_kernels() {
+fn the_benchmark_page_shows_the_measured_cycles() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../benches/README.md");
     let page = std::fs::read_to_string(path).expect("the page");
     let written = with_table(&page, "| kernel | vendor |", &table());
@@ -197,7 +197,7 @@ const REACHED: &[(&str, u64)] = &[
 ];
 
 #[test]
-fn worked_examples_are_near_the_code_by_hand() {
+fn worked_examples_are_nearly_as_fast_as_handwritten_code() {
     let mut reached = Vec::new();
     for kernel in KERNELS {
         let Some(by_hand) = kernel.by_hand else { continue };
@@ -211,7 +211,7 @@ fn worked_examples_are_near_the_code_by_hand() {
 }
 
 #[test]
-fn an_interrupt_wherever_one_is_taken_changes_no_result() {
+fn an_interrupt_at_any_point_changes_no_result() {
     for kernel in KERNELS {
         for level in LEVELS {
             let (mut plain, mut interrupted) = (call(kernel, level), call(kernel, level));

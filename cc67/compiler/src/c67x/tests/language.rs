@@ -21,7 +21,7 @@ const PRINTED: &str = "\
 ";
 
 #[test]
-fn quotients_wide_integers_structures_and_many_arguments_are_right() {
+fn division_64_bit_integers_structures_and_many_arguments_work() {
     for level in [Level::None, Level::Small, Level::Full, Level::Fast] {
         assert_eq!(machine::run(&build(SOURCE, level)).console, PRINTED, "{level:?}");
     }
@@ -45,7 +45,7 @@ main()
 "#;
 
 #[test]
-fn a_function_that_still_writes_after_its_return_is_waited_for() {
+fn a_caller_waits_for_results_still_in_flight_after_a_return() {
     for level in [Level::None, Level::Small, Level::Full, Level::Fast] {
         assert_eq!(machine::run(&build(ROTATION, level)).console, "1 -0 1\n0\n", "{level:?}");
     }
@@ -74,7 +74,7 @@ main()
 "#;
 
 #[test]
-fn ten_wide_arguments_fit_into_their_registers() {
+fn ten_64_bit_arguments_fit_into_their_registers() {
     for level in [Level::None, Level::Small, Level::Full, Level::Fast] {
         let printed = "-257 2107\n2 1\n1 1\n2 52.5\n";
         assert_eq!(machine::run(&build(ARGUMENTS, level)).console, printed, "{level:?}");
@@ -116,7 +116,7 @@ main()
 "#;
 
 #[test]
-fn several_turns_of_a_loop_end_where_one_would() {
+fn unrolled_loops_end_at_the_same_iteration() {
     let [plain, full, fast] =
         [Level::None, Level::Full, Level::Fast].map(|level| machine::run(&build(LOOPS, level)));
     assert_eq!(plain.console.lines().count(), 2, "{}", plain.console);

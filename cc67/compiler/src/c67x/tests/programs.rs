@@ -49,21 +49,21 @@ fn all(level: Level) -> (String, f64, f64) {
 }
 
 #[test]
-fn recorded_programs_give_what_was_recorded() {
+fn recorded_programs_give_the_recorded_results() {
     let (table, cycles, bytes) = all(Level::Full);
     println!("{table}");
     assert!(cycles <= 0.172 && bytes <= 0.33, "slower or larger than it was:\n{table}");
 }
 
 #[test]
-fn recorded_programs_are_faster_at_the_level_that_makes_code_larger() {
+fn recorded_programs_are_faster_when_optimised_for_speed() {
     let (table, cycles, _) = all(Level::Fast);
     println!("{table}");
     assert!(cycles <= 0.066, "slower than it was:\n{table}");
 }
 
 #[test]
-fn recorded_programs_are_smallest_at_the_level_for_that() {
+fn recorded_programs_are_smaller_when_optimised_for_size() {
     let (table, cycles, bytes) = all(Level::Small);
     let (_, _, full) = all(Level::Full);
     println!("{table}");

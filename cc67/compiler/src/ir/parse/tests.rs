@@ -80,7 +80,7 @@ block0:
 }
 
 #[test]
-fn a_copy_has_the_class_of_its_source_and_what_nothing_writes_is_declared() {
+fn copies_take_their_sources_class_and_unwritten_values_are_declared() {
     check_same(
         "function f(v0: f32) -> f32\nblock0:\n  jump block1\nblock1:\n  v1 = v2\n  v2 = v0\n  branch 1, block1, block2\nblock2:\n  return v1\n",
     );
@@ -93,7 +93,7 @@ fn a_copy_has_the_class_of_its_source_and_what_nothing_writes_is_declared() {
 }
 
 #[test]
-fn what_is_wrong_is_named_with_its_line() {
+fn errors_name_the_line_and_the_cause() {
     let in_block = |line: &str| format!("function f(v0: i32)\nblock0:\n  {line}\n  return\n");
     for (line, expected) in [
         ("v1 = add.i32 v0", "`,` is expected at the end"),

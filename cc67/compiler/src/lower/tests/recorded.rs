@@ -155,7 +155,7 @@ fn is_other(construct: &str) -> bool {
 }
 
 #[test]
-fn constructs_take_what_was_recorded() {
+fn constructs_take_the_recorded_cycles() {
     let empty = spent(&format!("{GLOBALS} main() {{ {LOCALS} }}"), Level::None, WaitStates::NONE);
     let (mut exact, mut off) = (0, Vec::new());
     for row in rows("construct") {
@@ -175,7 +175,7 @@ fn constructs_take_what_was_recorded() {
 }
 
 #[test]
-fn programs_take_what_was_recorded() {
+fn programs_take_the_recorded_cycles() {
     const PROTOTYPES: &str =
         "extern struct { int UserData[200]; } persist; double sin(double), cos(double), sqrt(double),
         fast_fabs(double), Time_sec(); int ReadBit(int); void SetBit(int), ClearBit(int);";

@@ -25,7 +25,7 @@ fn variable_arguments_are_promoted() {
 }
 
 #[test]
-fn a_later_definition_is_called_as_it_is() {
+fn a_call_matches_a_later_definition() {
     check(
         "main() { return f(3); } f(int a) { return a; }",
         "int main() {\nreturn f(3);\n}\nint f(int a) {\nreturn a;\n}",
@@ -60,7 +60,7 @@ fn a_void_function_that_returns_a_value_returns_int() {
 }
 
 #[test]
-fn results_are_there_even_if_nothing_is_returned() {
+fn a_return_without_a_value_returns_zero() {
     check(
         "double f(int a) { if (a) return; return a; }",
         "double f(int a) {\nif a {\nreturn 0.0;\n}\nreturn (double)[a];\n}",
@@ -87,7 +87,7 @@ fn too_few_or_too_many_arguments_for_a_prototype_are_errors() {
 }
 
 #[test]
-fn calls_without_prototype_are_made_to_fit_the_definition() {
+fn calls_without_a_prototype_are_adapted_to_the_definition() {
     said(
         "f() { return 1; } h() { return f(1, 2); }",
         &["1: extra-arguments: `f` takes no arguments, but 2 are given"],
@@ -135,7 +135,7 @@ fn functions_are_values() {
 }
 
 #[test]
-fn call_backs_must_have_the_parameters_that_are_passed() {
+fn call_backs_must_have_the_expected_parameters() {
     said(
         "typedef void CALLBACK(void); extern CALLBACK *cb; void a(int i) {} int b() {} void c(void) {}\nmain() { cb = a; cb = b; cb = c; cb = 0; }",
         &["2: error: assignment: cannot convert `void (*)(int)` to `void (*)(void)`"],

@@ -3,7 +3,7 @@
 use super::{accept, check, said};
 
 #[test]
-fn what_agrees_may_be_declared_again() {
+fn compatible_redeclarations_are_accepted() {
     accept(
         "extern int a; int a; int a; int a = 3; int a; static int s; static int s = 4;
         int f(); int f(int); int f(int x) { return x; } int f(int);
@@ -14,7 +14,7 @@ fn what_agrees_may_be_declared_again() {
 }
 
 #[test]
-fn what_differs_is_said() {
+fn conflicting_redeclarations_are_reported() {
     said(
         "int a; double a;\nint b = 1; int b = 2;\ntypedef int T; typedef double T;\nstruct S { int a; }; struct S { int b; };\nenum { A }; enum { A = 5 };\nint f; int f(void);\nint g(void); int g;\nint h(int); int h(double);\nint p(void) { int i = 1; int i = 2; return i; }\nint q(int a) { int a = 0; return a; }",
         &[
@@ -33,7 +33,7 @@ fn what_differs_is_said() {
 }
 
 #[test]
-fn implicit_int_is_silent_where_programs_mean_it() {
+fn implicit_int_gives_no_warning_where_it_is_intended() {
     accept("main() { static x = 0; const y = 1; register z = 2; return x + y + z; } f(int a) { return a; }");
     said(
         "x; y = 5; static z; f(const a) { return a; }",
@@ -47,7 +47,7 @@ fn implicit_int_is_silent_where_programs_mean_it() {
 }
 
 #[test]
-fn static_locals_have_names_of_their_own() {
+fn static_locals_get_unique_names() {
     check(
         "int f(void) { static int n = 3; static double d[2]; { static int n; n++; } return n++; }",
         "int n.0 = 03 00 00 00;
@@ -63,7 +63,7 @@ fn static_locals_have_names_of_their_own() {
 }
 
 #[test]
-fn main_is_special() {
+fn main_with_parameters_or_static_gives_a_warning() {
     said(
         "int main(int argc, char **argv) { return argc; }",
         &["1: main-parameters: `main` is called without arguments (write `main()`)"],

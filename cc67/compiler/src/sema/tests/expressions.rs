@@ -3,7 +3,7 @@
 use super::{expression, said};
 
 #[test]
-fn operands_meet_in_their_common_type() {
+fn operands_are_converted_to_their_common_type() {
     expression("gi = i + c", "@gi = (i + (int)[c])");
     expression("gi = i + u", "@gi = (int)[((unsigned int)[i] + u)]");
     expression("gd = i * d", "@gd = ((double)[i] * d)");
@@ -41,7 +41,7 @@ fn assignments_convert_and_updates_compute_in_the_common_type() {
 }
 
 #[test]
-fn pointers_move_in_bytes() {
+fn pointer_arithmetic_is_scaled_to_bytes() {
     expression("gi = *p", "@gi = *p");
     expression("gi = p[3]", "@gi = *p{12:int}");
     expression("gi = 3[p]", "@gi = *p{12:int}");
@@ -105,7 +105,7 @@ fn wrong_operands_are_errors() {
 }
 
 #[test]
-fn one_mistake_is_said_once() {
+fn one_mistake_is_reported_once() {
     said(
         "int f(int i) { return (x + 1) * x[3] + i.y->z + x; }\nint g(void) { return x; }",
         &[

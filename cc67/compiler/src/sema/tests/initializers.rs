@@ -43,7 +43,7 @@ fn aggregates_are_filled_in_order() {
 }
 
 #[test]
-fn designators_jump() {
+fn designators_choose_the_position() {
     data("char a[] = { [3] = 1, 2, [0] = 5 };", "char a[5] = 05 00 00 01 02;");
     data("char a[5] = { [1 ... 3] = 7, 8 };", "char a[5] = 00 07 07 07 08;");
     data("struct { char a, b[2]; } x = { .b = { 1, 2 }, .a = 3 };", "unnamed struct x = 03 01 02;");
@@ -56,7 +56,7 @@ fn designators_jump() {
 }
 
 #[test]
-fn strings_fill_arrays_or_are_objects() {
+fn strings_fill_arrays_or_become_objects() {
     data("char a[] = \"ab\";", "char a[3] = 61 62 00;");
     data("char a[4] = { \"ab\" };", "char a[4] = 61 62 00 00;");
     data("char a[2] = \"ab\";", "char a[2] = 61 62;");

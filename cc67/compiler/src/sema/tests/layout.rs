@@ -62,7 +62,7 @@ fn structures_have_natural_alignment() {
 }
 
 #[test]
-fn bit_fields_lie_in_units_of_their_type() {
+fn bit_fields_are_packed_in_units_of_their_type() {
     accept(
         "struct A { int a : 3, b : 5, c : 24; }; _Static_assert(sizeof(struct A) == 4, \"\");
         struct B { int a : 20, b : 20; }; _Static_assert(sizeof(struct B) == 8, \"\");

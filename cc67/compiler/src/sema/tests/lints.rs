@@ -117,7 +117,7 @@ fn loops_without_an_end() {
 }
 
 #[test]
-fn names_of_the_firmware() {
+fn redefined_firmware_names() {
     said(
         "int ReadBit(int bit) { return bit; } static double sqrt(double x) { return x; } int f(void) { return sqrt(ReadBit(1)); }",
         &["1: redeclared: the firmware already has a `ReadBit` (choose another name, or make it `static`)"],
@@ -135,7 +135,7 @@ fn indentation_that_misleads() {
 }
 
 #[test]
-fn elements_that_an_array_lacks() {
+fn out_of_bounds_elements() {
     said(
         "int a[3], m[2][2], i; char t[4]; struct { int n[2], end; } s[2]; void f(void) {\nint l[3], j; a[3] = a[-1]; l[3] = 0; l[j = 0] = 1;\nm[2][0] = m[1][2]; m[0][3]++; s[2].end = s[1].n[2];\nfor (j = 0; j <= 3; j++) a[j] = 0;\nfor (j = 1; j < 4; j += 2) t[j + 1] = t[j - 1];\nfor (j = 0; j < 2; j++) { if (a[j + 2]) i++; }\n*(a + 4) = *(int *)(t + 2);\n}",
         &[

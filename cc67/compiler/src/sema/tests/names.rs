@@ -47,7 +47,7 @@ fn members_are_suggested() {
 }
 
 #[test]
-fn unknown_types_ask_for_the_header() {
+fn unknown_types_suggest_the_header() {
     let (_, said) = super::run("void f(CHAN *c) { c->Dest = 0; } main() { f(0); }");
     assert_eq!(said.len(), 1, "{said:?}");
     assert!(said.iter().all(|line| line.contains("KMotionDef.h")), "{said:?}");

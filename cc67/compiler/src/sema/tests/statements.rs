@@ -97,7 +97,7 @@ fn statement_expressions_have_a_value() {
 }
 
 #[test]
-fn long_sums_do_not_nest() {
+fn long_sums_do_not_count_as_nesting() {
     let sum = vec!["i"; 3_000].join("+");
     let (_, _, said) = super::analyzed(&format!("int f(int i) {{ return {sum}; }}"));
     assert_eq!(said, [""; 0]);

@@ -215,7 +215,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn files_of_the_first_line_are_beside_the_program() {
+    fn files_in_the_first_line_are_relative_to_the_program() {
         let options =
             ["--stim", "a.stim", "--stim", "bit 8 = 1", "--for", "2", "--machine=m.toml", "--load", "2:b.c"];
         let options = relative_to(Path::new("sub"), options.map(str::to_owned).into());

@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn mistakes_have_their_place() {
+    fn mistakes_are_reported_with_their_place() {
         for (text, expect) in [
             ("machin = 5", "cc67.toml:1:1: unknown key `machin`; did you mean `machine`?"),
             ("\nmachine = true", "cc67.toml:2:11: `machine` must be a text, or several"),

@@ -56,7 +56,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_are_parted_as_a_shell_does() {
+    fn words_are_split_as_in_a_shell() {
         for (line, expect) in [
             ("--for 2  --time", &["--for", "2", "--time"][..]),
             ("--stim \"at 1s bit 8 = 1\" x", &["--stim", "at 1s bit 8 = 1", "x"]),

@@ -61,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn other_files_stand_beside_the_image() {
+    fn other_files_are_placed_next_to_the_image() {
         assert_eq!(beside(Path::new("d/p(1).out"), "map"), Path::new("d/p(1).map"));
         assert_eq!(beside(Path::new("d/image"), "map"), Path::new("d/image.map"));
         assert_eq!(object(Path::new("d/p.c")), Path::new("d/p.o"));

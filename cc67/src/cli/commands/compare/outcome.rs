@@ -283,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn lines_whose_times_are_near_are_told_but_do_not_differ() {
+    fn lines_with_nearly_equal_times_are_reported_but_do_not_differ() {
         let model = of_lines(&["wound 4 layers", "took 3.200123 s", "in 3.2003 s"]);
         let firmware = of_lines(&["wound 4 layers", "took 3.200126 s", "in 3.2004 s"]);
         let (found, near) = model.differences(&firmware, Some(ALLOWED));
@@ -294,7 +294,7 @@ mod tests {
     }
 
     #[test]
-    fn other_lines_and_missing_ones_differ() {
+    fn changed_and_missing_lines_differ() {
         let (found, near) =
             of_lines(&["4 layers", "end"]).differences(&of_lines(&["5 layers"]), Some(ALLOWED));
         let what: Vec<_> = found.iter().map(|difference| difference.what.as_str()).collect();

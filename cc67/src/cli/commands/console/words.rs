@@ -189,7 +189,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn own_words_are_told_from_commands_of_the_board() {
+    fn console_words_are_distinguished_from_board_commands() {
         let thread = ThreadId::new(1);
         for (line, expect) in [
             ("help Move", Some(Word::Help(Some("Move".to_owned())))),

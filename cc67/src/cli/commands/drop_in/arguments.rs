@@ -295,7 +295,7 @@ mod tests {
     }
 
     #[test]
-    fn the_call_of_the_pc_software_is_understood() {
+    fn the_command_line_of_the_pc_software_is_understood() {
         let words = [
             "-text",
             "80050000",
@@ -323,7 +323,7 @@ mod tests {
     }
 
     #[test]
-    fn the_call_of_newer_versions_is_understood() {
+    fn the_command_line_of_newer_versions_is_understood() {
         let words = [
             "-Wl,-Ttext,80060000",
             "-Wl,--oformat,coff",
@@ -360,7 +360,7 @@ mod tests {
     }
 
     #[test]
-    fn addresses_are_hexadecimal_and_the_text_stands_at_a_multiple_of_32() {
+    fn addresses_are_hexadecimal_and_text_starts_at_a_multiple_of_32() {
         assert_eq!(request(&["a.c"]).text, 0x400);
         let words = ["-text", "0x80050020", "-data", "80052000", "-bss", "80053000", "a.c"];
         let CompileRequest { text, data, bss, .. } = request(&words);
@@ -368,7 +368,7 @@ mod tests {
     }
 
     #[test]
-    fn wrong_command_lines_get_the_vendors_words() {
+    fn wrong_command_lines_give_the_vendors_messages() {
         for (words, expect) in [
             (&["-zzz", "a.c"][..], "invalid option -- '-zzz'"),
             (&["a.c", "-text"], "argument to '-text' is missing"),

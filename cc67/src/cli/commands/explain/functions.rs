@@ -105,7 +105,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn headings_of_the_page_are_functions_each_once() {
+    fn each_heading_of_the_page_is_a_function_listed_once() {
         let mut seen = BTreeSet::new();
         for section in PAGE.split("\n## ").skip(1) {
             for name in section.lines().next().unwrap_or_default().split(", ") {
@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn every_code_of_the_page_is_a_remark_or_a_name() {
+    fn every_remark_code_on_the_page_exists() {
         for word in PAGE.split('`').skip(1).step_by(2).filter(|word| word.contains('-')) {
             let is_code =
                 !word.starts_with('-') && word.bytes().all(|byte| byte.is_ascii_lowercase() || byte == b'-');

@@ -176,14 +176,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_name_of_the_vendors_server_makes_a_server() {
+    fn the_name_of_the_vendors_server_starts_a_server() {
         let words = |line: &str| line.split(' ').map(OsString::from).collect::<Vec<_>>();
         assert_eq!(called_as_server(&words("/nowhere/bin/KMotionServer")), Some(words("cc67 serve --once")));
         assert_eq!(called_as_server(&words("cc67 serve")), None);
     }
 
     #[test]
-    fn every_variable_that_the_interpreter_needs_is_there_in_ascending_order() {
+    fn all_interpreter_variables_are_listed_in_ascending_order() {
         let text = variables();
         assert_eq!(text.lines().count(), 3 * 6 + 1 + 9 * 6);
         assert!(text.starts_with("5161\t0.000000\n"));

@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn what_nobody_reads_has_a_limit() {
+    fn unread_lines_and_replies_are_limited() {
         let mut link = Unread::default();
         for number in 0..UNHEARD_LINES + 10 {
             link.console(number.to_string().into_bytes(), false);

@@ -255,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn requests_that_are_none_are_refused() {
+    fn invalid_requests_are_refused() {
         for bytes in [
             &b""[..],
             b"\0\0\0",
@@ -271,7 +271,7 @@ mod tests {
     }
 
     #[test]
-    fn other_speakers_are_recognised_by_what_they_say_first() {
+    fn other_protocols_are_recognised_by_their_first_bytes() {
         for (bytes, expect) in [
             (&b"GET / HTTP/1.1\r\n"[..], Received::Text),
             (b"\r\n", Received::Text),
@@ -285,7 +285,7 @@ mod tests {
     }
 
     #[test]
-    fn a_list_has_its_length_in_front() {
+    fn a_list_is_preceded_by_its_length() {
         assert_eq!(Reply::numbers(&[7]).bytes(), b"\0\0\0\0\0\x01\0\0\0\x07\0\0\0");
         assert_eq!(Reply::text(0, &[b'x'; 9999]).bytes().len(), LONGEST_REPLY);
     }

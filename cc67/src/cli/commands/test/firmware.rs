@@ -65,7 +65,7 @@ mod tests {
     }
 
     #[test]
-    fn what_only_the_model_has_is_skipped_by_name() {
+    fn tests_that_need_the_model_are_skipped_with_the_reason() {
         let refused = "cc67: `--engine` does not work with `--boot`\n";
         check("a\n", "", refused, 2, "Skipped(\"`--engine` does not work");
         check("a\n---- notes\ncc67: trap\n---- exit 3\n", "a\n", "", 0, "Skipped(\"it expects a trap");

@@ -72,14 +72,14 @@ mod tests {
     }
 
     #[test]
-    fn the_console_alone_is_the_whole_text_of_a_good_run() {
+    fn a_successful_run_records_only_the_console() {
         check("done\n", "", 0, "done\n", "");
         check("no end", "", 0, "no end\n", "");
         check("", "", 0, "", "");
     }
 
     #[test]
-    fn what_went_wrong_stands_behind_the_console() {
+    fn errors_follow_the_console_output() {
         check(
             "one\n",
             "cc67: thread 1 trapped\n",

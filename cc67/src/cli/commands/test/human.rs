@@ -78,7 +78,7 @@ fn failure(case: &Case, verdict: &Verdict, paint: &Paint) -> String {
         }
         Verdict::Disagrees(first, executor, second) => {
             let head = format!(
-                "{failed}   {name}: the engines disagree, which is a defect of cc67; - the first, + {}\n",
+                "{failed}   {name}: the engines disagree, which is a bug in cc67; - the first, + {}\n",
                 executor.name()
             );
             head + &messages(second) + &diff(&first.golden, &second.golden, paint)

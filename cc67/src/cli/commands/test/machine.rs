@@ -145,7 +145,7 @@ mod tests {
     use super::escape;
 
     #[test]
-    fn any_text_fits_into_xml() {
+    fn any_text_is_escaped_for_xml() {
         assert_eq!(escape("a<b & \"c\"\x07\n"), "a&lt;b &amp; &quot;c&quot;?\n");
     }
 }

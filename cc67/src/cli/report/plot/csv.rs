@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_table_is_said() {
+    fn invalid_tables_are_explained() {
         check("", "there are no numbers in it");
         check("GIF\0", "this is not text");
         check("a,b\n", "there are no numbers in it");

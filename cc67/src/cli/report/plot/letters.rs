@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn letters_are_as_far_from_each_other_as_the_font_says() {
+    fn letter_spacing_is_that_of_the_font() {
         // Three stems, a digit's width apart: 0.559 of the size for this font's figures.
         let stems = covered("111");
         let groups = stems.chunk_by(|a, b| b - a == 1).map(|group| group[group.len() - 1]);

@@ -123,12 +123,12 @@ mod tests {
     }
 
     #[test]
-    fn spans_that_touch_are_one() {
+    fn touching_spans_are_joined() {
         assert_eq!(joined(&[(0.0, 1.0), (1.0, 2.0), (3.0, 4.0)]), [(0.0, 2.0), (3.0, 4.0)]);
     }
 
     #[test]
-    fn numbers_are_as_long_as_they_need_to_be() {
+    fn numbers_have_no_more_digits_than_needed() {
         assert_eq!([short(1.0 / 3.0), short(-1234.5), short(0.0)], [0.333_333_333, -1234.5, 0.0]);
     }
 }

@@ -209,7 +209,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn another_position_given_is_no_movement() {
+    fn setting_a_new_position_is_not_movement() {
         let points = [0.0, 1.0, 2.0, 1002.0, 1003.0].into_iter().enumerate();
         let slopes = slope(&points.map(|(at, value)| (at as f64, value)).collect());
         assert_eq!(slopes.iter().map(|point| point.1).collect::<Vec<_>>(), [1.0, 1.0, 1.0, 1.0]);

@@ -229,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_dump_is_said() {
+    fn invalid_dumps_are_explained() {
         check("1,2\n", "this is not a value change dump: `$enddefinitions` is missing");
         check("$enddefinitions $end", "there is nothing in it that can be drawn");
         check("$timescale 1 day $end $enddefinitions $end", "`$timescale 1day` is not a unit of time");

@@ -40,7 +40,7 @@ impl Sink for Changes {
 #[cfg(test)]
 mod tests {
     #[test]
-    fn a_change_is_a_line() {
+    fn each_change_is_one_line() {
         let text = super::super::testing::file("bits.csv");
         assert_eq!(text, "time_ns,bit,value,thread\n215000,46,0,1\n");
     }

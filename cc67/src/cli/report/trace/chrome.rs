@@ -172,7 +172,7 @@ impl Sink for Events {
 #[cfg(test)]
 mod tests {
     #[test]
-    fn the_events_of_a_run() {
+    fn the_trace_contains_the_events_of_a_run() {
         insta::assert_snapshot!(super::super::testing::file("run.json"), @r#"
         {"displayTimeUnit":"ns","traceEvents":[
         {"name":"process_name","ph":"M","pid":1,"tid":0,"ts":0.0,"args":{"name":"board"}},

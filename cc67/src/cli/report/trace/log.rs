@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn spans_that_are_close_become_one_when_there_are_too_many() {
+    fn close_spans_are_merged_when_there_are_too_many() {
         let mut spans = Spans::new(100);
         for index in 0..101 {
             spans.add(index % 2, ticks(4 * index), ticks(4 * index + 1));

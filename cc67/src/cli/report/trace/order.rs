@@ -44,7 +44,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn entries_come_in_the_order_of_their_instants() {
+    fn entries_are_ordered_by_time() {
         let mut order = Order::default();
         let tick = |ticks: i64| Cycles::new(ticks * Cycles::PER_TICK.get());
         for (at, byte) in [(5, b'b'), (4, b'a'), (5, b'c')] {

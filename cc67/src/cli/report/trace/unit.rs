@@ -56,7 +56,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_place_of_the_board_has_the_unit_of_its_meaning() {
+    fn board_fields_have_their_physical_units() {
         for (text, unit) in [
             ("ch0->Dest", "units"),
             ("chan[3].Vel", "units/s"),

@@ -206,7 +206,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_dump_of_a_run() {
+    fn the_dump_contains_the_changes_of_a_run() {
         insta::assert_snapshot!(super::super::testing::file("run.vcd"), @r#"
         $version cc67 $end
         $timescale 1 ns $end

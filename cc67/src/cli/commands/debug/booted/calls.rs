@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn functions_are_entered_and_left() {
+    fn calls_and_returns_are_tracked() {
         let mut calls = OpenCalls::default();
         let mut arrive = |pc, call, stack, begins| {
             calls.arrive(&at(pc, call, stack), begins);
