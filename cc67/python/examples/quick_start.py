@@ -1,4 +1,4 @@
-"""A program is compiled and run; what it prints and where it went."""
+"""Compile and run a program; print its output and the final position of the axis."""
 
 from __future__ import annotations
 

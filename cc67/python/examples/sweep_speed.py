@@ -1,4 +1,4 @@
-"""How long a move takes, over speed and acceleration, as a table; on two processes."""
+"""Print a table of the duration of a move at several speeds and accelerations, with two processes."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ HERE = Path(__file__).parent
 
 
 def duration(board: cc67.Board) -> dict[str, float]:
-    """Seconds until the axis has arrived, and its highest speed."""
+    """Return the seconds until the axis arrives, and its highest speed in units/s."""
     trace = board.trace(["dest0"], 3.0, every=10)
     arrived = int(np.argmax(trace["dest0"] == 2000))
     return {"took": float(trace.time[arrived]), "speed": float(np.max(np.diff(trace["dest0"])) / 900e-6)}

@@ -1,4 +1,4 @@
-"""Tests of a program: `pytest cc67/python/examples`."""
+"""Tests of a program; run them with `pytest cc67/python/examples`."""
 
 from __future__ import annotations
 

@@ -45,7 +45,7 @@ pub(crate) struct Board {
     /// Name and unit of each axis.
     #[pyo3(get)]
     axes: Vec<(String, String)>,
-    /// Which board it is.
+    /// Number of the board, different for each.
     #[pyo3(get)]
     number: u64,
 }
@@ -80,12 +80,12 @@ impl Board {
         let caller = thread::current().id();
         if *used.owner.get_or_insert(caller) != caller {
             return Err(ThreadError::new_err(
-                "the board belongs to the thread that used it first; that one can give it up with `release()`",
+                "the board belongs to the thread that used it first; that thread can give it up with `release()`",
             ));
         }
         let residence = &mut used.residence;
         let result = py.detach(move || residence.call(work));
-        result.ok_or_else(|| Error::new_err("the thread of the board has ended, which is a defect of cc67"))
+        result.ok_or_else(|| Error::new_err("the thread of the board has ended, which is a bug in cc67"))
     }
 
     /// A run in portions, with a look at signals every [`LOOK`]; whether what it waited for came true.
@@ -116,15 +116,6 @@ impl Board {
             }
             py.check_signals()?;
         }
-    }
-
-    /// The tick some seconds from now.
-    fn after(&self, py: Python<'_>, seconds: f64) -> PyResult<u64> {
-        if !(0.0..=1e12).contains(&seconds) {
-            return Err(input(format!("a time is 0 to 1e12 seconds, not {seconds}")));
-        }
-        let ticks = (seconds / TIMEBASE).round() as u64;
-        Ok(self.call(py, |control| control.tick())?.saturating_add(ticks))
     }
 }
 
@@ -170,7 +161,7 @@ impl Board {
         Ok(Self { used, axes: arranged.axes, number: NUMBERS.fetch_add(1, Ordering::Relaxed) })
     }
 
-    /// The thread that uses the board gives it up.
+    /// Give up the board; it then belongs to the thread that uses it next.
     fn release(&self, py: Python<'_>) -> PyResult<()> {
         self.call(py, |_| ())?;
         self.used.lock().unwrap_or_else(PoisonError::into_inner).owner = None;
@@ -183,6 +174,15 @@ impl Board {
 
     fn time(&self, py: Python<'_>) -> PyResult<f64> {
         Ok(self.tick(py)? as f64 * TIMEBASE)
+    }
+
+    /// Return the tick some seconds from now.
+    fn after(&self, py: Python<'_>, seconds: f64) -> PyResult<u64> {
+        if !(0.0..=1e12).contains(&seconds) {
+            return Err(input(format!("a time must be 0 to 1e12 seconds, not {seconds}")));
+        }
+        let ticks = (seconds / TIMEBASE).round() as u64;
+        Ok(self.tick(py)?.saturating_add(ticks))
     }
 
     fn run_for(&self, py: Python<'_>, seconds: f64) -> PyResult<()> {
@@ -311,7 +311,7 @@ impl Board {
         self.call(py, move |control| control.field(axis, &name))
     }
 
-    /// The names of the fields of an axis that are numbers, with what each means.
+    /// Return the names of the numeric fields of an axis, with the meaning of each.
     #[staticmethod]
     fn field_names() -> Vec<(&'static str, &'static str)> {
         field_names()
@@ -325,7 +325,7 @@ impl Board {
         self.call(py, move |control| control.set_user_data(index, value))
     }
 
-    /// Keeps the present instant; its number.
+    /// Save the present state, and return its number.
     fn snapshot(&self, py: Python<'_>) -> PyResult<u64> {
         let number = NUMBERS.fetch_add(1, Ordering::Relaxed);
         self.call(py, move |control| control.snapshot(number))?;
@@ -336,7 +336,7 @@ impl Board {
         self.call(py, move |control| control.restore(number))
     }
 
-    /// Forgets an instant, from whatever thread its last user was in; one that runs meanwhile keeps it.
+    /// Forget a saved state, from any thread; a board that is running at that moment keeps it.
     fn forget(&self, number: u64) {
         if let Ok(mut used) = self.used.try_lock() {
             // A board whose thread is gone has nothing to forget.
@@ -344,7 +344,7 @@ impl Board {
         }
     }
 
-    /// Samples in columns: the instants, and names with their values, as arrays that own what was recorded.
+    /// Record samples, and return their times, and names with values, as arrays that own their memory.
     fn trace<'py>(
         &self,
         py: Python<'py>,
@@ -355,14 +355,13 @@ impl Board {
         let samples = (self.after(py, seconds)?.saturating_sub(self.tick(py)?) / every.max(1)) as usize;
         if samples.saturating_mul(items.len() + 1) > MOST_VALUES {
             let values = samples.saturating_mul(items.len() + 1);
-            return Err(input(format!("a trace of {values} values is too long; {MOST_VALUES} are possible")));
+            return Err(input(format!("a trace of {values} values is too long; the limit is {MOST_VALUES}")));
         }
         self.call(py, move |control| control.begin_trace(&items, every.max(1), samples))?.map_err(input)?;
         let result = self.run_in_portions(py, |control| control.trace());
         let columns = self.call(py, |control| control.end_trace())?;
         result?;
-        let columns =
-            columns.ok_or_else(|| Error::new_err("the trace is gone, which is a defect of cc67"))?;
+        let columns = columns.ok_or_else(|| Error::new_err("the trace is gone, which is a bug in cc67"))?;
         let arrays = columns.named.into_iter().map(|(name, column)| (name, PyArray1::from_vec(py, column)));
         let arrays = arrays.collect();
         Ok((PyArray1::from_vec(py, columns.time), arrays))

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use pyo3::prelude::*;
 
-/// Runs the command with the arguments of a process, the program's name first; the exit code.
+/// Run the command with the arguments of a process, the program's name first, and return the exit code.
 #[pyfunction]
 pub(crate) fn command(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
     let code = py.detach(|| cc67::cli::main(arguments));

@@ -1,8 +1,11 @@
 //! The exceptions of the package, which are written in Python, and the mapping of errors to them.
 
 use std::fmt::Display;
+use std::io;
+use std::path::Path;
 
 use pyo3::PyErr;
+use pyo3::exceptions::PyOSError;
 
 pyo3::import_exception!(cc67._errors, Error);
 pyo3::import_exception!(cc67._errors, InputError);
@@ -16,13 +19,13 @@ pub(crate) fn input(error: impl Display) -> PyErr {
     InputError::new_err(error.to_string())
 }
 
-/// A file that cannot be read is the exception that Python has for it.
-pub(crate) fn unreadable(path: &std::path::Path, error: &std::io::Error) -> PyErr {
-    match error.raw_os_error() {
-        Some(number) => {
-            let arguments = (number, error.to_string(), path.to_path_buf());
-            pyo3::exceptions::PyOSError::new_err(arguments)
-        }
-        None => pyo3::exceptions::PyOSError::new_err(format!("{}: {error}", path.display())),
-    }
+/// A file that cannot be read is the exception that Python has for it, such as `FileNotFoundError`.
+pub(crate) fn unreadable(path: &Path, error: &io::Error) -> PyErr {
+    let text = error.to_string();
+    let Some(number) = error.raw_os_error() else {
+        return PyOSError::new_err(format!("{}: {text}", path.display()));
+    };
+    let text = text.strip_suffix(&format!(" (os error {number})")).unwrap_or(&text).to_owned();
+    // Windows takes the last argument for its own number of the error; other systems ignore it.
+    PyOSError::new_err((number, text, path.as_os_str().to_owned(), number))
 }

@@ -13,13 +13,13 @@ fn read(name: &str, bytes: &[u8]) -> PyResult<Inspection> {
     })
 }
 
-/// Headers, sections, symbols, lines, functions as JSON.
+/// Return headers, sections, symbols, lines and functions as JSON.
 #[pyfunction]
 pub(crate) fn inspection(name: &str, bytes: &[u8]) -> PyResult<String> {
     Ok(read(name, bytes)?.to_json(Order::Address).to_string())
 }
 
-/// The parts of `cc67 inspect --all` as texts: headers, symbols, lines, calls, stack.
+/// Return the parts of `cc67 inspect --all` as texts: headers, symbols, lines, calls, stack.
 #[pyfunction]
 pub(crate) fn parts(name: &str, bytes: &[u8]) -> PyResult<Vec<(&'static str, String)>> {
     let inspection = read(name, bytes)?;
@@ -32,7 +32,7 @@ pub(crate) fn parts(name: &str, bytes: &[u8]) -> PyResult<Vec<(&'static str, Str
     ])
 }
 
-/// The instructions with their source lines, of all functions or of one.
+/// Return the instructions of one function, or of all, with their source lines.
 #[pyfunction]
 #[pyo3(signature = (name, bytes, folder, function = None))]
 pub(crate) fn disassembly(

@@ -89,7 +89,7 @@ pub(crate) fn read(path: &Path) -> PyResult<Vec<u8>> {
     files::read(path).map_err(|error| unreadable(path, &error))
 }
 
-/// A program, to be linked for a thread.
+/// A program, not yet linked for a thread unless it is an image.
 #[pyclass(frozen, name = "Program")]
 #[derive(Debug)]
 pub(crate) struct LinkableProgram {
@@ -137,13 +137,13 @@ fn what_is_wrong(units: &[Compilation], thread: ThreadId) -> String {
 
 #[pymethods]
 impl LinkableProgram {
-    /// A program of an image, as `cc67 build` writes it.
+    /// Make a program from an image, as `cc67 build` writes it.
     #[staticmethod]
     fn from_image(path: PathBuf, bytes: Vec<u8>) -> Self {
         Self { path, content: Content::Image(bytes), options: Options::default() }
     }
 
-    /// A program of objects that were compiled earlier.
+    /// Make a program from objects that were compiled earlier.
     #[staticmethod]
     fn from_objects(
         path: PathBuf,
@@ -153,7 +153,7 @@ impl LinkableProgram {
         Ok(Self { path, content: Content::Objects(objects), options: request.options()? })
     }
 
-    /// Names and bytes of the objects; `None` for an image.
+    /// Return names and bytes of the objects; `None` for an image.
     fn objects(&self) -> Option<Vec<(String, Vec<u8>)>> {
         match &self.content {
             Content::Objects(objects) => Some(objects.clone()),
@@ -161,7 +161,7 @@ impl LinkableProgram {
         }
     }
 
-    /// The image for a thread, 1 to 7.
+    /// Return the image for a thread, 1 to 7.
     fn image(&self, py: Python<'_>, number: i32) -> PyResult<Vec<u8>> {
         let thread = thread(number)?;
         Ok(py.detach(|| self.for_thread(thread))?.image)
@@ -173,8 +173,8 @@ pub(crate) fn thread(number: i32) -> PyResult<ThreadId> {
     ThreadId::new(number).ok_or_else(|| input(format!("no such thread {number} (1-{})", ThreadId::MAX)))
 }
 
-/// Compiles sources and reads objects, which together make one program, and links it once to see whether that works:
-/// the program, if it has no errors, and the diagnostics, one JSON object each.
+/// Compile sources and read objects, which make one program together, and link it once as a check. Return the program,
+/// if it has no errors, and the diagnostics, one JSON object each.
 #[pyfunction]
 pub(crate) fn compile(
     py: Python<'_>,
@@ -234,7 +234,7 @@ fn owned(unit: &Compilation, levels: &Levels) -> Vec<compiler::diag::Diagnostic>
     unit.diagnostics().into_iter().filter_map(|diagnostic| levels.apply(diagnostic)).collect()
 }
 
-/// The names of all warnings.
+/// Return the names of all warnings.
 #[pyfunction]
 pub(crate) fn lints() -> Vec<&'static str> {
     Lint::ALL.iter().map(|lint| lint.name()).collect()

@@ -43,7 +43,7 @@ impl Residence {
         Some(result.recv().ok()?.map(|()| Self::Elsewhere(sender)))
     }
 
-    /// Calls the session; `None` if its thread is gone, which a defect alone can bring about.
+    /// Calls the session; `None` if its thread is gone, which only a bug in cc67 can cause.
     pub(crate) fn call<R: Send + 'static>(
         &mut self,
         work: impl FnOnce(&mut dyn Control) -> R + Send + 'static,

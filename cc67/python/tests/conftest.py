@@ -1,4 +1,4 @@
-"""What several tests use."""
+"""Programs and a fixture for several tests."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ main() { for (;;) WaitNextTimeSlice(); }
 
 @pytest.fixture
 def write(tmp_path: Path) -> Write:
-    """Writes a source into the test's folder."""
+    """A function that writes a source into the folder of the test."""
 
     def source(text: str, name: str = "program.c") -> Path:
         path = tmp_path / name

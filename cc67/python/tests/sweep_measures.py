@@ -6,21 +6,27 @@ from typing import Any
 
 import cc67
 
-# A motor on the analog output of axis 0 that is turned by hand: no servo, so what it does is the plant's alone.
+# A program without motion: it takes 0.05 s, and doubles element 5 of persist.UserData into element 20.
 SPIN = """
 #include "KMotionDef.h"
 main() { printf("begin\\n"); Delay_sec(0.05); persist.UserData[20] = persist.UserData[5] * 2; }
 """
 
+# A program that takes a tenth of a second for each unit in element 5 of persist.UserData.
+DELAY = """
+#include "KMotionDef.h"
+main() { Delay_sec(persist.UserData[5] * 0.1); }
+"""
+
 
 def double(board: cc67.Board, inputs: dict[str, Any]) -> dict[str, float]:
-    """What the program makes of its start value, and when it ends."""
+    """Return the doubled start value, and when the program ends."""
     board.run()
     return {"double": board.persist[20], "time": board.time}
 
 
 def fails_at_three(board: cc67.Board, inputs: dict[str, Any]) -> float:
-    """Fails for one of its inputs."""
+    """Return the doubled start value; fail if the start value is 3."""
     board.run()
     if inputs["persist.5"] == 3:
         raise ValueError("three is too many")
@@ -43,7 +49,7 @@ main()
 
 
 def following(board: cc67.Board) -> dict[str, float]:
-    """How far a motor goes too far on a step, and where it is after a while."""
+    """Return how far a motor overshoots at a step, and where it is after 0.1 s."""
     trace = board.trace(["dest0", "load0"], 0.1, every=10)
     return {"lag": float((trace["load0"] - trace["dest0"]).max()), "end": float(trace["load0"][-1])}
 

@@ -122,6 +122,20 @@ def test_wrong_arguments_are_exceptions(
         cc67.compile(files, **arguments)  # type: ignore[arg-type]
 
 
+def test_a_missing_file_is_the_error_that_python_has_for_it(tmp_path: Path) -> None:
+    path = tmp_path / "missing.c"
+    with pytest.raises(FileNotFoundError) as ours:
+        cc67.compile(path)
+    with pytest.raises(FileNotFoundError) as theirs:
+        open(path)
+    assert str(ours.value) == str(theirs.value)
+    assert (ours.value.errno, ours.value.strerror, ours.value.filename) == (
+        theirs.value.errno,
+        theirs.value.strerror,
+        str(path),
+    )
+
+
 def test_bytes_that_are_not_c_are_an_error(tmp_path: Path) -> None:
     path = tmp_path / "picture.c"
     path.write_bytes(b"\x89PNG\r\n\x1a\n\0\0\0\0")

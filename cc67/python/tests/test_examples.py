@@ -11,7 +11,7 @@ EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
 
 
 def example(name: str, folder: Path) -> str:
-    """What an example prints."""
+    """Run an example and return what it prints."""
     copy = shutil.copytree(EXAMPLES, folder / "examples")
     result = subprocess.run([sys.executable, str(copy / name)], capture_output=True, text=True)
     assert result.returncode == 0, result.stderr

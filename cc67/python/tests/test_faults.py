@@ -1,4 +1,4 @@
-"""Bad input to a running board: traps, threads, signals."""
+"""Faults of a running board: traps, use by other threads, signals."""
 
 from __future__ import annotations
 
@@ -78,12 +78,12 @@ def test_a_board_is_for_one_thread(write: Write, engine: str) -> None:
     thread = threading.Thread(target=other)
     thread.start()
     thread.join()
-    assert isinstance(caught[0], cc67.ThreadError) and "thread" in str(caught[0])
+    assert isinstance(caught[0], cc67.ThreadError) and "that thread can give it up" in str(caught[0])
     board.run_for(0.1)
     assert board.time == pytest.approx(0.2, abs=1e-3)
 
 
-# Long enough for this thread to look in between, also where other tests take the processor.
+# Long enough for this thread to use the board meanwhile, even if other tests keep the processor busy.
 @pytest.mark.parametrize(("engine", "seconds"), [("native", 20.0), ("bytecode", 1.0)])
 def test_a_board_that_runs_elsewhere_says_so_and_goes_on(write: Write, engine: str, seconds: float) -> None:
     board = cc67.Board(programs=[write(BUSY)], engine=engine)
@@ -96,7 +96,7 @@ def test_a_board_that_runs_elsewhere_says_so_and_goes_on(write: Write, engine: s
     thread = threading.Thread(target=run)
     thread.start()
     began.wait()
-    # The lock of the interpreter is free while the board runs: this loop goes on beside it.
+    # The interpreter's lock is free while the board runs, so this loop continues meanwhile.
     turns = 0
     while thread.is_alive():
         turns += 1
@@ -120,14 +120,14 @@ def test_a_board_is_handed_to_another_thread(write: Write) -> None:
         board.time
 
 
-@pytest.mark.skipif(os.name == "nt", reason="there is no SIGINT to send")
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no SIGINT to send")
 @pytest.mark.parametrize("engine", ["native", "bytecode"])
 @pytest.mark.parametrize("call", ["run_for(1e6)", "run(1e6)", "run_until('0', 1e6)", "trace('bit0', 2000.0)"])
 def test_ctrl_c_stops_a_long_run(write: Write, engine: str, call: str) -> None:
     path = write(BUSY)
     script = f"""
 import cc67, signal
-# Whoever starts the tests in the background may have the signal ignored.
+# Tests that were started in the background may inherit a signal that is ignored.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 board = cc67.Board(programs=[{str(path)!r}], engine={engine!r})
 print("ready", flush=True)

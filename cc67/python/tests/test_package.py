@@ -59,8 +59,9 @@ def test_an_image_is_looked_at(write: Write, tmp_path: Path) -> None:
     path.write_bytes(bytes(image))
     assert cc67.Image.read(path).symbols == image.symbols
     assert "main" in cc67.inspect(path)
-    with pytest.raises(cc67.UnknownNameError, match="did you mean 'main'"):
-        image.symbol("mian")
+    for look in (image.symbol, image.disassembly):
+        with pytest.raises(cc67.UnknownNameError, match="did you mean 'main'"):
+            look("mian")
     board = cc67.Board(programs=[path])
     assert list(board.programs) == [2]
     board.run()

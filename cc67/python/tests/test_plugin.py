@@ -1,4 +1,4 @@
-"""The pytest plugin, tried as its users use it: by a pytest of its own."""
+"""The pytest plugin, tested as its users run it: in a separate pytest."""
 
 from __future__ import annotations
 
@@ -117,4 +117,4 @@ def test_an_unknown_engine_is_refused(tests: pytest.Pytester) -> None:
     tests.makepyfile("import pytest\n@pytest.mark.cc67_engines('quantum')\ndef test_it(board): pass\n")
     result = tests.runpytest_subprocess()
     assert result.ret != 0
-    result.stdout.fnmatch_lines(["*an engine is native or bytecode, not 'quantum'*"])
+    result.stdout.fnmatch_lines(["*an engine must be native or bytecode, not 'quantum'*"])

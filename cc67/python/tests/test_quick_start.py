@@ -1,4 +1,4 @@
-"""What the pages say works: the quick start of the book, the one of the package."""
+"""The code on the pages works: the quick start of the book and that of the package."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ PAGES = {"book": "cc67/book/src/python.md", "package": "cc67/python/README.md"}
 
 
 def block(page: str, info: str) -> str:
-    """The first fenced block of a page that begins so."""
+    """Return the first fenced block of a page that has this info string."""
     text = (ROOT / page).read_text(encoding="utf-8")
     found = re.search(rf"^```{re.escape(info)}$(.*?)^```$", text, re.MULTILINE | re.DOTALL)
     assert found, f"{page} has no block {info}"
@@ -32,7 +32,7 @@ def test_the_quick_start_does_what_it_says(
 
 
 def test_every_call_of_the_book_exists() -> None:
-    import cc67
+    import cc67.studies
 
     text = (ROOT / PAGES["book"]).read_text(encoding="utf-8")
     for name in re.findall(r"\bcc67\.([A-Za-z_]\w*)", text):

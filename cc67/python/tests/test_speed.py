@@ -1,4 +1,4 @@
-"""What Python costs. Only where figures are wanted, with a release build: `CC67_LONG=1 pytest tests/test_speed.py -s`."""
+"""The speed of the package, measured on a release build by `CC67_LONG=1 pytest tests/test_speed.py -s`."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from sweep_measures import SPIN
 
 import cc67
 
-pytestmark = pytest.mark.skipif(not os.environ.get("CC67_LONG"), reason="figures are for a release build")
+pytestmark = pytest.mark.skipif(not os.environ.get("CC67_LONG"), reason="runs on a release build, with CC67_LONG=1")
 
 
 def best(work: Callable[[], object], times: int = 5) -> float:
-    """Seconds of the fastest of several."""
+    """Return the seconds of the fastest of several calls."""
     found = []
     for _ in range(times):
         begin = time.perf_counter()
@@ -27,7 +27,7 @@ def best(work: Callable[[], object], times: int = 5) -> float:
 
 
 def short(board: cc67.Board) -> int:
-    """A short run."""
+    """Execute a short run."""
     board.run()
     return board.persist[20]
 

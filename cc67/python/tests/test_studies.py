@@ -1,8 +1,9 @@
-"""Studies, against closed forms."""
+"""Studies, compared with closed forms."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,12 +15,12 @@ ROOT = Path(__file__).resolve().parents[3]
 SERVO = ROOT / "c-programs" / "studies" / "servo.c"
 HOME = ROOT / "c-programs" / "studies" / "home.c"
 
-# The default plant behind an analog output: 50 units/s a count, after 0.02 s.
+# The default plant of an analog output: 50 units/s per count, with a time constant of 0.02 s.
 KU, TAU = 50.0, 0.02
 
 
 def servo(gain: float, **options: object) -> cc67.Board:
-    """A servo axis with the default plant, a fine encoder and this P."""
+    """Make a board with a servo axis that has the default plant, a fine encoder and this P."""
     board = cc67.Board(
         programs=[SERVO],
         machine=SERVO.with_suffix(".toml"),
@@ -31,7 +32,7 @@ def servo(gain: float, **options: object) -> cc67.Board:
 
 
 def damped(gain: float) -> tuple[float, float]:
-    """Natural frequency in rad/s and damping of the closed loop: P and the plant K / (s (tau s + 1))."""
+    """Return natural frequency in rad/s and damping of the loop closed by P around the plant K / (s (tau s + 1))."""
     omega = np.sqrt(gain * KU / TAU)
     return float(omega), float(1 / (2 * TAU * omega))
 
@@ -60,7 +61,7 @@ def test_figures_of_a_first_order_response() -> None:
 def test_the_step_response_is_that_of_the_closed_form(gain: float) -> None:
     response = studies.step_response(servo(gain), 0, size=1000.0, seconds=0.5)
     omega, zeta = damped(gain)
-    # The output of a tick acts from the next one on, half of which has gone by on average.
+    # On the board, the output of a tick acts from the next tick on; the closed form neglects this delay.
     time = response.time
     roots = np.roots([1, 2 * zeta * omega, omega**2]).astype(complex)
     a, b = roots if abs(roots[0] - roots[1]) > 1e-6 else (roots[0], roots[1] * (1 + 1e-6))
@@ -70,7 +71,7 @@ def test_the_step_response_is_that_of_the_closed_form(gain: float) -> None:
     expected = studies.step_figures(time, closed, 1.0)
     assert response.figures.rise == pytest.approx(expected.rise, rel=0.01)
     assert response.figures.overshoot == pytest.approx(expected.overshoot, abs=0.01)
-    # The analog output has whole counts, and a count less at rest is 1 / P units.
+    # The analog output has whole counts, so the axis can rest with an error of up to a count, 1 / P units.
     assert abs(response.figures.error) < 1.0 / gain
 
 
@@ -106,26 +107,39 @@ def test_the_following_error_of_a_move() -> None:
     board = servo(1.0)
     board.axes[0].move(2000)
     found = studies.following_error(board, "Slide", 0.5)
-    # At a constant speed the position is behind by speed / (P K).
+    # At constant speed, the following error is speed / (P K).
     fastest = np.max(np.diff(found.trace["dest0"])) / 90e-6
     assert 0 < found.worst < 1.3 * fastest / KU and found.rms < found.worst
     assert found.trace["error"][-1] == pytest.approx(0, abs=5)
 
 
-def test_the_worst_conditions_are_found() -> None:
+def test_times_of_studies_may_be_integers() -> None:
+    board = servo(1.0)
+    assert len(studies.following_error(board, 0, 1).trace.time) == 11111
+    assert studies.step_response(board, 0, 100, 1).time[-1] == pytest.approx(1, abs=2e-4)
+
+
+def test_the_worst_conditions_are_found(tmp_path: Path) -> None:
     program = cc67.compile(SERVO)
-    worst, table = studies.worst_following_error(
-        program,
-        {"axis.0.inertia": [0.5, 1.0, 2.0]},
-        seconds=0.3,
-        machine=SERVO.with_suffix(".toml"),
-        stim=['at 0.02s command "Move0=1000"'],
-    )
+
+    def study(seconds: float) -> tuple[dict[str, Any], cc67.Table]:
+        return studies.worst_following_error(
+            program,
+            {"axis.0.inertia": [0.5, 1.0, 2.0]},
+            seconds=seconds,
+            machine=SERVO.with_suffix(".toml"),
+            stim=['at 0.02s command "Move0=1000"'],
+            log=tmp_path / "study.sweep",
+        )
+
+    worst, table = study(0.3)
     assert len(table) == 3 and worst["axis.0.inertia"] == 2.0
+    with pytest.raises(cc67.InputError, match="another sweep"):
+        study(0.2)
 
 
 def homed_at(board: cc67.Board) -> float:
-    """Where the switch is in the coordinates that homing came to."""
+    """Return the machine coordinate at which homing has put position 0."""
     if not board.run(20.0):
         raise TimeoutError("not homed")
     return board.axes[0].load - board.axes[0].position
@@ -140,12 +154,12 @@ def test_the_tolerance_of_a_homing_program() -> None:
     )
     assert study.table == again.table and len(study.table.failures) == 0
     spread = study.spread("value")
-    assert spread["max"] - spread["min"] < 1.0, "the switch is where it is, wherever the axis begins"
+    assert spread["max"] - spread["min"] < 1.0, "homing finds the same place, wherever the axis begins"
     assert study.yield_within("value", -302, -298) == 1.0
 
 
 def parabola(gains: dict[str, float]) -> float:
-    """Least at 3 and -1."""
+    """Return a cost that is lowest at P = 3 and D = -1."""
     return (gains["P"] - 3) ** 2 + 2 * (gains["D"] + 1) ** 2
 
 

@@ -1,4 +1,4 @@
-"""Sweeps: the same table on whatever executor, and after being killed."""
+"""Sweeps: the same table with every executor, and after being killed."""
 
 from __future__ import annotations
 
@@ -11,11 +11,13 @@ import time
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from pathlib import Path
 
+import numpy as np
 import pytest
 from conftest import WAIT, Write
-from sweep_measures import MOVE, SPIN, VARIATIONS, double, fails_at_three, following
+from sweep_measures import DELAY, MOVE, SPIN, VARIATIONS, double, fails_at_three, following
 
 import cc67
+
 
 def test_a_grid_is_all_combinations_in_order(write: Write) -> None:
     table = cc67.sweep(write(SPIN), {"persist.5": range(3), "persist.6": [7, 8]}, double)
@@ -47,6 +49,18 @@ def test_macros_are_compiled_in_once(write: Write) -> None:
     assert cc67.sweep(program, grid, {"value": "persist.0"})["value"] == [2, 3, 4, 5]
 
 
+def test_a_macro_of_a_sweep_needs_no_default_in_the_source(write: Write, tmp_path: Path) -> None:
+    path = write('#include "KMotionDef.h"\nmain() { persist.UserData[0] = SPEED * 2; }')
+    grid, log = {"macro.SPEED": [1, 2, 2.0]}, tmp_path / "sweep.log"
+    for _ in range(2):
+        assert cc67.sweep(path, grid, {"value": "persist.0"}, log=log)["value"] == [2, 4, 4]
+    path.write_text(path.read_text().replace("SPEED * 2", "SPEED == 2 ? 9 : 2"))
+    with pytest.raises(cc67.InputError, match="another sweep"):
+        cc67.sweep(path, grid, {"value": "persist.0"}, log=log)
+    with pytest.raises(cc67.CompileError, match="SPEED"):
+        cc67.sweep(path, {"persist.5": [1]}, {"value": "persist.0"})
+
+
 def test_failures_are_kept_with_their_inputs(write: Write) -> None:
     table = cc67.sweep(write(SPIN), {"persist.5": range(5)}, fails_at_three)
     assert len(table) == 5 and len(table.good) == 4
@@ -59,6 +73,14 @@ def test_a_program_that_does_not_end_is_a_failure(write: Write) -> None:
     assert "not ended after 0.5 s" in table[0]["error"]
     table = cc67.sweep(write(WAIT), {"persist.5": [1]}, {"x": "persist.5", "t": "time"}, until=0.09)
     assert table[0]["x"] == 1 and table[0]["t"] == pytest.approx(0.09)
+
+
+def test_times_of_a_sweep_may_be_integers(write: Write) -> None:
+    path, grid = write(WAIT), {"persist.5": [1]}
+    for second in (1, np.int64(1), np.float32(1)):
+        table = cc67.sweep(path, grid, {"t": "time"}, until=second)  # type: ignore[arg-type, unused-ignore]
+        assert table[0]["error"] is None and table[0]["t"] == pytest.approx(1, abs=1e-4)
+    assert "not ended after 1 s" in cc67.sweep(path, grid, {"t": "time"}, timeout=1)[0]["error"]
 
 
 def test_executors_give_the_same_table(write: Write) -> None:
@@ -110,9 +132,47 @@ def test_the_log_of_another_sweep_is_refused(write: Write, tmp_path: Path) -> No
     cc67.sweep(path, {"persist.5": [1, 2]}, double, log=log)
     with pytest.raises(cc67.InputError, match="another sweep"):
         cc67.sweep(path, {"persist.5": [1, 3]}, double, log=log)
+    for options in ({"until": 0.01}, {"set": {"persist.6": 1}}):
+        with pytest.raises(cc67.InputError, match="another sweep"):
+            cc67.sweep(path, {"persist.5": [1, 2]}, {"t": "time"}, log=log, **options)
     (tmp_path / "text").write_text("not a log\n")
     with pytest.raises(cc67.InputError, match="not the log"):
         cc67.sweep(path, {"persist.5": [1, 2]}, double, log=tmp_path / "text")
+
+
+def test_a_log_belongs_to_one_end_of_the_runs(write: Write, tmp_path: Path) -> None:
+    path, log = write(WAIT), tmp_path / "sweep.log"
+
+    def times(until: float | cc67.Condition) -> list[float]:
+        return cc67.sweep(path, {"persist.5": [1]}, {"t": "time"}, log=log, until=until)["t"]
+
+    assert times(1.0) == times(1) == [pytest.approx(1.0, abs=1e-4)]
+    for other in (0.5, "persist.5 == 1", cc67.ended(2)):
+        with pytest.raises(cc67.InputError, match="until"):
+            times(other)
+
+
+def test_a_log_belongs_to_the_content_of_its_machine_file(write: Write, tmp_path: Path) -> None:
+    path, machine, log = write(SPIN), tmp_path / "mill.toml", tmp_path / "sweep.log"
+    machine.write_text("[axis.0]\nlag_s = 0.001\n")
+    cc67.sweep(path, {"persist.5": [1]}, double, log=log, machine=machine)
+    machine.write_text("[axis.0]\nlag_s = 0.002\n")
+    with pytest.raises(cc67.InputError, match="another sweep"):
+        cc67.sweep(path, {"persist.5": [1]}, double, log=log, machine=machine)
+
+
+def test_another_timeout_repeats_the_runs_that_it_ended(write: Write, tmp_path: Path) -> None:
+    path, log = write(DELAY), tmp_path / "sweep.log"
+
+    def errors(timeout: float) -> list[bool]:
+        table = cc67.sweep(path, {"persist.5": [1, 3]}, {"t": "time"}, log=log, timeout=timeout)
+        return [error is not None for error in table["error"]]
+
+    assert errors(0.2) == [False, True]
+    first = log.read_text()
+    assert errors(0.2) == [False, True] and log.read_text() == first
+    assert errors(1) == [False, False] and len(log.read_text().splitlines()) == 3
+    assert errors(0.01) == [False, False], "runs that ended in time keep their results"
 
 
 def test_shards_are_merged(write: Write, tmp_path: Path) -> None:
@@ -122,8 +182,21 @@ def test_shards_are_merged(write: Write, tmp_path: Path) -> None:
     parts = [cc67.sweep(path, grid, double, log=log, shard=f"{n}/3") for n, log in enumerate(logs, 1)]
     assert [len(part) for part in parts] == [3, 2, 2]
     assert cc67.merge(*logs) == cc67.sweep(path, grid, double)
+    with pytest.raises(cc67.InputError, match="2 of 7 runs are missing"):
+        cc67.merge(*logs[:2])
     with pytest.raises(cc67.InputError, match="shard"):
         cc67.sweep(path, grid, double, shard="4/3")
+
+
+def test_what_is_not_the_log_of_a_sweep_is_not_merged(tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError, match="missing.log"):
+        cc67.merge(tmp_path / "missing.log")
+    with pytest.raises(cc67.InputError, match="no log"):
+        cc67.merge()
+    for name, content in {"text": b"not a log\n", "binary": b"\xff\xfe\n", "empty": b"", "old": b'{"sweep": "x"}\n'}.items():
+        (tmp_path / name).write_bytes(content)
+        with pytest.raises(cc67.InputError, match="not the log of a sweep"):
+            cc67.merge(tmp_path / name)
 
 
 @pytest.mark.parametrize(
@@ -131,9 +204,11 @@ def test_shards_are_merged(write: Write, tmp_path: Path) -> None:
     [
         ({"grid": 5}, TypeError, "grid"),
         ({"grid": {"persist.5": 5}}, TypeError, "list"),
-        ({"grid": {"persist.5": [object()]}}, TypeError, "number or a text"),
+        ({"grid": {"persist.5": [object()]}}, TypeError, "number or a string"),
         ({"measure": 5}, TypeError, "measure"),
         ({"executor": "quantum"}, TypeError, "threads"),
+        ({"until": [1]}, TypeError, "a condition or a number of seconds"),
+        ({"timeout": "1"}, TypeError, "a number of seconds"),
         ({"machin": "x.toml"}, cc67.UnknownNameError, "did you mean 'machine'"),
         ({"executor": "processes", "measure": lambda board: 1}, TypeError, "functions of a module"),
     ],
@@ -189,6 +264,11 @@ def test_a_sweep_is_written_down(write: Write, tmp_path: Path) -> None:
         assert run(["sweep", str(file), "--shard", shard]).returncode == 0
     logs = [str(tmp_path / f"spin.{shard}.sweep") for shard in ("1-2", "2-2")]
     assert run(["sweep", "--merge", *logs]).stdout.splitlines() == rows
+    result = run(["sweep", "--merge", logs[0]])
+    assert result.returncode == 2 and "3 of 6 runs are missing" in result.stderr
+    file.write_text("until = 1\ntimeout = 2\n" + SWEEP)
+    result = run(["sweep", str(file), "--log", str(tmp_path / "until.sweep")])
+    assert result.returncode == 0 and ",0.99999," in result.stdout, result.stderr
     file.write_text(SWEEP.replace("[grid]", "[gird]"))
     result = run(["sweep", str(file)])
     assert result.returncode == 2 and "did you mean 'grid'" in result.stderr

@@ -36,7 +36,7 @@ from ._trace import Trace
 
 try:
     __version__ = version("cc67")
-except PackageNotFoundError:  # The sources, without having been installed.
+except PackageNotFoundError:  # The sources are used without being installed.
     __version__ = "0"
 
 __all__ = [

@@ -14,11 +14,9 @@ from ._trace import Trace
 
 __all__ = ["Board", "Condition", "Snapshot", "ended", "printed", "started"]
 
-_TICK = 90e-6
-
 
 class _Event:
-    """Something that a run may wait for and that no expression says."""
+    """A condition of `Board.run_until` that is not an expression."""
 
     def __init__(self, kind: str, value: object) -> None:
         self._pair = (kind, str(value))
@@ -34,27 +32,27 @@ Source = Union[Program, PathLike]
 
 
 def printed(text: str) -> _Event:
-    """For `Board.run_until`: a console line that contains the text is printed from now on."""
+    """Make a condition for `Board.run_until`: from now on, a console line is printed that contains the text."""
     return _Event("printed", text)
 
 
 def ended(thread: int) -> _Event:
-    """For `Board.run_until`: a thread, 1 to 7, is not active."""
+    """Make a condition for `Board.run_until`: a thread, 1 to 7, is not active."""
     _check_thread(thread)
     return _Event("ended", thread)
 
 
 def started(thread: int) -> _Event:
-    """For `Board.run_until`: a thread, 1 to 7, is active."""
+    """Make a condition for `Board.run_until`: a thread, 1 to 7, is active."""
     _check_thread(thread)
     return _Event("active", thread)
 
 
 class Snapshot:
-    """A board as it was at an instant; made by `Board.snapshot`, and good for that board alone.
+    """The state of a board at one time, made by `Board.snapshot` and valid for that board only.
 
     Attributes:
-        time: the instant, seconds of board time since power-up.
+        time: the board time of the snapshot, in seconds since power-up.
     """
 
     def __init__(self, native: _native.Board) -> None:
@@ -74,25 +72,37 @@ class Snapshot:
 class Board:
     """A simulated KFLOP board with its programs and the machine around it.
 
-    Board time passes only in the calls that say so: `run`, `run_for`, `run_until`, `step`, `trace`, `command`. The
-    same arguments and the same calls give the same results, on any computer and on either engine. While time passes,
-    other Python threads run, and Ctrl-C stops the call. A board is for one thread: the one that uses it first.
+    Board time passes only in `run`, `run_for`, `run_until`, `step`, `step_thread`, `trace` and `command`, and in what
+    sends a script command for an axis, such as `Axis.move`. The same arguments and the same calls give the same
+    results, on any computer and on either engine. While a call runs the board, other Python threads continue, and
+    Ctrl-C stops the call. A board belongs to the Python thread that uses it first; `release` hands it over.
 
     Args:
-        programs: what is loaded and started: programs, or files, which are compiled (.c) or loaded (.out). A program
-            goes to the thread it was compiled for, else to the lowest free one; a mapping `{3: program}` says it.
-        machine: what is connected: a machine file, its text, or a mapping of its keys, `{"axis.0.model": "motor"}`.
-        stim: what the world does and when: statements such as "at 0.5s bit 136 = 1", a file, or several of both.
-        set: start values `{"persist.5": 3, "persist.float.6": 1.5}` and keys of the machine file.
-        load: programs that are loaded but not started, as `programs`.
-        files: the folder of the files that programs open on the PC.
-        answers: what the PC answers to programs, `{"msgbox": "no"}`, as `--answer`.
-        assist: whether an operator is played who moves inputs that programs wait for.
-        engine: what executes the programs, "native" or "bytecode"; results are the same.
-        shortcuts: whether waits are skipped; results are the same.
-        uart_input: characters that wait on the line to the serial port.
-        on_fault: "raise": a trap, or an expectation of the stimulus that is not met, ends the call in progress with
-            `TrapError` or `ExpectationError`; "keep": it is kept in `faults`, and time goes on.
+        programs: the programs to load and start: a `Program`, a source (.c) to compile, an image (.out), or several of
+            them. Each goes to the thread it was compiled for, else to the lowest free thread; a mapping
+            `{3: program}` chooses the thread.
+        machine: what is connected to the board: a machine file, its text, or a mapping of its keys,
+            `{"axis.0.model": "motor"}`.
+        stim: the stimulus, what happens around the board and when: a file, statements such as
+            "at 0.5s bit 136 = 1", or several of both.
+        set: start values and keys of the machine file, `{"persist.5": 3, "persist.float.6": 1.5}`.
+        load: programs to load without starting them, in the same forms as `programs`.
+        files: the folder for the files that programs open on the PC; by default that of the machine file, else
+            "cc67-files".
+        answers: the PC's answers to programs, `{"msgbox": "no"}`, as with `--answer`.
+        assist: whether to act as an operator: when all programs wait for inputs, those inputs are toggled one at a
+            time.
+        engine: the engine that executes the programs, "native" or "bytecode"; the results are the same.
+        shortcuts: whether to skip over waits instead of simulating every tick in full; the results are the same.
+        uart_input: bytes for the serial port to receive, once a program first looks for them.
+        on_fault: what to do at a trap, or when an expectation of the stimulus is not met. "raise" ends the call in
+            progress with `TrapError` or `ExpectationError`; "keep" adds the exception to `faults` and continues.
+
+    Raises:
+        CompileError: a source has errors.
+        LoadError: the board refuses a program.
+        InputError: the machine file, the stimulus or another argument is invalid.
+        OSError: a file cannot be read.
 
     Example:
         >>> board = cc67.Board(programs=["home.c"], machine="mill.toml")
@@ -147,7 +157,7 @@ class Board:
             self._native.stop_at_faults(False)
             self._native.release()
 
-    # How far time goes.
+    # Board time.
 
     @property
     def time(self) -> float:
@@ -156,48 +166,57 @@ class Board:
 
     @property
     def tick(self) -> int:
-        """Number of the last servo tick that is over; a tick is 90 µs."""
+        """Number of the last completed servo tick; a tick is 90 µs."""
         return self._native.tick()
 
     def run_for(self, seconds: float) -> None:
-        """Lets `seconds` of board time pass, also when all programs have ended.
+        """Run for `seconds` of board time, even if all programs have ended.
 
         Raises:
-            TrapError: a thread was stopped; time has gone as far as that.
-            ExpectationError: the stimulus expects what is not so.
-            KeyboardInterrupt: Ctrl-C; time has gone as far as that.
+            TrapError: a trap stopped a thread; the run ends there.
+            ExpectationError: an expectation of the stimulus is not met; the run ends there.
+            InputError: `seconds` is not in the range 0 to 1e12.
+            KeyboardInterrupt: Ctrl-C was pressed; the run ends there.
         """
         self._native.run_for(seconds)
 
     def run(self, timeout: float = 60.0) -> bool:
-        """Runs until all programs have ended and nothing moves, at most `timeout` seconds of board time.
+        """Run until all programs have ended and nothing moves, for at most `timeout` seconds of board time.
 
-        What `cc67 run` does: at the end, text that is held without a line end is printed, and what the stimulus
-        expects "at end" is looked at.
+        As in `cc67 run`, the run then ends with `finish`.
 
         Returns:
-            Whether all has ended.
+            Whether all programs have ended and nothing moves; False after the timeout.
+
+        Raises:
+            TrapError, ExpectationError, InputError, KeyboardInterrupt: as in `run_for`.
         """
         return self._native.run(timeout)
 
     def run_until(self, condition: Condition, timeout: float = 60.0) -> bool:
-        """Runs until a condition is met, at most `timeout` seconds of board time.
+        """Run until a condition is met, for at most `timeout` seconds of board time.
 
         Args:
-            condition: a C expression in the words of the programs, `"count == 3 && ch0->Dest > 100"`;
-                `printed("text")`, `ended(thread)`, `started(thread)`; or a function that is given the board. It is
-                looked at after every servo tick of 90 µs; one that is met already takes no time.
+            condition: a C expression with the names of the programs, `"count == 3 && ch0->Dest > 100"`;
+                `printed("text")`, `ended(thread)` or `started(thread)`; or a function that takes the board. It is
+                checked after every servo tick of 90 µs. A condition that is already met takes no board time.
+            timeout: seconds of board time.
 
         Returns:
-            Whether it was met. What a function raises ends the call.
+            Whether the condition was met; False after the timeout.
+
+        Raises:
+            InputError: the expression is invalid, or `timeout` is not in the range 0 to 1e12.
+            TrapError, ExpectationError, KeyboardInterrupt: as in `run_for`.
+            Exception: the function raised it.
         """
         if isinstance(condition, _Event):
             return self._native.run_until(condition._pair, timeout)
         if isinstance(condition, str):
             return self._native.run_until(condition, timeout)
         if not callable(condition):
-            raise TypeError(f"a condition is an expression, an event or a function, not {condition!r}")
-        end = self.tick + round(timeout / _TICK)
+            raise TypeError(f"condition must be an expression, an event or a function, not {condition!r}")
+        end = self._native.after(timeout)
         while not condition(self):
             if self.tick >= end:
                 return False
@@ -205,38 +224,59 @@ class Board:
         return True
 
     def step(self, ticks: int = 1) -> None:
-        """Runs so many servo ticks of 90 µs."""
+        """Run for `ticks` servo ticks of 90 µs each.
+
+        Raises:
+            InputError: `ticks` is negative.
+            TrapError, ExpectationError, KeyboardInterrupt: as in `run_for`.
+        """
         if isinstance(ticks, bool) or not isinstance(ticks, int):
-            raise TypeError(f"ticks is a whole number, not {ticks!r}")
+            raise TypeError(f"ticks must be an integer, not {ticks!r}")
         if ticks < 0:
-            raise InputError(f"time does not go back: {ticks} ticks")
+            raise InputError(f"board time cannot go back: {ticks} ticks")
         self._native.step(ticks)
 
     def step_thread(self, thread: int, timeout: float = 1.0) -> bool:
-        """Runs to the end of the next time slice of a thread; whether it had one within `timeout` seconds."""
+        """Run to the end of the next time slice of a thread, 1 to 7.
+
+        Returns:
+            Whether the thread had a slice within `timeout` seconds of board time.
+        """
         return self._native.step_thread(thread, timeout)
 
     def finish(self) -> None:
-        """The run is over: prints text that is held without a line end, and looks at what the stimulus expects."""
+        """End the run: print console text that still lacks its line end, and check what the stimulus expects "at end".
+
+        `run` does this by itself.
+
+        Raises:
+            ExpectationError: an expectation of the stimulus is not met.
+        """
         self._native.finish()
 
     @property
     def ended(self) -> bool:
-        """Whether no thread is active and nothing is under way that a program has begun."""
+        """Whether no thread is active and nothing that a program has begun is still under way."""
         return self._native.has_ended()
 
     # Programs.
 
     @property
     def programs(self) -> dict[int, Program]:
-        """The programs that were loaded, by their threads."""
+        """The programs that were loaded, by thread number."""
         return dict(self._programs)
 
     def load(self, program: Source, *, thread: int | None = None, start: bool = False) -> None:
-        """Loads a program into its thread, else thread 1; what runs there is stopped.
+        """Load a program into a thread, in which any other program is stopped first.
+
+        Args:
+            program: a `Program`, a source (.c) to compile, or an image (.out).
+            thread: 1 to 7; by default the thread that the program is for, else 1.
+            start: whether to start it as well.
 
         Raises:
-            LoadError: why it is refused; the program in the thread goes on.
+            LoadError: the board refuses the program; the current program of the thread continues.
+            CompileError: the source has errors.
         """
         made = _program(program, None)
         number = thread or made.thread or 1
@@ -244,57 +284,68 @@ class Board:
         self._programs[number] = made
 
     def start(self, thread: int) -> None:
-        """Starts a thread, 1 to 7, at the beginning of its program."""
+        """Start a thread, 1 to 7, at the beginning of its program.
+
+        Raises:
+            LoadError: no program is loaded in the thread.
+        """
         self._native.start(thread)
 
     def stop(self, thread: int) -> None:
-        """Stops a thread, 1 to 7, where it is."""
+        """Stop a thread, 1 to 7, where it is."""
         self._native.stop(thread)
 
     def active(self, thread: int) -> bool:
-        """Whether a thread, 1 to 7, is active."""
+        """Return whether a thread, 1 to 7, is active."""
         return self._native.is_active(thread)
 
-    # What the board says.
+    # Output, and script commands.
 
     @property
     def console(self) -> Console:
-        """The console lines printed since power-up: a list of lines, with `times` in seconds."""
+        """The console lines printed since power-up: a list of lines, with their `times` in seconds."""
         return Console(self._native.console(0))
 
     @property
     def remarks(self) -> list[str]:
-        """What the simulation remarks: inputs that nothing drives, axes that drive nothing, requests to the PC."""
+        """The remarks of the simulation: inputs that nothing drives, axes without an output, requests to the PC."""
         return [text for _, text in self._native.remarks()]
 
     @property
     def faults(self) -> list[Exception]:
-        """Traps and expectations that were not met, as the exceptions that say so."""
+        """All traps since power-up, and expectations that were not met, as exceptions."""
         return self._native.faults()
 
     @property
     def uart(self) -> bytes:
-        """What the serial port has sent since power-up."""
+        """The bytes that the serial port has sent since power-up."""
         return bytes(self._native.uart())
 
     @property
     def recording(self) -> str:
-        """What was done by hand, as a stimulus: a board with it does the same."""
+        """Everything that was done to the board by hand, as a stimulus that repeats it on another board.
+
+        What a stimulus cannot repeat, such as most calls of `write`, is a comment in it.
+        """
         return self._native.recording()[0]
 
     def command(self, line: str) -> str:
-        """Sends a line of script commands, `"ReadBit46"` or `"EnableAxis0;Move0=100"`, and returns the reply.
+        """Send a line of script commands, `"ReadBit46"` or `"EnableAxis0;Move0=100"`, and return the reply.
 
-        The time that the line and its reply take on the wire passes, about 2.5 ms. Lines of a longer reply are
-        separated by line ends; a command without a reply returns "".
+        The call takes as much board time as the line and its reply take on the wire, about 2.5 ms. The lines of a
+        longer reply are separated by line ends; the reply is "" if there is none.
+
+        Raises:
+            InputError: `line` has a line end.
+            TrapError, ExpectationError: as in `run_for`.
         """
         if not isinstance(line, str):
-            raise TypeError(f"a command is a text, not {line!r}")
+            raise TypeError(f"a command must be a string, not {line!r}")
         if "\n" in line or "\r" in line:
-            raise InputError("a command is one line")
+            raise InputError("a command must be one line, without line ends")
         return "\n".join(self._native.command(line.encode("latin-1", "replace")))
 
-    # The board as the world sees it.
+    # Inputs, outputs, axes and variables.
 
     @property
     def bits(self) -> Bits:
@@ -318,71 +369,90 @@ class Board:
 
     @property
     def persist(self) -> Persist:
-        """The elements of `persist.UserData`; `persist.float` and `persist.double` for other types."""
+        """The elements of `persist.UserData` as integers; also as `persist.float` and `persist.double`."""
         return self._persist
 
     def act(self, statement: str) -> None:
-        """Does what a statement of a stimulus says, with the next servo tick: `"pulse bit 137 for 50ms"`."""
+        """Execute a statement of a stimulus, `"pulse bit 137 for 50ms"`, at the beginning of the next servo tick.
+
+        Raises:
+            InputError: the statement is invalid; nothing happens.
+        """
         self._native.act(statement)
 
     def send_uart(self, data: bytes) -> None:
-        """Sends characters to the serial port; they arrive at its rate."""
+        """Send bytes to the serial port; they arrive at its baud rate as board time passes."""
         self._native.send_to_uart(bytes(data))
 
     def read(self, expression: str) -> float:
-        """The value of a C expression in the words of the programs, or of an item such as "dest0", "bit46", "adc2".
+        """Return the value of a C expression with the names of the programs, or of an item such as "dest0" or "adc2".
 
-        `2:count` is the `count` of the program in thread 2. Looking changes nothing and takes no board time.
+        `2:count` is the variable `count` of the program in thread 2. Reading changes nothing and takes no board time.
+        An integer division by zero gives NaN.
 
         Raises:
-            InputError: what is wrong with the expression, with the name that was meant.
+            InputError: the expression is invalid; the message suggests the name that was probably meant.
         """
         if not isinstance(expression, str):
             raise TypeError(f"an expression is a text, not {expression!r}")
         return self._native.read(expression)
 
     def write(self, expression: str, value: float) -> None:
-        """Stores a value in a variable, a field or an element, as an assignment in C would: `write("count", 2)`."""
+        """Store a value in a variable, a field or an element, as an assignment in C would: `write("count", 2)`.
+
+        Writing takes no board time.
+
+        Raises:
+            InputError: the expression is invalid, or is not a variable, a field or an element.
+        """
         if not isinstance(expression, str):
             raise TypeError(f"an expression is a text, not {expression!r}")
         if isinstance(value, (str, bytes)):
             raise TypeError(f"a value is a number, not {value!r}")
         self._native.write(expression, float(value))
 
-    # Looking back.
+    # Snapshots and traces.
 
     def snapshot(self) -> Snapshot:
-        """Keeps the board as it is, to go back to with `restore`, as often as one likes."""
+        """Save the state of the board; `restore` returns to it, any number of times."""
         return Snapshot(self._native)
 
     def restore(self, snapshot: Snapshot) -> None:
-        """Makes the board what it was when the snapshot was taken; with the same calls it goes on the same way."""
+        """Return to the state of a snapshot; from there, the same calls give the same results again.
+
+        Raises:
+            Error: the snapshot belongs to another board.
+        """
         if not isinstance(snapshot, Snapshot):
-            raise TypeError(f"restore needs a snapshot, not {snapshot!r}")
+            raise TypeError(f"snapshot must be a cc67.Snapshot, not {snapshot!r}")
         if snapshot._native is not self._native or not self._native.restore(snapshot._number):
-            raise Error("the snapshot is of another board")
+            raise Error("the snapshot belongs to another board")
 
     def trace(self, items: str | Iterable[str], seconds: float, *, every: int = 1) -> Trace:
-        """Runs for `seconds` of board time and records values after every tick, or every so many ticks.
+        """Run for `seconds` of board time and record values after every tick, or after every few ticks.
 
         Args:
-            items: names and expressions, `"axis0,bit46"` or `["ch0->Dest - home", "persist.5"]`; `axis0` is `dest0`,
-                `pos0` and `out0`.
-            seconds: board time.
+            items: items and expressions, `"axis0,bit46"` or `["ch0->Dest - home", "persist.5"]`; `axis0` stands for
+                `dest0`, `pos0` and `out0`.
+            seconds: board time to run.
             every: servo ticks of 90 µs from one sample to the next.
 
         Returns:
-            The values as NumPy arrays of doubles, which own what was recorded: `trace["dest0"]`, `trace.time`.
+            The values as NumPy arrays of doubles, which own their memory: `trace["dest0"]`, `trace.time`.
+
+        Raises:
+            InputError: an item is unknown, an expression is invalid, or the trace is too long.
+            TrapError, ExpectationError, KeyboardInterrupt: as in `run_for`; what was recorded is lost.
         """
         if isinstance(every, bool) or not isinstance(every, int) or every < 1:
-            raise InputError(f"every must be a number of ticks from 1, not {every!r}")
+            raise InputError(f"every must be a number of ticks, at least 1, not {every!r}")
         names = _split(items) if isinstance(items, str) else [str(item) for item in items]
         time, columns = self._native.trace(names, seconds, every)
         units = {f"{kind}{axis.index}": axis.units for axis in self._axes for kind in ("dest", "pos", "load")}
         return Trace(time, dict(columns), {name: units.get(name, "") for name, _ in columns})
 
     def release(self) -> None:
-        """Gives the board to the thread that uses it next."""
+        """Give up the board; it then belongs to the Python thread that uses it next."""
         self._native.release()
 
     def __repr__(self) -> str:
@@ -391,7 +461,7 @@ class Board:
 
 
 def _split(items: str) -> list[str]:
-    """The parts of a list; commas within brackets belong to an expression."""
+    """Split a list at its commas, except those within brackets, which belong to an expression."""
     parts, depth, part = [], 0, ""
     for character in items:
         depth += (character in "([") - (character in ")]")
@@ -407,7 +477,7 @@ def _program(source: Source, thread: int | None) -> Program:
     if isinstance(source, Program):
         return source
     if not isinstance(source, (str, os.PathLike)):
-        raise TypeError(f"a program is a cc67.Program or a file, not {source!r}")
+        raise TypeError(f"a program must be a cc67.Program or a file, not {source!r}")
     if Path(source).suffix.lower() == ".out":
         return load(source, thread=thread)
     return compile(source, thread=thread)
@@ -426,7 +496,7 @@ def _rows(sources: Any) -> list[tuple[int | None, Source]]:
 
 
 def _assign(programs: Any, load: Any) -> list[tuple[int, Program, bool]]:
-    """Gives each program its thread: the one it is for, else the lowest free one."""
+    """Assign each program its thread: the one it is for, else the lowest free one."""
     rows = [(*row, True) for row in _rows(programs)] + [(*row, False) for row in _rows(load)]
     made = [(thread, _program(source, thread), starts) for thread, source, starts in rows]
     fixed = [(thread or program.thread, program, starts) for thread, program, starts in made]
@@ -435,7 +505,7 @@ def _assign(programs: Any, load: Any) -> list[tuple[int, Program, bool]]:
     for thread, program, starts in fixed:
         number = thread or next(free, None)
         if number is None:
-            raise InputError("more programs than the 7 user threads")
+            raise InputError("there are more programs than the 7 user threads")
         result.append((number, program, starts))
     return result
 
@@ -453,7 +523,7 @@ def _settings(settings: Mapping[str, object] | Iterable[str]) -> list[tuple[str,
 
 def _pairs(pairs: Mapping[str, object] | Iterable[str], name: str) -> list[str]:
     if isinstance(pairs, (str, bytes)):
-        raise TypeError(f"{name} must be a mapping or a list of KEY=VALUE, not the text {pairs!r}")
+        raise TypeError(f"{name} must be a mapping or a list of KEY=VALUE, not the string {pairs!r}")
     if isinstance(pairs, Mapping):
         return [f"{key}={_value(value)}" for key, value in pairs.items()]
     texts = [str(pair) for pair in pairs]
@@ -464,7 +534,7 @@ def _pairs(pairs: Mapping[str, object] | Iterable[str], name: str) -> list[str]:
 
 
 def _value(value: object) -> str:
-    """A value as TOML has it."""
+    """Write a value in the syntax of TOML."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, Mapping):
@@ -479,7 +549,7 @@ def _inner(value: object) -> str:
 
 
 def _machine(machine: PathLike) -> tuple[str, str, str]:
-    """Name, folder and text of a machine file; a text with a line end or a table is one itself."""
+    """Return name, folder and text of a machine file; a string with a line end or a table is the text itself."""
     text = os.fspath(machine)
     if isinstance(machine, str) and ("\n" in text or text.lstrip().startswith("[")):
         return ("machine", ".", text)

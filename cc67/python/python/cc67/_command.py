@@ -1,4 +1,4 @@
-"""The command `cc67`, which the package brings along."""
+"""The command `cc67`, which is part of the package."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ __all__ = ["main", "run"]
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Runs the command with the arguments of the process; the exit code."""
+    """Run the command and return its exit code; by default with the arguments of the process."""
     given = list(sys.argv[1:] if arguments is None else arguments)
     if given[:1] == ["sweep"]:
         from ._sweep_file import main as sweep
@@ -30,10 +30,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         from .studies._command import main as study
 
         return study(given[1:])
-    # Without Python's handler, Ctrl-C ends the command as it ends others.
+    # Replace Python's handler, so that Ctrl-C ends the command as it ends any other program.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     sys.stdout.flush()
-    # What runs itself, as `cc67 test` does, would find Python in the place of the command.
+    # Commands such as `cc67 test` start `cc67` again; without this they would start Python instead.
     script = shutil.which("cc67", path=os.path.dirname(sys.executable)) or shutil.which("cc67")
     if script is not None:
         os.environ["CC67_COMMAND"] = script
@@ -41,12 +41,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def run(arguments: Sequence[str]) -> subprocess.CompletedProcess[str]:
-    """Runs the command in a process of its own and returns what it prints."""
+    """Run the command in a separate process; return its exit code and output."""
     return subprocess.run([sys.executable, "-m", "cc67", *arguments], capture_output=True, text=True)
 
 
 def draw(trace: Trace, path: str) -> None:
-    """Draws a trace with `cc67 plot`."""
+    """Draw a trace with `cc67 plot`; raise `Error` with its message if it fails."""
     with tempfile.TemporaryDirectory() as folder:
         table = os.path.join(folder, "trace.csv")
         trace.save(table)

@@ -1,4 +1,4 @@
-"""What the compiler says of a program, as objects."""
+"""The compiler's messages as objects."""
 
 from __future__ import annotations
 
@@ -13,8 +13,9 @@ __all__ = ["Diagnostic", "Span"]
 class Span:
     """A range in a source file.
 
-    Lines and columns count from 1, columns in bytes; the end column is the one after the last byte. `byte_start` and
-    `byte_end` count from 0.
+    Lines and columns count from 1, and columns count bytes; the end column is the one after the last byte.
+    `byte_start` and `byte_end` are offsets in the file from 0. `is_primary` marks the place of the mistake; the other
+    spans explain it. `label` is a short comment on the span, if there is one.
     """
 
     file: str
@@ -30,16 +31,16 @@ class Span:
 
 @dataclass(frozen=True)
 class Diagnostic:
-    """One finding of the compiler.
+    """A message of the compiler.
 
     Attributes:
         level: "error", "warning" or "note".
-        code: the name of the warning's switch, None for what no switch controls.
-        message: the finding in one line.
-        spans: the places, that of the mistake first; none for findings about the whole program.
-        notes: explanations, a line each.
-        suggestion: what to do, if that is known.
-        rendered: all of it with the source lines, as `cc67 check` prints it.
+        code: the name of the warning, as in `-W`; None if no switch controls the message.
+        message: the message in one line.
+        spans: the places, starting with that of the mistake; empty for a message about the whole program.
+        notes: explanations, one line each.
+        suggestion: what to do, or None if that is unknown.
+        rendered: the whole message with the source lines, as `cc67 check` prints it.
     """
 
     level: str
@@ -52,17 +53,17 @@ class Diagnostic:
 
     @property
     def file(self) -> str | None:
-        """The file of the mistake."""
+        """The file of the mistake, or None for a message about the whole program."""
         return self.spans[0].file if self.spans else None
 
     @property
     def line(self) -> int | None:
-        """The line of the mistake, from 1."""
+        """The line of the mistake, counted from 1, or None."""
         return self.spans[0].line_start if self.spans else None
 
     @property
     def column(self) -> int | None:
-        """The column of the mistake, from 1, in bytes."""
+        """The column of the mistake in bytes, counted from 1, or None."""
         return self.spans[0].column_start if self.spans else None
 
     def __str__(self) -> str:
@@ -71,7 +72,7 @@ class Diagnostic:
 
 
 def from_json(text: str) -> Diagnostic:
-    """A diagnostic of a line of `cc67 check --message-format json`."""
+    """Make a diagnostic from a line of `cc67 check --message-format json`."""
     members: dict[str, Any] = json.loads(text)
     spans = tuple(Span(**span) for span in members.pop("spans"))
     notes = tuple(members.pop("notes"))

@@ -1,4 +1,4 @@
-"""The exceptions of the package; every one is an `Error`."""
+"""The exceptions of the package; each is an `Error`."""
 
 from __future__ import annotations
 
@@ -22,26 +22,26 @@ __all__ = [
 
 
 class Error(Exception):
-    """Whatever cc67 refuses to do."""
+    """The base class of all exceptions of cc67."""
 
 
 class InputError(Error, ValueError):
-    """A file, an option, an expression or a number is wrong; the message has the place."""
+    """A file, an option, an expression or a number is invalid; the message says where."""
 
 
 class UnknownNameError(InputError, KeyError):
-    """There is nothing of that name; the message has the names that are near."""
+    """Nothing has that name; the message suggests the name that was probably meant."""
 
     def __str__(self) -> str:
-        # A `KeyError` would put the message in quotation marks.
+        # `KeyError` would show the message in quotation marks.
         return str(self.args[0]) if self.args else ""
 
 
 class CompileError(Error):
     """A program has errors.
 
-    `diagnostics` holds all that the compiler found, warnings included, in the order of the program. The text of the
-    exception is what `cc67 check` prints: places, source lines, suggestions.
+    `diagnostics` holds all messages of the compiler, including warnings, in source order. The text of the exception is
+    what `cc67 check` prints: places, source lines, suggestions.
     """
 
     diagnostics: list[Diagnostic]
@@ -55,20 +55,20 @@ class CompileError(Error):
 
 
 class LoadError(Error):
-    """A board refuses a program, or a program cannot be linked for the thread."""
+    """A board refuses a program, or a program cannot be linked for its thread."""
 
 
 class ThreadError(Error, RuntimeError):
-    """A board is used by a second thread: a board is for one thread at a time."""
+    """A second Python thread uses a board, which belongs to another one; see `Board.release`."""
 
 
 class TrapError(Error):
-    """A thread of the board was stopped because its program did the impossible; the others go on.
+    """A program did something impossible, which stopped its thread of the board; the other threads continue.
 
     Attributes:
-        time: board time of the trap, seconds since power-up.
+        time: board time of the trap, in seconds since power-up.
         thread: number of the stopped thread, 1 to 7, or None for the call-back.
-        file, line, function: where it was, or None where the image does not say.
+        file, line, function: place of the trap in the source, or None if the image does not record it.
     """
 
     def __init__(
@@ -91,22 +91,22 @@ class TrapError(Error):
 
 
 class ExpectationError(Error, AssertionError):
-    """Something that a stimulus or a test expects is not so."""
+    """An expectation of a stimulus or a test is not met."""
 
 
 class NotBuiltError(Error, NotImplementedError):
-    """A part of cc67 that this version does not have; the message has its name."""
+    """An optional package is not installed, such as pyarrow or SciPy; the message says which, and how to install it."""
 
 
 def unknown(what: str, name: object, known: Iterable[str]) -> UnknownNameError:
-    """The exception for a name that is not one of `known`, with those that are near."""
+    """Make the exception for a name that is not one of `known`, with a suggestion."""
     names = [str(each) for each in known]
     text = str(name)
     lower = {each.lower(): each for each in reversed(names)}
     near = difflib.get_close_matches(text.lower(), list(lower), n=1)
-    message = f"there is no {what} {name!r}"
+    message = f"no such {what}: {name!r}"
     if near:
         message += f"; did you mean {lower[near[0]]!r}?"
     elif names and len(names) <= 12:
-        message += f"; there are {', '.join(names)}"
+        message += f"; known names: {', '.join(names)}"
     return UnknownNameError(message)

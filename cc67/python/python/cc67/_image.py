@@ -1,4 +1,4 @@
-"""What is in an image, and what its code costs."""
+"""The contents of an image, and the cycles that its code takes."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ class Image:
     """A TI COFF image, object or firmware file.
 
     Attributes:
-        name: the file, or the program it is of.
-        target: what the code is for.
-        program: entry point and sizes in bytes, None for an object.
-        sections: name, address, size in bytes and flags of each.
-        symbols: name, address, size in bytes, section and kind of each, by address.
-        lines: the source line of each address.
-        functions: calls and stack of each function.
+        name: the file, or the program from which the image was made.
+        target: the target of the code, "cc67" for bytecode.
+        program: entry point, and sizes in bytes; None for an object.
+        sections: name, address, size in bytes and flags of each section.
+        symbols: name, address, size in bytes, section and kind of each symbol, in order of address.
+        lines: file, line and function of each address that begins a line.
+        functions: calls and stack frame of each function.
     """
 
     def __init__(self, content: bytes, name: str = "image") -> None:
@@ -41,24 +41,44 @@ class Image:
 
     @classmethod
     def read(cls, path: PathLike) -> Image:
-        """The image in a file."""
+        """Read an image from a file.
+
+        Raises:
+            OSError: the file cannot be read.
+            InputError: it is not a TI COFF image.
+        """
         return cls(Path(path).read_bytes(), os.fspath(path))
 
     @classmethod
     def of(cls, program: Program, thread: int | None = None) -> Image:
-        """The image of a program for a thread, 1 to 7."""
+        """Make the image of a program for a thread, 1 to 7; by default for the thread of the program, else thread 1."""
         return cls(program.image(thread), str(program.path))
 
     def symbol(self, name: str) -> dict[str, Any]:
-        """The symbol of that name."""
+        """Return the symbol with this name.
+
+        Raises:
+            UnknownNameError: the image has no such symbol.
+        """
         for symbol in self.symbols:
             if symbol["name"] == name:
                 return symbol
         raise unknown("symbol", name, (symbol["name"] for symbol in self.symbols))
 
     def disassembly(self, function: str | None = None, *, sources: PathLike = ".") -> str:
-        """The instructions with their source lines, of all functions or of one; sources are in a folder."""
-        return _native.disassembly(self.name, self._bytes, os.fspath(sources), function)
+        """Return the instructions of one function, or of all, with their source lines.
+
+        Args:
+            function: the name of the function.
+            sources: the folder of the source files.
+
+        Raises:
+            UnknownNameError: the image has no such function.
+        """
+        text = _native.disassembly(self.name, self._bytes, os.fspath(sources), function)
+        if not text and function is not None:
+            raise unknown("function", function, (each["name"] for each in self.functions))
+        return text
 
     def __bytes__(self) -> bytes:
         return self._bytes
@@ -68,7 +88,7 @@ class Image:
 
 
 def inspect(image: PathLike | Program | Image) -> str:
-    """What `cc67 inspect` shows of an image: headers, symbols, lines, calls, stack."""
+    """Return what `cc67 inspect --all` shows of an image: headers, symbols, lines, calls, stack."""
     if isinstance(image, Program):
         image = Image.of(image)
     elif not isinstance(image, Image):
@@ -77,10 +97,13 @@ def inspect(image: PathLike | Program | Image) -> str:
 
 
 def cycles(*files: PathLike) -> str:
-    """What the code costs on the real board: what `cc67 cycles` says of sources, objects or an image.
+    """Return the report of `cc67 cycles`: the cycles that code takes on the real board.
+
+    Args:
+        *files: sources, objects or an image.
 
     Raises:
-        InputError: a file cannot be read, or does not compile.
+        InputError: a file cannot be read or does not compile.
     """
     result = run(["cycles", *[os.fspath(file) for file in files]])
     if result.returncode == 0:

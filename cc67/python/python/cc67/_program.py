@@ -1,4 +1,4 @@
-"""Programs: compiled once, linked for whatever thread they are given to."""
+"""Programs: compiled once, then linked for each thread that they run in."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ PathLike = Union[str, "os.PathLike[str]"]
 
 
 class _Request(TypedDict):
-    """How to compile, as the native half takes it."""
+    """Options of the compiler, in the form that the native half takes."""
 
     include: list[str]
     define: list[tuple[str, str]]
@@ -28,13 +28,14 @@ class _Request(TypedDict):
 
 
 class Program:
-    """A compiled program.
+    """A compiled program, made by `compile` or `load`.
 
-    Made by `compile` or `load`. It can be given to any thread of any number of boards, and to other processes: it
-    pickles without its sources. Expressions (`Board.read`) need the source file where the board is.
+    It can run on any number of boards: one made by `compile` in any thread, an image only in the thread it was linked
+    for. It can be pickled, and so sent to other processes, without its sources; but expressions (`Board.read`) need
+    the source file on the computer that has the board.
 
     Attributes:
-        path: the first file that it was made of.
+        path: the first file from which it was made.
         thread: the thread that it is for, 1 to 7, or None for any.
         diagnostics: warnings and notes of the compiler.
     """
@@ -56,7 +57,11 @@ class Program:
         self._request = request
 
     def image(self, thread: int | None = None) -> bytes:
-        """The program linked for a thread, 1 to 7, as a TI COFF image: what `cc67 build --target sim` writes."""
+        """Return the program linked for a thread, as the TI COFF image that `cc67 build --target sim` writes.
+
+        Args:
+            thread: 1 to 7; by default the thread of the program, else 1.
+        """
         return bytes(self._native.image(thread or self.thread or 1))
 
     def __repr__(self) -> str:
@@ -99,27 +104,28 @@ def compile(
     std: str = "vendor",
     firmware: PathLike | None = None,
 ) -> Program:
-    """Compiles a C program for the board.
+    """Compile a C program for the board.
 
     Args:
-        files: one source, or several sources and objects (.o) which together make the program.
-        thread: the thread that it is for, 1 to 7; by default the board decides.
-        include: folders in which included files are searched, as `-I`.
-        define: macros with their values, `{"SPEED": 20}`, or names, as `-D`. `True` and None define a macro as 1.
-        undefine: predefined macros to undefine, as `-U`.
-        optimize: 0 nothing, 1 what makes programs faster, 2 also what makes the controller's code larger, "s" what
-            makes it small, as `-O`.
-        warnings: switches without `-W`: "error", "no-format", "error=format", "extra".
-        std: how constants are read: "vendor", "c90", "c99", "c11", "c17".
-        firmware: a firmware file whose symbols are used in place of the built-in ones of firmware 4.34.
+        files: one source, or several sources and objects (.o) that make one program together.
+        thread: the thread that it is for, 1 to 7; by default the board chooses one.
+        include: folders in which to search for included files, as with `-I`.
+        define: macros to define, as with `-D`: a mapping of names to values, `{"SPEED": 20}`, or a list of `NAME` or
+            `NAME=VALUE`. A name alone, `True` or `None` defines a macro as 1, `False` as 0.
+        undefine: predefined macros to undefine, as with `-U`.
+        optimize: the optimisation level, as with `-O`: 0 for none, 1 for speed, 2 for more speed, with larger code for
+            the controller, "s" for small code.
+        warnings: warning switches without `-W`: "error", "no-format", "error=format", "extra".
+        std: the rules for constants: "vendor", "c90", "c99", "c11", "c17".
+        firmware: a firmware file whose symbols replace the built-in ones of firmware 4.34.
 
     Returns:
-        The program; its warnings are in `Program.diagnostics`.
+        The program. Its warnings are in `Program.diagnostics`.
 
     Raises:
         CompileError: the program has errors; `diagnostics` holds all of them.
         OSError: a file cannot be read.
-        InputError: an option is wrong.
+        InputError: an option is invalid.
 
     Example:
         >>> program = cc67.compile("home.c", define={"FAST": 1})
@@ -150,14 +156,17 @@ def compile(
 
 
 def load(image: PathLike, *, thread: int | None = None) -> Program:
-    """An image as `cc67 build` writes it, `NAME(N).out`.
+    """Read an image, such as the file `NAME(N).out` that `cc67 build` writes.
 
     Args:
         image: the file.
         thread: the thread that it was linked for, 1 to 7; by default the number in its name, else 1.
 
+    Returns:
+        The program. A file that is not an image is refused only when a board loads it, with `LoadError`.
+
     Raises:
-        OSError: the file cannot be read. Whether it is an image, a board finds out when it loads it.
+        OSError: the file cannot be read.
     """
     path = Path(image)
     if thread is None:
@@ -169,7 +178,7 @@ def load(image: PathLike, *, thread: int | None = None) -> Program:
 
 def _check_thread(thread: int) -> None:
     if isinstance(thread, bool) or not isinstance(thread, int):
-        raise TypeError(f"a thread is a number from 1 to 7, not {thread!r}")
+        raise TypeError(f"thread must be an integer from 1 to 7, not {thread!r}")
     if not 1 <= thread <= 7:
         raise InputError(f"no such thread {thread} (1-7)")
 
@@ -178,13 +187,13 @@ def _paths(files: PathLike | Iterable[PathLike]) -> list[Path]:
     if isinstance(files, (str, os.PathLike)):
         return [Path(files)]
     if isinstance(files, bytes) or not isinstance(files, Iterable):
-        raise TypeError(f"files must be a path or several, not {type(files).__name__}")
+        raise TypeError(f"files must be a path or a list of paths, not {type(files).__name__}")
     return [Path(file) for file in files]
 
 
 def _several(items: Any, name: str) -> list[Any]:
     if isinstance(items, (str, bytes)):
-        raise TypeError(f"{name} must be a list, not the text {items!r}")
+        raise TypeError(f"{name} must be a list, not the string {items!r}")
     return list(items)
 
 

@@ -1,4 +1,4 @@
-"""Many runs over parameters, on one machine or many."""
+"""Many runs over parameters, on one computer or many."""
 
 from __future__ import annotations
 
@@ -9,13 +9,16 @@ import os
 import pickle
 import sys
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor, wait
+from dataclasses import is_dataclass
+from numbers import Real
 from pathlib import Path
-from typing import Any, Iterable, Iterator, Mapping, Sequence, Union
+from typing import Any, Iterable, Iterator, Mapping, Sequence, TextIO, Union
 
 from . import _program
-from ._errors import InputError
-from ._program import PathLike, Program
-from ._sweep_run import Batch, Inputs, Measure, run_batch
+from ._board import Board, Condition, _assign, _Event, _machine, _stimuli
+from ._errors import InputError, unknown
+from ._program import PathLike, Program, _macro_value
+from ._sweep_run import Batch, Inputs, Measure, is_timeout, run_batch
 from ._table import Table
 
 __all__ = ["Grid", "merge", "sweep"]
@@ -23,7 +26,7 @@ __all__ = ["Grid", "merge", "sweep"]
 Grid = Union[Mapping[str, Iterable[Any]], Iterable[Mapping[str, Any]]]
 Source = Union[Program, PathLike]
 
-# Runs that are executed together: enough to hide what it takes to send them.
+# Most runs in a batch: enough to make the cost of sending a batch small.
 _BATCH = 16
 
 
@@ -37,38 +40,46 @@ def sweep(
     log: PathLike | None = None,
     shard: str | tuple[int, int] | None = None,
     progress: bool | None = None,
-    until: Any = None,
+    until: Condition | float | None = None,
     timeout: float = 60.0,
     **board: Any,
 ) -> Table:
-    """Runs a program once for each combination of parameters, and measures each run.
+    """Run a program once for each combination of parameters, and measure each run.
 
     Args:
         program: a program, or several for threads 1, 2, …; compiled once, or once for each combination of macros.
-        grid: values by name, `{"axis.0.inertia": [1, 2], "persist.5": range(10)}`, all combinations of which are run
-            with the last name changing fastest; or the inputs of each run, `[{"persist.5": 3}, …]`. A name is a key of
-            the machine file, `persist.N`, `persist.float.N`, `persist.double.N`, `macro.NAME` (compiled in),
-            `bit.N`, `adc.N` (levels from the beginning), `stim` (statements); any other, such as `seed`, is for
-            `measure`.
-        measure: a function of the board, or of the board and the inputs, that lets time pass and returns a number,
-            several, or a mapping of names; or a mapping of names to expressions, whose values are taken at the end.
+        grid: a mapping of names to values, `{"axis.0.inertia": [1, 2], "persist.5": range(10)}`, all combinations of
+            which are run, the last name changing fastest; or a list with the inputs of each run,
+            `[{"persist.5": 3}, …]`. A name is a key of the machine file, `persist.N`, `persist.float.N`,
+            `persist.double.N`, `macro.NAME` (compiled in), `bit.N` or `adc.N` (the level from the beginning), or `stim`
+            (statements); any other name, such as `seed`, is for `measure` only.
+        measure: a function `measure(board)` or `measure(board, inputs)` that lets board time pass and returns a number
+            (column `value`), several (`value0`, `value1`, …), or a mapping of names to values; or a mapping of names to
+            expressions, which are evaluated at the end of the run.
         executor: "threads" (the default), "processes", or any `concurrent.futures.Executor`: Dask's
-            `client.get_executor()`, Ray's, `mpi4py.futures.MPIPoolExecutor`. Beyond threads, `measure` must be a function
-            of a module.
-        workers: how many threads or processes; else one for each processor.
-        log: a file that takes every result as soon as it is there. A sweep with a log that exists goes on where it was
-            interrupted.
-        shard: "2/8" or (2, 8): only the second of eight parts, for a job array; `merge` joins the logs.
-        progress: whether a bar is shown on stderr; by default on a terminal.
-        until: for expressions, what ends a run: a condition of `Board.run_until`, or seconds as a float; else the end
-            of all programs.
-        timeout: seconds of board time that this may take.
-        **board: arguments of `cc67.Board` that all runs have in common: `machine`, `stim`, `set`; `engine`, which is
-            "bytecode" here, as short runs are over before a program is translated to machine code.
+            `client.get_executor()`, Ray's, `mpi4py.futures.MPIPoolExecutor`. Except with threads, `measure` must be a
+            function of a module.
+        workers: the number of threads or processes; by default one for each processor.
+        log: a file that receives each result as soon as it is known. If it exists, the sweep continues where it was
+            interrupted. It belongs to a sweep with the same programs, inputs, arguments of the board, measure and
+            `until`; of a function, only the name is compared. With another `timeout`, the runs that ended in time keep
+            their results, and those that the old timeout ended are repeated.
+        shard: "2/8" or (2, 8) runs only the second of eight parts, for a job array; `merge` joins the logs.
+        progress: whether to show a progress bar on stderr; by default only on a terminal.
+        until: if `measure` has expressions, when a run ends: a condition of `Board.run_until`, or seconds of board
+            time; by default, when all programs have ended.
+        timeout: if `measure` has expressions, the seconds of board time after which a run that has not ended fails.
+        **board: arguments of `cc67.Board` for all runs, such as `machine`, `stim` and `set`. `engine` is "bytecode" by
+            default, because short runs end before translating the program to machine code pays off.
 
     Returns:
-        A row for each run in the order of the inputs, the same on whatever executor. A run that fails is a row with its
-        inputs and `error`.
+        A table with a row for each run in the order of the inputs, the same with every executor. The row of a run that
+        failed has its inputs and the reason, `error`.
+
+    Raises:
+        CompileError: a program has errors.
+        InputError: the log belongs to another sweep, or an argument is invalid.
+        OSError: a file cannot be read or written.
 
     Example:
         >>> def settling(board: cc67.Board) -> float:
@@ -79,14 +90,17 @@ def sweep(
         [2.31, 2.31, 2.32]
     """
     if not callable(measure) and not isinstance(measure, Mapping):
-        raise TypeError(f"measure is a function or a mapping of names to expressions, not {measure!r}")
-    # Short runs are over before a program is translated to machine code.
+        raise TypeError(f"measure must be a function or a mapping of names to expressions, not {measure!r}")
+    # Short runs end before translating the program to machine code pays off.
     board.setdefault("engine", "bytecode")
+    until, timeout = _until(until), _seconds("timeout must be a number of seconds", timeout)
     inputs = _inputs(grid)
     programs = _Programs(program)
     rows = _part(list(enumerate(inputs)), shard)
     _check_board(board)
-    known = _Log(log, programs, inputs, board, measure)
+    known = _Log(timeout)
+    if log is not None:
+        known.open(Path(log), _fingerprint(programs, inputs, board, measure, until), len(inputs))
     left = [(number, each) for number, each in rows if number not in known.results]
     batches = [
         Batch([(number, each, programs.of(each)) for number, each in part], board, measure, until, timeout)
@@ -104,21 +118,33 @@ def sweep(
 
 
 def merge(*logs: PathLike) -> Table:
-    """The table of several logs of one sweep, each of a shard."""
+    """Join the logs of all shards of one sweep into a table.
+
+    Raises:
+        InputError: a file is not the log of a sweep, the logs belong to different sweeps, or runs are missing.
+        OSError: a file cannot be read.
+    """
+    if not logs:
+        raise InputError("there is no log to merge")
     inputs: dict[int, Inputs] = {}
     results: dict[int, dict[str, Any]] = {}
-    prints = set()
+    sweeps = set()
     for log in logs:
         lines = _lines(Path(log))
-        if not lines or "sweep" not in lines[0]:
-            raise InputError(f"{os.fspath(log)} is not the log of a sweep")
-        prints.add(lines[0]["sweep"])
+        if not lines or not {"sweep", "runs"} <= lines[0].keys():
+            raise InputError(f"{os.fspath(log)} is not the log of a sweep, or not of this version of cc67")
+        sweeps.add((lines[0]["sweep"], lines[0]["runs"]))
         for line in lines[1:]:
             inputs[line["run"]] = line["inputs"]
             results[line["run"]] = line["outputs"]
-    if len(prints) > 1:
-        raise InputError("the logs are of different sweeps")
-    return _table([inputs[number] for number in sorted(inputs)], dict(enumerate(results[n] for n in sorted(results))))
+    if len(sweeps) > 1:
+        raise InputError("the logs belong to different sweeps")
+    ((_, runs),) = sweeps
+    if len(results) < runs:
+        raise InputError(
+            f"{runs - len(results)} of {runs} runs are missing: merge the logs of all shards, after all have finished"
+        )
+    return _table([inputs[number] for number in range(runs)], results)
 
 
 def _table(inputs: Sequence[Inputs], results: Mapping[int, Mapping[str, Any]]) -> Table:
@@ -128,21 +154,21 @@ def _table(inputs: Sequence[Inputs], results: Mapping[int, Mapping[str, Any]]) -
 
 
 def _inputs(grid: Grid) -> list[Inputs]:
-    """The inputs of each run."""
+    """Return the inputs of each run."""
     if isinstance(grid, Mapping):
         for name, values in grid.items():
             if isinstance(values, (str, bytes)) or not isinstance(values, Iterable):
-                raise TypeError(f"the values of {name!r} are a list, not {values!r}")
+                raise TypeError(f"the values of {name!r} must be a list, not {values!r}")
         names = [str(name) for name in grid]
         combinations = itertools.product(*[list(values) for values in grid.values()])
         rows = [dict(zip(names, values)) for values in combinations]
     elif isinstance(grid, (str, bytes)) or not isinstance(grid, Iterable):
-        raise TypeError(f"a grid is a mapping of names to values, or the inputs of each run, not {grid!r}")
+        raise TypeError(f"grid must be a mapping of names to values, or a list of the inputs of each run, not {grid!r}")
     else:
         rows = []
         for each in grid:
             if not isinstance(each, Mapping):
-                raise TypeError(f"the inputs of a run are a mapping of names to values, not {each!r}")
+                raise TypeError(f"the inputs of a run must be a mapping of names to values, not {each!r}")
             rows.append({str(name): value for name, value in each.items()})
     return [{name: _plain(name, value) for name, value in row.items()} for row in rows]
 
@@ -151,15 +177,25 @@ def _plain(name: str, value: Any) -> Any:
     if hasattr(value, "item") and getattr(value, "ndim", 1) == 0:
         value = value.item()
     if value is not None and not isinstance(value, (bool, int, float, str)):
-        raise TypeError(f"a value of {name!r} is a number or a text, not {value!r}")
+        raise TypeError(f"a value of {name!r} must be a number or a string, not {value!r}")
     return value
+
+
+def _until(until: Condition | float | None) -> Condition | float | None:
+    if until is None or isinstance(until, (str, _Event)) or callable(until):
+        return until
+    return _seconds("until must be a condition or a number of seconds", until)
+
+
+def _seconds(rule: str, value: float) -> float:
+    """Return a time as a float; raise `TypeError` with the rule if it is not a number."""
+    if isinstance(value, bool) or not isinstance(value, Real):
+        raise TypeError(f"{rule}, not {value!r}")
+    return float(value)
 
 
 def _check_board(board: Mapping[str, Any]) -> None:
     from inspect import signature
-
-    from ._board import Board
-    from ._errors import unknown
 
     known = [name for name in signature(Board).parameters if name != "programs"]
     for name in board:
@@ -174,15 +210,15 @@ def _check_board(board: Mapping[str, Any]) -> None:
 
 
 def _part(rows: list[tuple[int, Inputs]], shard: str | tuple[int, int] | None) -> list[tuple[int, Inputs]]:
-    """The rows of a shard: every n-th."""
+    """Return the rows of a shard: every n-th."""
     if shard is None:
         return rows
     try:
         which, count = (int(each) for each in (shard.split("/") if isinstance(shard, str) else shard))
     except ValueError:
-        raise InputError(f'a shard is "2/8", the second of eight, not {shard!r}') from None
+        raise InputError(f'shard must be like "2/8", the second of eight, not {shard!r}') from None
     if not 1 <= which <= count:
-        raise InputError(f"there is no shard {which} of {count}")
+        raise InputError(f"no such shard: {which} of {count}")
     return rows[which - 1 :: count]
 
 
@@ -200,19 +236,23 @@ class _Programs:
             self._sources = [program]
         else:
             self._sources = list(program)
-        self._made: dict[tuple[tuple[str, Any], ...], list[Program]] = {}
-        self.of({})
+        self._made: dict[tuple[tuple[str, str], ...], list[Program]] = {}
 
     def of(self, inputs: Inputs) -> list[Program]:
-        """Those of a run."""
-        macros = {name[6:]: value for name, value in inputs.items() if name.startswith("macro.")}
+        """Return the programs for a run."""
+        macros = {name[6:]: _macro_value(value) for name, value in inputs.items() if name.startswith("macro.")}
         key = tuple(sorted(macros.items()))
         if key not in self._made:
             self._made[key] = [_compile(source, macros) for source in self._sources]
         return self._made[key]
 
+    def images(self, inputs: Iterable[Inputs]) -> list[bytes]:
+        """Return the images of the programs for these runs, each once."""
+        made = {id(programs): programs for programs in map(self.of, inputs)}
+        return [program.image() for programs in made.values() for program in programs]
 
-def _compile(source: Source, macros: Mapping[str, Any]) -> Program:
+
+def _compile(source: Source, macros: Mapping[str, str]) -> Program:
     if not isinstance(source, Program):
         if Path(source).suffix.lower() == ".out":
             return _without_macros(_program.load(source), macros)
@@ -224,20 +264,20 @@ def _compile(source: Source, macros: Mapping[str, Any]) -> Program:
         return _without_macros(source, macros)
     options: dict[str, Any] = {**request}
     options["define"] = [*(f"{name}={value}" for name, value in request["define"])]
-    options["define"] += [f"{name}={_program._macro_value(value)}" for name, value in macros.items()]
+    options["define"] += [f"{name}={value}" for name, value in macros.items()]
     return _program.compile(source._files, thread=source.thread, **options)
 
 
 def _without_macros(program: Program, macros: Mapping[str, Any]) -> Program:
     if macros:
-        raise InputError(f"{program.path} is an image: macros such as {next(iter(macros))!r} need its source")
+        raise InputError(f"{program.path} is an image; macros such as {next(iter(macros))!r} need its source")
     return program
 
 
 def _execute(
     batches: Sequence[Batch], executor: Executor | str | None, workers: int | None
 ) -> Iterator[tuple[int, dict[str, Any]]]:
-    """The results as they come."""
+    """Yield the results as they become known."""
     if executor is None or executor == "threads":
         with ThreadPoolExecutor(workers or os.cpu_count()) as pool:
             yield from _on(pool, batches)
@@ -250,11 +290,11 @@ def _execute(
             _check_pickle(batches)
         yield from _on(executor, batches)  # type: ignore[arg-type]
     else:
-        raise TypeError(f'executor is "threads", "processes" or a concurrent.futures.Executor, not {executor!r}')
+        raise TypeError(f'executor must be "threads", "processes" or a concurrent.futures.Executor, not {executor!r}')
 
 
 def _context() -> Any:
-    """Processes that begin as copies of this one where that is usual, so that functions of a notebook are there."""
+    """Return how to start processes: on Linux as copies of this one, so that they have the functions of a notebook."""
     import multiprocessing
 
     return multiprocessing.get_context("fork" if sys.platform == "linux" else "spawn")
@@ -266,7 +306,7 @@ def _check_pickle(batches: Sequence[Batch]) -> None:
             pickle.dumps(batch)
     except Exception as error:
         raise TypeError(
-            f"`measure` and its like go to other processes, so they must be functions of a module: {error}"
+            f"`measure` and other functions are sent to other processes, so they must be functions of a module: {error}"
         ) from error
 
 
@@ -282,57 +322,82 @@ def _on(executor: Executor, batches: Sequence[Batch]) -> Iterator[tuple[int, dic
             future.cancel()
 
 
+def _fingerprint(
+    programs: _Programs,
+    inputs: Sequence[Inputs],
+    board: Mapping[str, Any],
+    measure: Measure,
+    until: Condition | float | None,
+) -> str:
+    """Return what identifies a sweep in its log: all that can change the result of a run, except its timeout."""
+    arguments = sorted((name, repr(_content(name, value))) for name, value in board.items())
+    # A function decides by itself when its run ends.
+    end = until if isinstance(measure, Mapping) else None
+    parts = (programs.images(inputs), list(inputs), arguments, _identity(measure), _identity(end))
+    return hashlib.sha256(repr(parts).encode()).hexdigest()
+
+
+def _content(name: str, value: Any) -> Any:
+    """Return an argument of `Board` with the content of the files that it names."""
+    if name == "machine" and isinstance(value, (str, os.PathLike)):
+        return _machine(value)
+    if name == "stim":
+        return _stimuli(value)
+    if name == "load":
+        return [(thread, program.image(thread)) for thread, program, _ in _assign((), value)]
+    return value
+
+
+def _identity(value: Any) -> str:
+    """Return a measure or a condition as a text that is the same in every process: for a function, its name."""
+    if callable(value) and not is_dataclass(value):
+        return str(getattr(value, "__qualname__", type(value)))
+    return repr(value)
+
+
 class _Log:
     """The results of a sweep, and the file that keeps them: a line for the sweep, then one for each run."""
 
-    def __init__(
-        self,
-        path: PathLike | None,
-        programs: _Programs,
-        inputs: Sequence[Inputs],
-        board: Mapping[str, Any],
-        measure: Measure,
-    ) -> None:
+    def __init__(self, timeout: float) -> None:
         self.results: dict[int, dict[str, Any]] = {}
-        self._file = None
-        if path is None:
-            return
-        name = measure if isinstance(measure, Mapping) else getattr(measure, "__qualname__", repr(type(measure)))
-        images = [program.image() for program in programs.of({})]
-        told = repr((images, list(inputs), sorted((key, repr(value)) for key, value in board.items()), name))
-        fingerprint = hashlib.sha256(told.encode()).hexdigest()
-        lines = _lines(Path(path))
+        self._timeout = timeout
+        self._file: TextIO | None = None
+
+    def open(self, path: Path, fingerprint: str, runs: int) -> None:
+        """Take the results that a file has, and write all others to it."""
+        lines = _lines(path) if path.exists() else []
         if lines and lines[0].get("sweep") != fingerprint:
             raise InputError(
-                f"{os.fspath(path)} is the log of another sweep: program, inputs, board or measure differ; remove it, or "
-                "name another log"
+                f"{path} is the log of another sweep: program, inputs, board, measure or until differ, or it was "
+                "written by another version of cc67; delete it, or choose another log"
             )
-        for line in lines[1:]:
-            self.results[line["run"]] = line["outputs"]
-        kept = [{"sweep": fingerprint}, *lines[1:]]
-        # What was interrupted in the middle of a line is rewritten.
-        Path(path).write_text("".join(json.dumps(line) + "\n" for line in kept), encoding="utf-8")
-        self._file = open(path, "a", encoding="utf-8")
+        kept = [line for line in lines[1:] if line.get("timeout", self._timeout) == self._timeout]
+        self.results = {line["run"]: line["outputs"] for line in kept}
+        # Drop a line that was interrupted in the middle, and the runs that another timeout ended.
+        kept.insert(0, {"sweep": fingerprint, "runs": runs})
+        path.write_text("".join(json.dumps(line) + "\n" for line in kept), encoding="utf-8")
+        self._file = path.open("a", encoding="utf-8")
 
     def add(self, number: int, inputs: Inputs, outputs: dict[str, Any]) -> None:
-        """Takes up a result."""
+        """Add a result."""
         self.results[number] = outputs
         if self._file is not None:
-            self._file.write(json.dumps({"run": number, "inputs": inputs, "outputs": outputs}) + "\n")
+            line: dict[str, Any] = {"run": number, "inputs": inputs, "outputs": outputs}
+            if is_timeout(outputs):
+                line["timeout"] = self._timeout
+            self._file.write(json.dumps(line) + "\n")
             self._file.flush()
 
     def close(self) -> None:
-        """No more come."""
+        """Close the file."""
         if self._file is not None:
             self._file.close()
 
 
 def _lines(path: Path) -> list[dict[str, Any]]:
-    """The lines of a log, up to the first that is not whole."""
+    """Return the lines of a log, up to the first incomplete one."""
     lines: list[dict[str, Any]] = []
-    if not path.exists():
-        return lines
-    for text in path.read_text(encoding="utf-8").splitlines():
+    for text in path.read_text(encoding="utf-8", errors="replace").splitlines():
         try:
             line = json.loads(text)
         except ValueError:
@@ -346,14 +411,14 @@ def _lines(path: Path) -> list[dict[str, Any]]:
 
 
 class _Bar:
-    """How far the sweep is, on a terminal."""
+    """The progress of a sweep, on a terminal."""
 
     def __init__(self, total: int, done: int, is_shown: bool | None) -> None:
         self._total, self._done = total, done
         self._is_shown = sys.stderr.isatty() if is_shown is None else is_shown
 
     def step(self) -> None:
-        """One more run is over."""
+        """Count one more run."""
         self._done += 1
         if self._is_shown:
             width = 40 * self._done // max(1, self._total)
@@ -361,6 +426,6 @@ class _Bar:
             print(f"\r[{bar}] {self._done}/{self._total}", end="", file=sys.stderr, flush=True)
 
     def close(self) -> None:
-        """The sweep is over."""
+        """End the line of the bar."""
         if self._is_shown:
             print(file=sys.stderr)

@@ -1,12 +1,12 @@
-"""`cc67 sweep FILE.toml`: a sweep that is written down.
+"""`cc67 sweep FILE.toml`: a sweep described by a file.
 
     program = "move.c"                  # or several, for threads 1, 2, …
     machine = "mill.toml"
-    stim = "at 0.1s bit 136 = 1"        # a text, a file, or several
-    until = "count == 3"                # what ends a run: an expression, or seconds; else the end of the programs
-    timeout = 10.0                      # seconds of board time that this may take
+    stim = "at 0.1s bit 136 = 1"        # statements, a file, or several
+    until = "count == 3"                # when a run ends: an expression, or seconds; else at the end of the programs
+    timeout = 10.0                      # seconds of board time after which a run that has not ended fails
 
-    [measure]                           # expressions, taken at the end; `time` is the board time in seconds
+    [measure]                           # expressions, evaluated at the end; `time` is the board time in seconds
     dest = "ch0->Dest"
     took = "time"
 
@@ -14,10 +14,11 @@
     "axis.0.inertia" = [0.5, 1, 2]
     "axis.0.friction" = { from = 0, to = 10, steps = 11 }
 
-    [set]                               # what all runs have in common
+    [set]                               # start values and machine file keys of all runs
     "persist.5" = 3
 
-`[[sample]]` tables in place of `[grid]` are the inputs of each run. Names of files are relative to the file's folder.
+Instead of `[grid]`, tables `[[sample]]` can give the inputs of each run. File names are relative to the folder of the
+file.
 """
 
 from __future__ import annotations
@@ -38,15 +39,23 @@ _KEYS = ("program", "machine", "stim", "until", "timeout", "measure", "grid", "s
 
 
 def main(arguments: list[str]) -> int:
-    """Runs the command; the exit code: 0, 1 if a run failed, 2 for wrong usage or input."""
-    parser = argparse.ArgumentParser("cc67 sweep", description="Many runs over parameters, as a table")
-    parser.add_argument("file", nargs="+", metavar="FILE", help="the sweep (.toml); with --merge its logs")
-    parser.add_argument("-o", "--output", metavar="TABLE", help=".csv, .json or .parquet; else the table is printed")
-    parser.add_argument("--log", metavar="FILE", help="takes each result at once, to go on with; else FILE.sweep")
-    parser.add_argument("--workers", type=int, metavar="N", help="how many at a time; else one for each processor")
-    parser.add_argument("--executor", choices=["threads", "processes"], default="threads", help="what executes the runs")
-    parser.add_argument("--shard", metavar="I/N", help="only part I of N, for a job array")
-    parser.add_argument("--merge", action="store_true", help="join the logs of all shards to one table")
+    """Run the command and return its exit code.
+
+    0 for success, 1 if a run failed or a program has errors, 2 for wrong usage or input, 130 after Ctrl-C.
+    """
+    parser = argparse.ArgumentParser("cc67 sweep", description="Run a program for many parameters and make a table")
+    parser.add_argument("file", nargs="+", metavar="FILE", help="the sweep (.toml); with --merge, its logs")
+    parser.add_argument("-o", "--output", metavar="TABLE", help="write a .csv, .json or .parquet file; otherwise print")
+    parser.add_argument("--log", metavar="FILE", help="log of the results, to continue from [default: FILE.sweep]")
+    parser.add_argument("--workers", type=int, metavar="N", help="run N at a time [default: one for each processor]")
+    parser.add_argument(
+        "--executor",
+        choices=["threads", "processes"],
+        default="threads",
+        help="execute the runs in threads (default) or processes",
+    )
+    parser.add_argument("--shard", metavar="I/N", help="run only part I of N, for a job array")
+    parser.add_argument("--merge", action="store_true", help="join the logs of all shards into one table")
     given = parser.parse_args(arguments)
     try:
         table = merge(*given.file) if given.merge else _run(given)
@@ -61,7 +70,7 @@ def main(arguments: list[str]) -> int:
         print(f"cc67: {error}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
-        print("cc67: interrupted; the same command goes on from here", file=sys.stderr)
+        print("cc67: interrupted; the same command continues from here", file=sys.stderr)
         return 130
     failed = len(table.failures)
     if failed:
@@ -71,12 +80,12 @@ def main(arguments: list[str]) -> int:
 
 def _run(given: argparse.Namespace) -> Table:
     if len(given.file) != 1:
-        raise InputError("a sweep is one file; several are for --merge")
+        raise InputError("only one sweep file can be run; several files are for --merge")
     path = Path(given.file[0])
     request = _read(path)
     for key in request:
         if key not in _KEYS:
-            raise unknown(f"key in {path}:", key, _KEYS)
+            raise unknown(f"key in {path}", key, _KEYS)
     for key in ("program", "measure"):
         if key not in request:
             raise InputError(f"{path} has no `{key}`")
@@ -90,7 +99,6 @@ def _run(given: argparse.Namespace) -> Table:
         board["machine"] = folder / request["machine"]
     if "stim" in request:
         board["stim"] = [_stim(folder, each) for each in _list(request["stim"])]
-    until = request.get("until")
     shard = f".{given.shard.replace('/', '-')}" if given.shard else ""
     return sweep(
         programs,
@@ -100,8 +108,8 @@ def _run(given: argparse.Namespace) -> Table:
         workers=given.workers,
         log=given.log or path.with_suffix(f"{shard}.sweep"),
         shard=given.shard,
-        until=float(until) if isinstance(until, (int, float)) else until,
-        timeout=float(request.get("timeout", 60.0)),
+        until=request.get("until"),
+        timeout=request.get("timeout", 60.0),
         **board,
     )
 
@@ -127,14 +135,14 @@ def _stim(folder: Path, text: str) -> str:
 
 
 def _grid(path: Path, grid: Mapping[str, Any]) -> dict[str, list[Any]]:
-    """The values of each name: a list, or `{ from, to, steps }`."""
+    """Return the values of each name, given as a list or as `{ from, to, steps }`."""
     flat: dict[str, list[Any]] = {}
     for name, values in grid.items():
         if isinstance(values, Mapping):
             try:
                 first, last, steps = float(values["from"]), float(values["to"]), int(values["steps"])
             except (KeyError, TypeError, ValueError):
-                raise InputError(f"{path}: the values of {name!r} are a list or {{ from, to, steps }}") from None
+                raise InputError(f"{path}: the values of {name!r} must be a list or {{ from, to, steps }}") from None
             if steps < 2:
                 raise InputError(f"{path}: {name!r} needs at least 2 steps")
             values = [first + (last - first) * step / (steps - 1) for step in range(steps)]

@@ -1,15 +1,15 @@
-"""One run of a sweep: from its inputs to its outputs, wherever it is executed."""
+"""The runs of a sweep, from inputs to outputs, as any executor executes them."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Any, Callable, Mapping, Sequence, Union
 
-from ._board import Board
+from ._board import Board, Condition
 from ._errors import InputError
 from ._program import Program
 
-__all__ = ["Batch", "Measure", "run_batch"]
+__all__ = ["Batch", "Measure", "is_timeout", "run_batch"]
 
 Inputs = dict[str, Any]
 Measure = Union[Callable[..., Any], Mapping[str, str]]
@@ -20,23 +20,29 @@ class Batch:
     """Runs that are executed together.
 
     Attributes:
-        runs: number, inputs and programs of each.
-        options: the arguments of `cc67.Board` that all have in common.
-        measure: what is measured.
-        until: what ends a run before it is measured by expressions, or None for the end of the programs.
-        timeout: seconds of board time that this may take.
+        runs: number, inputs and programs of each run.
+        options: the arguments of `cc67.Board` for all runs.
+        measure: what to measure, a function or a mapping of names to expressions.
+        until: what ends a run before expressions are evaluated: a condition, seconds of board time as a float, or None
+            for the end of all programs.
+        timeout: seconds of board time after which a run that has not ended fails.
     """
 
     runs: Sequence[tuple[int, Inputs, Sequence[Program]]]
     options: Mapping[str, Any]
     measure: Measure
-    until: Any = None
+    until: Condition | float | None = None
     timeout: float = 60.0
 
 
 def run_batch(batch: Batch) -> list[tuple[int, dict[str, Any]]]:
-    """Executes the runs of a batch: the number and the outputs of each, or `error`."""
+    """Execute the runs of a batch; return the number of each, and its outputs or `error`."""
     return [(number, _run(batch, inputs, programs)) for number, inputs, programs in batch.runs]
+
+
+def is_timeout(outputs: Mapping[str, Any]) -> bool:
+    """Return whether it was the timeout of the sweep that ended the run with these outputs."""
+    return str(outputs["error"]).startswith("TimeoutError:")
 
 
 def _run(batch: Batch, inputs: Inputs, programs: Sequence[Program]) -> dict[str, Any]:
@@ -46,13 +52,13 @@ def _run(batch: Batch, inputs: Inputs, programs: Sequence[Program]) -> dict[str,
             result = _call(batch.measure, board, inputs)
         else:
             result = _expressions(batch, board, batch.measure)
-    except Exception as error:  # Whatever a run fails with is its result.
+    except Exception as error:  # Whatever makes a run fail is its result.
         return {"error": f"{type(error).__name__}: {error}"}
     return {**result, "error": None}
 
 
 def _options(options: Mapping[str, Any], inputs: Inputs) -> dict[str, Any]:
-    """The arguments of `Board`: those in common, and what the inputs change."""
+    """Return the arguments of `Board`: those of all runs, with the inputs of this one."""
     settings = dict(options.get("set", {}))
     statements = list(options.get("stim", []))
     for name, value in inputs.items():
@@ -69,7 +75,7 @@ def _options(options: Mapping[str, Any], inputs: Inputs) -> dict[str, Any]:
 
 
 def _call(measure: Callable[..., Any], board: Board, inputs: Inputs) -> dict[str, Any]:
-    """What a function measures: a mapping, a number as `value`, or several as `value0`, `value1`, …"""
+    """Return what a function measures: a mapping, a number as `value`, or several as `value0`, `value1`, …"""
     result = measure(board, inputs) if _takes_inputs(measure) else measure(board)
     if isinstance(result, Mapping):
         return {str(name): _plain(value) for name, value in result.items()}
@@ -91,22 +97,22 @@ def _takes_inputs(measure: Callable[..., Any]) -> bool:
 
 
 def _expressions(batch: Batch, board: Board, measure: Mapping[str, str]) -> dict[str, Any]:
-    """The values of expressions at the end of the run; `time` is the board time in seconds."""
+    """Return the values of expressions at the end of the run; `time` is the board time in seconds."""
     if batch.until is None:
         if not board.run(batch.timeout):
             raise TimeoutError(f"the programs have not ended after {batch.timeout:g} s of board time")
     elif isinstance(batch.until, float):
         board.run_for(batch.until)
     elif not board.run_until(batch.until, batch.timeout):
-        raise TimeoutError(f"`{batch.until}` is not so after {batch.timeout:g} s of board time")
+        raise TimeoutError(f"`{batch.until}` is not met after {batch.timeout:g} s of board time")
     return {name: board.time if text == "time" else board.read(text) for name, text in measure.items()}
 
 
 def _plain(value: Any) -> Any:
-    """A value as a table and JSON have it: numbers of NumPy become those of Python."""
+    """Convert a value for a table and JSON: NumPy numbers become Python numbers."""
     if value is None or isinstance(value, (bool, int, float, str)):
         return value
     item = getattr(value, "item", None)
     if item is not None and getattr(value, "ndim", 0) == 0:
         return item()
-    raise InputError(f"a measure is a number or a text, not {value!r}")
+    raise InputError(f"a measured value must be a number or a string, not {value!r}")

@@ -20,10 +20,10 @@ Row = dict[str, Any]
 
 
 class Table(Sequence[Row]):
-    """The results of many runs: a row for each, in the order of the inputs, whatever order they ended in.
+    """The results of many runs: a row for each run, in the order of the inputs.
 
-    A row has the inputs, the outputs, and `error`: None, or what the run failed with. `table["overshoot"]` is a column,
-    `table[3]` a row.
+    A row has the inputs, the outputs, and `error`: None, or the reason why the run failed. `table["overshoot"]` is a
+    column, `table[3]` a row.
     """
 
     def __init__(self, rows: Iterable[Mapping[str, Any]], inputs: Iterable[str] = ()) -> None:
@@ -72,14 +72,18 @@ class Table(Sequence[Row]):
         return f"<cc67.Table of {len(self)} rows: {', '.join(self.columns)}{f'; {failed} failed' if failed else ''}>"
 
     def array(self, *names: str) -> NDArray[np.float64]:
-        """Columns as a NumPy array of doubles, a row a run; what a failed run lacks is not a number."""
+        """Return columns as a NumPy array of doubles, with a row for each run.
+
+        Args:
+            *names: the columns; by default all but `error`. Texts, and values that a failed run lacks, become NaN.
+        """
         import numpy as np
 
         columns = [self[name] for name in names or [name for name in self.columns if name != "error"]]
         return np.array([[_float(value) for value in column] for column in columns], dtype=np.float64).T
 
     def csv(self) -> str:
-        """The table as comma-separated values."""
+        """Return the table as comma-separated values."""
         import io
 
         text = io.StringIO()
@@ -89,7 +93,12 @@ class Table(Sequence[Row]):
         return text.getvalue()
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes the table: .csv, .json (an object a line), or .parquet, which needs pyarrow."""
+        """Write the table to a file: .csv, .json or .jsonl (one object per line), or .parquet, which needs pyarrow.
+
+        Raises:
+            InputError: the name has another suffix.
+            NotBuiltError: pyarrow is not installed.
+        """
         path = Path(path)
         suffix = path.suffix.lower()
         temporary = path.with_name(path.name + ".part")
@@ -101,7 +110,7 @@ class Table(Sequence[Row]):
         elif suffix == ".parquet":
             self._save_parquet(temporary)
         else:
-            raise InputError(f"a table is .csv, .json or .parquet, not {path}")
+            raise InputError(f"a table file must end in .csv, .json or .parquet, unlike {path}")
         temporary.replace(path)
 
     def _save_parquet(self, path: Path) -> None:
@@ -110,11 +119,11 @@ class Table(Sequence[Row]):
         try:
             arrow, parquet = import_module("pyarrow"), import_module("pyarrow.parquet")
         except ImportError:
-            raise NotBuiltError("a table as .parquet needs pyarrow: pip install cc67[parquet]") from None
+            raise NotBuiltError("a .parquet table needs pyarrow: pip install cc67[parquet]") from None
         parquet.write_table(arrow.table({name: self[name] for name in self.columns}), path)
 
     def pandas(self) -> Any:
-        """The table as a pandas.DataFrame."""
+        """Return the table as a pandas.DataFrame; needs pandas."""
         from importlib import import_module
 
         return import_module("pandas").DataFrame(self.rows, columns=self.columns)
@@ -128,5 +137,5 @@ def _float(value: Any) -> float:
 
 
 def _cell(value: Any) -> Any:
-    """A value as a table of text has it: doubles with all their digits."""
+    """Convert a value for a text table, where None is an empty cell."""
     return "" if value is None else value

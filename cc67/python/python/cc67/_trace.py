@@ -18,11 +18,11 @@ __all__ = ["Trace"]
 
 
 class Trace(Mapping[str, "Array"]):
-    """Values over time as NumPy arrays of doubles: `trace["dest0"]`, with their instants in `trace.time`.
+    """Values over time as NumPy arrays of doubles: `trace["dest0"]`, with their times in `trace.time`.
 
     Attributes:
-        time: seconds of board time since power-up, the end of each sampled tick.
-        units: the unit of each item, "" where none is known.
+        time: board time of each sample, in seconds since power-up: the end of the sampled tick.
+        units: the unit of each item, or "" if it is unknown.
     """
 
     def __init__(self, time: Array, columns: Mapping[str, Array], units: Mapping[str, str] | None = None) -> None:
@@ -46,7 +46,12 @@ class Trace(Mapping[str, "Array"]):
         return f"<cc67.Trace of {', '.join(self._columns)}: {len(self.time)} samples>"
 
     def save(self, path: Union[str, "os.PathLike[str]"], first: str = "time") -> None:
-        """Writes a table (CSV): the time in seconds, then a column an item. `cc67 plot` draws it."""
+        """Write a CSV table for `cc67 plot`: the time in seconds, then a column for each item.
+
+        Args:
+            path: the file.
+            first: the heading of the first column.
+        """
         with open(path, "w", newline="", encoding="utf-8") as file:
             writer = csv.writer(file, lineterminator="\n")
             writer.writerow([first, *self._columns])
@@ -54,7 +59,7 @@ class Trace(Mapping[str, "Array"]):
             writer.writerows([f"{value:.10g}" for value in row] for row in rows)
 
     def plot(self, axes: Any = None) -> Any:
-        """Draws the items over time with Matplotlib, on `axes` or a new picture; returns the Matplotlib axes."""
+        """Plot the items over time with Matplotlib, on `axes` or in a new figure, and return the Matplotlib axes."""
         if axes is None:
             from importlib import import_module
 
@@ -69,7 +74,14 @@ class Trace(Mapping[str, "Array"]):
         return axes
 
     def picture(self, path: Union[str, "os.PathLike[str]"]) -> None:
-        """Draws the items as `cc67 plot` does: .svg, .png, or .html for a page with zoom and cursor."""
+        """Plot the items to a file, as `cc67 plot` does.
+
+        Args:
+            path: the file: .svg, .png, or .html for a page with zoom and cursor.
+
+        Raises:
+            Error: the file cannot be written, or has another suffix.
+        """
         from ._command import draw
 
         draw(self, os.fspath(path))

@@ -1,4 +1,4 @@
-"""The pytest plugin of cc67, which is there wherever the package is installed.
+"""The pytest plugin of cc67, active wherever the package is installed.
 
     @pytest.mark.cc67(programs=["home.c"], machine="mill.toml")
     @pytest.mark.cc67_engines("native", "bytecode")
@@ -7,8 +7,9 @@
         expect(board).position("X", 0, tolerance=0.5)
         assert_console(board)
 
-`board` is the board of the marker, whose files are beside the test's. `make_board` makes further ones. What a test that
-fails has done to its boards is done again with a trace, and both the picture and the table are kept.
+`board` is the board that the marker describes; its files are relative to the folder of the test. `make_board` makes
+more boards. When a test fails, the plugin repeats on new boards what the test did, with a trace, and keeps a table and
+a plot of it.
 """
 
 from __future__ import annotations
@@ -33,50 +34,50 @@ AssertConsole = Callable[..., None]
 
 _MADE: pytest.StashKey[list[tuple[Board, dict[str, Any]]]] = pytest.StashKey()
 
-# Samples of the trace of a test that fails; of a longer run every so many ticks.
+# Most samples in the trace of a failed test; a longer run is sampled less often.
 _SAMPLES = 20_000
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Options and settings."""
+    """Add the options and settings of the plugin."""
     group = parser.getgroup("cc67", "simulated KFLOP boards")
     group.addoption(
         "--cc67-bless",
         "--bless",
         action="store_true",
         dest="cc67_bless",
-        help="write what consoles show now into their golden files; read them before you keep them",
+        help="write the current consoles to their golden files; review them before you keep them",
     )
     group.addoption(
         "--cc67-engine",
         choices=["native", "bytecode", "both"],
         dest="cc67_engine",
-        help="what executes programs in tests that do not say: native (default), bytecode or both",
+        help="engine of tests without the marker cc67_engines: native (default), bytecode or both",
     )
     group.addoption(
         "--cc67-attach",
         metavar="DIR",
         dest="cc67_attach",
-        help="folder of traces and pictures of failed tests; else cc67-failed in pytest's cache; `none` makes none",
+        help="folder for traces and plots of failed tests (default: cc67-failed in pytest's cache); `none`: no traces",
     )
-    parser.addini("cc67_engine", "what executes programs: native, bytecode or both", default="native")
+    parser.addini("cc67_engine", "engine that executes programs: native, bytecode or both", default="native")
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Markers."""
-    config.addinivalue_line("markers", "cc67(**options): the arguments of cc67.Board for the fixture `board`")
-    config.addinivalue_line("markers", "cc67_engines(*names): the engines that the test runs on, native and bytecode")
+    """Add the markers of the plugin."""
+    config.addinivalue_line("markers", "cc67(**options): arguments of cc67.Board for the fixture `board`")
+    config.addinivalue_line("markers", "cc67_engines(*names): engines to run the test on, native and bytecode")
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
-    """A test of several engines is one test each."""
+    """Make one test for each engine of a test that has several."""
     if "cc67_engine" not in metafunc.fixturenames:
         return
     marker = metafunc.definition.get_closest_marker("cc67_engines")
     names = list(marker.args) if marker else _usual_engines(metafunc.config)
     for name in names:
         if name not in ("native", "bytecode"):
-            raise pytest.UsageError(f"an engine is native or bytecode, not {name!r}")
+            raise pytest.UsageError(f"an engine must be native or bytecode, not {name!r}")
     if marker or len(names) > 1:
         metafunc.parametrize("cc67_engine", names)
 
@@ -88,15 +89,15 @@ def _usual_engines(config: pytest.Config) -> list[str]:
 
 @pytest.fixture
 def cc67_engine(request: pytest.FixtureRequest) -> str:
-    """What executes the programs of the test: "native" or "bytecode"."""
+    """The engine that executes the programs of the test: "native" or "bytecode"."""
     return _usual_engines(request.config)[0]
 
 
 @pytest.fixture
 def make_board(request: pytest.FixtureRequest, cc67_engine: str) -> MakeBoard:
-    """Makes boards: `make_board(programs=["home.c"])`, with the arguments of `cc67.Board`.
+    """A function that makes boards: `make_board(programs=["home.c"])`, with the arguments of `cc67.Board`.
 
-    Names of files that are not paths from the root are relative to the folder of the test.
+    Relative file names start from the folder of the test.
     """
     folder = request.path.parent
     made: list[tuple[Board, dict[str, Any]]] = request.node.stash.setdefault(_MADE, [])
@@ -115,7 +116,7 @@ def make_board(request: pytest.FixtureRequest, cc67_engine: str) -> MakeBoard:
 
 @pytest.fixture
 def board(request: pytest.FixtureRequest, make_board: MakeBoard) -> Board:
-    """The board of the marker `cc67(...)`; without a marker an empty one."""
+    """The board described by the marker `cc67(...)`; without a marker, a board without programs."""
     options: dict[str, Any] = {}
     for marker in reversed(list(request.node.iter_markers("cc67"))):
         options.update(marker.kwargs)
@@ -126,16 +127,16 @@ def board(request: pytest.FixtureRequest, make_board: MakeBoard) -> Board:
 
 @pytest.fixture
 def expect() -> Callable[[Board], Expect]:
-    """What is expected of a board: `expect(board).position("X", 100, tolerance=0.5, within=2.0)`."""
+    """Expectations of a board: `expect(board).position("X", 100, tolerance=0.5, within=2.0)`."""
     return Expect
 
 
 @pytest.fixture
 def assert_console(request: pytest.FixtureRequest) -> AssertConsole:
-    """Compares a board's console with its golden file; `pytest --cc67-bless` writes it.
+    """A function that compares a board's console with its golden file; `pytest --cc67-bless` writes that file.
 
-    The file is `FILE/TEST.expected` beside the test's, or the name that is given; it has the lines of the console.
-    All engines have the same.
+    The golden file has the lines of the console. It is `FILE/TEST.expected` in the folder of the test, or the file
+    given as the second argument, and is the same for all engines.
     """
     config = request.config
     name = request.node.originalname if isinstance(request.node, pytest.Function) else request.node.name
@@ -156,40 +157,41 @@ def assert_console(request: pytest.FixtureRequest) -> AssertConsole:
             lines = difflib.unified_diff(
                 wanted.splitlines(), shown.splitlines(), str(path), "the console", lineterm="", n=2
             )
-            pytest.fail("the console is not as expected\n" + "\n".join(lines), pytrace=False)
+            pytest.fail("the console differs from its golden file\n" + "\n".join(lines), pytrace=False)
 
     return check
 
 
 class Expect:
-    """What is expected of a board, at once or within some seconds of board time.
+    """Expectations of a board, now or within some seconds of board time.
 
-    Each raises `cc67.ExpectationError`, an `AssertionError`, with what was so instead. With `within` time passes until
-    it is so; without, it has to be so now.
+    Without `within`, the expectation must be met now. With it, the board runs until the expectation is met, for at most
+    `within` seconds of board time. If it is not met, `cc67.ExpectationError`, an `AssertionError`, says what was found
+    instead.
     """
 
     def __init__(self, board: Board) -> None:
         self._board = board
 
     def that(self, condition: Condition, within: float = 0.0) -> None:
-        """A condition of `Board.run_until`."""
+        """Expect a condition of `Board.run_until` to be met."""
         __tracebackhide__ = True
         if not self._board.run_until(condition, within):
-            self._fail(f"{_describe(condition)} is not so", within)
+            self._fail(f"{_describe(condition)} is not met", within)
 
     def printed(self, text: str, within: float = 0.0) -> None:
-        """A console line contains the text: one printed already, or one within the time."""
+        """Expect a console line that contains the text, already printed or printed in time."""
         __tracebackhide__ = True
         if text in self._board.console or (within > 0 and self._board.run_until(printed(text), within)):
             return
         last = self._board.console[-1:]
         self._fail(f"no console line contains {text!r}; the last one is {last[0]!r}" if last else
-                   f"no console line contains {text!r}; there is none", within)
+                   f"no console line contains {text!r}; the console is empty", within)
 
     def value(self, expression: str, expected: float, tolerance: float = 0.0, within: float = 0.0) -> None:
-        """An expression has a value, give or take the tolerance."""
+        """Expect an expression to have a value, within ± `tolerance`."""
         __tracebackhide__ = True
-        # `3:count` is of thread 3, which a whole expression has in front.
+        # The thread of `3:count` must come before the whole expression.
         thread, rest = re.fullmatch(r"(\d+:)?(.*)", expression, re.DOTALL).groups("")  # type: ignore[union-attr]
         near = f"{thread}({rest}) - ({expected!r}) <= {tolerance!r} && ({expected!r}) - ({rest}) <= {tolerance!r}"
         if not self._board.run_until(near, within):
@@ -197,34 +199,34 @@ class Expect:
             self._fail(f"{expression} is {found:.10g}, not {_range(expected, tolerance)}", within)
 
     def dest(self, axis: int | str, expected: float, tolerance: float = 0.0, within: float = 0.0) -> None:
-        """The destination of an axis, in its position units."""
+        """Expect the commanded position of an axis, in its units, within ± `tolerance`."""
         __tracebackhide__ = True
         self.value(f"chan[{self._axis(axis).index}].Dest", expected, tolerance, within)
 
     def position(self, axis: int | str, expected: float, tolerance: float = 0.0, within: float = 0.0) -> None:
-        """The position of an axis, in its position units."""
+        """Expect the measured position of an axis, in its units, within ± `tolerance`."""
         __tracebackhide__ = True
         self.value(f"chan[{self._axis(axis).index}].Position", expected, tolerance, within)
 
     def enabled(self, axis: int | str, expected: bool = True, within: float = 0.0) -> None:
-        """Whether the servo of an axis is active."""
+        """Expect an axis to be enabled, or disabled if `expected` is False."""
         __tracebackhide__ = True
         number = self._axis(axis).index
         if not self._board.run_until(f"(chan[{number}].Enable != 0) == {int(expected)}", within):
             self._fail(f"axis {axis} is {'dis' if expected else 'en'}abled", within)
 
     def bit(self, number: int, level: bool = True, within: float = 0.0) -> None:
-        """The level of a bit."""
+        """Expect a bit to have a level."""
         __tracebackhide__ = True
         if not self._board.run_until(f"bit{number} == {int(level)}", within):
             self._fail(f"bit {number} is {int(not level)}", within)
 
     def ended(self, within: float = 0.0) -> None:
-        """All programs have ended and nothing moves."""
+        """Expect all programs to have ended and nothing to move."""
         __tracebackhide__ = True
         if not (self._board.run(within) if within else self._board.ended):
             active = [str(thread) for thread in range(1, 8) if self._board.active(thread)]
-            self._fail(f"threads {', '.join(active)} are active" if active else "something moves", within)
+            self._fail(f"threads still active: {', '.join(active)}" if active else "something still moves", within)
 
     def _axis(self, axis: int | str) -> Axis:
         return self._board.axes[axis]
@@ -244,7 +246,7 @@ def _describe(condition: Condition) -> str:
 
 
 def _beside(folder: Path, key: str, value: Any) -> Any:
-    """An argument of `Board`, with names of files relative to the folder of the test."""
+    """Make the file names in an argument of `Board` relative to the folder of the test."""
     if key in ("programs", "load"):
         return _sources(folder, value)
     if key in ("machine", "files"):
@@ -271,7 +273,7 @@ def _file(folder: Path, value: Any, suffixes: tuple[str, ...] | None) -> Any:
 
 @pytest.hookimpl(hookwrapper=True)
 def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) -> Generator[None, Any, None]:
-    """What the boards of a failed test show, as sections of its report."""
+    """Add the boards of a failed test to its report, with their consoles and traces."""
     outcome = yield
     report = outcome.get_result()
     if report.when != "call" or not report.failed:
@@ -284,7 +286,7 @@ def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) ->
             for line in _attach(item, title, board, options):
                 report.sections.append((f"cc67 {title} trace", line))
         except Error as error:
-            # The report of the failure matters more than what would have been beside it.
+            # The report of the failure matters more than this addition to it.
             report.sections.append((f"cc67 {title}", f"cannot be shown: {error}"))
 
 
@@ -296,7 +298,7 @@ def _summary(board: Board) -> Iterator[str]:
 
 
 def _attach(item: pytest.Item, title: str, board: Board, options: dict[str, Any]) -> Iterator[str]:
-    """The run again, with a trace, as a table and a picture."""
+    """Repeat the run with a trace; save it as a table and a plot, and yield their paths."""
     folder = _folder(item)
     recording, is_complete = board._native.recording()
     if folder is None or board.tick == 0:

@@ -1,4 +1,4 @@
-"""Studies that users of motion controllers do, as functions.
+"""Common studies of motion controllers, as functions.
 
     from cc67 import studies
 
@@ -9,7 +9,7 @@
     studies.search_gains(cost, {"P": (0.1, 2), "D": (0, 50)})
     studies.following_error(board, axis=0, seconds=2.0)
 
-Excitation and recording are those of the board: the script commands GatherStep and GetGather.
+The board itself makes and records steps, with the script commands GatherStep and GetGather.
 """
 
 from ._following import FollowingError, following_error, worst_following_error

@@ -1,4 +1,4 @@
-"""`cc67 study NAME PROGRAM`: studies from the command line, with tables and pictures."""
+"""`cc67 study NAME PROGRAM`: studies from the command line, with tables and plots."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Callable
 import numpy as np
 
 from .._board import Board
-from .._errors import CompileError, Error, InputError
+from .._errors import CompileError, Error, InputError, NotBuiltError
 from .._trace import Trace
 from ._following import following_error
 from ._response import frequency_response, step_response
@@ -20,7 +20,7 @@ __all__ = ["main"]
 
 
 def main(arguments: list[str]) -> int:
-    """Runs the command; the exit code: 0, 1 if the program has errors, 2 for wrong usage or input."""
+    """Run the command and return its exit code: 0, 1 if a program has errors, 2 for wrong usage or input."""
     given = _parser().parse_args(arguments)
     study: Callable[[argparse.Namespace], None] = given.study
     try:
@@ -35,33 +35,41 @@ def main(arguments: list[str]) -> int:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser("cc67 study", description="Studies of an axis and of a program")
+    parser = argparse.ArgumentParser("cc67 study", description="Study an axis or a program")
     studies = parser.add_subparsers(required=True, metavar="STUDY")
     rows: list[tuple[str, str, Callable[[argparse.Namespace], None]]] = [
-        ("step", "step response: rise, overshoot, settling", _step),
-        ("frequency", "frequency response: position over destination (Bode)", _frequency),
-        ("following", "the worst following error while the program runs", _following),
-        ("tolerance", "the program on machines that vary at random", _tolerance),
+        ("step", "measure the step response: rise, overshoot, settling", _step),
+        ("frequency", "measure the frequency response: position relative to destination (Bode)", _frequency),
+        ("following", "find the worst following error while the program runs", _following),
+        ("tolerance", "run the program on machines that vary at random", _tolerance),
     ]
     for name, text, study in rows:
         one = studies.add_parser(name, help=text, description=text)
         one.set_defaults(study=study)
-        one.add_argument("program", nargs="+", metavar="PROGRAM", help="what sets up the axis: files for threads 1, 2, …")
-        one.add_argument("--machine", metavar="FILE", help="what is connected to the board")
-        one.add_argument("--stim", metavar="FILE|TEXT", action="append", default=[], help="what the world does and when")
-        one.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], help="start values, machine file keys")
-        one.add_argument("-o", "--output", metavar="FILE", help="a table (.csv) or a picture (.svg, .png, .html)")
+        one.add_argument(
+            "program", nargs="+", metavar="PROGRAM", help="programs that set up the axis, for threads 1, 2, …"
+        )
+        one.add_argument("--machine", metavar="FILE", help="machine file: what is connected to the board")
+        one.add_argument(
+            "--stim", metavar="FILE|TEXT", action="append", default=[], help="stimulus: a file, or statements"
+        )
+        one.add_argument(
+            "--set", metavar="KEY=VALUE", action="append", default=[], help="start value, or machine file key"
+        )
+        one.add_argument("-o", "--output", metavar="FILE", help="write a table (.csv) or a plot (.svg, .png, .html)")
         if name == "tolerance":
-            one.add_argument("--vary", metavar="KEY=LOW:HIGH", action="append", required=True, help="what varies")
-            one.add_argument("--measure", metavar="NAME=EXPRESSION", action="append", required=True, help="at the end")
-            one.add_argument("--samples", type=int, default=100, metavar="N", help="how many machines (100)")
-            one.add_argument("--seed", type=int, default=0, metavar="N", help="of the random numbers (0)")
+            one.add_argument("--vary", metavar="KEY=LOW:HIGH", action="append", required=True, help="vary a key")
+            one.add_argument(
+                "--measure", metavar="NAME=EXPRESSION", action="append", required=True, help="measure this at the end"
+            )
+            one.add_argument("--samples", type=int, default=100, metavar="N", help="number of machines (100)")
+            one.add_argument("--seed", type=int, default=0, metavar="N", help="seed of the random numbers (0)")
             continue
         one.add_argument("--axis", default="0", help="number or name of the axis (0)")
-        one.add_argument("--seconds", type=float, default=0.5, help="how long it is recorded, board time (0.5)")
+        one.add_argument("--seconds", type=float, default=0.5, help="board time to record, in s (0.5)")
         if name != "following":
-            one.add_argument("--size", type=float, default=100.0, help="size of the step in units (100)")
-            one.add_argument("--after", type=float, default=5.0, help="at most so long until the programs end (5)")
+            one.add_argument("--size", type=float, default=100.0, help="size of the step in units of the axis (100)")
+            one.add_argument("--after", type=float, default=5.0, help="limit for the programs to end, in s (5)")
         if name == "frequency":
             one.add_argument("--band", default="1:1000", metavar="LOW:HIGH", help="frequencies in Hz (1:1000)")
     return parser
@@ -72,7 +80,7 @@ def _board(given: argparse.Namespace) -> Board:
 
 
 def _ready(given: argparse.Namespace) -> Board:
-    """A board whose programs have set up the axis."""
+    """Make a board and let its programs set up the axis."""
     board = _board(given)
     board.run(given.after)
     return board
@@ -117,7 +125,7 @@ def _frequency(given: argparse.Namespace) -> None:
     try:
         figure = response.plot()[0].figure
     except ImportError:
-        raise InputError("a picture of a frequency response needs Matplotlib: pip install cc67[plot]") from None
+        raise NotBuiltError("a plot of a frequency response needs Matplotlib: pip install cc67[plot]") from None
     figure.savefig(given.output)
 
 

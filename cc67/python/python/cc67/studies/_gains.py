@@ -1,4 +1,4 @@
-"""Search for gains within limits."""
+"""A search for gains within limits."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ Cost = Callable[[dict[str, float]], float]
 
 @dataclass(frozen=True)
 class GainSearch:
-    """What a search found.
+    """The result of a search for gains.
 
     Attributes:
-        gains: the best ones.
-        cost: what they cost.
-        tried: all gains that were tried with what they cost, in order.
+        gains: the gains with the lowest cost.
+        cost: that cost.
+        tried: all gains that were tried, with their costs, in order.
     """
 
     gains: dict[str, float]
@@ -38,35 +38,39 @@ def search_gains(
     tolerance: float = 1e-3,
     **options: Any,
 ) -> GainSearch:
-    """Searches the gains that cost least.
+    """Search for the gains with the lowest cost.
 
     Args:
-        cost: what gains cost, less is better; it makes a board, sets the gains and measures. A gain that is impossible
-            costs `float("inf")`.
-        limits: lower and upper bound of each gain by its name.
-        start: where to begin; else in the middle.
-        method: "compass", which needs nothing else; or a method of `scipy.optimize.minimize` with bounds, such as
-            "Nelder-Mead" or "Powell"; or "differential_evolution".
-        evaluations: how often `cost` is called at most (SciPy may finish a step that is under way).
-        tolerance: how small steps become, as a part of the limits.
-        **options: for SciPy's function.
+        cost: a function of the gains that returns their cost; lower is better. It makes a board, sets the gains and
+            measures. For impossible gains it returns `float("inf")`.
+        limits: lower and upper limit of each gain by name.
+        start: gains to start from; by default the middle of the limits.
+        method: "compass", which needs no other package; or, with SciPy, "differential_evolution" or a method of
+            `scipy.optimize.minimize` that accepts bounds, such as "Nelder-Mead" or "Powell".
+        evaluations: most calls of `cost`; SciPy may exceed it to finish a step.
+        tolerance: the smallest step, as a fraction of the range between the limits.
+        **options: options of SciPy's function.
+
+    Raises:
+        InputError: the limits are invalid, or `start` is outside them.
+        NotBuiltError: the method needs SciPy, which is not installed.
     """
     for name, (low, high) in limits.items():
         if not low < high:
-            raise InputError(f"the limits of {name!r} are a lower and an upper one, not {low!r} and {high!r}")
+            raise InputError(f"the limits of {name!r} must be a lower and an upper one, not {low!r} and {high!r}")
     if not limits:
-        raise InputError("there are no gains to search")
+        raise InputError("there are no gains to search for")
     names = list(limits)
     tried: list[tuple[dict[str, float], float]] = []
 
     def value(point: Any) -> float:
-        """At a point of the cube from 0 to 1."""
+        """Return the cost at a point of the unit cube."""
         gains = {}
         for name, part in zip(names, point):
             low, high = limits[name]
             gains[name] = low + (high - low) * min(1.0, max(0.0, float(part)))
         found = float(cost(gains))
-        # An optimiser cannot go on from what is not a number.
+        # An optimiser cannot continue from NaN.
         tried.append((gains, found if found == found else float("inf")))
         return tried[-1][1]
 
@@ -82,12 +86,12 @@ def search_gains(
 def _part(limits: tuple[float, float], value: float) -> float:
     low, high = limits
     if not low <= value <= high:
-        raise InputError(f"the start {value!r} is outside of its limits {low!r} and {high!r}")
+        raise InputError(f"the start {value!r} is outside its limits {low!r} and {high!r}")
     return (value - low) / (high - low)
 
 
 def _compass(value: Callable[[list[float]], float], point: list[float], evaluations: int, tolerance: float) -> None:
-    """Goes to a better neighbour along an axis; where there is none, steps are halved."""
+    """Move to a better neighbour along an axis; if there is none, halve the step."""
     best, step, left = value(point), 0.25, evaluations - 1
     while step >= tolerance and left > 0:
         for index in range(len(point)):

@@ -1,8 +1,8 @@
-"""How an axis answers: to a step, and to each frequency.
+"""The response of an axis to a step, and at each frequency.
 
-A step is what excites both. The board jumps with the destination and records destination and position in every servo
-tick, 90 µs. The frequency response is the quotient of the transforms of their differences from tick to tick: where the
-axis has come to rest at the end of the record, nothing is cut off, so it is exact for a linear axis.
+Both are measured with a step. The board makes the destination jump, and records destination and position in every servo
+tick of 90 µs. The frequency response is the quotient of the Fourier transforms of their differences from tick to tick:
+if the axis is at rest at the end of the record, nothing is cut off, so it is exact for a linear axis.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ Array = NDArray[np.float64]
 _TICK = 90e-6
 # Samples before the step: 0.02 s.
 _REST = 222
-# The most that a board records for GetGather.
+# Most samples that a board records for GetGather.
 _MOST = 40_000
 
 
@@ -44,12 +44,12 @@ class StepFigures:
     """The figures of a step response.
 
     Attributes:
-        rise: seconds from 10 % to 90 % of the way.
-        overshoot: how far it goes beyond the end, as a part of the way: 0.05 is 5 %.
+        rise: seconds from 10 % to 90 % of the step; NaN if it is not reached.
+        overshoot: how far the response exceeds the end value, as a fraction of the step: 0.05 is 5 %.
         peak_time: seconds from the step to the peak.
-        settling: seconds from the step until it stays within the band.
-        band: that band, as a part of the way.
-        error: what is missing at the end, in units.
+        settling: seconds from the step until the response stays within the band; NaN if it does not.
+        band: half the width of that band, as a fraction of the step.
+        error: end value minus the last value, in units of the axis.
     """
 
     rise: float
@@ -62,7 +62,15 @@ class StepFigures:
 
 @dataclass(frozen=True)
 class StepResponse:
-    """A step of an axis: time in seconds from the step on, destination and position in units, output in counts."""
+    """The response of an axis to a step.
+
+    Attributes:
+        time: seconds since the step.
+        dest: commanded position, in units of the axis.
+        position: measured position, in units of the axis.
+        output: output of the axis, in counts.
+        figures: the figures of the response.
+    """
 
     time: Array
     dest: Array
@@ -72,18 +80,27 @@ class StepResponse:
 
     @property
     def trace(self) -> Trace:
-        """The same as a trace, for tables and pictures."""
+        """The response as a trace, for tables and plots."""
         return Trace(self.time, {"dest": self.dest, "position": self.position, "output": self.output})
 
     def picture(self, path: Union[str, "os.PathLike[str]"]) -> None:
-        """Draws destination and position: .svg, .png or .html."""
+        """Plot destination and position to a file: .svg, .png or .html."""
         Trace(self.time, {"dest": self.dest, "position": self.position}).picture(path)
 
 
 def step_figures(time: Sequence[float] | Array, values: Sequence[float] | Array, end: float, *, band: float = 0.02) -> StepFigures:
-    """The figures of a response that begins at its first value, at time 0, and is to come to `end`.
+    """Compute the figures of a step response.
 
     Between samples the response is taken as a straight line, at its peak as a parabola.
+
+    Args:
+        time: the time of each value in seconds; the first is that of the step.
+        values: the response, beginning with the value from which the step starts.
+        end: the value that the response should reach.
+        band: the band for settling, `end` ± this fraction of the step.
+
+    Raises:
+        InputError: there are fewer than 3 values, or the step has no size.
     """
     t, v = np.asarray(time, dtype=np.float64), np.asarray(values, dtype=np.float64)
     if t.shape != v.shape or t.ndim != 1 or len(t) < 3:
@@ -103,7 +120,7 @@ def step_figures(time: Sequence[float] | Array, values: Sequence[float] | Array,
 
 
 def _first(time: Array, way: Array, level: float) -> float:
-    """When a level is reached first."""
+    """Return when a level is first reached, or NaN."""
     reached = np.flatnonzero(way >= level)
     if not len(reached):
         return math.nan
@@ -130,45 +147,56 @@ def _peak(time: Array, way: Array) -> tuple[float, float]:
 def step_response(
     board: Board, axis: int | str = 0, size: float = 100.0, seconds: float = 0.5, *, band: float = 0.02
 ) -> StepResponse:
-    """Lets an enabled axis jump by `size` units, records it for `seconds`, and jumps back.
+    """Let the destination of an enabled axis jump by `size` units, record the response, and jump back.
 
-    What the board does on the script command GatherStep; the answer is read with GetGather. At most 1.78 s.
+    The board makes and records the step with the script command GatherStep; GetGather reads the record.
+
+    Args:
+        board: a board whose axis is enabled and at rest.
+        axis: number or name of the axis.
+        size: size of the step in units of the axis.
+        seconds: board time to record after the step, at most 1.78.
+        band: the band for settling, as a fraction of the step.
+
+    Raises:
+        Error: the axis is not enabled, or the step disables it.
+        InputError: `size` or `seconds` is out of range.
     """
     time, dest, position, output = _record(board, axis, size, seconds)
     return StepResponse(time, dest, position, output, step_figures(time, position, float(dest[-1]), band=band))
 
 
 def _record(board: Board, axis: int | str, size: float, seconds: float) -> tuple[Array, Array, Array, Array]:
-    """Time, destination, position and output from the last tick before the step on."""
+    """Return time, destination, position and output, from the last tick before the step."""
     which = board.axes[axis]
     if not which.enabled:
-        raise Error(f"axis {axis} is not enabled, so it does not answer")
+        raise Error(f"axis {axis} is not enabled, so it does not respond")
     if not size:
-        raise InputError("a step has a size")
+        raise InputError("the size of a step must not be 0")
     half = _REST + math.ceil(seconds / _TICK)
     if not (seconds > 0 and 2 * half <= _MOST):
-        raise InputError(f"a step is recorded for at most {(_MOST // 2 - _REST) * _TICK:.2f} s, not {seconds!r}")
+        raise InputError(f"a step can be recorded for at most {(_MOST // 2 - _REST) * _TICK:.2f} s, not {seconds!r}")
     board.command(f"GatherStep{which.index} {size:.17g} {2 * half}")
     board.run_for((2 * half + 2) * _TICK)
     if board.command("CheckDoneGather") != "1":
-        raise Error("the board has not recorded the step")
+        raise Error("the board did not record the step")
     if not which.enabled:
         raise Error(f"axis {axis} was disabled by the step: its error exceeded MaxFollowingError")
     words = board.command(f"GetGather {half}").split()
     values = np.array([struct.unpack(">f", bytes.fromhex(word))[0] for word in words], dtype=np.float64).reshape(-1, 3)
     jump = int(np.flatnonzero(np.diff(values[:, 0]) != 0)[0])
     rows = values[jump:half]
-    # The destination that a tick records is the one before its jump, or the one after: the jump itself is at 0.
+    # A tick records the destination before its jump, or the one after it; the jump itself is at time 0.
     return (np.arange(len(rows), dtype=np.float64) * _TICK, rows[:, 0], rows[:, 1], rows[:, 2])
 
 
 @dataclass(frozen=True)
 class FrequencyResponse:
-    """Position over destination of an axis at some frequencies.
+    """Position relative to destination of an axis at some frequencies.
 
     Attributes:
-        frequency: in Hz.
-        response: the complex quotient.
+        frequency: the frequencies in Hz.
+        response: position divided by destination at each frequency, complex.
     """
 
     frequency: Array
@@ -176,7 +204,7 @@ class FrequencyResponse:
 
     @property
     def magnitude(self) -> Array:
-        """The magnitude; 1 is as far as the destination goes."""
+        """The magnitude; 1 if the position moves as far as the destination."""
         return np.abs(self.response)
 
     @property
@@ -186,17 +214,17 @@ class FrequencyResponse:
 
     @property
     def phase_deg(self) -> Array:
-        """The phase in degrees, without jumps of a turn."""
+        """The phase in degrees, unwrapped: without jumps of 360°."""
         return np.degrees(np.unwrap(np.angle(self.response)))
 
     @property
     def open_loop(self) -> FrequencyResponse:
-        """Of the loop that is closed around it: H / (1 - H)."""
+        """The response of the open loop, H / (1 - H), where H is this response, of the closed loop."""
         return FrequencyResponse(self.frequency, self.response / (1 - self.response))
 
     @property
     def bandwidth(self) -> float:
-        """The frequency in Hz at which it is 3 dB below 1 for the first time; not a number if it never is."""
+        """The lowest frequency in Hz at which the magnitude is -3 dB; NaN if it is outside the range of frequencies."""
         below = np.flatnonzero(self.magnitude_db <= -3)
         if not len(below) or below[0] == 0:
             return math.nan
@@ -206,7 +234,7 @@ class FrequencyResponse:
         return float(self.frequency[at - 1] * (self.frequency[at] / self.frequency[at - 1]) ** part)
 
     def plot(self, axes: Any = None) -> Any:
-        """Draws magnitude and phase with Matplotlib; returns both Matplotlib axes."""
+        """Plot magnitude and phase with Matplotlib, on two `axes` or in a new figure, and return both axes."""
         if axes is None:
             from importlib import import_module
 
@@ -226,18 +254,24 @@ def frequency_response(
     size: float = 100.0,
     seconds: float = 1.0,
 ) -> FrequencyResponse:
-    """Measures position over destination by a step of `size` units that is recorded for `seconds`.
+    """Measure position relative to destination at some frequencies, with a step.
 
     Args:
         board: a board whose axis is enabled and at rest.
-        axis: its number or name.
-        frequencies: in Hz, up to half of the servo's 11,111 Hz; by default 50 from 1 Hz to 1 kHz.
-        size: in position units: as large as the output allows, so that the encoder's counts do not matter.
-        seconds: long enough that the axis comes to rest.
+        axis: number or name of the axis.
+        frequencies: frequencies in Hz, above 0 and up to half of the servo's 11,111 Hz; by default 50 from 1 Hz to
+            1 kHz.
+        size: size of the step in units of the axis. Make it as large as the output allows, so that the encoder's
+            counts do not matter.
+        seconds: board time to record after the step, at most 1.78; long enough for the axis to come to rest.
+
+    Raises:
+        Error: the axis is not enabled, or the step disables it.
+        InputError: an argument is out of range.
     """
     wanted = np.logspace(0, 3, 50) if frequencies is None else np.asarray(list(frequencies), dtype=np.float64)
     if not len(wanted) or not np.all((wanted > 0) & (wanted <= 0.5 / _TICK)):
-        raise InputError(f"frequencies are above 0 and at most {0.5 / _TICK:.0f} Hz")
+        raise InputError(f"frequencies must be above 0 and at most {0.5 / _TICK:.0f} Hz")
     _, dest, position, _ = _record(board, axis, size, seconds)
     answers = [_transform(np.diff(position), f) / _transform(np.diff(dest), f) for f in wanted]
     return FrequencyResponse(wanted, np.asarray(answers, dtype=np.complex128))

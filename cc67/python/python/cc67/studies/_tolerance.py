@@ -1,4 +1,4 @@
-"""How a program fares when the machine is not quite what it was written for."""
+"""How a program performs on machines that differ slightly from the one it was written for."""
 
 from __future__ import annotations
 
@@ -20,23 +20,31 @@ Variation = Union[tuple[float, float], Draw]
 
 
 def uniform(low: float, high: float) -> Draw:
-    """Anything between two values, all alike."""
+    """Make a uniform distribution between two values."""
     return lambda source: source.uniform(low, high)
 
 
 def normal(mean: float, deviation: float) -> Draw:
-    """A normal distribution."""
+    """Make a normal distribution with a mean and a standard deviation."""
     return lambda source: source.gauss(mean, deviation)
 
 
 @dataclass(frozen=True)
 class Tolerance:
-    """The runs of a tolerance study."""
+    """The runs of a tolerance study.
+
+    Attributes:
+        table: inputs and outputs of each run.
+    """
 
     table: Table
 
     def spread(self, output: str) -> dict[str, float]:
-        """Least, mean, largest and standard deviation of an output over the runs that did not fail."""
+        """Return `min`, `mean`, `max` and standard deviation `std` of an output over the runs that did not fail.
+
+        Raises:
+            InputError: every run failed.
+        """
         values = np.array(self.table.good[output], dtype=np.float64)
         if not len(values):
             raise InputError("every run failed")
@@ -44,11 +52,11 @@ class Tolerance:
         return {name: float(value) for name, value in figures.items()}
 
     def worst(self, output: str, wanted: float = 0.0) -> Row:
-        """The run whose output is farthest from what is wanted."""
+        """Return the run whose output is farthest from the wanted value."""
         return max(self.table.good, key=lambda row: abs(row[output] - wanted))
 
     def yield_within(self, output: str, low: float, high: float) -> float:
-        """The part of all runs, failed ones among them, whose output lies between two values."""
+        """Return the fraction of all runs, including failed ones, whose output is from `low` to `high`."""
         good = sum(low <= row[output] <= high for row in self.table.good)
         return good / len(self.table) if len(self.table) else float("nan")
 
@@ -62,15 +70,16 @@ def tolerance(
     seed: int = 0,
     **options: Any,
 ) -> Tolerance:
-    """Runs a program on machines that vary at random: switch positions, delays, noise, plants.
+    """Run a program on machines that vary at random: switch positions, delays, noise, plants.
 
     Args:
-        program: what is run.
-        variations: by the names of `cc67.sweep`: two bounds, `uniform(a, b)`, `normal(mean, deviation)`, or a function
-            of a `random.Random` that returns a number or a text, such as a statement for `stim`.
+        program: the program, as for `cc67.sweep`.
+        variations: what varies, by the names of `cc67.sweep`: a tuple of two bounds, `uniform(a, b)`,
+            `normal(mean, deviation)`, or a function of a `random.Random` that returns a number or a string, such as a
+            statement for `stim`.
         measure: as for `cc67.sweep`.
-        samples: how many machines.
-        seed: of the random numbers; the same seed gives the same machines.
+        samples: the number of machines.
+        seed: the seed of the random numbers; the same seed gives the same machines.
         **options: as for `cc67.sweep`.
     """
     if samples < 1:
