@@ -69,7 +69,7 @@ pub(super) fn get_virtual_bits(session: &mut Session<'_, '_>, values: &Values) -
 }
 
 pub(super) fn adc(session: &mut Session<'_, '_>, values: &Values) -> Answer {
-    (session.call(|parts, caller| io::read_adc(parts, caller, values.integer(0))) - ZERO).into()
+    (session.call(|parts, caller| io::adc_level(parts, caller, values.integer(0))) - ZERO).into()
 }
 
 pub(super) fn dac(session: &mut Session<'_, '_>, values: &Values) -> Answer {

@@ -10,6 +10,7 @@ use super::costs;
 use super::parts::Parts;
 use crate::io::amplifiers::{antiphase, current, recirculate, store_pwm};
 use crate::io::fpga::kanalog_pins;
+use crate::io::kanalog::ADC_CHANNELS;
 use crate::io::{bits, kanalog};
 use crate::out::Message;
 use crate::views::Typed;
@@ -124,11 +125,21 @@ pub(crate) fn read_bit(parts: &mut Parts, caller: &mut Caller<'_>, bit: i32) -> 
 
 /// The raw conversion of an analog input.
 pub(crate) fn read_adc(parts: &mut Parts, caller: &mut Caller<'_>, channel: i32) -> i32 {
-    let Some(channel) = usize::try_from(channel).ok().filter(|&channel| channel < 8) else {
+    let level = adc_level(parts, caller, channel);
+    let is_undriven = |index| index < ADC_CHANNELS && !parts.io.kanalog.is_connected(index);
+    if usize::try_from(channel).is_ok_and(is_undriven) {
+        parts.out.diagnose(caller, Message::UndrivenAdc { channel, level });
+    }
+    level
+}
+
+/// The same for a command, without a remark about inputs that nothing drives.
+pub(crate) fn adc_level(parts: &mut Parts, caller: &Caller<'_>, channel: i32) -> i32 {
+    let Some(index) = usize::try_from(channel).ok().filter(|&index| index < ADC_CHANNELS) else {
         parts.out.diagnose(caller, Message::NoSuchAdc { channel });
         return 0;
     };
-    caller.memory.get(ADC_BUFFER_IN.element(channel))
+    caller.memory.get(ADC_BUFFER_IN.element(index))
 }
 
 /// A value for a PWM output: whether there is the channel, and it takes the value.

@@ -18,13 +18,15 @@ const ZERO: i32 = 2048;
 pub(crate) struct Kanalog {
     /// Whether anything is; nothing has to be done before.
     is_driven: bool,
+    /// The inputs that something drives, or will drive.
+    connected: [bool; ADC_CHANNELS],
     /// Conversions, 0 to 4095.
     levels: [i32; ADC_CHANNELS],
 }
 
 impl Default for Kanalog {
     fn default() -> Self {
-        Self { is_driven: false, levels: [ZERO; ADC_CHANNELS] }
+        Self { is_driven: false, connected: [false; ADC_CHANNELS], levels: [ZERO; ADC_CHANNELS] }
     }
 }
 
@@ -32,9 +34,22 @@ impl Kanalog {
     /// Puts a voltage on an input, as its conversion.
     pub(crate) fn drive(&mut self, channel: usize, conversion: i32) {
         self.is_driven = true;
+        self.connect(channel);
         if let Some(level) = self.levels.get_mut(channel) {
             *level = conversion;
         }
+    }
+
+    /// Something will drive an input.
+    pub(crate) fn connect(&mut self, channel: usize) {
+        if let Some(connected) = self.connected.get_mut(channel) {
+            *connected = true;
+        }
+    }
+
+    /// Whether something drives an input, or will.
+    pub(crate) fn is_connected(&self, channel: usize) -> bool {
+        self.connected.get(channel).copied().unwrap_or_default()
     }
 
     /// The conversion of an input, 0 to 4095.

@@ -210,6 +210,9 @@ messages! {
     /// A program reads an input that nothing drives: no switch, no device, no stimulus.
     UndrivenInput { bit: Bit, level: u8 } = "undriven-input", Hint, [per bit],
         "reads bit {bit}, an input that nothing drives; it stays {level}";
+    /// A program reads an analog input that nothing drives: no machine, no device, no stimulus.
+    UndrivenAdc { channel: i32, level: i32 } = "undriven-adc", Hint, [per channel],
+        "ReadADC({channel}): nothing drives analog input {channel}; it stays {level}";
     /// A program writes to a bit of an option board that is always an input.
     InputWritten { function: &'static str, bit: Bit } = "input-written", Warning, [per bit],
         "{function}({bit}): bit {bit} is an input, so nothing changes";

@@ -72,7 +72,8 @@ pub(crate) fn announce(bit: &Bit, stage: &mut Stage<'_>, memory: &mut GuestMemor
 }
 
 /// An analog input is one of a Kanalog.
-pub(crate) fn announce_adc(_: &usize, _: &mut Stage<'_>, memory: &mut GuestMemory) {
+pub(crate) fn announce_adc(channel: &usize, stage: &mut Stage<'_>, memory: &mut GuestMemory) {
+    stage.io.kanalog.connect(*channel);
     memory.set(KANALOG_PRESENT, 1);
 }
 
