@@ -107,7 +107,7 @@ fn ratio(pairs: usize, seconds: f64) -> f64 {
 #[test]
 fn hours_of_history_take_little_memory_and_time() {
     let is_long = std::env::var_os("CC67_LONG").is_some();
-    let (minutes, pairs, seconds, most) = if is_long { (60.0, 15, 100.0, 1.1) } else { (0.5, 7, 20.0, 1.6) };
+    let (minutes, pairs, seconds, most) = if is_long { (60.0, 15, 100.0, 1.3) } else { (0.5, 7, 20.0, 1.6) };
 
     let before = resident();
     let mut debugger = Debugger::new(session(), tick(1e6));

@@ -245,8 +245,13 @@ fn threads_can_be_paused_replaced_and_removed_at_any_moment() {
     assert!(native.firmware().log.iter().any(|line| line.ends_with(" 1 78")), "{:?}", native.firmware().log);
 }
 
+/// How many generated programs a test takes: `many` where `CC67_LONG` is in the environment.
+fn cases(few: u32, many: u32) -> u32 {
+    if std::env::var_os("CC67_LONG").is_some() { many } else { few }
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(if cfg!(debug_assertions) { 100 } else { 500 }))]
+    #![proptest_config(ProptestConfig::with_cases(cases(100, 500)))]
 
     #[test]
     fn generated_programs_do_the_same_on_both_engines(seed: u64, budget in 500..30_000_i64) {

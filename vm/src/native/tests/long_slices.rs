@@ -99,7 +99,7 @@ fn a_thread_that_is_alone_computes_many_ticks_at_once() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(if cfg!(debug_assertions) { 60 } else { 500 }))]
+    #![proptest_config(ProptestConfig::with_cases(cases(60, 500)))]
 
     #[test]
     fn long_slices_change_no_result(

@@ -133,7 +133,7 @@ fn check<E: Engine>(seed: u64) {
 
 #[test]
 fn a_machine_resumes_from_any_of_its_snapshots() {
-    for seed in 1..if cfg!(debug_assertions) { 11 } else { 100 } {
+    for seed in 1..cases(11, 100).into() {
         check::<NativeEngine>(seed);
         check::<BytecodeEngine>(seed);
         check::<ProfilingEngine>(seed);
