@@ -177,10 +177,12 @@ pub trait Plain: Copy {
 macro_rules! plain_integers {
     ($($ty:ty as $unsigned:ty),*) => {$(
         impl Plain for $ty {
+            #[inline]
             fn from_bits(bits: u64) -> Self {
                 bits as Self
             }
 
+            #[inline]
             fn into_bits(self) -> u64 {
                 u64::from(self as $unsigned)
             }
@@ -190,30 +192,36 @@ macro_rules! plain_integers {
 plain_integers!(i8 as u8, u8 as u8, i16 as u16, u16 as u16, i32 as u32, u32 as u32);
 
 impl Plain for f32 {
+    #[inline]
     fn from_bits(bits: u64) -> Self {
         Self::from_bits(bits as u32)
     }
 
+    #[inline]
     fn into_bits(self) -> u64 {
         u64::from(self.to_bits())
     }
 }
 
 impl Plain for f64 {
+    #[inline]
     fn from_bits(bits: u64) -> Self {
         Self::from_bits(bits)
     }
 
+    #[inline]
     fn into_bits(self) -> u64 {
         self.to_bits()
     }
 }
 
 impl Plain for GuestAddr {
+    #[inline]
     fn from_bits(bits: u64) -> Self {
         Self::new(bits as u32)
     }
 
+    #[inline]
     fn into_bits(self) -> u64 {
         u64::from(self.get())
     }

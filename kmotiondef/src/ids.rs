@@ -17,24 +17,28 @@ impl GuestAddr {
 
     /// Makes an address of a number; every number is a claim that may be made.
     #[must_use]
+    #[inline]
     pub const fn new(address: u32) -> Self {
         Self(address)
     }
 
     /// The number itself.
     #[must_use]
+    #[inline]
     pub const fn get(self) -> u32 {
         self.0
     }
 
     /// The address `bytes` further on, wrapping as guest arithmetic does.
     #[must_use]
+    #[inline]
     pub const fn offset(self, bytes: u32) -> Self {
         Self(self.0.wrapping_add(bytes))
     }
 
     /// Whether this is the null pointer.
     #[must_use]
+    #[inline]
     pub const fn is_null(self) -> bool {
         self.0 == 0
     }
@@ -59,18 +63,21 @@ pub struct CodeAddr(u32);
 impl CodeAddr {
     /// Takes a guest address as one of code; `None` if it is not a multiple of 4.
     #[must_use]
+    #[inline]
     pub const fn new(address: u32) -> Option<Self> {
         if address.is_multiple_of(4) { Some(Self(address)) } else { None }
     }
 
     /// The number itself.
     #[must_use]
+    #[inline]
     pub const fn get(self) -> u32 {
         self.0
     }
 
     /// The same address as data would name it.
     #[must_use]
+    #[inline]
     pub const fn as_guest_addr(self) -> GuestAddr {
         GuestAddr(self.0)
     }
@@ -100,23 +107,27 @@ macro_rules! small_id {
 
             #[doc = concat!("Checks a number; `None` outside ", stringify!($low), "..=", stringify!($high), ".")]
             #[must_use]
+            #[inline]
             pub fn new(number: i32) -> Option<Self> {
                 ($low..=$high).contains(&number).then_some(Self(number as $repr))
             }
 
             /// The number itself.
             #[must_use]
+            #[inline]
             pub const fn get(self) -> $repr {
                 self.0
             }
 
             /// The number as an index counted from zero.
             #[must_use]
+            #[inline]
             pub const fn index(self) -> usize {
                 (self.0 - $low) as usize
             }
 
             /// All valid numbers in ascending order.
+            #[inline]
             pub fn all() -> impl DoubleEndedIterator<Item = Self> {
                 ($low..$high + 1).map(Self)
             }
@@ -152,12 +163,14 @@ pub struct Ticks(u64);
 impl Ticks {
     /// Makes a count of ticks.
     #[must_use]
+    #[inline]
     pub const fn new(count: u64) -> Self {
         Self(count)
     }
 
     /// The count.
     #[must_use]
+    #[inline]
     pub const fn get(self) -> u64 {
         self.0
     }
@@ -184,12 +197,14 @@ impl Cycles {
 
     /// Makes a number of cycles.
     #[must_use]
+    #[inline]
     pub const fn new(count: i64) -> Self {
         Self(count)
     }
 
     /// The count.
     #[must_use]
+    #[inline]
     pub const fn get(self) -> i64 {
         self.0
     }
@@ -197,6 +212,7 @@ impl Cycles {
 
 impl std::ops::Add for Cycles {
     type Output = Self;
+    #[inline]
     fn add(self, other: Self) -> Self {
         Self(self.0.saturating_add(other.0))
     }
@@ -204,6 +220,7 @@ impl std::ops::Add for Cycles {
 
 impl std::ops::Sub for Cycles {
     type Output = Self;
+    #[inline]
     fn sub(self, other: Self) -> Self {
         Self(self.0.saturating_sub(other.0))
     }

@@ -25,18 +25,21 @@ pub struct Place<T> {
 impl<T> Field<T> {
     /// The field at `offset` bytes.
     #[must_use]
+    #[inline]
     pub const fn new(offset: u32) -> Self {
         Self { offset, ty: PhantomData }
     }
 
     /// Bytes from the start of the structure.
     #[must_use]
+    #[inline]
     pub const fn offset(self) -> u32 {
         self.offset
     }
 
     /// A field of this field, itself a structure.
     #[must_use]
+    #[inline]
     pub const fn field<U>(self, inner: Field<U>) -> Field<U> {
         Field::new(self.offset + inner.offset)
     }
@@ -45,6 +48,7 @@ impl<T> Field<T> {
 impl<T: GuestType, const N: usize> Field<[T; N]> {
     /// One element of an array. The caller has checked the index: the array does not.
     #[must_use]
+    #[inline]
     pub const fn element(self, index: usize) -> Field<T> {
         debug_assert!(index < N);
         Field::new(self.offset + T::SIZE * index as u32)
@@ -54,18 +58,21 @@ impl<T: GuestType, const N: usize> Field<[T; N]> {
 impl<T> Place<T> {
     /// The object at `address`.
     #[must_use]
+    #[inline]
     pub const fn new(address: GuestAddr) -> Self {
         Self { address, ty: PhantomData }
     }
 
     /// Where it is.
     #[must_use]
+    #[inline]
     pub const fn address(self) -> GuestAddr {
         self.address
     }
 
     /// A field of it, a structure.
     #[must_use]
+    #[inline]
     pub const fn field<U>(self, field: Field<U>) -> Place<U> {
         Place::new(self.address.offset(field.offset))
     }
@@ -74,6 +81,7 @@ impl<T> Place<T> {
 impl<T: GuestType, const N: usize> Place<[T; N]> {
     /// One element of an array. The caller has checked the index: the array does not.
     #[must_use]
+    #[inline]
     pub const fn element(self, index: usize) -> Place<T> {
         debug_assert!(index < N);
         Place::new(self.address.offset(T::SIZE.wrapping_mul(index as u32)))
@@ -82,6 +90,7 @@ impl<T: GuestType, const N: usize> Place<[T; N]> {
 
 // Derives would ask the same of the type that is only named.
 impl<T> Clone for Field<T> {
+    #[inline]
     fn clone(&self) -> Self {
         *self
     }
@@ -96,6 +105,7 @@ impl<T> fmt::Debug for Field<T> {
 }
 
 impl<T> Clone for Place<T> {
+    #[inline]
     fn clone(&self) -> Self {
         *self
     }

@@ -21,6 +21,7 @@ impl Timing {
 
     /// The wait states that are counted; `None` if time is not the board's.
     #[must_use]
+    #[inline]
     pub const fn wait_states(self) -> Option<WaitStates> {
         match self {
             Self::Vendor(waits) => Some(waits),

@@ -293,8 +293,7 @@ impl Firmware for Kernel {
     }
 
     fn changed_registers(&self, address: GuestAddr) -> u64 {
-        let name = function_at(address).map_or("", |number| FIRMWARE_FUNCTIONS[number].name);
-        crate::firmware::changed::registers(name)
+        function_at(address).map_or(0, crate::firmware::changed::registers)
     }
 
     fn begins(&mut self, thread: ThreadId, memory: &mut GuestMemory) {

@@ -3,6 +3,10 @@
 //! A compiler that keeps values in registers across the call of a helper relies on these lists.
 //! Source: `c67-subset.md` section 7 and `c67x.md` section 5.2 of the specification, measured.
 
+use std::sync::LazyLock;
+
+use kmotiondef::firmware::FIRMWARE_FUNCTIONS;
+
 /// A0 to A9.
 const ALL_A: &[u8] = &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9];
 /// B0 to B9.
@@ -29,8 +33,16 @@ const ROWS: &[HelperRegisters] = &[
     (&["memset"], &[0, 1, 2, 3, 4, 5, 6, 7], &[0, 1, 2, 4]),
 ];
 
-/// The registers that a call of `name` may change, A0 in bit 0, B0 in bit 32.
-pub(crate) fn registers(name: &str) -> u64 {
+/// What each firmware function changes, by its number: every call of a program asks.
+static CHANGED: LazyLock<Vec<u64>> =
+    LazyLock::new(|| FIRMWARE_FUNCTIONS.iter().map(|row| of_name(row.name)).collect());
+
+/// The registers that a call of the firmware function `number` may change, A0 in bit 0, B0 in bit 32.
+pub(crate) fn registers(number: usize) -> u64 {
+    CHANGED[number]
+}
+
+fn of_name(name: &str) -> u64 {
     let row = ROWS.iter().find(|(names, ..)| names.contains(&name));
     let (a, b) = row.map_or((ALL_A, ALL_B), |(_, a, b)| (*a, *b));
     bits(a) | bits(b) << 32
@@ -42,8 +54,6 @@ fn bits(numbers: &[u8]) -> u64 {
 
 #[cfg(test)]
 mod tests {
-    use kmotiondef::firmware::FIRMWARE_FUNCTIONS;
-
     use super::*;
 
     #[test]
@@ -55,7 +65,7 @@ mod tests {
 
     #[test]
     fn unlisted_functions_follow_the_calling_convention() {
-        assert_eq!(registers("printf"), 0x0000_03FF_0000_03FF);
-        assert_eq!(registers("_divf"), 0x0000_0061_0000_0018);
+        assert_eq!(of_name("printf"), 0x0000_03FF_0000_03FF);
+        assert_eq!(of_name("_divf"), 0x0000_0061_0000_0018);
     }
 }

@@ -18,12 +18,14 @@ pub enum Side {
 impl Side {
     /// Side A for a 0, side B for a 1, as bits s and y say.
     #[must_use]
+    #[inline]
     pub const fn from_bit(bit: u32) -> Self {
         if bit & 1 == 0 { Self::A } else { Self::B }
     }
 
     /// 0 for side A, 1 for side B.
     #[must_use]
+    #[inline]
     pub const fn bit(self) -> u32 {
         match self {
             Self::A => 0,
@@ -33,6 +35,7 @@ impl Side {
 
     /// The opposite side.
     #[must_use]
+    #[inline]
     pub const fn other(self) -> Self {
         match self {
             Self::A => Self::B,
@@ -42,6 +45,7 @@ impl Side {
 
     /// 1 or 2, as in the names of units.
     #[must_use]
+    #[inline]
     pub const fn number(self) -> u8 {
         match self {
             Self::A => 1,
@@ -69,48 +73,56 @@ impl Reg {
 
     /// Register `number` of `side`; only the low five bits of the number count.
     #[must_use]
+    #[inline]
     pub const fn new(side: Side, number: u8) -> Self {
         Self((number & 31) | ((side.bit() as u8) << 5))
     }
 
     /// Register `number` (0..=31) of side A.
     #[must_use]
+    #[inline]
     pub const fn a(number: u8) -> Self {
         Self::new(Side::A, number)
     }
 
     /// Register `number` (0..=31) of side B.
     #[must_use]
+    #[inline]
     pub const fn b(number: u8) -> Self {
         Self::new(Side::B, number)
     }
 
     /// The register with this index; `None` from 64 on.
     #[must_use]
+    #[inline]
     pub const fn from_index(index: usize) -> Option<Self> {
         if index < Self::COUNT { Some(Self(index as u8)) } else { None }
     }
 
     /// 0..=63, side A first.
     #[must_use]
+    #[inline]
     pub const fn index(self) -> usize {
         self.0 as usize
     }
 
     /// The side whose file it belongs to.
     #[must_use]
+    #[inline]
     pub const fn side(self) -> Side {
         Side::from_bit((self.0 >> 5) as u32)
     }
 
     /// 0..=31 inside its file.
     #[must_use]
+    #[inline]
     pub const fn number(self) -> u8 {
         self.0 & 31
     }
 
     /// The pair it belongs to.
     #[must_use]
+    #[inline]
     pub const fn pair(self) -> Pair {
         Pair(Self(self.0 & !1))
     }
@@ -135,24 +147,28 @@ pub struct Pair(Reg);
 impl Pair {
     /// The pair with this even register; `None` for an odd one.
     #[must_use]
+    #[inline]
     pub const fn new(low: Reg) -> Option<Self> {
         if low.0 & 1 == 0 { Some(Self(low)) } else { None }
     }
 
     /// The even register: bits 31..0.
     #[must_use]
+    #[inline]
     pub const fn low(self) -> Reg {
         self.0
     }
 
     /// The odd register: bits 63..32, or 39..32 of a long.
     #[must_use]
+    #[inline]
     pub const fn high(self) -> Reg {
         Reg(self.0.0 | 1)
     }
 
     /// The side whose file it belongs to.
     #[must_use]
+    #[inline]
     pub const fn side(self) -> Side {
         self.0.side()
     }
@@ -204,6 +220,7 @@ impl PredReg {
 
     /// The register.
     #[must_use]
+    #[inline]
     pub const fn reg(self) -> Reg {
         match self {
             Self::B0 => Reg::b(0),
@@ -260,6 +277,7 @@ impl Pred {
 
     /// The register that is tested; `None` for always.
     #[must_use]
+    #[inline]
     pub fn reg(self) -> Option<Reg> {
         match self {
             Self::Always => None,
@@ -329,6 +347,7 @@ impl Unit {
 
     /// 0..=7 in the order of [`Unit::ALL`].
     #[must_use]
+    #[inline]
     pub const fn index(self) -> usize {
         self.kind as usize + 4 * self.side.bit() as usize
     }
@@ -354,6 +373,7 @@ macro_rules! define_control {
 
             /// The number in the word of an `MVC`.
             #[must_use]
+            #[inline]
             pub const fn number(self) -> u32 {
                 match self {
                     $(Self::$name => $number,)*

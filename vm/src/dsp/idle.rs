@@ -28,10 +28,22 @@ struct Turn {
     stores: Vec<Old>,
 }
 
+/// How often a place was visited since something last happened.
+#[derive(Clone, Copy, Debug, Default)]
+struct Visits {
+    pc: u32,
+    count: u8,
+    /// The number of what last happened before the first of these visits.
+    since: u32,
+}
+
 /// What is known about the loops since something last happened.
 #[derive(Clone, Debug)]
 pub(super) struct Idle {
-    visits: [(u32, u8); PLACES],
+    visits: [Visits; PLACES],
+    /// Counts what happens. A program that polls a firmware function calls it millions of times, and each call is such:
+    /// so the visits before it become invalid, and are not cleared.
+    happened: u32,
     turn: Option<Box<Turn>>,
     /// Whether stores should be noted.
     pub(super) is_watching: bool,
@@ -41,7 +53,7 @@ pub(super) struct Idle {
 
 impl Default for Idle {
     fn default() -> Self {
-        Self { visits: [(0, 0); PLACES], turn: None, is_watching: false, skipped: 0 }
+        Self { visits: [Visits::default(); PLACES], happened: 0, turn: None, is_watching: false, skipped: 0 }
     }
 }
 
@@ -59,7 +71,10 @@ pub(super) enum Arrival {
 impl Idle {
     /// Something has happened: what was seen does not hold any more.
     pub(super) fn forget(&mut self) {
-        self.visits = [(0, 0); PLACES];
+        self.happened = self.happened.wrapping_add(1);
+        if self.happened == 0 {
+            self.visits = [Visits::default(); PLACES];
+        }
         self.turn = None;
         self.is_watching = false;
     }
@@ -78,11 +93,11 @@ impl Idle {
             return Arrival::Pass;
         }
         let place = &mut self.visits[pc as usize / 4 % PLACES];
-        if place.0 != pc {
-            *place = (pc, 0);
+        if (place.pc, place.since) != (pc, self.happened) {
+            *place = Visits { pc, count: 0, since: self.happened };
         }
-        place.1 = place.1.saturating_add(1);
-        if place.1 == ENOUGH { Arrival::Look } else { Arrival::Pass }
+        place.count = place.count.saturating_add(1);
+        if place.count == ENOUGH { Arrival::Look } else { Arrival::Pass }
     }
 
     /// Watches the turn that begins here.

@@ -276,8 +276,10 @@ impl Processor {
     fn return_from(&mut self, changed: u64, value: Value) {
         let state = &mut self.core.state;
         let back = state.reg(LINK);
-        for reg in (0..Reg::COUNT).filter(|index| changed >> index & 1 != 0).filter_map(Reg::from_index) {
+        let mut left = changed;
+        while let Some(reg) = Reg::from_index(left.trailing_zeros() as usize) {
             state.set_reg(reg, CHANGED);
+            left &= left - 1;
         }
         let slot = value.into_slot();
         match value.class() {
