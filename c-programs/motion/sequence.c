@@ -22,11 +22,11 @@ typedef struct
 
 STATION Station[STATIONS] =
 {
-    {  8000.0, 0.2, "load" },
-    { 16000.0, 0.2, "drill" },
-    { 24000.0, 0.1, "blow off" },
-    { 32000.0, 0.2, "test" },
-    { 40000.0, 0.2, "unload" },
+    {  2000.0, 0.2, "load" },
+    {  4000.0, 0.2, "drill" },
+    {  6000.0, 0.1, "blow off" },
+    {  8000.0, 0.2, "test" },
+    { 10000.0, 0.2, "unload" },
     {     0.0, 0.0, "home" }
 };
 

@@ -18,7 +18,7 @@ use runtime::{Config, EventKind, RunEnd};
 use vm::interp::BytecodeEngine;
 
 /// Programs of an ordinary run.
-const PROGRAMS: u64 = 40;
+const PROGRAMS: u64 = 24;
 
 /// Programs that `gcc` compiles in one go.
 const BATCH: u64 = 40;
