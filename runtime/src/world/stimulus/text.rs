@@ -1,10 +1,10 @@
-//! Statements from text. A mistake is told with its line and column.
+//! Statements from text. A mistake is reported with its line and column.
 
 use std::sync::Arc;
 
 use kmotiondef::Cycles;
 
-use super::reader::StatementReader;
+use super::reader::{self, StatementReader};
 use super::tokens::{Mistake, TokenKind, tokens};
 use super::{Action, Condition, Edge, Rule, StatementPlace, Trigger, action, expectation};
 
@@ -112,7 +112,16 @@ impl StatementReader<'_> {
                 Ok(Some(Trigger::When { condition, after, is_once: word == "once" }))
             }
             "every" => self.every().map(Some),
-            _ => Ok(None),
+            _ => self.without_moment(&word),
+        }
+    }
+
+    /// No moment, unless the statement begins with a time as in a log: nothing else begins so.
+    fn without_moment(&self, word: &str) -> Result<Option<Trigger>, Mistake> {
+        let moment = word.trim_end_matches([':', ',']);
+        match reader::time(moment) {
+            Some(_) => Err((self.column(), format!("a moment begins with `at`: `at {moment} ...`"))),
+            None => Ok(None),
         }
     }
 
@@ -287,6 +296,8 @@ mod tests {
             ("set bit 46", "x.stim:1:9: bit 46 (LED) is an output, only the board drives it"),
             ("set bit 184", "x.stim:1:9: nothing is connected to bit 184"),
             ("at soon set bit 3", "x.stim:1:4: expected a time such as 1.5s, 20ms or 90us, found `soon`"),
+            ("0.3s: bit 5 = 1", "x.stim:1:1: a moment begins with `at`: `at 0.3s ...`"),
+            ("20ms bit 5 = 1", "x.stim:1:1: a moment begins with `at`: `at 20ms ...`"),
             ("at -1s set bit 3", "x.stim:1:4: expected a time such as 1.5s, 20ms or 90us, found `-1s`"),
             ("at 1s set bit", "x.stim:1:14: expected a bit from 0 to 2047, found the end of the statement"),
             ("set bit 5 now", "x.stim:1:11: expected 0 or 1, found `now`"),
