@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -77,3 +78,18 @@ def test_matplotlib_draws_a_trace(write: Write) -> None:
     matplotlib.use("Agg")
     axes = cc67.Board(programs=[write(MOVE)]).trace("dest0", 0.1).plot()
     assert len(axes.get_lines()) == 1
+
+
+def test_a_missing_package_is_named_with_its_installation(
+    write: Write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    trace = cc67.Board(programs=[write(COUNT)]).trace("bit46", 0.01)
+    table = cc67.Table([{"a": 1}], ["a"])
+    for name in ("matplotlib", "matplotlib.pyplot", "pandas", "pyarrow"):
+        monkeypatch.setitem(sys.modules, name, None)
+    with pytest.raises(cc67.NotBuiltError, match=r"a plot needs Matplotlib: pip install cc67\[plot\]"):
+        trace.plot()
+    with pytest.raises(cc67.NotBuiltError, match="a DataFrame needs pandas: pip install pandas"):
+        table.pandas()
+    with pytest.raises(cc67.NotBuiltError, match=r"a .parquet table needs pyarrow: pip install cc67\[parquet\]"):
+        table.save(tmp_path / "table.parquet")

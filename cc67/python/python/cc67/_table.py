@@ -8,7 +8,8 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Iterable, Iterator, Mapping, Sequence, overload
 
-from ._errors import InputError, NotBuiltError, unknown
+from ._errors import InputError, unknown
+from ._optional import optional
 
 if TYPE_CHECKING:
     import numpy as np
@@ -114,19 +115,19 @@ class Table(Sequence[Row]):
         temporary.replace(path)
 
     def _save_parquet(self, path: Path) -> None:
-        from importlib import import_module
-
-        try:
-            arrow, parquet = import_module("pyarrow"), import_module("pyarrow.parquet")
-        except ImportError:
-            raise NotBuiltError("a .parquet table needs pyarrow: pip install cc67[parquet]") from None
+        arrow, parquet = (
+            optional(module, "a .parquet table", "pyarrow", "cc67[parquet]") for module in ("pyarrow", "pyarrow.parquet")
+        )
         parquet.write_table(arrow.table({name: self[name] for name in self.columns}), path)
 
     def pandas(self) -> Any:
-        """Return the table as a pandas.DataFrame; needs pandas."""
-        from importlib import import_module
+        """Return the table as a pandas.DataFrame.
 
-        return import_module("pandas").DataFrame(self.rows, columns=self.columns)
+        Raises:
+            NotBuiltError: pandas is not installed.
+        """
+        pandas = optional("pandas", "a DataFrame", "pandas", "pandas")
+        return pandas.DataFrame(self.rows, columns=self.columns)
 
 
 def _float(value: Any) -> float:

@@ -7,6 +7,7 @@ import os
 from typing import TYPE_CHECKING, Any, Iterator, Mapping, Union
 
 from ._errors import unknown
+from ._optional import optional
 
 if TYPE_CHECKING:
     import numpy as np
@@ -59,12 +60,13 @@ class Trace(Mapping[str, "Array"]):
             writer.writerows([f"{value:.10g}" for value in row] for row in rows)
 
     def plot(self, axes: Any = None) -> Any:
-        """Plot the items over time with Matplotlib, on `axes` or in a new figure, and return the Matplotlib axes."""
+        """Plot the items over time with Matplotlib, on `axes` or in a new figure, and return the Matplotlib axes.
+
+        Raises:
+            NotBuiltError: Matplotlib is not installed; `picture` needs no package.
+        """
         if axes is None:
-            from importlib import import_module
-
-            pyplot = import_module("matplotlib.pyplot")
-
+            pyplot = optional("matplotlib.pyplot", "a plot", "Matplotlib", "cc67[plot]")
             _, axes = pyplot.subplots()
         for name, column in self._columns.items():
             unit = self.units.get(name)

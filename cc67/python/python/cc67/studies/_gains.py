@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from importlib import import_module
 from typing import Any, Callable, Mapping
 
-from .._errors import InputError, NotBuiltError
+from .._errors import InputError
+from .._optional import optional
 
 __all__ = ["GainSearch", "search_gains"]
 
@@ -120,10 +120,7 @@ def _scipy(
     tolerance: float,
     options: dict[str, Any],
 ) -> None:
-    try:
-        optimize = import_module("scipy.optimize")
-    except ImportError:
-        raise NotBuiltError(f"the method {method!r} needs SciPy: pip install cc67[studies]") from None
+    optimize = optional("scipy.optimize", f"the method {method!r}", "SciPy", "cc67[studies]")
     bounds = [(0.0, 1.0)] * len(first)
     if method == "differential_evolution":
         population = max(5, options.pop("popsize", 8))

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from .._board import Board
 from .._errors import Error, InputError
+from .._optional import optional
 from .._trace import Trace
 
 __all__ = [
@@ -234,11 +235,14 @@ class FrequencyResponse:
         return float(self.frequency[at - 1] * (self.frequency[at] / self.frequency[at - 1]) ** part)
 
     def plot(self, axes: Any = None) -> Any:
-        """Plot magnitude and phase with Matplotlib, on two `axes` or in a new figure, and return both axes."""
-        if axes is None:
-            from importlib import import_module
+        """Plot magnitude and phase with Matplotlib, on two `axes` or in a new figure, and return both axes.
 
-            _, axes = import_module("matplotlib.pyplot").subplots(2, 1, sharex=True)
+        Raises:
+            NotBuiltError: Matplotlib is not installed.
+        """
+        if axes is None:
+            pyplot = optional("matplotlib.pyplot", "a plot", "Matplotlib", "cc67[plot]")
+            _, axes = pyplot.subplots(2, 1, sharex=True)
         axes[0].semilogx(self.frequency, self.magnitude_db)
         axes[0].set_ylabel("magnitude (dB)")
         axes[1].semilogx(self.frequency, self.phase_deg)
