@@ -355,6 +355,8 @@ fn the_summary_tells_why_a_run_ended() {
     for (arguments, reason, exit, active) in [
         (&["end.c"][..], "ended", 0, "[]"),
         (&["--for", "0.1", "2:loop.c"], "limit", 0, "[2]"),
+        // The name of the same in stimuli and in Python.
+        (&["--until", "0.1", "2:loop.c"], "limit", 0, "[2]"),
         (&["3:loop.c"], "still running", 4, "[3]"),
         (&["--stim", "expect bit 46=0", "end.c"], "unmet", 5, "[]"),
     ] {

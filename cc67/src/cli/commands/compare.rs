@@ -36,7 +36,7 @@ pub(super) struct CompareArguments {
     #[arg(required = true, value_name = "PROGRAM")]
     programs: Vec<OsString>,
     /// Stop each run after SECONDS of board time
-    #[arg(long = "for", value_name = "SECONDS", value_parser = seconds, default_value = "10")]
+    #[arg(long = "for", alias = "until", value_name = "SECONDS", value_parser = seconds, default_value = "10")]
     limit: f64,
     /// Ignore differences of board times up to SECONDS; larger ones are reported, but do not fail
     #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "0.001")]

@@ -42,7 +42,7 @@ pub(super) struct RunArguments {
     #[arg(required_unless_present_any = ["explain", "flash"], value_name = "[N:]FILE")]
     programs: Vec<OsString>,
     /// Stop after SECONDS of board time and exit 0
-    #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
+    #[arg(long = "for", alias = "until", value_name = "SECONDS", value_parser = seconds)]
     limit: Option<f64>,
     /// Show the board time in seconds before each console line
     #[arg(long)]

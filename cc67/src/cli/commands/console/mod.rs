@@ -65,7 +65,7 @@ pub(super) struct ConsoleArguments {
     #[arg(long, value_name = "PORT", requires = "serve")]
     debug: Option<u16>,
     /// After the last line, run at most SECONDS more of board time
-    #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
+    #[arg(long = "for", alias = "until", value_name = "SECONDS", value_parser = seconds)]
     limit: Option<f64>,
     /// Show the board time in seconds before each line from the board
     #[arg(long)]

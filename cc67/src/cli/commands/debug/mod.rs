@@ -45,7 +45,7 @@ pub(super) struct DebugArguments {
     #[arg(long, value_name = "PORT", conflicts_with_all = ["dap", "batch"])]
     listen: Option<u16>,
     /// Stop after SECONDS of board time
-    #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
+    #[arg(long = "for", alias = "until", value_name = "SECONDS", value_parser = seconds)]
     limit: Option<f64>,
     #[command(flatten)]
     beside: BesideArguments,

@@ -57,7 +57,7 @@ pub(super) struct LiveArguments {
     #[arg(long)]
     reload: bool,
     /// Stop after SECONDS of board time
-    #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
+    #[arg(long = "for", alias = "until", value_name = "SECONDS", value_parser = seconds)]
     limit: Option<f64>,
     #[command(flatten)]
     beside: BesideArguments,

@@ -85,7 +85,7 @@ pub(super) struct ServeArguments {
     #[arg(long, value_name = "DIR", requires = "home")]
     mcodes: Option<PathBuf>,
     /// Stop after SECONDS of board time
-    #[arg(long = "for", value_name = "SECONDS", value_parser = seconds)]
+    #[arg(long = "for", alias = "until", value_name = "SECONDS", value_parser = seconds)]
     limit: Option<f64>,
     #[cfg(feature = "live")]
     #[command(flatten)]
