@@ -16,7 +16,7 @@
 //! ```
 //!
 //! Invariants:
-//! - Only commands depend on this crate: executables of `--emit native`, and tests.
+//! - Only the Python package, which brings the command along, and tests depend on this crate.
 //! - Program output goes to stdout byte for byte, everything else to stderr.
 //! - An output file is written completely or not at all.
 //! - An option of a board is one field in `cli/args/board.rs` or a file flattened into it; every command with a board has it.

@@ -37,8 +37,6 @@ fn header() -> String {
         documentation_style: DocumentationStyle::C,
         line_length: 110,
         export: ExportConfig {
-            // For object files of cc67 alone.
-            exclude: ["cc67_run_linked", "Description"].map(str::to_owned).to_vec(),
             rename: [
                 ("Client", "cc67_client"),
                 ("Outcome", "cc67_result"),

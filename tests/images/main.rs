@@ -1,4 +1,4 @@
-//! Images: how they are built, written, read, shown, loaded and made stand-alone programs.
+//! Images: how they are built, written, read, shown, and loaded.
 
 mod build;
 mod formats;
@@ -6,5 +6,3 @@ mod inspect;
 mod loader;
 mod loading;
 mod own_firmware;
-#[cfg(feature = "native")]
-mod stand_alone;

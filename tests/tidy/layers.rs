@@ -147,7 +147,7 @@ pub(crate) const LAYERS: &[(&str, &[Row])] = &[
     (
         "cc67/capi",
         &[
-            ("functions", &["client", "console", "lines", "programs", "stand_alone", "time", "token"]),
+            ("functions", &["client", "console", "lines", "programs", "time", "token"]),
             ("clients", &["handle"]),
             ("border", &["border"]),
         ],

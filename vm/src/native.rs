@@ -15,8 +15,6 @@ mod compile;
 mod context;
 mod entry;
 mod fiber;
-mod linked;
-mod object;
 mod piece;
 mod protected;
 mod request;
@@ -32,8 +30,6 @@ use std::sync::Arc;
 use kmotiondef::{CodeAddr, GuestAddr};
 
 pub use self::compile::CompileError;
-pub use self::linked::{Description, Linked, LinkedError};
-pub use self::object::{PREFIX, Parts, START, object};
 pub use self::shared::SharedCode;
 
 pub(crate) use self::code::Piece;
@@ -52,19 +48,11 @@ use crate::translations::Translations;
 use crate::trap::{Trap, TrapKind};
 
 /// Runs programs as machine code, which it makes of them when they are started.
-pub type NativeEngine = MachineCodeEngine<true>;
-
-/// Runs the machine code that is part of this executable; other programs are interpreted. No code generator is needed.
-pub type LinkedEngine = MachineCodeEngine<false>;
-
-/// Runs programs as machine code; `COMPILES` if it makes it of them.
 #[derive(Debug, Default)]
-pub struct MachineCodeEngine<const COMPILES: bool> {
+pub struct NativeEngine {
     contexts: [Option<Context>; ContextId::COUNT],
     /// The machine code of each program; `None` where it cannot be compiled.
     code: Translations<Option<Arc<MachineCode>>>,
-    /// A program whose machine code is part of this executable.
-    linked: Option<(Program, Arc<MachineCode>)>,
     /// Code that this engine has in common with others.
     shared: Option<SharedCode>,
     protected: ProtectedBlocks,
@@ -82,20 +70,7 @@ pub struct NativeSnapshot {
     identity: Rc<()>,
 }
 
-impl<const COMPILES: bool> MachineCodeEngine<COMPILES> {
-    /// An engine that runs the code of `linked` wherever a thread starts `program`, which is that of its image.
-    ///
-    /// # Errors
-    /// [`LinkedError::Program`] if the code is not that of the program, or calls functions that `pure` does not have.
-    pub fn with_linked(
-        linked: &Linked,
-        program: Program,
-        pure: PureFunctions<'_>,
-    ) -> Result<Self, LinkedError> {
-        let code = linked.code_for(&program, pure)?;
-        Ok(Self { linked: Some((program, code)), ..Self::default() })
-    }
-
+impl NativeEngine {
     /// An engine that compiles nothing that another engine with the same `shared` has compiled lately.
     #[must_use]
     pub fn with_shared(shared: SharedCode) -> Self {
@@ -104,21 +79,17 @@ impl<const COMPILES: bool> MachineCodeEngine<COMPILES> {
 
     /// The machine code of `program`.
     fn code(&mut self, program: &Arc<Program>, pure: PureFunctions<'_>) -> Option<Arc<MachineCode>> {
-        let (linked, shared) = (&self.linked, &self.shared);
-        // Known when this is compiled, so that an executable of its own has no code generator.
-        let compile = |program: &Program| {
-            if COMPILES { MachineCode::compile(program, pure).ok().map(Arc::new) } else { None }
-        };
-        self.code.get(program, |program| match (linked, shared) {
-            (Some((known, code)), _) if known == program => Some(Arc::clone(code)),
-            (_, Some(shared)) => shared.get(program, compile),
-            (_, None) => compile(program),
+        let shared = &self.shared;
+        let compile = |program: &Program| MachineCode::compile(program, pure).ok().map(Arc::new);
+        self.code.get(program, |program| match shared {
+            Some(shared) => shared.get(program, compile),
+            None => compile(program),
         })
     }
 }
 
-impl<const COMPILES: bool> Executor for MachineCodeEngine<COMPILES> {
-    const TRANSLATES: bool = COMPILES;
+impl Executor for NativeEngine {
+    const TRANSLATES: bool = true;
 
     type Code = Program;
     type Snapshot = NativeSnapshot;

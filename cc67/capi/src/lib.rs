@@ -7,7 +7,6 @@
 //!
 //! ```text
 //! client, console, lines, programs, time, token   the functions, by subject
-//! stand_alone                                     the start of executables of `--emit native`
 //! handle                                          the box behind a client's pointer
 //! border                                          pointers to references, panics and errors to results
 //! ```
@@ -28,8 +27,6 @@ mod console;
 mod handle;
 mod lines;
 mod programs;
-#[cfg(feature = "native")]
-mod stand_alone;
 mod time;
 mod token;
 
@@ -45,8 +42,6 @@ pub use lines::{
 pub use programs::{
     cc67_compile_and_load_coff, cc67_compile_and_load_coff_with_message, cc67_include_dir, cc67_load_coff,
 };
-#[cfg(feature = "native")]
-pub use stand_alone::cc67_run_linked;
 pub use time::{
     EndCallback, cc67_drive_input, cc67_run_for, cc67_run_until, cc67_set_user_data, cc67_user_data,
 };

@@ -24,6 +24,4 @@ mod session;
 
 pub use commands::limits;
 pub use commands::main;
-#[cfg(feature = "native")]
-pub use commands::stand_alone;
 pub use io::exit::Exit;

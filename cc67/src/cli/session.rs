@@ -55,16 +55,13 @@ pub(crate) trait Work {
 
 impl Setup {
     /// Reads what the arguments name and compiles the programs; `None` if one has errors, which have been reported.
-    ///
-    /// The image of the first program may be at hand already.
     pub(crate) fn new<'a>(
         started: impl Into<Started<'a>>,
         board: &BoardArguments,
         compiler: &CompilerArguments,
-        first: Option<&[u8]>,
     ) -> Result<Option<Self>> {
         anyhow::ensure!(board.boot.is_none(), "`--boot` does not work with this command yet");
-        Self::of_model(started, board, compiler, first)
+        Self::of_model(started, board, compiler)
     }
 
     /// The same for the modelled firmware, also where a firmware file is named.
@@ -72,19 +69,12 @@ impl Setup {
         started: impl Into<Started<'a>>,
         board: &BoardArguments,
         compiler: &CompilerArguments,
-        first: Option<&[u8]>,
     ) -> Result<Option<Self>> {
         let options = board.engine.options(compiler)?;
         options.firmware.check_version().context("`--firmware`")?;
-        let described = Described::read(started, board, compiler, Given { options, image: first })?;
+        let described = Described::read(started, board, compiler, options)?;
         let Some(Described { session, uart, flash }) = described else { return Ok(None) };
         Ok(Some(Self { session, engine: board.engine, uart, flash }))
-    }
-
-    /// The engine that was requested.
-    #[cfg(feature = "native")]
-    pub(crate) const fn engine(&self) -> EngineName {
-        self.engine
     }
 
     /// Does the work of a command on the engine that was requested.
@@ -143,22 +133,13 @@ pub(crate) struct Described {
     pub(crate) flash: Flash,
 }
 
-/// What programs are compiled with, and the image of the first one if it is at hand.
-#[derive(Debug)]
-pub(crate) struct Given<'a> {
-    /// How programs are compiled.
-    pub(crate) options: Options,
-    /// The first one.
-    pub(crate) image: Option<&'a [u8]>,
-}
-
 impl Described {
     /// Reads what the arguments name and compiles the programs; `None` if one has errors, which have been reported.
     pub(crate) fn read<'a>(
         started: impl Into<Started<'a>>,
         board: &BoardArguments,
         compiler: &CompilerArguments,
-        held: Given<'_>,
+        options: Options,
     ) -> Result<Option<Self>> {
         let Started { programs, first: before } = started.into();
         let files = assign(&[programs, before, &board.load].concat())?;
@@ -171,7 +152,9 @@ impl Described {
         stimulus.extend(one_after_the_other(before, files.get(..programs.len()).unwrap_or_default())?);
         let uart = board.uart.or_those_of(&machine_file);
         let offered = stimulus::programs(&[&machine_file.stimulus, &stimulus]);
-        let Some((mut loaded, offered)) = compile(&files, offered, compiler, &held)? else { return Ok(None) };
+        let Some((mut loaded, offered)) = compile(&files, offered, compiler, &options)? else {
+            return Ok(None);
+        };
         let starting = if before.is_empty() { 0..programs.len() } else { programs.len()..programs.len() + 1 };
         loaded.iter_mut().enumerate().for_each(|(index, program)| program.starts = starting.contains(&index));
 
@@ -183,7 +166,7 @@ impl Described {
             Config { machine, files: disk, machine_file, answers, flash: flashed, ..Config::default() };
         let session = cc67_host::Setup {
             config,
-            options: held.options,
+            options,
             programs: loaded,
             offered,
             values: settings.into_iter().map(|Setting { address, bytes }| (address, bytes)).collect(),
@@ -234,15 +217,10 @@ fn compile(
     files: &[ProgramFile],
     offered: Vec<ProgramFile>,
     compiler: &CompilerArguments,
-    held: &Given<'_>,
+    options: &Options,
 ) -> Result<Option<(Vec<UserProgram>, Vec<UserProgram>)>> {
-    let options = &held.options;
-    let held = files.first().zip(held.image);
-    let held = held.map(|(file, image)| UserProgram::of_bytes(&file.path, file.thread, image.to_vec()));
-    let rest = files.get(usize::from(held.is_some())..).unwrap_or_default();
-    let all = [rest, &offered].concat();
-    let Some(programs) = images::programs_with(&all, compiler, options)? else { return Ok(None) };
-    let mut programs: Vec<_> = held.into_iter().chain(programs).collect();
+    let all = [files, &offered].concat();
+    let Some(mut programs) = images::programs_with(&all, compiler, options)? else { return Ok(None) };
     let offered = programs.split_off(files.len());
     Ok(Some((programs, offered)))
 }

@@ -9,10 +9,10 @@ use cranelift_frontend::FunctionBuilderContext;
 use cranelift_jit::{ArenaMemoryProvider, JITBuilder, JITModule};
 use cranelift_module::{FuncId, Module, default_libcall_names};
 
-use super::compile::{CodeDestination, CompileError, Job, StackUse, compile, host_isa};
+use super::compile::{CompileError, StackUse, compile, host_isa};
 use super::entry::{Begin, RunPiece};
 use super::piece::{Handover, Marks, Places};
-use super::translate::{HostFunctions, PureFunctions};
+use super::translate::PureFunctions;
 use crate::memory::GuestMemory;
 use crate::program::Program;
 
@@ -30,9 +30,8 @@ const RESERVE_PER_WORD: usize = 0x400;
 /// and this many take it a second or two. Longer ones are tables written as statements, which run once.
 const MAX_WORDS: usize = 0x4000;
 
-/// How to call a function of a program through a pointer. An object file has a table of these.
+/// How to call a function of a program through a pointer.
 #[derive(Clone, Copy, Debug)]
-#[repr(C)]
 pub(super) struct Entry {
     /// What passes the function its arguments.
     pub(super) thunk: *const u8,
@@ -42,11 +41,11 @@ pub(super) struct Entry {
 
 /// The machine code of one program.
 pub(super) struct MachineCode {
-    /// What the pointers point into; `None` where that is part of the executable.
-    pub(super) _memory: Option<CodeMemory>,
-    pub(super) begin: Begin,
-    pub(super) entries: Vec<Entry>,
-    pub(super) stack: StackUse,
+    /// The memory that the pointers point into.
+    _memory: CodeMemory,
+    begin: Begin,
+    entries: Vec<Entry>,
+    stack: StackUse,
 }
 
 // SAFETY: nothing changes after `compile`; the pointers are to memory that any thread may read and execute.
@@ -61,7 +60,7 @@ impl fmt::Debug for MachineCode {
 }
 
 /// A module that frees its machine code when it is dropped.
-pub(super) struct CodeMemory(ManuallyDrop<JITModule>);
+struct CodeMemory(ManuallyDrop<JITModule>);
 
 impl CodeMemory {
     /// Room for the code of `program`.
@@ -73,7 +72,7 @@ impl CodeMemory {
 
     /// Room for this many bytes of code.
     fn with_room(reserve: usize) -> Result<Self, CompileError> {
-        let mut builder = JITBuilder::with_isa(host_isa(CodeDestination::Memory)?, default_libcall_names());
+        let mut builder = JITBuilder::with_isa(host_isa()?, default_libcall_names());
         // One piece, so that every call reaches its target.
         let arena =
             ArenaMemoryProvider::new_with_size(reserve).map_err(|error| CompileError::host(&error))?;
@@ -100,14 +99,13 @@ impl MachineCode {
             return Err(CompileError::TooLong(length));
         }
         let mut memory = CodeMemory::new(program)?;
-        let job = Job { program, pure, host: HostFunctions::Here, name: &|_| None };
-        let functions = compile(&mut *memory.0, job)?;
+        let functions = compile(&mut *memory.0, program, pure)?;
         memory.0.finalize_definitions()?;
         let at = |id: FuncId| memory.0.get_finalized_function(id);
         let entries = functions.entries.into_iter();
         let entries = entries.map(|(thunk, id)| Entry { thunk: at(thunk), pointer: at(id) }).collect();
         let begin = begin_at(at(functions.begin));
-        Ok(Self { begin, entries, _memory: Some(memory), stack: functions.stack })
+        Ok(Self { begin, entries, _memory: memory, stack: functions.stack })
     }
 
     /// What begins the outermost call.
@@ -137,7 +135,7 @@ fn piece_at(pointer: *const u8) -> RunPiece {
 }
 
 /// The function at `pointer`, which begins the outermost call.
-pub(super) fn begin_at(pointer: *const u8) -> Begin {
+fn begin_at(pointer: *const u8) -> Begin {
     // SAFETY: it is translated with the signature of `Begin` (`begin_signature`).
     unsafe { std::mem::transmute::<*const u8, Begin>(pointer) }
 }

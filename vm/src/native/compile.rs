@@ -1,7 +1,4 @@
-//! From a program to the functions of a Cranelift module.
-//!
-//! The module is memory of this process ([`code`](super::code)) or an object file
-//! ([`object`](super::object)): what is compiled is the same.
+//! From a program to the functions of a Cranelift module in the memory of this process ([`code`](super::code)).
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -10,14 +7,14 @@ use cranelift_codegen::Context;
 use cranelift_codegen::isa::OwnedTargetIsa;
 use cranelift_codegen::settings::{self, Configurable};
 use cranelift_frontend::FunctionBuilderContext;
-use cranelift_module::{FuncId, Linkage, Module, ModuleError};
+use cranelift_module::{FuncId, Module, ModuleError};
 use kmotiondef::GuestAddr;
 use kmotiondef::jumps::JumpFunction;
 
 use super::state::BYTES_PER_CALL;
 use super::translate::{
-    HostFunctions, PureFunctions, Translation, begin_signature, function_signature, request_signature,
-    thunk_signature, translate, translate_begin, translate_request, translate_thunk,
+    PureFunctions, Translation, begin_signature, function_signature, request_signature, thunk_signature,
+    translate, translate_begin, translate_request, translate_thunk,
 };
 use crate::op::Op;
 use crate::operand::Class;
@@ -63,22 +60,13 @@ impl From<ModuleError> for CompileError {
     }
 }
 
-/// Where machine code should be.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum CodeDestination {
-    /// In memory, at addresses that are known.
-    Memory,
-    /// In a file, to be put anywhere.
-    File,
-}
-
 /// The code generator for this computer.
-pub(super) fn host_isa(place: CodeDestination) -> Result<OwnedTargetIsa, CompileError> {
+pub(super) fn host_isa() -> Result<OwnedTargetIsa, CompileError> {
     let mut flags = settings::builder();
     let verify = if cfg!(debug_assertions) { "true" } else { "false" };
     for (name, value) in [
         ("opt_level", "speed"),
-        ("is_pic", if place == CodeDestination::File { "true" } else { "false" }),
+        ("is_pic", "false"),
         ("use_colocated_libcalls", "false"),
         ("enable_probestack", "false"),
         ("enable_verifier", verify),
@@ -87,19 +75,6 @@ pub(super) fn host_isa(place: CodeDestination) -> Result<OwnedTargetIsa, Compile
     }
     let builder = cranelift_native::builder().map_err(|error| CompileError::host(&error))?;
     builder.finish(settings::Flags::new(flags)).map_err(|error| CompileError::host(&error))
-}
-
-/// What should be compiled, and for which surroundings.
-#[derive(Clone, Copy)]
-pub(super) struct Job<'a> {
-    /// The program.
-    pub(super) program: &'a Program,
-    /// The firmware's functions that only compute.
-    pub(super) pure: PureFunctions<'a>,
-    /// How they are called.
-    pub(super) host: HostFunctions<'a>,
-    /// What a function is called; `None` for one that needs no name.
-    pub(super) name: &'a dyn Fn(&Function) -> Option<String>,
 }
 
 /// The functions of a program in a module.
@@ -121,32 +96,35 @@ pub(super) struct StackUse {
     pub(super) largest_frame: u32,
 }
 
-/// Compiles all functions of a program, and the ways into them, into `module`.
-pub(super) fn compile(module: &mut dyn Module, job: Job<'_>) -> Result<Functions, CompileError> {
+/// Compiles all functions of a program, and the ways into them, into `module`, for a firmware with the functions `pure`.
+pub(super) fn compile(
+    module: &mut dyn Module,
+    program: &Program,
+    pure: PureFunctions<'_>,
+) -> Result<Functions, CompileError> {
     let jumps =
         |op: &Op| matches!(op, Op::CallFw { addr, .. } if JumpFunction::at(GuestAddr::new(addr.0)).is_some());
-    if job.program.ops().iter().any(jumps) {
+    if program.ops().iter().any(jumps) {
         return Err(CompileError::Jumps);
     }
     let mut compiler = Compiler { context: module.make_context(), module, builder: Default::default() };
-    let functions = compiler.declare_functions(job)?;
+    let functions = compiler.declare_functions(program)?;
     let request = compiler.request()?;
     let begin = compiler.begin()?;
-    let (thunks, thunk_frame) = compiler.thunks(job.program)?;
+    let (thunks, thunk_frame) = compiler.thunks(program)?;
     let mut stack = StackUse::default();
-    for (function, id) in job.program.functions().iter().zip(&functions) {
+    for (function, id) in program.functions().iter().zip(&functions) {
         if function.classes.len() > MAX_REGISTERS {
             return Err(CompileError::TooManyRegisters(function.classes.len()));
         }
-        let Job { program, pure, host, .. } = job;
-        let translation = Translation { program, function, functions: &functions, request, pure, host };
+        let translation = Translation { program, function, functions: &functions, request, pure };
         let frame = compiler.function(*id, translation)? + thunk_frame;
         let guest = function.frame + BYTES_PER_CALL;
         stack.native_per_guest = stack.native_per_guest.max(frame.div_ceil(guest));
         stack.largest_frame = stack.largest_frame.max(frame);
     }
-    let thunk_of = |function: &Function| thunks[parameters(job.program, function)];
-    let entries = job.program.functions().iter().map(thunk_of).zip(functions).collect();
+    let thunk_of = |function: &Function| thunks[parameters(program, function)];
+    let entries = program.functions().iter().map(thunk_of).zip(functions).collect();
     Ok(Functions { begin, entries, stack })
 }
 
@@ -163,15 +141,12 @@ struct Compiler<'m> {
 }
 
 impl Compiler<'_> {
-    fn declare_functions(&mut self, job: Job<'_>) -> Result<Vec<FuncId>, CompileError> {
+    fn declare_functions(&mut self, program: &Program) -> Result<Vec<FuncId>, CompileError> {
         let declare = |function: &Function| {
-            let signature = function_signature(parameters(job.program, function));
-            Ok(match (job.name)(function) {
-                Some(name) => self.module.declare_function(&name, Linkage::Local, &signature)?,
-                None => self.module.declare_anonymous_function(&signature)?,
-            })
+            let signature = function_signature(parameters(program, function));
+            Ok(self.module.declare_anonymous_function(&signature)?)
         };
-        job.program.functions().iter().map(declare).collect()
+        program.functions().iter().map(declare).collect()
     }
 
     /// Compiles one function and yields what a call of it takes of the native stack.

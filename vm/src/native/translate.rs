@@ -24,7 +24,6 @@ mod shortcut;
 mod strides;
 mod turns;
 
-use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::mem::offset_of;
 
@@ -35,7 +34,7 @@ use cranelift_codegen::ir::{
 };
 use cranelift_codegen::isa::CallConv;
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
-use cranelift_module::{DataId, FuncId, Module};
+use cranelift_module::{FuncId, Module};
 
 use kmotiondef::GuestAddr;
 
@@ -73,26 +72,10 @@ pub(super) struct Translation<'a> {
     pub(super) request: FuncId,
     /// The firmware's functions that only compute.
     pub(super) pure: PureFunctions<'a>,
-    /// How they are called.
-    pub(super) host: HostFunctions<'a>,
 }
 
 /// Where the firmware's functions that only compute are found.
 pub(super) type PureFunctions<'a> = &'a dyn Fn(GuestAddr) -> Option<Pure>;
-
-/// How compiled code finds the host's functions of [`PureFunctions`].
-#[derive(Clone, Copy)]
-pub(super) enum HostFunctions<'a> {
-    /// At the addresses that they have in this process.
-    Here,
-    /// In a table of pointers, which is filled when the program starts.
-    Table {
-        /// The table.
-        data: DataId,
-        /// The firmware's functions that it has pointers for, in its order.
-        used: &'a RefCell<Vec<GuestAddr>>,
-    },
-}
 
 /// The machine signature of a function with `parameters`.
 pub(super) fn function_signature(parameters: &[Class]) -> Signature {

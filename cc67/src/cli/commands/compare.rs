@@ -189,7 +189,7 @@ impl CompareArguments {
 
     /// The run on the modelled board; `None` if a source has errors.
     fn model(&self, programs: &[OsString]) -> Result<Option<Outcome>> {
-        let setup = Setup::of_model(self.started(programs), &self.board, &self.compiler, None)?;
+        let setup = Setup::of_model(self.started(programs), &self.board, &self.compiler)?;
         let Some(setup) = setup else { return Ok(None) };
         let mut outcome = Outcome::default();
         setup.on_its_engine(Model { limit: self.ticks(), outcome: &mut outcome })?;

@@ -24,8 +24,6 @@ mod plot;
 mod run;
 mod serve;
 mod shell;
-#[cfg(feature = "native")]
-mod stand_alone;
 mod test;
 
 use std::ffi::OsString;
@@ -41,8 +39,6 @@ use self::deferred::Deferred;
 use super::args::beside::Beside;
 use super::io::exit::Exit;
 use super::io::terminal;
-#[cfg(feature = "native")]
-pub use stand_alone::main as stand_alone;
 
 /// C compiler, linker and simulated KFLOP board.
 #[derive(Debug, Parser)]

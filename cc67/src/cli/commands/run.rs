@@ -12,17 +12,11 @@ use kmotiondef::limits::TIMEBASE;
 use kmotiondef::{AxisId, ThreadId, Ticks};
 use runtime::Board;
 use vm::engine::Engine;
-#[cfg(feature = "native")]
-use vm::interp::BytecodeEngine;
-#[cfg(feature = "native")]
-use vm::native::LinkedEngine;
 use vm::profile::ProfilingEngine;
 
 use crate::cli::args::beside::BesideArguments;
 use crate::cli::args::board::BoardArguments;
 use crate::cli::args::compiler::CompilerArguments;
-#[cfg(feature = "native")]
-use crate::cli::args::engine::EngineName;
 use crate::cli::args::time::{DEFAULT_LIMIT, seconds};
 use crate::cli::args::trace::TraceArguments;
 use crate::cli::io::exit::Exit;
@@ -77,7 +71,7 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit> {
     if let Some(file) = &arguments.board.boot {
         return booted::run(arguments, file);
     }
-    let setup = Setup::new(arguments.started(), &arguments.board, &arguments.compiler, None)?;
+    let setup = Setup::new(arguments.started(), &arguments.board, &arguments.compiler)?;
     match setup {
         Some(setup) => run_setup(arguments, setup),
         None => {
@@ -86,18 +80,6 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit> {
             }
             Ok(Exit::Failure)
         }
-    }
-}
-
-/// The same, where the image of the first program is at hand, and its code is known to a native engine.
-#[cfg(feature = "native")]
-pub(super) fn run_held(arguments: &RunArguments, image: &[u8], linked: LinkedEngine) -> Result<Exit> {
-    let setup = Setup::new(arguments.started(), &arguments.board, &arguments.compiler, Some(image))?;
-    let Some(setup) = setup else { return Ok(Exit::Failure) };
-    match &arguments.profile {
-        Some(target) => run_profiled(arguments, setup, target),
-        None if setup.engine() == EngineName::Native => arguments.execute(&mut setup.rig(linked)?),
-        None => arguments.execute(&mut setup.rig(BytecodeEngine::default())?),
     }
 }
 

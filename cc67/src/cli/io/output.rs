@@ -113,25 +113,7 @@ impl Write for Scratch {
 
 /// A temporary name: what still has it in the end is removed.
 #[derive(Debug)]
-pub(crate) struct Temporary(PathBuf);
-
-#[cfg(feature = "native")]
-impl Temporary {
-    /// A name beside that of `path`.
-    pub(crate) fn beside(path: &Path, suffix: &str) -> Self {
-        Self(temporary(path, suffix))
-    }
-
-    /// The name.
-    pub(crate) fn path(&self) -> &Path {
-        &self.0
-    }
-
-    /// Renames the file that another process has made under the name.
-    pub(crate) fn commit(self, path: &Path) -> Result<()> {
-        fs::rename(&self.0, path).map_err(|error| cannot_write(path, &error))
-    }
-}
+struct Temporary(PathBuf);
 
 impl Drop for Temporary {
     fn drop(&mut self) {

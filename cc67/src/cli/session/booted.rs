@@ -32,7 +32,7 @@ use vm::firmware::ExecutedPacket;
 use super::around::Attached;
 use super::flash::Flash;
 use super::line::{PART, SerialLine};
-use super::{Described, Given, Started};
+use super::{Described, Started};
 use crate::cli::args::board::BoardArguments;
 
 use crate::cli::args::compiler::CompilerArguments;
@@ -234,7 +234,7 @@ impl Booted {
         traced: Option<&TraceArguments>,
     ) -> Result<Option<Begun>> {
         let options = self.options(compiler)?;
-        let described = Described::read(started, board, compiler, Given { options, image: None })?;
+        let described = Described::read(started, board, compiler, options)?;
         let Some(Described { session, uart, flash }) = described else { return Ok(None) };
         // What a run that is compared changes stays in memory.
         if !board.keeps_files {

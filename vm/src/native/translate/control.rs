@@ -4,14 +4,13 @@ use std::mem::offset_of;
 
 use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::{
-    AbiParam, BlockCall, FuncRef as IrFuncRef, InstBuilder, JumpTableData, MemFlagsData, Signature, Value,
-    types,
+    AbiParam, BlockCall, FuncRef as IrFuncRef, InstBuilder, JumpTableData, Signature, Value, types,
 };
 use kmotiondef::GuestAddr;
 
 use super::super::request::Reason;
 use super::super::state::State;
-use super::{HostFunctions, Translator, thunk_signature, type_of};
+use super::{Translator, thunk_signature, type_of};
 use crate::firmware::{Pure, PureFunction};
 use crate::meter::branch_target;
 use crate::operand::{
@@ -160,7 +159,7 @@ impl Translator<'_, '_> {
 
     pub(super) fn call_fw(&mut self, sig: SigRef, addr: Addr) {
         if let Some(pure) = self.pure_function(sig, addr) {
-            return self.call_pure(pure, addr);
+            return self.call_pure(pure);
         }
         self.store_arguments(sig);
         self.calls.arguments.clear();
@@ -180,14 +179,14 @@ impl Translator<'_, '_> {
     }
 
     /// Does what the firmware function does; it takes as long as when the firmware does it.
-    fn call_pure(&mut self, pure: Pure, addr: Addr) {
+    fn call_pure(&mut self, pure: Pure) {
         let cycles = u32::try_from(pure.cost.get()).expect("functions cost little");
         if !self.defer(cycles) {
             self.spend(cycles);
         }
         let arguments = std::mem::take(&mut self.calls.arguments);
         let value = match pure.function.pointer() {
-            Some(pointer) => self.call_host(pure.function, pointer, addr, &arguments),
+            Some(pointer) => self.call_host(pure.function, pointer, &arguments),
             None => {
                 let root = self.builder.ins().sqrt(arguments[0]);
                 self.canonical(pure.function.result(), root)
@@ -196,29 +195,14 @@ impl Translator<'_, '_> {
         self.calls.result = Some(value);
     }
 
-    /// Calls the host's function at `pointer`, which is the firmware's at `addr`.
-    fn call_host(
-        &mut self,
-        function: PureFunction,
-        pointer: *const (),
-        addr: Addr,
-        arguments: &[Value],
-    ) -> Value {
+    /// Calls the host's function at `pointer`.
+    fn call_host(&mut self, function: PureFunction, pointer: *const (), arguments: &[Value]) -> Value {
         let mut signature = Signature::new(self.module.isa().default_call_conv());
         let parameters = function.parameters().iter().map(|class| AbiParam::new(type_of(*class)));
         signature.params.extend(parameters);
         signature.returns.push(AbiParam::new(type_of(function.result())));
         let signature = self.builder.import_signature(signature);
-        let pointer = match self.translation.host {
-            HostFunctions::Here => self.builder.ins().iconst(types::I64, pointer.expose_provenance() as i64),
-            HostFunctions::Table { data, used } => {
-                let entry = entry_for(&mut used.borrow_mut(), GuestAddr::new(addr.0));
-                let table = self.module.declare_data_in_func(data, self.builder.func);
-                let table = self.builder.ins().symbol_value(types::I64, table);
-                let flags = MemFlagsData::trusted().with_readonly();
-                self.builder.ins().load(types::I64, flags, table, super::offset(entry * size_of::<u64>()))
-            }
-        };
+        let pointer = self.builder.ins().iconst(types::I64, pointer.expose_provenance() as i64);
         let call = self.builder.ins().call_indirect(signature, pointer, arguments);
         self.builder.inst_results(call)[0]
     }
@@ -291,12 +275,4 @@ impl Translator<'_, '_> {
         self.builder.ins().return_(&[budget, slot]);
         self.reachable = false;
     }
-}
-
-/// The number of `function` in `used`, to which it is added if it is not there.
-fn entry_for(used: &mut Vec<GuestAddr>, function: GuestAddr) -> usize {
-    used.iter().position(|known| *known == function).unwrap_or_else(|| {
-        used.push(function);
-        used.len() - 1
-    })
 }

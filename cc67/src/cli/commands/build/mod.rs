@@ -1,8 +1,6 @@
 //! `cc67 build`: compile and link for a thread, write what is requested.
 
 mod names;
-#[cfg(feature = "native")]
-mod native;
 
 use std::path::{Path, PathBuf};
 
@@ -71,9 +69,6 @@ enum Emit {
     Asm,
     /// Commands that download the program, FILE(N).kmd
     Download,
-    /// A stand-alone executable for this computer, FILE; needs `--target sim` and `cc`. With `-o NAME.o`, only its
-    /// object file
-    Native,
 }
 
 pub(super) fn thread(text: &str) -> Result<ThreadId, String> {
@@ -89,10 +84,6 @@ pub(super) fn build(arguments: &BuildArguments) -> Result<Exit> {
     arguments.check_target(&emit)?;
     let mut units = units::compile(&arguments.files, &options)?;
     arguments.check_objects(&units)?;
-    ensure!(
-        cfg!(feature = "native") || !emit.contains(&Emit::Native),
-        "`--emit native`: this cc67 is built without the native engine"
-    );
     if emit == [Emit::Object] {
         if diagnostics::report_all(&units, &levels, arguments.compiler.format()) {
             return Ok(Exit::Failure);
@@ -124,9 +115,10 @@ impl BuildArguments {
             );
             return Ok(());
         }
-        for (kind, name) in [(Emit::Bytecode, "bytecode"), (Emit::Native, "native")] {
-            ensure!(!emit.contains(&kind), "`--emit {name}` needs `--target sim`: it is made of bytecode");
-        }
+        ensure!(
+            !emit.contains(&Emit::Bytecode),
+            "`--emit bytecode` needs `--target sim`: it is made of bytecode"
+        );
         Ok(())
     }
 
@@ -216,18 +208,6 @@ impl BuildArguments {
                     let script = download::script(&image, self.thread);
                     output::write(&names::beside(&program, "kmd"), script.as_bytes())?;
                 }
-                #[cfg(feature = "native")]
-                Emit::Native => {
-                    let given = self.output.as_ref();
-                    let target = match given {
-                        Some(name) if emit == [Emit::Native] => name.clone(),
-                        _ => names::executable(given.unwrap_or(first)),
-                    };
-                    ensure!(!self.files.contains(&target), "{} would be overwritten", target.display());
-                    native::write(&target, &bytes, self.thread)?;
-                }
-                #[cfg(not(feature = "native"))]
-                Emit::Native => {}
                 Emit::Object => {}
             }
         }

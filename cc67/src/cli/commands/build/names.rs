@@ -25,12 +25,6 @@ pub(super) fn object(source: &Path) -> PathBuf {
     source.with_extension("o")
 }
 
-/// The executable of a source or an image: `prog.c` becomes `prog`, on Windows `prog.exe`.
-#[cfg(feature = "native")]
-pub(super) fn executable(source: &Path) -> PathBuf {
-    source.with_extension(std::env::consts::EXE_EXTENSION)
-}
-
 /// A file beside an image: `prog(1).out` becomes `prog(1).map`.
 pub(super) fn beside(image: &Path, extension: &str) -> PathBuf {
     if has_extension(image, &["out"]) {

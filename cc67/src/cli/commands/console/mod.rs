@@ -83,7 +83,7 @@ pub(super) fn console(arguments: &ConsoleArguments) -> Result<Exit> {
     if let Some(file) = &arguments.board.boot {
         return booted::console(arguments, file);
     }
-    let setup = Setup::new(&arguments.programs, &arguments.board, &arguments.compiler, None)?;
+    let setup = Setup::new(&arguments.programs, &arguments.board, &arguments.compiler)?;
     let Some(setup) = setup else { return Ok(Exit::Failure) };
     match &arguments.serve {
         Some(address) => {

@@ -123,7 +123,7 @@ fn converse<T: Talker + 'static>(arguments: &DebugArguments, mut shell: T) -> Re
 /// A debugger of the programs; `None` if one has errors, which have been reported.
 fn debugger(arguments: &DebugArguments) -> Result<Option<Debugger>> {
     let started = Started { programs: &arguments.programs, first: &arguments.beside.first };
-    let setup = Setup::new(started, &arguments.board, &arguments.compiler, None)?;
+    let setup = Setup::new(started, &arguments.board, &arguments.compiler)?;
     let Some(setup) = setup else { return Ok(None) };
     let session = setup.for_debugger()?;
     let limit = Ticks::new((arguments.limit.unwrap_or(LIMIT) / TIMEBASE).round() as u64);

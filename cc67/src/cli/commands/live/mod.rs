@@ -92,7 +92,7 @@ pub(super) fn live(arguments: &LiveArguments) -> Result<Exit> {
         return demonstrate(arguments);
     }
     let started = Started { programs: &arguments.programs, first: &arguments.beside.first };
-    let setup = Setup::new(started, &arguments.board, &arguments.compiler, None)?;
+    let setup = Setup::new(started, &arguments.board, &arguments.compiler)?;
     let Some(setup) = setup else { return Ok(Exit::Failure) };
     let debugger = arguments.attach.open(&arguments.board)?;
     setup.debugged(debugger, arguments)

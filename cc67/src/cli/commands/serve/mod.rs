@@ -171,7 +171,7 @@ pub(super) fn serve(arguments: &ServeArguments) -> Result<Exit> {
         let ServeArguments { programs, board, compiler, .. } = arguments;
         return own_firmware::serve(&own_firmware::Asked { programs, board, compiler }, file, &terms);
     }
-    let setup = Setup::new(&arguments.programs, &arguments.board, &arguments.compiler, None)?;
+    let setup = Setup::new(&arguments.programs, &arguments.board, &arguments.compiler)?;
     let Some(setup) = setup else { return Ok(Exit::Failure) };
     setup.debugged(debugger, &terms)
 }
