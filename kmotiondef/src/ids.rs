@@ -238,6 +238,29 @@ impl std::ops::SubAssign for Cycles {
     }
 }
 
+/// Width of one access on the bus.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AccessSize {
+    /// 8 bits.
+    Byte,
+    /// 16 bits.
+    Half,
+    /// 32 bits.
+    Word,
+}
+
+impl AccessSize {
+    /// Number of bytes.
+    #[must_use]
+    pub const fn bytes(self) -> u32 {
+        match self {
+            Self::Byte => 1,
+            Self::Half => 2,
+            Self::Word => 4,
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -40,5 +40,5 @@ pub mod waiting;
 mod tests;
 
 pub use ctype::{CType, GuestType, Plain, Scalar, ValueClass};
-pub use ids::{AxisId, Bit, CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
+pub use ids::{AccessSize, AxisId, Bit, CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
 pub use place::{Field, Place};

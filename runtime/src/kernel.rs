@@ -2,6 +2,7 @@
 //!
 //! It composes the parts and defines their order; the parts themselves do the work.
 
+use kmotiondef::AccessSize;
 use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, function_at};
 use kmotiondef::map::{FPGA, TIMER0};
 use kmotiondef::structs::Chan;
@@ -9,7 +10,7 @@ use kmotiondef::variables::{
     CURRENT_THREAD, LAST_TIMER0, NEXT_AVAIL_IN, NEXT_AVAIL_OUT, SERVO_TICK, USER_CALL_BACK,
 };
 use kmotiondef::{AxisId, Bit, Cycles, GuestAddr, ThreadId};
-use vm::bus::{AccessSize, Bus};
+use vm::bus::Bus;
 use vm::firmware::{Caller, ExecutedPacket, Firmware, Outcome, Pure, Signature, TickContext, Value};
 use vm::memory::GuestMemory;
 use vm::scheduler::Turn;
@@ -21,6 +22,7 @@ use crate::firmware::parts::Parts;
 use crate::firmware::{math, serial, waits};
 use crate::io::Io;
 use crate::io::bits::bit_state;
+use crate::io::kanalog;
 use crate::io::konnect::Konnects;
 use crate::io::timer;
 use crate::machine::Machine;
@@ -309,7 +311,7 @@ impl Firmware for Kernel {
         parts.clock.tick_start = context.now;
         let is_touched = context.memory.take_touched();
         store_time(context);
-        parts.io.kanalog.tick(&parts.io.fpga, context.memory);
+        kanalog::tick(&parts.io.kanalog, &parts.io.fpga, context.memory);
         if parts.io.snapamps.is_present() {
             parts.io.snapamps.tick(context.memory);
         }
@@ -404,7 +406,7 @@ impl Firmware for Kernel {
             && !pc.usb.is_busy()
             && !self.scripts.has_experiment()
             && io.konnects.is_settled(memory)
-            && io.kanalog.is_settled(&io.fpga, memory)
+            && kanalog::is_settled(&io.kanalog, &io.fpga, memory)
             && machine.is_settled()
             && !io.uart.is_sending()
             && !world.records_motion(io, now)

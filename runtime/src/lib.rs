@@ -20,7 +20,7 @@
 //! | `pc/` | requests from programs, disk, bytes from the PC | `Pc` |
 //! | `servo/` | trajectories, compensation, outputs, limits, coordinated motion | `Servo` |
 //! | `machine/` | loads, the switches that they trip, attached devices | `Machine` |
-//! | `io/` | pins, FPGA, UART, step generators, option boards, flash | `Io` |
+//! | `io/` | the chips of [`chips`], option boards, timer, flash in guest memory | `Io` |
 //! | `out/` | events, console text, requests to the board | `Out` |
 //! | `views.rs`, `text/` | typed access to guest memory; the board's `printf` and `scanf` | none |
 //!

@@ -118,7 +118,10 @@ fn firmware() -> Vec<u8> {
 
 fn booted() -> BootedBoard {
     let file = FirmwareFile::read(&firmware()).unwrap_or_else(|error| panic!("{error}"));
-    BootedBoard::booted(Arc::new(file)).unwrap_or_else(|Halted::Crashed(crash)| panic!("{crash}"))
+    let booted = BootedBoard::booted(Arc::new(file));
+    let mut board = booted.unwrap_or_else(|Halted::Crashed(crash)| panic!("{crash}"));
+    board.keep_pin_changes();
+    board
 }
 
 #[test]

@@ -82,13 +82,22 @@ pub(crate) const LAYERS: &[(&str, &[Row])] = &[
         ],
     ),
     (
+        "runtime/chips",
+        &[
+            ("registers", &["fpga"]),
+            ("chips", &["encoder", "flash", "kanalog", "kstep", "stepgen", "uart"]),
+            ("pins", &["pins"]),
+            ("changes", &["changes"]),
+        ],
+    ),
+    (
         "runtime/boot",
         &[
             ("board", &["board"]),
             ("addresses", &["bus", "loads"]),
             ("registers", &["window"]),
             ("surroundings", &["around"]),
-            ("devices", &["control", "flash", "generators", "link", "pins", "timer", "uart"]),
+            ("devices", &["control", "flash", "link", "timer"]),
             ("files and reports", &["file", "crash"]),
         ],
     ),

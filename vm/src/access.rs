@@ -2,13 +2,13 @@
 
 use kmotiondef::GuestAddr;
 
-use crate::bus::AccessSize;
 use crate::engine::Slice;
 use crate::firmware::Firmware;
 use crate::kind::Width;
 use crate::memory::{Scalar, is_on_bus};
 use crate::slot::Slot;
 use crate::trap::{Access, TrapKind};
+use kmotiondef::AccessSize;
 
 impl<F: Firmware + ?Sized> Slice<'_, F> {
     /// Loads a value from memory or from registers of a device.

@@ -3,30 +3,7 @@
 //! The machine does not know the devices; the kernel routes each access to its device. An access of eight bytes reaches
 //! the bus as two of four, low half first.
 
-use kmotiondef::{Cycles, GuestAddr};
-
-/// Width of one access on the bus.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum AccessSize {
-    /// 8 bits.
-    Byte,
-    /// 16 bits.
-    Half,
-    /// 32 bits.
-    Word,
-}
-
-impl AccessSize {
-    /// Number of bytes.
-    #[must_use]
-    pub const fn bytes(self) -> u32 {
-        match self {
-            Self::Byte => 1,
-            Self::Half => 2,
-            Self::Word => 4,
-        }
-    }
-}
+use kmotiondef::{AccessSize, Cycles, GuestAddr};
 
 /// What answers the addresses that are not memory.
 pub trait Bus {

@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use kmotiondef::{CodeAddr, Cycles, GuestAddr};
 
-use crate::bus::{AccessSize, Bus};
+use crate::bus::Bus;
 use crate::engine::{ContextId, Executor, ForeignSnapshot, Slice, Stack, Stop};
 use crate::firmware::{Caller, Firmware, Outcome, Signature, TickContext, Value};
 use crate::interp::{BytecodeEngine, BytecodeSnapshot};
@@ -19,6 +19,7 @@ use crate::op::Op;
 use crate::program::Program;
 use crate::scheduler::Turn;
 use crate::trap::{Trap, TrapKind};
+use kmotiondef::AccessSize;
 
 const NOTHING: Cycles = Cycles::new(0);
 

@@ -3,7 +3,7 @@
 use kmotiondef::map::program_base;
 use kmotiondef::{Cycles, GuestAddr, ThreadId, Ticks};
 
-use crate::bus::{AccessSize, Bus};
+use crate::bus::Bus;
 use crate::engine::Engine;
 use crate::firmware::{Caller, Firmware, Outcome, Signature, TickContext, Value, Wake};
 use crate::machine::{Config, Machine};
@@ -14,6 +14,7 @@ use crate::scheduler::Turn;
 use crate::text::assemble;
 use crate::trap::{Trap, TrapKind};
 use crate::verify::verify;
+use kmotiondef::AccessSize;
 
 /// Opens every test program: `sig0` is `()`, `sig1` `(i32)`, `sig2` `() -> i32`, `sig3` `(i32) -> i32`,
 /// `sig4` `(i32, f64) -> f64`.

@@ -6,9 +6,8 @@
 
 use std::fmt::Debug;
 
+use chips::stepgen::GENERATORS;
 use vm::memory::GuestMemory;
-
-use super::generators::GENERATORS;
 
 /// What there is to see and to change at a match of the timer.
 #[derive(Debug)]

@@ -9,6 +9,7 @@ pub use power::FlashError;
 use std::sync::Arc;
 
 use c67x::Control;
+use chips::changes::BitChange;
 use coff::{Contents, Image};
 use kmotiondef::structs::Chan;
 use kmotiondef::{AxisId, GuestAddr, ThreadId};
@@ -21,7 +22,7 @@ use super::bus::Hardware;
 use super::crash::Crash;
 use super::file::{FirmwareError, FirmwareFile};
 use super::loads::Loads;
-use super::window::Window;
+use super::window::{Window, bit, instant};
 
 /// Cycles of a second.
 const SECOND: u64 = 200_000_000;
@@ -249,10 +250,12 @@ impl BootedBoard {
     fn tick(&mut self) {
         let now = self.hardware.timer.next_match();
         let Hardware { memory, window, .. } = &mut self.hardware;
-        let steps = std::array::from_fn(|number| window.generators.position(number, now).0);
-        let Window { around, encoders, kstep, .. } = window;
+        let steps = std::array::from_fn(|number| window.steps(number, now).0);
+        let Window { around, chips, kstep, .. } = window;
         if let Some(around) = around {
-            around.tick(&mut AtMatch { memory, now, steps, encoders, kstep });
+            let mut encoders = std::array::from_fn(|channel| chips.encoders.counter(channel));
+            around.tick(&mut AtMatch { memory, now, steps, encoders: &mut encoders, kstep });
+            encoders.iter().enumerate().for_each(|(channel, count)| chips.encoders.set(channel, *count));
         } else if let Some(chan) = self.file.address("chan") {
             self.loads.tick(chan, memory, window, now);
         }
@@ -413,30 +416,37 @@ impl BootedBoard {
     /// Steps that a generator has made, and steps a second.
     pub fn steps(&mut self, generator: usize) -> (f64, f64) {
         let now = self.cycle();
-        let (steps, rate) = self.hardware.window.generators.position(generator, now);
-        (steps, rate * SECOND as f64)
+        self.hardware.window.steps(generator, now)
     }
 
     /// Whether a pin is high, as an output or as it is driven.
     #[must_use]
     pub fn is_high(&self, pin: usize) -> bool {
-        self.hardware.window.pins.is_high(pin)
+        bit(pin).is_some_and(|bit| self.hardware.window.chips.pins.level(bit))
     }
 
     /// Whether a pin is an output.
     #[must_use]
     pub fn is_output(&self, pin: usize) -> bool {
-        self.hardware.window.pins.directions(pin / 8) >> (pin % 8) & 1 != 0
+        bit(pin).is_some_and(|bit| self.hardware.window.chips.pins.is_output(bit))
     }
 
     /// Drives an input pin from outside.
     pub fn drive_pin(&mut self, pin: usize, level: bool) {
-        self.hardware.window.pins.drive(pin, level);
+        let now = instant(self.cycle());
+        if let Some(bit) = bit(pin) {
+            self.hardware.window.chips.pins.drive(bit, level, now);
+        }
     }
 
-    /// Changes of output pins since the last time: cycle, pin, level.
-    pub fn take_pin_changes(&mut self) -> Vec<(u64, u8, bool)> {
-        self.hardware.window.pins.take_changes()
+    /// Keeps changes of pins from now on.
+    pub fn keep_pin_changes(&mut self) {
+        self.hardware.window.chips.pins.changes.switch_on(Vec::new());
+    }
+
+    /// The changes of pins since the last time, if they are kept; their instants are cycles since power-up.
+    pub fn take_pin_changes(&mut self) -> Vec<BitChange> {
+        self.hardware.window.chips.pins.changes.take()
     }
 
     /// Connects what is around the board, and shows it what was written to the registers so far.
@@ -464,41 +474,7 @@ impl BootedBoard {
 
     /// What the encoder of a channel shows from now on: the low eight bits of its counts.
     pub fn show_encoder(&mut self, channel: usize, counts: u8) {
-        if let Some(encoder) = self.hardware.window.encoders.get_mut(channel) {
-            *encoder = counts;
-        }
-    }
-
-    /// A Kanalog is connected, the converters of which show these values, 0 … 4095; 2048 is 0 V.
-    pub fn show_converters(&mut self, values: [u16; 8]) {
-        self.hardware.window.converters = Some(values);
-    }
-
-    /// What the inputs of the Kanalog show, bits 128 to 143.
-    pub fn show_kanalog_inputs(&mut self, inputs: u16) {
-        self.hardware.window.kanalog_inputs = inputs;
-    }
-
-    /// A KStep is connected; a bit is set while current flows in an input.
-    pub fn show_kstep(&mut self, inputs: u16) {
-        self.hardware.window.kstep = Some(inputs);
-    }
-
-    /// The last word written to a register of the FPGA.
-    #[must_use]
-    pub fn register(&self, number: usize) -> u16 {
-        self.hardware.window.cell(number)
-    }
-
-    /// Sends to the serial port.
-    pub fn send_serial(&mut self, bytes: &[u8]) {
-        let now = self.cycle();
-        self.hardware.window.uart.put(bytes, now);
-    }
-
-    /// What the serial port has sent since the last time, with the cycle of each byte.
-    pub fn take_serial(&mut self) -> Vec<(u64, u8)> {
-        self.hardware.window.uart.take_sent()
+        self.hardware.window.chips.encoders.set(channel, counts);
     }
 
     /// Everything that the board is.

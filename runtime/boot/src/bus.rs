@@ -1,13 +1,14 @@
 //! The map from addresses to devices (`dsp-board.md` 3).
 
-use kmotiondef::GuestAddr;
+use chips::flash::Chip;
 use kmotiondef::map::{FLASH, FPGA, IRAM, ROM_SIZE, SDRAM};
+use kmotiondef::{Cycles, GuestAddr};
 use vm::dsp::{Clock, Memory};
 use vm::memory::GuestMemory;
 use vm::trap::{Access, TrapKind};
 
 use super::control::Control;
-use super::flash::Chip;
+use super::flash;
 use super::timer::Timer;
 use super::window::Window;
 
@@ -52,11 +53,12 @@ impl Hardware {
     }
 
     fn flash(&mut self, offset: u32, bytes: u32, now: u64) -> u32 {
-        let low = self.chip.read(offset & !1, &self.memory, now);
+        let now = Cycles::new(now.cast_signed());
+        let low = flash::read(&mut self.chip, offset & !1, &self.memory, now);
         match bytes {
             1 => low >> (8 * (offset & 1)) & 0xFF,
             2 => low,
-            _ => low | self.chip.read(offset | 2, &self.memory, now) << 16,
+            _ => low | flash::read(&mut self.chip, offset | 2, &self.memory, now) << 16,
         }
     }
 
@@ -83,7 +85,8 @@ impl Hardware {
             let left = self.timer.next_match().saturating_sub(now);
             clock.set_left(clock.left().min(i64::try_from(left).unwrap_or(i64::MAX)));
         } else if let Some(offset) = inside(addr, FLASH.base.get(), FLASH.size) {
-            self.chip.write(offset & !1, value, &mut self.memory, now);
+            let now = Cycles::new(now.cast_signed());
+            flash::write(&mut self.chip, offset & !1, value as u16, &mut self.memory, now);
         } else if Control::has(addr) {
             self.control.write(addr, value);
         } else if addr >= ROM_SIZE && !self.forgives {

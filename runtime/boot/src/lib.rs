@@ -1,10 +1,9 @@
 //! The board around a real firmware: the user's own firmware file, executed by the processor's engine.
 //!
 //! Nothing here imitates the firmware. The file is loaded as by the board's loader ([`file`]), the processor starts
-//! at its entry point, and everything that it accesses outside its two RAMs is a device in this crate: the timer that
-//! interrupts it ([`timer`]), the byte link to the PC ([`link`]), the registers of the FPGA ([`window`]) with step
-//! generators ([`generators`]), pins ([`pins`]) and the serial port ([`uart`]), the flash chip ([`flash`]). Other
-//! connected devices answer through [`Around`]. The loads of the axes ([`loads`]) are updated at each match of the
+//! at its entry point, and everything that it accesses outside its two RAMs is a device: the timer that
+//! interrupts it ([`timer`]), the byte link to the PC ([`link`]), the window on the registers and [`chips`] of the FPGA
+//! ([`window`]), the flash chip ([`flash`]). Other connected devices answer through [`Around`]. The loads of the axes ([`loads`]) are updated at each match of the
 //! timer. [`bus`] maps addresses to devices. [`BootedBoard`] runs them all in one time base: cycles of 5 ns.
 //!
 //! Source: `dsp-board.md` of the specification, by section. No address of a firmware is built in: threads and axes are
@@ -24,14 +23,11 @@ mod control;
 mod crash;
 mod file;
 mod flash;
-mod generators;
 mod link;
 mod loads;
-mod pins;
 #[cfg(test)]
 mod tests;
 mod timer;
-mod uart;
 mod window;
 
 pub use around::{Around, AtMatch};

@@ -4,6 +4,7 @@
 //! A closed loop's load goes to the axis' command with a lag of 0.5 ms while the axis is enabled; a step generator moves
 //! its load by its steps. Encoders count the loads. The axes are read from the firmware's memory, where it has them.
 
+use chips::stepgen::generator_of;
 use kmotiondef::limits::{N_CHANNELS, TIMEBASE};
 use kmotiondef::modes::{InputMode, OutputMode};
 use kmotiondef::structs::Chan;
@@ -18,8 +19,6 @@ const LAG: f64 = 0.000_5;
 const REACH: f64 = 120.0;
 /// A rest that counts as none.
 const NEGLIGIBLE: f64 = 1e-9;
-/// Generators are the low bits of an output channel.
-const GENERATOR: i32 = 7;
 
 /// One load, in position units, and what its encoder has counted.
 #[derive(Clone, Copy, Debug, Default)]
@@ -64,10 +63,8 @@ impl Loads {
             if InputMode::new(axis.int(Chan::INPUT_MODE)) == Some(InputMode::Encoder) {
                 load.count(load.load - before, axis.single(Chan::INPUT_GAIN0));
                 let channel = axis.int(Chan::INPUT_CHAN0);
-                if let Some(encoder) =
-                    usize::try_from(channel).ok().and_then(|at| window.encoders.get_mut(at))
-                {
-                    *encoder = (libm::floor(load.counts + 0.5) as i64 & 0xFF) as u8;
+                if let Ok(channel) = usize::try_from(channel) {
+                    window.chips.encoders.set(channel, libm::floor(load.counts + 0.5) as i64 as u8);
                 }
             }
         }
@@ -95,8 +92,7 @@ impl Load {
 
     /// By the steps that the generator has made since the last tick.
     fn step(&mut self, axis: &Axis<'_>, window: &mut Window, now: u64) {
-        let number = (axis.int(Chan::OUTPUT_CHAN0) & GENERATOR) as usize;
-        let (steps, _) = window.generators.position(number, now);
+        let (steps, _) = window.steps(generator_of(axis.int(Chan::OUTPUT_CHAN0)), now);
         let made = steps - self.steps.replace(steps).unwrap_or(steps);
         let gain = axis.single(Chan::OUTPUT_GAIN);
         if gain != 0.0 {

@@ -8,13 +8,12 @@
 //!
 //! Source: `dsp-board.md` section 8.
 
+use kmotiondef::AccessSize;
 use kmotiondef::limits::N_CHANNELS;
-use kmotiondef::map::FPGA;
 use kmotiondef::modes::{InputMode, OutputMode};
 use kmotiondef::structs::Chan;
 use kmotiondef::variables::{ADC_BUFFER_IN, CURRENT_THREAD, HOST_STATUS, KSTEP_PRESENT};
 use kmotiondef::{AxisId, Bit, CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
-use vm::bus::AccessSize;
 use vm::firmware::{ExecutedPacket, TickContext};
 use vm::memory::GuestMemory;
 use vm::scheduler::{ThreadSet, Turn};
@@ -24,8 +23,6 @@ use super::machine_file::MachineFile;
 use super::{Config, connect};
 use crate::firmware::parts::Parts;
 use crate::io::bits::bit_state;
-use crate::io::kanalog::ADC_CHANNELS;
-use crate::io::stepgen::generator_of;
 use crate::machine::{COUNTS_PER_TICK, Drive};
 use crate::out::{Event, EventKind, Message, Remark, Request, Speaker};
 use crate::pc::{Pc, host};
@@ -33,6 +30,9 @@ use crate::servo::driven;
 use crate::views::{AxisView, Typed};
 use crate::world::stimulus::{Asker, Stimulus, WAITING};
 use crate::world::{Moment, trace};
+use chips::fpga::register_address;
+use chips::kanalog::ADC_CHANNELS;
+use chips::stepgen::generator_of;
 
 /// First register, and how many, that something else than the board answers.
 const ANSWERED: [std::ops::Range<usize>; 5] = [0x08..0x09, 0x88..0x8A, 0x90..0x99, 0xC0..0xC2, 0x130..0x136];
@@ -40,9 +40,6 @@ const ANSWERED: [std::ops::Range<usize>; 5] = [0x08..0x09, 0x88..0x8A, 0x90..0x9
 const ADC_ZERO: i32 = 2048;
 /// Where the converters are.
 const CONVERTERS: usize = 0x90;
-/// Bytes between two registers, and where a register lies in them.
-const STRIDE: u32 = 4;
-const LANE: u32 = 2;
 /// Inputs of a KStep.
 const KSTEP_INPUTS: i32 = 168;
 /// Steps that a load can be moved by in a tick: as many as a generator makes.
@@ -224,14 +221,15 @@ impl Surroundings {
             return Some(*conversion);
         }
         let is_answered = ANSWERED.iter().any(|registers| registers.contains(&register));
-        is_answered.then(|| self.parts.read_register(address(register), size(is_byte), now) as u16)
+        is_answered
+            .then(|| self.parts.read_register(register_address(register as u32), size(is_byte), now) as u16)
     }
 
     /// The firmware writes a register.
     pub fn write(&mut self, register: usize, is_byte: bool, value: u16, now: Cycles) {
         let (fpga, behind) = self.parts.io.registers(now);
         // The firmware knows its registers: what there would be to say concerns programs.
-        let _ = fpga.write(behind, address(register), size(is_byte), value.into());
+        let _ = fpga.write(behind, register_address(register as u32), size(is_byte), value.into());
         self.parts.lines(now).settle();
     }
 
@@ -445,11 +443,6 @@ impl Surroundings {
 fn active(memory: &GuestMemory, at: GuestAddr) -> ThreadSet {
     let active: u32 = memory.peek(at);
     ThreadId::all().filter(|thread| active >> thread.get() & 1 != 0).collect()
-}
-
-/// Where a register is.
-fn address(register: usize) -> GuestAddr {
-    FPGA.base.offset(register as u32 * STRIDE + LANE)
 }
 
 const fn size(is_byte: bool) -> AccessSize {

@@ -1,9 +1,9 @@
 //! Digital and analog inputs and outputs, and registers.
 
+use kmotiondef::AccessSize;
 use kmotiondef::GuestAddr;
 use kmotiondef::map::FPGA;
 use kmotiondef::variables::{DAC_BUFFER, VIRTUAL_BITS_EX};
-use vm::bus::AccessSize;
 
 use super::arguments::Values;
 use super::session::{Answer, Session};

@@ -9,12 +9,13 @@ use vm::firmware::Caller;
 use super::costs;
 use super::parts::Parts;
 use crate::io::amplifiers::{antiphase, current, recirculate, store_pwm};
-use crate::io::fpga::kanalog_pins;
-use crate::io::kanalog::ADC_CHANNELS;
+use crate::io::remark_on;
 use crate::io::{bits, kanalog};
 use crate::out::Message;
 use crate::views::Typed;
 use crate::world::stimulus::Asker;
+use chips::fpga::kanalog_pin;
+use chips::kanalog::ADC_CHANNELS;
 
 /// Checks a bit number that a program names.
 fn checked(parts: &mut Parts, caller: &Caller<'_>, function: &'static str, bit: i32) -> Option<Bit> {
@@ -44,9 +45,9 @@ fn check_jp7(parts: &mut Parts, caller: &Caller<'_>, bit: Bit) {
     let Parts { io, out, .. } = parts;
     if kanalog::is_served(&io.fpga, caller.memory)
         && !io.pins.is_output(bit)
-        && let Some(message) = kanalog_pins(bit)
+        && let Some(notice) = kanalog_pin(bit)
     {
-        out.diagnose(caller, message);
+        out.diagnose(caller, remark_on(notice));
     }
 }
 

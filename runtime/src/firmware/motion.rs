@@ -13,7 +13,6 @@ use super::calls::Continuation;
 use super::costs;
 use super::parts::Parts;
 use crate::io::bits;
-use crate::io::stepgen::generator_of;
 use crate::machine::Drive;
 use crate::out::Message;
 use crate::servo::cache::Change;
@@ -24,6 +23,7 @@ use crate::servo::moves::{limits, start_move_to};
 use crate::servo::profile::{self, LEAD, MAX_STATES, Mode, MotionState, Ramp};
 use crate::servo::{four_phase, hold, switching, three_phase};
 use crate::views::{Typed, axis_at};
+use chips::stepgen::generator_of;
 
 /// What the board prints when a program names an axis that does not exist.
 fn invalid(parts: &mut Parts, what: &str) {

@@ -2,14 +2,15 @@
 //!
 //! Nothing here does anything by itself: a call goes to one part, and hands over the others that the part works on.
 
+use kmotiondef::AccessSize;
 use kmotiondef::timing::Timing;
 use kmotiondef::{Bit, Cycles, GuestAddr};
-use vm::bus::AccessSize;
 use vm::firmware::{Caller, TickContext};
 use vm::memory::GuestMemory;
 use vm::scheduler::Turn;
 
 use super::calls::Calls;
+use crate::io::remark_on;
 use crate::io::{Io, bits};
 use crate::machine::{Lines, Machine};
 use crate::out::{Message, Out};
@@ -109,8 +110,8 @@ impl Parts {
     /// Writes a register of the FPGA.
     pub(crate) fn write_register(&mut self, address: GuestAddr, size: AccessSize, value: u32, now: Cycles) {
         let (fpga, behind) = self.io.registers(now);
-        if let Some(remark) = fpga.write(behind, address, size, value) {
-            self.out.remark(now, remark);
+        if let Some(notice) = fpga.write(behind, address, size, value) {
+            self.out.remark(now, remark_on(notice));
         }
         self.lines(now).settle();
     }

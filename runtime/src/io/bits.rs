@@ -7,7 +7,7 @@ use kmotiondef::variables::{
 use kmotiondef::{Bit, Cycles, Place};
 use vm::memory::GuestMemory;
 
-use super::{Io, kanalog};
+use super::{Io, changes, kanalog};
 use crate::out::{Message, Out};
 use crate::views::Typed;
 
@@ -92,7 +92,7 @@ pub(crate) fn write_bit(
         _ => {
             if let Some((word, mask)) = memory_bit(bit, kind) {
                 change(memory, word, mask, level);
-                io.pins.changes.sweep(memory, now);
+                changes::sweep(&mut io.pins.changes, memory, now);
             }
         }
     }

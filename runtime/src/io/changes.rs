@@ -1,104 +1,25 @@
-//! Changes of bit levels: a list of changes with their times, kept only while it is read.
-//!
-//! Bits that live in guest memory are changed by plain stores too; those are found by comparing words at the next tick.
+//! Changes of bits that live in guest memory, beside those of the pins.
 
+use chips::changes::Changes;
+use kmotiondef::Cycles;
 use kmotiondef::variables::{VIRTUAL_BITS, VIRTUAL_BITS_EX};
-use kmotiondef::{Bit, Cycles};
 use vm::memory::GuestMemory;
 
 use crate::views::Typed;
 
-/// The first virtual bit, how many of its word count, and the first extended one.
-const VIRTUAL: u16 = 48;
+/// How many bits of the word of virtual bits count.
 const VIRTUAL_MASK: u32 = 0xffff;
-const VIRTUAL_EX: u16 = 1024;
 /// Words of extended virtual bits.
 const EX_WORDS: usize = 32;
 
-/// A bit whose level has changed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct BitChange {
-    /// When, to the cycle; a plain store to a virtual bit counts at the next tick.
-    pub(crate) at: Cycles,
-    pub(crate) bit: Bit,
-    pub(crate) level: bool,
+/// Keeps changes of pins and of virtual bits from now on.
+pub(crate) fn switch_on(changes: &mut Changes, memory: &GuestMemory) {
+    changes.switch_on((0..=EX_WORDS).map(|index| word(memory, index)).collect());
 }
 
-/// The changes since they were last taken.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Changes {
-    is_on: bool,
-    list: Vec<BitChange>,
-    /// How many of them the devices have seen.
-    seen: usize,
-    /// The virtual bits as they were last told, the extended ones after.
-    words: Vec<u32>,
-}
-
-impl Changes {
-    /// Whether somebody reads them.
-    pub(crate) fn is_on(&self) -> bool {
-        self.is_on
-    }
-
-    /// Keeps changes from now on.
-    pub(crate) fn switch_on(&mut self, memory: &GuestMemory) {
-        self.is_on = true;
-        self.words = (0..=EX_WORDS).map(|index| word(memory, index)).collect();
-    }
-
-    /// A bit has got a level.
-    pub(crate) fn note(&mut self, bit: Bit, level: bool, at: Cycles) {
-        if self.is_on {
-            self.list.push(BitChange { at, bit, level });
-        }
-    }
-
-    /// Those of the first 64 bits that are in `mask` have got the levels in `levels`.
-    pub(crate) fn note_mask(&mut self, mask: u64, levels: u64, at: Cycles) {
-        self.note_bits(0, mask, levels, at);
-    }
-
-    fn note_bits(&mut self, first: u16, mut mask: u64, levels: u64, at: Cycles) {
-        if !self.is_on {
-            return;
-        }
-        while mask != 0 {
-            let index = mask.trailing_zeros();
-            mask &= mask - 1;
-            if let Some(bit) = Bit::new(i32::from(first) + index as i32) {
-                self.list.push(BitChange { at, bit, level: levels >> index & 1 != 0 });
-            }
-        }
-    }
-
-    /// Finds the virtual bits that have changed.
-    pub(crate) fn sweep(&mut self, memory: &GuestMemory, at: Cycles) {
-        if !self.is_on {
-            return;
-        }
-        for index in 0..self.words.len() {
-            let (now, before) = (word(memory, index), self.words[index]);
-            if now != before {
-                self.words[index] = now;
-                let first = if index == 0 { VIRTUAL } else { VIRTUAL_EX + 32 * (index as u16 - 1) };
-                self.note_bits(first, u64::from(now ^ before), u64::from(now), at);
-            }
-        }
-    }
-
-    /// The next change that no device has seen yet.
-    pub(crate) fn next_unseen(&mut self) -> Option<BitChange> {
-        let change = self.list.get(self.seen).copied();
-        self.seen += usize::from(change.is_some());
-        change
-    }
-
-    /// All changes since the last time.
-    pub(crate) fn take(&mut self) -> Vec<BitChange> {
-        self.seen = 0;
-        std::mem::take(&mut self.list)
-    }
+/// Finds the virtual bits that have changed.
+pub(crate) fn sweep(changes: &mut Changes, memory: &GuestMemory, at: Cycles) {
+    changes.sweep(|index| word(memory, index), at);
 }
 
 /// A word of virtual bits: the plain ones, then the extended ones.
@@ -113,36 +34,16 @@ fn word(memory: &GuestMemory, index: usize) -> u32 {
 mod tests {
     use super::*;
 
-    fn told(changes: &mut Changes) -> Vec<(u16, bool)> {
-        changes.take().iter().map(|change| (change.bit.get(), change.level)).collect()
-    }
-
-    #[test]
-    fn changes_are_not_kept_without_a_reader() {
-        let mut changes = Changes::default();
-        changes.note_mask(0b11, 0b01, Cycles::default());
-        assert_eq!(told(&mut changes), []);
-    }
-
     #[test]
     fn stores_to_virtual_bits_are_found_once() {
         let (mut memory, mut changes) = (GuestMemory::new(), Changes::default());
-        changes.switch_on(&memory);
+        switch_on(&mut changes, &memory);
         memory.set(VIRTUAL_BITS, 0x1_8001);
         memory.set(VIRTUAL_BITS_EX.element(1), 2);
         for expect in [vec![(48, true), (63, true), (1057, true)], vec![]] {
-            changes.sweep(&memory, Cycles::default());
-            assert_eq!(told(&mut changes), expect);
+            sweep(&mut changes, &memory, Cycles::default());
+            let told: Vec<_> = changes.take().iter().map(|change| (change.bit.get(), change.level)).collect();
+            assert_eq!(told, expect);
         }
-    }
-
-    #[test]
-    fn devices_see_each_change_once() {
-        let mut changes = Changes::default();
-        changes.switch_on(&GuestMemory::new());
-        changes.note_mask(1 << 45, 0, Cycles::default());
-        assert_eq!(changes.next_unseen().map(|change| change.bit.get()), Some(45));
-        assert_eq!(changes.next_unseen(), None);
-        assert_eq!(told(&mut changes), [(45, false)]);
     }
 }

@@ -8,6 +8,7 @@ mod banks;
 
 use std::ops::Range;
 
+use chips::flash::{BLOCK, ERASED, USER};
 use kmotiondef::map::{FLASH, IRAM, PROGRAM_BASE, PROGRAM_SIZE, program_base};
 use kmotiondef::{GuestAddr, ThreadId};
 use vm::memory::GuestMemory;
@@ -27,12 +28,6 @@ const SAVED_IRAM: u32 = 0x1_0000;
 const SAVED_PROGRAMS: u32 = 0x8_0000;
 /// Bytes of the program spaces.
 const PROGRAMS: u32 = PROGRAM_SIZE * ThreadId::MAX as u32;
-/// The users' half.
-const USER: u32 = 0x10_0000;
-/// Bytes that are erased at once.
-const BLOCK: u32 = 0x1_0000;
-/// What erased flash reads as.
-const ERASED: u8 = 0xFF;
 /// Words that one call programs at most.
 const WORD_LIMIT: i32 = 32_768;
 

@@ -1,34 +1,30 @@
 //! Everything but memory that a program can access: pins, registers of the FPGA, lines, step generators, option boards,
 //! flash.
 //!
-//! These parts know each other and guest memory. `machine` and `world` handle what is connected to them.
+//! The chips that registers reach are those of [`chips`]; here is what concerns guest memory. These parts know each other.
+//! `machine` and `world` handle what is connected to them.
 
 pub(crate) mod amplifiers;
 pub(crate) mod bits;
 pub(crate) mod changes;
-pub(crate) mod encoder;
 pub(crate) mod flash;
-pub(crate) mod fpga;
 pub(crate) mod kanalog;
 pub(crate) mod konnect;
-pub(crate) mod kstep;
-pub(crate) mod pins;
 pub(crate) mod snapamp;
-pub(crate) mod stepgen;
 pub(crate) mod timer;
-pub(crate) mod uart;
 
+use chips::encoder::Encoders;
+use chips::fpga::{Behind, Fpga, Notice};
+use chips::kanalog::Kanalog;
+use chips::pins::Pins;
+use chips::stepgen::StepGenerators;
+use chips::uart::Uart;
 use kmotiondef::Cycles;
 
-use crate::io::encoder::Encoders;
 use crate::io::flash::Banks;
-use crate::io::fpga::{Behind, Fpga};
-use crate::io::kanalog::Kanalog;
 use crate::io::konnect::Konnects;
-use crate::io::pins::Pins;
 use crate::io::snapamp::SnapAmps;
-use crate::io::stepgen::StepGenerators;
-use crate::io::uart::Uart;
+use crate::out::Message;
 
 /// The inputs and outputs of the board and of its option boards.
 #[derive(Clone, Debug, Default)]
@@ -57,5 +53,14 @@ impl Io {
             now,
         };
         (&mut self.fpga, behind)
+    }
+}
+
+/// The remark on something that a program has done in vain with a register.
+pub(crate) const fn remark_on(notice: Notice) -> Message {
+    match notice {
+        Notice::KanalogPin(bit) => Message::KanalogPins { bit },
+        Notice::UartUnconnected => Message::UartUnconnected {},
+        Notice::UnknownRegister(number) => Message::UnknownRegister { number },
     }
 }

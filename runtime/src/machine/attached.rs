@@ -8,12 +8,12 @@ use std::fmt::Debug;
 use kmotiondef::{Bit, Cycles};
 
 use super::Loads;
-use crate::io::changes::BitChange;
-use crate::io::fpga::Fpga;
-use crate::io::kanalog::Kanalog;
 use crate::io::konnect::KonnectBoard;
-use crate::io::pins::Pins;
-use crate::io::uart::Uart;
+use chips::changes::BitChange;
+use chips::fpga::Fpga;
+use chips::kanalog::Kanalog;
+use chips::pins::Pins;
+use chips::uart::Uart;
 
 /// What a device can reach.
 #[derive(Debug)]

@@ -15,8 +15,8 @@ use super::description::{
 use super::{Loads, Machine};
 use crate::io::Io;
 use crate::io::bits::bit_state;
-use crate::io::kanalog::conversion;
 use crate::views::Typed;
+use chips::kanalog::conversion;
 
 /// Something that makes contact along an axis.
 #[derive(Clone, Copy, Debug)]

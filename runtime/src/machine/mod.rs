@@ -27,12 +27,13 @@ pub(crate) use plant::{COUNTS_PER_TICK, Drive, Plant};
 
 use crate::io::Io;
 use crate::io::bits::bit_state;
-use crate::io::changes::BitChange;
+use crate::io::changes;
 use crate::io::konnect::KonnectBoard;
-use crate::io::pins::Pins;
 use crate::io::snapamp::SnapAmps;
 use crate::machine::attached::{Attached, Outside};
 use crate::out::{EventKind, Message, Out};
+use chips::changes::BitChange;
+use chips::pins::Pins;
 
 /// Edges that devices may answer at the same instant.
 const EDGES_AT_ONCE: usize = 10_000;
@@ -100,7 +101,7 @@ impl Machine {
         memory: &GuestMemory,
         now: Cycles,
     ) {
-        io.pins.changes.switch_on(memory);
+        changes::switch_on(&mut io.pins.changes, memory);
         Bit::all().filter(|&bit| device.watches(bit)).for_each(|bit| io.pins.watch(bit));
         io.uart.listen();
         let high = Bit::all().filter(|&bit| bit_state(io, memory, bit).0).collect::<Vec<_>>();

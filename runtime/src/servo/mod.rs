@@ -45,12 +45,12 @@ use kmotiondef::structs::Chan;
 use kmotiondef::{AxisId, Bit};
 use vm::memory::GuestMemory;
 
-use crate::io::stepgen::generator_of;
 use crate::out::Message;
 use crate::servo::cache::Change;
 use crate::servo::plan::Input;
 use crate::servo::state::AxisMemory;
 use crate::views::{AxisView, Typed};
+use chips::stepgen::{StepLimit, generator_of};
 
 pub(crate) use output::{driven, four_phase, three_phase};
 pub(crate) use state::{Servo, Tick};
@@ -194,9 +194,9 @@ fn step(tick: &mut Tick<'_>, memory: &mut GuestMemory, axis: AxisId) {
     let plant = &mut tick.machine.loads[axis];
     let steps = plant.take_stepped() * f64::from(memory.axis(axis, Chan::OUTPUT_GAIN));
     if plant.take_behind()
-        && let Some(message) = tick.io.stepgens.fall_behind(axis)
+        && let Some(StepLimit { fastest, length }) = tick.io.stepgens.limit(axis)
     {
-        tick.out.remark(tick.now, message);
+        tick.out.remark(tick.now, Message::StepsTooFast { axis, fastest, length });
     }
     tick.io.stepgens.step(axis, steps, &mut tick.io.pins, tick.now);
 }

@@ -5,8 +5,8 @@
 use kmotiondef::Bit;
 
 use super::outside;
-use crate::io::kanalog::ADC_CHANNELS;
 use crate::machine::attached::Attached;
+use chips::kanalog::ADC_CHANNELS;
 
 /// A device that has been described: its name and its settings, in words.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -14,10 +14,11 @@ use vm::memory::GuestMemory;
 use vm::scheduler::Turn;
 
 use crate::io::Io;
-use crate::io::changes::BitChange;
+use crate::io::changes;
 use crate::out::{EventKind, Message, Out, Speaker};
 use crate::world::stimulus::{Assist, Player, Step, Stimulus};
 use crate::world::trace::{Item, Quantity, Record, Recorder, View};
+use chips::changes::BitChange;
 
 /// What acts on the board from outside, and what looks at it.
 #[derive(Clone, Debug, Default)]
@@ -39,7 +40,7 @@ impl World {
         stage.out.keep_lines();
         player.extend(stimulus, stage, memory);
         player.watched().for_each(|bit| stage.io.pins.watch(bit));
-        stage.io.pins.changes.switch_on(memory);
+        changes::switch_on(&mut stage.io.pins.changes, memory);
     }
 
     /// What it does at the beginning of a tick; whether that is anything.
@@ -57,7 +58,7 @@ impl World {
         if !stage.io.pins.changes.is_on() && !hears_now {
             return false;
         }
-        stage.io.pins.changes.sweep(context.memory, stage.now);
+        changes::sweep(&mut stage.io.pins.changes, context.memory, stage.now);
         stage.io.fpga.tell_pwm(&mut stage.io.pins, stage.now);
         stage.lines().settle();
         stage.machine.run_devices(stage.io, stage.out, self.hears_uart, stage.now);
@@ -93,7 +94,7 @@ impl World {
     /// Records from now on.
     pub(crate) fn record(&mut self, request: trace::TraceRequest, io: &mut Io, memory: &GuestMemory) {
         if request.changes {
-            io.pins.changes.switch_on(memory);
+            changes::switch_on(&mut io.pins.changes, memory);
             self.hear_uart(io);
             let items = request.quantities.iter().filter_map(Quantity::item);
             items.filter_map(Item::bit).for_each(|bit| io.pins.watch(bit));

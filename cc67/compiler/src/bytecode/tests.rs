@@ -1,8 +1,9 @@
 //! Whole functions: words, registers, charges, and their results on the machine.
 
+use kmotiondef::AccessSize;
 use kmotiondef::timing::Timing;
 use kmotiondef::{Cycles, GuestAddr, ThreadId, Ticks};
-use vm::bus::{AccessSize, Bus};
+use vm::bus::Bus;
 use vm::firmware::{Caller, Firmware, Outcome, Signature, TickContext, Value};
 use vm::interp::BytecodeEngine;
 use vm::machine::{Config, Machine};

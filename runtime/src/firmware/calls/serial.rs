@@ -5,8 +5,8 @@ use std::collections::VecDeque;
 use kmotiondef::variables::{P_RS232_TX_IN, P_RS232_TX_OUT};
 use vm::memory::GuestMemory;
 
-use crate::io::uart::Uart;
 use crate::views::Typed;
+use chips::uart::Uart;
 
 /// The service, which a program switches on.
 #[derive(Clone, Debug, Default)]

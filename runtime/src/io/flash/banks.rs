@@ -5,6 +5,7 @@
 //! shows all of the chip where it is, and hides their mistake. Here guest memory holds what can be seen, and the chip
 //! is kept beside it.
 
+use chips::flash::{COMMANDS, USER};
 use kmotiondef::GuestAddr;
 use kmotiondef::map::FLASH;
 use vm::memory::GuestMemory;
@@ -25,10 +26,6 @@ struct Chip {
 const BANK_BITS: u32 = 0x1F_C000;
 /// Below this offset is the boot sector.
 const BOOT_SECTOR: u32 = 0x1_0000;
-/// The two places there that a program may select: those of the chip's command sequences.
-const COMMANDS: [u32; 2] = [0xAAAA, 0x5554];
-/// Selected in place of the boot sector.
-const USER: u32 = 0x10_0000;
 
 /// The bank of an address was not selected, because it belongs to the boot sector; the board prints a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,6 +51,7 @@ impl Banks {
     pub(crate) fn select(&mut self, address: GuestAddr, memory: &mut GuestMemory) -> Result<(), Refused> {
         let address = address.get();
         let offset = address % FLASH.size;
+        // A program may select the places of the chip's commands there; instead of others it gets the users' half.
         let is_refused = offset < BOOT_SECTOR && !COMMANDS.contains(&address);
         if let Some(chip) = &mut self.chip {
             chip.bank = (if is_refused { USER } else { offset }) as usize / BANK;

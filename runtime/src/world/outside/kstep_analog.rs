@@ -2,9 +2,9 @@
 
 use kmotiondef::Cycles;
 
-use crate::io::kanalog::conversion;
 use crate::machine::attached::{Attached, Outside};
 use crate::world::attached::Settings;
+use chips::kanalog::conversion;
 
 /// Counts of an analog input in a volt.
 const COUNTS_PER_VOLT: f64 = 204.8;

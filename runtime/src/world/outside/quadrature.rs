@@ -6,9 +6,9 @@
 use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::{AxisId, Bit};
 
-use crate::io::changes::BitChange;
 use crate::machine::attached::{Attached, Outside};
 use crate::world::attached::Settings;
+use chips::changes::BitChange;
 
 /// The phases and the axis.
 #[derive(Clone, Debug)]

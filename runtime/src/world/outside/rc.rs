@@ -6,11 +6,11 @@
 
 use kmotiondef::{Bit, Cycles};
 
-use crate::io::changes::BitChange;
-use crate::io::kanalog::conversion;
 use crate::io::konnect::{KonnectBoard, Port};
 use crate::machine::attached::{Attached, Outside};
 use crate::world::attached::Settings;
+use chips::changes::BitChange;
+use chips::kanalog::conversion;
 
 /// Counts of an analog input in a volt.
 const COUNTS_PER_VOLT: f64 = 204.8;

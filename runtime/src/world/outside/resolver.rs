@@ -6,10 +6,10 @@
 
 use kmotiondef::{AxisId, Bit, Cycles};
 
-use crate::io::changes::BitChange;
-use crate::io::kanalog::conversion;
 use crate::machine::attached::{Attached, Outside};
 use crate::world::attached::Settings;
+use chips::changes::BitChange;
+use chips::kanalog::conversion;
 
 /// Time constant of the smoothing in seconds.
 const CONSTANT: f64 = 50e-6;

@@ -6,9 +6,9 @@
 
 use kmotiondef::Bit;
 
-use crate::io::changes::BitChange;
 use crate::machine::attached::{Attached, Outside};
 use crate::world::attached::Settings;
+use chips::changes::BitChange;
 
 /// Bits of a word that does not say it.
 const BITS: f64 = 16.0;

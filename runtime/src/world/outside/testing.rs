@@ -4,14 +4,15 @@ use kmotiondef::variables::ADC_BUFFER_IN;
 use kmotiondef::{Bit, Cycles};
 use vm::memory::GuestMemory;
 
-use crate::io::fpga::Fpga;
-use crate::io::kanalog::Kanalog;
-use crate::io::pins::Pins;
-use crate::io::uart::Uart;
+use crate::io::{changes, kanalog};
 use crate::machine::Loads;
 use crate::machine::attached::{Attached, Outside};
 use crate::views::Typed;
 use crate::world::attached::DeviceSpec;
+use chips::fpga::Fpga;
+use chips::kanalog::Kanalog;
+use chips::pins::Pins;
+use chips::uart::Uart;
 
 /// A device and what it can reach.
 pub(crate) struct Bench {
@@ -46,7 +47,7 @@ impl Bench {
             loads: Loads::default(),
             memory: GuestMemory::new(),
         };
-        bench.pins.changes.switch_on(&bench.memory);
+        changes::switch_on(&mut bench.pins.changes, &bench.memory);
         bench
     }
 
@@ -86,7 +87,7 @@ impl Bench {
     /// The value of an analog input, −2048 to 2047.
     pub(crate) fn adc(&mut self, channel: usize) -> i32 {
         self.memory.set(kmotiondef::variables::KANALOG_PRESENT, 1);
-        self.kanalog.tick(&self.fpga, &mut self.memory);
+        kanalog::tick(&self.kanalog, &self.fpga, &mut self.memory);
         self.memory.get(ADC_BUFFER_IN.element(channel)) - 2048
     }
 }

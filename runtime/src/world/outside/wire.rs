@@ -4,10 +4,10 @@ use std::collections::VecDeque;
 
 use kmotiondef::{Bit, Cycles};
 
-use crate::io::changes::BitChange;
 use crate::machine::attached::{Attached, Outside};
 use crate::machine::description;
 use crate::world::attached::Settings;
+use chips::changes::BitChange;
 
 /// A wire.
 #[derive(Clone, Debug)]

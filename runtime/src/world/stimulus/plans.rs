@@ -7,9 +7,9 @@ use kmotiondef::{AxisId, Bit, Cycles};
 use vm::firmware::TickContext;
 
 use super::wave::Wave;
-use crate::io::kanalog::{ADC_CHANNELS, conversion};
 use crate::views::Typed;
 use crate::world::Stage;
+use chips::kanalog::{ADC_CHANNELS, conversion};
 
 /// The most that may be planned at a time.
 pub const MOST_PLANNED: usize = 100_000;

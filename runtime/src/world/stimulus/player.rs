@@ -12,9 +12,10 @@ use super::monitor::Progress;
 use super::plans::{Due, MOST_PLANNED, Plans};
 use super::scene::Scene;
 use super::{Condition, Rule, Stimulus, Trigger};
-use crate::io::changes::BitChange;
+use crate::io::changes;
 use crate::out::{Message, Out};
 use crate::world::Stage;
+use chips::changes::BitChange;
 
 /// A stimulus under way.
 #[derive(Clone, Debug)]
@@ -218,7 +219,7 @@ impl Player {
 
     /// The run is over: checks what is expected then, or later than it lasted.
     pub(crate) fn finish(&mut self, stage: &mut Stage<'_>, context: &TickContext<'_>) {
-        stage.io.pins.changes.sweep(context.memory, stage.now);
+        changes::sweep(&mut stage.io.pins.changes, context.memory, stage.now);
         self.hear(stage.out);
         self.watch_bits(&stage.io.pins.changes.take());
         self.watch_lines();

@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
+use kmotiondef::AccessSize;
 use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, function_at};
 use kmotiondef::timing::{Timing, WaitStates};
 use kmotiondef::{Cycles, GuestAddr, ThreadId, Ticks};
 use serde_json::Value as Json;
-use vm::bus::{AccessSize, Bus};
+use vm::bus::Bus;
 use vm::firmware::{Caller, Firmware, Outcome, Signature, TickContext, Value};
 use vm::interp::BytecodeEngine;
 use vm::machine::{Config, Machine};

@@ -7,13 +7,13 @@ use vm::firmware::TickContext;
 use vm::memory::GuestMemory;
 
 use crate::io::bits::bit_state;
-use crate::io::kanalog::ADC_CHANNELS;
 use crate::views::Typed;
 use crate::world::Stage;
 use crate::world::stimulus::reader::{StatementReader, number};
 use crate::world::stimulus::scene::Scene;
 use crate::world::stimulus::tokens::Mistake;
 use crate::world::stimulus::wave::Wave;
+use chips::kanalog::ADC_CHANNELS;
 
 /// Length of a pulse that does not say it: 10 ms.
 const PULSE: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 100);

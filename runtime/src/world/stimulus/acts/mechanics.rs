@@ -3,12 +3,12 @@
 use kmotiondef::structs::Chan;
 use kmotiondef::{AxisId, Cycles};
 
-use crate::io::encoder::CHANNELS;
 use crate::machine::COUNTS_PER_TICK;
 use crate::views::Typed;
 use crate::world::stimulus::reader::StatementReader;
 use crate::world::stimulus::scene::Scene;
 use crate::world::stimulus::tokens::Mistake;
+use chips::encoder::CHANNELS;
 
 pub(crate) fn read_push(reader: &mut StatementReader<'_>) -> Result<(AxisId, f64), Mistake> {
     let axis = reader.axis()?;

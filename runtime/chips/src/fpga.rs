@@ -6,17 +6,17 @@
 mod pwm;
 
 use kmotiondef::map::FPGA;
-use kmotiondef::{Bit, Cycles, GuestAddr};
-use vm::bus::AccessSize;
+use kmotiondef::{AccessSize, Bit, Cycles, GuestAddr};
 
-use super::encoder::Encoders;
-use super::kanalog::Kanalog;
-use super::kstep::AnalogOutput;
-use super::pins::{PINS, Pins};
-use super::stepgen::StepGenerators;
-use super::uart::Uart;
-use crate::out::Message;
+use crate::encoder::Encoders;
+use crate::kanalog::Kanalog;
+use crate::kstep::AnalogOutput;
+use crate::pins::{PINS, Pins};
+use crate::stepgen::StepGenerators;
+use crate::uart::Uart;
 
+/// Registers.
+pub const REGISTER_COUNT: u32 = FPGA.size / STRIDE;
 /// Bytes between two registers.
 const STRIDE: u32 = 4;
 /// Where a register lies in its four bytes.
@@ -29,8 +29,8 @@ struct Registers {
     first: u32,
     last: u32,
     reads: fn(&mut Fpga, &mut Behind<'_>, RegisterAccess) -> u32,
-    /// A remark comes back where writing is in vain.
-    writes: fn(&mut Fpga, &mut Behind<'_>, RegisterAccess, u32) -> Option<Message>,
+    /// A notice comes back where writing is in vain.
+    writes: fn(&mut Fpga, &mut Behind<'_>, RegisterAccess, u32) -> Option<Notice>,
 }
 
 /// An access of a register.
@@ -66,7 +66,9 @@ registers! {
     0x09, 5 => stored, store;
     /// The same.
     0x10, 1 => stored, store;
-    /// The same.
+    /// Counters of the encoder inputs, eight bits each.
+    0x20, 8 => encoder_counter, ignore;
+    /// Known to programs; here it only stores.
     0x28, 1 => stored, store;
     /// The prescaler of the PWM generators.
     PRESCALE, 1 => stored, set_pwm;
@@ -127,20 +129,37 @@ const KANALOG_INPUTS: i32 = 128;
 /// Pins of JP7 that the interface of Kanalog occupies.
 const JP7_PINS: u16 = 16;
 
-/// What the registers act on, and the instant of an access.
+/// The chips that the registers act on, and the instant of an access.
 #[derive(Debug)]
-pub(crate) struct Behind<'a> {
-    pub(crate) pins: &'a mut Pins,
-    pub(crate) uart: &'a mut Uart,
-    pub(crate) kanalog: &'a Kanalog,
-    pub(crate) encoders: &'a mut Encoders,
-    pub(crate) stepgens: &'a mut StepGenerators,
-    pub(crate) now: Cycles,
+pub struct Behind<'a> {
+    /// Pins and option outputs.
+    pub pins: &'a mut Pins,
+    /// The serial port.
+    pub uart: &'a mut Uart,
+    /// Analog inputs.
+    pub kanalog: &'a Kanalog,
+    /// Encoder inputs.
+    pub encoders: &'a mut Encoders,
+    /// Step generators.
+    pub stepgens: &'a mut StepGenerators,
+    /// The instant.
+    pub now: Cycles,
+}
+
+/// Something in vain that a program has done with a register.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Notice {
+    /// A pin of the Kanalog's interface becomes an output while a Kanalog is connected.
+    KanalogPin(Bit),
+    /// The serial port sends without being connected to its pins.
+    UartUnconnected,
+    /// The register with this number is unknown and only stores.
+    UnknownRegister(u32),
 }
 
 /// The registers' memory.
 #[derive(Clone, Debug)]
-pub(crate) struct Fpga {
+pub struct Fpga {
     bytes: Box<[u8]>,
     /// Until when the edges of watched PWM pins are told.
     told: Cycles,
@@ -155,6 +174,18 @@ impl Default for Fpga {
         }
         Self { bytes, told: Cycles::default(), kstep: AnalogOutput::default() }
     }
+}
+
+/// The address of a register.
+#[must_use]
+pub const fn register_address(number: u32) -> GuestAddr {
+    FPGA.base.offset(number * STRIDE + LANE)
+}
+
+/// The register whose byte or half word is at an offset from the first; nothing is in the other bytes.
+#[must_use]
+pub const fn register_at(offset: u32) -> Option<u32> {
+    if offset % STRIDE == LANE { Some(offset / STRIDE) } else { None }
 }
 
 /// This many bits from a number on.
@@ -186,35 +217,43 @@ fn register(address: GuestAddr) -> (u32, Option<(&'static Registers, u32)>) {
     (number, range.filter(|_| offset % STRIDE == LANE).map(|range| (range, number - range.first)))
 }
 
-/// A remark on a pin that becomes an output while Kanalog is connected to JP7.
-pub(crate) fn kanalog_pins(bit: Bit) -> Option<Message> {
-    (bit.get() < JP7_PINS).then_some(Message::KanalogPins { bit })
+/// A notice if a pin is of JP7, where a Kanalog is connected.
+#[must_use]
+pub fn kanalog_pin(bit: Bit) -> Option<Notice> {
+    (bit.get() < JP7_PINS).then_some(Notice::KanalogPin(bit))
 }
 
 impl Fpga {
+    /// The registers before a firmware has started: all 0.
+    #[must_use]
+    pub fn at_power_up() -> Self {
+        let bytes = vec![0; FPGA.size as usize].into_boxed_slice();
+        Self { bytes, ..Self::default() }
+    }
+
     /// Reads a register.
-    pub(crate) fn read(&mut self, mut behind: Behind<'_>, address: GuestAddr, size: AccessSize) -> u32 {
+    pub fn read(&mut self, mut behind: Behind<'_>, address: GuestAddr, size: AccessSize) -> u32 {
         match register(address).1 {
             Some((range, index)) => (range.reads)(self, &mut behind, RegisterAccess { address, size, index }),
             None => self.at(address, size),
         }
     }
 
-    /// Writes a register; a remark comes back when that is in vain.
-    pub(crate) fn write(
+    /// Writes a register; a notice comes back when that is in vain.
+    pub fn write(
         &mut self,
         mut behind: Behind<'_>,
         address: GuestAddr,
         size: AccessSize,
         value: u32,
-    ) -> Option<Message> {
+    ) -> Option<Notice> {
         match register(address) {
             (_, Some((range, index))) => {
                 (range.writes)(self, &mut behind, RegisterAccess { address, size, index }, value)
             }
             (number, None) => {
                 self.put(address, size, value);
-                Some(Message::UnknownRegister { number })
+                Some(Notice::UnknownRegister(number))
             }
         }
     }
@@ -223,12 +262,12 @@ impl Fpga {
         self.at(access.address, access.size)
     }
 
-    fn store(&mut self, _: &mut Behind<'_>, access: RegisterAccess, value: u32) -> Option<Message> {
+    fn store(&mut self, _: &mut Behind<'_>, access: RegisterAccess, value: u32) -> Option<Notice> {
         self.put(access.address, access.size, value);
         None
     }
 
-    fn ignore(&mut self, _: &mut Behind<'_>, _: RegisterAccess, _: u32) -> Option<Message> {
+    fn ignore(&mut self, _: &mut Behind<'_>, _: RegisterAccess, _: u32) -> Option<Notice> {
         None
     }
 
@@ -236,12 +275,12 @@ impl Fpga {
         behind.pins.level_group(access.index).into()
     }
 
-    fn set_bits(&mut self, behind: &mut Behind<'_>, access: RegisterAccess, value: u32) -> Option<Message> {
+    fn set_bits(&mut self, behind: &mut Behind<'_>, access: RegisterAccess, value: u32) -> Option<Notice> {
         behind.pins.set_group(access.index, value as u8, behind.now);
         None
     }
 
-    fn clear_bits(&mut self, behind: &mut Behind<'_>, access: RegisterAccess, value: u32) -> Option<Message> {
+    fn clear_bits(&mut self, behind: &mut Behind<'_>, access: RegisterAccess, value: u32) -> Option<Notice> {
         behind.pins.clear_group(access.index, value as u8, behind.now);
         None
     }
@@ -255,47 +294,41 @@ impl Fpga {
         behind: &mut Behind<'_>,
         access: RegisterAccess,
         value: u32,
-    ) -> Option<Message> {
+    ) -> Option<Notice> {
         let group = access.index;
         let new = value as u8 & !behind.pins.direction_group(group);
         behind.pins.set_direction_group(group, value as u8, behind.now);
         let first = Bit::new((8 * group + new.trailing_zeros()) as i32).filter(|_| new != 0);
-        first.filter(|_| self.serves_kanalog()).and_then(kanalog_pins)
+        first.filter(|_| self.serves_kanalog()).and_then(kanalog_pin)
     }
 
     fn uart_data(&mut self, behind: &mut Behind<'_>, _: RegisterAccess) -> u32 {
         behind.uart.read(behind.now).into()
     }
 
-    fn send_to_uart(&mut self, behind: &mut Behind<'_>, _: RegisterAccess, value: u32) -> Option<Message> {
+    fn send_to_uart(&mut self, behind: &mut Behind<'_>, _: RegisterAccess, value: u32) -> Option<Notice> {
         behind.uart.send(value as u8, behind.now);
-        (!self.has_uart_pins()).then_some(Message::UartUnconnected {})
+        (!self.has_uart_pins()).then_some(Notice::UartUnconnected)
     }
 
     fn uart_status(&mut self, behind: &mut Behind<'_>, _: RegisterAccess) -> u32 {
         behind.uart.status(behind.now).into()
     }
 
-    fn set_uart_divisor(
-        &mut self,
-        behind: &mut Behind<'_>,
-        _: RegisterAccess,
-        value: u32,
-    ) -> Option<Message> {
+    fn set_uart_divisor(&mut self, behind: &mut Behind<'_>, _: RegisterAccess, value: u32) -> Option<Notice> {
         behind.uart.set_divisor(value as u8);
         None
+    }
+
+    fn encoder_counter(&mut self, behind: &mut Behind<'_>, access: RegisterAccess) -> u32 {
+        behind.encoders.counter(access.index as usize).into()
     }
 
     fn encoder_errors(&mut self, behind: &mut Behind<'_>, _: RegisterAccess) -> u32 {
         behind.encoders.errors().into()
     }
 
-    fn clear_encoder_errors(
-        &mut self,
-        behind: &mut Behind<'_>,
-        _: RegisterAccess,
-        _: u32,
-    ) -> Option<Message> {
+    fn clear_encoder_errors(&mut self, behind: &mut Behind<'_>, _: RegisterAccess, _: u32) -> Option<Notice> {
         behind.encoders.clear_errors();
         None
     }
@@ -305,7 +338,7 @@ impl Fpga {
         behind: &mut Behind<'_>,
         access: RegisterAccess,
         value: u32,
-    ) -> Option<Message> {
+    ) -> Option<Notice> {
         self.put(access.address, access.size, value);
         let filter = [ENCODER_FILTER * STRIDE + LANE, ENCODER_FILTER * STRIDE + LANE + 1];
         let filter = filter.map(|at| self.bytes.get(at as usize).copied().unwrap_or_default());
@@ -318,7 +351,7 @@ impl Fpga {
         behind: &mut Behind<'_>,
         access: RegisterAccess,
         value: u32,
-    ) -> Option<Message> {
+    ) -> Option<Notice> {
         self.put(access.address, access.size, value);
         behind.stepgens.set_up(value as u8, behind.pins, behind.now);
         None
@@ -329,7 +362,7 @@ impl Fpga {
         behind: &mut Behind<'_>,
         access: RegisterAccess,
         value: u32,
-    ) -> Option<Message> {
+    ) -> Option<Notice> {
         self.put(access.address, access.size, value);
         if access.index == 3 {
             let word: [u8; 4] = std::array::from_fn(|index| self.byte(STEP_RATE + index as u32));
@@ -339,11 +372,14 @@ impl Fpga {
     }
 
     fn step_position(&mut self, behind: &mut Behind<'_>, access: RegisterAccess) -> u32 {
-        let position = u32::from(behind.stepgens.register((access.index / 2) as usize));
-        cut(position >> (8 * (access.index % 2)), access.size)
+        let generator = (access.index / 2) as usize;
+        if access.index % 2 == 1 {
+            return behind.stepgens.upper(generator).into();
+        }
+        cut(behind.stepgens.read(generator, behind.now).into(), access.size)
     }
 
-    fn set_pwm(&mut self, behind: &mut Behind<'_>, access: RegisterAccess, value: u32) -> Option<Message> {
+    fn set_pwm(&mut self, behind: &mut Behind<'_>, access: RegisterAccess, value: u32) -> Option<Notice> {
         self.tell_pwm(behind.pins, behind.now);
         self.put(access.address, access.size, value);
         self.drive_pwm_pins(behind.pins, behind.now);
@@ -362,7 +398,7 @@ impl Fpga {
         behind: &mut Behind<'_>,
         access: RegisterAccess,
         value: u32,
-    ) -> Option<Message> {
+    ) -> Option<Notice> {
         for (at, bit) in reached_outputs(access.index, access.size).enumerate() {
             behind.pins.write(bit, value >> at & 1 != 0, behind.now);
         }
@@ -378,13 +414,19 @@ impl Fpga {
     }
 
     /// Connects the UART to its pins.
-    pub(crate) fn enable_uart_pins(&mut self) {
+    pub fn enable_uart_pins(&mut self) {
         self.bytes[PORT_BYTE] |= UART_ON;
     }
 
-    /// Whether the port exchanges with Kanalog.
-    pub(crate) fn serves_kanalog(&self) -> bool {
+    /// Returns whether the port exchanges with Kanalog.
+    pub fn serves_kanalog(&self) -> bool {
         self.bytes[PORT_BYTE] & KANALOG_ON != 0
+    }
+
+    /// A register as it was last written.
+    #[must_use]
+    pub fn cell(&self, register: u32) -> u16 {
+        self.at(register_address(register), AccessSize::Half) as u16
     }
 
     /// An eight-bit register as stored.
@@ -392,7 +434,7 @@ impl Fpga {
         self.bytes.get((register * STRIDE + LANE) as usize).copied().unwrap_or_default()
     }
 
-    /// Whether the UART is connected to pins.
+    /// Returns whether the UART is connected to pins.
     fn has_uart_pins(&self) -> bool {
         self.bytes[PORT_BYTE] & (UART_ON | KANALOG_ON) != 0
     }
@@ -444,17 +486,13 @@ mod tests {
 
         pub(super) fn read(&mut self, register: u32, size: AccessSize) -> u32 {
             let (fpga, behind) = self.parts();
-            fpga.read(behind, address(register), size)
+            fpga.read(behind, register_address(register), size)
         }
 
-        pub(super) fn write(&mut self, register: u32, size: AccessSize, value: u32) -> Option<Message> {
+        pub(super) fn write(&mut self, register: u32, size: AccessSize, value: u32) -> Option<Notice> {
             let (fpga, behind) = self.parts();
-            fpga.write(behind, address(register), size, value)
+            fpga.write(behind, register_address(register), size, value)
         }
-    }
-
-    fn address(register: u32) -> GuestAddr {
-        FPGA.base.offset(register * STRIDE + LANE)
     }
 
     #[test]
@@ -493,7 +531,7 @@ mod tests {
         bench.write(0xa0, AccessSize::Byte, 1);
         assert_eq!(bench.write(0x123, AccessSize::Byte, 0xff), None);
         let told = bench.write(0x121, AccessSize::Byte, 0x0c);
-        assert!(told.is_some_and(|message| message.to_string().contains("bit 10 becomes")));
+        assert_eq!(told, Bit::new(10).map(Notice::KanalogPin));
     }
 
     #[test]
@@ -524,7 +562,7 @@ mod tests {
         let mut bench = Bench::default();
         assert_eq!(bench.write(0x06, AccessSize::Byte, 0x12), None);
         assert_eq!(bench.read(0x06, AccessSize::Byte), 0x12);
-        assert!(bench.write(0x200, AccessSize::Half, 0x1234).is_some());
+        assert_eq!(bench.write(0x200, AccessSize::Half, 0x1234), Some(Notice::UnknownRegister(0x200)));
         bench.write(0x200, AccessSize::Half, 0x5678);
         assert_eq!(bench.read(0x200, AccessSize::Half), 0x5678);
     }
@@ -532,7 +570,7 @@ mod tests {
     #[test]
     fn the_uart_works_and_reports_when_it_has_no_pins() {
         let mut bench = Bench::default();
-        assert!(bench.write(0xc0, AccessSize::Byte, 65).is_some());
+        assert_eq!(bench.write(0xc0, AccessSize::Byte, 65), Some(Notice::UartUnconnected));
         assert_eq!(bench.read(0xc1, AccessSize::Byte), 0);
         bench.write(0xc0, AccessSize::Byte, 65);
         assert_eq!(bench.read(0xc1, AccessSize::Byte), 2);

@@ -16,7 +16,7 @@ const CONSTANT: f64 = 0.01;
 
 /// The output, as part of its supply: exact between changes of the duty, so that nothing runs in between.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct AnalogOutput {
+pub struct AnalogOutput {
     level: f64,
     target: f64,
     at: Cycles,
@@ -36,20 +36,20 @@ fn coupled(counts: f64) -> f64 {
 
 impl AnalogOutput {
     /// The duty on the pin changes; `None` while there is no signal.
-    pub(crate) fn drive(&mut self, duty: Option<f64>, now: Cycles) {
+    pub fn drive(&mut self, duty: Option<f64>, now: Cycles) {
         self.level = self.level(now);
         self.at = now;
         self.target = duty.map_or(0.0, |duty| coupled(duty * FULL));
     }
 
     /// Where it is at an instant, from 0 to 1.
-    pub(crate) fn level(&self, now: Cycles) -> f64 {
+    pub fn level(&self, now: Cycles) -> f64 {
         let seconds = (now - self.at).get() as f64 / Cycles::PER_SECOND.get() as f64;
         self.target + (self.level - self.target) * libm::exp(-seconds / CONSTANT)
     }
 
-    /// Whether it stays where it is.
-    pub(crate) fn is_settled(&self, now: Cycles) -> bool {
+    /// Returns whether it stays where it is.
+    pub fn is_settled(&self, now: Cycles) -> bool {
         self.level(now) == self.target
     }
 }

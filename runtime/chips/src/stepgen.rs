@@ -1,16 +1,16 @@
 //! The eight step generators: how many steps each has made, and the pins it claims.
 //!
 //! An enabled axis in a step mode owns its generator; a program that writes the rate register drives one itself.
-//! Positions are kept per tick; the pulses of a tick are made only for pins that are watched, spread evenly over it.
-//! Sources: io.md sections 5 and 6, axes-and-motion.md section 11.
+//! Positions are kept per tick; the pulses of a tick are made only for pins that are watched, spread evenly over it. Beside
+//! a real firmware, which writes rates at any cycle, a position is the rate integrated over the cycles since it was written.
+//! Sources: io.md sections 5 and 6, axes-and-motion.md section 11, dsp-board.md section 7.3.
 
 use kmotiondef::{AxisId, Bit, Cycles};
 
-use super::pins::Pins;
-use crate::out::Message;
+use crate::pins::Pins;
 
 /// Generators.
-pub(crate) const GENERATORS: usize = 8;
+pub const GENERATORS: usize = 8;
 
 /// Step pins of the generators, and where a bit of the pulse register moves the first four; direction is the next pin.
 const STEP_PINS: [i32; GENERATORS] = [8, 10, 12, 14, 36, 38, 40, 42];
@@ -31,13 +31,16 @@ const QUADRATURE: i32 = 16;
 const CLOCK: f64 = 50e6 / 3.0;
 const CLOCK_CYCLES: i64 = 12;
 const RATE_UNIT: f64 = CLOCK / (1 << 23) as f64;
+/// The same in steps a cycle.
+const RATE_UNIT_PER_CYCLE: f64 = 1.0 / CLOCK_CYCLES as f64 / (1 << 23) as f64;
 /// Fastest stepping, whatever the pulses' length.
 const FASTEST: f64 = 2.5e6;
 /// The same with the pulses of power-up.
 const LIMIT: f64 = CLOCK / 2.0 / START as f64;
 
-/// Fields of the rate register: signed rate, generator, enable.
-const RATE_BITS: u32 = 24;
+/// Fields of the rate register: rate with a sign, an unused bit, generator, enable.
+const RATE_BITS: u32 = 23;
+const NUMBER_SHIFT: u32 = 24;
 const ENABLE: u32 = 1 << 31;
 
 /// Parts of a step in the position register.
@@ -50,6 +53,12 @@ struct Generator {
     position: f64,
     /// Steps a second that a program has set.
     rate: f64,
+    /// The same as it was written, without a limit.
+    units: i32,
+    /// The instant up to which `position` counts the rate, where it is counted exactly.
+    since: Cycles,
+    /// The upper byte of the position when the lower one was last read.
+    upper: u8,
     /// The axis that owns it, and whether its pins are two phases.
     owner: Option<(AxisId, bool)>,
     goes_back: bool,
@@ -57,15 +66,34 @@ struct Generator {
 
 /// All generators.
 #[derive(Clone, Debug)]
-pub(crate) struct StepGenerators {
+pub struct StepGenerators {
     generators: [Generator; GENERATORS],
     /// The output channel by which each axis owns one.
     channels: [Option<i32>; GENERATORS],
     settings: u8,
     /// Steps a second at most.
     fastest: f64,
-    /// Whether a program drives any.
+    /// Set while a program drives any.
     is_driven: bool,
+    counting: Counting,
+}
+
+/// How the steps of a rate are counted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Counting {
+    /// Once a tick, by whoever runs the board.
+    ByTick,
+    /// To the cycle of each access.
+    Exact,
+}
+
+/// Steps that the pulses of a generator allow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepLimit {
+    /// Steps a second.
+    pub fastest: f64,
+    /// Length of a pulse in microseconds.
+    pub length: f64,
 }
 
 impl Default for StepGenerators {
@@ -76,6 +104,7 @@ impl Default for StepGenerators {
             settings: START,
             fastest: LIMIT,
             is_driven: false,
+            counting: Counting::ByTick,
         }
     }
 }
@@ -86,14 +115,20 @@ fn fastest(settings: u8) -> f64 {
 }
 
 /// The generator that an output channel names.
-pub(crate) fn generator_of(channel: i32) -> usize {
+pub fn generator_of(channel: i32) -> usize {
     (channel & GENERATOR_BITS) as usize
 }
 
 impl StepGenerators {
+    /// Generators that a firmware drives by their registers: steps are counted to the cycle, without a limit.
+    #[must_use]
+    pub fn exact() -> Self {
+        Self { counting: Counting::Exact, ..Self::default() }
+    }
+
     /// An axis steps on an output channel, whose pins become outputs.
     #[inline]
-    pub(crate) fn claim(&mut self, axis: AxisId, channel: i32, pins: &mut Pins, now: Cycles) {
+    pub fn claim(&mut self, axis: AxisId, channel: i32, pins: &mut Pins, now: Cycles) {
         if self.channels[axis.index()] != Some(channel) {
             self.release(axis, pins, now);
             self.channels[axis.index()] = Some(channel);
@@ -106,7 +141,7 @@ impl StepGenerators {
 
     /// An axis steps no longer.
     #[inline]
-    pub(crate) fn release(&mut self, axis: AxisId, pins: &mut Pins, now: Cycles) {
+    pub fn release(&mut self, axis: AxisId, pins: &mut Pins, now: Cycles) {
         if self.channels[axis.index()].is_some() {
             self.give_up(axis, pins, now);
         }
@@ -121,14 +156,14 @@ impl StepGenerators {
         }
     }
 
-    /// Whether a generator that is in use makes its pulses on a pin.
-    pub(crate) fn makes(&self, bit: Bit) -> bool {
+    /// Returns whether a generator that is in use makes its pulses on a pin.
+    pub fn makes(&self, bit: Bit) -> bool {
         let in_use = |generator: &usize| self.generators[*generator].owner.is_some();
         (0..self.generators.len()).filter(in_use).any(|generator| self.pins(generator).contains(&Some(bit)))
     }
 
     /// The pins of a generator: step and direction.
-    pub(crate) fn pins(&self, generator: usize) -> [Option<Bit>; 2] {
+    pub fn pins(&self, generator: usize) -> [Option<Bit>; 2] {
         let moved = MOVED_PINS.get(generator).filter(|_| self.settings & MOVED != 0);
         let step = moved.copied().unwrap_or(STEP_PINS[generator]);
         [Bit::new(step), Bit::new(step + 1)]
@@ -159,14 +194,14 @@ impl StepGenerators {
     }
 
     /// An axis has stepped in the tick that ends now.
-    pub(crate) fn step(&mut self, axis: AxisId, steps: f64, pins: &mut Pins, now: Cycles) {
+    pub fn step(&mut self, axis: AxisId, steps: f64, pins: &mut Pins, now: Cycles) {
         if let Some(channel) = self.channels[axis.index()] {
             self.advance(generator_of(channel), steps, pins, now);
         }
     }
 
     /// The generators of a board that counts for itself have made this many steps when a tick ends.
-    pub(crate) fn follow(&mut self, made: [f64; GENERATORS], pins: &mut Pins, now: Cycles) {
+    pub fn follow(&mut self, made: [f64; GENERATORS], pins: &mut Pins, now: Cycles) {
         for (generator, made) in made.into_iter().enumerate() {
             let steps = made - self.generators[generator].position;
             if steps != 0.0 {
@@ -233,7 +268,7 @@ impl StepGenerators {
     }
 
     /// Takes the settings of all generators: length and polarity of the pulses, and which pins they are on.
-    pub(crate) fn set_up(&mut self, settings: u8, pins: &mut Pins, now: Cycles) {
+    pub fn set_up(&mut self, settings: u8, pins: &mut Pins, now: Cycles) {
         if settings == self.settings {
             return;
         }
@@ -253,40 +288,47 @@ impl StepGenerators {
     }
 
     /// A program sets the rate of a generator. One that an axis owns gets that axis' rate again in the next tick.
-    pub(crate) fn command(&mut self, word: u32, pins: &mut Pins, now: Cycles) {
-        let generator = (word >> RATE_BITS & 7) as usize;
+    pub fn command(&mut self, word: u32, pins: &mut Pins, now: Cycles) {
+        let generator = (word >> NUMBER_SHIFT & 7) as usize;
         if self.generators[generator].owner.is_some() {
             return;
         }
+        self.count(generator, now);
         let unused = u32::BITS - RATE_BITS;
         let signed = (word << unused).cast_signed() >> unused;
-        let rate = if word & ENABLE != 0 { f64::from(signed) * RATE_UNIT } else { 0.0 };
-        self.generators[generator].rate = rate.clamp(-self.fastest, self.fastest);
+        let units = if word & ENABLE != 0 { signed } else { 0 };
+        let rate = f64::from(units) * RATE_UNIT;
+        let held = &mut self.generators[generator];
+        held.units = units;
+        held.rate = rate.clamp(-self.fastest, self.fastest);
+        if self.counting == Counting::Exact && units != 0 {
+            held.goes_back = units < 0;
+        }
         self.is_driven = self.generators.iter().any(|generator| generator.rate != 0.0);
         self.drive(generator, pins, now);
     }
 
     /// Steps that an axis can make in a tick.
     #[inline]
-    pub(crate) fn steps_per_tick(&self, axis: AxisId) -> f64 {
+    pub fn steps_per_tick(&self, axis: AxisId) -> f64 {
         let per_second = if self.channels[axis.index()].is_some() { self.fastest } else { LIMIT };
         per_second * (Cycles::PER_TICK.get() as f64 / Cycles::PER_SECOND.get() as f64)
     }
 
-    /// What there is to say of an axis that was to make more.
-    pub(crate) fn fall_behind(&self, axis: AxisId) -> Option<Message> {
+    /// The limit of the generator that an axis owns.
+    pub fn limit(&self, axis: AxisId) -> Option<StepLimit> {
         let length = f64::from((self.settings & LENGTH).max(1)) / CLOCK * 1e6;
         let has_generator = self.channels[axis.index()].is_some();
-        has_generator.then_some(Message::StepsTooFast { axis, fastest: self.fastest, length })
+        has_generator.then_some(StepLimit { fastest: self.fastest, length })
     }
 
-    /// Whether a program drives any.
-    pub(crate) const fn is_driven(&self) -> bool {
+    /// Returns whether a program drives any.
+    pub const fn is_driven(&self) -> bool {
         self.is_driven
     }
 
     /// Moves those that programs drive on by a tick; the steps of each.
-    pub(crate) fn run(&mut self, seconds: f64, pins: &mut Pins, now: Cycles) -> [f64; GENERATORS] {
+    pub fn run(&mut self, seconds: f64, pins: &mut Pins, now: Cycles) -> [f64; GENERATORS] {
         let mut moved = [0.0; GENERATORS];
         for (generator, moved) in moved.iter_mut().enumerate() {
             let steps = self.generators[generator].rate * seconds;
@@ -299,19 +341,44 @@ impl StepGenerators {
     }
 
     /// Steps made by a generator.
-    pub(crate) fn position(&self, generator: usize) -> f64 {
+    pub fn position(&self, generator: usize) -> f64 {
         self.generators.get(generator).map_or(0.0, |generator| generator.position)
     }
 
-    /// The same as its register has it: nine bits of steps, seven of a fraction.
-    pub(crate) fn register(&self, generator: usize) -> u16 {
-        libm::floor(self.position(generator) * FRACTIONS) as i64 as u16
+    /// Steps a second of a generator by its rate register.
+    pub fn rate(&self, generator: usize) -> f64 {
+        self.generators.get(generator).map_or(0.0, |generator| f64::from(generator.units) * RATE_UNIT)
+    }
+
+    /// Counts the steps of a generator up to an instant, where they are counted exactly.
+    pub fn count(&mut self, generator: usize, now: Cycles) {
+        if self.counting == Counting::Exact
+            && let Some(Generator { position, units, since, .. }) = self.generators.get_mut(generator)
+        {
+            let passed = now - std::mem::replace(since, now);
+            *position += f64::from(*units) * RATE_UNIT_PER_CYCLE * passed.get() as f64;
+        }
+    }
+
+    /// The position as its register has it: nine bits of steps, seven of a fraction. Its upper byte is kept for
+    /// [`upper`](Self::upper).
+    pub fn read(&mut self, generator: usize, now: Cycles) -> u16 {
+        self.count(generator, now);
+        let position = libm::floor(self.position(generator) * FRACTIONS) as i64 as u16;
+        if let Some(generator) = self.generators.get_mut(generator) {
+            generator.upper = (position >> 8) as u8;
+        }
+        position
+    }
+
+    /// The upper byte of the position when it was last [read](Self::read): both bytes are of one instant.
+    pub fn upper(&self, generator: usize) -> u8 {
+        self.generators.get(generator).map_or(0, |generator| generator.upper)
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use vm::memory::GuestMemory;
 
     use super::*;
 
@@ -326,7 +393,7 @@ mod tests {
     /// Generators whose pins 8 and 9 are watched, with axis 0 on a channel.
     fn bench(channel: i32) -> (StepGenerators, Pins) {
         let (mut generators, mut pins) = (StepGenerators::default(), Pins::default());
-        pins.changes.switch_on(&GuestMemory::new());
+        pins.changes.switch_on(Vec::new());
         pins.watch(bit(8));
         pins.watch(bit(9));
         generators.claim(AxisId::new(0).expect("0"), channel, &mut pins, tick(1));
@@ -365,7 +432,7 @@ mod tests {
         assert_eq!(told(&mut pins, tick(1)), expect);
         generators.step(axis, -1.0, &mut pins, tick(3));
         assert_eq!(told(&mut pins, tick(2)), [(9, 0, 0), (8, 0, 45_000), (8, 1, 46_920)]);
-        assert_eq!(generators.register(0), 128);
+        assert_eq!(generators.read(0, tick(3)), 128);
     }
 
     #[test]
@@ -390,7 +457,8 @@ mod tests {
             generators.run(90e-6, &mut pins, tick(at));
         }
         assert!((generators.position(2) - 90.0).abs() < 0.1, "{}", generators.position(2));
-        let back = rate.wrapping_neg() & 0xff_ffff;
+        // Bit 23 is not of the rate, and the firmware leaves it clear.
+        let back = rate.wrapping_neg() & 0x7f_ffff;
         generators.command(ENABLE | 2 << 24 | back, &mut pins, tick(1002));
         for at in 1003..3003 {
             generators.run(90e-6, &mut pins, tick(at));
@@ -398,14 +466,14 @@ mod tests {
         assert!((generators.position(2) + 90.0).abs() < 0.1, "{}", generators.position(2));
         generators.command(2 << 24 | rate, &mut pins, tick(3003));
         assert!(!generators.is_driven() && !pins.is_output(bit(12)));
-        let position = f64::from(generators.register(2).cast_signed()) / FRACTIONS;
+        let position = f64::from(generators.read(2, tick(3003)).cast_signed()) / FRACTIONS;
         assert!((position + 90.0).abs() < 0.1, "{position}");
     }
 
     #[test]
     fn long_pulses_limit_the_rate() {
         let (mut generators, mut pins) = (StepGenerators::default(), Pins::default());
-        generators.command(ENABLE | 0x7f_ffff, &mut pins, tick(1));
+        generators.command(ENABLE | 0x3f_ffff, &mut pins, tick(1));
         let [steps, ..] = generators.run(1.0, &mut pins, tick(2));
         assert_eq!(libm::round(steps), 260_417.0);
         let axis = AxisId::new(3).expect("3");
@@ -414,11 +482,24 @@ mod tests {
             generators.set_up(settings, &mut pins, tick(3));
             assert_eq!(libm::round(generators.steps_per_tick(axis) / 90e-6), expect, "{settings}");
         }
-        let told = [generators.fall_behind(axis), generators.fall_behind(axis)];
-        assert!(
-            told[0].as_ref().is_some_and(|message| message.to_string().contains("260417 steps"))
-                && told[0] == told[1],
-            "{told:?}"
-        );
+        let limit = generators.limit(axis).expect("it owns a generator");
+        assert_eq!((libm::round(limit.fastest), libm::round(limit.length * 100.0)), (260_417.0, 192.0));
+    }
+
+    #[test]
+    fn an_exact_generator_counts_to_the_cycle_of_each_access() {
+        let (mut generators, mut pins) = (StepGenerators::exact(), Pins::at_power_up());
+        generators.command(ENABLE | 2 << NUMBER_SHIFT | 1 << 20, &mut pins, Cycles::new(100));
+        assert!((generators.rate(2) - 2_083_333.333).abs() < 0.01, "{}", generators.rate(2));
+        // An eighth of a step in twelve cycles.
+        for (cycles, steps) in [(12, 0.125), (13, 0.125 * 13.0 / 12.0), (9600, 100.0)] {
+            generators.count(2, Cycles::new(100 + cycles));
+            assert!((generators.position(2) - steps).abs() < 1e-9, "{}", generators.position(2));
+        }
+        let position = generators.read(2, Cycles::new(100 + 9600));
+        generators.count(2, Cycles::new(1_000_000));
+        assert_eq!(u16::from(generators.upper(2)), position >> 8);
+        generators.command(2 << NUMBER_SHIFT, &mut pins, Cycles::new(1_000_000));
+        assert_eq!(generators.rate(2), 0.0);
     }
 }

@@ -20,17 +20,17 @@ const DATA_READY: u8 = 0x01;
 /// Status: the buffered character is still to be sent.
 const TRANSMIT_FULL: u8 = 0x02;
 
-/// The UART's state.
+/// The UART.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Uart {
+pub struct Uart {
     divisor: u8,
-    /// Whether the program has looked for characters; those that come before wait for it.
+    /// Set once the program has looked for characters; those that come before wait for it.
     is_attended: bool,
     /// When the transmitter's shift register is through.
     sent: Cycles,
     /// The character that waits after it.
     waiting: Option<u8>,
-    /// Whether somebody listens, and characters sent since the last time.
+    /// Set while somebody listens, and the characters sent since the last time.
     is_heard: bool,
     out: VecDeque<(Cycles, u8)>,
     /// Characters on the line, the first one complete at `arrival`.
@@ -41,7 +41,7 @@ pub(crate) struct Uart {
 
 impl Uart {
     /// Sets the divisor; a character already under way keeps its speed.
-    pub(crate) fn set_divisor(&mut self, divisor: u8) {
+    pub fn set_divisor(&mut self, divisor: u8) {
         self.divisor = divisor;
     }
 
@@ -58,7 +58,7 @@ impl Uart {
     }
 
     /// Puts characters on the line, the first one from `now` on.
-    pub(crate) fn arrive(&mut self, bytes: &[u8], now: Cycles) {
+    pub fn arrive(&mut self, bytes: &[u8], now: Cycles) {
         self.advance(now);
         if self.line.is_empty() {
             self.arrival = now + self.frame();
@@ -67,12 +67,12 @@ impl Uart {
     }
 
     /// Characters on the line.
-    pub(crate) fn backlog(&self) -> usize {
+    pub fn backlog(&self) -> usize {
         self.line.len()
     }
 
-    /// Whether characters are still to come or to be read.
-    pub(crate) fn is_receiving(&self) -> bool {
+    /// Returns whether characters are still to come or to be read.
+    pub fn is_receiving(&self) -> bool {
         !self.line.is_empty() || !self.received.is_empty()
     }
 
@@ -95,7 +95,7 @@ impl Uart {
     }
 
     /// The status register.
-    pub(crate) fn status(&mut self, now: Cycles) -> u8 {
+    pub fn status(&mut self, now: Cycles) -> u8 {
         self.attend(now);
         self.advance(now);
         let ready = if self.received.is_empty() { 0 } else { DATA_READY };
@@ -103,19 +103,19 @@ impl Uart {
     }
 
     /// Reads the data register; 0 when nothing was received.
-    pub(crate) fn read(&mut self, now: Cycles) -> u8 {
+    pub fn read(&mut self, now: Cycles) -> u8 {
         self.receive(now).unwrap_or_default()
     }
 
     /// The next received character.
-    pub(crate) fn receive(&mut self, now: Cycles) -> Option<u8> {
+    pub fn receive(&mut self, now: Cycles) -> Option<u8> {
         self.attend(now);
         self.advance(now);
         self.received.pop_front()
     }
 
     /// Sends a character; one that still waits is lost.
-    pub(crate) fn send(&mut self, byte: u8, now: Cycles) {
+    pub fn send(&mut self, byte: u8, now: Cycles) {
         self.advance(now);
         if self.sent <= now {
             self.sent = now + self.frame();
@@ -133,25 +133,25 @@ impl Uart {
     }
 
     /// Keeps the characters that are sent from now on.
-    pub(crate) fn listen(&mut self) {
+    pub fn listen(&mut self) {
         self.is_heard = true;
     }
 
     /// The next character that is through by `now`.
-    pub(crate) fn take_sent(&mut self, now: Cycles) -> Option<(Cycles, u8)> {
+    pub fn take_sent(&mut self, now: Cycles) -> Option<(Cycles, u8)> {
         if self.is_heard {
             self.advance(now);
         }
         self.out.pop_front_if(|(at, _)| *at <= now)
     }
 
-    /// Whether characters are still on their way to somebody who listens.
-    pub(crate) fn is_sending(&self) -> bool {
+    /// Returns whether characters are still on their way to somebody who listens.
+    pub fn is_sending(&self) -> bool {
         !self.out.is_empty() || self.is_heard && self.waiting.is_some()
     }
 
-    /// Whether a character can be sent without losing one.
-    pub(crate) fn is_free(&mut self, now: Cycles) -> bool {
+    /// Returns whether a character can be sent without losing one.
+    pub fn is_free(&mut self, now: Cycles) -> bool {
         self.status(now) & TRANSMIT_FULL == 0
     }
 }

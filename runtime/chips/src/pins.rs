@@ -8,10 +8,10 @@
 
 use kmotiondef::{Bit, Cycles};
 
-use super::changes::Changes;
+use crate::changes::Changes;
 
 /// Pins of the FPGA, the two diodes included.
-pub(crate) const PINS: u16 = 48;
+pub const PINS: u16 = 48;
 /// The two diodes, outputs that are lit at power-up.
 const LEDS: u64 = 0b11 << 46;
 /// Words of a set of all bits.
@@ -35,7 +35,7 @@ impl BitSet {
 
 /// All levels.
 #[derive(Clone, Debug)]
-pub(crate) struct Pins {
+pub struct Pins {
     latch: u64,
     direction: u64,
     /// Pins that a generator drives in place of their latch, and how.
@@ -49,11 +49,11 @@ pub(crate) struct Pins {
     driven: BitSet,
     /// Inputs that carry the phases of an encoder.
     phases: u64,
-    /// Pins whose fast signals are told edge by edge, and the levels last reported of them of them.
+    /// Pins whose fast signals are told edge by edge, and the levels last reported of them.
     watched: u64,
     shown: u64,
     /// What changed, for those who want to know.
-    pub(crate) changes: Changes,
+    pub changes: Changes,
 }
 
 impl Default for Pins {
@@ -75,25 +75,31 @@ impl Default for Pins {
 }
 
 impl Pins {
-    /// Whether a pin of the board is an output.
-    pub(crate) fn is_output(&self, bit: Bit) -> bool {
+    /// The pins as they are before a firmware has started: all of them inputs, all latches low.
+    #[must_use]
+    pub fn at_power_up() -> Self {
+        Self { latch: 0, direction: 0, ..Self::default() }
+    }
+
+    /// Returns whether a pin of the board is an output.
+    pub fn is_output(&self, bit: Bit) -> bool {
         bit.get() < PINS && (self.direction | self.generated) >> bit.get() & 1 != 0
     }
 
     /// Makes a pin of the board an output or an input.
-    pub(crate) fn set_output(&mut self, bit: Bit, output: bool, now: Cycles) {
+    pub fn set_output(&mut self, bit: Bit, output: bool, now: Cycles) {
         let mask = 1 << bit.get();
         self.change(now, |pins| pins.direction = with(pins.direction, mask, output));
     }
 
     /// Sets the output latch of a pin of the board.
-    pub(crate) fn set_latch(&mut self, bit: Bit, level: bool, now: Cycles) {
+    pub fn set_latch(&mut self, bit: Bit, level: bool, now: Cycles) {
         let mask = 1 << bit.get();
         self.change(now, |pins| pins.latch = with(pins.latch, mask, level));
     }
 
     /// A generator drives a pin of the board with this level, or leaves it to its latch.
-    pub(crate) fn generate(&mut self, bit: Bit, level: Option<bool>, now: Cycles) {
+    pub fn generate(&mut self, bit: Bit, level: Option<bool>, now: Cycles) {
         let mask = 1 << bit.get();
         self.change(now, |pins| {
             pins.generated = with(pins.generated, mask, level.is_some());
@@ -115,7 +121,7 @@ impl Pins {
     }
 
     /// From now on the fast signals of a pin are told edge by edge.
-    pub(crate) fn watch(&mut self, bit: Bit) {
+    pub fn watch(&mut self, bit: Bit) {
         if bit.get() < PINS {
             let mask = 1 << bit.get();
             self.shown = with(self.shown, mask, self.level(bit));
@@ -123,23 +129,23 @@ impl Pins {
         }
     }
 
-    /// Whether the fast signals of any pin are told.
-    pub(crate) fn watches_any(&self) -> bool {
+    /// Returns whether the fast signals of any pin are told.
+    pub fn watches_any(&self) -> bool {
         self.watched != 0
     }
 
-    /// Whether those of a pin are.
-    pub(crate) fn is_watched(&self, bit: Bit) -> bool {
+    /// Returns whether those of a pin are.
+    pub fn is_watched(&self, bit: Bit) -> bool {
         bit.get() < PINS && self.watched >> bit.get() & 1 != 0
     }
 
-    /// Whether a generator drives a pin.
-    pub(crate) fn is_generated(&self, bit: Bit) -> bool {
+    /// Returns whether a generator drives a pin.
+    pub fn is_generated(&self, bit: Bit) -> bool {
         bit.get() < PINS && self.generated >> bit.get() & 1 != 0
     }
 
     /// A watched pin has got a level at an instant.
-    pub(crate) fn show(&mut self, bit: Bit, level: bool, at: Cycles) {
+    pub fn show(&mut self, bit: Bit, level: bool, at: Cycles) {
         let mask = 1 << bit.get();
         if self.watched & mask != 0 && (self.shown & mask != 0) != level {
             self.shown = with(self.shown, mask, level);
@@ -149,7 +155,7 @@ impl Pins {
 
     /// An encoder gives its two inputs from `first` on the levels of two bits, unless something else is there.
     #[inline]
-    pub(crate) fn show_phases(&mut self, first: u16, levels: u64, at: Cycles) {
+    pub fn show_phases(&mut self, first: u16, levels: u64, at: Cycles) {
         let mask = 0b11 << first & !self.driven.0[0];
         self.phases |= mask;
         self.inputs.0[0] = self.inputs.0[0] & !mask | levels << first & mask;
@@ -171,17 +177,17 @@ impl Pins {
     }
 
     /// The level of a pin of the board: an output's latch, an input's level from outside.
-    pub(crate) fn level(&self, bit: Bit) -> bool {
+    pub fn level(&self, bit: Bit) -> bool {
         self.levels() >> bit.get() & 1 != 0
     }
 
     /// The level of an input from outside.
-    pub(crate) fn input(&self, bit: Bit) -> bool {
+    pub fn input(&self, bit: Bit) -> bool {
         self.inputs.contains(bit)
     }
 
     /// Drives an input from outside.
-    pub(crate) fn drive(&mut self, bit: Bit, level: bool, now: Cycles) {
+    pub fn drive(&mut self, bit: Bit, level: bool, now: Cycles) {
         self.driven.set(bit, true);
         if bit.get() < PINS {
             return self.change(now, |pins| pins.inputs.set(bit, level));
@@ -193,34 +199,34 @@ impl Pins {
     }
 
     /// Something will drive an input: its level is not an accident.
-    pub(crate) fn declare(&mut self, bit: Bit) {
+    pub fn declare(&mut self, bit: Bit) {
         self.driven.set(bit, true);
     }
 
     /// An input reads 1 as long as nothing drives it.
-    pub(crate) fn idle_high(&mut self, bit: Bit) {
+    pub fn idle_high(&mut self, bit: Bit) {
         if !self.is_driven(bit) {
             self.inputs.set(bit, true);
         }
     }
 
-    /// Whether something outside of the board drives a bit or is going to.
-    pub(crate) fn is_declared(&self, bit: Bit) -> bool {
+    /// Returns whether something outside of the board drives a bit or is going to.
+    pub fn is_declared(&self, bit: Bit) -> bool {
         self.driven.contains(bit)
     }
 
-    /// Whether anything drives an input.
-    pub(crate) fn is_driven(&self, bit: Bit) -> bool {
+    /// Returns whether anything drives an input.
+    pub fn is_driven(&self, bit: Bit) -> bool {
         self.driven.contains(bit) || bit.get() < PINS && self.phases >> bit.get() & 1 != 0
     }
 
     /// An output of an option board, as last written.
-    pub(crate) fn written(&self, bit: Bit) -> bool {
+    pub fn written(&self, bit: Bit) -> bool {
         self.written.contains(bit)
     }
 
     /// Writes an output of an option board.
-    pub(crate) fn write(&mut self, bit: Bit, level: bool, now: Cycles) {
+    pub fn write(&mut self, bit: Bit, level: bool, now: Cycles) {
         if self.written.contains(bit) != level {
             self.written.set(bit, level);
             self.changes.note(bit, level, now);
@@ -228,28 +234,34 @@ impl Pins {
     }
 
     /// Eight directions as a register has them.
-    pub(crate) fn direction_group(&self, group: u32) -> u8 {
+    pub fn direction_group(&self, group: u32) -> u8 {
         (self.direction >> (8 * group)) as u8
     }
 
     /// Stores eight directions.
-    pub(crate) fn set_direction_group(&mut self, group: u32, value: u8, now: Cycles) {
+    pub fn set_direction_group(&mut self, group: u32, value: u8, now: Cycles) {
         let (mask, bits) = (0xff << (8 * group), u64::from(value) << (8 * group));
         self.change(now, |pins| pins.direction = pins.direction & !mask | bits);
     }
 
     /// Sets the latches where `mask` has ones.
-    pub(crate) fn set_group(&mut self, group: u32, mask: u8, now: Cycles) {
+    pub fn set_group(&mut self, group: u32, mask: u8, now: Cycles) {
         self.change(now, |pins| pins.latch |= u64::from(mask) << (8 * group));
     }
 
     /// Clears the latches where `mask` has zeros.
-    pub(crate) fn clear_group(&mut self, group: u32, mask: u8, now: Cycles) {
+    pub fn clear_group(&mut self, group: u32, mask: u8, now: Cycles) {
         self.change(now, |pins| pins.latch &= !(u64::from(!mask) << (8 * group)));
     }
 
+    /// Eight latches.
+    #[must_use]
+    pub fn latch_group(&self, group: u32) -> u8 {
+        (self.latch >> (8 * group)) as u8
+    }
+
     /// Eight levels as a register has them.
-    pub(crate) fn level_group(&self, group: u32) -> u8 {
+    pub fn level_group(&self, group: u32) -> u8 {
         (self.levels() >> (8 * group)) as u8
     }
 }
@@ -261,14 +273,13 @@ fn with(word: u64, mask: u64, set: bool) -> u64 {
 
 #[cfg(test)]
 mod tests {
-    use vm::memory::GuestMemory;
 
     use super::*;
 
     #[test]
     fn only_changes_of_level_are_recorded() {
         let mut pins = Pins::default();
-        pins.changes.switch_on(&GuestMemory::new());
+        pins.changes.switch_on(Vec::new());
         let (bit, at) = (Bit::new(26).expect("a bit"), Cycles::new(7));
         pins.set_latch(bit, true, at);
         pins.drive(bit, true, at);
@@ -284,7 +295,7 @@ mod tests {
     #[test]
     fn edges_of_fast_signals_are_reported_only_for_watched_pins() {
         let mut pins = Pins::default();
-        pins.changes.switch_on(&GuestMemory::new());
+        pins.changes.switch_on(Vec::new());
         let bits = [26, 27].map(|number| Bit::new(number).expect("a bit"));
         pins.watch(bits[0]);
         for bit in bits {

@@ -7,8 +7,8 @@ use std::ops::Range;
 use kmotiondef::{Bit, Cycles};
 
 use super::{Fpga, PORT_BYTE, PRESCALE, PWM, PWM_MOVED, PWMS};
-use crate::io::kstep::AnalogOutput;
-use crate::io::pins::Pins;
+use crate::kstep::AnalogOutput;
+use crate::pins::Pins;
 
 /// The pin of generator 0, and where its output goes for KStep.
 const PWM_PIN: i32 = 26;
@@ -20,7 +20,7 @@ const CLOCK: f64 = 50e6 / 3.0;
 
 impl Fpga {
     /// The duty of a PWM generator from 0 to 1 and its frequency, if it is on.
-    pub(crate) fn pwm(&self, generator: u32) -> Option<(f64, f64)> {
+    pub fn pwm(&self, generator: u32) -> Option<(f64, f64)> {
         let value = PWM + 2 * generator;
         (self.byte(value + 1) & 1 != 0).then(|| {
             let hz = CLOCK / PWM_PERIOD / (f64::from(self.byte(PRESCALE)) + 1.0);
@@ -35,12 +35,12 @@ impl Fpga {
     }
 
     /// The analog output that a KStep makes of it.
-    pub(crate) fn kstep_output(&self) -> &AnalogOutput {
+    pub fn kstep_output(&self) -> &AnalogOutput {
         &self.kstep
     }
 
-    /// Whether there are edges of watched pins to tell in every tick.
-    pub(crate) fn is_telling(&self, pins: &Pins) -> bool {
+    /// Returns whether there are edges of watched pins to tell in every tick.
+    pub fn is_telling(&self, pins: &Pins) -> bool {
         let is_watched = |generator: u32| {
             let pin = Bit::new(PWM_PIN + generator as i32);
             let moved = Bit::new(PWM_MOVED_PIN).filter(|_| generator == 0);
@@ -51,7 +51,7 @@ impl Fpga {
     }
 
     /// Tells the edges of watched pins up to an instant. All generators count one clock, from power-up on.
-    pub(crate) fn tell_pwm(&mut self, pins: &mut Pins, now: Cycles) {
+    pub fn tell_pwm(&mut self, pins: &mut Pins, now: Cycles) {
         let from = std::mem::replace(&mut self.told, now);
         if !pins.watches_any() {
             return;
@@ -99,11 +99,10 @@ fn tell_train(pins: &mut Pins, bit: Bit, (period, high): (i64, i64), span: Range
 
 #[cfg(test)]
 mod tests {
-    use vm::bus::AccessSize;
-    use vm::memory::GuestMemory;
+    use kmotiondef::AccessSize;
 
     use super::*;
-    use crate::io::fpga::tests::Bench;
+    use crate::fpga::tests::Bench;
 
     #[test]
     fn a_pwm_drives_its_pin_and_reports_its_rate() {
@@ -125,7 +124,7 @@ mod tests {
     fn the_edges_of_a_watched_pwm_have_its_period_and_duty() {
         let mut bench = Bench::default();
         let bit = Bit::new(27).expect("a bit");
-        bench.pins.changes.switch_on(&GuestMemory::new());
+        bench.pins.changes.switch_on(Vec::new());
         bench.pins.watch(bit);
         // 65.1 kHz: 3072 cycles, of which a fifth is high.
         for (register, value) in [(0xd2, 51), (0xd3, 1)] {

@@ -6,10 +6,10 @@
 
 use kmotiondef::Cycles;
 
-use super::pins::Pins;
+use crate::pins::Pins;
 
 /// Channels: eight of the board, four of each SnapAmp.
-pub(crate) const CHANNELS: usize = 16;
+pub const CHANNELS: usize = 16;
 /// Those of the board, and those of a group whose pins move together.
 const ON_BOARD: usize = 8;
 const GROUP: usize = 4;
@@ -26,7 +26,7 @@ const SNAP_ERROR: u16 = 1 << 15;
 
 /// All encoder inputs.
 #[derive(Clone, Debug)]
-pub(crate) struct Encoders {
+pub struct Encoders {
     counts: [i8; CHANNELS],
     /// First pin of each channel of the board.
     pins: [u16; ON_BOARD],
@@ -61,12 +61,25 @@ impl Default for Encoders {
 impl Encoders {
     /// A counter has a new value.
     #[inline]
-    pub(crate) fn count(&mut self, channel: usize, count: i8, pins: &mut Pins, now: Cycles) {
+    pub fn count(&mut self, channel: usize, count: i8, pins: &mut Pins, now: Cycles) {
         if let Some(held) = self.counts.get_mut(channel) {
             *held = count;
             self.used |= 1 << channel;
             self.show(channel, phases(count), pins, now);
         }
+    }
+
+    /// A counter has a new value, which its pins do not show.
+    pub fn set(&mut self, channel: usize, count: u8) {
+        if let Some(held) = self.counts.get_mut(channel) {
+            *held = count.cast_signed();
+        }
+    }
+
+    /// The counter of a channel.
+    #[must_use]
+    pub fn counter(&self, channel: usize) -> u8 {
+        self.counts.get(channel).copied().unwrap_or_default().cast_unsigned()
     }
 
     /// Those of SnapAmps have no pins.
@@ -78,7 +91,7 @@ impl Encoders {
     }
 
     /// Sets the filter; its upper bits move the inputs to other pins. The filter itself has nothing to do here.
-    pub(crate) fn set_filter(&mut self, filter: u16, pins: &mut Pins, now: Cycles) {
+    pub fn set_filter(&mut self, filter: u16, pins: &mut Pins, now: Cycles) {
         if filter == self.filter {
             return;
         }
@@ -94,19 +107,19 @@ impl Encoders {
     }
 
     /// Both phases of an input have changed at once.
-    pub(crate) fn fail(&mut self, channel: usize) {
+    pub fn fail(&mut self, channel: usize) {
         if channel < CHANNELS {
             self.errors |= 1 << channel;
         }
     }
 
     /// The register of errors.
-    pub(crate) fn errors(&self) -> u8 {
+    pub fn errors(&self) -> u8 {
         (self.errors << FIRST_ERROR) as u8
     }
 
     /// Clears the errors in it.
-    pub(crate) fn clear_errors(&mut self) {
+    pub fn clear_errors(&mut self) {
         self.errors &= !0xf;
     }
 
@@ -116,14 +129,13 @@ impl Encoders {
     }
 
     /// The word of one of a SnapAmp's encoders: count and error.
-    pub(crate) fn snap_word(&self, board: usize, encoder: usize) -> u16 {
+    pub fn snap_word(&self, board: usize, encoder: usize) -> u16 {
         let channel = Self::of_snapamp(board) + encoder;
-        let count = self.counts.get(channel).copied().unwrap_or_default().cast_unsigned();
-        u16::from(count) | if self.errors >> channel & 1 != 0 { SNAP_ERROR } else { 0 }
+        u16::from(self.counter(channel)) | if self.errors >> channel & 1 != 0 { SNAP_ERROR } else { 0 }
     }
 
     /// Levels of a SnapAmp's encoder inputs, A of the first one lowest.
-    pub(crate) fn snap_levels(&self, board: usize) -> u8 {
+    pub fn snap_levels(&self, board: usize) -> u8 {
         let first = Self::of_snapamp(board);
         let levels = (first..first + GROUP)
             .map(|channel| phases(self.counts.get(channel).copied().unwrap_or_default()));
@@ -131,7 +143,7 @@ impl Encoders {
     }
 
     /// Clears the errors of a SnapAmp.
-    pub(crate) fn clear_snap_errors(&mut self, board: usize) {
+    pub fn clear_snap_errors(&mut self, board: usize) {
         self.errors &= !(0xf << Self::of_snapamp(board));
     }
 }

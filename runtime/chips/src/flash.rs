@@ -1,0 +1,158 @@
+//! The flash chip: two megabytes, and the commands that change them.
+//!
+//! The bytes are in guest memory, whose owner carries out what the chip makes of a write. Source: dsp-board.md section 7.9.
+
+use kmotiondef::Cycles;
+use kmotiondef::map::FLASH;
+
+/// Bytes that are erased at once.
+pub const BLOCK: u32 = 0x1_0000;
+/// The users' half, from this offset on; the first half is the system's.
+pub const USER: u32 = 0x10_0000;
+/// The value of erased bytes.
+pub const ERASED: u8 = 0xFF;
+/// Offsets of the addresses that commands are written to.
+pub const COMMANDS: [u32; 2] = [FIRST, SECOND];
+
+const FIRST: u32 = 0xAAAA;
+const SECOND: u32 = 0x5554;
+/// The chip's identity, and where it is read.
+const IDENTITY: u16 = 0x234B;
+const IDENTITY_AT: u32 = 2;
+/// Time that the chip takes to erase a block and to program a half word: 18 ms and 7 µs.
+const ERASING: Cycles = Cycles::new(3_600_000);
+const PROGRAMMING: Cycles = Cycles::new(1_400);
+/// Bits of a busy chip: one turns from read to read, one is inverted.
+const TOGGLE: u16 = 0x40;
+const INVERTED: u16 = 0x80;
+
+/// A change of the chip's bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[must_use]
+pub enum Change {
+    /// Bits of the half word at an offset are cleared where `mask` has zeros.
+    Program {
+        /// The half word.
+        offset: u32,
+        /// Bits that stay.
+        mask: u16,
+    },
+    /// The block at an offset is erased.
+    Erase {
+        /// Its first byte.
+        offset: u32,
+    },
+}
+
+/// How far a command has come.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Heard {
+    /// Nothing was written.
+    #[default]
+    Idle,
+    /// AA was written.
+    First,
+    /// AA 55.
+    Second,
+    /// AA 55 80: something should be erased.
+    Erase,
+    /// AA 55 80 AA.
+    EraseFirst,
+    /// AA 55 80 AA 55.
+    EraseSecond,
+    /// AA 55 A0: the next write is programmed.
+    Program,
+}
+
+/// The chip.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Chip {
+    step: Heard,
+    identifies: bool,
+    busy_until: Cycles,
+    toggle: u16,
+}
+
+impl Chip {
+    /// The half word at an offset as the chip shows it, where `stored` is in its cells.
+    pub fn read(&mut self, offset: u32, stored: u16, now: Cycles) -> u16 {
+        if now < self.busy_until {
+            self.toggle ^= TOGGLE;
+            return (stored ^ INVERTED) & !TOGGLE | self.toggle;
+        }
+        if self.identifies && offset == IDENTITY_AT { IDENTITY } else { stored }
+    }
+
+    /// Takes a half word that is written to an offset; the change of the cells that it completes, if any.
+    pub fn write(&mut self, offset: u32, value: u16, now: Cycles) -> Option<Change> {
+        let (step, change) = self.step(offset, value);
+        self.step = step;
+        self.busy_until = match change {
+            Some(Change::Program { .. }) => now + PROGRAMMING,
+            Some(Change::Erase { .. }) => now + ERASING,
+            None => self.busy_until,
+        };
+        change
+    }
+
+    fn step(&mut self, offset: u32, value: u16) -> (Heard, Option<Change>) {
+        let inside = offset & (FLASH.size - 1);
+        let step = match (self.step, offset, value & 0xFF) {
+            (Heard::Program, ..) => {
+                return (Heard::Idle, Some(Change::Program { offset: inside, mask: value }));
+            }
+            (Heard::EraseSecond, _, 0x50 | 0x30) => {
+                return (Heard::Idle, Some(Change::Erase { offset: inside & !(BLOCK - 1) }));
+            }
+            (Heard::Idle, FIRST, 0xAA) => Heard::First,
+            (Heard::First, SECOND, 0x55) => Heard::Second,
+            (Heard::Second, FIRST, 0x90) => self.identify(true),
+            (Heard::Second, FIRST, 0xF0) => self.identify(false),
+            (Heard::Second, FIRST, 0x80) => Heard::Erase,
+            (Heard::Second, FIRST, 0xA0) => Heard::Program,
+            (Heard::Erase, FIRST, 0xAA) => Heard::EraseFirst,
+            (Heard::EraseFirst, SECOND, 0x55) => Heard::EraseSecond,
+            _ => Heard::Idle,
+        };
+        (step, None)
+    }
+
+    const fn identify(&mut self, whether: bool) -> Heard {
+        self.identifies = whether;
+        Heard::Idle
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Writes a command to the chip; the change that its last write makes.
+    fn command(chip: &mut Chip, writes: &[(u16, u32)], now: Cycles) -> Option<Change> {
+        writes.iter().fold(None, |_, (value, offset)| chip.write(*offset, *value, now))
+    }
+
+    #[test]
+    fn a_block_is_erased_and_a_half_word_programmed_by_their_commands() {
+        let (mut chip, now) = (Chip::default(), Cycles::new(1000));
+        let erase =
+            [(0xAA, FIRST), (0x55, SECOND), (0x80, FIRST), (0xAA, FIRST), (0x55, SECOND), (0x50, USER + 6)];
+        assert_eq!(command(&mut chip, &erase, now), Some(Change::Erase { offset: USER }));
+        let busy = [chip.read(USER, 0xFFFF, now), chip.read(USER, 0xFFFF, now)];
+        assert_eq!((busy[0] ^ busy[1], busy[0] & INVERTED), (TOGGLE, 0), "bit 6 turns, bit 7 is inverted");
+        assert_eq!(chip.read(USER, 0xFFFF, now + ERASING), 0xFFFF);
+        let program = [(0xAA, FIRST), (0x55, SECOND), (0xA0, FIRST), (0x1234, USER + 2)];
+        let change = command(&mut chip, &program, now + ERASING);
+        assert_eq!(change, Some(Change::Program { offset: USER + 2, mask: 0x1234 }));
+        assert_eq!(command(&mut chip, &[(0x1234, USER + 2)], now), None, "only after its command");
+    }
+
+    #[test]
+    fn the_identity_is_shown_between_its_two_commands() {
+        let (mut chip, now) = (Chip::default(), Cycles::default());
+        for (last, shown) in [(0x90, IDENTITY), (0xF0, 7)] {
+            assert_eq!(command(&mut chip, &[(0xAA, FIRST), (0x55, SECOND), (last, FIRST)], now), None);
+            assert_eq!(chip.read(IDENTITY_AT, 7, now), shown);
+        }
+    }
+}
