@@ -13,6 +13,7 @@ mod remarks;
 mod shapes;
 mod tokens;
 mod wildcards;
+mod workflows;
 
 use std::fs;
 use std::path::{Path, PathBuf};
