@@ -1,9 +1,11 @@
 //! `cc67 debug` as editors use it: Microsoft's client for debug adapters, and the types of the protocol.
 //!
 //! Both are of npm; `.ci/node/install` puts them into `target/node`. Neovim has another client, nvim-dap, which
-//! `.ci/nvim-dap` puts into `target/nvim-dap`. What is not there is not used, and the test says so.
+//! `.ci/nvim-dap` puts into `target/nvim-dap`. What is not there is not used, and the test says so. The extension for VS Code is
+//! started by that editor's rules, with Node.js alone.
 
 use std::fs;
+use std::path::PathBuf;
 use std::process::Command;
 
 use harness::{Scratch, command, node_modules, root, run_in};
@@ -32,6 +34,36 @@ fn an_editor_debugs_two_threads_forwards_and_backwards() {
     );
     assert_eq!(checked.code, 0, "{}{}", checked.stdout, checked.stderr);
     assert!(checked.stdout.ends_with(" messages, 0 errors\n"), "{}", checked.stdout);
+}
+
+/// A folder in which the command under test has its own name.
+fn programs(scratch: &Scratch) -> PathBuf {
+    let folder = scratch.path().join("programs");
+    fs::create_dir(&folder).expect("folders can be made");
+    let file = folder.join(format!("cc67{}", std::env::consts::EXE_SUFFIX));
+    // A link takes no time, but only exists within a file system.
+    if fs::hard_link(command(), &file).is_err() {
+        fs::copy(command(), &file).expect("files can be copied");
+    }
+    folder
+}
+
+#[test]
+fn f5_in_vs_code_starts_what_the_extension_says() {
+    if Command::new("node").arg("--version").output().is_err() {
+        println!("not run: there is no Node.js");
+        return;
+    }
+    let scratch = Scratch::new("vscode");
+    let folder = scratch.path().join("my machine");
+    fs::create_dir(&folder).expect("folders can be made");
+    let here = root().join("tests/command/editor");
+    fs::copy(here.join("one.c"), folder.join("one.c")).expect("files can be copied");
+    let folder = folder.canonicalize().expect("it is there");
+    let extension = root().join("cc67/editors/vscode");
+    let session =
+        run_in("node", &folder, [here.join("vscode.js"), extension, folder.clone(), programs(&scratch)]);
+    assert_eq!((session.code, session.stdout.as_str()), (0, ""), "{}", session.stderr);
 }
 
 #[test]
