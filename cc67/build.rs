@@ -1,15 +1,18 @@
 //! Links the command for a fast start, and lists the programs of `c-programs/` with their texts, which it brings along.
+//!
+//! Reads files of this package only, and fails if one cannot be read: a command without its examples is not built.
 
+use std::error::Error;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
-use std::{env, fs};
+use std::{env, fs, io};
 
 /// Files of programs: sources, machine files, stimuli, goldens.
 const SUFFIXES: &[&str] = &["c", "h", "toml", "stim", "expected"];
 
-fn main() {
+fn main() -> Result<(), Box<dyn Error>> {
     link();
-    list_examples();
+    list_examples()
 }
 
 /// On Linux the executable gets a fixed address.
@@ -27,33 +30,53 @@ fn link() {
 }
 
 /// Writes a table of all files of the examples.
-fn list_examples() {
-    let manifest = env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from).unwrap_or_default();
-    let root = manifest.join("../c-programs");
-    println!("cargo::rerun-if-changed={}", root.display());
+fn list_examples() -> Result<(), Box<dyn Error>> {
+    let root = examples(&PathBuf::from(env::var("CARGO_MANIFEST_DIR")?))?;
     let mut files = Vec::new();
-    collect(&root, &mut files);
+    collect(&root, &mut files)?;
     files.sort();
+    if files.is_empty() {
+        return Err(format!("{} has no example programs", root.display()).into());
+    }
     let mut text = String::from("&[\n");
     for path in &files {
-        let name = path.strip_prefix(&root).unwrap_or(path).to_string_lossy().replace('\\', "/");
-        let place = path.canonicalize().unwrap_or_else(|_| path.clone());
-        // Writing to a string cannot fail.
-        let _ = writeln!(text, "({name:?}, include_bytes!({:?})),", place.to_string_lossy());
+        let name = path.strip_prefix(&root)?.to_string_lossy().replace('\\', "/");
+        let place = path.canonicalize().map_err(|error| at(path, &error))?;
+        writeln!(text, "({name:?}, include_bytes!({:?})),", place.to_string_lossy())?;
     }
     text.push_str("]\n");
-    let out = env::var_os("OUT_DIR").map(PathBuf::from).unwrap_or_default();
-    fs::write(out.join("examples.rs"), text).expect("cargo gives a folder to write to");
+    let table = PathBuf::from(env::var("OUT_DIR")?).join("examples.rs");
+    fs::write(&table, text).map_err(|error| at(&table, &error))?;
+    Ok(())
 }
 
-fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
+/// The folder of the examples: a folder of a published package, a link in the repository. Where git makes no symbolic links,
+/// the link is a file that holds its target.
+fn examples(package: &Path) -> Result<PathBuf, Box<dyn Error>> {
+    let folder = package.join("c-programs");
+    if !folder.is_file() {
+        return Ok(folder);
+    }
+    let target = fs::read_to_string(&folder).map_err(|error| at(&folder, &error))?;
+    Ok(package.join(target.trim()))
+}
+
+/// Adds the files of programs in a folder and in those within it.
+fn collect(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), Box<dyn Error>> {
     println!("cargo::rerun-if-changed={}", folder.display());
-    for path in fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()) {
+    for entry in fs::read_dir(folder).map_err(|error| at(folder, &error))? {
+        let path = entry.map_err(|error| at(folder, &error))?.path();
         let suffix = path.extension().unwrap_or_default().to_string_lossy().into_owned();
         if path.is_dir() {
-            collect(&path, files);
+            collect(&path, files)?;
         } else if SUFFIXES.contains(&suffix.as_str()) {
             files.push(path);
         }
     }
+    Ok(())
+}
+
+/// An error with its place.
+fn at(path: &Path, error: &io::Error) -> Box<dyn Error> {
+    format!("{}: {error}", path.display()).into()
 }
