@@ -122,17 +122,15 @@ fn behind<'a>(text: &'a str, mark: &str, end: char) -> Vec<&'a str> {
     text.split(mark).skip(1).filter_map(|rest| rest.split(end).next()).collect()
 }
 
-/// A text without its fenced blocks, with what it includes.
+/// A text without its fenced blocks.
 fn prose(path: &Path) -> String {
     let text = fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     let mut prose = String::new();
     let mut is_code = false;
     for line in text.lines() {
         is_code ^= line.starts_with("```");
-        match line.strip_prefix("{{#include ").and_then(|rest| rest.strip_suffix("}}")) {
-            Some(include) => prose.push_str(&self::prose(&path.with_file_name(include))),
-            None if !is_code => prose.push_str(line),
-            None => {}
+        if !is_code {
+            prose.push_str(line);
         }
         prose.push('\n');
     }
@@ -203,6 +201,27 @@ pub(crate) fn check_list(name: &str, text: &str) {
     );
 }
 
+/// A page of the command or of the compiler.
+fn page(name: &str) -> String {
+    fs::read_to_string(harness::root().join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+}
+
+#[test]
+fn the_chapters_of_machine_file_and_stimulus_are_the_pages_of_the_command() {
+    for name in ["machine.md", "stimulus.md"] {
+        check_list(name, &page(&format!("cc67/src/cli/commands/pages/{name}")));
+    }
+}
+
+/// Who reads the book in the repository sees its sources: nothing may be included only when it is built.
+#[test]
+fn every_chapter_is_whole_in_the_repository() {
+    for chapter in files(&source(), "md") {
+        let text = fs::read_to_string(&chapter).expect("chapters are UTF-8");
+        assert!(!text.lines().any(|line| line.starts_with("{{#")), "{} includes a file", chapter.display());
+    }
+}
+
 #[test]
 fn the_chapter_of_warnings_has_every_page() {
     let mut text = "# Warnings\n\nMessages name the warning in brackets; `-Wno-NAME` switches it off, `-Werror=NAME` makes it an \
@@ -211,7 +230,8 @@ fn the_chapter_of_warnings_has_every_page() {
     let mut lints: Vec<_> = Lint::ALL.iter().collect();
     lints.sort_by_key(|lint| lint.name());
     for lint in lints {
-        let _ = write!(text, "\n{{{{#include ../../compiler/src/lints/pages/{}.md}}}}\n", lint.name());
+        text.push('\n');
+        text.push_str(&page(&format!("cc67/compiler/src/lints/pages/{}.md", lint.name())));
     }
     check_list("warnings.md", &text);
 }
