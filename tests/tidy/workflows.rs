@@ -98,10 +98,33 @@ fn nothing_assumes_to_be_root() {
     let scripts =
         scripts.map(|path| (relative(&path), fs::read_to_string(&path).expect("scripts are UTF-8")));
     for (path, text) in workflows().into_iter().chain(scripts) {
-        if path != ".ci/system" {
-            assert!(!text.contains("apt-get"), "{path} installs packages of the system");
+        if path == ".ci/system" || path == ".ci/Containerfile" {
+            continue;
+        }
+        for line in text.lines().filter(|line| line.contains("apt-get")) {
+            assert!(line.contains("sudo apt-get"), "{path} installs packages as root: {}", line.trim());
         }
     }
+}
+
+/// Package managers get manifests for exactly the archives that are built.
+#[test]
+fn manifests_and_the_workflow_name_the_same_archives() {
+    let workflow = fs::read_to_string(root().join(".github/workflows/release.yml")).expect("it is there");
+    let (_, archives) = workflow.split_once("\n  archives:\n").expect("it makes archives");
+    let built = archives
+        .lines()
+        .take_while(|line| !line.contains("runs-on:"))
+        .filter_map(|line| Some(line.split_once("target: ")?.1.trim_end_matches(" }").to_owned()));
+    let manifests = fs::read_to_string(root().join(".ci/manifests.py")).expect("it is there");
+    let (_, list) = manifests.split_once("\nTARGETS = [\n").expect("it has a list");
+    let named = list
+        .lines()
+        .take_while(|line| *line != "]")
+        .filter_map(|line| Some(line.split('"').nth(1)?.to_owned()));
+    let built: Vec<_> = built.collect();
+    assert!(built.len() >= 6, "{built:?}");
+    assert_eq!(built, named.collect::<Vec<_>>());
 }
 
 /// A release is made by these jobs in this order.
