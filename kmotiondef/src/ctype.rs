@@ -150,6 +150,27 @@ impl fmt::Display for CType {
     }
 }
 
+/// The meaning of an argument beyond its C type.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// A value that the C type describes.
+    Value,
+    /// The number of an axis.
+    Axis,
+    /// The number of an input or output bit.
+    Bit,
+    /// The number of a user thread.
+    Thread,
+    /// The format of a function that prints.
+    PrintFormat,
+    /// The format of a function that scans.
+    ScanFormat,
+    /// The name of a file on the PC.
+    FileName,
+    /// A number from minus this to this.
+    Within(i32),
+}
+
 /// A Rust type that stands for a C type of the interface.
 pub trait GuestType {
     /// The C type.
@@ -158,6 +179,8 @@ pub trait GuestType {
     const SIZE: u32;
     /// Its alignment in bytes.
     const ALIGN: u32;
+    /// The meaning of an argument of this type.
+    const ROLE: Role = Role::Value;
 }
 
 /// A [`GuestType`] that is loaded and stored as one value.

@@ -12,11 +12,19 @@
 //! The file is as long as the board has functions: after the hundred lines of the row's type there is nothing but
 //! rows, and a row cut off from the others would be looked for in two places.
 
+use std::fmt;
 use std::num::NonZeroU16;
 
 use crate::GuestAddr;
-use crate::ctype::{CType, Char, File, GuestType, Long, SizeT, UnsignedLong, ValueClass, Void, Volatile};
+use crate::ctype::{
+    CType, Char, File, GuestType, Long, Role, SizeT, UnsignedLong, ValueClass, Void, Volatile,
+};
+use crate::function::{
+    ALL, Attributes, AxisNumber, BitNumber, FileName, NOT_B3, Polled, PrintFormat, ScanFormat, ThreadNumber,
+    Within,
+};
 use crate::ids::Cycles;
+use crate::limits::{MAX_PWM_VALUE, MAX_PWMC_VALUE, MAX_PWMR_VALUE};
 use crate::structs::Chan;
 
 /// Where a function comes from.
@@ -37,6 +45,8 @@ pub struct Parameter {
     pub name: &'static str,
     /// Its C type.
     pub ty: CType,
+    /// The meaning of the argument.
+    pub role: Role,
 }
 
 /// One firmware function.
@@ -63,6 +73,8 @@ pub struct FirmwareFunction {
     pub rust_name: &'static str,
     /// What it does.
     pub doc: &'static str,
+    /// Facts beside signature and cost.
+    pub attributes: Attributes,
 }
 
 impl FirmwareFunction {
@@ -77,6 +89,12 @@ impl FirmwareFunction {
             params.push("void".to_owned());
         }
         self.result.declare(&format!("{}({})", self.name, params.join(", ")))
+    }
+
+    /// The position of the argument with a role, counted from 0.
+    #[must_use]
+    pub fn argument(&self, is_meant: impl Fn(Role) -> bool) -> Option<usize> {
+        self.params.iter().position(|param| is_meant(param.role))
     }
 
     /// How the arguments are passed. The address of the variable part, if there is one, follows them.
@@ -103,13 +121,31 @@ macro_rules! functions {
         $(#[doc = $doc:literal])+
         $group:ident::$function:ident =
             $name:ident($($param:ident: $ty:ty),* $(; $varargs:ident)?) $(-> $result:ty)?,
-            at $address:literal, cost $cost:literal, $origin:ident;
+            at $address:literal, cost $cost:literal, $origin:ident
+            $(, $attribute:ident $(($($value:expr),*))?)*;
     )*) => {
+        /// The number of a firmware function, under the function's name.
+        #[expect(non_camel_case_types, reason = "the names are those of C")]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+        #[repr(u16)]
+        pub enum Function {
+            $($(#[doc = $doc])+ $name),*
+        }
+
+        impl Function {
+            /// Every function, in the order of the table.
+            pub const ALL: &[Self] = &[$(Self::$name),*];
+        }
+
         /// Every firmware function, in the order of the table: its position is its number.
         pub const FIRMWARE_FUNCTIONS: &[FirmwareFunction] = &[$(FirmwareFunction {
             name: stringify!($name),
             address: GuestAddr::new($address),
-            params: &[$(Parameter { name: stringify!($param), ty: <$ty>::C_TYPE }),*],
+            params: &[$(Parameter {
+                name: stringify!($param),
+                ty: <$ty>::C_TYPE,
+                role: <$ty>::ROLE,
+            }),*],
             is_variadic: functions!(@variadic $($varargs)?),
             result: functions!(@result $($result)?),
             cost: Cycles::new($cost),
@@ -117,10 +153,37 @@ macro_rules! functions {
             group: stringify!($group),
             rust_name: stringify!($function),
             doc: concat!($($doc),+).trim_ascii_start(),
+            attributes: Attributes::NONE$(.$attribute($($($value),*)?))*,
         }),*];
     };
 }
 crate::for_each_firmware_fn!(functions);
+
+impl Function {
+    /// The row of the table.
+    #[must_use]
+    pub const fn row(self) -> &'static FirmwareFunction {
+        &FIRMWARE_FUNCTIONS[self as usize]
+    }
+
+    /// The name that programs use.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        self.row().name
+    }
+}
+
+impl fmt::Display for Function {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// The row of the function called `name`.
+#[must_use]
+pub fn row_named(name: &str) -> Option<&'static FirmwareFunction> {
+    FIRMWARE_FUNCTIONS.get(function_named(name)?)
+}
 
 /// The number of the function called `name`.
 #[must_use]
@@ -206,10 +269,13 @@ const fn by_address() -> [Option<NonZeroU16>; SLOTS] {
 ///
 /// Rules of the table:
 /// - A row is ``/// meaning`` then `group::rust_name = CName(param: type, …) -> type, at address,
-///   cost n, origin;`. No result means `void`; `; varargs` behind the last parameter means `, ...`.
-/// - Types are those of [`ctype`](crate::ctype): `i32` is `int`, `*const Char` is `const char *`.
+///   cost n, origin, attributes;`. No result means `void`; `; varargs` after the last parameter means `, ...`.
+/// - Types are those of [`ctype`](crate::ctype): `i32` is `int`, `*const Char` is `const char *`. A type of
+///   [`function`](crate::function) names the role of the argument as well: `AxisNumber`, `BitNumber`, `PrintFormat`.
 /// - The cost is in cycles of 5 ns, waiting not included.
 /// - The origin is `header`, `firmware` or `library`, see [`Origin`](crate::firmware::Origin).
+/// - The attributes are the methods of [`function`](crate::function): `waits("until …")`, `polls(Polled::Bit)`,
+///   `drives_axis`, `reads_bit`, `writes_bit`, `pure`, `stack(bytes)`, `changes(A, B)`.
 /// - The position in the table is the function's number. Library rows have ascending addresses.
 ///
 /// The runtime needs the paths alone and lets Rust infer the rest from its functions:
@@ -217,7 +283,7 @@ const fn by_address() -> [Option<NonZeroU16>; SLOTS] {
 /// ```text
 /// macro_rules! handlers {
 ///     ($($(#[$doc:meta])* $group:ident::$function:ident = $name:ident $params:tt
-///         $(-> $result:ty)?, at $address:literal, cost $cost:literal, $origin:ident;)*) => {
+///         $(-> $result:ty)?, at $address:literal, cost $cost:literal, $origin:ident $(, $attribute:ident $(($($value:tt)*))?)*;)*) => {
 ///         /// One handler a function, by its number.
 ///         const HANDLERS: &[Handler] = &[$(Handler::new($group::$function)),*];
 ///     };
@@ -230,64 +296,75 @@ macro_rules! for_each_firmware_fn {
         $m! {
             // ---- io: digital and analog inputs and outputs, FPGA outputs ------------------------------
             /// Makes a bit an output (`dir` nonzero) or an input (0). Bits 0 to 45 and SnapAmp GPIO only.
-            io::set_bit_direction = SetBitDirection(bit: i32, dir: i32), at 0x8002_4720, cost 136, header;
+            io::set_bit_direction = SetBitDirection(bit: BitNumber, dir: i32), at 0x8002_4720, cost 136, header,
+                writes_bit;
             /// 1 if the bit is an output, 0 if it is an input.
-            io::get_bit_direction = GetBitDirection(bit: i32) -> i32, at 0x8002_49B4, cost 40, header;
+            io::get_bit_direction = GetBitDirection(bit: BitNumber) -> i32, at 0x8002_49B4, cost 40, header;
             /// Drives an output bit high; of an input it sets the latch that appears when it becomes an
             /// output.
-            io::set_bit = SetBit(bit: i32), at 0x1001_1D80, cost 86, header;
+            io::set_bit = SetBit(bit: BitNumber), at 0x1001_1D80, cost 86, header, writes_bit;
             /// Drives an output bit low; of an input it clears the latch that appears when it becomes an
             /// output.
-            io::clear_bit = ClearBit(bit: i32), at 0x1001_1F88, cost 87, header;
+            io::clear_bit = ClearBit(bit: BitNumber), at 0x1001_1F88, cost 87, header, writes_bit;
             /// Drives an output bit high if `state` is nonzero, else low.
-            io::set_state_bit = SetStateBit(bit: i32, state: i32), at 0x1001_21AC, cost 125, header;
+            io::set_state_bit = SetStateBit(bit: BitNumber, state: i32), at 0x1001_21AC, cost 125, header,
+                writes_bit;
             /// State of a bit, 0 or 1: an output's own state, an input's pin.
-            io::read_bit = ReadBit(bit: i32) -> i32, at 0x1001_2214, cost 78, header;
+            io::read_bit = ReadBit(bit: BitNumber) -> i32, at 0x1001_2214, cost 78, header,
+                polls(Polled::Bit), reads_bit;
             /// Raw conversion of analog input `ch`, 0 to 4095; the macro ADC(ch) is the usual way.
             io::read_adc = ReadADC(ch: i32) -> i32, at 0x8001_C3E0, cost 19, header;
             /// Drives PWM channel `ch` in locked antiphase, `v` within ±MAX_PWM_VALUE.
-            io::write_pwm = WritePWM(ch: i32, v: i32), at 0x1000_1CB4, cost 101, header;
+            io::write_pwm = WritePWM(ch: i32, v: Within<MAX_PWM_VALUE>), at 0x1000_1CB4, cost 101, header;
             /// Drives PWM channel `ch` in recirculate mode, `v` within ±MAX_PWMR_VALUE.
-            io::write_pwmr = WritePWMR(ch: i32, v: i32), at 0x1000_1B24, cost 97, header;
+            io::write_pwmr = WritePWMR(ch: i32, v: Within<MAX_PWMR_VALUE>), at 0x1000_1B24, cost 97, header;
             /// Commands the current loop of PWM channel `ch` (SnapAmp), `v` within ±MAX_PWMC_VALUE.
-            io::write_pwmc = WritePWMC(ch: i32, v: i32), at 0x1000_1BD8, cost 17, header;
+            io::write_pwmc = WritePWMC(ch: i32, v: Within<MAX_PWMC_VALUE>), at 0x1000_1BD8, cost 17, header;
 
             // ---- motion: single axes: enabling, independent moves, commutation ------------------------
             /// Turns an axis on where it is: the destination becomes the measured position.
-            motion::enable_axis = EnableAxis(ch: i32), at 0x8001_1258, cost 241, header;
+            motion::enable_axis = EnableAxis(ch: AxisNumber), at 0x8001_1258, cost 241, header, drives_axis;
             /// Turns an axis on with destination `Dest` in position units, filters reset, no profile
             /// running.
-            motion::enable_axis_dest = EnableAxisDest(ch: i32, Dest: f64), at 0x8001_0E80, cost 198, header;
+            motion::enable_axis_dest = EnableAxisDest(ch: AxisNumber, Dest: f64), at 0x8001_0E80, cost 198, header,
+                drives_axis;
             /// Turns an axis off: feedback stops, the output goes to zero.
-            motion::disable_axis = DisableAxis(ch: i32), at 0x1000_EA30, cost 221, header;
+            motion::disable_axis = DisableAxis(ch: AxisNumber), at 0x1000_EA30, cost 221, header;
             /// Makes the present place zero: measured position and destination become 0.
-            motion::zero = Zero(ch: i32), at 0x8001_0B14, cost 542, header;
+            motion::zero = Zero(ch: AxisNumber), at 0x8001_0B14, cost 542, header;
             /// Clears the filter delays, integrator and output of an axis; use before enabling or after new
             /// coefficients.
-            motion::reset_filters = ResetFilters(ch: i32), at 0x8001_1300, cost 63, header;
+            motion::reset_filters = ResetFilters(ch: AxisNumber), at 0x8001_1300, cost 63, header;
             /// Starts a move to position `x` under the axis' Vel, Accel and Jerk. Poll CheckDone.
-            motion::move_to = Move(ch: i32, x: f64), at 0x1000_C15C, cost 3420, header;
+            motion::move_to = Move(ch: AxisNumber, x: f64), at 0x1000_C15C, cost 3420, header,
+                drives_axis, after_slice(4720, 0);
             /// Starts a move by `dx` from the present destination. Poll CheckDone.
-            motion::move_rel = MoveRel(ch: i32, dx: f64), at 0x1000_C1B0, cost 3423, header;
+            motion::move_rel = MoveRel(ch: AxisNumber, dx: f64), at 0x1000_C1B0, cost 3423, header,
+                drives_axis, after_slice(4720, 0);
             /// Starts a move to position `x` with at most `MaxVel` units/s. Poll CheckDone.
-            motion::move_at_vel = MoveAtVel(chno: i32, x: f64, MaxVel: f32), at 0x1000_B868, cost 3420, header;
+            motion::move_at_vel = MoveAtVel(chno: AxisNumber, x: f64, MaxVel: f32), at 0x1000_B868, cost 3420, header,
+                drives_axis, after_slice(4720, 0);
             /// Starts a move by `x` from the present destination with at most `MaxVel` units/s.
-            motion::move_rel_at_vel = MoveRelAtVel(chno: i32, x: f64, MaxVel: f32),
-                at 0x1000_C104, cost 3450, header;
+            motion::move_rel_at_vel = MoveRelAtVel(chno: AxisNumber, x: f64, MaxVel: f32),
+                at 0x1000_C104, cost 3450, header, drives_axis, after_slice(4720, 0);
             /// Starts an exponential approach to `x` with time constant `Tau` seconds.
-            motion::move_exp = MoveExp(chno: i32, x: f64, Tau: f64), at 0x1000_C208, cost 475, header;
+            motion::move_exp = MoveExp(chno: AxisNumber, x: f64, Tau: f64), at 0x1000_C208, cost 475, header,
+                drives_axis;
             /// Runs an axis at `vel` units/s, signed; 0 brings it to a stop under Accel and Jerk.
-            motion::jog = Jog(ch: i32, vel: f64), at 0x1000_C558, cost 1418, header;
+            motion::jog = Jog(ch: AxisNumber, vel: f64), at 0x1000_C558, cost 1418, header,
+                drives_axis, after_slice(1500, 0);
             /// Starts independent moves of the coordinate system's six axes. Poll CheckDoneXYZABC.
             motion::move_xyzabc = MoveXYZABC(x: f64, y: f64, z: f64, a: f64, b: f64, c: f64),
-                at 0x8001_020C, cost 10426, header;
+                at 0x8001_020C, cost 10426, header, after_slice(3475, 0);
             /// 1 when no profile is running, 0 while one is, -1 when the axis is disabled.
-            motion::check_done = CheckDone(ch: i32) -> i32, at 0x1000_CA74, cost 25, header;
+            motion::check_done = CheckDone(ch: AxisNumber) -> i32, at 0x1000_CA74, cost 25, header,
+                polls(Polled::Motion);
             /// CheckDone over all axes of the coordinate system: 1 all finished, 0 some moving, -1 one
             /// disabled.
-            motion::check_done_xyzabc = CheckDoneXYZABC() -> i32, at 0x1000_CAC8, cost 313, header;
+            motion::check_done_xyzabc = CheckDoneXYZABC() -> i32, at 0x1000_CAC8, cost 313, header,
+                polls(Polled::Path);
             /// Starts the profile prepared in the coefficient list of axis `ch`.
-            motion::start_move = StartMove(ch: i32), at 0x8002_13F4, cost 22, header;
+            motion::start_move = StartMove(ch: AxisNumber), at 0x8002_13F4, cost 22, header, drives_axis;
             /// Drops the running profile; the destination stays where it is.
             motion::stop_motion = StopMotion(ch: *mut Chan), at 0x8002_12E0, cost 8, header;
             /// Computes the profile From..To with at most `MaxVel` into the list of `ch` from entry
@@ -329,7 +406,8 @@ macro_rules! for_each_firmware_fn {
                 axisv: i32
             ), at 0x8002_5A74, cost 79, header;
             /// Buffered motion: 1 finished, 0 running, -1 an axis of the coordinate system is disabled.
-            coord::check_done_buf = CheckDoneBuf() -> i32, at 0x1000_CDAC, cost 206, header;
+            coord::check_done_buf = CheckDoneBuf() -> i32, at 0x1000_CDAC, cost 206, header,
+                polls(Polled::Path);
             /// Feedhold: brings the coordinate system's axes to a controlled stop. See CS0_StoppingState.
             coord::stop_coordinated_motion = StopCoordinatedMotion(), at 0x8001_C6C4, cost 340, header;
             /// Releases a feedhold and continues the interrupted motion.
@@ -364,34 +442,38 @@ macro_rules! for_each_firmware_fn {
             /// Sets up spindle measurement: `Type` 0 none, 1 encoder; `Axis` the channel read; update time
             /// and `Tau` in seconds.
             spindle::configure_spindle = ConfigureSpindle(
-                Type: i32, Axis: i32, UpdateTimeSecs: f32, Tau: f32, CountsPerRev: f32
+                Type: i32, Axis: AxisNumber, UpdateTimeSecs: f32, Tau: f32, CountsPerRev: f32
             ), at 0x8001_D948, cost 441, header;
             /// Starts buffered motion slaved to the spindle, planned for `BaseSpeedRPS` revolutions/s.
             spindle::trig_threading = TrigThreading(BaseSpeedRPS: f32), at 0x1000_2760, cost 88, header;
 
             // ---- time: time and waiting ---------------------------------------------------------------
             /// Seconds since power-up.
-            time::time_sec = Time_sec() -> f64, at 0x1001_3400, cost 80, header;
+            time::time_sec = Time_sec() -> f64, at 0x1001_3400, cost 80, header, polls(Polled::Time);
             /// Waits until Time_sec() reaches `time_sec`; other threads keep running.
-            time::wait_until = WaitUntil(time_sec: f64), at 0x1000_26C4, cost 106, header;
+            time::wait_until = WaitUntil(time_sec: f64), at 0x1000_26C4, cost 106, header,
+                waits("until that time"), polls(Polled::Time), after_time(63, 1);
             /// Waits `sec` seconds; other threads keep running.
-            time::delay_sec = Delay_sec(sec: f64), at 0x1000_748C, cost 201, header;
+            time::delay_sec = Delay_sec(sec: f64), at 0x1000_748C, cost 201, header,
+                waits("until the time has passed"), polls(Polled::Time), after_time(63, 1);
             /// Waits for the thread's next time slice and returns the time in seconds.
-            time::wait_next_time_slice = WaitNextTimeSlice() -> f64, at 0x1000_1180, cost 113, header;
+            time::wait_next_time_slice = WaitNextTimeSlice() -> f64, at 0x1000_1180, cost 113, header,
+                waits("until the next slice of the thread"), polls(Polled::Time), after_slice(69, 1);
 
             // ---- thread: starting and stopping threads ------------------------------------------------
             /// Starts, or starts again, the program loaded for user thread 1 to 7.
-            thread::start_thread = StartThread(thread: i32), at 0x8002_50E0, cost 116, header;
+            thread::start_thread = StartThread(thread: ThreadNumber), at 0x8002_50E0, cost 116, header;
             /// Stops scheduling user thread 1 to 7; a thread may name itself.
-            thread::pause_thread = PauseThread(thread: i32), at 0x8002_5218, cost 89, header;
+            thread::pause_thread = PauseThread(thread: ThreadNumber), at 0x8002_5218, cost 89, header;
             /// Continues a paused thread where it stopped; 1 if no program is loaded there, else 0.
-            thread::resume_thread = ResumeThread(thread: i32) -> i32, at 0x8002_52B8, cost 38, header;
+            thread::resume_thread = ResumeThread(thread: ThreadNumber) -> i32, at 0x8002_52B8, cost 38, header;
             /// Ends the calling thread, as a return from main does. Does not return.
             thread::thread_done = ThreadDone(), at 0x8002_51D4, cost 200, header;
 
             // ---- sync: locks and uninterruptible operations -------------------------------------------
             /// Takes `*mutex` for the calling thread; waits while another thread holds it.
-            sync::mutex_lock = MutexLock(mutex: *mut i32), at 0x1001_2F20, cost 38, header;
+            sync::mutex_lock = MutexLock(mutex: *mut i32), at 0x1001_2F20, cost 38, header,
+                waits("while another thread holds the lock"), polls(Polled::Lock);
             /// Stores 0 in `*mutex`, whoever holds it.
             sync::mutex_unlock = MutexUnlock(mutex: *mut i32), at 0x1001_302C, cost 15, header;
             /// `*p |= mask`, uninterruptible.
@@ -405,78 +487,90 @@ macro_rules! for_each_firmware_fn {
             // ---- console: text to the console of the PC and to files on it ----------------------------
             /// Formats up to 128 characters for the console; returns the full length. Waits only while the
             /// queue is full.
-            console::printf = printf(format: *const Char; varargs) -> i32, at 0x8001_EA40, cost 367, header;
+            console::printf = printf(format: PrintFormat; varargs) -> i32, at 0x8001_EA40, cost 367, header,
+                waits("while the console queue is full"), stack(945);
             /// Formats into `s`, without a limit; returns the length.
-            console::sprintf = sprintf(s: *mut Char, format: *const Char; varargs) -> i32,
-                at 0x8002_6FC0, cost 83, header;
+            console::sprintf = sprintf(s: *mut Char, format: PrintFormat; varargs) -> i32,
+                at 0x8002_6FC0, cost 83, header, stack(840);
             /// Converts the text of `_str` under a format; returns the number of items converted.
-            console::sscanf = sscanf(_str: *const Char, _fmt: *const Char; varargs) -> i32,
+            console::sscanf = sscanf(_str: *const Char, _fmt: ScanFormat; varargs) -> i32,
                 at 0x8002_5FC0, cost 560, header;
             /// Queues a string for the console, line by line. Returns 0. Waits only while the queue is
             /// full.
-            console::print = Print(s: *mut Char) -> i32, at 0x1001_2510, cost 100, header;
+            console::print = Print(s: *mut Char) -> i32, at 0x1001_2510, cost 100, header,
+                waits("while the console queue is full");
             /// Formats one double for the console. Returns 0.
-            console::print_float = PrintFloat(Format: *mut Char, v: f64) -> i32,
-                at 0x8001_F3F0, cost 367, header;
+            console::print_float = PrintFloat(Format: PrintFormat<*mut Char>, v: f64) -> i32,
+                at 0x8001_F3F0, cost 367, header, waits("while the console queue is full");
             /// Formats one int for the console. Returns 0.
-            console::print_int = PrintInt(Format: *mut Char, v: i32) -> i32, at 0x8001_F474, cost 367, header;
+            console::print_int = PrintInt(Format: PrintFormat<*mut Char>, v: i32) -> i32, at 0x8001_F474, cost 367, header,
+                waits("while the console queue is full");
             /// Opens a text file on the PC ("rt", "wt", "at"). Reading waits for the PC and gives NULL on
             /// failure; one file each way.
-            console::fopen = fopen(path: *const Char, mode: *const Char) -> *mut File,
-                at 0x8001_EB74, cost 1152, header;
+            console::fopen = fopen(path: FileName, mode: *const Char) -> *mut File,
+                at 0x8001_EB74, cost 1152, header,
+                waits("until the PC has opened the file, if it is for reading");
             /// Closes a file on the PC. Returns 0.
-            console::fclose = fclose(f: *mut File) -> i32, at 0x8001_F358, cost 821, header;
+            console::fclose = fclose(f: *mut File) -> i32, at 0x8001_F358, cost 821, header,
+                waits("while the console queue is full");
             /// Formats up to 128 characters for a file on the PC. Returns 0.
-            console::fprintf = fprintf(f: *mut File, format: *const Char; varargs) -> i32,
-                at 0x8001_EAD4, cost 770, header;
+            console::fprintf = fprintf(f: *mut File, format: PrintFormat; varargs) -> i32,
+                at 0x8001_EAD4, cost 770, header, waits("while the console queue is full");
             /// Reads the next line, at most `n` characters, without its end. Waits for the PC; NULL at the
             /// end of the file.
             console::fgets = fgets(str: *mut Char, n: i32, file: *mut File) -> *mut Char,
-                at 0x8001_EDD0, cost 880, header;
+                at 0x8001_EDD0, cost 880, header, waits("until the PC has sent the line");
             /// Reads a line of at most 128 characters and converts it; returns the number of items. Waits
             /// for the PC.
-            console::fscanf = fscanf(f: *mut File, format: *const Char; varargs) -> i32,
-                at 0x8001_F20C, cost 1700, header;
+            console::fscanf = fscanf(f: *mut File, format: ScanFormat; varargs) -> i32,
+                at 0x8001_F20C, cost 1700, header, waits("until the PC has sent the line");
             /// 1 after a read or an opening has failed, else 0.
             console::feof = feof(f: *mut File) -> i32, at 0x8001_F2D8, cost 52, header;
             /// Formats at most `_n` characters from the argument area at `_ap`.
             console::vsnprintf = vsnprintf(
-                _string: *mut Char, _n: SizeT, _format: *const Char, _ap: *mut Char
+                _string: *mut Char, _n: SizeT, _format: PrintFormat, _ap: *mut Char
             ) -> i32, at 0x8002_68E0, cost 84, firmware;
             /// Formats at most `n` characters into `s`; returns the full length.
-            console::snprintf = snprintf(s: *mut Char, n: SizeT, format: *const Char; varargs) -> i32,
+            console::snprintf = snprintf(s: *mut Char, n: SizeT, format: PrintFormat; varargs) -> i32,
                 at 0x7000_0000, cost 84, library;
             /// Formats into `s` from the argument area at `ap`.
-            console::vsprintf = vsprintf(s: *mut Char, format: *const Char, ap: *mut Char) -> i32,
+            console::vsprintf = vsprintf(s: *mut Char, format: PrintFormat, ap: *mut Char) -> i32,
                 at 0x7000_0008, cost 84, library;
             /// Formats for the console from the argument area at `ap`.
-            console::vprintf = vprintf(format: *const Char, ap: *mut Char) -> i32,
-                at 0x7000_0010, cost 367, library;
+            console::vprintf = vprintf(format: PrintFormat, ap: *mut Char) -> i32,
+                at 0x7000_0010, cost 367, library, waits("while the console queue is full");
             /// Sends a string and a newline to the console.
-            console::puts = puts(s: *const Char) -> i32, at 0x7000_0018, cost 367, library;
+            console::puts = puts(s: *const Char) -> i32, at 0x7000_0018, cost 367, library,
+                waits("while the console queue is full");
             /// Sends one character to the console.
-            console::putchar = putchar(c: i32) -> i32, at 0x7000_0020, cost 367, library;
+            console::putchar = putchar(c: i32) -> i32, at 0x7000_0020, cost 367, library,
+                waits("while the console queue is full");
 
             // ---- gather: the data recorder ------------------------------------------------------------
             /// Prepares recording of six doubles a tick of axis `c` for `n_Samples` ticks; TriggerGather
             /// starts it.
-            gather::setup_gather_all_on_axis = SetupGatherAllOnAxis(c: i32, n_Samples: i32),
+            gather::setup_gather_all_on_axis = SetupGatherAllOnAxis(c: AxisNumber, n_Samples: i32),
                 at 0x8002_1440, cost 102, header;
             /// Starts recording into gather_buffer. Poll CheckDoneGather.
             gather::trigger_gather = TriggerGather(), at 0x8002_12A0, cost 14, header;
             /// 1 when recording has reached its end, else 0.
-            gather::check_done_gather = CheckDoneGather() -> i32, at 0x8002_1950, cost 16, header;
+            gather::check_done_gather = CheckDoneGather() -> i32, at 0x8002_1950, cost 16, header,
+                polls(Polled::Recording);
 
             // ---- serial: the UART ---------------------------------------------------------------------
             /// Enables the UART pins and sets the divisor, one of the RS232_BAUD_ values. Takes about 2 ms.
-            serial::init_rs232 = InitRS232(baud: i32), at 0x8002_1760, cost 451, header;
+            serial::init_rs232 = InitRS232(baud: i32), at 0x8002_1760, cost 451, header,
+                waits("about 2 ms for the UART");
             /// InitRS232, then empties both rings and connects the command interpreter (DoRS232Cmds = 1).
             /// Takes about 2 ms.
-            serial::enable_rs232_cmds = EnableRS232Cmds(baud: i32), at 0x8002_18C8, cost 490, header;
+            serial::enable_rs232_cmds = EnableRS232Cmds(baud: i32), at 0x8002_18C8, cost 490, header,
+                waits("about 2 ms for the UART");
             /// Takes the next received character; waits while there is none.
-            serial::rs232_get_char = RS232_GetChar() -> Char, at 0x1000_1254, cost 200, header;
+            serial::rs232_get_char = RS232_GetChar() -> Char, at 0x1000_1254, cost 200, header,
+                waits("while no character has been received");
             /// Sends a character; waits while the transmit ring is full.
-            serial::rs232_put_char = RS232_PutChar(c: Char), at 0x1000_12C0, cost 67, header;
+            serial::rs232_put_char = RS232_PutChar(c: Char), at 0x1000_12C0, cost 67, header,
+                waits("while the transmit ring is full");
 
             // ---- snapamp: registers of the SnapAmp option board ---------------------------------------
             /// Writes a 16-bit word to SnapAmp register `add` (SNAP0 or SNAP1 plus a SNAP_ number).
@@ -502,67 +596,76 @@ macro_rules! for_each_firmware_fn {
             /// 0 = success.
             persist::program_flash = ProgramFlash(
                 src: *mut Volatile<Char>, Length: i32, dest: *mut Volatile<Char>, message: *mut Char
-            ) -> i32, at 0x8001_FFC0, cost 56031, header;
+            ) -> i32, at 0x8001_FFC0, cost 56031, header, waits("until the flash is written");
             /// ProgramFlash without console output. Waits; 0 = success.
             persist::program_flash_no_messages = ProgramFlashNoMessages(
                 src0: *mut Volatile<Char>, Length: i32, dest0: *mut Volatile<Char>
-            ) -> i32, at 0x8002_0008, cost 33333, header;
+            ) -> i32, at 0x8002_0008, cost 33333, header, waits("until the flash is written");
             /// Selects the flash bank that makes address `add` readable.
             persist::set_flash_bank = SetFlashBank(add: *mut Volatile<u16>), at 0x1001_2CC0, cost 217, header;
 
             // ---- math: mathematics. Angles are in radians unless cycles are named ---------------------
             /// Square root.
-            math::sqrt = sqrt(x: f64) -> f64, at 0x8002_5B80, cost 379, header;
+            math::sqrt = sqrt(x: f64) -> f64, at 0x8002_5B80, cost 379, header,
+                pure, changes(ALL, &[0, 4, 5, 6, 7]);
             /// e to the power `x`.
-            math::exp = exp(x: f64) -> f64, at 0x1000_F000, cost 214, header;
+            math::exp = exp(x: f64) -> f64, at 0x1000_F000, cost 214, header, pure;
             /// Natural logarithm.
-            math::log = log(x: f64) -> f64, at 0x1000_F424, cost 283, header;
+            math::log = log(x: f64) -> f64, at 0x1000_F424, cost 283, header, pure;
             /// Logarithm to base 10.
-            math::log10 = log10(x: f64) -> f64, at 0x1000_F3A4, cost 284, header;
+            math::log10 = log10(x: f64) -> f64, at 0x1000_F3A4, cost 284, header, pure;
             /// `x` to the power `y`.
-            math::pow = pow(x: f64, y: f64) -> f64, at 0x8002_0940, cost 1100, header;
+            math::pow = pow(x: f64, y: f64) -> f64, at 0x8002_0940, cost 1100, header, pure;
             /// Sine.
-            math::sin = sin(x: f64) -> f64, at 0x1000_FABC, cost 144, header;
+            math::sin = sin(x: f64) -> f64, at 0x1000_FABC, cost 144, header,
+                pure, changes(ALL, NOT_B3), returns_early;
             /// Cosine.
-            math::cos = cos(x: f64) -> f64, at 0x1000_FAA0, cost 148, header;
+            math::cos = cos(x: f64) -> f64, at 0x1000_FAA0, cost 148, header,
+                pure, changes(ALL, NOT_B3), returns_early;
             /// Tangent.
-            math::tan = tan(x: f64) -> f64, at 0x8002_4360, cost 440, header;
+            math::tan = tan(x: f64) -> f64, at 0x8002_4360, cost 440, header, pure, changes(ALL, NOT_B3);
             /// Arc sine.
-            math::asin = asin(x: f64) -> f64, at 0x8002_3F80, cost 256, header;
+            math::asin = asin(x: f64) -> f64, at 0x8002_3F80, cost 256, header,
+                pure, changes(ALL, &[0, 2, 4, 5, 6, 7, 8, 9]);
             /// Arc cosine.
-            math::acos = acos(x: f64) -> f64, at 0x8002_3760, cost 271, header;
+            math::acos = acos(x: f64) -> f64, at 0x8002_3760, cost 271, header,
+                pure, changes(ALL, &[0, 2, 4, 5, 6, 7, 8, 9]);
             /// Arc tangent.
-            math::atan = atan(x: f64) -> f64, at 0x8002_5680, cost 335, header;
+            math::atan = atan(x: f64) -> f64, at 0x8002_5680, cost 335, header,
+                pure, changes(ALL, &[0, 2, 4, 5, 6, 7, 8, 9]);
             /// Arc tangent of `y / x` in all four quadrants.
-            math::atan2 = atan2(y: f64, x: f64) -> f64, at 0x8002_6D20, cost 565, header;
+            math::atan2 = atan2(y: f64, x: f64) -> f64, at 0x8002_6D20, cost 565, header,
+                pure, changes(ALL, &[0, 2, 4, 5, 6, 7, 8, 9]);
             /// Absolute value.
-            math::fast_fabs = fast_fabs(y: f64) -> f64, at 0x1000_1A3C, cost 6, header;
+            math::fast_fabs = fast_fabs(y: f64) -> f64, at 0x1000_1A3C, cost 6, header, pure;
             /// Square root.
-            math::sqrtf = sqrtf(x: f32) -> f32, at 0x1000_F820, cost 41, header;
+            math::sqrtf = sqrtf(x: f32) -> f32, at 0x1000_F820, cost 41, header,
+                pure, changes(&[0, 1, 2, 3, 4, 5], &[4, 5, 6]);
             /// e to the power `x`.
-            math::expf = expf(x: f32) -> f32, at 0x1000_F1F4, cost 72, header;
+            math::expf = expf(x: f32) -> f32, at 0x1000_F1F4, cost 72, header, pure;
             /// Natural logarithm.
-            math::logf = logf(x: f32) -> f32, at 0x1000_F640, cost 66, header;
+            math::logf = logf(x: f32) -> f32, at 0x1000_F640, cost 66, header, pure;
             /// Logarithm to base 10.
-            math::log10f = log10f(x: f32) -> f32, at 0x1000_F620, cost 67, header;
+            math::log10f = log10f(x: f32) -> f32, at 0x1000_F620, cost 67, header, pure;
             /// `x` to the power `y`.
-            math::powf = powf(x: f32, y: f32) -> f32, at 0x8002_1980, cost 680, header;
+            math::powf = powf(x: f32, y: f32) -> f32, at 0x8002_1980, cost 680, header, pure;
             /// Sine.
-            math::sinf = sinf(x: f32) -> f32, at 0x1000_FC34, cost 62, header;
+            math::sinf = sinf(x: f32) -> f32, at 0x1000_FC34, cost 62, header, pure, changes(ALL, NOT_B3);
             /// Cosine.
-            math::cosf = cosf(x: f32) -> f32, at 0x1000_FC20, cost 66, header;
+            math::cosf = cosf(x: f32) -> f32, at 0x1000_FC20, cost 66, header, pure, changes(ALL, NOT_B3);
             /// Tangent.
-            math::tanf = tanf(x: f32) -> f32, at 0x8002_53C0, cost 233, header;
+            math::tanf = tanf(x: f32) -> f32, at 0x8002_53C0, cost 233, header, pure, changes(ALL, NOT_B3);
             /// Arc sine.
-            math::asinf = asinf(x: f32) -> f32, at 0x8002_6580, cost 120, header;
+            math::asinf = asinf(x: f32) -> f32, at 0x8002_6580, cost 120, header, pure, changes(ALL, NOT_B3);
             /// Arc cosine.
-            math::acosf = acosf(x: f32) -> f32, at 0x8002_63A0, cost 117, header;
+            math::acosf = acosf(x: f32) -> f32, at 0x8002_63A0, cost 117, header, pure, changes(ALL, NOT_B3);
             /// Arc tangent.
-            math::atanf = atanf(x: f32) -> f32, at 0x1000_F974, cost 54, header;
+            math::atanf = atanf(x: f32) -> f32, at 0x1000_F974, cost 54, header, pure, changes(ALL, NOT_B3);
             /// Arc tangent of `y / x` in all four quadrants.
-            math::atan2f = atan2f(y: f32, x: f32) -> f32, at 0x1000_F8C0, cost 80, header;
+            math::atan2f = atan2f(y: f32, x: f32) -> f32, at 0x1000_F8C0, cost 80, header,
+                pure, changes(ALL, NOT_B3);
             /// Absolute value.
-            math::fast_fabsf = fast_fabsf(y: f32) -> f32, at 0x1000_1A30, cost 6, header;
+            math::fast_fabsf = fast_fabsf(y: f32) -> f32, at 0x1000_1A30, cost 6, header, pure;
             /// Sine of `x` cycles, 0 to 1; the second phase's sine goes to `*sin2`.
             math::sine_3ph = Sine3PH(x: f32, sin2: *mut f32) -> f32, at 0x1001_3180, cost 27, firmware;
             /// Fractional part of `v`, with its sign.
@@ -572,17 +675,17 @@ macro_rules! for_each_firmware_fn {
             /// Fractional part of `x`; the whole part goes to `*ip`.
             math::modff = modff(x: f32, ip: *mut f32) -> f32, at 0x8002_7CA0, cost 37, firmware;
             /// 2 to the power `x`.
-            math::exp2 = exp2(x: f64) -> f64, at 0x1000_EFC0, cost 227, firmware;
+            math::exp2 = exp2(x: f64) -> f64, at 0x1000_EFC0, cost 227, firmware, pure;
             /// 2 to the power `x`.
-            math::exp2f = exp2f(x: f32) -> f32, at 0x1000_F188, cost 73, firmware;
+            math::exp2f = exp2f(x: f32) -> f32, at 0x1000_F188, cost 73, firmware, pure;
             /// 10 to the power `x`.
-            math::exp10 = exp10(x: f64) -> f64, at 0x1000_EFE4, cost 227, firmware;
+            math::exp10 = exp10(x: f64) -> f64, at 0x1000_EFE4, cost 227, firmware, pure;
             /// 10 to the power `x`.
-            math::exp10f = exp10f(x: f32) -> f32, at 0x1000_F1C0, cost 73, firmware;
+            math::exp10f = exp10f(x: f32) -> f32, at 0x1000_F1C0, cost 73, firmware, pure;
             /// Logarithm to base 2.
-            math::log2 = log2(x: f64) -> f64, at 0x1000_F320, cost 284, firmware;
+            math::log2 = log2(x: f64) -> f64, at 0x1000_F320, cost 284, firmware, pure;
             /// Logarithm to base 2.
-            math::log2f = log2f(x: f32) -> f32, at 0x1000_F600, cost 67, firmware;
+            math::log2f = log2f(x: f32) -> f32, at 0x1000_F600, cost 67, firmware, pure;
             /// Splits `x` into a fraction in [0.5, 1) and a power of two.
             math::frexp = frexp(x: f64, exp: *mut i32) -> f64, at 0x8002_7440, cost 29, firmware;
             /// Splits `x` into a fraction in [0.5, 1) and a power of two.
@@ -592,69 +695,75 @@ macro_rules! for_each_firmware_fn {
             /// `x` times 2 to the power `n`.
             math::ldexpf = ldexpf(x: f32, n: i32) -> f32, at 0x8002_7320, cost 41, firmware;
             /// Signed quotient, as code of the vendor's compiler calls it.
-            math::divi = _divi(a: i32, b: i32) -> i32, at 0x8002_70E0, cost 22, firmware;
+            math::divi = _divi(a: i32, b: i32) -> i32, at 0x8002_70E0, cost 22, firmware,
+                changes(&[0, 1, 2, 4, 6], &[0, 1, 2, 4, 5]);
             /// Unsigned quotient, as code of the vendor's compiler calls it.
-            math::divu = _divu(a: u32, b: u32) -> u32, at 0x8002_7900, cost 22, firmware;
+            math::divu = _divu(a: u32, b: u32) -> u32, at 0x8002_7900, cost 22, firmware,
+                changes(&[0, 1, 2, 4, 6], &[0, 1, 2, 4]);
             /// Signed remainder, as code of the vendor's compiler calls it.
-            math::remi = _remi(a: i32, b: i32) -> i32, at 0x8002_7560, cost 20, firmware;
+            math::remi = _remi(a: i32, b: i32) -> i32, at 0x8002_7560, cost 20, firmware,
+                changes(&[1, 2, 4, 5, 6], &[0, 1, 2, 4]);
             /// Unsigned remainder, as code of the vendor's compiler calls it.
-            math::remu = _remu(a: u32, b: u32) -> u32, at 0x8002_7C00, cost 22, firmware;
+            math::remu = _remu(a: u32, b: u32) -> u32, at 0x8002_7C00, cost 22, firmware,
+                changes(&[1, 4, 5, 7], &[0, 1, 2, 4]);
             /// Quotient of floats, as code of the vendor's compiler calls it.
-            math::divf = _divf(a: f32, b: f32) -> f32, at 0x1000_EF60, cost 30, firmware;
+            math::divf = _divf(a: f32, b: f32) -> f32, at 0x1000_EF60, cost 30, firmware,
+                changes(&[3, 4], &[0, 5, 6]);
             /// Quotient of doubles, as code of the vendor's compiler calls it.
-            math::divd = _divd(a: f64, b: f64) -> f64, at 0x1000_F7A0, cost 84, firmware;
+            math::divd = _divd(a: f64, b: f64) -> f64, at 0x1000_F7A0, cost 84, firmware,
+                changes(&[4, 5, 6, 7], &[2, 6, 7, 8, 9]);
             /// Absolute value.
-            math::fabs = fabs(x: f64) -> f64, at 0x7000_0028, cost 200, library;
+            math::fabs = fabs(x: f64) -> f64, at 0x7000_0028, cost 200, library, pure;
             /// Absolute value.
-            math::fabsf = fabsf(x: f32) -> f32, at 0x7000_0030, cost 200, library;
+            math::fabsf = fabsf(x: f32) -> f32, at 0x7000_0030, cost 200, library, pure;
             /// Largest whole number not above `x`.
-            math::floor = floor(x: f64) -> f64, at 0x7000_0038, cost 200, library;
+            math::floor = floor(x: f64) -> f64, at 0x7000_0038, cost 200, library, pure;
             /// Largest whole number not above `x`.
-            math::floorf = floorf(x: f32) -> f32, at 0x7000_0040, cost 200, library;
+            math::floorf = floorf(x: f32) -> f32, at 0x7000_0040, cost 200, library, pure;
             /// Smallest whole number not below `x`.
-            math::ceil = ceil(x: f64) -> f64, at 0x7000_0048, cost 200, library;
+            math::ceil = ceil(x: f64) -> f64, at 0x7000_0048, cost 200, library, pure;
             /// Smallest whole number not below `x`.
-            math::ceilf = ceilf(x: f32) -> f32, at 0x7000_0050, cost 200, library;
+            math::ceilf = ceilf(x: f32) -> f32, at 0x7000_0050, cost 200, library, pure;
             /// Remainder of `x / y` with the sign of `x`.
-            math::fmod = fmod(x: f64, y: f64) -> f64, at 0x7000_0058, cost 200, library;
+            math::fmod = fmod(x: f64, y: f64) -> f64, at 0x7000_0058, cost 200, library, pure;
             /// Remainder of `x / y` with the sign of `x`.
-            math::fmodf = fmodf(x: f32, y: f32) -> f32, at 0x7000_0060, cost 200, library;
+            math::fmodf = fmodf(x: f32, y: f32) -> f32, at 0x7000_0060, cost 200, library, pure;
             /// Nearest whole number, halves away from zero.
-            math::round = round(x: f64) -> f64, at 0x7000_0068, cost 200, library;
+            math::round = round(x: f64) -> f64, at 0x7000_0068, cost 200, library, pure;
             /// Nearest whole number, halves away from zero.
-            math::roundf = roundf(x: f32) -> f32, at 0x7000_0070, cost 200, library;
+            math::roundf = roundf(x: f32) -> f32, at 0x7000_0070, cost 200, library, pure;
             /// Whole part.
-            math::trunc = trunc(x: f64) -> f64, at 0x7000_0078, cost 200, library;
+            math::trunc = trunc(x: f64) -> f64, at 0x7000_0078, cost 200, library, pure;
             /// Whole part.
-            math::truncf = truncf(x: f32) -> f32, at 0x7000_0080, cost 200, library;
+            math::truncf = truncf(x: f32) -> f32, at 0x7000_0080, cost 200, library, pure;
             /// Hyperbolic sine.
-            math::sinh = sinh(x: f64) -> f64, at 0x7000_0088, cost 200, library;
+            math::sinh = sinh(x: f64) -> f64, at 0x7000_0088, cost 200, library, pure;
             /// Hyperbolic sine.
-            math::sinhf = sinhf(x: f32) -> f32, at 0x7000_0090, cost 200, library;
+            math::sinhf = sinhf(x: f32) -> f32, at 0x7000_0090, cost 200, library, pure;
             /// Hyperbolic cosine.
-            math::cosh = cosh(x: f64) -> f64, at 0x7000_0098, cost 200, library;
+            math::cosh = cosh(x: f64) -> f64, at 0x7000_0098, cost 200, library, pure;
             /// Hyperbolic cosine.
-            math::coshf = coshf(x: f32) -> f32, at 0x7000_00A0, cost 200, library;
+            math::coshf = coshf(x: f32) -> f32, at 0x7000_00A0, cost 200, library, pure;
             /// Hyperbolic tangent.
-            math::tanh = tanh(x: f64) -> f64, at 0x7000_00A8, cost 200, library;
+            math::tanh = tanh(x: f64) -> f64, at 0x7000_00A8, cost 200, library, pure;
             /// Hyperbolic tangent.
-            math::tanhf = tanhf(x: f32) -> f32, at 0x7000_00B0, cost 200, library;
+            math::tanhf = tanhf(x: f32) -> f32, at 0x7000_00B0, cost 200, library, pure;
             /// Square root of `x² + y²`.
-            math::hypot = hypot(x: f64, y: f64) -> f64, at 0x7000_00B8, cost 200, library;
+            math::hypot = hypot(x: f64, y: f64) -> f64, at 0x7000_00B8, cost 200, library, pure;
             /// Square root of `x² + y²`.
-            math::hypotf = hypotf(x: f32, y: f32) -> f32, at 0x7000_00C0, cost 200, library;
+            math::hypotf = hypotf(x: f32, y: f32) -> f32, at 0x7000_00C0, cost 200, library, pure;
             /// Reciprocal of the square root.
-            math::rsqrt = rsqrt(x: f64) -> f64, at 0x7000_00C8, cost 200, library;
+            math::rsqrt = rsqrt(x: f64) -> f64, at 0x7000_00C8, cost 200, library, pure;
             /// Reciprocal of the square root.
-            math::rsqrtf = rsqrtf(x: f32) -> f32, at 0x7000_00D0, cost 200, library;
+            math::rsqrtf = rsqrtf(x: f32) -> f32, at 0x7000_00D0, cost 200, library, pure;
 
             // ---- string: strings, blocks of memory, characters ----------------------------------------
             /// Copies `n` bytes; returns `dst`.
             string::memcpy = memcpy(dst: *mut Void, src: *const Void, n: SizeT) -> *mut Void,
-                at 0x1000_1844, cost 32, firmware;
+                at 0x1000_1844, cost 32, firmware, changes(ALL, &[0, 1, 2, 4, 5]);
             /// Fills `len` bytes; returns `dst`.
             string::memset = memset(dst: *mut Void, fill: i32, len: SizeT) -> *mut Void,
-                at 0x8002_7820, cost 41, firmware;
+                at 0x8002_7820, cost 41, firmware, changes(&[0, 1, 2, 3, 4, 5, 6, 7], &[0, 1, 2, 4]);
             /// Copies until `ch` has been copied or `cnt` bytes are done.
             string::memccpy = memccpy(dest: *mut Char, src: *const Char, ch: i32, cnt: i32) -> *mut Char,
                 at 0x8002_7DA0, cost 20, firmware;
@@ -812,6 +921,32 @@ mod tests {
         let addresses: BTreeSet<_> = FIRMWARE_FUNCTIONS.iter().map(|function| function.address).collect();
         assert_eq!(names.len(), FIRMWARE_FUNCTIONS.len());
         assert_eq!(addresses.len(), FIRMWARE_FUNCTIONS.len());
+    }
+
+    #[test]
+    fn attributes_agree_with_the_arguments() {
+        for row in FIRMWARE_FUNCTIONS {
+            let first = row.params.first().map(|param| param.role);
+            assert!(!row.attributes.drives_axis || first == Some(Role::Axis), "{}", row.name);
+            assert!(row.attributes.bit_access.is_none() || first == Some(Role::Bit), "{}", row.name);
+            assert!(row.attributes.polls != Some(Polled::Bit) || first == Some(Role::Bit), "{}", row.name);
+            assert!(
+                row.attributes.polls != Some(Polled::Motion) || first == Some(Role::Axis),
+                "{}",
+                row.name
+            );
+            assert!(
+                !row.attributes.is_pure || (row.attributes.waits.is_none() && row.result != CType::Void),
+                "{}",
+                row.name
+            );
+        }
+    }
+
+    #[test]
+    fn registers_of_a_row_are_those_of_the_calling_convention_unless_it_names_others() {
+        assert_eq!(Function::printf.row().attributes.changed_registers, 0x0000_03FF_0000_03FF);
+        assert_eq!(Function::_divf.row().attributes.changed_registers, 0x0000_0061_0000_0018);
     }
 
     #[test]

@@ -12,7 +12,7 @@
 //! | [`limits`], [`modes`] | the servo and the devices |
 //! | [`jumps`] | the linker, the interpreter |
 //! | [`headers`] | the preprocessor |
-//! | [`waiting`] | the warning about waits in the call-back, `--explain` |
+//! | [`function`] | the attributes of a row of [`firmware`]: the lints, `--explain`, remarks |
 //! | [`hidden`] | the warning about names that the vendor's linker refuses |
 //!
 //! Invariant: this crate depends on nothing and has no behaviour.
@@ -22,6 +22,7 @@
 pub mod bits;
 pub mod ctype;
 pub mod firmware;
+pub mod function;
 pub mod headers;
 pub mod hidden;
 mod ids;
@@ -34,7 +35,6 @@ pub mod start;
 pub mod structs;
 pub mod timing;
 pub mod variables;
-pub mod waiting;
 
 #[cfg(test)]
 mod tests;

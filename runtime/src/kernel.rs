@@ -4,6 +4,7 @@
 
 use kmotiondef::AccessSize;
 use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, function_at};
+use kmotiondef::function::{Attributes, Polled};
 use kmotiondef::map::{FPGA, TIMER0};
 use kmotiondef::structs::Chan;
 use kmotiondef::variables::{
@@ -35,7 +36,6 @@ use crate::servo::cache::Change;
 use crate::servo::{Servo, limits};
 use crate::views::Typed;
 use crate::world::Moment;
-use crate::world::stimulus::WAITING;
 use crate::world::trace::{Record, View};
 
 /// What a register access costs beyond the instruction if time is not the board's: 200 ns, a timer 100 ns.
@@ -46,7 +46,6 @@ const TIMER_CYCLES: Cycles = Cycles::new(20);
 #[derive(Clone, Debug)]
 pub struct Kernel {
     signatures: Vec<Signature>,
-    kinds: Vec<CallKind>,
     pub(crate) parts: Parts,
     pub(crate) scripts: Scripts,
 }
@@ -55,17 +54,12 @@ impl Kernel {
     /// A kernel at power-up whose PC keeps its files in `files`.
     #[must_use]
     pub fn new(files: Box<dyn HostFiles>) -> Self {
-        Self {
-            signatures: signatures(),
-            kinds: kinds(),
-            parts: Parts::new(Pc::new(files)),
-            scripts: Scripts::default(),
-        }
+        Self { signatures: signatures(), parts: Parts::new(Pc::new(files)), scripts: Scripts::default() }
     }
 
     /// Everything that the firmware keeps is as at power-up; what is outside of the board is left alone.
     pub(crate) fn restart(&mut self) {
-        let Self { parts, scripts, signatures: _, kinds: _ } = self;
+        let Self { parts, scripts, signatures: _ } = self;
         parts.calls.restart();
         parts.out.console = Console::default();
         parts.out.forget_remarks(&["uart-overrun", "uart-commands", "line-in-parts", "percent-twice"]);
@@ -98,18 +92,18 @@ impl Kernel {
         if caller.now() >= self.parts.calls.notices.due {
             self.settle_notices(caller.now());
         }
-        let CallKind { waits, names_axis } = self.kinds[number];
+        let Attributes { polls, drives_axis, .. } = &FIRMWARE_FUNCTIONS[number].attributes;
         let calls = &mut self.parts.calls.waits;
-        match caller.thread {
-            Some(thread) if waits => calls.look(thread, FIRMWARE_FUNCTIONS[number].name, caller),
-            Some(thread) => calls.act(thread, caller.now()),
-            None => {}
+        match (caller.thread, *polls) {
+            (Some(thread), Some(state)) => calls.look(thread, state, caller),
+            (Some(thread), None) => calls.act(thread, caller.now()),
+            (None, _) => {}
         }
-        if names_axis && let Some(axis) = AxisId::new(caller.arguments.get(0)) {
+        if *drives_axis && let Some(axis) = AxisId::new(caller.arguments.get(0)) {
             calls.touch(axis);
         }
         if let Some(assist) = &mut self.parts.world.assist {
-            assist.called(waits, caller.now());
+            assist.called(polls.is_some(), caller.now());
         }
     }
 
@@ -122,7 +116,7 @@ impl Kernel {
             out.remark(context.now, Message::UnfinishedLine { text: held });
         }
         for thread in ThreadId::all().filter(|thread| context.threads.state(*thread).is_active()) {
-            let reads = calls.waits.of(thread).calls.iter().filter(|call| call.function == "ReadBit");
+            let reads = calls.waits.of(thread).calls.iter().filter(|call| call.polls == Polled::Bit);
             for bit in reads.filter_map(|call| Bit::new(call.argument)) {
                 if let Some(message) = moves_away(machine, io, context.memory, bit) {
                     out.remark_of(context.now, Speaker::Thread(thread), None, message);
@@ -175,32 +169,6 @@ fn moves_away(machine: &Machine, io: &Io, memory: &GuestMemory, bit: Bit) -> Opt
     let is_closed = bit_state(io, memory, bit).0 == active;
     let place = condition.to_string();
     (is_moving && goes_away && !is_closed).then_some(Message::MovesAway { axis, bit, place, load })
-}
-
-/// What a firmware function is for whoever follows what programs do.
-#[derive(Clone, Copy, Debug)]
-struct CallKind {
-    /// Whether a program calls it while it waits.
-    waits: bool,
-    /// Whether it tells the axis that is its first argument to do something.
-    names_axis: bool,
-}
-
-/// The kinds of all functions, by number.
-fn kinds() -> Vec<CallKind> {
-    const AXES: &[&str] = &[
-        "EnableAxis",
-        "EnableAxisDest",
-        "Move",
-        "MoveRel",
-        "MoveAtVel",
-        "MoveRelAtVel",
-        "MoveExp",
-        "Jog",
-        "StartMove",
-    ];
-    let kind = |name| CallKind { waits: WAITING.contains(&name), names_axis: AXES.contains(&name) };
-    FIRMWARE_FUNCTIONS.iter().map(|row| kind(row.name)).collect()
 }
 
 /// Sends what waits in the console's queue: as much as the primary thread has time for in its slice, or one string if
@@ -264,8 +232,7 @@ impl Bus for Kernel {
 #[must_use]
 pub fn pure_function(address: GuestAddr) -> Option<Pure> {
     let row = &FIRMWARE_FUNCTIONS[function_at(address)?];
-    let is_math = row.group == "math";
-    let function = is_math.then(|| math::pure(row.rust_name)).flatten()?;
+    let function = row.attributes.is_pure.then(|| math::pure(row.rust_name)).flatten()?;
     Some(Pure { cost: row.cost, function })
 }
 
@@ -279,7 +246,7 @@ impl Firmware for Kernel {
         let row = &FIRMWARE_FUNCTIONS[number];
         match (caller.woken, self.parts.timing.wait_states()) {
             (None, _) => caller.spend(row.cost),
-            (Some(wake), Some(waits)) => caller.spend(waits::after(row.rust_name, wake, waits)),
+            (Some(wake), Some(waits)) => caller.spend(waits::after(row, wake, waits)),
             (Some(_), None) => {}
         }
         self.note_call(number, caller);
@@ -295,7 +262,7 @@ impl Firmware for Kernel {
     }
 
     fn changed_registers(&self, address: GuestAddr) -> u64 {
-        function_at(address).map_or(0, crate::firmware::changed::registers)
+        function_at(address).map_or(0, |number| FIRMWARE_FUNCTIONS[number].attributes.changed_registers)
     }
 
     fn begins(&mut self, thread: ThreadId, memory: &mut GuestMemory) {

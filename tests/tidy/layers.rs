@@ -11,9 +11,9 @@ pub(crate) const LAYERS: &[(&str, &[Row])] = &[
     (
         "kmotiondef",
         &[
-            ("lists", &["firmware", "variables", "map", "headers", "hidden", "modes", "waiting"]),
+            ("lists", &["firmware", "variables", "map", "headers", "hidden", "modes"]),
             ("structures", &["structs"]),
-            ("places", &["place", "limits"]),
+            ("places", &["place", "limits", "function"]),
             ("types", &["ctype", "bits", "jumps", "start", "timing"]),
             ("numbers", &["ids"]),
         ],

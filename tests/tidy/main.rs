@@ -5,6 +5,7 @@ mod phrases;
 
 mod arrows;
 mod circles;
+mod firmware_names;
 mod imports;
 mod layers;
 mod notices;

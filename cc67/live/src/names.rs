@@ -9,15 +9,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use kmotiondef::Bit;
+use kmotiondef::firmware::FIRMWARE_FUNCTIONS;
+use kmotiondef::function::BitAccess;
 
-/// Functions with a bit as their first argument, and whether they make it an output.
-const FUNCTIONS: [(&str, bool); 5] = [
-    ("ReadBit", false),
-    ("SetBit", true),
-    ("ClearBit", true),
-    ("SetStateBit", true),
-    ("SetBitDirection", true),
-];
 /// Terms and macros of one bit's number at most.
 const TERMS: u32 = 100;
 /// Files that are read for a program at most.
@@ -69,15 +63,16 @@ pub(crate) fn bits_of(texts: &[String]) -> BTreeMap<Bit, Used> {
     let macros: BTreeMap<&str, &str> =
         texts.iter().flat_map(|text| text.lines().filter_map(defined)).collect();
     let mut bits: BTreeMap<Bit, Used> = BTreeMap::new();
-    for (function, writes) in FUNCTIONS {
+    let accesses = FIRMWARE_FUNCTIONS.iter().filter_map(|row| Some((row.name, row.attributes.bit_access?)));
+    for (function, access) in accesses {
         for argument in texts.iter().flat_map(|text| arguments(text, function)) {
             // Of a sum with a variable, the base is shown: it is where the bits begin.
             let whole = number(argument, &macros).map(|bit| (argument, bit));
             let Some((named, bit)) = whole.or_else(|| base(argument, &macros)) else { continue };
             let Some(bit) = Bit::new(bit) else { continue };
             let used = bits.entry(bit).or_default();
-            used.is_read |= !writes;
-            used.is_written |= writes;
+            used.is_read |= access == BitAccess::Read;
+            used.is_written |= access == BitAccess::Write;
             if named.split(['+', '-']).any(|term| macros.contains_key(term.trim())) {
                 used.name.get_or_insert_with(|| named.to_owned());
             }

@@ -1,18 +1,13 @@
 //! What the bytes of a program are: bytecode, or code of the real processor.
 
-use std::sync::LazyLock;
-
 use kmotiondef::GuestAddr;
-use kmotiondef::firmware::FIRMWARE_FUNCTIONS;
+use kmotiondef::firmware::Function;
 use vm::dsp;
 use vm::loaded::{Image, Loaded as Code};
 use vm::verify::{VerifyError, VerifyErrorKind, verify_image};
 
 /// Where a thread's outermost function returns to.
-static THREAD_DONE: LazyLock<GuestAddr> = LazyLock::new(|| {
-    let row = FIRMWARE_FUNCTIONS.iter().find(|row| row.name == "ThreadDone");
-    row.map_or(GuestAddr::NULL, |row| row.address)
-});
+const THREAD_DONE: GuestAddr = Function::ThreadDone.row().address;
 
 /// Bytecode in a text that begins at `base`.
 ///
@@ -24,7 +19,7 @@ pub(super) fn program(bytes: &[u8], base: GuestAddr) -> Result<Code, VerifyError
 
 /// Code of the real processor, `length` bytes from `base` on, and where its functions begin.
 pub(super) fn image(base: GuestAddr, length: u32, functions: Vec<u32>) -> Code {
-    let image = Image::new(base..base.offset(length), *THREAD_DONE);
+    let image = Image::new(base..base.offset(length), THREAD_DONE);
     Code::Image(image.with_functions(functions).into())
 }
 
@@ -37,7 +32,7 @@ pub(super) fn bare(bytes: &[u8], base: GuestAddr) -> Result<Code, VerifyError> {
         Err(VerifyError { kind: VerifyErrorKind::NotAProgram, .. }) if dsp::is_code(bytes) => {
             // Where the code ends and the data begins is not known: nothing is protected.
             let code = base..base.offset(bytes.len() as u32);
-            Ok(Code::Image(Image::unprotected(code, *THREAD_DONE).into()))
+            Ok(Code::Image(Image::unprotected(code, THREAD_DONE).into()))
         }
         other => other,
     }

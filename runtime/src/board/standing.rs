@@ -5,6 +5,7 @@
 use std::fmt;
 
 use kmotiondef::bits::{BitDirection, BitKind, range_of};
+use kmotiondef::function::Polled;
 use kmotiondef::modes::{InputMode, OutputMode};
 use kmotiondef::structs::Chan;
 use kmotiondef::variables::{COORD_SYSTEM0, CS0_STOPPING_STATE};
@@ -166,21 +167,21 @@ impl<E: Engine> Board<E> {
     }
 
     fn awaited(&self, call: &Repeated) -> Option<Awaited> {
-        match call.function {
-            "ReadBit" => {
+        match call.polls {
+            Polled::Bit => {
                 let bit = Bit::new(call.argument)?;
                 Some(Awaited::Bit(bit, self.bit(bit), self.source_of(bit)))
             }
-            "CheckDone" => {
+            Polled::Motion => {
                 let axis = AxisId::new(call.argument)?;
                 let is_enabled = self.memory().axis(axis, Chan::ENABLE) != 0;
                 let done = if is_enabled { i32::from(!has_motion(self.memory(), axis)) } else { -1 };
                 Some(Awaited::Motion(axis, done))
             }
-            "CheckDoneXYZABC" | "CheckDoneBuf" => Some(Awaited::Path),
-            "CheckDoneGather" => Some(Awaited::Recording),
-            "MutexLock" => Some(Awaited::Lock),
-            _ => None,
+            Polled::Path => Some(Awaited::Path),
+            Polled::Recording => Some(Awaited::Recording),
+            Polled::Lock => Some(Awaited::Lock),
+            Polled::Time => None,
         }
     }
 

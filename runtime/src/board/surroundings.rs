@@ -9,6 +9,8 @@
 //! Source: `dsp-board.md` section 8.
 
 use kmotiondef::AccessSize;
+use kmotiondef::firmware::row_named;
+use kmotiondef::function::Polled;
 use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::modes::{InputMode, OutputMode};
 use kmotiondef::structs::Chan;
@@ -28,7 +30,7 @@ use crate::out::{Event, EventKind, Message, Remark, Request, Speaker};
 use crate::pc::{Pc, host};
 use crate::servo::driven;
 use crate::views::{AxisView, Typed};
-use crate::world::stimulus::{Asker, Stimulus, WAITING};
+use crate::world::stimulus::{Asker, Stimulus};
 use crate::world::{Moment, trace};
 use chips::fpga::register_address;
 use chips::kanalog::ADC_CHANNELS;
@@ -185,8 +187,9 @@ impl Surroundings {
     pub fn called(&mut self, call: ProgramCall, memory: &GuestMemory, now: Cycles) {
         let Parts { world, io, .. } = &mut self.parts;
         let Some(assist) = &mut world.assist else { return };
-        assist.called(WAITING.contains(&call.function), now);
-        if call.function == "ReadBit"
+        let polls = row_named(call.function).and_then(|row| row.attributes.polls);
+        assist.called(polls.is_some(), now);
+        if polls == Some(Polled::Bit)
             && let Some(bit) = Bit::new(call.argument)
             && bit_state(io, memory, bit).1
         {

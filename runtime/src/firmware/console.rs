@@ -2,6 +2,7 @@
 //!
 //! Source: gather-persist-console.md section 4. Files on the PC are in [`super::files`].
 
+use kmotiondef::firmware::Function;
 use kmotiondef::limits::MAX_STRING;
 use kmotiondef::{Cycles, GuestAddr};
 use vm::firmware::{Caller, Outcome, Wake};
@@ -283,7 +284,7 @@ pub(crate) fn sprintf(
     arguments: Varargs,
 ) -> Result<i32, TrapKind> {
     let text = formatted(caller, pattern, arguments)?;
-    parts.check_room(caller, "sprintf", to, text.len() + 1);
+    parts.check_room(caller, Function::sprintf, to, text.len() + 1);
     store(caller, to, text)
 }
 

@@ -180,7 +180,8 @@ macro_rules! handlers {
     ($(
         $(#[doc = $doc:literal])+
         $group:ident::$function:ident = $name:ident $params:tt $(-> $result:ty)?,
-            at $address:literal, cost $cost:literal, $origin:ident;
+            at $address:literal, cost $cost:literal, $origin:ident
+            $(, $attribute:ident $(($($value:tt)*))?)*;
     )*) => {
         /// One handler a function, by its number in the table.
         pub(crate) const HANDLERS: &[Handler] =

@@ -1,5 +1,6 @@
 //! The data recorder's functions. Source: gather-persist-console.md section 1.
 
+use kmotiondef::firmware::Function;
 use kmotiondef::modes::GatherType;
 use kmotiondef::structs::{Chan, Gather, GatherValueDef};
 use kmotiondef::variables::{GATHER, GATHER_BUFFER};
@@ -18,7 +19,7 @@ const SAMPLE: u32 = 48;
 /// Records destination, position, output and three amplifier readings of an axis.
 pub(crate) fn setup_gather_all_on_axis(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32, samples: i32) {
     let Some(axis) = AxisId::new(axis) else {
-        parts.out.diagnose(caller, Message::NoSuchAxis { function: "SetupGatherAllOnAxis", axis });
+        parts.out.diagnose(caller, Message::NoSuchAxis { function: Function::SetupGatherAllOnAxis, axis });
         return;
     };
     let chan = chan(axis);

@@ -2,6 +2,7 @@
 
 use kmotiondef::Bit;
 use kmotiondef::bits::{BitDirection, BitKind, range_of};
+use kmotiondef::firmware::Function;
 use kmotiondef::limits::{MAX_PWM_VALUE, MAX_PWMC_VALUE, MAX_PWMR_VALUE};
 use kmotiondef::variables::{ADC_BUFFER_IN, KSTEP_PRESENT};
 use vm::firmware::Caller;
@@ -18,7 +19,7 @@ use chips::fpga::kanalog_pin;
 use chips::kanalog::ADC_CHANNELS;
 
 /// Checks a bit number that a program names.
-fn checked(parts: &mut Parts, caller: &Caller<'_>, function: &'static str, bit: i32) -> Option<Bit> {
+fn checked(parts: &mut Parts, caller: &Caller<'_>, function: Function, bit: i32) -> Option<Bit> {
     let checked = Bit::new(bit);
     if checked.is_none() {
         parts.out.diagnose(caller, Message::NoSuchBit { function, bit });
@@ -28,7 +29,7 @@ fn checked(parts: &mut Parts, caller: &Caller<'_>, function: &'static str, bit: 
 
 pub(crate) fn set_bit_direction(parts: &mut Parts, caller: &mut Caller<'_>, bit: i32, direction: i32) {
     costs::spend_bit(caller, if direction == 0 { costs::TO_INPUT } else { costs::TO_OUTPUT }, bit);
-    let Some(bit) = checked(parts, caller, "SetBitDirection", bit) else { return };
+    let Some(bit) = checked(parts, caller, Function::SetBitDirection, bit) else { return };
     let (is_output, now) = (direction != 0, caller.now());
     if is_output && (parts.io.pins.is_declared(bit) || parts.machine.mechanics.contact(bit).is_some()) {
         parts.out.diagnose(caller, Message::OutputAgainstInput { bit });
@@ -53,26 +54,26 @@ fn check_jp7(parts: &mut Parts, caller: &Caller<'_>, bit: Bit) {
 
 /// 1 for outputs. Outputs of option boards count as 0, as the board has it.
 pub(crate) fn get_bit_direction(parts: &mut Parts, caller: &mut Caller<'_>, bit: i32) -> i32 {
-    let Some(bit) = checked(parts, caller, "GetBitDirection", bit) else { return 0 };
+    let Some(bit) = checked(parts, caller, Function::GetBitDirection, bit) else { return 0 };
     i32::from(bits::is_output(&parts.io, bit))
 }
 
 pub(crate) fn set_bit(parts: &mut Parts, caller: &mut Caller<'_>, bit: i32) {
     costs::spend_bit(caller, costs::SET_BIT, bit);
-    write(parts, caller, "SetBit", bit, true);
+    write(parts, caller, Function::SetBit, bit, true);
 }
 
 pub(crate) fn clear_bit(parts: &mut Parts, caller: &mut Caller<'_>, bit: i32) {
     costs::spend_bit(caller, costs::CLEAR_BIT, bit);
-    write(parts, caller, "ClearBit", bit, false);
+    write(parts, caller, Function::ClearBit, bit, false);
 }
 
 pub(crate) fn set_state_bit(parts: &mut Parts, caller: &mut Caller<'_>, bit: i32, state: i32) {
     costs::spend_bit(caller, if state == 0 { costs::RESET_STATE_BIT } else { costs::SET_STATE_BIT }, bit);
-    write(parts, caller, "SetStateBit", bit, state != 0);
+    write(parts, caller, Function::SetStateBit, bit, state != 0);
 }
 
-fn write(parts: &mut Parts, caller: &mut Caller<'_>, function: &'static str, bit: i32, level: bool) {
+fn write(parts: &mut Parts, caller: &mut Caller<'_>, function: Function, bit: i32, level: bool) {
     if let Some(bit) = checked(parts, caller, function, bit) {
         check_written(parts, caller, function, bit);
         let now = caller.now();
@@ -81,7 +82,7 @@ fn write(parts: &mut Parts, caller: &mut Caller<'_>, function: &'static str, bit
 }
 
 /// A program writes to a bit: whether that can have an effect.
-fn check_written(parts: &mut Parts, caller: &Caller<'_>, function: &'static str, bit: Bit) {
+fn check_written(parts: &mut Parts, caller: &Caller<'_>, function: Function, bit: Bit) {
     let Some(range) = range_of(bit) else {
         return parts.out.diagnose(caller, Message::BitUnused { function, bit });
     };
@@ -97,7 +98,7 @@ fn check_written(parts: &mut Parts, caller: &Caller<'_>, function: &'static str,
 /// A program reads a bit: whether it can ever change.
 fn check_read(parts: &mut Parts, caller: &Caller<'_>, bit: Bit) {
     match range_of(bit).map(|range| range.kind) {
-        None => parts.out.diagnose(caller, Message::BitUnused { function: "ReadBit", bit }),
+        None => parts.out.diagnose(caller, Message::BitUnused { function: Function::ReadBit, bit }),
         Some(BitKind::KstepInput) if caller.memory.get(KSTEP_PRESENT) == 0 => {
             parts.out.diagnose(caller, Message::KstepAbsent { bit });
         }
@@ -110,7 +111,7 @@ fn check_read(parts: &mut Parts, caller: &Caller<'_>, bit: Bit) {
 
 pub(crate) fn read_bit(parts: &mut Parts, caller: &mut Caller<'_>, bit: i32) -> i32 {
     costs::spend_bit(caller, costs::READ_BIT, bit);
-    let Some(bit) = checked(parts, caller, "ReadBit", bit) else { return 0 };
+    let Some(bit) = checked(parts, caller, Function::ReadBit, bit) else { return 0 };
     let (level, is_input) = bits::bit_state(&parts.io, caller.memory, bit);
     if !is_input || range_of(bit).is_none() {
         check_read(parts, caller, bit);
@@ -147,7 +148,7 @@ pub(crate) fn adc_level(parts: &mut Parts, caller: &Caller<'_>, channel: i32) ->
 fn check_pwm(
     parts: &mut Parts,
     caller: &Caller<'_>,
-    function: &'static str,
+    function: Function,
     (channel, value): (i32, i32),
     most: i32,
 ) {
@@ -159,17 +160,17 @@ fn check_pwm(
 }
 
 pub(crate) fn write_pwm(parts: &mut Parts, caller: &mut Caller<'_>, channel: i32, value: i32) {
-    check_pwm(parts, caller, "WritePWM", (channel, value), MAX_PWM_VALUE);
+    check_pwm(parts, caller, Function::WritePWM, (channel, value), MAX_PWM_VALUE);
     store_pwm(caller.memory, channel, antiphase(value));
 }
 
 pub(crate) fn write_pwmr(parts: &mut Parts, caller: &mut Caller<'_>, channel: i32, value: i32) {
-    check_pwm(parts, caller, "WritePWMR", (channel, value), MAX_PWMR_VALUE);
+    check_pwm(parts, caller, Function::WritePWMR, (channel, value), MAX_PWMR_VALUE);
     store_pwm(caller.memory, channel, recirculate(value));
 }
 
 pub(crate) fn write_pwmc(parts: &mut Parts, caller: &mut Caller<'_>, channel: i32, value: i32) {
-    check_pwm(parts, caller, "WritePWMC", (channel, value), MAX_PWMC_VALUE);
+    check_pwm(parts, caller, Function::WritePWMC, (channel, value), MAX_PWMC_VALUE);
     store_pwm(caller.memory, channel, current(value));
 }
 

@@ -1,6 +1,7 @@
 //! Konnect option boards. Source: devices.md section 4.
 
 use kmotiondef::GuestAddr;
+use kmotiondef::firmware::Function;
 use vm::firmware::Caller;
 use vm::trap::TrapKind;
 
@@ -22,7 +23,7 @@ pub(crate) fn add_konnect(
     outputs: GuestAddr,
     inputs: GuestAddr,
 ) -> Result<(), TrapKind> {
-    add(parts, caller, "AddKonnect", Port::Aux1, address, (outputs, inputs))
+    add(parts, caller, Function::AddKonnect, Port::Aux1, address, (outputs, inputs))
 }
 
 pub(crate) fn add_konnect_aux0(
@@ -32,14 +33,14 @@ pub(crate) fn add_konnect_aux0(
     outputs: GuestAddr,
     inputs: GuestAddr,
 ) -> Result<(), TrapKind> {
-    add(parts, caller, "AddKonnect_Aux0", Port::Aux0, address, (outputs, inputs))
+    add(parts, caller, Function::AddKonnect_Aux0, Port::Aux0, address, (outputs, inputs))
 }
 
 /// Serves a board from now on; words that are not there are the caller's mistake, not that of a later tick.
 fn add(
     parts: &mut Parts,
     caller: &mut Caller<'_>,
-    function: &'static str,
+    function: Function,
     port: Port,
     address: i32,
     (outputs, inputs): (GuestAddr, GuestAddr),

@@ -1,7 +1,6 @@
 //! The firmware functions, one file a group, named as in the table.
 
 pub(crate) mod calls;
-pub(crate) mod changed;
 pub(crate) mod console;
 pub(crate) mod coord;
 mod costs;
@@ -24,9 +23,10 @@ pub(crate) mod thread;
 pub(crate) mod time;
 pub(crate) mod waits;
 
+use kmotiondef::firmware::Function;
 use vm::trap::TrapKind;
 
 /// Marks a function that links but whose behaviour is still to come: calling it is a trap, never silently nothing.
-pub(crate) fn not_modelled<T>(name: &'static str) -> Result<T, TrapKind> {
-    Err(TrapKind::NotModelled { name })
+pub(crate) fn not_modelled<T>(function: Function) -> Result<T, TrapKind> {
+    Err(TrapKind::NotModelled { name: function.name() })
 }

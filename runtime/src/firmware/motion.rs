@@ -1,5 +1,6 @@
 //! Single axes: enabling, independent moves, commutation. Source: axes-and-motion.md sections 3 to 6 and 12.
 
+use kmotiondef::firmware::Function;
 use kmotiondef::limits::TIMEBASE;
 use kmotiondef::modes::{InputMode, LastMotion, OutputMode};
 use kmotiondef::structs::Chan;
@@ -31,7 +32,7 @@ fn invalid(parts: &mut Parts, what: &str) {
 }
 
 /// Checks an axis number that a program names.
-fn checked(parts: &mut Parts, caller: &Caller<'_>, function: &'static str, axis: i32) -> Option<AxisId> {
+fn checked(parts: &mut Parts, caller: &Caller<'_>, function: Function, axis: i32) -> Option<AxisId> {
     let checked = AxisId::new(axis);
     if checked.is_none() {
         parts.out.diagnose(caller, Message::NoSuchAxis { function, axis });
@@ -40,7 +41,7 @@ fn checked(parts: &mut Parts, caller: &Caller<'_>, function: &'static str, axis:
 }
 
 pub(crate) fn enable_axis(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32) {
-    let Some(axis) = checked(parts, caller, "EnableAxis", axis) else { return };
+    let Some(axis) = checked(parts, caller, Function::EnableAxis, axis) else { return };
     let mode = OutputMode::new(caller.memory.axis(axis, Chan::OUTPUT_MODE));
     let keeps_dest = mode.is_some_and(|mode| mode.traits().keeps_dest);
     let field = if keeps_dest { Chan::DEST } else { Chan::POSITION };
@@ -85,18 +86,18 @@ pub(crate) fn disable_axis(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32
 }
 
 pub(crate) fn zero(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32) {
-    let Some(axis) = AxisId::new(axis) else { return invalid(parts, "Zero") };
+    let Some(axis) = AxisId::new(axis) else { return invalid(parts, Function::Zero.name()) };
     switching::zero(&mut parts.servo, &mut parts.machine, caller.memory, axis);
     hold::abort_if_member(caller.memory, axis);
 }
 
 pub(crate) fn reset_filters(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32) {
-    let Some(axis) = checked(parts, caller, "ResetFilters", axis) else { return };
+    let Some(axis) = checked(parts, caller, Function::ResetFilters, axis) else { return };
     switching::reset_filters(&mut parts.servo, caller.memory, axis);
 }
 
 /// Whether a motion call on an axis may do anything now.
-fn may_move(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, function: &'static str) -> bool {
+fn may_move(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, function: Function) -> bool {
     let memory = &*caller.memory;
     if memory.axis(axis, Chan::ENABLE) == 0 {
         parts.out.diagnose(caller, Message::AxisDisabled { function, axis });
@@ -154,7 +155,7 @@ fn planning_wait(parts: &Parts, caller: &Caller<'_>, axis: AxisId) -> Option<Wak
 }
 
 /// Tells a program that calls motions faster than the board plans them why the axis does not get on.
-fn notice_hurry(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, function: &'static str) {
+fn notice_hurry(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, function: Function) {
     /// That many in a row are not a coincidence; it is reported once.
     const CALLS: u8 = 50;
     let calls = &mut parts.calls.hurried_calls[axis.index()];
@@ -169,13 +170,7 @@ fn notice_hurry(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, function: 
 }
 
 /// Tells a program that calls a move of an axis right after another that the earlier one never happens.
-fn notice_replaced(
-    parts: &mut Parts,
-    caller: &Caller<'_>,
-    axis: AxisId,
-    function: &'static str,
-    target: f64,
-) {
+fn notice_replaced(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, function: Function, target: f64) {
     let Some(thread) = caller.thread else { return };
     let looks = parts.calls.waits.of(thread).looks;
     let earlier = parts.calls.notices.replaced(axis, thread, looks, target);
@@ -185,7 +180,7 @@ fn notice_replaced(
 }
 
 /// Whether a target or speed is a number that an axis can go to.
-fn is_place(parts: &mut Parts, caller: &Caller<'_>, function: &'static str, value: f64) -> bool {
+fn is_place(parts: &mut Parts, caller: &Caller<'_>, function: Function, value: f64) -> bool {
     if !value.is_finite() {
         parts.out.diagnose(caller, Message::NotAPlace { function, value });
     }
@@ -194,7 +189,7 @@ fn is_place(parts: &mut Parts, caller: &Caller<'_>, function: &'static str, valu
 
 /// One of the four moves.
 struct MoveRequest {
-    function: &'static str,
+    function: Function,
     axis: i32,
     target: f64,
     is_relative: bool,
@@ -237,7 +232,7 @@ fn request(parts: &mut Parts, caller: &mut Caller<'_>, request: &MoveRequest) ->
     Outcome::Done(())
 }
 
-fn no_limits(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, function: &'static str) {
+fn no_limits(parts: &mut Parts, caller: &Caller<'_>, axis: AxisId, function: Function) {
     parts.out.diagnose(caller, Message::NoLimits { function, axis });
 }
 
@@ -245,7 +240,7 @@ pub(crate) fn move_to(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32, x: 
     request(
         parts,
         caller,
-        &MoveRequest { function: "Move", axis, target: x, is_relative: false, velocity: None },
+        &MoveRequest { function: Function::Move, axis, target: x, is_relative: false, velocity: None },
     )
 }
 
@@ -253,7 +248,7 @@ pub(crate) fn move_rel(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32, dx
     request(
         parts,
         caller,
-        &MoveRequest { function: "MoveRel", axis, target: dx, is_relative: true, velocity: None },
+        &MoveRequest { function: Function::MoveRel, axis, target: dx, is_relative: true, velocity: None },
     )
 }
 
@@ -268,7 +263,7 @@ pub(crate) fn move_at_vel(
     request(
         parts,
         caller,
-        &MoveRequest { function: "MoveAtVel", axis, target: x, is_relative: false, velocity },
+        &MoveRequest { function: Function::MoveAtVel, axis, target: x, is_relative: false, velocity },
     )
 }
 
@@ -283,18 +278,18 @@ pub(crate) fn move_rel_at_vel(
     request(
         parts,
         caller,
-        &MoveRequest { function: "MoveRelAtVel", axis, target: dx, is_relative: true, velocity },
+        &MoveRequest { function: Function::MoveRelAtVel, axis, target: dx, is_relative: true, velocity },
     )
 }
 
 pub(crate) fn jog(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32, velocity: f64) -> Outcome<()> {
-    let Some(axis) = checked(parts, caller, "Jog", axis) else { return Outcome::Done(()) };
+    let Some(axis) = checked(parts, caller, Function::Jog, axis) else { return Outcome::Done(()) };
     let is_enabled = caller.memory.axis(axis, Chan::ENABLE) != 0;
     // To stop an axis that is disabled is no mistake.
     if !is_enabled && velocity == 0.0 {
         return Outcome::Done(());
     }
-    if !may_move(parts, caller, axis, "Jog") || !is_place(parts, caller, "Jog", velocity) {
+    if !may_move(parts, caller, axis, Function::Jog) || !is_place(parts, caller, Function::Jog, velocity) {
         return Outcome::Done(());
     }
     if let Some(wake) = planning_wait(parts, caller, axis) {
@@ -310,12 +305,12 @@ pub(crate) fn jog(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32, velocit
     }
     // Any speed will do: only acceleration and jerk limit a jog.
     let Some(limits) = limits(caller.memory, axis, Some(1.0)) else {
-        no_limits(parts, caller, axis, "Jog");
+        no_limits(parts, caller, axis, Function::Jog);
         return Outcome::Done(());
     };
     let point = present(caller.memory, axis);
     if point.v != velocity {
-        notice_hurry(parts, caller, axis, "Jog");
+        notice_hurry(parts, caller, axis, Function::Jog);
     }
     let states = profile::jog(point, velocity, &limits);
     run(caller.memory, axis, &states);
@@ -333,8 +328,8 @@ pub(crate) fn move_exp(
     if tau <= 0.0 || tau.is_nan() {
         return move_to(parts, caller, axis, x);
     }
-    let Some(axis) = checked(parts, caller, "MoveExp", axis) else { return Outcome::Done(()) };
-    if !may_move(parts, caller, axis, "MoveExp") || !is_place(parts, caller, "MoveExp", x) {
+    let Some(axis) = checked(parts, caller, Function::MoveExp, axis) else { return Outcome::Done(()) };
+    if !may_move(parts, caller, axis, Function::MoveExp) || !is_place(parts, caller, Function::MoveExp, x) {
         return Outcome::Done(());
     }
     if let Some(wake) = planning_wait(parts, caller, axis) {
@@ -377,12 +372,14 @@ pub(crate) fn move_xyzabc(
         return Outcome::Wait(wake.unwrap_or(Wake::NextSlice));
     }
     for (axis, target) in moves {
-        if may_move(parts, caller, axis, "MoveXYZABC") && is_place(parts, caller, "MoveXYZABC", target) {
+        if may_move(parts, caller, axis, Function::MoveXYZABC)
+            && is_place(parts, caller, Function::MoveXYZABC, target)
+        {
             match limits(caller.memory, axis, None) {
                 Some(limits) => {
                     start_move_to(caller.memory, axis, target, &limits, LastMotion::Multi);
                 }
-                None => no_limits(parts, caller, axis, "MoveXYZABC"),
+                None => no_limits(parts, caller, axis, Function::MoveXYZABC),
             }
         }
     }
@@ -395,7 +392,7 @@ fn done(memory: &GuestMemory, axis: AxisId) -> i32 {
 }
 
 pub(crate) fn check_done(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32) -> i32 {
-    checked(parts, caller, "CheckDone", axis).map_or(-1, |axis| done(caller.memory, axis))
+    checked(parts, caller, Function::CheckDone, axis).map_or(-1, |axis| done(caller.memory, axis))
 }
 
 pub(crate) fn check_done_xyzabc(_: &mut Parts, caller: &mut Caller<'_>) -> i32 {
@@ -407,18 +404,13 @@ pub(crate) fn check_done_xyzabc(_: &mut Parts, caller: &mut Caller<'_>) -> i32 {
 }
 
 pub(crate) fn start_move(parts: &mut Parts, caller: &mut Caller<'_>, axis: i32) {
-    if let Some(axis) = checked(parts, caller, "StartMove", axis) {
+    if let Some(axis) = checked(parts, caller, Function::StartMove, axis) {
         start(caller.memory, axis);
     }
 }
 
 /// The axis whose structure a program points at.
-fn pointed(
-    parts: &mut Parts,
-    caller: &Caller<'_>,
-    function: &'static str,
-    chan: GuestAddr,
-) -> Option<AxisId> {
+fn pointed(parts: &mut Parts, caller: &Caller<'_>, function: Function, chan: GuestAddr) -> Option<AxisId> {
     let axis = axis_at(chan);
     if axis.is_none() {
         parts.out.diagnose(caller, Message::NotAnAxis { function, chan });
@@ -427,7 +419,7 @@ fn pointed(
 }
 
 pub(crate) fn stop_motion(parts: &mut Parts, caller: &mut Caller<'_>, chan: GuestAddr) {
-    if let Some(axis) = pointed(parts, caller, "StopMotion", chan) {
+    if let Some(axis) = pointed(parts, caller, Function::StopMotion, chan) {
         caller.memory.set_axis(axis, Chan::PCOEFF, GuestAddr::NULL);
     }
 }
@@ -446,9 +438,9 @@ pub(crate) fn setup_for_move(
     starts: i32,
     count: GuestAddr,
 ) -> Result<(), TrapKind> {
-    let Some(axis) = pointed(parts, caller, "SetupForMove", chan) else { return Ok(()) };
+    let Some(axis) = pointed(parts, caller, Function::SetupForMove, chan) else { return Ok(()) };
     let Some(limits) = limits(caller.memory, axis, Some(velocity)) else {
-        no_limits(parts, caller, axis, "SetupForMove");
+        no_limits(parts, caller, axis, Function::SetupForMove);
         return Ok(());
     };
     let ramps = [abrupt_start, abrupt_end].map(|flag| if flag != 0 { Ramp::Abrupt } else { Ramp::Smooth });
@@ -477,13 +469,13 @@ pub(crate) fn setup_for_motion_pause(
     offset: i32,
     time: f64,
 ) {
-    if let Some(axis) = pointed(parts, caller, "SetupForMotionPause", chan) {
+    if let Some(axis) = pointed(parts, caller, Function::SetupForMotionPause, chan) {
         write(caller.memory, axis, index(offset), &[MotionState::hold(x, time)]);
     }
 }
 
 pub(crate) fn setup_for_motion_end(parts: &mut Parts, caller: &mut Caller<'_>, chan: GuestAddr, offset: i32) {
-    if let Some(axis) = pointed(parts, caller, "SetupForMotionEnd", chan) {
+    if let Some(axis) = pointed(parts, caller, Function::SetupForMotionEnd, chan) {
         let before = index(offset).checked_sub(1).map(|before| state(caller.memory, axis, before));
         let end = before.map_or(0.0, |before| before.at(before.t).x);
         write(caller.memory, axis, index(offset), &[MotionState::off(0.0, end)]);
@@ -501,7 +493,7 @@ pub(crate) fn write_3ph(parts: &mut Parts, caller: &mut Caller<'_>, chan: GuestA
 }
 
 pub(crate) fn write_4ph(parts: &mut Parts, caller: &mut Caller<'_>, chan: GuestAddr, v: f32, angle: f64) {
-    if let Some(axis) = pointed(parts, caller, "Write4PH", chan) {
+    if let Some(axis) = pointed(parts, caller, Function::Write4PH, chan) {
         four_phase(caller.memory, axis, v, angle);
         apply(parts, caller.memory, axis, v, angle);
     }
@@ -522,7 +514,7 @@ pub(crate) fn do_resolver_input2(
     x: f32,
     y: f32,
 ) {
-    if let Some(axis) = pointed(parts, caller, "DoResolverInput2", chan) {
+    if let Some(axis) = pointed(parts, caller, Function::DoResolverInput2, chan) {
         turn_resolver(caller.memory, axis, (x, y));
     }
 }

@@ -3,6 +3,7 @@
 //! Nothing here does anything by itself: a call goes to one part, and hands over the others that the part works on.
 
 use kmotiondef::AccessSize;
+use kmotiondef::firmware::Function;
 use kmotiondef::timing::Timing;
 use kmotiondef::{Bit, Cycles, GuestAddr};
 use vm::firmware::{Caller, TickContext};
@@ -129,13 +130,7 @@ impl Parts {
     }
 
     /// A call stores `size` bytes from an address on: whether the array that they begin in has room for them.
-    pub(crate) fn check_room(
-        &mut self,
-        caller: &Caller<'_>,
-        function: &'static str,
-        to: GuestAddr,
-        size: usize,
-    ) {
+    pub(crate) fn check_room(&mut self, caller: &Caller<'_>, function: Function, to: GuestAddr, size: usize) {
         if let Some(array) = self.calls.notices.overrun(to, size) {
             let (name, room) = (array.name.clone(), array.size);
             self.out.diagnose(caller, Message::BeyondArray { function, name, size: room, bytes: size });

@@ -1,6 +1,7 @@
 //! Registers of the SnapAmp option board. Source: devices.md section 5.
 
 use kmotiondef::Bit;
+use kmotiondef::firmware::Function;
 use kmotiondef::variables::{BIT_DIR_SHADOW_SNAP0, BIT_DIR_SHADOW_SNAP1};
 use vm::firmware::Caller;
 
@@ -30,7 +31,7 @@ fn levels(parts: &Parts, caller: &Caller<'_>, bits: impl Iterator<Item = Bit>) -
 }
 
 /// The register that a program names.
-fn checked(parts: &mut Parts, caller: &Caller<'_>, function: &'static str, address: i32) -> Option<Register> {
+fn checked(parts: &mut Parts, caller: &Caller<'_>, function: Function, address: i32) -> Option<Register> {
     let register = Register::new(address);
     if register.is_none() {
         parts.out.diagnose(caller, Message::NoSuchSnapRegister { function, address });
@@ -39,7 +40,7 @@ fn checked(parts: &mut Parts, caller: &Caller<'_>, function: &'static str, addre
 }
 
 pub(crate) fn write_snap_amp(parts: &mut Parts, caller: &mut Caller<'_>, address: i32, data: i32) {
-    let Some(register) = checked(parts, caller, "WriteSnapAmp", address) else { return };
+    let Some(register) = checked(parts, caller, Function::WriteSnapAmp, address) else { return };
     let now = caller.now();
     parts.io.snapamps.write(register, data as u16, now);
     match register.number {
@@ -60,7 +61,7 @@ pub(crate) fn write_snap_amp(parts: &mut Parts, caller: &mut Caller<'_>, address
 }
 
 pub(crate) fn read_snap_amp(parts: &mut Parts, caller: &mut Caller<'_>, address: i32) -> i32 {
-    let Some(register) = checked(parts, caller, "ReadSnapAmp", address) else { return 0 };
+    let Some(register) = checked(parts, caller, Function::ReadSnapAmp, address) else { return 0 };
     let Register { board, number } = register;
     match number {
         PINS => levels(parts, caller, pins(board)),

@@ -1,6 +1,7 @@
 //! The rest of the C library: heap, numbers in text, random numbers, ending.
 
 use kmotiondef::GuestAddr;
+use kmotiondef::firmware::Function;
 use vm::firmware::{Caller, Outcome};
 use vm::trap::TrapKind;
 
@@ -195,7 +196,7 @@ pub(crate) fn ecvt(
     _: GuestAddr,
     _: GuestAddr,
 ) -> Result<GuestAddr, TrapKind> {
-    not_modelled("ecvt")
+    not_modelled(Function::ecvt)
 }
 
 pub(crate) fn fcvt(
@@ -206,11 +207,11 @@ pub(crate) fn fcvt(
     _: GuestAddr,
     _: GuestAddr,
 ) -> Result<GuestAddr, TrapKind> {
-    not_modelled("fcvt")
+    not_modelled(Function::fcvt)
 }
 
 pub(crate) fn atexit(_: &mut Parts, _: &mut Caller<'_>, _: GuestAddr) -> Result<i32, TrapKind> {
-    not_modelled("atexit")
+    not_modelled(Function::atexit)
 }
 
 /// Ends the calling thread.
@@ -239,7 +240,7 @@ pub(crate) fn qsort(
     _: u32,
     _: GuestAddr,
 ) -> Result<(), TrapKind> {
-    not_modelled("qsort")
+    not_modelled(Function::qsort)
 }
 
 pub(crate) fn bsearch(
@@ -251,7 +252,7 @@ pub(crate) fn bsearch(
     _: u32,
     _: GuestAddr,
 ) -> Result<GuestAddr, TrapKind> {
-    not_modelled("bsearch")
+    not_modelled(Function::bsearch)
 }
 
 #[cfg(test)]

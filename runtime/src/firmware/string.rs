@@ -3,6 +3,7 @@
 //! Each function reads what C would read and traps where it leaves mapped memory. Copies cost a cycle for each byte
 //! beyond the call's own cost.
 
+use kmotiondef::firmware::Function;
 use kmotiondef::{Cycles, GuestAddr};
 use vm::firmware::Caller;
 use vm::trap::TrapKind;
@@ -150,7 +151,7 @@ pub(crate) fn strcpy(
     from: GuestAddr,
 ) -> AddressResult {
     let text = text(caller, from)?;
-    parts.check_room(caller, "strcpy", to, text.len() + 1);
+    parts.check_room(caller, Function::strcpy, to, text.len() + 1);
     write_text(caller, to, text)?;
     Ok(to)
 }
@@ -177,7 +178,7 @@ pub(crate) fn strcat(
     from: GuestAddr,
 ) -> AddressResult {
     let (end, text) = (text(caller, to)?.len() as u32, text(caller, from)?);
-    parts.check_room(caller, "strcat", to, end as usize + text.len() + 1);
+    parts.check_room(caller, Function::strcat, to, end as usize + text.len() + 1);
     write_text(caller, to.offset(end), text)?;
     Ok(to)
 }

@@ -1,5 +1,6 @@
 //! Starting and stopping threads. Source: threads-and-time.md section 2.
 
+use kmotiondef::firmware::Function;
 use kmotiondef::map::program_base;
 use kmotiondef::structs::Persist;
 use kmotiondef::variables::PERSIST;
@@ -44,7 +45,7 @@ pub(crate) fn start_thread(parts: &mut Parts, caller: &mut Caller<'_>, thread: i
             parts.out.diagnose(caller, Message::ThreadEmpty { thread: id });
         }
         Some(_) => {}
-        None => invalid(parts, caller, "StartThread", thread),
+        None => invalid(parts, caller, Function::StartThread, thread),
     }
 }
 
@@ -53,7 +54,7 @@ pub(crate) fn pause_thread(parts: &mut Parts, caller: &mut Caller<'_>, thread: i
     match ThreadId::new(thread) {
         Some(id) if caller.thread == Some(id) => return Outcome::Pause,
         Some(id) => caller.threads.pause(id),
-        None => invalid(parts, caller, "PauseThread", thread),
+        None => invalid(parts, caller, Function::PauseThread, thread),
     }
     Outcome::Done(())
 }
@@ -63,7 +64,7 @@ pub(crate) fn resume_thread(parts: &mut Parts, caller: &mut Caller<'_>, thread: 
     match ThreadId::new(thread) {
         Some(id) => i32::from(caller.threads.resume(id).is_err()),
         None => {
-            invalid(parts, caller, "ResumeThread", thread);
+            invalid(parts, caller, Function::ResumeThread, thread);
             1
         }
     }
@@ -74,6 +75,6 @@ pub(crate) fn thread_done(_: &mut Parts, _: &mut Caller<'_>) -> Outcome<()> {
     Outcome::End
 }
 
-fn invalid(parts: &mut Parts, caller: &Caller<'_>, function: &'static str, thread: i32) {
+fn invalid(parts: &mut Parts, caller: &Caller<'_>, function: Function, thread: i32) {
     parts.out.diagnose(caller, Message::NoSuchThread { function, thread });
 }

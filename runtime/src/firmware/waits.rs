@@ -4,22 +4,25 @@
 //! The table's cost is spent when the call is made; what is spent after the wait depends on why it waited.
 
 use kmotiondef::Cycles;
+use kmotiondef::firmware::FirmwareFunction;
+use kmotiondef::function::WaitEnd;
 use kmotiondef::timing::WaitStates;
 use vm::wake::Wake;
 
-/// What a function spends after its wait, by its name in the runtime.
+/// The time that a function spends after its wait.
 ///
 /// Moves that are called in motion are planned when the next slice begins; the time functions look at the clock again.
-pub(crate) fn after(function: &str, wake: Wake, waits: WaitStates) -> Cycles {
-    let accesses = |count: u32| i64::from(count * waits.register);
-    Cycles::new(match (function, wake) {
-        ("wait_next_time_slice", _) => 69 + accesses(1),
-        ("delay_sec" | "wait_until", Wake::At(_)) => 63 + accesses(1),
-        ("move_to" | "move_rel" | "move_at_vel" | "move_rel_at_vel", Wake::NextSlice) => 4720,
-        ("jog", Wake::NextSlice) => 1500,
-        ("move_xyzabc", Wake::NextSlice) => 3475,
-        _ => 0,
-    })
+pub(crate) fn after(function: &FirmwareFunction, wake: Wake, waits: WaitStates) -> Cycles {
+    let has_ended = |event| match event {
+        WaitEnd::Slice => matches!(wake, Wake::NextSlice),
+        WaitEnd::Time => matches!(wake, Wake::At(_)),
+    };
+    function.attributes.resumption.filter(|resumption| has_ended(resumption.event)).map_or(
+        Cycles::default(),
+        |resumption| {
+            resumption.cycles + Cycles::new(i64::from(resumption.register_accesses * waits.register))
+        },
+    )
 }
 
 /// What the primary thread takes to send a console line of some characters.

@@ -6,6 +6,7 @@
 
 use std::fmt;
 
+use kmotiondef::firmware::Function;
 use kmotiondef::{AxisId, Bit, CodeAddr, GuestAddr, ThreadId};
 
 /// How much a remark matters.
@@ -202,10 +203,10 @@ macro_rules! messages {
 
 messages! {
     /// A call names a bit that does not exist.
-    NoSuchBit { function: &'static str, bit: i32 } = "no-such-bit", Warning, [always],
+    NoSuchBit { function: Function, bit: i32 } = "no-such-bit", Warning, [always],
         "{function}({bit}): no such bit (0-2047)";
     /// A call names an axis that does not exist.
-    NoSuchAxis { function: &'static str, axis: i32 } = "no-such-axis", Warning, [always],
+    NoSuchAxis { function: Function, axis: i32 } = "no-such-axis", Warning, [always],
         "{function}({axis}, …): no such axis (0-7)";
     /// A program reads an input that nothing drives: no switch, no device, no stimulus.
     UndrivenInput { bit: Bit, level: u8 } = "undriven-input", Hint, [per bit],
@@ -214,13 +215,13 @@ messages! {
     UndrivenAdc { channel: i32, level: i32 } = "undriven-adc", Hint, [per channel],
         "ReadADC({channel}): nothing drives analog input {channel}; it stays {level}";
     /// A program writes to a bit of an option board that is always an input.
-    InputWritten { function: &'static str, bit: Bit } = "input-written", Warning, [per bit],
+    InputWritten { function: Function, bit: Bit } = "input-written", Warning, [per bit],
         "{function}({bit}): bit {bit} is an input, so nothing changes";
     /// A program writes to a pin that is still an input.
-    StillAnInput { function: &'static str, bit: Bit } = "still-an-input", Warning, [per bit],
+    StillAnInput { function: Function, bit: Bit } = "still-an-input", Warning, [per bit],
         "{function}({bit}): bit {bit} is an input, so its pin does not change: call SetBitDirection({bit}, 1) first";
     /// A program uses a bit number to which nothing on the board or its option boards is connected.
-    BitUnused { function: &'static str, bit: Bit } = "bit-unused", Warning, [per bit],
+    BitUnused { function: Function, bit: Bit } = "bit-unused", Warning, [per bit],
         "{function}({bit}): nothing is connected to bit {bit}: it reads 0 and cannot be written";
     /// A program makes a pin an output although a switch, a probe or a wire drives it.
     OutputAgainstInput { bit: Bit } = "output-against-input", Warning, [per bit],
@@ -238,13 +239,13 @@ messages! {
     MovesAway { axis: AxisId, bit: Bit, place: String, load: f64 } = "moves-away", Warning, [per bit],
         "waits for bit {bit}, but axis {axis} moves away from its switch, which is active {place}: the axis is at {load:.0}";
     /// A call moves an axis that has no output although other axes have one.
-    NoOutput { function: &'static str, axis: AxisId } = "no-output", Hint, [per axis],
+    NoOutput { function: Function, axis: AxisId } = "no-output", Hint, [per axis],
         "{function}: axis {axis} has no OutputMode, so its Dest changes but no motor moves (should an init program run first?)";
     /// An axis moves, but the axis that should follow it is disabled.
     SlaveDisabled { axis: AxisId, master: AxisId } = "slave-disabled", Warning, [per axis],
         "axis {axis} has MasterAxis = {master}, but is disabled, so it does not follow: call EnableAxis({axis})";
     /// A move replaces an earlier move of the same axis that has not started yet.
-    MoveReplaced { function: &'static str, axis: AxisId, earlier: f64, target: f64 } = "move-replaced", Warning, [per axis],
+    MoveReplaced { function: Function, axis: AxisId, earlier: f64, target: f64 } = "move-replaced", Warning, [per axis],
         "{function}: the move of axis {axis} to {earlier} is replaced by one to {target} before it starts: wait with `while (!CheckDone({axis}));` in between";
     /// A path starts while one of its axes is disabled.
     PathDisabled { } = "path-disabled", Warning, [once],
@@ -256,13 +257,13 @@ messages! {
     RunsAway { axis: AxisId } = "runs-away", Warning, [per axis],
         "axis {axis} runs away: its output drives it further from Dest; change the sign of OutputGain or of InputGain0";
     /// A call stores a text or a block in an array that is too small for it.
-    BeyondArray { function: &'static str, name: String, size: u32, bytes: usize } = "beyond-array", Warning, [always],
+    BeyondArray { function: Function, name: String, size: u32, bytes: usize } = "beyond-array", Warning, [always],
         "{function} stores {bytes} bytes in `{name}`, which has {size}: the memory after it is overwritten";
     /// A value for a PWM output is out of range.
-    PwmRange { function: &'static str, channel: i32, value: i32, most: i32 } = "pwm-range", Warning, [per channel],
+    PwmRange { function: Function, channel: i32, value: i32, most: i32 } = "pwm-range", Warning, [per channel],
         "{function}({channel}, {value}): the range is -{most} to {most}, and the value is limited to it";
     /// A call names a PWM output that does not exist.
-    NoSuchPwm { function: &'static str, channel: i32 } = "no-such-pwm", Warning, [per channel],
+    NoSuchPwm { function: Function, channel: i32 } = "no-such-pwm", Warning, [per channel],
         "{function}({channel}, …): no such channel (0-15)";
     /// A program ends with a line of text that has no newline.
     UnfinishedLine { text: String } = "unfinished-line", Hint, [once],
@@ -271,10 +272,10 @@ messages! {
     Assisted { bit: Bit, level: u8 } = "assisted", Warning, [always],
         "waits, so --assist sets bit {bit} to {level} for 0.1 s";
     /// A call passes an address that is not an element of `chan`.
-    NotAnAxis { function: &'static str, chan: GuestAddr } = "not-an-axis", Warning, [always],
+    NotAnAxis { function: Function, chan: GuestAddr } = "not-an-axis", Warning, [always],
         "{function}: {chan} is not an axis structure";
     /// A call names a thread that does not exist.
-    NoSuchThread { function: &'static str, thread: i32 } = "no-such-thread", Warning, [always],
+    NoSuchThread { function: Function, thread: i32 } = "no-such-thread", Warning, [always],
         "{function}({thread}): no such thread (1-7)";
     /// A call starts a thread without a program.
     ThreadEmpty { thread: ThreadId } = "thread-empty", Warning, [always],
@@ -286,25 +287,25 @@ messages! {
     NoSuchAdc { channel: i32 } = "no-such-adc", Warning, [always],
         "ReadADC({channel}): no such channel (0-7)";
     /// A call names a register that a SnapAmp does not have.
-    NoSuchSnapRegister { function: &'static str, address: i32 } = "no-such-snap-register", Warning, [always],
+    NoSuchSnapRegister { function: Function, address: i32 } = "no-such-snap-register", Warning, [always],
         "{function}({address:#x}): no such register (0x40-0x7f)";
     /// A motion call names an axis that is disabled.
-    AxisDisabled { function: &'static str, axis: AxisId } = "axis-disabled", Warning, [always],
+    AxisDisabled { function: Function, axis: AxisId } = "axis-disabled", Warning, [always],
         "{function}: axis {axis} is disabled, so nothing moves";
     /// A motion call names an axis that follows a path.
-    AxisOnPath { function: &'static str, axis: AxisId } = "axis-on-path", Warning, [always],
+    AxisOnPath { function: Function, axis: AxisId } = "axis-on-path", Warning, [always],
         "{function}: axis {axis} is executing coordinated motion, which continues";
     /// A call moves an axis that has switches but no output.
-    AxisUndriven { function: &'static str, axis: AxisId } = "axis-undriven", Hint, [per axis],
+    AxisUndriven { function: Function, axis: AxisId } = "axis-undriven", Hint, [per axis],
         "{function}: axis {axis} drives nothing because its OutputMode is NO_OUTPUT_MODE, so the machine does not move (should an init program run first?)";
     /// A program calls motions faster than the board can plan them.
-    Hurried { function: &'static str, axis: AxisId, ms: f64, calls: u8 } = "hurried", Hint, [always],
+    Hurried { function: Function, axis: AxisId, ms: f64, calls: u8 } = "hurried", Hint, [always],
         "{function}: axis {axis} gets a new target within {ms} ms, {calls} times in a row. The board takes that long to plan a motion that replaces another, and the axis keeps its speed until then: no target ever takes effect. Call less often, or use MoveExp";
     /// A motion call passes a number that is not finite.
-    NotAPlace { function: &'static str, value: f64 } = "not-a-place", Warning, [always],
+    NotAPlace { function: Function, value: f64 } = "not-a-place", Warning, [always],
         "{function}: {value} is not a valid position, so nothing moves";
     /// A motion call names an axis without limits.
-    NoLimits { function: &'static str, axis: AxisId } = "no-limits", Warning, [always],
+    NoLimits { function: Function, axis: AxisId } = "no-limits", Warning, [always],
         "{function}: Vel, Accel and Jerk of axis {axis} are not all positive";
     /// The list of states that an axis should execute does not exist.
     NoStates { axis: AxisId } = "no-states", Warning, [always],
@@ -343,10 +344,10 @@ messages! {
     NothingToThread { } = "nothing-to-thread", Warning, [always],
         "TrigThreading: the segment buffer is empty";
     /// A Konnect is added at an address that no board can have.
-    KonnectAddress { function: &'static str, address: i32 } = "konnect-address", Warning, [always],
+    KonnectAddress { function: Function, address: i32 } = "konnect-address", Warning, [always],
         "{function}({address}, …): boards have addresses 0 to 7";
     /// A Konnect is added that the machine does not have.
-    KonnectAbsent { function: &'static str, address: i32 } = "konnect-absent", Warning, [always],
+    KonnectAbsent { function: Function, address: i32 } = "konnect-absent", Warning, [always],
         "{function}({address}, …): the machine has no board with that address";
     /// A load overwrites the words of a Konnect service.
     KonnectDropped { thread: ThreadId } = "konnect-dropped", Warning, [always],
@@ -469,7 +470,7 @@ mod tests {
 
     #[test]
     fn a_remark_says_who_and_what() {
-        let message = Message::NoSuchBit { function: "SetBit", bit: 3000 };
+        let message = Message::NoSuchBit { function: Function::SetBit, bit: 3000 };
         assert_eq!(message.arguments(), [("function", "SetBit".to_owned()), ("bit", "3000".to_owned())]);
         let speaker = Speaker::Thread(ThreadId::new(1).expect("1 is a thread"));
         let remark = Remark { message, speaker, place: None };

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use cranelift_entity::{PrimaryMap, SecondaryMap};
-use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, Origin, function_named};
+use kmotiondef::firmware::{FirmwareFunction, Origin, row_named};
 
 use crate::typed::SymbolId;
 
@@ -16,14 +16,9 @@ pub(crate) struct About {
     pub(crate) is_defined: bool,
 }
 
-/// Functions that return for a small angle before their last product has landed.
-const LATE: [&str; 2] = ["sin", "cos"];
-
-/// Whether the board's firmware has a function of this name.
-fn is_in_firmware(name: &str) -> bool {
-    let function = function_named(name);
-    let origin = function.and_then(|number| FIRMWARE_FUNCTIONS.get(number)).map(|row| row.origin);
-    matches!(origin, Some(Origin::Header | Origin::Firmware))
+/// The function of the board's firmware with this name.
+fn in_firmware(name: &str) -> Option<&'static FirmwareFunction> {
+    row_named(name).filter(|row| matches!(row.origin, Origin::Header | Origin::Firmware))
 }
 
 /// The symbols of a unit, as far as code cares.
@@ -46,9 +41,9 @@ impl Externs {
         let About { align, is_variadic, is_external, is_defined } = about;
         let id = self.aligns.push(align);
         self.variadic[id] = is_variadic;
-        let is_firmware = is_external && !is_defined && is_in_firmware(name);
-        self.stack_alone[id] = is_variadic && is_firmware;
-        self.late[id] = is_firmware && LATE.contains(&name);
+        let firmware = in_firmware(name).filter(|_| is_external && !is_defined);
+        self.stack_alone[id] = is_variadic && firmware.is_some();
+        self.late[id] = firmware.is_some_and(|row| row.attributes.returns_early);
         if is_external {
             self.named.insert(name.to_owned(), id);
         }

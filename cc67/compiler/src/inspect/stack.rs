@@ -6,13 +6,11 @@
 
 use std::fmt::Write as _;
 
+use kmotiondef::firmware::FIRMWARE_FUNCTIONS;
 use kmotiondef::map::{INTERRUPT_STACK, STACK_SIZE, THREAD_STACK};
 
 use super::Inspection;
 use super::calls::{Calls, Node};
-
-/// Bytes that firmware functions were measured to need at most, with the caller's part (`c67x.md` section 6.3).
-const FIRMWARE: &[(&str, u32)] = &[("printf", 945), ("sprintf", 840)];
 
 /// The most stack that a function and what it calls can need.
 #[derive(Clone, Debug)]
@@ -105,10 +103,10 @@ impl Depths<'_> {
     fn of(&self, node: &Node, depths: &[Option<Depth>]) -> Depth {
         let Some(frame) = node.frame else { return Depth::Unknown };
         let mut deepest = (0, Next::Nothing);
-        for (name, bytes) in FIRMWARE.iter().filter(|(name, _)| self.is_real && node.firmware.contains(*name))
-        {
-            if *bytes > deepest.0 {
-                deepest = (*bytes, Next::Firmware(name, *bytes));
+        let known = FIRMWARE_FUNCTIONS.iter().filter_map(|row| Some((row.name, row.attributes.stack?)));
+        for (name, bytes) in known.filter(|(name, _)| self.is_real && node.firmware.contains(*name)) {
+            if bytes > deepest.0 {
+                deepest = (bytes, Next::Firmware(name, bytes));
             }
         }
         for callee in callees(node) {

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use kmotiondef::waiting::waits_for;
+use kmotiondef::firmware::row_named;
 
 use super::call_graph::CallGraph;
 use super::program::AnalysedProgram;
@@ -23,7 +23,9 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
             for (expr, call) in function.calls() {
                 let Callee::Symbol(callee) = call.callee else { continue };
                 let name = program.name(callee);
-                if waits_for(name).is_none() || !seen.insert((function.symbol, callee)) {
+                if row_named(name).is_none_or(|row| row.attributes.waits.is_none())
+                    || !seen.insert((function.symbol, callee))
+                {
                     continue;
                 }
                 let diagnostic = Diagnostic::warning(

@@ -1,5 +1,8 @@
 //! Backslashes in the name of a file that are written once: `fopen("c:\temp\new.txt", "w")`.
 
+use kmotiondef::ctype::Role;
+use kmotiondef::firmware::row_named;
+
 use super::format::{called_firmware, literal_argument};
 use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
@@ -8,12 +11,13 @@ use crate::diag::{Diagnostic, Lint, Sink};
 pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     for function in program.functions() {
         for (_, call) in function.calls() {
-            if called_firmware(program.unit, call) != Some("fopen") {
+            let called = called_firmware(program.unit, call).and_then(row_named);
+            let Some(argument) = called.and_then(|row| row.argument(|role| role == Role::FileName)) else {
                 continue;
-            }
-            let name = literal_argument(program.unit, function, call, 0).unwrap_or_default();
+            };
+            let name = literal_argument(program.unit, function, call, argument).unwrap_or_default();
             let Some(escape) = name.iter().find_map(|byte| escape(*byte)) else { continue };
-            let span = function.exprs[call.arguments[0]].span;
+            let span = function.exprs[call.arguments[argument]].span;
             sink.report(
                 Diagnostic::warning(Lint::FileName, span, format!("`\\{escape}` in the name of a file"))
                     .at("no file has such a name")

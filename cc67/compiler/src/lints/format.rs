@@ -4,6 +4,9 @@
 //! `unsigned` is fine, `%d` for a `double` is not (`dialect.md` 5). A format that is not
 //! written in the call is not looked at.
 
+use kmotiondef::ctype::Role;
+use kmotiondef::firmware::row_named;
+
 use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::source::Span;
@@ -83,14 +86,9 @@ pub(super) struct FormatFunction {
 impl FormatFunction {
     /// The function of this name, if it takes a format and variable arguments.
     pub(super) fn by_name(name: &str) -> Option<Self> {
-        let (format, is_scan) = match name {
-            "printf" => (0, false),
-            "fprintf" | "sprintf" => (1, false),
-            "snprintf" => (2, false),
-            "sscanf" | "fscanf" => (1, true),
-            _ => return None,
-        };
-        Some(Self { format, is_scan })
+        let function = row_named(name).filter(|row| row.is_variadic)?;
+        let format = function.argument(|role| matches!(role, Role::PrintFormat | Role::ScanFormat))?;
+        Some(Self { format, is_scan: function.params[format].role == Role::ScanFormat })
     }
 }
 

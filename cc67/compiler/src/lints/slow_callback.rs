@@ -6,7 +6,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use kmotiondef::firmware::FIRMWARE_FUNCTIONS;
+use kmotiondef::firmware::row_named;
 
 use super::call_back_wait::call_backs;
 use super::call_graph::CallGraph;
@@ -141,8 +141,7 @@ impl Estimate<'_> {
 
 /// What a firmware function takes on the board, without waiting.
 fn firmware(name: &str) -> u64 {
-    let found = FIRMWARE_FUNCTIONS.iter().find(|function| function.name == name);
-    found.map_or(0, |function| function.cost.get().max(0).unsigned_abs())
+    row_named(name).map_or(0, |function| function.cost.get().max(0).unsigned_abs())
 }
 
 /// How many turns a loop takes whose counter grows from a constant by one up to a constant; 1 for every other.

@@ -1,16 +1,13 @@
 //! Constants beyond what an output of the board takes.
 
-use kmotiondef::limits::{MAX_PWM_VALUE, MAX_PWMC_VALUE, MAX_PWMR_VALUE};
+use kmotiondef::ctype::Role;
+use kmotiondef::firmware::row_named;
 
 use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
 use crate::operators::BinaryOp;
 use crate::source::Span;
 use crate::typed::{Callee, ExprKind};
-
-/// Functions whose second argument is a value, which goes from minus this to this.
-const LIMITS: &[(&str, i32)] =
-    &[("WritePWM", MAX_PWM_VALUE), ("WritePWMR", MAX_PWMR_VALUE), ("WritePWMC", MAX_PWMC_VALUE)];
 
 /// The words of the analog outputs.
 pub(crate) const DAC_WORDS: &str = "DAC_Buffer";
@@ -59,17 +56,19 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
         for (_, call) in function.calls() {
             let Callee::Symbol(callee) = call.callee else { continue };
             let name = program.name(callee);
-            let Some((_, most)) = LIMITS.iter().find(|(known, _)| *known == name) else { continue };
-            let Some(argument) = call.arguments.get(1).map(|argument| &function.exprs[*argument]) else {
-                continue;
-            };
-            let ExprKind::Int(value) = argument.kind else { continue };
-            if value.unsigned_abs() > u64::from(most.unsigned_abs()) {
-                let message = format!("`{name}` takes values from -{most} to {most}, but this is {value}");
-                sink.report(
-                    Diagnostic::warning(Lint::ValueRange, argument.span, message)
-                        .at(format!("the board limits it to {}", i64::from(*most) * value.signum())),
-                );
+            let Some(row) = row_named(name) else { continue };
+            for (param, argument) in row.params.iter().zip(&call.arguments) {
+                let argument = &function.exprs[*argument];
+                if let (Role::Within(most), ExprKind::Int(value)) = (param.role, &argument.kind)
+                    && value.unsigned_abs() > u64::from(most.unsigned_abs())
+                {
+                    let message =
+                        format!("`{name}` takes values from -{most} to {most}, but this is {value}");
+                    sink.report(
+                        Diagnostic::warning(Lint::ValueRange, argument.span, message)
+                            .at(format!("the board limits it to {}", i64::from(most) * value.signum())),
+                    );
+                }
             }
         }
     }

@@ -4,7 +4,7 @@
 //! (`dialect.md` 2.3). Everything else is an error with the nearest name.
 
 use kmotiondef::CType;
-use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, Origin};
+use kmotiondef::firmware::{Origin, row_named};
 
 use super::Sema;
 use super::advice::{Advice, HEADER_HELP};
@@ -234,5 +234,5 @@ pub(super) fn is_sensible(spelling: &str, name: &str) -> bool {
 
 /// Whether the board's header declares a function of the firmware.
 fn is_in_header(name: &str) -> bool {
-    FIRMWARE_FUNCTIONS.iter().any(|function| function.name == name && function.origin == Origin::Header)
+    row_named(name).is_some_and(|function| function.origin == Origin::Header)
 }

@@ -5,6 +5,7 @@
 
 use std::sync::Arc;
 
+use kmotiondef::firmware::Function;
 use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::{AxisId, Bit, CodeAddr, Cycles, GuestAddr, ThreadId};
 use vm::firmware::Caller;
@@ -33,7 +34,7 @@ pub(crate) struct Named {
 #[derive(Clone, Copy, Debug)]
 struct Latch {
     bit: Bit,
-    function: &'static str,
+    function: Function,
     thread: Option<ThreadId>,
     at: Option<CodeAddr>,
 }
@@ -71,7 +72,7 @@ impl Default for Notices {
 
 impl Notices {
     /// A level is written to a pin that is an input.
-    pub(crate) fn latch(&mut self, caller: &Caller<'_>, function: &'static str, bit: Bit) {
+    pub(crate) fn latch(&mut self, caller: &Caller<'_>, function: Function, bit: Bit) {
         if self.latches.len() < MOST && self.latches.iter().all(|latch| latch.bit != bit) {
             self.latches.push(Latch { bit, function, thread: caller.thread, at: caller.at });
             self.due = self.due.min(caller.now() + PATIENCE);

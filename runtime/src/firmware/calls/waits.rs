@@ -2,6 +2,7 @@
 //!
 //! A thread waits as long as it calls nothing but functions that look or let time pass. Any other call ends the wait.
 
+use kmotiondef::function::Polled;
 use kmotiondef::{AxisId, CodeAddr, Cycles, ThreadId};
 use vm::firmware::Caller;
 
@@ -11,8 +12,8 @@ const MOST: usize = 16;
 /// A call that a thread repeats while it waits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Repeated {
-    /// The function.
-    pub(crate) function: &'static str,
+    /// The state that it polls.
+    pub(crate) polls: Polled,
     /// Its first argument.
     pub(crate) argument: i32,
     /// Where the call is.
@@ -40,10 +41,10 @@ pub(crate) struct Waits {
 
 impl Waits {
     /// A thread looks at something or lets time pass.
-    pub(crate) fn look(&mut self, thread: ThreadId, function: &'static str, caller: &Caller<'_>) {
+    pub(crate) fn look(&mut self, thread: ThreadId, polls: Polled, caller: &Caller<'_>) {
         let wait = &mut self.threads[thread.index()];
         wait.looks += 1;
-        let call = Repeated { function, argument: caller.arguments.get(0), at: caller.at };
+        let call = Repeated { polls, argument: caller.arguments.get(0), at: caller.at };
         if wait.calls.len() < MOST && !wait.calls.contains(&call) {
             wait.calls.push(call);
         }

@@ -12,20 +12,6 @@ const PATIENCE: Cycles = Cycles::new(2 * Cycles::PER_SECOND.get());
 /// How long an input stays toggled: 0.1 s. As long again is what the programs have to show that it helped.
 const PRESSED: Cycles = Cycles::new(Cycles::PER_SECOND.get() / 10);
 
-/// Functions that a program calls while it waits.
-pub(crate) const WAITING: &[&str] = &[
-    "ReadBit",
-    "Delay_sec",
-    "WaitNextTimeSlice",
-    "WaitUntil",
-    "Time_sec",
-    "CheckDone",
-    "CheckDoneXYZABC",
-    "CheckDoneBuf",
-    "CheckDoneGather",
-    "MutexLock",
-];
-
 /// Who reads an input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Asker {

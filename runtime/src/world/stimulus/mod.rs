@@ -44,7 +44,7 @@ pub use trigger::{Condition, Edge, Trigger};
 pub use wave::Wave;
 
 pub(crate) use action::{Form, KEYS};
-pub(crate) use assist::{Asker, Assist, Step, WAITING};
+pub(crate) use assist::{Asker, Assist, Step};
 pub(crate) use player::Player;
 
 use std::fmt;

@@ -1,5 +1,7 @@
 //! Integers of 32 bits.
 
+use kmotiondef::firmware::Function;
+
 use super::Selector;
 use crate::c67x::code::{Arg, VReg};
 use crate::c67x::forms::Kind;
@@ -50,10 +52,10 @@ impl Selector<'_> {
             BinaryOp::ShiftLeft => self.shift(Kind::Shl, to, a, b),
             BinaryOp::ShiftRight => self.shift(Kind::Shr, to, a, b),
             BinaryOp::ShiftRightUnsigned => self.shift(Kind::Shru, to, a, b),
-            BinaryOp::Divide => self.helper_i32("_divi", to, a, b),
-            BinaryOp::DivideUnsigned => self.helper_i32("_divu", to, a, b),
-            BinaryOp::Remainder => self.helper_i32("_remi", to, a, b),
-            BinaryOp::RemainderUnsigned => self.helper_i32("_remu", to, a, b),
+            BinaryOp::Divide => self.helper_i32(Function::_divi.name(), to, a, b),
+            BinaryOp::DivideUnsigned => self.helper_i32(Function::_divu.name(), to, a, b),
+            BinaryOp::Remainder => self.helper_i32(Function::_remi.name(), to, a, b),
+            BinaryOp::RemainderUnsigned => self.helper_i32(Function::_remu.name(), to, a, b),
         }
     }
 

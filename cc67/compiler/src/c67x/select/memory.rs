@@ -1,5 +1,7 @@
 //! Loads, stores, addresses, blocks of memory.
 
+use kmotiondef::firmware::Function;
+
 use super::Selector;
 use crate::c67x::code::{Arg, Base, Inst, MemoryPlace, VReg, Value};
 use crate::c67x::forms::Kind;
@@ -160,7 +162,7 @@ impl Selector<'_> {
         let (to, from) = (self.address(to), self.address(from));
         let len = self.known(Value::Number(len.cast_signed()));
         let result = self.word();
-        self.helper("memcpy", &[to, from, len], result);
+        self.helper(Function::memcpy.name(), &[to, from, len], result);
     }
 
     pub(super) fn clear_memory(&mut self, to: Address, len: u32) {
@@ -175,6 +177,6 @@ impl Selector<'_> {
         let to = self.address(to);
         let len = self.known(Value::Number(len.cast_signed()));
         let result = self.word();
-        self.helper("memset", &[to, zero, len], result);
+        self.helper(Function::memset.name(), &[to, zero, len], result);
     }
 }

@@ -7,7 +7,6 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use kmotiondef::firmware::{ABSENT, FIRMWARE_FUNCTIONS, FirmwareFunction, Origin};
-use kmotiondef::waiting::waits_for;
 use runtime::REMARKS;
 
 use super::Explained;
@@ -47,7 +46,7 @@ pub(super) fn answer(is_meant: &dyn Fn(&str) -> bool) -> Option<String> {
     let name = function.name;
     let mut text = format!("# {name}\n\n    {};\n\n{}\n\n", function.prototype(), sentence(function));
     let cost = function.cost.get() as f64 / CYCLES_PER_US;
-    let _ = match waits_for(name) {
+    let _ = match function.attributes.waits {
         Some(what) => writeln!(
             text,
             "- It waits {what}, while other threads run: not in the call-back (`UserCallBack`). In addition it takes {cost} µs."
