@@ -6,6 +6,7 @@ mod board_options;
 mod boot;
 mod boot_debug;
 mod console;
+mod doctor;
 mod drop_in;
 mod editor;
 mod explain;

@@ -10,6 +10,7 @@ mod cycles;
 mod debug;
 mod deferred;
 mod diff;
+mod doctor;
 mod drop_in;
 mod examples;
 mod explain;
@@ -38,7 +39,7 @@ use compiler::words::suggest;
 use self::deferred::Deferred;
 use super::args::beside::Beside;
 use super::io::exit::Exit;
-use super::io::terminal;
+use super::io::{output, terminal};
 
 /// C compiler, linker and simulated KFLOP board.
 #[derive(Debug, Parser)]
@@ -113,6 +114,8 @@ subcommands! {
     Sweep(package::PackageArguments) as arguments => package::run("sweep", arguments);
     /// Measure step and frequency response, following error or tolerance of a program; needs the Python package
     Study(package::PackageArguments) as arguments => package::run("study", arguments);
+    /// Show what is installed: command, engines, examples, editors, Python, controllers; for reports of faults
+    Doctor(doctor::DoctorArguments) as arguments => doctor::doctor(arguments);
     /// Print the completion script for a shell
     Completions(shell::CompletionArguments) as arguments => shell::completions(arguments, Arguments::command());
     /// Write manual pages
@@ -135,6 +138,9 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     }
     let arguments = serve::home::called_as_server(&arguments).unwrap_or(arguments);
     let words: Vec<OsString> = arguments.into_iter().map(as_long_option).collect();
+    if asks_for_version_in_full(&words) {
+        return output::print(&doctor::version()).map_or(Exit::WrongInput, |()| Exit::Success).into();
+    }
     let arguments = match Arguments::try_parse_from(&words) {
         Ok(arguments) => match arguments.with_sidecars(&words) {
             Ok(arguments) => arguments,
@@ -163,6 +169,13 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             Exit::WrongInput
         })
         .into()
+}
+
+/// Whether the arguments are `--version` and `--verbose`, in either order.
+fn asks_for_version_in_full(words: &[OsString]) -> bool {
+    let [_, options @ ..] = words else { return false };
+    let has = |names: [&str; 2]| options.iter().any(|option| names.iter().any(|name| option == name));
+    options.len() == 2 && has(["--version", "-V"]) && has(["--verbose", "-v"])
 }
 
 impl Arguments {

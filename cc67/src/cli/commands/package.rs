@@ -19,11 +19,15 @@ pub(super) struct PackageArguments {
     arguments: Vec<OsString>,
 }
 
+/// The names under which Python is looked for.
+pub(super) fn pythons() -> Vec<OsString> {
+    let own = env::var_os("CC67_PYTHON");
+    own.map_or_else(|| vec!["python3".into(), "python".into()], |own| vec![own])
+}
+
 /// Has the package do it.
 pub(super) fn run(name: &str, arguments: &PackageArguments) -> Result<Exit> {
-    let own = env::var_os("CC67_PYTHON");
-    let pythons = own.map_or_else(|| vec!["python3".into(), "python".into()], |own| vec![own]);
-    for python in pythons {
+    for python in pythons() {
         let has_package = Command::new(&python).args(["-c", "import cc67"]).output();
         if !has_package.is_ok_and(|output| output.status.success()) {
             continue;
