@@ -5,6 +5,7 @@ mod phrases;
 
 mod arrows;
 mod circles;
+mod extension;
 mod firmware_names;
 mod imports;
 mod layers;
@@ -12,6 +13,7 @@ mod notices;
 mod options;
 mod packages;
 mod passes;
+mod promises;
 mod remarks;
 mod shapes;
 mod tokens;
