@@ -113,8 +113,10 @@ def homebrew(version: str, address: str, sums: dict[str, str]) -> str:
 
 
 def write(version: str, address: str, checksums: Path, folder: Path) -> None:
-    sums = dict(reversed(line.split(maxsplit=1)) for line in checksums.read_text(encoding="utf-8").splitlines())
-    sums = {name.lstrip("*"): value for name, value in sums.items()}
+    sums: dict[str, str] = {}
+    for line in checksums.read_text(encoding="utf-8").splitlines():
+        value, name = line.split(maxsplit=1)
+        sums[name.lstrip("*")] = value
     files = {"scoop/cc67.json": scoop(version, address, sums), "homebrew/cc67.rb": homebrew(version, address, sums)}
     files |= {f"winget/{name}": text for name, text in winget(version, address, sums).items()}
     for name, text in files.items():

@@ -25,7 +25,7 @@ fn linked(manifest: &str, packages: &[&str]) -> BTreeMap<Package, String> {
         .output()
         .expect("cargo starts");
     let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "`cargo fetch --locked` gets what is missing: {said}");
+    assert!(output.status.success(), "`cargo fetch --manifest-path {manifest}` gets what is missing: {said}");
     let text = String::from_utf8(output.stdout).expect("names of crates are ASCII");
     let rows = text.lines().filter_map(|line| {
         let (package, licence) = line.split_once('|')?;
