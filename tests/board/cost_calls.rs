@@ -13,6 +13,7 @@ use harness::Scratch;
 use kmotiondef::firmware::{FIRMWARE_FUNCTIONS, function_at};
 use kmotiondef::timing::{Timing, WaitStates};
 use kmotiondef::{ThreadId, Ticks};
+use runtime::Board;
 use serde_json::Value as Json;
 use vm::profile::ProfilingEngine;
 
@@ -223,7 +224,7 @@ main()
 {
 ";
 
-fn run(scratch: &Scratch, body: &str) -> Result<Session<ProfilingEngine>, String> {
+fn run(scratch: &Scratch, body: &str) -> Result<Session<Board<ProfilingEngine>>, String> {
     scratch.write("work.c", format!("{HEAD}{body}}}\n"));
     let mut setup = Setup::default();
     setup.options.timing = Timing::Vendor(WaitStates::REGISTERS);
@@ -237,9 +238,9 @@ fn run(scratch: &Scratch, body: &str) -> Result<Session<ProfilingEngine>, String
 }
 
 /// The cycles of the calls of a function in `main`, in their order.
-fn calls_of(session: &Session<ProfilingEngine>, name: &str) -> Vec<f64> {
+fn calls_of(session: &Session<Board<ProfilingEngine>>, name: &str) -> Vec<f64> {
     let mut calls = BTreeMap::new();
-    for (site, spent) in session.board().machine().engine().profile().sites() {
+    for (site, spent) in session.target().machine().engine().profile().sites() {
         let function = site.firmware.and_then(function_at).map(|index| FIRMWARE_FUNCTIONS[index].name);
         if function == Some(name) {
             calls.insert(site.calls.clone(), spent.computing.get() as f64);

@@ -80,7 +80,7 @@ fn spent(scratch: &Scratch, statement: &str, waits: WaitStates) -> f64 {
     let mut session = setup.session_on(ProfilingEngine::default()).expect("it fits");
     let _ = session.run(Ticks::new(1000), &mut |_| ());
     assert!(session.has_ended(), "{statement}");
-    session.board().machine().engine().profile().sites().map(|(_, spent)| spent.computing.get() as f64).sum()
+    session.target().machine().engine().profile().sites().map(|(_, spent)| spent.computing.get() as f64).sum()
 }
 
 #[test]

@@ -4,7 +4,7 @@ use cc67_host::{End, Session, Setup, Until, UserProgram, WatchError};
 use harness::Scratch;
 use kmotiondef::{Bit, Cycles, ThreadId, Ticks};
 use runtime::stimulus::Stimulus;
-use runtime::{Event, EventKind};
+use runtime::{Board, Event, EventKind};
 use vm::engine::Engine;
 use vm::interp::BytecodeEngine;
 use vm::native::NativeEngine;
@@ -77,14 +77,14 @@ fn lines(kept: &mut Vec<(Cycles, String)>) -> impl FnMut(Event) {
 }
 
 /// All of the memory in which programs and their data are.
-fn memory<E: Engine>(session: &Session<E>) -> Vec<u8> {
+fn memory<E: Engine>(session: &Session<Board<E>>) -> Vec<u8> {
     let (base, size) = (kmotiondef::map::PROGRAM_BASE, 7 * kmotiondef::map::PROGRAM_SIZE);
-    let bytes = session.board().memory().read_bytes(kmotiondef::GuestAddr::new(base), size);
+    let bytes = session.target().memory().read_bytes(kmotiondef::GuestAddr::new(base), size);
     bytes.expect("it is there").to_vec()
 }
 
 /// Does things by hand at many instants; what was shown, and the recording.
-fn by_hand<E: Engine>(mut session: Session<E>) -> (Shown, String) {
+fn by_hand<E: Engine>(mut session: Session<Board<E>>) -> (Shown, String) {
     let mut kept = Vec::new();
     let mut hear = lines(&mut kept);
     for round in 0..40_u64 {

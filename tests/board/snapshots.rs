@@ -9,7 +9,7 @@ use compiler::target::Target;
 use harness::root;
 use kmotiondef::{Cycles, ThreadId, Ticks};
 use runtime::stimulus::Stimulus;
-use runtime::{Event, MachineFile};
+use runtime::{Board, Event, MachineFile};
 use vm::engine::Engine;
 use vm::interp::BytecodeEngine;
 use vm::memory::GuestMemory;
@@ -99,8 +99,8 @@ struct Seen {
     now: Cycles,
 }
 
-fn seen<E: Engine>(session: &Session<E>) -> Seen {
-    let machine = session.board().machine();
+fn seen<E: Engine>(session: &Session<Board<E>>) -> Seen {
+    let machine = session.target().machine();
     let places: Vec<_> = ThreadId::all().map(|thread| machine.backtrace(thread)).collect();
     Seen {
         memory: machine.memory().clone(),
@@ -117,7 +117,7 @@ struct Run {
 }
 
 impl Run {
-    fn to<E: Engine>(session: &mut Session<E>, end: Ticks) -> Self {
+    fn to<E: Engine>(session: &mut Session<Board<E>>, end: Ticks) -> Self {
         let mut events = Vec::new();
         session.advance(end, &mut |event| events.push(event));
         Self { events, end: seen(session) }
@@ -153,7 +153,7 @@ fn check<E: Engine>(name: &str, target: Target, numbers: &mut Numbers) {
         .iter()
         .map(|tick| {
             session.advance(Ticks::new(*tick), &mut |event| events.push(event));
-            (session.snapshot(), events.len())
+            (session.snapshot().expect("it has snapshots"), events.len())
         })
         .collect();
     let rest = Run::to(&mut session, end);
@@ -207,15 +207,15 @@ fn a_snapshot_of_a_board_takes_little_time_and_memory() {
     let mut session =
         setup("machine/thread", Target::Sim).session_on(NativeEngine::default()).expect("it is right");
     session.advance(Ticks::new(5000), &mut |_| ());
-    let first = session.snapshot();
+    let first = session.snapshot().expect("it has snapshots");
     session.advance(Ticks::new(5100), &mut |_| ());
     let times = (0..20).map(|_| {
         let begin = Instant::now();
-        let _ = session.snapshot();
+        let _ = session.snapshot().expect("it has snapshots");
         begin.elapsed()
     });
     let taken = times.min().expect("there are some");
-    let second = session.snapshot();
+    let second = session.snapshot().expect("it has snapshots");
     let begin = Instant::now();
     session.restore(&first).expect("it is of this board");
     println!("snapshot {taken:?}, back {:?}, {} bytes changed", begin.elapsed(), second.bytes_beyond(&first));

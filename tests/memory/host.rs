@@ -28,7 +28,7 @@ fn a_million_lines_arrive_in_order_and_in_bounded_memory() {
     board.run_for(1.0);
     MEMORY.reset_peak_usage();
     let before = MEMORY.current_usage();
-    let is_done = |session: &mut cc67_host::Session| session.has_ended();
+    let is_done = |session: &mut cc67_host::Session<cc67_host::AnyTarget>| session.has_ended();
     assert!(board.run_until(200.0, is_done), "two periods of 90 µs for each line are 180 s");
     assert_eq!(count.try_iter().last(), Some(1_000_000));
     let growth = MEMORY.peak_usage().saturating_sub(before);

@@ -131,7 +131,11 @@ pub(crate) const LAYERS: &[(&str, &[Row])] = &[
             ("clients", &["client"]),
             ("shared state", &["state"]),
             ("session", &["session"]),
+            ("targets", &["target"]),
+            ("setup", &["setup"]),
+            ("programs", &["user_program"]),
             ("answers", &["error", "message", "remark"]),
+            ("capabilities", &["capability"]),
         ],
     ),
     (

@@ -164,6 +164,44 @@ impl<F: Firmware + ?Sized> Slice<'_, F> {
 #[error("the snapshot is from another board, whose native threads cannot continue here")]
 pub struct ForeignSnapshot;
 
+/// Why a context is held.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HoldReason {
+    /// Before an instruction with a breakpoint.
+    Breakpoint,
+    /// After one instruction, as was requested.
+    Step,
+    /// Something that is watched was changed.
+    Changed {
+        /// Its place in the list that was set.
+        index: usize,
+        /// The instruction that did it; `None` if it was none of this context's.
+        by: Option<CodeAddr>,
+    },
+}
+
+/// A context that is held.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Hold {
+    /// Which one.
+    pub context: ContextId,
+    /// Why.
+    pub reason: HoldReason,
+}
+
+/// A call in progress, as a debugger sees it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FrameView {
+    /// The instruction that is executed next; in a caller, the call.
+    pub at: CodeAddr,
+    /// Where it continues: the same, or in a caller what follows the call.
+    pub continues_at: CodeAddr,
+    /// Address of the frame in guest memory.
+    pub frame: GuestAddr,
+    /// The registers.
+    pub registers: Vec<u64>,
+}
+
 /// What the machine asks of every engine.
 pub trait Executor: Default {
     /// What a thread is loaded with that runs on this engine.
@@ -219,6 +257,48 @@ pub trait Executor: Default {
 
     /// Where `id` is: its instruction, then the calls that led there, innermost first.
     fn backtrace(&self, id: ContextId) -> Vec<CodeAddr>;
+
+    /// Whether it can hold contexts for a debugger: without it, the methods below do nothing and find nothing. Where
+    /// contexts are held changes neither what a program does nor when.
+    const HOLDS: bool = false;
+
+    /// Holds contexts before these instructions, and before no others.
+    fn set_breakpoints(&mut self, addresses: &[CodeAddr]) {
+        let _ = addresses;
+    }
+
+    /// Holds a context after each instruction, the next one included; `None` none.
+    fn set_stepping(&mut self, context: Option<ContextId>) {
+        let _ = context;
+    }
+
+    /// Holds contexts after these bytes, addresses and how many, are not what they are now; and after no others.
+    fn set_watched(&mut self, memory: &GuestMemory, ranges: &[(GuestAddr, u32)]) {
+        let _ = (memory, ranges);
+    }
+
+    /// Returns which of what is watched has changed since the last call.
+    fn take_change(&mut self, memory: &GuestMemory) -> Option<usize> {
+        let _ = memory;
+        None
+    }
+
+    /// Returns which context was held last, and why; once.
+    fn take_hold(&mut self) -> Option<Hold> {
+        None
+    }
+
+    /// The calls in progress of a context, innermost first.
+    fn frames(&self, id: ContextId) -> Vec<FrameView> {
+        let _ = id;
+        Vec::new()
+    }
+
+    /// Sets a register of a call in progress, the innermost of which is number 0; whether there is such a register.
+    fn set_register(&mut self, id: ContextId, frame: usize, register: u16, slot: u64) -> bool {
+        let _ = (id, frame, register, slot);
+        false
+    }
 }
 
 /// An engine that runs [`Program`]s. All of them spend the same cycles and stop at the same instructions.

@@ -24,12 +24,10 @@ use kmotiondef::{CodeAddr, Cycles, GuestAddr};
 
 use self::activation::{Exit, State};
 use self::code::{Code, Encoded, Words};
-pub use self::context::FrameView;
 use self::context::{Context, Saved};
 use self::holds::Holds;
-pub use self::holds::{Hold, HoldReason};
 use crate::call::CallArguments;
-use crate::engine::{ContextId, Executor, ForeignSnapshot, Slice, Stack, Stop};
+use crate::engine::{ContextId, Executor, ForeignSnapshot, FrameView, Hold, Slice, Stack, Stop};
 use crate::firmware::{Firmware, Outcome};
 use crate::memory::GuestMemory;
 use crate::operand::SigRef;
@@ -59,48 +57,7 @@ impl BytecodeEngine {
     }
 }
 
-/// What a debugger asks of the engine. None of it changes what a program does, nor when.
 impl BytecodeEngine {
-    /// Holds contexts before these instructions, and before no others.
-    pub fn set_breakpoints(&mut self, addresses: impl IntoIterator<Item = CodeAddr>) {
-        self.holds.set_breakpoints(addresses);
-        self.refresh();
-    }
-
-    /// Holds a context after each instruction, the next one included; `None` none.
-    pub const fn set_stepping(&mut self, context: Option<ContextId>) {
-        self.holds.set_stepping(context);
-    }
-
-    /// Holds contexts after these bytes, addresses and how many, are not what they are now; and after no others.
-    pub fn set_watched(&mut self, memory: &GuestMemory, ranges: &[(GuestAddr, u32)]) {
-        self.holds.set_watched(memory, ranges);
-        self.refresh();
-    }
-
-    /// Which of what is watched has changed since that was last said.
-    pub fn take_change(&mut self, memory: &GuestMemory) -> Option<usize> {
-        self.holds.take_change(memory)
-    }
-
-    /// Which context was held last, and why; said once.
-    pub const fn take_hold(&mut self) -> Option<Hold> {
-        self.holds.hold.take()
-    }
-
-    /// The calls in progress of a context, innermost first.
-    #[must_use]
-    pub fn frames(&self, id: ContextId) -> Vec<FrameView> {
-        let Some(Running { code, context }) = &self.contexts[id.index()] else { return Vec::new() };
-        context.frames(|word| code.program.address_of(word))
-    }
-
-    /// Sets a register of a call in progress, the innermost of which is number 0; whether there is such a register.
-    pub fn set_register(&mut self, id: ContextId, frame: usize, register: u16, slot: u64) -> bool {
-        let running = self.contexts[id.index()].as_mut();
-        running.is_some_and(|running| running.context.set_in(frame, register, slot))
-    }
-
     /// Gives all contexts the words at which they should be held now.
     fn refresh(&mut self) {
         for Running { code, .. } in self.contexts.iter_mut().flatten() {
@@ -187,6 +144,40 @@ impl Executor for BytecodeEngine {
     fn backtrace(&self, id: ContextId) -> Vec<CodeAddr> {
         let Some(Running { code, context }) = &self.contexts[id.index()] else { return Vec::new() };
         context.backtrace().into_iter().map(|word| code.program.address_of(word)).collect()
+    }
+
+    const HOLDS: bool = true;
+
+    fn set_breakpoints(&mut self, addresses: &[CodeAddr]) {
+        self.holds.set_breakpoints(addresses.iter().copied());
+        self.refresh();
+    }
+
+    fn set_stepping(&mut self, context: Option<ContextId>) {
+        self.holds.set_stepping(context);
+    }
+
+    fn set_watched(&mut self, memory: &GuestMemory, ranges: &[(GuestAddr, u32)]) {
+        self.holds.set_watched(memory, ranges);
+        self.refresh();
+    }
+
+    fn take_change(&mut self, memory: &GuestMemory) -> Option<usize> {
+        self.holds.take_change(memory)
+    }
+
+    fn take_hold(&mut self) -> Option<Hold> {
+        self.holds.hold.take()
+    }
+
+    fn frames(&self, id: ContextId) -> Vec<FrameView> {
+        let Some(Running { code, context }) = &self.contexts[id.index()] else { return Vec::new() };
+        context.frames(|word| code.program.address_of(word))
+    }
+
+    fn set_register(&mut self, id: ContextId, frame: usize, register: u16, slot: u64) -> bool {
+        let running = self.contexts[id.index()].as_mut();
+        running.is_some_and(|running| running.context.set_in(frame, register, slot))
     }
 }
 

@@ -40,6 +40,10 @@ impl From<HostError> for Outcome {
             | HostError::NotLoaded(_)
             | HostError::Unmapped(_)
             | HostError::Stimulus(_)
+            | HostError::Firmware(_)
+            | HostError::Flash(_)
+            | HostError::Unsupported(_)
+            | HostError::Snapshot(_)
             | HostError::Act(_) => Self::Failed,
         }
     }

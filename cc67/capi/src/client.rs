@@ -4,7 +4,7 @@ use std::ffi::{c_char, c_int};
 use std::path::{Path, PathBuf};
 use std::ptr;
 
-use cc67_host::{Board, fill};
+use cc67_host::{Board, BootedFirmware, fill};
 use compiler::Options;
 use runtime::{Config, Directory, MachineFile};
 
@@ -35,20 +35,72 @@ pub unsafe extern "C" fn cc67_open(
             fill(message, "a name is not UTF-8");
             return ptr::null_mut();
         };
-        match open(files.map(PathBuf::from), machine.map(Path::new)) {
-            Ok(client) => {
-                fill(message, "");
-                client.into_pointer()
-            }
-            Err(error) => {
-                fill(message, &error);
-                ptr::null_mut()
-            }
-        }
+        opened(open(files.map(PathBuf::from), machine.map(Path::new)), message)
     })
 }
 
+/// Makes a board that runs your own firmware file, and its first client: programs are compiled for the processor, and
+/// the firmware answers. `firmware` is the name of the file; the other arguments and the result are those of
+/// `cc67_open`.
+///
+/// # Safety
+/// Texts end with a 0; `message` has room for `size` bytes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn cc67_open_firmware(
+    firmware: *const c_char,
+    files: *const c_char,
+    machine: *const c_char,
+    message: *mut c_char,
+    size: usize,
+) -> *mut Client {
+    guarded_or(ptr::null_mut(), || {
+        // SAFETY: the caller vouches for the buffer.
+        let message = unsafe { buffer(message, size) };
+        // SAFETY: the caller vouches for the text.
+        let firmware = unsafe { optional_text(firmware) };
+        // SAFETY: the caller vouches for the text.
+        let files = unsafe { optional_text(files) };
+        // SAFETY: the caller vouches for the text.
+        let machine = unsafe { optional_text(machine) };
+        let (Ok(firmware), Ok(files), Ok(machine)) = (firmware, files, machine) else {
+            fill(message, "a name is not UTF-8");
+            return ptr::null_mut();
+        };
+        let Some(firmware) = firmware else {
+            fill(message, "the firmware file has no name");
+            return ptr::null_mut();
+        };
+        opened(boot(Path::new(firmware), files.map(PathBuf::from), machine.map(Path::new)), message)
+    })
+}
+
+/// A client as C receives it, or the reason in its buffer.
+fn opened(client: Result<Client, String>, message: &mut [u8]) -> *mut Client {
+    match client {
+        Ok(client) => {
+            fill(message, "");
+            client.into_pointer()
+        }
+        Err(error) => {
+            fill(message, &error);
+            ptr::null_mut()
+        }
+    }
+}
+
 fn open(files: Option<PathBuf>, machine: Option<&Path>) -> Result<Client, String> {
+    Ok(Client { board: Board::with(config(files, machine)?), options: Options::default() })
+}
+
+fn boot(firmware: &Path, files: Option<PathBuf>, machine: Option<&Path>) -> Result<Client, String> {
+    let firmware = BootedFirmware::open(firmware).map_err(|error| error.to_string())?;
+    let board = Board::booted(&firmware, config(files, machine)?).map_err(|error| error.to_string())?;
+    let options = board.options();
+    Ok(Client { board, options })
+}
+
+/// What is connected to a board.
+fn config(files: Option<PathBuf>, machine: Option<&Path>) -> Result<Config, String> {
     let mut config = Config::default();
     if let Some(folder) = files {
         config.files = Box::new(Directory::new(folder));
@@ -59,7 +111,7 @@ fn open(files: Option<PathBuf>, machine: Option<&Path>) -> Result<Client, String
         config.machine_file = MachineFile::parse(&text)
             .map_err(|error| format!("{}:{}:{}: {error}", path.display(), error.line, error.column))?;
     }
-    Ok(Client { board: Board::with(config), options: Options::default() })
+    Ok(config)
 }
 
 /// Makes one more client of the same board, for another thread or another part of the program. Null on failure.
@@ -72,7 +124,8 @@ pub unsafe extern "C" fn cc67_another_client(client: *mut Client) -> *mut Client
         // SAFETY: the caller vouches for the client.
         let board = unsafe { board(client) };
         board.map_or(ptr::null_mut(), |board| {
-            Client { board: board.another_client(), options: Options::default() }.into_pointer()
+            let options = board.options();
+            Client { board: board.another_client(), options }.into_pointer()
         })
     })
 }

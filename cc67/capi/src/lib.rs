@@ -34,7 +34,10 @@ pub use border::Outcome;
 pub use console::{LineCallback, cc67_service_console, cc67_set_console_callback, cc67_take_remark};
 pub use handle::Client;
 
-pub use client::{cc67_another_client, cc67_close, cc67_firmware_version, cc67_list_locations, cc67_open};
+pub use client::{
+    cc67_another_client, cc67_close, cc67_firmware_version, cc67_list_locations, cc67_open,
+    cc67_open_firmware,
+};
 pub use lines::{
     cc67_check_for_ready, cc67_get_status, cc67_read_line_timeout, cc67_write_line,
     cc67_write_line_read_line, cc67_write_line_with_echo,

@@ -4,10 +4,11 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
-use cc67_host::{Session, UserProgram};
-use compiler::debug::{CodeScope, FunctionModel, Model};
+use cc67_host::{Capability, Session, Target, UserProgram};
+use compiler::debug::{CodeScope, FunctionModel, Model, source_of};
 use compiler::files;
 use compiler::pp::Disk;
+use compiler::target::Target as CodeTarget;
 use kmotiondef::ThreadId;
 
 /// The debug information of the programs in the threads, or why there is none.
@@ -41,7 +42,7 @@ pub(crate) struct Activation<'a> {
 
 impl Programs {
     /// Brings it up to what is loaded.
-    pub fn update(&mut self, session: &Session) {
+    pub fn update<T: Target>(&mut self, session: &Session<T>) {
         self.known.retain(|thread, _| session.programs().iter().any(|program| program.thread == *thread));
         for program in session.programs() {
             if self.known.get(&program.thread).is_none_or(|(known, _)| known.image != program.image) {
@@ -188,7 +189,14 @@ fn is_same_file(wanted: &str, file: &str, program: &Path) -> bool {
         })
 }
 
-fn model(program: &UserProgram, session: &Session) -> Result<Model, String> {
+fn model<T: Target>(program: &UserProgram, session: &Session<T>) -> Result<Model, String> {
+    let options = session.options();
+    if options.target == CodeTarget::C67x && session.can(Capability::ProcessorCode) {
+        let path =
+            if program.is_image { source_of(&program.path, &program.image)? } else { program.path.clone() };
+        let text = files::read(&path).map_err(|error| format!("cannot read {}: {error}", path.display()))?;
+        return Model::of_real_code(&path, text, options, &Disk, program.thread, &program.image);
+    }
     if program.is_image {
         return compiler::debug::of_image(&program.path, &program.image, session.options());
     }

@@ -2,12 +2,12 @@
 
 mod show;
 
-pub(crate) use show::{disassembly, seconds, state};
+pub(crate) use show::{seconds, state};
 
-use cc67_host::remark;
+use cc67_host::{Target, remark};
 use kmotiondef::limits::TIMEBASE;
 use kmotiondef::{ThreadId, Ticks};
-use runtime::{Event, EventKind};
+use runtime::{Board, Event, EventKind};
 use vm::engine::ContextId;
 
 use crate::debugger::{BreakpointKind, DebugError, Debugger, Reason, Stop};
@@ -24,8 +24,8 @@ pub enum Said {
 
 /// A debugger with commands.
 #[derive(Debug)]
-pub struct Shell {
-    debugger: Debugger,
+pub struct Shell<T: Target = Board> {
+    debugger: Debugger<T>,
     lines: LineReader,
     /// The line that `list` continues with.
     listed: u32,
@@ -35,16 +35,16 @@ pub struct Shell {
 /// What receives what the board says while it runs: console lines, and words about events.
 pub type Output<'a> = &'a mut dyn FnMut(&str);
 
-impl Shell {
+impl<T: Target> Shell<T> {
     /// Commands for a debugger.
     #[must_use]
-    pub const fn new(debugger: Debugger) -> Self {
-        Self { debugger, lines: LineReader::modelled(), listed: 0, values: 0 }
+    pub fn new(debugger: Debugger<T>) -> Self {
+        Self { debugger, lines: LineReader::default(), listed: 0, values: 0 }
     }
 
     /// The debugger.
     #[must_use]
-    pub const fn debugger(&self) -> &Debugger {
+    pub const fn debugger(&self) -> &Debugger<T> {
         &self.debugger
     }
 
@@ -55,7 +55,7 @@ impl Shell {
             line.rsplit(|c: char| !(c.is_ascii_alphanumeric() || "_-".contains(c))).next().unwrap_or("");
         let mut names: Vec<String> = Vec::new();
         if line.trim_start() == word {
-            names.extend(self.lines.names().map(str::to_owned));
+            names.extend(LineReader::names().map(str::to_owned));
         } else {
             for (_, model) in self.debugger.programs().all() {
                 names.extend(model.functions.iter().map(|function| function.name.clone()));
@@ -275,7 +275,7 @@ struct Teller<'a, 'b> {
 }
 
 impl<'a, 'b> Teller<'a, 'b> {
-    fn new(debugger: &Debugger, output: &'a mut (dyn FnMut(&str) + 'b)) -> Self {
+    fn new<T: Target>(debugger: &Debugger<T>, output: &'a mut (dyn FnMut(&str) + 'b)) -> Self {
         let infos = debugger.session().debug().into_iter().map(|(_, info)| info).collect();
         Self { infos, output }
     }
@@ -299,7 +299,7 @@ impl<'a, 'b> Teller<'a, 'b> {
 }
 
 /// What the breakpoints are, a line each.
-fn breakpoints(debugger: &Debugger) -> String {
+fn breakpoints<T: Target>(debugger: &Debugger<T>) -> String {
     let mut out = String::new();
     for breakpoint in debugger.breakpoints() {
         let kind = match &breakpoint.kind {

@@ -9,7 +9,7 @@ use runtime::{Config, Event};
 
 use crate::session::{EXCHANGE, ticks};
 use crate::state::{State, Status};
-use crate::{HostError, Session, Setup, UserProgram, fill};
+use crate::{AnyTarget, BootedFirmware, HostError, Session, Setup, UserProgram, fill};
 use compiler::Options;
 
 /// Seconds that [`Board::write_line_read_line`] waits for its reply.
@@ -98,14 +98,24 @@ impl Board {
     /// ```
     #[must_use]
     pub fn with(config: Config) -> Self {
-        let session = Setup { config, ..Setup::default() }.session();
+        let session = Setup { config, ..Setup::default() }.session_on_any(None);
         Self::from_session(session.expect("nothing is loaded that could be refused"))
+    }
+
+    /// A board that runs a firmware file, with these settings; programs are compiled for it.
+    ///
+    /// # Errors
+    /// The flash is of another firmware, or this firmware cannot be connected to what the settings describe.
+    pub fn booted(firmware: &BootedFirmware, config: Config) -> Result<Self, HostError> {
+        let options = firmware.options(Options::default());
+        let setup = Setup { config, options, ..Setup::default() };
+        Ok(Self::from_session(setup.session_on_any(Some(firmware))?))
     }
 
     /// The first client of a board that is under control already. What clients do is not recorded: they may do it
     /// forever.
     #[must_use]
-    pub fn from_session(session: Session) -> Self {
+    pub fn from_session(session: Session<AnyTarget>) -> Self {
         let mut state = State::new(session);
         let number = state.number();
         let shared = Shared { state: Mutex::new(state), released: Condvar::new() };
@@ -128,6 +138,12 @@ impl Board {
     pub fn another_client(&self) -> Self {
         let number = self.state().number();
         Self { shared: Arc::clone(&self.shared), number, has_token: false }
+    }
+
+    /// How programs are compiled.
+    #[must_use]
+    pub fn options(&self) -> Options {
+        self.state().session.options().clone()
     }
 
     /// Sets how programs are compiled from now on: include directories, macros, firmware.
@@ -507,7 +523,11 @@ impl Board {
     /// assert!(board.run_until(0.5, |session| session.user_data(100) == Some(-1)));
     /// # Ok::<(), cc67_host::HostError>(())
     /// ```
-    pub fn run_until(&mut self, seconds: f64, mut is_over: impl FnMut(&mut Session) -> bool) -> bool {
+    pub fn run_until(
+        &mut self,
+        seconds: f64,
+        mut is_over: impl FnMut(&mut Session<AnyTarget>) -> bool,
+    ) -> bool {
         self.state().advance(ticks(seconds), &mut |state| is_over(&mut state.session))
     }
 
@@ -522,7 +542,7 @@ impl Board {
     /// assert_eq!(board.write_line_read_line("ReadBit136")?, "1");
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn with_session<R>(&mut self, work: impl FnOnce(&mut Session) -> R) -> R {
+    pub fn with_session<R>(&mut self, work: impl FnOnce(&mut Session<AnyTarget>) -> R) -> R {
         work(&mut self.state().session)
     }
 

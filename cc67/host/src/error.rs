@@ -3,9 +3,13 @@
 use std::fmt;
 use std::path::PathBuf;
 
+use boot::FlashError;
 use kmotiondef::{GuestAddr, ThreadId};
 use runtime::loader::LoadError;
 use runtime::stimulus::StimulusError;
+use vm::engine::ForeignSnapshot;
+
+use crate::capability::Unsupported;
 
 /// Why a call did not do what it is for.
 #[derive(Debug, thiserror::Error)]
@@ -58,9 +62,35 @@ pub enum HostError {
     /// There is no memory at an address.
     #[error("there is no memory at {0}")]
     Unmapped(GuestAddr),
+    /// A firmware file does not start, or does not take what it is given.
+    #[error("{0}")]
+    Firmware(String),
+    /// A firmware file does not start from what a flash holds.
+    #[error("the flash does not work with this firmware: {0}")]
+    Flash(#[from] FlashError),
+    /// The target cannot do that.
+    #[error(transparent)]
+    Unsupported(#[from] Unsupported),
+    /// A snapshot cannot be taken or restored.
+    #[error(transparent)]
+    Snapshot(#[from] SnapshotError),
     /// The requested operation on the board is not possible.
     #[error("{0}")]
     Act(String),
+}
+
+/// Why a snapshot cannot be taken or restored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SnapshotError {
+    /// The target has no snapshots.
+    #[error(transparent)]
+    Unsupported(#[from] Unsupported),
+    /// It was taken by another engine, whose threads cannot continue here.
+    #[error(transparent)]
+    Foreign(#[from] ForeignSnapshot),
+    /// It is of another kind of target.
+    #[error("the snapshot is from another kind of board")]
+    OtherTarget,
 }
 
 /// What the compiler says of a source with errors: lines of `file:line: message`.

@@ -39,23 +39,32 @@
 
 #![forbid(unsafe_code)]
 
+mod capability;
 mod client;
 mod error;
 mod message;
 pub mod remark;
 pub mod session;
+mod setup;
 mod state;
+pub mod target;
+mod user_program;
 
+pub use capability::{Capability, Unsupported};
 pub use client::{Board, Lock, Readiness};
 pub use compiler::Options;
-pub use error::{CompileError, HostError};
+pub use error::{CompileError, HostError, SnapshotError};
 pub use message::fill;
 pub use remark::SourceCall;
 pub use session::{
     Attendant, End, Ending, EndingAxis, EndingThread, History, Idle, Input, Interrupter, Session, Setup,
-    Snapshot, Timeline, TimelineError, Until, UserProgram, Watch, WatchError,
+    Snapshot, Timeline, TimelineError, Until, Watch, WatchError,
 };
-pub use state::{CONSOLE_LINES, REPLY_BYTES, Status};
+pub use state::{REPLY_BYTES, Status};
+pub use target::{
+    AnyTarget, BootedFirmware, BootedTarget, CONSOLE_LINES, EventSink, FirmwareError, Target, TargetSnapshot,
+};
+pub use user_program::UserProgram;
 
 /// The programs in the book are tests, too.
 #[cfg(doctest)]

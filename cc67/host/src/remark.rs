@@ -54,6 +54,7 @@ pub fn describe(event: &Event, programs: &[DebugInfo]) -> Option<String> {
             (remark.message.severity() > Severity::Detail).then(|| words(remark, programs))
         }
         EventKind::Host(text) | EventKind::Unmet(text) => Some(text.clone()),
+        EventKind::Halted(text) => Some(text.trim_end().to_owned()),
         EventKind::Trap(trap) => Some(describe_trap(trap, programs)),
     }
 }

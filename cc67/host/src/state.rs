@@ -8,10 +8,10 @@ use kmotiondef::{Cycles, Field, Plain, Scalar, Ticks};
 use runtime::{Event, EventKind, Message, Remark, Speaker};
 
 use crate::session::{EXCHANGE, ticks};
-use crate::{HostError, Session, remark};
+use crate::target::CONSOLE_LINES;
+use crate::target::Target as _;
+use crate::{AnyTarget, HostError, Session, remark};
 
-/// Console lines that wait for a client; then the board waits too.
-pub const CONSOLE_LINES: usize = 1000;
 /// Bytes of replies that wait for a client; what comes then is lost.
 pub const REPLY_BYTES: usize = 1 << 20;
 /// Remarks that are kept; older ones are dropped.
@@ -54,7 +54,7 @@ impl Status {
 
 /// The board, its link, and what came over it.
 pub(super) struct State {
-    pub(super) session: Session,
+    pub(super) session: Session<AnyTarget>,
     pub(super) is_locked: bool,
     pub(super) is_connected: bool,
     /// Bytes of replies that are not read yet.
@@ -74,7 +74,7 @@ impl fmt::Debug for State {
 }
 
 impl State {
-    pub(super) fn new(mut session: Session) -> Self {
+    pub(super) fn new(mut session: Session<AnyTarget>) -> Self {
         session.stop_recording();
         Self {
             session,
@@ -136,7 +136,7 @@ impl State {
     /// Sends a line and lets the board take it.
     pub(super) fn send_line(&mut self, bytes: &[u8]) {
         self.send(bytes);
-        self.advance(ticks(1.0), &mut |state| !state.session.board().is_receiving());
+        self.advance(ticks(1.0), &mut |state| !state.session.target().is_receiving());
     }
 
     /// The next line of a reply, with its line end, if it comes within some ticks.

@@ -143,11 +143,14 @@ impl Board {
     fn new(py: Python<'_>, request: BoardArguments<'_>, engine: &str) -> PyResult<Self> {
         let arranged = request.arrange()?;
         let setup = arranged.setup;
-        let residence = match engine {
-            "bytecode" => py
+        let residence = match (engine, arranged.firmware) {
+            (_, Some(firmware)) => py
+                .detach(|| setup.session_on_firmware(&firmware))
+                .map(|session| Residence::Here(Box::new(Rig::new(session)))),
+            ("bytecode", None) => py
                 .detach(|| setup.session_on(BytecodeEngine::default()))
                 .map(|session| Residence::Here(Box::new(Rig::new(session)))),
-            "native" => {
+            ("native", None) => {
                 let make = move || {
                     let engine = NativeEngine::with_shared(COMPILED.clone());
                     setup.session_on(engine).map(Rig::new)
@@ -328,7 +331,7 @@ impl Board {
     /// Save the present state, and return its number.
     fn snapshot(&self, py: Python<'_>) -> PyResult<u64> {
         let number = NUMBERS.fetch_add(1, Ordering::Relaxed);
-        self.call(py, move |control| control.snapshot(number))?;
+        self.call(py, move |control| control.snapshot(number))?.map_err(input)?;
         Ok(number)
     }
 

@@ -14,6 +14,7 @@ use compiler::object::{ReadError, is_object};
 use compiler::passes::Level;
 use compiler::pp::{Disk, Standard};
 use compiler::render::human::Color;
+use compiler::target::Target;
 use compiler::render::{self, Format};
 use compiler::{Compilation, Options, files, link_units, pp};
 use kmotiondef::ThreadId;
@@ -32,6 +33,7 @@ pub(crate) struct CompileArguments {
     warnings: Vec<String>,
     std: String,
     firmware: Option<PathBuf>,
+    boot: Option<PathBuf>,
 }
 
 impl CompileArguments {
@@ -58,13 +60,14 @@ impl CompileArguments {
                 other => return Err(input(format!("optimize must be 0, 1, 2 or \"s\", not {other:?}"))),
             },
             firmware: self.firmware()?,
+            target: if self.boot.is_some() { Target::C67x } else { Options::default().target },
             gc_sections: self.optimize != "0",
             ..Options::default()
         })
     }
 
     fn firmware(&self) -> PyResult<Firmware> {
-        let Some(path) = &self.firmware else { return Ok(Firmware::BuiltIn) };
+        let Some(path) = self.boot.as_ref().or(self.firmware.as_ref()) else { return Ok(Firmware::BuiltIn) };
         let file = FirmwareFile::read(&read(path)?);
         let file = file.map_err(|error| input(format!("{}: {error}", path.display())))?;
         Ok(Firmware::File(Arc::new(file)))

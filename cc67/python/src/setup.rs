@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use cc67_host::{HostError, Setup, UserProgram};
+use cc67_host::{BootedFirmware, HostError, Setup, UserProgram};
 use compiler::Options;
 use kmotiondef::limits::N_USER_DATA_VARS;
 use kmotiondef::structs::Persist;
@@ -14,7 +14,7 @@ use runtime::{Config, Directory, MachineFile};
 use vm::machine::Config as MachineConfig;
 
 use crate::errors::{LoadError, input};
-use crate::program::{LinkableProgram, thread};
+use crate::program::{LinkableProgram, read, thread};
 
 /// What Python asks for; the texts of files are read there.
 #[derive(FromPyObject)]
@@ -35,11 +35,15 @@ pub(crate) struct BoardArguments<'py> {
     assist: bool,
     shortcuts: bool,
     uart_input: Vec<u8>,
+    /// The firmware file that is executed.
+    boot: Option<PathBuf>,
 }
 
 /// A setup, and what is known about the axes.
 pub(crate) struct Arranged {
     pub(crate) setup: Setup,
+    /// The firmware file that is executed, started.
+    pub(crate) firmware: Option<BootedFirmware>,
     /// Name and unit of each axis.
     pub(crate) axes: Vec<(String, String)>,
 }
@@ -87,8 +91,15 @@ impl BoardArguments<'_> {
             uart_input: self.uart_input,
             hears_uart: true,
         };
-        Ok(Arranged { setup, axes })
+        let firmware = self.boot.as_deref().map(boot).transpose()?;
+        Ok(Arranged { setup, firmware, axes })
     }
+}
+
+/// Starts a firmware file.
+fn boot(path: &Path) -> PyResult<BootedFirmware> {
+    let failed = |error| input(format!("boot={:?}: {error}", path.display().to_string()));
+    BootedFirmware::new(&read(path)?).map_err(failed)
 }
 
 fn machine_file(name: &str, folder: &Path, text: &str) -> PyResult<MachineFile> {

@@ -1,9 +1,8 @@
 //! Values over time, in columns: one block of memory for each, as NumPy has them.
 
-use cc67_host::{Session, Watch, WatchError};
+use cc67_host::{Session, Target, Watch, WatchError};
 use kmotiondef::Ticks;
 use kmotiondef::limits::TIMEBASE;
-use vm::engine::Engine;
 
 /// Samples that are being taken.
 pub(crate) struct Recorder {
@@ -26,8 +25,8 @@ pub(crate) const MOST_VALUES: usize = 1 << 29;
 
 impl Recorder {
     /// For `samples` samples, one every `every` ticks, from now on; `axis0` is all of an axis.
-    pub(crate) fn new<E: Engine>(
-        session: &Session<E>,
+    pub(crate) fn new<T: Target>(
+        session: &Session<T>,
         items: &[String],
         every: u64,
         samples: usize,
@@ -51,7 +50,7 @@ impl Recorder {
     }
 
     /// Takes a sample.
-    pub(crate) fn sample<E: Engine>(&mut self, session: &Session<E>) {
+    pub(crate) fn sample<T: Target>(&mut self, session: &Session<T>) {
         self.columns.time.push(session.tick().get() as f64 * TIMEBASE);
         for (watch, (_, column)) in self.watched.iter().zip(&mut self.columns.named) {
             column.push(session.value(watch));

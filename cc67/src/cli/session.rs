@@ -3,23 +3,24 @@
 //!
 //! Every command that has a board takes this way, so an option of a board reaches all of them.
 
-mod around;
-pub(crate) mod booted;
 mod flash;
 mod line;
 
 use std::ffi::OsString;
 use std::ops::ControlFlow;
+use std::path::Path;
 
 use anyhow::{Context, Result};
 use cc67_debug::dap::AttachPoint;
-use cc67_host::{Attendant, End, Idle, Session, UserProgram};
+use cc67_host::{
+    AnyTarget, Attendant, BootedFirmware, BootedTarget, End, HostError, Idle, Session, Target, UserProgram,
+};
 use compiler::Options;
+use compiler::target::Target as CodeTarget;
 use kmotiondef::Ticks;
 use runtime::stimulus::Stimulus;
-use runtime::{Config, Event};
+use runtime::{Board, Config, Event};
 use vm::engine::Engine;
-use vm::interp::BytecodeEngine;
 use vm::machine::Config as MachineConfig;
 #[cfg(feature = "native")]
 use vm::native::NativeEngine;
@@ -42,15 +43,38 @@ use line::SerialLine;
 #[derive(Debug)]
 pub(crate) struct Setup {
     session: cc67_host::Setup,
-    engine: EngineName,
+    code: CodeFor,
     uart: UartArguments,
     flash: Flash,
 }
 
-/// What a command does with a board, whichever engine executes the programs.
+/// What programs are compiled for: an engine of the modelled board, or a firmware file.
+#[derive(Clone, Debug)]
+enum CodeFor {
+    Engine(EngineName),
+    Firmware(BootedFirmware),
+}
+
+impl CodeFor {
+    /// How sources are compiled.
+    fn options(&self, compiler: &CompilerArguments) -> Result<Options> {
+        match self {
+            Self::Engine(engine) => engine.options(compiler),
+            Self::Firmware(firmware) => Ok(firmware.options(compiler.resolve()?)),
+        }
+    }
+}
+
+/// Starts a firmware file.
+pub(crate) fn boot(file: &Path) -> Result<BootedFirmware> {
+    let bytes = read(file)?;
+    BootedFirmware::new(&bytes).with_context(|| format!("`--boot {}`", file.display()))
+}
+
+/// What a command does with a board, whichever target that is.
 pub(crate) trait Work {
     /// Does it.
-    fn on<E: Engine>(self, rig: Rig<E>) -> Result<Exit>;
+    fn on<T: Target>(self, rig: Rig<T>) -> Result<Exit>;
 }
 
 impl Setup {
@@ -60,8 +84,9 @@ impl Setup {
         board: &BoardArguments,
         compiler: &CompilerArguments,
     ) -> Result<Option<Self>> {
-        anyhow::ensure!(board.boot.is_none(), "`--boot` does not work with this command yet");
-        Self::of_model(started, board, compiler)
+        let Some(file) = &board.boot else { return Self::of_model(started, board, compiler) };
+        board.refuse_with_boot()?;
+        Self::of_firmware(started, board, compiler, &boot(file)?)
     }
 
     /// The same for the modelled firmware, also where a firmware file is named.
@@ -70,55 +95,109 @@ impl Setup {
         board: &BoardArguments,
         compiler: &CompilerArguments,
     ) -> Result<Option<Self>> {
-        let options = board.engine.options(compiler)?;
-        options.firmware.check_version().context("`--firmware`")?;
-        let described = Described::read(started, board, compiler, options)?;
-        let Some(Described { session, uart, flash }) = described else { return Ok(None) };
-        Ok(Some(Self { session, engine: board.engine, uart, flash }))
+        Self::compiled(started, board, compiler, CodeFor::Engine(board.engine))
     }
 
-    /// Does the work of a command on the engine that was requested.
-    pub(crate) fn on_its_engine(self, work: impl Work) -> Result<Exit> {
-        // Beside real images there may be bytecode, which the usual engine executes.
-        let engine = if self.engine == EngineName::Dsp { EngineName::default() } else { self.engine };
-        match engine {
-            EngineName::Bytecode | EngineName::Dsp => work.on(self.rig(BytecodeEngine::default())?),
+    /// The same for a firmware that has started.
+    pub(crate) fn of_firmware<'a>(
+        started: impl Into<Started<'a>>,
+        board: &BoardArguments,
+        compiler: &CompilerArguments,
+        firmware: &BootedFirmware,
+    ) -> Result<Option<Self>> {
+        Self::compiled(started, board, compiler, CodeFor::Firmware(firmware.clone()))
+    }
+
+    fn compiled<'a>(
+        started: impl Into<Started<'a>>,
+        board: &BoardArguments,
+        compiler: &CompilerArguments,
+        code: CodeFor,
+    ) -> Result<Option<Self>> {
+        let options = code.options(compiler)?;
+        if matches!(code, CodeFor::Engine(_)) {
+            options.firmware.check_version().context("`--firmware`")?;
+        }
+        let described = Described::read(started, board, compiler, options)?;
+        let Some(Described { session, uart, flash }) = described else { return Ok(None) };
+        Ok(Some(Self { session, code, uart, flash }))
+    }
+
+    /// The firmware file that was requested, if one was.
+    pub(crate) fn firmware(&self) -> Option<BootedFirmware> {
+        match &self.code {
+            CodeFor::Engine(_) => None,
+            CodeFor::Firmware(firmware) => Some(firmware.clone()),
+        }
+    }
+
+    /// Does the work of a command on the target that was requested.
+    pub(crate) fn on_its_target(self, work: impl Work) -> Result<Exit> {
+        match self.code {
             #[cfg(feature = "native")]
-            EngineName::Native => work.on(self.rig(NativeEngine::default())?),
+            // Beside real images there may be bytecode, which the usual engine executes.
+            CodeFor::Engine(EngineName::Native | EngineName::Dsp) => {
+                work.on(self.rig(NativeEngine::default())?)
+            }
             #[cfg(not(feature = "native"))]
-            EngineName::Native => anyhow::bail!("this cc67 is built without the native engine"),
+            CodeFor::Engine(EngineName::Native) => {
+                anyhow::bail!("this cc67 is built without the native engine")
+            }
+            CodeFor::Engine(_) | CodeFor::Firmware(_) => work.on(self.rig_of_any()?),
         }
     }
 
     /// The same on the engine that a debugger can hold, if editors may attach one.
     pub(crate) fn debugged(self, debugger: Option<AttachPoint>, work: impl Work) -> Result<Exit> {
-        let Some(debugger) = debugger else { return self.on_its_engine(work) };
-        let mut rig = self.rig(BytecodeEngine::default())?;
+        let Some(debugger) = debugger else { return self.on_its_target(work) };
+        let mut rig = self.rig_of_any()?;
         rig.attendant = Some(Box::new(debugger));
         work.on(rig)
     }
 
-    /// A board as the arguments want it, on an engine of the caller's choice.
-    pub(crate) fn rig<E: Engine>(self, engine: E) -> Result<Rig<E>> {
-        let session = self.session.session_on(engine)?;
-        Ok(Rig {
-            session,
-            engine: self.engine,
-            uart: self.uart,
-            line: SerialLine::default(),
-            flash: self.flash,
-            attendant: None,
+    /// A modelled board as the arguments want it, on an engine of the caller's choice.
+    pub(crate) fn rig<E: Engine>(self, engine: E) -> Result<Rig<Board<E>>> {
+        self.rig_with(|session, _| session.session_on(engine))
+    }
+
+    /// A firmware file as the arguments want it.
+    pub(crate) fn rig_of_firmware(self, firmware: &BootedFirmware) -> Result<Rig<BootedTarget>> {
+        self.rig_with(|session, _| session.session_on_firmware(firmware))
+    }
+
+    /// The target that was requested; the modelled board on the interpreter.
+    pub(crate) fn rig_of_any(self) -> Result<Rig<AnyTarget>> {
+        self.rig_with(|session, code| match code {
+            CodeFor::Engine(_) => session.session_on_any(None),
+            CodeFor::Firmware(firmware) => session.session_on_any(Some(firmware)),
         })
     }
 
+    fn rig_with<T: Target>(
+        self,
+        make: impl FnOnce(cc67_host::Setup, &CodeFor) -> Result<Session<T>, HostError>,
+    ) -> Result<Rig<T>> {
+        let Self { session, code, uart, mut flash } = self;
+        let session = make(session, &code).map_err(|error| match (&error, flash.held()) {
+            (HostError::Flash(why), Some((path, _))) => {
+                anyhow::anyhow!("the flash {} does not work with `--boot`: {why}", path.display())
+            }
+            _ => error.into(),
+        })?;
+        if let (CodeFor::Firmware(_), Some(now)) = (&code, session.target().flash()) {
+            flash.begins_with(now);
+        }
+        Ok(Rig { session, code, uart, line: SerialLine::default(), flash, attendant: None })
+    }
+
     /// The board for a debugger, on the engine that it can hold.
-    pub(crate) fn for_debugger(self) -> Result<Session> {
+    pub(crate) fn for_debugger(self) -> Result<Session<AnyTarget>> {
         if self.uart.uart.is_some() || self.uart.uart_output.is_some() {
             anyhow::bail!(
                 "a debugged board has no peer at its serial port, which could not go back in time: `--uart-input`"
             );
         }
-        Ok(self.session.session()?)
+        Ok(self.rig_of_any()?.session)
     }
 }
 
@@ -147,7 +226,10 @@ impl Described {
         let mut machine_file = board.machine_file()?;
         let settings = [setting::all(&board.set, &mut machine_file)?, board.pc.mcode()?].concat();
         let answers = board.pc.answers(&machine_file)?;
-        let flash = Flash::read(board.pc.flash_file(&machine_file))?;
+        // What a run that is compared changes stays in memory.
+        let is_kept = !(board.keeps_files && options.target == CodeTarget::C67x);
+        let flash = board.pc.flash_file(&machine_file).filter(|_| is_kept);
+        let flash = Flash::read(flash)?;
         let mut stimulus = stimulus::read(&board.stim)?;
         stimulus.extend(one_after_the_other(before, files.get(..programs.len()).unwrap_or_default())?);
         let uart = board.uart.or_those_of(&machine_file);
@@ -227,18 +309,18 @@ fn compile(
 
 /// A session as the arguments want it, with what they connect to its board: the serial port, the file of the flash.
 #[derive(Debug)]
-pub(crate) struct Rig<E: Engine> {
+pub(crate) struct Rig<T: Target> {
     /// The board under control.
-    pub(crate) session: Session<E>,
-    engine: EngineName,
+    pub(crate) session: Session<T>,
+    code: CodeFor,
     uart: UartArguments,
     line: SerialLine,
     flash: Flash,
     /// Who may stop the board.
-    pub(crate) attendant: Option<Box<dyn Attendant<E>>>,
+    pub(crate) attendant: Option<Box<dyn Attendant<T>>>,
 }
 
-impl<E: Engine> Rig<E> {
+impl<T: Target> Rig<T> {
     /// Connects the serial port; a peer that has to be there is waited for.
     pub(crate) fn connect(&mut self) -> Result<()> {
         self.line = SerialLine::connect(&self.uart)?;
@@ -252,7 +334,7 @@ impl<E: Engine> Rig<E> {
         starts: usize,
         compiler: &CompilerArguments,
     ) -> Result<bool> {
-        let Some(programs) = images::programs(files, compiler, &self.engine.options(compiler)?)? else {
+        let Some(programs) = images::programs(files, compiler, &self.code.options(compiler)?)? else {
             return Ok(false);
         };
         let load = |(index, program): (usize, UserProgram)| {
@@ -278,7 +360,7 @@ impl<E: Engine> Rig<E> {
     }
 
     /// The same with somebody who may stop the board; `idle` is what is done meanwhile.
-    pub(crate) fn advance_attended(&mut self, limit: Ticks, sink: &mut dyn FnMut(Event), idle: Idle<'_, E>) {
+    pub(crate) fn advance_attended(&mut self, limit: Ticks, sink: &mut dyn FnMut(Event), idle: Idle<'_, T>) {
         let attendant = &mut self.attendant;
         self.line.advance(&mut self.session, limit, sink, &mut |session, part, sink| match attendant {
             Some(attendant) => attendant.advance(session, part, sink, idle),
@@ -297,7 +379,7 @@ impl<E: Engine> Rig<E> {
 
     /// Keeps what flash memory holds now in its file.
     pub(crate) fn keep_flash(&mut self) -> Result<()> {
-        self.flash.keep(|| self.session.board().flash())
+        self.flash.keep(|| self.session.target().flash().unwrap_or_default())
     }
 
     /// The run is over: what is held comes out, the files of the serial port and of the flash are written.

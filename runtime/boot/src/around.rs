@@ -24,8 +24,8 @@ pub struct AtMatch<'a> {
     pub kstep: &'a mut Option<u16>,
 }
 
-/// Something around the board. Cycles are counted since power-up.
-pub trait Around: Debug + Send {
+/// Something around the board. Cycles are counted since power-up; a clone is the same in the same state.
+pub trait Around: Clone + Debug {
     /// What a register shows when the firmware reads it; `None` where the board itself answers.
     fn read(&mut self, register: usize, is_byte: bool, now: u64) -> Option<u16>;
 
@@ -34,17 +34,15 @@ pub trait Around: Debug + Send {
 
     /// The timer matches.
     fn tick(&mut self, turn: &mut AtMatch<'_>);
-
-    /// The same in the same state.
-    fn copied(&self) -> Box<dyn Around>;
-
-    /// Itself, for whoever has connected it.
-    fn as_any(&mut self) -> &mut dyn std::any::Any;
 }
 
-impl Clone for Box<dyn Around> {
-    fn clone(&self) -> Self {
-        // Of what is around, not of the box.
-        (**self).copied()
+/// Nothing: every register is the board's own.
+impl Around for () {
+    fn read(&mut self, _: usize, _: bool, _: u64) -> Option<u16> {
+        None
     }
+
+    fn write(&mut self, _: usize, _: bool, _: u16, _: u64) {}
+
+    fn tick(&mut self, _: &mut AtMatch<'_>) {}
 }

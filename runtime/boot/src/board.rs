@@ -81,10 +81,10 @@ pub enum Halted {
 
 /// A board that runs a real firmware.
 #[derive(Clone, Debug)]
-pub struct BootedBoard {
+pub struct BootedBoard<A = ()> {
     file: Arc<FirmwareFile>,
     core: Core,
-    hardware: Hardware,
+    hardware: Hardware<A>,
     /// Bytes of a line that is not complete, and the cycle of the first.
     unfinished: (u64, Vec<u8>),
     lines: Vec<SentLine>,
@@ -102,28 +102,34 @@ pub struct BootedBoard {
 
 /// A [`BootedBoard`] as it was.
 #[derive(Clone, Debug)]
-pub struct BootedSnapshot {
-    board: BootedBoard,
+pub struct BootedSnapshot<A = ()> {
+    board: BootedBoard<A>,
     memory: MemorySnapshot,
 }
 
-impl BootedSnapshot {
+impl<A: Around> BootedSnapshot<A> {
     /// The cycle in which it was taken.
     #[must_use]
     pub const fn cycle(&self) -> u64 {
         self.board.cycle()
     }
 
+    /// Bytes of memory that this snapshot has besides those that it shares with `other`.
+    #[must_use]
+    pub fn bytes_beyond(&self, other: &Self) -> usize {
+        self.memory.bytes_beyond(&other.memory)
+    }
+
     /// A board of its own that continues from here.
     #[must_use]
-    pub fn board(&self) -> BootedBoard {
+    pub fn board(&self) -> BootedBoard<A> {
         let mut board = self.board.clone();
         board.restore(self);
         board
     }
 }
 
-impl BootedBoard {
+impl<A: Around> BootedBoard<A> {
     /// Whether loops that wait are run through in one step, as they are at first; nothing that can be seen changes.
     pub const fn skip_waits(&mut self, whether: bool) {
         self.core.skip_waits(whether);
@@ -449,21 +455,25 @@ impl BootedBoard {
         self.hardware.window.chips.pins.changes.take()
     }
 
-    /// Connects what is around the board, and shows it what was written to the registers so far.
-    pub fn connect(&mut self, around: Box<dyn Around>) {
-        let now = self.cycle();
-        self.hardware.window.connect(around, now);
+    /// The same board with this around it, which is shown what was written to the registers so far.
+    #[must_use]
+    pub fn connect<B: Around>(self, around: Option<B>) -> BootedBoard<B> {
+        let Self { file, core, hardware, unfinished, lines, waits_since, loads, skips, packets, crash } =
+            self;
+        let hardware = hardware.connect(around, core.state.cycle());
+        BootedBoard { file, core, hardware, unfinished, lines, waits_since, loads, skips, packets, crash }
     }
 
     /// What [is connected](Self::connect).
-    pub fn around(&mut self) -> Option<&mut (dyn Around + 'static)> {
-        self.hardware.window.around.as_deref_mut()
+    #[must_use]
+    pub const fn around(&self) -> Option<&A> {
+        self.hardware.window.around.as_ref()
     }
 
-    /// The same, and memory, data only.
-    pub fn around_and_memory(&mut self) -> (Option<&mut (dyn Around + 'static)>, &mut GuestMemory) {
+    /// The same to change it, and memory, data only.
+    pub const fn around_and_memory(&mut self) -> (Option<&mut A>, &mut GuestMemory) {
         let Hardware { memory, window, .. } = &mut self.hardware;
-        (window.around.as_deref_mut(), memory)
+        (window.around.as_mut(), memory)
     }
 
     /// The cycle of the next match of the timer.
@@ -478,7 +488,7 @@ impl BootedBoard {
     }
 
     /// Everything that the board is.
-    pub fn snapshot(&mut self) -> BootedSnapshot {
+    pub fn snapshot(&mut self) -> BootedSnapshot<A> {
         let memory = self.hardware.memory.snapshot();
         let kept = std::mem::take(&mut self.hardware.memory);
         let board = self.clone();
@@ -487,7 +497,7 @@ impl BootedBoard {
     }
 
     /// Goes back to a snapshot, and on from there as then.
-    pub fn restore(&mut self, snapshot: &BootedSnapshot) {
+    pub fn restore(&mut self, snapshot: &BootedSnapshot<A>) {
         let mut memory = std::mem::take(&mut self.hardware.memory);
         memory.restore(&snapshot.memory);
         *self = snapshot.board.clone();

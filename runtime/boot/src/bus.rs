@@ -7,6 +7,7 @@ use vm::dsp::{Clock, Memory};
 use vm::memory::GuestMemory;
 use vm::trap::{Access, TrapKind};
 
+use super::around::Around;
 use super::control::Control;
 use super::flash;
 use super::timer::Timer;
@@ -17,11 +18,11 @@ const TIMER: u32 = 0x4200_0000;
 const TIMER_SIZE: u32 = 0x100;
 
 /// Everything that the processor reaches.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Hardware {
+#[derive(Clone, Debug)]
+pub(super) struct Hardware<A = ()> {
     pub(super) memory: GuestMemory,
     pub(super) timer: Timer,
-    pub(super) window: Window,
+    pub(super) window: Window<A>,
     pub(super) control: Control,
     pub(super) chip: Chip,
     /// The cycle in which the firmware first looked whether the PC has sent something.
@@ -32,7 +33,29 @@ pub(super) struct Hardware {
     pub(super) touches: u64,
 }
 
-impl Hardware {
+impl<A> Default for Hardware<A> {
+    fn default() -> Self {
+        Self {
+            memory: GuestMemory::default(),
+            timer: Timer::default(),
+            window: Window::default(),
+            control: Control::default(),
+            chip: Chip::default(),
+            first_look: None,
+            forgives: false,
+            touches: 0,
+        }
+    }
+}
+
+impl<A: Around> Hardware<A> {
+    /// The same with this around it.
+    pub(super) fn connect<B: Around>(self, around: Option<B>, now: u64) -> Hardware<B> {
+        let Self { memory, timer, window, control, chip, first_look, forgives, touches } = self;
+        let window = window.connect(around, now);
+        Hardware { memory, timer, window, control, chip, first_look, forgives, touches }
+    }
+
     #[cold]
     fn load(&mut self, addr: u32, bytes: u32, clock: &mut Clock) -> Result<u32, TrapKind> {
         let now = clock.cycle();
@@ -111,7 +134,7 @@ const fn unmapped(addr: u32, access: Access) -> TrapKind {
     TrapKind::Unmapped { addr: GuestAddr::new(addr), access }
 }
 
-impl Memory for Hardware {
+impl<A: Around> Memory for Hardware<A> {
     fn touches(&self) -> u64 {
         self.touches
     }

@@ -11,6 +11,7 @@ use kmotiondef::structs::Chan;
 use kmotiondef::{Field, GuestAddr};
 use vm::memory::GuestMemory;
 
+use super::around::Around;
 use super::window::Window;
 
 /// Lag of a closed loop, seconds.
@@ -55,7 +56,13 @@ impl Axis<'_> {
 
 impl Loads {
     /// Moves all loads by what the last tick output, and shows them to the encoders.
-    pub(super) fn tick(&mut self, chan: GuestAddr, memory: &GuestMemory, window: &mut Window, now: u64) {
+    pub(super) fn tick<A: Around>(
+        &mut self,
+        chan: GuestAddr,
+        memory: &GuestMemory,
+        window: &mut Window<A>,
+        now: u64,
+    ) {
         for (number, load) in (0..).zip(&mut self.0) {
             let axis = Axis { memory, base: chan.offset(Chan::STRUCTURE.size * number) };
             let before = load.load;
@@ -72,7 +79,7 @@ impl Loads {
 }
 
 impl Load {
-    fn advance(&mut self, axis: &Axis<'_>, window: &mut Window, now: u64) {
+    fn advance<A: Around>(&mut self, axis: &Axis<'_>, window: &mut Window<A>, now: u64) {
         let is_enabled = axis.int(Chan::ENABLE) != 0;
         let mode = OutputMode::new(axis.int(Chan::OUTPUT_MODE));
         match mode {
@@ -91,7 +98,7 @@ impl Load {
     }
 
     /// By the steps that the generator has made since the last tick.
-    fn step(&mut self, axis: &Axis<'_>, window: &mut Window, now: u64) {
+    fn step<A: Around>(&mut self, axis: &Axis<'_>, window: &mut Window<A>, now: u64) {
         let (steps, _) = window.steps(generator_of(axis.int(Chan::OUTPUT_CHAN0)), now);
         let made = steps - self.steps.replace(steps).unwrap_or(steps);
         let gain = axis.single(Chan::OUTPUT_GAIN);

@@ -23,18 +23,18 @@ const GROUPS: u32 = 6;
 
 /// The window and the chips that it shows.
 #[derive(Clone, Debug)]
-pub(super) struct Window {
+pub(super) struct Window<A = ()> {
     pub(super) chips: Chips,
     pub(super) link: Link,
     /// Inputs of a KStep, if there is one: a bit is set while current flows.
     pub(super) kstep: Option<u16>,
     /// What else is connected.
-    pub(super) around: Option<Box<dyn Around>>,
+    pub(super) around: Option<A>,
     /// How often anything but the status of the link was reached.
     touches: u64,
 }
 
-impl Default for Window {
+impl<A> Default for Window<A> {
     fn default() -> Self {
         Self { chips: Chips::at_power_up(), link: Link::default(), kstep: None, around: None, touches: 0 }
     }
@@ -59,7 +59,7 @@ fn reached(offset: u32, bytes: u32) -> Option<u32> {
     register_at(offset % (REGISTER_COUNT * 4)).filter(|_| bytes <= 2)
 }
 
-impl Window {
+impl<A: Around> Window<A> {
     /// As at power-up, except for the link and what is connected.
     pub(super) fn reset(&mut self) {
         let old = std::mem::take(self);
@@ -67,19 +67,22 @@ impl Window {
         *self = Self { chips, link: old.link, kstep: old.kstep, around: old.around, touches: 0 };
     }
 
-    /// Connects what is around the board: it finds directions and latches as they are.
-    pub(super) fn connect(&mut self, mut around: Box<dyn Around>, now: u64) {
-        let Chips { fpga, pins, .. } = &self.chips;
-        for register in SETTINGS {
-            around.write(register as usize, false, fpga.cell(register), now);
+    /// The same with this around the board: it finds directions and latches as they are.
+    pub(super) fn connect<B: Around>(self, mut around: Option<B>, now: u64) -> Window<B> {
+        let Self { chips, link, kstep, touches, .. } = self;
+        if let Some(around) = &mut around {
+            let Chips { fpga, pins, .. } = &chips;
+            for register in SETTINGS {
+                around.write(register as usize, false, fpga.cell(register), now);
+            }
+            for group in 0..GROUPS {
+                let latch = u16::from(pins.latch_group(group));
+                around.write((KEEP + group) as usize, true, latch, now);
+                around.write((SET + group) as usize, true, latch, now);
+                around.write((DIRECT + group) as usize, true, pins.direction_group(group).into(), now);
+            }
         }
-        for group in 0..GROUPS {
-            let latch = u16::from(pins.latch_group(group));
-            around.write((KEEP + group) as usize, true, latch, now);
-            around.write((SET + group) as usize, true, latch, now);
-            around.write((DIRECT + group) as usize, true, pins.direction_group(group).into(), now);
-        }
-        self.around = Some(around);
+        Window { chips, link, kstep, around, touches }
     }
 
     /// Steps that a generator has made up to a cycle, and steps a second.

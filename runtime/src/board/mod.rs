@@ -326,7 +326,7 @@ impl<E: Engine> Board<E> {
     }
 }
 
-impl Board {
+impl<E: Engine> Board<E> {
     /// Holds programs after these bytes, addresses and how many, are not what they are now; and after no others.
     pub fn set_watched(&mut self, ranges: &[(GuestAddr, u32)]) {
         self.machine.set_watched(ranges);

@@ -1,5 +1,6 @@
 //! A board as it was at an instant between two ticks, to continue from there as often as one likes.
 
+use std::fmt;
 use std::sync::Arc;
 
 use kmotiondef::Ticks;
@@ -12,11 +13,17 @@ use crate::kernel::Kernel;
 /// Everything that a board holds besides its settings.
 ///
 /// Guest memory is shared with earlier snapshots in pages of 4 KiB, and what is known about programs with the board.
-#[derive(Debug)]
 pub struct BoardSnapshot<E: Engine> {
     machine: MachineSnapshot<<E as Executor>::Snapshot>,
     kernel: Kernel,
     programs: Arc<Programs>,
+}
+
+// Derived, it would ask the same of the engine.
+impl<E: Engine> fmt::Debug for BoardSnapshot<E> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("BoardSnapshot").field("machine", &self.machine).finish_non_exhaustive()
+    }
 }
 
 impl<E: Engine> BoardSnapshot<E> {

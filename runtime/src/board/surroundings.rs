@@ -155,6 +155,11 @@ impl Surroundings {
         world.play(stimulus, &mut stage, memory);
     }
 
+    /// Drives an input from outside.
+    pub fn drive_input(&mut self, bit: Bit, level: bool, now: Cycles) {
+        self.parts.lines(now).drive(bit, level);
+    }
+
     /// Puts characters on the line to the serial port; they arrive one after another at its rate.
     pub fn send_to_uart(&mut self, bytes: &[u8], now: Cycles) {
         self.parts.io.uart.arrive(bytes, now);

@@ -179,4 +179,6 @@ pub enum EventKind {
     Unmet(String),
     /// The PC did something that a program requested.
     Host(String),
+    /// The processor of the board has stopped for good: why, where, and its registers.
+    Halted(String),
 }

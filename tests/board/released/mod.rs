@@ -109,20 +109,12 @@ impl Around for Nothing {
     }
 
     fn tick(&mut self, _: &mut AtMatch<'_>) {}
-
-    fn copied(&self) -> Box<dyn Around> {
-        Box::new(self.clone())
-    }
-
-    fn as_any(&mut self) -> &mut dyn std::any::Any {
-        self
-    }
 }
 
 /// A board with the released firmware, and what programs for it are linked against.
 #[derive(Clone)]
 struct Released {
-    board: BootedBoard,
+    board: BootedBoard<Nothing>,
     symbols: Arc<Symbols>,
 }
 
@@ -136,8 +128,8 @@ fn released() -> Option<Released> {
         };
         let bytes = fs::read(path).expect("CC67_FIRMWARE names a file");
         let file = FirmwareFile::read(&bytes).unwrap_or_else(|error| panic!("{error}"));
-        let mut board = BootedBoard::booted(Arc::new(file)).unwrap_or_else(|crash| panic!("{crash}"));
-        board.connect(Box::<Nothing>::default());
+        let board = BootedBoard::booted(Arc::new(file)).unwrap_or_else(|crash| panic!("{crash}"));
+        let board = board.connect(Some(Nothing::default()));
         let symbols = Arc::new(Symbols::read(&bytes).unwrap_or_else(|error| panic!("{error}")));
         let mut released = Released { board, symbols };
         released.ticks(10);
@@ -265,8 +257,8 @@ impl Released {
 
     /// What was written to registers since the last time, and the number of accesses.
     fn accesses(&mut self) -> Nothing {
-        let around = self.board.around().expect("it is connected").as_any();
-        std::mem::take(around.downcast_mut::<Nothing>().expect("nothing is around it"))
+        let (around, _) = self.board.around_and_memory();
+        std::mem::take(around.expect("it is connected"))
     }
 
     /// Compiles a program and puts it into a thread's space.

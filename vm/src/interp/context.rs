@@ -5,7 +5,7 @@ use std::cell::Cell;
 use kmotiondef::{CodeAddr, GuestAddr};
 
 use super::jumps::{JumpPoint, Jumps};
-use crate::engine::Stack;
+use crate::engine::{FrameView, Stack};
 use crate::operand::FuncRef;
 use crate::program::{Program, body_of};
 use crate::trap::TrapKind;
@@ -156,17 +156,6 @@ impl Calls {
     pub(super) const fn frame_address(&self) -> u32 {
         self.current.stack_pointer
     }
-}
-
-/// A call in progress, as a debugger sees it.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct FrameView {
-    /// The instruction that is executed next; in a caller, the call.
-    pub at: CodeAddr,
-    /// Address of the frame in guest memory.
-    pub frame: GuestAddr,
-    /// The registers.
-    pub registers: Vec<u64>,
 }
 
 /// What a context has besides guest memory.
@@ -329,10 +318,11 @@ impl Context {
         if self.pending.is_some() {
             return Vec::new();
         }
-        let callers = self.calls.frames.iter().rev().map(|frame| (frame.pc - 1, frame));
-        let all = std::iter::once((self.calls.pc, &self.calls.current)).chain(callers);
-        let view = |(pc, frame): (usize, &Frame)| FrameView {
+        let callers = self.calls.frames.iter().rev().map(|frame| (frame.pc - 1, frame, true));
+        let all = std::iter::once((self.calls.pc, &self.calls.current, false)).chain(callers);
+        let view = |(pc, frame, is_caller): (usize, &Frame, bool)| FrameView {
             at: address_of(pc),
+            continues_at: address_of(if is_caller { pc + 1 } else { pc }),
             frame: GuestAddr::new(frame.stack_pointer),
             registers: self.registers[frame.base..frame.base + usize::from(frame.registers)].to_vec(),
         };

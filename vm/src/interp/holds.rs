@@ -11,37 +11,12 @@ use kmotiondef::{CodeAddr, GuestAddr};
 
 use super::code::{Code, Encoded, Word};
 use super::context::Context;
-use crate::engine::{ContextId, Slice, Stop};
+use crate::engine::{ContextId, Hold, HoldReason, Slice, Stop};
 use crate::firmware::Firmware;
 use crate::memory::GuestMemory;
 use crate::op::Op;
 use crate::program::Program;
 use crate::trap::TrapKind;
-
-/// Why a context is held.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum HoldReason {
-    /// Before an instruction with a breakpoint.
-    Breakpoint,
-    /// After one instruction, as was requested.
-    Step,
-    /// Something that is watched was changed.
-    Changed {
-        /// Its place in the list that was set.
-        index: usize,
-        /// The instruction that did it; `None` if it was none of this context's.
-        by: Option<CodeAddr>,
-    },
-}
-
-/// A context that is held.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Hold {
-    /// Which one.
-    pub context: ContextId,
-    /// Why.
-    pub reason: HoldReason,
-}
 
 /// Bytes of memory that are compared with what they were.
 #[derive(Clone, Debug)]

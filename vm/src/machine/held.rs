@@ -73,7 +73,7 @@ impl<F: Firmware, E: Engine> Machine<F, E> {
     }
 }
 
-impl<F: Firmware> Machine<F> {
+impl<F: Firmware, E: Engine> Machine<F, E> {
     /// Holds contexts after these bytes, addresses and how many, are not what they are now; and after no others.
     pub fn set_watched(&mut self, ranges: &[(GuestAddr, u32)]) {
         self.engines.programs.set_watched(&self.memory, ranges);

@@ -144,7 +144,8 @@ impl Model {
         })
     }
 
-    /// Types and variables outside of functions of code for the controller's processor; of its functions nothing is known.
+    /// The same of code for the controller's processor: functions and their lines as the image has them, types, and
+    /// variables outside of functions. Where locals are is not known.
     ///
     /// # Errors
     /// As [`of`](Self::of).
@@ -159,7 +160,11 @@ impl Model {
         thread: ThreadId,
         program: &[u8],
     ) -> Result<Self, String> {
-        on_large_stack(|| Ok(Self::here(path, text, options, files, thread, program)?.0))
+        on_large_stack(|| {
+            let (mut model, _, _) = Self::here(path, text, options, files, thread, program)?;
+            model.functions = model.functions_of_image();
+            Ok(model)
+        })
     }
 
     fn here(
@@ -188,6 +193,31 @@ impl Model {
             image,
         };
         Ok((model, object, compilation.sources))
+    }
+
+    /// Functions with their lines as the image has them.
+    fn functions_of_image(&self) -> Vec<FunctionModel> {
+        let entries = self.image.symbols.iter().filter(|entry| entry.kind == EntryKind::Function);
+        let mut functions: Vec<_> = entries
+            .map(|entry| {
+                let addresses = entry.address..entry.address + entry.size.unwrap_or(0).max(4);
+                let lines = self.image.lines.iter().filter(|line| addresses.contains(&line.address));
+                let statements: Vec<_> = lines.map(|line| (line.address, line.line)).collect();
+                let lines = statements.iter().map(|(_, line)| *line);
+                let lines = lines.clone().min().unwrap_or(0)..lines.max().unwrap_or(0);
+                FunctionModel {
+                    name: entry.name.clone(),
+                    addresses,
+                    file: entry.file.clone().unwrap_or_default(),
+                    lines,
+                    statements,
+                    locals: Vec::new(),
+                    inlined: Vec::new(),
+                }
+            })
+            .collect();
+        functions.sort_by_key(|function| function.addresses.start);
+        functions
     }
 
     fn functions_of(&self, object: &Object, sources: &SourceMap) -> Vec<FunctionModel> {

@@ -11,11 +11,10 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError, channel};
 use std::thread;
 use std::time::Duration;
 
-use cc67_host::{Attendant, Idle, Session};
+use cc67_host::{AnyTarget, Attendant, Idle, Session};
 use kmotiondef::Ticks;
 use runtime::Event;
 use serde_json::Value;
-use vm::interp::BytecodeEngine;
 
 use super::{Herald, Server, read};
 use crate::debugger::{Debugger, Reason};
@@ -57,13 +56,13 @@ impl AttachPoint {
     }
 }
 
-impl Attendant<BytecodeEngine> for AttachPoint {
+impl Attendant<AnyTarget> for AttachPoint {
     fn advance(
         &mut self,
-        session: &mut Session,
+        session: &mut Session<AnyTarget>,
         limit: Ticks,
         events: &mut dyn FnMut(Event),
-        idle: Idle<'_, BytecodeEngine>,
+        idle: Idle<'_, AnyTarget>,
     ) {
         if self.visitor.is_none() {
             // One that is gone before it is taken was none.
@@ -85,7 +84,7 @@ impl Attendant<BytecodeEngine> for AttachPoint {
 
 /// An editor that is attached.
 struct Visitor {
-    server: Server<'static, TcpStream>,
+    server: Server<'static, TcpStream, AnyTarget>,
     requests: Receiver<Value>,
 }
 
@@ -105,19 +104,14 @@ impl Visitor {
     }
 
     /// Takes the board, or gives it back.
-    fn swap(&mut self, session: &mut Session) {
+    fn swap(&mut self, session: &mut Session<AnyTarget>) {
         if let Some(debugger) = &mut self.server.debugger {
             debugger.swap(session);
         }
     }
 
     /// Serves the editor and runs the board; whether the editor stays.
-    fn advance(
-        &mut self,
-        limit: Ticks,
-        events: &mut dyn FnMut(Event),
-        idle: Idle<'_, BytecodeEngine>,
-    ) -> bool {
+    fn advance(&mut self, limit: Ticks, events: &mut dyn FnMut(Event), idle: Idle<'_, AnyTarget>) -> bool {
         loop {
             match self.answer() {
                 Ok(true) => {}

@@ -2,15 +2,16 @@
 
 use std::io::Write;
 
+use cc67_host::Target;
 use serde_json::{Value, json};
 
 use super::{Reply, Server};
 use crate::debugger::{DebugError, Debugger};
 
 /// Makes the breakpoint that the editor wants: its number, and what to say of it.
-type Maker<'a> = dyn FnMut(&mut Debugger, &Value) -> Result<(u32, String), DebugError> + 'a;
+type Maker<'a, T> = dyn FnMut(&mut Debugger<T>, &Value) -> Result<(u32, String), DebugError> + 'a;
 
-impl<W: Write> Server<'_, W> {
+impl<W: Write, T: Target> Server<'_, W, T> {
     pub(super) fn set_breakpoints(&mut self, arguments: &Value) -> Reply {
         let path = arguments["source"]["path"].as_str().or_else(|| arguments["source"]["name"].as_str());
         let path = path.unwrap_or_default().to_owned();
@@ -50,7 +51,7 @@ impl<W: Write> Server<'_, W> {
         })
     }
 
-    fn replace(&mut self, set: &str, wanted: &Value, make: &mut Maker<'_>) -> Reply {
+    fn replace(&mut self, set: &str, wanted: &Value, make: &mut Maker<'_, T>) -> Reply {
         let old: Vec<u32> = self.set.iter().filter(|(name, _)| name == set).map(|(_, id)| *id).collect();
         self.set.retain(|(name, _)| name != set);
         let mut made = Vec::new();
@@ -113,7 +114,7 @@ fn passes(condition: &str) -> u64 {
 }
 
 /// A breakpoint that is set, as clients see it.
-fn verified(debugger: &Debugger, id: u32, text: &str) -> Value {
+fn verified<T: Target>(debugger: &Debugger<T>, id: u32, text: &str) -> Value {
     let mut shown = json!({ "id": id, "verified": true });
     let found = debugger.breakpoints().iter().find(|breakpoint| breakpoint.id == id);
     if let Some(crate::debugger::BreakpointKind::Code(_, addresses)) =

@@ -2,17 +2,20 @@
 
 use std::io::Write;
 
+use cc67_host::Target;
 use kmotiondef::ThreadId;
 use serde_json::{Value, json};
 use vm::engine::ContextId;
 
 use super::{CALLBACK, Reply, Server, number_of, wire};
 use crate::debugger::{DebugError, Debugger, Reason, ShownVariable};
-use crate::shell::{disassembly, state};
+use crate::shell::state;
 
 /// Frames of one thread; the number of a frame says which thread it is of.
 const FRAMES: i64 = 100_000;
 
+/// Bytes of an instruction where no code is.
+const INSTRUCTION: u32 = 8;
 /// Most parts that are listed at once.
 const PARTS: u32 = 10_000;
 
@@ -64,7 +67,7 @@ fn context_of(number: i64) -> Option<ContextId> {
     i32::try_from(number).ok().and_then(ThreadId::new).map(ContextId::of)
 }
 
-impl<W: Write> Server<'_, W> {
+impl<W: Write, T: Target> Server<'_, W, T> {
     pub(super) fn threads(&mut self) -> Reply {
         let debugger = self.debugger()?;
         let mut threads = Vec::new();
@@ -110,7 +113,7 @@ impl<W: Write> Server<'_, W> {
     }
 
     /// Looks at a call by its number.
-    fn select(&mut self, frame: i64) -> Result<&mut Debugger, DebugError> {
+    fn select(&mut self, frame: i64) -> Result<&mut Debugger<T>, DebugError> {
         let debugger = self.debugger()?;
         if let Some(thread) = context_of(frame / FRAMES).and_then(ContextId::thread) {
             debugger.select(thread, (frame % FRAMES) as usize)?;
@@ -272,22 +275,25 @@ impl<W: Write> Server<'_, W> {
     pub(super) fn disassemble(&mut self, arguments: &Value) -> Reply {
         let base = address_of(arguments["memoryReference"].as_str().unwrap_or_default())?;
         let base = base.wrapping_add_signed(arguments["offset"].as_i64().unwrap_or(0) as i32);
-        let first =
-            base.wrapping_add_signed((arguments["instructionOffset"].as_i64().unwrap_or(0) * 8) as i32);
+        let first = base.wrapping_add_signed(
+            (arguments["instructionOffset"].as_i64().unwrap_or(0) * i64::from(INSTRUCTION)) as i32,
+        );
         let count = arguments["instructionCount"].as_u64().unwrap_or(0).min(10_000) as u32;
         let debugger = self.debugger()?;
+        let mut at = first & !3;
         let instructions: Vec<_> = (0..count)
-            .map(|index| {
-                let at = (first & !7).wrapping_add(8 * index);
-                let found = disassembly(debugger, at, 1).pop();
+            .map(|_| {
+                let found = debugger.session().target().disassemble(at);
+                let size = found.as_ref().map_or(INSTRUCTION, |(_, size)| *size);
                 let mut shown = json!({
                     "address": format!("{at:#010x}"),
-                    "instruction": found.map_or_else(|| "(no code)".to_owned(), |(_, text)| text),
+                    "instruction": found.map_or_else(|| "(no code)".to_owned(), |(text, _)| text),
                 });
                 if let Some(place) = debugger.place(at) {
                     shown["line"] = json!(place.line);
                     shown["location"] = source(&place.file);
                 }
+                at = at.wrapping_add(size);
                 shown
             })
             .collect();
@@ -322,7 +328,7 @@ impl<W: Write> Server<'_, W> {
 }
 
 /// An element of `persist.UserData` as an integer, and as what programs store there: a float in one, a double in two.
-fn reading(debugger: &Debugger, index: u32) -> Option<ShownVariable> {
+fn reading<T: Target>(debugger: &Debugger<T>, index: u32) -> Option<ShownVariable> {
     let expression = format!("persist.UserData[{index}]");
     let element = debugger.evaluate(&expression).ok()?;
     let bytes = debugger.bytes(element.address?, 8);

@@ -22,7 +22,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, channel};
 use std::thread;
 
-use cc67_host::remark;
+use cc67_host::{Target, remark};
 use runtime::{Event, EventKind};
 use serde_json::{Value, json};
 use vm::engine::ContextId;
@@ -38,16 +38,16 @@ const CALLBACK: i64 = 8;
 type Reply = Result<Value, DebugError>;
 
 /// What makes a debugger of what a client asks for.
-pub type Launcher<'a> = &'a mut dyn FnMut(&Launch) -> Result<Debugger, String>;
+pub type Launcher<'a, T> = &'a mut dyn FnMut(&Launch) -> Result<Debugger<T>, String>;
 
 /// Serves one client until it disconnects or vanishes.
 ///
 /// # Errors
 /// The client cannot be written to.
-pub fn serve(
+pub fn serve<T: Target>(
     input: impl BufRead + Send + 'static,
     output: impl Write,
-    launcher: Launcher<'_>,
+    launcher: Launcher<'_, T>,
 ) -> io::Result<()> {
     let interrupt = Arc::new(AtomicBool::new(false));
     let requests = read(input, Arc::clone(&interrupt));
@@ -92,14 +92,14 @@ fn read(mut input: impl BufRead + Send + 'static, interrupt: Arc<AtomicBool>) ->
 }
 
 /// The state of a conversation.
-struct Server<'a, W> {
+struct Server<'a, W, T: Target> {
     wire: ClientWire<W>,
     /// What makes a debugger; none where the board is somebody else's, and the debugger is there from the beginning.
-    launcher: Option<Launcher<'a>>,
+    launcher: Option<Launcher<'a, T>>,
     /// Where the board of somebody else goes; `None` while it is stopped.
     goal: Option<Goal>,
     interrupt: Arc<AtomicBool>,
-    debugger: Option<Debugger>,
+    debugger: Option<Debugger<T>>,
     asked: Launch,
     /// What the variable references of the present stop stand for.
     handles: Vec<Handle>,
@@ -119,8 +119,8 @@ enum Move {
     Again,
 }
 
-impl<'a, W: Write> Server<'a, W> {
-    fn new(output: W, launcher: Option<Launcher<'a>>, interrupt: Arc<AtomicBool>) -> Self {
+impl<'a, W: Write, T: Target> Server<'a, W, T> {
+    fn new(output: W, launcher: Option<Launcher<'a, T>>, interrupt: Arc<AtomicBool>) -> Self {
         Self {
             wire: ClientWire::new(output),
             launcher,
@@ -136,7 +136,7 @@ impl<'a, W: Write> Server<'a, W> {
     }
 }
 
-impl<W: Write> Server<'_, W> {
+impl<W: Write, T: Target> Server<'_, W, T> {
     fn answer(&mut self, request: &Value) -> io::Result<()> {
         let command = request["command"].as_str().unwrap_or_default().to_owned();
         let arguments = &request["arguments"];
@@ -228,7 +228,7 @@ impl<W: Write> Server<'_, W> {
         Ok(json!({}))
     }
 
-    fn debugger(&mut self) -> Result<&mut Debugger, DebugError> {
+    fn debugger(&mut self) -> Result<&mut Debugger<T>, DebugError> {
         self.debugger.as_mut().ok_or_else(|| "nothing is launched yet".into())
     }
 
@@ -336,7 +336,7 @@ impl<W: Write> Server<'_, W> {
     }
 
     fn tell_messages(&mut self) -> io::Result<()> {
-        while let Some(message) = self.debugger.as_mut().and_then(Debugger::take_message) {
+        while let Some(message) = self.debugger.as_mut().and_then(Debugger::<T>::take_message) {
             self.wire.output("console", &format!("{message}\n"))?;
         }
         Ok(())
@@ -398,7 +398,7 @@ struct Herald<'a, W> {
 }
 
 impl<'a, W: Write> Herald<'a, W> {
-    fn new(wire: &'a mut ClientWire<W>, debugger: &Debugger) -> Self {
+    fn new<T: Target>(wire: &'a mut ClientWire<W>, debugger: &Debugger<T>) -> Self {
         let infos = debugger.session().debug().into_iter().map(|(_, info)| info).collect();
         Self { wire, infos, failed: None, has_trapped: false }
     }

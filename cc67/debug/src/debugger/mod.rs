@@ -12,12 +12,13 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use cc67_host::{History, HostError, Session, Setup, Snapshot, Timeline};
+use cc67_host::{
+    AnyTarget, Capability, History, HostError, Session, Setup, Snapshot, SnapshotError, Target, Timeline,
+};
 use compiler::debug::Probe;
 use kmotiondef::{CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
-use runtime::Event;
-use vm::engine::ContextId;
-use vm::interp::{BytecodeEngine, FrameView};
+use runtime::{Board, Event};
+use vm::engine::{ContextId, FrameView};
 
 use crate::programs::{Activation, Programs, Statement};
 
@@ -188,10 +189,10 @@ pub struct Catches {
 
 /// A debugger of one board.
 #[derive(Debug)]
-pub struct Debugger {
-    session: Session,
+pub struct Debugger<T: Target = Board> {
+    session: Session<T>,
     /// The past; none of a board that somebody else runs.
-    timeline: Option<Timeline<BytecodeEngine>>,
+    timeline: Option<Timeline<T>>,
     programs: Programs,
     breakpoints: Vec<Breakpoint>,
     next_id: u32,
@@ -208,23 +209,20 @@ pub struct Debugger {
     interrupt: Arc<AtomicBool>,
 }
 
-impl Debugger {
+impl<T: Target> Debugger<T> {
     /// A debugger of a board in its present state.
-    #[must_use]
-    pub fn new(mut session: Session, limit: Ticks) -> Self {
-        let timeline = Timeline::new(&mut session);
-        Self::with(session, Some(timeline), limit)
-    }
-
-    /// A debugger of a board that somebody else runs and [lends](Self::swap) it; such a board does not go back.
     ///
     /// # Errors
-    /// There is no board to keep the place of the other one.
-    pub fn of_lent() -> Result<Self, HostError> {
-        Ok(Self::with(Setup::default().session()?, None, Ticks::new(u64::MAX)))
+    /// The target cannot hold programs.
+    pub fn new(mut session: Session<T>, limit: Ticks) -> Result<Self, DebugError> {
+        session.require(Capability::Breakpoints).map_err(|error| error.to_string())?;
+        session.prepare_to_hold();
+        // A target without snapshots does not go back.
+        let timeline = Timeline::new(&mut session).ok();
+        Ok(Self::with(session, timeline, limit))
     }
 
-    fn with(session: Session, timeline: Option<Timeline<BytecodeEngine>>, limit: Ticks) -> Self {
+    fn with(session: Session<T>, timeline: Option<Timeline<T>>, limit: Ticks) -> Self {
         let mut programs = Programs::default();
         programs.update(&session);
         let first = session.programs().iter().find(|program| program.starts).map(|program| program.thread);
@@ -248,17 +246,17 @@ impl Debugger {
 
     /// The board under control, to look at.
     #[must_use]
-    pub const fn session(&self) -> &Session {
+    pub const fn session(&self) -> &Session<T> {
         &self.session
     }
 
     /// Lends it a board, or takes it back: what it had until then is in `session` afterwards.
-    pub fn swap(&mut self, session: &mut Session) {
+    pub fn swap(&mut self, session: &mut Session<T>) {
         std::mem::swap(&mut self.session, session);
     }
 
     /// The board under control, for whoever has lent it.
-    pub(crate) const fn session_mut(&mut self) -> &mut Session {
+    pub(crate) const fn session_mut(&mut self) -> &mut Session<T> {
         &mut self.session
     }
 
@@ -273,7 +271,10 @@ impl Debugger {
     }
 
     /// The board as it is at this instant, to compare it with another instant.
-    pub fn snapshot(&mut self) -> Snapshot<BytecodeEngine> {
+    ///
+    /// # Errors
+    /// The target has no snapshots.
+    pub fn snapshot(&mut self) -> Result<Snapshot<T>, SnapshotError> {
         self.session.snapshot()
     }
 
@@ -599,6 +600,16 @@ impl Debugger {
             ));
         }
         self.refresh_watches();
+    }
+}
+
+impl Debugger<AnyTarget> {
+    /// A debugger of a board that somebody else runs and [lends](Self::swap) it; such a board does not go back.
+    ///
+    /// # Errors
+    /// There is no board to keep the place of the other one.
+    pub fn of_lent() -> Result<Self, HostError> {
+        Ok(Self::with(Setup::default().session_on_any(None)?, None, Ticks::new(u64::MAX)))
     }
 }
 

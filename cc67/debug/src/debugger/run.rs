@@ -2,15 +2,12 @@
 
 use std::sync::atomic::Ordering;
 
+use cc67_host::Target;
 use kmotiondef::{Bit, CodeAddr, GuestAddr, ThreadId, Ticks};
 use runtime::{Event, EventKind};
-use vm::engine::ContextId;
-use vm::interp::{Hold, HoldReason};
+use vm::engine::{ContextId, Hold, HoldReason};
 
 use super::{BreakpointKind, DebugError, Debugger, Events, Reason, Stop, file_name};
-
-/// Bytes of an instruction.
-const WORD: u32 = 8;
 
 /// What ends a run besides breakpoints.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -46,7 +43,7 @@ pub(crate) enum Way {
     Instruction,
 }
 
-impl Debugger {
+impl<T: Target> Debugger<T> {
     /// Goes on to the next stop.
     pub fn go_on(&mut self, events: Events<'_>) -> Stop {
         self.run(&Goal::None, events)
@@ -118,7 +115,7 @@ impl Debugger {
             return Ok(Goal::Leave { context, depth: frames.len() - self.frame });
         }
         let depth = frames.last().map_or(0, |last| last.real + 1) - caller.real;
-        Ok(Goal::Above { context, depth, at: vec![caller.address.get() + WORD] })
+        Ok(Goal::Above { context, depth, at: vec![caller.view.continues_at.get()] })
     }
 
     /// Executes one instruction of the thread that is looked at.
@@ -158,7 +155,7 @@ impl Debugger {
     pub fn step_slice(&mut self, events: Events<'_>) -> Stop {
         loop {
             let stop = self.step_tick(events);
-            let is_its = self.session.board().machine().turn() == vm::scheduler::Turn::User(self.thread);
+            let is_its = self.session.target().turn() == vm::scheduler::Turn::User(self.thread);
             if stop.reason != Reason::Time || is_its || self.session.tick() >= self.limit {
                 return stop;
             }

@@ -6,6 +6,7 @@
 
 use std::sync::atomic::Ordering;
 
+use cc67_host::Target;
 use kmotiondef::Ticks;
 use vm::engine::ContextId;
 
@@ -56,7 +57,7 @@ struct Found {
     is_first: bool,
 }
 
-impl Debugger {
+impl<T: Target> Debugger<T> {
     /// Goes back to the last breakpoint, change of a watched expression or trap.
     pub fn reverse_continue(&mut self) -> Stop {
         self.back(&Wanted::Stop)

@@ -2,12 +2,12 @@
 
 use compiler::debug::{Child, DebugReader, DebugValue, Displayed, LocalModel, LocalPlace, Location, Probe};
 use kmotiondef::GuestAddr;
-use vm::engine::ContextId;
-use vm::interp::FrameView;
+use vm::engine::{ContextId, FrameView};
 
 use super::{DebugError, Debugger, StackFrame, WatchedExpression};
 use crate::programs::{Activation, Programs};
-use cc67_host::Session;
+use cc67_host::session::with_user_data;
+use cc67_host::{Session, Target};
 
 /// A variable for show.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -27,16 +27,15 @@ pub struct ShownVariable {
 }
 
 /// A board and a call, as expressions read them.
-pub(crate) struct At<'a> {
-    session: &'a Session,
+pub(crate) struct At<'a, T> {
+    session: &'a Session<T>,
     view: Option<&'a FrameView>,
     items: Vec<String>,
 }
 
-impl DebugReader for At<'_> {
+impl<T: Target> DebugReader for At<'_, T> {
     fn bytes(&self, address: GuestAddr) -> [u8; 8] {
-        let memory = self.session.board().memory();
-        std::array::from_fn(|offset| memory.peek::<u8>(address.offset(offset as u32)))
+        std::array::from_fn(|offset| self.session.peek(address.offset(offset as u32)))
     }
 
     fn item(&self, index: usize) -> f64 {
@@ -56,7 +55,7 @@ impl DebugReader for At<'_> {
 }
 
 /// The names in an expression that are items of the board and not the program's.
-fn items_in(expression: &str, session: &Session) -> Vec<String> {
+fn items_in<T: Target>(expression: &str, session: &Session<T>) -> Vec<String> {
     let words = expression.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_'));
     let mut items: Vec<_> = words.filter(|word| session.item(word).is_some()).map(str::to_owned).collect();
     items.sort();
@@ -66,9 +65,9 @@ fn items_in(expression: &str, session: &Session) -> Vec<String> {
 
 /// Compiles an expression for an instruction, in one of the functions that it is in, or outside of functions for a
 /// thread's program.
-fn compile(
+fn compile<T: Target>(
     programs: &Programs,
-    session: &Session,
+    session: &Session<T>,
     thread: kmotiondef::ThreadId,
     at: Option<(u32, usize)>,
     expression: &str,
@@ -79,7 +78,7 @@ fn compile(
         }
         _ => (thread, expression),
     };
-    let expression = Session::spelled(expression);
+    let expression = with_user_data(expression);
     let found = at.and_then(|(address, level)| programs.activations(address).into_iter().nth(level));
     let place = found.filter(|found| found.thread == thread).map(|found| found.scope);
     let any = || programs.all().next().map(|(_, model)| model);
@@ -103,7 +102,7 @@ fn compile(
     }
 }
 
-impl Debugger {
+impl<T: Target> Debugger<T> {
     /// The call that is looked at.
     fn call(&self) -> Option<StackFrame> {
         self.frames(self.context()).into_iter().nth(self.frame)
@@ -127,11 +126,11 @@ impl Debugger {
         compile(&self.programs, &self.session, thread, Some((address, 0)), expression)
     }
 
-    fn with_value<T>(
+    fn with_value<R>(
         &self,
         expression: &str,
-        work: impl FnOnce(&Probe, &DebugValue, &Displayed<'_>) -> T,
-    ) -> Result<T, DebugError> {
+        work: impl FnOnce(&Probe, &DebugValue, &Displayed<'_>) -> R,
+    ) -> Result<R, DebugError> {
         let (probe, items) = self.probe(expression)?;
         let view = self.view();
         let at = At { session: &self.session, view: view.as_ref(), items };
@@ -264,8 +263,10 @@ impl Debugger {
     /// Bytes of memory; 0 outside of it.
     #[must_use]
     pub fn bytes(&self, address: u32, count: u32) -> Vec<u8> {
-        let memory = self.session.board().memory();
-        (0..count).map(|offset| memory.peek::<u8>(GuestAddr::new(address.wrapping_add(offset)))).collect()
+        let mut bytes = vec![0; count as usize];
+        // What a target does not answer reads 0.
+        let _ = self.session.target().read(GuestAddr::new(address), &mut bytes);
+        bytes
     }
 
     /// Whether a condition holds in the innermost call of a context.

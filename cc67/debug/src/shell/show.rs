@@ -2,18 +2,25 @@
 
 use std::fmt::Write as _;
 
+use cc67_host::{Capability, Target};
 use kmotiondef::limits::TIMEBASE;
 use kmotiondef::{Cycles, ThreadId};
 use vm::engine::ContextId;
 use vm::thread::{Progress, ThreadState};
 
 use super::{Shell, breakpoints, context};
-use crate::debugger::{CodePlace, DebugError, Debugger, Reason, Stop, file_name};
+use crate::debugger::{CodePlace, DebugError, Debugger, Reason, StackFrame, Stop, file_name};
+use crate::words::LineReader;
 
 /// Lines that `list` shows.
 const LINES: u32 = 10;
+/// Most registers in a line.
+const COLUMNS: usize = 8;
+/// Why there are none.
+const NO_LOCALS: &str = "where locals are in code for the processor is not noted; `info registers` shows the \
+                         registers, and variables outside of functions have names";
 
-impl Shell {
+impl<T: Target> Shell<T> {
     pub(super) fn values(&mut self, name: &str, rest: &str) -> Result<String, DebugError> {
         let (format, rest) = match rest.strip_prefix('/') {
             Some(more) => more.split_once(char::is_whitespace).unwrap_or((more, "")),
@@ -66,7 +73,7 @@ impl Shell {
             None => self.debugger.number(expression)? as i64 as u32,
         };
         if kind == 'i' {
-            return Ok(self.instructions(address, count));
+            return Ok(self.instructions(address, count, u32::MAX));
         }
         let mut out = String::new();
         if kind == 's' {
@@ -96,14 +103,14 @@ impl Shell {
         Ok(out + "\n")
     }
 
-    fn instructions(&self, address: u32, count: u32) -> String {
+    fn instructions(&self, address: u32, count: u32, end: u32) -> String {
         let mut out = String::new();
         let here = self
             .debugger
             .frames(self.debugger.context())
             .get(self.debugger.frame())
             .map(|frame| frame.address.get());
-        for line in disassembly(&self.debugger, address, count) {
+        for line in disassembly(&self.debugger, address, end).take(count as usize) {
             let mark = if here == Some(line.0) { "=>" } else { "  " };
             let _ = writeln!(out, "{mark} {:#010x}: {}", line.0, line.1);
         }
@@ -143,9 +150,9 @@ impl Shell {
                 let at = at.ok_or("No frame selected.")?;
                 let found = self.debugger.programs().at(at).ok_or("No function contains it.")?;
                 let range = found.2.addresses.clone();
-                Ok(self.instructions(range.start, (range.end - range.start) / 8))
+                Ok(self.instructions(range.start, u32::MAX, range.end))
             }
-            _ => Ok(self.lines.help()),
+            _ => Ok(LineReader::help()),
         }
     }
 
@@ -158,7 +165,12 @@ impl Shell {
         Ok(match what {
             _ if is("threads") => threads(&self.debugger),
             _ if is("breakpoints") || is("watchpoints") => breakpoints(&self.debugger),
-            _ if is("locals") || is("args") => variables(self.debugger.locals(), "No locals."),
+            _ if is("locals") || is("args") => {
+                let is_real = self.debugger.session().can(Capability::ProcessorCode);
+                let none = if is_real { NO_LOCALS } else { "No locals." };
+                variables(self.debugger.locals(), none)
+            }
+            _ if is("registers") => registers(&self.debugger)?,
             _ if is("variables") => variables(self.debugger.globals(), "No variables."),
             _ if is("frame") => frame_line(&self.debugger, self.debugger.frame()),
             _ if is("line") => match self.debugger.present() {
@@ -173,7 +185,7 @@ impl Shell {
                     bytes / 1024
                 )
             }
-            _ => return Err("info threads|breakpoints|locals|variables|line|frame|history".into()),
+            _ => return Err("info threads|breakpoints|locals|variables|registers|line|frame|history".into()),
         })
     }
 
@@ -220,24 +232,23 @@ fn number_as(number: f64, format: &str) -> Result<String, DebugError> {
     })
 }
 
-/// The instructions from an address on, each with its address.
-pub(crate) fn disassembly(debugger: &Debugger, address: u32, count: u32) -> Vec<(u32, String)> {
-    let mut lines = Vec::new();
-    for index in 0..count {
-        let at = (address & !7).wrapping_add(8 * index);
-        let machine = debugger.session().board().machine();
-        let found = ThreadId::all().filter_map(|thread| machine.program(thread)).find_map(|program| {
-            let word = program.word_at(kmotiondef::CodeAddr::new(at)?)?;
-            Some(program.ops()[word].to_string())
-        });
-        let Some(text) = found else { break };
-        lines.push((at, text));
-    }
-    lines
+/// The instructions from an address on to another, each with its address.
+fn disassembly<T: Target>(
+    debugger: &Debugger<T>,
+    address: u32,
+    end: u32,
+) -> impl Iterator<Item = (u32, String)> {
+    let mut at = address & !3;
+    std::iter::from_fn(move || {
+        let (text, size) = debugger.session().target().disassemble(at).filter(|_| at < end)?;
+        let line = (at, text);
+        at = at.checked_add(size)?;
+        Some(line)
+    })
 }
 
 /// Why the board stands, and where.
-pub(super) fn stop(debugger: &Debugger, stop: &Stop) -> String {
+pub(super) fn stop<T: Target>(debugger: &Debugger<T>, stop: &Stop) -> String {
     let at = format!("{:.6} s", seconds(stop.at));
     let who = match stop.context.map(ContextId::thread) {
         Some(Some(thread)) => format!("thread {thread}, {at}"),
@@ -278,7 +289,7 @@ pub(super) fn stop(debugger: &Debugger, stop: &Stop) -> String {
     )
 }
 
-fn source_line(debugger: &Debugger, place: &CodePlace) -> String {
+fn source_line<T: Target>(debugger: &Debugger<T>, place: &CodePlace) -> String {
     let text = debugger.programs().of(place.thread).ok().filter(|model| {
         model.path.file_name().and_then(|name| name.to_str()) == Some(file_name(&place.file))
     });
@@ -287,7 +298,7 @@ fn source_line(debugger: &Debugger, place: &CodePlace) -> String {
     line.map_or_else(String::new, |line| format!("{}\t{line}\n", place.line))
 }
 
-fn backtrace(debugger: &Debugger) -> String {
+fn backtrace<T: Target>(debugger: &Debugger<T>) -> String {
     let frames = debugger.frames(debugger.context());
     if frames.is_empty() {
         return "No stack.\n".to_owned();
@@ -295,25 +306,44 @@ fn backtrace(debugger: &Debugger) -> String {
     (0..frames.len()).map(|index| frame_text(debugger, index)).collect()
 }
 
-fn frame_text(debugger: &Debugger, index: usize) -> String {
+fn frame_text<T: Target>(debugger: &Debugger<T>, index: usize) -> String {
     let frames = debugger.frames(debugger.context());
     let Some(frame) = frames.get(index) else { return "No stack.\n".to_owned() };
     match &frame.place {
         Some(place) => {
             format!("#{index}  {} () at {}:{}\n", place.function, file_name(&place.file), place.line)
         }
-        None => format!("#{index}  {}\n", frame.address),
+        None => format!("#{index}  {}\n", name_of(debugger, frame)),
     }
 }
 
-fn frame_line(debugger: &Debugger, index: usize) -> String {
+fn frame_line<T: Target>(debugger: &Debugger<T>, index: usize) -> String {
     let place = debugger.frames(debugger.context()).into_iter().nth(index).and_then(|frame| frame.place);
     let source = place.map_or_else(String::new, |place| source_line(debugger, &place));
     frame_text(debugger, index) + &source
 }
 
+/// The name of code that no program has: a function of the firmware, or its address.
+fn name_of<T: Target>(debugger: &Debugger<T>, frame: &StackFrame) -> String {
+    let name = debugger.session().target().firmware_function(frame.address);
+    name.map_or_else(|| frame.address.to_string(), |name| format!("{name} () of the firmware"))
+}
+
+/// The registers of the processor.
+fn registers<T: Target>(debugger: &Debugger<T>) -> Result<String, DebugError> {
+    let registers = debugger.session().target().registers();
+    if registers.is_empty() {
+        return Err("bytecode has no registers of the processor; `info locals` shows variables".into());
+    }
+    let rows = registers.chunks(COLUMNS).map(|row| {
+        let cells: Vec<_> = row.iter().map(|(name, value)| format!("{name}={value:08X}")).collect();
+        cells.join(" ") + "\n"
+    });
+    Ok(rows.collect())
+}
+
 /// What a thread is doing, in words.
-pub(crate) fn state(debugger: &Debugger, thread: ThreadId) -> Option<String> {
+pub(crate) fn state<T: Target>(debugger: &Debugger<T>, thread: ThreadId) -> Option<String> {
     Some(match debugger.session().thread(thread) {
         ThreadState::Empty => return None,
         ThreadState::Ready => "not active".to_owned(),
@@ -324,15 +354,25 @@ pub(crate) fn state(debugger: &Debugger, thread: ThreadId) -> Option<String> {
     })
 }
 
-fn threads(debugger: &Debugger) -> String {
+fn threads<T: Target>(debugger: &Debugger<T>) -> String {
     let mut out = String::from("  Id   State       Frame\n");
     for thread in ThreadId::all() {
         let Some(state) = state(debugger, thread) else { continue };
         let mark = if thread == debugger.thread() { '*' } else { ' ' };
-        let frame = debugger.frames(context(thread)).into_iter().next().and_then(|frame| frame.place);
-        let frame = frame.map_or_else(String::new, |place| {
-            format!("{} () at {}:{}", place.function, file_name(&place.file), place.line)
-        });
+        let frames = debugger.frames(context(thread));
+        // A function of the firmware, then the place in the program that has called it.
+        let shown = frames.iter().position(|frame| frame.place.is_some()).map_or(1, |index| index + 1);
+        let shown: Vec<_> = frames
+            .iter()
+            .take(shown)
+            .map(|frame| match &frame.place {
+                Some(place) => {
+                    format!("{} () at {}:{}", place.function, file_name(&place.file), place.line)
+                }
+                None => name_of(debugger, frame),
+            })
+            .collect();
+        let frame = shown.join(" from ");
         let _ = writeln!(out, "{mark} {:<4} {state:<11} {frame}", thread.to_string());
     }
     let _ = writeln!(

@@ -3,24 +3,24 @@
 use std::fmt::Debug;
 use std::ops::ControlFlow;
 
+use crate::target::Target;
 use kmotiondef::Ticks;
 use runtime::Event;
-use vm::engine::Engine;
 
 use super::Session;
 
 /// What is done while an attendant stops the board; whether it may stop it any longer.
-pub type Idle<'a, E> = &'a mut dyn FnMut(&mut Session<E>) -> ControlFlow<()>;
+pub type Idle<'a, T> = &'a mut dyn FnMut(&mut Session<T>) -> ControlFlow<()>;
 
 /// Somebody through whom the owner of a session lets time pass, and who may stop it: a debugger that an editor attaches.
-pub trait Attendant<E: Engine>: Debug {
+pub trait Attendant<T: Target>: Debug {
     /// Does what is asked of it, and runs to the end of tick `limit`, also when everything has ended. While it stops the
     /// board it calls `idle` about a hundred times in a second; it comes back when the board may continue.
     fn advance(
         &mut self,
-        session: &mut Session<E>,
+        session: &mut Session<T>,
         limit: Ticks,
         events: &mut dyn FnMut(Event),
-        idle: Idle<'_, E>,
+        idle: Idle<'_, T>,
     );
 }

@@ -6,16 +6,18 @@
 
 use std::fmt::Write as _;
 
+use crate::target::Target;
 use compiler::Options;
+use kmotiondef::limits::N_USER_DATA_VARS;
 use kmotiondef::structs::Persist;
 use kmotiondef::variables::PERSIST;
 use kmotiondef::{Bit, Cycles, ThreadId, Ticks};
 use runtime::stimulus::{Stimulus, StimulusError};
-use vm::engine::Engine;
 
 use super::setup::resolve;
 use super::{Input, Session, UserProgram};
 use crate::HostError;
+use crate::capability::Capability;
 
 /// What messages call the text of a statement.
 const SOURCE: &str = "by hand";
@@ -106,7 +108,7 @@ fn quoted(bytes: &[u8]) -> String {
     text + "\""
 }
 
-impl<E: Engine> Session<E> {
+impl<T: Target> Session<T> {
     /// What was done by hand so far.
     #[must_use]
     pub const fn recording(&self) -> &Recording {
@@ -135,10 +137,11 @@ impl<E: Engine> Session<E> {
     /// assert!(session.act("bit 46 = 1").is_err());        // an output
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn act(&mut self, action: &str) -> Result<(), StimulusError> {
+    pub fn act(&mut self, action: &str) -> Result<(), HostError> {
         let tick = self.tick();
         let stimulus = by_hand(tick, action, &self.programs, &self.options)?;
-        self.board.play(stimulus);
+        self.require(Capability::Surroundings)?;
+        self.target.play(stimulus);
         self.recording.add(tick, action);
         self.note(Input::Act(action.to_owned()));
         Ok(())
@@ -148,24 +151,25 @@ impl<E: Engine> Session<E> {
     ///
     /// # Errors
     /// What is wrong with the bit: only the board drives an output.
-    pub fn drive_input(&mut self, bit: Bit, level: bool) -> Result<(), StimulusError> {
+    pub fn drive_input(&mut self, bit: Bit, level: bool) -> Result<(), HostError> {
         let action = format!("bit {bit} = {}", u8::from(level));
         Stimulus::parse(&action, SOURCE)?;
-        self.board.drive_input(bit, level);
-        self.recording.add(self.board.tick(), &action);
+        self.require(Capability::Surroundings)?;
+        self.target.drive_input(bit, level);
+        self.recording.add(self.target.tick(), &action);
         self.note(Input::Drive(bit, level));
         Ok(())
     }
 
     /// Stores an element of `persist.UserData` at once; `false` beyond the last.
     pub fn set_user_data(&mut self, index: usize, value: i32) -> bool {
-        let is_inside = self.board.set_user_data(index, value);
-        if is_inside {
-            self.recording.stored(self.board.tick(), index, value);
-            let address = PERSIST.field(Persist::USER_DATA).element(index).address();
+        let address = PERSIST.field(Persist::USER_DATA).element(index.min(N_USER_DATA_VARS - 1)).address();
+        let is_stored = index < N_USER_DATA_VARS && self.target.write(address, &value.to_le_bytes()).is_ok();
+        if is_stored {
+            self.recording.stored(self.target.tick(), index, value);
             self.note(Input::Store(address, value.to_le_bytes().into()));
         }
-        is_inside
+        is_stored
     }
 
     /// Sends a line of script commands, or a data line that a command waits for; the board takes it as time passes.
@@ -177,8 +181,8 @@ impl<E: Engine> Session<E> {
     /// Sends bytes over the USB link as they are: lines, ended by CR; one that begins with 0x1B and another byte is not
     /// echoed.
     pub fn receive(&mut self, bytes: &[u8]) {
-        self.board.receive(bytes);
-        let tick = self.board.tick();
+        self.target.receive(bytes);
+        let tick = self.target.tick();
         match bytes {
             [0x1b, _, line @ .., b'\r'] if !line.contains(&b'\r') && line.is_ascii() => {
                 self.recording.add(tick, &format!("command {}", quoted(line)));
@@ -190,8 +194,8 @@ impl<E: Engine> Session<E> {
 
     /// Puts characters on the line to the serial port; they arrive one after another at its rate.
     pub fn send_to_uart(&mut self, bytes: &[u8]) {
-        self.board.send_to_uart(bytes);
-        self.recording.add(self.board.tick(), &format!("uart {}", quoted(bytes)));
+        self.target.send_to_uart(bytes);
+        self.recording.add(self.target.tick(), &format!("uart {}", quoted(bytes)));
         self.note(Input::Uart(bytes.to_vec()));
     }
 
@@ -200,23 +204,23 @@ impl<E: Engine> Session<E> {
     /// # Errors
     /// [`HostError::NotLoaded`].
     pub fn start(&mut self, thread: ThreadId) -> Result<(), HostError> {
-        self.board.start(thread).map_err(|_| HostError::NotLoaded(thread))?;
-        self.recording.add(self.board.tick(), &format!("start {thread}"));
+        self.target.start(thread)?;
+        self.recording.add(self.target.tick(), &format!("start {thread}"));
         self.note(Input::Start(thread));
         Ok(())
     }
 
     /// Stops a thread where it is.
     pub fn stop(&mut self, thread: ThreadId) {
-        self.board.kill([thread]);
-        self.recording.add(self.board.tick(), &format!("stop {thread}"));
+        self.target.stop(thread);
+        self.recording.add(self.target.tick(), &format!("stop {thread}"));
         self.note(Input::Stop(thread));
     }
 
     /// Says whether the PC takes console lines. If not, they wait in the board's queue, and once that is full, so do the
     /// programs that print.
     pub fn listen(&mut self, listens: bool) {
-        self.board.listen(listens);
+        self.target.listen(listens);
         if self.journal.listens() != listens {
             self.note(Input::Listen(listens));
         }

@@ -6,13 +6,14 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use crate::target::Target;
 use kmotiondef::{ThreadId, Ticks};
-use runtime::{Event, EventKind};
-use vm::engine::Engine;
+use runtime::EventKind;
 use vm::scheduler::Turn;
 
 use super::until::Heard;
-use super::{EXCHANGE, Session, Until};
+use super::{Session, Until};
+use crate::target::EventSink;
 
 /// Why a run came back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,10 +44,7 @@ impl Interrupter {
     }
 }
 
-/// What receives the events of a call.
-type EventSink<'a> = &'a mut dyn FnMut(Event);
-
-impl<E: Engine> Session<E> {
+impl<T: Target> Session<T> {
     /// What ends a [run](Self::run) from elsewhere.
     #[must_use]
     pub fn interrupter(&self) -> Interrupter {
@@ -107,7 +105,7 @@ impl<E: Engine> Session<E> {
     pub fn step_slice(&mut self, limit: Ticks, events: EventSink<'_>) -> Option<ThreadId> {
         while self.tick() < limit {
             self.step_tick(events);
-            if let Turn::User(thread) = self.board.machine().turn() {
+            if let Turn::User(thread) = self.target.turn() {
                 return Some(thread);
             }
         }
@@ -128,7 +126,7 @@ impl<E: Engine> Session<E> {
     pub fn step(&mut self, limit: Ticks, events: EventSink<'_>) {
         let limit = self.signals.next_sample(self.tick(), limit);
         let mut loaded = Vec::new();
-        self.board.advance(limit, &mut |event| {
+        self.target.step(limit, &mut |event| {
             if let EventKind::Loaded(thread, name) = &event.kind {
                 loaded.push((*thread, name.clone()));
             }
@@ -146,20 +144,20 @@ impl<E: Engine> Session<E> {
 
     /// The run is over: sends the console lines still waiting, and checks what the stimulus expects at the end.
     pub fn finish(&mut self, events: EventSink<'_>) {
-        self.board.finish(events);
+        self.target.finish(events);
     }
 
     /// Sends a line of script commands, or a data line that a command waits for, and lets pass the time that it and its
     /// answer take on the wire.
     pub fn exchange(&mut self, line: &[u8], events: EventSink<'_>) {
-        let is_data = self.board.is_in_command();
+        let is_data = self.target.is_in_command();
         let begin = self.tick().get();
         self.command(line);
-        while self.board.is_receiving() {
+        while self.target.is_answering() {
             self.step_tick(events);
         }
-        if !is_data && !self.board.is_in_command() {
-            self.advance(Ticks::new(begin + EXCHANGE), events);
+        if !is_data && !self.target.is_in_command() {
+            self.advance(Ticks::new(begin + self.target.exchange_ticks()), events);
         }
     }
 }

@@ -2,22 +2,33 @@
 
 use kmotiondef::{CodeAddr, Cycles, GuestAddr};
 use runtime::trace::Item;
-use vm::engine::{ContextId, Engine};
-use vm::interp::{FrameView, Hold};
+use vm::engine::{ContextId, FrameView, Hold};
 
 use super::{Session, UserProgram};
+use crate::target::Target;
 
-impl<E: Engine> Session<E> {
+impl<T: Target> Session<T> {
     /// Whose program holds the tick in progress, and the instant; `None` between two ticks.
     ///
     /// Whatever lets time pass continues with that tick first.
     #[must_use]
     pub fn held(&self) -> Option<(ContextId, Cycles)> {
-        self.board.machine().held()
+        self.target.held()
     }
 }
 
-impl Session {
+impl<T: Target> Session<T> {
+    /// A measure of what the computer has done so far; see [`Target::work`].
+    #[must_use]
+    pub fn work(&self) -> u64 {
+        self.target.work()
+    }
+
+    /// A debugger is about to use the board: the calls in progress are followed from now on.
+    pub fn prepare_to_hold(&mut self) {
+        self.target.prepare_to_hold();
+    }
+
     /// The programs in the threads.
     #[must_use]
     pub fn programs(&self) -> &[UserProgram] {
@@ -27,51 +38,45 @@ impl Session {
     /// What names an item of the board in an expression, such as `bit46`: its value.
     #[must_use]
     pub fn item(&self, name: &str) -> Option<f64> {
-        Item::new(name).ok().map(|item| self.board.value(item))
-    }
-
-    /// An expression as the compiler reads it: `persist.5` is an element of `persist.UserData`.
-    #[must_use]
-    pub fn spelled(expression: &str) -> String {
-        super::expression::with_user_data(expression)
+        Item::new(name).ok().map(|item| self.target.value(item))
     }
 
     /// Holds programs before these instructions, and before no others. What a program does, and when, stays the same.
     pub fn set_breakpoints(&mut self, addresses: impl IntoIterator<Item = CodeAddr>) {
-        self.board.engine_mut().set_breakpoints(addresses);
+        self.target.set_breakpoints(&addresses.into_iter().collect::<Vec<_>>());
     }
 
     /// Holds a context after each instruction, the next one included; `None` none.
-    pub const fn set_stepping(&mut self, context: Option<ContextId>) {
-        self.board.engine_mut().set_stepping(context);
+    pub fn set_stepping(&mut self, context: Option<ContextId>) {
+        self.target.set_stepping(context);
     }
 
     /// Holds programs after these bytes, addresses and how many, are not what they are now; and after no others.
     pub fn set_watched(&mut self, ranges: &[(GuestAddr, u32)]) {
-        self.board.set_watched(ranges);
+        self.target.set_watched(ranges);
     }
 
     /// Which of the watched bytes have changed between two instructions; said once.
     pub fn take_change(&mut self) -> Option<usize> {
-        self.board.take_change()
+        self.target.take_change()
     }
 
     /// Which context was held last, and why; said once.
-    pub const fn take_hold(&mut self) -> Option<Hold> {
-        self.board.engine_mut().take_hold()
+    pub fn take_hold(&mut self) -> Option<Hold> {
+        self.target.take_hold()
     }
 
     /// The calls in progress of a context, innermost first.
     #[must_use]
     pub fn frames(&self, id: ContextId) -> Vec<FrameView> {
-        self.board.machine().engine().frames(id)
+        self.target.frames(id)
     }
 
     /// Sets a register of a call in progress, the innermost of which is number 0; whether there is such a register.
     ///
     /// No journal has it: a [timeline](super::Timeline) is informed by [`branch`](super::Timeline::branch).
     pub fn set_register(&mut self, id: ContextId, frame: usize, register: u16, slot: u64) -> bool {
-        self.board.engine_mut().set_register(id, frame, register, slot)
+        self.target.set_register(id, frame, register, slot)
     }
 }
 
@@ -81,7 +86,7 @@ mod tests {
 
     use kmotiondef::{ThreadId, Ticks};
     use runtime::Event;
-    use vm::interp::HoldReason;
+    use vm::engine::HoldReason;
 
     use super::*;
     use crate::{Setup, UserProgram};
@@ -129,7 +134,7 @@ mod tests {
 
     fn assert_same(one: &(Vec<Event>, Session), other: &(Vec<Event>, Session)) {
         assert_eq!(one.0, other.0);
-        assert!(one.1.board().memory() == other.1.board().memory(), "memory differs");
+        assert!(one.1.target().memory() == other.1.target().memory(), "memory differs");
     }
 
     #[test]
@@ -137,12 +142,13 @@ mod tests {
         let plain = run(session("all"), |_| ());
         assert!(plain.0.len() > 4, "{:?}", plain.0);
         let mut held = session("all");
-        let all =
-            ThreadId::all().filter_map(|thread| held.board().machine().program(thread)).flat_map(|program| {
+        let all = ThreadId::all().filter_map(|thread| held.target().machine().program(thread)).flat_map(
+            |program| {
                 program.functions().iter().flat_map(|function| {
                     function.body.clone().map(|word| program.address_of(word)).collect::<Vec<_>>()
                 })
-            });
+            },
+        );
         let all: Vec<_> = all.collect();
         held.set_breakpoints(all);
         let mut seen = BTreeSet::new();
@@ -164,7 +170,7 @@ mod tests {
             steps += usize::from(hold.is_some());
             if hold.is_some() {
                 // Where it is held, a snapshot is as good as the session.
-                let snapshot = session.snapshot();
+                let snapshot = session.snapshot().expect("it has snapshots");
                 session.restore(&snapshot).expect("it is of this session");
                 session.set_stepping(Some(two));
             }
@@ -177,7 +183,7 @@ mod tests {
     fn the_writer_of_a_watched_variable_is_known() {
         let plain = run(session("who"), |_| ());
         let mut watched = session("who");
-        let address = watched.board().debug(ThreadId::new(1).expect("there are 7")).and_then(|_| {
+        let address = watched.target().debug(ThreadId::new(1).expect("there are 7")).and_then(|_| {
             let inspection = compiler::inspect::Inspection::read(&watched.programs[0].image).ok()?;
             let entry = inspection.symbols.iter().find(|entry| entry.name == "shared")?;
             Some(GuestAddr::new(entry.address))

@@ -4,9 +4,9 @@ use std::fmt;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::target::Target;
 use kmotiondef::{AxisId, Bit, CodeAddr, Cycles, ThreadId};
 use runtime::standing::{Awaited, Source, Standing, StandingAxis, StandingThread};
-use vm::engine::Engine;
 
 use super::Session;
 use super::condition::WaitCondition;
@@ -123,14 +123,14 @@ fn number(value: f64) -> String {
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
-impl<E: Engine> Session<E> {
+impl<T: Target> Session<T> {
     /// How things are now: which threads have not ended and what they wait for, what the axes do.
     #[must_use]
     pub fn ending(&self) -> Ending {
-        let threads = self.board.standing_threads().into_iter().map(|thread| self.ending_thread(thread));
+        let threads = self.target.standing_threads().into_iter().map(|thread| self.ending_thread(thread));
         Ending {
             threads: threads.collect(),
-            axes: self.board.standing_axes().into_iter().map(ending_axis).collect(),
+            axes: self.target.standing_axes().into_iter().map(ending_axis).collect(),
         }
     }
 
@@ -155,7 +155,7 @@ impl<E: Engine> Session<E> {
 
     /// The source of an instruction; then the function that has it in place of a call, if there is one.
     fn source_calls(&self, at: CodeAddr) -> impl Iterator<Item = SourceCall> {
-        let place = self.board.source(at);
+        let place = self.source(at);
         let around = place.and_then(|place| {
             let (file, function) = (place.file.to_owned(), place.around?.to_owned());
             Some(SourceCall { file, line: None, column: None, function })
@@ -169,7 +169,7 @@ impl<E: Engine> Session<E> {
         let text = source_text(&program.path, &call.file)?;
         let condition = WaitCondition::around(&text, call.line?)?;
         let Some(name) = condition.operand() else { return Some(format!("`{}`", condition.text())) };
-        let value = self.watch(&format!("{thread}:{name}")).map(|watch| watch.value(&self.board));
+        let value = self.watch(&format!("{thread}:{name}")).map(|watch| self.value(&watch));
         let value = value.map_or(String::new(), |value| format!(" (now {})", number(value)));
         let main = source_text(&program.path, &program.name()).unwrap_or_default();
         let is_written = [&text, &main].iter().any(|text| WaitCondition::writes(text, name));

@@ -4,11 +4,13 @@
 //! the words of the programs that are loaded. `2:count` is the `count` of the program in thread 2. To look at an
 //! expression changes nothing and takes no time.
 
+use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::path::Path;
 use std::sync::Arc;
 
+use crate::target::Target;
 use compiler::Options;
 use compiler::files;
 use compiler::inspect::{EntryKind, Inspection};
@@ -19,9 +21,7 @@ use kmotiondef::limits::N_USER_DATA_VARS;
 use kmotiondef::structs::Persist;
 use kmotiondef::variables::PERSIST;
 use kmotiondef::{AxisId, GuestAddr, ThreadId};
-use runtime::Board;
 use runtime::trace::{Formula, Item, Quantity, UnknownItem, View};
-use vm::engine::Engine;
 
 use super::{Input, Session, UserProgram};
 
@@ -74,11 +74,13 @@ enum Watched {
 
 impl Watch {
     /// The present value on a board.
-    pub(super) fn value<E: Engine>(&self, board: &Board<E>) -> f64 {
+    pub(super) fn value<T: Target>(&self, target: &T) -> f64 {
         match &self.0 {
-            Watched::Item(item) => board.value(*item),
+            Watched::Item(item) => target.value(*item),
             Watched::Compiled(_, compiled) => {
-                compiled.expression.value(&OnBoard { board, items: &compiled.items })
+                let reader = OnTarget { target, items: &compiled.items, has_failed: Cell::new(false) };
+                let value = compiled.expression.value(&reader);
+                if reader.has_failed.get() { f64::NAN } else { value }
             }
         }
     }
@@ -101,7 +103,7 @@ impl fmt::Display for Watch {
     }
 }
 
-impl<E: Engine> Session<E> {
+impl<T: Target> Session<T> {
     /// Prepares an item or an expression to be looked at, once or again and again.
     ///
     /// # Errors
@@ -121,7 +123,7 @@ impl<E: Engine> Session<E> {
     /// The present value of what is watched; not a number where it divides an integer by 0.
     #[must_use]
     pub fn value(&self, watch: &Watch) -> f64 {
-        watch.value(&self.board)
+        watch.value(&self.target)
     }
 
     /// The present value of an item or an expression.
@@ -141,10 +143,10 @@ impl<E: Engine> Session<E> {
         let Watch(Watched::Compiled(_, compiled)) = self.watch(&with_user_data(text))? else {
             return Err(no_place());
         };
-        let reader = OnBoard { board: &self.board, items: &compiled.items };
+        let reader = OnTarget { target: &self.target, items: &compiled.items, has_failed: Cell::new(false) };
         let (address, bytes) = compiled.expression.store(value, &reader).ok_or_else(no_place)?;
-        self.board.memory_mut().poke_bytes(address, &bytes).map_err(|_| no_place())?;
-        let tick = self.board.tick();
+        self.target.write(address, &bytes).map_err(|_| no_place())?;
+        let tick = self.tick();
         match (user_data_at(address), <[u8; 4]>::try_from(&bytes[..])) {
             (Some(index), Ok(word)) => self.recording.stored(tick, index, i32::from_le_bytes(word)),
             _ => self.recording.cannot(tick, &format!("write {value} to {text}")),
@@ -153,9 +155,10 @@ impl<E: Engine> Session<E> {
         Ok(())
     }
 
-    /// Records from now on what is requested; the records come as events.
+    /// Records from now on what is requested; the records come as events. Only a target with
+    /// [surroundings](crate::Capability::Surroundings) records.
     pub fn record(&mut self, request: runtime::trace::TraceRequest) {
-        self.board.record(request);
+        self.target.record(request);
     }
 }
 
@@ -269,8 +272,9 @@ pub(super) fn for_stimulus(
     }
 }
 
-/// `persist.5` is how `--set` calls an element.
-pub(super) fn with_user_data(text: &str) -> String {
+/// An expression as the compiler reads it: `persist.5` is an element of `persist.UserData`.
+#[must_use]
+pub fn with_user_data(text: &str) -> String {
     let mut parts = text.split("persist.");
     let mut whole = parts.next().unwrap_or_default().to_owned();
     for part in parts {
@@ -387,19 +391,25 @@ fn eight(memory: &vm::memory::GuestMemory, address: GuestAddr) -> [u8; 8] {
     std::array::from_fn(|offset| memory.peek::<u8>(address.offset(offset as u32)))
 }
 
-/// A board between two steps, as an expression reads it.
-struct OnBoard<'a, E> {
-    board: &'a Board<E>,
+/// A target between two steps, as an expression reads it.
+struct OnTarget<'a, T> {
+    target: &'a T,
     items: &'a [Item],
+    /// The target did not answer.
+    has_failed: Cell<bool>,
 }
 
-impl<E: Engine> ItemReader for OnBoard<'_, E> {
+impl<T: Target> ItemReader for OnTarget<'_, T> {
     fn bytes(&self, address: GuestAddr) -> [u8; 8] {
-        eight(self.board.memory(), address)
+        let mut bytes = [0; 8];
+        if self.target.read(address, &mut bytes).is_err() {
+            self.has_failed.set(true);
+        }
+        bytes
     }
 
     fn item(&self, index: usize) -> f64 {
-        self.items.get(index).map_or(0.0, |item| self.board.value(*item))
+        self.items.get(index).map_or(0.0, |item| self.target.value(*item))
     }
 }
 

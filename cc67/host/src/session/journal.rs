@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
+use crate::target::Target;
 use kmotiondef::{Bit, GuestAddr, ThreadId, Ticks};
-use vm::engine::Engine;
 
 use super::{Session, UserProgram};
 use crate::HostError;
@@ -58,7 +58,7 @@ impl Journal {
     }
 }
 
-impl<E: Engine> Session<E> {
+impl<T: Target> Session<T> {
     /// Everything that was done to this session since its beginning, each with the tick after which it was done.
     #[must_use]
     pub fn journal(&self) -> &[(Ticks, Input)] {
@@ -71,10 +71,8 @@ impl<E: Engine> Session<E> {
     /// Why it cannot be done here: a bit that is not an input, a thread without a program, a program that is refused.
     pub fn redo(&mut self, input: &Input) -> Result<(), HostError> {
         match input {
-            Input::Act(action) => self.act(action).map_err(|error| HostError::Act(error.to_string()))?,
-            Input::Drive(bit, level) => {
-                self.drive_input(*bit, *level).map_err(|error| HostError::Act(error.to_string()))?;
-            }
+            Input::Act(action) => self.act(action)?,
+            Input::Drive(bit, level) => self.drive_input(*bit, *level)?,
             Input::Store(address, bytes) => self.store(*address, bytes)?,
             Input::Receive(bytes) => self.receive(bytes),
             Input::Uart(bytes) => self.send_to_uart(bytes),
@@ -91,8 +89,7 @@ impl<E: Engine> Session<E> {
     /// # Errors
     /// [`HostError::Unmapped`].
     pub fn store(&mut self, address: GuestAddr, bytes: &[u8]) -> Result<(), HostError> {
-        let stored = self.board.memory_mut().poke_bytes(address, bytes);
-        stored.map_err(|_| HostError::Unmapped(address))?;
+        self.target.write(address, bytes)?;
         let tick = self.tick();
         match (super::expression::user_data_at(address), <[u8; 4]>::try_from(bytes)) {
             (Some(index), Ok(word)) => self.recording.stored(tick, index, i32::from_le_bytes(word)),
@@ -107,6 +104,6 @@ impl<E: Engine> Session<E> {
         if self.recording.is_off() {
             return;
         }
-        self.journal.note(self.board.tick(), input);
+        self.journal.note(self.target.tick(), input);
     }
 }

@@ -81,42 +81,44 @@ mod signals;
 mod snapshot;
 mod timeline;
 mod until;
-mod user_program;
 
+pub use crate::setup::Setup;
+pub use crate::target::EXCHANGE;
+pub use crate::user_program::UserProgram;
 pub use attendant::{Attendant, Idle};
 pub use by_hand::{Recording, by_hand};
 pub use control::{End, Interrupter};
 pub use ending::{Ending, EndingAxis, EndingThread};
-pub use expression::{Watch, WatchError, expressions, quantities};
+pub use expression::{Watch, WatchError, expressions, quantities, with_user_data};
 pub use journal::Input;
-pub use setup::{Setup, resolve};
+pub use setup::resolve;
 pub use signals::SubscriptionId;
 pub use snapshot::Snapshot;
 pub use timeline::{History, Timeline, TimelineError};
 pub use until::Until;
-pub use user_program::UserProgram;
 
 use std::sync::Arc;
 
 use compiler::Options;
-use kmotiondef::{Bit, Cycles, ThreadId, Ticks};
+use kmotiondef::limits::N_USER_DATA_VARS;
+use kmotiondef::structs::Persist;
+use kmotiondef::variables::PERSIST;
+use kmotiondef::{Bit, CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
 use runtime::Board;
-use runtime::debug::DebugInfo;
-use vm::engine::Engine;
-use vm::interp::BytecodeEngine;
+use runtime::debug::{DebugInfo, SourcePlace};
+use vm::memory::Scalar;
 use vm::thread::ThreadState;
 
 use crate::HostError;
+use crate::capability::{Capability, Unsupported};
+use crate::target::{BootedTarget, Target};
 use journal::Journal;
 use signals::Signals;
 
-/// Ticks that a line and its answer take on the wire, as recorded.
-pub const EXCHANGE: u64 = 28;
-
 /// A board under control, see the [module](self).
 #[derive(Debug)]
-pub struct Session<E = BytecodeEngine> {
-    board: Board<E>,
+pub struct Session<T = Board> {
+    target: T,
     /// How programs and expressions are compiled.
     options: Options,
     /// The programs in the threads: expressions are in their words.
@@ -130,23 +132,72 @@ pub struct Session<E = BytecodeEngine> {
 }
 
 /// What the session is, and what the board shows at the present instant.
-impl<E: Engine> Session<E> {
-    /// The board, to look at.
+impl<T: Target> Session<T> {
+    pub(crate) fn new(
+        target: T,
+        options: Options,
+        programs: Vec<UserProgram>,
+        offered: Vec<(UserProgram, DebugInfo)>,
+    ) -> Self {
+        Self {
+            target,
+            options,
+            programs: programs.into(),
+            offered,
+            signals: Signals::default(),
+            recording: Recording::default(),
+            journal: Journal::default(),
+            interrupter: Interrupter::default(),
+        }
+    }
+
+    /// The same session with its target as another type.
+    pub(crate) fn map_target<U: Target>(self, map: impl FnOnce(T) -> U) -> Session<U> {
+        let Self { target, options, programs, offered, signals, recording, journal, interrupter } = self;
+        Session { target: map(target), options, programs, offered, signals, recording, journal, interrupter }
+    }
+
+    /// The target, to look at.
     #[must_use]
-    pub const fn board(&self) -> &Board<E> {
-        &self.board
+    pub const fn target(&self) -> &T {
+        &self.target
+    }
+
+    /// Whether the target can do something.
+    #[must_use]
+    pub fn can(&self, capability: Capability) -> bool {
+        self.target.can(capability)
+    }
+
+    /// Returns nothing where the target can do something, and otherwise the sentence that it cannot.
+    ///
+    /// # Errors
+    /// [`Unsupported`].
+    pub fn require(&self, capability: Capability) -> Result<(), Unsupported> {
+        self.target.require(capability)
+    }
+
+    /// A value in memory; 0 where there is none, or where the target does not answer.
+    #[must_use]
+    pub fn peek<S: Scalar>(&self, address: GuestAddr) -> S {
+        let mut bytes = [0; 8];
+        let read = bytes.get_mut(..S::SIZE as usize).map(|bytes| self.target.read(address, bytes));
+        match read {
+            Some(Ok(())) => S::get(&bytes, 0).unwrap_or_default(),
+            Some(Err(_)) | None => S::default(),
+        }
     }
 
     /// Number of the last tick that is over.
     #[must_use]
-    pub const fn tick(&self) -> Ticks {
-        self.board.tick()
+    pub fn tick(&self) -> Ticks {
+        self.target.tick()
     }
 
     /// The present instant: the end of that tick.
     #[must_use]
     pub fn now(&self) -> Cycles {
-        self.board.now()
+        self.target.now()
     }
 
     /// The tick `seconds` of board time from now.
@@ -164,31 +215,32 @@ impl<E: Engine> Session<E> {
     /// The state of a thread.
     #[must_use]
     pub fn thread(&self, thread: ThreadId) -> &ThreadState {
-        self.board.thread(thread)
+        self.target.thread(thread)
     }
 
     /// Whether no thread is active and nothing is under way that a program has begun.
     #[must_use]
     pub fn has_ended(&self) -> bool {
-        self.board.has_ended()
+        self.target.has_ended()
     }
 
     /// The level of a bit.
     #[must_use]
     pub fn bit(&self, bit: Bit) -> bool {
-        self.board.bit(bit)
+        self.target.bit(bit)
     }
 
     /// An element of `persist.UserData`; `None` beyond the last.
     #[must_use]
     pub fn user_data(&self, index: usize) -> Option<i32> {
-        self.board.user_data(index)
+        let data = PERSIST.field(Persist::USER_DATA);
+        (index < N_USER_DATA_VARS).then(|| self.peek::<u32>(data.element(index).address()).cast_signed())
     }
 
     /// What is known about the programs that are loaded, each with its thread.
     #[must_use]
     pub fn debug(&self) -> Vec<(ThreadId, DebugInfo)> {
-        let known = |thread| Some((thread, self.board.debug(thread).cloned()?));
+        let known = |thread| Some((thread, self.target.debug(thread).cloned()?));
         ThreadId::all().filter_map(known).collect()
     }
 
@@ -198,6 +250,12 @@ impl<E: Engine> Session<E> {
         let row =
             |(program, debug): &(UserProgram, DebugInfo)| (program.thread, program.name(), debug.clone());
         self.offered.iter().map(row).collect()
+    }
+
+    /// The source of a code address, in whatever thread's program it lies.
+    #[must_use]
+    pub fn source(&self, address: CodeAddr) -> Option<SourcePlace<'_>> {
+        ThreadId::all().find_map(|thread| self.target.debug(thread)?.place(address))
     }
 
     /// Sets how programs and expressions are compiled from now on.
@@ -216,11 +274,9 @@ impl<E: Engine> Session<E> {
     /// # Errors
     /// Why it is refused; the program in the thread stays and continues.
     pub fn load(&mut self, program: UserProgram) -> Result<(), HostError> {
-        let details = program.details.clone();
-        let loaded = self.board.load_detailed(program.thread, &program.image, details);
-        loaded.map_err(|error| program.refused(error))?;
+        self.target.load(&program)?;
         let (thread, starts) = (program.thread, program.starts);
-        self.recording.cannot(self.board.tick(), &format!("load {} into thread {thread}", program.name()));
+        self.recording.cannot(self.target.tick(), &format!("load {} into thread {thread}", program.name()));
         self.note(Input::Load(Box::new(UserProgram { starts: false, ..program.clone() })));
         self.note_program(program);
         if starts { self.start(thread) } else { Ok(()) }
@@ -238,4 +294,11 @@ impl<E: Engine> Session<E> {
 /// Ticks in some seconds.
 pub(crate) fn ticks(seconds: f64) -> u64 {
     (seconds / kmotiondef::limits::TIMEBASE).round() as u64
+}
+
+impl Session<BootedTarget> {
+    /// Samples from now on what the processor does; the [target](Self::target) has the samples.
+    pub fn sample_processor(&mut self) {
+        self.target.sample_processor();
+    }
 }

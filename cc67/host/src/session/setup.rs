@@ -1,41 +1,16 @@
-//! What a session begins with.
+//! From a setup to a session: on the model, on a firmware file.
 
 use compiler::Options;
-use kmotiondef::GuestAddr;
+use runtime::Board;
 use runtime::debug::DebugInfo;
 use runtime::stimulus::{Stimulus, StimulusError};
-use runtime::{Board, Config};
 use vm::engine::Engine;
 use vm::interp::BytecodeEngine;
 
-use super::expression;
-use super::journal::Journal;
-use super::signals::Signals;
-use super::{Interrupter, Recording, Session, UserProgram};
-use crate::HostError;
-
-/// A board, its programs and the world around it, before time begins.
-#[derive(Debug, Default)]
-pub struct Setup {
-    /// The board and its PC: what is connected, files, answers, flash.
-    pub config: Config,
-    /// How expressions, and programs that are loaded later, are compiled.
-    pub options: Options,
-    /// Programs that are loaded at power-up, and started if they [should be](UserProgram::started).
-    pub programs: Vec<UserProgram>,
-    /// Programs that the stimulus may load while it is played.
-    pub offered: Vec<UserProgram>,
-    /// Bytes that are stored before the programs start, each from an address on.
-    pub values: Vec<(GuestAddr, Vec<u8>)>,
-    /// What the world does, and when.
-    pub stimulus: Stimulus,
-    /// Whether an operator is played who moves inputs that programs wait for.
-    pub is_assisted: bool,
-    /// What waits on the line to the serial port; it arrives from the moment a program first looks for it.
-    pub uart_input: Vec<u8>,
-    /// Whether every character that the serial port sends is reported as an event.
-    pub hears_uart: bool,
-}
+use super::{Session, expression};
+use crate::setup::Setup;
+use crate::target::{AnyTarget, BootedFirmware, BootedTarget};
+use crate::{HostError, UserProgram};
 
 impl Setup {
     /// The board at power-up with its programs loaded and started, on the interpreter.
@@ -50,22 +25,19 @@ impl Setup {
     ///
     /// # Errors
     /// A program is refused, or an address is outside of the board's memory.
-    pub fn session_on<E: Engine>(self, engine: E) -> Result<Session<E>, HostError> {
+    pub fn session_on<E: Engine>(mut self, engine: E) -> Result<Session<Board<E>>, HostError> {
+        self.resolve_stimuli()?;
         let Self {
             mut config,
             options,
             programs,
             offered,
             values,
-            mut stimulus,
+            stimulus,
             is_assisted,
             uart_input,
             hears_uart,
         } = self;
-        let known = [&programs[..], &offered].concat();
-        for stimulus in [&mut config.machine_file.stimulus, &mut stimulus] {
-            resolve(stimulus, &known, &options)?;
-        }
         // What compiles the programs says for whom the time of all is counted.
         config.timing = options.timing;
         let mut board = Board::with_engine(config, engine);
@@ -95,16 +67,45 @@ impl Setup {
         if hears_uart {
             board.hear_uart();
         }
-        Ok(Session {
-            board,
-            options,
-            programs: programs.into(),
-            offered,
-            signals: Signals::default(),
-            recording: Recording::default(),
-            journal: Journal::default(),
-            interrupter: Interrupter::default(),
+        Ok(Session::new(board, options, programs, offered))
+    }
+
+    /// A firmware file with the programs loaded and started, which are compiled [for it](BootedFirmware::options).
+    ///
+    /// # Errors
+    /// A program is refused, the flash is of another firmware, or this firmware cannot be connected to anything.
+    pub fn session_on_firmware(
+        mut self,
+        firmware: &BootedFirmware,
+    ) -> Result<Session<BootedTarget>, HostError> {
+        self.resolve_stimuli()?;
+        let (options, programs, offered) =
+            (self.options.clone(), self.programs.clone(), self.offered.clone());
+        let target = BootedTarget::begin(firmware, self)?;
+        let offered = offered.into_iter().map(|program| (program.clone(), program.debug_info())).collect();
+        Ok(Session::new(target, options, programs, offered))
+    }
+
+    /// The modelled board, or a firmware file if one is named.
+    ///
+    /// # Errors
+    /// As [`session`](Self::session) and [`session_on_firmware`](Self::session_on_firmware).
+    pub fn session_on_any(self, firmware: Option<&BootedFirmware>) -> Result<Session<AnyTarget>, HostError> {
+        Ok(match firmware {
+            None => self.session()?.map_target(|board| AnyTarget::Model(Box::new(board))),
+            Some(firmware) => {
+                self.session_on_firmware(firmware)?.map_target(|target| AnyTarget::Booted(Box::new(target)))
+            }
         })
+    }
+
+    /// Finds what computes the expressions of the stimuli.
+    fn resolve_stimuli(&mut self) -> Result<(), StimulusError> {
+        let known = [&self.programs[..], &self.offered].concat();
+        for stimulus in [&mut self.config.machine_file.stimulus, &mut self.stimulus] {
+            resolve(stimulus, &known, &self.options)?;
+        }
+        Ok(())
     }
 }
 

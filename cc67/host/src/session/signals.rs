@@ -5,8 +5,8 @@
 
 use std::fmt;
 
+use crate::target::Target;
 use kmotiondef::Ticks;
-use vm::engine::Engine;
 
 use super::{Session, Watch};
 
@@ -54,7 +54,7 @@ impl Signals {
     }
 }
 
-impl<E: Engine> Session<E> {
+impl<T: Target> Session<T> {
     /// Hands the values of expressions to a receiver every `every` ticks, from the next multiple on; the
     /// receiver is called in whatever call lets time pass.
     ///
@@ -103,7 +103,7 @@ impl<E: Engine> Session<E> {
         for subscription in &mut self.signals.subscriptions {
             if tick.get().is_multiple_of(subscription.every) {
                 let values: Vec<f64> =
-                    subscription.watched.iter().map(|watch| watch.value(&self.board)).collect();
+                    subscription.watched.iter().map(|watch| watch.value(&self.target)).collect();
                 (subscription.receiver)(tick, &values);
             }
         }

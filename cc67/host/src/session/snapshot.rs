@@ -3,42 +3,42 @@
 use std::sync::Arc;
 
 use kmotiondef::Ticks;
-use runtime::BoardSnapshot;
-use vm::engine::{Engine, ForeignSnapshot};
 
 use super::journal::Journal;
 use super::{Recording, Session, UserProgram};
+use crate::error::SnapshotError;
+use crate::target::{Target, TargetSnapshot};
 
 /// The board of a session between two ticks or where a program [holds](Session::held) one, and what was done by hand until then.
 #[derive(Debug)]
-pub struct Snapshot<E: Engine> {
-    board: BoardSnapshot<E>,
+pub struct Snapshot<T: Target> {
+    target: T::Snapshot,
     programs: Arc<Vec<UserProgram>>,
     recording: Recording,
     journal: Journal,
 }
 
-impl<E: Engine> Snapshot<E> {
+impl<T: Target> Snapshot<T> {
     /// Number of the last tick that is over.
     #[must_use]
-    pub const fn tick(&self) -> Ticks {
-        self.board.tick()
+    pub fn tick(&self) -> Ticks {
+        self.target.tick()
     }
 
     /// Whether a program holds the tick in progress.
     #[must_use]
-    pub const fn is_held(&self) -> bool {
-        self.board.is_held()
+    pub fn is_held(&self) -> bool {
+        self.target.is_held()
     }
 
     /// Bytes of guest memory that this snapshot has beside those that it shares with `other`.
     #[must_use]
     pub fn bytes_beyond(&self, other: &Self) -> usize {
-        self.board.bytes_beyond(&other.board)
+        self.target.bytes_beyond(&other.target)
     }
 }
 
-impl<E: Engine> Session<E> {
+impl<T: Target> Session<T> {
     /// The session as it is. What has changed in guest memory since the snapshot before is kept in pages of 4 KiB; all
     /// that a board holds beside its memory is a few hundred KiB.
     ///
@@ -48,7 +48,7 @@ impl<E: Engine> Session<E> {
     /// let mut session = Setup::default().session()?;
     /// session.act(r#"command "EnableAxis0;Jog0=1000""#)?;
     /// session.advance(session.tick_after(0.1), &mut |_| ());
-    /// let then = session.snapshot();
+    /// let then = session.snapshot()?;
     /// let ways = [0, 1].map(|_| {
     ///     session.restore(&then).expect("it is of this board");
     ///     session.advance(session.tick_after(0.1), &mut |_| ());
@@ -57,13 +57,16 @@ impl<E: Engine> Session<E> {
     /// assert_eq!(ways[0], ways[1]);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn snapshot(&mut self) -> Snapshot<E> {
-        Snapshot {
-            board: self.board.snapshot(),
+    ///
+    /// # Errors
+    /// The target has no snapshots.
+    pub fn snapshot(&mut self) -> Result<Snapshot<T>, SnapshotError> {
+        Ok(Snapshot {
+            target: self.target.snapshot()?,
             programs: Arc::clone(&self.programs),
             recording: self.recording.clone(),
             journal: self.journal.clone(),
-        }
+        })
     }
 
     /// Makes the session what it was when `snapshot` was taken; with the same calls it continues from there exactly as it
@@ -73,14 +76,14 @@ impl<E: Engine> Session<E> {
     /// keeps in a directory. Snapshots may be restored in any order, each as often as one likes.
     ///
     /// # Errors
-    /// [`ForeignSnapshot`] for a snapshot of another session with native threads; nothing has changed then.
-    pub fn restore(&mut self, snapshot: &Snapshot<E>) -> Result<(), ForeignSnapshot> {
-        let Snapshot { board, programs, recording, journal } = snapshot;
-        self.board.restore(board)?;
+    /// [`SnapshotError`] for a snapshot of another session with native threads; nothing has changed then.
+    pub fn restore(&mut self, snapshot: &Snapshot<T>) -> Result<(), SnapshotError> {
+        let Snapshot { target, programs, recording, journal } = snapshot;
+        self.target.restore(target)?;
         self.programs.clone_from(programs);
         self.recording.clone_from(recording);
         self.journal.clone_from(journal);
-        self.signals.went_to(self.board.tick());
+        self.signals.went_to(self.target.tick());
         Ok(())
     }
 }

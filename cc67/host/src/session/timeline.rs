@@ -7,9 +7,10 @@
 
 use kmotiondef::Ticks;
 use runtime::Event;
-use vm::engine::{Engine, ForeignSnapshot};
 
 use super::{Input, Session, Snapshot};
+use crate::error::SnapshotError;
+use crate::target::Target;
 
 /// Work between two snapshots: some hundredths of a second of a usual computer.
 const INTERVAL: u64 = 60_000_000;
@@ -26,9 +27,9 @@ pub enum TimelineError {
     /// The timeline begins later.
     #[error("the timeline starts at tick {}", .0.get())]
     TooEarly(Ticks),
-    /// The snapshots are of another session.
+    /// The target has no snapshots, or they are of another session.
     #[error(transparent)]
-    Foreign(#[from] ForeignSnapshot),
+    Snapshot(#[from] SnapshotError),
 }
 
 /// Whether the present belongs to the history that was known.
@@ -43,8 +44,8 @@ pub enum History {
 
 /// A snapshot, and how much work it is from the beginning of the line.
 #[derive(Debug)]
-struct Mark<E: Engine> {
-    snapshot: Box<Snapshot<E>>,
+struct Mark<T: Target> {
+    snapshot: Box<Snapshot<T>>,
     place: u64,
     /// Nothing before it leads to it by the journal alone.
     is_needed: bool,
@@ -56,7 +57,7 @@ struct Mark<E: Engine> {
 /// use cc67_host::{Setup, Timeline};
 ///
 /// let mut session = Setup::default().session()?;
-/// let mut timeline = Timeline::new(&mut session);
+/// let mut timeline = Timeline::new(&mut session)?;
 /// session.act(r#"command "EnableAxis0;Jog0=1000""#)?;
 /// timeline.advance(&mut session, kmotiondef::Ticks::new(10_000), &mut |_| ());
 /// let then = session.read("chan[0].Dest")?;
@@ -67,9 +68,9 @@ struct Mark<E: Engine> {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug)]
-pub struct Timeline<E: Engine> {
+pub struct Timeline<T: Target> {
     /// In the order of time; there is one at least.
-    marks: Vec<Mark<E>>,
+    marks: Vec<Mark<T>>,
     /// What was done on this line.
     journal: Vec<(Ticks, Input)>,
     /// How much of the journal the session has done.
@@ -81,13 +82,17 @@ pub struct Timeline<E: Engine> {
     interval: u64,
 }
 
-impl<E: Engine> Timeline<E> {
+impl<T: Target> Timeline<T> {
     /// A timeline that begins now.
-    pub fn new(session: &mut Session<E>) -> Self {
+    ///
+    /// # Errors
+    /// The target has no snapshots.
+    pub fn new(session: &mut Session<T>) -> Result<Self, SnapshotError> {
         let journal = session.journal().to_vec();
-        let (work, end) = (session.board().machine().work(), session.tick());
-        let first = Mark { snapshot: Box::new(session.snapshot()), place: 0, is_needed: true };
-        Self { marks: vec![first], done: journal.len(), journal, end, base: (work, 0), interval: INTERVAL }
+        let (work, end) = (session.work(), session.tick());
+        let first = Mark { snapshot: Box::new(session.snapshot()?), place: 0, is_needed: true };
+        let (marks, done) = (vec![first], journal.len());
+        Ok(Self { marks, done, journal, end, base: (work, 0), interval: INTERVAL })
     }
 
     /// Keeps a snapshot after so much work of the engine, about the number of its instructions, in place of the usual
@@ -123,7 +128,7 @@ impl<E: Engine> Timeline<E> {
     /// Lets time pass to the end of tick `limit`, also when everything has ended.
     pub fn advance(
         &mut self,
-        session: &mut Session<E>,
+        session: &mut Session<T>,
         limit: Ticks,
         events: &mut dyn FnMut(Event),
     ) -> History {
@@ -139,7 +144,7 @@ impl<E: Engine> Timeline<E> {
 
     /// Takes up what has happened to the session since the last call: to be called after whatever lets time pass or does
     /// something, at least every some hundredths of a second. Takes a snapshot if one is due.
-    pub fn keep(&mut self, session: &mut Session<E>) -> History {
+    pub fn keep(&mut self, session: &mut Session<T>) -> History {
         let history = self.note(session);
         self.end = self.end.max(session.tick());
         if session.held().is_none() {
@@ -150,14 +155,17 @@ impl<E: Engine> Timeline<E> {
 
     /// The same after something that no journal has, such as another value of a register: a snapshot is taken in any
     /// case, and what came later is forgotten.
-    pub fn branch(&mut self, session: &mut Session<E>) -> History {
+    pub fn branch(&mut self, session: &mut Session<T>) -> History {
         let noted = self.note(session);
         let place = self.place(session);
         let (tick, is_past) = (session.tick(), self.end > session.tick() || self.is_known(place));
         self.forget(place);
         self.journal.truncate(self.done);
         self.end = tick;
-        self.marks.push(Mark { snapshot: Box::new(session.snapshot()), place, is_needed: true });
+        // There was one at the beginning, so the target has them.
+        if let Ok(snapshot) = session.snapshot() {
+            self.marks.push(Mark { snapshot: Box::new(snapshot), place, is_needed: true });
+        }
         if is_past || noted != History::Same { History::New(tick) } else { History::Same }
     }
 
@@ -165,7 +173,7 @@ impl<E: Engine> Timeline<E> {
     ///
     /// # Errors
     /// [`TimelineError::TooEarly`] before the first snapshot.
-    pub fn go_to(&mut self, session: &mut Session<E>, tick: Ticks) -> Result<(), TimelineError> {
+    pub fn go_to(&mut self, session: &mut Session<T>, tick: Ticks) -> Result<(), TimelineError> {
         let _ = self.keep(session);
         let index = self.marks.iter().rposition(|mark| mark.snapshot.tick() <= tick);
         let index = index.ok_or_else(|| TimelineError::TooEarly(self.begin()))?;
@@ -177,11 +185,11 @@ impl<E: Engine> Timeline<E> {
     /// Puts the session where a snapshot was taken.
     ///
     /// # Errors
-    /// [`ForeignSnapshot`].
-    pub fn restore(&mut self, session: &mut Session<E>, index: usize) -> Result<(), ForeignSnapshot> {
+    /// [`SnapshotError`].
+    pub fn restore(&mut self, session: &mut Session<T>, index: usize) -> Result<(), SnapshotError> {
         let Some(mark) = self.marks.get(index) else { return Ok(()) };
         session.restore(&mark.snapshot)?;
-        self.base = (session.board().machine().work(), mark.place);
+        self.base = (session.work(), mark.place);
         self.done = session.journal().len();
         Ok(())
     }
@@ -198,14 +206,14 @@ impl<E: Engine> Timeline<E> {
     /// Puts the session where the snapshot of a place was taken, or the last one before it if that is gone.
     ///
     /// # Errors
-    /// [`ForeignSnapshot`].
-    pub fn restore_place(&mut self, session: &mut Session<E>, place: u64) -> Result<(), ForeignSnapshot> {
+    /// [`SnapshotError`].
+    pub fn restore_place(&mut self, session: &mut Session<T>, place: u64) -> Result<(), SnapshotError> {
         let count = self.marks.partition_point(|mark| mark.place <= place);
         self.restore(session, count.saturating_sub(1))
     }
 
     /// Lets the session go on to the end of a tick, and does on the way what was done there.
-    pub fn replay(&mut self, session: &mut Session<E>, tick: Ticks) {
+    pub fn replay(&mut self, session: &mut Session<T>, tick: Ticks) {
         loop {
             self.redo(session);
             if session.tick() >= tick && session.held().is_none() {
@@ -226,7 +234,7 @@ impl<E: Engine> Timeline<E> {
     }
 
     /// Does what was done after the present tick; nothing while one is held.
-    pub fn redo(&mut self, session: &mut Session<E>) {
+    pub fn redo(&mut self, session: &mut Session<T>) {
         if session.held().is_some() {
             return;
         }
@@ -250,7 +258,7 @@ impl<E: Engine> Timeline<E> {
     }
 
     /// Compares what was done with what was done before.
-    fn note(&mut self, session: &Session<E>) -> History {
+    fn note(&mut self, session: &Session<T>) -> History {
         let mut history = History::Same;
         for entry in session.journal().get(self.done..).unwrap_or_default() {
             if self.journal.get(self.done) != Some(entry) {
@@ -269,8 +277,8 @@ impl<E: Engine> Timeline<E> {
     }
 
     /// Where the session is on the line.
-    fn place(&self, session: &Session<E>) -> u64 {
-        self.base.1 + (session.board().machine().work() - self.base.0)
+    fn place(&self, session: &Session<T>) -> u64 {
+        self.base.1 + (session.work() - self.base.0)
     }
 
     /// Whether the line continues after a place.
@@ -283,7 +291,7 @@ impl<E: Engine> Timeline<E> {
     }
 
     /// Takes a snapshot if the one before is so much work away.
-    fn mark_after(&mut self, session: &mut Session<E>, distance: u64) {
+    fn mark_after(&mut self, session: &mut Session<T>, distance: u64) {
         let place = self.place(session);
         if !self.marks.last().is_some_and(|last| (last.place..last.place + distance).contains(&place)) {
             self.mark_at(session, place, distance);
@@ -293,12 +301,13 @@ impl<E: Engine> Timeline<E> {
     /// Takes a snapshot if no other is near. Apart from the question above, which is asked every tick: a snapshot on its
     /// way is so large that to make room for it on the stack takes longer than to ask.
     #[inline(never)]
-    fn mark_at(&mut self, session: &mut Session<E>, place: u64, distance: u64) {
+    fn mark_at(&mut self, session: &mut Session<T>, place: u64, distance: u64) {
         let next = self.marks.partition_point(|mark| mark.place <= place);
-        let is_far = |mark: &Mark<E>| mark.place.abs_diff(place) >= distance;
+        let is_far = |mark: &Mark<T>| mark.place.abs_diff(place) >= distance;
         let before = next.checked_sub(1).and_then(|index| self.marks.get(index));
         if before.is_none_or(is_far) && self.marks.get(next).is_none_or(is_far) {
-            self.marks.insert(next, Mark { snapshot: Box::new(session.snapshot()), place, is_needed: false });
+            let Ok(snapshot) = session.snapshot() else { return };
+            self.marks.insert(next, Mark { snapshot: Box::new(snapshot), place, is_needed: false });
             self.thin();
         }
     }
@@ -327,9 +336,9 @@ mod tests {
     use crate::Setup;
 
     /// A board on which things are done by hand for a while.
-    fn played() -> (Session, Timeline<vm::interp::BytecodeEngine>, Vec<(u64, f64)>) {
+    fn played() -> (Session, Timeline<runtime::Board>, Vec<(u64, f64)>) {
         let mut session = Setup::default().session().expect("a board");
-        let mut timeline = Timeline::new(&mut session);
+        let mut timeline = Timeline::new(&mut session).expect("it has snapshots");
         let mut known = Vec::new();
         for part in 0..8_u64 {
             let action = format!("command \"EnableAxis0;Jog0={}\"", 1000 * (part + 1));

@@ -1,8 +1,8 @@
 //! What a run may be waiting for.
 
+use crate::target::Target;
 use kmotiondef::ThreadId;
 use runtime::{Event, EventKind};
-use vm::engine::Engine;
 
 use super::{Session, Watch};
 
@@ -57,7 +57,7 @@ impl Until {
     }
 
     /// Whether it is met.
-    pub(super) fn is_met<E: Engine>(&self, session: &Session<E>, heard: &Heard) -> bool {
+    pub(super) fn is_met<T: Target>(&self, session: &Session<T>, heard: &Heard) -> bool {
         match self {
             Self::True(watch) => session.value(watch) != 0.0,
             Self::Active(thread, is_active) => session.thread(*thread).is_active() == *is_active,

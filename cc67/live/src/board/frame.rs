@@ -13,13 +13,11 @@
 //! | 928 | the 200 words of `persist.UserData` |
 //! | 1728 | rows of samples: tick and values as f64 |
 
-use cc67_host::Session;
+use cc67_host::{Session, Target};
 use kmotiondef::structs::{Chan, Persist};
 use kmotiondef::variables::{ADC_BUFFER_IN, BIT_DIR_SHADOW, CHAN, DAC_BUFFER, PERSIST};
 use kmotiondef::{AxisId, Bit, Field, GuestAddr, Ticks};
 use runtime::trace::Item;
-use vm::engine::Engine;
-use vm::memory::GuestMemory;
 
 use super::samples::Samples;
 
@@ -44,8 +42,8 @@ pub(super) struct Moment {
 }
 
 /// A frame of a board, with the samples from a row on; and the row after them.
-pub(super) fn frame<E: Engine>(
-    session: &Session<E>,
+pub(super) fn frame<T: Target>(
+    session: &Session<T>,
     moment: Moment,
     samples: &Samples,
     next_row: u64,
@@ -60,10 +58,10 @@ pub(super) fn frame<E: Engine>(
     out.extend([0; 16]);
     AxisId::all().for_each(|axis| write_axis(session, axis, &mut out));
     write_bits(session, &mut out);
-    write_analog(session.board().memory(), &mut out);
+    write_analog(session, &mut out);
     let data = PERSIST.field(Persist::USER_DATA);
     let words = (0..kmotiondef::limits::N_USER_DATA_VARS).map(|index| data.element(index).address());
-    out.extend(words.flat_map(|address| session.board().memory().peek::<u32>(address).to_le_bytes()));
+    out.extend(words.flat_map(|address| session.peek::<u32>(address).to_le_bytes()));
     debug_assert_eq!(out.len(), SAMPLES, "the table above");
     let (rows, next) = samples.write(next_row, &mut out);
     let counts = [samples.generation, samples.names().len() as u32 + 1, rows, 0];
@@ -77,27 +75,26 @@ fn place<T>(axis: AxisId, field: Field<T>) -> GuestAddr {
     CHAN.element(axis.index()).field(field).address()
 }
 
-fn double(memory: &GuestMemory, address: GuestAddr) -> f64 {
-    f64::from_bits(memory.peek(address))
+fn double<T: Target>(session: &Session<T>, address: GuestAddr) -> f64 {
+    f64::from_bits(session.peek(address))
 }
 
-fn float(memory: &GuestMemory, address: GuestAddr) -> f64 {
-    f64::from(f32::from_bits(memory.peek(address)))
+fn float<T: Target>(session: &Session<T>, address: GuestAddr) -> f64 {
+    f64::from(f32::from_bits(session.peek(address)))
 }
 
-fn write_axis<E: Engine>(session: &Session<E>, axis: AxisId, out: &mut Vec<u8>) {
-    let memory = session.board().memory();
-    let load = Item::new(&format!("load{axis}")).map_or(0.0, |item| session.board().value(item));
-    let int = |field: Field<i32>| memory.peek::<u32>(place(axis, field)).cast_signed();
+fn write_axis<T: Target>(session: &Session<T>, axis: AxisId, out: &mut Vec<u8>) {
+    let load = Item::new(&format!("load{axis}")).map_or(0.0, |item| session.target().value(item));
+    let int = |field: Field<i32>| session.peek::<u32>(place(axis, field)).cast_signed();
     let numbers = [
-        double(memory, place(axis, Chan::DEST)),
-        double(memory, place(axis, Chan::POSITION)),
+        double(session, place(axis, Chan::DEST)),
+        double(session, place(axis, Chan::POSITION)),
         load,
-        float(memory, place(axis, Chan::OUTPUT)),
-        float(memory, place(axis, Chan::LAST_VEL)),
-        float(memory, place(axis, Chan::SOFT_LIMIT_NEG)),
-        float(memory, place(axis, Chan::SOFT_LIMIT_POS)),
-        float(memory, place(axis, Chan::VEL)),
+        float(session, place(axis, Chan::OUTPUT)),
+        float(session, place(axis, Chan::LAST_VEL)),
+        float(session, place(axis, Chan::SOFT_LIMIT_NEG)),
+        float(session, place(axis, Chan::SOFT_LIMIT_POS)),
+        float(session, place(axis, Chan::VEL)),
     ];
     out.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
     let reached = u8::from(numbers[0] <= numbers[5]) | u8::from(numbers[0] >= numbers[6]) << 1;
@@ -106,7 +103,7 @@ fn write_axis<E: Engine>(session: &Session<E>, axis: AxisId, out: &mut Vec<u8>) 
     out.extend([enable, modes[0], modes[1], reached, 0, 0, 0, 0]);
 }
 
-fn write_bits<E: Engine>(session: &Session<E>, out: &mut Vec<u8>) {
+fn write_bits<T: Target>(session: &Session<T>, out: &mut Vec<u8>) {
     let from = out.len();
     out.resize(from + usize::from(Bit::MAX / 8) + 1, 0);
     for bit in Bit::all().filter(|bit| session.bit(*bit)) {
@@ -115,12 +112,13 @@ fn write_bits<E: Engine>(session: &Session<E>, out: &mut Vec<u8>) {
         }
     }
     let directions = (0..usize::from(PINS / 32)).map(|word| BIT_DIR_SHADOW.element(word).address());
-    out.extend(directions.flat_map(|word| session.board().memory().peek::<u32>(word).to_le_bytes()));
+    out.extend(directions.flat_map(|word| session.peek::<u32>(word).to_le_bytes()));
 }
 
-fn write_analog(memory: &GuestMemory, out: &mut Vec<u8>) {
-    let inputs = (0..8).map(|index| memory.peek::<u32>(ADC_BUFFER_IN.element(index).address()) as i32 - 2048);
-    let outputs = (0..8).map(|index| memory.peek::<u16>(DAC_BUFFER.element(index).address()) & 0xfff);
+fn write_analog<T: Target>(session: &Session<T>, out: &mut Vec<u8>) {
+    let inputs =
+        (0..8).map(|index| session.peek::<u32>(ADC_BUFFER_IN.element(index).address()) as i32 - 2048);
+    let outputs = (0..8).map(|index| session.peek::<u16>(DAC_BUFFER.element(index).address()) & 0xfff);
     let outputs = outputs.map(|word| i32::from(word) - 2048);
     out.extend(inputs.chain(outputs).flat_map(|number| (number as i16).to_le_bytes()));
 }

@@ -1,10 +1,9 @@
 //! A part of the gather buffer, for a plot of it.
 
-use cc67_host::Session;
+use cc67_host::{Session, Target};
 use kmotiondef::GuestAddr;
 use kmotiondef::variables::GATHER_BUFFER;
 use serde_json::{Value, json};
-use vm::engine::Engine;
 
 /// Most numbers at a time.
 const NUMBERS: u32 = 10_000;
@@ -18,8 +17,8 @@ enum Kind {
 }
 
 /// The numbers of a kind from one on, as a message; those that are none are `null`.
-pub(super) fn numbers<E: Engine>(
-    session: &Session<E>,
+pub(super) fn numbers<T: Target>(
+    session: &Session<T>,
     from: u32,
     count: u32,
     kind: &str,
@@ -30,14 +29,13 @@ pub(super) fn numbers<E: Engine>(
         "int" => (Kind::Int, 4),
         _ => return Err(format!("`{kind}` is not double, float or int")),
     };
-    let memory = session.board().memory();
-    let first = GuestAddr::new(memory.peek(GATHER_BUFFER.address()));
+    let first = GuestAddr::new(session.peek(GATHER_BUFFER.address()));
     let number = |index: u32| {
         let place = first.offset(from.wrapping_add(index).wrapping_mul(bytes));
         match kind_of {
-            Kind::Double => f64::from_bits(memory.peek(place)),
-            Kind::Float => f64::from(f32::from_bits(memory.peek(place))),
-            Kind::Int => f64::from(memory.peek::<u32>(place).cast_signed()),
+            Kind::Double => f64::from_bits(session.peek(place)),
+            Kind::Float => f64::from(f32::from_bits(session.peek(place))),
+            Kind::Int => f64::from(session.peek::<u32>(place).cast_signed()),
         }
     };
     let values: Vec<f64> = (0..count.min(NUMBERS)).map(number).collect();

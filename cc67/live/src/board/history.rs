@@ -3,19 +3,18 @@
 use std::sync::Arc;
 
 use cc67_host::session::Input;
-use cc67_host::{History, Session, Timeline};
+use cc67_host::{History, Session, Target, Timeline};
 use kmotiondef::Ticks;
 use kmotiondef::limits::TIMEBASE;
 use serde_json::json;
-use vm::engine::Engine;
 
 use super::Stage;
 use super::keep::{Kept, Run};
 use crate::desk::PageId;
 
-impl<E: Engine> Stage<E> {
+impl<T: Target> Stage<T> {
     /// The timeline takes up what was done; in the past, the run continues from there.
-    pub(super) fn keep(&mut self, session: &mut Session<E>) {
+    pub(super) fn keep(&mut self, session: &mut Session<T>) {
         let history = self.timeline.as_mut().map(|timeline| timeline.keep(session));
         if let Some(History::New(_)) = history {
             self.cut(session);
@@ -23,24 +22,24 @@ impl<E: Engine> Stage<E> {
     }
 
     /// Whether the board is shown as it was, and continued from there.
-    pub(super) fn is_past(&self, session: &Session<E>) -> bool {
+    pub(super) fn is_past(&self, session: &Session<T>) -> bool {
         session.tick() < self.end(session)
     }
 
     /// The last tick of the run.
-    pub(super) fn end(&self, session: &Session<E>) -> Ticks {
+    pub(super) fn end(&self, session: &Session<T>) -> Ticks {
         self.timeline.as_ref().map_or(session.tick(), Timeline::end)
     }
 
     /// Shows the board as it was at a tick.
-    pub(super) fn go_to(&mut self, session: &mut Session<E>, tick: Ticks) -> Result<(), String> {
+    pub(super) fn go_to(&mut self, session: &mut Session<T>, tick: Ticks) -> Result<(), String> {
         let tick = tick.min(self.end(session));
         let Some(timeline) = &mut self.timeline else { return Ok(()) };
         timeline.go_to(session, tick).map_err(|error| error.to_string())
     }
 
     /// The run continues from the moment that is shown.
-    pub(super) fn go_on(&mut self, session: &mut Session<E>) {
+    pub(super) fn go_on(&mut self, session: &mut Session<T>) {
         if self.is_past(session)
             && let Some(timeline) = &mut self.timeline
             && let History::New(_) = timeline.branch(session)
@@ -50,7 +49,7 @@ impl<E: Engine> Stage<E> {
     }
 
     /// What was later than the present moment is gone.
-    fn cut(&mut self, session: &Session<E>) {
+    fn cut(&mut self, session: &Session<T>) {
         let tick = session.tick();
         self.log.cut(tick);
         let rows = self.samples.cut(tick);
@@ -59,7 +58,7 @@ impl<E: Engine> Stage<E> {
     }
 
     /// Begins again, with the programs as they are now.
-    pub(super) fn restart(&mut self, session: &mut Session<E>) -> Result<(), String> {
+    pub(super) fn restart(&mut self, session: &mut Session<T>) -> Result<(), String> {
         let Some(timeline) = &mut self.timeline else { return Ok(()) };
         timeline.restore(session, 0).map_err(|error| error.to_string())?;
         self.go_on(session);
@@ -72,7 +71,7 @@ impl<E: Engine> Stage<E> {
     }
 
     /// Why a run with what was done by hand alone would not be the same; `None` if it would.
-    fn obstacle(&self, session: &Session<E>) -> Option<String> {
+    fn obstacle(&self, session: &Session<T>) -> Option<String> {
         let loads = session.journal().iter().filter_map(|(tick, input)| match input {
             Input::Load(program) => Some((tick.get(), program.name())),
             _ => None,
@@ -87,7 +86,7 @@ impl<E: Engine> Stage<E> {
     }
 
     /// Saves what was done by hand as a test.
-    pub(super) fn save(&mut self, session: &Session<E>, id: PageId, name: &str) -> Result<(), String> {
+    pub(super) fn save(&mut self, session: &Session<T>, id: PageId, name: &str) -> Result<(), String> {
         if let Some(obstacle) = self.obstacle(session) {
             return Err(obstacle);
         }

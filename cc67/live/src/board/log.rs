@@ -2,11 +2,10 @@
 
 use std::collections::VecDeque;
 
-use cc67_host::{Session, remark};
+use cc67_host::{Session, Target, remark};
 use kmotiondef::{CodeAddr, Cycles, Ticks};
 use runtime::{Event, EventKind};
 use serde::Serialize;
-use vm::engine::Engine;
 
 /// Entries that are kept.
 const KEPT: usize = 5000;
@@ -59,14 +58,16 @@ impl Log {
     }
 
     /// Adds an event that somebody may want to read.
-    pub(super) fn note<E: Engine>(&mut self, session: &Session<E>, event: &Event) {
+    pub(super) fn note<T: Target>(&mut self, session: &Session<T>, event: &Event) {
         let tick = u64::try_from(event.at.get() / Cycles::PER_TICK.get()).unwrap_or_default();
         let (voice, text, place) = match &event.kind {
             EventKind::ConsoleLine(line) => (Voice::Console, text(line), None),
             EventKind::Reply(line) => (Voice::Reply, text(line), None),
             EventKind::Trap(trap) => (Voice::Trap, words(session, event), Some(trap.at)),
             EventKind::Remark(remark) => (Voice::Remark, words(session, event), remark.place),
-            EventKind::Host(_) | EventKind::Unmet(_) => (Voice::Remark, words(session, event), None),
+            EventKind::Host(_) | EventKind::Unmet(_) | EventKind::Halted(_) => {
+                (Voice::Remark, words(session, event), None)
+            }
             EventKind::Echo(_)
             | EventKind::Aborted
             | EventKind::Loaded(..)
@@ -77,7 +78,7 @@ impl Log {
         if text.is_empty() && !matches!(voice, Voice::Console | Voice::Reply) {
             return;
         }
-        let place = place.and_then(|place: CodeAddr| session.board().source(place));
+        let place = place.and_then(|place: CodeAddr| session.source(place));
         let file = place.map(|place| place.file.to_owned());
         let line = place.and_then(|place| place.line);
         let seconds = event.at.get() as f64 / Cycles::PER_SECOND.get() as f64;
@@ -122,7 +123,7 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
-fn words<E: Engine>(session: &Session<E>, event: &Event) -> String {
+fn words<T: Target>(session: &Session<T>, event: &Event) -> String {
     let programs: Vec<_> = session.debug().into_iter().map(|(_, debug)| debug).collect();
     remark::describe(event, &programs).unwrap_or_default()
 }

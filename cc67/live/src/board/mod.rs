@@ -26,11 +26,10 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
-use cc67_host::{Attendant, Session, Timeline, UserProgram};
+use cc67_host::{Attendant, Capability, Session, Target, Timeline, UserProgram};
 use kmotiondef::{ThreadId, Ticks};
 use runtime::{Event, OpenBox};
 use serde_json::{Value, json};
-use vm::engine::Engine;
 use vm::scheduler::Turn;
 
 use crate::desk::{Desk, Incoming, Mailbox, PageId};
@@ -62,10 +61,10 @@ const SIGNALS: &str = "dest0,dest1,dest2";
 const ROTATION: u64 = 30;
 
 /// Runs a session and shows it until its time has passed.
-pub(crate) fn run<E: Engine>(
-    session: &mut Session<E>,
+pub(crate) fn run<T: Target>(
+    session: &mut Session<T>,
     show: Show,
-    attendant: Option<Box<dyn Attendant<E>>>,
+    attendant: Option<Box<dyn Attendant<T>>>,
     (desk, requests): (&Arc<Desk>, &Receiver<Incoming>),
 ) {
     let limit = show.limit.map(|seconds| session.tick_after(seconds));
@@ -80,12 +79,12 @@ pub(crate) fn run<E: Engine>(
 }
 
 /// A session that somebody else runs, to be shown.
-pub(crate) fn view<E: Engine>(
-    session: &mut Session<E>,
+pub(crate) fn view<T: Target>(
+    session: &mut Session<T>,
     show: Show,
     desk: &Arc<Desk>,
     requests: Receiver<Incoming>,
-) -> LiveView<E> {
+) -> LiveView<T> {
     LiveView::new(Stage::new(session, show, desk), requests)
 }
 
@@ -104,12 +103,12 @@ struct Page {
 
 /// What belongs to showing a session.
 #[derive(Debug)]
-struct Stage<E: Engine> {
+struct Stage<T: Target> {
     show: Show,
     programs: Programs,
     clock: Clock,
     /// The past, if one can go back to it.
-    timeline: Option<Timeline<E>>,
+    timeline: Option<Timeline<T>>,
     samples: Samples,
     log: Log,
     pages: BTreeMap<PageId, Page>,
@@ -122,11 +121,11 @@ struct Stage<E: Engine> {
     /// For whoever else runs the session.
     wishes: Wishes,
     /// Who may stop the board.
-    attendant: Option<Box<dyn Attendant<E>>>,
+    attendant: Option<Box<dyn Attendant<T>>>,
 }
 
-impl<E: Engine> Stage<E> {
-    fn new(session: &mut Session<E>, show: Show, desk: &Arc<Desk>) -> Self {
+impl<T: Target> Stage<T> {
+    fn new(session: &mut Session<T>, show: Show, desk: &Arc<Desk>) -> Self {
         let programs = Programs::watched(&show, session.options(), desk);
         let clock = Clock::new(session.tick(), show.speed, !show.is_paused);
         let mut samples = Samples::default();
@@ -135,12 +134,13 @@ impl<E: Engine> Stage<E> {
         if let Err(error) = samples.follow(session, list, clock.speed()) {
             log.say(session.tick(), Voice::Remark, format!("the scope: {error}"));
         }
-        if show.time == TimeControl::Full {
+        if show.time == TimeControl::Full && session.can(Capability::Surroundings) {
             // Boxes are answered here; the statement is recorded, so that a test waits as well.
             let waits = session.act("answer \"boxes=wait\"");
             debug_assert!(waits.is_ok(), "it is a statement: {waits:?}");
         }
-        let timeline = (show.time == TimeControl::Full).then(|| Timeline::new(session));
+        // A target without snapshots is shown without a way back.
+        let timeline = (show.time == TimeControl::Full).then(|| Timeline::new(session).ok()).flatten();
         Self {
             show,
             programs,
@@ -158,7 +158,7 @@ impl<E: Engine> Stage<E> {
     }
 
     /// Takes what comes within some time.
-    fn take(&mut self, session: &mut Session<E>, requests: &Receiver<Incoming>, patience: Duration) {
+    fn take(&mut self, session: &mut Session<T>, requests: &Receiver<Incoming>, patience: Duration) {
         let begin = now();
         for _ in 0..REQUESTS_AT_ONCE {
             let rest = patience.saturating_sub(begin.elapsed());
@@ -172,7 +172,7 @@ impl<E: Engine> Stage<E> {
         }
     }
 
-    fn receive(&mut self, session: &mut Session<E>, incoming: Incoming) {
+    fn receive(&mut self, session: &mut Session<T>, incoming: Incoming) {
         match incoming {
             Incoming::Join(id, mailbox) => self.join(session, id, mailbox),
             Incoming::Leave(id) => {
@@ -194,7 +194,7 @@ impl<E: Engine> Stage<E> {
     }
 
     /// A page has connected: it receives everything.
-    fn join(&mut self, session: &mut Session<E>, id: PageId, mailbox: Arc<Mailbox>) {
+    fn join(&mut self, session: &mut Session<T>, id: PageId, mailbox: Arc<Mailbox>) {
         let page = Page { mailbox, every: None, last: now(), next_row: 0, generation: 0 };
         self.pages.insert(id, page);
         self.answer(id, &hello::hello(&self.show));
@@ -212,7 +212,7 @@ impl<E: Engine> Stage<E> {
     }
 
     /// Does what a page asks for.
-    fn obey(&mut self, session: &mut Session<E>, id: PageId, request: PageRequest) -> Result<(), String> {
+    fn obey(&mut self, session: &mut Session<T>, id: PageId, request: PageRequest) -> Result<(), String> {
         self.show.time.allows(&request)?;
         match request {
             PageRequest::Rate { frames } => {
@@ -278,7 +278,7 @@ impl<E: Engine> Stage<E> {
     }
 
     /// Does what a statement of a stimulus says.
-    fn act(&mut self, session: &mut Session<E>, text: &str) -> Result<(), String> {
+    fn act(&mut self, session: &mut Session<T>, text: &str) -> Result<(), String> {
         if text.contains(char::is_control) {
             return Err("a statement is one line".to_owned());
         }
@@ -291,7 +291,7 @@ impl<E: Engine> Stage<E> {
     }
 
     /// Sends script commands, as the PC does.
-    fn command(&mut self, session: &mut Session<E>, line: &str) -> Result<(), String> {
+    fn command(&mut self, session: &mut Session<T>, line: &str) -> Result<(), String> {
         self.log.say(session.tick(), Voice::Command, line.to_owned());
         if self.is_guest() {
             self.wishes.commands.push(line.to_owned());
@@ -302,7 +302,7 @@ impl<E: Engine> Stage<E> {
     }
 
     /// Loads and starts programs, and says so.
-    fn load(&mut self, session: &mut Session<E>, programs: Vec<UserProgram>) {
+    fn load(&mut self, session: &mut Session<T>, programs: Vec<UserProgram>) {
         for program in programs {
             let (name, thread) = (program.name(), program.thread);
             let said = match session.load(program) {
@@ -315,7 +315,7 @@ impl<E: Engine> Stage<E> {
     }
 
     /// Runs to the tick that is due, or as far as there is time for.
-    fn advance(&mut self, session: &mut Session<E>, limit: Option<Ticks>) {
+    fn advance(&mut self, session: &mut Session<T>, limit: Option<Ticks>) {
         if self.attendant.is_some() {
             self.run_to(session, session.tick());
         }
@@ -328,7 +328,7 @@ impl<E: Engine> Stage<E> {
     }
 
     /// Runs to a tick and takes note of what happens.
-    fn run_to(&mut self, session: &mut Session<E>, tick: Ticks) {
+    fn run_to(&mut self, session: &mut Session<T>, tick: Ticks) {
         let mut events = Vec::new();
         let looks = !self.pages.is_empty() && self.told.1.elapsed() >= THREADS;
         if let Some(mut attendant) = self.attendant.take() {
@@ -344,10 +344,10 @@ impl<E: Engine> Stage<E> {
     }
 
     /// Runs to the end of the next slice of a user thread.
-    fn slice(&mut self, session: &mut Session<E>) {
+    fn slice(&mut self, session: &mut Session<T>) {
         for _ in 0..ROTATION {
             self.run_to(session, session.tick().next());
-            if let Turn::User(_) = session.board().machine().turn() {
+            if let Turn::User(_) = session.target().turn() {
                 return;
             }
         }
@@ -355,7 +355,7 @@ impl<E: Engine> Stage<E> {
     }
 
     /// Takes note of what happened while the board ran.
-    fn note(&mut self, session: &mut Session<E>, events: Vec<Event>) {
+    fn note(&mut self, session: &mut Session<T>, events: Vec<Event>) {
         events.iter().for_each(|event| self.log.note(session, event));
         self.keep(session);
         if self.is_guest() {
@@ -369,7 +369,7 @@ impl<E: Engine> Stage<E> {
     }
 
     /// Tells pages what is new.
-    fn tell(&mut self, session: &Session<E>) {
+    fn tell(&mut self, session: &Session<T>) {
         let fresh = self.log.take_fresh();
         let entries = (!fresh.is_empty()).then(|| json!({ "kind": "log", "entries": fresh }));
         if let Some(entries) = entries {
@@ -384,7 +384,7 @@ impl<E: Engine> Stage<E> {
                 self.broadcast(&json!({ "kind": "threads", "threads": rows, "turns": turns }));
             }
             self.told = (rows, now());
-            let open_box = session.board().open_box();
+            let open_box = session.target().open_box();
             if open_box != self.open_box {
                 self.broadcast(&asks(open_box.as_ref()));
                 self.open_box = open_box;
@@ -394,7 +394,7 @@ impl<E: Engine> Stage<E> {
     }
 
     /// Sends a frame to each page that is due one and has taken the last.
-    fn send_frames(&mut self, session: &Session<E>) {
+    fn send_frames(&mut self, session: &Session<T>) {
         let tick = session.tick();
         let moment = Moment {
             is_running: self.clock.is_running(),

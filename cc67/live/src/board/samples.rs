@@ -3,9 +3,8 @@
 use std::sync::{Arc, Mutex};
 
 use cc67_host::session::{SubscriptionId, expressions};
-use cc67_host::{Session, Watch, WatchError};
+use cc67_host::{Session, Target, Watch, WatchError};
 use kmotiondef::Ticks;
-use vm::engine::Engine;
 
 use crate::desk::locked;
 
@@ -75,9 +74,9 @@ pub(super) struct Samples {
 
 impl Samples {
     /// Follows the signals of a list.
-    pub(super) fn follow<E: Engine>(
+    pub(super) fn follow<T: Target>(
         &mut self,
-        session: &mut Session<E>,
+        session: &mut Session<T>,
         list: &str,
         speed: f64,
     ) -> Result<(), WatchError> {
@@ -93,7 +92,7 @@ impl Samples {
     }
 
     /// Samples less often when time goes faster, so that as many come in a second.
-    pub(super) fn at_speed<E: Engine>(&mut self, session: &mut Session<E>, speed: f64) {
+    pub(super) fn at_speed<T: Target>(&mut self, session: &mut Session<T>, speed: f64) {
         if every(speed) != self.every {
             let watched = self.names.iter().filter_map(|name| session.watch(name).ok()).collect::<Vec<_>>();
             if watched.len() == self.names.len() {
@@ -102,7 +101,7 @@ impl Samples {
         }
     }
 
-    fn subscribe<E: Engine>(&mut self, session: &mut Session<E>, watched: Vec<Watch>, speed: f64) {
+    fn subscribe<T: Target>(&mut self, session: &mut Session<T>, watched: Vec<Watch>, speed: f64) {
         if let Some(subscription) = self.subscription.take() {
             session.unsubscribe(subscription);
         }

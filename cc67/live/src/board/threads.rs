@@ -1,9 +1,8 @@
 //! The state of each thread, its line, and what it waits for.
 
-use cc67_host::Session;
+use cc67_host::{Session, Target};
 use kmotiondef::{Cycles, ThreadId};
 use serde::Serialize;
-use vm::engine::Engine;
 use vm::machine::BOARD_STACK_USABLE;
 use vm::thread::{Progress, ThreadState};
 use vm::wake::Wake;
@@ -35,11 +34,11 @@ struct CallRow {
 const CALLS: usize = 16;
 
 /// All threads.
-pub(super) fn rows<E: Engine>(session: &Session<E>) -> Vec<ThreadRow> {
+pub(super) fn rows<T: Target>(session: &Session<T>) -> Vec<ThreadRow> {
     ThreadId::all().map(|thread| row(session, thread)).collect()
 }
 
-fn row<E: Engine>(session: &Session<E>, thread: ThreadId) -> ThreadRow {
+fn row<T: Target>(session: &Session<T>, thread: ThreadId) -> ThreadRow {
     let (state, waits) = match session.thread(thread) {
         ThreadState::Empty => ("empty", String::new()),
         ThreadState::Ready => ("ready", String::new()),
@@ -54,16 +53,16 @@ fn row<E: Engine>(session: &Session<E>, thread: ThreadId) -> ThreadRow {
     };
     let places: Vec<_> = match session.thread(thread) {
         ThreadState::Faulted(trap) => vec![trap.at],
-        ThreadState::Active(_) | ThreadState::Paused(_) => session.board().machine().backtrace(thread),
+        ThreadState::Active(_) | ThreadState::Paused(_) => session.target().backtrace(thread),
         ThreadState::Empty | ThreadState::Ready => Vec::new(),
     };
     let call = |place: &_| {
-        let place = session.board().source(*place)?;
+        let place = session.source(*place)?;
         let (function, file) = (place.function.to_owned(), place.file.to_owned());
         Some(CallRow { function, file, line: place.line })
     };
     let stack = places.iter().take(CALLS).filter_map(call).collect();
-    let stack_used = session.board().machine().stack_used(thread);
+    let stack_used = session.target().stack_used(thread).unwrap_or_default();
     ThreadRow { thread: thread.get(), state, waits, stack_used, stack_size: BOARD_STACK_USABLE, stack }
 }
 

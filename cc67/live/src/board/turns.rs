@@ -2,10 +2,9 @@
 
 use std::collections::VecDeque;
 
-use cc67_host::Session;
+use cc67_host::{Session, Target};
 use kmotiondef::Ticks;
 use runtime::Event;
-use vm::engine::Engine;
 
 /// Ticks that are shown.
 const SHOWN: u64 = 56;
@@ -20,9 +19,9 @@ pub(super) struct Turns {
 
 impl Turns {
     /// Runs a session to a tick. If somebody looks, or it is not far, tick by tick at the end.
-    pub(super) fn advance<E: Engine>(
+    pub(super) fn advance<T: Target>(
         &mut self,
-        session: &mut Session<E>,
+        session: &mut Session<T>,
         tick: Ticks,
         looks: bool,
         events: &mut dyn FnMut(Event),
@@ -38,7 +37,7 @@ impl Turns {
         }
         while session.tick() < tick {
             session.step_tick(events);
-            self.threads.push_back(session.board().machine().turn().number());
+            self.threads.push_back(session.target().turn().number());
         }
         while self.threads.len() as u64 > SHOWN {
             self.threads.pop_front();

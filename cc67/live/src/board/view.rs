@@ -3,17 +3,16 @@
 use std::sync::mpsc::Receiver;
 use std::time::Duration;
 
-use cc67_host::Session;
+use cc67_host::{Session, Target};
 use runtime::Event;
-use vm::engine::Engine;
 
 use super::Stage;
 use crate::desk::Incoming;
 
 /// The page of a session that somebody else runs.
 #[derive(Debug)]
-pub struct LiveView<E: Engine> {
-    stage: Stage<E>,
+pub struct LiveView<T: Target> {
+    stage: Stage<T>,
     requests: Receiver<Incoming>,
 }
 
@@ -30,19 +29,19 @@ pub struct Wishes {
     pub speed: Option<f64>,
 }
 
-impl<E: Engine> LiveView<E> {
-    pub(super) const fn new(stage: Stage<E>, requests: Receiver<Incoming>) -> Self {
+impl<T: Target> LiveView<T> {
+    pub(super) const fn new(stage: Stage<T>, requests: Receiver<Incoming>) -> Self {
         Self { stage, requests }
     }
 
     /// Takes note of what has happened on the board.
-    pub fn hear(&mut self, session: &Session<E>, event: &Event) {
+    pub fn hear(&mut self, session: &Session<T>, event: &Event) {
         self.stage.log.note(session, event);
     }
 
     /// Does what pages have requested since the last time, without waiting, and sends them what is new. To be called
     /// about a hundred times in a second.
-    pub fn beat(&mut self, session: &mut Session<E>) -> Wishes {
+    pub fn beat(&mut self, session: &mut Session<T>) -> Wishes {
         self.stage.take(session, &self.requests, Duration::ZERO);
         self.stage.tell(session);
         let clock = &self.stage.clock;
@@ -51,7 +50,7 @@ impl<E: Engine> LiveView<E> {
     }
 
     /// Sends pages what is new while nothing may be requested.
-    pub fn show(&mut self, session: &Session<E>) {
+    pub fn show(&mut self, session: &Session<T>) {
         self.stage.tell(session);
     }
 

@@ -13,8 +13,7 @@ use std::sync::mpsc::Receiver;
 use std::thread;
 use std::time::Duration;
 
-use cc67_host::{Attendant, Session};
-use vm::engine::Engine;
+use cc67_host::{Attendant, Session, Target};
 
 use crate::Show;
 use crate::board::{self, LiveView};
@@ -76,17 +75,17 @@ impl Server {
     }
 
     /// Runs a board and shows it, until its time has passed; an attendant may stop it.
-    pub fn run<E: Engine>(
+    pub fn run<T: Target>(
         self,
-        session: &mut Session<E>,
+        session: &mut Session<T>,
         show: Show,
-        attendant: Option<Box<dyn Attendant<E>>>,
+        attendant: Option<Box<dyn Attendant<T>>>,
     ) {
         board::run(session, show, attendant, (&self.desk, &self.requests));
     }
 
     /// Shows a board that somebody else runs.
-    pub fn view<E: Engine>(self, session: &mut Session<E>, show: Show) -> LiveView<E> {
+    pub fn view<T: Target>(self, session: &mut Session<T>, show: Show) -> LiveView<T> {
         board::view(session, show, &self.desk, self.requests)
     }
 }

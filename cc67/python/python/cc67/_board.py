@@ -97,6 +97,8 @@ class Board:
         uart_input: bytes for the serial port to receive, once a program first looks for them.
         on_fault: what to do at a trap, or when an expectation of the stimulus is not met. "raise" ends the call in
             progress with `TrapError` or `ExpectationError`; "keep" adds the exception to `faults` and continues.
+        boot: your own firmware file, executed in place of the modelled firmware, as with `--boot`. Sources are compiled
+            for it; a `Program` must have been compiled with the same `boot`.
 
     Raises:
         CompileError: a source has errors.
@@ -127,6 +129,7 @@ class Board:
         shortcuts: bool = True,
         uart_input: bytes = b"",
         on_fault: str = "raise",
+        boot: PathLike | None = None,
     ) -> None:
         if on_fault not in ("raise", "keep"):
             raise InputError(f'on_fault must be "raise" or "keep", not {on_fault!r}')
@@ -134,7 +137,8 @@ class Board:
         if isinstance(machine, Mapping):
             settings = [*_settings(machine), *settings]
             machine = None
-        assigned = _assign(programs, load)
+        self._boot = None if boot is None else os.fspath(boot)
+        assigned = _assign(programs, load, self._boot)
         request = {
             "programs": [(thread, program._native, starts) for thread, program, starts in assigned],
             "machine": None if machine is None else _machine(machine),
@@ -145,6 +149,7 @@ class Board:
             "assist": bool(assist),
             "shortcuts": bool(shortcuts),
             "uart_input": bytes(uart_input),
+            "boot": self._boot,
         }
         self._native = _native.Board(request, engine)
         self._programs = {thread: program for thread, program, _ in assigned}
@@ -278,7 +283,7 @@ class Board:
             LoadError: the board refuses the program; the current program of the thread continues.
             CompileError: the source has errors.
         """
-        made = _program(program, None)
+        made = _program(program, None, self._boot)
         number = thread or made.thread or 1
         self._native.load(number, made._native, start)
         self._programs[number] = made
@@ -473,14 +478,14 @@ def _split(items: str) -> list[str]:
     return [*parts, part.strip()]
 
 
-def _program(source: Source, thread: int | None) -> Program:
+def _program(source: Source, thread: int | None, boot: str | None = None) -> Program:
     if isinstance(source, Program):
         return source
     if not isinstance(source, (str, os.PathLike)):
         raise TypeError(f"a program must be a cc67.Program or a file, not {source!r}")
     if Path(source).suffix.lower() == ".out":
         return load(source, thread=thread)
-    return compile(source, thread=thread)
+    return compile(source, thread=thread, boot=boot)
 
 
 def _rows(sources: Any) -> list[tuple[int | None, Source]]:
@@ -495,10 +500,10 @@ def _rows(sources: Any) -> list[tuple[int | None, Source]]:
     return [(None, source) for source in sources]
 
 
-def _assign(programs: Any, load: Any) -> list[tuple[int, Program, bool]]:
+def _assign(programs: Any, load: Any, boot: str | None) -> list[tuple[int, Program, bool]]:
     """Assign each program its thread: the one it is for, else the lowest free one."""
     rows = [(*row, True) for row in _rows(programs)] + [(*row, False) for row in _rows(load)]
-    made = [(thread, _program(source, thread), starts) for thread, source, starts in rows]
+    made = [(thread, _program(source, thread, boot), starts) for thread, source, starts in rows]
     fixed = [(thread or program.thread, program, starts) for thread, program, starts in made]
     free = iter([n for n in range(1, 8) if n not in {thread for thread, _, _ in fixed}])
     result = []

@@ -25,6 +25,7 @@ class _Request(TypedDict):
     warnings: list[str]
     std: str
     firmware: str | None
+    boot: str | None
 
 
 class Program:
@@ -103,6 +104,7 @@ def compile(
     warnings: Iterable[str] = (),
     std: str = "vendor",
     firmware: PathLike | None = None,
+    boot: PathLike | None = None,
 ) -> Program:
     """Compile a C program for the board.
 
@@ -118,6 +120,8 @@ def compile(
         warnings: warning switches without `-W`: "error", "no-format", "error=format", "extra".
         std: the rules for constants: "vendor", "c90", "c99", "c11", "c17".
         firmware: a firmware file whose symbols replace the built-in ones of firmware 4.34.
+        boot: the firmware file that the program is to run on: it is compiled for the processor, as
+            `Board(boot=FILE)` needs it.
 
     Returns:
         The program. Its warnings are in `Program.diagnostics`.
@@ -147,6 +151,7 @@ def compile(
         "warnings": _switches(warnings),
         "std": std,
         "firmware": None if firmware is None else os.fspath(firmware),
+        "boot": None if boot is None else os.fspath(boot),
     }
     native, found = _native.compile([str(path) for path in paths], request, thread or 1)
     diagnostics = [from_json(text) for text in found]

@@ -1,27 +1,27 @@
 //! The fields of an axis by their names in C.
 
+use cc67_host::{Session, Target};
 use kmotiondef::ctype::CType;
 use kmotiondef::limits::N_CHANNELS;
 use kmotiondef::structs::{Chan, StructureField};
 use kmotiondef::variables::CHAN;
-use vm::memory::GuestMemory;
 
 /// The value of a field of an axis; `None` for another name, or a field that is not one number.
-pub(crate) fn field(memory: &GuestMemory, axis: usize, name: &str) -> Option<f64> {
+pub(crate) fn field<T: Target>(session: &Session<T>, axis: usize, name: &str) -> Option<f64> {
     if axis >= N_CHANNELS {
         return None;
     }
     let field = number(name)?;
     let address = CHAN.element(axis).address().offset(field.offset);
     Some(match field.ty {
-        CType::Double => memory.peek::<f64>(address),
-        CType::Float => memory.peek::<f32>(address).into(),
-        CType::Short => memory.peek::<i16>(address).into(),
-        CType::UnsignedShort => memory.peek::<u16>(address).into(),
-        CType::Char | CType::SignedChar => memory.peek::<i8>(address).into(),
-        CType::UnsignedChar => memory.peek::<u8>(address).into(),
-        CType::UnsignedInt | CType::UnsignedLong => memory.peek::<u32>(address).into(),
-        CType::Void | CType::Int | CType::Long | CType::Named(_) => memory.peek::<i32>(address).into(),
+        CType::Double => session.peek::<f64>(address),
+        CType::Float => session.peek::<f32>(address).into(),
+        CType::Short => session.peek::<i16>(address).into(),
+        CType::UnsignedShort => session.peek::<u16>(address).into(),
+        CType::Char | CType::SignedChar => session.peek::<i8>(address).into(),
+        CType::UnsignedChar => session.peek::<u8>(address).into(),
+        CType::UnsignedInt | CType::UnsignedLong => session.peek::<u32>(address).into(),
+        CType::Void | CType::Int | CType::Long | CType::Named(_) => session.peek::<i32>(address).into(),
         _ => return None,
     })
 }

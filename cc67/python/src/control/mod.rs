@@ -5,11 +5,9 @@ mod log;
 
 use std::collections::BTreeMap;
 
-use cc67_host::{HostError, Session, Snapshot, Until, UserProgram, Watch, WatchError};
+use cc67_host::{HostError, Session, Snapshot, SnapshotError, Target, Until, UserProgram, Watch, WatchError};
 use kmotiondef::{Bit, ThreadId, Ticks};
-use runtime::stimulus::StimulusError;
 use runtime::{Event, EventKind};
-use vm::engine::Engine;
 
 pub(crate) use fields::{field, field_names};
 pub(crate) use log::{Fault, Log, Said};
@@ -51,9 +49,9 @@ pub(crate) trait Control: 'static {
     /// Sends a line, lets pass the time that it takes, and returns the lines of the reply.
     fn exchange(&mut self, line: &[u8]) -> (Vec<String>, Option<Fault>);
     /// Does what a statement of a stimulus says.
-    fn act(&mut self, action: &str) -> Result<(), StimulusError>;
+    fn act(&mut self, action: &str) -> Result<(), HostError>;
     /// Drives an input.
-    fn drive(&mut self, bit: Bit, level: bool) -> Result<(), StimulusError>;
+    fn drive(&mut self, bit: Bit, level: bool) -> Result<(), HostError>;
     /// The level of a bit.
     fn bit(&self, bit: Bit) -> bool;
     /// What should be looked at, prepared.
@@ -79,7 +77,7 @@ pub(crate) trait Control: 'static {
     /// Sends characters to the serial port.
     fn send_to_uart(&mut self, bytes: &[u8]);
     /// Keeps the present instant under a number.
-    fn snapshot(&mut self, number: u64);
+    fn snapshot(&mut self, number: u64) -> Result<(), SnapshotError>;
     /// Goes back to an instant; `false` for an unknown number.
     fn restore(&mut self, number: u64) -> bool;
     /// Forgets an instant.
@@ -99,12 +97,12 @@ pub(crate) trait Control: 'static {
 }
 
 /// A session with what its board has said.
-pub(crate) struct Rig<E: Engine> {
-    session: Session<E>,
+pub(crate) struct Rig<T: Target> {
+    session: Session<T>,
     log: Log,
     stops_at_faults: bool,
     recorder: Option<Recorder>,
-    snapshots: BTreeMap<u64, (Snapshot<E>, Log)>,
+    snapshots: BTreeMap<u64, (Snapshot<T>, Log)>,
     /// Expressions that were read before, with the programs that are loaded now.
     watches: BTreeMap<String, Watch>,
 }
@@ -112,9 +110,9 @@ pub(crate) struct Rig<E: Engine> {
 /// Expressions that are kept.
 const MOST_WATCHES: usize = 1000;
 
-impl<E: Engine> Rig<E> {
+impl<T: Target> Rig<T> {
     /// A session whose board has said nothing yet.
-    pub(crate) fn new(session: Session<E>) -> Self {
+    pub(crate) fn new(session: Session<T>) -> Self {
         Self {
             session,
             log: Log::default(),
@@ -126,7 +124,7 @@ impl<E: Engine> Rig<E> {
     }
 
     /// Lets time pass, and takes up what the board says.
-    fn pass<R>(&mut self, work: impl FnOnce(&mut Session<E>, &mut dyn FnMut(Event)) -> R) -> R {
+    fn pass<R>(&mut self, work: impl FnOnce(&mut Session<T>, &mut dyn FnMut(Event)) -> R) -> R {
         let mut events = Vec::new();
         let result = work(&mut self.session, &mut |event| events.push(event));
         if !events.is_empty() {
@@ -150,7 +148,7 @@ impl<E: Engine> Rig<E> {
     }
 
     /// Steps until `is_over` says so or the portion is used up.
-    fn portion(&mut self, limit: Ticks, is_over: impl Fn(&Session<E>) -> bool) -> Portion {
+    fn portion(&mut self, limit: Ticks, is_over: impl Fn(&Session<T>) -> bool) -> Portion {
         let mut events = Vec::new();
         for _ in 0..STEPS {
             let is_met = is_over(&self.session);
@@ -174,7 +172,7 @@ impl<E: Engine> Rig<E> {
     }
 }
 
-impl<E: Engine + 'static> Control for Rig<E> {
+impl<T: Target + 'static> Control for Rig<T> {
     fn tick(&self) -> u64 {
         self.session.tick().get()
     }
@@ -223,11 +221,11 @@ impl<E: Engine + 'static> Control for Rig<E> {
         (std::mem::take(&mut self.log.replies), self.fault())
     }
 
-    fn act(&mut self, action: &str) -> Result<(), StimulusError> {
+    fn act(&mut self, action: &str) -> Result<(), HostError> {
         self.session.act(action)
     }
 
-    fn drive(&mut self, bit: Bit, level: bool) -> Result<(), StimulusError> {
+    fn drive(&mut self, bit: Bit, level: bool) -> Result<(), HostError> {
         self.session.drive_input(bit, level)
     }
 
@@ -257,7 +255,7 @@ impl<E: Engine + 'static> Control for Rig<E> {
     }
 
     fn field(&self, axis: usize, name: &str) -> Option<f64> {
-        field(self.session.board().memory(), axis, name)
+        field(&self.session, axis, name)
     }
 
     fn user_data(&self, index: usize) -> Option<i32> {
@@ -289,9 +287,10 @@ impl<E: Engine + 'static> Control for Rig<E> {
         self.session.send_to_uart(bytes);
     }
 
-    fn snapshot(&mut self, number: u64) {
-        let snapshot = self.session.snapshot();
+    fn snapshot(&mut self, number: u64) -> Result<(), SnapshotError> {
+        let snapshot = self.session.snapshot()?;
         self.snapshots.insert(number, (snapshot, self.log.clone()));
+        Ok(())
     }
 
     fn restore(&mut self, number: u64) -> bool {

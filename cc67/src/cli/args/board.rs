@@ -3,7 +3,7 @@
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use clap::Args;
 use compiler::words::suggest;
 use runtime::{Directory, HostFiles, MachineFile, Overlay, REMARKS};
@@ -61,9 +61,10 @@ pub(crate) struct BoardArguments {
 }
 
 impl BoardArguments {
-    /// The first option given that a board with the user's own firmware does not know.
-    pub(crate) fn left_out_by_boot(&self) -> Option<&'static str> {
-        (self.engine != EngineName::default()).then_some("--engine")
+    /// Refuses an option that a firmware file does not know.
+    pub(crate) fn refuse_with_boot(&self) -> Result<()> {
+        ensure!(self.engine == EngineName::default(), "`--engine` does not work with `--boot`");
+        Ok(())
     }
 
     /// What is connected to the board, and which of its remarks are shown.

@@ -10,13 +10,11 @@ use std::ffi::OsString;
 use std::fmt::Write as _;
 
 use anyhow::{Context, Result, bail};
-use boot::Halted;
-use cc67_host::End;
+use cc67_host::{BootedFirmware, BootedTarget, End, Target};
 use clap::{Args, Parser};
 use kmotiondef::Ticks;
 use kmotiondef::limits::TIMEBASE;
 use runtime::{Event, EventKind};
-use vm::engine::Engine;
 
 use crate::cli::args::beside::{Beside, BesideArguments};
 use crate::cli::args::board::BoardArguments;
@@ -25,8 +23,7 @@ use crate::cli::args::time::{DEFAULT_LIMIT, seconds};
 use crate::cli::io::exit::Exit;
 use crate::cli::io::{output, terminal};
 use crate::cli::report::numbers::Tolerance;
-use crate::cli::session::booted::{Booted, Ready};
-use crate::cli::session::{Rig, Setup, Started, Work};
+use crate::cli::session::{Rig, Setup, Started, Work, boot};
 use outcome::Outcome;
 
 /// Arguments of `cc67 compare`.
@@ -61,6 +58,9 @@ pub(super) struct CompareArguments {
     pub(super) words: Vec<OsString>,
 }
 
+/// Ticks in which axes of the firmware come to rest after the model has ended.
+const REST: u64 = 22;
+
 /// How a program compares.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Verdict {
@@ -76,11 +76,11 @@ pub(super) fn compare(arguments: &CompareArguments) -> Result<Exit> {
         bail!("`cc67 compare` needs `--boot FILE`, your firmware file")
     };
     arguments.refuse()?;
-    let mut ready = Booted::new(file)?.into_ready();
+    let firmware = boot(file)?;
     let mut table = String::new();
     let mut verdicts = Vec::new();
     for program in &arguments.programs {
-        let verdict = arguments.one(program, &mut ready, &mut table)?;
+        let verdict = arguments.one(program, &firmware, &mut table)?;
         if verdict == Verdict::Broken {
             writeln!(table, "{:40} {:>6} does not compile", program.to_string_lossy(), "-")?;
         }
@@ -114,14 +114,10 @@ fn together(program: &OsString) -> Result<Vec<OsString>> {
 impl CompareArguments {
     /// Refuses what one of the boards does not know, and a flash, which is of one of them.
     fn refuse(&self) -> Result<()> {
-        let flash = self.board.pc.has_flash().then_some("--flash");
-        match flash.or_else(|| self.board.left_out_by_boot()) {
-            Some("--flash") => {
-                bail!("`--flash` does not work with `cc67 compare`: a flash file belongs to one board")
-            }
-            Some(option) => bail!("`{option}` does not work with `--boot`"),
-            None => Ok(()),
+        if self.board.pc.has_flash() {
+            bail!("`--flash` does not work with `cc67 compare`: a flash file belongs to one board");
         }
+        self.board.refuse_with_boot()
     }
 
     fn ticks(&self) -> Ticks {
@@ -158,10 +154,12 @@ impl CompareArguments {
     }
 
     /// Compares one of the programs, and adds its row to the table if it compiles.
-    fn one(&self, program: &OsString, ready: &mut Ready, table: &mut String) -> Result<Verdict> {
+    fn one(&self, program: &OsString, booted: &BootedFirmware, table: &mut String) -> Result<Verdict> {
         let (own, programs) = self.of(program)?;
         let Some(model) = own.model(&programs)? else { return Ok(Verdict::Broken) };
-        let Some(firmware) = own.firmware(&programs, ready, model.ticks)? else { return Ok(Verdict::Broken) };
+        let Some(firmware) = own.firmware(&programs, booted, model.ticks)? else {
+            return Ok(Verdict::Broken);
+        };
         let (differences, near) = model.differences(&firmware, own.allowed());
         let late = model.latest(&firmware);
         let is_late = self.strict_times && late > self.tolerance;
@@ -192,39 +190,57 @@ impl CompareArguments {
         let setup = Setup::of_model(self.started(programs), &self.board, &self.compiler)?;
         let Some(setup) = setup else { return Ok(None) };
         let mut outcome = Outcome::default();
-        setup.on_its_engine(Model { limit: self.ticks(), outcome: &mut outcome })?;
+        setup.on_its_target(Model { limit: self.ticks(), outcome: &mut outcome })?;
         Ok(Some(outcome))
     }
 
     /// The run on the firmware; `None` if a source has errors.
     ///
     /// Its axes are looked at in the tick in which the model ended: an axis that nobody stops continues.
-    fn firmware(&self, programs: &[OsString], ready: &mut Ready, at: Ticks) -> Result<Option<Outcome>> {
-        let mut booted = ready.fresh();
-        if booted.begin(self.started(programs), &self.board, &self.compiler, None)?.is_none() {
-            return Ok(None);
-        }
+    fn firmware(
+        &self,
+        programs: &[OsString],
+        firmware: &BootedFirmware,
+        at: Ticks,
+    ) -> Result<Option<Outcome>> {
+        let setup = Setup::of_firmware(self.started(programs), &self.board, &self.compiler, firmware)?;
+        let Some(setup) = setup else { return Ok(None) };
+        let mut rig = setup.rig_of_firmware(firmware)?;
         let mut outcome = Outcome::default();
+        let mut crash = None;
+        let mut note = |outcome: &mut Outcome, event: &Event| {
+            if let EventKind::Halted(text) = &event.kind {
+                crash = Some(text.clone());
+            }
+            outcome.note(event);
+        };
         // The model ends before the tick that the firmware has just begun.
         let until = Ticks::new(at.get() + 1).min(self.ticks());
-        let mut before = booted.axes();
-        while booted.tick() < until && booted.advance_tick(&mut |event| outcome.note(&event)).is_ok() {
-            before = std::mem::replace(&mut outcome.axes, booted.axes());
+        let axes = |rig: &Rig<BootedTarget>| rig.session.target().axes();
+        let mut before = axes(&rig);
+        while rig.session.tick() < until {
+            rig.session.step_tick(&mut |event| note(&mut outcome, &event));
+            before = std::mem::replace(&mut outcome.axes, axes(&rig));
         }
         let ticks = self.tolerance / TIMEBASE;
         let step = |(now, before): (&(f64, f64), &(f64, f64))| (now.0 - before.0).abs() * ticks;
         outcome.reach = outcome.axes.iter().zip(&before).map(step).collect();
-        let ended = booted.run(self.ticks(), None, &mut |event| outcome.note(&event));
-        outcome.last_axes = booted.axes();
-        booted.finish(&mut |event| outcome.note(&event))?;
-        outcome.end = match ended {
-            Ok(End::AllEnded | End::Interrupted) => "ended".to_owned(),
-            Ok(End::Limit) => "still running".to_owned(),
-            Err(Halted::Crashed(crash)) => crash.to_string(),
-        };
-        outcome.look_at_firmware(&booted);
-        ready.take_back(booted);
+        let rest = Ticks::new(until.get() + REST).min(self.ticks());
+        rig.advance(rest, &mut |event| note(&mut outcome, &event));
+        let end = rig.run(self.ticks(), None, &mut |event| note(&mut outcome, &event));
+        outcome.last_axes = axes(&rig);
+        rig.finish(&mut |event| note(&mut outcome, &event))?;
+        outcome.end = crash.unwrap_or_else(|| ended(end).to_owned());
+        outcome.look_at_firmware(&rig.session);
         Ok(Some(outcome))
+    }
+}
+
+/// How a run ended.
+const fn ended(end: End) -> &'static str {
+    match end {
+        End::AllEnded | End::Interrupted => "ended",
+        End::Limit => "still running",
     }
 }
 
@@ -235,7 +251,7 @@ struct Model<'a> {
 }
 
 impl Work for Model<'_> {
-    fn on<E: Engine>(self, mut rig: Rig<E>) -> Result<Exit> {
+    fn on<T: Target>(self, mut rig: Rig<T>) -> Result<Exit> {
         let outcome = self.outcome;
         let mut traps = Vec::new();
         let mut sink = |event: Event| {
@@ -252,8 +268,7 @@ impl Work for Model<'_> {
         })?;
         outcome.end = match (traps.first(), end) {
             (Some(trap), _) => trap.clone(),
-            (None, End::Limit) => "still running".to_owned(),
-            (None, End::AllEnded | End::Interrupted) => "ended".to_owned(),
+            (None, end) => ended(end).to_owned(),
         };
         outcome.look_at_model(&rig);
         Ok(Exit::Success)

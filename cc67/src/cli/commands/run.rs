@@ -1,17 +1,13 @@
 //! `cc67 run`: compile, load, execute, print the console.
 
-mod booted;
-
 use std::ffi::{OsStr, OsString};
 use std::io::{self, BufWriter};
 
 use anyhow::Result;
-use cc67_host::Ending;
+use cc67_host::{Ending, Session, Target};
 use clap::Args;
 use kmotiondef::limits::TIMEBASE;
 use kmotiondef::{AxisId, ThreadId, Ticks};
-use runtime::Board;
-use vm::engine::Engine;
 use vm::profile::ProfilingEngine;
 
 use crate::cli::args::beside::BesideArguments;
@@ -22,7 +18,7 @@ use crate::cli::args::trace::TraceArguments;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::pace::Pace;
 use crate::cli::io::{interrupt, output, terminal};
-use crate::cli::report::profile;
+use crate::cli::report::profile::{self, Sampled};
 use crate::cli::report::screen::{Audience, Screen, Style, no_run};
 use crate::cli::report::seen::Seen;
 use crate::cli::report::state::FinalState;
@@ -68,9 +64,6 @@ pub(super) struct RunArguments {
 
 /// Compiles, loads and runs the programs.
 pub(super) fn run(arguments: &RunArguments) -> Result<Exit> {
-    if let Some(file) = &arguments.board.boot {
-        return booted::run(arguments, file);
-    }
     let setup = Setup::new(arguments.started(), &arguments.board, &arguments.compiler)?;
     match setup {
         Some(setup) => run_setup(arguments, setup),
@@ -86,20 +79,31 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Exit> {
 fn run_setup(arguments: &RunArguments, setup: Setup) -> Result<Exit> {
     match &arguments.profile {
         Some(target) => run_profiled(arguments, setup, target),
-        None => setup.on_its_engine(arguments),
+        None => setup.on_its_target(arguments),
     }
 }
 
 fn run_profiled(arguments: &RunArguments, setup: Setup, target: &str) -> Result<Exit> {
     let target = profile::target(target)?;
-    let mut rig = setup.rig(ProfilingEngine::default())?;
-    let exit = arguments.execute(&mut rig)?;
-    terminal::aside(&profile::report(rig.session.board(), &target)?);
+    let (exit, report) = match setup.firmware() {
+        Some(firmware) => {
+            let mut rig = setup.rig_of_firmware(&firmware)?;
+            rig.session.sample_processor();
+            let exit = arguments.execute(&mut rig)?;
+            (exit, Sampled::of(&rig.session).report(&target)?)
+        }
+        None => {
+            let mut rig = setup.rig(ProfilingEngine::default())?;
+            let exit = arguments.execute(&mut rig)?;
+            (exit, profile::report(rig.session.target(), &target)?)
+        }
+    };
+    terminal::aside(&report);
     Ok(exit)
 }
 
 impl Work for &RunArguments {
-    fn on<E: Engine>(self, mut rig: Rig<E>) -> Result<Exit> {
+    fn on<T: Target>(self, mut rig: Rig<T>) -> Result<Exit> {
         self.execute(&mut rig)
     }
 }
@@ -116,7 +120,7 @@ impl RunArguments {
     }
 
     /// Runs the board and shows what happens.
-    fn execute<E: Engine>(&self, rig: &mut Rig<E>) -> Result<Exit> {
+    fn execute<T: Target>(&self, rig: &mut Rig<T>) -> Result<Exit> {
         let request = trace::request(&self.trace, &rig.session)?;
         let (programs, offered) = (rig.session.debug(), rig.session.offered());
         let mut screen = Screen::new(BufWriter::new(io::stdout().lock()), self.style(), programs, offered);
@@ -138,24 +142,24 @@ impl RunArguments {
         interrupt::ends(rig.session.interrupter())?;
         let end = rig.run(limit, pace.as_ref(), &mut sink);
         rig.finish(&mut sink)?;
-        let (board, ending) = (rig.session.board(), rig.session.ending());
+        let (session, ending) = (&rig.session, rig.session.ending());
         let (exit, why) = seen.exit(end, self.limit.is_some());
-        let active = active(board);
+        let active = active(session);
         // 2,000 bits are looked at only if somebody looks at the result.
-        let state = if self.json || self.state { FinalState::of(board) } else { FinalState::default() };
-        screen.end(exit, why, board.tick(), &active, &ending, &state);
+        let state = if self.json || self.state { FinalState::of(session) } else { FinalState::default() };
+        screen.end(exit, why, session.tick(), &active, &ending, &state);
         if screen.finish().map_err(|error| output::lost_output(&error))? == Audience::Gone {
             return Ok(Exit::Success);
         }
         if let Some(mut trace) = trace {
-            trace.know_axes(board.standing_axes());
+            trace.know_axes(session.target().standing_axes());
             let title = self.programs.join(OsStr::new(", "));
-            trace.finish(&self.trace, board.tick(), &title.to_string_lossy())?;
+            trace.finish(&self.trace, session.tick(), &title.to_string_lossy())?;
         }
         if self.state {
             state.lines().iter().for_each(|line| terminal::note(line));
         }
-        if let Some(how) = how_it_ended(exit, board, &ending) {
+        if let Some(how) = how_it_ended(exit, session, &ending) {
             terminal::note(&how);
         }
         Ok(exit)
@@ -168,27 +172,29 @@ impl RunArguments {
 }
 
 /// The numbers of the threads that are active.
-fn active<E: Engine>(board: &Board<E>) -> Vec<u8> {
-    let is_active = |thread: &ThreadId| board.thread(*thread).is_active();
+fn active<T: Target>(session: &Session<T>) -> Vec<u8> {
+    let is_active = |thread: &ThreadId| session.thread(*thread).is_active();
     ThreadId::all().filter(is_active).map(ThreadId::get).collect()
 }
 
 /// How a run ended that has left something undone: which threads are still there and what they wait for.
-fn how_it_ended<E: Engine>(exit: Exit, board: &Board<E>, ending: &Ending) -> Option<String> {
-    let moving = board.moving();
+fn how_it_ended<T: Target>(exit: Exit, session: &Session<T>, ending: &Ending) -> Option<String> {
+    let moving = session.target().moving();
     let is_over = ending.has_all_ended() && moving.is_empty();
     let head = match exit {
-        Exit::StillRunning => still_running(&active(board), &moving),
-        Exit::Interrupted => format!("interrupted after {:.3} s of board time:", seconds_of(board)),
+        Exit::StillRunning => still_running(&active(session), &moving),
+        Exit::Interrupted => format!("interrupted after {:.3} s of board time", seconds_of(session)),
         _ if is_over => return None,
-        _ => format!("at the end, after {:.3} s of board time:", seconds_of(board)),
+        _ => format!("at the end, after {:.3} s of board time", seconds_of(session)),
     };
-    Some(format!("{head}\n{ending}"))
+    let lines = ending.to_string();
+    let colon = if exit == Exit::StillRunning { "" } else { ":" };
+    Some(if lines.is_empty() { head } else { format!("{head}{colon}\n{lines}") })
 }
 
 /// The board time.
-fn seconds_of<E: Engine>(board: &Board<E>) -> f64 {
-    board.tick().get() as f64 * TIMEBASE
+fn seconds_of<T: Target>(session: &Session<T>) -> f64 {
+    session.tick().get() as f64 * TIMEBASE
 }
 
 /// Why a run has not ended by the usual limit, and what can be done.

@@ -295,7 +295,7 @@ impl<W: Write> Screen<W> {
 
     /// Shows a text that is not the programs'.
     fn say(&mut self, event: &Event, text: &str) {
-        let is_trap = matches!(event.kind, EventKind::Trap(_));
+        let is_trap = matches!(event.kind, EventKind::Trap(_) | EventKind::Halted(_));
         *(if is_trap { &mut self.traps } else { &mut self.remarks }) += 1;
         if !self.style.json {
             let may_repeat = matches!(&event.kind, EventKind::Remark(remark) if remark.message.severity() > Severity::Detail);
@@ -318,6 +318,7 @@ impl<W: Write> Screen<W> {
                 let scene = trap.scene.as_deref().map(SceneLeft::from);
                 JsonLine::Trap { seconds, thread: trap.thread.map(ThreadId::get), text, scene }
             }
+            EventKind::Halted(_) => JsonLine::Trap { seconds, thread: None, text, scene: None },
             EventKind::Host(_) => JsonLine::Pc { seconds, text },
             EventKind::Unmet(_) => JsonLine::Unmet { seconds, text },
             EventKind::Remark(remark) => {

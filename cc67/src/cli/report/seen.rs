@@ -15,7 +15,7 @@ pub(crate) struct Seen {
 impl Seen {
     /// Takes up an event.
     pub(crate) fn note(&mut self, event: &Event) {
-        self.trapped |= matches!(event.kind, EventKind::Trap(_));
+        self.trapped |= matches!(event.kind, EventKind::Trap(_) | EventKind::Halted(_));
         self.unmet |= matches!(event.kind, EventKind::Unmet(_));
     }
 

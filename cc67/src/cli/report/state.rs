@@ -2,15 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use cc67_host::{Capability, Session, Target};
 use kmotiondef::limits::N_USER_DATA_VARS;
 use kmotiondef::structs::{Chan, Persist};
 use kmotiondef::variables::{CHAN, PERSIST};
 use kmotiondef::{AxisId, Bit};
-use runtime::Board;
 use runtime::trace::Item;
 use serde::Serialize;
-use vm::engine::Engine;
-use vm::memory::GuestMemory;
 
 /// The state of a board.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -35,17 +33,18 @@ struct AxisState {
 
 impl FinalState {
     /// The present state.
-    pub(crate) fn of<E: Engine>(board: &Board<E>) -> Self {
-        Self::seen(board.memory(), |item| board.value(item))
-    }
-
-    /// The state of a board with this memory and these values of items.
-    pub(crate) fn seen(memory: &GuestMemory, value: impl Fn(Item) -> f64) -> Self {
+    pub(crate) fn of<T: Target>(session: &Session<T>) -> Self {
+        // A firmware with its variables in other places shows none of it.
+        if !session.can(Capability::Surroundings) {
+            return Self::default();
+        }
+        let value = |item| session.target().value(item);
         let bits = (0..=i32::from(Bit::MAX)).filter_map(Bit::new);
         let data = PERSIST.field(Persist::USER_DATA);
-        let elements = (0..N_USER_DATA_VARS).map(|index| (index, memory.peek(data.element(index).address())));
+        let elements =
+            (0..N_USER_DATA_VARS).map(|index| (index, session.peek(data.element(index).address())));
         Self {
-            axes: AxisId::all().filter_map(|axis| AxisState::of(memory, &value, axis)).collect(),
+            axes: AxisId::all().filter_map(|axis| AxisState::of(session, axis)).collect(),
             bits: bits.filter(|bit| value(Item::of_bit(*bit)) != 0.0).map(Bit::get).collect(),
             persist: elements.filter(|(_, value)| *value != 0).collect(),
         }
@@ -73,10 +72,11 @@ impl FinalState {
 }
 
 impl AxisState {
-    fn of(memory: &GuestMemory, value: impl Fn(Item) -> f64, axis: AxisId) -> Option<Self> {
-        let value = |kind: &str| Item::new(&format!("{kind}{axis}")).map_or(0.0, &value);
+    fn of<T: Target>(session: &Session<T>, axis: AxisId) -> Option<Self> {
+        let value =
+            |kind: &str| Item::new(&format!("{kind}{axis}")).map_or(0.0, |item| session.target().value(item));
         let place = CHAN.element(axis.index()).field(Chan::ENABLE);
-        let enabled = memory.peek::<u32>(place.address()) != 0;
+        let enabled = session.peek::<u32>(place.address()) != 0;
         let state = Self {
             axis: axis.get(),
             enabled,

@@ -12,10 +12,9 @@ use std::thread;
 use std::time::Duration;
 
 use anyhow::{Context, Result, bail};
-use cc67_host::{End, Session};
+use cc67_host::{End, Session, Target};
 use kmotiondef::Ticks;
 use runtime::{Event, EventKind};
-use vm::engine::Engine;
 
 use crate::cli::args::uart::UartArguments;
 use crate::cli::io::output::{Draft, cannot_write};
@@ -23,7 +22,7 @@ use crate::cli::io::pace::Pace;
 use crate::cli::io::terminal;
 
 /// Ticks that a run with a peer goes on before it looks for what has come: 9.99 ms.
-pub(super) const PART: u64 = 111;
+const PART: u64 = 111;
 /// Pieces that a peer may be ahead with, and characters that wait on the line, before it has to wait.
 const AHEAD: usize = 16;
 const BACKLOG: usize = 4096;
@@ -152,7 +151,7 @@ impl Peer {
 }
 
 /// Runs a session to the end of a tick.
-type PartRunner<'a, E> = &'a mut dyn FnMut(&mut Session<E>, Ticks, &mut dyn FnMut(Event));
+type PartRunner<'a, T> = &'a mut dyn FnMut(&mut Session<T>, Ticks, &mut dyn FnMut(Event));
 
 /// The line from the board to whatever it is connected to; nothing, unless it is connected.
 #[derive(Debug, Default)]
@@ -197,9 +196,9 @@ impl SerialLine {
     }
 
     /// Runs the board to its end, or to the limit, and the line beside it; at the pace of a clock, if there is one.
-    pub(super) fn run<E: Engine>(
+    pub(super) fn run<T: Target>(
         &mut self,
-        session: &mut Session<E>,
+        session: &mut Session<T>,
         limit: Ticks,
         pace: Option<&Pace>,
         sink: &mut dyn FnMut(Event),
@@ -221,12 +220,12 @@ impl SerialLine {
     }
 
     /// Runs the board to the end of a tick, also when its programs have ended, and the line beside it; `run` runs a part.
-    pub(super) fn advance<E: Engine>(
+    pub(super) fn advance<T: Target>(
         &mut self,
-        session: &mut Session<E>,
+        session: &mut Session<T>,
         limit: Ticks,
         sink: &mut dyn FnMut(Event),
-        run: PartRunner<'_, E>,
+        run: PartRunner<'_, T>,
     ) {
         loop {
             let part = self.part(session.tick(), limit, false);
@@ -248,15 +247,15 @@ impl SerialLine {
     }
 
     /// Gives the peer what was sent and puts on the line what it sends. While enough waits there it is not listened to.
-    fn exchange<E: Engine>(&mut self, session: &mut Session<E>) {
-        let came = self.take(session.board().uart_backlog());
+    fn exchange<T: Target>(&mut self, session: &mut Session<T>) {
+        let came = self.take(session.target().uart_backlog());
         if !came.is_empty() {
             session.send_to_uart(&came);
         }
     }
 
     /// Gives the peer what was sent and takes what it sends, for as long as a part of the run lasts.
-    pub(super) fn take(&mut self, backlog: usize) -> Vec<u8> {
+    fn take(&mut self, backlog: usize) -> Vec<u8> {
         let Some(peer) = &mut self.peer else { return Vec::new() };
         let fresh = std::mem::take(&mut self.fresh);
         let written = peer.outgoing.0.write_all(&fresh).and_then(|()| peer.outgoing.0.flush());

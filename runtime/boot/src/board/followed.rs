@@ -9,6 +9,7 @@ use kmotiondef::map::{PROGRAM_BASE, PROGRAM_LIMIT};
 use vm::dsp::{Halt, State, packet_text};
 
 use super::{BootedBoard, Doing, GIE, Halted};
+use crate::around::Around;
 use crate::bus::Hardware;
 
 /// Bytes from a call to its return address at most: six packets.
@@ -69,7 +70,7 @@ pub struct ProgramCall {
     pub argument: i32,
 }
 
-impl BootedBoard {
+impl<A: Around> BootedBoard<A> {
     /// Stops [`run_to_stop`](Self::run_to_stop) before the packets at these addresses, and before no others.
     pub fn set_stops(&mut self, addresses: impl IntoIterator<Item = u32>) {
         self.core.set_stops(addresses);
@@ -140,7 +141,7 @@ impl BootedBoard {
             };
         };
         let current = file.address("CurrentThread");
-        let mut note = |hardware: &Hardware, at: u32, cycles: i64, state: &State| {
+        let mut note = |hardware: &Hardware<A>, at: u32, cycles: i64, state: &State| {
             if is_of_program(at) {
                 let is_masked = state.control(Control::Csr) & GIE == 0;
                 let thread = current.filter(|_| !is_masked);

@@ -11,6 +11,7 @@ use vm::dsp::Core;
 use vm::memory::GuestMemory;
 
 use super::{BootedBoard, Halted, SECOND};
+use crate::around::Around;
 use crate::bus::Hardware;
 use crate::file::FirmwareFile;
 use crate::loads::Loads;
@@ -78,21 +79,6 @@ impl BootedBoard {
         Ok(board)
     }
 
-    /// Runs until the firmware first looks for what the PC sends.
-    ///
-    /// # Errors
-    /// It never comes to that.
-    pub fn boot(&mut self) -> Result<(), Halted> {
-        while self.hardware.first_look.is_none() {
-            if self.cycle() >= LONGEST_START {
-                let reason = "it has not begun to wait for the PC within 3 s of its start";
-                return Err(self.crash(reason.to_owned()));
-            }
-            let _ = self.run_events(self.cycle() + SECOND / 100)?;
-        }
-        Ok(())
-    }
-
     /// The same from what the flash of such a board held, 2 MiB.
     ///
     /// # Errors
@@ -109,6 +95,23 @@ impl BootedBoard {
         board.restart();
         board.boot()?;
         Ok(board)
+    }
+}
+
+impl<A: Around> BootedBoard<A> {
+    /// Runs until the firmware first looks for what the PC sends.
+    ///
+    /// # Errors
+    /// It never comes to that.
+    pub fn boot(&mut self) -> Result<(), Halted> {
+        while self.hardware.first_look.is_none() {
+            if self.cycle() >= LONGEST_START {
+                let reason = "it has not begun to wait for the PC within 3 s of its start";
+                return Err(self.crash(reason.to_owned()));
+            }
+            let _ = self.run_events(self.cycle() + SECOND / 100)?;
+        }
+        Ok(())
     }
 
     /// What the flash holds.

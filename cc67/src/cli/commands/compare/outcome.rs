@@ -2,15 +2,14 @@
 
 use std::fmt;
 
+use cc67_host::{BootedTarget, Session, Target};
 use kmotiondef::structs::{Chan, Persist};
 use kmotiondef::variables::{BIT_DIR_SHADOW, CHAN, PERSIST};
 use kmotiondef::{AxisId, Bit, Cycles, Ticks};
 use runtime::{Event, EventKind};
-use vm::engine::Engine;
 
 use crate::cli::report::numbers::{Deviation, Tolerance, deviation};
 use crate::cli::session::Rig;
-use crate::cli::session::booted::Booted;
 
 /// Pins of the board.
 const PINS: i32 = 48;
@@ -83,22 +82,21 @@ impl Outcome {
     }
 
     /// What the modelled board is left with.
-    pub(super) fn look_at_model<E: Engine>(&mut self, rig: &Rig<E>) {
+    pub(super) fn look_at_model<T: Target>(&mut self, rig: &Rig<T>) {
         let session = &rig.session;
         self.ticks = session.tick();
-        let memory = session.board().memory();
         let data = PERSIST.field(Persist::USER_DATA).address();
-        self.user_data = (0..200).map(|index| memory.peek(data.offset(4 * index))).collect();
+        self.user_data = (0..200).map(|index| session.peek(data.offset(4 * index))).collect();
         self.axes = AxisId::all()
             .map(|axis| {
                 let base = CHAN.address().offset(Chan::STRUCTURE.size * axis.index() as u32);
                 (
-                    memory.peek(base.offset(Chan::DEST.offset())),
-                    memory.peek(base.offset(Chan::POSITION.offset())),
+                    session.peek(base.offset(Chan::DEST.offset())),
+                    session.peek(base.offset(Chan::POSITION.offset())),
                 )
             })
             .collect();
-        let directions = [0, 1].map(|word| memory.peek::<u32>(BIT_DIR_SHADOW.element(word).address()));
+        let directions = [0, 1].map(|word| session.peek::<u32>(BIT_DIR_SHADOW.element(word).address()));
         let pins = (0..PINS).map(|pin| Pin {
             is_output: directions[usize::from(pin >= 32)] >> (pin % 32) & 1 != 0,
             is_high: Bit::new(pin).is_some_and(|bit| session.bit(bit)),
@@ -107,17 +105,16 @@ impl Outcome {
     }
 
     /// What the board with the firmware file is left with.
-    pub(super) fn look_at_firmware(&mut self, booted: &Booted) {
-        let board = &booted.board;
-        if let Some(persist) = board.file().address("persist") {
+    pub(super) fn look_at_firmware(&mut self, session: &Session<BootedTarget>) {
+        let target = session.target();
+        if let Some(persist) = target.file().address("persist") {
             let data = persist.offset(Persist::USER_DATA.offset());
-            self.user_data = (0..200).map(|index| board.memory().peek(data.offset(4 * index))).collect();
+            self.user_data = (0..200).map(|index| session.peek(data.offset(4 * index))).collect();
         }
-        let kstep = board.file().address("KStepPresent").map(|at| board.memory().peek::<u32>(at));
+        let kstep = target.file().address("KStepPresent").map(|at| session.peek::<u32>(at));
         self.has_kstep = kstep.is_some_and(|present| present != 0);
-        let pins = (0..PINS as usize)
-            .map(|pin| Pin { is_output: board.is_output(pin), is_high: board.is_high(pin) });
-        self.pins = pins.collect();
+        let pin = |(is_output, is_high)| Pin { is_output, is_high };
+        self.pins = (0..PINS as usize).map(|number| pin(target.pin(number))).collect();
     }
 
     /// The largest difference between the times of lines, the first ones set to each other.

@@ -4,7 +4,6 @@
 //! board keeps pace with the clock; from a script it runs as fast as it can, and time passes only where the script
 //! lets it: each line takes as long as on the wire, `wait` as long as it says.
 
-mod booted;
 mod input;
 mod screen;
 mod words;
@@ -16,12 +15,11 @@ use std::sync::mpsc::RecvTimeoutError;
 use std::time::Duration;
 
 use anyhow::{Context, Result};
-use cc67_host::End;
+use cc67_host::{End, Target};
 use clap::Args;
 use kmotiondef::limits::TIMEBASE;
 use kmotiondef::{Bit, ThreadId, Ticks};
 use runtime::Event;
-use vm::engine::Engine;
 
 use input::{Input, Lines};
 use screen::Screen;
@@ -80,17 +78,14 @@ pub(super) struct ConsoleArguments {
 
 /// Talks to a board until the input ends.
 pub(super) fn console(arguments: &ConsoleArguments) -> Result<Exit> {
-    if let Some(file) = &arguments.board.boot {
-        return booted::console(arguments, file);
-    }
     let setup = Setup::new(&arguments.programs, &arguments.board, &arguments.compiler)?;
     let Some(setup) = setup else { return Ok(Exit::Failure) };
     match &arguments.serve {
         Some(address) => {
-            let debugger = AttachArguments { debug: arguments.debug }.open(&arguments.board)?;
+            let debugger = AttachArguments { debug: arguments.debug }.open()?;
             setup.debugged(debugger, &arguments.terms(address))
         }
-        None => setup.on_its_engine(arguments),
+        None => setup.on_its_target(arguments),
     }
 }
 
@@ -113,7 +108,7 @@ impl ConsoleArguments {
 }
 
 impl Work for &ConsoleArguments {
-    fn on<E: Engine>(self, mut rig: Rig<E>) -> Result<Exit> {
+    fn on<T: Target>(self, mut rig: Rig<T>) -> Result<Exit> {
         rig.connect()?;
         Console::new(self, rig)?.run()
     }
@@ -128,16 +123,16 @@ enum Flow {
 }
 
 /// A board, and the person or script that talks to it.
-struct Console<'a, E: Engine> {
+struct Console<'a, T: Target> {
     arguments: &'a ConsoleArguments,
-    rig: Rig<E>,
+    rig: Rig<T>,
     shown: Shown<'a>,
     /// Inputs that are pressed, and the level of each before.
     pressed: BTreeMap<Bit, bool>,
 }
 
-impl<'a, E: Engine> Console<'a, E> {
-    fn new(arguments: &'a ConsoleArguments, rig: Rig<E>) -> Result<Self> {
+impl<'a, T: Target> Console<'a, T> {
+    fn new(arguments: &'a ConsoleArguments, rig: Rig<T>) -> Result<Self> {
         let request = trace::request(&arguments.trace, &rig.session)?;
         let mut rig = rig;
         if let Some(request) = &request {
@@ -210,7 +205,8 @@ impl<'a, E: Engine> Console<'a, E> {
             if self.take(input, input.within(BEAT), &mut interrupted) == Flow::Leave {
                 return self.leave();
             }
-            self.advance(pace.due());
+            // A board that falls behind leaves room for the keyboard.
+            self.advance(pace.due().min(Ticks::new(self.rig.session.tick().get() + STRETCH)));
         }
     }
 
@@ -230,7 +226,7 @@ impl<'a, E: Engine> Console<'a, E> {
     fn leave(&mut self) -> Result<Exit> {
         let shown = &mut self.shown;
         self.rig.finish(&mut |event| shown.note(&event))?;
-        let axes = self.rig.session.board().standing_axes();
+        let axes = self.rig.session.target().standing_axes();
         if let Some(trace) = &mut self.shown.trace {
             trace.know_axes(axes);
         }
@@ -264,7 +260,7 @@ impl<'a, E: Engine> Console<'a, E> {
 
     /// One line of the person or script.
     fn line(&mut self, line: &str) -> Flow {
-        if self.rig.session.board().is_in_command() {
+        if self.rig.session.target().is_in_command() {
             self.send(line.as_bytes());
             return Flow::Continue;
         }

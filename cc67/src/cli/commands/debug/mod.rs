@@ -1,7 +1,5 @@
 //! `cc67 debug`: a debugger in the terminal, from a script, or for an editor.
 
-mod booted;
-mod talker;
 mod terminal;
 
 use std::ffi::OsString;
@@ -12,6 +10,7 @@ use std::path::PathBuf;
 use anyhow::{Context, Result};
 use cc67_debug::dap::{self, Launch};
 use cc67_debug::{Debugger, Said, Shell};
+use cc67_host::AnyTarget;
 use clap::{Args, Parser};
 use kmotiondef::Ticks;
 use kmotiondef::limits::TIMEBASE;
@@ -24,7 +23,6 @@ use crate::cli::io::exit::Exit;
 use crate::cli::io::input::read;
 use crate::cli::io::{output, terminal as screen};
 use crate::cli::session::{Setup, Started};
-use talker::Talker;
 
 /// The end of a run by default: an hour of board time.
 const LIMIT: f64 = 3600.0;
@@ -85,10 +83,6 @@ impl LaunchArguments {
 
 /// Debugs programs.
 pub(super) fn debug(arguments: &DebugArguments) -> Result<Exit> {
-    anyhow::ensure!(
-        arguments.board.boot.is_none() || arguments.dap.is_none() && arguments.listen.is_none(),
-        "editors do not debug with `--boot` yet; `cc67 debug --boot FILE PROGRAM` takes commands"
-    );
     match (arguments.dap, arguments.listen) {
         (Some(0), _) => {
             dap::serve(BufReader::new(io::stdin()), io::stdout(), &mut launch)?;
@@ -98,22 +92,11 @@ pub(super) fn debug(arguments: &DebugArguments) -> Result<Exit> {
         (None, Some(port)) => return listen(port, false),
         (None, None) => {}
     }
-    if let Some(file) = &arguments.board.boot {
-        return match booted::shell(arguments, file)? {
-            Some(shell) => converse(arguments, shell),
-            None => Ok(Exit::Failure),
-        };
-    }
     let Some(debugger) = debugger(arguments)? else { return Ok(Exit::Failure) };
-    let shell = Shell::new(debugger);
+    let mut shell = Shell::new(debugger);
     for why in shell.debugger().programs().unknown() {
         screen::note(&why);
     }
-    converse(arguments, shell)
-}
-
-/// Takes commands from where the arguments say.
-fn converse<T: Talker + 'static>(arguments: &DebugArguments, mut shell: T) -> Result<Exit> {
     match &arguments.batch {
         Some(path) => batch(&mut shell, path),
         None => terminal::talk(shell),
@@ -121,17 +104,17 @@ fn converse<T: Talker + 'static>(arguments: &DebugArguments, mut shell: T) -> Re
 }
 
 /// A debugger of the programs; `None` if one has errors, which have been reported.
-fn debugger(arguments: &DebugArguments) -> Result<Option<Debugger>> {
+fn debugger(arguments: &DebugArguments) -> Result<Option<Debugger<AnyTarget>>> {
     let started = Started { programs: &arguments.programs, first: &arguments.beside.first };
     let setup = Setup::new(started, &arguments.board, &arguments.compiler)?;
     let Some(setup) = setup else { return Ok(None) };
     let session = setup.for_debugger()?;
     let limit = Ticks::new((arguments.limit.unwrap_or(LIMIT) / TIMEBASE).round() as u64);
-    Ok(Some(Debugger::new(session, limit)))
+    Ok(Some(Debugger::new(session, limit)?))
 }
 
 /// Does the commands of a file.
-fn batch(shell: &mut impl Talker, path: &std::path::Path) -> Result<Exit> {
+fn batch(shell: &mut Shell<AnyTarget>, path: &std::path::Path) -> Result<Exit> {
     let text =
         if path.as_os_str() == "-" { io::read_to_string(io::stdin())?.into_bytes() } else { read(path)? };
     for line in String::from_utf8_lossy(&text).lines() {
@@ -177,7 +160,7 @@ fn listen(port: u16, is_once: bool) -> Result<Exit> {
 }
 
 /// What a client wants to debug: the programs, and the options of a board under their long names.
-fn launch(request: &Launch) -> Result<Debugger, String> {
+fn launch(request: &Launch) -> Result<Debugger<AnyTarget>, String> {
     let line = request.command_line().map_err(|error| error.to_string())?;
     let arguments = LaunchArguments::with_sidecars(&line).map_err(|error| format!("{error:#}"))?;
     let debugger = debugger(&arguments.debug).map_err(|error| format!("{error:#}"))?;

@@ -6,7 +6,8 @@ use std::io::{self, IsTerminal};
 use std::rc::Rc;
 
 use anyhow::{Context as _, Result};
-use cc67_debug::Said;
+use cc67_debug::{Said, Shell};
+use cc67_host::AnyTarget;
 use rustyline::completion::{Completer, Pair};
 use rustyline::error::ReadlineError;
 use rustyline::highlight::Highlighter;
@@ -16,14 +17,13 @@ use rustyline::validate::Validator;
 use rustyline::{Context, Editor, Helper};
 
 use super::show;
-use super::talker::Talker;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::output;
 
 const PROMPT: &str = "(cc67) ";
 
 /// Takes commands until the end of the input.
-pub(super) fn talk<T: Talker>(shell: T) -> Result<Exit> {
+pub(super) fn talk(shell: Shell<AnyTarget>) -> Result<Exit> {
     if !io::stdin().is_terminal() {
         let mut shell = shell;
         for line in io::stdin().lines() {
@@ -34,15 +34,14 @@ pub(super) fn talk<T: Talker>(shell: T) -> Result<Exit> {
         return Ok(Exit::Success);
     }
     let shell = Rc::new(RefCell::new(shell));
-    let mut editor: Editor<Guide<T>, DefaultHistory> =
-        Editor::new().context("no terminal to edit lines on")?;
+    let mut editor: Editor<Guide, DefaultHistory> = Editor::new().context("no terminal to edit lines on")?;
     editor.set_helper(Some(Guide(Rc::clone(&shell))));
     loop {
         match editor.readline(PROMPT) {
             Ok(line) => {
                 // A line that cannot be remembered is only harder to repeat.
                 let _ = editor.add_history_entry(&line);
-                if !obey(&mut *shell.borrow_mut(), &line)? {
+                if !obey(&mut shell.borrow_mut(), &line)? {
                     return Ok(Exit::Success);
                 }
             }
@@ -53,7 +52,7 @@ pub(super) fn talk<T: Talker>(shell: T) -> Result<Exit> {
 }
 
 /// Does what a line says; whether there may be another one.
-fn obey(shell: &mut impl Talker, line: &str) -> Result<bool> {
+fn obey(shell: &mut Shell<AnyTarget>, line: &str) -> Result<bool> {
     match shell.command(line, &mut |text| show(text)) {
         Ok(Said::Text(text)) => output::print(&text)?,
         Ok(Said::Quit) => return Ok(false),
@@ -63,9 +62,9 @@ fn obey(shell: &mut impl Talker, line: &str) -> Result<bool> {
 }
 
 /// Completes commands and what programs name.
-struct Guide<T>(Rc<RefCell<T>>);
+struct Guide(Rc<RefCell<Shell<AnyTarget>>>);
 
-impl<T: Talker> Completer for Guide<T> {
+impl Completer for Guide {
     type Candidate = Pair;
 
     fn complete(&self, line: &str, at: usize, _: &Context<'_>) -> rustyline::Result<(usize, Vec<Pair>)> {
@@ -77,16 +76,16 @@ impl<T: Talker> Completer for Guide<T> {
     }
 }
 
-impl<T: Talker> Hinter for Guide<T> {
+impl Hinter for Guide {
     type Hint = String;
 }
 
-impl<T: Talker> Highlighter for Guide<T> {
+impl Highlighter for Guide {
     fn highlight_prompt<'b, 's: 'b, 'p: 'b>(&'s self, prompt: &'p str, _: bool) -> Cow<'b, str> {
         Cow::Borrowed(prompt)
     }
 }
 
-impl<T: Talker> Validator for Guide<T> {}
+impl Validator for Guide {}
 
-impl<T: Talker> Helper for Guide<T> {}
+impl Helper for Guide {}

@@ -11,9 +11,9 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 use anyhow::{Context, Result, bail};
+use cc67_host::Target;
 use cc67_live::{ListenError, Program, Server, Show, TestOption, TimeControl};
 use clap::{Args, Parser};
-use vm::engine::Engine;
 
 use crate::cli::args::attach::AttachArguments;
 use crate::cli::args::beside::BesideArguments;
@@ -94,7 +94,7 @@ pub(super) fn live(arguments: &LiveArguments) -> Result<Exit> {
     let started = Started { programs: &arguments.programs, first: &arguments.beside.first };
     let setup = Setup::new(started, &arguments.board, &arguments.compiler)?;
     let Some(setup) = setup else { return Ok(Exit::Failure) };
-    let debugger = arguments.attach.open(&arguments.board)?;
+    let debugger = arguments.attach.open()?;
     setup.debugged(debugger, arguments)
 }
 
@@ -121,7 +121,7 @@ struct Demonstration {
 }
 
 impl Work for &LiveArguments {
-    fn on<E: Engine>(self, mut rig: Rig<E>) -> Result<Exit> {
+    fn on<T: Target>(self, mut rig: Rig<T>) -> Result<Exit> {
         let show = self.show()?;
         let server = listen(self.port, &self.board)?;
         announce(&server, &self.board, !self.no_open)?;
@@ -213,7 +213,8 @@ impl LiveArguments {
         });
         let answers = board.pc.single_answers().iter().map(|answer| text("--answer", answer));
         let assist = board.assist.then(|| TestOption::Text("--assist".to_owned()));
-        machine.chain(settings).chain(stimuli).chain(answers).chain(assist).collect()
+        let firmware = board.boot.iter().map(|file| TestOption::File("--boot", file.clone()));
+        firmware.chain(machine).chain(settings).chain(stimuli).chain(answers).chain(assist).collect()
     }
 }
 

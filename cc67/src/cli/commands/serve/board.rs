@@ -1,6 +1,7 @@
 //! The board that is served, with its link, its files and whatever is recorded of it.
 
 use anyhow::Result;
+use cc67_host::Target;
 use cc67_host::session::EXCHANGE;
 use cc67_host::{End, REPLY_BYTES, remark};
 use kmotiondef::Ticks;
@@ -23,8 +24,8 @@ const FLASH_VERIFIED: &[u8] = b"Verify Complete";
 const TAKEN_WITHIN: u64 = 11_111;
 
 /// A board under control, and what came over its link.
-pub(super) struct ServedBoard<'a, B> {
-    board: B,
+pub(super) struct ServedBoard<'a, T: Target> {
+    board: Served<T>,
     terms: &'a Terms<'a>,
     pub(super) link: Unread,
     /// Whether a client is the console.
@@ -41,9 +42,9 @@ pub(super) struct ServedBoard<'a, B> {
     has_lost_flash: bool,
 }
 
-impl<'a, B: Served> ServedBoard<'a, B> {
+impl<'a, T: Target> ServedBoard<'a, T> {
     /// A board, recorded as the terms say.
-    pub(super) fn new(board: B, trace: Option<Trace>, terms: &'a Terms<'a>) -> Result<Self> {
+    pub(super) fn new(board: Served<T>, trace: Option<Trace>, terms: &'a Terms<'a>) -> Result<Self> {
         let log = terms.log.map(ExchangeLog::new).transpose()?;
         Ok(Self {
             board,
@@ -190,7 +191,11 @@ impl<'a, B: Served> ServedBoard<'a, B> {
             EventKind::ConsoleLine(line) if line == FLASH_VERIFIED && self.has_lost_flash => {}
             EventKind::ConsoleLine(line) => self.link.console(line.clone(), self.is_heard),
             EventKind::Aborted | EventKind::UartSent(_) | EventKind::Trace(_) | EventKind::Loaded(..) => {}
-            EventKind::Remark(_) | EventKind::Trap(_) | EventKind::Unmet(_) | EventKind::Host(_) => {
+            EventKind::Remark(_)
+            | EventKind::Trap(_)
+            | EventKind::Unmet(_)
+            | EventKind::Host(_)
+            | EventKind::Halted(_) => {
                 if let Some(text) = remark::describe(&event, &self.board.programs()) {
                     terminal::note(&text);
                     if let Some(scene) = remark::scene(&event) {

@@ -2,13 +2,13 @@
 
 use std::time::{Duration, Instant};
 
+use cc67_host::Target;
 use cc67_host::session::EXCHANGE;
 use cc67_host::{Lock, Readiness};
 
 use super::desk::{Desk, Token, Waiting, Wanted};
 use super::link::LinkLine;
 use super::message::{Call, Reply, Request};
-use super::served::Served;
 use crate::cli::io::terminal;
 
 /// Before a line that is not echoed.
@@ -26,7 +26,7 @@ const TIMEOUT: i32 = 2;
 /// What a client hears of when it gives up the link.
 const FAILED: &str = "Read Failed - Auto Disconnect";
 
-impl<B: Served> Desk<'_, B> {
+impl<T: Target> Desk<'_, T> {
     /// Does what a client asks for; its reply, if that is known already.
     pub(super) fn ask(&mut self, client: u64, request: &Request) -> Option<Reply> {
         if !request.is_for(&LOCATIONS) {

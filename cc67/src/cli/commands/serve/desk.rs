@@ -9,6 +9,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender};
 use std::time::{Duration, Instant};
 
 use anyhow::Result;
+use cc67_host::Target;
 use cc67_host::session::EXCHANGE;
 use kmotiondef::Ticks;
 use kmotiondef::limits::TIMEBASE;
@@ -17,7 +18,6 @@ use super::Terms;
 use super::board::ServedBoard;
 use super::calls::SILENT;
 use super::message::{self, Reply, Request};
-use super::served::Served;
 use crate::cli::io::exit::Exit;
 use crate::cli::io::pace::{Pace, now};
 
@@ -111,8 +111,8 @@ pub(super) struct LinkState {
 }
 
 /// The board and its clients.
-pub(super) struct Desk<'a, B> {
-    pub(super) board: ServedBoard<'a, B>,
+pub(super) struct Desk<'a, T: Target> {
+    pub(super) board: ServedBoard<'a, T>,
     terms: &'a Terms<'a>,
     /// The clock, if the board keeps pace with one, and its speed.
     clock: Option<(Pace, f64)>,
@@ -142,9 +142,9 @@ pub(super) struct PageState {
     commands: VecDeque<(Instant, String)>,
 }
 
-impl<'a, B: Served> Desk<'a, B> {
+impl<'a, T: Target> Desk<'a, T> {
     /// A desk for requests from `inbox`.
-    pub(super) fn new(board: ServedBoard<'a, B>, terms: &'a Terms<'a>, inbox: Receiver<Note>) -> Self {
+    pub(super) fn new(board: ServedBoard<'a, T>, terms: &'a Terms<'a>, inbox: Receiver<Note>) -> Self {
         let clock = terms.pace.map(|speed| (Pace::with_speed(board.tick(), speed), speed));
         Self {
             board,

@@ -7,9 +7,8 @@
 //! desk      takes one request after another, keeps the board's time
 //! calls     what each request does
 //! board     the board under control, with what is written of it
-//! served    what is under control there: the modelled board
+//! served    what is under control there
 //! page      the page of it
-//! own_firmware  the user's own firmware file in its place
 //! link      what the board has sent and nobody has read yet
 //! message   requests and replies as bytes
 //! log       the exchanges as a script for the console
@@ -24,7 +23,6 @@ mod link;
 mod listen;
 mod log;
 mod message;
-pub(super) mod own_firmware;
 #[cfg(feature = "live")]
 mod page;
 mod served;
@@ -35,11 +33,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Sender, channel};
 
-#[cfg(feature = "live")]
-use anyhow::ensure;
 use anyhow::{Context, Result};
+use cc67_host::Target;
 use clap::Args;
-use vm::engine::Engine;
 
 use crate::cli::args::attach::AttachArguments;
 use crate::cli::args::board::BoardArguments;
@@ -53,7 +49,7 @@ use board::ServedBoard;
 use desk::{Desk, Note};
 pub(super) use link::{CONSOLE_LINES, UNHEARD_LINES};
 pub(super) use listen::MOST_CLIENTS;
-use served::Modelled;
+use served::Served;
 
 /// Where the vendor's server listens.
 const USUAL: &[&str] = if cfg!(unix) { &["/tmp/kmotionsocket", "tcp:57777"] } else { &["tcp:57777"] };
@@ -164,23 +160,17 @@ pub(super) fn serve(arguments: &ServeArguments) -> Result<Exit> {
         home::remember(&folder, home::own_words())?;
         output::print(&home::lines(&folder))?;
     }
-    let debugger = arguments.attach.open(&arguments.board)?;
-    if let Some(file) = &arguments.board.boot {
-        #[cfg(feature = "live")]
-        ensure!(!arguments.page.live, "`--live` does not work with `--boot`");
-        let ServeArguments { programs, board, compiler, .. } = arguments;
-        return own_firmware::serve(&own_firmware::Asked { programs, board, compiler }, file, &terms);
-    }
+    let debugger = arguments.attach.open()?;
     let setup = Setup::new(&arguments.programs, &arguments.board, &arguments.compiler)?;
     let Some(setup) = setup else { return Ok(Exit::Failure) };
     setup.debugged(debugger, &terms)
 }
 
 impl Work for &Terms<'_> {
-    fn on<E: Engine>(self, mut rig: Rig<E>) -> Result<Exit> {
+    fn on<T: Target>(self, mut rig: Rig<T>) -> Result<Exit> {
         rig.connect()?;
         let is_ending = Arc::default();
-        let (board, trace) = Modelled::new(rig, self, Arc::clone(&is_ending))?;
+        let (board, trace) = Served::new(rig, self, Arc::clone(&is_ending))?;
         let board = ServedBoard::new(board, trace, self)?;
         let (notes, inbox) = channel();
         end_on_signal(notes.clone(), is_ending)?;

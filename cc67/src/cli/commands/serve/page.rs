@@ -1,10 +1,9 @@
 //! `--live`: the page of a board that is served.
 
 use anyhow::{Context, Result};
-use cc67_host::Session;
+use cc67_host::{Session, Target};
 use cc67_live::{LiveView, Server, Show, TimeControl};
 use clap::Args;
-use vm::engine::Engine;
 
 use super::super::live;
 use super::ServeArguments;
@@ -38,7 +37,7 @@ impl<'a> PagePlan<'a> {
     }
 
     /// Opens the page.
-    pub(super) fn open<E: Engine>(&self, session: &mut Session<E>) -> Result<LiveView<E>> {
+    pub(super) fn open<T: Target>(&self, session: &mut Session<T>) -> Result<LiveView<T>> {
         let ServeArguments { programs, board, compiler, trace, page, .. } = self.arguments;
         let show = Show {
             watch: trace.trace_items.clone().unwrap_or_default(),

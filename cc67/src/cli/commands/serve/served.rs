@@ -1,55 +1,21 @@
-//! The served board: the modelled one, shown on a page if requested.
+//! The served board, shown on a page if requested.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::Result;
+use cc67_host::Target;
 #[cfg(feature = "live")]
 use cc67_live::LiveView;
 use kmotiondef::Ticks;
 use runtime::Event;
 use runtime::debug::DebugInfo;
-use vm::engine::Engine;
 
 use crate::cli::report::trace::{self, Trace};
 use crate::cli::session::Rig;
 
 use super::Terms;
-
-/// A board that clients can use.
-pub(super) trait Served {
-    /// Number of the last tick that has passed.
-    fn tick(&self) -> Ticks;
-    /// Runs to the end of a tick.
-    fn advance(&mut self, limit: Ticks, sink: &mut dyn FnMut(Event));
-    /// Sends bytes over the link.
-    fn receive(&mut self, bytes: &[u8]);
-    /// Whether it has not taken all of them.
-    fn is_receiving(&self) -> bool;
-    /// Whether a command waits for data lines.
-    fn is_in_command(&self) -> bool;
-    /// Says whether anybody takes its console lines; while nobody does, programs that print wait.
-    fn listen(&mut self, listens: bool);
-    /// What is known about its programs.
-    fn programs(&self) -> Vec<DebugInfo>;
-    /// Keeps what flash memory holds in its file.
-    fn keep_flash(&mut self) -> Result<()>;
-    /// It is served no more.
-    fn finish(&mut self, sink: &mut dyn FnMut(Event)) -> Result<()>;
-    /// Whether a debugger may be attached, or is.
-    fn is_attended(&self) -> bool {
-        false
-    }
-    /// Serves a debugger while no time passes.
-    fn attend(&mut self, _: &mut dyn FnMut(Event)) {}
-    /// Shows something that happened.
-    fn show(&mut self, _: &Event) {}
-    /// Shows how it is now, and does what pages ask for; what else they wish, if there are any.
-    fn beat(&mut self) -> Option<PageWishes> {
-        None
-    }
-}
 
 /// What pages wish of the desk.
 #[derive(Debug, Default)]
@@ -64,19 +30,19 @@ pub(super) struct PageWishes {
     pub(super) speed: Option<f64>,
 }
 
-/// The modelled board.
-pub(super) struct Modelled<E: Engine> {
-    rig: Rig<E>,
+/// A board that clients can use.
+pub(super) struct Served<T: Target> {
+    rig: Rig<T>,
     /// The server is to end, even where a debugger has stopped the board.
     is_ending: Arc<AtomicBool>,
     #[cfg(feature = "live")]
-    view: Option<LiveView<E>>,
+    view: Option<LiveView<T>>,
 }
 
-impl<E: Engine> Modelled<E> {
+impl<T: Target> Served<T> {
     /// The board of a rig, on a page if the terms say so; and the trace of it.
     pub(super) fn new(
-        mut rig: Rig<E>,
+        mut rig: Rig<T>,
         terms: &Terms<'_>,
         is_ending: Arc<AtomicBool>,
     ) -> Result<(Self, Option<Trace>)> {
@@ -105,12 +71,14 @@ impl<E: Engine> Modelled<E> {
     }
 }
 
-impl<E: Engine> Served for Modelled<E> {
-    fn tick(&self) -> Ticks {
+impl<T: Target> Served<T> {
+    /// Number of the last tick that has passed.
+    pub(super) fn tick(&self) -> Ticks {
         self.rig.session.tick()
     }
 
-    fn advance(&mut self, limit: Ticks, sink: &mut dyn FnMut(Event)) {
+    /// Runs to the end of a tick.
+    pub(super) fn advance(&mut self, limit: Ticks, sink: &mut dyn FnMut(Event)) {
         let is_ending = &self.is_ending;
         #[cfg(feature = "live")]
         let view = &mut self.view;
@@ -123,57 +91,80 @@ impl<E: Engine> Served for Modelled<E> {
         });
     }
 
-    fn is_attended(&self) -> bool {
+    /// Whether a debugger may be attached, or is.
+    pub(super) fn is_attended(&self) -> bool {
         self.rig.attendant.is_some()
     }
 
-    fn attend(&mut self, sink: &mut dyn FnMut(Event)) {
+    /// Serves a debugger while no time passes.
+    pub(super) fn attend(&mut self, sink: &mut dyn FnMut(Event)) {
         if self.is_attended() {
             self.advance(self.tick(), sink);
         }
     }
 
-    fn receive(&mut self, bytes: &[u8]) {
+    /// Sends bytes over the link.
+    pub(super) fn receive(&mut self, bytes: &[u8]) {
         self.rig.session.receive(bytes);
     }
 
-    fn is_receiving(&self) -> bool {
-        self.rig.session.board().is_receiving()
+    /// Whether it has not taken all of them.
+    pub(super) fn is_receiving(&self) -> bool {
+        self.rig.session.target().is_receiving()
     }
 
-    fn is_in_command(&self) -> bool {
-        self.rig.session.board().is_in_command()
+    /// Whether a command waits for data lines.
+    pub(super) fn is_in_command(&self) -> bool {
+        self.rig.session.target().is_in_command()
     }
 
-    fn listen(&mut self, listens: bool) {
+    /// Says whether anybody takes its console lines; while nobody does, programs that print wait.
+    pub(super) fn listen(&mut self, listens: bool) {
         self.rig.session.listen(listens);
     }
 
-    fn programs(&self) -> Vec<DebugInfo> {
+    /// What is known about its programs.
+    pub(super) fn programs(&self) -> Vec<DebugInfo> {
         self.rig.session.debug().into_iter().map(|(_, debug)| debug).collect()
     }
 
-    fn keep_flash(&mut self) -> Result<()> {
+    /// Keeps what flash memory holds in its file.
+    pub(super) fn keep_flash(&mut self) -> Result<()> {
         self.rig.keep_flash()
     }
 
-    fn finish(&mut self, sink: &mut dyn FnMut(Event)) -> Result<()> {
+    /// It is served no more.
+    pub(super) fn finish(&mut self, sink: &mut dyn FnMut(Event)) -> Result<()> {
         #[cfg(feature = "live")]
         self.view.iter().for_each(LiveView::close);
         self.rig.finish(sink)
     }
 
+    /// Shows something that happened.
     #[cfg(feature = "live")]
-    fn show(&mut self, event: &Event) {
+    pub(super) fn show(&mut self, event: &Event) {
         if let Some(view) = &mut self.view {
             view.hear(&self.rig.session, event);
         }
     }
 
+    /// Shows how it is now, and does what pages ask for; what else they wish, if there are any.
     #[cfg(feature = "live")]
-    fn beat(&mut self) -> Option<PageWishes> {
+    pub(super) fn beat(&mut self) -> Option<PageWishes> {
         let wishes = self.view.as_mut()?.beat(&mut self.rig.session);
         let cc67_live::Wishes { events, commands, acts, speed } = wishes;
         Some(PageWishes { events, commands, acts, speed })
+    }
+
+    /// Nothing shows it.
+    #[cfg(not(feature = "live"))]
+    #[expect(clippy::unused_self, reason = "with a page, it is shown there")]
+    pub(super) fn show(&mut self, _: &Event) {}
+
+    /// There are no pages that wish anything.
+    #[cfg(not(feature = "live"))]
+    #[expect(clippy::unused_self, reason = "with a page, it is shown there")]
+    pub(super) fn beat(&mut self) -> Option<PageWishes> {
+        None
     }
 }

@@ -7,7 +7,7 @@ mod flame;
 mod sampled;
 mod table;
 
-pub(crate) use sampled::{Sampled, program_names};
+pub(crate) use sampled::Sampled;
 
 use std::collections::BTreeMap;
 use std::fmt;

@@ -21,12 +21,11 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Result, anyhow, bail};
-use cc67_host::{Session, WatchError};
+use cc67_host::{Capability, Session, Target, WatchError};
 use kmotiondef::{Bit, CodeAddr, Cycles, ThreadId, Ticks};
 use runtime::standing::StandingAxis;
 use runtime::trace::{Item, Packets, Quantity, Record, TraceRequest};
 use runtime::{Event, EventKind};
-use vm::engine::Engine;
 
 use crate::cli::args::trace::TraceArguments;
 use crate::cli::io::{output, terminal};
@@ -38,28 +37,23 @@ pub(crate) use log::SAMPLES;
 use order::Order;
 
 /// What a session is to record; `None` if nothing is traced.
-pub(crate) fn request<E: Engine>(
-    arguments: &TraceArguments,
-    session: &Session<E>,
-) -> Result<Option<TraceRequest>> {
-    let packets = arguments.trace_packets.as_ref().map(|file| packets::wanted(file, session)).transpose()?;
-    requested(arguments, packets, |list| session.quantities(list))
-}
-
-/// What a board with the user's own firmware is to record; `None` if nothing is traced.
 ///
 /// # Errors
-/// Something is wrong with what is requested, or only the modelled firmware has it.
-pub(crate) fn request_of_booted(
+/// Something is wrong with what is requested, or the target does not have it.
+pub(crate) fn request<T: Target>(
     arguments: &TraceArguments,
-    quantities: impl FnOnce(&str) -> Result<Vec<Quantity>, WatchError>,
+    session: &Session<T>,
 ) -> Result<Option<TraceRequest>> {
-    let packets = arguments.trace_packets.as_ref().map(|file| file.thread.map_or(Packets::All, Packets::Of));
-    let request = requested(arguments, packets, quantities)?;
+    let packets = arguments.trace_packets.as_ref().map(|file| packets::wanted(file, session)).transpose()?;
+    let request = requested(arguments, packets, |list| session.quantities(list))?;
+    if request.is_some() {
+        session.require(Capability::Surroundings)?;
+    }
     for quantity in request.iter().flat_map(|request| &request.quantities) {
-        if let Some(item) = quantity.items().iter().find(|item| item.is_only_modelled()) {
+        if let Some(item) = quantity.items().iter().find(|item| !session.target().knows(**item)) {
             bail!(
-                "`--watch {quantity}`: `{item}` belongs to an option board that is not served with `--boot`"
+                "`--watch {quantity}`: `{item}` belongs to an option board that {} does not have",
+                session.target().name()
             );
         }
     }

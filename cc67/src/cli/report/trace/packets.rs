@@ -6,11 +6,9 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use anyhow::{Result, bail};
-use cc67_host::Session;
+use cc67_host::{Session, Target};
 use kmotiondef::{Cycles, ThreadId, Ticks};
 use runtime::trace::Packets;
-use vm::engine::Engine;
-use vm::loaded::Loaded;
 
 use super::{Sink, TraceEntry};
 use crate::cli::args::trace::PacketFile;
@@ -20,11 +18,11 @@ use crate::cli::io::output::Draft;
 ///
 /// # Errors
 /// The thread that is named has a program that is not real code, or no thread has any.
-pub(super) fn wanted<E: Engine>(file: &PacketFile, session: &Session<E>) -> Result<Packets> {
-    let machine = session.board().machine();
+pub(super) fn wanted<T: Target>(file: &PacketFile, session: &Session<T>) -> Result<Packets> {
     let all = ThreadId::all().filter(|thread| file.thread.is_none_or(|wanted| wanted == *thread));
-    let loaded: Vec<_> = all.filter_map(|thread| Some((thread, machine.loaded(thread)?))).collect();
-    let has_real_code = loaded.iter().any(|(_, loaded)| matches!(loaded, Loaded::Image(_)));
+    let loaded: Vec<_> =
+        all.filter_map(|thread| Some((thread, session.target().runs_processor_code(thread)?))).collect();
+    let has_real_code = loaded.iter().any(|(_, is_real)| *is_real);
     // Where nothing is loaded yet, real code may be later.
     if let (Some((thread, _)), false) = (loaded.first(), has_real_code) {
         bail!(

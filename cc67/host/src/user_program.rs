@@ -1,17 +1,19 @@
 //! User programs: from a file to an image for a thread, with the compiler's answer as the vendor's tools show it.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use compiler::diag::Severity;
 use compiler::diag::levels::Levels;
+use compiler::inspect::{EntryKind, Inspection};
 use compiler::link::{Linked, LinkedLine};
 use compiler::pp::Disk;
 use compiler::render::vendor;
 use compiler::{Options, files, image};
 use kmotiondef::ThreadId;
-use runtime::debug::CodeDetail;
-use runtime::loader::LoadError;
+use runtime::debug::{CodeDetail, DebugInfo};
+use runtime::loader::{LoadError, prepare};
 
 use crate::error::{CompileError, HostError};
 
@@ -76,6 +78,20 @@ impl UserProgram {
     #[must_use]
     pub fn started(self) -> Self {
         Self { starts: true, ..self }
+    }
+
+    /// Names and lines of its code; none of an image that cannot be loaded.
+    #[must_use]
+    pub fn debug_info(&self) -> DebugInfo {
+        let prepared = prepare(&self.image, self.thread, |_| false);
+        prepared.map(|prepared| prepared.debug.with_details(self.details.clone())).unwrap_or_default()
+    }
+
+    /// Where its functions begin and end.
+    pub(crate) fn functions(&self) -> BTreeMap<u32, u32> {
+        let Ok(image) = Inspection::read(&self.image) else { return BTreeMap::new() };
+        let functions = image.symbols.iter().filter(|entry| entry.kind == EntryKind::Function);
+        functions.map(|entry| (entry.address, entry.address + entry.size.unwrap_or(0).max(4))).collect()
     }
 
     /// The file's name for messages, and for a stimulus that loads it.

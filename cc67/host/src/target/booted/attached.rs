@@ -1,7 +1,5 @@
 //! The surroundings of a modelled board, attached to the registers of one that runs a firmware file.
 
-use std::any::Any;
-
 use boot::{Around, AtMatch};
 use kmotiondef::{Cycles, Ticks};
 use runtime::surroundings::{Instant, Surroundings};
@@ -11,7 +9,7 @@ use runtime::surroundings::{Instant, Surroundings};
 pub(super) struct Attached {
     /// What is around the board.
     pub(super) surroundings: Surroundings,
-    /// The cycle, since power-up, that they call 0.
+    /// The cycle, since power-up, that is their instant 0.
     pub(super) origin: u64,
 }
 
@@ -33,24 +31,16 @@ impl Around for Attached {
         self.surroundings.write(register, is_byte, value, now);
     }
 
-    fn tick(&mut self, turn: &mut AtMatch<'_>) {
-        let now = self.since(turn.now);
+    fn tick(&mut self, at_match: &mut AtMatch<'_>) {
+        let now = self.since(at_match.now);
         let ticks = u64::try_from(now.get() / Cycles::PER_TICK.get()).unwrap_or(0);
         self.surroundings.tick(&mut Instant {
-            memory: turn.memory,
+            memory: at_match.memory,
             now,
             tick: Ticks::new(ticks),
-            steps: turn.steps,
-            encoders: turn.encoders,
-            kstep: turn.kstep,
+            steps: at_match.steps,
+            encoders: at_match.encoders,
+            kstep: at_match.kstep,
         });
-    }
-
-    fn copied(&self) -> Box<dyn Around> {
-        Box::new(self.clone())
-    }
-
-    fn as_any(&mut self) -> &mut dyn Any {
-        self
     }
 }

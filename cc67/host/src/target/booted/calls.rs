@@ -20,7 +20,7 @@ pub(super) struct Entered {
     /// Where it returns to.
     pub(super) back: u32,
     /// The stack pointer at its first packet.
-    stack: u32,
+    pub(super) stack: u32,
 }
 
 /// The calls of a context.
@@ -28,8 +28,19 @@ pub(super) struct Entered {
 struct ContextCalls {
     /// Outermost first.
     entered: Vec<Entered>,
-    /// Where its program was seen last, and the firmware function that it has called there.
-    last: Option<(u32, Option<u32>)>,
+    /// Where its program was seen last.
+    last: Option<LastSeen>,
+}
+
+/// Where a program was seen last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct LastSeen {
+    /// The packet.
+    pub(super) at: u32,
+    /// The firmware function that it has called there, and where that returns to.
+    pub(super) firmware: Option<(u32, u32)>,
+    /// The stack pointer.
+    pub(super) stack: u32,
 }
 
 /// The calls of all threads and of the call-back.
@@ -44,10 +55,10 @@ impl OpenCalls {
         let Reached { pc, call, back, stack, .. } = *arrival;
         let call = call.filter(|at| is_of_program(*at));
         if !is_of_program(pc) {
-            known.last = call.map(|at| (at, Some(pc))).or(known.last);
+            known.last = call.map(|at| LastSeen { at, firmware: Some((pc, back)), stack }).or(known.last);
             return;
         }
-        known.last = Some((pc, None));
+        known.last = Some(LastSeen { at: pc, firmware: None, stack });
         let is_left = |one: &mut Entered| stack > one.stack || stack == one.stack && !one.code.contains(&pc);
         while known.entered.pop_if(is_left).is_some() {}
         let Some(code) = begins else { return };
@@ -64,8 +75,8 @@ impl OpenCalls {
         self.0[context.index()].entered.iter().rev()
     }
 
-    /// Where a context was seen last, and the firmware function that it has called there.
-    pub(super) fn last(&self, context: ContextId) -> Option<(u32, Option<u32>)> {
+    /// Where the program of a context was seen last.
+    pub(super) fn last(&self, context: ContextId) -> Option<LastSeen> {
         self.0[context.index()].last
     }
 

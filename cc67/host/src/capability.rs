@@ -1,0 +1,43 @@
+//! What targets can do, and the sentence that one cannot.
+
+use std::fmt;
+
+/// Something that not every target can do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Capability {
+    /// Time passes only in calls.
+    StopTime,
+    /// It goes back to an earlier state.
+    Snapshots,
+    /// Programs stop between two instructions: breakpoints and steps.
+    Breakpoints,
+    /// Programs stop where a variable changes.
+    Watchpoints,
+    /// Programs stop that are code of the controller's processor.
+    ProcessorCode,
+    /// A stimulus, a machine file and the serial port are connected to it, and it is recorded.
+    Surroundings,
+}
+
+impl fmt::Display for Capability {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::StopTime => "stop its time",
+            Self::Snapshots => "go back to an earlier state",
+            Self::Breakpoints => "stop at breakpoints",
+            Self::Watchpoints => "stop where a variable changes",
+            Self::ProcessorCode => "stop code of the controller's processor",
+            Self::Surroundings => "be connected to a stimulus, a machine file or a recorder",
+        })
+    }
+}
+
+/// A target cannot do what was requested.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{target} cannot {capability}")]
+pub struct Unsupported {
+    /// The target in words.
+    pub target: &'static str,
+    /// What it cannot.
+    pub capability: Capability,
+}

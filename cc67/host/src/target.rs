@@ -1,0 +1,315 @@
+//! The target: what a session controls.
+//!
+//! A [`Target`] is a board whose time somebody lets pass: the model on any engine ([`model`]), a firmware file that was
+//! booted ([`booted`]), or a connected controller. Everything above it exists once: sessions, debugger, page and clients
+//! ask a target what it can do ([`Target::can`]) and say by name what it cannot ([`Unsupported`]).
+//!
+//! ```text
+//! any      one of several targets, chosen at run time
+//! model    the modelled board
+//! booted   the booted firmware
+//! ```
+//!
+//! Time. A target has ticks. [`Target::step`] lets time pass up to the end of a tick: a simulated target runs, one whose
+//! time passes by itself waits. Between two calls a simulated target is at rest; what is read of one that is not may be
+//! stale, and may fail.
+
+mod any;
+mod booted;
+mod model;
+
+pub use any::AnyTarget;
+pub use booted::{BootedFirmware, BootedTarget, FirmwareError};
+
+use std::fmt::Debug;
+
+use kmotiondef::{AxisId, Bit, CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
+use runtime::debug::DebugInfo;
+use runtime::standing::{StandingAxis, StandingThread};
+use runtime::stimulus::Stimulus;
+use runtime::trace::{Item, TraceRequest};
+use runtime::{Event, OpenBox};
+use vm::engine::{ContextId, FrameView, Hold};
+use vm::scheduler::Turn;
+use vm::thread::ThreadState;
+
+use crate::capability::{Capability, Unsupported};
+use crate::error::SnapshotError;
+use crate::{HostError, UserProgram};
+
+/// Ticks that a line and its answer take on the wire, as recorded.
+pub const EXCHANGE: u64 = 28;
+/// Console lines that wait for a client; then the board waits too, or loses them.
+pub const CONSOLE_LINES: usize = 1000;
+
+/// What receives the events of a call.
+pub type EventSink<'a> = &'a mut dyn FnMut(Event);
+
+/// A target as it was at an instant.
+pub trait TargetSnapshot: Debug {
+    /// Number of the last tick that was over.
+    fn tick(&self) -> Ticks;
+
+    /// Whether a program held the tick in progress.
+    fn is_held(&self) -> bool;
+
+    /// Bytes of memory that this snapshot has besides those that it shares with `other`.
+    fn bytes_beyond(&self, other: &Self) -> usize;
+}
+
+/// A board under control.
+///
+/// Methods for something that not every target can do have a default: what a target without it does. Whoever calls them
+/// asks [`can`](Self::can) first.
+pub trait Target {
+    /// The state at an instant.
+    type Snapshot: TargetSnapshot;
+
+    /// The target in words, such as "the firmware file".
+    fn name(&self) -> &'static str;
+
+    /// Whether it can do something.
+    fn can(&self, capability: Capability) -> bool;
+
+    /// Returns nothing where it can, and otherwise the sentence that it cannot.
+    ///
+    /// # Errors
+    /// [`Unsupported`].
+    fn require(&self, capability: Capability) -> Result<(), Unsupported> {
+        if self.can(capability) { Ok(()) } else { Err(Unsupported { target: self.name(), capability }) }
+    }
+
+    /// Number of the last tick that is over.
+    fn tick(&self) -> Ticks;
+
+    /// The present instant.
+    fn now(&self) -> Cycles;
+
+    /// Lets time pass to the end of the next tick in which something can happen, or of tick `limit`, whichever comes
+    /// first; or to where a program is [held](Self::held). A target whose processor has stopped for good has told so
+    /// with an event, and lets the time pass in which nothing happens any more.
+    fn step(&mut self, limit: Ticks, events: EventSink<'_>);
+
+    /// The run is over: sends what is still waiting, and checks what the stimulus expects at the end.
+    fn finish(&mut self, events: EventSink<'_>);
+
+    /// Whether no thread is active and nothing is in progress that a program has begun.
+    fn has_ended(&self) -> bool;
+
+    /// The thread that has had the processor in the last tick.
+    fn turn(&self) -> Turn;
+
+    /// Loads a program into its thread, which is stopped first.
+    ///
+    /// # Errors
+    /// Why it is refused; the program in the thread stays and continues.
+    fn load(&mut self, program: &UserProgram) -> Result<(), HostError>;
+
+    /// Names and lines of the program in a thread.
+    fn debug(&self, thread: ThreadId) -> Option<&DebugInfo>;
+
+    /// Starts a thread at its entry point, also if it is active.
+    ///
+    /// # Errors
+    /// [`HostError::NotLoaded`].
+    fn start(&mut self, thread: ThreadId) -> Result<(), HostError>;
+
+    /// Stops a thread where it is.
+    fn stop(&mut self, thread: ThreadId);
+
+    /// The state of a thread.
+    fn thread(&self, thread: ThreadId) -> &ThreadState;
+
+    /// The present instruction of a thread, then the calls that led there, innermost first; empty where unknown.
+    fn backtrace(&self, thread: ThreadId) -> Vec<CodeAddr> {
+        let _ = thread;
+        Vec::new()
+    }
+
+    /// Bytes of its stack that a thread has used since its start; `None` where unknown.
+    fn stack_used(&self, thread: ThreadId) -> Option<u32> {
+        let _ = thread;
+        None
+    }
+
+    /// The function of the firmware that has an address, where the firmware is code.
+    fn firmware_function(&self, address: CodeAddr) -> Option<String> {
+        let _ = address;
+        None
+    }
+
+    /// Whether the program of a thread is code of the processor; `None` without a program.
+    fn runs_processor_code(&self, thread: ThreadId) -> Option<bool>;
+
+    /// Threads that have not ended, and what they wait for; empty where unknown.
+    fn standing_threads(&self) -> Vec<StandingThread> {
+        Vec::new()
+    }
+
+    /// Axes that programs have used, and what they do; empty where unknown.
+    fn standing_axes(&self) -> Vec<StandingAxis> {
+        Vec::new()
+    }
+
+    /// Axes that execute a motion of their own, such as a jog that nobody ends; empty where unknown.
+    fn moving(&self) -> Vec<AxisId> {
+        Vec::new()
+    }
+
+    /// Reads memory from an address on; where there is none, zeros.
+    ///
+    /// # Errors
+    /// A connected target does not answer.
+    fn read(&self, address: GuestAddr, bytes: &mut [u8]) -> Result<(), HostError>;
+
+    /// Writes memory from an address on.
+    ///
+    /// # Errors
+    /// [`HostError::Unmapped`], or a connected target does not answer.
+    fn write(&mut self, address: GuestAddr, bytes: &[u8]) -> Result<(), HostError>;
+
+    /// Whether an item exists on this target.
+    fn knows(&self, item: Item) -> bool {
+        let _ = item;
+        true
+    }
+
+    /// The present value of an item, such as `bit46`; not a number where it cannot be read.
+    fn value(&self, item: Item) -> f64;
+
+    /// The level of a bit.
+    fn bit(&self, bit: Bit) -> bool {
+        self.value(Item::of_bit(bit)) != 0.0
+    }
+
+    /// Bytes from the PC arrive on the link.
+    fn receive(&mut self, bytes: &[u8]);
+
+    /// Whether bytes from the PC wait to be taken.
+    fn is_receiving(&self) -> bool;
+
+    /// Whether what was received last may still be answered.
+    fn is_answering(&self) -> bool {
+        self.is_receiving()
+    }
+
+    /// Ticks that a line and its answer take at least.
+    fn exchange_ticks(&self) -> u64;
+
+    /// Whether a command waits for its data lines, so that the next line is one.
+    fn is_in_command(&self) -> bool;
+
+    /// Says whether the PC takes console lines.
+    fn listen(&mut self, listens: bool);
+
+    /// What flash memory holds, if that can be read.
+    fn flash(&self) -> Option<&[u8]> {
+        None
+    }
+
+    /// Lets the world around the board act as a stimulus says ([`Capability::Surroundings`]).
+    fn play(&mut self, stimulus: Stimulus) {
+        let _ = stimulus;
+    }
+
+    /// Drives an input from outside ([`Capability::Surroundings`]).
+    fn drive_input(&mut self, bit: Bit, level: bool) {
+        let _ = (bit, level);
+    }
+
+    /// Puts characters on the line to the serial port ([`Capability::Surroundings`]).
+    fn send_to_uart(&mut self, bytes: &[u8]) {
+        let _ = bytes;
+    }
+
+    /// Characters on that line that have not arrived yet.
+    fn uart_backlog(&self) -> usize {
+        0
+    }
+
+    /// Records from now on what is requested; the records come as events ([`Capability::Surroundings`]).
+    fn record(&mut self, request: TraceRequest) {
+        let _ = request;
+    }
+
+    /// The box that a program has opened on the PC and that waits for an answer.
+    fn open_box(&self) -> Option<OpenBox> {
+        None
+    }
+
+    /// The target as it is ([`Capability::Snapshots`]).
+    ///
+    /// # Errors
+    /// [`SnapshotError::Unsupported`].
+    fn snapshot(&mut self) -> Result<Self::Snapshot, SnapshotError>;
+
+    /// Makes the target what it was when `snapshot` was taken ([`Capability::Snapshots`]).
+    ///
+    /// # Errors
+    /// The snapshot is of another target; nothing has changed then.
+    fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), SnapshotError>;
+
+    /// A measure of what the computer has done so far, about the number of executed instructions, from which a timeline
+    /// decides when a snapshot is due.
+    fn work(&self) -> u64 {
+        self.tick().get()
+    }
+
+    /// A debugger is about to use it ([`Capability::Breakpoints`]): calls in progress are followed from now on.
+    fn prepare_to_hold(&mut self) {}
+
+    /// Whose program holds the tick in progress, and the instant; `None` between two ticks.
+    fn held(&self) -> Option<(ContextId, Cycles)> {
+        None
+    }
+
+    /// Holds programs before these instructions, and before no others ([`Capability::Breakpoints`]).
+    fn set_breakpoints(&mut self, addresses: &[CodeAddr]) {
+        let _ = addresses;
+    }
+
+    /// Holds a context after each instruction, the next one included ([`Capability::Breakpoints`]); `None` none.
+    fn set_stepping(&mut self, context: Option<ContextId>) {
+        let _ = context;
+    }
+
+    /// Holds programs after these bytes, addresses and how many, have changed, and after no others
+    /// ([`Capability::Watchpoints`]).
+    fn set_watched(&mut self, ranges: &[(GuestAddr, u32)]) {
+        let _ = ranges;
+    }
+
+    /// Returns which of the watched bytes have changed, once.
+    fn take_change(&mut self) -> Option<usize> {
+        None
+    }
+
+    /// Returns which context was held last, and why, once.
+    fn take_hold(&mut self) -> Option<Hold> {
+        None
+    }
+
+    /// The calls in progress of a context, innermost first.
+    fn frames(&self, context: ContextId) -> Vec<FrameView> {
+        let _ = context;
+        Vec::new()
+    }
+
+    /// Sets a register of a call in progress, the innermost of which is number 0; whether there is such a register.
+    fn set_register(&mut self, context: ContextId, frame: usize, register: u16, slot: u64) -> bool {
+        let _ = (context, frame, register, slot);
+        false
+    }
+
+    /// The text of the instruction, or of the packet, at an address, and how many bytes it has; `None` where no program
+    /// is.
+    fn disassemble(&self, address: u32) -> Option<(String, u32)> {
+        let _ = address;
+        None
+    }
+
+    /// The registers of the processor by name, where the target is one; empty otherwise.
+    fn registers(&self) -> Vec<(String, u32)> {
+        Vec::new()
+    }
+}

@@ -1,0 +1,153 @@
+//! One of several targets, chosen at run time: for views that are built once for all of them.
+
+use kmotiondef::{AxisId, Bit, CodeAddr, Cycles, GuestAddr, ThreadId, Ticks};
+use runtime::debug::DebugInfo;
+use runtime::standing::{StandingAxis, StandingThread};
+use runtime::stimulus::Stimulus;
+use runtime::trace::{Item, TraceRequest};
+use runtime::{Board, OpenBox};
+use vm::engine::{ContextId, FrameView, Hold};
+use vm::scheduler::Turn;
+use vm::thread::ThreadState;
+
+use super::{BootedTarget, EventSink, Target, TargetSnapshot};
+use crate::capability::Capability;
+use crate::error::SnapshotError;
+use crate::{HostError, UserProgram};
+
+/// A target of any kind.
+#[derive(Debug)]
+pub enum AnyTarget {
+    /// The modelled board on the interpreter.
+    Model(Box<Board>),
+    /// A firmware file.
+    Booted(Box<BootedTarget>),
+}
+
+/// The state of an [`AnyTarget`] at an instant.
+#[derive(Debug)]
+pub enum AnySnapshot {
+    /// Of the modelled board.
+    Model(Box<<Board as Target>::Snapshot>),
+    /// Of a firmware file.
+    Booted(Box<<BootedTarget as Target>::Snapshot>),
+}
+
+/// Does the same with whichever it is.
+macro_rules! with {
+    ($kind:ident, $any:expr, $it:ident => $body:expr) => {
+        match $any {
+            $kind::Model($it) => $body,
+            $kind::Booted($it) => $body,
+        }
+    };
+}
+
+impl TargetSnapshot for AnySnapshot {
+    fn tick(&self) -> Ticks {
+        with!(Self, self, it => TargetSnapshot::tick(it.as_ref()))
+    }
+
+    fn is_held(&self) -> bool {
+        with!(Self, self, it => TargetSnapshot::is_held(it.as_ref()))
+    }
+
+    fn bytes_beyond(&self, other: &Self) -> usize {
+        match (self, other) {
+            (Self::Model(one), Self::Model(other)) => TargetSnapshot::bytes_beyond(one.as_ref(), other),
+            (Self::Booted(one), Self::Booted(other)) => TargetSnapshot::bytes_beyond(one.as_ref(), other),
+            (Self::Model(_) | Self::Booted(_), _) => 0,
+        }
+    }
+}
+
+/// Methods that are those of whichever it is.
+macro_rules! delegate {
+    ($(fn $name:ident(&self $(, $argument:ident: $ty:ty)*) $(-> $result:ty)?;)*) => {$(
+        fn $name(&self $(, $argument: $ty)*) $(-> $result)? {
+            with!(Self, self, it => Target::$name(it.as_ref() $(, $argument)*))
+        }
+    )*};
+    (mut $(fn $name:ident(&mut self $(, $argument:ident: $ty:ty)*) $(-> $result:ty)?;)*) => {$(
+        fn $name(&mut self $(, $argument: $ty)*) $(-> $result)? {
+            with!(Self, self, it => Target::$name(it.as_mut() $(, $argument)*))
+        }
+    )*};
+}
+
+impl Target for AnyTarget {
+    type Snapshot = AnySnapshot;
+
+    delegate! {
+        fn name(&self) -> &'static str;
+        fn can(&self, capability: Capability) -> bool;
+        fn tick(&self) -> Ticks;
+        fn now(&self) -> Cycles;
+        fn has_ended(&self) -> bool;
+        fn turn(&self) -> Turn;
+        fn debug(&self, thread: ThreadId) -> Option<&DebugInfo>;
+        fn thread(&self, thread: ThreadId) -> &ThreadState;
+        fn backtrace(&self, thread: ThreadId) -> Vec<CodeAddr>;
+        fn stack_used(&self, thread: ThreadId) -> Option<u32>;
+        fn firmware_function(&self, address: CodeAddr) -> Option<String>;
+        fn runs_processor_code(&self, thread: ThreadId) -> Option<bool>;
+        fn standing_threads(&self) -> Vec<StandingThread>;
+        fn standing_axes(&self) -> Vec<StandingAxis>;
+        fn moving(&self) -> Vec<AxisId>;
+        fn read(&self, address: GuestAddr, bytes: &mut [u8]) -> Result<(), HostError>;
+        fn knows(&self, item: Item) -> bool;
+        fn value(&self, item: Item) -> f64;
+        fn bit(&self, bit: Bit) -> bool;
+        fn is_receiving(&self) -> bool;
+        fn is_answering(&self) -> bool;
+        fn exchange_ticks(&self) -> u64;
+        fn is_in_command(&self) -> bool;
+        fn flash(&self) -> Option<&[u8]>;
+        fn uart_backlog(&self) -> usize;
+        fn open_box(&self) -> Option<OpenBox>;
+        fn work(&self) -> u64;
+        fn held(&self) -> Option<(ContextId, Cycles)>;
+        fn frames(&self, context: ContextId) -> Vec<FrameView>;
+        fn disassemble(&self, address: u32) -> Option<(String, u32)>;
+        fn registers(&self) -> Vec<(String, u32)>;
+    }
+
+    delegate! { mut
+        fn step(&mut self, limit: Ticks, events: EventSink<'_>);
+        fn finish(&mut self, events: EventSink<'_>);
+        fn load(&mut self, program: &UserProgram) -> Result<(), HostError>;
+        fn start(&mut self, thread: ThreadId) -> Result<(), HostError>;
+        fn stop(&mut self, thread: ThreadId);
+        fn write(&mut self, address: GuestAddr, bytes: &[u8]) -> Result<(), HostError>;
+        fn receive(&mut self, bytes: &[u8]);
+        fn listen(&mut self, listens: bool);
+        fn play(&mut self, stimulus: Stimulus);
+        fn drive_input(&mut self, bit: Bit, level: bool);
+        fn send_to_uart(&mut self, bytes: &[u8]);
+        fn record(&mut self, request: TraceRequest);
+        fn prepare_to_hold(&mut self);
+        fn set_breakpoints(&mut self, addresses: &[CodeAddr]);
+        fn set_stepping(&mut self, context: Option<ContextId>);
+        fn set_watched(&mut self, ranges: &[(GuestAddr, u32)]);
+        fn take_change(&mut self) -> Option<usize>;
+        fn take_hold(&mut self) -> Option<Hold>;
+        fn set_register(&mut self, context: ContextId, frame: usize, register: u16, slot: u64) -> bool;
+    }
+
+    fn snapshot(&mut self) -> Result<Self::Snapshot, SnapshotError> {
+        Ok(match self {
+            Self::Model(board) => AnySnapshot::Model(Box::new(Target::snapshot(board.as_mut())?)),
+            Self::Booted(target) => AnySnapshot::Booted(Box::new(Target::snapshot(target.as_mut())?)),
+        })
+    }
+
+    fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), SnapshotError> {
+        match (self, snapshot) {
+            (Self::Model(board), AnySnapshot::Model(snapshot)) => Target::restore(board.as_mut(), snapshot),
+            (Self::Booted(target), AnySnapshot::Booted(snapshot)) => {
+                Target::restore(target.as_mut(), snapshot)
+            }
+            (Self::Model(_) | Self::Booted(_), _) => Err(SnapshotError::OtherTarget),
+        }
+    }
+}

@@ -1,0 +1,192 @@
+//! The beginning of a session on a booted firmware: programs are loaded, surroundings connected, threads started.
+
+use std::sync::Arc;
+
+use boot::{BootedBoard, Halted, Sent};
+use kmotiondef::variables::{
+    ADC_BUFFER_IN, CHAN, CURRENT_THREAD, DAC_BUFFER, HOST_STATUS, KSTEP_PRESENT, LAST_PWM, PERSIST,
+    READ_DISK_BUFFER, VIRTUAL_BITS, VIRTUAL_BITS_EX,
+};
+use kmotiondef::{GuestAddr, ThreadId};
+use runtime::surroundings::Surroundings;
+use runtime::{Config, MachineFile};
+use vm::scheduler::Turn;
+use vm::thread::ThreadState;
+
+use super::attached::Attached;
+use super::debug::Debugging;
+use super::observers::Observers;
+use super::{ANSWER, BootedFirmware, BootedTarget, LoadedProgram, Silence, State, TICK};
+use crate::setup::Setup;
+use crate::{HostError, UserProgram};
+
+/// A firmware that is ready, with the programs that are loaded.
+struct Beginning {
+    board: BootedBoard,
+    loaded: [Option<Arc<LoadedProgram>>; ThreadId::MAX as usize],
+}
+
+impl BootedTarget {
+    /// Connects what the setup describes, loads its programs, and starts those that are to start, all in one slice:
+    /// board time begins there. The expressions of its stimuli are resolved already.
+    ///
+    /// # Errors
+    /// A program is refused, the flash is of another firmware, or this firmware cannot be connected to anything.
+    pub(crate) fn begin(firmware: &BootedFirmware, setup: Setup) -> Result<Self, HostError> {
+        let Setup {
+            mut config,
+            programs,
+            offered,
+            values,
+            stimulus,
+            is_assisted,
+            uart_input,
+            hears_uart,
+            ..
+        } = setup;
+        let failed = |error: &dyn std::fmt::Display| HostError::Firmware(error.to_string());
+        let mut board = firmware.board(config.flash.as_deref())?;
+        board.skip_waits(config.machine.shortcuts);
+        let mut beginning = Beginning { board, loaded: Default::default() };
+        beginning.store(&values)?;
+        for program in &programs {
+            beginning.load(program)?;
+        }
+        let starting: Vec<_> =
+            programs.iter().filter(|program| program.starts).map(|program| program.thread).collect();
+        beginning.settle(&starting).map_err(|error| failed(&error))?;
+        let Beginning { mut board, loaded } = beginning;
+        let origin = board.next_tick() - TICK;
+        let early = board.take_lines().into_iter().filter(|line| line.kind == Sent::Console).collect();
+        let machine = std::mem::take(&mut config.machine_file);
+        let attached = if can_be_surrounded(&board) {
+            let mut surroundings = surroundings(&board, config, &machine);
+            surroundings.begin(&machine, stimulus, board.memory_mut());
+            surroundings.connect_uart(&uart_input, hears_uart);
+            if is_assisted {
+                surroundings.assist();
+            }
+            Some(Attached { surroundings, origin })
+        } else if stimulus.is_empty() && machine == MachineFile::default() && !is_assisted {
+            None
+        } else {
+            return Err(HostError::Firmware(
+                "nothing can be connected: this firmware keeps its variables in other places than 4.34"
+                    .to_owned(),
+            ));
+        };
+        let state = State {
+            loaded,
+            threads: std::array::from_fn(|_| ThreadState::Empty),
+            turn: Turn::Primary,
+            early,
+            rest: Silence { ticks: 0, looks: board.looks() },
+            answer: Silence { ticks: 0, looks: board.looks() },
+            answer_until: 0,
+            commands: [0; 8],
+            is_deaf: false,
+            has_told_loss: false,
+            halted: None,
+            debugging: Debugging::default(),
+        };
+        let board = board.connect(attached);
+        let mut target = Self { board, origin, offered, observers: Observers::default(), state };
+        if is_assisted {
+            target.observers.follow_calls(&mut target.board);
+        }
+        target.state.commands = target.commands();
+        target.note_threads();
+        Ok(target)
+    }
+
+    /// Loads a program into its thread, which is stopped first.
+    pub(super) fn load_program(&mut self, program: &UserProgram) -> Result<(), HostError> {
+        stop(&mut self.board, program.thread)?;
+        self.state.loaded[program.thread.index()] = Some(load(&mut self.board, program)?);
+        self.state.debugging.end(program.thread);
+        self.arm_stops();
+        Ok(())
+    }
+}
+
+impl Beginning {
+    fn load(&mut self, program: &UserProgram) -> Result<(), HostError> {
+        stop(&mut self.board, program.thread)?;
+        self.loaded[program.thread.index()] = Some(load(&mut self.board, program)?);
+        Ok(())
+    }
+
+    /// Stores start values of `persist.UserData`, wherever this firmware has it.
+    fn store(&mut self, values: &[(GuestAddr, Vec<u8>)]) -> Result<(), HostError> {
+        if values.is_empty() {
+            return Ok(());
+        }
+        let persist = self.board.file().address("persist");
+        let persist =
+            persist.ok_or_else(|| HostError::Firmware("this firmware has no `persist`".to_owned()))?;
+        for (address, bytes) in values {
+            let place = persist.offset(address.get() - PERSIST.address().get());
+            let stored = self.board.memory_mut().poke_bytes(place, bytes);
+            stored.map_err(|_| HostError::Unmapped(*address))?;
+        }
+        Ok(())
+    }
+
+    /// Lets the firmware read what was sent, and start threads in the next tick; time is 0 a tick before.
+    fn settle(&mut self, starting: &[ThreadId]) -> Result<(), Halted> {
+        let end = self.board.cycle() + ANSWER;
+        while !self.board.has_read_all() && self.board.cycle() < end {
+            self.board.run_to(self.board.cycle() + TICK)?;
+        }
+        self.board.execute_together(starting)
+    }
+}
+
+/// Stops a thread that is active: another program is to come into it.
+fn stop<A: boot::Around>(board: &mut BootedBoard<A>, thread: ThreadId) -> Result<(), HostError> {
+    let is_active = |board: &BootedBoard<A>| board.is_active(thread).unwrap_or(false);
+    if is_active(board) {
+        board.send_line(format!("Kill{thread}").as_bytes());
+    }
+    let end = board.cycle() + ANSWER;
+    while is_active(board) && board.cycle() < end {
+        board.run_to(board.cycle() + TICK).map_err(|error| HostError::Firmware(error.to_string()))?;
+    }
+    Ok(())
+}
+
+/// Puts a program into memory.
+fn load<A: boot::Around>(
+    board: &mut BootedBoard<A>,
+    program: &UserProgram,
+) -> Result<Arc<LoadedProgram>, HostError> {
+    let loaded = board.load_program(program.thread, &program.image);
+    loaded.map_err(|error| HostError::Firmware(format!("{}: {error}", program.path.display())))?;
+    Ok(Arc::new(LoadedProgram { debug: program.debug_info(), functions: program.functions() }))
+}
+
+/// What a machine file describes, around this board.
+fn surroundings(board: &BootedBoard, mut config: Config, machine: &MachineFile) -> Surroundings {
+    config.machine_file = machine.clone();
+    Surroundings::new(config, board.file().address("ThreadActive").unwrap_or_default())
+}
+
+/// Whether this firmware has its variables where the surroundings look for them.
+fn can_be_surrounded(board: &BootedBoard) -> bool {
+    let places = [
+        ("chan", CHAN.address()),
+        ("persist", PERSIST.address()),
+        ("CurrentThread", CURRENT_THREAD.address()),
+        ("HostStatus", HOST_STATUS.address()),
+        ("KStepPresent", KSTEP_PRESENT.address()),
+        ("VirtualBits", VIRTUAL_BITS.address()),
+        ("VirtualBitsEx", VIRTUAL_BITS_EX.address()),
+        ("ADC_BufferIn", ADC_BUFFER_IN.address()),
+        ("DAC_Buffer", DAC_BUFFER.address()),
+        ("LastPWM", LAST_PWM.address()),
+        ("read_disk_buffer", READ_DISK_BUFFER.address()),
+    ];
+    let file = board.file();
+    file.address("ThreadActive").is_some()
+        && places.iter().all(|(name, address)| file.address(name) == Some(*address))
+}

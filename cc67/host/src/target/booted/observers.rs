@@ -1,0 +1,104 @@
+//! Observers of the processor while it runs: a profile, an operator who must know what programs do, a debugger.
+//!
+//! What is executed, and when, is the same whoever observes it.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use boot::{BootedBoard, Doing, Halted, Ran};
+use kmotiondef::firmware::FIRMWARE_FUNCTIONS;
+use kmotiondef::{CodeAddr, Cycles};
+use runtime::surroundings::ProgramCall;
+
+use super::attached::Attached;
+
+/// Cycles between two samples: a prime, so that no loop and no tick keeps step with them.
+const PERIOD: u64 = 997;
+
+/// How often the processor was seen at each place.
+#[derive(Debug)]
+struct Samples {
+    /// The cycle of the next sample.
+    next: u64,
+    seen: BTreeMap<Doing, i64>,
+}
+
+/// Observers of the processor.
+#[derive(Debug, Default)]
+pub(super) struct Observers {
+    samples: Option<Samples>,
+    /// The functions of the firmware by address, where calls are reported to the surroundings.
+    functions: BTreeMap<u32, &'static str>,
+    /// Where a debugger stops.
+    stops: BTreeSet<u32>,
+}
+
+impl Observers {
+    /// Samples what the processor does, from this cycle on.
+    pub(super) fn sample(&mut self, now: u64) {
+        self.samples = Some(Samples { next: now + PERIOD, seen: BTreeMap::new() });
+    }
+
+    /// What the processor was seen doing, each with the time that its samples stand for.
+    pub(super) fn sampled(&self) -> impl Iterator<Item = (&Doing, Cycles)> {
+        let seen = self.samples.iter().flat_map(|samples| &samples.seen);
+        seen.map(|(doing, count)| (doing, Cycles::new(count * PERIOD as i64)))
+    }
+
+    /// Reports every call of the firmware by a program to the surroundings, from now on.
+    pub(super) fn follow_calls(&mut self, board: &mut BootedBoard<Attached>) {
+        let address = |name| board.file().address(name).map(|at| (at.get(), name));
+        self.functions = FIRMWARE_FUNCTIONS.iter().filter_map(|function| address(function.name)).collect();
+        self.arm(board);
+    }
+
+    /// Stops runs before these packets, and before no others.
+    pub(super) fn set_stops(&mut self, board: &mut BootedBoard<Attached>, stops: BTreeSet<u32>) {
+        self.stops = stops;
+        self.arm(board);
+    }
+
+    /// Gives the board its stops; one that has gone back to a snapshot has those of before.
+    pub(super) fn arm(&self, board: &mut BootedBoard<Attached>) {
+        board.set_stops(self.functions.keys().chain(&self.stops).copied());
+    }
+
+    /// Runs the board to a cycle, or to a stop of a debugger.
+    ///
+    /// # Errors
+    /// The firmware ran away.
+    pub(super) fn run(&mut self, board: &mut BootedBoard<Attached>, end: u64) -> Result<Ran, Halted> {
+        while let Some(next) = self.samples.as_ref().map(|samples| samples.next).filter(|next| *next < end) {
+            if self.run_calls(board, next)? == Ran::ToStop {
+                return Ok(Ran::ToStop);
+            }
+            if let Some(samples) = &mut self.samples {
+                *samples.seen.entry(board.doing()).or_default() += 1;
+                samples.next += PERIOD;
+            }
+        }
+        self.run_calls(board, end)
+    }
+
+    fn run_calls(&self, board: &mut BootedBoard<Attached>, end: u64) -> Result<Ran, Halted> {
+        while board.run_to_stop(end)? == Ran::ToStop {
+            self.report_call(board);
+            if self.stops.contains(&board.doing().pc) {
+                return Ok(Ran::ToStop);
+            }
+        }
+        Ok(Ran::Through)
+    }
+
+    fn report_call(&self, board: &mut BootedBoard<Attached>) {
+        let (call, now) = (board.program_call(), board.cycle());
+        let (Some(attached), memory) = board.around_and_memory() else { return };
+        if let Some(call) = call
+            && let Some(function) = self.functions.get(&call.function)
+        {
+            let boot::ProgramCall { argument, thread, at, .. } = call;
+            let call = ProgramCall { function, argument, thread, at: CodeAddr::new(at) };
+            let now = attached.since(now);
+            attached.surroundings.called(call, memory, now);
+        }
+    }
+}
