@@ -101,7 +101,7 @@ fn extension() -> Option<String> {
 
 /// Python, and the package in it.
 fn python() -> String {
-    const PROGRAM: &str = "import sys\ntry:\n import cc67\n has = 'package cc67 ' + cc67.__version__\nexcept ImportError:\n has = 'without \
+    const PROGRAM: &str = "import sys\ntry:\n import cc67\n has = 'package cc67 ' + cc67.__version__\nexcept (ImportError, AttributeError):\n has = 'without \
                            the package cc67'\nprint('.'.join(map(str, sys.version_info[:3])) + ', ' + has)";
     for python in package::pythons() {
         if let Ok(output) = Command::new(&python).args(["-c", PROGRAM]).output()
