@@ -50,7 +50,10 @@ fn repeat(what: &str) -> Vec<u8> {
 }
 
 fn images(c: &mut Criterion) {
-    let files = [("program", program("motion/path.c")), ("firmware", firmware::export().expect("it fits"))];
+    let files = [
+        ("program", program("motion/path.c")),
+        ("firmware", firmware::export(kmotiondef::boards::TargetBoard::default_board()).expect("it fits")),
+    ];
     let mut group = c.benchmark_group("image/read");
     for (name, bytes) in files {
         group.throughput(Throughput::Bytes(bytes.len() as u64));

@@ -5,6 +5,7 @@
 //!
 //! | table | read by |
 //! |---|---|
+//! | [`boards`] | the linker, the preprocessor, messages: what differs on other boards than KFLOP 4.34 |
 //! | [`firmware`] | the linker for names and signatures, the runtime for dispatch, the documentation |
 //! | [`variables`], [`structs`] | the linker for names, the kernel for typed places |
 //! | [`bits`] | the runtime, to find the device for a bit number |
@@ -20,6 +21,7 @@
 #![forbid(unsafe_code)]
 
 pub mod bits;
+pub mod boards;
 pub mod ctype;
 pub mod firmware;
 pub mod function;

@@ -8,7 +8,16 @@ pub(crate) type Row = BTreeMap<String, String>;
 
 /// All rows of a table of `tests/data/api`.
 pub(crate) fn table(name: &str) -> Vec<Row> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/data/api").join(name);
+    read(&Path::new("api").join(name))
+}
+
+/// All rows of a table about another board than the default one.
+pub(crate) fn table_of(board: &str, name: &str) -> Vec<Row> {
+    read(&Path::new("boards").join(board).join(name))
+}
+
+fn read(name: &Path) -> Vec<Row> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/data").join(name);
     let text = std::fs::read_to_string(&path).expect("the copies of the tables are in the repository");
     let mut lines = text.lines().map(cells);
     let header = lines.next().expect("the first line names the columns");

@@ -285,7 +285,8 @@ pub fn valid_files() -> Vec<Vec<u8>> {
     let mut compilation = compiler::compile(Path::new("a.c"), text.to_vec(), &options, &files);
     let object = compilation.object.as_ref().expect("it compiles").write().expect("it fits");
     let linked = compilation.link(thread_1(), &options).expect("it links");
-    let firmware = compiler::firmware::export().expect("it fits");
+    let firmware =
+        compiler::firmware::export(kmotiondef::boards::TargetBoard::default_board()).expect("it fits");
     vec![image::write(&linked).expect("it fits"), object, vendor::image(), firmware]
 }
 

@@ -7,21 +7,34 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use compiler::diag::Severity;
+use compiler::firmware::Firmware;
 
 use compiler::pp::Disk;
 use harness::csv::{self, Row};
+use kmotiondef::boards::TargetBoard;
 use kmotiondef::structs::{STRUCTURES, StructureField};
 
-fn table(name: &str) -> Vec<Row> {
-    csv::read(&harness::root().join("tests/data/api").join(name))
+/// The rows of a table about a board.
+fn table(board: &TargetBoard, name: &str) -> Vec<Row> {
+    let folder = match board.is_default() {
+        true => "api".to_owned(),
+        false => format!("boards/{}", board.name),
+    };
+    csv::read(&harness::root().join("tests/data").join(folder).join(name))
+}
+
+/// Every board with a count of rows that is expected for it.
+fn boards(counts: [usize; 3]) -> impl Iterator<Item = (&'static TargetBoard, usize)> {
+    let names = ["kflop-4.34", "kflop-5.3.2", "kogna-5.3.2"];
+    names.map(|name| TargetBoard::named(name).expect(name)).into_iter().zip(counts)
 }
 
 /// Compiles and links the header, `checks` and a `main` of the given body; returns the errors.
 ///
 /// The linker looks only at what `main` reaches.
-fn errors(checks: &str, body: &str) -> String {
+fn errors(board: &'static TargetBoard, checks: &str, body: &str) -> String {
     let text = format!("#include \"KMotionDef.h\"\n{checks}\nint main(void) {{ {body} }}\n");
-    let options = compiler::Options::default();
+    let options = compiler::Options { firmware: Firmware::Board(board), ..compiler::Options::default() };
     let mut compilation = compiler::compile(Path::new("checks.c"), text.into_bytes(), &options, &Disk);
     compilation.link(kmotiondef::ThreadId::new(1).expect("1 is a thread"), &options);
     let wrong = compilation.sink.diagnostics().iter().filter(|d| d.severity == Severity::Error);
@@ -31,9 +44,9 @@ fn errors(checks: &str, body: &str) -> String {
 }
 
 #[track_caller]
-fn assert_compiles(checks: &str) {
-    let errors = errors(checks, "return 0;");
-    assert!(errors.is_empty(), "{errors}");
+fn assert_compiles(board: &'static TargetBoard, checks: &str) {
+    let errors = errors(board, checks, "return 0;");
+    assert!(errors.is_empty(), "{}: {errors}", board.name);
 }
 
 /// The C declaration of `name` as a pointer, for a type such as `int[8]` or `char * volatile`.
@@ -46,43 +59,49 @@ fn pointer_to(c_type: &str, dims: &str) -> String {
 
 #[test]
 fn the_comparison_can_fail() {
-    assert!(errors("_Static_assert(sizeof(CHAN) == 433, \"size\");", "").contains("size"));
+    let board = TargetBoard::default_board();
+    assert!(errors(board, "_Static_assert(sizeof(CHAN) == 433, \"size\");", "").contains("size"));
     assert!(
-        errors("_Static_assert(_Generic(&ReadBit, void (*)(int): 1, default: 0), \"ReadBit\");", "")
+        errors(board, "_Static_assert(_Generic(&ReadBit, void (*)(int): 1, default: 0), \"ReadBit\");", "")
             .contains("ReadBit")
     );
 }
 
 #[test]
 fn structures_have_the_sizes_and_offsets_of_the_board() {
-    let mut checks = String::new();
-    let rows = table("structs.csv");
-    assert_eq!(rows.len(), 180);
-    for row in rows {
-        let (record, field, size) = (&row["struct"], &row["field"], &row["size"]);
-        if field == "(struct)" {
-            let align = &row["alignment"];
-            let _ = writeln!(checks, "_Static_assert(sizeof({record}) == {size}, \"size of {record}\");");
-            let _ =
-                writeln!(checks, "_Static_assert(_Alignof({record}) == {align}, \"alignment of {record}\");");
-            continue;
-        }
-        let offset = &row["offset"];
-        let member = format!("((({record} *)0)->{field})");
-        let _ = writeln!(
-            checks,
-            "_Static_assert(__builtin_offsetof({record}, {field}) == {offset}, \"offset of {record}.{field}\");"
-        );
-        let _ = writeln!(checks, "_Static_assert(sizeof{member} == {size}, \"size of {record}.{field}\");");
-        if row["c_type"] != "struct" && row["c_type"] != "union" {
-            let pointer = pointer_to(&row["c_type"], &row["array_dims"]);
+    for (board, count) in boards([180, 198, 214]) {
+        let mut checks = String::new();
+        let rows = table(board, "structs.csv");
+        assert_eq!(rows.len(), count, "{}", board.name);
+        for row in rows {
+            let (record, field, size) = (&row["struct"], &row["field"], &row["size"]);
+            if field == "(struct)" {
+                let align = &row["alignment"];
+                let _ = writeln!(checks, "_Static_assert(sizeof({record}) == {size}, \"size of {record}\");");
+                let _ = writeln!(
+                    checks,
+                    "_Static_assert(_Alignof({record}) == {align}, \"alignment of {record}\");"
+                );
+                continue;
+            }
+            let offset = &row["offset"];
+            let member = format!("((({record} *)0)->{field})");
             let _ = writeln!(
                 checks,
-                "_Static_assert(_Generic(&{member}, {pointer}: 1, default: 0), \"type of {record}.{field}\");"
+                "_Static_assert(__builtin_offsetof({record}, {field}) == {offset}, \"offset of {record}.{field}\");"
             );
+            let _ =
+                writeln!(checks, "_Static_assert(sizeof{member} == {size}, \"size of {record}.{field}\");");
+            if row["c_type"] != "struct" && row["c_type"] != "union" {
+                let pointer = pointer_to(&row["c_type"], &row["array_dims"]);
+                let _ = writeln!(
+                    checks,
+                    "_Static_assert(_Generic(&{member}, {pointer}: 1, default: 0), \"type of {record}.{field}\");"
+                );
+            }
         }
+        assert_compiles(board, &checks);
     }
-    assert_compiles(&checks);
 }
 
 /// Whether a line of a structure declares a field.
@@ -152,96 +171,116 @@ fn a_missing_declaration_is_written_like_its_neighbours() {
 
 #[test]
 fn functions_have_the_signatures_of_the_board() {
-    let mut checks = String::new();
-    let rows: Vec<_> =
-        table("functions.csv").into_iter().filter(|row| row["header_declares"] == "yes").collect();
-    assert_eq!(rows.len(), 117);
-    for row in rows {
-        let (name, signature) = (&row["name"], &row["signature"]);
-        // `int ReadBit(int bit)` becomes the type `int (*)(int bit)`.
-        let pointer = signature.replacen(&format!("{name}("), "(*)(", 1);
-        let _ =
-            writeln!(checks, "_Static_assert(_Generic(&{name}, {pointer}: 1, default: 0), \"{signature}\");");
+    for (board, count) in boards([117, 165, 183]) {
+        let mut checks = String::new();
+        let rows: Vec<_> =
+            table(board, "functions.csv").into_iter().filter(|row| row["header_declares"] == "yes").collect();
+        assert_eq!(rows.len(), count, "{}", board.name);
+        for row in rows {
+            let (name, signature) = (&row["name"], &row["signature"]);
+            // `int ReadBit(int bit)` becomes the type `int (*)(int bit)`.
+            let pointer = signature.replacen(&format!("{name}("), "(*)(", 1);
+            let _ = writeln!(
+                checks,
+                "_Static_assert(_Generic(&{name}, {pointer}: 1, default: 0), \"{signature}\");"
+            );
+        }
+        assert_compiles(board, &checks);
     }
-    assert_compiles(&checks);
 }
 
 #[test]
 fn variables_have_the_types_of_the_board() {
-    let mut checks = String::new();
-    let rows = table("variables.csv");
-    assert_eq!(rows.len(), 83);
-    for row in rows {
-        let (name, size) = (&row["name"], &row["size_bytes"]);
-        let pointer = pointer_to(&row["c_type"], "");
-        let _ = writeln!(checks, "_Static_assert(sizeof {name} == {size}, \"size of {name}\");");
-        let _ = writeln!(
-            checks,
-            "_Static_assert(_Generic(&{name}, {pointer}: 1, default: 0), \"type of {name}\");"
-        );
+    for (board, count) in boards([83, 85, 112]) {
+        let mut checks = String::new();
+        let rows = table(board, "variables.csv");
+        assert_eq!(rows.len(), count, "{}", board.name);
+        for row in rows {
+            let (name, size) = (&row["name"], &row["size_bytes"]);
+            let pointer = pointer_to(&row["c_type"], "");
+            let _ = writeln!(checks, "_Static_assert(sizeof {name} == {size}, \"size of {name}\");");
+            let _ = writeln!(
+                checks,
+                "_Static_assert(_Generic(&{name}, {pointer}: 1, default: 0), \"type of {name}\");"
+            );
+        }
+        assert_compiles(board, &checks);
     }
-    assert_compiles(&checks);
 }
 
 #[test]
 fn constants_have_the_values_of_the_board() {
-    let mut checks = String::new();
-    let mut compared = 0;
-    for row in table("constants.csv") {
-        let (name, value) = (&row["name"], &row["value"]);
-        if row["release"] != "4.34" {
-            continue;
+    for (board, count) in boards([292, 336, 357]) {
+        let mut checks = String::new();
+        let mut compared = 0;
+        for row in table(board, "constants.csv") {
+            let (name, value) = (&row["name"], &row["value"]);
+            if row["release"] != "4.34" && (board.is_default() || row["release"] != "5.3.2") {
+                continue;
+            }
+            compared += 1;
+            if row["expression"].starts_with("enumerator") {
+                let _ = writeln!(checks, "_Static_assert({name} == {value}, \"{name}\");");
+                continue;
+            }
+            let _ = writeln!(checks, "#ifndef {name}\n#error {name} is not defined\n#endif");
+            match row["type"].as_str() {
+                "none" => {}
+                "char[]" => {
+                    let _ =
+                        writeln!(checks, "_Static_assert(sizeof {name} == {}, \"{name}\");", value.len() + 1);
+                    let _ = writeln!(checks, "char text_{name}[] = {name};");
+                }
+                "float" => {
+                    let _ = writeln!(
+                        checks,
+                        "_Static_assert({name} == {value}f || {name} == (float){value}, \"{name}\");"
+                    );
+                    let _ = writeln!(checks, "_Static_assert(sizeof({name}) == 4, \"{name} is a float\");");
+                }
+                "double" => {
+                    let _ = writeln!(
+                        checks,
+                        "_Static_assert({name} == {value} && sizeof({name}) == 8, \"{name}\");"
+                    );
+                }
+                _ => {
+                    let _ = writeln!(checks, "_Static_assert((int)({name}) == (int)({value}), \"{name}\");");
+                }
+            }
         }
-        compared += 1;
-        let _ = writeln!(checks, "#ifndef {name}\n#error {name} is not defined\n#endif");
-        match row["type"].as_str() {
-            "none" => {}
-            "char[]" => {
-                let _ = writeln!(checks, "_Static_assert(sizeof {name} == {}, \"{name}\");", value.len() + 1);
-                let _ = writeln!(checks, "char text_{name}[] = {name};");
-            }
-            "float" => {
-                let _ = writeln!(
-                    checks,
-                    "_Static_assert({name} == {value}f || {name} == (float){value}, \"{name}\");"
-                );
-                let _ = writeln!(checks, "_Static_assert(sizeof({name}) == 4, \"{name} is a float\");");
-            }
-            "double" => {
-                let _ =
-                    writeln!(checks, "_Static_assert({name} == {value} && sizeof({name}) == 8, \"{name}\");");
-            }
-            _ => {
-                let _ = writeln!(checks, "_Static_assert((int)({name}) == (int)({value}), \"{name}\");");
-            }
-        }
+        assert_eq!(compared, count, "{}", board.name);
+        assert_compiles(board, &checks.replace("(float)-", "(float) -"));
     }
-    assert_eq!(compared, 292);
-    assert_compiles(&checks.replace("(float)-", "(float) -"));
 }
 
 #[test]
 fn macros_are_all_defined() {
-    let rows = table("macros.csv");
-    assert_eq!(rows.len(), 22);
-    let checks: String = rows
-        .iter()
-        .map(|row| format!("#ifndef {0}\n#error {0} is not defined\n#endif\n", row["name"]))
-        .collect();
-    assert_compiles(&checks);
+    for (board, count) in boards([22, 25, 42]) {
+        let rows = table(board, "macros.csv");
+        assert_eq!(rows.len(), count, "{}", board.name);
+        let checks: String = rows
+            .iter()
+            .map(|row| format!("#ifndef {0}\n#error {0} is not defined\n#endif\n", row["name"]))
+            .collect();
+        assert_compiles(board, &checks);
+    }
 }
 
 #[test]
 fn every_function_links_except_the_one_the_board_lacks() {
-    let mut program = String::from("void *all[] = {\n");
-    for row in table("functions.csv") {
-        if !row["address"].is_empty() && row["header_declares"] == "yes" {
+    for (board, absent) in boards([1, 3, 4]) {
+        let mut program = String::from("void *all[] = {\n");
+        let rows = table(board, "functions.csv").into_iter().filter(|row| row["header_declares"] == "yes");
+        let (there, lacking): (Vec<_>, Vec<_>) = rows.partition(|row| !row["address"].is_empty());
+        for row in there {
             let _ = writeln!(program, "  (void *){},", row["name"]);
         }
+        program.push_str("};\n");
+        let missing = errors(board, &program, "return (int)all[0];");
+        assert!(missing.is_empty(), "{}: {missing}", board.name);
+        assert_eq!(lacking.len(), absent, "{}: {lacking:?}", board.name);
+        let missing = errors(board, "", "WriteDAC(0, 1);");
+        assert!(missing.contains("WriteDAC"), "{}: {missing}", board.name);
     }
-    program.push_str("};\n");
-    let missing = errors(&program, "return (int)all[0];");
-    assert!(missing.is_empty(), "{missing}");
-    let absent = errors("", "WriteDAC(0, 1);");
-    assert!(absent.contains("WriteDAC"), "{absent}");
 }

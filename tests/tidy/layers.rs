@@ -11,6 +11,7 @@ pub(crate) const LAYERS: &[(&str, &[Row])] = &[
     (
         "kmotiondef",
         &[
+            ("boards", &["boards"]),
             ("lists", &["firmware", "variables", "map", "headers", "hidden", "modes"]),
             ("structures", &["structs"]),
             ("places", &["place", "limits", "function"]),

@@ -67,7 +67,9 @@ impl CompileArguments {
     }
 
     fn firmware(&self) -> PyResult<Firmware> {
-        let Some(path) = self.boot.as_ref().or(self.firmware.as_ref()) else { return Ok(Firmware::BuiltIn) };
+        let Some(path) = self.boot.as_ref().or(self.firmware.as_ref()) else {
+            return Ok(Firmware::default());
+        };
         let file = FirmwareFile::read(&read(path)?);
         let file = file.map_err(|error| input(format!("{}: {error}", path.display())))?;
         Ok(Firmware::File(Arc::new(file)))

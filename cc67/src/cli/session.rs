@@ -116,7 +116,7 @@ impl Setup {
     ) -> Result<Option<Self>> {
         let options = code.options(compiler)?;
         if matches!(code, CodeFor::Engine(_)) {
-            options.firmware.check_version().context("`--firmware`")?;
+            options.firmware.check_version()?;
         }
         let described = Described::read(started, board, compiler, options)?;
         let Some(Described { session, uart, flash }) = described else { return Ok(None) };

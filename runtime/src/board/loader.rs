@@ -5,6 +5,7 @@
 //! own loader checks next to nothing; a mistake there overwrites another thread's program.
 
 use coff::{Contents, FileFlags, Image, Line, Section, SectionFlags, SectionNumber, StorageClass, Target};
+use kmotiondef::boards::{BOARDS, TargetBoard};
 use kmotiondef::limits::{VERSION, VERSION_STAMP};
 use kmotiondef::map::{PROGRAM_BASE, PROGRAM_LIMIT, PROGRAM_SIZE, program_base};
 use kmotiondef::{GuestAddr, ThreadId};
@@ -70,6 +71,17 @@ pub enum LoadError {
     OtherFirmware {
         /// The image's stamp.
         found: i16,
+    },
+    /// Linked against another build of this version.
+    #[error(
+        "linked against another build of firmware {}: its file has the time stamp {found}, not {board}",
+        version(VERSION_STAMP)
+    )]
+    OtherBuild {
+        /// The time stamp in the image.
+        found: u32,
+        /// That of the board's firmware.
+        board: u32,
     },
     /// An object, or an image with something left to link.
     #[error("an object that is not linked yet; `cc67 build` links it")]
@@ -165,6 +177,12 @@ fn check_origin(image: &Image) -> Result<(), LoadError> {
         {
             Err(LoadError::OtherFirmware { found: header.version_stamp })
         }
+        Some(header) if states_firmware(image.target, header.version_stamp) => {
+            match (image.timestamp, TargetBoard::default_board().time_stamp) {
+                (found @ 1.., Some(board)) if found != board => Err(LoadError::OtherBuild { found, board }),
+                _ => Ok(()),
+            }
+        }
         _ => Ok(()),
     }
 }
@@ -178,9 +196,11 @@ fn states_firmware(target: Target, stamp: i16) -> bool {
 
 /// A version stamp in words.
 fn version(stamp: i16) -> String {
-    match stamp {
-        1.. => format!("version {}.{:02}", stamp / 100, stamp % 100),
-        _ => "an unknown version".to_owned(),
+    let known = BOARDS.iter().find(|board| board.version_stamp() == stamp);
+    match (stamp, known) {
+        (_, Some(board)) => format!("version {}", board.number()),
+        (1.., None) => format!("version {}.{:02}", stamp / 100, stamp % 100),
+        (_, None) => "an unknown version".to_owned(),
     }
 }
 

@@ -17,6 +17,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use kmotiondef::ThreadId;
+use kmotiondef::boards::{BOARDS, TargetBoard};
 
 use crate::driver::{Options, front_and_object, on_large_stack};
 use crate::image;
@@ -477,5 +478,7 @@ pub fn source_of(path: &Path, program: &[u8]) -> Result<PathBuf, String> {
 fn thread_of(program: &[u8]) -> Option<ThreadId> {
     let image = Inspection::read(program).ok()?.image;
     let text = image.section(".text")?.address;
-    ThreadId::all().find(|thread| kmotiondef::map::program_base(*thread).get() == text)
+    let begins =
+        |board: &TargetBoard| ThreadId::all().find(|thread| board.program_base(*thread).get() == text);
+    begins(TargetBoard::default_board()).or_else(|| BOARDS.iter().find_map(begins))
 }

@@ -88,19 +88,27 @@ impl Files for NoFiles {
     }
 }
 
-/// Adds the members that `objects` use and do not define, and those that these use.
-pub(super) fn add_needed(objects: &mut Vec<Object>, compile: impl Fn(&Member<'_>) -> Option<Object>) {
+/// Adds the members that `objects` use and neither they nor the firmware define, and those that these use.
+pub(super) fn add_needed(
+    objects: &mut Vec<Object>,
+    is_in_firmware: impl Fn(&str) -> bool,
+    compile: impl Fn(&Member<'_>) -> Option<Object>,
+) {
     let mut looked_at = 0;
     while looked_at < objects.len() {
-        let needed = needed_by(objects.get(looked_at..).unwrap_or_default(), objects);
+        let needed = needed_by(objects.get(looked_at..).unwrap_or_default(), objects, &is_in_firmware);
         looked_at = objects.len();
         objects.extend(needed.iter().filter_map(&compile));
     }
 }
 
 /// The members that some of the objects use and none of all defines.
-fn needed_by(users: &[Object], all: &[Object]) -> Vec<Member<'static>> {
-    let used: BTreeSet<&str> = users.iter().flat_map(used_by).collect();
+fn needed_by(
+    users: &[Object],
+    all: &[Object],
+    is_in_firmware: &dyn Fn(&str) -> bool,
+) -> Vec<Member<'static>> {
+    let used: BTreeSet<&str> = users.iter().flat_map(used_by).filter(|name| !is_in_firmware(name)).collect();
     if used.is_empty() {
         return Vec::new();
     }

@@ -8,6 +8,7 @@ mod jumps;
 mod library;
 mod no_main;
 
+use std::borrow::Cow;
 use std::hint::black_box;
 use std::panic::resume_unwind;
 use std::path::Path;
@@ -15,6 +16,8 @@ use std::sync::Arc;
 use std::thread;
 
 use kmotiondef::ThreadId;
+use kmotiondef::boards::{BOARDS, TargetBoard};
+use kmotiondef::firmware::Origin;
 use kmotiondef::jumps::JumpFunction;
 use kmotiondef::timing::Timing;
 
@@ -22,7 +25,7 @@ use includers::includers;
 
 use crate::bytecode::Generator;
 use crate::diag::{Diagnostic, Sink};
-use crate::firmware::Firmware;
+use crate::firmware::{Firmware, FirmwareNames};
 use crate::ir::function::Function;
 use crate::link::{self, LinkErrorKind, Linked, SectionAddresses};
 use crate::names::Names;
@@ -67,6 +70,18 @@ impl Default for Options {
             gc_sections: true,
             addresses: SectionAddresses::default(),
         }
+    }
+}
+
+impl Options {
+    /// The options of the preprocessor, with the headers of the board that the firmware belongs to.
+    fn preprocessor_of_board(&self) -> Cow<'_, pp::Options> {
+        let board = self.firmware.board();
+        let has_defaults = std::ptr::eq(self.preprocessor.embedded, TargetBoard::default_board().headers());
+        if board.is_default() || !has_defaults {
+            return Cow::Borrowed(&self.preprocessor);
+        }
+        Cow::Owned(pp::Options { embedded: board.headers(), ..self.preprocessor.clone() })
     }
 }
 
@@ -232,7 +247,8 @@ fn front_with(
     names: &mut Names,
     sink: &mut Sink,
 ) -> (Unit, HeadersRead) {
-    let (tokens, read) = pp::preprocess_as(headers, main, &options.preprocessor, files, sources, names, sink);
+    let preprocessor = options.preprocessor_of_board();
+    let (tokens, read) = pp::preprocess_as(headers, main, &preprocessor, files, sources, names, sink);
     let tree = parse::parse(&tokens, sources, names, sink);
     drop(tokens);
     let standard = options.preprocessor.standard;
@@ -346,6 +362,18 @@ impl Compilation {
     }
 }
 
+/// A warning about a firmware file of a version that is not known.
+fn unknown_version(firmware: &Firmware) -> Option<Diagnostic> {
+    let Firmware::File(file) = firmware else { return None };
+    let version = file.version().filter(|_| file.board().is_none())?;
+    let known: Vec<_> = BOARDS.iter().map(|board| board.version).collect();
+    let message = format!("the firmware file is of `{version}`, which cc67 does not know");
+    let diagnostic = Diagnostic::global_warning(message).note(format!("known are {}", known.join(", ")));
+    Some(diagnostic.note(
+        "names and addresses are those of the file; header, structures and types are those of firmware 4.34",
+    ))
+}
+
 /// Links units, with what they need of the C library, to one program for `thread`; `None` if one of
 /// them has errors.
 ///
@@ -357,7 +385,10 @@ pub fn link_units(units: &mut [Compilation], thread: ThreadId, options: &Options
     }
     let mut objects: Vec<Object> = units.iter_mut().filter_map(|unit| unit.object.take()).collect();
     let target = objects.first().map_or(options.target, Object::target);
-    library::add_needed(&mut objects, |member| compile_library(member, target, options.timing).object);
+    let is_in_firmware =
+        |name: &str| options.firmware.origin(name).is_some_and(|origin| origin != Origin::Library);
+    let compile = |member: &library::Member<'_>| compile_library(member, target, options.timing).object;
+    library::add_needed(&mut objects, is_in_firmware, compile);
     if target == Target::C67x && library::uses(&objects, &JumpFunction::ALL.map(JumpFunction::name)) {
         objects.push(jumps::object());
     }
@@ -369,6 +400,7 @@ pub fn link_units(units: &mut [Compilation], thread: ThreadId, options: &Options
             for warning in &linked.warnings {
                 unit.sink.report(warning.to_diagnostic());
             }
+            unit.sink.report_if(unknown_version(firmware));
             Some(linked)
         }
         Err(errors) => {
@@ -376,7 +408,9 @@ pub fn link_units(units: &mut [Compilation], thread: ThreadId, options: &Options
                 let index = error.object.filter(|index| *index < units.len());
                 let unit = units.get_mut(index.unwrap_or(0))?;
                 let mut diagnostic = error.to_diagnostic();
-                if let (LinkErrorKind::Undefined { .. }, Some(version)) = (&error.kind, firmware.version()) {
+                if let (LinkErrorKind::Undefined { .. }, Firmware::File(file)) = (&error.kind, firmware)
+                    && let Some(version) = file.version()
+                {
                     diagnostic = diagnostic.note(format!("the firmware file is of `{version}`"));
                 }
                 // The places of library members are in no source that the user has.

@@ -8,21 +8,19 @@ use coff::{
     BaseType, Contents, Derivation, Error, FileFlags, Image, Name, Program, Section, SectionFlags,
     SectionNumber, StorageClass, Symbol, SymbolType, Target,
 };
-use kmotiondef::firmware::{ABSENT, FIRMWARE_FUNCTIONS, Origin};
-use kmotiondef::limits::{VERSION, VERSION_STAMP};
-use kmotiondef::variables::{FIRMWARE_VARIABLES, variable_named};
+use kmotiondef::GuestAddr;
+use kmotiondef::boards::TargetBoard;
 
 /// The variable that holds the version text.
 const VERSION_NAME: &str = "VersionAndBuildTime";
 
-/// Writes the file.
+/// Writes the file of a board's firmware.
 ///
 /// # Errors
 /// If it exceeds what the format can count.
-pub fn export() -> Result<Vec<u8>, Error> {
-    let address = variable_named(VERSION_NAME).map_or(0, |variable| variable.address.get());
-    let mut text = VERSION.as_bytes().to_vec();
-    text.push(0);
+pub fn export(board: &TargetBoard) -> Result<Vec<u8>, Error> {
+    let address = board.variable(VERSION_NAME).map_or(0, GuestAddr::get);
+    let text = format!("{}\n\0", board.version).into_bytes();
     let constants = Section {
         name: Name::from(".const"),
         physical: address,
@@ -35,57 +33,63 @@ pub fn export() -> Result<Vec<u8>, Error> {
     };
     let image = Image {
         target: Target::CC67,
-        timestamp: 0,
+        timestamp: board.time_stamp.filter(|_| !board.is_default()).unwrap_or(0),
         flags: FileFlags::LINKED,
-        program: Some(Program { version_stamp: VERSION_STAMP, ..Program::default() }),
+        program: Some(Program { version_stamp: board.version_stamp(), ..Program::default() }),
         sections: vec![constants],
-        symbols: symbols(),
+        symbols: symbols(board),
     };
     image.write()
 }
 
-fn symbols() -> Vec<Symbol> {
+fn symbols(board: &TargetBoard) -> Vec<Symbol> {
     let int = SymbolType::new(BaseType::INT);
-    let symbol = |name: &str, value, section, ty| Symbol {
-        name: Name::from(format!("_{name}").as_str()),
-        value,
-        section,
-        ty,
-        class: StorageClass::EXTERNAL,
-        aux: Vec::new(),
+    let symbol = |(name, address): (&str, GuestAddr)| {
+        let is_version = name == VERSION_NAME;
+        let is_function = board.function(name).is_some();
+        Symbol {
+            name: Name::from(format!("_{name}").as_str()),
+            value: address.get(),
+            section: if is_version { SectionNumber(1) } else { SectionNumber::ABSOLUTE },
+            ty: if is_function { int.derived(Derivation::Function) } else { int },
+            class: StorageClass::EXTERNAL,
+            aux: Vec::new(),
+        }
     };
-    let functions = FIRMWARE_FUNCTIONS
-        .iter()
-        .filter(|function| function.origin != Origin::Library && !ABSENT.contains(&function.name));
-    let functions = functions.map(|function| {
-        let ty = int.derived(Derivation::Function);
-        symbol(function.name, function.address.get(), SectionNumber::ABSOLUTE, ty)
-    });
-    let variables = FIRMWARE_VARIABLES.iter().filter(|variable| !ABSENT.contains(&variable.name));
-    let variables = variables.map(|variable| {
-        let is_version = variable.name == VERSION_NAME;
-        let section = if is_version { SectionNumber(1) } else { SectionNumber::ABSOLUTE };
-        symbol(variable.name, variable.address.get(), section, int)
-    });
-    functions.chain(variables).collect()
+    board.symbols().into_iter().map(symbol).collect()
 }
 
 #[cfg(test)]
 mod tests {
+    use kmotiondef::boards::BOARDS;
+
     use super::*;
     use crate::firmware::{BuiltIn, Firmware, FirmwareFile, FirmwareSymbols};
 
     #[test]
     fn the_exported_file_has_the_symbols_of_the_tables() {
-        let bytes = export().expect("it fits");
+        let board = TargetBoard::default_board();
+        let bytes = export(board).expect("it fits");
         let file = FirmwareFile::read(&bytes).expect("it is a firmware file");
-        assert_eq!(file.version(), Some(VERSION.trim_end()));
-        assert_eq!(file.version_stamp(), VERSION_STAMP);
+        assert_eq!(file.version(), Some(board.version));
+        assert_eq!(file.version_stamp(), board.version_stamp());
         let file = Firmware::File(file.into());
         assert_eq!(file.check_version(), Ok(()));
         for name in BuiltIn.symbol_names() {
             assert_eq!(file.find(name), BuiltIn.find(name), "{name}");
         }
         assert!(file.symbol_names().all(|name| BuiltIn.find(name).is_some()));
+    }
+
+    #[test]
+    fn files_of_other_boards_link_as_the_boards_do() {
+        for board in BOARDS.iter() {
+            let file = FirmwareFile::read(&export(board).expect("it fits")).expect("it is a firmware file");
+            assert_eq!(file.board(), Some(board));
+            let file = Firmware::File(file.into());
+            for name in FirmwareSymbols::symbol_names(&board) {
+                assert_eq!(file.find(name), board.find(name), "{}: {name}", board.name);
+            }
+        }
     }
 }

@@ -7,8 +7,9 @@ use std::collections::BTreeMap;
 
 use coff::{BaseType, Derivation, File, StorageClass, SymbolType};
 use kmotiondef::GuestAddr;
+use kmotiondef::boards::{TargetBoard, stamp};
 
-use super::{BuiltIn, FirmwareKind, FirmwareSymbol, FirmwareSymbols};
+use super::{FirmwareKind, FirmwareSymbol, FirmwareSymbols};
 
 /// Longest version text that is looked at.
 const MAX_VERSION: usize = 80;
@@ -30,6 +31,7 @@ pub struct FirmwareFile {
     /// Address and type of each name, as programs spell it.
     symbols: BTreeMap<String, (GuestAddr, SymbolType)>,
     version: Option<String>,
+    time_stamp: u32,
 }
 
 impl FirmwareFile {
@@ -57,7 +59,8 @@ impl FirmwareFile {
         if symbols.is_empty() {
             return Err(FirmwareError::NoSymbols);
         }
-        Ok(Self { symbols, version })
+        let time_stamp = file.timestamp();
+        Ok(Self { symbols, version, time_stamp })
     }
 
     /// What the firmware answers to `Version`; `None` if the file does not say.
@@ -66,10 +69,27 @@ impl FirmwareFile {
         self.version.as_deref()
     }
 
+    /// The board with this version of the firmware; `None` for a version that is not known.
+    #[must_use]
+    pub fn board(&self) -> Option<&'static TargetBoard> {
+        TargetBoard::of_version(self.version()?)
+    }
+
+    /// The time stamp in the header of the file.
+    #[must_use]
+    pub const fn time_stamp(&self) -> u32 {
+        self.time_stamp
+    }
+
     /// The stamp of images that are linked against it: 434 for version 4.34, 0 if it is unknown.
     #[must_use]
     pub fn version_stamp(&self) -> i16 {
         self.version.as_deref().and_then(stamp).unwrap_or(0)
+    }
+
+    /// Every name with its address.
+    pub fn symbols(&self) -> impl Iterator<Item = (&str, GuestAddr)> {
+        self.symbols.iter().map(|(name, (address, _))| (name.as_str(), *address))
     }
 
     /// Every name that programs can use.
@@ -87,9 +107,9 @@ impl FirmwareFile {
     ///
     /// The vendor's file says `int` of everything, functions included, so that what the tables know
     /// comes first. What neither knows may be called as the program declares it.
-    pub(super) fn find(&self, name: &str) -> Option<FirmwareSymbol> {
+    pub(super) fn find(&self, name: &str, board: &'static TargetBoard) -> Option<FirmwareSymbol> {
         let (address, ty) = *self.symbols.get(name)?;
-        let kind = match BuiltIn.find(name) {
+        let kind = match board.find(name) {
             Some(known) => known.kind,
             None if ty == INT || ty.outermost() == Some(Derivation::Function) => FirmwareKind::Function(None),
             None => FirmwareKind::Variable,
@@ -131,26 +151,9 @@ fn version_text(file: &File<'_>, address: u32) -> Option<String> {
     Some(String::from_utf8_lossy(text).into_owned())
 }
 
-/// The number of the version in "KFLOP 4.34 Build …".
-fn stamp(version: &str) -> Option<i16> {
-    let (major, minor) = version.split_whitespace().find_map(|word| word.split_once('.'))?;
-    let minor: String = minor.chars().take_while(char::is_ascii_digit).take(2).collect();
-    let major: i16 = major.parse().ok()?;
-    major.checked_mul(100)?.checked_add(minor.parse().ok()?)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn version_texts_become_version_stamps() {
-        assert_eq!(stamp("KFLOP 4.34 Build 16:07:06 Aug 14 2018"), Some(434));
-        assert_eq!(stamp("KFLOP 4.35h Build 1"), Some(435));
-        assert_eq!(stamp("KFLOP 5.10 Build"), Some(510));
-        assert_eq!(stamp("KFLOP 900000.10"), None);
-        assert_eq!(stamp("KFLOP"), None);
-    }
 
     #[test]
     fn names_lose_one_underscore() {

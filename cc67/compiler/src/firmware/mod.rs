@@ -1,10 +1,11 @@
 //! The firmware that programs are compiled for and linked against.
 //!
-//! By default that is the simulated board's own, from the tables of `kmotiondef`
-//! ([`BuiltIn`]). `--firmware` names a file instead, the vendor's or one that
-//! `cc67 firmware export` wrote: its symbols say which names there are and where, the tables go on
-//! saying what their types are, because the file does not.
+//! By default that is the simulated board's own, from the tables of `kmotiondef` ([`BuiltIn`]); `--board` names another
+//! board. `--firmware` names a file instead, the vendor's or one that `cc67 firmware export` wrote: its symbols say which
+//! names there are and where, and the tables of the board with the version of the file say what their types are,
+//! because the file does not.
 
+mod board;
 mod built_in;
 mod export;
 mod file;
@@ -19,33 +20,48 @@ pub use symbols::{FirmwareKind, FirmwareSymbol, FirmwareSymbols};
 
 use std::sync::Arc;
 
+use kmotiondef::boards::TargetBoard;
 use kmotiondef::firmware::Origin;
-use kmotiondef::limits::VERSION;
 
 /// Which firmware.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub enum Firmware {
-    /// That of the simulated board.
-    #[default]
-    BuiltIn,
+    /// That of a board.
+    Board(&'static TargetBoard),
     /// That of a file.
     File(Arc<FirmwareFile>),
 }
 
+impl Default for Firmware {
+    fn default() -> Self {
+        Self::Board(TargetBoard::default_board())
+    }
+}
+
 impl Firmware {
+    /// The board that it belongs to; of a version that is not known, the one whose tables serve for it.
+    #[must_use]
+    pub fn board(&self) -> &'static TargetBoard {
+        match self {
+            Self::Board(board) => board,
+            Self::File(file) => file.board().unwrap_or_else(TargetBoard::default_board),
+        }
+    }
+
     /// Whether the firmware has `name`, or the simulated board supplies it to every program.
     fn has(&self, name: &str) -> bool {
         match self {
-            Self::BuiltIn => true,
-            Self::File(file) => file.has(name) || BuiltIn.origin(name) == Some(Origin::Library),
+            Self::Board(_) => true,
+            Self::File(file) => file.has(name) || self.board().origin(name) == Some(Origin::Library),
         }
     }
 }
 
 /// The firmware of the simulated board is not that of the file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the firmware file is of `{file}`, the simulated board runs `{board}`")]
+#[error("{what} `{file}`, the simulated board runs `{board}`")]
 pub struct VersionMismatch {
+    what: &'static str,
     file: String,
     board: &'static str,
 }
@@ -55,7 +71,7 @@ impl Firmware {
     #[must_use]
     pub fn version(&self) -> Option<&str> {
         match self {
-            Self::BuiltIn => None,
+            Self::Board(board) => Some(board.version).filter(|_| !board.is_default()),
             Self::File(file) => file.version(),
         }
     }
@@ -66,39 +82,46 @@ impl Firmware {
     /// # Errors
     /// If they differ, or the file does not state its version.
     pub fn check_version(&self) -> Result<(), VersionMismatch> {
-        let Self::File(file) = self else { return Ok(()) };
-        let board = VERSION.trim_end();
-        if file.version() == Some(board) {
+        let board = TargetBoard::default_board().version;
+        let (what, version) = match self {
+            Self::Board(own) => ("`--board`: the program is for", Some(own.version)),
+            Self::File(file) => ("`--firmware`: the firmware file is of", file.version()),
+        };
+        if version == Some(board) {
             return Ok(());
         }
-        Err(VersionMismatch { file: file.version().unwrap_or("unknown version").to_owned(), board })
+        Err(VersionMismatch { what, file: version.unwrap_or("unknown version").to_owned(), board })
     }
 }
 
 impl FirmwareNames for Firmware {
+    fn board(&self) -> &'static TargetBoard {
+        Self::board(self)
+    }
+
     fn prototype(&self, name: &str) -> Option<Prototype> {
-        BuiltIn.prototype(name).filter(|_| self.has(name))
+        self.board().prototype(name).filter(|_| self.has(name))
     }
 
     fn origin(&self, name: &str) -> Option<Origin> {
-        BuiltIn.origin(name).filter(|_| self.has(name))
+        self.board().origin(name).filter(|_| self.has(name))
     }
 
     fn is_variable(&self, name: &str) -> bool {
-        BuiltIn.is_variable(name) && self.has(name)
+        self.board().is_variable(name) && self.has(name)
     }
 
     fn is_hidden(&self, name: &str) -> bool {
-        BuiltIn.is_hidden(name) && self.has(name)
+        self.board().is_hidden(name) && self.has(name)
     }
 
     fn is_type(&self, name: &str) -> bool {
-        BuiltIn.is_type(name)
+        self.board().is_type(name)
     }
 
     fn names(&self) -> Box<dyn Iterator<Item = &str> + '_> {
         match self {
-            Self::BuiltIn => FirmwareNames::names(&BuiltIn),
+            Self::Board(board) => FirmwareNames::names(board),
             Self::File(file) => Box::new(file.names()),
         }
     }
@@ -107,8 +130,11 @@ impl FirmwareNames for Firmware {
 impl FirmwareSymbols for Firmware {
     fn find(&self, name: &str) -> Option<FirmwareSymbol> {
         match self {
-            Self::BuiltIn => BuiltIn.find(name),
-            Self::File(file) => file.find(name).or_else(|| BuiltIn.find(name).filter(|_| self.has(name))),
+            Self::Board(board) => board.find(name),
+            Self::File(file) => {
+                let found = file.find(name, self.board());
+                found.or_else(|| self.board().find(name).filter(|_| self.has(name)))
+            }
         }
     }
 
@@ -116,10 +142,22 @@ impl FirmwareSymbols for Firmware {
         FirmwareNames::names(self)
     }
 
+    fn board(&self) -> &'static TargetBoard {
+        Self::board(self)
+    }
+
     fn version_stamp(&self) -> i16 {
         match self {
-            Self::BuiltIn => BuiltIn.version_stamp(),
+            Self::Board(board) => board.version_stamp(),
             Self::File(file) => file.version_stamp(),
+        }
+    }
+
+    fn time_stamp(&self) -> u32 {
+        match self {
+            Self::Board(board) if board.is_default() => 0,
+            Self::Board(board) => board.time_stamp.unwrap_or(0),
+            Self::File(file) => file.time_stamp(),
         }
     }
 }

@@ -4,6 +4,7 @@
 //! prototype (`dialect.md` 2.3), and a misspelt name gets a suggestion.
 
 use kmotiondef::CType;
+use kmotiondef::boards::TargetBoard;
 use kmotiondef::firmware::Origin;
 
 /// The prototype of a firmware or library function.
@@ -37,6 +38,11 @@ pub trait FirmwareNames {
 
     /// Whether the vendor's header defines a type of this name.
     fn is_type(&self, name: &str) -> bool;
+
+    /// The board that programs are compiled for; of a firmware that is not known, the one whose tables serve for it.
+    fn board(&self) -> &'static TargetBoard {
+        TargetBoard::default_board()
+    }
 
     /// Every function and variable, for suggestions.
     fn names(&self) -> Box<dyn Iterator<Item = &str> + '_>;

@@ -1,10 +1,9 @@
 //! What the linker asks of the firmware.
 
-use kmotiondef::GuestAddr;
-use kmotiondef::ValueClass;
-use kmotiondef::firmware::{ABSENT, FIRMWARE_FUNCTIONS, function_named};
-use kmotiondef::limits::VERSION_STAMP;
+use kmotiondef::boards::TargetBoard;
+use kmotiondef::firmware::{ABSENT, row_named};
 use kmotiondef::variables::variable_named;
+use kmotiondef::{CType, GuestAddr, ValueClass};
 
 use super::{BuiltIn, FirmwareNames};
 use crate::ir::function::Signature;
@@ -36,9 +35,19 @@ pub trait FirmwareSymbols {
     /// Every name, for suggestions.
     fn symbol_names(&self) -> Box<dyn Iterator<Item = &str> + '_>;
 
+    /// The board that programs are linked for; of a firmware that is not known, the one whose tables serve for it.
+    fn board(&self) -> &'static TargetBoard {
+        TargetBoard::default_board()
+    }
+
     /// The version of the firmware, as images state it.
     fn version_stamp(&self) -> i16 {
-        VERSION_STAMP
+        self.board().version_stamp()
+    }
+
+    /// The time stamp of the firmware file, as images state it; 0 if it is not known.
+    fn time_stamp(&self) -> u32 {
+        0
     }
 }
 
@@ -50,17 +59,24 @@ impl FirmwareSymbols for BuiltIn {
         if let Some(variable) = variable_named(name) {
             return Some(FirmwareSymbol { address: variable.address, kind: FirmwareKind::Variable });
         }
-        let function = FIRMWARE_FUNCTIONS.get(function_named(name)?)?;
-        // The variable arguments are passed as their address.
-        let variable = function.is_variadic.then_some(Class::I32);
-        let params = function.param_classes().map(class).chain(variable).collect();
-        let signature = Signature { params, result: function.result.class().map(class) };
+        let function = row_named(name)?;
+        let signature = signature(function.param_classes(), function.result, function.is_variadic);
         Some(FirmwareSymbol { address: function.address, kind: FirmwareKind::Function(Some(signature)) })
     }
 
     fn symbol_names(&self) -> Box<dyn Iterator<Item = &str> + '_> {
         FirmwareNames::names(self)
     }
+}
+
+/// The signature of a function; variable arguments are passed as their address.
+pub(super) fn signature(
+    params: impl Iterator<Item = ValueClass>,
+    result: CType,
+    is_variadic: bool,
+) -> Signature {
+    let variable = is_variadic.then_some(Class::I32);
+    Signature { params: params.map(class).chain(variable).collect(), result: result.class().map(class) }
 }
 
 const fn class(class: ValueClass) -> Class {

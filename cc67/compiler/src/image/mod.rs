@@ -66,7 +66,7 @@ fn bare(linked: &Linked) -> Image {
             crate::target::Target::Sim => Target::CC67,
             crate::target::Target::C67x => Target::C6000,
         },
-        timestamp: 0,
+        timestamp: linked.firmware.time_stamp,
         flags: FileFlags::LINKED,
         program: Some(header(linked)),
         sections: sections(linked),

@@ -1,5 +1,7 @@
 //! What can go wrong when linking.
 
+use kmotiondef::boards::TargetBoard;
+
 use crate::diag::Diagnostic;
 use crate::source::Span;
 use crate::words::foreign;
@@ -31,6 +33,8 @@ pub enum LinkErrorKind {
         name: String,
         /// A name that may be meant.
         suggestion: Option<String>,
+        /// Another board whose firmware has the name.
+        other: Option<&'static TargetBoard>,
     },
     /// Two units define one name.
     #[error("`{name}` is defined twice, in {first} and in {second}")]
@@ -96,8 +100,12 @@ impl LinkError {
             Some(users) => diagnostic.note(format!("used by {}", enumerate(users))),
         };
         match &self.kind {
-            LinkErrorKind::Undefined { name, suggestion } => {
+            LinkErrorKind::Undefined { name, suggestion, other } => {
                 let diagnostic = diagnostic.undefined(name);
+                if let Some(other) = other {
+                    let help = format!("`{name}` is of {}: `--board {}`", other.title(), other.name);
+                    return diagnostic.help(help);
+                }
                 match (foreign::word(name), suggestion) {
                     (Some(word), _) => diagnostic.help(word.advice),
                     (None, Some(near)) => diagnostic.help(format!("did you mean `{near}`?")),

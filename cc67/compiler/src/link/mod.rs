@@ -17,7 +17,6 @@ pub use error::{LinkError, LinkErrorKind, LinkWarning};
 
 use std::sync::Arc;
 
-use kmotiondef::map::program_base;
 use kmotiondef::{GuestAddr, ThreadId};
 
 use crate::firmware::FirmwareSymbols;
@@ -83,6 +82,8 @@ pub struct Linked {
 pub struct LinkedFirmware {
     /// Its version.
     pub version_stamp: i16,
+    /// The time stamp of its file; 0 if it is not known.
+    pub time_stamp: u32,
     /// Its symbols that the program refers to.
     pub imports: Vec<Import>,
 }
@@ -178,11 +179,12 @@ pub fn link(objects: &[Object], options: &Options<'_>) -> Result<Linked, Vec<Lin
     processor::check_targets(objects)?;
     let names = names::Names::collect(objects)?;
     let reached = reach::reach(objects, &names, options)?;
-    let base = options.addresses.text.unwrap_or_else(|| program_base(options.thread));
+    let board = options.firmware.board();
+    let base = options.addresses.text.unwrap_or_else(|| board.program_base(options.thread));
     let layout = text::TextLayout::new(objects, &reached, base)?;
     let code = base.offset(layout.guard);
     let placed = place::place(objects, &names, &reached, &layout, code, &options.addresses);
-    let warnings = place::check_size(&placed, base)?;
+    let warnings = place::check_size(&placed, base, board.programs())?;
     let addresses = text::Addresses { base: code, reached: &reached, placed: &placed };
     Ok(Linked {
         thread: options.thread,
@@ -193,6 +195,7 @@ pub fn link(objects: &[Object], options: &Options<'_>) -> Result<Linked, Vec<Lin
         entry: if layout.guard > 0 { base } else { placed.function(reached.main) },
         firmware: LinkedFirmware {
             version_stamp: options.firmware.version_stamp(),
+            time_stamp: options.firmware.time_stamp(),
             imports: reached.imports,
         },
         files: layout.files.clone(),

@@ -1,6 +1,6 @@
 //! Gives everything its address.
 
-use kmotiondef::map::{PROGRAM_BASE, PROGRAM_LIMIT, PROGRAM_SIZE};
+use kmotiondef::boards::ProgramSpaces;
 use kmotiondef::{GuestAddr, ThreadId};
 
 use super::error::{LinkError, LinkErrorKind, LinkWarning};
@@ -140,24 +140,29 @@ fn linked(
 
 /// Compares the program's end with the space there is (specification, `dialect.md` section 7). A program
 /// whose text is not in the space of the board's user programs is for another board.
-pub(super) fn check_size(placed: &Placed, text: GuestAddr) -> Result<Vec<LinkWarning>, Vec<LinkError>> {
-    if !(PROGRAM_BASE..PROGRAM_LIMIT).contains(&text.get()) {
+pub(super) fn check_size(
+    placed: &Placed,
+    text: GuestAddr,
+    spaces: ProgramSpaces,
+) -> Result<Vec<LinkWarning>, Vec<LinkError>> {
+    let ProgramSpaces { base, size, limit } = spaces;
+    if !(base..limit).contains(&text.get()) {
         return Ok(Vec::new());
     }
     let end = placed.bss_address.get().saturating_add(placed.bss_size);
-    if end > PROGRAM_LIMIT {
-        let (excess, space) = (end - PROGRAM_LIMIT, PROGRAM_LIMIT - text.get());
+    if end > limit {
+        let (excess, space) = (end - limit, limit - text.get());
         let kind = LinkErrorKind::TooLarge { excess, space, largest: largest(placed) };
         return Err(vec![LinkError::global(kind)]);
     }
     // The thread in whose space the text begins.
-    let own = (text.get() - PROGRAM_BASE) / PROGRAM_SIZE + 1;
-    let own_end = PROGRAM_BASE + own * PROGRAM_SIZE;
+    let own = (text.get() - base) / size + 1;
+    let own_end = base + own * size;
     if end <= own_end {
         return Ok(Vec::new());
     }
     // What comes after the space of the last thread is nobody else's.
-    let last = ((end - 1 - PROGRAM_BASE) / PROGRAM_SIZE + 1).min(u32::from(ThreadId::MAX));
+    let last = ((end - 1 - base) / size + 1).min(u32::from(ThreadId::MAX));
     let entered: Vec<u8> = (own as u8 + 1..=last as u8).collect();
     if entered.is_empty() {
         return Ok(Vec::new());

@@ -200,7 +200,8 @@ impl Walk<'_> {
         }
         let candidates = self.names.external_names().chain(self.options.firmware.symbol_names());
         let suggestion = suggest(&symbol.name, candidates).map(str::to_owned);
-        let kind = LinkErrorKind::Undefined { name: symbol.name.clone(), suggestion };
+        let other = self.options.firmware.board().other_with(&symbol.name);
+        let kind = LinkErrorKind::Undefined { name: symbol.name.clone(), suggestion, other };
         let span = symbol.used_at.or(symbol.span);
         let error = LinkError { object: Some(object), span, kind, users: vec![user] };
         self.missing.insert(&symbol.name, error);

@@ -3,8 +3,7 @@
 //! The header decides where the fields of `CHAN` and similar structures are (`dialect.md` 1.2); with
 //! those of another version a program silently reads and writes the wrong ones.
 
-use kmotiondef::limits::VERSION;
-use kmotiondef::structs::{STRUCTURES, Structure};
+use kmotiondef::boards::{BOARDS, StructureLayout, TargetBoard};
 
 use super::program::AnalysedProgram;
 use crate::diag::{Diagnostic, Lint, Sink};
@@ -23,28 +22,47 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
     let Some((name, span)) = local.first().and_then(|file| Some((&file.name, file.included_at?))) else {
         return;
     };
-    let version = local.iter().find_map(|file| version_in(&file.text)).filter(|found| *found != firmware());
-    let mut notes: Vec<_> = version.map(|found| format!("its version is {found}")).into_iter().collect();
-    notes.extend(STRUCTURES.iter().filter_map(|structure| difference(program, structure)));
+    let board = program.firmware.board();
+    let stated = local.iter().find_map(|file| version_in(&file.text));
+    let version = stated.filter(|stated| *stated != board.number());
+    let owner = version.as_deref().and_then(|version| owner(&local, version));
+    let mut notes: Vec<_> = version.map(|version| format!("its version is {version}")).into_iter().collect();
+    notes.extend(board.structures().iter().filter_map(|structure| difference(program, structure)));
     if notes.is_empty() {
         return;
     }
-    let message = format!("`{name}` is not the header of firmware {}", firmware());
-    let mut diagnostic = Diagnostic::warning(Lint::HeaderMismatch, span, message)
-        .at("the simulated board has that firmware")
-        .help("remove the copy: the compiler has the header itself");
+    let message = format!("`{name}` is not the header of firmware {}", board.number());
+    let mut diagnostic = Diagnostic::warning(Lint::HeaderMismatch, span, message);
+    diagnostic = match board.is_default() {
+        true => diagnostic.at("the simulated board has that firmware"),
+        false => diagnostic.at(format!("the program is built for {}", board.title())),
+    };
+    diagnostic = match owner {
+        Some(owner) => diagnostic.help(format!(
+            "it belongs to {}: build for that with `--board {}`, or remove the copy: the compiler has the header itself",
+            owner.title(),
+            owner.name
+        )),
+        None => diagnostic.help("remove the copy: the compiler has the header itself"),
+    };
     diagnostic.notes = notes;
     sink.report(diagnostic);
+}
+
+/// The board whose header states a version.
+fn owner(headers: &[&SourceFile], version: &str) -> Option<&'static TargetBoard> {
+    let is_of = |board: &&TargetBoard| {
+        let define = format!("#define BOARD \"{}\"", board.kind());
+        headers.iter().any(|file| String::from_utf8_lossy(&file.text).contains(&define))
+    };
+    let mut boards = BOARDS.iter().filter(|board| board.number() == version);
+    let first = boards.clone().next();
+    boards.find(is_of).or(first)
 }
 
 fn is_header(file: &SourceFile) -> bool {
     let name = file.path.as_ref().and_then(|path| path.file_name()).unwrap_or_default();
     HEADERS.iter().any(|header| name.eq_ignore_ascii_case(header))
-}
-
-/// The number of the simulated firmware's version.
-fn firmware() -> &'static str {
-    VERSION.split_whitespace().nth(1).unwrap_or(VERSION)
 }
 
 /// The value of the version macro in a header's text.
@@ -58,13 +76,13 @@ fn version_in(text: &[u8]) -> Option<String> {
 }
 
 /// Where the program's structure of this name differs first, if it has one.
-fn difference(program: &AnalysedProgram<'_>, structure: &Structure) -> Option<String> {
+fn difference(program: &AnalysedProgram<'_>, structure: &StructureLayout) -> Option<String> {
     let types = &program.unit.types;
     let (record, layout) = types.records().find_map(|(id, record)| {
         let name = record.name.filter(|name| program.names.get(*name) == structure.name);
         name.and(record.layout.as_ref()).map(|layout| (id, layout))
     })?;
-    for field in structure.fields {
+    for field in &structure.fields {
         let found = layout
             .members
             .iter()
@@ -99,6 +117,5 @@ mod tests {
         ] {
             assert_eq!(version_in(text.as_bytes()).as_deref(), expect, "{text}");
         }
-        assert_eq!(firmware(), "4.34");
     }
 }

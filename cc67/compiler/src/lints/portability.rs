@@ -1,4 +1,4 @@
-//! Functions that the simulation supplies and firmware 4.34 lacks.
+//! Functions that the simulation supplies and the firmware lacks.
 
 use std::collections::BTreeSet;
 
@@ -17,7 +17,8 @@ pub(super) fn check(program: &AnalysedProgram<'_>, sink: &mut Sink) {
         let is_lacking = matches!(symbol.definition, Definition::None)
             && program.firmware.origin(&symbol.name) == Some(Origin::Library);
         if is_lacking && seen.insert(callee) {
-            let message = format!("`{}` is not in firmware 4.34", symbol.name);
+            let message =
+                format!("`{}` is not in firmware {}", symbol.name, program.firmware.board().number());
             sink.report(
                 Diagnostic::warning(Lint::Portability, expr.span, message)
                     .at("supplied by the simulation only")

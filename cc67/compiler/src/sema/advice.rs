@@ -87,7 +87,7 @@ fn say(change: impl FnOnce(Diagnostic) -> Diagnostic + 'static) -> Advice {
 }
 
 /// Whether a name is that of an axis pointer, except for the number.
-fn is_axis(spelling: &str) -> bool {
+pub(super) fn is_axis(spelling: &str) -> bool {
     spelling
         .strip_prefix("ch")
         .is_some_and(|number| !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit()))

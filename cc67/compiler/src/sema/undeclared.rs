@@ -4,10 +4,11 @@
 //! (`dialect.md` 2.3). Everything else is an error with the nearest name.
 
 use kmotiondef::CType;
-use kmotiondef::firmware::{Origin, row_named};
+use kmotiondef::boards::TargetBoard;
+use kmotiondef::firmware::Origin;
 
 use super::Sema;
-use super::advice::{Advice, HEADER_HELP};
+use super::advice::{Advice, HEADER_HELP, is_axis};
 use super::scope::Entity;
 use crate::diag::{Diagnostic, Lint};
 use crate::names::Name;
@@ -90,7 +91,7 @@ impl Sema<'_> {
             self.report(
                 Diagnostic::warning(Lint::ImplicitDeclaration, span, format!("`{spelling}` is not declared"))
                     .at(format!("the firmware's `{prototype}` is used"))
-                    .help(match is_in_header(spelling) {
+                    .help(match self.firmware.origin(spelling) == Some(Origin::Header) {
                         true => "include `KMotionDef.h`, or declare the function".to_owned(),
                         false => format!("`KMotionDef.h` lacks it; declare it: `{prototype};`"),
                     }),
@@ -174,6 +175,10 @@ impl Sema<'_> {
         }
         let Advice::Say(advice) = self.advice(name) else { return };
         let spelling = self.names.get(name);
+        if let Some(diagnostic) = of_other_board(self.firmware.board(), spelling, span) {
+            self.report(diagnostic.undefined(spelling));
+            return;
+        }
         let diagnostic = Diagnostic::error(span, format!("undefined function `{spelling}`"))
             .at("neither this program nor the firmware has it")
             .undefined(spelling);
@@ -195,7 +200,8 @@ impl Sema<'_> {
             return;
         }
         if let Advice::Say(advice) = self.advice(name) {
-            self.report(advice(diagnostic));
+            let other = of_other_board(self.firmware.board(), self.names.get(name), span);
+            self.report(other.unwrap_or_else(|| advice(diagnostic)));
         }
     }
 
@@ -227,12 +233,14 @@ impl Sema<'_> {
     }
 }
 
+/// The message for a name that the firmware of another board has.
+fn of_other_board(board: &TargetBoard, name: &str, span: Span) -> Option<Diagnostic> {
+    let other = board.other_with(name).filter(|_| !is_axis(name))?;
+    let message = format!("`{name}` is of {}; this program is built for {}", other.title(), board.title());
+    Some(Diagnostic::error(span, message).help(format!("`--board {}` builds for that firmware", other.name)))
+}
+
 /// Whether a name may be suggested for another: one letter is close to every other, only its case can be meant.
 pub(super) fn is_sensible(spelling: &str, name: &str) -> bool {
     spelling.len() > 1 || name.eq_ignore_ascii_case(spelling)
-}
-
-/// Whether the board's header declares a function of the firmware.
-fn is_in_header(name: &str) -> bool {
-    row_named(name).is_some_and(|function| function.origin == Origin::Header)
 }

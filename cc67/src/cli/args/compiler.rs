@@ -14,6 +14,7 @@ use compiler::pp::Standard;
 use compiler::render::Format;
 use compiler::target::Target;
 use compiler::{Options, pp};
+use kmotiondef::boards::{BOARDS, TargetBoard};
 use kmotiondef::timing::{Timing, WaitStates};
 
 use crate::cli::io::input::read;
@@ -53,7 +54,11 @@ pub(crate) struct CompilerArguments {
     /// The target of the code: the controller's processor, or only the simulated board
     #[arg(long, value_name = "TARGET", value_enum)]
     target: Option<TargetName>,
-    /// Link against the symbols of a firmware file in place of firmware 4.34's
+    /// The board and firmware that programs are for: kflop-4.34, kflop-5.3.2 or kogna-5.3.2 [default: kflop-4.34, or
+    /// the one with the version of the firmware file]
+    #[arg(long, value_name = "NAME", value_parser = board)]
+    board: Option<&'static TargetBoard>,
+    /// Link against the symbols of a firmware file in place of those that cc67 has
     #[arg(long, value_name = "FILE")]
     firmware: Option<PathBuf>,
     /// Leave out functions and objects that `main` cannot reach, at -O0 too
@@ -65,6 +70,14 @@ pub(crate) struct CompilerArguments {
     /// Format of the diagnostics
     #[arg(long, value_name = "FORMAT", value_enum, default_value_t = FormatName::Human)]
     message_format: FormatName,
+}
+
+/// The board with a name.
+pub(crate) fn board(name: &str) -> Result<&'static TargetBoard, String> {
+    TargetBoard::named(name).ok_or_else(|| {
+        let names: Vec<_> = BOARDS.iter().map(|board| board.name).collect();
+        format!("the boards are {}", names.join(", "))
+    })
 }
 
 /// Timings by name.
@@ -148,9 +161,20 @@ impl CompilerArguments {
 
     /// The firmware to link against.
     fn firmware(&self) -> Result<Firmware> {
-        let Some(path) = &self.firmware else { return Ok(Firmware::BuiltIn) };
+        let Some(path) = &self.firmware else {
+            return Ok(self.board.map_or_else(Firmware::default, Firmware::Board));
+        };
         let file = FirmwareFile::read(&read(path)?);
         let file = file.with_context(|| format!("`--firmware {}`", path.display()))?;
+        if let (Some(board), Some(version)) = (self.board, file.version()) {
+            ensure!(
+                version == board.version,
+                "`--firmware {}` is `{version}`, and `--board {}` is `{}`",
+                path.display(),
+                board.name,
+                board.version
+            );
+        }
         Ok(Firmware::File(Arc::new(file)))
     }
 

@@ -5,6 +5,7 @@
 //! table into text. A word that is not a name finds the names whose texts have it, or the name that was probably meant.
 
 mod bits;
+mod boards;
 mod commands;
 mod functions;
 mod places;
@@ -56,6 +57,7 @@ fn answer(name: &str) -> Option<String> {
             warning(name),
             remark(is_meant),
             functions::answer(is_meant),
+            boards::answer(is_meant),
             places::answer(is_meant),
         ]
         .into_iter()

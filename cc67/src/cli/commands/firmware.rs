@@ -1,18 +1,21 @@
 //! `cc67 firmware`: the simulated firmware as a file to link against, and as a list.
 
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use clap::{Args, Subcommand};
+use kmotiondef::boards::TargetBoard;
 use kmotiondef::firmware::{ABSENT, FIRMWARE_FUNCTIONS, Origin};
 use kmotiondef::limits::VERSION;
 use kmotiondef::variables::FIRMWARE_VARIABLES;
 use serde_json::json;
 
+use crate::cli::args::compiler::board;
 use crate::cli::io::exit::Exit;
+use crate::cli::io::input::read;
 use crate::cli::io::output;
-use compiler::firmware;
+use compiler::firmware::{self, FirmwareFile};
 
 /// Arguments of `cc67 firmware`.
 #[derive(Debug, Args)]
@@ -28,6 +31,18 @@ enum FirmwareCommand {
         /// File to write
         #[arg(value_name = "FILE", default_value = "DSPKFLOP.out")]
         file: PathBuf,
+        /// The board whose firmware it is
+        #[arg(long, value_name = "NAME", default_value = TargetBoard::default_board().name, value_parser = board)]
+        board: &'static TargetBoard,
+    },
+    /// Print the facts of a firmware file that cc67 does not know, for its folder `kmotiondef/boards`
+    Facts {
+        /// A firmware file
+        #[arg(value_name = "FILE")]
+        file: PathBuf,
+        /// The board whose declarations, structures and constants it has
+        #[arg(long = "like", value_name = "NAME", default_value = "kflop-5.3.2", value_parser = board)]
+        board: &'static TargetBoard,
     },
     /// List functions and variables with their addresses and descriptions
     List {
@@ -40,11 +55,20 @@ enum FirmwareCommand {
 /// Does what is requested.
 pub(super) fn firmware(arguments: &FirmwareArguments) -> Result<Exit> {
     match &arguments.command {
-        FirmwareCommand::Export { file } => output::write(file, &firmware::export()?)?,
+        FirmwareCommand::Export { file, board } => output::write(file, &firmware::export(board)?)?,
+        FirmwareCommand::Facts { file, board } => output::print(&facts(file, board)?)?,
         FirmwareCommand::List { json: true } => output::print(&list_json())?,
         FirmwareCommand::List { json: false } => output::print(&list())?,
     }
     Ok(Exit::Success)
+}
+
+/// The facts of a firmware file.
+fn facts(path: &Path, like: &TargetBoard) -> Result<String> {
+    let file = FirmwareFile::read(&read(path)?).with_context(|| path.display().to_string())?;
+    let version = file.version().with_context(|| format!("{} does not state its version", path.display()))?;
+    let symbols: Vec<_> = file.symbols().collect();
+    Ok(like.facts_of(version, file.time_stamp(), &symbols))
 }
 
 fn list() -> String {

@@ -19,7 +19,7 @@ pub(crate) fn programs(
     compiler: &CompilerArguments,
     options: &Options,
 ) -> Result<Option<Vec<UserProgram>>> {
-    options.firmware.check_version().context("`--firmware`")?;
+    options.firmware.check_version()?;
     programs_with(files, compiler, options)
 }
 

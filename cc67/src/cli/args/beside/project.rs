@@ -27,8 +27,13 @@ use crate::cli::io::input::read;
 pub(super) const NAME: &str = "cc67.toml";
 
 /// Keys that are lists or values of their own, and the option that each stands for.
-const KEYS: &[(&str, &str)] =
-    &[("machine", "--machine"), ("include", "-I"), ("first", "--first"), ("start", "--first")];
+const KEYS: &[(&str, &str)] = &[
+    ("machine", "--machine"),
+    ("board", "--board"),
+    ("include", "-I"),
+    ("first", "--first"),
+    ("start", "--first"),
+];
 
 /// Commands that have defaults here.
 const COMMANDS: &[&str] = &["run", "test", "live", "debug"];
@@ -82,7 +87,8 @@ impl Project {
             let name = key.get_ref().as_ref();
             let at = value.span().start;
             if let Some((_, option)) = KEYS.iter().find(|(known, _)| *known == name) {
-                let values = values(value.get_ref(), &|text| within(folder, text));
+                let word = |text: &str| if name == "board" { text.into() } else { within(folder, text) };
+                let values = values(value.get_ref(), &word);
                 for value in
                     values.ok_or_else(|| wrong(at, format!("`{name}` must be a text, or several")))?
                 {
@@ -109,7 +115,8 @@ impl Project {
                 let known = KEYS.iter().map(|(key, _)| *key).chain(COMMANDS.iter().copied());
                 let hint = match suggest(name, known) {
                     Some(near) => format!("; did you mean `{near}`?"),
-                    None => "; known: machine, include, first, [run], [test], [live] and [debug]".to_owned(),
+                    None => "; known: machine, board, include, first, [run], [test], [live] and [debug]"
+                        .to_owned(),
                 };
                 return Err(wrong(key.span().start, format!("unknown key `{name}`{hint}")));
             }

@@ -6,10 +6,12 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
+use kmotiondef::ctype::Role;
 use kmotiondef::firmware::{ABSENT, FIRMWARE_FUNCTIONS, FirmwareFunction, Origin};
+use kmotiondef::limits::{N_CHANNELS, N_USER_THREADS};
 use runtime::REMARKS;
 
-use super::Explained;
+use super::{Explained, boards};
 use crate::cli::commands::examples;
 
 /// Under each heading the names of functions, then their text.
@@ -60,6 +62,8 @@ pub(super) fn answer(is_meant: &dyn Fn(&str) -> bool) -> Option<String> {
             "- Firmware 4.34 lacks it; the simulated board has it, but on a real board the program must define it.\n"
         }
     });
+    text.push_str(&arguments(function));
+    text.push_str(&boards::line(name));
     let codes = codes(name);
     if !codes.is_empty() {
         let _ = writeln!(text, "- Remarks that name it: {}.", codes.join(", "));
@@ -75,6 +79,24 @@ pub(super) fn answer(is_meant: &dyn Fn(&str) -> bool) -> Option<String> {
         }
     }
     Some(text)
+}
+
+/// The arguments that are more than their C type says, as a line of a list.
+fn arguments(function: &FirmwareFunction) -> String {
+    let meanings = function.params.iter().filter_map(|param| {
+        let meaning = match param.role {
+            Role::Value => return None,
+            Role::Axis => format!("the number of an axis, 0 to {}", N_CHANNELS - 1),
+            Role::Bit => "the number of a bit".to_owned(),
+            Role::Thread => format!("the number of a thread, 1 to {N_USER_THREADS}"),
+            Role::PrintFormat | Role::ScanFormat => "a format".to_owned(),
+            Role::FileName => "the name of a file on the PC".to_owned(),
+            Role::Within(most) => format!("limited to {most} and -{most}"),
+        };
+        Some(format!("`{}` is {meaning}", param.name))
+    });
+    let meanings: Vec<_> = meanings.collect();
+    if meanings.is_empty() { String::new() } else { format!("- {}.\n", meanings.join(", ")) }
 }
 
 /// The doc comment of the row on one line.

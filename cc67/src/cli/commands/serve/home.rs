@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail, ensure};
 use compiler::firmware;
+use kmotiondef::boards::TargetBoard;
 use kmotiondef::headers::EMBEDDED;
 
 use crate::cli::io::output;
@@ -42,7 +43,7 @@ pub(super) fn make(folder: &Path, programs: Option<&Path>) -> Result<PathBuf> {
     for name in [COMPILER, SERVER] {
         link(&command, &folder.join("bin").join(name))?;
     }
-    let image = firmware::export()?;
+    let image = firmware::export(TargetBoard::default_board())?;
     for (place, name) in FIRMWARE {
         let place = folder.join(place);
         supply(&place.join(name), &image)?;

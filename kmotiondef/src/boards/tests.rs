@@ -1,0 +1,143 @@
+//! The boards against the tables of the specification.
+
+use std::collections::BTreeSet;
+
+use super::*;
+use crate::tests::{Row, table_of};
+
+const OTHERS: [&str; 2] = ["kflop-5.3.2", "kogna-5.3.2"];
+
+fn board(name: &str) -> &'static TargetBoard {
+    TargetBoard::named(name).expect(name)
+}
+
+fn hexadecimal_address(address: GuestAddr) -> String {
+    format!("0x{:08X}", address.get())
+}
+
+#[test]
+fn every_function_and_variable_has_the_address_of_the_specification() {
+    for name in OTHERS {
+        let board = board(name);
+        for row in table_of(name, "functions.csv") {
+            let known = board.function(&row["name"]);
+            if row["address"].is_empty() {
+                let is_library = known.is_some_and(|known| known.origin == Origin::Library);
+                assert!(is_library || board.function(&row["name"]).is_none(), "{}", row["name"]);
+                continue;
+            }
+            // The tables have no type for `long long`.
+            if row["signature"].contains("long long") {
+                assert!(board.is_hidden(&row["name"]));
+                continue;
+            }
+            let known = known.unwrap_or_else(|| panic!("{name} lacks {}", row["name"]));
+            assert_eq!(hexadecimal_address(known.address), row["address"], "{name}: {}", row["name"]);
+            assert_eq!(
+                known.origin == Origin::Header,
+                row["header_declares"] == "yes",
+                "{name}: {}",
+                row["name"]
+            );
+        }
+        for row in table_of(name, "variables.csv").iter().filter(|row| !row["address"].is_empty()) {
+            let address = board.variable(&row["name"]).map(hexadecimal_address);
+            assert_eq!(address.as_ref(), Some(&row["address"]), "{name}: {}", row["name"]);
+        }
+    }
+}
+
+#[test]
+fn hidden_names_are_the_other_reserved_names_of_the_specification() {
+    for name in OTHERS {
+        let board = board(name);
+        let rows = table_of(name, "reserved-names.csv");
+        assert!(rows.len() > 700, "{name}: {}", rows.len());
+        for row in rows {
+            let is_known = board.function(&row["name"]).is_some() || board.variable(&row["name"]).is_some();
+            let is_listed =
+                row["in_functions_or_variables_table"] == "yes" && !row["name"].starts_with("strto");
+            assert!(is_known || board.is_hidden(&row["name"]), "{name}: {}", row["name"]);
+            assert!(is_known || !is_listed, "{name}: {}", row["name"]);
+        }
+    }
+}
+
+#[test]
+fn structures_have_the_layout_of_the_specification() {
+    for name in OTHERS {
+        let structures = board(name).structures();
+        for row in table_of(name, "structs.csv") {
+            let find = |row: &Row| structures.iter().find(|structure| structure.name == row["struct"]);
+            let structure = find(&row).unwrap_or_else(|| panic!("{name}: {}", row["struct"]));
+            if row["field"] == "(struct)" {
+                assert_eq!(structure.size.to_string(), row["size"], "{name}: {}", structure.name);
+                continue;
+            }
+            // The fields of the structures and unions within are named after theirs.
+            let Some(field) = structure.fields.iter().find(|field| field.name == row["field"]) else {
+                assert!(row["field"].contains('.') || row["field"].contains('('), "{name}: {}", row["field"]);
+                continue;
+            };
+            let place = (field.offset.to_string(), field.size.to_string());
+            assert_eq!(place, (row["offset"].clone(), row["size"].clone()), "{name}: {}", row["field"]);
+        }
+    }
+}
+
+#[test]
+fn the_default_board_is_that_of_the_tables() {
+    let board = TargetBoard::default_board();
+    assert_eq!((board.number(), board.version_stamp()), ("4.34", 434));
+    assert_eq!(super::BOARDS[0].name, board.name);
+    for row in FIRMWARE_FUNCTIONS.iter().filter(|row| !ABSENT.contains(&row.name)) {
+        assert_eq!(board.function(row.name).map(|function| function.address), Some(row.address));
+    }
+    assert_eq!(board.headers(), crate::headers::EMBEDDED);
+}
+
+#[test]
+fn boards_have_names_of_their_own_and_say_their_versions() {
+    let names: BTreeSet<_> = BOARDS.iter().map(|board| board.name).collect();
+    assert_eq!(names.len(), BOARDS.len());
+    for board in BOARDS.iter() {
+        assert_eq!(TargetBoard::of_version(board.version).map(|found| found.name), Some(board.name));
+        assert!(board.name.ends_with(board.number()), "{}", board.name);
+    }
+    assert_eq!(board("kflop-5.3.2").version_stamp(), 532);
+    let last = ThreadId::new(7).expect("7 is a thread");
+    assert_eq!(board("kogna-5.3.2").program_base(last), GuestAddr::new(0xC020_0000));
+}
+
+#[test]
+fn version_texts_become_version_stamps() {
+    assert_eq!(stamp("KFLOP 4.34 Build 16:07:06 Aug 14 2018"), Some(434));
+    assert_eq!(stamp("KFLOP 4.35h Build 1"), Some(435));
+    assert_eq!(stamp("KFLOP 5.10 Build"), Some(510));
+    assert_eq!(stamp("KFLOP 5.3.2 Build 18:10:31"), Some(532));
+    assert_eq!(stamp("KFLOP 900000.10"), None);
+    assert_eq!(stamp("KFLOP"), None);
+}
+
+#[test]
+fn differences_name_what_a_program_meets_that_moves() {
+    let differences = board("kflop-4.34").differences(board("kflop-5.3.2"));
+    let change = |name: &str| differences.iter().find(|one| one.name == name).map(|one| one.change.as_str());
+    assert_eq!(change("free"), Some("only in kflop-4.34"));
+    assert_eq!(change("JogAtAccel"), Some("only in kflop-5.3.2"));
+    assert_eq!(change("N_CHANNELS"), Some("`8` in kflop-4.34, `N_CHANNELS_KFLOP` in kflop-5.3.2"));
+    assert!(change("SPINDLE").is_some_and(|change| change.starts_with("112 and 120 bytes; ")));
+    assert_eq!(change("ReadBit"), None);
+    assert_eq!(board("kflop-5.3.2").differences(board("kflop-5.3.2")), []);
+}
+
+#[test]
+fn names_of_other_boards_are_found() {
+    let other = |of: &str, name: &str| board(of).other_with(name).map(|found| found.name);
+    assert_eq!(other("kflop-4.34", "MoveAtVelAccel"), Some("kflop-5.3.2"));
+    assert_eq!(other("kflop-4.34", "SPI_SetMode"), Some("kogna-5.3.2"));
+    assert_eq!(other("kflop-5.3.2", "free"), Some("kflop-4.34"));
+    assert_eq!(other("kflop-4.34", "MB_OK"), None);
+    assert_eq!(other("kflop-4.34", "Move"), None);
+    assert_eq!(other("kogna-5.3.2", "N_CHANNELS"), Some("kflop-4.34"));
+}
