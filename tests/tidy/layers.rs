@@ -127,6 +127,18 @@ pub(crate) const LAYERS: &[(&str, &[Row])] = &[
         ],
     ),
     (
+        "cc67/wire",
+        &[
+            ("users", &["queue"]),
+            ("client", &["client"]),
+            ("boards", &["boards"]),
+            ("transports", &["transport"]),
+            ("stream", &["link", "lines"]),
+            ("files and reports", &["disk", "found"]),
+            ("words", &["address", "error", "clock"]),
+        ],
+    ),
+    (
         "cc67/host",
         &[
             ("clients", &["client"]),

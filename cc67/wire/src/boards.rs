@@ -1,0 +1,54 @@
+//! Boards that are connected to this computer.
+
+use crate::error::WireError;
+use crate::found::FoundBoard;
+
+/// Lists the boards that are connected. Nothing is sent to any of them.
+///
+/// # Errors
+/// The system does not tell.
+pub fn boards() -> Result<Vec<FoundBoard>, WireError> {
+    #[cfg(feature = "usb")]
+    let mut found = crate::transport::usb_boards()?;
+    #[cfg(not(feature = "usb"))]
+    let mut found = Vec::new();
+    #[cfg(feature = "serial")]
+    found.extend(serial_boards());
+    found.extend(server());
+    Ok(found)
+}
+
+/// Serial ports that say that they are a board.
+#[cfg(feature = "serial")]
+fn serial_boards() -> Vec<FoundBoard> {
+    use serialport::SerialPortType;
+
+    let ports = serialport::available_ports().unwrap_or_default();
+    let board = |port: serialport::SerialPortInfo| {
+        let SerialPortType::UsbPort(usb) = port.port_type else { return None };
+        ((usb.vid, usb.pid) == (0x0403, 0xF231)).then(|| FoundBoard {
+            address: format!("serial:{}", port.port_name),
+            name: usb.product.unwrap_or_else(|| "KFLOP".into()),
+            serial: usb.serial_number,
+            holder: None,
+        })
+    };
+    ports.into_iter().filter_map(board).collect()
+}
+
+/// The vendor's server, if one runs at its usual place.
+fn server() -> Option<FoundBoard> {
+    #[cfg(unix)]
+    {
+        let socket = "/tmp/kmotionsocket";
+        std::os::unix::net::UnixStream::connect(socket).ok()?;
+        Some(FoundBoard {
+            address: "server".into(),
+            name: "board of the server at /tmp/kmotionsocket".into(),
+            serial: None,
+            holder: Some("the server".into()),
+        })
+    }
+    #[cfg(not(unix))]
+    None
+}

@@ -1,0 +1,68 @@
+//! The handshake. Source: wire.md sections 2.5 and 2.6.
+
+use std::time::Duration;
+
+use super::{ANSWER_WITHIN, Client};
+use crate::clock::now;
+use crate::error::WireError;
+use crate::lines::Incoming;
+
+/// Drops the line or the download in progress; running programs continue.
+const ABORT: &[u8] = b"\x03";
+/// The number of attempts at a board that does not answer.
+const ATTEMPTS: usize = 5;
+/// Within which time it is answered.
+const ABORTED_WITHIN: Duration = Duration::from_secs(1);
+
+impl Client {
+    /// Brings the board's command loop to the beginning of a line, and reads its version.
+    pub(super) fn handshake(&mut self) -> Result<(), WireError> {
+        self.link.claim(ANSWER_WITHIN)?;
+        let result =
+            (0..ATTEMPTS).try_fold(false, |is_done, _| if is_done { Ok(true) } else { self.abort() });
+        let result = result.and_then(|is_done| {
+            if is_done {
+                self.read_version()
+            } else {
+                Err(WireError::Silent { place: self.place().to_owned() })
+            }
+        });
+        self.link.release();
+        result
+    }
+
+    /// Sends the abort byte; whether it was answered. Lines before the answer were caused by others.
+    fn abort(&mut self) -> Result<bool, WireError> {
+        self.link.send(ABORT.to_vec())?;
+        let end = now() + ABORTED_WITHIN;
+        while let Some(item) = self.next(end)? {
+            if item == Incoming::Aborted {
+                return Ok(true);
+            }
+            if now() >= end {
+                break;
+            }
+        }
+        Ok(false)
+    }
+
+    fn read_version(&mut self) -> Result<(), WireError> {
+        self.write(&[b"Version".to_vec()])?;
+        let end = now() + ANSWER_WITHIN;
+        while let Some(item) = self.next(end)? {
+            let Incoming::Reply(line) = item else { continue };
+            let line = String::from_utf8_lossy(&line).into_owned();
+            // Something else is left of another user.
+            if line.contains(" Build ") {
+                self.version = line;
+                return Ok(());
+            }
+        }
+        Err(self.no_answer("Version", ANSWER_WITHIN))
+    }
+
+    /// Brings the board back into order after an answer that did not come: what is under way is dropped.
+    pub(super) fn resynchronise(&mut self) -> Result<(), WireError> {
+        if self.abort()? { Ok(()) } else { Err(WireError::Silent { place: self.place().to_owned() }) }
+    }
+}

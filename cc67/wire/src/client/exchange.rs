@@ -1,0 +1,143 @@
+//! Commands and their answers.
+
+use std::time::Duration;
+
+use super::refusals::Refusal;
+use super::{ANSWER_WITHIN, Client};
+use crate::clock::now;
+use crate::error::WireError;
+use crate::lines::Incoming;
+
+/// Ends each command line: its reply says that all before it was executed.
+const FENCE: &str = "Version";
+/// Commands that take more lines, which cannot be typed one by one.
+const MULTI_LINE: [&str; 4] = ["LOADDATA", "LOADFLASH", "SETGATHERHEX", "READDISKDATA"];
+
+impl Client {
+    /// Executes a command that gives no reply.
+    ///
+    /// # Errors
+    /// The board refuses it, or does not answer.
+    pub fn command(&mut self, line: &str) -> Result<(), WireError> {
+        self.send_line(line).map(drop)
+    }
+
+    /// Executes a command and returns its reply of one line.
+    ///
+    /// # Errors
+    /// The board refuses the command, or does not answer.
+    pub fn ask(&mut self, line: &str) -> Result<String, WireError> {
+        let mut lines = self.ask_lines(line, 1)?;
+        Ok(lines.pop().unwrap_or_default())
+    }
+
+    /// Executes a command and returns its reply of `count` lines.
+    ///
+    /// # Errors
+    /// The board refuses the command, does not answer, or with fewer lines.
+    pub fn ask_lines(&mut self, line: &str, count: usize) -> Result<Vec<String>, WireError> {
+        let mut lines = self.send_line(line)?;
+        let Some(foreign) = lines.len().checked_sub(count) else {
+            return Err(self.unexpected(line, &lines.join(" / ")));
+        };
+        // The reply is what came last: the board executes both commands of the line without a break.
+        self.foreign_lines += foreign as u64;
+        Ok(lines.split_off(foreign))
+    }
+
+    /// Executes a command line and returns all lines of its reply.
+    ///
+    /// # Errors
+    /// The board refuses the line, or does not answer.
+    pub fn send_line(&mut self, line: &str) -> Result<Vec<String>, WireError> {
+        let upper = line.to_ascii_uppercase();
+        if let Some(command) = MULTI_LINE.iter().find(|command| upper.contains(**command)) {
+            return Err(WireError::NotBuilt {
+                place: self.place().to_owned(),
+                reason: format!("`{command}` needs further lines, which cannot be sent by hand"),
+            });
+        }
+        if line.contains(['\r', '\n', '\x03']) {
+            return Err(self.unexpected(line, "a command is one line"));
+        }
+        self.link.claim(ANSWER_WITHIN)?;
+        let result = self.exchange(&[format!("{line};{FENCE}").into_bytes()], line, ANSWER_WITHIN);
+        self.link.release();
+        result
+    }
+
+    /// Sends lines, the last of which asks for the version, and returns the lines of replies before that.
+    pub(super) fn exchange(
+        &mut self,
+        lines: &[Vec<u8>],
+        command: &str,
+        within: Duration,
+    ) -> Result<Vec<String>, WireError> {
+        self.errors.watch();
+        let sent = self.write(lines);
+        let result = sent.and_then(|()| self.replies(command, within));
+        self.errors.unwatch().into_iter().for_each(|line| self.keep(line));
+        match result {
+            Err(error @ WireError::NoAnswer { .. }) => {
+                // The next command finds the board at the beginning of a line, or the board is silent.
+                self.resynchronise()?;
+                Err(error)
+            }
+            result => result,
+        }
+    }
+
+    /// Lines of replies until that to the fence, or the board's refusal of our command.
+    fn replies(&mut self, command: &str, within: Duration) -> Result<Vec<String>, WireError> {
+        let mut lines = Vec::new();
+        let mut end = now() + within;
+        let mut unwritten = self.link.unwritten();
+        loop {
+            let item = self.next(end.min(now() + Duration::from_millis(200)))?;
+            if let Some(refusal) = self.own_refusal(command) {
+                return Err(refusal);
+            }
+            match item {
+                Some(Incoming::Reply(line)) => {
+                    let line = String::from_utf8_lossy(&line).into_owned();
+                    if line == self.version {
+                        return Ok(lines);
+                    }
+                    lines.push(line);
+                }
+                Some(_) => {}
+                None if now() >= end => return Err(self.no_answer(command, within)),
+                None => {}
+            }
+            // A board that still takes what was sent is not silent.
+            let left = self.link.unwritten();
+            if left < unwritten {
+                unwritten = left;
+                end = now() + within;
+            }
+        }
+    }
+
+    /// The error of a command of one line that the board refuses: the rest of the line, with the fence, is dropped.
+    fn own_refusal(&self, command: &str) -> Option<WireError> {
+        let upper = command.to_ascii_uppercase();
+        let is_own = |refusal: &&Refusal| {
+            refusal.command.is_empty() || upper.split(';').any(|part| part == refusal.command)
+        };
+        let refusal = self.errors.found().iter().find(is_own)?;
+        Some(WireError::Refused { command: command.to_owned(), message: refusal.message.clone() })
+    }
+
+    /// The messages of the board since the last command was sent.
+    pub(super) fn refusals(&self) -> &[Refusal] {
+        self.errors.found()
+    }
+
+    pub(super) fn no_answer(&self, command: &str, within: Duration) -> WireError {
+        WireError::NoAnswer {
+            place: self.place().to_owned(),
+            command: command.to_owned(),
+            seconds: within.as_secs_f64(),
+        }
+    }
+}

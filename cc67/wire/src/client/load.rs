@@ -1,0 +1,184 @@
+//! Loading programs. Source: wire.md section 3; coff.md section 9.
+//!
+//! The board answers nothing to a download, so each piece ends with a fence, and messages of the board between are
+//! mistakes of the load. The first word of the thread's space is 0 from the first byte that is sent to the last: a
+//! thread with such a space cannot be started, so that a load which was interrupted leaves nothing that could run.
+
+use kmotiondef::ThreadId;
+use kmotiondef::map::{PROGRAM_LIMIT, PROGRAM_SIZE, program_base};
+
+use super::{ANSWER_WITHIN, Client};
+use crate::disk::hexadecimal;
+use crate::error::WireError;
+
+/// Bytes of a piece, between which other programs may use a shared board.
+const PIECE: usize = 0x4000;
+/// Bytes of a data line; the board takes no other number.
+const BYTES_PER_LINE: usize = 64;
+/// The word that keeps a thread from being started.
+const GUARD: usize = 4;
+
+/// A program for a thread, as bytes at addresses.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LoadImage {
+    /// The thread.
+    pub thread: ThreadId,
+    /// The address at which it begins.
+    pub entry: u32,
+    /// The bytes, each part with its address.
+    pub parts: Vec<(u32, Vec<u8>)>,
+    /// The version text of the firmware that it was linked with, if that is known.
+    pub firmware: Option<String>,
+}
+
+/// The progress of a load.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Progress {
+    /// Bytes that have arrived.
+    pub done: usize,
+    /// Bytes in all.
+    pub total: usize,
+}
+
+impl LoadImage {
+    /// Checks that the image is for a board's firmware and for the space of its thread.
+    ///
+    /// # Errors
+    /// It is for another firmware or space.
+    pub fn check(&self, version: &str) -> Result<(), WireError> {
+        if let Some(firmware) = &self.firmware
+            && firmware.trim_end() != version.trim_end()
+        {
+            return Err(WireError::WrongFirmware {
+                board: version.into(),
+                program: firmware.trim_end().into(),
+            });
+        }
+        self.check_space()
+    }
+
+    /// Checks that the image begins in the space of its thread and ends among the spaces of programs.
+    ///
+    /// # Errors
+    /// It has bytes elsewhere.
+    pub fn check_space(&self) -> Result<(), WireError> {
+        let start = program_base(self.thread).get();
+        let end = start + PROGRAM_SIZE - 1;
+        let wrong = |address| WireError::WrongSpace { thread: self.thread, address, start, end };
+        if !(start..=end).contains(&self.entry) {
+            return Err(wrong(self.entry));
+        }
+        for (address, bytes) in &self.parts {
+            let last = u64::from(*address) + bytes.len().saturating_sub(1) as u64;
+            if *address < start || *address > end {
+                return Err(wrong(*address));
+            }
+            // A large program may continue in the space of the next thread (dialect.md section 7).
+            if last >= u64::from(PROGRAM_LIMIT) {
+                return Err(wrong(PROGRAM_LIMIT));
+            }
+        }
+        Ok(())
+    }
+
+    /// Number of bytes.
+    #[must_use]
+    pub fn size(&self) -> usize {
+        self.parts.iter().map(|(_, bytes)| bytes.len()).sum()
+    }
+
+    /// The parts as they are sent, the first word of the space last.
+    fn ordered(&self) -> Vec<(u32, Vec<u8>)> {
+        let start = program_base(self.thread).get();
+        let mut parts = vec![];
+        let mut last = vec![];
+        for (address, bytes) in &self.parts {
+            match bytes.split_at_checked(GUARD) {
+                Some((guard, rest)) if *address == start => {
+                    parts.push((start, vec![0; GUARD]));
+                    parts.push((start + GUARD as u32, rest.to_vec()));
+                    last.push((start, guard.to_vec()));
+                }
+                _ => parts.push((*address, bytes.clone())),
+            }
+        }
+        parts.extend(last);
+        parts
+    }
+}
+
+impl Client {
+    /// Loads a program into its thread, which is stopped first. Nothing is started.
+    ///
+    /// # Errors
+    /// The image is refused before anything is sent, or the load went wrong; the thread cannot be started then.
+    pub fn load(
+        &mut self,
+        image: &LoadImage,
+        is_forced: bool,
+        progress: &mut dyn FnMut(Progress),
+    ) -> Result<(), WireError> {
+        if is_forced {
+            image.check_space()?;
+        } else {
+            image.check(&self.version)?;
+        }
+        self.kill(image.thread)?;
+        let total = image.size();
+        let mut done = 0;
+        progress(Progress { done, total });
+        for (address, bytes) in image.ordered() {
+            for (piece, at) in bytes.chunks(PIECE).zip((address..).step_by(PIECE)) {
+                self.send_piece(at, piece).map_err(|error| failed(image, error))?;
+                done = (done + piece.len()).min(total);
+                progress(Progress { done, total });
+            }
+        }
+        self.command(&format!("EntryPoint{} {:X}", image.thread, image.entry))
+            .map_err(|error| failed(image, error))?;
+        progress(Progress { done: total, total });
+        Ok(())
+    }
+
+    /// Sends one block, and waits until the board has taken all of it.
+    fn send_piece(&mut self, address: u32, bytes: &[u8]) -> Result<(), WireError> {
+        let command = format!("LOADDATA {address:X} {:X}", bytes.len());
+        let data = bytes.chunks(BYTES_PER_LINE).map(hexadecimal);
+        let mut lines: Vec<_> = std::iter::once(command.clone().into_bytes()).chain(data).collect();
+        lines.push(b"Version".to_vec());
+        self.link.claim(ANSWER_WITHIN)?;
+        let result = self.exchange(&lines, &command, ANSWER_WITHIN);
+        self.link.release();
+        self.judge(address, result)
+    }
+
+    /// Judges a block by what came before its fence.
+    fn judge(&mut self, address: u32, result: Result<Vec<String>, WireError>) -> Result<(), WireError> {
+        let foreign = result?.len();
+        self.foreign_lines += foreign as u64;
+        if self.refusals().is_empty() {
+            return Ok(());
+        }
+        // A data line that is refused came to a command loop that knew nothing of the block any more.
+        let is_data =
+            |line: &str| line.len() >= 2 && line.bytes().all(|byte| byte.is_ascii_hexdigit() || byte == b' ');
+        let foreign = self.refusals().iter().find(|refusal| !is_data(&refusal.command));
+        let message = match foreign {
+            Some(refusal) => format!("another program sent `{}` into the download", refusal.command),
+            None => "the board restarted, or another program interrupted the download".to_owned(),
+        };
+        Err(WireError::Refused { command: format!("LOADDATA {address:X}"), message })
+    }
+}
+
+/// The error of a load that did not arrive completely.
+fn failed(image: &LoadImage, error: WireError) -> WireError {
+    let start = image.parts.iter().map(|(address, _)| *address).min().unwrap_or(image.entry);
+    let end = image.parts.iter().map(|(address, bytes)| address.saturating_add(bytes.len() as u32)).max();
+    let reason = match error {
+        WireError::Refused { message, .. } => message,
+        WireError::Disconnected { place, .. } => format!("{place} was disconnected during the download"),
+        error => error.to_string(),
+    };
+    WireError::LoadFailed { thread: image.thread, start, end: end.unwrap_or(image.entry), reason }
+}

@@ -1,0 +1,47 @@
+//! The link to a controller: transports, and a client of the board's byte protocol.
+//!
+//! ```text
+//! address    names of boards: usb, serial:PATH, server, tcp:HOST:PORT
+//! transport  opens the link that an address names
+//! boards     lists the boards that are connected
+//! queue      several users of one board, in turn
+//! client     connects, asks, loads programs, reads the console and the status
+//! disk       answers the file requests of programs
+//! lines      replies, console lines and requests in the received bytes
+//! link       a stream of bytes in both directions that never blocks its user
+//! error      errors, each with the place of the board
+//! ```
+//!
+//! Invariants:
+//!
+//! - **Nothing blocks forever**: each call has a time limit, and received bytes are read while others are sent.
+//! - **Nothing is started by itself**: only [`Client::command`] with `Execute` starts a program.
+//! - **Flash is never written**: [`Client`] sends no command for it by itself.
+//! - **A program that was not loaded completely cannot be started** ([`Client::load`]).
+//!
+//! Source of the protocol: host-protocol.md, wire.md.
+
+#![forbid(unsafe_code)]
+
+mod address;
+mod boards;
+mod client;
+mod clock;
+mod disk;
+mod error;
+mod found;
+mod lines;
+mod link;
+mod queue;
+mod transport;
+
+pub use address::{Address, AddressError, ServerAddress};
+pub use boards::boards;
+pub use client::{Client, LoadImage, Progress, Status};
+pub use disk::{DiskAnswer, NoFiles, PcFiles};
+pub use error::WireError;
+pub use found::FoundBoard;
+pub use lines::{Decoder, Incoming};
+pub use link::BoardLink;
+pub use queue::Queue;
+pub use transport::{ftdi, open};

@@ -1,0 +1,231 @@
+//! A stream of bytes in both directions that never blocks its user.
+//!
+//! One thread reads and one writes, so that what the board sends is taken while it holds up its input: a client that
+//! only wrote could block together with it (wire.md section 2.4). Readers and writers have short time-outs of their own.
+
+use std::io::{ErrorKind, Read, Write};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use crate::clock::now;
+use crate::error::WireError;
+
+/// Bytes that a reader takes at once.
+const READ_SIZE: usize = 4096;
+/// Bytes that a writer gives at once, so that it can be ended between.
+const WRITE_SIZE: usize = 4096;
+/// The interval at which a thread without work checks whether it should end.
+const IDLE: Duration = Duration::from_millis(100);
+/// The interval at which a user of the link checks whether its bytes were written.
+const DRAIN: Duration = Duration::from_millis(1);
+
+/// A request to the thread that writes.
+#[derive(Debug)]
+pub(crate) enum Outgoing {
+    /// Bytes for the board.
+    Bytes(Vec<u8>),
+    /// Takes the token of a shared board until the given moment.
+    Claim(Instant, Sender<Claimed>),
+    /// Gives it back.
+    Release,
+}
+
+/// The outcome of taking the token of a shared board.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Claimed {
+    Taken,
+    InUse,
+    NotConnected,
+}
+
+/// A stream of bytes to and from a board.
+#[derive(Debug)]
+pub struct BoardLink {
+    place: String,
+    incoming: Receiver<Vec<u8>>,
+    outgoing: Sender<Outgoing>,
+    /// Bytes that were given to the writer and not to the board.
+    unwritten: Arc<AtomicUsize>,
+    is_closed: Arc<AtomicBool>,
+    is_shared: bool,
+}
+
+/// The threads' ends of a link.
+pub(crate) struct Ends {
+    pub(crate) received: Sender<Vec<u8>>,
+    pub(crate) requests: Receiver<Outgoing>,
+    pub(crate) unwritten: Arc<AtomicUsize>,
+    pub(crate) is_closed: Arc<AtomicBool>,
+}
+
+impl BoardLink {
+    /// Makes a link over a reader and a writer, both with time-outs.
+    #[must_use]
+    pub fn new(
+        place: impl Into<String>,
+        reader: impl Read + Send + 'static,
+        writer: impl Write + Send + 'static,
+    ) -> Self {
+        let (link, ends) = Self::with_ends(place.into(), false);
+        let Ends { received, requests, unwritten, is_closed } = ends;
+        let is_over = Arc::clone(&is_closed);
+        thread::spawn(move || read_all(reader, &received, &is_over));
+        thread::spawn(move || write_all(writer, &requests, &unwritten, &is_closed));
+        link
+    }
+
+    /// Makes a link whose other ends a transport serves.
+    pub(crate) fn with_ends(place: String, is_shared: bool) -> (Self, Ends) {
+        let (received, incoming) = channel();
+        let (outgoing, requests) = channel();
+        let (unwritten, is_closed) = (Arc::<AtomicUsize>::default(), Arc::<AtomicBool>::default());
+        let ends =
+            Ends { received, requests, unwritten: Arc::clone(&unwritten), is_closed: Arc::clone(&is_closed) };
+        (Self { place, incoming, outgoing, unwritten, is_closed, is_shared }, ends)
+    }
+
+    /// The place of the board, for messages.
+    #[must_use]
+    pub fn place(&self) -> &str {
+        &self.place
+    }
+
+    /// Sends bytes, and returns before they are written.
+    ///
+    /// # Errors
+    /// The link is lost.
+    pub fn send(&self, bytes: Vec<u8>) -> Result<(), WireError> {
+        self.unwritten.fetch_add(bytes.len(), Ordering::Relaxed);
+        self.outgoing.send(Outgoing::Bytes(bytes)).map_err(|_| self.lost())
+    }
+
+    /// Bytes that the board has not taken yet.
+    #[must_use]
+    pub fn unwritten(&self) -> usize {
+        self.unwritten.load(Ordering::Relaxed)
+    }
+
+    /// Returns bytes that have come, or nothing if none come until a moment.
+    ///
+    /// # Errors
+    /// The link is lost.
+    pub fn receive(&self, until: Instant) -> Result<Option<Vec<u8>>, WireError> {
+        match self.incoming.recv_timeout(until.saturating_duration_since(now())) {
+            Ok(bytes) => Ok(Some(bytes)),
+            Err(RecvTimeoutError::Timeout) => Ok(None),
+            Err(RecvTimeoutError::Disconnected) => Err(self.lost()),
+        }
+    }
+
+    /// Waits until all bytes are written; whether they are.
+    #[must_use]
+    pub fn drain(&self, within: Duration) -> bool {
+        let end = now() + within;
+        while self.unwritten() > 0 {
+            if now() >= end {
+                return false;
+            }
+            thread::sleep(DRAIN);
+        }
+        true
+    }
+
+    /// Takes the token of a board that other programs share.
+    pub(crate) fn claim(&self, within: Duration) -> Result<(), WireError> {
+        if !self.is_shared {
+            return Ok(());
+        }
+        let (answer, inbox) = channel();
+        self.outgoing.send(Outgoing::Claim(now() + within, answer)).map_err(|_| self.lost())?;
+        match inbox.recv_timeout(within + Duration::from_secs(1)) {
+            Ok(Claimed::Taken) => Ok(()),
+            Ok(Claimed::InUse) | Err(RecvTimeoutError::Timeout) => {
+                Err(WireError::InUse { place: self.place.clone(), seconds: within.as_secs_f64() })
+            }
+            Ok(Claimed::NotConnected) | Err(RecvTimeoutError::Disconnected) => Err(self.lost()),
+        }
+    }
+
+    /// Gives the token back.
+    pub(crate) fn release(&self) {
+        if self.is_shared {
+            // A lost link holds no token.
+            let _ = self.outgoing.send(Outgoing::Release);
+        }
+    }
+
+    /// The error of a link that is lost.
+    pub(crate) fn lost(&self) -> WireError {
+        WireError::Disconnected { place: self.place.clone(), during: String::new() }
+    }
+}
+
+impl Drop for BoardLink {
+    fn drop(&mut self) {
+        self.is_closed.store(true, Ordering::Relaxed);
+    }
+}
+
+/// Returns whether a read or write should be tried again.
+fn is_pause(kind: ErrorKind) -> bool {
+    matches!(kind, ErrorKind::TimedOut | ErrorKind::WouldBlock | ErrorKind::Interrupted)
+}
+
+fn read_all(mut reader: impl Read, received: &Sender<Vec<u8>>, is_closed: &AtomicBool) {
+    let mut buffer = vec![0; READ_SIZE];
+    while !is_closed.load(Ordering::Relaxed) {
+        match reader.read(&mut buffer) {
+            Ok(0) => return,
+            Ok(count) => {
+                let bytes = buffer.get(..count).unwrap_or_default();
+                if received.send(bytes.to_vec()).is_err() {
+                    return;
+                }
+            }
+            Err(error) if is_pause(error.kind()) => {}
+            Err(_) => return,
+        }
+    }
+}
+
+fn write_all(
+    mut writer: impl Write,
+    requests: &Receiver<Outgoing>,
+    unwritten: &AtomicUsize,
+    is_closed: &AtomicBool,
+) {
+    while !is_closed.load(Ordering::Relaxed) {
+        let bytes = match requests.recv_timeout(IDLE) {
+            Ok(Outgoing::Bytes(bytes)) => bytes,
+            Ok(Outgoing::Claim(_, answer)) => {
+                // Who asked may have gone.
+                let _ = answer.send(Claimed::Taken);
+                continue;
+            }
+            Ok(Outgoing::Release) | Err(RecvTimeoutError::Timeout) => continue,
+            Err(RecvTimeoutError::Disconnected) => return,
+        };
+        let mut rest = bytes.as_slice();
+        while !rest.is_empty() {
+            if is_closed.load(Ordering::Relaxed) {
+                return;
+            }
+            let piece = rest.get(..WRITE_SIZE).unwrap_or(rest);
+            match writer.write(piece) {
+                Ok(0) => return,
+                Ok(count) => {
+                    unwritten.fetch_sub(count, Ordering::Relaxed);
+                    rest = rest.get(count..).unwrap_or_default();
+                }
+                Err(error) if is_pause(error.kind()) => {}
+                Err(_) => return,
+            }
+        }
+        if writer.flush().is_err_and(|error| !is_pause(error.kind())) {
+            return;
+        }
+    }
+}

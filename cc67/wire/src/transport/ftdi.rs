@@ -1,0 +1,72 @@
+//! The framing of the board's USB chip. Source: wire.md sections 2.3 and 2.4.
+
+/// Status bytes at the beginning of each packet.
+const STATUS: usize = 2;
+
+/// A request to the chip: number and value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ChipRequest {
+    /// Its number.
+    pub request: u8,
+    /// Its value.
+    pub value: u16,
+}
+
+/// The requests that prepare the chip, in their order.
+pub const PREPARATION: [ChipRequest; 5] = [
+    // Reset.
+    ChipRequest { request: 0, value: 0 },
+    // Packets that are not full wait for 2 ms.
+    ChipRequest { request: 9, value: 2 },
+    // A packet with a line feed goes at once.
+    ChipRequest { request: 6, value: 0x010A },
+    // Drop what was received, and what is to be sent.
+    ChipRequest { request: 0, value: 1 },
+    ChipRequest { request: 0, value: 2 },
+];
+
+/// Appends the data of a transfer to `data`: each packet begins with two status bytes.
+pub fn strip(transfer: &[u8], packet_size: usize, data: &mut Vec<u8>) {
+    for packet in transfer.chunks(packet_size.max(STATUS + 1)) {
+        data.extend_from_slice(packet.get(STATUS..).unwrap_or_default());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn stripped(transfer: &[u8]) -> Vec<u8> {
+        let mut data = Vec::new();
+        strip(transfer, 64, &mut data);
+        data
+    }
+
+    /// A transfer that carries `data`, as the chip makes it.
+    fn transfer(data: &[u8]) -> Vec<u8> {
+        data.chunks(62).flat_map(|part| [&[0x01, 0x60], part].concat()).collect()
+    }
+
+    #[test]
+    fn recorded_packets_give_their_data() {
+        // The answer to the abort byte, and a packet of a chip with nothing to say (wire.md section 2.3).
+        assert_eq!(stripped(&[0x01, 0x60, 0x1B, 0x43, 0x0D]), b"\x1bC\r");
+        assert_eq!(stripped(&[0x01, 0x60]), b"");
+        assert_eq!(stripped(&[]), b"");
+        assert_eq!(stripped(&[0x01]), b"");
+    }
+
+    #[test]
+    fn status_bytes_are_removed_from_every_packet_of_a_transfer() {
+        for length in [1, 61, 62, 63, 124, 125, 496, 500, 3968] {
+            let data: Vec<u8> = (0..=255).cycle().take(length).collect();
+            assert_eq!(stripped(&transfer(&data)), data, "{length} bytes");
+        }
+    }
+
+    #[test]
+    fn data_that_looks_like_status_bytes_stays() {
+        let data = [0x01, 0x60].repeat(62);
+        assert_eq!(stripped(&transfer(&data)), data);
+    }
+}

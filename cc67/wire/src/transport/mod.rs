@@ -1,0 +1,41 @@
+//! Links of every kind.
+
+pub mod ftdi;
+#[cfg(feature = "serial")]
+mod serial;
+mod server;
+mod tcp;
+#[cfg(feature = "usb")]
+mod usb;
+
+#[cfg(feature = "usb")]
+pub(crate) use usb::boards as usb_boards;
+
+use crate::address::Address;
+use crate::error::WireError;
+use crate::link::BoardLink;
+
+/// Opens the link to the board at an address. Nothing is sent to the board yet.
+///
+/// # Errors
+/// There is nothing there, or it may not be opened.
+pub fn open(address: &Address) -> Result<BoardLink, WireError> {
+    let place = address.to_string();
+    match address {
+        #[cfg(feature = "usb")]
+        Address::Usb(location) => usb::open(location.as_deref()),
+        #[cfg(not(feature = "usb"))]
+        Address::Usb(_) => Err(not_built(place, "usb")),
+        #[cfg(feature = "serial")]
+        Address::Serial(path) => serial::open(path, place),
+        #[cfg(not(feature = "serial"))]
+        Address::Serial(_) => Err(not_built(place, "serial")),
+        Address::Server(server) => server::open(server, place),
+        Address::Tcp { host, port } => tcp::open(host, *port, place),
+    }
+}
+
+#[cfg(not(all(feature = "usb", feature = "serial")))]
+fn not_built(place: String, feature: &str) -> WireError {
+    WireError::NotBuilt { place, reason: format!("this build has no such links (feature `{feature}`)") }
+}

@@ -1,0 +1,229 @@
+//! A board that the vendor's server holds, shared with the vendor's programs. Source: host-protocol.md section 8; wire.md
+//! sections 5 and 6.
+//!
+//! The server forwards lines, not bytes. What the client sends is split into lines and requested one by one; replies
+//! and console lines become bytes again, so that the client above is the same. Files that programs open are served by
+//! the server while it waits for a reply, in its own folder.
+
+use std::io::{self, Read, Write};
+use std::sync::atomic::Ordering;
+use std::sync::mpsc::RecvTimeoutError;
+use std::time::Duration;
+
+use super::tcp;
+use crate::address::ServerAddress;
+use crate::clock::now;
+use crate::error::WireError;
+use crate::link::{BoardLink, Claimed, Ends, Outgoing};
+
+/// Codes of requests.
+const WRITE_LINE: i32 = 1;
+const READ_LINE: i32 = 3;
+const LOCK: i32 = 9;
+const RELEASE: i32 = 12;
+const SERVICE_CONSOLE: i32 = 13;
+const SET_CONSOLE: i32 = 14;
+/// The first board of the server.
+const BOARD: i32 = 0;
+/// The name under which the token is taken.
+const NAME: &[u8] = b"cc67\0";
+/// Results of taking the token.
+const LOCKED: i32 = 0;
+const IN_USE: i32 = 1;
+/// Acknowledges a message that is not a reply.
+const ACKNOWLEDGE: &[u8] = &[0xAA];
+/// Within which time the server answers: it may have to connect to the board, and to read a line.
+const ANSWER_WITHIN: Duration = Duration::from_secs(10);
+/// The time of one wait for a reply, in milliseconds.
+const READ_FOR: i32 = 10;
+/// The interval between requests for the console while nothing else happens.
+const CONSOLE_EACH: Duration = Duration::from_millis(20);
+/// The interval between attempts to take the token.
+const LOCK_EACH: Duration = Duration::from_millis(10);
+/// Longest message.
+const MESSAGE_LIMIT: usize = 4096;
+/// The abort byte, and its answer: the server connects by itself.
+const ABORT: u8 = 0x03;
+const ABORTED: &[u8] = b"\x1bC\r";
+
+/// A stream to a server.
+trait Stream: Read + Write + Send {}
+
+impl<S: Read + Write + Send> Stream for S {}
+
+pub(super) fn open(address: &ServerAddress, place: String) -> Result<BoardLink, WireError> {
+    let fail = |error| WireError::Open { place: place.clone(), error };
+    let stream: Box<dyn Stream> = match address {
+        ServerAddress::Tcp(host, port) => {
+            let stream = tcp::connect(host, *port).map_err(fail)?;
+            stream.set_read_timeout(Some(ANSWER_WITHIN)).map_err(fail)?;
+            Box::new(stream)
+        }
+        ServerAddress::Socket(path) => socket(path, &place)?,
+        ServerAddress::Pipe => {
+            return Err(WireError::NotBuilt {
+                place,
+                reason: "cc67 does not speak through the server's Windows pipe yet; use --on server:HOST:PORT or serial:COM3"
+                    .into(),
+            });
+        }
+    };
+    let (link, ends) = BoardLink::with_ends(place, true);
+    let connection = Connection { stream, line: Vec::new(), received: Vec::new(), is_claimed: false };
+    std::thread::spawn(move || connection.serve(&ends));
+    Ok(link)
+}
+
+#[cfg(unix)]
+fn socket(path: &str, place: &str) -> Result<Box<dyn Stream>, WireError> {
+    let fail = |error| WireError::Open { place: place.to_owned(), error };
+    let stream = std::os::unix::net::UnixStream::connect(path).map_err(fail)?;
+    stream.set_read_timeout(Some(ANSWER_WITHIN)).map_err(fail)?;
+    stream.set_write_timeout(Some(ANSWER_WITHIN)).map_err(fail)?;
+    Ok(Box::new(stream))
+}
+
+#[cfg(not(unix))]
+fn socket(_: &str, place: &str) -> Result<Box<dyn Stream>, WireError> {
+    let reason = "this system has no such sockets; server:HOST:PORT works everywhere".into();
+    Err(WireError::NotBuilt { place: place.to_owned(), reason })
+}
+
+/// A connection to the server.
+struct Connection {
+    stream: Box<dyn Stream>,
+    /// The beginning of a line that was not ended yet.
+    line: Vec<u8>,
+    /// The bytes that the board has sent.
+    received: Vec<u8>,
+    /// True if we have the token: replies are for us then.
+    is_claimed: bool,
+}
+
+/// A normal reply.
+struct Reply {
+    result: i32,
+    data: Vec<u8>,
+}
+
+impl Connection {
+    /// Serves one end of a link until the other is dropped, or the server is gone.
+    fn serve(mut self, ends: &Ends) {
+        // A server that does not answer ends the link.
+        let _ = self.run(ends);
+        let _ = ends.received.send(std::mem::take(&mut self.received));
+    }
+
+    fn run(&mut self, ends: &Ends) -> io::Result<()> {
+        self.request(SET_CONSOLE, &[])?;
+        while !ends.is_closed.load(Ordering::Relaxed) {
+            let pause = if self.is_claimed { Duration::ZERO } else { CONSOLE_EACH };
+            match ends.requests.recv_timeout(pause) {
+                Ok(Outgoing::Bytes(bytes)) => {
+                    for byte in &bytes {
+                        self.send(*byte)?;
+                    }
+                    ends.unwritten.fetch_sub(bytes.len(), Ordering::Relaxed);
+                }
+                Ok(Outgoing::Claim(until, answer)) => {
+                    let claimed = self.claim(until)?;
+                    // Who asked may have gone.
+                    let _ = answer.send(claimed);
+                }
+                Ok(Outgoing::Release) => {
+                    self.is_claimed = false;
+                    self.request(RELEASE, &[])?;
+                }
+                Err(RecvTimeoutError::Timeout) if self.is_claimed => self.read_line()?,
+                Err(RecvTimeoutError::Timeout) => drop(self.request(SERVICE_CONSOLE, &[])?),
+                Err(RecvTimeoutError::Disconnected) => break,
+            }
+            if !self.received.is_empty() && ends.received.send(std::mem::take(&mut self.received)).is_err() {
+                break;
+            }
+        }
+        if self.is_claimed {
+            self.request(RELEASE, &[])?;
+        }
+        Ok(())
+    }
+
+    /// Takes the token, again and again until a moment.
+    fn claim(&mut self, until: std::time::Instant) -> io::Result<Claimed> {
+        loop {
+            match self.request(LOCK, NAME)?.result {
+                LOCKED => {
+                    self.is_claimed = true;
+                    return Ok(Claimed::Taken);
+                }
+                IN_USE if now() < until => std::thread::sleep(LOCK_EACH),
+                IN_USE => return Ok(Claimed::InUse),
+                _ => return Ok(Claimed::NotConnected),
+            }
+        }
+    }
+
+    /// Takes a byte for the board.
+    fn send(&mut self, byte: u8) -> io::Result<()> {
+        match byte {
+            ABORT => {
+                self.line.clear();
+                self.received.extend_from_slice(ABORTED);
+                // What is left of an earlier reply is not for us.
+                Ok(())
+            }
+            b'\r' => {
+                let line = std::mem::take(&mut self.line);
+                // The server puts the two bytes in front that switch the echo off.
+                let text = line.strip_prefix(b"\x1b\x01").unwrap_or(&line);
+                self.request(WRITE_LINE, &[text, b"\0"].concat()).map(drop)
+            }
+            byte => {
+                self.line.push(byte);
+                Ok(())
+            }
+        }
+    }
+
+    fn read_line(&mut self) -> io::Result<()> {
+        let reply = self.request(READ_LINE, &READ_FOR.to_le_bytes())?;
+        if reply.result == 0 {
+            let text = reply.data.split(|byte| *byte == 0).next().unwrap_or_default();
+            self.received.extend_from_slice(text);
+        }
+        Ok(())
+    }
+
+    /// Sends a request and returns its reply; console lines that come before it are received.
+    fn request(&mut self, code: i32, arguments: &[u8]) -> io::Result<Reply> {
+        let body = [&code.to_le_bytes()[..], &BOARD.to_le_bytes(), arguments].concat();
+        let length = u16::try_from(body.len()).ok().filter(|_| body.len() <= MESSAGE_LIMIT);
+        let length = length.ok_or(io::ErrorKind::InvalidInput)?;
+        self.stream.write_all(&[&length.to_le_bytes()[..], &body].concat())?;
+        loop {
+            let message = self.message()?;
+            let (kind, rest) = message.split_first().ok_or(io::ErrorKind::InvalidData)?;
+            match kind {
+                0 => {
+                    let (result, data) = rest.split_first_chunk().ok_or(io::ErrorKind::InvalidData)?;
+                    return Ok(Reply { result: i32::from_le_bytes(*result), data: data.to_vec() });
+                }
+                1 => {
+                    let text = rest.split(|byte| *byte == 0).next().unwrap_or_default();
+                    self.received.extend([b"\x1b", text].concat());
+                    self.stream.write_all(ACKNOWLEDGE)?;
+                }
+                // The text of an error, such as that of a link that was lost.
+                _ => self.stream.write_all(ACKNOWLEDGE)?,
+            }
+        }
+    }
+
+    fn message(&mut self) -> io::Result<Vec<u8>> {
+        let mut length = [0; 2];
+        self.stream.read_exact(&mut length)?;
+        let mut message = vec![0; usize::from(u16::from_le_bytes(length))];
+        self.stream.read_exact(&mut message)?;
+        Ok(message)
+    }
+}

@@ -1,0 +1,217 @@
+//! The board's USB chip, without a driver. Source: wire.md section 2.
+
+use std::io::{self, Read, Write};
+use std::time::Duration;
+
+use nusb::transfer::{Buffer, Bulk, ControlOut, ControlType, In, Out, Recipient, TransferError};
+use nusb::{DeviceInfo, Endpoint, ErrorKind, Interface, MaybeFuture};
+
+use super::ftdi;
+use crate::clock::now;
+use crate::error::WireError;
+use crate::found::FoundBoard;
+use crate::link::BoardLink;
+
+/// The vendor's identifier at USB, and those of its boards: KFLOP, KMotion.
+const VENDOR: u16 = 0x0403;
+const PRODUCTS: [u16; 2] = [0xF231, 0xF230];
+/// One of these words is in the name of a board.
+const NAMES: [&str; 3] = ["KFLOP", "KMotion", "Dynomotion"];
+/// Endpoints for data.
+const IN: u8 = 0x81;
+const OUT: u8 = 0x02;
+/// Time-out of a request to the chip.
+const CONTROL: Duration = Duration::from_secs(1);
+/// Time-out of a single read or write.
+const STEP: Duration = Duration::from_millis(50);
+/// Bytes of a transfer, and transfers under way.
+const TRANSFER: usize = 4096;
+const TRANSFERS: usize = 4;
+/// The time that a board needs to start, in which it comes and goes.
+const OPEN_WITHIN: Duration = Duration::from_secs(3);
+const OPEN_EACH: Duration = Duration::from_millis(100);
+
+pub(super) fn open(location: Option<&str>) -> Result<BoardLink, WireError> {
+    if cfg!(windows) {
+        return Err(WireError::NotBuilt {
+            place: "usb".into(),
+            reason: "on Windows the vendor's driver holds the board, and cc67 does not use its library (ftd2xx.dll) yet; \
+                     use --on serial:COM3 (Device Manager: load VCP) or a computer with Linux or macOS"
+                .into(),
+        });
+    }
+    let end = now() + OPEN_WITHIN;
+    loop {
+        match find(location).and_then(|device| claim(&device)) {
+            Err(error @ WireError::Open { .. }) if now() < end => {
+                drop(error);
+                std::thread::sleep(OPEN_EACH);
+            }
+            result => return result,
+        }
+    }
+}
+
+/// The devices that may be boards.
+fn devices() -> Result<Vec<DeviceInfo>, WireError> {
+    let all = nusb::list_devices().wait();
+    let all = all.map_err(|error| WireError::Open { place: "usb".into(), error: error.into() })?;
+    Ok(all.filter(is_board).collect())
+}
+
+fn is_board(device: &DeviceInfo) -> bool {
+    let is_known = device.vendor_id() == VENDOR && PRODUCTS.contains(&device.product_id());
+    // Where the system does not tell the name, the identifier decides.
+    is_known && device.product_string().is_none_or(|name| NAMES.iter().any(|word| name.contains(word)))
+}
+
+/// Bus and ports of a device, as Linux writes them.
+fn location_of(device: &DeviceInfo) -> String {
+    let bus = device.bus_id();
+    let bus = bus.trim_start_matches('0');
+    let ports: Vec<String> = device.port_chain().iter().map(u8::to_string).collect();
+    format!("{}-{}", if bus.is_empty() { "0" } else { bus }, ports.join("."))
+}
+
+fn find(location: Option<&str>) -> Result<DeviceInfo, WireError> {
+    let mut found = devices()?;
+    let present = found.iter().map(location_of).collect::<Vec<_>>().join(", ");
+    if let Some(wanted) = location {
+        let is_wanted =
+            |device: &DeviceInfo| location_of(device) == wanted || device.serial_number() == Some(wanted);
+        let Some(index) = found.iter().position(is_wanted) else {
+            let present = if present.is_empty() { "none".into() } else { present };
+            return Err(WireError::NotThere { wanted: wanted.into(), present });
+        };
+        return Ok(found.swap_remove(index));
+    }
+    match found.len() {
+        1 => Ok(found.swap_remove(0)),
+        0 => Err(WireError::NoBoard),
+        _ => Err(WireError::SeveralBoards(present)),
+    }
+}
+
+/// Takes the chip and prepares it.
+fn claim(device: &DeviceInfo) -> Result<BoardLink, WireError> {
+    let location = location_of(device);
+    let place = format!("usb:{location}");
+    let fail = |error: nusb::Error| match error.kind() {
+        ErrorKind::PermissionDenied => WireError::NoPermission { place: place.clone() },
+        ErrorKind::Busy => WireError::Busy { place: place.clone(), holder: holder(&location) },
+        _ => WireError::Open { place: place.clone(), error: error.into() },
+    };
+    let opened = device.open().wait().map_err(fail)?;
+    let interface = opened.detach_and_claim_interface(0).wait().map_err(fail)?;
+    prepare(&interface).map_err(|error| WireError::Open { place: place.clone(), error: error.into() })?;
+    let input: Endpoint<Bulk, In> = interface.endpoint(IN).map_err(fail)?;
+    let output: Endpoint<Bulk, Out> = interface.endpoint(OUT).map_err(fail)?;
+    Ok(BoardLink::new(place, ChipReader::new(input), ChipWriter { output }))
+}
+
+fn prepare(interface: &Interface) -> Result<(), TransferError> {
+    for ftdi::ChipRequest { request, value } in ftdi::PREPARATION {
+        let control = ControlOut {
+            control_type: ControlType::Vendor,
+            recipient: Recipient::Device,
+            request,
+            value,
+            index: 1,
+            data: &[],
+        };
+        interface.control_out(control, CONTROL).wait()?;
+    }
+    Ok(())
+}
+
+/// The program that holds a device, as far as Linux tells: the driver of its interface.
+fn holder(location: &str) -> String {
+    let driver = std::fs::read_link(format!("/sys/bus/usb/devices/{location}:1.0/driver"));
+    let driver = driver.ok().and_then(|path| Some(path.file_name()?.to_string_lossy().into_owned()));
+    match driver.as_deref() {
+        None => "another program".into(),
+        Some("usbfs") => "another program, perhaps the vendor's server".into(),
+        Some(driver) => format!("the kernel's driver {driver}"),
+    }
+}
+
+/// Boards at USB.
+pub(crate) fn boards() -> Result<Vec<FoundBoard>, WireError> {
+    let row = |device: &DeviceInfo| {
+        let location = location_of(device);
+        let is_held = std::fs::read_link(format!("/sys/bus/usb/devices/{location}:1.0/driver")).is_ok();
+        FoundBoard {
+            name: device.product_string().unwrap_or("KFLOP").to_owned(),
+            serial: device.serial_number().map(str::to_owned),
+            holder: is_held.then(|| holder(&location)),
+            address: format!("usb:{location}"),
+        }
+    };
+    Ok(devices()?.iter().map(row).collect())
+}
+
+/// The bytes from the chip. Several transfers are always under way; one without data is not the end.
+struct ChipReader {
+    input: Endpoint<Bulk, In>,
+    fresh: Vec<u8>,
+    taken: usize,
+}
+
+impl ChipReader {
+    fn new(mut input: Endpoint<Bulk, In>) -> Self {
+        (0..TRANSFERS).for_each(|_| input.submit(Buffer::new(TRANSFER)));
+        Self { input, fresh: Vec::new(), taken: 0 }
+    }
+}
+
+impl Read for ChipReader {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        if self.taken >= self.fresh.len() {
+            self.fresh.clear();
+            self.taken = 0;
+            let Some(completion) = self.input.wait_next_complete(STEP) else {
+                return Err(io::ErrorKind::TimedOut.into());
+            };
+            let mut transfer = completion.into_result()?;
+            ftdi::strip(&transfer, self.input.max_packet_size(), &mut self.fresh);
+            transfer.clear();
+            transfer.set_requested_len(TRANSFER);
+            self.input.submit(transfer);
+            if self.fresh.is_empty() {
+                return Err(io::ErrorKind::TimedOut.into());
+            }
+        }
+        let rest = self.fresh.get(self.taken..).unwrap_or_default();
+        let count = rest.len().min(buffer.len());
+        if let (Some(to), Some(from)) = (buffer.get_mut(..count), rest.get(..count)) {
+            to.copy_from_slice(from);
+        }
+        self.taken += count;
+        Ok(count)
+    }
+}
+
+/// The bytes to the chip: the transfer waits while the board does not read.
+struct ChipWriter {
+    output: Endpoint<Bulk, Out>,
+}
+
+impl Write for ChipWriter {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if self.output.pending() == 0 {
+            self.output.submit(bytes.to_vec().into());
+        }
+        match self.output.wait_next_complete(STEP) {
+            // The caller comes again with the same bytes.
+            None => Err(io::ErrorKind::TimedOut.into()),
+            Some(completion) => {
+                completion.status?;
+                Ok(completion.actual_len)
+            }
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
