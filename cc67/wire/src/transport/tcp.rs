@@ -1,4 +1,4 @@
-//! Raw bytes over TCP: a serial port of `ser2net`, a Kogna, or `cc67 serve --listen tcp-raw:PORT`.
+//! Raw bytes over TCP: a serial port of `ser2net`, or a Kogna.
 
 use std::io;
 use std::net::{TcpStream, ToSocketAddrs};
