@@ -52,10 +52,6 @@ fn options_that_a_booted_board_does_not_support_are_named() {
         assert_refused(&cc67(&scratch, all), &format!("`{name}` does not work with `--boot`"));
     };
     refused(&["--engine", "bytecode"], "--engine");
-    let debug = ["console", "--boot", "x.out", "--serve", "tcp:0", "--debug", "0"];
-    assert_refused(&cc67(&scratch, debug), "`--debug` does not work with `--boot` yet");
-    let serve = ["serve", "--boot", "x.out", "hello.c", "--live"];
-    assert_refused(&cc67(&scratch, serve), "`--live` does not work with `--boot`");
     let compare = ["compare", "--boot", "x.out", "--flash", "x", "hello.c"];
     assert_refused(&cc67(&scratch, compare), "`--flash` does not work with `cc67 compare`");
     let test = cc67(&scratch, ["compare", "hello.c"]);

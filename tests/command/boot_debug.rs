@@ -59,16 +59,6 @@ fn lines(output: &Output) -> Vec<String> {
 }
 
 #[test]
-fn editor_debugging_is_refused_with_a_firmware_file() {
-    let scratch = Scratch::new("boot-debug-dap");
-    for option in ["--dap", "--listen=0"] {
-        let output = cc67(&scratch, ["debug", "--boot", "x.out", option]);
-        assert_eq!(output.code, 2, "{output:?}");
-        assert!(output.stderr.contains("editors do not debug with `--boot` yet"), "{output:?}");
-    }
-}
-
-#[test]
 fn programs_on_the_real_firmware_stop_at_breakpoints() {
     let commands = "\
 break twice

@@ -85,6 +85,20 @@ struct cc67_client *cc67_open(const char *files,
                               uintptr_t size);
 
 /*
+ Makes a board that runs your own firmware file, and its first client: programs are compiled for the processor, and
+ the firmware answers. `firmware` is the name of the file; the other arguments and the result are those of
+ `cc67_open`.
+
+ Requires:
+ Texts end with a 0; `message` has room for `size` bytes.
+ */
+struct cc67_client *cc67_open_firmware(const char *firmware,
+                                       const char *files,
+                                       const char *machine,
+                                       char *message,
+                                       uintptr_t size);
+
+/*
  Makes one more client of the same board, for another thread or another part of the program. Null on failure.
 
  Requires:
